@@ -1,0 +1,69 @@
+//! The mesh of one ring: nodes, elements of one kind, and named groups of boundary facets.
+
+use std::collections::BTreeMap;
+
+use crate::element::ElementKind;
+
+/// One face of one element.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct Facet {
+    /// Element index.
+    pub element: usize,
+    /// Face of that element, in the order of [`ElementKind::face_nodes`].
+    pub face: usize,
+}
+
+/// A mesh of one body. Node order inside an element is VTK's, see [`crate::element`].
+#[derive(Clone, Debug, PartialEq)]
+pub struct Mesh {
+    /// Kind of every element.
+    pub kind: ElementKind,
+    /// Node coordinates, m, `[n_nodes][3]`.
+    pub nodes: Vec<[f64; 3]>,
+    /// Node indices of the elements, `[n_elements][kind.n_nodes()]`, flat.
+    pub connectivity: Vec<usize>,
+    /// Boundary facets by physical name (`raceway`, `seat`, `bore`, ...).
+    pub groups: BTreeMap<String, Vec<Facet>>,
+}
+
+impl Mesh {
+    /// Number of nodes.
+    pub fn n_nodes(&self) -> usize {
+        self.nodes.len()
+    }
+
+    /// Number of degrees of freedom, three per node.
+    pub fn n_dofs(&self) -> usize {
+        3 * self.nodes.len()
+    }
+
+    /// Number of elements.
+    pub fn n_elements(&self) -> usize {
+        self.connectivity.len() / self.kind.n_nodes()
+    }
+
+    /// Node indices of element `e`.
+    pub fn element(&self, e: usize) -> &[usize] {
+        let n = self.kind.n_nodes();
+        &self.connectivity[n * e..n * (e + 1)]
+    }
+
+    /// Global node indices of a facet: corners, then mid-nodes, outward normal by the right-hand rule.
+    pub fn facet_nodes(&self, facet: Facet) -> impl Iterator<Item = usize> + '_ {
+        let element = self.element(facet.element);
+        self.kind.face_nodes(facet.face).iter().map(move |&i| element[i])
+    }
+
+    /// Facets of a named group, empty when there is none.
+    pub fn group(&self, name: &str) -> &[Facet] {
+        self.groups.get(name).map_or(&[], Vec::as_slice)
+    }
+
+    /// Sorted distinct nodes of a named group.
+    pub fn group_nodes(&self, name: &str) -> Vec<usize> {
+        let mut nodes: Vec<usize> = self.group(name).iter().flat_map(|&f| self.facet_nodes(f)).collect();
+        nodes.sort_unstable();
+        nodes.dedup();
+        nodes
+    }
+}
