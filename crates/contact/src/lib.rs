@@ -1,1 +1,26 @@
-//! PLACE
+//! Geometry and laws of ball-raceway contact: bearing geometry, Hertz theory, contact patches on a raceway
+//! mesh, bounding boxes over its facets.
+//!
+//! Frame: the bearing axis is z, the azimuth is measured from +x towards +y. A vector in the meridian plane
+//! of a ball is `[radial, axial]`.
+
+pub mod elliptic;
+pub mod error;
+pub mod facets;
+pub mod geometry;
+pub mod halfspace;
+pub mod hertz;
+pub mod law;
+pub mod patch;
+pub mod quadrature;
+pub mod raceway;
+pub mod weights;
+
+pub use error::ContactError;
+pub use facets::FacetSurface;
+pub use geometry::{BearingGeometry, Side};
+pub use hertz::{Elastic, HertzContact};
+pub use law::ContactLaw;
+pub use patch::Patch;
+pub use raceway::{Groove, RacewaySurface};
+pub use weights::NodalWeights;

@@ -1,1 +1,20 @@
-//! PLACE
+//! Model, State, effects and the algorithms of the bearing: contact equilibrium, statics.
+//!
+//! Everything but the contact forces is linear (`design`: factor once, solve a small convex problem for the
+//! contacts). This crate does no input or output.
+
+pub mod balls;
+pub mod effects;
+pub mod equilibrium;
+pub mod error;
+pub mod footprint;
+pub mod model;
+pub mod problem;
+pub mod ring;
+pub mod statics;
+pub mod support;
+
+pub use effects::{Effect, Loads};
+pub use error::DynamicsError;
+pub use model::{ContactMode, ContactSettings, Hold, Model, RingModel, ShaftDof, Tolerances};
+pub use statics::{StaticSolution, StaticSolver, Timing};

@@ -1,0 +1,258 @@
+//! The geometry of an angular contact ball bearing: grooves, free contact angle, just-touching positions.
+//!
+//! Each groove is a torus. The reference (just-touching) position has every ball touching both raceways: the
+//! inner groove centres lie A sin(a0) further along +z than the outer ones. A positive axial load on the inner
+//! ring presses it along +z into the balls. A contact angle is positive in that sense on both raceways.
+//! Reference: Harris, Rolling Bearing Analysis (4th ed.), chapter 2.
+
+use crate::error::ContactError;
+
+/// Which raceway.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Side {
+    /// Raceway of the inner ring.
+    Inner,
+    /// Raceway of the outer ring.
+    Outer,
+}
+
+impl Side {
+    /// Both raceways, inner first: the order of every array over sides.
+    pub const BOTH: [Side; 2] = [Side::Inner, Side::Outer];
+
+    /// Index in arrays over sides.
+    pub fn index(self) -> usize {
+        self as usize
+    }
+
+    /// Name used in files and messages.
+    pub fn name(self) -> &'static str {
+        match self {
+            Side::Inner => "inner",
+            Side::Outer => "outer",
+        }
+    }
+
+    /// +1 where the groove bottom lies outside the groove centre (outer ring), -1 inside (inner ring).
+    pub fn sign(self) -> f64 {
+        match self {
+            Side::Inner => -1.0,
+            Side::Outer => 1.0,
+        }
+    }
+}
+
+/// Dimensions of the bearing, m.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BearingGeometry {
+    /// Number of balls.
+    pub n_balls: usize,
+    /// Ball diameter D_w.
+    pub ball_diameter: f64,
+    /// Inner raceway (groove-bottom) diameter d_i.
+    pub inner_raceway_diameter: f64,
+    /// Outer raceway (groove-bottom) diameter D_e.
+    pub outer_raceway_diameter: f64,
+    /// Inner groove radius R_i.
+    pub inner_groove_radius: f64,
+    /// Outer groove radius R_o.
+    pub outer_groove_radius: f64,
+    /// Azimuth of ball 0, rad.
+    pub first_ball_azimuth: f64,
+}
+
+impl BearingGeometry {
+    /// The 7010C of the paper.
+    pub fn reference_7010c() -> BearingGeometry {
+        BearingGeometry {
+            n_balls: 18,
+            ball_diameter: 9e-3,
+            inner_raceway_diameter: 56.01e-3,
+            outer_raceway_diameter: 74.037e-3,
+            inner_groove_radius: 4.65e-3,
+            outer_groove_radius: 4.75e-3,
+            first_ball_azimuth: 0.0,
+        }
+    }
+
+    /// Checks that the grooves enclose the balls and that both raceways can be touched.
+    pub fn validate(&self) -> Result<(), ContactError> {
+        for side in Side::BOTH {
+            if self.groove_radius(side) <= 0.5 * self.ball_diameter {
+                return Err(ContactError::GrooveTooTight {
+                    side: side.name(),
+                    groove_radius_mm: 1e3 * self.groove_radius(side),
+                    ball_radius_mm: 0.5e3 * self.ball_diameter,
+                });
+            }
+        }
+        if self.clearance() > 4.0 * self.groove_distance() {
+            return Err(ContactError::ClearanceTooLarge {
+                clearance_mm: 1e3 * self.clearance(),
+                limit_mm: 4e3 * self.groove_distance(),
+            });
+        }
+        Ok(())
+    }
+
+    /// Groove radius of one raceway, m.
+    pub fn groove_radius(&self, side: Side) -> f64 {
+        match side {
+            Side::Inner => self.inner_groove_radius,
+            Side::Outer => self.outer_groove_radius,
+        }
+    }
+
+    /// Radius of the circle of groove centres, m.
+    pub fn centre_radius(&self, side: Side) -> f64 {
+        match side {
+            Side::Inner => 0.5 * self.inner_raceway_diameter + self.inner_groove_radius,
+            Side::Outer => 0.5 * self.outer_raceway_diameter - self.outer_groove_radius,
+        }
+    }
+
+    /// Diametral clearance P_d = D_e - d_i - 2 D_w, m; negative is interference.
+    pub fn clearance(&self) -> f64 {
+        self.outer_raceway_diameter - self.inner_raceway_diameter - 2.0 * self.ball_diameter
+    }
+
+    /// Distance of the groove centres of a ball that touches both raceways, A = R_i + R_o - D_w, m.
+    pub fn groove_distance(&self) -> f64 {
+        self.inner_groove_radius + self.outer_groove_radius - self.ball_diameter
+    }
+
+    /// Free contact angle a0, cos a0 = 1 - P_d/(2 A), rad. With interference the balls are squeezed at a0 = 0.
+    pub fn free_contact_angle(&self) -> f64 {
+        (1.0 - self.clearance() / (2.0 * self.groove_distance()))
+            .clamp(-1.0, 1.0)
+            .acos()
+    }
+
+    /// Axial distance of the inner from the outer groove centres in the reference position, A sin a0, m.
+    pub fn axial_offset(&self) -> f64 {
+        self.groove_distance() * self.free_contact_angle().sin()
+    }
+
+    /// Groove centre `[radial, axial]` in the reference position, m; axial from the outer groove centres.
+    pub fn groove_centre(&self, side: Side) -> [f64; 2] {
+        let axial = match side {
+            Side::Inner => self.axial_offset(),
+            Side::Outer => 0.0,
+        };
+        [self.centre_radius(side), axial]
+    }
+
+    /// Distance from groove centre to ball centre when they touch, R - D_w/2, m.
+    pub fn touching_distance(&self, side: Side) -> f64 {
+        self.groove_radius(side) - 0.5 * self.ball_diameter
+    }
+
+    /// Ball centre `[radial, axial]` in the reference position, m: on the line of groove centres, with equal
+    /// gap (or interference) to both raceways.
+    pub fn ball_centre(&self) -> [f64; 2] {
+        let (inner, outer) = (self.groove_centre(Side::Inner), self.groove_centre(Side::Outer));
+        midway(
+            inner,
+            outer,
+            self.touching_distance(Side::Inner),
+            self.touching_distance(Side::Outer),
+        )
+    }
+
+    /// Pitch diameter, twice the ball centre's radius in the reference position, m.
+    pub fn pitch_diameter(&self) -> f64 {
+        2.0 * self.ball_centre()[0]
+    }
+
+    /// Azimuth of ball `ball`, rad, in 0..2 pi.
+    pub fn azimuth(&self, ball: usize) -> f64 {
+        let turn = 2.0 * std::f64::consts::PI;
+        (self.first_ball_azimuth + turn * ball as f64 / self.n_balls as f64).rem_euclid(turn)
+    }
+}
+
+/// Point with equal approach to two groove centres at touching distances `di`, `do_`, on their line.
+pub fn midway(inner: [f64; 2], outer: [f64; 2], di: f64, do_: f64) -> [f64; 2] {
+    let line = [inner[0] - outer[0], inner[1] - outer[1]];
+    let length = line[0].hypot(line[1]);
+    // From the outer centre: |x - outer| - do_ = |x - inner| - di.
+    let share = if length > 0.0 {
+        0.5 * (length + do_ - di) / length
+    } else {
+        0.5
+    };
+    [outer[0] + share * line[0], outer[1] + share * line[1]]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Wrong: the derived numbers of the reference bearing (clearance 0.027 mm, A 0.4 mm, 14.93 deg).
+    #[test]
+    fn the_7010c_has_its_derived_dimensions() {
+        let g = BearingGeometry::reference_7010c();
+        assert!((g.clearance() - 0.027e-3).abs() < 1e-15);
+        assert!((g.groove_distance() - 0.4e-3).abs() < 1e-15);
+        let degrees = g.free_contact_angle().to_degrees();
+        assert!((degrees - 14.93).abs() < 5e-3, "{degrees}");
+        assert!((g.centre_radius(Side::Outer) - 32.2685e-3).abs() < 1e-15);
+        assert!((g.centre_radius(Side::Inner) - 32.655e-3).abs() < 1e-15);
+        assert!((g.axial_offset() - 0.103e-3).abs() < 5e-7);
+    }
+
+    /// Wrong: balls would not just touch in the reference position.
+    #[test]
+    fn the_reference_position_just_touches() {
+        let g = BearingGeometry::reference_7010c();
+        let x = g.ball_centre();
+        for side in Side::BOTH {
+            let c = g.groove_centre(side);
+            let approach = (x[0] - c[0]).hypot(x[1] - c[1]) - g.touching_distance(side);
+            assert!(approach.abs() < 1e-17, "{side:?}: {approach}");
+            let normal = side.sign() * (x[0] - c[0]);
+            assert!(normal > 0.0, "{side:?}: the ball lies towards the groove bottom");
+        }
+    }
+
+    /// Wrong: interference would have no reference position.
+    #[test]
+    fn interference_is_shared_at_zero_angle() {
+        let g = BearingGeometry {
+            outer_raceway_diameter: 74.0e-3,
+            ..BearingGeometry::reference_7010c()
+        };
+        assert!(g.clearance() < 0.0 && g.free_contact_angle() == 0.0);
+        let x = g.ball_centre();
+        let approach = |s| (x[0] - g.groove_centre(s)[0]).abs() - g.touching_distance(s);
+        assert!((approach(Side::Inner) - approach(Side::Outer)).abs() < 1e-16);
+        assert!((approach(Side::Inner) + approach(Side::Outer) + 0.5 * g.clearance()).abs() < 1e-16);
+    }
+
+    /// Wrong: an impossible bearing would be accepted.
+    #[test]
+    fn impossible_bearings_are_refused() {
+        let tight = BearingGeometry {
+            inner_groove_radius: 4.5e-3,
+            ..BearingGeometry::reference_7010c()
+        };
+        assert!(
+            tight
+                .validate()
+                .unwrap_err()
+                .to_string()
+                .contains("inner groove radius is 4.5000 mm")
+        );
+        let loose = BearingGeometry {
+            outer_raceway_diameter: 76e-3,
+            ..BearingGeometry::reference_7010c()
+        };
+        assert!(
+            loose
+                .validate()
+                .unwrap_err()
+                .to_string()
+                .contains("exceeds 1.6000 mm")
+        );
+    }
+}

@@ -1,0 +1,346 @@
+//! The raceway of a mesh in its own two coordinates: azimuth and groove angle.
+//!
+//! Every raceway node lies on the torus, so a facet is known by the (azimuth, groove angle) of its nodes. A point is
+//! found by inverting the facet's shape functions in that plane; facets that share an edge share its nodes, so
+//! the raceway is covered without gaps and interpolation is continuous. Search is over a uniform grid of
+//! bins: constant time per point. The groove angle is 0 at the groove bottom and positive as contact angles are.
+
+use std::f64::consts::PI;
+
+use fem::facet;
+use mesh::{Facet, FacetKind, Mesh};
+
+use crate::error::ContactError;
+use crate::geometry::Side;
+
+/// How far outside a facet, in reference coordinates, a point may lie and still be taken (curved edges).
+const OUTSIDE_TOLERANCE: f64 = 0.02;
+
+/// The torus a raceway lies on, in the coordinates of the mesh, m.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Groove {
+    /// Which raceway.
+    pub side: Side,
+    /// Radius of the circle of groove centres.
+    pub centre_radius: f64,
+    /// Groove radius.
+    pub groove_radius: f64,
+    /// Axial position of the groove centres in the mesh.
+    pub centre_z: f64,
+}
+
+impl Groove {
+    /// Radial and axial distance from the groove centre of a unit step at groove angle `angle`.
+    pub fn direction(&self, angle: f64) -> [f64; 2] {
+        [self.side.sign() * angle.cos(), self.side.sign() * angle.sin()]
+    }
+
+    /// Azimuth and groove angle of a point, rad.
+    pub fn coordinates(&self, x: [f64; 3]) -> [f64; 2] {
+        let radial = self.side.sign() * (x[0].hypot(x[1]) - self.centre_radius);
+        let axial = self.side.sign() * (x[2] - self.centre_z);
+        [x[1].atan2(x[0]), axial.atan2(radial)]
+    }
+
+    /// Distance from the bearing axis at groove angle `angle`, m.
+    pub fn radius(&self, angle: f64) -> f64 {
+        self.centre_radius + self.side.sign() * self.groove_radius * angle.cos()
+    }
+
+    /// Groove centre at an azimuth, mesh coordinates, m.
+    pub fn centre(&self, azimuth: f64) -> [f64; 3] {
+        [
+            self.centre_radius * azimuth.cos(),
+            self.centre_radius * azimuth.sin(),
+            self.centre_z,
+        ]
+    }
+}
+
+/// Where a raceway point lies in the mesh.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Location {
+    /// Facet number within the raceway group.
+    pub facet: usize,
+    /// Reference coordinates in that facet.
+    pub xi: [f64; 2],
+}
+
+/// The facets of one raceway, ready for point search.
+pub struct RacewaySurface {
+    /// The torus.
+    pub groove: Groove,
+    /// Facet kind.
+    pub kind: FacetKind,
+    /// Global nodes of the facets, `[n_facets][kind.n_nodes()]`, flat.
+    nodes: Vec<usize>,
+    /// (azimuth, groove angle) of these nodes, unwrapped within each facet, same layout.
+    coordinates: Vec<[f64; 2]>,
+    /// Node spacing [along the groove, rolling direction] at these nodes, m, same layout.
+    spacing: Vec<[f64; 2]>,
+    /// Lowest and highest groove angle, rad.
+    pub angle_range: [f64; 2],
+    bins: Bins,
+}
+
+struct Bins {
+    n: [usize; 2],
+    low: f64,
+    width: [f64; 2],
+    start: Vec<usize>,
+    facets: Vec<usize>,
+}
+
+impl RacewaySurface {
+    /// Surface of the facets `group` of `mesh` on the torus `groove`. Cost: linear in the facets.
+    pub fn new(mesh: &Mesh, group: &[Facet], groove: Groove) -> RacewaySurface {
+        let kind = mesh.kind.facet_kind();
+        let n = kind.n_nodes();
+        let (mut nodes, mut coordinates) = (Vec::new(), Vec::new());
+        for &f in group {
+            let first = coordinates.len();
+            for node in mesh.facet_nodes(f) {
+                let mut at = groove.coordinates(mesh.nodes[node]);
+                if coordinates.len() > first {
+                    at[0] = unwrap_near(at[0], coordinates_first(&coordinates, first));
+                }
+                nodes.push(node);
+                coordinates.push(at);
+            }
+        }
+        let angles = coordinates.iter().map(|c: &[f64; 2]| c[1]);
+        let angle_range = angles.fold([f64::INFINITY, f64::NEG_INFINITY], |r, a| {
+            [r[0].min(a), r[1].max(a)]
+        });
+        let spacing = node_spacing(&nodes, &coordinates, kind, &groove, mesh.n_nodes());
+        let bins = Bins::new(&coordinates, n, angle_range);
+        RacewaySurface {
+            groove,
+            kind,
+            nodes,
+            coordinates,
+            spacing,
+            angle_range,
+            bins,
+        }
+    }
+
+    /// Number of facets.
+    pub fn n_facets(&self) -> usize {
+        self.nodes.len() / self.kind.n_nodes()
+    }
+
+    /// Global nodes of a facet.
+    pub fn facet_nodes(&self, facet: usize) -> &[usize] {
+        let n = self.kind.n_nodes();
+        &self.nodes[n * facet..n * (facet + 1)]
+    }
+
+    /// Facet and reference coordinates at an azimuth and groove angle, rad.
+    pub fn locate(&self, azimuth: f64, angle: f64) -> Result<Location, ContactError> {
+        let n = self.kind.n_nodes();
+        let mut best: Option<(f64, Location)> = None;
+        for &f in self.bins.candidates(azimuth, angle) {
+            let coordinates = &self.coordinates[n * f..n * (f + 1)];
+            let target = [unwrap_near(azimuth, coordinates[0][0]), angle];
+            if let Some(xi) = invert(self.kind, coordinates, target) {
+                let outside = outside(self.kind, xi);
+                if best.as_ref().is_none_or(|(o, _)| outside < *o) {
+                    best = Some((outside, Location { facet: f, xi }));
+                }
+                if outside <= 0.0 {
+                    break;
+                }
+            }
+        }
+        match best {
+            Some((outside, location)) if outside < OUTSIDE_TOLERANCE => Ok(location),
+            _ => Err(ContactError::Hole {
+                side: self.groove.side.name(),
+                azimuth_deg: azimuth.to_degrees(),
+                angle_deg: angle.to_degrees(),
+            }),
+        }
+    }
+
+    /// Node spacing [along the groove, rolling direction] at a point, m: continuous over the raceway.
+    pub fn spacing(&self, location: Location) -> [f64; 2] {
+        let n = self.kind.n_corners();
+        let spacing = &self.spacing[self.kind.n_nodes() * location.facet..];
+        // Corner values only, so that the interpolation stays between them.
+        let shape = facet::shape(corner_kind(self.kind), location.xi);
+        match self.kind {
+            FacetKind::Tri6 => {
+                let barycentric = [
+                    1.0 - location.xi[0] - location.xi[1],
+                    location.xi[0],
+                    location.xi[1],
+                ];
+                weighted(&barycentric, spacing, n)
+            }
+            _ => weighted(&shape, spacing, n),
+        }
+    }
+}
+
+fn weighted(weights: &[f64], values: &[[f64; 2]], n: usize) -> [f64; 2] {
+    let mut sum = [0.0; 2];
+    for i in 0..n {
+        sum[0] += weights[i] * values[i][0];
+        sum[1] += weights[i] * values[i][1];
+    }
+    sum
+}
+
+fn corner_kind(kind: FacetKind) -> FacetKind {
+    match kind {
+        FacetKind::Quad4 | FacetKind::Quad8 => FacetKind::Quad4,
+        FacetKind::Tri6 => FacetKind::Tri6,
+    }
+}
+
+fn coordinates_first(coordinates: &[[f64; 2]], first: usize) -> f64 {
+    coordinates[first][0]
+}
+
+/// The angle equal to `angle` modulo a turn that lies within half a turn of `reference`.
+pub fn unwrap_near(angle: f64, reference: f64) -> f64 {
+    angle - 2.0 * PI * ((angle - reference) / (2.0 * PI)).round()
+}
+
+/// Spacing of the nodes of every facet, averaged over the facets that share a node.
+fn node_spacing(
+    nodes: &[usize],
+    coordinates: &[[f64; 2]],
+    kind: FacetKind,
+    groove: &Groove,
+    n_nodes: usize,
+) -> Vec<[f64; 2]> {
+    let n = kind.n_nodes();
+    let order = if kind == FacetKind::Quad4 { 1.0 } else { 2.0 };
+    let mut sums = vec![[0.0; 3]; n_nodes];
+    for (facet_nodes, c) in nodes.chunks(n).zip(coordinates.chunks(n)) {
+        let range = |i: usize| {
+            let values = c.iter().map(|x| x[i]);
+            let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), x| {
+                (l.min(x), h.max(x))
+            });
+            (high - low, 0.5 * (high + low))
+        };
+        let ((along, angle), (around, _)) = (range(1), range(0));
+        for &node in facet_nodes {
+            sums[node][0] += along * groove.groove_radius / order;
+            sums[node][1] += around * groove.radius(angle) / order;
+            sums[node][2] += 1.0;
+        }
+    }
+    nodes
+        .iter()
+        .map(|&i| [sums[i][0] / sums[i][2], sums[i][1] / sums[i][2]])
+        .collect()
+}
+
+/// Reference coordinates of a target in the (azimuth, angle) plane by Newton; None when it does not converge.
+fn invert(kind: FacetKind, coordinates: &[[f64; 2]], target: [f64; 2]) -> Option<[f64; 2]> {
+    let mut xi = if kind == FacetKind::Tri6 {
+        [1.0 / 3.0; 2]
+    } else {
+        [0.0; 2]
+    };
+    // A facet's map is nearly affine; 20 rounds are far beyond what a usable facet needs.
+    for _ in 0..20 {
+        let (shape, gradients) = (facet::shape(kind, xi), facet::gradients(kind, xi));
+        let (mut residual, mut j) = (target, [[0.0; 2]; 2]);
+        for (a, c) in coordinates.iter().enumerate() {
+            for i in 0..2 {
+                residual[i] -= shape[a] * c[i];
+                j[i][0] += gradients[a][0] * c[i];
+                j[i][1] += gradients[a][1] * c[i];
+            }
+        }
+        let det = j[0][0] * j[1][1] - j[0][1] * j[1][0];
+        if det == 0.0 || !det.is_finite() {
+            return None;
+        }
+        let step = [
+            (residual[0] * j[1][1] - residual[1] * j[0][1]) / det,
+            (residual[1] * j[0][0] - residual[0] * j[1][0]) / det,
+        ];
+        xi = [xi[0] + step[0], xi[1] + step[1]];
+        if step[0].abs().max(step[1].abs()) < 1e-14 {
+            return Some(xi);
+        }
+        if xi[0].abs().max(xi[1].abs()) > 10.0 {
+            return None;
+        }
+    }
+    Some(xi)
+}
+
+/// Largest distance outside the reference facet, negative or zero inside.
+fn outside(kind: FacetKind, xi: [f64; 2]) -> f64 {
+    match kind {
+        FacetKind::Tri6 => (-xi[0]).max(-xi[1]).max(xi[0] + xi[1] - 1.0),
+        _ => xi[0].abs().max(xi[1].abs()) - 1.0,
+    }
+}
+
+impl Bins {
+    /// Grid of about one facet per bin; a facet is listed in every bin its (slightly grown) box touches.
+    fn new(coordinates: &[[f64; 2]], n: usize, angle_range: [f64; 2]) -> Bins {
+        let n_facets = coordinates.len() / n;
+        let side = ((n_facets as f64).sqrt().ceil() as usize).max(1);
+        // A raceway is long and narrow: many bins round, few across.
+        let count = [(8 * side).max(1), side.div_ceil(8).max(1)];
+        let height = (angle_range[1] - angle_range[0]).max(f64::MIN_POSITIVE);
+        let width = [2.0 * PI / count[0] as f64, height / count[1] as f64];
+        let mut bins = Bins {
+            n: count,
+            low: angle_range[0],
+            width,
+            start: Vec::new(),
+            facets: Vec::new(),
+        };
+        let mut lists: Vec<Vec<usize>> = vec![Vec::new(); count[0] * count[1]];
+        for (f, c) in coordinates.chunks(n).enumerate() {
+            bins.for_each_bin(c, |bin| lists[bin].push(f));
+        }
+        bins.start = std::iter::once(0)
+            .chain(lists.iter().scan(0, |sum, l| {
+                *sum += l.len();
+                Some(*sum)
+            }))
+            .collect();
+        bins.facets = lists.concat();
+        bins
+    }
+
+    fn for_each_bin(&self, c: &[[f64; 2]], mut visit: impl FnMut(usize)) {
+        let mut low = [f64::INFINITY; 2];
+        let mut high = [f64::NEG_INFINITY; 2];
+        for x in c {
+            for i in 0..2 {
+                low[i] = low[i].min(x[i]);
+                high[i] = high[i].max(x[i]);
+            }
+        }
+        let grow = [0.05 * (high[0] - low[0]), 0.05 * (high[1] - low[1])];
+        let first = ((low[0] - grow[0]) / self.width[0]).floor() as i64;
+        let last = (((high[0] + grow[0]) / self.width[0]).floor() as i64).min(first + self.n[0] as i64 - 1);
+        for i in first..=last {
+            for j in self.row(low[1] - grow[1])..=self.row(high[1] + grow[1]) {
+                visit(i.rem_euclid(self.n[0] as i64) as usize * self.n[1] + j);
+            }
+        }
+    }
+
+    fn row(&self, angle: f64) -> usize {
+        (((angle - self.low) / self.width[1]).floor().max(0.0) as usize).min(self.n[1] - 1)
+    }
+
+    fn candidates(&self, azimuth: f64, angle: f64) -> &[usize] {
+        let column = ((azimuth / self.width[0]).floor() as i64).rem_euclid(self.n[0] as i64) as usize;
+        let bin = column * self.n[1] + self.row(angle);
+        &self.facets[self.start[bin]..self.start[bin + 1]]
+    }
+}

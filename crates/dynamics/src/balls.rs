@@ -1,0 +1,71 @@
+//! What is reported of every ball.
+
+use contact::Side;
+use serde::Serialize;
+
+use crate::model::Model;
+use crate::problem::{Displacements, Problem};
+
+/// One contact of a ball.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct ContactResult {
+    /// Normal force, N.
+    pub force_n: f64,
+    /// Contact angle, rad.
+    pub contact_angle_rad: f64,
+    /// Hertz approach, m; negative is a gap.
+    pub approach_m: f64,
+    /// Semi-axes of the Hertz ellipse [along the groove, rolling direction], m.
+    pub semi_axes_m: [f64; 2],
+    /// Peak Hertz pressure, Pa.
+    pub peak_pressure_pa: f64,
+}
+
+/// Displacement of a ball from the just-touching position.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct BallDisplacement {
+    /// Away from the axis, m.
+    pub radial: f64,
+    /// Along +z, m.
+    pub axial: f64,
+}
+
+/// One ball.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct BallResult {
+    /// Azimuth, rad.
+    pub azimuth_rad: f64,
+    /// Inner contact.
+    pub inner: ContactResult,
+    /// Outer contact.
+    pub outer: ContactResult,
+    /// Displacement.
+    pub displacement_m: BallDisplacement,
+}
+
+/// Results of all balls at given displacements.
+pub fn ball_results(model: &Model, problem: &Problem, u: &Displacements) -> Vec<BallResult> {
+    let contact = |i: usize| {
+        let site = &problem.sites[i];
+        let state = site.state(u);
+        let hertz = &model.hertz[site.side.index()];
+        ContactResult {
+            force_n: state.force.force,
+            contact_angle_rad: site.contact_angle(&state),
+            approach_m: state.force.approach,
+            semi_axes_m: hertz.semi_axes(state.force.force),
+            peak_pressure_pa: hertz.peak_pressure(state.force.force),
+        }
+    };
+    (0..model.geometry.n_balls)
+        .map(|ball| BallResult {
+            azimuth_rad: model.geometry.azimuth(ball),
+            inner: contact(2 * ball + Side::Inner.index()),
+            outer: contact(2 * ball + Side::Outer.index()),
+            displacement_m: BallDisplacement {
+                radial: u.balls[ball][0],
+                axial: u.balls[ball][1],
+            },
+        })
+        .collect()
+}

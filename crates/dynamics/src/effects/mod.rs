@@ -1,0 +1,87 @@
+//! Effects: one file each, named by the scene. An absent table is never constructed and costs nothing.
+//!
+//! An effect is immutable: it cannot hide state.
+
+mod axial_force;
+mod gravity;
+mod moment;
+mod radial_force;
+
+pub use axial_force::AxialForce;
+pub use gravity::Gravity;
+pub use moment::Moment;
+pub use radial_force::RadialForce;
+
+use contact::Side;
+
+use crate::error::DynamicsError;
+use crate::model::Model;
+
+/// Loads on all bodies at one instant.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Loads {
+    /// Generalised shaft loads: force x, y, z in N, moment x, y in N m about the shaft's origin.
+    pub shaft: [f64; 5],
+    /// Force on each ball [radial, axial], N.
+    pub balls: Vec<[f64; 2]>,
+    /// Body loads on the nodes of a flexible ring, N, `[n_nodes][3]` flat; None: no such load.
+    pub rings: [Option<Vec<f64>>; 2],
+}
+
+impl Loads {
+    /// No load.
+    pub fn none(model: &Model) -> Loads {
+        Loads {
+            shaft: [0.0; 5],
+            balls: vec![[0.0; 2]; model.geometry.n_balls],
+            rings: [None, None],
+        }
+    }
+
+    /// Adds a force (N) at the load point of the shaft.
+    pub fn add_shaft_force(&mut self, model: &Model, force: [f64; 3]) {
+        for i in 0..3 {
+            self.shaft[i] += force[i];
+        }
+        // Moment of a force at distance L along the axis: L e_z x F.
+        self.shaft[3] -= model.load_point * force[1];
+        self.shaft[4] += model.load_point * force[0];
+    }
+
+    /// Adds nodal body loads (N) to a flexible ring; the shaft carries those of the inner ring.
+    pub fn add_ring_load(&mut self, model: &Model, side: Side, load: Vec<f64>) {
+        let Some(ring) = model.ring(side) else { return };
+        if side == Side::Inner {
+            let z0 = ring.groove.centre_z;
+            for (x, f) in ring.mesh.nodes.iter().zip(load.chunks_exact(3)) {
+                for i in 0..3 {
+                    self.shaft[i] += f[i];
+                }
+                self.shaft[3] += x[1] * f[2] - (x[2] - z0) * f[1];
+                self.shaft[4] += (x[2] - z0) * f[0] - x[0] * f[2];
+            }
+        }
+        match &mut self.rings[side.index()] {
+            Some(sum) => sum.iter_mut().zip(&load).for_each(|(s, l)| *s += l),
+            none => *none = Some(load),
+        }
+    }
+}
+
+/// A physical effect that adds loads.
+pub trait Effect: Send + Sync {
+    /// Name of its scene table.
+    fn name(&self) -> &'static str;
+
+    /// Adds its loads at rest.
+    fn add_loads(&self, model: &Model, loads: &mut Loads) -> Result<(), DynamicsError>;
+}
+
+/// Loads of all effects of the model.
+pub fn loads(model: &Model) -> Result<Loads, DynamicsError> {
+    let mut loads = Loads::none(model);
+    for effect in &model.effects {
+        effect.add_loads(model, &mut loads)?;
+    }
+    Ok(loads)
+}

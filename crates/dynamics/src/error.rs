@@ -1,0 +1,129 @@
+//! Errors of the algorithms.
+
+use contact::ContactError;
+use fem::FemError;
+use solver::SolverError;
+
+/// Why a bearing could not be solved.
+#[derive(Debug, thiserror::Error)]
+pub enum DynamicsError {
+    /// A ring's matrix is not positive definite.
+    #[error(
+        "the {side} ring is not held: its stiffness matrix is singular at node {node}; \
+         check that the facet group \"{group}\" covers a surface and that the mesh is one connected part"
+    )]
+    NotHeld {
+        /// `inner` or `outer`.
+        side: &'static str,
+        /// Node index in the mesh, from 0.
+        node: usize,
+        /// Held group.
+        group: &'static str,
+    },
+    /// The linear solver failed otherwise.
+    #[error("{side} ring: {source}")]
+    Solver {
+        /// `inner` or `outer`.
+        side: &'static str,
+        /// Cause.
+        source: SolverError,
+    },
+    /// Finite elements failed.
+    #[error("{side} ring: {source}")]
+    Fem {
+        /// `inner` or `outer`.
+        side: &'static str,
+        /// Cause.
+        source: FemError,
+    },
+    /// A contact is outside its theory.
+    #[error(transparent)]
+    Contact(#[from] ContactError),
+    /// The contact Newton stalled.
+    #[error(
+        "contact forces do not balance after {iterations} Newton iterations: largest residual {residual:.3e} N at {place}, \
+         expected {limit:.3e} N; residual history {history:?}; try a smaller load step (a sweep) or check the loads"
+    )]
+    NewtonStalled {
+        /// Iterations done.
+        iterations: usize,
+        /// Largest residual, N.
+        residual: f64,
+        /// Dof of the largest residual.
+        place: String,
+        /// Accepted residual, N.
+        limit: f64,
+        /// Largest residual of the last iterations, N.
+        history: Vec<f64>,
+    },
+    /// No equilibrium near the reference position.
+    #[error(
+        "no equilibrium: {dof} of the shaft runs beyond {limit}; the loads push the inner ring off the balls or \
+         a free direction is not held; lock it, add preload or reduce the load"
+    )]
+    NoEquilibrium {
+        /// Shaft dof.
+        dof: &'static str,
+        /// Limit with unit.
+        limit: String,
+    },
+    /// A free shaft dof has no stiffness at the solution.
+    #[error(
+        "{dof} of the shaft is free but nothing resists it (stiffness {stiffness:.3e} of the largest): \
+         lock it in [shaft] or load the bearing so that balls touch"
+    )]
+    Unheld {
+        /// Shaft dof.
+        dof: &'static str,
+        /// Stiffness over the largest.
+        stiffness: f64,
+    },
+    /// Patches and forces do not settle.
+    #[error(
+        "contact places do not settle after {rounds} rounds: forces still change by {change:.3e} of the largest \
+         (expected {limit:.1e}), most at ball {ball}, {side} raceway; history {history:?}"
+    )]
+    NotSettled {
+        /// Rounds done.
+        rounds: usize,
+        /// Last relative change.
+        change: f64,
+        /// Accepted change.
+        limit: f64,
+        /// Ball with the largest change.
+        ball: usize,
+        /// Its side.
+        side: &'static str,
+        /// Relative changes of the last rounds.
+        history: Vec<f64>,
+    },
+    /// The patch is smaller than the Hertz ellipse at this load.
+    #[error(
+        "ball {ball}, {side} raceway: at {force:.1} N the spread patch takes more compliance than Hertz's law has; \
+         the Hertz stiffness given is too high for this mesh, or the groove too narrow; use a finer mesh or the exact stiffness"
+    )]
+    PatchTooSmall {
+        /// Ball number, from 0.
+        ball: usize,
+        /// `inner` or `outer`.
+        side: &'static str,
+        /// Contact force, N.
+        force: f64,
+    },
+    /// A ball reached no facet.
+    #[error(
+        "ball {ball} is near no facet of the {side} raceway: expected one within a ball radius; check the mesh's place"
+    )]
+    NoFacet {
+        /// Ball number, from 0.
+        ball: usize,
+        /// `inner` or `outer`.
+        side: &'static str,
+    },
+    /// A number became NaN or infinite.
+    #[error("{what} is not finite; check the loads and material of the scene")]
+    NotFinite {
+        /// Quantity.
+        what: &'static str,
+    },
+}

@@ -1,0 +1,136 @@
+//! The Model: everything that a scene fixes and that never changes during a run.
+//!
+//! Frames: the outer ring's mesh is placed with its groove centres at z = 0; the inner ring's with its groove
+//! centres at z = A sin a0 (the just-touching position). The shaft's origin is the axis point in the plane of the
+//! inner groove centres. A rigid motion is u(x) = t + phi x (x - origin), linear in the tilts phi: consistent with
+//! small strain, and the reason why statics is a convex problem.
+
+use contact::hertz::Elastic;
+use contact::{BearingGeometry, Groove, HertzContact, Side};
+use fem::Material;
+use mesh::Mesh;
+
+use crate::effects::Effect;
+
+/// Name of the facet group on which balls run.
+pub const RACEWAY_GROUP: &str = "raceway";
+
+/// How a ring's mounting surface follows its rigid partner (shaft or housing).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Hold {
+    /// Every node of the surface moves with the partner.
+    Clamped,
+    /// Only the mean translation and rotation of the surface follow the partner (RBE3); it may ovalise.
+    MeanMotion,
+}
+
+/// A ring that is a finite-element body.
+pub struct RingModel {
+    /// Mesh, m, in its own coordinates.
+    pub mesh: Mesh,
+    /// Ring steel.
+    pub material: Material,
+    /// How the bore or the seat is held.
+    pub hold: Hold,
+    /// Facet group that is held: `bore` or `seat`.
+    pub held_group: &'static str,
+    /// The raceway's torus in mesh coordinates.
+    pub groove: Groove,
+}
+
+/// One degree of freedom of the shaft.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum ShaftDof {
+    /// Moves until forces balance.
+    Free,
+    /// Held at a given displacement, m or rad; locked is 0.
+    Prescribed(f64),
+}
+
+/// How balls meet raceways.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ContactMode {
+    /// Exact torus, force spread over a patch, local compliance matched.
+    Patch,
+    /// Mesh facets found by bounding boxes: the paper's way; local compliance counted twice.
+    Facet,
+    /// Exact torus, rigid rings: the Jones-Harris limit.
+    Rigid,
+}
+
+/// Contact choices of a scene.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ContactSettings {
+    /// Mode.
+    pub mode: ContactMode,
+    /// Smallest semi-axis of a patch, node spacings.
+    pub patch_spacings: f64,
+}
+
+/// Dimensionless stopping rules.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Tolerances {
+    /// Change of any contact force between two rounds over the largest force.
+    pub force: f64,
+    /// Rounds of patch placement and Newton before giving up.
+    pub max_rounds: usize,
+}
+
+impl Default for Tolerances {
+    fn default() -> Self {
+        Tolerances {
+            force: 1e-10,
+            max_rounds: 50,
+        }
+    }
+}
+
+/// A bearing with its loads: see the module.
+pub struct Model {
+    /// Bearing dimensions.
+    pub geometry: BearingGeometry,
+    /// Hertz contact of each side, inner first.
+    pub hertz: [HertzContact; 2],
+    /// Flexible rings, inner first; None is a rigid ring and costs nothing.
+    pub rings: [Option<RingModel>; 2],
+    /// Ball steel.
+    pub ball_material: Material,
+    /// Shaft dofs x, y, z, tilt about x, tilt about y.
+    pub shaft: [ShaftDof; 5],
+    /// Mass carried by the shaft besides a flexible inner ring, kg.
+    pub shaft_mass: f64,
+    /// Axial distance of the load point from the plane of the inner groove centres, m.
+    pub load_point: f64,
+    /// Contact choices.
+    pub contact: ContactSettings,
+    /// Effects the scene calls for, in the order of their names.
+    pub effects: Vec<Box<dyn Effect>>,
+    /// Stopping rules.
+    pub tolerances: Tolerances,
+}
+
+impl Model {
+    /// Flexible ring of one side.
+    pub fn ring(&self, side: Side) -> Option<&RingModel> {
+        self.rings[side.index()].as_ref()
+    }
+
+    /// Axial shift from a ring's mesh coordinates to the assembled bearing, m.
+    pub fn ring_shift(&self, side: Side) -> f64 {
+        let centre_z = self.ring(side).map_or(0.0, |r| r.groove.centre_z);
+        self.geometry.groove_centre(side)[1] - centre_z
+    }
+
+    /// Mass of one ball, kg.
+    pub fn ball_mass(&self) -> f64 {
+        std::f64::consts::PI / 6.0 * self.geometry.ball_diameter.powi(3) * self.ball_material.density
+    }
+}
+
+/// Elastic constants of a material.
+pub fn elastic(material: &Material) -> Elastic {
+    Elastic {
+        young_modulus: material.young_modulus,
+        poisson_ratio: material.poisson_ratio,
+    }
+}

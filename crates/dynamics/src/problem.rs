@@ -1,0 +1,322 @@
+//! The small contact problem: balls, shaft and the elastic motion of the groove centres, as a convex energy.
+//!
+//! With l the vector from groove centre to ball centre, the geometric approach is g = |l| + D_w/2 - R. |l| is
+//! convex in all displacements, the contact energy V(g) is convex and increasing, and the elastic energy of the rings
+//! is a positive quadratic form; so the total energy is convex and its minimum is the equilibrium. For each
+//! flexible ring the elastic motion u_c of its groove centres answers forces F by u_c = c + C (F - F0): c is the
+//! motion measured in the full field under forces F0, so a slightly outdated C only slows convergence.
+//!
+//! Unknowns, in this order: free shaft dofs (tilts times `tilt_arm`, so that all are lengths), balls [radial,
+//! axial], elastic motions of the inner and of the outer groove centres [radial, axial].
+
+use contact::law::ContactForce;
+use contact::{ContactLaw, Side};
+
+/// Unknowns of one contact: at most 5 shaft dofs, 2 of the ball, 2 of the groove centre.
+const MAX_LOCAL: usize = 9;
+
+/// One ball on one raceway.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Site {
+    /// Ball number.
+    pub ball: usize,
+    /// Raceway.
+    pub side: Side,
+    /// Azimuth of the ball, rad.
+    pub azimuth: f64,
+    /// Groove centre to ball centre at zero displacement [radial, axial], m.
+    pub reach: [f64; 2],
+    /// |l| at which they touch, R - D_w/2, m.
+    pub touching: f64,
+    /// Radius of the groove centre from the axis: the shaft's lever, m.
+    pub lever: f64,
+    /// Force law.
+    pub law: ContactLaw,
+}
+
+/// Elastic answer of one ring: u_c = offset + C (F - force), over (ball, [radial, axial]).
+#[derive(Clone, Debug)]
+pub struct RingResponse {
+    /// Motion measured under `force`, m, `[2 n_balls]`.
+    pub offset: Vec<f64>,
+    /// Forces of that measurement, N, `[2 n_balls]`.
+    pub force: Vec<f64>,
+    /// C^-1, N/m, row-major `[2 n_balls][2 n_balls]`.
+    pub stiffness: Vec<f64>,
+}
+
+/// Displacements of everything small: m, rad.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Displacements {
+    /// Shaft x, y, z, tilt x, tilt y.
+    pub shaft: [f64; 5],
+    /// Balls [radial, axial] from the just-touching position.
+    pub balls: Vec<[f64; 2]>,
+    /// Elastic motion of the groove centres, inner ring then outer, `[n_balls][2]`.
+    pub grooves: [Vec<[f64; 2]>; 2],
+}
+
+/// The contact problem of one instant.
+pub struct Problem {
+    /// All contacts: ball 0 inner, ball 0 outer, ball 1 inner, ...
+    pub sites: Vec<Site>,
+    /// Elastic rings; None is rigid.
+    pub rings: [Option<RingResponse>; 2],
+    /// Which shaft dofs are unknown; the others keep their value.
+    pub shaft_free: [bool; 5],
+    /// Shaft loads, N and N m.
+    pub shaft_load: [f64; 5],
+    /// Ball loads [radial, axial], N.
+    pub ball_load: Vec<[f64; 2]>,
+    /// Length by which tilts are scaled, m.
+    pub tilt_arm: f64,
+}
+
+/// A contact at given displacements.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SiteState {
+    /// Unit vector from groove centre to ball centre.
+    pub normal: [f64; 2],
+    /// |l|, m.
+    pub length: f64,
+    /// Force, tangent and energy.
+    pub force: ContactForce,
+}
+
+impl Site {
+    /// Motion [radial, axial] of the groove centre per unit of each shaft dof (tilts in rad).
+    pub fn shaft_rows(&self) -> [[f64; 2]; 5] {
+        let (sin, cos) = self.azimuth.sin_cos();
+        [
+            [cos, 0.0],
+            [sin, 0.0],
+            [0.0, 1.0],
+            [0.0, self.lever * sin],
+            [0.0, -self.lever * cos],
+        ]
+    }
+
+    /// State at given displacements.
+    pub fn state(&self, u: &Displacements) -> SiteState {
+        let mut l = self.reach;
+        for i in 0..2 {
+            l[i] += u.balls[self.ball][i];
+            if let Some(groove) = u.grooves[self.side.index()].get(self.ball) {
+                l[i] -= groove[i];
+            }
+        }
+        if self.side == Side::Inner {
+            for (row, q) in self.shaft_rows().iter().zip(u.shaft) {
+                l[0] -= row[0] * q;
+                l[1] -= row[1] * q;
+            }
+        }
+        let length = l[0].hypot(l[1]);
+        let normal = if length > 0.0 {
+            [l[0] / length, l[1] / length]
+        } else {
+            [self.side.sign(), 0.0]
+        };
+        SiteState {
+            normal,
+            length,
+            force: self.law.evaluate(length - self.touching),
+        }
+    }
+
+    /// Contact angle at a state, rad.
+    pub fn contact_angle(&self, state: &SiteState) -> f64 {
+        let sign = self.side.sign();
+        (sign * state.normal[1]).atan2(sign * state.normal[0])
+    }
+}
+
+impl Displacements {
+    /// Zero displacement; `flexible` tells which rings have groove motions.
+    pub fn zero(n_balls: usize, flexible: [bool; 2]) -> Displacements {
+        Displacements {
+            shaft: [0.0; 5],
+            balls: vec![[0.0; 2]; n_balls],
+            grooves: flexible.map(|f| if f { vec![[0.0; 2]; n_balls] } else { Vec::new() }),
+        }
+    }
+}
+
+impl Problem {
+    /// Number of unknowns.
+    pub fn n(&self) -> usize {
+        let free = self.shaft_free.iter().filter(|f| **f).count();
+        let rings = self.rings.iter().flatten().count();
+        free + 2 * self.ball_load.len() * (1 + rings)
+    }
+
+    /// Index of the first unknown of a ring's groove motions.
+    fn ring_start(&self, side: Side) -> usize {
+        let balls = 2 * self.ball_load.len();
+        let before = usize::from(side == Side::Outer && self.rings[0].is_some());
+        self.shaft_free.iter().filter(|f| **f).count() + balls * (1 + before)
+    }
+
+    /// Scale from unknown to shaft dof.
+    fn shaft_scale(&self, dof: usize) -> f64 {
+        if dof < 3 { 1.0 } else { 1.0 / self.tilt_arm }
+    }
+
+    /// Displacements moved by `step` times the direction `p` of unknowns.
+    pub fn moved(&self, u: &Displacements, p: &[f64], step: f64) -> Displacements {
+        let mut v = u.clone();
+        let mut p = p.iter().map(|x| step * x);
+        let mut next = || p.next().expect("the direction has one entry per unknown");
+        for i in 0..5 {
+            if self.shaft_free[i] {
+                v.shaft[i] += next() * self.shaft_scale(i);
+            }
+        }
+        v.balls.iter_mut().flatten().for_each(|x| *x += next());
+        for (groove, ring) in v.grooves.iter_mut().zip(&self.rings) {
+            if ring.is_some() {
+                groove.iter_mut().flatten().for_each(|x| *x += next());
+            }
+        }
+        v
+    }
+
+    /// Gradient of the energy: out-of-balance forces, N, `[n]`.
+    pub fn gradient(&self, u: &Displacements) -> Vec<f64> {
+        let mut gradient = self.linear_gradient(u);
+        for site in &self.sites {
+            let state = site.state(u);
+            let (indices, rows, n) = self.local(site);
+            for a in 0..n {
+                let along = rows[a][0] * state.normal[0] + rows[a][1] * state.normal[1];
+                gradient[indices[a]] += state.force.force * along;
+            }
+        }
+        gradient
+    }
+
+    /// Hessian of the energy, N/m, row-major `[n][n]`.
+    pub fn hessian(&self, u: &Displacements) -> Vec<f64> {
+        let n = self.n();
+        let mut hessian = vec![0.0; n * n];
+        for side in Side::BOTH {
+            if let Some(ring) = &self.rings[side.index()] {
+                let (start, m) = (self.ring_start(side), ring.offset.len());
+                for i in 0..m {
+                    hessian[n * (start + i) + start..n * (start + i) + start + m]
+                        .copy_from_slice(&ring.stiffness[m * i..m * (i + 1)]);
+                }
+            }
+        }
+        for site in &self.sites {
+            let state = site.state(u);
+            let (indices, rows, n_local) = self.local(site);
+            let block = site_hessian(&state);
+            for a in 0..n_local {
+                let left = [0, 1].map(|j| rows[a][0] * block[0][j] + rows[a][1] * block[1][j]);
+                for b in 0..n_local {
+                    hessian[n * indices[a] + indices[b]] += left[0] * rows[b][0] + left[1] * rows[b][1];
+                }
+            }
+        }
+        hessian
+    }
+
+    /// Gradient of loads and ring elasticity.
+    fn linear_gradient(&self, u: &Displacements) -> Vec<f64> {
+        let mut gradient = Vec::with_capacity(self.n());
+        for i in 0..5 {
+            if self.shaft_free[i] {
+                gradient.push(-self.shaft_load[i] * self.shaft_scale(i));
+            }
+        }
+        gradient.extend(self.ball_load.iter().flatten().map(|f| -f));
+        for (groove, ring) in u.grooves.iter().zip(&self.rings) {
+            if let Some(ring) = ring {
+                let change: Vec<f64> = groove
+                    .iter()
+                    .flatten()
+                    .zip(&ring.offset)
+                    .map(|(u, c)| u - c)
+                    .collect();
+                let m = change.len();
+                gradient.extend(ring.force.iter().enumerate().map(|(i, f)| {
+                    f + ring.stiffness[m * i..m * (i + 1)]
+                        .iter()
+                        .zip(&change)
+                        .map(|(k, x)| k * x)
+                        .sum::<f64>()
+                }));
+            }
+        }
+        gradient
+    }
+
+    /// Unknowns that move one contact, and dl per unit of each.
+    fn local(&self, site: &Site) -> ([usize; MAX_LOCAL], [[f64; 2]; MAX_LOCAL], usize) {
+        let (mut indices, mut rows, mut n) = ([0; MAX_LOCAL], [[0.0; 2]; MAX_LOCAL], 0);
+        let mut push = |index, row| {
+            indices[n] = index;
+            rows[n] = row;
+            n += 1;
+        };
+        let mut free = 0;
+        let shaft_rows = site.shaft_rows();
+        for i in 0..5 {
+            if self.shaft_free[i] {
+                if site.side == Side::Inner {
+                    let scale = self.shaft_scale(i);
+                    push(free, [-scale * shaft_rows[i][0], -scale * shaft_rows[i][1]]);
+                }
+                free += 1;
+            }
+        }
+        push(free + 2 * site.ball, [1.0, 0.0]);
+        push(free + 2 * site.ball + 1, [0.0, 1.0]);
+        if self.rings[site.side.index()].is_some() {
+            let start = self.ring_start(site.side) + 2 * site.ball;
+            push(start, [-1.0, 0.0]);
+            push(start + 1, [0.0, -1.0]);
+        }
+        (indices, rows, n)
+    }
+
+    /// Name of an unknown, for messages.
+    pub fn name(&self, index: usize) -> String {
+        let free: Vec<usize> = (0..5).filter(|&i| self.shaft_free[i]).collect();
+        if index < free.len() {
+            return format!("shaft {}", SHAFT_DOFS[free[index]]);
+        }
+        let rest = index - free.len();
+        let balls = 2 * self.ball_load.len();
+        let direction = if rest % 2 == 0 { "radial" } else { "axial" };
+        let ball = rest % balls / 2;
+        if rest < balls {
+            return format!("ball {ball}, {direction}");
+        }
+        let inner = rest < 2 * balls && self.rings[0].is_some();
+        let side = if inner { Side::Inner } else { Side::Outer };
+        format!(
+            "groove centre of ball {ball} on the {} ring, {direction}",
+            side.name()
+        )
+    }
+}
+
+/// Names of the shaft dofs, as in the scene.
+pub const SHAFT_DOFS: [&str; 5] = ["x", "y", "z", "tilt_x", "tilt_y"];
+
+/// Second derivative of V(|l|) with respect to l: k n n^T + Q/|l| (1 - n n^T).
+fn site_hessian(state: &SiteState) -> [[f64; 2]; 2] {
+    let n = state.normal;
+    let across = if state.length > 0.0 {
+        state.force.force / state.length
+    } else {
+        0.0
+    };
+    let along = state.force.tangent - across;
+    [
+        [along * n[0] * n[0] + across, along * n[0] * n[1]],
+        [along * n[1] * n[0], along * n[1] * n[1] + across],
+    ]
+}

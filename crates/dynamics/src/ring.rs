@@ -1,0 +1,135 @@
+//! The workspace of one flexible ring in statics: its factored stiffness and the displacement under loads.
+//!
+//! Cost: one factorisation; then one triangular solve per right-hand side. Displacements are elastic, relative
+//! to the rigid partner (see [`crate::support`]).
+
+use std::time::Instant;
+
+use contact::quadrature::PressureRule;
+use contact::{FacetSurface, NodalWeights, RacewaySurface, Side};
+use solver::{LinearSolver, SolverError, SparseCholesky, Symbolic};
+
+use crate::error::DynamicsError;
+use crate::model::{ContactMode, Model, RACEWAY_GROUP, RingModel};
+use crate::support::Support;
+
+/// Factored stiffness, raceway search and rule of one ring.
+pub struct RingSolver {
+    support: Support,
+    factor: SparseCholesky,
+    n_dofs: usize,
+    /// Raceway in (azimuth, groove angle).
+    pub surface: RacewaySurface,
+    /// Raceway facets under boxes, in `facet` mode.
+    pub facets: Option<FacetSurface>,
+    /// Integration rule of the patches.
+    pub rule: PressureRule,
+    /// Seconds of assembly and of factorisation (ordering and analysis included).
+    pub seconds: [f64; 2],
+    /// Bytes forecast for the factorisation, and held by the factor.
+    pub bytes: [usize; 2],
+}
+
+impl RingSolver {
+    /// Assembles and factors the stiffness of the ring on `side`.
+    pub fn new(model: &Model, side: Side, ring: &RingModel) -> Result<RingSolver, DynamicsError> {
+        let start = Instant::now();
+        let fem_error = |source| DynamicsError::Fem {
+            side: side.name(),
+            source,
+        };
+        let mesh = &ring.mesh;
+        let weights = fem::surface::facet_node_weights(mesh, mesh.group(ring.held_group));
+        let support = Support::new(mesh, ring.hold, weights);
+        let full = fem::stiffness::assemble_stiffness(mesh, &ring.material).map_err(fem_error)?;
+        let stiffness = solver::restrict(&full, &support.free);
+        drop(full);
+        let assembled = start.elapsed().as_secs_f64();
+        let order = solver::angular_dissection(&mesh.nodes, &mesh.connectivity, mesh.kind.n_nodes());
+        let order = solver::restrict_order(&solver::expand(&order, 3), &support.free);
+        let (factor, peak) = factor(&stiffness, &order).map_err(|e| named(e, side, ring, &support))?;
+        let facets = matches!(model.contact.mode, ContactMode::Facet)
+            .then(|| FacetSurface::new(mesh, mesh.group(RACEWAY_GROUP)));
+        Ok(RingSolver {
+            n_dofs: mesh.n_dofs(),
+            surface: RacewaySurface::new(mesh, mesh.group(RACEWAY_GROUP), ring.groove),
+            facets,
+            rule: PressureRule::new(),
+            seconds: [assembled, start.elapsed().as_secs_f64() - assembled],
+            bytes: [peak, factor.factor_bytes()],
+            support,
+            factor,
+        })
+    }
+
+    /// Elastic displacements, m, column-major `[n_dofs][n]`, under `n` load vectors (N) of the same layout.
+    pub fn solve(&self, mut loads: Vec<f64>, n: usize) -> Vec<f64> {
+        let n_free = self.support.free.len();
+        let mut rhs = Vec::with_capacity(n_free * n);
+        for load in loads.chunks_exact_mut(self.n_dofs) {
+            self.support.balance(load);
+            rhs.extend(self.support.free.iter().map(|&d| load[d]));
+        }
+        self.factor.solve(&mut rhs, n);
+        for (displacement, x) in loads.chunks_exact_mut(self.n_dofs).zip(rhs.chunks_exact(n_free)) {
+            displacement.fill(0.0);
+            for (&d, &value) in self.support.free.iter().zip(x) {
+                displacement[d] = value;
+            }
+            self.support.remove_rigid(displacement);
+        }
+        loads
+    }
+
+    /// Compliance of contacts, m/N, row-major `[2 n][2 n]` over (contact, [radial, axial]): motion of every groove
+    /// centre under a unit force at every other. Symmetric to round-off, then made so exactly.
+    pub fn compliance(&self, contacts: &[NodalWeights]) -> Vec<f64> {
+        let n = 2 * contacts.len();
+        let mut loads = vec![0.0; self.n_dofs * n];
+        for (j, load) in loads.chunks_exact_mut(self.n_dofs).enumerate() {
+            let unit = if j % 2 == 0 { [1.0, 0.0] } else { [0.0, 1.0] };
+            contacts[j / 2].add_load(unit, load);
+        }
+        let columns = self.solve(loads, n);
+        let mut compliance = vec![0.0; n * n];
+        for (j, column) in columns.chunks_exact(self.n_dofs).enumerate() {
+            for (i, weights) in contacts.iter().enumerate() {
+                let motion = weights.measure(column);
+                compliance[n * (2 * i) + j] = motion[0];
+                compliance[n * (2 * i + 1) + j] = motion[1];
+            }
+        }
+        for i in 0..n {
+            for j in 0..i {
+                let mean = 0.5 * (compliance[n * i + j] + compliance[n * j + i]);
+                (compliance[n * i + j], compliance[n * j + i]) = (mean, mean);
+            }
+        }
+        compliance
+    }
+
+    /// Number of dofs of the ring, held ones included.
+    pub fn n_dofs(&self) -> usize {
+        self.n_dofs
+    }
+}
+
+fn factor(stiffness: &sprs::CsMat<f64>, order: &[usize]) -> Result<(SparseCholesky, usize), SolverError> {
+    let symbolic = Symbolic::new(stiffness, order)?;
+    let peak = symbolic.peak_bytes();
+    Ok((symbolic.factor(stiffness)?, peak))
+}
+
+fn named(error: SolverError, side: Side, ring: &RingModel, support: &Support) -> DynamicsError {
+    match error {
+        SolverError::NotPositiveDefinite { row, .. } => DynamicsError::NotHeld {
+            side: side.name(),
+            node: support.free[row] / 3,
+            group: ring.held_group,
+        },
+        source => DynamicsError::Solver {
+            side: side.name(),
+            source,
+        },
+    }
+}

@@ -1,0 +1,193 @@
+//! How a ring is held: clamped, or by the mean motion of its bore or seat.
+//!
+//! Both give the *elastic* displacement: relative to the rigid partner. With a mean-motion hold the elastic
+//! displacement u has C u = 0, where C takes the area-weighted least-squares rigid motion of the held surface.
+//! With rigid modes R (C R = 1) the partner's reaction to loads f is -C^T R^T f, so the ring sees the balanced loads
+//! P^T f, P = 1 - R C. Six dofs chosen on the surface then hold the matrix without reaction, and P removes the
+//! rigid motion left: u = P K_fixed^-1 P^T f, exact and symmetric (the RBE3 of structural codes).
+
+use mesh::Mesh;
+use solver::dense::DenseCholesky;
+
+use crate::model::Hold;
+
+/// A hold, ready to apply.
+pub struct Support {
+    /// Dofs that stay in the factored matrix, ascending.
+    pub free: Vec<usize>,
+    mean: Option<MeanMotion>,
+}
+
+/// The mean motion of a surface as six functionals.
+struct MeanMotion {
+    /// Node positions relative to the surface's reference point over `size`, `[n_nodes][3]`.
+    arms: Vec<[f64; 3]>,
+    /// Held nodes and their area weights.
+    weights: Vec<(usize, f64)>,
+    /// (R^T W R)^-1, row-major 6 x 6.
+    inverse: Vec<f64>,
+}
+
+impl Support {
+    /// Hold of the surface with nodal area weights `weights` (node, m^2).
+    pub fn new(mesh: &Mesh, hold: Hold, weights: Vec<(usize, f64)>) -> Support {
+        match hold {
+            Hold::Clamped => {
+                let mut held = vec![false; mesh.n_nodes()];
+                weights.iter().for_each(|&(node, _)| held[node] = true);
+                Support {
+                    free: (0..mesh.n_dofs()).filter(|&d| !held[d / 3]).collect(),
+                    mean: None,
+                }
+            }
+            Hold::MeanMotion => {
+                let mean = MeanMotion::new(mesh, weights);
+                let fixed = mean.determinate_dofs();
+                let free = (0..mesh.n_dofs()).filter(|d| !fixed.contains(d)).collect();
+                Support {
+                    free,
+                    mean: Some(mean),
+                }
+            }
+        }
+    }
+
+    /// Replaces loads by what the ring sees with its partner's reaction: P^T f.
+    pub fn balance(&self, load: &mut [f64]) {
+        if let Some(mean) = &self.mean {
+            mean.balance(load);
+        }
+    }
+
+    /// Removes the partner's rigid motion from a displacement: P u.
+    pub fn remove_rigid(&self, displacement: &mut [f64]) {
+        if let Some(mean) = &self.mean {
+            mean.remove_rigid(displacement);
+        }
+    }
+}
+
+/// Rows of the rigid modes at one node: u = q[0..3] + q[3..6] x arm.
+fn rigid_row(arm: [f64; 3], component: usize) -> [f64; 6] {
+    let [x, y, z] = arm;
+    match component {
+        0 => [1.0, 0.0, 0.0, 0.0, z, -y],
+        1 => [0.0, 1.0, 0.0, -z, 0.0, x],
+        _ => [0.0, 0.0, 1.0, y, -x, 0.0],
+    }
+}
+
+impl MeanMotion {
+    fn new(mesh: &Mesh, weights: Vec<(usize, f64)>) -> MeanMotion {
+        let total: f64 = weights.iter().map(|w| w.1).sum();
+        let mut centre = [0.0; 3];
+        for &(node, w) in &weights {
+            (0..3).for_each(|i| centre[i] += w / total * mesh.nodes[node][i]);
+        }
+        let square = |x: [f64; 3]| (0..3).map(|i| (x[i] - centre[i]).powi(2)).sum::<f64>();
+        let size = weights
+            .iter()
+            .map(|&(node, w)| w / total * square(mesh.nodes[node]))
+            .sum::<f64>()
+            .sqrt();
+        let arms: Vec<[f64; 3]> = mesh
+            .nodes
+            .iter()
+            .map(|x| [0, 1, 2].map(|i| (x[i] - centre[i]) / size))
+            .collect();
+        let mut gram = vec![0.0; 36];
+        for &(node, w) in &weights {
+            for component in 0..3 {
+                let row = rigid_row(arms[node], component);
+                for i in 0..6 {
+                    (0..6).for_each(|j| gram[6 * i + j] += w * row[i] * row[j]);
+                }
+            }
+        }
+        let inverse = DenseCholesky::factor(6, &gram)
+            .expect("a surface of facets is not a straight line, so its mean rotation is defined")
+            .inverse();
+        MeanMotion {
+            arms,
+            weights,
+            inverse,
+        }
+    }
+
+    /// Six dofs of held nodes that determine a rigid motion best: Gaussian elimination with complete pivoting.
+    fn determinate_dofs(&self) -> Vec<usize> {
+        let mut rows: Vec<(usize, [f64; 6])> = self
+            .weights
+            .iter()
+            .flat_map(|&(node, _)| (0..3).map(move |c| (3 * node + c, c)))
+            .map(|(dof, c)| (dof, rigid_row(self.arms[dof / 3], c)))
+            .collect();
+        let mut chosen = Vec::new();
+        for _ in 0..6 {
+            let norm = |r: &[f64; 6]| r.iter().map(|x| x * x).sum::<f64>();
+            let (mut best, mut largest) = (0, -1.0);
+            for (i, (_, row)) in rows.iter().enumerate() {
+                // A clear margin, so that equal candidates always give the first one.
+                if norm(row) > largest * (1.0 + 1e-9) {
+                    (best, largest) = (i, norm(row));
+                }
+            }
+            let (dof, pivot) = rows.swap_remove(best);
+            rows.sort_by_key(|r| r.0);
+            chosen.push(dof);
+            for (_, row) in &mut rows {
+                let share = (0..6).map(|i| row[i] * pivot[i]).sum::<f64>() / largest;
+                (0..6).for_each(|i| row[i] -= share * pivot[i]);
+            }
+        }
+        chosen.sort_unstable();
+        chosen
+    }
+
+    /// f -= C^T R^T f, C = (R^T W R)^-1 R^T W on the held nodes.
+    fn balance(&self, load: &mut [f64]) {
+        let mut resultant = [0.0; 6];
+        for (arm, f) in self.arms.iter().zip(load.chunks_exact(3)) {
+            accumulate(&mut resultant, *arm, f, 1.0);
+        }
+        let multipliers = self.apply_inverse(resultant);
+        for &(node, w) in &self.weights {
+            for c in 0..3 {
+                let row = rigid_row(self.arms[node], c);
+                load[3 * node + c] -= w * (0..6).map(|i| row[i] * multipliers[i]).sum::<f64>();
+            }
+        }
+    }
+
+    /// u -= R C u.
+    fn remove_rigid(&self, displacement: &mut [f64]) {
+        let mut moment = [0.0; 6];
+        for &(node, w) in &self.weights {
+            accumulate(
+                &mut moment,
+                self.arms[node],
+                &displacement[3 * node..3 * node + 3],
+                w,
+            );
+        }
+        let motion = self.apply_inverse(moment);
+        for (arm, u) in self.arms.iter().zip(displacement.chunks_exact_mut(3)) {
+            for c in 0..3 {
+                let row = rigid_row(*arm, c);
+                u[c] -= (0..6).map(|i| row[i] * motion[i]).sum::<f64>();
+            }
+        }
+    }
+
+    fn apply_inverse(&self, v: [f64; 6]) -> [f64; 6] {
+        [0, 1, 2, 3, 4, 5].map(|i| (0..6).map(|j| self.inverse[6 * i + j] * v[j]).sum())
+    }
+}
+
+/// sum += w R_node^T v.
+fn accumulate(sum: &mut [f64; 6], arm: [f64; 3], v: &[f64], w: f64) {
+    for c in 0..3 {
+        let row = rigid_row(arm, c);
+        (0..6).for_each(|i| sum[i] += w * row[i] * v[c]);
+    }
+}

@@ -1,0 +1,72 @@
+//! Bearings for the tests of this crate.
+
+#![allow(dead_code)]
+
+use contact::{BearingGeometry, HertzContact, Side};
+use dynamics::effects::{AxialForce, Effect, Moment, RadialForce};
+use dynamics::{ContactMode, ContactSettings, Model, ShaftDof, Tolerances};
+use fem::Material;
+
+/// A load case of the 7010C.
+#[derive(Clone, Copy, Debug)]
+pub struct Case {
+    pub axial: f64,
+    pub radial: f64,
+    pub moment: f64,
+    pub load_point: f64,
+    pub phase: f64,
+    pub interference: f64,
+    pub free_axial: bool,
+    pub free_tilt: bool,
+}
+
+impl Case {
+    pub fn axial(axial: f64) -> Case {
+        Case {
+            axial,
+            radial: 0.0,
+            moment: 0.0,
+            load_point: 0.0,
+            phase: 0.0,
+            interference: 0.0,
+            free_axial: true,
+            free_tilt: false,
+        }
+    }
+
+    /// The model with rigid rings.
+    pub fn rigid(&self) -> Model {
+        let mut geometry = BearingGeometry::reference_7010c();
+        geometry.first_ball_azimuth = self.phase;
+        if self.interference > 0.0 {
+            geometry.outer_raceway_diameter = geometry.inner_raceway_diameter + 2.0 * geometry.ball_diameter - self.interference;
+        }
+        let steel = steel();
+        let elastic = dynamics::model::elastic(&steel);
+        let mut effects: Vec<Box<dyn Effect>> = vec![Box::new(AxialForce { value: self.axial })];
+        effects.push(Box::new(RadialForce { value: self.radial, direction: 0.0 }));
+        effects.push(Box::new(Moment { value: [self.moment, 0.0] }));
+        let dof = |free: bool| if free { ShaftDof::Free } else { ShaftDof::Prescribed(0.0) };
+        Model {
+            hertz: Side::BOTH.map(|side| HertzContact::new(&geometry, side, elastic, elastic)),
+            geometry,
+            rings: [None, None],
+            ball_material: steel,
+            shaft: [dof(true), dof(true), dof(self.free_axial), dof(self.free_tilt), dof(self.free_tilt)],
+            shaft_mass: 0.0,
+            load_point: self.load_point,
+            contact: ContactSettings { mode: ContactMode::Rigid, patch_spacings: 2.0 },
+            effects,
+            tolerances: Tolerances::default(),
+        }
+    }
+}
+
+pub fn steel() -> Material {
+    Material::new(207e9, 0.3, 7800.0).unwrap()
+}
+
+/// Relative difference.
+pub fn relative(a: f64, b: f64) -> f64 {
+    (a - b).abs() / a.abs().max(b.abs())
+}
