@@ -1,1 +1,48 @@
-//! PLACE
+//! Writes the steps of a run as HDF5 files that are both checkpoint and ParaView result, and reads them back.
+//!
+//! A result folder holds
+//!
+//! | file | content | written |
+//! |---|---|---|
+//! | `mesh.hdf` | all bodies as one unstructured grid, cell arrays `body` and `radius` | once, first |
+//! | `step_NNNNNN.hdf` | the fields of one step and everything a restart needs | once per step |
+//! | `run.hdf.series` | names and real times of the steps, for ParaView 5.11 and later | after each step |
+//! | `run.vtkhdf` | the same steps as one temporal data set, for VTK 9.3, ParaView 5.12 and later | at the end |
+//!
+//! A step file is VTKHDF version 1.0 whose mesh is external links to `mesh.hdf`; what a restart needs besides the
+//! fields stands in the group `/restart`, which VTK ignores. Files appear under their final name only when they
+//! are complete and on the disk ([`output`]), every data set carries a checksum of its name, type, shape and values (attribute
+//! `crc32`), and a seal at the end of the file covers all its bytes, so that a damaged file is refused before the
+//! HDF5 library, which may crash on it, opens it.
+//! The last two files are derived from the steps and can be built again at any time ([`rebuild_index`]).
+//!
+//! This crate computes nothing: what it writes is what it was given.
+//!
+//! References: VTK File Formats, "VTKHDF File Format", Kitware, versions 1.0 and 2.0; HDF5 File Format
+//! Specification version 3.0, The HDF Group.
+
+pub mod background;
+pub mod body;
+pub mod error;
+pub mod index;
+pub mod output;
+pub mod record;
+pub mod series;
+pub mod step;
+pub mod storage;
+
+mod atomic;
+mod checksum;
+mod dataset;
+mod grid;
+mod mesh_file;
+mod seal;
+
+pub use background::BackgroundOutput;
+pub use body::{Body, CellKind, point_ranges};
+pub use error::CheckpointError;
+pub use index::rebuild_index;
+pub use output::{Output, committed_steps, step_file_name};
+pub use record::{PointFields, StateArray, StepRecord};
+pub use step::{read_step, read_step_time};
+pub use storage::{Compression, Precision, Storage};

@@ -11,10 +11,12 @@ pub mod footprint;
 pub mod model;
 pub mod problem;
 pub mod ring;
+pub mod solution;
 pub mod statics;
 pub mod support;
 
 pub use effects::{Effect, Loads};
 pub use error::DynamicsError;
 pub use model::{ContactMode, ContactSettings, Hold, Model, RingModel, ShaftDof, Tolerances};
-pub use statics::{StaticSolution, StaticSolver, Timing};
+pub use solution::StaticSolution;
+pub use statics::{StaticSolver, Timing};

@@ -5,6 +5,8 @@
 //! inner groove centres. A rigid motion is u(x) = t + phi x (x - origin), linear in the tilts phi: consistent with
 //! small strain, and the reason why statics is a convex problem.
 
+use std::sync::Arc;
+
 use contact::hertz::Elastic;
 use contact::{BearingGeometry, Groove, HertzContact, Side};
 use fem::Material;
@@ -92,7 +94,7 @@ pub struct Model {
     /// Hertz contact of each side, inner first.
     pub hertz: [HertzContact; 2],
     /// Flexible rings, inner first; None is a rigid ring and costs nothing.
-    pub rings: [Option<RingModel>; 2],
+    pub rings: [Option<Arc<RingModel>>; 2],
     /// Ball steel.
     pub ball_material: Material,
     /// Shaft dofs x, y, z, tilt about x, tilt about y.
@@ -112,7 +114,7 @@ pub struct Model {
 impl Model {
     /// Flexible ring of one side.
     pub fn ring(&self, side: Side) -> Option<&RingModel> {
-        self.rings[side.index()].as_ref()
+        self.rings[side.index()].as_deref()
     }
 
     /// Axial shift from a ring's mesh coordinates to the assembled bearing, m.

@@ -124,6 +124,13 @@ impl Site {
         }
     }
 
+    /// Work of the contact force through the whole displacement of ball against groove centre, J.
+    pub fn work(&self, u: &Displacements) -> f64 {
+        let state = self.state(u);
+        let moved = [0, 1].map(|i| state.normal[i] * state.length - self.reach[i]);
+        state.force.force * (state.normal[0] * moved[0] + state.normal[1] * moved[1])
+    }
+
     /// Contact angle at a state, rad.
     pub fn contact_angle(&self, state: &SiteState) -> f64 {
         let sign = self.side.sign();
@@ -301,6 +308,15 @@ impl Problem {
             side.name()
         )
     }
+}
+
+/// Force on the ring of every site [radial, axial], N.
+pub fn site_forces(problem: &Problem, u: &Displacements) -> Vec<[f64; 2]> {
+    let force = |site: &Site| {
+        let state = site.state(u);
+        state.normal.map(|n| state.force.force * n)
+    };
+    problem.sites.iter().map(force).collect()
 }
 
 /// Names of the shaft dofs, as in the scene.

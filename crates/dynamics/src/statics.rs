@@ -17,14 +17,14 @@ use contact::{ContactLaw, Side};
 use rayon::prelude::*;
 use solver::dense::DenseCholesky;
 
-use crate::balls::{BallResult, ball_results};
 use crate::effects::{self, Loads};
-use crate::equilibrium::{SearchScales, centre_unloaded, check_held, minimise};
+use crate::equilibrium::{SearchScales, check_held, minimise};
 use crate::error::DynamicsError;
 use crate::footprint::{Footprint, place};
 use crate::model::{ContactMode, Model, ShaftDof};
-use crate::problem::{Displacements, Problem, RingResponse, Site};
+use crate::problem::{Displacements, Problem, RingResponse, Site, site_forces};
 use crate::ring::RingSolver;
+use crate::solution::{RingFields, StaticSolution};
 
 /// Contraction of a round above which the columns are renewed.
 const SLOW_CONTRACTION: f64 = 0.2;
@@ -48,45 +48,17 @@ pub struct Timing {
     pub newton: f64,
 }
 
-/// A static equilibrium.
-pub struct StaticSolution {
-    /// Displacements of shaft, balls and groove centres.
-    pub displacements: Displacements,
-    /// Results of every ball.
-    pub balls: Vec<BallResult>,
-    /// Elastic nodal displacements of flexible rings relative to shaft or housing, m, `[n_nodes][3]` flat.
-    pub elastic: [Option<Vec<f64>>; 2],
-    /// Out-of-balance force on the shaft, N and N m, about its origin; zero on prescribed dofs.
-    pub shaft_residual: [f64; 5],
-    /// Force and moment that hold the prescribed dofs, N and N m.
-    pub shaft_reaction: [f64; 5],
-    /// Strain energy of the rings, Hertz energy, J.
-    pub strain_energy: f64,
-    /// Energy of the local contacts (2/5 K d_e^2.5 - c_s Q^2/2), J.
-    pub hertz_energy: f64,
-    /// Work of the loads through the displacements (twice a linear spring's energy), J.
-    pub load_work: f64,
-    /// Rounds and Newton iterations.
-    pub rounds: usize,
-    /// Newton iterations in all rounds.
-    pub newton_iterations: usize,
-    /// Warnings a user should read.
-    pub warnings: Vec<String>,
-    footprints: [Vec<Footprint>; 2],
-}
-
 /// Factored rings of a model, ready for any number of load cases.
-pub struct StaticSolver<'a> {
-    model: &'a Model,
+pub struct StaticSolver {
     rings: [Option<RingSolver>; 2],
     columns: [Option<Vec<f64>>; 2],
     /// Seconds so far.
     pub timing: Timing,
 }
 
-impl<'a> StaticSolver<'a> {
+impl StaticSolver {
     /// Factors both rings, on two threads if there are two.
-    pub fn new(model: &'a Model) -> Result<StaticSolver<'a>, DynamicsError> {
+    pub fn new(model: &Model) -> Result<StaticSolver, DynamicsError> {
         let build = |side: Side| {
             model
                 .ring(side)
@@ -101,7 +73,6 @@ impl<'a> StaticSolver<'a> {
             timing.factor += ring.seconds[1];
         }
         Ok(StaticSolver {
-            model,
             rings,
             columns: [None, None],
             timing,
@@ -113,24 +84,20 @@ impl<'a> StaticSolver<'a> {
         self.rings[side.index()].as_ref()
     }
 
-    /// Equilibrium under the model's loads, from zero displacement or from an earlier solution.
-    pub fn solve(&mut self, start: Option<&StaticSolution>) -> Result<StaticSolution, DynamicsError> {
-        let loads = effects::loads(self.model)?;
-        self.solve_loads(&loads, start)
-    }
-
-    fn solve_loads(
+    /// Equilibrium under the model's loads, from zero displacement or from an earlier solution. The model must have the
+    /// rings that were factored.
+    pub fn solve(
         &mut self,
-        loads: &Loads,
+        model: &Model,
         start: Option<&StaticSolution>,
     ) -> Result<StaticSolution, DynamicsError> {
-        let model = self.model;
+        let loads = &effects::loads(model)?;
         let problem = base_problem(model, loads);
         let scales = SearchScales::new(
             &model.geometry,
             model.hertz[0].stiffness.max(model.hertz[1].stiffness),
         );
-        let mut u = self.start(&problem, start);
+        let mut u = self.start(model, &problem, start);
         let clock = Instant::now();
         let mut newton_iterations = 0;
         let all_rigid = self.rings.iter().all(Option::is_none);
@@ -149,26 +116,30 @@ impl<'a> StaticSolver<'a> {
         self.timing.newton += clock.elapsed().as_secs_f64();
         if all_rigid {
             check_held(&problem, &u, scales)?;
-            return Ok(self.finish(
-                problem,
+            let rings = RingFields {
+                elastic: [None, None],
+                footprints: [Vec::new(), Vec::new()],
+            };
+            return Ok(StaticSolution::new(
+                model,
+                &problem,
                 u,
                 loads,
-                [None, None],
-                [Vec::new(), Vec::new()],
+                rings,
                 [1, newton_iterations],
             ));
         }
-        self.rounds(problem, u, loads, scales, newton_iterations)
+        self.rounds(model, problem, u, loads, scales, newton_iterations)
     }
 
     /// Displacements to start from.
-    fn start(&self, problem: &Problem, start: Option<&StaticSolution>) -> Displacements {
+    fn start(&self, model: &Model, problem: &Problem, start: Option<&StaticSolution>) -> Displacements {
         let flexible = [self.rings[0].is_some(), self.rings[1].is_some()];
         let mut u = match start {
             Some(solution) => solution.displacements.clone(),
             None => Displacements::zero(problem.ball_load.len(), flexible),
         };
-        for (i, dof) in self.model.shaft.iter().enumerate() {
+        for (i, dof) in model.shaft.iter().enumerate() {
             if let ShaftDof::Prescribed(value) = dof {
                 u.shaft[i] = *value;
             }
@@ -178,13 +149,13 @@ impl<'a> StaticSolver<'a> {
 
     fn rounds(
         &mut self,
+        model: &Model,
         mut problem: Problem,
         mut u: Displacements,
         loads: &Loads,
         scales: SearchScales,
         mut newton_iterations: usize,
     ) -> Result<StaticSolution, DynamicsError> {
-        let model = self.model;
         let tolerance = match model.contact.mode {
             ContactMode::Facet => model.tolerances.force.max(FACET_TOLERANCE),
             _ => model.tolerances.force,
@@ -228,7 +199,18 @@ impl<'a> StaticSolver<'a> {
             if change <= tolerance {
                 check_held(&problem, &u, scales)?;
                 check_patches(&problem, &u)?;
-                return Ok(self.finish(problem, u, loads, fields, feet, [round, newton_iterations]));
+                let rings = RingFields {
+                    elastic: fields,
+                    footprints: feet,
+                };
+                return Ok(StaticSolution::new(
+                    model,
+                    &problem,
+                    u,
+                    loads,
+                    rings,
+                    [round, newton_iterations],
+                ));
             }
         }
         let tail = history.len().saturating_sub(6);
@@ -313,70 +295,6 @@ impl<'a> StaticSolver<'a> {
             }
         }
     }
-
-    fn finish(
-        &self,
-        problem: Problem,
-        mut u: Displacements,
-        loads: &Loads,
-        elastic: [Option<Vec<f64>>; 2],
-        footprints: [Vec<Footprint>; 2],
-        counts: [usize; 2],
-    ) -> StaticSolution {
-        centre_unloaded(&problem, &mut u);
-        let (residual, reaction) = shaft_balance(&problem, &u);
-        let forces = site_forces(&problem, &u);
-        let strain = |side: Side| -> f64 {
-            let field = elastic[side.index()].as_ref();
-            let contacts: f64 = footprints[side.index()]
-                .iter()
-                .zip(field.iter().cycle())
-                .enumerate()
-                .map(|(ball, (foot, field))| {
-                    let (motion, f) = (foot.weights.measure(field), forces[2 * ball + side.index()]);
-                    motion[0] * f[0] + motion[1] * f[1]
-                })
-                .sum();
-            let body = loads.rings[side.index()]
-                .iter()
-                .zip(field)
-                .map(|(l, u)| dot(l, u))
-                .sum::<f64>();
-            0.5 * (contacts + body)
-        };
-        let hertz_energy = problem.sites.iter().map(|s| s.state(&u).force.energy).sum();
-        let balls_work: f64 = loads
-            .balls
-            .iter()
-            .flatten()
-            .zip(u.balls.iter().flatten())
-            .map(|(f, x)| f * x)
-            .sum();
-        StaticSolution {
-            balls: ball_results(self.model, &problem, &u),
-            shaft_residual: residual,
-            shaft_reaction: reaction,
-            strain_energy: strain(Side::Inner) + strain(Side::Outer),
-            hertz_energy,
-            load_work: balls_work + dot(&problem.shaft_load, &u.shaft),
-            rounds: counts[0],
-            newton_iterations: counts[1],
-            warnings: footprint_warnings(&footprints, &forces),
-            displacements: u,
-            elastic,
-            footprints,
-        }
-    }
-}
-
-impl StaticSolution {
-    /// Semi-axes of the spread patches of one side, m, by ball; empty for a rigid ring or facets.
-    pub fn patch_axes(&self, side: Side) -> Vec<[f64; 2]> {
-        self.footprints[side.index()]
-            .iter()
-            .filter_map(|f| f.semi_axes)
-            .collect()
-    }
 }
 
 fn base_problem(model: &Model, loads: &Loads) -> Problem {
@@ -420,15 +338,6 @@ fn adopt_offsets(problem: &Problem, u: &mut Displacements) {
     }
 }
 
-/// Force on the ring of every site [radial, axial], N.
-fn site_forces(problem: &Problem, u: &Displacements) -> Vec<[f64; 2]> {
-    let force = |site: &Site| {
-        let state = site.state(u);
-        state.normal.map(|n| state.force.force * n)
-    };
-    problem.sites.iter().map(force).collect()
-}
-
 /// Largest change over the largest force, and where.
 fn largest_change(old: &[[f64; 2]], new: &[[f64; 2]]) -> (f64, usize) {
     let size = |f: &[f64; 2]| f[0].hypot(f[1]);
@@ -458,51 +367,4 @@ fn check_patches(problem: &Problem, u: &Displacements) -> Result<(), DynamicsErr
         }
     }
     Ok(())
-}
-
-/// Sum of contact and applied loads on the shaft: on free dofs a residual, on the others minus the reaction.
-fn shaft_balance(problem: &Problem, u: &Displacements) -> ([f64; 5], [f64; 5]) {
-    let mut sum = problem.shaft_load;
-    for site in problem.sites.iter().filter(|s| s.side == Side::Inner) {
-        let state = site.state(u);
-        for (total, row) in sum.iter_mut().zip(site.shaft_rows()) {
-            *total += state.force.force * (row[0] * state.normal[0] + row[1] * state.normal[1]);
-        }
-    }
-    let pick = |free: bool| {
-        [0, 1, 2, 3, 4].map(|i| {
-            if problem.shaft_free[i] == free {
-                sum[i]
-            } else {
-                0.0
-            }
-        })
-    };
-    (pick(true), pick(false).map(|x| -x))
-}
-
-fn footprint_warnings(footprints: &[Vec<Footprint>; 2], forces: &[[f64; 2]]) -> Vec<String> {
-    let mut warnings = Vec::new();
-    for side in Side::BOTH {
-        let loaded = |ball: usize| forces[2 * ball + side.index()] != [0.0; 2];
-        let truncated: Vec<String> = footprints[side.index()]
-            .iter()
-            .enumerate()
-            .filter(|(ball, f)| f.truncated && loaded(*ball))
-            .map(|(ball, _)| ball.to_string())
-            .collect();
-        if !truncated.is_empty() {
-            warnings.push(format!(
-                "edge contact on the {} raceway, balls {}: the Hertz ellipse reaches beyond the groove; \
-                 forces and pressures there are not valid",
-                side.name(),
-                truncated.join(", ")
-            ));
-        }
-    }
-    warnings
-}
-
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(x, y)| x * y).sum()
 }

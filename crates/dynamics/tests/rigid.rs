@@ -4,7 +4,7 @@ mod support;
 
 use contact::Side;
 use dynamics::{DynamicsError, ShaftDof, StaticSolver};
-use support::{Case, relative};
+use support::{Case, equilibrium, relative};
 
 /// Wrong: the thrust equilibrium. Harris (4th ed.), eq. 7.30-7.33: F = Z K A^1.5 sin a (cos a0/cos a - 1)^1.5, with
 /// the two contacts in series. Tolerance: both sides are solved to round-off.
@@ -12,7 +12,7 @@ use support::{Case, relative};
 fn pure_thrust_has_harris_closed_form() {
     for axial in [10.0, 500.0, 2000.0, 10_000.0] {
         let model = Case::axial(axial).rigid();
-        let solution = StaticSolver::new(&model).unwrap().solve(None).unwrap();
+        let solution = equilibrium(&model);
         let g = &model.geometry;
         let (ki, ko) = (model.hertz[0].stiffness, model.hertz[1].stiffness);
         let series = (ki.powf(-2.0 / 3.0) + ko.powf(-2.0 / 3.0)).powf(-1.5);
@@ -23,12 +23,24 @@ fn pure_thrust_has_harris_closed_form() {
         let (mut low, mut high) = (g.free_contact_angle(), 1.5);
         for _ in 0..200 {
             let middle = 0.5 * (low + high);
-            if force(middle) < axial { low = middle } else { high = middle }
+            if force(middle) < axial {
+                low = middle
+            } else {
+                high = middle
+            }
         }
         for ball in &solution.balls {
-            assert!(relative(ball.inner.contact_angle_rad, low) < 1e-9, "{axial} N: {} {low}", ball.inner.contact_angle_rad);
+            assert!(
+                relative(ball.inner.contact_angle_rad, low) < 1e-9,
+                "{axial} N: {} {low}",
+                ball.inner.contact_angle_rad
+            );
             let expected = axial / (g.n_balls as f64 * low.sin());
-            assert!(relative(ball.inner.force_n, expected) < 1e-9, "{} {expected}", ball.inner.force_n);
+            assert!(
+                relative(ball.inner.force_n, expected) < 1e-9,
+                "{} {expected}",
+                ball.inner.force_n
+            );
             assert!(relative(ball.inner.force_n, ball.outer.force_n) < 1e-11);
         }
         let expected = g.groove_distance() * g.free_contact_angle().cos() * low.tan() - g.axial_offset();
@@ -40,13 +52,16 @@ fn pure_thrust_has_harris_closed_form() {
 /// balls unload. 1e-9 of the load, as the issue asks; also from a moment and a load point off the plane.
 #[test]
 fn forces_and_moments_balance() {
-    for (axial, radial, moment, free_tilt) in
-        [(2000.0, 1000.0, 0.0, true), (2000.0, 3000.0, 0.0, false), (100.0, 3000.0, 1.0, false), (500.0, 200.0, 4.0, true)]
-    {
+    for (axial, radial, moment, free_tilt) in [
+        (2000.0, 1000.0, 0.0, true),
+        (2000.0, 3000.0, 0.0, false),
+        (100.0, 3000.0, 1.0, false),
+        (500.0, 200.0, 4.0, true),
+    ] {
         let mut case = Case::axial(axial);
         (case.radial, case.moment, case.load_point, case.free_tilt) = (radial, moment, 1e-3, free_tilt);
         let model = case.rigid();
-        let solution = StaticSolver::new(&model).unwrap().solve(None).unwrap();
+        let solution = equilibrium(&model);
         let mut sum = [0.0, 0.0, 0.0, 0.0, 0.0];
         for b in &solution.balls {
             let (f, a, psi) = (b.inner.force_n, b.inner.contact_angle_rad, b.azimuth_rad);
@@ -67,7 +82,10 @@ fn forces_and_moments_balance() {
         for (i, s) in sum.iter().enumerate() {
             let rest = s + solution.shaft_reaction[i];
             assert!(rest.abs() < 1e-9 * axial.max(radial), "{i}: {rest}");
-            assert!(i >= free || solution.shaft_reaction[i] == 0.0, "a free dof has no reaction");
+            assert!(
+                i >= free || solution.shaft_reaction[i] == 0.0,
+                "a free dof has no reaction"
+            );
         }
     }
 }
@@ -77,12 +95,19 @@ fn forces_and_moments_balance() {
 fn unloaded_balls_rest_midway() {
     let mut case = Case::axial(100.0);
     case.radial = 3000.0;
-    let solution = StaticSolver::new(&case.rigid()).unwrap().solve(None).unwrap();
+    let solution = equilibrium(&case.rigid());
     let unloaded: Vec<_> = solution.balls.iter().filter(|b| b.inner.force_n == 0.0).collect();
-    assert!((6..=12).contains(&unloaded.len()), "{} balls unload", unloaded.len());
+    assert!(
+        (6..=12).contains(&unloaded.len()),
+        "{} balls unload",
+        unloaded.len()
+    );
     for b in unloaded {
         assert!(b.outer.force_n == 0.0 && b.inner.approach_m < 0.0);
-        assert!((b.inner.approach_m - b.outer.approach_m).abs() < 1e-12, "equal gaps");
+        assert!(
+            (b.inner.approach_m - b.outer.approach_m).abs() < 1e-12,
+            "equal gaps"
+        );
     }
 }
 
@@ -92,16 +117,26 @@ fn mirrored_azimuth_phases_agree() {
     let solve = |phase: f64| {
         let mut case = Case::axial(2000.0);
         (case.radial, case.phase, case.free_tilt) = (1000.0, phase, true);
-        StaticSolver::new(&case.rigid()).unwrap().solve(None).unwrap()
+        equilibrium(&case.rigid())
     };
     let (plus, minus) = (solve(5f64.to_radians()), solve(-5f64.to_radians()));
     for k in 0..18 {
         let (p, m) = (&plus.balls[k], &minus.balls[(18 - k) % 18]);
-        assert!(relative(p.inner.force_n, m.inner.force_n) < 1e-10, "{} {}", p.inner.force_n, m.inner.force_n);
+        assert!(
+            relative(p.inner.force_n, m.inner.force_n) < 1e-10,
+            "{} {}",
+            p.inner.force_n,
+            m.inner.force_n
+        );
     }
     let (p, m) = (plus.displacements.shaft, minus.displacements.shaft);
     for (i, sign) in [(0, 1.0), (1, -1.0), (2, 1.0), (3, -1.0), (4, 1.0)] {
-        assert!((p[i] - sign * m[i]).abs() < 1e-9 * p[0].abs().max(p[2].abs()), "{i}: {} {}", p[i], m[i]);
+        assert!(
+            (p[i] - sign * m[i]).abs() < 1e-9 * p[0].abs().max(p[2].abs()),
+            "{i}: {} {}",
+            p[i],
+            m[i]
+        );
     }
 }
 
@@ -112,15 +147,23 @@ fn any_start_leads_to_the_same_equilibrium() {
     case.radial = 1000.0;
     let model = case.rigid();
     let mut solver = StaticSolver::new(&model).unwrap();
-    let reference = solver.solve(None).unwrap();
-    let mut far = solver.solve(None).unwrap();
+    let reference = solver.solve(&model, None).unwrap();
+    let mut far = solver.solve(&model, None).unwrap();
     far.displacements.shaft = [1e-3, -1e-3, 0.5e-3, 1e-3, 0.0];
     far.displacements.shaft[4] = 0.0;
     far.displacements.shaft[3] = 0.0;
-    far.displacements.balls.iter_mut().for_each(|b| *b = [-5e-4, 7e-4]);
-    let found = solver.solve(Some(&far)).unwrap();
+    far.displacements
+        .balls
+        .iter_mut()
+        .for_each(|b| *b = [-5e-4, 7e-4]);
+    let found = solver.solve(&model, Some(&far)).unwrap();
     for (a, b) in reference.balls.iter().zip(&found.balls) {
-        assert!(relative(a.inner.force_n, b.inner.force_n) < 1e-9, "{} {}", a.inner.force_n, b.inner.force_n);
+        assert!(
+            relative(a.inner.force_n, b.inner.force_n) < 1e-9,
+            "{} {}",
+            a.inner.force_n,
+            b.inner.force_n
+        );
     }
 }
 
@@ -131,16 +174,30 @@ fn no_load_moves_nothing() {
     case.free_axial = false;
     let mut model = case.rigid();
     model.shaft = [ShaftDof::Prescribed(0.0); 5];
-    let solution = StaticSolver::new(&model).unwrap().solve(None).unwrap();
-    assert!(solution.balls.iter().all(|b| b.inner.force_n < 1e-9 && b.displacement_m.axial.abs() < 1e-12));
+    let solution = equilibrium(&model);
+    assert!(
+        solution
+            .balls
+            .iter()
+            .all(|b| b.inner.force_n < 1e-9 && b.displacement_m.axial.abs() < 1e-12)
+    );
 }
 
 /// Wrong: a load that nothing balances would end in a number instead of an error that names the cause.
 #[test]
 fn loads_without_equilibrium_are_named() {
-    let error = |model: &dynamics::Model| StaticSolver::new(model).unwrap().solve(None).err().unwrap();
+    let error = |model: &dynamics::Model| {
+        StaticSolver::new(model)
+            .unwrap()
+            .solve(model, None)
+            .err()
+            .unwrap()
+    };
     let crushed = error(&Case::axial(1e9).rigid()).to_string();
-    assert!(crushed.contains("no equilibrium: z of the shaft runs beyond 4.500 mm"), "{crushed}");
+    assert!(
+        crushed.contains("no equilibrium: z of the shaft runs beyond 4.500 mm"),
+        "{crushed}"
+    );
     let idle = error(&Case::axial(0.0).rigid());
     assert!(matches!(idle, DynamicsError::Unheld { .. }), "{idle}");
 }
@@ -148,7 +205,7 @@ fn loads_without_equilibrium_are_named() {
 /// Wrong: a reversed thrust would not be caught by the opposite flanks of the (symmetric) grooves.
 #[test]
 fn reversed_thrust_mirrors_the_contact_angle() {
-    let solve = |axial| StaticSolver::new(&Case::axial(axial).rigid()).unwrap().solve(None).unwrap();
+    let solve = |axial| equilibrium(&Case::axial(axial).rigid());
     let (plus, minus) = (solve(500.0), solve(-500.0));
     for (p, m) in plus.balls.iter().zip(&minus.balls) {
         assert!(relative(p.inner.force_n, m.inner.force_n) < 1e-10);
@@ -163,11 +220,15 @@ fn interference_loads_every_ball_alike() {
     case.interference = 10e-6;
     let mut model = case.rigid();
     model.shaft = [ShaftDof::Prescribed(0.0); 5];
-    let solution = StaticSolver::new(&model).unwrap().solve(None).unwrap();
+    let solution = equilibrium(&model);
     let (ki, ko) = (model.hertz[0].stiffness, model.hertz[1].stiffness);
     let series = (ki.powf(-2.0 / 3.0) + ko.powf(-2.0 / 3.0)).powf(-1.5);
     let expected = series * (0.5 * 10e-6f64).powf(1.5);
     for b in &solution.balls {
-        assert!(relative(b.inner.force_n, expected) < 1e-9, "{} {expected}", b.inner.force_n);
+        assert!(
+            relative(b.inner.force_n, expected) < 1e-9,
+            "{} {expected}",
+            b.inner.force_n
+        );
     }
 }

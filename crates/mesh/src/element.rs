@@ -37,11 +37,36 @@ const HEX_FACES: [[usize; 8]; 6] = [
 ];
 
 /// Faces of a tetrahedron, corners then mid-nodes, counter-clockwise seen from outside.
-const TET_FACES: [[usize; 6]; 4] =
-    [[0, 2, 1, 6, 5, 4], [0, 1, 3, 4, 8, 7], [1, 2, 3, 5, 9, 8], [2, 0, 3, 6, 7, 9]];
+const TET_FACES: [[usize; 6]; 4] = [
+    [0, 2, 1, 6, 5, 4],
+    [0, 1, 3, 4, 8, 7],
+    [1, 2, 3, 5, 9, 8],
+    [2, 0, 3, 6, 7, 9],
+];
+
+/// Corners of the edges of a hexahedron: bottom, top, vertical.
+const HEX_EDGES: [[usize; 2]; 12] = [
+    [0, 1],
+    [1, 2],
+    [2, 3],
+    [3, 0],
+    [4, 5],
+    [5, 6],
+    [6, 7],
+    [7, 4],
+    [0, 4],
+    [1, 5],
+    [2, 6],
+    [3, 7],
+];
+
+/// Corners of the edges of a tetrahedron.
+const TET_EDGES: [[usize; 2]; 6] = [[0, 1], [1, 2], [0, 2], [0, 3], [1, 3], [2, 3]];
 
 /// `HEX20_GMSH[i]` is the place in Gmsh's list of our node `i`.
-const HEX20_GMSH: [usize; 20] = [0, 1, 2, 3, 4, 5, 6, 7, 8, 11, 13, 9, 16, 18, 19, 17, 10, 12, 14, 15];
+const HEX20_GMSH: [usize; 20] = [
+    0, 1, 2, 3, 4, 5, 6, 7, 8, 11, 13, 9, 16, 18, 19, 17, 10, 12, 14, 15,
+];
 /// The same for the quadratic tetrahedron: Gmsh swaps the last two mid-nodes.
 const TET10_GMSH: [usize; 10] = [0, 1, 2, 3, 4, 5, 6, 7, 9, 8];
 
@@ -72,6 +97,14 @@ impl ElementKind {
         match self {
             ElementKind::Hex8 | ElementKind::Hex20 => 8,
             ElementKind::Tet10 => 4,
+        }
+    }
+
+    /// Corners of the edges; the mid-node of edge `i` of a quadratic kind is local node `n_corners() + i`.
+    pub fn edges(self) -> &'static [[usize; 2]] {
+        match self {
+            ElementKind::Hex8 | ElementKind::Hex20 => &HEX_EDGES,
+            ElementKind::Tet10 => &TET_EDGES,
         }
     }
 

@@ -1,7 +1,28 @@
 //! Reads a Gmsh file into nodes, elements and named groups, checks it, and revolves sections into rings.
+//!
+//! Two ways lead to a [`Mesh`]: [`read_msh`] takes any 3-D Gmsh mesh of a ring (physical volume `ring`, named
+//! physical surfaces); [`read_section`] and [`revolve`] take a 2-D mesh of its section and make a ring that is
+//! exactly rotationally periodic. [`ring_geo`] writes the section of a ring for Gmsh.
 
+pub mod check;
 pub mod element;
+pub mod error;
+pub mod geometry;
+pub mod gmsh;
 pub mod mesh;
+pub mod msh;
+pub mod origin;
+pub mod ring;
+pub mod section;
 
+pub use check::{Torus, check_mesh, check_torus, check_unit, require_groups};
 pub use element::{ElementKind, FacetKind};
+pub use error::{MeshError, Place};
+pub use geometry::volume;
+pub use gmsh::{mesh_section_with_gmsh, mesh_tets_with_gmsh};
 pub use mesh::{Facet, Mesh};
+pub use msh::write::{MshFormat, Overwrite, write_msh};
+pub use msh::{read_msh, read_msh_with_origin};
+pub use origin::Origin;
+pub use ring::{RingGeometry, RingSection, RingSide, ring_geo, ring_tet_geo};
+pub use section::{Arc, Section, SectionEdge, Snap, read_section, read_section_with_origin, revolve};

@@ -61,7 +61,11 @@ impl Mesh {
 
     /// Sorted distinct nodes of a named group.
     pub fn group_nodes(&self, name: &str) -> Vec<usize> {
-        let mut nodes: Vec<usize> = self.group(name).iter().flat_map(|&f| self.facet_nodes(f)).collect();
+        let mut nodes: Vec<usize> = self
+            .group(name)
+            .iter()
+            .flat_map(|&f| self.facet_nodes(f))
+            .collect();
         nodes.sort_unstable();
         nodes.dedup();
         nodes

@@ -1,1 +1,44 @@
-//! PLACE
+//! Solves S x = b for a fixed symmetric positive definite S: factor once, many right-hand sides.
+//!
+//! The crate knows matrices, not meshes; the only geometry it sees are the points and element cliques from which
+//! [`angular_dissection`] makes an elimination order. It is the only crate that names faer.
+//!
+//! A ring is solved in five lines:
+//! ```
+//! # use solver::*;
+//! # let s = sprs::CsMat::new((3, 3), vec![0, 1, 2, 3], vec![0, 1, 2], vec![4.0, 16.0, 64.0]);
+//! # let (points, elements) = (vec![[1.0, 0.0, 0.0]], vec![0_usize]);
+//! let nodes = angular_dissection(&points, &elements, 1);
+//! let symbolic = Symbolic::new(&s, &expand(&nodes, 3))?;
+//! let factor = symbolic.factor(&s)?;
+//! let mut x = vec![4.0, 16.0, 64.0];
+//! factor.solve(&mut x, 1);
+//! # assert_eq!(x, [1.0, 1.0, 1.0]);
+//! # Ok::<(), SolverError>(())
+//! ```
+//! Clamped degrees of freedom are taken out with [`restrict`] (matrix) and [`restrict_order`] (order).
+//!
+//! Everything here is sequential: rings, sectors and columns are the caller's units of parallel work, so the bits
+//! of a result cannot depend on the number of threads.
+
+pub mod dense;
+pub mod dissection;
+
+mod cholesky;
+mod elimination_tree;
+mod error;
+mod linear_solver;
+mod permutation;
+mod refinement;
+mod submatrix;
+mod symbolic;
+
+pub use cholesky::SparseCholesky;
+pub use dense::{DenseCholesky, DenseLu};
+pub use dissection::angular_dissection;
+pub use error::SolverError;
+pub use linear_solver::LinearSolver;
+pub use permutation::{expand, restrict_order};
+pub use refinement::{Refined, solve_refined};
+pub use submatrix::restrict;
+pub use symbolic::Symbolic;

@@ -4,7 +4,7 @@
 
 use contact::{BearingGeometry, HertzContact, Side};
 use dynamics::effects::{AxialForce, Effect, Moment, RadialForce};
-use dynamics::{ContactMode, ContactSettings, Model, ShaftDof, Tolerances};
+use dynamics::{ContactMode, ContactSettings, Model, ShaftDof, StaticSolution, StaticSolver, Tolerances};
 use fem::Material;
 
 /// A load case of the 7010C.
@@ -39,23 +39,44 @@ impl Case {
         let mut geometry = BearingGeometry::reference_7010c();
         geometry.first_ball_azimuth = self.phase;
         if self.interference > 0.0 {
-            geometry.outer_raceway_diameter = geometry.inner_raceway_diameter + 2.0 * geometry.ball_diameter - self.interference;
+            geometry.outer_raceway_diameter =
+                geometry.inner_raceway_diameter + 2.0 * geometry.ball_diameter - self.interference;
         }
         let steel = steel();
         let elastic = dynamics::model::elastic(&steel);
         let mut effects: Vec<Box<dyn Effect>> = vec![Box::new(AxialForce { value: self.axial })];
-        effects.push(Box::new(RadialForce { value: self.radial, direction: 0.0 }));
-        effects.push(Box::new(Moment { value: [self.moment, 0.0] }));
-        let dof = |free: bool| if free { ShaftDof::Free } else { ShaftDof::Prescribed(0.0) };
+        effects.push(Box::new(RadialForce {
+            value: self.radial,
+            direction: 0.0,
+        }));
+        effects.push(Box::new(Moment {
+            value: [self.moment, 0.0],
+        }));
+        let dof = |free: bool| {
+            if free {
+                ShaftDof::Free
+            } else {
+                ShaftDof::Prescribed(0.0)
+            }
+        };
         Model {
             hertz: Side::BOTH.map(|side| HertzContact::new(&geometry, side, elastic, elastic)),
             geometry,
             rings: [None, None],
             ball_material: steel,
-            shaft: [dof(true), dof(true), dof(self.free_axial), dof(self.free_tilt), dof(self.free_tilt)],
+            shaft: [
+                dof(true),
+                dof(true),
+                dof(self.free_axial),
+                dof(self.free_tilt),
+                dof(self.free_tilt),
+            ],
             shaft_mass: 0.0,
             load_point: self.load_point,
-            contact: ContactSettings { mode: ContactMode::Rigid, patch_spacings: 2.0 },
+            contact: ContactSettings {
+                mode: ContactMode::Rigid,
+                patch_spacings: 2.0,
+            },
             effects,
             tolerances: Tolerances::default(),
         }
@@ -66,7 +87,27 @@ pub fn steel() -> Material {
     Material::new(207e9, 0.3, 7800.0).unwrap()
 }
 
+/// Static equilibrium of a model.
+pub fn equilibrium(model: &Model) -> StaticSolution {
+    StaticSolver::new(model).unwrap().solve(model, None).unwrap()
+}
+
 /// Relative difference.
 pub fn relative(a: f64, b: f64) -> f64 {
     (a - b).abs() / a.abs().max(b.abs())
+}
+
+pub mod rings;
+
+use dynamics::Hold;
+use rings::{Level, ring};
+
+impl Case {
+    /// The model with both rings flexible.
+    pub fn flexible(&self, mode: ContactMode, level: Level, hold: Hold) -> Model {
+        let mut model = self.rigid();
+        model.contact.mode = mode;
+        model.rings = Side::BOTH.map(|side| Some(std::sync::Arc::new(ring(side, level, hold))));
+        model
+    }
 }

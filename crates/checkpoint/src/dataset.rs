@@ -1,0 +1,247 @@
+//! Data sets with checksums, and the frame of a VTKHDF file.
+//!
+//! A data set is named by its absolute path in the file, which also enters its checksum. Time stamps are off, so
+//! that equal content gives equal files.
+
+use std::path::Path;
+
+use hdf5::types::{FixedAscii, FloatSize, TypeDescriptor, VarLenUnicode};
+use hdf5::{Dataset, File};
+
+use crate::checksum::{CHECKSUM_ATTRIBUTE, Element, checksum};
+use crate::error::CheckpointError;
+use crate::storage::{Compression, Precision};
+
+/// Size of a compressed chunk, bytes: large enough for the filters, small enough for their caches.
+const CHUNK_BYTES: usize = 1 << 18;
+
+/// Creates the groups and attributes of a VTKHDF unstructured grid of the given version.
+///
+/// `Type` must be a fixed-length ASCII attribute; VTK refuses other strings.
+pub(crate) fn create_vtkhdf(file: &File, version: [i64; 2]) -> hdf5::Result<()> {
+    let root = file.create_group("VTKHDF")?;
+    root.new_attr::<i64>()
+        .shape(2)
+        .create("Version")?
+        .write_raw(&version)?;
+    let kind = FixedAscii::<16>::from_ascii("UnstructuredGrid").map_err(|e| e.to_string())?;
+    root.new_attr::<FixedAscii<16>>()
+        .create("Type")?
+        .write_scalar(&kind)?;
+    root.create_group("CellData")?;
+    root.create_group("PointData")?;
+    Ok(())
+}
+
+/// Links the mesh of `mesh.hdf` into a VTKHDF file of the same folder.
+pub(crate) fn link_mesh(file: &File, mesh_file: &str) -> hdf5::Result<()> {
+    let mesh = [
+        "NumberOfPoints",
+        "NumberOfCells",
+        "NumberOfConnectivityIds",
+        "Points",
+        "Connectivity",
+    ];
+    let cells = ["Offsets", "Types", "CellData/body", "CellData/radius"];
+    for name in mesh.iter().chain(&cells) {
+        let path = format!("/VTKHDF/{name}");
+        file.link_external(mesh_file, &path, &path)?;
+    }
+    Ok(())
+}
+
+/// Writes a row-major array with its checksum.
+pub(crate) fn write_array<T: Element>(
+    file: &File,
+    path: &str,
+    shape: &[usize],
+    values: &[T],
+    compression: Compression,
+) -> hdf5::Result<()> {
+    let mut builder = file.new_dataset::<T>().obj_track_times(false);
+    if let (Compression::Deflate(level), false) = (compression, values.is_empty()) {
+        let row_bytes = size_of::<T>() * shape[1..].iter().product::<usize>();
+        let mut chunk = shape.to_vec();
+        chunk[0] = (CHUNK_BYTES / row_bytes).clamp(1, shape[0]);
+        builder = builder.chunk(chunk).shuffle().deflate(level.clamp(1, 9));
+    }
+    let dataset = builder.shape(shape).create(path)?;
+    dataset.write_raw(values)?;
+    write_checksum(&dataset, checksum(path, shape, values))
+}
+
+/// Writes an array over points, `[n_points][n_components]` or `[n_points]` for one component, in a precision.
+pub(crate) fn write_field(
+    file: &File,
+    path: &str,
+    n_components: usize,
+    values: &[f64],
+    precision: Precision,
+    compression: Compression,
+) -> hdf5::Result<()> {
+    let rows = values.len() / n_components;
+    let shape = if n_components == 1 {
+        vec![rows]
+    } else {
+        vec![rows, n_components]
+    };
+    match precision {
+        Precision::F64 => write_array(file, path, &shape, values, compression),
+        Precision::F32 => {
+            let rounded: Vec<f32> = values.iter().map(|&value| value as f32).collect();
+            write_array(file, path, &shape, &rounded, compression)
+        }
+    }
+}
+
+/// Writes a text as an attribute of its group, with its checksum beside it. As a data set it would cost 2 ms: the
+/// library fills megabytes of buffers to write one string. HDF5 ends texts at a NUL, so there must be none.
+pub(crate) fn write_text(file: &File, path: &str, text: &str) -> hdf5::Result<()> {
+    let value: VarLenUnicode = text.parse().map_err(|e| format!("{path}: {e}"))?;
+    let (group, name) = group_and_name(path);
+    let group = file.group(group)?;
+    group
+        .new_attr::<VarLenUnicode>()
+        .create(name)?
+        .write_scalar(&value)?;
+    let crc = checksum(path, &[text.len()], text.as_bytes());
+    group
+        .new_attr::<u32>()
+        .create(&*format!("{name}_{CHECKSUM_ATTRIBUTE}"))?
+        .write_scalar(&crc)
+}
+
+fn group_and_name(path: &str) -> (&str, &str) {
+    path.rsplit_once('/').expect("texts are named by absolute paths")
+}
+
+fn write_checksum(dataset: &Dataset, value: u32) -> hdf5::Result<()> {
+    dataset
+        .new_attr::<u32>()
+        .create(CHECKSUM_ATTRIBUTE)?
+        .write_scalar(&value)
+}
+
+/// A file open for reading; every value it returns has passed its checksum.
+pub(crate) struct CheckedFile<'a> {
+    path: &'a Path,
+    file: File,
+}
+
+impl<'a> CheckedFile<'a> {
+    /// Opens `path`.
+    pub fn open(path: &'a Path) -> Result<Self, CheckpointError> {
+        // The library's own words for a missing or forbidden file are less clear than the system's.
+        std::fs::File::open(path).map_err(CheckpointError::io("read", path))?;
+        let file = File::open(path).map_err(CheckpointError::hdf("read", path))?;
+        Ok(CheckedFile { path, file })
+    }
+
+    /// True when the file has this data set.
+    pub fn has(&self, dataset: &str) -> bool {
+        self.file.link_exists(dataset)
+    }
+
+    /// Names in a group, sorted.
+    pub fn members(&self, group: &str) -> Result<Vec<String>, CheckpointError> {
+        let read = || self.file.group(group)?.member_names();
+        let mut names = read().map_err(CheckpointError::hdf("read", self.path))?;
+        names.sort();
+        Ok(names)
+    }
+
+    /// Shape and row-major values.
+    pub fn array<T: Element>(&self, dataset: &str) -> Result<(Vec<usize>, Vec<T>), CheckpointError> {
+        let read = || {
+            let stored = self.file.dataset(dataset)?;
+            Ok((stored.shape(), stored.read_raw::<T>()?, read_checksum(&stored)?))
+        };
+        let (shape, values, expected) = read().map_err(CheckpointError::hdf("read", self.path))?;
+        self.compare(dataset, expected, checksum(dataset, &shape, &values))?;
+        Ok((shape, values))
+    }
+
+    /// Shape and row-major values of a floating-point array of either precision.
+    pub fn field(&self, dataset: &str) -> Result<(Vec<usize>, Vec<f64>), CheckpointError> {
+        match self.precision(dataset)? {
+            Precision::F64 => self.array::<f64>(dataset),
+            Precision::F32 => {
+                let (shape, values) = self.array::<f32>(dataset)?;
+                Ok((shape, values.into_iter().map(f64::from).collect()))
+            }
+        }
+    }
+
+    /// Precision of a floating-point array.
+    pub fn precision(&self, dataset: &str) -> Result<Precision, CheckpointError> {
+        match self.descriptor(dataset)? {
+            TypeDescriptor::Float(FloatSize::U4) => Ok(Precision::F32),
+            TypeDescriptor::Float(FloatSize::U8) => Ok(Precision::F64),
+            other => {
+                let what = format!("data set {dataset} holds {other}, expected floating-point numbers");
+                Err(CheckpointError::malformed(self.path, what))
+            }
+        }
+    }
+
+    /// Type of the elements.
+    pub fn descriptor(&self, dataset: &str) -> Result<TypeDescriptor, CheckpointError> {
+        let read = || self.file.dataset(dataset)?.dtype()?.to_descriptor();
+        read().map_err(CheckpointError::hdf("read", self.path))
+    }
+
+    /// Shape, without reading the values.
+    pub fn shape(&self, dataset: &str) -> Result<Vec<usize>, CheckpointError> {
+        Ok(self
+            .file
+            .dataset(dataset)
+            .map_err(CheckpointError::hdf("read", self.path))?
+            .shape())
+    }
+
+    /// The only value of a data set with one element.
+    pub fn scalar<T: Element>(&self, dataset: &str) -> Result<T, CheckpointError> {
+        let (_, values) = self.array::<T>(dataset)?;
+        match values[..] {
+            [value] => Ok(value),
+            _ => {
+                let what = format!("data set {dataset} has {} values, expected one", values.len());
+                Err(CheckpointError::malformed(self.path, what))
+            }
+        }
+    }
+
+    /// A text.
+    pub fn text(&self, path: &str) -> Result<String, CheckpointError> {
+        let read = || {
+            let (group, name) = group_and_name(path);
+            let group = self.file.group(group)?;
+            let text: VarLenUnicode = group.attr(name)?.read_scalar()?;
+            let crc: u32 = group
+                .attr(&format!("{name}_{CHECKSUM_ATTRIBUTE}"))?
+                .read_scalar()?;
+            Ok((text.as_bytes().to_vec(), crc))
+        };
+        let (bytes, expected) = read().map_err(CheckpointError::hdf("read", self.path))?;
+        self.compare(path, expected, checksum(path, &[bytes.len()], &bytes))?;
+        String::from_utf8(bytes)
+            .map_err(|_| CheckpointError::malformed(self.path, format!("text {path} is not UTF-8 text")))
+    }
+
+    fn compare(&self, dataset: &str, expected: u32, found: u32) -> Result<(), CheckpointError> {
+        if expected == found {
+            return Ok(());
+        }
+        let (path, dataset) = (self.path.to_path_buf(), dataset.to_string());
+        Err(CheckpointError::Damaged {
+            path,
+            dataset,
+            expected,
+            found,
+        })
+    }
+}
+
+fn read_checksum(dataset: &Dataset) -> hdf5::Result<u32> {
+    dataset.attr(CHECKSUM_ATTRIBUTE)?.read_scalar()
+}

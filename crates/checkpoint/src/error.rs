@@ -1,0 +1,188 @@
+//! What can go wrong when results are written or read.
+
+use std::io;
+use std::path::{Path, PathBuf};
+
+/// An error of this crate.
+#[derive(Debug, thiserror::Error)]
+pub enum CheckpointError {
+    /// The folder for a new run is not free.
+    #[error(
+        "folder {} already holds results ({found}); choose another output folder, resume this run, or move the \
+         old results away", path.display()
+    )]
+    ResultsPresent {
+        /// The folder.
+        path: PathBuf,
+        /// What was found there.
+        found: String,
+    },
+    /// The folder to resume or index holds no step.
+    #[error("folder {} holds no committed step; expected files named step_000000.hdf and so on", path.display())]
+    NoSteps {
+        /// The folder.
+        path: PathBuf,
+    },
+    /// The step asked for is not there.
+    #[error("folder {} has no step {step}; committed steps are {first} to {last}", path.display())]
+    UnknownStep {
+        /// The folder.
+        path: PathBuf,
+        /// The step asked for.
+        step: u64,
+        /// First committed step.
+        first: u64,
+        /// Last committed step.
+        last: u64,
+    },
+    /// The operating system refused.
+    #[error("cannot {action} {}: {source}", path.display())]
+    Io {
+        /// What was tried: "write", "create folder", ...
+        action: &'static str,
+        /// The file or folder.
+        path: PathBuf,
+        /// Why not.
+        source: io::Error,
+    },
+    /// The HDF5 library refused.
+    #[error("cannot {action} {}: {cause}", path.display())]
+    Hdf {
+        /// What was tried: "write" or "read".
+        action: &'static str,
+        /// The file.
+        path: PathBuf,
+        /// Innermost message of the library.
+        cause: String,
+    },
+    /// A data set does not hold what was written.
+    #[error(
+        "data set {dataset} of {} is damaged: its checksum is {found:08x} and {expected:08x} was written; use an \
+         earlier step", path.display()
+    )]
+    Damaged {
+        /// The file.
+        path: PathBuf,
+        /// Path of the data set inside the file.
+        dataset: String,
+        /// Checksum that was written.
+        expected: u32,
+        /// Checksum of what was read.
+        found: u32,
+    },
+    /// A file is readable HDF5 but not what this crate writes.
+    #[error("{} is not a complete step file: {what}; use an earlier step", path.display())]
+    Malformed {
+        /// The file.
+        path: PathBuf,
+        /// What is missing or unexpected.
+        what: String,
+    },
+    /// A field has the wrong number of points.
+    #[error("field {field} of step {step} has {found} points, the mesh has {expected}")]
+    FieldLength {
+        /// Name of the field.
+        field: &'static str,
+        /// The step.
+        step: u64,
+        /// Points of the mesh.
+        expected: usize,
+        /// Points of the field.
+        found: usize,
+    },
+    /// Steps must be written in order.
+    #[error("step {step} at {time} s cannot follow step {last} at {last_time} s; both numbers must grow")]
+    StepOrder {
+        /// The refused step.
+        step: u64,
+        /// Its time, s.
+        time: f64,
+        /// Last committed step.
+        last: u64,
+        /// Its time, s.
+        last_time: f64,
+    },
+    /// A step without a place on the time axis.
+    #[error("step {step} has the time {time} s; expected a finite number")]
+    Time {
+        /// The step.
+        step: u64,
+        /// Its time, s.
+        time: f64,
+    },
+    /// The run to resume was made with another mesh.
+    #[error("{} was made with mesh {found}, this run has mesh {expected}; resume with the scene and meshes of that run", path.display())]
+    MeshMismatch {
+        /// The file.
+        path: PathBuf,
+        /// Fingerprint of the bodies given.
+        expected: String,
+        /// Fingerprint in the file.
+        found: String,
+    },
+    /// A body cannot be drawn.
+    #[error("body \"{body}\": {what}")]
+    Body {
+        /// Name of the body.
+        body: String,
+        /// What is wrong and what was expected.
+        what: String,
+    },
+    /// A name or text HDF5 cannot hold.
+    #[error("cannot store {what} {text:?}: {reason}")]
+    Text {
+        /// What the text is.
+        what: &'static str,
+        /// The text, shortened.
+        text: String,
+        /// What was expected.
+        reason: &'static str,
+    },
+    /// The thread that writes ended early, and the caller went on.
+    #[error("no step can be written after a failed one; the first error was reported by an earlier call")]
+    WriterStopped,
+}
+
+impl CheckpointError {
+    /// For `map_err` after calls of the operating system.
+    pub(crate) fn io(action: &'static str, path: &Path) -> impl FnOnce(io::Error) -> Self + use<> {
+        let path = path.to_path_buf();
+        move |source| CheckpointError::Io { action, path, source }
+    }
+
+    /// For `map_err` after calls of the HDF5 library.
+    pub(crate) fn hdf(action: &'static str, path: &Path) -> impl FnOnce(hdf5::Error) -> Self + use<> {
+        let path = path.to_path_buf();
+        move |error| CheckpointError::Hdf {
+            action,
+            path,
+            cause: innermost_cause(&error),
+        }
+    }
+
+    /// A step file that lacks something.
+    pub(crate) fn malformed(path: &Path, what: impl Into<String>) -> Self {
+        CheckpointError::Malformed {
+            path: path.to_path_buf(),
+            what: what.into(),
+        }
+    }
+}
+
+/// The library's outer messages only say that something failed; the operating system's reason, if there is one,
+/// stands in the innermost frame as `error message = '...'`.
+fn innermost_cause(error: &hdf5::Error) -> String {
+    let Some(stack) = error.stack() else {
+        return error.to_string();
+    };
+    for frame in stack.iter().rev() {
+        if let Some((_, rest)) = frame.desc().split_once("error message = '")
+            && let Some((reason, _)) = rest.split_once('\'')
+        {
+            return reason.to_string();
+        }
+    }
+    stack
+        .last()
+        .map_or_else(|| error.to_string(), |frame| frame.desc().to_string())
+}

@@ -1,0 +1,162 @@
+//! One step as the rest of the program sees it: fields over points, and the state a restart needs.
+
+use std::collections::BTreeMap;
+
+use crate::error::CheckpointError;
+use crate::storage::{Precision, Storage};
+
+/// Everything written for one step.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct StepRecord {
+    /// Number of the step; grows from file to file.
+    pub step: u64,
+    /// Time, s; grows from file to file.
+    pub time: f64,
+    /// Fields over the points of all bodies.
+    pub points: PointFields,
+    /// Text of the scene the run was started with, so that a step file alone can be resumed.
+    pub scene: String,
+    /// Everything else that evolves, by name (letters, digits, `_`). Never shown by viewers.
+    pub state: BTreeMap<String, StateArray>,
+}
+
+/// Fields over points, one row per point of all bodies in their order ([`crate::point_ranges`]). A field that is
+/// `None` is not written. Rows where a field has no meaning hold zeros, not NaN, so that colour ranges and
+/// statistics in a viewer stay finite: stress on balls, ball forces on rings.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct PointFields {
+    /// Displacement, m, `[n_points][3]`, f64.
+    pub displacement: Vec<[f64; 3]>,
+    /// Velocity, m/s, `[n_points][3]`, f64.
+    pub velocity: Option<Vec<[f64; 3]>>,
+    /// Acceleration, m/s², `[n_points][3]`, f64.
+    pub acceleration: Option<Vec<[f64; 3]>>,
+    /// Stress, Pa, `[n_points][6]`, components xx yy zz xy yz xz, in the precision of [`Storage::stress`].
+    pub stress: Option<Vec<[f64; 6]>>,
+    /// Von Mises stress, Pa, `[n_points]`, in the precision of [`Storage::stress`].
+    pub von_mises: Option<Vec<f64>>,
+    /// Force of the inner ring on each ball, N, `[n_points][3]`, zero on points of rings, f64.
+    pub force_inner: Option<Vec<[f64; 3]>>,
+    /// Force of the outer ring on each ball, N, `[n_points][3]`, zero on points of rings, f64.
+    pub force_outer: Option<Vec<[f64; 3]>>,
+}
+
+/// An array of the state, stored and returned bit for bit.
+#[derive(Clone, Debug, PartialEq)]
+pub enum StateArray {
+    /// Real numbers, f64, `[n]`; NaN and signed zeros keep their bits.
+    Real(Vec<f64>),
+    /// Integers, `[n]`.
+    Integer(Vec<i64>),
+}
+
+/// One field as it is stored.
+pub(crate) struct Field<'a> {
+    pub name: &'static str,
+    pub n_components: usize,
+    /// Row-major values, `[n_points][n_components]`, flat.
+    pub values: &'a [f64],
+    pub precision: Precision,
+}
+
+impl PointFields {
+    /// Fields that are present, in the order of the files.
+    pub(crate) fn present(&self, storage: Storage) -> Vec<Field<'_>> {
+        let derived = |name, n_components, values| Field {
+            name,
+            n_components,
+            values,
+            precision: storage.stress,
+        };
+        let mut fields = vec![exact_vector("displacement", &self.displacement)];
+        fields.extend(
+            self.velocity
+                .as_deref()
+                .map(|rows| exact_vector("velocity", rows)),
+        );
+        fields.extend(
+            self.acceleration
+                .as_deref()
+                .map(|rows| exact_vector("acceleration", rows)),
+        );
+        fields.extend(
+            self.stress
+                .as_deref()
+                .map(|rows| derived("stress", 6, rows.as_flattened())),
+        );
+        fields.extend(
+            self.von_mises
+                .as_deref()
+                .map(|values| derived("von_mises", 1, values)),
+        );
+        fields.extend(
+            self.force_inner
+                .as_deref()
+                .map(|rows| exact_vector("force_inner", rows)),
+        );
+        fields.extend(
+            self.force_outer
+                .as_deref()
+                .map(|rows| exact_vector("force_outer", rows)),
+        );
+        fields
+    }
+}
+
+fn exact_vector<'a>(name: &'static str, rows: &'a [[f64; 3]]) -> Field<'a> {
+    Field {
+        name,
+        n_components: 3,
+        values: rows.as_flattened(),
+        precision: Precision::F64,
+    }
+}
+
+impl StepRecord {
+    /// Checks everything that can be checked before the first byte is written.
+    pub(crate) fn validate(&self, n_points: usize) -> Result<(), CheckpointError> {
+        if !self.time.is_finite() || i64::try_from(self.step).is_err() {
+            return Err(CheckpointError::Time {
+                step: self.step,
+                time: self.time,
+            });
+        }
+        for field in self.points.present(Storage::default()) {
+            let found = field.values.len() / field.n_components;
+            if found != n_points {
+                let (field, step) = (field.name, self.step);
+                return Err(CheckpointError::FieldLength {
+                    field,
+                    step,
+                    expected: n_points,
+                    found,
+                });
+            }
+        }
+        if self.scene.contains('\0') {
+            return Err(text_error(
+                "the scene text",
+                &self.scene,
+                "expected text without NUL characters",
+            ));
+        }
+        for name in self.state.keys() {
+            if name.is_empty() || !name.chars().all(|c| c.is_ascii_alphanumeric() || c == '_') {
+                return Err(text_error(
+                    "a state array named",
+                    name,
+                    "expected letters, digits and _",
+                ));
+            }
+        }
+        Ok(())
+    }
+}
+
+fn text_error(what: &'static str, text: &str, reason: &'static str) -> CheckpointError {
+    CheckpointError::Text {
+        what,
+        text: text.chars().take(40).collect(),
+        reason,
+    }
+}

@@ -1,0 +1,182 @@
+//! The seal at the end of a file: checksums of its bytes, verified before the HDF5 library sees any of them.
+//!
+//! The library trusts a file's inner structure: one wrong byte there can crash it or make it ask for absurd amounts
+//! of memory (seen with HDF5 1.10.8). So behind the HDF5 content, where the format allows other bytes and every
+//! reader ignores them, stand lines of text
+//!
+//! ```text
+//! CRC OFFSET LENGTH PATH     one per contiguous array or compressed chunk
+//! CRC 0 LENGTH /             the whole HDF5 content
+//! seal LENGTH CRC            of the lines above, fixed width
+//! ```
+//! The first lines are only needed to name the data set when the content is damaged. Cost: one pass over the file
+//! after it is written (from the system's cache) and one before it is read.
+
+use std::fs::{File, OpenOptions};
+use std::io::{self, Read, Seek, SeekFrom, Write};
+use std::path::Path;
+
+use crc32fast::Hasher;
+
+use crate::error::CheckpointError;
+
+/// Length of the last line: `seal`, ten digits, eight hexadecimal digits.
+const FOOTER_LENGTH: u64 = 25;
+/// Bytes read at a time.
+const BLOCK: usize = 1 << 18;
+
+/// A piece of a file that holds values of one data set.
+pub(crate) struct Extent {
+    /// Path of the data set.
+    pub path: String,
+    /// First byte.
+    pub offset: u64,
+    /// Number of bytes.
+    pub length: u64,
+}
+
+/// Where the values of a data set lie in its file; an empty one lies nowhere.
+pub(crate) fn extents(file: &hdf5::File, path: &str) -> hdf5::Result<Vec<Extent>> {
+    let dataset = file.dataset(path)?;
+    let extent = |offset, length| Extent {
+        path: path.to_string(),
+        offset,
+        length,
+    };
+    if let Some(offset) = dataset.offset() {
+        return Ok(vec![extent(offset, dataset.storage_size())]);
+    }
+    let n_chunks = dataset.num_chunks().unwrap_or(0);
+    Ok((0..n_chunks)
+        .filter_map(|i| dataset.chunk_info(i))
+        .map(|chunk| extent(chunk.addr, chunk.size))
+        .collect())
+}
+
+/// Appends the seal and brings the file to the disk. The extents do not overlap, so one pass serves them and the
+/// whole: the checksum of a sequence follows from those of its parts.
+pub(crate) fn append_seal(path: &Path, mut extents: Vec<Extent>) -> io::Result<()> {
+    let mut file = OpenOptions::new().read(true).append(true).open(path)?;
+    let length = file.metadata()?.len();
+    extents.sort_by_key(|extent| extent.offset);
+    let (mut table, mut whole, mut end) = (String::new(), Hasher::new(), 0);
+    for extent in &extents {
+        whole.combine(&hash(&mut file, end, extent.offset - end)?);
+        let part = hash(&mut file, extent.offset, extent.length)?;
+        whole.combine(&part);
+        table += &format!(
+            "{:08x} {} {} {}\n",
+            part.finalize(),
+            extent.offset,
+            extent.length,
+            extent.path
+        );
+        end = extent.offset + extent.length;
+    }
+    whole.combine(&hash(&mut file, end, length - end)?);
+    table += &format!("{:08x} 0 {length} /\n", whole.finalize());
+    let footer = format!(
+        "seal {:010} {:08x}\n",
+        table.len(),
+        crc32fast::hash(table.as_bytes())
+    );
+    file.write_all(table.as_bytes())?;
+    file.write_all(footer.as_bytes())?;
+    file.sync_all()
+}
+
+/// Fails unless every byte of the file is as it was written; names the damaged data set if it can.
+pub(crate) fn verify_seal(path: &Path) -> Result<(), CheckpointError> {
+    let mut file = File::open(path).map_err(CheckpointError::io("read", path))?;
+    let read = read_table(&mut file).map_err(CheckpointError::io("read", path))?;
+    let Some(entries) = read.as_deref().and_then(parse_table) else {
+        return Err(CheckpointError::malformed(path, "its seal is missing or damaged"));
+    };
+    // The last entry is the whole content; the others are only looked at when it is wrong.
+    for (i, (expected, extent)) in entries.iter().rev().enumerate() {
+        let found = hash(&mut file, extent.offset, extent.length);
+        let found = found.map_err(CheckpointError::io("read", path))?.finalize();
+        match (i, found == *expected) {
+            (0, true) => return Ok(()),
+            (0, false) | (_, true) => continue,
+            (_, false) => {
+                let (path, dataset, expected) = (path.to_path_buf(), extent.path.clone(), *expected);
+                return Err(CheckpointError::Damaged {
+                    path,
+                    dataset,
+                    expected,
+                    found,
+                });
+            }
+        }
+    }
+    Err(CheckpointError::malformed(
+        path,
+        "its bytes differ from those written, outside of its arrays",
+    ))
+}
+
+/// The lines above the footer, if the footer belongs to them.
+fn read_table(file: &mut File) -> io::Result<Option<String>> {
+    let length = file.metadata()?.len();
+    let Some(footer_start) = length.checked_sub(FOOTER_LENGTH) else {
+        return Ok(None);
+    };
+    let Some((table_length, crc)) = parse_footer(&read_range(file, footer_start, FOOTER_LENGTH)?) else {
+        return Ok(None);
+    };
+    let Some(table_start) = footer_start.checked_sub(table_length) else {
+        return Ok(None);
+    };
+    let table = read_range(file, table_start, table_length)?;
+    if crc32fast::hash(&table) != crc {
+        return Ok(None);
+    }
+    Ok(String::from_utf8(table).ok())
+}
+
+fn parse_footer(footer: &[u8]) -> Option<(u64, u32)> {
+    let (length, crc) = str::from_utf8(footer)
+        .ok()?
+        .strip_prefix("seal ")?
+        .strip_suffix('\n')?
+        .split_once(' ')?;
+    Some((length.parse().ok()?, u32::from_str_radix(crc, 16).ok()?))
+}
+
+fn parse_table(table: &str) -> Option<Vec<(u32, Extent)>> {
+    let entry = |line: &str| {
+        let mut words = line.splitn(4, ' ');
+        let crc = u32::from_str_radix(words.next()?, 16).ok()?;
+        let (offset, length) = (words.next()?.parse().ok()?, words.next()?.parse().ok()?);
+        Some((
+            crc,
+            Extent {
+                path: words.next()?.to_string(),
+                offset,
+                length,
+            },
+        ))
+    };
+    table.lines().map(entry).collect()
+}
+
+fn read_range(file: &mut File, offset: u64, length: u64) -> io::Result<Vec<u8>> {
+    file.seek(SeekFrom::Start(offset))?;
+    let mut bytes = Vec::new();
+    file.take(length).read_to_end(&mut bytes)?;
+    Ok(bytes)
+}
+
+/// CRC-32 of a range of bytes; a range beyond the end counts what is there.
+fn hash(file: &mut File, offset: u64, length: u64) -> io::Result<Hasher> {
+    file.seek(SeekFrom::Start(offset))?;
+    let mut range = file.take(length);
+    let (mut hasher, mut block) = (Hasher::new(), vec![0; BLOCK.min(length as usize)]);
+    loop {
+        match range.read(&mut block)? {
+            0 => return Ok(hasher),
+            n => hasher.update(&block[..n]),
+        }
+    }
+}

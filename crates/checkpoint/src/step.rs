@@ -1,0 +1,184 @@
+//! One step file: written complete, read back with every checksum verified.
+//!
+//! ```text
+//! /VTKHDF                 Version (1,0), Type UnstructuredGrid, the mesh by external links to mesh.hdf
+//!   PointData/NAME        the fields
+//!   FieldData/time        [1], s
+//! /restart                texts as attributes: scene, program_version, mesh_hash,
+//!                         contents: paths of all data sets, one per line, sorted
+//!   step                  [1], i64
+//!   state/NAME            the arrays of the state, [n], f64 or i64
+//! ```
+//! `contents` makes the loss of a whole data set an error instead of a field that is silently absent.
+
+use std::path::Path;
+
+use hdf5::types::{IntSize, TypeDescriptor};
+
+use crate::atomic::{self, Format};
+use crate::checksum::Element;
+use crate::dataset::{CheckedFile, create_vtkhdf, link_mesh, write_array, write_field, write_text};
+use crate::error::CheckpointError;
+use crate::mesh_file::{MESH_FILE, MESH_HASH};
+use crate::record::{PointFields, StateArray, StepRecord};
+use crate::seal::verify_seal;
+use crate::storage::{Compression, Storage};
+
+/// Group of the fields.
+pub(crate) const POINT_DATA: &str = "/VTKHDF/PointData";
+const TIME: &str = "/VTKHDF/FieldData/time";
+const STEP: &str = "/restart/step";
+const SCENE: &str = "/restart/scene";
+const PROGRAM_VERSION: &str = "/restart/program_version";
+const CONTENTS: &str = "/restart/contents";
+const STATE: &str = "/restart/state";
+
+/// Writes a step file under `name` into `dir`; the record must have been validated.
+pub(crate) fn write_step_file(
+    dir: &Path,
+    name: &str,
+    record: &StepRecord,
+    mesh_hash: &str,
+    storage: Storage,
+) -> Result<(), CheckpointError> {
+    atomic::write_hdf(dir, name, Format::Earliest, |file| {
+        create_vtkhdf(file, [1, 0])?;
+        link_mesh(file, MESH_FILE)?;
+        file.create_group("VTKHDF/FieldData")?;
+        file.create_group("restart")?;
+        file.create_group("restart/state")?;
+        let mut contents = vec![TIME.to_string(), STEP.to_string()];
+        for field in record.points.present(storage) {
+            let path = format!("{POINT_DATA}/{}", field.name);
+            write_field(
+                file,
+                &path,
+                field.n_components,
+                field.values,
+                field.precision,
+                storage.compression,
+            )?;
+            contents.push(path);
+        }
+        for (name, array) in &record.state {
+            let path = format!("{STATE}/{name}");
+            match array {
+                StateArray::Real(values) => write_state(file, &path, values)?,
+                StateArray::Integer(values) => write_state(file, &path, values)?,
+            }
+            contents.push(path);
+        }
+        write_array(file, TIME, &[1], &[record.time], Compression::None)?;
+        write_array(file, STEP, &[1], &[record.step as i64], Compression::None)?;
+        write_text(file, SCENE, &record.scene)?;
+        write_text(file, PROGRAM_VERSION, env!("CARGO_PKG_VERSION"))?;
+        write_text(file, MESH_HASH, mesh_hash)?;
+        contents.sort();
+        write_text(file, CONTENTS, &contents.join("\n"))?;
+        Ok(contents)
+    })
+}
+
+fn write_state<T: Element>(file: &hdf5::File, path: &str, values: &[T]) -> hdf5::Result<()> {
+    write_array(file, path, &[values.len()], values, Compression::None)
+}
+
+/// Reads a step file, verifying its seal and the checksum of every data set. Stress comes back as it was stored: rounded to
+/// f32 unless the run chose f64; everything else bit for bit.
+pub fn read_step(path: &Path) -> Result<StepRecord, CheckpointError> {
+    verify_seal(path)?;
+    let file = CheckedFile::open(path)?;
+    require_contents(&file, path)?;
+    file.text(PROGRAM_VERSION)?;
+    file.text(MESH_HASH)?;
+    let mut record = StepRecord {
+        step: read_step_number(&file, path)?,
+        time: file.scalar(TIME)?,
+        points: PointFields::default(),
+        scene: file.text(SCENE)?,
+        state: Default::default(),
+    };
+    for name in file.members(POINT_DATA)? {
+        read_field(&file, path, &name, &mut record.points)?;
+    }
+    for name in file.members(STATE)? {
+        let dataset = format!("{STATE}/{name}");
+        let array = match file.descriptor(&dataset)? {
+            TypeDescriptor::Integer(IntSize::U8) => StateArray::Integer(file.array(&dataset)?.1),
+            _ => StateArray::Real(file.array(&dataset)?.1),
+        };
+        record.state.insert(name, array);
+    }
+    Ok(record)
+}
+
+/// Time of a step file, s, without reading its fields or verifying its seal.
+pub fn read_step_time(path: &Path) -> Result<f64, CheckpointError> {
+    CheckedFile::open(path)?.scalar(TIME)
+}
+
+/// Fingerprint of the mesh a step file belongs to.
+pub(crate) fn read_mesh_hash(path: &Path) -> Result<String, CheckpointError> {
+    CheckedFile::open(path)?.text(MESH_HASH)
+}
+
+fn read_step_number(file: &CheckedFile, path: &Path) -> Result<u64, CheckpointError> {
+    let step: i64 = file.scalar(STEP)?;
+    u64::try_from(step).map_err(|_| {
+        CheckpointError::malformed(path, format!("its step number is {step}, expected 0 or more"))
+    })
+}
+
+/// Fails unless the data sets in the file are those that were written.
+fn require_contents(file: &CheckedFile, path: &Path) -> Result<(), CheckpointError> {
+    let contents = file.text(CONTENTS)?;
+    for dataset in contents.lines() {
+        if !file.has(dataset) {
+            return Err(CheckpointError::malformed(
+                path,
+                format!("data set {dataset} is missing"),
+            ));
+        }
+    }
+    for group in [POINT_DATA, STATE] {
+        for name in file.members(group)? {
+            let dataset = format!("{group}/{name}");
+            if !contents.lines().any(|line| line == dataset) {
+                return Err(CheckpointError::malformed(
+                    path,
+                    format!("data set {dataset} is not expected"),
+                ));
+            }
+        }
+    }
+    Ok(())
+}
+
+fn read_field(
+    file: &CheckedFile,
+    path: &Path,
+    name: &str,
+    points: &mut PointFields,
+) -> Result<(), CheckpointError> {
+    let dataset = format!("{POINT_DATA}/{name}");
+    let (shape, values) = file.field(&dataset)?;
+    match (name, &shape[..]) {
+        ("displacement", [_, 3]) => points.displacement = rows(&values),
+        ("velocity", [_, 3]) => points.velocity = Some(rows(&values)),
+        ("acceleration", [_, 3]) => points.acceleration = Some(rows(&values)),
+        ("stress", [_, 6]) => points.stress = Some(rows(&values)),
+        ("von_mises", [_]) => points.von_mises = Some(values),
+        ("force_inner", [_, 3]) => points.force_inner = Some(rows(&values)),
+        ("force_outer", [_, 3]) => points.force_outer = Some(rows(&values)),
+        _ => {
+            let what = format!("data set {dataset} with shape {shape:?} is not known to this version");
+            return Err(CheckpointError::malformed(path, what));
+        }
+    }
+    Ok(())
+}
+
+/// Rows of a flat array.
+fn rows<const N: usize>(values: &[f64]) -> Vec<[f64; N]> {
+    values.as_chunks::<N>().0.to_vec()
+}

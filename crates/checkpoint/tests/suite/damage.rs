@@ -1,0 +1,174 @@
+//! Damaged files are refused, with the file and the data set in the message.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use checkpoint::{CheckpointError, Output, Precision, Storage, read_step};
+
+use crate::fixture::{bodies, record};
+
+const EXACT: Storage = Storage {
+    stress: Precision::F64,
+    compression: checkpoint::Compression::None,
+};
+
+fn one_step(dir: &Path) -> PathBuf {
+    Output::create(dir, &bodies(), EXACT)
+        .unwrap()
+        .write_step(&record(4))
+        .unwrap()
+}
+
+/// The HDF5 content of a file, without its seal.
+fn content(path: &Path) -> Vec<u8> {
+    let mut bytes = fs::read(path).unwrap();
+    let table_length: usize = str::from_utf8(&bytes[bytes.len() - 20..][..10])
+        .unwrap()
+        .parse()
+        .unwrap();
+    bytes.truncate(bytes.len() - 25 - table_length);
+    bytes
+}
+
+/// Writes `content` with a seal that fits, as if it had been damaged before it was sealed.
+fn seal(path: &Path, content: &[u8]) {
+    let table = format!("{:08x} 0 {} /\n", crc32fast::hash(content), content.len());
+    let footer = format!(
+        "seal {:010} {:08x}\n",
+        table.len(),
+        crc32fast::hash(table.as_bytes())
+    );
+    fs::write(path, [content, table.as_bytes(), footer.as_bytes()].concat()).unwrap();
+}
+
+/// Wrong if the checksums of the data sets themselves were not compared: with a seal that fits, only they can tell.
+#[test]
+fn a_wrong_value_under_a_good_seal_is_found() {
+    let dir = tempfile::tempdir().unwrap();
+    let path = one_step(dir.path());
+    let mut bytes = content(&path);
+    let value = record(4).points.force_outer.unwrap()[3][2].to_le_bytes();
+    let at = bytes.windows(8).position(|window| window == value).unwrap();
+    seal(&path, &bytes);
+    assert_eq!(
+        read_step(&path).unwrap(),
+        record(4),
+        "sealing again must not be damage itself"
+    );
+    bytes[at] ^= 1;
+    seal(&path, &bytes);
+    let text = read_step(&path).unwrap_err().to_string();
+    assert!(
+        text.contains("step_000004.hdf") && text.contains("/VTKHDF/PointData/force_outer"),
+        "{text}"
+    );
+}
+
+/// Wrong if damage inside a compressed array could not be told from damage elsewhere.
+#[test]
+fn a_wrong_byte_in_a_compressed_field_names_it_too() {
+    let dir = tempfile::tempdir().unwrap();
+    let storage = Storage {
+        compression: checkpoint::Compression::Deflate(1),
+        ..EXACT
+    };
+    let path = Output::create(dir.path(), &bodies(), storage)
+        .unwrap()
+        .write_step(&record(4))
+        .unwrap();
+    let (offset, size) = {
+        let file = hdf5::File::open(&path).unwrap();
+        let chunk = file
+            .dataset("/VTKHDF/PointData/stress")
+            .unwrap()
+            .chunk_info(0)
+            .unwrap();
+        (chunk.addr as usize, chunk.size as usize)
+    };
+    let mut bytes = fs::read(&path).unwrap();
+    bytes[offset + size / 2] ^= 0x10;
+    fs::write(&path, bytes).unwrap();
+    let text = read_step(&path).unwrap_err().to_string();
+    assert!(text.contains("/VTKHDF/PointData/stress"), "{text}");
+}
+
+/// Wrong if a flipped bit in the stored values of a field came back as a result.
+#[test]
+fn a_wrong_byte_in_a_field_names_file_and_data_set() {
+    let dir = tempfile::tempdir().unwrap();
+    let path = one_step(dir.path());
+    let mut bytes = fs::read(&path).unwrap();
+    let value = record(4).points.acceleration.unwrap()[5][1].to_le_bytes();
+    let at = bytes.windows(8).position(|window| window == value).unwrap();
+    bytes[at] ^= 1;
+    fs::write(&path, bytes).unwrap();
+    let error = read_step(&path).unwrap_err();
+    assert!(matches!(error, CheckpointError::Damaged { .. }), "{error}");
+    let text = error.to_string();
+    assert!(
+        text.contains("step_000004.hdf") && text.contains("/VTKHDF/PointData/acceleration"),
+        "{text}"
+    );
+    assert!(text.contains("use an earlier step"), "{text}");
+}
+
+/// Wrong if there were bytes in a file whose damage goes unnoticed or crashes the library: names, types, sizes and
+/// links count too. Every 13th byte is inverted in turn, and every one of the seal.
+#[test]
+fn every_wrong_byte_is_noticed() {
+    let dir = tempfile::tempdir().unwrap();
+    let path = one_step(dir.path());
+    let good = fs::read(&path).unwrap();
+    for at in (0..good.len()).step_by(13).chain(good.len() - 25..good.len()) {
+        let mut bytes = good.clone();
+        bytes[at] ^= 0xff;
+        fs::write(&path, bytes).unwrap();
+        let read = read_step(&path);
+        assert!(read.is_err(), "byte {at} of {} is wrong unnoticed", good.len());
+    }
+    fs::write(&path, good).unwrap();
+    assert_eq!(read_step(&path).unwrap(), record(4));
+}
+
+/// Wrong if a file cut short by a full or failing disk were read.
+#[test]
+fn a_truncated_file_is_refused() {
+    let dir = tempfile::tempdir().unwrap();
+    let path = one_step(dir.path());
+    let good = fs::read(&path).unwrap();
+    for length in [0, 100, good.len() / 2, good.len() - 1] {
+        fs::write(&path, &good[..length]).unwrap();
+        let text = read_step(&path).unwrap_err().to_string();
+        assert!(text.contains("step_000004.hdf"), "{text}");
+    }
+}
+
+/// Wrong if a field could vanish from a file and read as a field that was never written.
+#[test]
+fn a_missing_data_set_is_named() {
+    let dir = tempfile::tempdir().unwrap();
+    let path = one_step(dir.path());
+    fs::write(&path, content(&path)).unwrap();
+    hdf5::File::open_rw(&path)
+        .unwrap()
+        .unlink("/VTKHDF/PointData/velocity")
+        .unwrap();
+    seal(&path, &fs::read(&path).unwrap());
+    let text = read_step(&path).unwrap_err().to_string();
+    assert!(
+        text.contains("step_000004.hdf") && text.contains("velocity is missing"),
+        "{text}"
+    );
+}
+
+/// Wrong if a missing file gave the library's message instead of the system's.
+#[test]
+fn a_missing_file_says_so() {
+    let text = read_step(Path::new("no/such/step_000000.hdf"))
+        .unwrap_err()
+        .to_string();
+    assert!(
+        text.starts_with("cannot read no/such/step_000000.hdf: No such file"),
+        "{text}"
+    );
+}

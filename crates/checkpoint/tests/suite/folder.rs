@@ -1,0 +1,206 @@
+//! Rules of the result folder: nothing is overwritten, steps grow, a resumed run continues the numbering.
+
+use std::fs;
+use std::path::Path;
+
+use checkpoint::{
+    Body, CellKind, CheckpointError, Output, Storage, committed_steps, read_step, step_file_name,
+};
+
+use crate::fixture::{N_POINTS, bare_record, bodies, record};
+
+fn create(dir: &Path) -> Output {
+    Output::create(dir, &bodies(), Storage::default()).unwrap()
+}
+
+fn write_steps(dir: &Path, steps: impl IntoIterator<Item = u64>) {
+    let mut output = create(dir);
+    for step in steps {
+        output.write_step(&bare_record(step)).unwrap();
+    }
+}
+
+/// Wrong if a second run could write into the results of a first one, or the message did not say what is there.
+#[test]
+fn existing_results_are_refused() {
+    let dir = tempfile::tempdir().unwrap();
+    write_steps(dir.path(), 0..3);
+    let before = fs::read(dir.path().join("mesh.hdf")).unwrap();
+    let error = Output::create(dir.path(), &bodies(), Storage::default()).unwrap_err();
+    let text = error.to_string();
+    for part in [
+        "already holds results",
+        "3 steps from 0 to 2",
+        "mesh.hdf",
+        "resume this run",
+    ] {
+        assert!(text.contains(part), "{text} lacks {part}");
+    }
+    assert_eq!(fs::read(dir.path().join("mesh.hdf")).unwrap(), before);
+}
+
+/// Wrong if a scene copied into the folder, or the temporary file of a run killed at once, blocked a new run.
+#[test]
+fn other_files_do_not_block_a_new_run() {
+    let dir = tempfile::tempdir().unwrap();
+    let deep = dir.path().join("a/b");
+    fs::create_dir_all(&deep).unwrap();
+    fs::write(deep.join("scene.toml"), "").unwrap();
+    fs::write(deep.join(".mesh.hdf.tmp"), "half").unwrap();
+    let output = create(&deep);
+    assert_eq!((output.n_points(), output.last_step()), (N_POINTS, None));
+    assert!(!deep.join(".mesh.hdf.tmp").exists());
+}
+
+/// Wrong if a temporary or foreign file counted as a committed step, or steps came in the order of the file system.
+#[test]
+fn only_final_names_are_committed_steps() {
+    let dir = tempfile::tempdir().unwrap();
+    for step in [1_000_000, 20, 3] {
+        fs::write(dir.path().join(step_file_name(step)), "").unwrap();
+    }
+    for name in [
+        ".step_000004.hdf.tmp",
+        "step_5.hdf",
+        "step_0000006.hdf",
+        "step_-00007.hdf",
+        "step_000008.h5",
+    ] {
+        fs::write(dir.path().join(name), "").unwrap();
+    }
+    assert_eq!(committed_steps(dir.path()).unwrap(), [3, 20, 1_000_000]);
+}
+
+/// Wrong if a step could be written twice, or times could run backwards and confuse every viewer.
+#[test]
+fn steps_and_times_must_grow() {
+    let dir = tempfile::tempdir().unwrap();
+    let mut output = create(dir.path());
+    output.write_step(&bare_record(2)).unwrap();
+    let mut late = bare_record(3);
+    late.time = bare_record(2).time;
+    for refused in [bare_record(2), bare_record(1), late] {
+        let error = output.write_step(&refused).unwrap_err();
+        assert!(
+            matches!(error, CheckpointError::StepOrder { last: 2, .. }),
+            "{error}"
+        );
+    }
+    let mut endless = bare_record(4);
+    endless.time = f64::NAN;
+    assert!(matches!(
+        output.write_step(&endless),
+        Err(CheckpointError::Time { step: 4, .. })
+    ));
+    assert_eq!(committed_steps(dir.path()).unwrap(), [2]);
+}
+
+/// Wrong if a field for another mesh were written and shown on wrong points.
+#[test]
+fn a_field_of_the_wrong_length_is_refused() {
+    let dir = tempfile::tempdir().unwrap();
+    let mut short = record(0);
+    short.points.stress.as_mut().unwrap().pop();
+    let text = create(dir.path()).write_step(&short).unwrap_err().to_string();
+    assert_eq!(text, "field stress of step 0 has 19 points, the mesh has 20");
+    assert!(committed_steps(dir.path()).unwrap().is_empty());
+}
+
+/// Wrong if names HDF5 would read as paths, or texts it would cut at a NUL, were accepted.
+#[test]
+fn names_and_texts_hdf5_cannot_hold_are_refused() {
+    let dir = tempfile::tempdir().unwrap();
+    let mut output = create(dir.path());
+    let mut bad_name = record(0);
+    bad_name
+        .state
+        .insert("a/b".to_string(), checkpoint::StateArray::Integer(vec![1]));
+    assert!(
+        output
+            .write_step(&bad_name)
+            .unwrap_err()
+            .to_string()
+            .contains("\"a/b\": expected letters")
+    );
+    let mut bad_text = record(0);
+    bad_text.scene.push('\0');
+    assert!(
+        output
+            .write_step(&bad_text)
+            .unwrap_err()
+            .to_string()
+            .contains("without NUL")
+    );
+}
+
+/// Wrong if cells that name points of another body, or bodies that share an id, reached a viewer.
+#[test]
+fn bodies_that_cannot_be_drawn_are_refused() {
+    let dir = tempfile::tempdir().unwrap();
+    let refuse = |bodies: &[Body]| {
+        Output::create(dir.path(), bodies, Storage::default())
+            .unwrap_err()
+            .to_string()
+    };
+    let mut stray = bodies();
+    stray[0].connectivity[3] = 8;
+    assert_eq!(
+        refuse(&stray),
+        "body \"outer_ring\": cell 0 names point 8, the body has 8 points"
+    );
+    let mut cut = bodies();
+    cut[1].connectivity.pop();
+    assert!(refuse(&cut).contains("connectivity has 9 entries, expected a multiple of 10"));
+    let mut twin = bodies();
+    twin[2].id = 0;
+    assert!(refuse(&twin).contains("its id 0 is that of body \"outer_ring\""));
+    let mut far = bodies();
+    far[2].points[1][0] = f64::NAN;
+    assert!(refuse(&far).contains("point 1 is at [NaN"));
+    assert_eq!(CellKind::Vertex.n_points(), 1);
+}
+
+/// Wrong if resuming rewrote or lost steps, or left superseded ones in the views.
+#[test]
+fn a_resumed_run_moves_later_steps_aside() {
+    let dir = tempfile::tempdir().unwrap();
+    write_steps(dir.path(), 0..5);
+    checkpoint::rebuild_index(dir.path()).unwrap();
+    fs::write(dir.path().join(".step_000005.hdf.tmp"), "half").unwrap();
+    let kept = fs::read(dir.path().join("step_000002.hdf")).unwrap();
+    let mut output = Output::resume(dir.path(), &bodies(), Storage::default(), 2).unwrap();
+    assert_eq!(output.last_step(), Some((2, bare_record(2).time)));
+    assert_eq!(committed_steps(dir.path()).unwrap(), [0, 1, 2]);
+    assert!(!dir.path().join(".step_000005.hdf.tmp").exists() && !dir.path().join("run.vtkhdf").exists());
+    let aside = dir.path().join("superseded_1");
+    assert_eq!(committed_steps(&aside).unwrap(), [3, 4]);
+    assert_eq!(read_step(&aside.join("step_000004.hdf")).unwrap(), bare_record(4));
+    assert_eq!(
+        checkpoint::rebuild_index(&aside).unwrap(),
+        2,
+        "superseded steps stay viewable"
+    );
+    output.write_step(&bare_record(3)).unwrap();
+    assert_eq!(fs::read(dir.path().join("step_000002.hdf")).unwrap(), kept);
+    Output::resume(dir.path(), &bodies(), Storage::default(), 1).unwrap();
+    assert_eq!(committed_steps(&dir.path().join("superseded_2")).unwrap(), [2, 3]);
+}
+
+/// Wrong if a run could continue from a step that is not there, from nothing, or on another mesh.
+#[test]
+fn resuming_needs_the_step_and_the_mesh() {
+    let dir = tempfile::tempdir().unwrap();
+    let resume = |bodies: &[Body], step| {
+        Output::resume(dir.path(), bodies, Storage::default(), step)
+            .unwrap_err()
+            .to_string()
+    };
+    assert!(resume(&bodies(), 0).contains("holds no committed step"));
+    write_steps(dir.path(), 1..4);
+    assert!(resume(&bodies(), 7).contains("has no step 7; committed steps are 1 to 3"));
+    let mut other = bodies();
+    other[1].points[0][2] += 1e-9;
+    let text = resume(&other, 3);
+    assert!(text.contains("mesh.hdf was made with mesh 20-4-"), "{text}");
+    assert_eq!(committed_steps(dir.path()).unwrap(), [1, 2, 3]);
+}

@@ -1,0 +1,9 @@
+//! Tests of the crate through its public interface, one module per area.
+
+mod background;
+mod damage;
+mod fixture;
+mod folder;
+mod interruption;
+mod mesh_and_views;
+mod round_trip;

@@ -1,0 +1,124 @@
+//! From a scene to the Model: reads and checks the meshes, evaluates Hertz theory, constructs the effects.
+
+use std::sync::Arc;
+
+use contact::{BearingGeometry, Groove, HertzContact, Side};
+use dynamics::effects::{AxialForce, Effect, Gravity, Moment, RadialForce};
+use dynamics::model::{RACEWAY_GROUP, elastic};
+use dynamics::{ContactMode, ContactSettings, Hold, Model, RingModel, ShaftDof, Tolerances};
+use fem::Material;
+use mesh::Torus;
+
+use crate::failure::Failure;
+use crate::scene::{self, Scene};
+
+/// Deviation of raceway nodes from the scene's torus that is taken for round-off of a file, over the groove
+/// radius.
+const TORUS_TOLERANCE: f64 = 2e-4;
+
+/// The model of a scene. Reads both meshes.
+pub fn build_model(scene: &Scene) -> Result<Model, Failure> {
+    let geometry = geometry(scene);
+    geometry.validate()?;
+    let rings = rayon::join(|| ring(scene, &geometry, Side::Inner), || ring(scene, &geometry, Side::Outer));
+    model_with_rings(scene, [rings.0?.map(Arc::new), rings.1?.map(Arc::new)])
+}
+
+/// The model of a scene with rings that were read before: the points of a sweep share them.
+pub fn model_with_rings(scene: &Scene, rings: [Option<Arc<RingModel>>; 2]) -> Result<Model, Failure> {
+    let geometry = geometry(scene);
+    let (ring_steel, ball_steel) = (material(&scene.materials.rings)?, material(&scene.materials.balls)?);
+    let given = [scene.contact.inner_stiffness, scene.contact.outer_stiffness];
+    let hertz = Side::BOTH.map(|side| {
+        let exact = HertzContact::new(&geometry, side, elastic(&ball_steel), elastic(&ring_steel));
+        given[side.index()].map_or(exact, |k| exact.with_stiffness(k))
+    });
+    let shaft = &scene.shaft;
+    let dofs = [shaft.x, shaft.y, shaft.z, shaft.tilt_x, shaft.tilt_y].map(|motion| match motion {
+        scene::Motion::Free => ShaftDof::Free,
+        scene::Motion::Locked => ShaftDof::Prescribed(0.0),
+        scene::Motion::Prescribed(value) => ShaftDof::Prescribed(value),
+    });
+    Ok(Model {
+        geometry,
+        hertz,
+        rings,
+        ball_material: ball_steel,
+        shaft: dofs,
+        shaft_mass: 0.0,
+        load_point: shaft.load_point,
+        contact: ContactSettings {
+            mode: match scene.contact.mode {
+                scene::ContactMode::Patch => ContactMode::Patch,
+                scene::ContactMode::Facet => ContactMode::Facet,
+                scene::ContactMode::Rigid => ContactMode::Rigid,
+            },
+            patch_spacings: scene.contact.patch_elements,
+        },
+        effects: effects(scene),
+        tolerances: Tolerances { force: scene.solver.tolerance, max_rounds: scene.solver.max_iterations },
+    })
+}
+
+fn geometry(scene: &Scene) -> BearingGeometry {
+    let b = &scene.bearing;
+    BearingGeometry {
+        n_balls: b.balls,
+        ball_diameter: b.ball_diameter,
+        inner_raceway_diameter: b.inner_raceway_diameter,
+        outer_raceway_diameter: b.outer_raceway_diameter,
+        inner_groove_radius: b.inner_groove_radius,
+        outer_groove_radius: b.outer_groove_radius,
+        first_ball_azimuth: b.first_ball_azimuth,
+    }
+}
+
+fn material(m: &scene::Material) -> Result<Material, Failure> {
+    Ok(Material::new(m.young_modulus, m.poisson_ratio, m.density)?)
+}
+
+fn effects(scene: &Scene) -> Vec<Box<dyn Effect>> {
+    let mut effects: Vec<Box<dyn Effect>> = Vec::new();
+    if let Some(value) = scene.effects.axial_force {
+        effects.push(Box::new(AxialForce { value }));
+    }
+    if let Some(acceleration) = scene.effects.gravity {
+        effects.push(Box::new(Gravity { acceleration }));
+    }
+    if let Some(value) = scene.effects.moment {
+        effects.push(Box::new(Moment { value }));
+    }
+    if let Some(radial) = &scene.effects.radial_force {
+        effects.push(Box::new(RadialForce { value: radial.value, direction: radial.direction }));
+    }
+    effects
+}
+
+/// Reads and checks the mesh of one ring; None for a rigid ring.
+fn ring(scene: &Scene, geometry: &BearingGeometry, side: Side) -> Result<Option<RingModel>, Failure> {
+    let (ring, held_group, diameter) = match side {
+        Side::Inner => (&scene.inner, "bore", scene.bearing.inner_raceway_diameter),
+        Side::Outer => (&scene.outer, "seat", scene.bearing.outside_diameter),
+    };
+    let Some(body) = &ring.body else { return Ok(None) };
+    let (mesh, origin) = mesh::read_msh_with_origin(&body.mesh, body.mesh_unit)?;
+    mesh::check_unit(&mesh, &origin, diameter)?;
+    mesh::require_groups(&mesh, &body.mesh, &[RACEWAY_GROUP, held_group])?;
+    let groove = Groove {
+        side,
+        centre_radius: geometry.centre_radius(side),
+        groove_radius: geometry.groove_radius(side),
+        centre_z: body.groove_z,
+    };
+    let torus = Torus {
+        centre_radius: groove.centre_radius,
+        groove_radius: groove.groove_radius,
+        centre_z: groove.centre_z,
+    };
+    mesh::check_torus(&mesh, &origin, RACEWAY_GROUP, &torus, TORUS_TOLERANCE * groove.groove_radius)?;
+    let hold = match body.support {
+        scene::Support::Clamped => Hold::Clamped,
+        scene::Support::MeanMotion => Hold::MeanMotion,
+    };
+    Ok(Some(RingModel { mesh, material: material(&scene.materials.rings)?, hold, held_group, groove }))
+}

@@ -1,0 +1,51 @@
+//! How a command ends when it does not end well: the exit code and the message.
+
+use std::process::ExitCode;
+
+use dynamics::DynamicsError;
+
+/// Exit code of a user error: bad input, missing files, results that would be overwritten.
+const USER: u8 = 2;
+/// Exit code of a solution that was not found.
+const NUMERICAL: u8 = 3;
+
+/// A failed command.
+#[derive(Debug)]
+pub enum Failure {
+    /// The input is wrong or a file cannot be used.
+    User(anyhow::Error),
+    /// The input is sound but no solution was found.
+    Numerical(anyhow::Error),
+}
+
+impl Failure {
+    /// Exit code of the process.
+    pub fn code(&self) -> ExitCode {
+        ExitCode::from(match self {
+            Failure::User(_) => USER,
+            Failure::Numerical(_) => NUMERICAL,
+        })
+    }
+
+    /// The message with its causes, on one line.
+    pub fn text(&self) -> String {
+        match self {
+            Failure::User(error) | Failure::Numerical(error) => format!("{error:#}"),
+        }
+    }
+
+    /// A failure of the solver: numerical unless the scene leaves something unheld.
+    pub fn solving(error: DynamicsError) -> Failure {
+        let user = matches!(
+            error,
+            DynamicsError::NotHeld { .. } | DynamicsError::Unheld { .. } | DynamicsError::Fem { .. }
+        );
+        if user { Failure::User(error.into()) } else { Failure::Numerical(error.into()) }
+    }
+}
+
+impl<E: Into<anyhow::Error>> From<E> for Failure {
+    fn from(error: E) -> Failure {
+        Failure::User(error.into())
+    }
+}

@@ -1,0 +1,120 @@
+//! `raceway mesh`: builds the ring meshes that a scene describes in `[inner.section]` and `[outer.section]`.
+//!
+//! Gmsh meshes the section (or the whole ring, for tetrahedra); hexahedra are made by revolving the section into
+//! equal sectors. The section's .geo and .msh stay beside the mesh, so that it can be made again.
+
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context, anyhow};
+use mesh::{ElementKind, Mesh, MshFormat, Overwrite, RingSection, RingSide};
+
+use crate::failure::Failure;
+use crate::scene::{FlexibleRing, MeshFiles, Ring, Scene, Section, SectionElement};
+
+/// Length unit of the files that Gmsh reads and writes, m.
+const GMSH_UNIT: f64 = 1e-3;
+
+/// Builds the meshes of a scene; `overwrite` replaces existing files.
+pub fn build_meshes(path: &Path, overrides: &[String], overwrite: Overwrite) -> Result<(), Failure> {
+    let scene = Scene::load_with(path, overrides, MeshFiles::MayBeMissing)?;
+    let rings = [(RingSide::Inner, &scene.inner), (RingSide::Outer, &scene.outer)];
+    let jobs: Vec<_> = rings.into_iter().filter_map(|(side, ring)| Some((side, job(ring)?))).collect();
+    if jobs.is_empty() {
+        return Err(Failure::User(anyhow!(
+            "{} describes no mesh to build: expected [inner.section] or [outer.section] of a flexible ring",
+            path.display()
+        )));
+    }
+    for (_, (body, _)) in &jobs {
+        if overwrite == Overwrite::Refuse && body.mesh.exists() {
+            return Err(Failure::User(anyhow!(
+                "{} exists already; give --force to replace it, or another mesh name in the scene",
+                body.mesh.display()
+            )));
+        }
+    }
+    for (side, (body, section)) in jobs {
+        let mesh = build_ring(&scene, side, body, section)?;
+        mesh::write_msh(&body.mesh, &mesh, body.mesh_unit, MshFormat::Binary, overwrite)?;
+        println!(
+            "{}: {} {} elements, {} nodes, {} dofs",
+            body.mesh.display(),
+            mesh.n_elements(),
+            mesh.kind.name(),
+            mesh.n_nodes(),
+            mesh.n_dofs()
+        );
+    }
+    Ok(())
+}
+
+fn job(ring: &Ring) -> Option<(&FlexibleRing, &Section)> {
+    Some((ring.body.as_ref()?, ring.section.as_ref()?))
+}
+
+fn build_ring(scene: &Scene, side: RingSide, body: &FlexibleRing, section: &Section) -> Result<Mesh, Failure> {
+    let measures = measures(scene, side, section);
+    if let Some(folder) = body.mesh.parent() {
+        std::fs::create_dir_all(folder).with_context(|| format!("cannot create {}", folder.display()))?;
+    }
+    let geo = beside(&body.mesh, "geo");
+    let mut mesh = match section.element {
+        SectionElement::Tet10 => {
+            let size = measures.width / (2 * section.shoulder_elements + section.groove_elements) as f64;
+            write_text(&geo, &mesh::ring_tet_geo(&measures, size)?)?;
+            let msh = beside(&body.mesh, "gmsh.msh");
+            mesh::mesh_tets_with_gmsh(&geo, &msh)?;
+            let mesh = mesh::read_msh(&msh, GMSH_UNIT)?;
+            std::fs::remove_file(&msh).with_context(|| format!("cannot remove {}", msh.display()))?;
+            mesh
+        }
+        SectionElement::Hex8 => revolved(&measures, &geo, body, section, ElementKind::Hex8)?,
+        SectionElement::Hex20 => revolved(&measures, &geo, body, section, ElementKind::Hex20)?,
+    };
+    mesh.nodes.iter_mut().for_each(|x| x[2] += body.groove_z);
+    Ok(mesh)
+}
+
+fn revolved(
+    measures: &RingSection,
+    geo: &Path,
+    body: &FlexibleRing,
+    section: &Section,
+    kind: ElementKind,
+) -> Result<Mesh, Failure> {
+    write_text(geo, &mesh::ring_geo(measures)?)?;
+    let msh = beside(&body.mesh, "section.msh");
+    mesh::mesh_section_with_gmsh(geo, &msh)?;
+    let flat = mesh::read_section(&msh, GMSH_UNIT)?;
+    Ok(mesh::revolve(&flat, section.sectors, kind, &[measures.geometry()?.snap()])?)
+}
+
+fn measures(scene: &Scene, side: RingSide, section: &Section) -> RingSection {
+    let b = &scene.bearing;
+    let (seat_diameter, raceway_diameter, groove_radius) = match side {
+        RingSide::Inner => (b.bore_diameter, b.inner_raceway_diameter, b.inner_groove_radius),
+        RingSide::Outer => (b.outside_diameter, b.outer_raceway_diameter, b.outer_groove_radius),
+    };
+    RingSection {
+        side,
+        seat_diameter,
+        raceway_diameter,
+        groove_radius,
+        shoulder_diameters: section.shoulder_diameters,
+        width: b.width,
+        groove_offset: 0.0,
+        groove_elements: section.groove_elements,
+        thickness_elements: section.thickness_elements,
+        shoulder_elements: [section.shoulder_elements; 2],
+        grading: section.grading,
+    }
+}
+
+/// The mesh's path with another ending.
+fn beside(mesh: &Path, ending: &str) -> PathBuf {
+    mesh.with_extension(ending)
+}
+
+fn write_text(path: &Path, text: &str) -> Result<(), Failure> {
+    Ok(std::fs::write(path, text).with_context(|| format!("cannot write {}", path.display()))?)
+}

@@ -1,0 +1,114 @@
+//! Nodal fields of one step for ParaView: rings with displacement and stress, balls as points with their
+//! forces.
+
+use std::collections::BTreeMap;
+
+use checkpoint::{Body, PointFields, StateArray, StepRecord};
+use contact::Side;
+use dynamics::{Model, StaticSolution};
+use fem::stress::{StressRecovery, von_mises};
+
+use crate::failure::Failure;
+use crate::scene::StressOutput;
+
+/// The bodies of a result, in the order of its points: flexible rings, then the balls.
+pub fn bodies(model: &Model) -> Vec<Body> {
+    let mut bodies = Vec::new();
+    for side in Side::BOTH {
+        if let Some(ring) = model.ring(side) {
+            let shift = [0.0, 0.0, model.ring_shift(side)];
+            bodies.push(Body::from_mesh(&format!("{} ring", side.name()), side as u8, &ring.mesh, shift));
+        }
+    }
+    let centre = model.geometry.ball_centre();
+    let centres: Vec<[f64; 3]> = (0..model.geometry.n_balls)
+        .map(|ball| {
+            let (sin, cos) = model.geometry.azimuth(ball).sin_cos();
+            [centre[0] * cos, centre[0] * sin, centre[1]]
+        })
+        .collect();
+    bodies.push(Body::balls("balls", 2, &centres, 0.5 * model.geometry.ball_diameter));
+    bodies
+}
+
+/// Stress recovery of the flexible rings, made once per run; none when the scene writes no stress.
+pub fn recoveries(model: &Model, stress: StressOutput) -> Result<[Option<StressRecovery>; 2], Failure> {
+    let recovery = |side: Side| match (stress, model.ring(side)) {
+        (StressOutput::Nodal, Some(ring)) => Ok(Some(StressRecovery::new(&ring.mesh, &ring.material)?)),
+        _ => Ok::<_, Failure>(None),
+    };
+    Ok([recovery(Side::Inner)?, recovery(Side::Outer)?])
+}
+
+/// The record of one equilibrium.
+pub fn record(
+    model: &Model,
+    solution: &StaticSolution,
+    recoveries: &[Option<StressRecovery>; 2],
+    step: u64,
+    scene: &str,
+) -> StepRecord {
+    let with_stress = recoveries.iter().any(Option::is_some);
+    let (mut displacement, mut stress) = (Vec::new(), Vec::new());
+    for side in Side::BOTH {
+        if let Some(elastic) = &solution.elastic[side.index()] {
+            displacement.extend(ring_displacement(model, solution, side, elastic));
+            if let Some(recovery) = &recoveries[side.index()] {
+                stress.extend(recovery.nodal(elastic));
+            }
+        }
+    }
+    let n_ring_points = displacement.len();
+    let mut forces = [vec![[0.0; 3]; n_ring_points], vec![[0.0; 3]; n_ring_points]];
+    for ball in &solution.balls {
+        let (sin, cos) = ball.azimuth_rad.sin_cos();
+        let d = ball.displacement_m;
+        displacement.push([d.radial * cos, d.radial * sin, d.axial]);
+        for (side, list) in Side::BOTH.into_iter().zip(&mut forces) {
+            let contact = if side == Side::Inner { &ball.inner } else { &ball.outer };
+            // The force on the ball points from the contact to the ball centre.
+            let (sin_a, cos_a) = contact.contact_angle_rad.sin_cos();
+            let radial = -side.sign() * contact.force_n * cos_a;
+            list.push([radial * cos, radial * sin, -side.sign() * contact.force_n * sin_a]);
+        }
+    }
+    stress.resize(displacement.len(), [0.0; 6]);
+    let [force_inner, force_outer] = forces;
+    StepRecord {
+        step,
+        time: step as f64,
+        points: PointFields {
+            displacement,
+            velocity: None,
+            acceleration: None,
+            von_mises: with_stress.then(|| stress.iter().map(|&s| von_mises(s)).collect()),
+            stress: with_stress.then_some(stress),
+            force_inner: Some(force_inner),
+            force_outer: Some(force_outer),
+        },
+        scene: scene.to_string(),
+        state: state(solution),
+    }
+}
+
+/// Total displacement of a ring's nodes in space, m.
+fn ring_displacement(model: &Model, solution: &StaticSolution, side: Side, elastic: &[f64]) -> Vec<[f64; 3]> {
+    let mut total: Vec<[f64; 3]> = elastic.chunks_exact(3).map(|u| [u[0], u[1], u[2]]).collect();
+    let Some(ring) = model.ring(side).filter(|_| side == Side::Inner) else { return total };
+    let [x, y, z, tilt_x, tilt_y] = solution.displacements.shaft;
+    for (u, node) in total.iter_mut().zip(&ring.mesh.nodes) {
+        let arm = node[2] - ring.groove.centre_z;
+        u[0] += x + tilt_y * arm;
+        u[1] += y - tilt_x * arm;
+        u[2] += z + tilt_x * node[1] - tilt_y * node[0];
+    }
+    total
+}
+
+fn state(solution: &StaticSolution) -> BTreeMap<String, StateArray> {
+    let displacements = &solution.displacements;
+    BTreeMap::from([
+        ("shaft".to_string(), StateArray::Real(displacements.shaft.to_vec())),
+        ("balls".to_string(), StateArray::Real(displacements.balls.concat())),
+    ])
+}

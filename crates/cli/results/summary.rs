@@ -1,0 +1,185 @@
+//! `summary.json`: the key numbers of a run, for scripts. Schema 1; SI units in the names of the keys.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use anyhow::Context;
+use dynamics::balls::BallResult;
+use dynamics::{Model, StaticSolution, Timing};
+use serde::Serialize;
+
+use crate::scene::{Analysis, Scene};
+
+/// The whole file.
+#[derive(Debug, Serialize)]
+pub struct Summary {
+    schema: u32,
+    scene: String,
+    title: Option<String>,
+    version: &'static str,
+    analysis: &'static str,
+    status: String,
+    contact_mode: &'static str,
+    shaft: ShaftSummary,
+    balls: Vec<BallResult>,
+    effects: Vec<&'static str>,
+    dofs: BTreeMap<&'static str, usize>,
+    energy_j: BTreeMap<&'static str, f64>,
+    iterations: BTreeMap<&'static str, usize>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    sweep: Option<SweepSummary>,
+    warnings: Vec<String>,
+    timing_s: BTreeMap<&'static str, f64>,
+    factor_bytes_forecast: BTreeMap<&'static str, usize>,
+    peak_memory_bytes: u64,
+}
+
+/// Displacement of the shaft from the just-touching state, at the axis point in the plane of the inner groove
+/// centres.
+#[derive(Clone, Debug, Serialize)]
+pub struct ShaftSummary {
+    displacement_m: [f64; 3],
+    rotation_rad: [f64; 3],
+    /// Reaction of prescribed dofs: force, N, and moment, N m; 0 where free.
+    reaction_force_n: [f64; 3],
+    reaction_moment_n_m: [f64; 2],
+}
+
+/// Every point of a sweep.
+#[derive(Debug, Serialize)]
+pub struct SweepSummary {
+    key: String,
+    column: String,
+    points: Vec<SweepRow>,
+}
+
+#[derive(Debug, Serialize)]
+struct SweepRow {
+    value: f64,
+    shaft: ShaftSummary,
+    balls: Vec<BallResult>,
+}
+
+/// Costs of a run that only its driver knows.
+pub struct Costs {
+    /// Seconds of reading and checking, stress recovery, writing, and in all.
+    pub read: f64,
+    /// Stress recovery.
+    pub stress: f64,
+    /// Writing.
+    pub output: f64,
+    /// Whole run.
+    pub total: f64,
+    /// Bytes forecast for the factorisations, inner and outer.
+    pub forecast: [usize; 2],
+    /// Parts of the solver.
+    pub solver: Timing,
+}
+
+impl ShaftSummary {
+    fn new(solution: &StaticSolution) -> ShaftSummary {
+        let [x, y, z, tilt_x, tilt_y] = solution.displacements.shaft;
+        let r = solution.shaft_reaction;
+        ShaftSummary {
+            displacement_m: [x, y, z],
+            rotation_rad: [tilt_x, tilt_y, 0.0],
+            reaction_force_n: [r[0], r[1], r[2]],
+            reaction_moment_n_m: [r[3], r[4]],
+        }
+    }
+}
+
+impl Summary {
+    /// Summary of a finished run: `solutions` are the points of a sweep, or the one of a static scene.
+    pub fn new(scene: &Scene, model: &Model, solutions: &[(f64, StaticSolution)], costs: &Costs) -> Summary {
+        let last = &solutions.last().expect("a finished run has a solution").1;
+        let (analysis, sweep) = match &scene.analysis {
+            Analysis::Static => ("static", None),
+            Analysis::Sweep(sweep) => {
+                let rows = solutions.iter().map(|(value, s)| SweepRow {
+                    value: *value,
+                    shaft: ShaftSummary::new(s),
+                    balls: s.balls.clone(),
+                });
+                let summary =
+                    SweepSummary { key: sweep.key.clone(), column: sweep.column.clone(), points: rows.collect() };
+                ("sweep", Some(summary))
+            }
+        };
+        let mut warnings: Vec<String> = solutions.iter().flat_map(|(_, s)| s.warnings.clone()).collect();
+        warnings.dedup();
+        Summary {
+            schema: 1,
+            scene: scene.path.display().to_string(),
+            title: scene.title.clone(),
+            version: env!("CARGO_PKG_VERSION"),
+            analysis,
+            status: "finished".to_string(),
+            contact_mode: mode_name(model),
+            shaft: ShaftSummary::new(last),
+            balls: last.balls.clone(),
+            effects: model.effects.iter().map(|e| e.name()).collect(),
+            dofs: sides(|i| model.rings[i].as_ref().map_or(0, |r| r.mesh.n_dofs())),
+            energy_j: super::tables::energies(last).into_iter().collect(),
+            iterations: BTreeMap::from([("rounds", last.rounds), ("newton", last.newton_iterations)]),
+            sweep,
+            warnings,
+            timing_s: timing(costs),
+            factor_bytes_forecast: sides(|i| costs.forecast[i]),
+            peak_memory_bytes: peak_memory(),
+        }
+    }
+
+    /// Prints warnings, then where the time went.
+    pub fn print_costs(&self) {
+        self.warnings.iter().for_each(|w| println!("warning: {w}"));
+        let parts: Vec<String> = self.timing_s.iter().map(|(part, s)| format!("{part} {s:.3}")).collect();
+        println!("seconds: {}", parts.join(", "));
+        println!("peak memory: {:.0} MB", self.peak_memory_bytes as f64 / 1e6);
+    }
+
+    /// Writes the file: complete or not at all.
+    pub fn write(&self, dir: &Path) -> anyhow::Result<()> {
+        let path = dir.join("summary.json");
+        let temporary = dir.join("summary.json.tmp");
+        let text = serde_json::to_string_pretty(self).context("cannot format summary.json")?;
+        std::fs::write(&temporary, text + "\n")
+            .and_then(|()| std::fs::rename(&temporary, &path))
+            .with_context(|| format!("cannot write {}", path.display()))
+    }
+}
+
+fn sides<T>(value: impl Fn(usize) -> T) -> BTreeMap<&'static str, T> {
+    BTreeMap::from([("inner", value(0)), ("outer", value(1))])
+}
+
+fn mode_name(model: &Model) -> &'static str {
+    match model.contact.mode {
+        dynamics::ContactMode::Patch => "patch",
+        dynamics::ContactMode::Facet => "facet",
+        dynamics::ContactMode::Rigid => "rigid",
+    }
+}
+
+fn timing(costs: &Costs) -> BTreeMap<&'static str, f64> {
+    let s = &costs.solver;
+    BTreeMap::from([
+        ("read", costs.read),
+        ("assemble", s.assemble),
+        ("factor", s.factor),
+        ("columns", s.columns),
+        ("contact", s.patches + s.newton),
+        ("solve", s.solve),
+        ("stress", costs.stress),
+        ("output", costs.output),
+        ("total", costs.total),
+    ])
+}
+
+/// Largest resident memory of this process, bytes; 0 where the system does not tell.
+pub fn peak_memory() -> u64 {
+    let Ok(status) = std::fs::read_to_string("/proc/self/status") else { return 0 };
+    let line = status.lines().find_map(|l| l.strip_prefix("VmHWM:"));
+    let kilobytes = line.and_then(|l| l.split_whitespace().next()).and_then(|n| n.parse::<u64>().ok());
+    kilobytes.unwrap_or(0) * 1024
+}

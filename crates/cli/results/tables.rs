@@ -1,0 +1,105 @@
+//! Long tables of a run: `balls.csv`, `shaft.csv`, `energy.csv`. SI units in the column names.
+
+use std::path::Path;
+
+use anyhow::Context;
+use dynamics::StaticSolution;
+use dynamics::balls::{BallResult, ContactResult};
+
+/// The tables of one run, open for appending.
+pub struct Tables {
+    balls: csv::Writer<std::fs::File>,
+    shaft: csv::Writer<std::fs::File>,
+    energy: csv::Writer<std::fs::File>,
+}
+
+const CONTACT_COLUMNS: [&str; 6] =
+    ["force_n", "contact_angle_rad", "approach_m", "semi_axis_groove_m", "semi_axis_rolling_m", "peak_pressure_pa"];
+
+impl Tables {
+    /// Creates the files with their header lines; `swept` is the column of a swept value.
+    pub fn create(dir: &Path, swept: Option<&str>) -> anyhow::Result<Tables> {
+        let head = |rest: &[String]| {
+            let mut columns = vec!["step".to_string(), "time_s".to_string()];
+            columns.extend(swept.map(str::to_string));
+            columns.extend(rest.iter().cloned());
+            columns
+        };
+        let names = |list: &[&str]| list.iter().map(|s| s.to_string()).collect::<Vec<_>>();
+        let mut ball_columns =
+            names(&["ball", "azimuth_rad", "inner_force_n", "outer_force_n", "inner_contact_angle_rad", "outer_contact_angle_rad"]);
+        for side in ["inner", "outer"] {
+            ball_columns.extend(CONTACT_COLUMNS[2..].iter().map(|c| format!("{side}_{c}")));
+        }
+        ball_columns.extend(names(&["displacement_radial_m", "displacement_axial_m"]));
+        let shaft_columns = names(&[
+            "x_m", "y_m", "z_m", "tilt_x_rad", "tilt_y_rad", "reaction_x_n", "reaction_y_n", "reaction_z_n",
+            "reaction_tilt_x_n_m", "reaction_tilt_y_n_m",
+        ]);
+        let energy_columns: Vec<String> = ENERGY_TERMS.iter().map(|t| format!("{t}_j")).collect();
+        Ok(Tables {
+            balls: open(dir, "balls.csv", &head(&ball_columns))?,
+            shaft: open(dir, "shaft.csv", &head(&shaft_columns))?,
+            energy: open(dir, "energy.csv", &head(&energy_columns))?,
+        })
+    }
+
+    /// Appends one step; `swept` is the swept value in SI.
+    pub fn append(&mut self, step: u64, time: f64, swept: Option<f64>, solution: &StaticSolution) -> anyhow::Result<()> {
+        let mut head = vec![step.to_string(), number(time)];
+        head.extend(swept.map(number));
+        let row = |cells: Vec<String>| [head.clone(), cells].concat();
+        for (i, ball) in solution.balls.iter().enumerate() {
+            self.balls.write_record(row(ball_cells(i, ball)))?;
+        }
+        let shaft = solution.displacements.shaft.iter().chain(&solution.shaft_reaction);
+        self.shaft.write_record(row(shaft.map(|x| number(*x)).collect()))?;
+        self.energy.write_record(row(energies(solution).iter().map(|(_, x)| number(*x)).collect()))?;
+        for writer in [&mut self.balls, &mut self.shaft, &mut self.energy] {
+            writer.flush().context("cannot write a table")?;
+        }
+        Ok(())
+    }
+}
+
+const ENERGY_TERMS: [&str; 5] = ["strain", "hertz", "load_potential", "total", "defect"];
+
+/// Energies of an equilibrium, J. `total` is the potential energy that it minimises; `defect` is what is
+/// missing in the virtual work of all forces through the displacements, zero at equilibrium.
+pub fn energies(solution: &StaticSolution) -> [(&'static str, f64); 5] {
+    let total = solution.strain_energy + solution.hertz_energy - solution.load_work;
+    [
+        ("strain", solution.strain_energy),
+        ("hertz", solution.hertz_energy),
+        ("load_potential", -solution.load_work),
+        ("total", total),
+        ("defect", solution.work_defect),
+    ]
+}
+
+fn ball_cells(index: usize, ball: &BallResult) -> Vec<String> {
+    let mut cells = vec![index.to_string(), number(ball.azimuth_rad)];
+    cells.extend([ball.inner.force_n, ball.outer.force_n].map(number));
+    cells.extend([ball.inner.contact_angle_rad, ball.outer.contact_angle_rad].map(number));
+    for contact in [&ball.inner, &ball.outer] {
+        cells.extend(rest_of(contact).map(number));
+    }
+    cells.extend([ball.displacement_m.radial, ball.displacement_m.axial].map(number));
+    cells
+}
+
+fn rest_of(contact: &ContactResult) -> [f64; 4] {
+    [contact.approach_m, contact.semi_axes_m[0], contact.semi_axes_m[1], contact.peak_pressure_pa]
+}
+
+/// Shortest text that reads back as the same number.
+fn number(x: f64) -> String {
+    format!("{x:?}")
+}
+
+fn open(dir: &Path, name: &str, columns: &[String]) -> anyhow::Result<csv::Writer<std::fs::File>> {
+    let path = dir.join(name);
+    let mut writer = csv::Writer::from_path(&path).with_context(|| format!("cannot create {}", path.display()))?;
+    writer.write_record(columns)?;
+    Ok(writer)
+}

@@ -1,0 +1,101 @@
+//! `[contact]`: how balls and raceways push on each other.
+
+use serde::Deserialize;
+
+use super::bearing::Bearing;
+use super::materials::{Material, Materials};
+use super::problems::Problems;
+use crate::units::{HERTZ_STIFFNESS, Quantity};
+
+/// As typed.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields, expecting = "the table [contact]")]
+pub struct RawContact {
+    mode: ContactMode,
+    inner_stiffness: Option<Quantity<HERTZ_STIFFNESS>>,
+    outer_stiffness: Option<Quantity<HERTZ_STIFFNESS>>,
+    patch_elements: Option<f64>,
+}
+
+/// How the raceways' shape, the forces on the rings and the local compliance are represented.
+#[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq)]
+#[serde(rename_all = "snake_case")]
+pub enum ContactMode {
+    /// Exact torus, force spread over a Hertz patch, local compliance matched: accurate on any mesh.
+    Patch,
+    /// The mesh's own facets and their nodes, as in the paper; counts the local compliance twice.
+    Facet,
+    /// Exact torus, rings do not deform: the Jones-Harris limit.
+    Rigid,
+}
+
+/// How balls and raceways push on each other.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Contact {
+    /// Representation of the raceways.
+    pub mode: ContactMode,
+    /// K of Q = K d^1.5 between ball and inner ring, N/m^1.5; exact Hertz when `None`.
+    pub inner_stiffness: Option<f64>,
+    /// The same for the outer ring, N/m^1.5.
+    pub outer_stiffness: Option<f64>,
+    /// Least semi-axis of a contact patch, in element sizes.
+    pub patch_elements: f64,
+}
+
+/// Smaller patches see single elements (design number: the structural compliance is then mesh-independent).
+const DEFAULT_PATCH_ELEMENTS: f64 = 2.0;
+/// A given K may differ from E* sqrt(D_w), the size of exact Hertz, by this factor: more is a slip of the
+/// unit (N/m^1.5 for N/mm^1.5 is 3e4).
+const STIFFNESS_FACTOR: f64 = 100.0;
+
+impl RawContact {
+    /// Checks the table; bearing and materials are there when they are sound, to judge the size of a
+    /// stiffness.
+    pub fn check(
+        &self,
+        bearing: Option<&Bearing>,
+        materials: Option<&Materials>,
+        problems: &mut Problems,
+    ) -> Contact {
+        let patch_elements = self.patch_elements.unwrap_or(DEFAULT_PATCH_ELEMENTS);
+        problems.require(
+            (0.5..=20.0).contains(&patch_elements),
+            "contact.patch_elements",
+            patch_elements,
+            "expected 0.5 to 20 element sizes, 2 is usual",
+        );
+        let hertz = bearing.zip(materials).map(|(b, m)| hertz_scale(b, m));
+        let stiffnesses = [
+            ("contact.inner_stiffness", &self.inner_stiffness),
+            ("contact.outer_stiffness", &self.outer_stiffness),
+        ];
+        for (key, stiffness) in stiffnesses {
+            let Some(stiffness) = stiffness else { continue };
+            problems.require_positive(stiffness, key, "a stiffness");
+            let Some(ratio) = hertz.map(|h| stiffness.si() / h).filter(|r| *r > 0.0) else {
+                continue;
+            };
+            problems.require(
+                (1.0 / STIFFNESS_FACTOR..=STIFFNESS_FACTOR).contains(&ratio),
+                key,
+                stiffness,
+                format!(
+                    "that is {ratio:.1e} times E* sqrt(ball_diameter), check its unit, N/mm^1.5 is usual"
+                ),
+            );
+        }
+        Contact {
+            mode: self.mode,
+            inner_stiffness: self.inner_stiffness.as_ref().map(Quantity::si),
+            outer_stiffness: self.outer_stiffness.as_ref().map(Quantity::si),
+            patch_elements,
+        }
+    }
+}
+
+/// E* sqrt(D_w), N/m^1.5, with 1/E* = the sum of (1 - nu^2)/E: the size of a Hertz stiffness, within a few
+/// times.
+fn hertz_scale(bearing: &Bearing, materials: &Materials) -> f64 {
+    let compliance = |m: Material| (1.0 - m.poisson_ratio * m.poisson_ratio) / m.young_modulus;
+    bearing.ball_diameter.sqrt() / (compliance(materials.rings) + compliance(materials.balls))
+}

@@ -1,0 +1,59 @@
+//! Changes to the text of a scene before it is read: `--set path=value`, and the points of a sweep.
+//!
+//! The text is edited in place, so that comments and line numbers stay as the user knows them. A path that is
+//! not in the scene is added; whether such a key exists is then checked with all others.
+
+use toml_edit::{DocumentMut, Item, Key, Table, TableLike, Value};
+
+/// Applies `path=value` to the document. The value is read as TOML, or else taken as a string.
+pub fn apply_override(document: &mut DocumentMut, text: &str) -> Result<(), String> {
+    let Some((path, value)) = text.split_once('=') else {
+        return Err("expected path=value such as \"effects.axial_force.value=3 kN\"".to_string());
+    };
+    let value = value.trim();
+    let parsed = value.parse::<Value>().unwrap_or_else(|_| Value::from(value));
+    set(document, path.trim(), parsed)
+}
+
+/// The document as the scene of one point of its sweep: `key` has the value, and `[sweep]` is `[static]`.
+pub fn point_text(document: &DocumentMut, key: &str, value: Value) -> Result<String, String> {
+    let mut point = document.clone();
+    set(&mut point, key, value)?;
+    point.remove("sweep");
+    point.insert("static", Item::Table(Table::new()));
+    Ok(point.to_string())
+}
+
+/// Sets the value at a dotted path; tables on the way are made when they are missing.
+fn set(document: &mut DocumentMut, path: &str, mut value: Value) -> Result<(), String> {
+    let keys = Key::parse(path).map_err(|_| {
+        format!("{path:?} is no path of keys; expected one such as effects.axial_force.value")
+    })?;
+    let (last, tables) = keys.split_last().ok_or("the path is empty")?;
+    let mut table: &mut dyn TableLike = document.as_table_mut();
+    let mut walked = String::new();
+    for key in tables {
+        walked += if walked.is_empty() { "" } else { "." };
+        walked += key.get();
+        if !table.contains_key(key.get()) {
+            let mut new = Table::new();
+            new.set_implicit(true);
+            table.insert(key.get(), Item::Table(new));
+        }
+        table = table
+            .get_mut(key.get())
+            .and_then(Item::as_table_like_mut)
+            .ok_or_else(|| format!("{walked} is a value, so it has no key {:?}", last.get()))?;
+    }
+    match table.get_mut(last.get()) {
+        Some(Item::Value(old)) => {
+            // Keep the comment behind the value.
+            *value.decor_mut() = old.decor().clone();
+            *old = value;
+        }
+        _ => {
+            table.insert(last.get(), Item::Value(value));
+        }
+    }
+    Ok(())
+}

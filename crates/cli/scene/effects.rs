@@ -1,0 +1,130 @@
+//! `[effects.*]`: one optional table per effect; an effect without its table costs nothing.
+
+use serde::Deserialize;
+
+use super::problems::Problems;
+use crate::units::{ACCELERATION, ANGLE, FORCE, MOMENT, Quantity};
+
+/// As typed.
+#[derive(Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields, expecting = "tables [effects.*]")]
+pub struct RawEffects {
+    axial_force: Option<RawAxialForce>,
+    radial_force: Option<RawRadialForce>,
+    moment: Option<RawMoment>,
+    gravity: Option<RawGravity>,
+}
+
+/// As typed.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields, expecting = "the table [effects.axial_force]")]
+struct RawAxialForce {
+    value: Quantity<FORCE>,
+}
+
+/// As typed.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields, expecting = "the table [effects.radial_force]")]
+struct RawRadialForce {
+    value: Quantity<FORCE>,
+    direction: Quantity<ANGLE>,
+}
+
+/// As typed.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields, expecting = "the table [effects.moment]")]
+struct RawMoment {
+    x: Quantity<MOMENT>,
+    y: Quantity<MOMENT>,
+}
+
+/// As typed.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields, expecting = "the table [effects.gravity]")]
+struct RawGravity {
+    acceleration: Quantity<ACCELERATION>,
+    direction: [f64; 3],
+}
+
+/// The effects a scene calls for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Effects {
+    /// Force on the shaft along z, N, + = the direction of preload.
+    pub axial_force: Option<f64>,
+    /// Force on the shaft across z.
+    pub radial_force: Option<RadialForce>,
+    /// Moment on the shaft about x and y, N m.
+    pub moment: Option<[f64; 2]>,
+    /// Acceleration of gravity, m/s2, `[3]` in x, y, z.
+    pub gravity: Option<[f64; 3]>,
+}
+
+/// A force across the axis.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RadialForce {
+    /// Size, N; negative points the other way.
+    pub value: f64,
+    /// Azimuth it points to, rad, from +x towards +y.
+    pub direction: f64,
+}
+
+/// A gravity beyond a million times the earth's is a slip of the unit, m/s2.
+const MAX_ACCELERATION: f64 = 1e7;
+/// A load beyond this is a slip of the unit, N and N m.
+const MAX_LOAD: f64 = 1e9;
+
+impl RawEffects {
+    /// Checks the effects against the shaft they act on.
+    pub fn check(&self, problems: &mut Problems) -> Effects {
+        let unit = "that is more than any bearing carries, check its unit";
+        let forces = [
+            (
+                "effects.axial_force.value",
+                self.axial_force.as_ref().map(|f| &f.value),
+            ),
+            (
+                "effects.radial_force.value",
+                self.radial_force.as_ref().map(|f| &f.value),
+            ),
+        ];
+        for (key, force) in forces {
+            if let Some(force) = force {
+                problems.require(force.si().abs() <= MAX_LOAD, key, force, unit);
+            }
+        }
+        if let Some(moment) = &self.moment {
+            for (key, m) in [("effects.moment.x", &moment.x), ("effects.moment.y", &moment.y)] {
+                problems.require(m.si().abs() <= MAX_LOAD, key, m, unit);
+            }
+        }
+        Effects {
+            axial_force: self.axial_force.as_ref().map(|f| f.value.si()),
+            radial_force: self.radial_force.as_ref().map(|f| RadialForce {
+                value: f.value.si(),
+                direction: f.direction.si(),
+            }),
+            moment: self.moment.as_ref().map(|m| [m.x.si(), m.y.si()]),
+            gravity: self.gravity.as_ref().map(|g| g.check(problems)),
+        }
+    }
+}
+
+impl RawGravity {
+    fn check(&self, problems: &mut Problems) -> [f64; 3] {
+        let (key, g) = ("effects.gravity.acceleration", self.acceleration.si());
+        problems.require(
+            (0.0..=MAX_ACCELERATION).contains(&g),
+            key,
+            &self.acceleration,
+            "expected 0 to 1e7 m/s2, its direction is a key of its own",
+        );
+        let length = self.direction.iter().map(|d| d * d).sum::<f64>().sqrt();
+        problems.require(
+            length > 0.0 && length.is_finite(),
+            "effects.gravity.direction",
+            format!("{:?}", self.direction),
+            "expected a vector with a direction such as [0.0, -1.0, 0.0]; its length does not matter",
+        );
+        self.direction.map(|d| g * d / length)
+    }
+}

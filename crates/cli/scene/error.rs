@@ -1,0 +1,68 @@
+//! What can be wrong with a scene file.
+
+use std::path::PathBuf;
+
+use thiserror::Error;
+
+/// Why there is no scene.
+#[derive(Debug, Error)]
+pub enum SceneError {
+    /// The file cannot be read.
+    #[error("cannot read the scene {}: {source}", path.display())]
+    Unreadable {
+        /// The scene file.
+        path: PathBuf,
+        /// The reason of the system.
+        source: std::io::Error,
+    },
+    /// A `--set` argument is not `path=value`, or its path leads nowhere.
+    #[error("--set {argument:?}: {reason}")]
+    Override {
+        /// The argument.
+        argument: String,
+        /// What is wrong with it, and what was expected.
+        reason: String,
+    },
+    /// The text is not TOML, or a key or value is not of the scene format.
+    #[error("{}:{line}:{column}: {message}{}\n{excerpt}", path.display(), overridden(overrides))]
+    Format {
+        /// The scene file.
+        path: PathBuf,
+        /// The `--set` arguments that were applied to the text.
+        overrides: Vec<String>,
+        /// Line, from 1.
+        line: usize,
+        /// Column in characters, from 1.
+        column: usize,
+        /// Key, value, what was expected.
+        message: String,
+        /// The line itself with a mark below.
+        excerpt: String,
+    },
+    /// Values that make no sense, all of them.
+    #[error("{}{} has {}", path.display(), overridden(overrides), list(problems))]
+    Invalid {
+        /// The scene file.
+        path: PathBuf,
+        /// The `--set` arguments that were applied to the text.
+        overrides: Vec<String>,
+        /// One per entry: key, value, what was expected.
+        problems: Vec<String>,
+    },
+}
+
+/// Says that the text is not quite that of the file.
+fn overridden(overrides: &[String]) -> String {
+    if overrides.is_empty() {
+        return String::new();
+    }
+    let arguments: Vec<String> = overrides.iter().map(|o| format!("--set {o:?}")).collect();
+    format!(" (with {})", arguments.join(" "))
+}
+
+fn list(problems: &[String]) -> String {
+    match problems {
+        [one] => format!("a problem: {one}"),
+        many => format!("{} problems:\n  {}", many.len(), many.join("\n  ")),
+    }
+}

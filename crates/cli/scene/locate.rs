@@ -1,0 +1,160 @@
+//! Turns an error of the TOML reader into line, column, key and advice.
+
+use std::ops::Range;
+
+use toml::Spanned;
+use toml::de::{DeTable, DeValue};
+
+/// Where and what, in the words of a scene.
+#[derive(Debug)]
+pub struct Located {
+    /// Line, from 1.
+    pub line: usize,
+    /// Column in characters, from 1.
+    pub column: usize,
+    /// Key, value, what was expected.
+    pub message: String,
+    /// The line itself with a mark below.
+    pub excerpt: String,
+}
+
+/// Locates the reader's `message` about a stretch of the text, in bytes.
+pub fn locate(text: &str, span: Option<Range<usize>>, message: &str) -> Located {
+    let span = span.unwrap_or(0..0);
+    let start = floor_boundary(text, span.start);
+    let line_start = text[..start].rfind('\n').map_or(0, |i| i + 1);
+    let line = 1 + text[..start].matches('\n').count();
+    let column = 1 + text[line_start..start].chars().count();
+    let content = text[line_start..].lines().next().unwrap_or("");
+    let end = floor_boundary(
+        text,
+        span.end
+            .clamp(start, line_start.max(start).max(line_start + content.len())),
+    );
+    let marks = text[start..end].chars().count().max(1);
+    let gutter = " ".repeat(line.to_string().len());
+    let excerpt = format!(
+        "{gutter} |\n{line} | {content}\n{gutter} | {}{}",
+        " ".repeat(column - 1),
+        "^".repeat(marks)
+    );
+    Located {
+        line,
+        column,
+        message: describe(text, span, message),
+        excerpt,
+    }
+}
+
+fn floor_boundary(text: &str, mut index: usize) -> usize {
+    index = index.min(text.len());
+    while !text.is_char_boundary(index) {
+        index -= 1;
+    }
+    index
+}
+
+/// Adds the key's path to the reader's message, and says it in the words of a scene.
+fn describe(text: &str, span: Range<usize>, message: &str) -> String {
+    let message = message.trim_end().replace('\n', "; ");
+    let Ok(document) = DeTable::parse(text) else {
+        return format!("this is not TOML: {message}");
+    };
+    let path = path_at(document.get_ref(), &span);
+    let message = message
+        .replace("expected i64", "expected a whole number")
+        .replace("expected f64", "expected a number");
+    let names = quoted(&message);
+    if message.starts_with("unknown field") {
+        let (name, valid) = names.split_first().map_or(("", &[][..]), |(n, v)| (*n, v));
+        let table = match path.rsplit_once('.') {
+            Some((table, _)) => format!(" in [{table}]"),
+            None => String::new(),
+        };
+        return format!("unknown key {name:?}{table}{}", advice("keys", name, valid));
+    }
+    if message.starts_with("unknown variant") {
+        let (name, valid) = names.split_first().map_or(("", &[][..]), |(n, v)| (*n, v));
+        return format!("{path} is {name:?}{}", advice("values", name, valid));
+    }
+    if message.starts_with("missing field") {
+        let name = names.first().copied().unwrap_or("");
+        return match path.as_str() {
+            "" => format!("the table [{name}] is missing"),
+            table => format!("[{table}] has no key {name:?}, which is required"),
+        };
+    }
+    if path.is_empty() {
+        message
+    } else {
+        format!("{path}: {message}")
+    }
+}
+
+/// `; did you mean ...? valid keys are ...`
+fn advice(what: &str, name: &str, valid: &[&str]) -> String {
+    let list: Vec<String> = valid.iter().map(|v| format!("{v:?}")).collect();
+    let near = valid
+        .iter()
+        .map(|v| (strsim::osa_distance(v, name), v))
+        .min_by_key(|(distance, _)| *distance);
+    let meant = match near {
+        Some((distance, v)) if distance <= 1 + name.chars().count() / 4 => format!("did you mean {v:?}? "),
+        _ => String::new(),
+    };
+    match list.as_slice() {
+        [] => format!("; this table has no {what}"),
+        [only] => format!("; {meant}the only valid {} is {only}", what.trim_end_matches('s')),
+        _ => format!("; {meant}valid {what} are {}", list.join(", ")),
+    }
+}
+
+/// The words between backticks.
+fn quoted(message: &str) -> Vec<&str> {
+    message.split('`').skip(1).step_by(2).collect()
+}
+
+/// Dotted path of the innermost key or value that contains the span.
+fn path_at(table: &DeTable<'_>, span: &Range<usize>) -> String {
+    let mut best: Option<(usize, String)> = None;
+    visit(table, "", span, &mut best);
+    best.map_or(String::new(), |(_, path)| path)
+}
+
+fn visit(table: &DeTable<'_>, prefix: &str, span: &Range<usize>, best: &mut Option<(usize, String)>) {
+    for (key, value) in table {
+        let path = match prefix {
+            "" => key.get_ref().to_string(),
+            _ => format!("{prefix}.{}", key.get_ref()),
+        };
+        offer(key.span(), &path, span, best);
+        visit_value(value, &path, span, best);
+    }
+}
+
+fn visit_value(
+    value: &Spanned<DeValue<'_>>,
+    path: &str,
+    span: &Range<usize>,
+    best: &mut Option<(usize, String)>,
+) {
+    offer(value.span(), path, span, best);
+    match value.get_ref() {
+        DeValue::Table(table) => visit(table, path, span, best),
+        DeValue::Array(items) => {
+            for (i, item) in items.iter().enumerate() {
+                visit_value(item, &format!("{path}[{i}]"), span, best);
+            }
+        }
+        _ => {}
+    }
+}
+
+/// Keeps the shortest stretch of text that contains the span.
+fn offer(candidate: Range<usize>, path: &str, span: &Range<usize>, best: &mut Option<(usize, String)>) {
+    let contains = candidate.start <= span.start && span.end <= candidate.end && !candidate.is_empty();
+    let length = candidate.len();
+    if contains && best.as_ref().is_none_or(|(shortest, _)| length <= *shortest) {
+        *best = Some((length, path.to_string()));
+    }
+}

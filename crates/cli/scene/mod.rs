@@ -1,0 +1,297 @@
+//! Scene files: the bearing, its meshes, its loads and what is computed, as TOML.
+//!
+//! Every quantity is a string with its unit, see [`crate::units`]. Every table is checked against the list of
+//! its keys. An effect is a table `[effects.*]`: without the table there is no effect. Exactly one of
+//! `[static]` and `[sweep]` says what is computed. Axis z is axial, + is the direction of preload; azimuth
+//! runs from +x to +y; displacements count from the state where all balls just touch both raceways.
+//!
+//! Reading goes through two levels: the tables as typed (`Raw*`, private, in the file of their table), and
+//! the checked [`Scene`] in plain SI numbers and enums. A text that is not of the format stops at the first
+//! error with its line and column; values that make no sense are reported all together. `--set path=value`
+//! edits the text before it is read; the edited text is kept in the scene, for checkpoints.
+//!
+//! The whole format, with every key:
+//!
+//! ```toml
+#![doc = include_str!("example.toml")]
+//! ```
+
+mod bearing;
+mod contact;
+mod edit;
+mod effects;
+mod error;
+mod locate;
+mod materials;
+mod output;
+mod problems;
+mod ring;
+mod section;
+mod shaft;
+mod solver;
+mod sweep;
+#[cfg(test)]
+mod tests;
+
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+
+use serde::Deserialize;
+use toml_edit::DocumentMut;
+
+pub use self::bearing::Bearing;
+pub use self::contact::{Contact, ContactMode};
+pub use self::effects::Effects;
+pub use self::error::SceneError;
+pub use self::materials::{Material, Materials};
+pub use self::output::{Output, Precision, StressOutput};
+pub use self::ring::{FlexibleRing, MeshFiles, Ring, RingName, Support};
+pub use self::section::{Section, SectionElement};
+pub use self::shaft::{Motion, Shaft};
+pub use self::solver::Solver;
+pub use self::sweep::{Analysis, SweepPoint};
+
+use self::bearing::RawBearing;
+use self::contact::RawContact;
+use self::effects::RawEffects;
+use self::materials::RawMaterials;
+use self::output::RawOutput;
+use self::problems::Problems;
+use self::ring::{RawRing, RingContext};
+use self::shaft::RawShaft;
+use self::solver::RawSolver;
+use self::sweep::{RawStatic, RawSweep};
+
+/// As typed.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields, expecting = "the tables of a scene")]
+struct RawScene {
+    title: Option<String>,
+    bearing: RawBearing,
+    materials: RawMaterials,
+    contact: RawContact,
+    #[serde(default)]
+    inner: RawRing,
+    #[serde(default)]
+    outer: RawRing,
+    shaft: RawShaft,
+    #[serde(default)]
+    effects: RawEffects,
+    #[serde(default)]
+    solver: RawSolver,
+    #[serde(default)]
+    output: RawOutput,
+    r#static: Option<RawStatic>,
+    sweep: Option<RawSweep>,
+}
+
+/// A checked scene, SI.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Scene {
+    /// The scene file.
+    pub path: PathBuf,
+    /// Its text with the overrides applied: with the path, all that is needed to read the scene again.
+    pub text: String,
+    /// Free text for people.
+    pub title: Option<String>,
+    /// Macro-geometry.
+    pub bearing: Bearing,
+    /// What the bodies are made of.
+    pub materials: Materials,
+    /// How balls and raceways push on each other.
+    pub contact: Contact,
+    /// The ring on the shaft.
+    pub inner: Ring,
+    /// The ring in the housing.
+    pub outer: Ring,
+    /// Freedoms of the shaft.
+    pub shaft: Shaft,
+    /// Loads and other effects.
+    pub effects: Effects,
+    /// How the equations are solved.
+    pub solver: Solver,
+    /// What is written.
+    pub output: Output,
+    /// What is computed.
+    pub analysis: Analysis,
+}
+
+impl Scene {
+    /// Reads and checks a scene file; `overrides` are `path=value`. Mesh files must exist.
+    pub fn load(path: &Path, overrides: &[String]) -> Result<Scene, SceneError> {
+        Scene::load_with(path, overrides, MeshFiles::MustExist)
+    }
+
+    /// Reads and checks a scene file; `mesh_files` says whether the meshes have to be there already.
+    pub fn load_with(path: &Path, overrides: &[String], mesh_files: MeshFiles) -> Result<Scene, SceneError> {
+        let text = std::fs::read_to_string(path).map_err(|source| SceneError::Unreadable {
+            path: path.to_path_buf(),
+            source,
+        })?;
+        Scene::parse(&text, path, overrides, mesh_files)
+    }
+
+    /// Checks the text of a scene; `path` is for messages and its folder is where relative paths start.
+    pub fn parse(
+        text: &str,
+        path: &Path,
+        overrides: &[String],
+        mesh_files: MeshFiles,
+    ) -> Result<Scene, SceneError> {
+        let source = Source {
+            path,
+            overrides,
+            mesh_files,
+        };
+        let mut document = source.document(text)?;
+        for argument in overrides {
+            edit::apply_override(&mut document, argument).map_err(|reason| SceneError::Override {
+                argument: argument.clone(),
+                reason,
+            })?;
+        }
+        let text = if overrides.is_empty() {
+            text.to_string()
+        } else {
+            document.to_string()
+        };
+        let scene = source.check(text, &document)?;
+        source.check_points(&scene)?;
+        Ok(scene)
+    }
+
+    /// The scenes of the points of a sweep, in order; none for a static scene.
+    pub fn sweep_scenes(&self) -> Result<Vec<Scene>, SceneError> {
+        let Analysis::Sweep(sweep) = &self.analysis else {
+            return Ok(Vec::new());
+        };
+        let point = |p: &SweepPoint| Scene::parse(&p.text, &self.path, &[], MeshFiles::MayBeMissing);
+        sweep.points.iter().map(point).collect()
+    }
+}
+
+/// Where a text comes from and how strictly it is checked.
+struct Source<'a> {
+    path: &'a Path,
+    overrides: &'a [String],
+    mesh_files: MeshFiles,
+}
+
+impl Source<'_> {
+    fn document(&self, text: &str) -> Result<DocumentMut, SceneError> {
+        text.parse()
+            .map_err(|e: toml_edit::TomlError| self.format_error(text, e.span(), e.message()))
+    }
+
+    fn format_error(&self, text: &str, span: Option<Range<usize>>, message: &str) -> SceneError {
+        let located = locate::locate(text, span, message);
+        SceneError::Format {
+            path: self.path.to_path_buf(),
+            overrides: self.overrides.to_vec(),
+            line: located.line,
+            column: located.column,
+            message: located.message,
+            excerpt: located.excerpt,
+        }
+    }
+
+    fn invalid(&self, problems: Vec<String>) -> SceneError {
+        SceneError::Invalid {
+            path: self.path.to_path_buf(),
+            overrides: self.overrides.to_vec(),
+            problems,
+        }
+    }
+
+    fn check(&self, text: String, document: &DocumentMut) -> Result<Scene, SceneError> {
+        let raw: RawScene = toml::from_str(&text)
+            .map_err(|e: toml::de::Error| self.format_error(&text, e.span(), e.message()))?;
+        let mut problems = Problems::default();
+        let bearing = raw.bearing.check(&mut problems);
+        let materials = raw.materials.check(&mut problems);
+        let contact = raw
+            .contact
+            .check(bearing.as_ref(), materials.as_ref(), &mut problems);
+        let folder = self.path.parent().unwrap_or(Path::new(""));
+        let context = RingContext {
+            bearing: bearing.as_ref(),
+            mode: contact.mode,
+            folder,
+            mesh_files: self.mesh_files,
+        };
+        let inner = raw.inner.check(RingName::Inner, context, &mut problems);
+        let outer = raw.outer.check(RingName::Outer, context, &mut problems);
+        if let (Some(inner), Some(outer)) = (&inner.section, &outer.section) {
+            section::check_gap(inner, outer, &mut problems);
+        }
+        let shaft = raw.shaft.check(bearing.as_ref(), &mut problems);
+        let effects = raw.effects.check(&mut problems);
+        let solver = raw.solver.check(&mut problems);
+        let output = raw.output.check(&mut problems);
+        let analysis = raw.analysis(document, &mut problems);
+        match (bearing, materials, analysis, problems.into_texts()) {
+            (Some(bearing), Some(materials), Some(analysis), texts) if texts.is_empty() => Ok(Scene {
+                path: self.path.to_path_buf(),
+                text,
+                title: raw.title,
+                bearing,
+                materials,
+                contact,
+                inner,
+                outer,
+                shaft,
+                effects,
+                solver,
+                output,
+                analysis,
+            }),
+            (.., texts) => Err(self.invalid(texts)),
+        }
+    }
+
+    /// Every point of a sweep must be a valid scene before the first is solved.
+    fn check_points(&self, scene: &Scene) -> Result<(), SceneError> {
+        let Analysis::Sweep(sweep) = &scene.analysis else {
+            return Ok(());
+        };
+        let mut problems = Vec::new();
+        for (i, point) in sweep.points.iter().enumerate() {
+            let error = match Scene::parse(&point.text, self.path, &[], MeshFiles::MayBeMissing) {
+                Ok(_) => continue,
+                Err(SceneError::Invalid { problems, .. }) => problems.join("; "),
+                Err(SceneError::Format { message, .. }) => {
+                    // The key or the kind of its values: wrong in every point.
+                    problems.push(format!("sweep.key is {:?}; {message}", sweep.key));
+                    break;
+                }
+                Err(other) => other.to_string(),
+            };
+            problems.push(format!(
+                "point {i} of the sweep ({} = {}): {error}",
+                sweep.column, point.value
+            ));
+        }
+        if problems.is_empty() {
+            Ok(())
+        } else {
+            Err(self.invalid(problems))
+        }
+    }
+}
+
+impl RawScene {
+    fn analysis(&self, document: &DocumentMut, problems: &mut Problems) -> Option<Analysis> {
+        match (&self.r#static, &self.sweep) {
+            (Some(RawStatic {}), None) => Some(Analysis::Static),
+            (None, Some(sweep)) => sweep.check(document, problems).map(Analysis::Sweep),
+            (None, None) => {
+                problems.add("the scene has no analysis; add one of the tables [static] and [sweep]");
+                None
+            }
+            (Some(_), Some(_)) => {
+                problems.add("the scene has both [static] and [sweep]; keep exactly one analysis");
+                None
+            }
+        }
+    }
+}

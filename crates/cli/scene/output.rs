@@ -1,0 +1,57 @@
+//! `[output]`: what is written, and how exactly.
+
+use serde::Deserialize;
+
+use super::problems::Problems;
+
+/// As typed.
+#[derive(Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields, expecting = "the table [output]")]
+pub struct RawOutput {
+    stress: Option<StressOutput>,
+    precision: Option<Precision>,
+    compression: Option<i64>,
+}
+
+/// Stress fields that are written.
+#[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq)]
+#[serde(rename_all = "snake_case")]
+pub enum StressOutput {
+    /// Averaged at nodes.
+    Nodal,
+    /// None.
+    None,
+}
+
+/// Floating-point size of fields that are not needed to resume a run.
+#[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq)]
+#[serde(rename_all = "snake_case")]
+pub enum Precision {
+    /// 32 bits, seven digits.
+    F32,
+    /// 64 bits.
+    F64,
+}
+
+/// What is written, and how exactly.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Output {
+    /// Stress fields.
+    pub stress: StressOutput,
+    /// Size of derived fields; the state itself is always written in 64 bits.
+    pub precision: Precision,
+    /// Level of deflate, 0 (none) to 9.
+    pub compression: u8,
+}
+
+impl RawOutput {
+    /// Checks ranges and fills in defaults.
+    pub fn check(&self, problems: &mut Problems) -> Output {
+        let level = problems.whole(self.compression.unwrap_or(0), "output.compression", 0, 9);
+        Output {
+            stress: self.stress.unwrap_or(StressOutput::Nodal),
+            precision: self.precision.unwrap_or(Precision::F32),
+            compression: level as u8,
+        }
+    }
+}

@@ -1,0 +1,203 @@
+//! `[inner]` and `[outer]`: each ring, flexible or rigid, and how it is held.
+
+use std::path::{Path, PathBuf};
+
+use serde::Deserialize;
+
+use super::bearing::Bearing;
+use super::contact::ContactMode;
+use super::problems::Problems;
+use super::section::{RawSection, Section};
+use crate::units::{KINDS, LENGTH, Quantity, parse_unit};
+
+/// As typed.
+#[derive(Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields, expecting = "a table of one ring")]
+pub struct RawRing {
+    flexible: Option<bool>,
+    mesh: Option<String>,
+    mesh_unit: Option<String>,
+    support: Option<Support>,
+    groove_z: Option<Quantity<LENGTH>>,
+    section: Option<RawSection>,
+}
+
+/// Which of the two rings.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum RingName {
+    /// The ring on the shaft.
+    Inner,
+    /// The ring in the housing.
+    Outer,
+}
+
+impl RingName {
+    /// The table of the scene.
+    pub fn key(self) -> &'static str {
+        match self {
+            RingName::Inner => "inner",
+            RingName::Outer => "outer",
+        }
+    }
+
+    /// The surface that is held: the bore or the seat.
+    fn held_surface(self) -> &'static str {
+        match self {
+            RingName::Inner => "bore",
+            RingName::Outer => "seat",
+        }
+    }
+}
+
+/// How the bore follows the shaft, or the seat the housing.
+#[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq)]
+#[serde(rename_all = "snake_case")]
+pub enum Support {
+    /// Every node of the surface moves with the rigid shaft or housing.
+    Clamped,
+    /// Only the mean motion of the surface does; it may become oval.
+    MeanMotion,
+}
+
+/// One ring of a checked scene.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Ring {
+    /// The finite-element body, `None` for a rigid ring.
+    pub body: Option<FlexibleRing>,
+    /// The section `raceway mesh` builds, when given.
+    pub section: Option<Section>,
+}
+
+/// A ring that is a finite-element body.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FlexibleRing {
+    /// Mesh file, resolved against the scene file's folder.
+    pub mesh: PathBuf,
+    /// The same as typed in the scene.
+    pub mesh_as_typed: String,
+    /// Length of one unit of the mesh file, m.
+    pub mesh_unit: f64,
+    /// How the bore or the seat is held.
+    pub support: Support,
+    /// Axial position of the groove's centre plane in the mesh, m.
+    pub groove_z: f64,
+}
+
+/// Whether mesh files have to be there already.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum MeshFiles {
+    /// A missing file is a problem: for runs.
+    MustExist,
+    /// Files are not looked for: to build meshes, to read a scene back from a checkpoint.
+    MayBeMissing,
+}
+
+/// What a ring is checked against.
+#[derive(Clone, Copy, Debug)]
+pub struct RingContext<'a> {
+    /// Macro-geometry, when it is sound.
+    pub bearing: Option<&'a Bearing>,
+    /// Contact mode of the scene.
+    pub mode: ContactMode,
+    /// Folder of the scene file.
+    pub folder: &'a Path,
+    /// Whether mesh files have to exist.
+    pub mesh_files: MeshFiles,
+}
+
+impl RawRing {
+    /// Checks the ring. A rigid ring may keep the other keys, unused, so that one `--set` switches it.
+    pub fn check(&self, ring: RingName, context: RingContext<'_>, problems: &mut Problems) -> Ring {
+        let key = ring.key();
+        let section = self
+            .section
+            .as_ref()
+            .map(|s| s.check(ring, context.bearing, problems));
+        if !self.flexible.unwrap_or(true) {
+            return Ring { body: None, section };
+        }
+        if context.mode == ContactMode::Rigid {
+            let typed = if self.flexible.is_some() {
+                ""
+            } else {
+                " (the default)"
+            };
+            problems.add(format!(
+                "{key}.flexible is true{typed} but contact.mode is \"rigid\"; set {key}.flexible = false, or \
+                 contact.mode = \"patch\" to let the ring deform"
+            ));
+            return Ring { body: None, section };
+        }
+        Ring {
+            body: self.check_flexible(ring, context, problems),
+            section,
+        }
+    }
+
+    fn check_flexible(
+        &self,
+        ring: RingName,
+        context: RingContext<'_>,
+        problems: &mut Problems,
+    ) -> Option<FlexibleRing> {
+        let key = ring.key();
+        let held = ring.held_surface();
+        let mut missing = |name: &str, meaning: &str| {
+            problems.add(format!(
+                "{key}.{name} is missing; a flexible ring needs {meaning}, or set {key}.flexible = false"
+            ));
+        };
+        if self.mesh.is_none() {
+            missing("mesh", "a mesh file");
+        }
+        if self.mesh.is_some() && self.mesh_unit.is_none() {
+            missing("mesh_unit", "the unit of its mesh such as \"mm\"");
+        }
+        if self.support.is_none() {
+            missing(
+                "support",
+                &format!("to know how its {held} is held, \"clamped\" or \"mean_motion\""),
+            );
+        }
+        let mesh_unit = self.mesh_unit.as_ref().and_then(|text| {
+            let unit = parse_unit(text, &KINDS[LENGTH]);
+            unit.map_err(|e| problems.add(format!("{key}.mesh_unit: {e}")))
+                .ok()
+        });
+        let groove_z = self.check_groove_z(key, context.bearing, problems);
+        let typed = self.mesh.as_ref()?;
+        let mesh = context.folder.join(typed);
+        if context.mesh_files == MeshFiles::MustExist && !mesh.is_file() {
+            let remedy = if self.section.is_some() {
+                "build it with \"raceway mesh\" or "
+            } else {
+                ""
+            };
+            problems.add(format!(
+                "{key}.mesh is {typed:?}, but there is no file {}; {remedy}correct the path, which is relative to \
+                 the scene file",
+                mesh.display()
+            ));
+        }
+        Some(FlexibleRing {
+            mesh,
+            mesh_as_typed: typed.clone(),
+            mesh_unit: mesh_unit?,
+            support: self.support?,
+            groove_z,
+        })
+    }
+
+    fn check_groove_z(&self, key: &str, bearing: Option<&Bearing>, problems: &mut Problems) -> f64 {
+        let Some(groove_z) = &self.groove_z else {
+            return 0.0;
+        };
+        problems.require(
+            bearing.is_none_or(|b| groove_z.si().abs() <= 10.0 * b.width),
+            &format!("{key}.groove_z"),
+            groove_z,
+            "that is more than ten bearing widths from the origin of the mesh, check its unit",
+        );
+        groove_z.si()
+    }
+}

@@ -1,0 +1,162 @@
+//! `[shaft]`: which motions of the inner ring's shaft are free, locked or prescribed, and where forces act.
+//!
+//! Motions are of the axis point in the plane of the inner groove centres, from the state where all balls
+//! just touch both raceways. Axis z is axial, + is the direction of preload; tilts are rotations about x and
+//! y.
+
+use std::fmt;
+
+use serde::Deserialize;
+use serde::de::{Deserializer, Error, Visitor};
+
+use super::bearing::Bearing;
+use super::problems::Problems;
+use crate::units::{ANGLE, LENGTH, Quantity, bare_number};
+
+/// As typed.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields, expecting = "the table [shaft]")]
+pub struct RawShaft {
+    x: RawMotion<LENGTH>,
+    y: RawMotion<LENGTH>,
+    z: RawMotion<LENGTH>,
+    tilt_x: RawMotion<ANGLE>,
+    tilt_y: RawMotion<ANGLE>,
+    load_point: Quantity<LENGTH>,
+}
+
+/// As typed: `"free"`, `"locked"` or a value.
+#[derive(Debug)]
+enum RawMotion<const KIND: usize> {
+    Free,
+    Locked,
+    Prescribed(Quantity<KIND>),
+}
+
+/// One degree of freedom of the shaft.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Motion {
+    /// It follows from equilibrium.
+    Free,
+    /// It is zero.
+    Locked,
+    /// It has this value, m or rad.
+    Prescribed(f64),
+}
+
+/// The rigid shaft that carries the inner ring.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Shaft {
+    /// Displacement along x.
+    pub x: Motion,
+    /// Displacement along y.
+    pub y: Motion,
+    /// Displacement along z, + = the direction of preload.
+    pub z: Motion,
+    /// Rotation about x.
+    pub tilt_x: Motion,
+    /// Rotation about y.
+    pub tilt_y: Motion,
+    /// Axial distance from the plane of the inner groove centres to the point where forces act, m, + along z.
+    pub load_point: f64,
+}
+
+/// Rotations are small: beyond this the linear kinematics of the shaft is off by more than 0.2 %, rad.
+const MAX_TILT: f64 = 0.05;
+/// Load points farther away than this many outside diameters are slips of the unit.
+const MAX_LOAD_POINT: f64 = 100.0;
+
+impl RawShaft {
+    /// Checks prescribed values, against the size of the bearing when that is sound.
+    pub fn check(&self, bearing: Option<&Bearing>, problems: &mut Problems) -> Shaft {
+        for (key, motion) in [("shaft.x", &self.x), ("shaft.y", &self.y), ("shaft.z", &self.z)] {
+            if let RawMotion::Prescribed(value) = motion {
+                let small = bearing.is_none_or(|b| value.si().abs() <= 0.5 * b.ball_diameter);
+                problems.require(
+                    small,
+                    key,
+                    value,
+                    "a prescribed displacement must be less than a ball radius",
+                );
+            }
+        }
+        for (key, motion) in [("shaft.tilt_x", &self.tilt_x), ("shaft.tilt_y", &self.tilt_y)] {
+            if let RawMotion::Prescribed(value) = motion {
+                let small = value.si().abs() <= MAX_TILT;
+                problems.require(
+                    small,
+                    key,
+                    value,
+                    "a prescribed tilt must be small, at most 50 mrad",
+                );
+            }
+        }
+        problems.require(
+            bearing.is_none_or(|b| self.load_point.si().abs() <= MAX_LOAD_POINT * b.outside_diameter),
+            "shaft.load_point",
+            &self.load_point,
+            "that is more than 100 outside diameters from the bearing, check its unit",
+        );
+        Shaft {
+            x: self.x.motion(),
+            y: self.y.motion(),
+            z: self.z.motion(),
+            tilt_x: self.tilt_x.motion(),
+            tilt_y: self.tilt_y.motion(),
+            load_point: self.load_point.si(),
+        }
+    }
+}
+
+impl<const KIND: usize> RawMotion<KIND> {
+    fn motion(&self) -> Motion {
+        match self {
+            RawMotion::Free => Motion::Free,
+            RawMotion::Locked => Motion::Locked,
+            RawMotion::Prescribed(value) => Motion::Prescribed(value.si()),
+        }
+    }
+
+    fn expected() -> String {
+        format!("\"free\", \"locked\" or {}", Quantity::<KIND>::KIND.expected())
+    }
+}
+
+impl<'de, const KIND: usize> Deserialize<'de> for RawMotion<KIND> {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct MotionVisitor<const KIND: usize>;
+
+        impl<const KIND: usize> Visitor<'_> for MotionVisitor<KIND> {
+            type Value = RawMotion<KIND>;
+
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str(&RawMotion::<KIND>::expected())
+            }
+
+            fn visit_str<E: Error>(self, text: &str) -> Result<Self::Value, E> {
+                let expected = RawMotion::<KIND>::expected();
+                let starts_as_word = text.chars().next().is_none_or(char::is_alphabetic);
+                match text {
+                    "free" => Ok(RawMotion::Free),
+                    "locked" => Ok(RawMotion::Locked),
+                    _ if starts_as_word => Err(E::custom(format!(
+                        "{text:?} is no state of a shaft motion; expected {expected}"
+                    ))),
+                    _ => Quantity::parse_expecting(text, &expected)
+                        .map(RawMotion::Prescribed)
+                        .map_err(E::custom),
+                }
+            }
+
+            fn visit_f64<E: Error>(self, value: f64) -> Result<Self::Value, E> {
+                Err(E::custom(bare_number(value, &RawMotion::<KIND>::expected())))
+            }
+
+            fn visit_i64<E: Error>(self, value: i64) -> Result<Self::Value, E> {
+                Err(E::custom(bare_number(value, &RawMotion::<KIND>::expected())))
+            }
+        }
+
+        deserializer.deserialize_any(MotionVisitor)
+    }
+}

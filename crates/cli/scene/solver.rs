@@ -1,0 +1,57 @@
+//! `[solver]`: how the equations are solved.
+
+use serde::Deserialize;
+
+use super::problems::Problems;
+
+/// As typed.
+#[derive(Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields, expecting = "the table [solver]")]
+pub struct RawSolver {
+    backend: Option<Backend>,
+    tolerance: Option<f64>,
+    max_iterations: Option<i64>,
+}
+
+/// Solver of the linear systems of the rings.
+#[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq)]
+#[serde(rename_all = "snake_case")]
+pub enum Backend {
+    /// Sparse Cholesky factorisation of each ring.
+    Sparse,
+}
+
+/// How the equations are solved.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Solver {
+    /// Linear solver.
+    pub backend: Backend,
+    /// Newton stops when the residual is below this part of the loads, dimensionless.
+    pub tolerance: f64,
+    /// Newton iterations before a solution counts as failed.
+    pub max_iterations: usize,
+}
+
+/// Two digits above the round-off of the contact equations.
+const DEFAULT_TOLERANCE: f64 = 1e-10;
+/// Newton needs 2 to 6 iterations; many more only in line searches from a bad start.
+const DEFAULT_MAX_ITERATIONS: i64 = 50;
+
+impl RawSolver {
+    /// Checks ranges and fills in defaults.
+    pub fn check(&self, problems: &mut Problems) -> Solver {
+        let tolerance = self.tolerance.unwrap_or(DEFAULT_TOLERANCE);
+        problems.require(
+            (1e-14..=1e-2).contains(&tolerance),
+            "solver.tolerance",
+            tolerance,
+            "expected 1e-14 to 1e-2, it is relative to the loads",
+        );
+        let max_iterations = self.max_iterations.unwrap_or(DEFAULT_MAX_ITERATIONS);
+        Solver {
+            backend: self.backend.unwrap_or(Backend::Sparse),
+            tolerance,
+            max_iterations: problems.whole(max_iterations, "solver.max_iterations", 1, 10_000),
+        }
+    }
+}

@@ -1,0 +1,206 @@
+//! `[static]` or `[sweep]`: what is computed.
+//!
+//! A sweep solves the same scene for a list of values of one key, each from the solution before it. Every
+//! point is a scene of its own: the text with the key replaced and `[sweep]` turned into `[static]`.
+
+use std::fmt;
+
+use serde::Deserialize;
+use serde::de::{Deserializer, Error, Visitor};
+use toml_edit::{DocumentMut, Value};
+
+use super::edit;
+use super::problems::Problems;
+use crate::units::{AnyQuantity, Dimension, kind_of_dimension};
+
+/// As typed: the table has no keys.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields, expecting = "the empty table [static]")]
+pub struct RawStatic {}
+
+/// As typed.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields, expecting = "the table [sweep]")]
+pub struct RawSweep {
+    key: String,
+    values: Option<Vec<RawValue>>,
+    from: Option<RawValue>,
+    to: Option<RawValue>,
+    steps: Option<i64>,
+}
+
+/// As typed: a quantity in quotes or a pure number.
+#[derive(Clone, Debug)]
+struct RawValue {
+    /// SI, or the number itself.
+    si: f64,
+    dimension: Dimension,
+    /// How it is put into the scene of its point.
+    toml: Value,
+}
+
+/// What is computed.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Analysis {
+    /// One static equilibrium.
+    Static,
+    /// Static equilibria along a list of values of one key.
+    Sweep(Sweep),
+}
+
+/// Values of one key.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Sweep {
+    /// Dotted path of the key in the scene.
+    pub key: String,
+    /// Name of its column in a table, with the SI unit: `effects.axial_force.value_n`.
+    pub column: String,
+    /// In the order they are solved.
+    pub points: Vec<SweepPoint>,
+}
+
+/// One point of a sweep.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SweepPoint {
+    /// The swept value, SI.
+    pub value: f64,
+    /// The scene of this point, a static one.
+    pub text: String,
+}
+
+/// Longer sweeps are slips of the keyboard.
+const MAX_STEPS: i64 = 10_000;
+
+impl RawSweep {
+    /// Checks the list and writes the scenes of its points; `document` is the scene as typed.
+    pub fn check(&self, document: &DocumentMut, problems: &mut Problems) -> Option<Sweep> {
+        let values = self.list(problems)?;
+        let first = values.first()?;
+        let dimension = first.dimension;
+        if let Some(i) = values.iter().position(|v| v.dimension != dimension) {
+            problems.add(format!(
+                "sweep.values[{i}] is {} while sweep.values[0] is {}; all must be of the same kind",
+                values[i].toml.to_string().trim(),
+                first.toml.to_string().trim()
+            ));
+            return None;
+        }
+        let root = self.key.split('.').next().unwrap_or("");
+        if matches!(root, "sweep" | "static" | "title" | "output" | "") || !self.key.contains('.') {
+            problems.add(format!(
+                "sweep.key is {:?}; expected the path of a number in the scene such as \"effects.axial_force.value\"",
+                self.key
+            ));
+            return None;
+        }
+        let suffix = kind_of_dimension(dimension).map_or("", |k| k.column_suffix);
+        let mut points = Vec::with_capacity(values.len());
+        for value in &values {
+            match edit::point_text(document, &self.key, value.toml.clone()) {
+                Ok(text) => points.push(SweepPoint {
+                    value: value.si,
+                    text,
+                }),
+                Err(reason) => {
+                    problems.add(format!("sweep.key is {:?}; {reason}", self.key));
+                    return None;
+                }
+            }
+        }
+        Some(Sweep {
+            key: self.key.clone(),
+            column: format!("{}{suffix}", self.key),
+            points,
+        })
+    }
+
+    /// Either the typed values or equal steps from the first to the last.
+    fn list(&self, problems: &mut Problems) -> Option<Vec<RawValue>> {
+        match (&self.values, &self.from, &self.to, self.steps) {
+            (Some(values), None, None, None) => {
+                if values.is_empty() {
+                    problems.add("sweep.values is empty; expected at least one value");
+                }
+                Some(values.clone())
+            }
+            (None, Some(from), Some(to), Some(steps)) => {
+                let before = problems.len();
+                let n = problems.whole(steps, "sweep.steps", 1, MAX_STEPS);
+                if from.dimension != to.dimension {
+                    problems.add(
+                        "sweep.from and sweep.to are of different kinds; expected the same such as \"0 kN\" \
+ and \"3 kN\"",
+                    );
+                }
+                (problems.len() == before).then(|| equal_steps(from, to, n))
+            }
+            _ => {
+                problems.add(
+                    "sweep needs either values, a list, or all three of from, to and steps (the number of intervals)",
+                );
+                None
+            }
+        }
+    }
+}
+
+/// n intervals, so n + 1 values; the ends are kept as typed.
+fn equal_steps(from: &RawValue, to: &RawValue, n: usize) -> Vec<RawValue> {
+    let between = |i: usize| {
+        let si = from.si + (to.si - from.si) * (i as f64 / n as f64);
+        let toml = match kind_of_dimension(from.dimension) {
+            Some(kind) if !kind.si_unit.is_empty() => Value::from(kind.format_si(si)),
+            _ => Value::from(si),
+        };
+        RawValue {
+            si,
+            dimension: from.dimension,
+            toml,
+        }
+    };
+    let mut values = vec![from.clone()];
+    values.extend((1..n).map(between));
+    values.push(to.clone());
+    values
+}
+
+impl<'de> Deserialize<'de> for RawValue {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct ValueVisitor;
+
+        impl Visitor<'_> for ValueVisitor {
+            type Value = RawValue;
+
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str("a quantity such as \"2 kN\" or a number")
+            }
+
+            fn visit_str<E: Error>(self, text: &str) -> Result<RawValue, E> {
+                let AnyQuantity { si, dimension } = text.parse().map_err(E::custom)?;
+                Ok(RawValue {
+                    si,
+                    dimension,
+                    toml: Value::from(text),
+                })
+            }
+
+            fn visit_f64<E: Error>(self, value: f64) -> Result<RawValue, E> {
+                Ok(RawValue {
+                    si: value,
+                    dimension: [0.0; 4],
+                    toml: Value::from(value),
+                })
+            }
+
+            fn visit_i64<E: Error>(self, value: i64) -> Result<RawValue, E> {
+                Ok(RawValue {
+                    si: value as f64,
+                    dimension: [0.0; 4],
+                    toml: Value::from(value),
+                })
+            }
+        }
+
+        deserializer.deserialize_any(ValueVisitor)
+    }
+}

@@ -1,0 +1,378 @@
+//! Scenes whose values make no sense, and the essential parts of their messages.
+
+use super::{Case, EXAMPLE, Scene, assert_messages, message_of, with_line, without_table};
+
+/// Values that make no sense.
+const INVALID: [Case; 50] = [
+    (
+        "ball_diameter",
+        "ball_diameter = \"-9 mm\"",
+        &["bearing.ball_diameter is -9 mm; a diameter must be positive"],
+    ),
+    (
+        "ball_diameter",
+        "ball_diameter = \"0 mm\"",
+        &["bearing.ball_diameter is 0 mm; a diameter must be positive"],
+    ),
+    (
+        "ball_diameter",
+        "ball_diameter = \"9 km\"",
+        &["bearing.ball_diameter is 9 km; check its unit, expected 10 um to 100 m"],
+    ),
+    (
+        "width",
+        "width = \"-16 mm\"",
+        &["bearing.width is -16 mm; a width must be positive"],
+    ),
+    (
+        "width",
+        "width = \"8 mm\"",
+        &["bearing.width is 8 mm; it must be at least the ball diameter 9 mm"],
+    ),
+    (
+        "balls",
+        "balls = 2",
+        &["bearing.balls is 2; expected a whole number from 3 to 1000"],
+    ),
+    (
+        "balls",
+        "balls = -18",
+        &["bearing.balls is -18; expected a whole number from 3 to 1000"],
+    ),
+    (
+        "balls",
+        "balls = 23",
+        &["bearing.balls is 23; the balls overlap on the pitch circle of 65.0235 mm, at most 22 of 9 mm fit"],
+    ),
+    (
+        "inner_groove",
+        "inner_groove_radius = \"4.5 mm\"",
+        &[
+            "bearing.inner_groove_radius is 4.5 mm; it must be more than the ball radius 4.5 mm, 0.515 to 0.53",
+        ],
+    ),
+    (
+        "outer_groove",
+        "outer_groove_radius = \"4.4 mm\"",
+        &["bearing.outer_groove_radius is 4.4 mm; it must be more than the ball radius"],
+    ),
+    (
+        "outer_groove",
+        "outer_groove_radius = \"6 mm\"",
+        &["bearing.outer_groove_radius is 6 mm; that is 0.667 of the ball diameter, more than 0.6"],
+    ),
+    (
+        "inner_raceway",
+        "inner_raceway_diameter = \"74.1 mm\"",
+        &[
+            "bearing.inner_raceway_diameter is 74.1 mm; it must be less than bearing.outer_raceway_diameter, which is 74.037 mm",
+        ],
+    ),
+    (
+        "inner_raceway",
+        "inner_raceway_diameter = \"57 mm\"",
+        &[
+            "the diametral clearance -0.9630 mm",
+            "the groove distance 0.4000 mm",
+            "a negative clearance has no state where",
+        ],
+    ),
+    (
+        "outer_raceway",
+        "outer_raceway_diameter = \"75 mm\"",
+        &[
+            "the diametral clearance 0.9900 mm",
+            "is -0.2375; the balls would touch at 90 degrees or not at all",
+        ],
+    ),
+    (
+        "bore",
+        "bore_diameter = \"57 mm\"",
+        &[
+            "bearing.bore_diameter is 57 mm; it must be less than bearing.inner_raceway_diameter, which is 56.01 mm",
+        ],
+    ),
+    (
+        "outside",
+        "outside_diameter = \"74 mm\"",
+        &[
+            "bearing.outer_raceway_diameter is 74.037 mm; it must be less than bearing.outside_diameter, which is 74 mm",
+        ],
+    ),
+    (
+        "young",
+        "young_modulus = \"207 Pa\"",
+        &["materials.rings.young_modulus is 207 Pa; expected 1 kPa to 10 TPa"],
+    ),
+    (
+        "young",
+        "young_modulus = \"207 TPa\"",
+        &["materials.rings.young_modulus is 207 TPa; expected 1 kPa to 10 TPa"],
+    ),
+    (
+        "poisson",
+        "poisson_ratio = 0.5",
+        &["materials.rings.poisson_ratio is 0.5; expected 0 to 0.49"],
+    ),
+    (
+        "poisson",
+        "poisson_ratio = -0.1",
+        &["materials.rings.poisson_ratio is -0.1; expected 0 to 0.49"],
+    ),
+    (
+        "poisson",
+        "poisson_ratio = nan",
+        &["materials.rings.poisson_ratio is NaN; expected 0 to 0.49"],
+    ),
+    (
+        "poisson",
+        "poisson_ratio = 0.4999",
+        &["materials.rings.poisson_ratio is 0.4999; displacement elements lock above 0.49"],
+    ),
+    (
+        "density",
+        "density = \"7.8 mg/m3\"",
+        &["materials.rings.density is 7.8 mg/m3; expected 1 kg/m3 to 1e5 kg/m3"],
+    ),
+    (
+        "inner_stiffness",
+        "inner_stiffness = \"-1 N/mm^1.5\"",
+        &["contact.inner_stiffness is -1 N/mm^1.5; a stiffness must be positive"],
+    ),
+    (
+        "outer_stiffness",
+        "outer_stiffness = \"8.09e5 N/m^1.5\"",
+        &[
+            "contact.outer_stiffness is 8.09e5 N/m^1.5; that is 7.5e-5 times E* sqrt(ball_diameter), check its unit",
+        ],
+    ),
+    (
+        "patch_elements",
+        "patch_elements = 0",
+        &["contact.patch_elements is 0; expected 0.5 to 20 element sizes"],
+    ),
+    (
+        "patch_elements",
+        "patch_elements = inf",
+        &["contact.patch_elements is inf; expected 0.5 to 20 element sizes"],
+    ),
+    (
+        "mode",
+        "mode = \"rigid\"",
+        &[
+            "2 problems",
+            "inner.flexible is true but contact.mode is \"rigid\"; set inner.flexible = false, or contact.mode = \"patch\"",
+            "outer.flexible is true (the default) but contact.mode is \"rigid\"; set outer.flexible = false",
+        ],
+    ),
+    (
+        "mesh =",
+        "",
+        &["inner.mesh is missing; a flexible ring needs a mesh file, or set inner.flexible = false"],
+    ),
+    (
+        "mesh_unit",
+        "",
+        &["inner.mesh_unit is missing; a flexible ring needs the unit of its mesh such as \"mm\""],
+    ),
+    (
+        "mesh_unit",
+        "mesh_unit = \"N\"",
+        &["inner.mesh_unit: \"N\" is a force; expected a unit of length such as \"mm\""],
+    ),
+    (
+        "support",
+        "",
+        &[
+            "inner.support is missing; a flexible ring needs to know how its bore is held, \"clamped\" or \"mean_motion\"",
+        ],
+    ),
+    (
+        "groove_z",
+        "groove_z = \"8 m\"",
+        &["inner.groove_z is 8 m; that is more than ten bearing widths"],
+    ),
+    (
+        "sectors",
+        "sectors = 100",
+        &["inner.section.sectors is 100; it must be a multiple of the 18 balls, such as 90 or 108, so that"],
+    ),
+    (
+        "sectors",
+        "sectors = 5",
+        &["inner.section.sectors is 5; it must be a multiple of the 18 balls, such as 18, so"],
+    ),
+    (
+        "groove_elements",
+        "groove_elements = 0",
+        &["inner.section.groove_elements is 0; expected a whole number from 2 to 1000"],
+    ),
+    (
+        "grading",
+        "grading = 0.2",
+        &["inner.section.grading is 0.2; expected 1 (uniform) to 3"],
+    ),
+    (
+        "shoulder_diameters",
+        "shoulder_diameters = [\"56 mm\", \"60.4 mm\"]",
+        &[
+            "inner.section.shoulder_diameters[0] is 56 mm; a shoulder must lie between the bottom and the centre of the \
+         groove, 56.01 mm to 65.31 mm",
+        ],
+    ),
+    (
+        "z =",
+        "z = \"12 mm\"",
+        &["shaft.z is 12 mm; a prescribed displacement must be less than a ball radius"],
+    ),
+    (
+        "tilt_y",
+        "tilt_y = \"5 deg\"",
+        &["shaft.tilt_y is 5 deg; a prescribed tilt must be small, at most 50 mrad"],
+    ),
+    (
+        "load_point",
+        "load_point = \"20 m\"",
+        &["shaft.load_point is 20 m; that is more than 100 outside diameters"],
+    ),
+    (
+        "value = \"2 kN\"",
+        "value = \"2 TN\"",
+        &["effects.axial_force.value is 2 TN; that is more than any bearing carries"],
+    ),
+    (
+        "acceleration",
+        "acceleration = \"-9.81 m/s2\"",
+        &["effects.gravity.acceleration is -9.81 m/s2; expected 0 to 1e7 m/s2"],
+    ),
+    (
+        "direction = [",
+        "direction = [0.0, 0.0, 0.0]",
+        &[
+            "effects.gravity.direction is [0.0, 0.0, 0.0]; expected a vector with a direction such as [0.0, -1.0, 0.0]",
+        ],
+    ),
+    (
+        "tolerance",
+        "tolerance = 1.0",
+        &["solver.tolerance is 1; expected 1e-14 to 1e-2, it is relative to the loads"],
+    ),
+    (
+        "max_iterations",
+        "max_iterations = 0",
+        &["solver.max_iterations is 0; expected a whole number from 1 to 10000"],
+    ),
+    (
+        "compression",
+        "compression = 12",
+        &["output.compression is 12; expected a whole number from 0 to 9"],
+    ),
+    (
+        "[sweep]",
+        "[static]\n[sweep]",
+        &["the scene has both [static] and [sweep]; keep exactly one analysis"],
+    ),
+    (
+        "values",
+        "values = []",
+        &["sweep.values is empty; expected at least one value"],
+    ),
+    (
+        "values",
+        "values = [\"0 kN\", 3]",
+        &["sweep.values[1] is 3 while sweep.values[0] is \"0 kN\"; all must be of the same kind"],
+    ),
+];
+
+/// If this failed, a bearing that cannot exist would be solved, or the message would not name key, value and
+/// rule.
+#[test]
+fn values_that_make_no_sense_are_refused_with_key_value_and_rule() {
+    assert_messages(&INVALID);
+}
+
+/// If this failed, one slip would drown in messages about its consequences, so that nobody finds it.
+#[test]
+fn one_slip_gives_one_problem() {
+    for (line, replacement, parts) in &INVALID {
+        let message = message_of(&with_line(line, replacement), &[]);
+        let several = message.contains(" problems:");
+        assert_eq!(several, parts[0] == "2 problems", "{replacement}: {message}");
+    }
+}
+
+/// If this failed, the user would have to run the program once per mistake.
+#[test]
+fn all_problems_are_reported_together() {
+    let text = with_line("poisson", "poisson_ratio = 0.7").replace("balls = 18", "balls = 1");
+    let text = text
+        .replace("compression = 0", "compression = 99")
+        .replace("support = \"clamped\"", "");
+    let message = message_of(&text, &[]);
+    assert!(
+        message.starts_with("scenes/test.toml has 5 problems:\n  bearing.balls is 1"),
+        "{message}"
+    );
+    for key in [
+        "materials.rings.poisson_ratio",
+        "inner.support",
+        "outer.support",
+        "output.compression",
+    ] {
+        assert!(message.contains(&format!("\n  {key} is ")), "{key}: {message}");
+    }
+}
+
+/// If this failed, an unloaded free shaft would be iterated to infinity instead of being refused.
+#[test]
+fn a_shaft_free_along_its_axis_needs_a_preload() {
+    let no_gravity = without_table("[effects.gravity]");
+    let unloaded = no_gravity
+        .replace("[effects.axial_force]", "")
+        .replace("value = \"2 kN\"", "");
+    let message = message_of(&unloaded, &[]);
+    assert!(
+        message.contains("shaft.z is \"free\" but there is no [effects.axial_force]; "),
+        "{message}"
+    );
+    let message = message_of(&no_gravity.replace("\"2 kN\" ", "\"-2 kN\""), &[]);
+    assert!(
+        message.contains("effects.axial_force.value is -2 kN while shaft.z is \"free\""),
+        "{message}"
+    );
+}
+
+/// If this failed, sections whose shoulders run into each other would be meshed.
+#[test]
+fn shoulders_of_both_rings_must_leave_a_gap() {
+    let section = "element = \"hex8\"\nsectors = 18\ngroove_elements = 4\nthickness_elements = 2\nshoulder_elements = 2\n";
+    let inner = with_line(
+        "shoulder_diameters",
+        "shoulder_diameters = [\"60.4 mm\", \"65 mm\"]",
+    );
+    let text = format!("{inner}\n[outer.section]\nshoulder_diameters = [\"68 mm\", \"64.8 mm\"]\n{section}");
+    let message = message_of(&text, &[]);
+    let expected = "inner.section.shoulder_diameters[1] is 65 mm; it must be less than \
+                    outer.section.shoulder_diameters[1], which is 64.8 mm, or the rings touch";
+    assert!(message.contains(expected), "{message}");
+}
+
+/// If this failed, a wrong path would surface after minutes of set-up, without the place that was looked at.
+#[test]
+fn a_missing_mesh_is_reported_as_typed_and_as_resolved() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("scene.toml");
+    std::fs::write(&path, EXAMPLE).unwrap();
+    let message = Scene::load(&path, &[]).unwrap_err().to_string();
+    let resolved = folder.path().join("../meshes/7010c_inner.msh");
+    let expected = format!(
+        "inner.mesh is \"../meshes/7010c_inner.msh\", but there is no file {}; build it with \"raceway mesh\" or \
+         correct the path",
+        resolved.display()
+    );
+    assert!(message.contains(&expected), "{message}");
+    assert!(
+        message.contains("outer.mesh is \"../meshes/7010c_outer.msh\""),
+        "{message}"
+    );
+}

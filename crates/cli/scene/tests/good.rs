@@ -1,0 +1,167 @@
+//! Scenes that must be read, and what they say.
+
+use super::*;
+
+/// If this failed, the documentation would show a scene that the program refuses or reads as something else.
+#[test]
+fn the_example_of_the_documentation_reads_as_it_says() {
+    let scene = parse(EXAMPLE, &[]).unwrap();
+    let b = scene.bearing;
+    assert_eq!(
+        (b.balls, b.ball_diameter, b.inner_raceway_diameter),
+        (18, 9e-3, 56.01e-3)
+    );
+    assert_eq!(
+        (b.outer_raceway_diameter, b.bore_diameter, b.outside_diameter),
+        (74.037e-3, 50e-3, 80e-3)
+    );
+    assert_eq!(
+        (b.inner_groove_radius, b.outer_groove_radius, b.width),
+        (4.65e-3, 4.75e-3, 16e-3)
+    );
+    let steel = Material {
+        young_modulus: 207e9,
+        poisson_ratio: 0.3,
+        density: 7800.0,
+    };
+    assert_eq!(
+        scene.materials,
+        Materials {
+            rings: steel,
+            balls: steel
+        }
+    );
+    assert_eq!(scene.contact.mode, ContactMode::Patch);
+    assert_eq!(scene.shaft.z, Motion::Free);
+    assert_eq!(scene.shaft.tilt_x, Motion::Locked);
+    assert_eq!(
+        scene.effects.radial_force,
+        Some(RadialForce {
+            value: 1e3,
+            direction: 0.0
+        })
+    );
+    assert_eq!(scene.effects.moment, Some([0.0, 3.0]));
+    assert_eq!(scene.effects.gravity, Some([0.0, -9.81, 0.0]));
+    assert_eq!(scene.text, EXAMPLE);
+    let inner = scene.inner.body.unwrap();
+    assert_eq!(inner.mesh, Path::new("scenes/../meshes/7010c_inner.msh"));
+    assert_eq!(
+        (inner.mesh_unit, inner.support, inner.groove_z),
+        (1e-3, Support::Clamped, 0.0)
+    );
+    let section = scene.inner.section.unwrap();
+    assert_eq!(
+        (section.element, section.sectors, section.grading),
+        (SectionElement::Hex20, 180, 1.2)
+    );
+    assert_eq!(section.shoulder_diameters, [60.4e-3, 60.4e-3]);
+}
+
+/// If this failed, a short scene would not be read, or a default would differ from what the example states.
+#[test]
+fn what_is_optional_may_be_left_out() {
+    let mut text = EXAMPLE.to_string();
+    for line in [
+        "title",
+        "first_ball",
+        "inner_stiffness",
+        "outer_stiffness",
+        "patch_elements",
+        "groove_z",
+        "flexible",
+        "grading",
+        "backend",
+        "tolerance",
+        "max_iterations",
+        "stress",
+        "precision",
+        "compression",
+        "[solver]",
+        "[output]",
+    ] {
+        let old = text.lines().find(|l| l.starts_with(line)).unwrap().to_string();
+        text = text.replacen(&old, "", 1);
+    }
+    let short = parse(&text, &[]).unwrap();
+    let long = parse(EXAMPLE, &[]).unwrap();
+    assert_eq!(
+        short.contact,
+        Contact {
+            inner_stiffness: None,
+            outer_stiffness: None,
+            ..long.contact
+        }
+    );
+    assert_eq!((short.solver, short.output), (long.solver, long.output));
+    assert_eq!((short.inner.body, short.bearing), (long.inner.body, long.bearing));
+    assert_eq!(short.inner.section.map(|s| s.grading), Some(1.0));
+}
+
+/// If this failed, the Jones-Harris limit could not be run without meshes.
+#[test]
+fn rigid_rings_need_no_tables_beyond_the_switch() {
+    let text = without_table("[inner.section]").replace("mode = \"patch\"", "mode = \"rigid\"");
+    let text = text
+        .replace("flexible = true", "flexible = false")
+        .replace("[outer]", "[outer]\nflexible = false");
+    let scene = parse(&text, &[]).unwrap();
+    assert_eq!((scene.inner.body, scene.outer.body), (None, None));
+    assert_eq!(scene.contact.mode, ContactMode::Rigid);
+    let mixed = parse(&text.replace("mode = \"rigid\"", "mode = \"patch\""), &[]).unwrap();
+    assert_eq!((mixed.inner.body, mixed.outer.body), (None, None));
+}
+
+/// If this failed, prescribed motions, that is displacement-controlled scenes, would not reach the solver.
+#[test]
+fn a_prescribed_motion_keeps_its_value() {
+    let scene = parse(
+        EXAMPLE,
+        &["shaft.z=12 um", "shaft.tilt_y=-0.1 mrad", "shaft.x=locked"],
+    )
+    .unwrap();
+    assert_eq!(scene.shaft.z, Motion::Prescribed(12e-6));
+    assert_eq!(scene.shaft.tilt_y, Motion::Prescribed(-1e-4));
+    assert_eq!(scene.shaft.x, Motion::Locked);
+}
+
+/// If this failed, a bearing without clearance (deep groove, contact angle 0) would be refused because of
+/// round-off.
+#[test]
+fn zero_clearance_is_accepted() {
+    let scene = parse(EXAMPLE, &["bearing.outer_raceway_diameter=74.01 mm"]).unwrap();
+    assert!(
+        scene.bearing.clearance().abs() < 1e-16,
+        "{}",
+        scene.bearing.clearance()
+    );
+}
+
+/// If this failed, a reference case delivered with the program would not run, or not solve what its name
+/// says.
+#[test]
+fn the_delivered_scenes_are_valid() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes");
+    let expected = [
+        ("7010c_preload", 2e3, None, 0, Motion::Locked),
+        ("7010c_radial_tilt_free", 2e3, Some(1e3), 0, Motion::Free),
+        ("7010c_radial_tilt_locked", 2e3, Some(1e3), 0, Motion::Locked),
+        ("7010c_preload_sweep", 2e3, None, 11, Motion::Locked),
+        ("7010c_radial_sweep", 2e3, Some(0.0), 7, Motion::Locked),
+        ("7010c_10kn_radial_sweep", 10e3, Some(0.0), 8, Motion::Locked),
+    ];
+    for (name, axial, radial, n_points, tilt) in expected {
+        let path = folder.join(format!("{name}.toml"));
+        let scene = Scene::load_with(&path, &[], MeshFiles::MayBeMissing).unwrap_or_else(|e| panic!("{e}"));
+        assert_eq!(scene.effects.axial_force, Some(axial), "{name}");
+        assert_eq!(scene.effects.radial_force.map(|f| f.value), radial, "{name}");
+        assert_eq!(scene.sweep_scenes().unwrap().len(), n_points, "{name}");
+        assert_eq!((scene.shaft.tilt_x, scene.shaft.tilt_y), (tilt, tilt), "{name}");
+        assert_eq!(scene.bearing, parse(EXAMPLE, &[]).unwrap().bearing, "{name}");
+        for (ring, mesh) in [(scene.inner, "7010c_inner.msh"), (scene.outer, "7010c_outer.msh")] {
+            let body = ring.body.unwrap_or_else(|| panic!("{name}: rigid"));
+            assert_eq!(body.mesh_as_typed, format!("../meshes/{mesh}"), "{name}");
+            assert_eq!(body.support, Support::Clamped, "{name}");
+        }
+    }
+}

@@ -1,0 +1,77 @@
+//! Tests of scene files.
+
+mod bad_format;
+mod bad_values;
+mod good;
+mod overrides;
+mod sweeps;
+
+use std::path::Path;
+
+use super::*;
+
+/// The example of the documentation: the scene all tests start from.
+const EXAMPLE: &str = include_str!("../example.toml");
+
+/// Parses a text as if it were `scenes/test.toml`, without looking for meshes.
+fn parse(text: &str, overrides: &[&str]) -> Result<Scene, SceneError> {
+    let overrides: Vec<String> = overrides.iter().map(|o| o.to_string()).collect();
+    Scene::parse(
+        text,
+        Path::new("scenes/test.toml"),
+        &overrides,
+        MeshFiles::MayBeMissing,
+    )
+}
+
+/// The example with the first line that starts with `line` replaced, comment and all.
+fn with_line(line: &str, replacement: &str) -> String {
+    let old = EXAMPLE.lines().find(|l| l.starts_with(line));
+    let old = old.unwrap_or_else(|| panic!("the example has no line that starts with {line:?}"));
+    EXAMPLE.replacen(old, replacement, 1)
+}
+
+/// The example without the table whose header is given, up to the next header.
+fn without_table(header: &str) -> String {
+    let mut inside = false;
+    let mut kept = String::new();
+    for line in EXAMPLE.lines() {
+        if line.starts_with('[') {
+            inside = line.starts_with(header);
+        }
+        if !inside {
+            kept += line;
+            kept.push('\n');
+        }
+    }
+    assert_ne!(kept, EXAMPLE, "the example has no table {header}");
+    kept
+}
+
+/// The message of a text that must not be accepted.
+fn message_of(text: &str, overrides: &[&str]) -> String {
+    match parse(text, overrides) {
+        Ok(_) => panic!("accepted with {overrides:?}:\n{text}"),
+        Err(error) => error.to_string(),
+    }
+}
+
+/// A line of the example (by its start), what it is replaced with, and what the message must contain.
+type Case = (&'static str, &'static str, &'static [&'static str]);
+
+/// Every case is refused with all parts of its message.
+fn assert_messages(cases: &[Case]) {
+    for (line, replacement, parts) in cases {
+        let message = message_of(&with_line(line, replacement), &[]);
+        assert!(
+            message.starts_with("scenes/test.toml"),
+            "{replacement}: {message}"
+        );
+        for part in *parts {
+            assert!(
+                message.contains(part),
+                "{replacement}: expected\n{part}\nin\n{message}"
+            );
+        }
+    }
+}

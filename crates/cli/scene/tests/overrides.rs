@@ -1,0 +1,118 @@
+//! Tests of `--set path=value`.
+
+use super::*;
+
+/// If this failed, `--set` would change another key, or not what is solved.
+#[test]
+fn an_override_replaces_exactly_its_key() {
+    let plain = parse(EXAMPLE, &[]).unwrap();
+    let set = parse(EXAMPLE, &["effects.axial_force.value=3 kN"]).unwrap();
+    assert_eq!(set.effects.axial_force, Some(3000.0));
+    let restored = Effects {
+        axial_force: Some(2000.0),
+        ..set.effects
+    };
+    assert_eq!(restored, plain.effects);
+    assert_eq!(set.bearing, plain.bearing);
+}
+
+/// If this failed, a checkpoint would record a text that is not the one that was solved.
+#[test]
+fn the_text_of_an_overridden_scene_reads_as_the_same_scene() {
+    let overrides = [
+        "effects.moment.x=2 N m",
+        "inner.flexible=false",
+        "title=a=b",
+        "output.compression = 3",
+    ];
+    let set = parse(EXAMPLE, &overrides).unwrap();
+    assert_eq!(parse(&set.text, &[]).unwrap(), set);
+    assert_eq!(set.title.as_deref(), Some("a=b"));
+    assert_eq!(set.output.compression, 3);
+    assert_eq!(set.inner.body, None);
+}
+
+/// If this failed, comments, and so the documentation of a study, would be lost, and line numbers would
+/// shift.
+#[test]
+fn an_override_keeps_comments_and_lines() {
+    let set = parse(EXAMPLE, &["bearing.balls=17", "inner.section.sectors=170"]).unwrap();
+    let changed: Vec<_> = EXAMPLE
+        .lines()
+        .zip(set.text.lines())
+        .filter(|(a, b)| a != b)
+        .collect();
+    let expected = [
+        ("balls = 18   ", "balls = 17   ", "# number of balls, 3 or more"),
+        (
+            "sectors = 180   ",
+            "sectors = 170   ",
+            "# elements round the ring, a multiple of balls",
+        ),
+    ];
+    assert_eq!(EXAMPLE.lines().count(), set.text.lines().count());
+    assert_eq!(changed.len(), expected.len(), "{changed:?}");
+    for ((old, new), (before, after, comment)) in changed.iter().zip(expected) {
+        assert!(
+            old.starts_with(before) && new.starts_with(after) && new.ends_with(comment),
+            "{old} | {new}"
+        );
+    }
+}
+
+/// If this failed, an effect could not be switched on from the command line.
+#[test]
+fn an_override_adds_missing_tables() {
+    let text = without_table("[effects.gravity]");
+    let set = [
+        "effects.gravity.acceleration=2 m/s2",
+        "effects.gravity.direction=[0.0, 3.0, 0.0]",
+    ];
+    let scene = parse(&text, &set).unwrap();
+    assert_eq!(scene.effects.gravity, Some([0.0, 2.0, 0.0]));
+    assert_eq!(parse(&scene.text, &[]).unwrap(), scene);
+}
+
+/// If this failed, a mistyped `--set` would be ignored without a word.
+#[test]
+fn bad_overrides_are_refused_with_their_text() {
+    let cases = [
+        (
+            "effects.axial_force",
+            "--set \"effects.axial_force\": expected path=value such as",
+        ),
+        (
+            "title.x=3",
+            "--set \"title.x=3\": title is a value, so it has no key \"x\"",
+        ),
+        (
+            "a..b=3",
+            "--set \"a..b=3\": \"a..b\" is no path of keys; expected one such as",
+        ),
+        (
+            "bearing.bals=17",
+            "unknown key \"bals\" in [bearing]; did you mean \"balls\"?",
+        ),
+        ("bearing.bals=17", "(with --set \"bearing.bals=17\")"),
+        (
+            "bearing=17",
+            "bearing: invalid type: integer `17`, expected the table [bearing]",
+        ),
+        (
+            "bearing.ball_diameter=9",
+            "bearing.ball_diameter: 9 is a number without a unit",
+        ),
+        (
+            "bearing.ball_diameter=9 N",
+            "bearing.ball_diameter: \"9 N\" is a force; expected a length",
+        ),
+        (
+            "bearing.balls=1",
+            "scenes/test.toml (with --set \"bearing.balls=1\") has a problem: bearing.balls is 1;",
+        ),
+    ];
+    for (argument, expected) in cases {
+        let message = message_of(EXAMPLE, &[argument]);
+        assert!(message.contains(expected), "{argument}: {message}");
+    }
+}

@@ -1,0 +1,160 @@
+//! A static equilibrium: displacements, forces, energies and the checks on them.
+
+use contact::Side;
+
+use crate::balls::{BallResult, ball_results};
+use crate::effects::Loads;
+use crate::equilibrium::centre_unloaded;
+use crate::footprint::Footprint;
+use crate::model::Model;
+use crate::problem::{Displacements, Problem, site_forces};
+
+/// A static equilibrium.
+pub struct StaticSolution {
+    /// Displacements of shaft, balls and groove centres.
+    pub displacements: Displacements,
+    /// Results of every ball.
+    pub balls: Vec<BallResult>,
+    /// Elastic nodal displacements of flexible rings relative to shaft or housing, m, `[n_nodes][3]` flat.
+    pub elastic: [Option<Vec<f64>>; 2],
+    /// Out-of-balance force on the shaft, N and N m, about its origin; zero on prescribed dofs.
+    pub shaft_residual: [f64; 5],
+    /// Force and moment that hold the prescribed dofs, N and N m.
+    pub shaft_reaction: [f64; 5],
+    /// Strain energy of the rings, J.
+    pub strain_energy: f64,
+    /// Energy of the local contacts (2/5 K d_e^2.5 - c_s Q^2/2), J.
+    pub hertz_energy: f64,
+    /// Loads times displacements, J: minus the loads' potential.
+    pub load_work: f64,
+    /// What is missing in the virtual work of all forces through the displacements, J: zero at equilibrium.
+    pub work_defect: f64,
+    /// Rounds of patch placement.
+    pub rounds: usize,
+    /// Newton iterations in all rounds.
+    pub newton_iterations: usize,
+    /// Warnings a user should read.
+    pub warnings: Vec<String>,
+    footprints: [Vec<Footprint>; 2],
+}
+
+/// Rings of a solution: elastic fields and the places of the contacts on them, inner first.
+pub struct RingFields {
+    /// Elastic nodal displacements, m; None for a rigid ring.
+    pub elastic: [Option<Vec<f64>>; 2],
+    /// Contacts by ball; empty for a rigid ring.
+    pub footprints: [Vec<Footprint>; 2],
+}
+
+impl StaticSolution {
+    /// Evaluates everything at the equilibrium `u`; `rounds` and `newton_iterations` say what it took.
+    pub fn new(
+        model: &Model,
+        problem: &Problem,
+        mut u: Displacements,
+        loads: &Loads,
+        rings: RingFields,
+        [rounds, newton_iterations]: [usize; 2],
+    ) -> StaticSolution {
+        centre_unloaded(problem, &mut u);
+        let (residual, reaction) = shaft_balance(problem, &u);
+        let forces = site_forces(problem, &u);
+        let body_work = body_work(loads, &rings);
+        let strain_energy = 0.5 * (ring_contact_work(&rings, &forces) + body_work);
+        let hertz_energy = problem.sites.iter().map(|s| s.state(&u).force.energy).sum();
+        let contact_work: f64 = problem.sites.iter().map(|s| s.work(&u)).sum();
+        let ball_work: f64 = loads.balls.iter().zip(&u.balls).map(|(f, x)| dot(f, x)).sum();
+        let load_work = ball_work + dot(&problem.shaft_load, &u.shaft) + body_work;
+        StaticSolution {
+            balls: ball_results(model, problem, &u),
+            work_defect: load_work + dot(&reaction, &u.shaft) - 2.0 * strain_energy - contact_work,
+            shaft_residual: residual,
+            shaft_reaction: reaction,
+            strain_energy,
+            hertz_energy,
+            load_work,
+            rounds,
+            newton_iterations,
+            warnings: edge_warnings(&rings.footprints, &forces),
+            displacements: u,
+            elastic: rings.elastic,
+            footprints: rings.footprints,
+        }
+    }
+
+    /// Semi-axes of the spread patches of one side, m, by ball; empty for a rigid ring or facets.
+    pub fn patch_axes(&self, side: Side) -> Vec<[f64; 2]> {
+        self.footprints[side.index()]
+            .iter()
+            .filter_map(|f| f.semi_axes)
+            .collect()
+    }
+}
+
+/// Contact forces times the elastic motion of the groove centres, J.
+fn ring_contact_work(rings: &RingFields, forces: &[[f64; 2]]) -> f64 {
+    let mut work = 0.0;
+    for side in Side::BOTH {
+        if let Some(field) = &rings.elastic[side.index()] {
+            for (ball, foot) in rings.footprints[side.index()].iter().enumerate() {
+                work += dot(&foot.weights.measure(field), &forces[2 * ball + side.index()]);
+            }
+        }
+    }
+    work
+}
+
+/// Body loads of the rings times their elastic displacements, J.
+fn body_work(loads: &Loads, rings: &RingFields) -> f64 {
+    let pairs = loads.rings.iter().zip(&rings.elastic);
+    pairs
+        .filter_map(|(load, field)| Some(dot(load.as_ref()?, field.as_ref()?)))
+        .sum()
+}
+
+/// Sum of contact and applied loads on the shaft: on free dofs a residual, on the others minus the reaction.
+fn shaft_balance(problem: &Problem, u: &Displacements) -> ([f64; 5], [f64; 5]) {
+    let mut sum = problem.shaft_load;
+    for site in problem.sites.iter().filter(|s| s.side == Side::Inner) {
+        let state = site.state(u);
+        for (total, row) in sum.iter_mut().zip(site.shaft_rows()) {
+            *total += state.force.force * dot(&row, &state.normal);
+        }
+    }
+    let pick = |free: bool| {
+        [0, 1, 2, 3, 4].map(|i| {
+            if problem.shaft_free[i] == free {
+                sum[i]
+            } else {
+                0.0
+            }
+        })
+    };
+    (pick(true), pick(false).map(|x| -x))
+}
+
+fn edge_warnings(footprints: &[Vec<Footprint>; 2], forces: &[[f64; 2]]) -> Vec<String> {
+    let mut warnings = Vec::new();
+    for side in Side::BOTH {
+        let loaded = |ball: usize| forces[2 * ball + side.index()] != [0.0; 2];
+        let truncated: Vec<String> = footprints[side.index()]
+            .iter()
+            .enumerate()
+            .filter(|(ball, f)| f.truncated && loaded(*ball))
+            .map(|(ball, _)| ball.to_string())
+            .collect();
+        if !truncated.is_empty() {
+            warnings.push(format!(
+                "edge contact on the {} raceway, balls {}: the Hertz ellipse reaches beyond the groove; \
+                 forces and pressures there are not valid",
+                side.name(),
+                truncated.join(", ")
+            ));
+        }
+    }
+    warnings
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(x, y)| x * y).sum()
+}

@@ -1,0 +1,89 @@
+//! The consistent mass matrix `M_ab = integral of rho N_a N_b`, times the identity of the three components.
+//!
+//! The rule integrates it exactly on every element, curved ones included ([`crate::quadrature::mass_rule`]).
+
+use mesh::Mesh;
+use sprs::CsMat;
+
+use crate::chunks::for_each_element;
+use crate::error::FemError;
+use crate::geometry::{checked_map, coordinates};
+use crate::material::Material;
+use crate::pattern::Pattern;
+use crate::quadrature;
+use crate::table::Table;
+
+/// The mass matrix of all degrees of freedom, kg, `[3 n_nodes][3 n_nodes]`, CSR, exactly symmetric.
+///
+/// It has the stiffness's pattern, with explicit zeros between components; [`assemble_node_mass`] is nine times smaller.
+pub fn assemble_mass(mesh: &Mesh, material: &Material) -> Result<CsMat<f64>, FemError> {
+    let pattern = Pattern::new(mesh)?;
+    let mut values = vec![0.0; pattern.n_values()];
+    assemble_mass_into(&pattern, mesh, material, &mut values)?;
+    Ok(pattern.matrix(values))
+}
+
+/// Overwrites `values` with the mass, kg, `[pattern.n_values()]`, in the layout of [`Pattern::matrix`].
+///
+/// # Panics
+/// If the pattern is not the mesh's or `values` has another length.
+pub fn assemble_mass_into(
+    pattern: &Pattern,
+    mesh: &Mesh,
+    material: &Material,
+    values: &mut [f64],
+) -> Result<(), FemError> {
+    assert_eq!(
+        pattern.n_values(),
+        values.len(),
+        "values must have the pattern's length"
+    );
+    let scalars = node_mass(pattern, mesh, material)?;
+    pattern.spread(&scalars, values);
+    Ok(())
+}
+
+/// The mass between nodes, m_ab, kg, `[n_nodes][n_nodes]`, CSR: the mass matrix is m_ab times the 3 x 3 identity.
+pub fn assemble_node_mass(
+    pattern: &Pattern,
+    mesh: &Mesh,
+    material: &Material,
+) -> Result<CsMat<f64>, FemError> {
+    Ok(pattern.node_matrix(node_mass(pattern, mesh, material)?))
+}
+
+/// Values of the mass between nodes, kg, one per pair of neighbours.
+fn node_mass(pattern: &Pattern, mesh: &Mesh, material: &Material) -> Result<Vec<f64>, FemError> {
+    assert_eq!(
+        pattern.n_nodes(),
+        mesh.n_nodes(),
+        "the pattern belongs to another mesh"
+    );
+    material.validate()?;
+    let table = Table::new(mesh.kind, &quadrature::mass_rule(mesh.kind));
+    let n = mesh.kind.n_nodes();
+    let compute = |e: usize, matrix: &mut [f64]| {
+        let x = coordinates(mesh, e);
+        matrix.fill(0.0);
+        for q in 0..table.n_points() {
+            let weight = material.density * table.weights[q] * checked_map(&table, q, &x, e)?.det;
+            let values = &table.values[q][..n];
+            for a in 0..n {
+                for b in a..n {
+                    matrix[a * n + b] += weight * (values[a] * values[b]);
+                }
+            }
+        }
+        for a in 0..n {
+            for b in 0..a {
+                matrix[a * n + b] = matrix[b * n + a];
+            }
+        }
+        Ok(())
+    };
+    let mut scalars = vec![0.0; pattern.n_pairs()];
+    for_each_element(mesh.n_elements(), n * n, compute, |e, matrix| {
+        pattern.add_scalars(e, mesh.element(e), matrix, &mut scalars);
+    })?;
+    Ok(scalars)
+}

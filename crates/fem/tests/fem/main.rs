@@ -1,0 +1,11 @@
+//! Tests of the finite elements: one binary, one file per subject.
+
+mod convergence;
+mod errors;
+mod loads;
+mod matrices;
+mod patch;
+mod reference;
+mod rings;
+mod stress;
+mod support;

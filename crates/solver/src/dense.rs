@@ -1,0 +1,221 @@
+//! Dense factorisations for the small systems of a step: contacts, balls, shaft; up to a few hundred rows.
+//!
+//! Sequential and deterministic. Matrices are row-major, `a[n * i + j]`; right-hand sides are column-major
+//! `[n][n_rhs]`, as in [`LinearSolver`]. Time n^3/3 (Cholesky) or 2 n^3/3 (LU), memory n^2.
+
+use faer::dyn_stack::{MemBuffer, MemStack};
+use faer::linalg::cholesky::llt;
+use faer::linalg::lu::partial_pivoting as lu;
+use faer::perm::PermRef;
+use faer::{Mat, MatMut, MatRef, Par};
+
+use crate::error::SolverError;
+use crate::linear_solver::LinearSolver;
+
+/// Smallest accepted pivot relative to the largest entry of its column in the row-scaled matrix, per row.
+const PIVOT_LIMIT_PER_ROW: f64 = f64::EPSILON;
+
+/// Cholesky factor of a dense symmetric positive definite matrix.
+#[derive(Clone, Debug)]
+pub struct DenseCholesky {
+    factor: Mat<f64>,
+}
+
+impl DenseCholesky {
+    /// Factors the symmetric positive definite matrix `a`, row-major `[n][n]`, of which the lower triangle is read.
+    /// The error names the row at which elimination breaks down.
+    ///
+    /// # Panics
+    /// When `a.len() != n * n`.
+    pub fn factor(n: usize, a: &[f64]) -> Result<Self, SolverError> {
+        check_dense(n, a)?;
+        let mut factor = MatRef::from_row_major_slice(a, n, n).to_owned();
+        let request = llt::factor::cholesky_in_place_scratch::<f64>(n, Par::Seq, Default::default());
+        let mut memory = MemBuffer::new(request);
+        let stack = MemStack::new(&mut memory);
+        llt::factor::cholesky_in_place(
+            factor.as_mut(),
+            Default::default(),
+            Par::Seq,
+            stack,
+            Default::default(),
+        )
+        .map_err(|llt::factor::LltError::NonPositivePivot { index }| {
+            SolverError::NotPositiveDefinite { row: index, n }
+        })?;
+        Ok(DenseCholesky { factor })
+    }
+
+    /// Inverse, row-major `[n][n]`, exactly symmetric.
+    pub fn inverse(&self) -> Vec<f64> {
+        let n = self.n();
+        let mut inverse = identity(n);
+        self.solve(&mut inverse, n);
+        for i in 0..n {
+            for j in 0..i {
+                let mean = 0.5 * (inverse[n * i + j] + inverse[n * j + i]);
+                (inverse[n * i + j], inverse[n * j + i]) = (mean, mean);
+            }
+        }
+        inverse
+    }
+}
+
+impl LinearSolver for DenseCholesky {
+    fn n(&self) -> usize {
+        self.factor.nrows()
+    }
+
+    fn solve(&self, rhs: &mut [f64], n_rhs: usize) {
+        let n = self.n();
+        assert_eq!(rhs.len(), n * n_rhs, "{n_rhs} right-hand sides of {n} rows");
+        let mut memory = MemBuffer::new(llt::solve::solve_in_place_scratch::<f64>(n, n_rhs, Par::Seq));
+        llt::solve::solve_in_place(
+            self.factor.as_ref(),
+            MatMut::from_column_major_slice_mut(rhs, n, n_rhs),
+            Par::Seq,
+            MemStack::new(&mut memory),
+        );
+    }
+
+    fn factor_bytes(&self) -> usize {
+        size_of::<f64>() * self.n() * self.n()
+    }
+
+    fn name(&self) -> &'static str {
+        "dense Cholesky"
+    }
+}
+
+/// LU factors, with row exchanges, of a dense matrix that need be neither symmetric nor definite.
+///
+/// Rows are scaled by powers of two first, so that rows in newton and rows in metre are exchanged on equal terms.
+#[derive(Clone, Debug)]
+pub struct DenseLu {
+    factor: Mat<f64>,
+    forward: Vec<usize>,
+    inverse: Vec<usize>,
+    row_scale: Vec<f64>,
+}
+
+impl DenseLu {
+    /// Factors `a`, row-major `[n][n]`. A pivot below n eps of its column's largest entry is an error that names
+    /// the column.
+    ///
+    /// # Panics
+    /// When `a.len() != n * n`.
+    pub fn factor(n: usize, a: &[f64]) -> Result<Self, SolverError> {
+        check_dense(n, a)?;
+        let row_scale: Vec<f64> = (0..n)
+            .map(|i| power_of_two_scale(&a[n * i..n * (i + 1)]))
+            .collect();
+        let mut factor = Mat::from_fn(n, n, |i, j| row_scale[i] * a[n * i + j]);
+        let largest: Vec<f64> = (0..n)
+            .map(|j| (0..n).map(|i| factor[(i, j)].abs()).fold(0.0, f64::max))
+            .collect();
+        let (mut forward, mut inverse) = (vec![0; n], vec![0; n]);
+        let request = lu::factor::lu_in_place_scratch::<usize, f64>(n, n, Par::Seq, Default::default());
+        let mut memory = MemBuffer::new(request);
+        let stack = MemStack::new(&mut memory);
+        lu::factor::lu_in_place(
+            factor.as_mut(),
+            &mut forward,
+            &mut inverse,
+            Par::Seq,
+            stack,
+            Default::default(),
+        );
+        let limit = n as f64 * PIVOT_LIMIT_PER_ROW;
+        for column in 0..n {
+            let relative_pivot = factor[(column, column)].abs() / largest[column];
+            // Written so that NaN, which 0/0 of an empty column gives, is refused as well.
+            if relative_pivot.is_nan() || relative_pivot <= limit {
+                return Err(SolverError::Singular {
+                    row: column,
+                    n,
+                    relative_pivot,
+                    limit,
+                });
+            }
+        }
+        Ok(DenseLu {
+            factor,
+            forward,
+            inverse,
+            row_scale,
+        })
+    }
+
+    /// Number of rows.
+    pub fn n(&self) -> usize {
+        self.factor.nrows()
+    }
+
+    /// Replaces right-hand sides, column-major `[n][n_rhs]`, by solutions.
+    ///
+    /// # Panics
+    /// When `rhs.len() != n * n_rhs`.
+    pub fn solve(&self, rhs: &mut [f64], n_rhs: usize) {
+        let n = self.n();
+        assert_eq!(rhs.len(), n * n_rhs, "{n_rhs} right-hand sides of {n} rows");
+        if rhs.is_empty() {
+            return;
+        }
+        for column in rhs.chunks_exact_mut(n) {
+            column
+                .iter_mut()
+                .zip(&self.row_scale)
+                .for_each(|(value, scale)| *value *= scale);
+        }
+        let mut memory = MemBuffer::new(lu::solve::solve_in_place_scratch::<usize, f64>(
+            n,
+            n_rhs,
+            Par::Seq,
+        ));
+        lu::solve::solve_in_place(
+            self.factor.as_ref(),
+            self.factor.as_ref(),
+            PermRef::new_checked(&self.forward, &self.inverse, n),
+            MatMut::from_column_major_slice_mut(rhs, n, n_rhs),
+            Par::Seq,
+            MemStack::new(&mut memory),
+        );
+    }
+
+    /// Inverse, row-major `[n][n]`.
+    pub fn inverse(&self) -> Vec<f64> {
+        let n = self.n();
+        let mut columns = identity(n);
+        self.solve(&mut columns, n);
+        (0..n * n).map(|k| columns[n * (k % n) + k / n]).collect()
+    }
+}
+
+/// The power of two nearest below the reciprocal of a row's largest entry: exact, so scaling adds no error.
+fn power_of_two_scale(row: &[f64]) -> f64 {
+    let largest = row.iter().fold(0.0, |m: f64, v| m.max(v.abs()));
+    if largest < f64::MIN_POSITIVE {
+        1.0
+    } else {
+        (-largest.log2().ceil()).clamp(-1000.0, 1000.0).exp2()
+    }
+}
+
+fn identity(n: usize) -> Vec<f64> {
+    let mut columns = vec![0.0; n * n];
+    columns.iter_mut().step_by(n + 1).for_each(|value| *value = 1.0);
+    columns
+}
+
+/// Checks size and entries of a row-major matrix.
+fn check_dense(n: usize, a: &[f64]) -> Result<(), SolverError> {
+    assert_eq!(a.len(), n * n, "a dense matrix of {n} rows");
+    match a.iter().position(|value| !value.is_finite()) {
+        Some(k) => Err(SolverError::NonFinite {
+            row: k / n,
+            column: k % n,
+            value: a[k],
+        }),
+        None => Ok(()),
+    }
+}

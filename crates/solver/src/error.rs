@@ -1,0 +1,102 @@
+//! What can go wrong when a matrix is analysed or factored.
+
+use thiserror::Error;
+
+/// Failures of this crate. Rows and columns are in the caller's numbering.
+#[derive(Clone, Debug, Error, PartialEq)]
+pub enum SolverError {
+    /// The matrix has different numbers of rows and columns.
+    #[error("the matrix to factor has {rows} rows and {columns} columns; expected a square one")]
+    NotSquare {
+        /// Number of rows.
+        rows: usize,
+        /// Number of columns.
+        columns: usize,
+    },
+    /// The elimination order does not name each row once.
+    #[error(
+        "the elimination order has {length} entries for {n} rows and is wrong at position {position}; \
+         expected every row exactly once"
+    )]
+    NotPermutation {
+        /// Length of the order.
+        length: usize,
+        /// Number of rows of the matrix.
+        n: usize,
+        /// First position with a repeated, missing or too large row.
+        position: usize,
+    },
+    /// A matrix was factored with the analysis of another pattern.
+    #[error(
+        "the matrix has {found} stored entries in a pattern other than the analysed one ({expected} entries); \
+         analyse it anew"
+    )]
+    PatternChanged {
+        /// Stored entries of the matrix given.
+        found: usize,
+        /// Stored entries of the matrix analysed.
+        expected: usize,
+    },
+    /// A stored entry is infinite or not a number.
+    #[error(
+        "matrix entry ({row}, {column}) is {value}; expected finite numbers, so check coordinates, material \
+         and step size"
+    )]
+    NonFinite {
+        /// Row of the entry.
+        row: usize,
+        /// Column of the entry.
+        column: usize,
+        /// The entry.
+        value: f64,
+    },
+    /// Elimination met a pivot that is negative, zero or not a number.
+    #[error(
+        "the matrix of {n} rows is not positive definite: elimination breaks down at row {row}; the body may be \
+         unsupported, or an element there inverted"
+    )]
+    NotPositiveDefinite {
+        /// Row of the bad pivot.
+        row: usize,
+        /// Number of rows.
+        n: usize,
+    },
+    /// A pivot is nothing but round-off.
+    #[error(
+        "the matrix of {n} rows is singular to working precision at row {row}: its pivot is {relative_pivot:.1e} of \
+         its diagonal, the limit is {limit:.1e}; the body may be free to move as a whole, so support it or add mass"
+    )]
+    Singular {
+        /// Row of the pivot.
+        row: usize,
+        /// Number of rows.
+        n: usize,
+        /// Pivot divided by the diagonal entry.
+        relative_pivot: f64,
+        /// Smallest accepted ratio.
+        limit: f64,
+    },
+    /// The factor does not fit into memory.
+    #[error(
+        "no memory for a factorisation of {n} rows, which needs {bytes} bytes; use a coarser mesh, more sectors \
+         or a machine with more memory"
+    )]
+    OutOfMemory {
+        /// Number of rows.
+        n: usize,
+        /// Bytes asked for.
+        bytes: usize,
+    },
+}
+
+impl SolverError {
+    /// Row of the matrix to blame, in the caller's numbering, so that the caller can name node and body.
+    pub fn row(&self) -> Option<usize> {
+        match *self {
+            SolverError::NonFinite { row, .. }
+            | SolverError::NotPositiveDefinite { row, .. }
+            | SolverError::Singular { row, .. } => Some(row),
+            _ => None,
+        }
+    }
+}
