@@ -90,6 +90,7 @@ fn create_hdf(
             Format::Earliest => access.libver_earliest(),
             Format::V110 => access.libver_v110(),
         })
+        .with_fcpl(|root| root.obj_track_times(false))
         .create(tmp)?;
     let paths = fill(&file)?;
     file.flush()?;

@@ -6,7 +6,7 @@
 use std::path::Path;
 
 use hdf5::types::{FixedAscii, FloatSize, TypeDescriptor, VarLenUnicode};
-use hdf5::{Dataset, File};
+use hdf5::{Dataset, File, Group};
 
 use crate::checksum::{CHECKSUM_ATTRIBUTE, Element, checksum};
 use crate::error::CheckpointError;
@@ -19,7 +19,7 @@ const CHUNK_BYTES: usize = 1 << 18;
 ///
 /// `Type` must be a fixed-length ASCII attribute; VTK refuses other strings.
 pub(crate) fn create_vtkhdf(file: &File, version: [i64; 2]) -> hdf5::Result<()> {
-    let root = file.create_group("VTKHDF")?;
+    let root = create_group(file, "VTKHDF")?;
     root.new_attr::<i64>()
         .shape(2)
         .create("Version")?
@@ -28,9 +28,14 @@ pub(crate) fn create_vtkhdf(file: &File, version: [i64; 2]) -> hdf5::Result<()> 
     root.new_attr::<FixedAscii<16>>()
         .create("Type")?
         .write_scalar(&kind)?;
-    root.create_group("CellData")?;
-    root.create_group("PointData")?;
+    create_group(&root, "CellData")?;
+    create_group(&root, "PointData")?;
     Ok(())
+}
+
+/// Creates a group without time stamps.
+pub(crate) fn create_group(parent: &Group, name: &str) -> hdf5::Result<Group> {
+    parent.create_group_builder().obj_track_times(false).create(name)
 }
 
 /// Links the mesh of `mesh.hdf` into a VTKHDF file of the same folder.

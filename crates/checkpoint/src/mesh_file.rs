@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use crate::atomic::{self, Format};
-use crate::dataset::{CheckedFile, create_vtkhdf, write_array, write_text};
+use crate::dataset::{CheckedFile, create_group, create_vtkhdf, write_array, write_text};
 use crate::error::CheckpointError;
 use crate::grid::Grid;
 use crate::seal::verify_seal;
@@ -53,7 +53,7 @@ pub(crate) fn write_mesh(dir: &Path, grid: &Grid) -> Result<(), CheckpointError>
         write_array(file, "/VTKHDF/Types", &[n_cells], &grid.types, plain)?;
         write_array(file, "/VTKHDF/CellData/body", &[n_cells], &grid.body, plain)?;
         write_array(file, "/VTKHDF/CellData/radius", &[n_cells], &grid.radius, plain)?;
-        file.create_group("restart")?;
+        create_group(file, "restart")?;
         write_text(file, MESH_HASH, &grid.fingerprint())?;
         Ok(["Points", "Connectivity", "Offsets", "Types"]
             .map(|name| format!("/VTKHDF/{name}"))

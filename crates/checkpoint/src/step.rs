@@ -17,7 +17,9 @@ use hdf5::types::{IntSize, TypeDescriptor};
 
 use crate::atomic::{self, Format};
 use crate::checksum::Element;
-use crate::dataset::{CheckedFile, create_vtkhdf, link_mesh, write_array, write_field, write_text};
+use crate::dataset::{
+    CheckedFile, create_group, create_vtkhdf, link_mesh, write_array, write_field, write_text,
+};
 use crate::error::CheckpointError;
 use crate::mesh_file::{MESH_FILE, MESH_HASH};
 use crate::record::{PointFields, StateArray, StepRecord};
@@ -44,9 +46,9 @@ pub(crate) fn write_step_file(
     atomic::write_hdf(dir, name, Format::Earliest, |file| {
         create_vtkhdf(file, [1, 0])?;
         link_mesh(file, MESH_FILE)?;
-        file.create_group("VTKHDF/FieldData")?;
-        file.create_group("restart")?;
-        file.create_group("restart/state")?;
+        create_group(file, "VTKHDF/FieldData")?;
+        create_group(file, "restart")?;
+        create_group(file, "restart/state")?;
         let mut contents = vec![TIME.to_string(), STEP.to_string()];
         for field in record.points.present(storage) {
             let path = format!("{POINT_DATA}/{}", field.name);

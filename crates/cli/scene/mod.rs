@@ -212,11 +212,11 @@ impl Source<'_> {
         let contact = raw
             .contact
             .check(bearing.as_ref(), materials.as_ref(), &mut problems);
-        let folder = self.path.parent().unwrap_or(Path::new(""));
         let context = RingContext {
             bearing: bearing.as_ref(),
             mode: contact.mode,
-            folder,
+            scene: self.path,
+            overridden: !self.overrides.is_empty(),
             mesh_files: self.mesh_files,
         };
         let inner = raw.inner.check(RingName::Inner, context, &mut problems);

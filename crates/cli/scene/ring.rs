@@ -99,8 +99,10 @@ pub struct RingContext<'a> {
     pub bearing: Option<&'a Bearing>,
     /// Contact mode of the scene.
     pub mode: ContactMode,
-    /// Folder of the scene file.
-    pub folder: &'a Path,
+    /// The scene file; relative paths start at its folder.
+    pub scene: &'a Path,
+    /// Whether the command line changes values of the scene.
+    pub overridden: bool,
     /// Whether mesh files have to exist.
     pub mesh_files: MeshFiles,
 }
@@ -166,17 +168,13 @@ impl RawRing {
         });
         let groove_z = self.check_groove_z(key, context.bearing, problems);
         let typed = self.mesh.as_ref()?;
-        let mesh = context.folder.join(typed);
+        let mesh = context.scene.parent().unwrap_or(Path::new("")).join(typed);
         if context.mesh_files == MeshFiles::MustExist && !mesh.is_file() {
-            let remedy = if self.section.is_some() {
-                "build it with \"raceway mesh\" or "
-            } else {
-                ""
-            };
             problems.add(format!(
-                "{key}.mesh is {typed:?}, but there is no file {}; {remedy}correct the path, which is relative to \
-                 the scene file",
-                mesh.display()
+                "{key}.mesh is {typed:?}, but there is no file {}; {}correct the path, which is relative to the \
+                 scene file",
+                mesh.display(),
+                self.how_to_build(context)
             ));
         }
         Some(FlexibleRing {
@@ -186,6 +184,22 @@ impl RawRing {
             support: self.support?,
             groove_z,
         })
+    }
+
+    /// The command that builds a missing mesh; empty when the scene does not describe its section.
+    fn how_to_build(&self, context: RingContext<'_>) -> String {
+        if self.section.is_none() {
+            return String::new();
+        }
+        let same = if context.overridden {
+            " and the same --set"
+        } else {
+            ""
+        };
+        format!(
+            "build it with \"raceway mesh {}\"{same}, which needs Gmsh, or ",
+            context.scene.display()
+        )
     }
 
     fn check_groove_z(&self, key: &str, bearing: Option<&Bearing>, problems: &mut Problems) -> f64 {

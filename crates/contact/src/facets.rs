@@ -1,12 +1,18 @@
-//! Contact on the mesh's own facets, as the paper does it: bounding boxes, closest point, interpolated normal.
+//! Contact on the mesh's own facets, as the paper does it: bounding boxes, interpolated normal, foot point.
 //!
 //! Global search over boxes that hold a run of facets, local search over the facets of the boxes a ball reaches.
-//! The normal is interpolated from the nodes' normals, the force goes to the nodes of the facet with its shape
-//! functions. Two errors come with it, and are why this is not the default: the chord error h^2/(8 R) of flat facets
+//! The foot point p is where the normal n interpolated from the nodes' normals passes through the ball centre:
+//! x_ball + s n(xi) = p(xi). It moves continuously from facet to facet, while the plain closest point of flat facets
+//! jumps and holds a ball in no transverse direction. The force goes to the nodes of the facet with its shape functions. Two errors come with it, and are why this is not the default: the chord error h^2/(8 R) of flat facets
 //! ripples the force, and the local compliance of the mesh is counted on top of Hertz's.
 
 use fem::facet;
 use mesh::{Facet, FacetKind, Mesh};
+
+/// Reference coordinate beyond which Newton on a facet is given up.
+const FAR: f64 = 50.0;
+/// How far outside every facet, in reference coordinates, a foot point may lie and still be taken.
+const OUTSIDE_LIMIT: f64 = 0.05;
 
 /// Facets per bounding box.
 const BOX_SIZE: usize = 16;
@@ -22,7 +28,7 @@ pub struct FacetSurface {
     boxes: Vec<[[f64; 3]; 2]>,
 }
 
-/// The closest point of a raceway to a ball centre.
+/// The foot point of a ball centre on a raceway.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FacetContact {
     /// Nodes of the facet.
@@ -33,7 +39,7 @@ pub struct FacetContact {
     pub foot: [f64; 3],
     /// Interpolated unit normal, from the ball into the ring.
     pub normal: [f64; 3],
-    /// Distance from the ball centre to the foot point, m.
+    /// Distance from the ball centre to the foot point along the normal, m.
     pub distance: f64,
 }
 
@@ -57,33 +63,37 @@ impl FacetSurface {
         }
     }
 
-    /// Closest point to `centre` (m) within `reach` (m); `position` gives the deformed place of a node, m.
-    /// None when no box comes within reach.
-    pub fn closest(
+    /// Foot point of the ball centre `centre` (m) within `reach` (m); `position` gives the deformed place of a node, m.
+    /// None when no facet
+    /// within reach holds it.
+    pub fn foot(
         &self,
         centre: [f64; 3],
         reach: f64,
         position: impl Fn(usize) -> [f64; 3],
     ) -> Option<FacetContact> {
         let n = self.kind.n_nodes();
-        let mut best: Option<(f64, usize, [f64; 2])> = None;
+        let mut best: Option<(f64, f64, usize, [f64; 2])> = None;
         for (b, limits) in self.boxes.iter().enumerate() {
             if box_distance(limits, centre) > reach {
                 continue;
             }
             let first = b * BOX_SIZE;
             for f in first..(first + BOX_SIZE).min(self.nodes.len() / n) {
-                let places: Vec<[f64; 3]> = self.nodes[n * f..n * (f + 1)]
-                    .iter()
-                    .map(|&i| position(i))
-                    .collect();
-                let (distance, xi) = project(self.kind, &places, centre);
-                if best.is_none_or(|(d, ..)| distance < d) {
-                    best = Some((distance, f, xi));
+                let nodes = &self.nodes[n * f..n * (f + 1)];
+                let places: Vec<[f64; 3]> = nodes.iter().map(|&i| position(i)).collect();
+                let normals: Vec<[f64; 3]> = nodes.iter().map(|&i| self.normals[i]).collect();
+                let Some((distance, xi)) = project(self.kind, &places, &normals, centre) else {
+                    continue;
+                };
+                let outside = outside(self.kind, xi);
+                if distance.abs() <= reach && best.is_none_or(|(o, ..)| outside < o) {
+                    best = Some((outside, distance, f, xi));
                 }
             }
         }
-        best.map(|(distance, f, xi)| self.contact(f, xi, distance, position))
+        best.filter(|b| b.0 < OUTSIDE_LIMIT)
+            .map(|(_, distance, f, xi)| self.contact(f, xi, distance, position))
     }
 
     fn contact(
@@ -173,83 +183,65 @@ fn tangents(kind: FacetKind, places: &[[f64; 3]], xi: [f64; 2]) -> [[f64; 3]; 2]
     t
 }
 
-/// Distance and reference coordinates of the closest point of one facet: projected Gauss-Newton.
-fn project(kind: FacetKind, places: &[[f64; 3]], centre: [f64; 3]) -> (f64, [f64; 2]) {
+/// Distance from the ball centre and reference coordinates of the foot point on the (extended) facet, by Newton on
+/// x_ball + s n(xi) - p(xi) = 0; None when it does not converge.
+fn project(
+    kind: FacetKind,
+    places: &[[f64; 3]],
+    normals: &[[f64; 3]],
+    centre: [f64; 3],
+) -> Option<(f64, [f64; 2])> {
     let mut xi = if kind == FacetKind::Tri6 {
         [1.0 / 3.0; 2]
     } else {
         [0.0; 2]
     };
-    // Facets are nearly flat, so Gauss-Newton contracts fast; points that slide along an edge need a few more.
-    for _ in 0..40 {
-        let gap = gap(kind, places, xi, centre);
-        let [t1, t2] = tangents(kind, places, xi);
-        let (a, b, c) = (dot(t1, t1), dot(t1, t2), dot(t2, t2));
-        let (r1, r2) = (dot(t1, gap), dot(t2, gap));
-        let det = a * c - b * b;
-        let step = [(r1 * c - r2 * b) / det, (r2 * a - r1 * b) / det];
-        let next = clamp(kind, [xi[0] + step[0], xi[1] + step[1]], [a, b, c]);
-        let change = (next[0] - xi[0]).abs().max((next[1] - xi[1]).abs());
-        xi = next;
-        if change < 1e-14 {
-            break;
+    let mut s = 0.0;
+    // The groove is only a little wider than the ball, so Newton from the middle of a far facet takes some rounds.
+    for round in 0..30 {
+        let (shape, gradients) = (facet::shape(kind, xi), facet::gradients(kind, xi));
+        let (mut gap, mut normal) = (centre, [0.0; 3]);
+        let (mut t, mut dn) = ([[0.0; 3]; 2], [[0.0; 3]; 2]);
+        for (a, (x, n)) in places.iter().zip(normals).enumerate() {
+            for i in 0..3 {
+                gap[i] -= shape[a] * x[i];
+                normal[i] -= shape[a] * n[i];
+                for d in 0..2 {
+                    t[d][i] += gradients[a][d] * x[i];
+                    dn[d][i] -= gradients[a][d] * n[i];
+                }
+            }
+        }
+        if round == 0 {
+            s = -dot(gap, normal) / dot(normal, normal);
+        }
+        let residual = [0, 1, 2].map(|i| gap[i] + s * normal[i]);
+        let column = |d: usize| [0, 1, 2].map(|i| s * dn[d][i] - t[d][i]);
+        let (c0, c1) = (column(0), column(1));
+        let det = dot(c0, cross(c1, normal));
+        let step = [
+            -dot(residual, cross(c1, normal)) / det,
+            -dot(c0, cross(residual, normal)) / det,
+            -dot(c0, cross(c1, residual)) / det,
+        ];
+        if !step.iter().all(|x| x.is_finite()) || xi[0].abs().max(xi[1].abs()) > FAR {
+            return None;
+        }
+        xi = [xi[0] + step[0], xi[1] + step[1]];
+        s += step[2];
+        if step[0].abs().max(step[1].abs()) < 1e-13 {
+            return Some((s * dot(normal, normal).sqrt(), xi));
         }
     }
-    let rest = gap(kind, places, xi, centre);
-    (dot(rest, rest).sqrt(), xi)
+    None
 }
 
-fn gap(kind: FacetKind, places: &[[f64; 3]], xi: [f64; 2], centre: [f64; 3]) -> [f64; 3] {
-    let shape = facet::shape(kind, xi);
-    let mut gap = centre;
-    for (a, x) in places.iter().enumerate() {
-        for i in 0..3 {
-            gap[i] -= shape[a] * x[i];
-        }
+/// Largest distance outside the reference facet, negative or zero inside.
+fn outside(kind: FacetKind, xi: [f64; 2]) -> f64 {
+    match kind {
+        FacetKind::Tri6 => (-xi[0]).max(-xi[1]).max(xi[0] + xi[1] - 1.0),
+        _ => xi[0].abs().max(xi[1].abs()) - 1.0,
     }
-    gap
-}
-
-/// Closest point of the reference facet in the metric [a, b; b, c] of its tangents.
-fn clamp(kind: FacetKind, xi: [f64; 2], metric: [f64; 3]) -> [f64; 2] {
-    let edges: &[[[f64; 2]; 2]] = match kind {
-        FacetKind::Tri6 => &[
-            [[0.0, 0.0], [1.0, 0.0]],
-            [[1.0, 0.0], [0.0, 1.0]],
-            [[0.0, 1.0], [0.0, 0.0]],
-        ],
-        _ => &[
-            [[-1.0, -1.0], [1.0, -1.0]],
-            [[1.0, -1.0], [1.0, 1.0]],
-            [[1.0, 1.0], [-1.0, 1.0]],
-            [[-1.0, 1.0], [-1.0, -1.0]],
-        ],
-    };
-    let inside = match kind {
-        FacetKind::Tri6 => xi[0] >= 0.0 && xi[1] >= 0.0 && xi[0] + xi[1] <= 1.0,
-        _ => xi[0].abs() <= 1.0 && xi[1].abs() <= 1.0,
-    };
-    if inside {
-        return xi;
-    }
-    let inner = |u: [f64; 2], v: [f64; 2]| {
-        metric[0] * u[0] * v[0] + metric[1] * (u[0] * v[1] + u[1] * v[0]) + metric[2] * u[1] * v[1]
-    };
-    let on_edge = |[p, q]: [[f64; 2]; 2]| {
-        let (along, from) = ([q[0] - p[0], q[1] - p[1]], [xi[0] - p[0], xi[1] - p[1]]);
-        let share = (inner(along, from) / inner(along, along)).clamp(0.0, 1.0);
-        let point = [p[0] + share * along[0], p[1] + share * along[1]];
-        let rest = [xi[0] - point[0], xi[1] - point[1]];
-        (inner(rest, rest), point)
-    };
-    let mut best = on_edge(edges[0]);
-    for &edge in &edges[1..] {
-        let candidate = on_edge(edge);
-        if candidate.0 < best.0 {
-            best = candidate;
-        }
-    }
-    best.1
 }
 
 fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {

@@ -129,7 +129,7 @@ fn place_facet(
     let position = |node: usize| deformed(&ring.mesh, field, node);
     let radius = 0.5 * geometry.ball_diameter;
     let contact = facets
-        .closest(centre, 2.0 * radius, position)
+        .foot(centre, 2.0 * radius, position)
         .ok_or(DynamicsError::NoFacet {
             ball: site.ball,
             side: site.side.name(),
@@ -141,8 +141,7 @@ fn place_facet(
     ];
     let size = meridian[0].hypot(meridian[1]);
     let normal = meridian.map(|x| x / size);
-    let gap = [0, 1, 2].map(|i| contact.foot[i] - centre[i]);
-    let approach = radius - (0..3).map(|i| gap[i] * contact.normal[i]).sum::<f64>();
+    let approach = radius - contact.distance;
     // Groove centre such that the vector to the ball is the normal, with the penetration just measured.
     let length = site.touching + approach;
     let moved = field.map_or([0.0; 2], |f| weights.measure(f));

@@ -196,6 +196,9 @@ impl StaticSolver {
             let (change, place) = largest_change(&forces, &updated);
             (forces, worst) = (updated, place);
             history.push(change);
+            if std::env::var("DBG").is_ok() {
+                eprintln!("round {round} change {change:.3e} newton {iterations}");
+            }
             if change <= tolerance {
                 check_held(&problem, &u, scales)?;
                 check_patches(&problem, &u)?;

@@ -357,7 +357,8 @@ fn shoulders_of_both_rings_must_leave_a_gap() {
     assert!(message.contains(expected), "{message}");
 }
 
-/// If this failed, a wrong path would surface after minutes of set-up, without the place that was looked at.
+/// If this failed, a wrong path would surface after minutes of set-up, without the place that was looked at or the
+/// command that builds the mesh.
 #[test]
 fn a_missing_mesh_is_reported_as_typed_and_as_resolved() {
     let folder = tempfile::tempdir().unwrap();
@@ -366,13 +367,16 @@ fn a_missing_mesh_is_reported_as_typed_and_as_resolved() {
     let message = Scene::load(&path, &[]).unwrap_err().to_string();
     let resolved = folder.path().join("../meshes/7010c_inner.msh");
     let expected = format!(
-        "inner.mesh is \"../meshes/7010c_inner.msh\", but there is no file {}; build it with \"raceway mesh\" or \
-         correct the path",
-        resolved.display()
+        "inner.mesh is \"../meshes/7010c_inner.msh\", but there is no file {}; build it with \"raceway mesh {}\", \
+         which needs Gmsh, or correct the path",
+        resolved.display(),
+        path.display()
     );
     assert!(message.contains(&expected), "{message}");
     assert!(
         message.contains("outer.mesh is \"../meshes/7010c_outer.msh\""),
         "{message}"
     );
+    let changed = Scene::load(&path, &["inner.mesh = \"other.msh\"".into()]).unwrap_err();
+    assert!(changed.to_string().contains("scene.toml\" and the same --set, which needs Gmsh"), "{changed}");
 }

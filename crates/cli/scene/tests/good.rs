@@ -1,6 +1,7 @@
 //! Scenes that must be read, and what they say.
 
 use super::*;
+use crate::scene::effects::RadialForce;
 
 /// If this failed, the documentation would show a scene that the program refuses or reads as something else.
 #[test]
