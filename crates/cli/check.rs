@@ -9,6 +9,7 @@ use crate::build::build_model;
 use crate::failure::Failure;
 use crate::results::fields;
 use crate::scene::{Analysis, Scene};
+use crate::print;
 
 /// Bytes of one point in a step file: displacement f64, stress and von Mises f32, two force vectors f64.
 const BYTES_PER_POINT: usize = 3 * 8 + 7 * 4 + 6 * 8;
@@ -17,44 +18,44 @@ const BYTES_PER_POINT: usize = 3 * 8 + 7 * 4 + 6 * 8;
 pub fn check(path: &Path, overrides: &[String]) -> Result<(), Failure> {
     let scene = Scene::load(path, overrides)?;
     let model = build_model(&scene)?;
-    println!("scene    {}", scene.title.as_deref().unwrap_or("(no title)"));
+    print::line(format_args!("scene    {}", scene.title.as_deref().unwrap_or("(no title)")));
     let steps = match &scene.analysis {
         Analysis::Static => {
-            println!("analysis static");
+            print::line(format_args!("analysis static"));
             1
         }
         Analysis::Sweep(sweep) => {
-            println!("analysis sweep of {} over {} values", sweep.key, sweep.points.len());
+            print::line(format_args!("analysis sweep of {} over {} values", sweep.key, sweep.points.len()));
             sweep.points.len()
         }
     };
     let names: Vec<&str> = model.effects.iter().map(|e| e.name()).collect();
-    println!("effects  {}", if names.is_empty() { "none".to_string() } else { names.join(", ") });
+    print::line(format_args!("effects  {}", if names.is_empty() { "none".to_string() } else { names.join(", ") }));
     let geometry = &model.geometry;
-    println!(
+    print::line(format_args!(
         "bearing  {} balls, clearance {:.4} mm, groove distance {:.4} mm, free contact angle {:.4} deg",
         geometry.n_balls,
         1e3 * geometry.clearance(),
         1e3 * geometry.groove_distance(),
         geometry.free_contact_angle().to_degrees()
-    );
+    ));
     for side in Side::BOTH {
         print_ring(&model, side)?;
     }
     let points: usize = fields::bodies(&model).iter().map(|b| b.points.len()).sum();
     let step_bytes = points * BYTES_PER_POINT;
-    println!(
+    print::line(format_args!(
         "output   about {:.2} MB per step, {:.2} MB in all",
         step_bytes as f64 / 1e6,
         (step_bytes * steps) as f64 / 1e6
-    );
+    ));
     Ok(())
 }
 
 fn print_ring(model: &dynamics::Model, side: Side) -> Result<(), Failure> {
     let stiffness = model.hertz[side.index()].stiffness / 10f64.powf(4.5);
     let Some(ring) = model.ring(side) else {
-        println!("{}    rigid, Hertz stiffness {stiffness:.4e} N/mm^1.5, no dofs", side.name());
+        print::line(format_args!("{}    rigid, Hertz stiffness {stiffness:.4e} N/mm^1.5, no dofs", side.name()));
         return Ok(());
     };
     let mesh = &ring.mesh;
@@ -62,7 +63,7 @@ fn print_ring(model: &dynamics::Model, side: Side) -> Result<(), Failure> {
     let matrix = pattern.matrix(vec![0.0; pattern.n_values()]);
     let order = solver::angular_dissection(&mesh.nodes, &mesh.connectivity, mesh.kind.n_nodes());
     let symbolic = Symbolic::new(&matrix, &solver::expand(&order, 3))?;
-    println!(
+    print::line(format_args!(
         "{}    {} {}, {} nodes, {} dofs; Hertz stiffness {stiffness:.4e} N/mm^1.5; factor {:.1} MB, {:.2e} flops, \
          peak {:.1} MB",
         side.name(),
@@ -73,6 +74,6 @@ fn print_ring(model: &dynamics::Model, side: Side) -> Result<(), Failure> {
         symbolic.factor_bytes() as f64 / 1e6,
         symbolic.flops(),
         symbolic.peak_bytes() as f64 / 1e6
-    );
+    ));
     Ok(())
 }

@@ -2,6 +2,7 @@
 
 use std::process::ExitCode;
 
+use contact::ContactError;
 use dynamics::DynamicsError;
 
 /// Exit code of a user error: bad input, missing files, results that would be overwritten.
@@ -34,11 +35,14 @@ impl Failure {
         }
     }
 
-    /// A failure of the solver: numerical unless the scene leaves something unheld.
+    /// A failure of the solver: numerical unless the scene leaves something unheld or a mesh has a hole.
     pub fn solving(error: DynamicsError) -> Failure {
         let user = matches!(
             error,
-            DynamicsError::NotHeld { .. } | DynamicsError::Unheld { .. } | DynamicsError::Fem { .. }
+            DynamicsError::NotHeld { .. }
+                | DynamicsError::Unheld { .. }
+                | DynamicsError::Fem { .. }
+                | DynamicsError::Contact(ContactError::Hole { .. })
         );
         if user { Failure::User(error.into()) } else { Failure::Numerical(error.into()) }
     }

@@ -6,6 +6,7 @@ mod build;
 mod check;
 mod failure;
 mod meshing;
+mod print;
 mod progress;
 mod results;
 mod run;
@@ -70,7 +71,7 @@ fn main() -> ExitCode {
     match execute(arguments) {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => {
-            eprintln!("error: {}", failure.text());
+            print::note(format_args!("error: {}", failure.text()));
             failure.code()
         }
     }
@@ -87,7 +88,7 @@ fn execute(arguments: Arguments) -> Result<(), Failure> {
     match arguments.command {
         Command::Run { scene, overrides, out } => {
             let dir = run::run(&scene, &overrides, out)?;
-            println!("results: {}", dir.display());
+            print::line(format_args!("results: {}", dir.display()));
             Ok(())
         }
         Command::Check { scene, overrides } => check::check(&scene, &overrides),

@@ -10,6 +10,7 @@ use mesh::{ElementKind, Mesh, MshFormat, Overwrite, RingSection, RingSide};
 
 use crate::failure::Failure;
 use crate::scene::{FlexibleRing, MeshFiles, Ring, Scene, Section, SectionElement};
+use crate::print;
 
 /// Length unit of the files that Gmsh reads and writes, m.
 const GMSH_UNIT: f64 = 1e-3;
@@ -36,14 +37,14 @@ pub fn build_meshes(path: &Path, overrides: &[String], overwrite: Overwrite) -> 
     for (side, (body, section)) in jobs {
         let mesh = build_ring(&scene, side, body, section)?;
         mesh::write_msh(&body.mesh, &mesh, body.mesh_unit, MshFormat::Binary, overwrite)?;
-        println!(
+        print::line(format_args!(
             "{}: {} {} elements, {} nodes, {} dofs",
             body.mesh.display(),
             mesh.n_elements(),
             mesh.kind.name(),
             mesh.n_nodes(),
             mesh.n_dofs()
-        );
+        ));
     }
     Ok(())
 }

@@ -5,6 +5,8 @@ use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressStyle};
 
+use crate::print;
+
 /// Shows what a run is doing and how far it is.
 pub struct Progress {
     bar: Option<ProgressBar>,
@@ -30,7 +32,7 @@ impl Progress {
     pub fn stage(&self, text: &str) {
         match &self.bar {
             Some(bar) => bar.set_message(text.to_string()),
-            None => eprintln!("[{:8.2} s] {}/{} {text}", self.start.elapsed().as_secs_f64(), self.done, self.total),
+            None => print::note(format_args!("[{:8.2} s] {}/{} {text}", self.start.elapsed().as_secs_f64(), self.done, self.total)),
         }
     }
 

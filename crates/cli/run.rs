@@ -14,11 +14,8 @@ use crate::failure::Failure;
 use crate::progress::Progress;
 use crate::results::summary::{Costs, Summary};
 use crate::results::tables::Tables;
-use crate::results::{console, fields};
+use crate::results::{console, fields, folder};
 use crate::scene::{self, Analysis, Scene};
-
-/// Largest number that a default result folder may carry.
-const MAX_FOLDERS: usize = 10_000;
 
 /// One load case of a run: the swept value (None for a static scene) and its scene.
 type Point = (Option<f64>, Scene);
@@ -27,27 +24,33 @@ type Point = (Option<f64>, Scene);
 pub fn run(path: &Path, overrides: &[String], out: Option<PathBuf>) -> Result<PathBuf, Failure> {
     let start = Instant::now();
     let scene = Scene::load(path, overrides)?;
-    let dir = result_folder(path, out)?;
+    let dir = folder::choose(path, out)?;
     let points = points(&scene)?;
     let mut progress = Progress::new(points.len() as u64);
     progress.stage("reading meshes");
     let mut model = build_model(&points[0].1)?;
     let read = start.elapsed().as_secs_f64();
-    let mut results = Results::create(&scene, &model, &dir)?;
     progress.stage("factoring the stiffness of the rings");
     let mut solver = StaticSolver::new(&model).map_err(Failure::solving)?;
     let mut solutions: Vec<(f64, StaticSolution)> = Vec::new();
+    let mut results: Option<Results> = None;
     for (step, (value, point)) in points.iter().enumerate() {
         progress.stage(&stage_text(&scene, *value));
         model = model_with_rings(point, model.rings)?;
         let before = solutions.last().map(|s| &s.1);
         let solution = solver.solve(&model, before).map_err(|e| at_point(e, &scene, *value, &dir, step))?;
-        results.write(&model, step as u64, *value, point, &solution)?;
+        // The first solution makes the folder: a scene that has none leaves no files.
+        let files = match &mut results {
+            Some(files) => files,
+            empty => empty.insert(Results::create(&scene, &model, &dir)?),
+        };
+        files.write(&model, step as u64, *value, point, &solution)?;
         solutions.push((value.unwrap_or(0.0), solution));
         progress.advance();
     }
     progress.finish();
     let forecast = Side::BOTH.map(|side| solver.ring(side).map_or(0, |r| r.bytes[0]));
+    let results = results.expect("a scene has at least one point");
     let costs = results.finish(read, forecast, &solver, start)?;
     let summary = Summary::new(&scene, &model, &solutions, &costs);
     summary.write(&dir)?;
@@ -98,35 +101,18 @@ fn stage_text(scene: &Scene, value: Option<f64>) -> String {
 
 fn at_point(error: DynamicsError, scene: &Scene, value: Option<f64>, dir: &Path, done: usize) -> Failure {
     let (Analysis::Sweep(sweep), Some(value)) = (&scene.analysis, value) else { return Failure::solving(error) };
-    let context = format!(
-        "{} = {value} failed after {done} finished points, which are kept in {}",
-        sweep.column,
-        dir.display()
-    );
+    let context = match done {
+        0 => format!("{} = {value}, the first point of the sweep", sweep.column),
+        _ => format!(
+            "{} = {value} failed after {done} finished points, which are kept in {}",
+            sweep.column,
+            dir.display()
+        ),
+    };
     match Failure::solving(error) {
         Failure::User(e) => Failure::User(e.context(context)),
         Failure::Numerical(e) => Failure::Numerical(e.context(context)),
     }
-}
-
-/// Where results go: `--out`, which must not hold results, or the next free `results/NAME`.
-fn result_folder(scene: &Path, out: Option<PathBuf>) -> Result<PathBuf, Failure> {
-    if let Some(dir) = out {
-        if dir.join("summary.json").exists() {
-            return Err(Failure::User(anyhow!(
-                "{} already holds the results of a run; choose another --out or remove it",
-                dir.display()
-            )));
-        }
-        return Ok(dir);
-    }
-    let stem = scene.file_stem().map_or_else(|| "run".into(), |s| s.to_string_lossy());
-    let first = PathBuf::from("results").join(stem.as_ref());
-    let numbered = (2..MAX_FOLDERS).map(|i| PathBuf::from("results").join(format!("{stem}-{i}")));
-    std::iter::once(first)
-        .chain(numbered)
-        .find(|dir| !dir.exists())
-        .ok_or_else(|| Failure::User(anyhow!("results/{stem} has {MAX_FOLDERS} runs; give --out or remove some")))
 }
 
 /// Everything that is written while a run goes on.

@@ -2,30 +2,36 @@
 
     pvpython render_rings.py RESULTS PICTURE.png [options]
 
-RESULTS is a folder with run.hdf.series. Needs ParaView 5.11 or later; without a screen put `xvfb-run -a` in front
-(xvfb and xauth), or use an off-screen build. Nothing is kept between calls: the picture depends on the folder and
-the options only.
+RESULTS is a folder with run.hdf.series. Needs ParaView 5.11 or later. Without a screen put `xvfb-run -a -s -noreset`
+in front (xvfb and xauth; without -noreset ParaView at times loses the screen), or use an off-screen build. Nothing is
+kept between calls: the picture depends on the folder and the options only.
 
   --step N          committed step to show; default the last one
   --scale S         show the rings deformed, displacements times S; default 0, undeformed. Balls are always shown
                     at their true place
-  --cut half        remove the half y < 0 and look inside; default none
+  --cut CUT         none (default), half: remove the half y < 0, or raceways: keep y > 0 of the outer ring, x > 0 of
+                    the inner ring and the balls between both, so that both raceways lie open
   --body N          only the ring whose cell array body is N, so that its raceway is seen; default all rings
   --balls hide      leave the balls out, to see the contacts behind them; default show
   --view V          iso (default) or axial, along the axis
-  --percentile P    colours end at this percentile of the nodal values of the rings, so that the small spots under
-                    the balls do not leave everything else in one colour; default 99. 100 is the largest value
+  --title TEXT      headline; default "von Mises stress of the rings"
+  --percentile P    colours end at this percentile of the nodal values of the rings, rounded up to a round number, so
+                    that the small spots under the balls do not leave everything else in one colour; default 99
   --max MPA         colours end at this value, MPa, instead of a percentile: for pictures to be compared
-  --size WxH        pixels; default 1600x1200
+  --size WxH        pixels; default 1600x1000
 
 Exit codes: 0 done, 2 wrong arguments or files.
 """
 
 import argparse
 import json
+import math
 import os
 import sys
 
+# Values of the cell array body, and how far beyond a cutting plane a ball still counts as on it, m.
+INNER, OUTER = 0, 1
+ON_PLANE = 1e-6
 STRESS = "von Mises stress (MPa)"
 BACKGROUND = [1.0, 1.0, 1.0]
 INK = [0.1, 0.1, 0.1]
@@ -50,19 +56,20 @@ def parse_arguments(arguments):
     parser.add_argument("picture", help=argparse.SUPPRESS)
     parser.add_argument("--step", type=int, help=argparse.SUPPRESS)
     parser.add_argument("--scale", type=float, default=0.0, help=argparse.SUPPRESS)
-    parser.add_argument("--cut", choices=["none", "half"], default="none", help=argparse.SUPPRESS)
+    parser.add_argument("--cut", choices=["none", "half", "raceways"], default="none", help=argparse.SUPPRESS)
     parser.add_argument("--body", type=int, help=argparse.SUPPRESS)
     parser.add_argument("--balls", choices=["show", "hide"], default="show", help=argparse.SUPPRESS)
     parser.add_argument("--view", choices=["iso", "axial"], default="iso", help=argparse.SUPPRESS)
+    parser.add_argument("--title", default="von Mises stress of the rings", help=argparse.SUPPRESS)
     parser.add_argument("--percentile", type=float, default=99.0, help=argparse.SUPPRESS)
     parser.add_argument("--max", type=float, help=argparse.SUPPRESS)
-    parser.add_argument("--size", default="1600x1200", help=argparse.SUPPRESS)
+    parser.add_argument("--size", default="1600x1000", help=argparse.SUPPRESS)
     options = parser.parse_args(arguments)
     try:
         options.size = [int(n) for n in options.size.split("x")]
         assert len(options.size) == 2 and min(options.size) > 0
     except (ValueError, AssertionError):
-        parser.error("--size is %s, expected pixels as 1600x1200" % options.size)
+        parser.error("--size is %s, expected pixels as 1600x1000" % options.size)
     if not 0 < options.percentile <= 100:
         parser.error("--percentile is %g, expected more than 0 and at most 100" % options.percentile)
     if options.max is not None and not options.max > 0:
@@ -120,13 +127,32 @@ def displaced(source, time, factor):
     return moved
 
 
-def halved(source, time):
-    """The half y > 0."""
+def halved(source, time, normal):
+    """The half on the side of `normal`. Balls, which are points, stay when they lie on the plane."""
     half = Clip(Input=source, ClipType="Plane", Invert=0)
-    half.ClipType.Origin = [0.0, 0.0, 0.0]
-    half.ClipType.Normal = [0.0, 1.0, 0.0]
+    half.ClipType.Origin = [-ON_PLANE * component for component in normal]
+    half.ClipType.Normal = normal
     half.UpdatePipeline(time)
     return half
+
+
+def cut_open(cut, rings, balls, time):
+    """Pieces of the rings, and the balls, that a cut leaves."""
+    back, right = [0.0, 1.0, 0.0], [1.0, 0.0, 0.0]
+    if cut == "half":
+        return [halved(rings, time, back)], halved(balls, time, back)
+    if cut == "raceways":
+        inner = select(rings, time, "body", INNER - 0.5, INNER + 0.5)
+        outer = select(rings, time, "body", OUTER - 0.5, OUTER + 0.5)
+        pieces = [halved(inner, time, right), halved(outer, time, back)]
+        return pieces, halved(halved(balls, time, right), time, back)
+    return [rings], balls
+
+
+def round_up(value):
+    """The next of 1, 2, 2.5, 4, 5, 6, 8 times a power of ten: a colour bar with five equal parts of round numbers."""
+    power = 10.0 ** math.floor(math.log10(value))
+    return next(step * power for step in [1, 2, 2.5, 4, 5, 6, 8, 10] if step * power >= value * (1 - 1e-12))
 
 
 def stress_values(rings):
@@ -146,15 +172,17 @@ def show_rings(rings, view, top):
     colours = GetColorTransferFunction(STRESS)
     colours.ColorSpace = "Lab"
     colours.RGBPoints = [number for at, *colour in COLOURS for number in (at * top, *colour)]
-    display.Ambient, display.Diffuse = 0.45, 0.6
+    # Mostly ambient light: a shaded colour would not be found on the colour bar.
+    display.Ambient, display.Diffuse = 0.7, 0.35
     display.SetScalarBarVisibility(view, True)
     bar = GetScalarBar(colours, view)
     bar.Title, bar.ComponentTitle = STRESS, ""
     bar.TitleColor = bar.LabelColor = INK
     bar.TitleFontSize, bar.LabelFontSize = 18, 16
-    bar.AutomaticLabelFormat, bar.LabelFormat, bar.RangeLabelFormat = 0, "%-#.4g", "%-#.4g"
+    bar.AutomaticLabelFormat, bar.LabelFormat, bar.RangeLabelFormat = 0, "%g", "%g"
+    bar.UseCustomLabels, bar.CustomLabels = 1, [top * i / 5 for i in range(1, 5)]
     bar.WindowLocation = "Any Location"
-    bar.Orientation, bar.Position, bar.ScalarBarLength = "Vertical", [0.88, 0.2], 0.6
+    bar.Orientation, bar.Position, bar.ScalarBarLength = "Vertical", [0.9, 0.2], 0.6
 
 
 def show_balls(balls, time, view):
@@ -169,7 +197,7 @@ def show_balls(balls, time, view):
     display = Show(spheres, view)
     ColorBy(display, None)
     display.DiffuseColor = [0.72, 0.73, 0.76]
-    display.Specular = 0.4
+    display.Ambient, display.Diffuse, display.Specular = 0.3, 0.6, 0.4
 
 
 def write_title(view, text, size, place):
@@ -184,12 +212,12 @@ def place_camera(view, kind):
     if kind == "axial":
         view.CameraPosition, view.CameraViewUp = [0.0, 0.0, 1.0], [0.0, 1.0, 0.0]
     else:
-        view.CameraPosition, view.CameraViewUp = [0.35, -1.0, 0.85], [0.0, 0.0, 1.0]
+        view.CameraPosition, view.CameraViewUp = [0.45, -1.0, 0.75], [0.0, 0.0, 1.0]
     ResetCamera(view)
     camera = GetActiveCamera()
-    camera.Dolly(1.1)
+    camera.Dolly(1.1 if kind == "axial" else 1.55)
     # The colour bar stands to the right.
-    camera.SetWindowCenter(0.1, 0.0)
+    camera.SetWindowCenter(0.07, -0.02)
 
 
 def render(options):
@@ -203,22 +231,20 @@ def render(options):
             raise UserError("no ring has the body number %d" % options.body)
     rings = displaced(solids, time, options.scale)
     values = stress_values(rings)
-    top = options.max if options.max is not None else float(numpy.percentile(values, options.percentile))
-    if not top > 0:
-        top = float(values.max()) or 1.0
+    top = options.max if options.max is not None else round_up(
+        float(numpy.percentile(values, options.percentile)) or float(values.max()) or 1.0)
     balls = displaced(select(scaled, time, "radius", 1e-12, 1e12), time, 1.0)
-    if options.cut == "half":
-        rings, balls = halved(rings, time), halved(balls, time)
+    pieces, balls = cut_open(options.cut, rings, balls, time)
 
     view = CreateRenderView(ViewSize=options.size, Background=BACKGROUND)
     view.UseColorPaletteForBackground, view.OrientationAxesLabelColor, view.ViewTime = 0, INK, time
-    show_rings(rings, view, top)
+    for piece in pieces:
+        show_rings(piece, view, top)
     if options.balls == "show" and balls.GetDataInformation().GetNumberOfPoints() > 0:
         show_balls(balls, time, view)
     deformed = "undeformed" if options.scale == 0 else "displacements x %g" % options.scale
-    write_title(view, "von Mises stress of the rings", 26, "Upper Center")
-    end = "%g MPa" % options.max if options.max is not None else "percentile %g" % options.percentile
-    note = "step %d, t = %.6g s, %s; colours end at %s, largest %.4g MPa" % (number, time, deformed, end, values.max())
+    write_title(view, options.title, 26, "Upper Center")
+    note = "step %d, t = %.6g s, %s; largest nodal value %.4g MPa" % (number, time, deformed, values.max())
     write_title(view, note, 15, "Lower Center")
     place_camera(view, options.view)
     SaveScreenshot(os.path.abspath(options.picture), view, ImageResolution=options.size)

@@ -2,5 +2,6 @@
 
 pub mod console;
 pub mod fields;
+pub mod folder;
 pub mod summary;
 pub mod tables;

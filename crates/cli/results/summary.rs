@@ -9,6 +9,7 @@ use dynamics::{Model, StaticSolution, Timing};
 use serde::Serialize;
 
 use crate::scene::{Analysis, Scene};
+use crate::print;
 
 /// The whole file.
 #[derive(Debug, Serialize)]
@@ -132,10 +133,10 @@ impl Summary {
 
     /// Prints warnings, then where the time went.
     pub fn print_costs(&self) {
-        self.warnings.iter().for_each(|w| println!("warning: {w}"));
+        self.warnings.iter().for_each(|w| print::line(format_args!("warning: {w}")));
         let parts: Vec<String> = self.timing_s.iter().map(|(part, s)| format!("{part} {s:.3}")).collect();
-        println!("seconds: {}", parts.join(", "));
-        println!("peak memory: {:.0} MB", self.peak_memory_bytes as f64 / 1e6);
+        print::line(format_args!("seconds: {}", parts.join(", ")));
+        print::line(format_args!("peak memory: {:.0} MB", self.peak_memory_bytes as f64 / 1e6));
     }
 
     /// Writes the file: complete or not at all.

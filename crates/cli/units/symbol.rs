@@ -31,8 +31,9 @@ const fn symbol(
 }
 
 /// All symbols. A whole symbol wins over a prefix and a symbol: `min` is a minute.
-static SYMBOLS: [Symbol; 17] = [
+static SYMBOLS: [Symbol; 18] = [
     symbol("m", 1.0, 0.0, [0.0, 1.0, 0.0, 0.0], true),
+    symbol("in", 0.0254, 0.0, [0.0, 1.0, 0.0, 0.0], false),
     symbol("g", 1.0, -3.0, [1.0, 0.0, 0.0, 0.0], true),
     symbol("t", 1.0, 3.0, [1.0, 0.0, 0.0, 0.0], false),
     symbol("s", 1.0, 0.0, [0.0, 0.0, 1.0, 0.0], true),

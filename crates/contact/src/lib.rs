@@ -14,6 +14,7 @@ pub mod law;
 pub mod patch;
 pub mod quadrature;
 pub mod raceway;
+pub mod unevenness;
 pub mod weights;
 
 pub use error::ContactError;
@@ -23,4 +24,5 @@ pub use hertz::{Elastic, HertzContact};
 pub use law::ContactLaw;
 pub use patch::Patch;
 pub use raceway::{Groove, RacewaySurface};
+pub use unevenness::Unevenness;
 pub use weights::NodalWeights;

@@ -7,8 +7,8 @@
 //! 5 unknowns per iteration.
 
 use contact::{BearingGeometry, Side};
-use solver::LinearSolver;
-use solver::dense::DenseCholesky;
+use solver::dense::{DenseCholesky, DenseLu};
+use solver::{LinearSolver, SolverError};
 
 use crate::error::DynamicsError;
 use crate::problem::{Displacements, Problem, SHAFT_DOFS};
@@ -109,12 +109,16 @@ fn direction(
     for i in 0..n {
         hessian[n * i + i] += PROXIMAL * scales.stiffness;
     }
-    let factor = DenseCholesky::factor(n, &hessian).map_err(|source| DynamicsError::Solver {
-        side: "contact system of the inner and outer",
-        source,
-    })?;
     let mut direction: Vec<f64> = gradient.iter().map(|g| -g).collect();
-    factor.solve(&mut direction, 1);
+    if problem.is_conservative() {
+        DenseCholesky::factor(n, &hessian)
+            .map_err(dense_error)?
+            .solve(&mut direction, 1);
+    } else {
+        DenseLu::factor(n, &hessian)
+            .map_err(dense_error)?
+            .solve(&mut direction, 1);
+    }
     let length = largest(&direction);
     if length > scales.step {
         direction.iter_mut().for_each(|x| *x *= scales.step / length);
@@ -129,6 +133,9 @@ fn line_search(
     gradient: &[f64],
     direction: &[f64],
 ) -> (Displacements, Vec<f64>) {
+    if !problem.is_conservative() {
+        return backtrack(problem, u, gradient, direction);
+    }
     let slope_at = |g: &[f64]| g.iter().zip(direction).map(|(g, p)| g * p).sum::<f64>();
     let start = slope_at(gradient);
     let mut step = 1.0;
@@ -144,6 +151,29 @@ fn line_search(
         step *= (start / (start - slope)).clamp(0.1, 0.9);
     }
     (u.clone(), gradient.to_vec())
+}
+
+/// Halves the step until the residual shrinks: the search without an energy.
+fn backtrack(
+    problem: &Problem,
+    u: &Displacements,
+    gradient: &[f64],
+    direction: &[f64],
+) -> (Displacements, Vec<f64>) {
+    let size = |g: &[f64]| g.iter().map(|x| x * x).sum::<f64>();
+    let mut step = 1.0;
+    // 30 halvings reach below what a smooth residual can need; then the last step is tried as it is.
+    for _ in 0..30 {
+        let trial = problem.moved(u, direction, step);
+        let trial_gradient = problem.gradient(&trial);
+        if size(&trial_gradient) < (1.0 - 0.1 * step) * size(gradient) {
+            return (trial, trial_gradient);
+        }
+        step *= 0.5;
+    }
+    let trial = problem.moved(u, direction, step);
+    let trial_gradient = problem.gradient(&trial);
+    (trial, trial_gradient)
 }
 
 /// Largest force in the problem, N.
@@ -192,10 +222,7 @@ pub fn check_held(problem: &Problem, u: &Displacements, scales: SearchScales) ->
     let block: Vec<f64> = (m..n)
         .flat_map(|i| hessian[n * i + m..n * (i + 1)].to_vec())
         .collect();
-    let factor = DenseCholesky::factor(rest, &block).map_err(|source| DynamicsError::Solver {
-        side: "contact system of the inner and outer",
-        source,
-    })?;
+    let factor = DenseLu::factor(rest, &block).map_err(dense_error)?;
     let mut columns: Vec<f64> = (0..m)
         .flat_map(|j| (m..n).map(|i| hessian[n * i + j]).collect::<Vec<_>>())
         .collect();
@@ -225,6 +252,10 @@ pub fn check_held(problem: &Problem, u: &Displacements, scales: SearchScales) ->
         }
     }
     Ok(())
+}
+
+fn dense_error(source: SolverError) -> DynamicsError {
+    DynamicsError::ContactSystem { source }
 }
 
 fn largest(v: &[f64]) -> f64 {

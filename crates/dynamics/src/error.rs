@@ -28,6 +28,14 @@ pub enum DynamicsError {
         /// Cause.
         source: SolverError,
     },
+    /// The small contact system is singular.
+    #[error(
+        "the contact system of balls and shaft has no solution: {source}; check the loads and the shaft's free directions"
+    )]
+    ContactSystem {
+        /// Cause.
+        source: SolverError,
+    },
     /// Finite elements failed.
     #[error("{side} ring: {source}")]
     Fem {

@@ -1,8 +1,11 @@
 //! Where a contact force acts on a flexible ring: a patch on the torus, or one facet of the mesh.
 
+use std::sync::Arc;
+
+use contact::facets::FacetContact;
 use contact::patch::PatchShape;
-use contact::{ContactError, NodalWeights, Patch, Side};
-use mesh::Mesh;
+use contact::{ContactError, FacetSurface, Groove, NodalWeights, Patch, Side, Unevenness};
+use rayon::prelude::*;
 
 use crate::error::DynamicsError;
 use crate::model::{ContactMode, Model, RingModel, elastic};
@@ -11,6 +14,11 @@ use crate::ring::RingSolver;
 
 /// Groove angle kept from the rim by an unloaded contact, as a share of the groove.
 const RIM_SHARE: f64 = 0.05;
+
+/// Samples of a faceted groove from rim to rim.
+const FACET_SAMPLES: usize = 200;
+/// How far facets are searched, in ball radii.
+const SEARCH_REACH: f64 = 1.1;
 
 /// Place of one contact on a ring.
 #[derive(Clone, Debug)]
@@ -24,7 +32,7 @@ pub struct Footprint {
 }
 
 /// Places all contacts of one ring for the displacements `u` and site forces, and sets the laws (patch compliance)
-/// and, for facets, the local groove centres of the problem's sites. `field`: the ring's elastic displacement, m.
+/// and, for facets, the unevenness of the grooves.
 pub fn place(
     model: &Model,
     side: Side,
@@ -32,7 +40,6 @@ pub fn place(
     problem: &mut Problem,
     u: &Displacements,
     forces: &[[f64; 2]],
-    field: Option<&[f64]>,
 ) -> Result<Vec<Footprint>, DynamicsError> {
     let ring = model.ring(side).expect("only flexible rings have footprints");
     let n_balls = model.geometry.n_balls;
@@ -41,7 +48,7 @@ pub fn place(
         let index = 2 * ball + side.index();
         let site = &mut problem.sites[index];
         feet.push(match model.contact.mode {
-            ContactMode::Facet => place_facet(model, ring, solver, site, u, field)?,
+            ContactMode::Facet => place_facet(model, ring, solver, site, u)?,
             _ => place_patch(model, ring, solver, site, u, forces[index])?,
         });
     }
@@ -97,58 +104,21 @@ fn reachable(solver: &RingSolver, site: &Site, angle: f64, load: f64) -> Result<
     Ok(angle.clamp(low + rim, high - rim))
 }
 
-/// Closest facet of the deformed mesh; the site's groove centre becomes the centre of curvature there.
+/// Foot point on the facet under the ball. The offsets of the facets along the groove are sampled once; the ring's
+/// deformation comes in through the motion measured at the foot.
 fn place_facet(
     model: &Model,
     ring: &RingModel,
     solver: &RingSolver,
     site: &mut Site,
     u: &Displacements,
-    field: Option<&[f64]>,
 ) -> Result<Footprint, DynamicsError> {
-    let facets = solver
-        .facets
-        .as_ref()
-        .expect("facet mode builds the facet search of every flexible ring");
-    let (sin, cos) = site.azimuth.sin_cos();
-    // Ball centre in mesh coordinates, seen from a ring whose rigid motion is taken out.
-    let geometry = &model.geometry;
-    let shift = model.ring_shift(site.side);
-    let reference = geometry.ball_centre();
-    let mut ball = [
-        reference[0] + u.balls[site.ball][0],
-        reference[1] + u.balls[site.ball][1] - shift,
-    ];
-    if site.side == Side::Inner {
-        for (row, q) in site.shaft_rows().iter().zip(u.shaft) {
-            ball[0] -= row[0] * q;
-            ball[1] -= row[1] * q;
-        }
+    let search = FacetSearch::new(model, ring, solver, site);
+    if site.unevenness.is_none() {
+        site.unevenness = Some(Arc::new(search.unevenness(solver.surface.angle_range)?));
     }
-    let centre = [ball[0] * cos, ball[0] * sin, ball[1]];
-    let position = |node: usize| deformed(&ring.mesh, field, node);
-    let radius = 0.5 * geometry.ball_diameter;
-    let contact = facets
-        .foot(centre, 2.0 * radius, position)
-        .ok_or(DynamicsError::NoFacet {
-            ball: site.ball,
-            side: site.side.name(),
-        })?;
+    let contact = search.foot(site.contact_angle(&site.state(u)))?;
     let weights = NodalWeights::interpolation(contact.nodes, &contact.weights, site.azimuth);
-    let meridian = [
-        contact.normal[0] * cos + contact.normal[1] * sin,
-        contact.normal[2],
-    ];
-    let size = meridian[0].hypot(meridian[1]);
-    let normal = meridian.map(|x| x / size);
-    let approach = radius - contact.distance;
-    // Groove centre such that the vector to the ball is the normal, with the penetration just measured.
-    let length = site.touching + approach;
-    let moved = field.map_or([0.0; 2], |f| weights.measure(f));
-    for i in 0..2 {
-        let rest = ball[i] - [reference[0], reference[1] - shift][i];
-        site.reach[i] = length * normal[i] - rest + moved[i];
-    }
     Ok(Footprint {
         weights,
         semi_axes: None,
@@ -156,9 +126,66 @@ fn place_facet(
     })
 }
 
-fn deformed(mesh: &Mesh, field: Option<&[f64]>, node: usize) -> [f64; 3] {
-    let x = mesh.nodes[node];
-    field.map_or(x, |u| {
-        [x[0] + u[3 * node], x[1] + u[3 * node + 1], x[2] + u[3 * node + 2]]
-    })
+/// The facets of one ring as the ball of one site sees them.
+struct FacetSearch<'a> {
+    facets: &'a FacetSurface,
+    nodes: &'a [[f64; 3]],
+    groove: Groove,
+    /// Distance from groove centre to a touching ball's centre, and ball radius, m.
+    touching: f64,
+    radius: f64,
+    azimuth: f64,
+    ball: usize,
+}
+
+impl<'a> FacetSearch<'a> {
+    fn new(model: &Model, ring: &'a RingModel, solver: &'a RingSolver, site: &Site) -> FacetSearch<'a> {
+        FacetSearch {
+            facets: solver
+                .facets
+                .as_ref()
+                .expect("facet mode builds the facet search of every flexible ring"),
+            nodes: &ring.mesh.nodes,
+            groove: ring.groove,
+            touching: site.touching,
+            radius: 0.5 * model.geometry.ball_diameter,
+            azimuth: site.azimuth,
+            ball: site.ball,
+        }
+    }
+
+    /// Foot point of a ball that touches the torus at a groove angle.
+    fn foot(&self, angle: f64) -> Result<FacetContact, DynamicsError> {
+        let (sin, cos) = self.azimuth.sin_cos();
+        let direction = self.groove.direction(angle);
+        let radial = self.groove.centre_radius + self.touching * direction[0];
+        let centre = [
+            radial * cos,
+            radial * sin,
+            self.groove.centre_z + self.touching * direction[1],
+        ];
+        self.facets
+            .foot(centre, SEARCH_REACH * self.radius, |node| self.nodes[node])
+            .ok_or(DynamicsError::NoFacet {
+                ball: self.ball,
+                side: self.groove.side.name(),
+            })
+    }
+
+    fn unevenness(&self, [low, high]: [f64; 2]) -> Result<Unevenness, DynamicsError> {
+        let rim = RIM_SHARE * (high - low);
+        let range = [low + rim, high - rim];
+        let step = (range[1] - range[0]) / (FACET_SAMPLES - 1) as f64;
+        let angles: Vec<f64> = (0..FACET_SAMPLES).map(|i| range[0] + step * i as f64).collect();
+        let offset = |angle: &f64| {
+            let foot = self.foot(*angle)?;
+            let positions = foot.nodes.iter().map(|&node| self.nodes[node]);
+            Ok::<f64, DynamicsError>(
+                self.groove
+                    .chord_offset(*angle, positions.zip(foot.weights.iter().copied())),
+            )
+        };
+        let offsets: Result<Vec<f64>, DynamicsError> = angles.par_iter().map(offset).collect();
+        Ok(Unevenness::new(range, offsets?))
+    }
 }

@@ -9,14 +9,16 @@
 //! Unknowns, in this order: free shaft dofs (tilts times `tilt_arm`, so that all are lengths), balls [radial,
 //! axial], elastic motions of the inner and of the outer groove centres [radial, axial].
 
+use std::sync::Arc;
+
 use contact::law::ContactForce;
-use contact::{ContactLaw, Side};
+use contact::{ContactLaw, Side, Unevenness};
 
 /// Unknowns of one contact: at most 5 shaft dofs, 2 of the ball, 2 of the groove centre.
 const MAX_LOCAL: usize = 9;
 
 /// One ball on one raceway.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Site {
     /// Ball number.
     pub ball: usize,
@@ -32,6 +34,8 @@ pub struct Site {
     pub lever: f64,
     /// Force law.
     pub law: ContactLaw,
+    /// How far the facets lie inside the torus; None on an exact torus.
+    pub unevenness: Option<Arc<Unevenness>>,
 }
 
 /// Elastic answer of one ring: u_c = offset + C (F - force), over (ball, [radial, axial]).
@@ -79,6 +83,8 @@ pub struct SiteState {
     pub normal: [f64; 2],
     /// |l|, m.
     pub length: f64,
+    /// Change of the approach per unit of l besides |l|, from the facets.
+    pub slope: [f64; 2],
     /// Force, tangent and energy.
     pub force: ContactForce,
 }
@@ -117,11 +123,21 @@ impl Site {
         } else {
             [self.side.sign(), 0.0]
         };
-        SiteState {
+        let mut state = SiteState {
             normal,
             length,
-            force: self.law.evaluate(length - self.touching),
+            slope: [0.0; 2],
+            force: ContactForce::default(),
+        };
+        let mut approach = length - self.touching;
+        if let Some(unevenness) = &self.unevenness {
+            let (offset, derivative) = unevenness.at(self.contact_angle(&state));
+            approach += offset;
+            // d angle / dl = (-n_axial, n_radial) / |l|.
+            state.slope = [-derivative * normal[1] / length, derivative * normal[0] / length];
         }
+        state.force = self.law.evaluate(approach);
+        state
     }
 
     /// Work of the contact force through the whole displacement of ball against groove centre, J.
@@ -150,6 +166,11 @@ impl Displacements {
 }
 
 impl Problem {
+    /// Whether the forces have an energy: false on faceted raceways, whose normals are not those of their facets.
+    pub fn is_conservative(&self) -> bool {
+        self.sites.iter().all(|s| s.unevenness.is_none())
+    }
+
     /// Number of unknowns.
     pub fn n(&self) -> usize {
         let free = self.shaft_free.iter().filter(|f| **f).count();
@@ -322,7 +343,7 @@ pub fn site_forces(problem: &Problem, u: &Displacements) -> Vec<[f64; 2]> {
 /// Names of the shaft dofs, as in the scene.
 pub const SHAFT_DOFS: [&str; 5] = ["x", "y", "z", "tilt_x", "tilt_y"];
 
-/// Second derivative of V(|l|) with respect to l: k n n^T + Q/|l| (1 - n n^T).
+/// Derivative of Q n with respect to l: k n (n + slope)^T + Q/|l| (1 - n n^T); without slope the Hessian of V(|l|).
 fn site_hessian(state: &SiteState) -> [[f64; 2]; 2] {
     let n = state.normal;
     let across = if state.length > 0.0 {
@@ -330,9 +351,11 @@ fn site_hessian(state: &SiteState) -> [[f64; 2]; 2] {
     } else {
         0.0
     };
-    let along = state.force.tangent - across;
-    [
-        [along * n[0] * n[0] + across, along * n[0] * n[1]],
-        [along * n[1] * n[0], along * n[1] * n[1] + across],
-    ]
+    let gap = [0, 1].map(|i| n[i] + state.slope[i]);
+    [0, 1].map(|i| {
+        [0, 1].map(|j| {
+            let identity = if i == j { 1.0 } else { 0.0 };
+            state.force.tangent * n[i] * gap[j] + across * (identity - n[i] * n[j])
+        })
+    })
 }

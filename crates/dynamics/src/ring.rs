@@ -49,7 +49,7 @@ impl RingSolver {
         let order = solver::restrict_order(&solver::expand(&order, 3), &support.free);
         let (factor, peak) = factor(&stiffness, &order).map_err(|e| named(e, side, ring, &support))?;
         let facets = matches!(model.contact.mode, ContactMode::Facet)
-            .then(|| FacetSurface::new(mesh, mesh.group(RACEWAY_GROUP)));
+            .then(|| FacetSurface::new(mesh, mesh.group(RACEWAY_GROUP), ring.groove));
         Ok(RingSolver {
             n_dofs: mesh.n_dofs(),
             surface: RacewaySurface::new(mesh, mesh.group(RACEWAY_GROUP), ring.groove),

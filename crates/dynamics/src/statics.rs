@@ -11,6 +11,7 @@
 //! ```
 //! C is only a tangent: a slightly outdated one costs rounds, never accuracy; it is renewed when rounds contract slowly.
 
+use std::sync::Arc;
 use std::time::Instant;
 
 use contact::{ContactLaw, Side};
@@ -30,6 +31,9 @@ use crate::solution::{RingFields, StaticSolution};
 const SLOW_CONTRACTION: f64 = 0.2;
 /// Facets make the force jump where a ball changes facets; rounds settle to this share of the largest force.
 const FACET_TOLERANCE: f64 = 1e-6;
+
+/// Stages in which the facets' offsets are brought in.
+const FACET_STAGES: usize = 8;
 
 /// Seconds spent, by part.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -161,7 +165,6 @@ impl StaticSolver {
             _ => model.tolerances.force,
         };
         let mut forces = site_forces(&problem, &u);
-        let mut fields: [Option<Vec<f64>>; 2] = [None, None];
         let mut history = Vec::new();
         let mut worst = 0;
         for round in 1..=model.tolerances.max_rounds {
@@ -169,24 +172,17 @@ impl StaticSolver {
             let mut feet = [Vec::new(), Vec::new()];
             for side in Side::BOTH {
                 if let Some(ring) = &self.rings[side.index()] {
-                    feet[side.index()] = place(
-                        model,
-                        side,
-                        ring,
-                        &mut problem,
-                        &u,
-                        &forces,
-                        fields[side.index()].as_deref(),
-                    )?;
+                    feet[side.index()] = place(model, side, ring, &mut problem, &u, &forces)?;
                 }
             }
             self.timing.patches += clock.elapsed().as_secs_f64();
             self.renew_columns(&feet, &history);
-            fields = self.fields(&feet, &forces, loads);
+            let fields = self.fields(&feet, &forces, loads);
             self.respond(&mut problem, &feet, &forces, &fields);
             let clock = Instant::now();
             if round == 1 {
                 adopt_offsets(&problem, &mut u);
+                u = approach_facets(&mut problem, u, scales)?;
             }
             let (next, iterations) = minimise(&problem, u, scales)?;
             self.timing.newton += clock.elapsed().as_secs_f64();
@@ -196,9 +192,6 @@ impl StaticSolver {
             let (change, place) = largest_change(&forces, &updated);
             (forces, worst) = (updated, place);
             history.push(change);
-            if std::env::var("DBG").is_ok() {
-                eprintln!("round {round} change {change:.3e} newton {iterations}");
-            }
             if change <= tolerance {
                 check_held(&problem, &u, scales)?;
                 check_patches(&problem, &u)?;
@@ -317,6 +310,7 @@ fn base_problem(model: &Model, loads: &Loads) -> Problem {
                     stiffness: model.hertz[side.index()].stiffness,
                     patch_compliance: 0.0,
                 },
+                unevenness: None,
             }
         })
     });
@@ -328,6 +322,29 @@ fn base_problem(model: &Model, loads: &Loads) -> Problem {
         ball_load: loads.balls.clone(),
         tilt_arm: geometry.centre_radius(Side::Inner),
     }
+}
+
+/// Follows the equilibrium from exact grooves to their facets, whose offsets exceed the approach of the balls.
+fn approach_facets(
+    problem: &mut Problem,
+    mut u: Displacements,
+    scales: SearchScales,
+) -> Result<Displacements, DynamicsError> {
+    if problem.is_conservative() {
+        return Ok(u);
+    }
+    let full: Vec<_> = problem.sites.iter().map(|s| s.unevenness.clone()).collect();
+    for i in 1..FACET_STAGES {
+        let share = i as f64 / FACET_STAGES as f64;
+        for (site, unevenness) in problem.sites.iter_mut().zip(&full) {
+            site.unevenness = unevenness.as_ref().map(|x| Arc::new(x.scaled(share)));
+        }
+        u = minimise(problem, u, scales)?.0;
+    }
+    for (site, unevenness) in problem.sites.iter_mut().zip(full) {
+        site.unevenness = unevenness;
+    }
+    Ok(u)
 }
 
 /// Starts groove motions at what was measured: the first guess of a ring that answers for the first time.

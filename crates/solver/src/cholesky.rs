@@ -36,11 +36,12 @@ impl SparseCholesky {
         let faer = &symbolic.shared.faer;
         let bytes = symbolic.peak_bytes();
         let out_of_memory = || SolverError::OutOfMemory { n, bytes };
-        let mut values = Vec::new();
-        values
+        // Memory that the system hands out zeroed is touched first by the factorisation, in its own order; asking
+        // before taking it turns a lack of memory into an error.
+        Vec::<f64>::new()
             .try_reserve_exact(faer.len_val())
             .map_err(|_| out_of_memory())?;
-        values.resize(faer.len_val(), 0.0);
+        let mut values = vec![0.0; faer.len_val()];
         let mut memory = MemBuffer::try_new(symbolic.factor_scratch()).map_err(|_| out_of_memory())?;
         let indptr = matrix.indptr();
         let pattern =

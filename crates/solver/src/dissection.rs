@@ -33,6 +33,8 @@ use part::Part;
 
 /// Largest part ordered by minimum degree instead of being cut. Of 15 to 250 nodes, 15 to 40 fill least (within 2 %).
 const LEAF_NODES: usize = 40;
+/// Planes up to this many times the price of the best are refined: a ragged cut through tetrahedra may lose that much.
+const PROMISING: f64 = 1e9;
 
 /// Elimination order of the nodes of a body, `[n_nodes]`, for the graph in which all nodes of an element are
 /// neighbours. `points` are coordinates, `[n_nodes][3]`, any length unit, with z the axis of the body; `elements`
@@ -115,15 +117,17 @@ impl Dissection<'_> {
 
     /// Sides of the elements at the best cut, `None` when no cut leaves nodes on both sides.
     fn best_cut(&self, set: &[usize], part: &Part) -> Option<Vec<bool>> {
-        let mut best: Option<(f64, Vec<bool>)> = None;
+        let mut planes = Vec::with_capacity(3);
         for direction in 0..3 {
             let mut keys: Vec<f64> = set.iter().map(|&e| self.centroids[e][direction]).collect();
             if direction == 0 {
                 sweep::unwrap_azimuth(&mut keys);
             }
-            let Some(mut side) = sweep::best_plane(part, &keys) else {
-                continue;
-            };
+            planes.extend(sweep::best_plane(part, &keys));
+        }
+        let least = planes.iter().map(|plane| plane.0).fold(f64::INFINITY, f64::min);
+        let mut best: Option<(f64, Vec<bool>)> = None;
+        for (_, mut side) in planes.into_iter().filter(|plane| plane.0 <= PROMISING * least) {
             let cost = refine::refine(part, &mut side);
             if best.as_ref().is_none_or(|(least, _)| cost < *least) {
                 best = Some((cost, side));

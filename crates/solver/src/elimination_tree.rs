@@ -42,34 +42,32 @@ fn elimination_tree(matrix: &CsMat<f64>, inverse: &[usize]) -> Vec<usize> {
 /// For each permuted row the permuted columns left of the diagonal, compressed.
 fn permuted_upper(matrix: &CsMat<f64>, inverse: &[usize]) -> (Vec<usize>, Vec<usize>) {
     let n = inverse.len();
-    let by_columns = matrix.is_csc();
-    let lower = || {
-        matrix
-            .outer_iterator()
-            .enumerate()
-            .flat_map(move |(outer, vector)| {
-                let entries = vector.indices().to_vec();
-                entries.into_iter().filter_map(move |inner| {
-                    let below = if by_columns { inner > outer } else { inner < outer };
-                    let (a, b) = (inverse[outer], inverse[inner]);
-                    below.then(|| (a.max(b), a.min(b)))
-                })
-            })
-    };
     let mut starts = vec![0; n + 1];
-    for (row, _) in lower() {
-        starts[row + 1] += 1;
-    }
+    for_each_below(matrix, inverse, |row, _| starts[row + 1] += 1);
     for row in 0..n {
         starts[row + 1] += starts[row];
     }
     let mut next = starts.clone();
     let mut columns = vec![0; starts[n]];
-    for (row, column) in lower() {
+    for_each_below(matrix, inverse, |row, column| {
         columns[next[row]] = column;
         next[row] += 1;
-    }
+    });
     (starts, columns)
+}
+
+/// Calls `visit(row, column)`, both permuted, for every entry below the diagonal of the unpermuted matrix.
+fn for_each_below(matrix: &CsMat<f64>, inverse: &[usize], mut visit: impl FnMut(usize, usize)) {
+    let by_columns = matrix.is_csc();
+    for (outer, vector) in matrix.outer_iterator().enumerate() {
+        for &inner in vector.indices() {
+            let is_below = if by_columns { inner > outer } else { inner < outer };
+            if is_below {
+                let (a, b) = (inverse[outer], inverse[inner]);
+                visit(a.max(b), a.min(b));
+            }
+        }
+    }
 }
 
 /// Postorder of a forest given by parents larger than their children.

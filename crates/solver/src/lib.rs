@@ -16,7 +16,7 @@
 //! # assert_eq!(x, [1.0, 1.0, 1.0]);
 //! # Ok::<(), SolverError>(())
 //! ```
-//! Clamped degrees of freedom are taken out with [`restrict`] (matrix) and [`restrict_order`] (order).
+//! Clamped degrees of freedom are taken out with [`restrict_lower`] (matrix) and [`restrict_order`] (order).
 //!
 //! Everything here is sequential: rings, sectors and columns are the caller's units of parallel work, so the bits
 //! of a result cannot depend on the number of threads.
@@ -40,5 +40,5 @@ pub use error::SolverError;
 pub use linear_solver::LinearSolver;
 pub use permutation::{expand, restrict_order};
 pub use refinement::{Refined, solve_refined};
-pub use submatrix::restrict;
+pub use submatrix::{restrict, restrict_lower};
 pub use symbolic::Symbolic;

@@ -8,6 +8,24 @@ use sprs::CsMat;
 /// # Panics
 /// When the matrix is not square, or `keep` repeats a row or names one outside.
 pub fn restrict(matrix: &CsMat<f64>, keep: &[usize]) -> CsMat<f64> {
+    select(matrix, keep, |_, _| true)
+}
+
+/// The lower triangle, diagonal included, of [`restrict`]: all that [`crate::Symbolic`] needs of a symmetric matrix,
+/// with half its memory here and in the permuted copy that a factorisation makes.
+///
+/// # Panics
+/// As [`restrict`].
+pub fn restrict_lower(matrix: &CsMat<f64>, keep: &[usize]) -> CsMat<f64> {
+    if matrix.is_csc() {
+        select(matrix, keep, |column, row| row >= column)
+    } else {
+        select(matrix, keep, |row, column| column <= row)
+    }
+}
+
+/// Entries of the rows and columns `keep` for which `is_wanted(outer, inner)`, in the new numbering.
+fn select(matrix: &CsMat<f64>, keep: &[usize], is_wanted: impl Fn(usize, usize) -> bool) -> CsMat<f64> {
     let n = matrix.rows();
     assert_eq!(n, matrix.cols(), "a principal submatrix needs a square matrix");
     let mut new_index = vec![usize::MAX; n];
@@ -15,24 +33,33 @@ pub fn restrict(matrix: &CsMat<f64>, keep: &[usize]) -> CsMat<f64> {
         assert!(new_index[old] == usize::MAX, "row {old} is kept twice");
         new_index[old] = new;
     }
-    let increasing = keep.windows(2).all(|pair| pair[0] < pair[1]);
+    let is_kept = |outer: usize, inner: usize| inner != usize::MAX && is_wanted(outer, inner);
     let mut indptr = Vec::with_capacity(keep.len() + 1);
     indptr.push(0);
-    let (mut indices, mut data) = (Vec::new(), Vec::new());
+    let mut n_entries = 0;
+    for (outer, &old) in keep.iter().enumerate() {
+        let vector = matrix.outer_view(old);
+        n_entries += vector.map_or(0, |vector| {
+            let indices = vector.indices().iter();
+            indices.filter(|&&inner| is_kept(outer, new_index[inner])).count()
+        });
+        indptr.push(n_entries);
+    }
+    let (mut indices, mut data) = (Vec::with_capacity(n_entries), Vec::with_capacity(n_entries));
+    let increasing = keep.windows(2).all(|pair| pair[0] < pair[1]);
     let mut entries = Vec::new();
-    for &old in keep {
+    for (outer, &old) in keep.iter().enumerate() {
         let Some(vector) = matrix.outer_view(old) else {
             continue;
         };
         entries.clear();
-        let kept = vector.iter().map(|(inner, &value)| (new_index[inner], value));
-        entries.extend(kept.filter(|&(inner, _)| inner != usize::MAX));
+        let renumbered = vector.iter().map(|(inner, &value)| (new_index[inner], value));
+        entries.extend(renumbered.filter(|&(inner, _)| is_kept(outer, inner)));
         if !increasing {
             entries.sort_unstable_by_key(|&(inner, _)| inner);
         }
         indices.extend(entries.iter().map(|&(inner, _)| inner));
         data.extend(entries.iter().map(|&(_, value)| value));
-        indptr.push(indices.len());
     }
     let shape = (keep.len(), keep.len());
     if matrix.is_csc() {
@@ -58,7 +85,7 @@ mod tests {
         }
         for matrix in [triplets.to_csr::<usize>(), triplets.to_csc()] {
             for keep in [vec![], vec![3], vec![0, 2, 3, 6], vec![6, 1, 4], (0..n).collect()] {
-                let part = restrict(&matrix, &keep);
+                let (part, lower) = (restrict(&matrix, &keep), restrict_lower(&matrix, &keep));
                 assert_eq!(part.shape(), (keep.len(), keep.len()));
                 assert_eq!(part.is_csc(), matrix.is_csc());
                 for (i, &old_i) in keep.iter().enumerate() {
@@ -68,6 +95,8 @@ mod tests {
                             matrix.get(old_i, old_j),
                             "entry {i}, {j} of {keep:?}"
                         );
+                        let expected = part.get(i, j).filter(|_| j <= i);
+                        assert_eq!(lower.get(i, j), expected, "lower entry {i}, {j} of {keep:?}");
                     }
                 }
             }

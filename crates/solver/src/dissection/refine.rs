@@ -71,6 +71,11 @@ impl<'a> State<'a> {
     /// One pass; says whether it lowered the cost.
     fn pass(&mut self) -> bool {
         self.prepare();
+        // A straight cut between planes of nodes, which every move lengthens, is a firm minimum.
+        let has_free_move = self.queues.iter().any(|q| q.peek().is_some_and(|&(gain, _, _)| gain >= 0));
+        if !has_free_move {
+            return false;
+        }
         let patience = 50 + self.sizes.separator;
         let start = self.sizes.cost();
         let (mut best, mut best_length) = (start, 0);

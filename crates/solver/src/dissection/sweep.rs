@@ -2,9 +2,9 @@
 
 use super::part::{CutSizes, Part};
 
-/// Sides of the elements at the cheapest cut between consecutive keys (`[n_elements]`, one per element). `None` when
-/// every cut leaves a side without nodes. Time O(n_elements (log n_elements + nodes per element)).
-pub(super) fn best_plane(part: &Part, keys: &[f64]) -> Option<Vec<bool>> {
+/// Price and sides of the elements at the cheapest cut between consecutive keys (`[n_elements]`, one per element).
+/// `None` when every cut leaves a side without nodes. Time O(n_elements (log n_elements + nodes per element)).
+pub(super) fn best_plane(part: &Part, keys: &[f64]) -> Option<(f64, Vec<bool>)> {
     let n = part.n_elements();
     let mut sorted: Vec<usize> = (0..n).collect();
     sorted.sort_by(|&a, &b| keys[a].total_cmp(&keys[b]).then(a.cmp(&b)));
@@ -33,7 +33,7 @@ pub(super) fn best_plane(part: &Part, keys: &[f64]) -> Option<Vec<bool>> {
         }
     }
     let (cost, cut) = best;
-    cost.is_finite().then(|| rank.iter().map(|&r| r >= cut).collect())
+    cost.is_finite().then(|| (cost, rank.iter().map(|&r| r >= cut).collect()))
 }
 
 /// Moves the jump of the azimuths (rad) from pi to the widest gap between them.

@@ -1,0 +1,90 @@
+//! The folder of a run's results: chosen, found free and found writable before anything expensive, made when there
+//! is something to put into it. A run that fails before its first equilibrium leaves no trace.
+
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context, anyhow};
+
+use crate::failure::Failure;
+
+/// Largest number that a default result folder may carry.
+const MAX_FOLDERS: usize = 10_000;
+
+/// Files that say that a folder holds results, besides those of steps.
+const RESULT_FILES: [&str; 7] = [
+    "summary.json",
+    "balls.csv",
+    "shaft.csv",
+    "energy.csv",
+    "mesh.hdf",
+    "run.hdf.series",
+    "run.vtkhdf",
+];
+
+/// Where the results of `scene` go: `out`, which must not hold results, or the next free `results/NAME`.
+pub fn choose(scene: &Path, out: Option<PathBuf>) -> Result<PathBuf, Failure> {
+    let dir = match out {
+        Some(dir) => dir,
+        None => next_free(scene)?,
+    };
+    require_writable(&dir)?;
+    require_no_results(&dir)?;
+    Ok(dir)
+}
+
+fn next_free(scene: &Path) -> Result<PathBuf, Failure> {
+    let stem = scene
+        .file_stem()
+        .map_or_else(|| "run".into(), |s| s.to_string_lossy());
+    let first = PathBuf::from("results").join(stem.as_ref());
+    let numbered = (2..MAX_FOLDERS).map(|i| PathBuf::from("results").join(format!("{stem}-{i}")));
+    std::iter::once(first)
+        .chain(numbered)
+        .find(|dir| !dir.exists())
+        .ok_or_else(|| {
+            Failure::User(anyhow!(
+                "results/{stem} has {MAX_FOLDERS} runs; give --out or remove some"
+            ))
+        })
+}
+
+/// The folder must exist or be possible to make: writes and removes an empty file in it, or in the nearest folder
+/// above it that exists.
+fn require_writable(dir: &Path) -> Result<(), Failure> {
+    let above = dir
+        .ancestors()
+        .find(|path| path.exists())
+        .unwrap_or(Path::new("."));
+    if !above.is_dir() {
+        return Err(Failure::User(anyhow!(
+            "cannot write results to {}: {} is a file; expected a folder or nothing there, choose another --out",
+            dir.display(),
+            above.display()
+        )));
+    }
+    let probe = above.join(format!(".raceway-{}", std::process::id()));
+    std::fs::write(&probe, b"")
+        .and_then(|()| std::fs::remove_file(&probe))
+        .with_context(|| format!("cannot write results to {}; choose another --out", dir.display()))?;
+    Ok(())
+}
+
+fn require_no_results(dir: &Path) -> Result<(), Failure> {
+    if !dir.exists() {
+        return Ok(());
+    }
+    let file = RESULT_FILES
+        .iter()
+        .find(|name| dir.join(name).exists())
+        .map(|name| name.to_string());
+    let step = checkpoint::committed_steps(dir)?
+        .first()
+        .map(|&step| checkpoint::step_file_name(step));
+    match file.or(step) {
+        None => Ok(()),
+        Some(name) => Err(Failure::User(anyhow!(
+            "{} already holds results of a run ({name}); choose another --out or remove them",
+            dir.display()
+        ))),
+    }
+}
