@@ -250,6 +250,32 @@ fn rigid_rings_need_no_mesh_and_no_time() {
     assert!(seconds < 2.0, "{seconds} s");
 }
 
+/// If this failed, the two sides of the grooves would not be alike, or a bearing pushed backwards would be refused.
+#[test]
+fn a_reversed_thrust_mirrors_the_contacts() {
+    let dir = Dir::with_scene(SCENE);
+    let reversed = ["--set", "effects.axial_force.value=-2 kN"];
+    dir.run("forwards", &RIGID);
+    dir.run("backwards", &[&RIGID[..], &reversed].concat());
+    let [forwards, backwards] =
+        ["forwards", "backwards"].map(|out| Table::read(&dir, &format!("{out}/balls.csv")));
+    // Both converge to 1e-10 of the loads from different starts.
+    for (a, b) in forwards
+        .column("inner_force_n")
+        .iter()
+        .zip(backwards.column("inner_force_n"))
+    {
+        assert_within("force", *a, b, BALANCE * AXIAL);
+    }
+    for (a, b) in forwards
+        .column("inner_contact_angle_rad")
+        .iter()
+        .zip(backwards.column("inner_contact_angle_rad"))
+    {
+        assert_within("angle", *a, -b, BALANCE);
+    }
+}
+
 /// If this failed, a load that no bearing carries would give numbers, or files that look like results.
 #[test]
 fn a_load_without_equilibrium_ends_with_code_3_and_no_files() {

@@ -20,14 +20,20 @@ const TORUS_TOLERANCE: f64 = 2e-4;
 pub fn build_model(scene: &Scene) -> Result<Model, Failure> {
     let geometry = geometry(scene);
     geometry.validate()?;
-    let rings = rayon::join(|| ring(scene, &geometry, Side::Inner), || ring(scene, &geometry, Side::Outer));
+    let rings = rayon::join(
+        || ring(scene, &geometry, Side::Inner),
+        || ring(scene, &geometry, Side::Outer),
+    );
     model_with_rings(scene, [rings.0?.map(Arc::new), rings.1?.map(Arc::new)])
 }
 
 /// The model of a scene with rings that were read before: the points of a sweep share them.
 pub fn model_with_rings(scene: &Scene, rings: [Option<Arc<RingModel>>; 2]) -> Result<Model, Failure> {
     let geometry = geometry(scene);
-    let (ring_steel, ball_steel) = (material(&scene.materials.rings)?, material(&scene.materials.balls)?);
+    let (ring_steel, ball_steel) = (
+        material(&scene.materials.rings)?,
+        material(&scene.materials.balls)?,
+    );
     let given = [scene.contact.inner_stiffness, scene.contact.outer_stiffness];
     let hertz = Side::BOTH.map(|side| {
         let exact = HertzContact::new(&geometry, side, elastic(&ball_steel), elastic(&ring_steel));
@@ -56,7 +62,10 @@ pub fn model_with_rings(scene: &Scene, rings: [Option<Arc<RingModel>>; 2]) -> Re
             patch_spacings: scene.contact.patch_elements,
         },
         effects: effects(scene),
-        tolerances: Tolerances { force: scene.solver.tolerance, max_rounds: scene.solver.max_iterations },
+        tolerances: Tolerances {
+            force: scene.solver.tolerance,
+            max_rounds: scene.solver.max_iterations,
+        },
     })
 }
 
@@ -89,7 +98,10 @@ fn effects(scene: &Scene) -> Vec<Box<dyn Effect>> {
         effects.push(Box::new(Moment { value }));
     }
     if let Some(radial) = &scene.effects.radial_force {
-        effects.push(Box::new(RadialForce { value: radial.value, direction: radial.direction }));
+        effects.push(Box::new(RadialForce {
+            value: radial.value,
+            direction: radial.direction,
+        }));
     }
     effects
 }
@@ -115,10 +127,22 @@ fn ring(scene: &Scene, geometry: &BearingGeometry, side: Side) -> Result<Option<
         groove_radius: groove.groove_radius,
         centre_z: groove.centre_z,
     };
-    mesh::check_torus(&mesh, &origin, RACEWAY_GROUP, &torus, TORUS_TOLERANCE * groove.groove_radius)?;
+    mesh::check_torus(
+        &mesh,
+        &origin,
+        RACEWAY_GROUP,
+        &torus,
+        TORUS_TOLERANCE * groove.groove_radius,
+    )?;
     let hold = match body.support {
         scene::Support::Clamped => Hold::Clamped,
         scene::Support::MeanMotion => Hold::MeanMotion,
     };
-    Ok(Some(RingModel { mesh, material: material(&scene.materials.rings)?, hold, held_group, groove }))
+    Ok(Some(RingModel {
+        mesh,
+        material: material(&scene.materials.rings)?,
+        hold,
+        held_group,
+        groove,
+    }))
 }

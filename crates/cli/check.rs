@@ -7,9 +7,9 @@ use solver::Symbolic;
 
 use crate::build::build_model;
 use crate::failure::Failure;
+use crate::print;
 use crate::results::fields;
 use crate::scene::{Analysis, Scene};
-use crate::print;
 
 /// Bytes of one point in a step file: displacement f64, stress and von Mises f32, two force vectors f64.
 const BYTES_PER_POINT: usize = 3 * 8 + 7 * 4 + 6 * 8;
@@ -18,19 +18,33 @@ const BYTES_PER_POINT: usize = 3 * 8 + 7 * 4 + 6 * 8;
 pub fn check(path: &Path, overrides: &[String]) -> Result<(), Failure> {
     let scene = Scene::load(path, overrides)?;
     let model = build_model(&scene)?;
-    print::line(format_args!("scene    {}", scene.title.as_deref().unwrap_or("(no title)")));
+    print::line(format_args!(
+        "scene    {}",
+        scene.title.as_deref().unwrap_or("(no title)")
+    ));
     let steps = match &scene.analysis {
         Analysis::Static => {
             print::line(format_args!("analysis static"));
             1
         }
         Analysis::Sweep(sweep) => {
-            print::line(format_args!("analysis sweep of {} over {} values", sweep.key, sweep.points.len()));
+            print::line(format_args!(
+                "analysis sweep of {} over {} values",
+                sweep.key,
+                sweep.points.len()
+            ));
             sweep.points.len()
         }
     };
     let names: Vec<&str> = model.effects.iter().map(|e| e.name()).collect();
-    print::line(format_args!("effects  {}", if names.is_empty() { "none".to_string() } else { names.join(", ") }));
+    print::line(format_args!(
+        "effects  {}",
+        if names.is_empty() {
+            "none".to_string()
+        } else {
+            names.join(", ")
+        }
+    ));
     let geometry = &model.geometry;
     print::line(format_args!(
         "bearing  {} balls, clearance {:.4} mm, groove distance {:.4} mm, free contact angle {:.4} deg",
@@ -55,7 +69,10 @@ pub fn check(path: &Path, overrides: &[String]) -> Result<(), Failure> {
 fn print_ring(model: &dynamics::Model, side: Side) -> Result<(), Failure> {
     let stiffness = model.hertz[side.index()].stiffness / 10f64.powf(4.5);
     let Some(ring) = model.ring(side) else {
-        print::line(format_args!("{}    rigid, Hertz stiffness {stiffness:.4e} N/mm^1.5, no dofs", side.name()));
+        print::line(format_args!(
+            "{}    rigid, Hertz stiffness {stiffness:.4e} N/mm^1.5, no dofs",
+            side.name()
+        ));
         return Ok(());
     };
     let mesh = &ring.mesh;

@@ -44,7 +44,11 @@ impl Failure {
                 | DynamicsError::Fem { .. }
                 | DynamicsError::Contact(ContactError::Hole { .. })
         );
-        if user { Failure::User(error.into()) } else { Failure::Numerical(error.into()) }
+        if user {
+            Failure::User(error.into())
+        } else {
+            Failure::Numerical(error.into())
+        }
     }
 }
 

@@ -81,19 +81,35 @@ fn execute(arguments: Arguments) -> Result<(), Failure> {
     comm::refuse_parallel_launch()?;
     if let Some(threads) = arguments.threads {
         if threads == 0 {
-            return Err(Failure::User(anyhow::anyhow!("--threads is 0; expected at least 1")));
+            return Err(Failure::User(anyhow::anyhow!(
+                "--threads is 0; expected at least 1"
+            )));
         }
-        rayon::ThreadPoolBuilder::new().num_threads(threads).build_global()?;
+        rayon::ThreadPoolBuilder::new()
+            .num_threads(threads)
+            .build_global()?;
     }
     match arguments.command {
-        Command::Run { scene, overrides, out } => {
+        Command::Run {
+            scene,
+            overrides,
+            out,
+        } => {
             let dir = run::run(&scene, &overrides, out)?;
             print::line(format_args!("results: {}", dir.display()));
             Ok(())
         }
         Command::Check { scene, overrides } => check::check(&scene, &overrides),
-        Command::Mesh { scene, overrides, force } => {
-            let overwrite = if force { Overwrite::Replace } else { Overwrite::Refuse };
+        Command::Mesh {
+            scene,
+            overrides,
+            force,
+        } => {
+            let overwrite = if force {
+                Overwrite::Replace
+            } else {
+                Overwrite::Refuse
+            };
             meshing::build_meshes(&scene, &overrides, overwrite)
         }
     }

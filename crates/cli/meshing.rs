@@ -9,8 +9,8 @@ use anyhow::{Context, anyhow};
 use mesh::{ElementKind, Mesh, MshFormat, Overwrite, RingSection, RingSide};
 
 use crate::failure::Failure;
-use crate::scene::{FlexibleRing, MeshFiles, Ring, Scene, Section, SectionElement};
 use crate::print;
+use crate::scene::{FlexibleRing, MeshFiles, Ring, Scene, Section, SectionElement};
 
 /// Length unit of the files that Gmsh reads and writes, m.
 const GMSH_UNIT: f64 = 1e-3;
@@ -19,7 +19,10 @@ const GMSH_UNIT: f64 = 1e-3;
 pub fn build_meshes(path: &Path, overrides: &[String], overwrite: Overwrite) -> Result<(), Failure> {
     let scene = Scene::load_with(path, overrides, MeshFiles::MayBeMissing)?;
     let rings = [(RingSide::Inner, &scene.inner), (RingSide::Outer, &scene.outer)];
-    let jobs: Vec<_> = rings.into_iter().filter_map(|(side, ring)| Some((side, job(ring)?))).collect();
+    let jobs: Vec<_> = rings
+        .into_iter()
+        .filter_map(|(side, ring)| Some((side, job(ring)?)))
+        .collect();
     if jobs.is_empty() {
         return Err(Failure::User(anyhow!(
             "{} describes no mesh to build: expected [inner.section] or [outer.section] of a flexible ring",
@@ -53,7 +56,12 @@ fn job(ring: &Ring) -> Option<(&FlexibleRing, &Section)> {
     Some((ring.body.as_ref()?, ring.section.as_ref()?))
 }
 
-fn build_ring(scene: &Scene, side: RingSide, body: &FlexibleRing, section: &Section) -> Result<Mesh, Failure> {
+fn build_ring(
+    scene: &Scene,
+    side: RingSide,
+    body: &FlexibleRing,
+    section: &Section,
+) -> Result<Mesh, Failure> {
     let measures = measures(scene, side, section);
     if let Some(folder) = body.mesh.parent() {
         std::fs::create_dir_all(folder).with_context(|| format!("cannot create {}", folder.display()))?;
@@ -87,14 +95,23 @@ fn revolved(
     let msh = beside(&body.mesh, "section.msh");
     mesh::mesh_section_with_gmsh(geo, &msh)?;
     let flat = mesh::read_section(&msh, GMSH_UNIT)?;
-    Ok(mesh::revolve(&flat, section.sectors, kind, &[measures.geometry()?.snap()])?)
+    Ok(mesh::revolve(
+        &flat,
+        section.sectors,
+        kind,
+        &[measures.geometry()?.snap()],
+    )?)
 }
 
 fn measures(scene: &Scene, side: RingSide, section: &Section) -> RingSection {
     let b = &scene.bearing;
     let (seat_diameter, raceway_diameter, groove_radius) = match side {
         RingSide::Inner => (b.bore_diameter, b.inner_raceway_diameter, b.inner_groove_radius),
-        RingSide::Outer => (b.outside_diameter, b.outer_raceway_diameter, b.outer_groove_radius),
+        RingSide::Outer => (
+            b.outside_diameter,
+            b.outer_raceway_diameter,
+            b.outer_groove_radius,
+        ),
     };
     RingSection {
         side,

@@ -25,14 +25,24 @@ impl Progress {
             bar.enable_steady_tick(Duration::from_millis(200));
             bar
         });
-        Progress { bar, start: Instant::now(), total, done: 0 }
+        Progress {
+            bar,
+            start: Instant::now(),
+            total,
+            done: 0,
+        }
     }
 
     /// Says what is done now.
     pub fn stage(&self, text: &str) {
         match &self.bar {
             Some(bar) => bar.set_message(text.to_string()),
-            None => print::note(format_args!("[{:8.2} s] {}/{} {text}", self.start.elapsed().as_secs_f64(), self.done, self.total)),
+            None => print::note(format_args!(
+                "[{:8.2} s] {}/{} {text}",
+                self.start.elapsed().as_secs_f64(),
+                self.done,
+                self.total
+            )),
         }
     }
 

@@ -38,7 +38,9 @@ pub fn run(path: &Path, overrides: &[String], out: Option<PathBuf>) -> Result<Pa
         progress.stage(&stage_text(&scene, *value));
         model = model_with_rings(point, model.rings)?;
         let before = solutions.last().map(|s| &s.1);
-        let solution = solver.solve(&model, before).map_err(|e| at_point(e, &scene, *value, &dir, step))?;
+        let solution = solver
+            .solve(&model, before)
+            .map_err(|e| at_point(e, &scene, *value, &dir, step))?;
         // The first solution makes the folder: a scene that has none leaves no files.
         let files = match &mut results {
             Some(files) => files,
@@ -64,7 +66,9 @@ pub fn run(path: &Path, overrides: &[String], out: Option<PathBuf>) -> Result<Pa
 
 /// The load cases of a scene: one, or those of its sweep.
 fn points(scene: &Scene) -> Result<Vec<Point>, Failure> {
-    let Analysis::Sweep(sweep) = &scene.analysis else { return Ok(vec![(None, scene.clone())]) };
+    let Analysis::Sweep(sweep) = &scene.analysis else {
+        return Ok(vec![(None, scene.clone())]);
+    };
     let scenes = scene.sweep_scenes()?;
     for point in &scenes {
         if !same_rings(scene, point) {
@@ -83,7 +87,12 @@ fn points(scene: &Scene) -> Result<Vec<Point>, Failure> {
 fn same_rings(a: &Scene, b: &Scene) -> bool {
     let grooves = |s: &Scene| {
         let b = &s.bearing;
-        [b.inner_raceway_diameter, b.outer_raceway_diameter, b.inner_groove_radius, b.outer_groove_radius]
+        [
+            b.inner_raceway_diameter,
+            b.outer_raceway_diameter,
+            b.inner_groove_radius,
+            b.outer_groove_radius,
+        ]
     };
     a.inner.body == b.inner.body
         && a.outer.body == b.outer.body
@@ -100,7 +109,9 @@ fn stage_text(scene: &Scene, value: Option<f64>) -> String {
 }
 
 fn at_point(error: DynamicsError, scene: &Scene, value: Option<f64>, dir: &Path, done: usize) -> Failure {
-    let (Analysis::Sweep(sweep), Some(value)) = (&scene.analysis, value) else { return Failure::solving(error) };
+    let (Analysis::Sweep(sweep), Some(value)) = (&scene.analysis, value) else {
+        return Failure::solving(error);
+    };
     let context = match done {
         0 => format!("{} = {value}, the first point of the sweep", sweep.column),
         _ => format!(
@@ -135,7 +146,13 @@ impl Results {
         let tables = Tables::create(dir, swept)?;
         let output_seconds = clock.elapsed().as_secs_f64();
         let recoveries = fields::recoveries(model, scene.output.stress)?;
-        Ok(Results { output, tables, recoveries, stress_seconds: 0.0, output_seconds })
+        Ok(Results {
+            output,
+            tables,
+            recoveries,
+            stress_seconds: 0.0,
+            output_seconds,
+        })
     }
 
     fn write(

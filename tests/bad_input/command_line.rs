@@ -160,3 +160,13 @@ fn a_file_in_the_way_of_the_results_is_refused() {
     let part = "error: cannot write results to out/a/b: out is a file; expected a folder";
     assert_refused("out/a/b", &dir, &[], &below, &[part]);
 }
+
+/// If this failed, a run into a folder that cannot be written would be solved first and lost then.
+#[test]
+fn a_folder_that_cannot_be_written_is_refused() {
+    let dir = Dir::with_scene(SCENE);
+    // Nobody, not even root, can make a file in /proc.
+    let arguments = [&["run", "scene.toml", "--out", "/proc/raceway"], &RIGID[..]].concat();
+    let part = "error: cannot write results to /proc/raceway; choose another --out: ";
+    assert_refused("/proc", &dir, &[], &arguments, &[part]);
+}

@@ -6,8 +6,12 @@ use crate::print;
 
 /// Prints the balls and the shaft of one equilibrium.
 pub fn print_static(solution: &StaticSolution) {
-    print::line(format_args!("ball  azimuth    inner N    outer N  angle i  angle o   p_max i  p_max o"));
-    print::line(format_args!("          deg                            deg      deg       GPa      GPa"));
+    print::line(format_args!(
+        "ball  azimuth    inner N    outer N  angle i  angle o   p_max i  p_max o"
+    ));
+    print::line(format_args!(
+        "          deg                            deg      deg       GPa      GPa"
+    ));
     for (i, b) in solution.balls.iter().enumerate() {
         print::line(format_args!(
             "{i:4} {:8.1} {:10.2} {:10.2} {:8.3} {:8.3} {:9.3} {:8.3}",
@@ -25,17 +29,30 @@ pub fn print_static(solution: &StaticSolution) {
 
 /// Prints a line per point of a sweep.
 pub fn print_sweep(column: &str, solutions: &[(f64, StaticSolution)]) {
-    print::line(format_args!("{column:>28}    x um     z um  tilt_y urad   force N min..max   angle deg min..max"));
+    print::line(format_args!(
+        "{column:>28}    x um     z um  tilt_y urad   force N min..max   angle deg min..max"
+    ));
     for (value, s) in solutions {
         let range = |f: &dyn Fn(&dynamics::balls::BallResult) -> f64| {
             let values = s.balls.iter().map(f);
-            values.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), x| (l.min(x), h.max(x)))
+            values.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), x| {
+                (l.min(x), h.max(x))
+            })
         };
-        let (force, angle) = (range(&|b| b.inner.force_n), range(&|b| b.inner.contact_angle_rad.to_degrees()));
+        let (force, angle) = (
+            range(&|b| b.inner.force_n),
+            range(&|b| b.inner.contact_angle_rad.to_degrees()),
+        );
         let q = s.displacements.shaft;
         print::line(format_args!(
             "{value:28} {:7.3} {:8.3} {:12.2} {:9.2} {:8.2} {:10.3} {:8.3}",
-            1e6 * q[0], 1e6 * q[2], 1e6 * q[4], force.0, force.1, angle.0, angle.1
+            1e6 * q[0],
+            1e6 * q[2],
+            1e6 * q[4],
+            force.0,
+            force.1,
+            angle.0,
+            angle.1
         ));
     }
 }
@@ -44,6 +61,10 @@ fn print_shaft(solution: &StaticSolution) {
     let [x, y, z, tilt_x, tilt_y] = solution.displacements.shaft;
     print::line(format_args!(
         "shaft: x {:.4} um, y {:.4} um, z {:.4} um, tilt x {:.3} urad, tilt y {:.3} urad",
-        1e6 * x, 1e6 * y, 1e6 * z, 1e6 * tilt_x, 1e6 * tilt_y
+        1e6 * x,
+        1e6 * y,
+        1e6 * z,
+        1e6 * tilt_x,
+        1e6 * tilt_y
     ));
 }

@@ -17,7 +17,12 @@ pub fn bodies(model: &Model) -> Vec<Body> {
     for side in Side::BOTH {
         if let Some(ring) = model.ring(side) {
             let shift = [0.0, 0.0, model.ring_shift(side)];
-            bodies.push(Body::from_mesh(&format!("{} ring", side.name()), side as u8, &ring.mesh, shift));
+            bodies.push(Body::from_mesh(
+                &format!("{} ring", side.name()),
+                side as u8,
+                &ring.mesh,
+                shift,
+            ));
         }
     }
     let centre = model.geometry.ball_centre();
@@ -27,7 +32,12 @@ pub fn bodies(model: &Model) -> Vec<Body> {
             [centre[0] * cos, centre[0] * sin, centre[1]]
         })
         .collect();
-    bodies.push(Body::balls("balls", 2, &centres, 0.5 * model.geometry.ball_diameter));
+    bodies.push(Body::balls(
+        "balls",
+        2,
+        &centres,
+        0.5 * model.geometry.ball_diameter,
+    ));
     bodies
 }
 
@@ -65,7 +75,11 @@ pub fn record(
         let d = ball.displacement_m;
         displacement.push([d.radial * cos, d.radial * sin, d.axial]);
         for (side, list) in Side::BOTH.into_iter().zip(&mut forces) {
-            let contact = if side == Side::Inner { &ball.inner } else { &ball.outer };
+            let contact = if side == Side::Inner {
+                &ball.inner
+            } else {
+                &ball.outer
+            };
             // The force on the ball points from the contact to the ball centre.
             let (sin_a, cos_a) = contact.contact_angle_rad.sin_cos();
             let radial = -side.sign() * contact.force_n * cos_a;
@@ -94,7 +108,9 @@ pub fn record(
 /// Total displacement of a ring's nodes in space, m.
 fn ring_displacement(model: &Model, solution: &StaticSolution, side: Side, elastic: &[f64]) -> Vec<[f64; 3]> {
     let mut total: Vec<[f64; 3]> = elastic.chunks_exact(3).map(|u| [u[0], u[1], u[2]]).collect();
-    let Some(ring) = model.ring(side).filter(|_| side == Side::Inner) else { return total };
+    let Some(ring) = model.ring(side).filter(|_| side == Side::Inner) else {
+        return total;
+    };
     let [x, y, z, tilt_x, tilt_y] = solution.displacements.shaft;
     for (u, node) in total.iter_mut().zip(&ring.mesh.nodes) {
         let arm = node[2] - ring.groove.centre_z;
@@ -108,7 +124,13 @@ fn ring_displacement(model: &Model, solution: &StaticSolution, side: Side, elast
 fn state(solution: &StaticSolution) -> BTreeMap<String, StateArray> {
     let displacements = &solution.displacements;
     BTreeMap::from([
-        ("shaft".to_string(), StateArray::Real(displacements.shaft.to_vec())),
-        ("balls".to_string(), StateArray::Real(displacements.balls.concat())),
+        (
+            "shaft".to_string(),
+            StateArray::Real(displacements.shaft.to_vec()),
+        ),
+        (
+            "balls".to_string(),
+            StateArray::Real(displacements.balls.concat()),
+        ),
     ])
 }

@@ -8,8 +8,8 @@ use dynamics::balls::BallResult;
 use dynamics::{Model, StaticSolution, Timing};
 use serde::Serialize;
 
-use crate::scene::{Analysis, Scene};
 use crate::print;
+use crate::scene::{Analysis, Scene};
 
 /// The whole file.
 #[derive(Debug, Serialize)]
@@ -102,8 +102,11 @@ impl Summary {
                     shaft: ShaftSummary::new(s),
                     balls: s.balls.clone(),
                 });
-                let summary =
-                    SweepSummary { key: sweep.key.clone(), column: sweep.column.clone(), points: rows.collect() };
+                let summary = SweepSummary {
+                    key: sweep.key.clone(),
+                    column: sweep.column.clone(),
+                    points: rows.collect(),
+                };
                 ("sweep", Some(summary))
             }
         };
@@ -133,10 +136,19 @@ impl Summary {
 
     /// Prints warnings, then where the time went.
     pub fn print_costs(&self) {
-        self.warnings.iter().for_each(|w| print::line(format_args!("warning: {w}")));
-        let parts: Vec<String> = self.timing_s.iter().map(|(part, s)| format!("{part} {s:.3}")).collect();
+        self.warnings
+            .iter()
+            .for_each(|w| print::line(format_args!("warning: {w}")));
+        let parts: Vec<String> = self
+            .timing_s
+            .iter()
+            .map(|(part, s)| format!("{part} {s:.3}"))
+            .collect();
         print::line(format_args!("seconds: {}", parts.join(", ")));
-        print::line(format_args!("peak memory: {:.0} MB", self.peak_memory_bytes as f64 / 1e6));
+        print::line(format_args!(
+            "peak memory: {:.0} MB",
+            self.peak_memory_bytes as f64 / 1e6
+        ));
     }
 
     /// Writes the file: complete or not at all.
@@ -179,8 +191,12 @@ fn timing(costs: &Costs) -> BTreeMap<&'static str, f64> {
 
 /// Largest resident memory of this process, bytes; 0 where the system does not tell.
 pub fn peak_memory() -> u64 {
-    let Ok(status) = std::fs::read_to_string("/proc/self/status") else { return 0 };
+    let Ok(status) = std::fs::read_to_string("/proc/self/status") else {
+        return 0;
+    };
     let line = status.lines().find_map(|l| l.strip_prefix("VmHWM:"));
-    let kilobytes = line.and_then(|l| l.split_whitespace().next()).and_then(|n| n.parse::<u64>().ok());
+    let kilobytes = line
+        .and_then(|l| l.split_whitespace().next())
+        .and_then(|n| n.parse::<u64>().ok());
     kilobytes.unwrap_or(0) * 1024
 }

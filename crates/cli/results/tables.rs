@@ -13,8 +13,14 @@ pub struct Tables {
     energy: csv::Writer<std::fs::File>,
 }
 
-const CONTACT_COLUMNS: [&str; 6] =
-    ["force_n", "contact_angle_rad", "approach_m", "semi_axis_groove_m", "semi_axis_rolling_m", "peak_pressure_pa"];
+const CONTACT_COLUMNS: [&str; 6] = [
+    "force_n",
+    "contact_angle_rad",
+    "approach_m",
+    "semi_axis_groove_m",
+    "semi_axis_rolling_m",
+    "peak_pressure_pa",
+];
 
 impl Tables {
     /// Creates the files with their header lines; `swept` is the column of a swept value.
@@ -26,15 +32,29 @@ impl Tables {
             columns
         };
         let names = |list: &[&str]| list.iter().map(|s| s.to_string()).collect::<Vec<_>>();
-        let mut ball_columns =
-            names(&["ball", "azimuth_rad", "inner_force_n", "outer_force_n", "inner_contact_angle_rad", "outer_contact_angle_rad"]);
+        let mut ball_columns = names(&[
+            "ball",
+            "azimuth_rad",
+            "inner_force_n",
+            "outer_force_n",
+            "inner_contact_angle_rad",
+            "outer_contact_angle_rad",
+        ]);
         for side in ["inner", "outer"] {
             ball_columns.extend(CONTACT_COLUMNS[2..].iter().map(|c| format!("{side}_{c}")));
         }
         ball_columns.extend(names(&["displacement_radial_m", "displacement_axial_m"]));
         let shaft_columns = names(&[
-            "x_m", "y_m", "z_m", "tilt_x_rad", "tilt_y_rad", "reaction_x_n", "reaction_y_n", "reaction_z_n",
-            "reaction_tilt_x_n_m", "reaction_tilt_y_n_m",
+            "x_m",
+            "y_m",
+            "z_m",
+            "tilt_x_rad",
+            "tilt_y_rad",
+            "reaction_x_n",
+            "reaction_y_n",
+            "reaction_z_n",
+            "reaction_tilt_x_n_m",
+            "reaction_tilt_y_n_m",
         ]);
         let energy_columns: Vec<String> = ENERGY_TERMS.iter().map(|t| format!("{t}_j")).collect();
         Ok(Tables {
@@ -45,16 +65,28 @@ impl Tables {
     }
 
     /// Appends one step; `swept` is the swept value in SI.
-    pub fn append(&mut self, step: u64, time: f64, swept: Option<f64>, solution: &StaticSolution) -> anyhow::Result<()> {
+    pub fn append(
+        &mut self,
+        step: u64,
+        time: f64,
+        swept: Option<f64>,
+        solution: &StaticSolution,
+    ) -> anyhow::Result<()> {
         let mut head = vec![step.to_string(), number(time)];
         head.extend(swept.map(number));
         let row = |cells: Vec<String>| [head.clone(), cells].concat();
         for (i, ball) in solution.balls.iter().enumerate() {
             self.balls.write_record(row(ball_cells(i, ball)))?;
         }
-        let shaft = solution.displacements.shaft.iter().chain(&solution.shaft_reaction);
-        self.shaft.write_record(row(shaft.map(|x| number(*x)).collect()))?;
-        self.energy.write_record(row(energies(solution).iter().map(|(_, x)| number(*x)).collect()))?;
+        let shaft = solution
+            .displacements
+            .shaft
+            .iter()
+            .chain(&solution.shaft_reaction);
+        self.shaft
+            .write_record(row(shaft.map(|x| number(*x)).collect()))?;
+        self.energy
+            .write_record(row(energies(solution).iter().map(|(_, x)| number(*x)).collect()))?;
         for writer in [&mut self.balls, &mut self.shaft, &mut self.energy] {
             writer.flush().context("cannot write a table")?;
         }
@@ -89,7 +121,12 @@ fn ball_cells(index: usize, ball: &BallResult) -> Vec<String> {
 }
 
 fn rest_of(contact: &ContactResult) -> [f64; 4] {
-    [contact.approach_m, contact.semi_axes_m[0], contact.semi_axes_m[1], contact.peak_pressure_pa]
+    [
+        contact.approach_m,
+        contact.semi_axes_m[0],
+        contact.semi_axes_m[1],
+        contact.peak_pressure_pa,
+    ]
 }
 
 /// Shortest text that reads back as the same number.
@@ -99,7 +136,8 @@ fn number(x: f64) -> String {
 
 fn open(dir: &Path, name: &str, columns: &[String]) -> anyhow::Result<csv::Writer<std::fs::File>> {
     let path = dir.join(name);
-    let mut writer = csv::Writer::from_path(&path).with_context(|| format!("cannot create {}", path.display()))?;
+    let mut writer =
+        csv::Writer::from_path(&path).with_context(|| format!("cannot create {}", path.display()))?;
     writer.write_record(columns)?;
     Ok(writer)
 }

@@ -74,7 +74,7 @@ const MAX_ACCELERATION: f64 = 1e7;
 const MAX_LOAD: f64 = 1e9;
 
 impl RawEffects {
-    /// Checks the effects against the shaft they act on.
+    /// Checks sizes and directions.
     pub fn check(&self, problems: &mut Problems) -> Effects {
         let unit = "that is more than any bearing carries, check its unit";
         let forces = [

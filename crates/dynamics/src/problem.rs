@@ -317,7 +317,7 @@ impl Problem {
         }
         let rest = index - free.len();
         let balls = 2 * self.ball_load.len();
-        let direction = if rest % 2 == 0 { "radial" } else { "axial" };
+        let direction = if rest.is_multiple_of(2) { "radial" } else { "axial" };
         let ball = rest % balls / 2;
         if rest < balls {
             return format!("ball {ball}, {direction}");

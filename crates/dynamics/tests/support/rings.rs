@@ -40,24 +40,37 @@ impl Level {
 
 /// A ring of the 7010C.
 pub fn ring(side: Side, level: Level, hold: Hold) -> RingModel {
-    let geometry = BearingGeometry::reference_7010c();
-    let (seat, shoulder, group) = match side {
-        Side::Inner => (25e-3, 30.2e-3, "bore"),
-        Side::Outer => (40e-3, 34.3e-3, "seat"),
-    };
-    let groove = Groove {
-        side,
-        centre_radius: geometry.centre_radius(side),
-        groove_radius: geometry.groove_radius(side),
-        centre_z: 0.0,
-    };
-    let mesh = ring_mesh(groove, seat, shoulder, group, level);
+    let (seat, shoulder, group) = measures(side);
+    let mesh = ring_mesh(groove(side), seat, shoulder, group, level);
+    ring_model(side, mesh, hold)
+}
+
+/// The ring with a given mesh.
+pub fn ring_model(side: Side, mesh: Mesh, hold: Hold) -> RingModel {
     RingModel {
         mesh,
         material: super::steel(),
         hold,
-        held_group: group,
-        groove,
+        held_group: measures(side).2,
+        groove: groove(side),
+    }
+}
+
+/// Seat radius, shoulder radius, held group.
+fn measures(side: Side) -> (f64, f64, &'static str) {
+    match side {
+        Side::Inner => (25e-3, 30.2e-3, "bore"),
+        Side::Outer => (40e-3, 34.3e-3, "seat"),
+    }
+}
+
+fn groove(side: Side) -> Groove {
+    let geometry = BearingGeometry::reference_7010c();
+    Groove {
+        side,
+        centre_radius: geometry.centre_radius(side),
+        groove_radius: geometry.groove_radius(side),
+        centre_z: 0.0,
     }
 }
 

@@ -72,7 +72,10 @@ impl<'a> State<'a> {
     fn pass(&mut self) -> bool {
         self.prepare();
         // A straight cut between planes of nodes, which every move lengthens, is a firm minimum.
-        let has_free_move = self.queues.iter().any(|q| q.peek().is_some_and(|&(gain, _, _)| gain >= 0));
+        let has_free_move = self
+            .queues
+            .iter()
+            .any(|q| q.peek().is_some_and(|&(gain, _, _)| gain >= 0));
         if !has_free_move {
             return false;
         }

@@ -33,7 +33,8 @@ pub(super) fn best_plane(part: &Part, keys: &[f64]) -> Option<(f64, Vec<bool>)> 
         }
     }
     let (cost, cut) = best;
-    cost.is_finite().then(|| (cost, rank.iter().map(|&r| r >= cut).collect()))
+    cost.is_finite()
+        .then(|| (cost, rank.iter().map(|&r| r >= cut).collect()))
 }
 
 /// Moves the jump of the azimuths (rad) from pi to the widest gap between them.

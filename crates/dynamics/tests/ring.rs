@@ -1,0 +1,199 @@
+//! One flexible ring: its hold, its patches, its compliance.
+
+mod support;
+
+use contact::patch::PatchShape;
+use contact::quadrature::PressureRule;
+use contact::{Patch, RacewaySurface, Side};
+use dynamics::model::elastic;
+use dynamics::ring::RingSolver;
+use dynamics::{ContactMode, Hold, RingModel};
+use support::Case;
+use support::rings::{Level, ring};
+
+const LEVEL: Level = Level::hex8(54, 6, 1, 2);
+
+fn patch(ring: &RingModel, azimuth: f64, angle: f64) -> Patch {
+    let surface = RacewaySurface::new(&ring.mesh, ring.mesh.group("raceway"), ring.groove);
+    let shape = PatchShape::new(&surface, azimuth, angle, [1e-3, 1e-4], 2.0).unwrap();
+    Patch::new(
+        &surface,
+        &ring.mesh.nodes,
+        &PressureRule::new(),
+        shape,
+        elastic(&ring.material),
+    )
+    .unwrap()
+}
+
+/// Displacement of a rigid motion t + phi x X, `[n_nodes][3]` flat.
+fn rigid(nodes: &[[f64; 3]], t: [f64; 3], phi: [f64; 3]) -> Vec<f64> {
+    nodes.iter().flat_map(|x| rigid_at(*x, t, phi)).collect()
+}
+
+fn rigid_at(x: [f64; 3], t: [f64; 3], phi: [f64; 3]) -> [f64; 3] {
+    [
+        t[0] + phi[1] * x[2] - phi[2] * x[1],
+        t[1] + phi[2] * x[0] - phi[0] * x[2],
+        t[2] + phi[0] * x[1] - phi[1] * x[0],
+    ]
+}
+
+/// Wrong: a rigid motion of a ring would change contact angles. The groove centre measured through a patch follows any
+/// rigid motion exactly, on every kind of element, anywhere on the groove.
+#[test]
+fn patches_follow_rigid_motions_exactly() {
+    let (t, phi) = ([3e-6, -2e-6, 5e-6], [1e-4, -2e-4, 3e-4]);
+    for side in Side::BOTH {
+        for level in [LEVEL, Level::hex20(54, 4, 1, 1)] {
+            let ring = ring(side, level, Hold::Clamped);
+            for (azimuth, angle) in [(0.3f64, 0.35), (2.0, -0.2), (-3.1, 0.0)] {
+                let measured = patch(&ring, azimuth, angle)
+                    .weights
+                    .measure(&rigid(&ring.mesh.nodes, t, phi));
+                let u = rigid_at(ring.groove.centre(azimuth), t, phi);
+                let expected = [u[0] * azimuth.cos() + u[1] * azimuth.sin(), u[2]];
+                for i in 0..2 {
+                    assert!(
+                        (measured[i] - expected[i]).abs() < 1e-17,
+                        "{measured:?} {expected:?}"
+                    );
+                }
+            }
+        }
+    }
+}
+
+/// Wrong: the loads of a patch would not have the resultant of the contact force at the groove centre: force and
+/// moment on the shaft would not be those of the balls. Conjugate to the statement before; 1e-12 of the force.
+#[test]
+fn patch_loads_have_the_resultant_of_the_contact_force() {
+    let ring = ring(Side::Inner, LEVEL, Hold::Clamped);
+    let (azimuth, force) = (0.7f64, [-300.0, -110.0]);
+    let mut load = vec![0.0; ring.mesh.n_dofs()];
+    patch(&ring, azimuth, 0.34).weights.add_load(force, &mut load);
+    let mut sum = [0.0; 6];
+    for (x, f) in ring.mesh.nodes.iter().zip(load.chunks_exact(3)) {
+        for i in 0..3 {
+            let (j, k) = ((i + 1) % 3, (i + 2) % 3);
+            sum[i] += f[i];
+            sum[3 + i] += x[j] * f[k] - x[k] * f[j];
+        }
+    }
+    let (x, f) = (
+        ring.groove.centre(azimuth),
+        [force[0] * azimuth.cos(), force[0] * azimuth.sin(), force[1]],
+    );
+    for i in 0..3 {
+        let (j, k) = ((i + 1) % 3, (i + 2) % 3);
+        assert!((sum[i] - f[i]).abs() < 1e-10, "{sum:?}");
+        assert!(
+            (sum[3 + i] - (x[j] * f[k] - x[k] * f[j])).abs() < 1e-11,
+            "{sum:?}"
+        );
+    }
+}
+
+/// Wrong: a mean-motion hold would restrain more than the mean motion of the bore, or less. Off the bore the ring's
+/// own forces balance the loads; on it the mean displacement and the mean rotation vanish.
+#[test]
+fn a_mean_motion_hold_holds_the_mean_motion_only() {
+    let model = Case::axial(0.0).flexible(ContactMode::Patch, LEVEL, Hold::MeanMotion);
+    let ring = model.ring(Side::Inner).unwrap();
+    let solver = RingSolver::new(&model, Side::Inner, ring).unwrap();
+    let mut load = vec![0.0; ring.mesh.n_dofs()];
+    patch(ring, 0.4, 0.3)
+        .weights
+        .add_load([-500.0, -200.0], &mut load);
+    let u = solver.solve(load.clone(), 1);
+    let stiffness = fem::assemble_stiffness(&ring.mesh, &ring.material).unwrap();
+    let held = ring.mesh.group_nodes("bore");
+    for (dof, row) in stiffness.outer_iterator().enumerate() {
+        let force: f64 = row.iter().map(|(j, k)| k * u[j]).sum();
+        let on_bore = held.binary_search(&(dof / 3)).is_ok();
+        assert!(
+            on_bore || (force - load[dof]).abs() < 1e-8,
+            "dof {dof}: {force} {}",
+            load[dof]
+        );
+    }
+    let weights = fem::facet_node_weights(&ring.mesh, ring.mesh.group("bore"));
+    let area: f64 = weights.iter().map(|w| w.1).sum();
+    let (mut mean, mut turn) = ([0.0; 3], [0.0; 3]);
+    let mut largest = 0.0f64;
+    for &(node, w) in &weights {
+        let x = ring.mesh.nodes[node];
+        for i in 0..3 {
+            let (j, k) = ((i + 1) % 3, (i + 2) % 3);
+            mean[i] += w / area * u[3 * node + i];
+            turn[i] += w / area * (x[j] * u[3 * node + k] - x[k] * u[3 * node + j]) / 25e-3;
+            largest = largest.max(u[3 * node + i].abs());
+        }
+    }
+    assert!(largest > 1e-7, "the bore deforms: {largest}");
+    assert!(
+        mean.iter().chain(&turn).all(|m| m.abs() < 1e-10 * largest),
+        "{mean:?} {turn:?}"
+    );
+}
+
+/// Wrong: a point held clamped would move, or the clamped compliance would exceed the softer mean-motion one.
+#[test]
+fn a_clamped_bore_does_not_move_and_is_stiffer() {
+    let mut compliance = Vec::new();
+    for hold in [Hold::Clamped, Hold::MeanMotion] {
+        let model = Case::axial(0.0).flexible(ContactMode::Patch, LEVEL, hold);
+        let ring = model.ring(Side::Inner).unwrap();
+        let solver = RingSolver::new(&model, Side::Inner, ring).unwrap();
+        let foot = patch(ring, 0.4, 0.3).weights;
+        let mut load = vec![0.0; ring.mesh.n_dofs()];
+        foot.add_load([1.0, 0.0], &mut load);
+        let u = solver.solve(load, 1);
+        compliance.push(foot.measure(&u)[0]);
+        if hold == Hold::Clamped {
+            assert!(
+                ring.mesh
+                    .group_nodes("bore")
+                    .iter()
+                    .all(|n| u[3 * n..3 * n + 3] == [0.0; 3])
+            );
+        }
+        let matrix = solver.compliance(&[foot]);
+        assert!((matrix[0] / compliance[compliance.len() - 1] - 1.0).abs() < 1e-10);
+    }
+    assert!(compliance[1] > 2.0 * compliance[0], "{compliance:?}");
+}
+
+/// Wrong: a hole in the raceway or a ball beyond the groove would not be noticed.
+#[test]
+fn places_off_the_raceway_are_errors() {
+    let ring = ring(Side::Inner, LEVEL, Hold::Clamped);
+    let surface = RacewaySurface::new(&ring.mesh, ring.mesh.group("raceway"), ring.groove);
+    let error = PatchShape::new(&surface, 0.1, 1.5, [1e-3, 1e-4], 2.0)
+        .unwrap_err()
+        .to_string();
+    assert!(
+        error.contains("no facet of the inner raceway holds azimuth 5.7296 deg"),
+        "{error}"
+    );
+    let facets = &ring.mesh.group("raceway")[12..];
+    let open = RacewaySurface::new(&ring.mesh, facets, ring.groove);
+    let missing = (0..360)
+        .filter(|deg| open.locate((*deg as f64).to_radians(), 0.3).is_err())
+        .count();
+    assert!(
+        (5..=20).contains(&missing),
+        "two of 54 sectors are missing: {missing} degrees"
+    );
+    // Edge contact: the Hertz ellipse does not fit between the contact and the rim.
+    assert!(
+        PatchShape::new(&surface, 0.1, 0.9, [3e-3, 1e-4], 2.0)
+            .unwrap()
+            .truncated
+    );
+    assert!(
+        !PatchShape::new(&surface, 0.1, 0.3, [1e-3, 1e-4], 2.0)
+            .unwrap()
+            .truncated
+    );
+}
