@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use contact::Side;
-use solver::Symbolic;
+use dynamics::{Model, RingMemory, forecast_peak, ring};
 
 use crate::build::build_model;
 use crate::failure::Failure;
@@ -53,9 +53,12 @@ pub fn check(path: &Path, overrides: &[String]) -> Result<(), Failure> {
         1e3 * geometry.groove_distance(),
         geometry.free_contact_angle().to_degrees()
     ));
+    let mut memory = [None, None];
     for side in Side::BOTH {
-        print_ring(&model, side)?;
+        memory[side.index()] = print_ring(&model, side)?;
     }
+    let n_threads = rayon::current_num_threads();
+    println!("memory   peak about {:.0} MB with {n_threads} threads", forecast_peak(memory, n_threads) as f64 / 1e6);
     let points: usize = fields::bodies(&model).iter().map(|b| b.points.len()).sum();
     let step_bytes = points * BYTES_PER_POINT;
     print::line(format_args!(
@@ -66,21 +69,16 @@ pub fn check(path: &Path, overrides: &[String]) -> Result<(), Failure> {
     Ok(())
 }
 
-fn print_ring(model: &dynamics::Model, side: Side) -> Result<(), Failure> {
+/// Prints one ring and returns the forecast of its memory; None for a rigid ring.
+fn print_ring(model: &Model, side: Side) -> Result<Option<RingMemory>, Failure> {
     let stiffness = model.hertz[side.index()].stiffness / 10f64.powf(4.5);
     let Some(ring) = model.ring(side) else {
-        print::line(format_args!(
-            "{}    rigid, Hertz stiffness {stiffness:.4e} N/mm^1.5, no dofs",
-            side.name()
-        ));
-        return Ok(());
+        println!("{}    rigid, Hertz stiffness {stiffness:.4e} N/mm^1.5, no dofs", side.name());
+        return Ok(None);
     };
     let mesh = &ring.mesh;
-    let pattern = fem::Pattern::new(mesh)?;
-    let matrix = pattern.matrix(vec![0.0; pattern.n_values()]);
-    let order = solver::angular_dissection(&mesh.nodes, &mesh.connectivity, mesh.kind.n_nodes());
-    let symbolic = Symbolic::new(&matrix, &solver::expand(&order, 3))?;
-    print::line(format_args!(
+    let (memory, symbolic) = ring::forecast(side, ring, model.geometry.n_balls).map_err(Failure::solving)?;
+    println!(
         "{}    {} {}, {} nodes, {} dofs; Hertz stiffness {stiffness:.4e} N/mm^1.5; factor {:.1} MB, {:.2e} flops, \
          peak {:.1} MB",
         side.name(),
@@ -90,7 +88,7 @@ fn print_ring(model: &dynamics::Model, side: Side) -> Result<(), Failure> {
         mesh.n_dofs(),
         symbolic.factor_bytes() as f64 / 1e6,
         symbolic.flops(),
-        symbolic.peak_bytes() as f64 / 1e6
-    ));
-    Ok(())
+        (memory.mesh + memory.making()) as f64 / 1e6
+    );
+    Ok(Some(memory))
 }

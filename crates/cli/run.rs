@@ -6,7 +6,7 @@ use std::time::Instant;
 use anyhow::anyhow;
 use checkpoint::{Compression, Output, Precision, Storage};
 use contact::Side;
-use dynamics::{DynamicsError, Model, StaticSolution, StaticSolver};
+use dynamics::{DynamicsError, Model, RingMemory, StaticSolution, StaticSolver};
 use fem::StressRecovery;
 
 use crate::build::{build_model, model_with_rings};
@@ -51,7 +51,7 @@ pub fn run(path: &Path, overrides: &[String], out: Option<PathBuf>) -> Result<Pa
         progress.advance();
     }
     progress.finish();
-    let forecast = Side::BOTH.map(|side| solver.ring(side).map_or(0, |r| r.bytes[0]));
+    let forecast = Side::BOTH.map(|side| solver.ring(side).map(|r| r.memory));
     let results = results.expect("a scene has at least one point");
     let costs = results.finish(read, forecast, &solver, start)?;
     let summary = Summary::new(&scene, &model, &solutions, &costs);
@@ -176,7 +176,7 @@ impl Results {
     fn finish(
         self,
         read: f64,
-        forecast: [usize; 2],
+        forecast: [Option<RingMemory>; 2],
         solver: &StaticSolver,
         start: Instant,
     ) -> Result<Costs, Failure> {

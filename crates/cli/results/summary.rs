@@ -5,7 +5,7 @@ use std::path::Path;
 
 use anyhow::Context;
 use dynamics::balls::BallResult;
-use dynamics::{Model, StaticSolution, Timing};
+use dynamics::{Model, RingMemory, StaticSolution, Timing, forecast_peak};
 use serde::Serialize;
 
 use crate::print;
@@ -32,6 +32,7 @@ pub struct Summary {
     warnings: Vec<String>,
     timing_s: BTreeMap<&'static str, f64>,
     factor_bytes_forecast: BTreeMap<&'static str, usize>,
+    peak_memory_forecast_bytes: usize,
     peak_memory_bytes: u64,
 }
 
@@ -71,8 +72,8 @@ pub struct Costs {
     pub output: f64,
     /// Whole run.
     pub total: f64,
-    /// Bytes forecast for the factorisations, inner and outer.
-    pub forecast: [usize; 2],
+    /// Memory forecast for the rings, inner and outer; None is rigid.
+    pub forecast: [Option<RingMemory>; 2],
     /// Parts of the solver.
     pub solver: Timing,
 }
@@ -129,7 +130,8 @@ impl Summary {
             sweep,
             warnings,
             timing_s: timing(costs),
-            factor_bytes_forecast: sides(|i| costs.forecast[i]),
+            factor_bytes_forecast: sides(|i| costs.forecast[i].map_or(0, |ring| ring.factorisation)),
+            peak_memory_forecast_bytes: forecast_peak(costs.forecast, rayon::current_num_threads()),
             peak_memory_bytes: peak_memory(),
         }
     }

@@ -136,9 +136,9 @@ mod tests {
     /// Wrong: the circular limit (sphere on sphere) would not be Johnson's (1985), eq. 4.22-4.24.
     #[test]
     fn equal_curvatures_give_the_circular_contact() {
-        let (radius, modulus, load) = (4.5e-3, 113.7e9, 100.0);
+        let (radius, modulus, load) = (4.5e-3f64, 113.7e9, 100.0);
         let contact = HertzContact::from_curvatures(1.0 / radius, 1.0 / radius, modulus);
-        let a = (3.0 * load * radius / (4.0 * modulus) as f64).cbrt();
+        let a = (3.0 * load * radius / (4.0 * modulus)).cbrt();
         let approach = a * a / radius;
         let [along, rolling] = contact.semi_axes(load);
         assert!(

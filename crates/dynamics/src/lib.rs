@@ -8,6 +8,7 @@ pub mod effects;
 pub mod equilibrium;
 pub mod error;
 pub mod footprint;
+pub mod memory;
 pub mod model;
 pub mod problem;
 pub mod ring;
@@ -17,6 +18,7 @@ pub mod support;
 
 pub use effects::{Effect, Loads};
 pub use error::DynamicsError;
+pub use memory::{RingMemory, forecast_peak};
 pub use model::{ContactMode, ContactSettings, Hold, Model, RingModel, ShaftDof, Tolerances};
 pub use solution::StaticSolution;
 pub use statics::{StaticSolver, Timing};

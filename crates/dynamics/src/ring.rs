@@ -7,9 +7,12 @@ use std::time::Instant;
 
 use contact::quadrature::PressureRule;
 use contact::{FacetSurface, NodalWeights, RacewaySurface, Side};
+use mesh::Mesh;
 use solver::{LinearSolver, SolverError, SparseCholesky, Symbolic};
+use sprs::CsMat;
 
 use crate::error::DynamicsError;
+use crate::memory::RingMemory;
 use crate::model::{ContactMode, Model, RACEWAY_GROUP, RingModel};
 use crate::support::Support;
 
@@ -26,8 +29,8 @@ pub struct RingSolver {
     pub rule: PressureRule,
     /// Seconds of assembly and of factorisation (ordering and analysis included).
     pub seconds: [f64; 2],
-    /// Bytes forecast for the factorisation, and held by the factor.
-    pub bytes: [usize; 2],
+    /// Memory forecast from the analysis, before the factorisation.
+    pub memory: RingMemory,
 }
 
 impl RingSolver {
@@ -41,13 +44,15 @@ impl RingSolver {
         let mesh = &ring.mesh;
         let weights = fem::surface::facet_node_weights(mesh, mesh.group(ring.held_group));
         let support = Support::new(mesh, ring.hold, weights);
-        let full = fem::stiffness::assemble_stiffness(mesh, &ring.material).map_err(fem_error)?;
-        let stiffness = solver::restrict(&full, &support.free);
+        // Only the lower triangle outlives the assembly: the whole matrix takes half as much as a hex8 ring's factor.
+        let full = fem::assemble_stiffness(mesh, &ring.material).map_err(fem_error)?;
+        let (stiffness, n_entries) = (solver::restrict_lower(&full, &support.free), full.nnz());
         drop(full);
         let assembled = start.elapsed().as_secs_f64();
-        let order = solver::angular_dissection(&mesh.nodes, &mesh.connectivity, mesh.kind.n_nodes());
-        let order = solver::restrict_order(&solver::expand(&order, 3), &support.free);
-        let (factor, peak) = factor(&stiffness, &order).map_err(|e| named(e, side, ring, &support))?;
+        let symbolic = analyse(mesh, &support, &stiffness).map_err(|e| named(e, side, ring, &support))?;
+        let memory = RingMemory::new(mesh, n_entries, &symbolic, model.geometry.n_balls);
+        let factor = symbolic.factor(&stiffness).map_err(|e| named(e, side, ring, &support))?;
+        drop(stiffness);
         let facets = matches!(model.contact.mode, ContactMode::Facet)
             .then(|| FacetSurface::new(mesh, mesh.group(RACEWAY_GROUP), ring.groove));
         Ok(RingSolver {
@@ -56,7 +61,7 @@ impl RingSolver {
             facets,
             rule: PressureRule::new(),
             seconds: [assembled, start.elapsed().as_secs_f64() - assembled],
-            bytes: [peak, factor.factor_bytes()],
+            memory,
             support,
             factor,
         })
@@ -114,10 +119,27 @@ impl RingSolver {
     }
 }
 
-fn factor(stiffness: &sprs::CsMat<f64>, order: &[usize]) -> Result<(SparseCholesky, usize), SolverError> {
-    let symbolic = Symbolic::new(stiffness, order)?;
-    let peak = symbolic.peak_bytes();
-    Ok((symbolic.factor(stiffness)?, peak))
+/// Analysis of the factorisation of a held ring, from its matrix' lower triangle.
+fn analyse(mesh: &Mesh, support: &Support, stiffness: &CsMat<f64>) -> Result<Symbolic, SolverError> {
+    let order = solver::angular_dissection(&mesh.nodes, &mesh.connectivity, mesh.kind.n_nodes());
+    let order = solver::restrict_order(&solver::expand(&order, 3), &support.free);
+    Symbolic::new(stiffness, &order)
+}
+
+/// Forecast of the memory of a ring in a bearing of `n_balls` balls, and the analysis it rests on: no number is
+/// computed.
+pub fn forecast(side: Side, ring: &RingModel, n_balls: usize) -> Result<(RingMemory, Symbolic), DynamicsError> {
+    let mesh = &ring.mesh;
+    let support = Support::new(mesh, ring.hold, fem::facet_node_weights(mesh, mesh.group(ring.held_group)));
+    let fem_error = |source| DynamicsError::Fem {
+        side: side.name(),
+        source,
+    };
+    let pattern = fem::Pattern::new(mesh).map_err(fem_error)?;
+    let full = pattern.matrix(vec![0.0; pattern.n_values()]);
+    let lower = solver::restrict_lower(&full, &support.free);
+    let symbolic = analyse(mesh, &support, &lower).map_err(|e| named(e, side, ring, &support))?;
+    Ok((RingMemory::new(mesh, full.nnz(), &symbolic, n_balls), symbolic))
 }
 
 fn named(error: SolverError, side: Side, ring: &RingModel, support: &Support) -> DynamicsError {

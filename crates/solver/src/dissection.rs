@@ -24,8 +24,8 @@
 //! | tet10, Gmsh | 125 847 | 4.29e7 | 0.94 | 2.9e10 | 0.91 |
 //! | tet10, Gmsh | 367 716 | 2.01e8 | 0.96 | 2.6e11 | 0.91 |
 //!
-//! Time on one core of a loaded 2-core machine, November 2026, least of a few: hex8 revolved 56 700 dofs 0.04 s, 158 760 dofs
-//! 0.13 s; hex20 revolved 51 570 dofs 0.02 s; tet10 of Gmsh 137 886 dofs 0.5 s, 705 090 dofs 3.8 s.
+//! Time on one core of a loaded 2-core machine, November 2026: hex8 revolved 56 700 dofs 0.06 s, 158 760 dofs 0.14 s;
+//! hex20 revolved 51 570 dofs 0.02 s; tet10 of Gmsh 137 886 dofs 0.5 s, 705 090 dofs 3.8 s.
 
 mod leaf;
 mod part;

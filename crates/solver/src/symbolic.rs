@@ -110,6 +110,20 @@ impl Symbolic {
         self.shared.flops
     }
 
+    /// Number of stored entries of the matrix analysed.
+    pub fn n_entries(&self) -> usize {
+        self.shared.pattern.n_entries
+    }
+
+    /// Bytes of this analysis, which a factor keeps: the row indices of all supernodes, once by columns and once by
+    /// rows at most, and eight arrays of n.
+    pub fn bytes(&self) -> usize {
+        let n_indices = supernodes(&self.shared.faer).map_or(0, |supernodal| {
+            (0..supernodal.n_supernodes()).map(|s| supernodal.supernode(s).pattern().len()).sum()
+        });
+        size_of::<usize>() * (2 * n_indices + 8 * self.n())
+    }
+
     /// Bytes allocated at the peak of [`Self::factor`]: factor, permuted copy of the matrix and work space. The
     /// caller's matrix and this analysis are not in it.
     pub fn peak_bytes(&self) -> usize {

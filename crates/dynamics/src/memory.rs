@@ -1,0 +1,99 @@
+//! Forecast of the memory of a static run, from sizes known before the first number is factored.
+//!
+//! Bytes of one ring with n nodes, N = 3 n dofs, e elements of p nodes, P node pairs (nnz(K) = 9 P), E stored entries of the
+//! lower triangle of the held K, a factor of F bytes with an analysis of S, and b balls:
+//!
+//! | phase | bytes | arrays |
+//! |---|---|---|
+//! | mesh | 24 n + 8 e p | nodes, connectivity; kept to the end |
+//! | assembly | 16 (9 P) + 8 P + 2 e p^2, then 16 (9 P) + 16 E | K with its indices and pattern; then K and its triangle |
+//! | factorisation | 16 E + S + F + W | the triangle, analysis, factor; W = 16 E and more: the permuted copy and fronts |
+//! | kept | S + F + 8 N | analysis, factor, support |
+//! | columns | kept + 3 (8 N 2 b) | loads, right-hand sides and solver's copy of a block of 2 b columns |
+//!
+//! Both rings are made at the same time if there are two threads, so their peaks add; one thread makes the inner ring
+//! first, and the outer one while the inner is kept. Columns are renewed ring by ring beside each other likewise. Stress
+//! recovery and output follow when the triangles are gone and need less than these (about 100 N against 32 E = 1100 N
+//! bytes on hex8), so they do not count.
+
+use mesh::Mesh;
+use solver::Symbolic;
+
+/// Program, libraries and small buffers, bytes: resident memory of a run with rigid rings, 2-core machine with glibc.
+pub const PROGRAM_BYTES: usize = 16_000_000;
+
+/// Bytes of one stored entry: value and column index.
+const ENTRY_BYTES: usize = 16;
+
+/// Bytes of one ring by phase: see the module.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct RingMemory {
+    /// Mesh, kept to the end.
+    pub mesh: usize,
+    /// Peak of the assembly, without the mesh.
+    pub assembly: usize,
+    /// Peak of the factorisation, without the mesh.
+    pub factorisation: usize,
+    /// What stays of it, without the mesh.
+    pub kept: usize,
+    /// Peak of a block solve for the columns of all contacts, without the mesh.
+    pub columns: usize,
+}
+
+impl RingMemory {
+    /// Forecast for a ring of `n_balls` contacts whose held matrix, lower triangle only, was analysed; its whole matrix
+    /// has `n_entries` stored entries.
+    pub fn new(mesh: &Mesh, n_entries: usize, symbolic: &Symbolic, n_balls: usize) -> RingMemory {
+        let whole = ENTRY_BYTES * n_entries;
+        let triangle = ENTRY_BYTES * symbolic.n_entries();
+        let pattern = 8 * (n_entries / 9) + 2 * mesh.kind.n_nodes() * mesh.connectivity.len();
+        let kept = symbolic.bytes() + symbolic.factor_bytes() + 8 * mesh.n_dofs();
+        RingMemory {
+            mesh: 24 * mesh.n_nodes() + 8 * mesh.connectivity.len(),
+            assembly: whole + pattern.max(triangle),
+            factorisation: triangle + symbolic.bytes() + symbolic.peak_bytes(),
+            kept,
+            columns: kept + 3 * 8 * mesh.n_dofs() * 2 * n_balls,
+        }
+    }
+
+    /// Peak from the assembly to the factor, without the mesh.
+    pub fn making(&self) -> usize {
+        self.assembly.max(self.factorisation)
+    }
+}
+
+/// Forecast of the largest resident memory of a static run, bytes, with `n_threads` threads; inner ring first, None is
+/// rigid.
+pub fn forecast_peak(rings: [Option<RingMemory>; 2], n_threads: usize) -> usize {
+    let of = |phase: fn(&RingMemory) -> usize| rings.each_ref().map(|ring| ring.as_ref().map_or(0, phase));
+    let (mesh, making, kept, columns) = (of(|r| r.mesh), of(RingMemory::making), of(|r| r.kept), of(|r| r.columns));
+    let (made, solved) = if n_threads > 1 {
+        (making[0] + making[1], columns[0] + columns[1])
+    } else {
+        let solved = (columns[0] + kept[1]).max(kept[0] + columns[1]);
+        (making[0].max(kept[0] + making[1]), solved)
+    };
+    PROGRAM_BYTES + mesh[0] + mesh[1] + made.max(solved)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SMALL: RingMemory =
+        RingMemory { mesh: 1, assembly: 30, factorisation: 50, kept: 20, columns: 25 };
+    const LARGE: RingMemory =
+        RingMemory { mesh: 2, assembly: 900, factorisation: 700, kept: 200, columns: 600 };
+
+    /// If this failed, a batch job sized by the forecast would be killed, or reserve memory it never uses.
+    #[test]
+    fn peaks_add_on_two_threads_and_follow_each_other_on_one() {
+        let peak = |rings, threads| forecast_peak(rings, threads) - PROGRAM_BYTES;
+        assert_eq!(peak([None, None], 2), 0);
+        assert_eq!(peak([Some(SMALL), None], 2), 51);
+        assert_eq!(peak([Some(SMALL), Some(LARGE)], 2), 3 + 50 + 900);
+        assert_eq!(peak([Some(SMALL), Some(LARGE)], 1), 3 + 20 + 900);
+        assert_eq!(peak([Some(LARGE), Some(SMALL)], 1), 3 + 900);
+    }
+}
