@@ -58,7 +58,10 @@ pub fn check(path: &Path, overrides: &[String]) -> Result<(), Failure> {
         memory[side.index()] = print_ring(&model, side)?;
     }
     let n_threads = rayon::current_num_threads();
-    println!("memory   peak about {:.0} MB with {n_threads} threads", forecast_peak(memory, n_threads) as f64 / 1e6);
+    print::line(format_args!(
+        "memory   peak about {:.0} MB with {n_threads} threads",
+        forecast_peak(memory, n_threads) as f64 / 1e6
+    ));
     let points: usize = fields::bodies(&model).iter().map(|b| b.points.len()).sum();
     let step_bytes = points * BYTES_PER_POINT;
     print::line(format_args!(
@@ -73,12 +76,15 @@ pub fn check(path: &Path, overrides: &[String]) -> Result<(), Failure> {
 fn print_ring(model: &Model, side: Side) -> Result<Option<RingMemory>, Failure> {
     let stiffness = model.hertz[side.index()].stiffness / 10f64.powf(4.5);
     let Some(ring) = model.ring(side) else {
-        println!("{}    rigid, Hertz stiffness {stiffness:.4e} N/mm^1.5, no dofs", side.name());
+        print::line(format_args!(
+            "{}    rigid, Hertz stiffness {stiffness:.4e} N/mm^1.5, no dofs",
+            side.name()
+        ));
         return Ok(None);
     };
     let mesh = &ring.mesh;
     let (memory, symbolic) = ring::forecast(side, ring, model.geometry.n_balls).map_err(Failure::solving)?;
-    println!(
+    print::line(format_args!(
         "{}    {} {}, {} nodes, {} dofs; Hertz stiffness {stiffness:.4e} N/mm^1.5; factor {:.1} MB, {:.2e} flops, \
          peak {:.1} MB",
         side.name(),
@@ -89,6 +95,6 @@ fn print_ring(model: &Model, side: Side) -> Result<Option<RingMemory>, Failure> 
         symbolic.factor_bytes() as f64 / 1e6,
         symbolic.flops(),
         (memory.mesh + memory.making()) as f64 / 1e6
-    );
+    ));
     Ok(Some(memory))
 }

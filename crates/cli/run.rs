@@ -47,6 +47,10 @@ pub fn run(path: &Path, overrides: &[String], out: Option<PathBuf>) -> Result<Pa
             empty => empty.insert(Results::create(&scene, &model, &dir)?),
         };
         files.write(&model, step as u64, *value, point, &solution)?;
+        // Later points start from displacements of the contacts only; fields of a long sweep would fill the memory.
+        if let Some((_, earlier)) = solutions.last_mut() {
+            earlier.elastic = [None, None];
+        }
         solutions.push((value.unwrap_or(0.0), solution));
         progress.advance();
     }

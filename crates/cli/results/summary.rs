@@ -148,8 +148,9 @@ impl Summary {
             .collect();
         print::line(format_args!("seconds: {}", parts.join(", ")));
         print::line(format_args!(
-            "peak memory: {:.0} MB",
-            self.peak_memory_bytes as f64 / 1e6
+            "peak memory: {:.0} MB, forecast {:.0} MB",
+            self.peak_memory_bytes as f64 / 1e6,
+            self.peak_memory_forecast_bytes as f64 / 1e6
         ));
     }
 

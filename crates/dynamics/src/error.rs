@@ -128,6 +128,12 @@ pub enum DynamicsError {
         /// `inner` or `outer`.
         side: &'static str,
     },
+    /// A choice that statics knows and motion does not.
+    #[error("a moving bearing cannot have {what} in this version")]
+    NotInMotion {
+        /// The choice and its replacement.
+        what: &'static str,
+    },
     /// A number became NaN or infinite.
     #[error("{what} is not finite; check the loads and material of the scene")]
     NotFinite {

@@ -10,6 +10,7 @@ pub mod error;
 pub mod footprint;
 pub mod memory;
 pub mod model;
+pub mod motion;
 pub mod problem;
 pub mod ring;
 pub mod solution;

@@ -51,7 +51,9 @@ impl RingSolver {
         let assembled = start.elapsed().as_secs_f64();
         let symbolic = analyse(mesh, &support, &stiffness).map_err(|e| named(e, side, ring, &support))?;
         let memory = RingMemory::new(mesh, n_entries, &symbolic, model.geometry.n_balls);
-        let factor = symbolic.factor(&stiffness).map_err(|e| named(e, side, ring, &support))?;
+        let factor = symbolic
+            .factor(&stiffness)
+            .map_err(|e| named(e, side, ring, &support))?;
         drop(stiffness);
         let facets = matches!(model.contact.mode, ContactMode::Facet)
             .then(|| FacetSurface::new(mesh, mesh.group(RACEWAY_GROUP), ring.groove));
@@ -128,9 +130,17 @@ fn analyse(mesh: &Mesh, support: &Support, stiffness: &CsMat<f64>) -> Result<Sym
 
 /// Forecast of the memory of a ring in a bearing of `n_balls` balls, and the analysis it rests on: no number is
 /// computed.
-pub fn forecast(side: Side, ring: &RingModel, n_balls: usize) -> Result<(RingMemory, Symbolic), DynamicsError> {
+pub fn forecast(
+    side: Side,
+    ring: &RingModel,
+    n_balls: usize,
+) -> Result<(RingMemory, Symbolic), DynamicsError> {
     let mesh = &ring.mesh;
-    let support = Support::new(mesh, ring.hold, fem::facet_node_weights(mesh, mesh.group(ring.held_group)));
+    let support = Support::new(
+        mesh,
+        ring.hold,
+        fem::facet_node_weights(mesh, mesh.group(ring.held_group)),
+    );
     let fem_error = |source| DynamicsError::Fem {
         side: side.name(),
         source,

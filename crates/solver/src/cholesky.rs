@@ -1,7 +1,7 @@
 //! Sparse supernodal Cholesky factorisation S = L L^T of a permuted matrix.
 //!
 //! Cost on one core of a 2-core Xeon at 2.3 GHz, loaded, ring of 59 400 dof (`benches/sparse.rs`, November 2026): order
-//! 0.15 s, analysis 0.12 s, factorisation 0.33 s (12 GFlop/s, 128 MB), one right-hand side 20 ms, which is 1.5 times
+//! 0.04 s, analysis 0.09 s, factorisation 0.33 s (12 GFlop/s, 128 MB), one right-hand side 20 ms, which is 1.5 times
 //! the time to read the factor twice, 36 right-hand sides 108 ms. Sequential by choice: faer's own threads
 //! gained nothing on these matrices.
 

@@ -119,7 +119,9 @@ impl Symbolic {
     /// rows at most, and eight arrays of n.
     pub fn bytes(&self) -> usize {
         let n_indices = supernodes(&self.shared.faer).map_or(0, |supernodal| {
-            (0..supernodal.n_supernodes()).map(|s| supernodal.supernode(s).pattern().len()).sum()
+            (0..supernodal.n_supernodes())
+                .map(|s| supernodal.supernode(s).pattern().len())
+                .sum()
         });
         size_of::<usize>() * (2 * n_indices + 8 * self.n())
     }

@@ -1,0 +1,186 @@
+//! Generalised coordinates of a moving ring: its free nodal dofs, then the shaft dofs that carry its bore.
+//!
+//! All displacements are total, in the ring's own (co-rotating) frame. A clamped bore moves with the shaft: w = R q at its
+//! nodes; held shaft dofs and a clamped seat do not move. y = (w_free, q_free), w = T y, loads T^T f, matrices T^T A T:
+//! symmetric positive definite, with the few dense rows of the shaft last in the elimination order.
+
+use mesh::Mesh;
+use sprs::CsMat;
+
+/// What one nodal dof is made of.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Source {
+    /// A free dof: its index.
+    Free(usize),
+    /// A held node: rigid motion with the shaft.
+    Held,
+}
+
+/// Map between nodal dofs and generalised coordinates.
+pub struct Coordinates {
+    sources: Vec<Source>,
+    /// Nodal dof of each free coordinate, ascending.
+    free: Vec<usize>,
+    /// Shaft dofs (0..5) that are coordinates, after the free ones.
+    shaft: Vec<usize>,
+    /// Node positions relative to the shaft's origin, m.
+    arms: Vec<[f64; 3]>,
+}
+
+impl Coordinates {
+    /// Coordinates of a ring whose `held` nodes follow the `shaft` dofs (of x, y, z, tilt x, tilt y) that are free;
+    /// `origin_z` is the axial position of the shaft's origin in the mesh, m.
+    pub fn new(mesh: &Mesh, held: &[usize], shaft: Vec<usize>, origin_z: f64) -> Coordinates {
+        let mut is_held = vec![false; mesh.n_nodes()];
+        held.iter().for_each(|&n| is_held[n] = true);
+        let free: Vec<usize> = (0..mesh.n_dofs()).filter(|d| !is_held[d / 3]).collect();
+        let mut sources = vec![Source::Held; mesh.n_dofs()];
+        free.iter()
+            .enumerate()
+            .for_each(|(i, &d)| sources[d] = Source::Free(i));
+        let arms = mesh.nodes.iter().map(|x| [x[0], x[1], x[2] - origin_z]).collect();
+        Coordinates {
+            sources,
+            free,
+            shaft,
+            arms,
+        }
+    }
+
+    /// Number of coordinates.
+    pub fn n(&self) -> usize {
+        self.free.len() + self.shaft.len()
+    }
+
+    /// Number of nodal dofs.
+    pub fn expanded(&self) -> usize {
+        self.sources.len()
+    }
+
+    /// Nodal dofs of the free coordinates.
+    pub fn free(&self) -> &[usize] {
+        &self.free
+    }
+
+    /// Shaft dofs among the coordinates and the index of the first.
+    pub fn shaft(&self) -> (&[usize], usize) {
+        (&self.shaft, self.free.len())
+    }
+
+    /// Motion of a held nodal dof per unit of shaft dof `q`.
+    fn lever(&self, dof: usize, q: usize) -> f64 {
+        rigid_lever(self.arms[dof / 3], dof % 3, q)
+    }
+
+    /// Motion of a nodal dof under a rigid motion `q` of the shaft.
+    pub fn rigid_motion(&self, dof: usize, q: [f64; 5]) -> f64 {
+        (0..5).map(|i| self.lever(dof, i) * q[i]).sum()
+    }
+
+    /// Nodal values w = T y, `[n_dofs]`.
+    pub fn expand(&self, y: &[f64]) -> Vec<f64> {
+        let q = &y[self.free.len()..];
+        let value = |(dof, source): (usize, &Source)| match source {
+            Source::Free(i) => y[*i],
+            Source::Held => self
+                .shaft
+                .iter()
+                .zip(q)
+                .map(|(&s, q)| self.lever(dof, s) * q)
+                .sum(),
+        };
+        self.sources.iter().enumerate().map(value).collect()
+    }
+
+    /// Generalised loads T^T f, `[n]`.
+    pub fn reduce(&self, load: &[f64]) -> Vec<f64> {
+        let mut y = vec![0.0; self.n()];
+        let first = self.free.len();
+        for (dof, (source, f)) in self.sources.iter().zip(load).enumerate() {
+            match source {
+                Source::Free(i) => y[*i] = *f,
+                Source::Held if *f != 0.0 => {
+                    for (k, &s) in self.shaft.iter().enumerate() {
+                        y[first + k] += self.lever(dof, s) * f;
+                    }
+                }
+                Source::Held => {}
+            }
+        }
+        y
+    }
+
+    /// T^T A T of a symmetric matrix of all nodal dofs, both triangles.
+    pub fn reduce_matrix(&self, a: &CsMat<f64>) -> CsMat<f64> {
+        let inner = solver::restrict(a, &self.free);
+        if self.shaft.is_empty() {
+            return inner;
+        }
+        let (n, m) = (self.free.len(), self.shaft.len());
+        let (mut border, mut corner) = (vec![0.0; n * m], vec![0.0; m * m]);
+        for (dof, row) in a.outer_iterator().enumerate() {
+            let mut moved = vec![0.0; m];
+            for (j, value) in row.iter() {
+                if self.sources[j] == Source::Held {
+                    (0..m).for_each(|k| moved[k] += value * self.lever(j, self.shaft[k]));
+                }
+            }
+            match self.sources[dof] {
+                Source::Free(i) => border[m * i..m * (i + 1)].copy_from_slice(&moved),
+                Source::Held => {
+                    for k in 0..m {
+                        let lever = self.lever(dof, self.shaft[k]);
+                        (0..m).for_each(|l| corner[m * k + l] += lever * moved[l]);
+                    }
+                }
+            }
+        }
+        bordered(&inner, &border, &corner, m)
+    }
+}
+
+/// Motion of a node's component per unit of shaft dof `q`: translations, then tilts about x and y.
+pub fn rigid_lever(arm: [f64; 3], component: usize, q: usize) -> f64 {
+    match (q, component) {
+        (0, 0) | (1, 1) | (2, 2) => 1.0,
+        (3, 1) => -arm[2],
+        (3, 2) => arm[1],
+        (4, 0) => arm[2],
+        (4, 2) => -arm[0],
+        _ => 0.0,
+    }
+}
+
+/// The matrix [inner, border; border^T, corner] in compressed rows.
+fn bordered(inner: &CsMat<f64>, border: &[f64], corner: &[f64], m: usize) -> CsMat<f64> {
+    let n = inner.rows();
+    let (mut starts, mut columns, mut values) = (vec![0], Vec::new(), Vec::new());
+    for (i, row) in inner.outer_iterator().enumerate() {
+        for (j, value) in row.iter() {
+            columns.push(j);
+            values.push(*value);
+        }
+        for (k, &value) in border[m * i..m * (i + 1)].iter().enumerate() {
+            if value != 0.0 {
+                columns.push(n + k);
+                values.push(value);
+            }
+        }
+        starts.push(columns.len());
+    }
+    for k in 0..m {
+        for i in 0..n {
+            if border[m * i + k] != 0.0 {
+                columns.push(i);
+                values.push(border[m * i + k]);
+            }
+        }
+        for l in 0..m {
+            // Both halves of the corner were summed in different orders.
+            columns.push(n + l);
+            values.push(0.5 * (corner[m * k + l] + corner[m * l + k]));
+        }
+        starts.push(columns.len());
+    }
+    CsMat::new((n + m, n + m), starts, columns, values)
+}

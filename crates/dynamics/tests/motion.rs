@@ -1,0 +1,107 @@
+//! Motion in time: energy, equilibrium, rolling.
+
+mod support;
+
+use dynamics::motion::balls::Speed;
+use dynamics::motion::contacts::ContactScheme;
+use dynamics::motion::run::MotionSettings;
+use dynamics::motion::{Integrator, Motion, MotionState};
+use dynamics::{ContactMode, Hold, Model, StaticSolution};
+use support::rings::Level;
+use support::{Case, equilibrium};
+
+fn settings(dt: f64) -> MotionSettings {
+    MotionSettings {
+        dt,
+        integrator: Integrator::average_acceleration(),
+        scheme: ContactScheme::DiscreteGradient,
+        speed: Speed::constant(0.0),
+        slip: [0.0; 2],
+        contact_damping: None,
+        rayleigh: [0.0; 2],
+        ball_centrifugal: false,
+    }
+}
+
+const SMALL: Level = Level::hex8(54, 6, 1, 2);
+
+/// The same bearing under another load: the step of the load at t = 0.
+fn reloaded(model: &Model, case: &Case) -> Model {
+    let mut other = Model {
+        rings: model.rings.clone(),
+        ..case.rigid()
+    };
+    other.contact.mode = model.contact.mode;
+    other.shaft_mass = model.shaft_mass;
+    other
+}
+
+fn run(model: &Model, start: &StaticSolution, settings: MotionSettings, n: usize) -> Vec<MotionState> {
+    let motion = Motion::new(model, settings).unwrap();
+    let mut states = vec![motion.start(start)];
+    for _ in 0..n {
+        let next = motion.step(states.last().unwrap()).unwrap().0;
+        states.push(next);
+    }
+    states
+}
+
+/// Wrong: a bearing at rest would start to move by itself. The start is the static equilibrium, to its tolerance.
+#[test]
+fn a_bearing_in_equilibrium_stays_there() {
+    let case = Case {
+        radial: 1000.0,
+        ..Case::axial(2000.0)
+    };
+    let model = case.flexible(ContactMode::Patch, SMALL, Hold::Clamped);
+    let solution = equilibrium(&model);
+    let states = run(&model, &solution, settings(1e-5), 10);
+    let last = states.last().unwrap();
+    for (a, b) in states[0].balls.iter().zip(&last.balls) {
+        assert!(
+            (a[0] - b[0]).abs() < 1e-12 && (a[1] - b[1]).abs() < 1e-12,
+            "{a:?} {b:?}"
+        );
+    }
+    assert!(
+        last.ledger.kinetic.iter().sum::<f64>() < 1e-12 * last.ledger.largest,
+        "{:?}",
+        last.ledger
+    );
+    assert!(last.ledger.relative_defect() < 1e-9);
+}
+
+/// Wrong: the discrete gradient would not conserve energy with flexible rings and patches when balls unload and
+/// meet again. 1 kN axial, radial step 0 to 5 kN, tilt locked: the ledger closes to 1e-6 of the largest energy.
+#[test]
+fn the_ledger_closes_when_balls_unload() {
+    let before = Case::axial(1000.0);
+    let model = before.flexible(ContactMode::Patch, SMALL, Hold::Clamped);
+    let solution = equilibrium(&model);
+    let loaded = reloaded(
+        &model,
+        &Case {
+            radial: 5000.0,
+            ..before
+        },
+    );
+    for dt in [2e-5, 1e-5] {
+        let states = run(&loaded, &solution, settings(dt), (3e-3 / dt) as usize);
+        let open = states
+            .iter()
+            .map(|s| s.forces.iter().filter(|f| **f == [0.0; 2]).count())
+            .max()
+            .unwrap();
+        let worst = states
+            .iter()
+            .map(|s| s.ledger.relative_defect())
+            .fold(0.0, f64::max);
+        let energy = states.iter().map(|s| s.ledger.total()).fold(0.0, f64::max);
+        println!(
+            "dt {dt}: defect {worst:.2e}, largest energy {energy:.4} J, up to {open} contacts open, {:?}",
+            states.last().unwrap().ledger
+        );
+        assert!(open > 8, "{open}");
+        assert!(worst < 1e-6, "{worst}");
+    }
+}
