@@ -8,7 +8,7 @@ use crate::statics::reference;
 use crate::util::tables::{Table, keys, number, summary};
 use crate::util::{Dir, RIGID, SCENE, assert_within};
 
-const SUMMARY_KEYS: [&str; 17] = [
+const SUMMARY_KEYS: [&str; 18] = [
     "analysis",
     "balls",
     "contact_mode",
@@ -18,6 +18,7 @@ const SUMMARY_KEYS: [&str; 17] = [
     "factor_bytes_forecast",
     "iterations",
     "peak_memory_bytes",
+    "peak_memory_forecast_bytes",
     "scene",
     "schema",
     "shaft",
@@ -160,6 +161,7 @@ fn the_summary_says_what_was_computed() {
     }
     for pointer in [
         "/peak_memory_bytes",
+        "/peak_memory_forecast_bytes",
         "/factor_bytes_forecast/inner",
         "/timing_s/total",
         "/iterations/rounds",

@@ -5,7 +5,7 @@
 pub struct NodalWeights {
     /// Nodes.
     pub nodes: Vec<usize>,
-    /// Coefficients at these nodes: u_c[i] = sum over a of coefficients[a][i] . u_a.
+    /// Coefficients at these nodes: `u_c[i] = sum over a of coefficients[a][i] . u_a`.
     pub coefficients: Vec<[[f64; 3]; 2]>,
 }
 

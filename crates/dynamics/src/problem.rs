@@ -72,6 +72,8 @@ pub struct Problem {
     pub shaft_load: [f64; 5],
     /// Ball loads [radial, axial], N.
     pub ball_load: Vec<[f64; 2]>,
+    /// Growth of the radial ball load with the radial displacement, N/m.
+    pub ball_slope: f64,
     /// Length by which tilts are scaled, m.
     pub tilt_arm: f64,
 }
@@ -236,6 +238,11 @@ impl Problem {
                 }
             }
         }
+        let first_ball = self.shaft_free.iter().filter(|f| **f).count();
+        for ball in 0..self.ball_load.len() {
+            let radial = first_ball + 2 * ball;
+            hessian[n * radial + radial] -= self.ball_slope;
+        }
         for site in &self.sites {
             let state = site.state(u);
             let (indices, rows, n_local) = self.local(site);
@@ -250,6 +257,12 @@ impl Problem {
         hessian
     }
 
+    /// Loads on the balls [radial, axial] at given displacements, N.
+    pub fn ball_loads(&self, u: &Displacements) -> Vec<[f64; 2]> {
+        let at = |(f, x): (&[f64; 2], &[f64; 2])| [f[0] + self.ball_slope * x[0], f[1]];
+        self.ball_load.iter().zip(&u.balls).map(at).collect()
+    }
+
     /// Gradient of loads and ring elasticity.
     fn linear_gradient(&self, u: &Displacements) -> Vec<f64> {
         let mut gradient = Vec::with_capacity(self.n());
@@ -258,7 +271,7 @@ impl Problem {
                 gradient.push(-self.shaft_load[i] * self.shaft_scale(i));
             }
         }
-        gradient.extend(self.ball_load.iter().flatten().map(|f| -f));
+        gradient.extend(self.ball_loads(u).iter().flatten().map(|f| -f));
         for (groove, ring) in u.grooves.iter().zip(&self.rings) {
             if let Some(ring) = ring {
                 let change: Vec<f64> = groove

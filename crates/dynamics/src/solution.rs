@@ -63,7 +63,12 @@ impl StaticSolution {
         let strain_energy = 0.5 * (ring_contact_work(&rings, &forces) + body_work);
         let hertz_energy = problem.sites.iter().map(|s| s.state(&u).force.energy).sum();
         let contact_work: f64 = problem.sites.iter().map(|s| s.work(&u)).sum();
-        let ball_work: f64 = loads.balls.iter().zip(&u.balls).map(|(f, x)| dot(f, x)).sum();
+        let ball_work: f64 = problem
+            .ball_loads(&u)
+            .iter()
+            .zip(&u.balls)
+            .map(|(f, x)| dot(f, x))
+            .sum();
         let load_work = ball_work + dot(&problem.shaft_load, &u.shaft) + body_work;
         StaticSolution {
             balls: ball_results(model, problem, &u),

@@ -18,7 +18,7 @@ use contact::{ContactLaw, Side};
 use rayon::prelude::*;
 use solver::dense::DenseCholesky;
 
-use crate::effects::{self, Loads};
+use crate::effects::{self, Loads, Now};
 use crate::equilibrium::{SearchScales, check_held, minimise};
 use crate::error::DynamicsError;
 use crate::footprint::{Footprint, place};
@@ -95,7 +95,7 @@ impl StaticSolver {
         model: &Model,
         start: Option<&StaticSolution>,
     ) -> Result<StaticSolution, DynamicsError> {
-        let loads = &effects::loads(model)?;
+        let loads = &effects::loads(model, &Now::default())?;
         let problem = base_problem(model, loads);
         let scales = SearchScales::new(
             &model.geometry,
@@ -318,8 +318,9 @@ fn base_problem(model: &Model, loads: &Loads) -> Problem {
         sites: sites.collect(),
         rings: [None, None],
         shaft_free: model.shaft.map(|d| d == ShaftDof::Free),
-        shaft_load: loads.shaft,
+        shaft_load: [0, 1, 2, 3, 4].map(|i| loads.shaft[i] + loads.ring_on_shaft[i]),
         ball_load: loads.balls.clone(),
+        ball_slope: loads.ball_slope,
         tilt_arm: geometry.centre_radius(Side::Inner),
     }
 }

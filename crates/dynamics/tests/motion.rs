@@ -19,7 +19,6 @@ fn settings(dt: f64) -> MotionSettings {
         slip: [0.0; 2],
         contact_damping: None,
         rayleigh: [0.0; 2],
-        ball_centrifugal: false,
     }
 }
 
@@ -104,4 +103,48 @@ fn the_ledger_closes_when_balls_unload() {
         assert!(open > 8, "{open}");
         assert!(worst < 1e-6, "{worst}");
     }
+}
+
+/// Wrong: rolling would not pass through the equilibria of its azimuths. 1800 rpm, 2 kN and 1 kN radial, from static
+/// equilibrium; the forces follow the static ones at the same azimuths.
+#[test]
+fn slow_rolling_follows_the_static_forces() {
+    let case = Case {
+        radial: 1000.0,
+        ..Case::axial(2000.0)
+    };
+    let model = case.flexible(ContactMode::Patch, SMALL, Hold::Clamped);
+    let solution = equilibrium(&model);
+    let speed = Speed::constant(1800.0 * std::f64::consts::PI / 30.0);
+    let motion = Motion::new(
+        &model,
+        MotionSettings {
+            speed,
+            ..settings(1e-5)
+        },
+    )
+    .unwrap();
+    let mut state = motion.start(&solution);
+    let mut worst = 0.0f64;
+    for step in 1..=300u64 {
+        state = motion.step(&state).unwrap().0;
+        if step.is_multiple_of(60) {
+            let phase = motion.ball_azimuth(0, motion.time(step) - 0.5e-5);
+            let mut turned = reloaded(&model, &Case { phase, ..case });
+            turned.contact.mode = ContactMode::Patch;
+            let rest = equilibrium(&turned);
+            for (ball, f) in rest.balls.iter().zip(state.forces.iter().step_by(2)) {
+                worst = worst.max((f[0].hypot(f[1]) / ball.inner.force_n - 1.0).abs());
+            }
+            println!(
+                "step {step}: worst {worst:.2e}, shaft {:?}, static {:?} defect {:.2e} {:?}",
+                motion.shaft(&state),
+                rest.displacements.shaft,
+                state.ledger.relative_defect(),
+                state.ledger
+            );
+        }
+    }
+    assert!(worst < 1e-2, "{worst}");
+    assert!(state.ledger.relative_defect() < 1e-6, "{:?}", state.ledger);
 }

@@ -4,7 +4,7 @@
 //! ```
 //! An axial force on the shaft. On the axis, so it has no moment.
 
-use super::{Effect, Loads};
+use super::{Effect, Loads, Now};
 use crate::error::DynamicsError;
 use crate::model::Model;
 
@@ -19,7 +19,7 @@ impl Effect for AxialForce {
         "axial_force"
     }
 
-    fn add_loads(&self, model: &Model, loads: &mut Loads) -> Result<(), DynamicsError> {
+    fn add_loads(&self, model: &Model, _now: &Now, loads: &mut Loads) -> Result<(), DynamicsError> {
         loads.add_shaft_force(model, [0.0, 0.0, self.value]);
         Ok(())
     }

@@ -8,7 +8,7 @@
 
 use contact::Side;
 
-use super::{Effect, Loads};
+use super::{Effect, Loads, Now};
 use crate::error::DynamicsError;
 use crate::model::Model;
 
@@ -23,11 +23,11 @@ impl Effect for Gravity {
         "gravity"
     }
 
-    fn add_loads(&self, model: &Model, loads: &mut Loads) -> Result<(), DynamicsError> {
+    fn add_loads(&self, model: &Model, now: &Now, loads: &mut Loads) -> Result<(), DynamicsError> {
         let g = self.acceleration;
         let mass = model.ball_mass();
         for (ball, load) in loads.balls.iter_mut().enumerate() {
-            let (sin, cos) = model.geometry.azimuth(ball).sin_cos();
+            let (sin, cos) = (model.geometry.azimuth(ball) + now.cage_angle).sin_cos();
             load[0] += mass * (g[0] * cos + g[1] * sin);
             load[1] += mass * g[2];
         }

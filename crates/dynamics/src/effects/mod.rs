@@ -3,11 +3,13 @@
 //! An effect is immutable: it cannot hide state.
 
 mod axial_force;
+mod ball_centrifugal;
 mod gravity;
 mod moment;
 mod radial_force;
 
 pub use axial_force::AxialForce;
+pub use ball_centrifugal::BallCentrifugal;
 pub use gravity::Gravity;
 pub use moment::Moment;
 pub use radial_force::RadialForce;
@@ -22,8 +24,12 @@ use crate::model::Model;
 pub struct Loads {
     /// Generalised shaft loads: force x, y, z in N, moment x, y in N m about the shaft's origin.
     pub shaft: [f64; 5],
-    /// Force on each ball [radial, axial], N.
+    /// What the body loads of a flexible inner ring add to them, N and N m.
+    pub ring_on_shaft: [f64; 5],
+    /// Force on each ball [radial, axial] at its just-touching position, N.
     pub balls: Vec<[f64; 2]>,
+    /// Growth of the radial ball force with the radial displacement, N/m.
+    pub ball_slope: f64,
     /// Body loads on the nodes of a flexible ring, N, `[n_nodes][3]` flat; None: no such load.
     pub rings: [Option<Vec<f64>>; 2],
 }
@@ -33,6 +39,8 @@ impl Loads {
     pub fn none(model: &Model) -> Loads {
         Loads {
             shaft: [0.0; 5],
+            ring_on_shaft: [0.0; 5],
+            ball_slope: 0.0,
             balls: vec![[0.0; 2]; model.geometry.n_balls],
             rings: [None, None],
         }
@@ -55,10 +63,10 @@ impl Loads {
             let z0 = ring.groove.centre_z;
             for (x, f) in ring.mesh.nodes.iter().zip(load.chunks_exact(3)) {
                 for i in 0..3 {
-                    self.shaft[i] += f[i];
+                    self.ring_on_shaft[i] += f[i];
                 }
-                self.shaft[3] += x[1] * f[2] - (x[2] - z0) * f[1];
-                self.shaft[4] += (x[2] - z0) * f[0] - x[0] * f[2];
+                self.ring_on_shaft[3] += x[1] * f[2] - (x[2] - z0) * f[1];
+                self.ring_on_shaft[4] += (x[2] - z0) * f[0] - x[0] * f[2];
             }
         }
         match &mut self.rings[side.index()] {
@@ -68,20 +76,29 @@ impl Loads {
     }
 }
 
+/// An instant of a motion; the default is the start.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Now {
+    /// Time, s.
+    pub time: f64,
+    /// Angle the cage has turned since the start, rad.
+    pub cage_angle: f64,
+}
+
 /// A physical effect that adds loads.
 pub trait Effect: Send + Sync {
     /// Name of its scene table.
     fn name(&self) -> &'static str;
 
-    /// Adds its loads at rest.
-    fn add_loads(&self, model: &Model, loads: &mut Loads) -> Result<(), DynamicsError>;
+    /// Adds its loads at an instant.
+    fn add_loads(&self, model: &Model, now: &Now, loads: &mut Loads) -> Result<(), DynamicsError>;
 }
 
-/// Loads of all effects of the model.
-pub fn loads(model: &Model) -> Result<Loads, DynamicsError> {
+/// Loads of all effects of the model at an instant.
+pub fn loads(model: &Model, now: &Now) -> Result<Loads, DynamicsError> {
     let mut loads = Loads::none(model);
     for effect in &model.effects {
-        effect.add_loads(model, &mut loads)?;
+        effect.add_loads(model, now, &mut loads)?;
     }
     Ok(loads)
 }

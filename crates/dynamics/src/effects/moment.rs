@@ -5,7 +5,7 @@
 //! ```
 //! A tilting moment on the shaft; right-hand rule about +x and +y.
 
-use super::{Effect, Loads};
+use super::{Effect, Loads, Now};
 use crate::error::DynamicsError;
 use crate::model::Model;
 
@@ -20,7 +20,7 @@ impl Effect for Moment {
         "moment"
     }
 
-    fn add_loads(&self, _model: &Model, loads: &mut Loads) -> Result<(), DynamicsError> {
+    fn add_loads(&self, _model: &Model, _now: &Now, loads: &mut Loads) -> Result<(), DynamicsError> {
         loads.shaft[3] += self.value[0];
         loads.shaft[4] += self.value[1];
         Ok(())

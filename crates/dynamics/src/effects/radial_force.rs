@@ -5,7 +5,7 @@
 //! ```
 //! A radial force on the shaft at the scene's load point; off the groove plane it also tilts.
 
-use super::{Effect, Loads};
+use super::{Effect, Loads, Now};
 use crate::error::DynamicsError;
 use crate::model::Model;
 
@@ -22,7 +22,7 @@ impl Effect for RadialForce {
         "radial_force"
     }
 
-    fn add_loads(&self, model: &Model, loads: &mut Loads) -> Result<(), DynamicsError> {
+    fn add_loads(&self, model: &Model, _now: &Now, loads: &mut Loads) -> Result<(), DynamicsError> {
         let (sin, cos) = self.direction.sin_cos();
         loads.add_shaft_force(model, [self.value * cos, self.value * sin, 0.0]);
         Ok(())

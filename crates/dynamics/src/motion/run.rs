@@ -13,7 +13,7 @@ use super::integrator::Integrator;
 use super::ledger::Ledger;
 use super::ring::{RingMotion, RingState, RingStep};
 use super::small::{Inertia, RingAnswer, SmallSolution, SmallSystem};
-use crate::effects::{self, Loads};
+use crate::effects::{self, Loads, Now};
 use crate::equilibrium::SearchScales;
 use crate::error::DynamicsError;
 use crate::model::{ContactMode, Hold, Model, ShaftDof, elastic};
@@ -40,8 +40,6 @@ pub struct MotionSettings {
     pub contact_damping: Option<ContactDamping>,
     /// Rayleigh damping C = [0] M + [1] K.
     pub rayleigh: [f64; 2],
-    /// Centrifugal force of the balls.
-    pub ball_centrifugal: bool,
 }
 
 /// All that evolves.
@@ -153,13 +151,24 @@ impl<'a> Motion<'a> {
 
     /// Azimuth of a ball at a time, rad.
     pub fn ball_azimuth(&self, ball: usize, time: f64) -> f64 {
-        self.model.geometry.azimuth(ball) + self.kinematics.cage * self.settings.speed.angle(time)
+        self.model.geometry.azimuth(ball) + self.cage_angle(time)
+    }
+
+    /// Angle the cage has turned since the start, rad.
+    fn cage_angle(&self, time: f64) -> f64 {
+        self.kinematics.cage * self.settings.speed.angle(time)
     }
 
     /// One step.
     pub fn step(&self, state: &MotionState) -> Result<(MotionState, StepReport), DynamicsError> {
         let middle = self.time(state.step) + 0.5 * self.settings.dt;
-        let loads = effects::loads(self.model)?;
+        let loads = effects::loads(
+            self.model,
+            &Now {
+                time: middle,
+                cage_angle: self.cage_angle(middle),
+            },
+        )?;
         let (mut sites, feet) = self.place(state, middle)?;
         let prepare = |side: Side| {
             let motion = self.rings[side.index()].as_ref()?;
@@ -172,7 +181,7 @@ impl<'a> Motion<'a> {
         };
         let (inner, outer) = rayon::join(|| prepare(Side::Inner), || prepare(Side::Outer));
         let steps = [inner, outer];
-        let system = self.system(state, std::mem::take(&mut sites), &steps, &loads, middle);
+        let system = self.system(state, std::mem::take(&mut sites), &steps, &loads);
         let scale = state
             .forces
             .iter()
@@ -241,14 +250,23 @@ impl<'a> Motion<'a> {
         Ok((sites, feet))
     }
 
-    /// Generalised load of a ring: shaft loads turned into the inner ring's frame, and its body loads.
+    /// Generalised load of a ring. Loads are fixed in space: those of the inner ring and its shaft are turned into
+    /// its frame.
     fn ring_load(&self, motion: &RingMotion, side: Side, loads: &Loads, middle: f64) -> Vec<f64> {
-        let mut load = vec![0.0; motion.coordinates.n()];
+        let back = if side == Side::Inner {
+            -self.settings.speed.angle(middle)
+        } else {
+            0.0
+        };
+        let mut load = match &loads.rings[side.index()] {
+            Some(body) => motion.coordinates.reduce(&turn_nodal(body, back)),
+            None => vec![0.0; motion.coordinates.n()],
+        };
         if side == Side::Inner {
             let (dofs, first) = motion.coordinates.shaft();
-            let turned = turn(loads.shaft, -self.settings.speed.angle(middle));
+            let turned = turn(loads.shaft, back);
             for (k, &dof) in dofs.iter().enumerate() {
-                load[first + k] = turned[dof];
+                load[first + k] += turned[dof];
             }
         }
         load
@@ -260,24 +278,16 @@ impl<'a> Motion<'a> {
         sites: Vec<Site>,
         steps: &[Option<RingStep>; 2],
         loads: &Loads,
-        middle: f64,
     ) -> SmallSystem {
         let model = self.model;
         let mass = model.ball_mass();
-        let cage_speed = self.kinematics.cage * self.settings.speed.at(middle);
-        let slope = if self.settings.ball_centrifugal {
-            mass * cage_speed * cage_speed
-        } else {
-            0.0
-        };
-        let centre = model.geometry.ball_centre();
         let balls = (0..model.geometry.n_balls).map(|b| {
             [0, 1].map(|i| {
-                let load_slope = if i == 0 { slope } else { 0.0 };
+                let load_slope = if i == 0 { loads.ball_slope } else { 0.0 };
                 Inertia {
                     mass,
                     start: [state.balls[b][i], state.ball_velocities[b][i]],
-                    load: loads.balls[b][i] + load_slope * centre[0],
+                    load: loads.balls[b][i],
                     load_slope,
                 }
             })
@@ -458,6 +468,14 @@ fn turn(q: [f64; 5], angle: f64) -> [f64; 5] {
         cos * q[3] - sin * q[4],
         sin * q[3] + cos * q[4],
     ]
+}
+
+/// Nodal vectors turned about z.
+fn turn_nodal(v: &[f64], angle: f64) -> Vec<f64> {
+    let (sin, cos) = angle.sin_cos();
+    v.chunks_exact(3)
+        .flat_map(|x| [cos * x[0] - sin * x[1], sin * x[0] + cos * x[1], x[2]])
+        .collect()
 }
 
 /// Coordinates of a ring at static equilibrium: elastic part plus the shaft's motion, and the velocity that a
