@@ -3,13 +3,14 @@
 use std::sync::Arc;
 
 use contact::{BearingGeometry, Groove, HertzContact, Side};
-use dynamics::effects::{AxialForce, Effect, Gravity, Moment, RadialForce};
+use dynamics::effects::{AxialForce, BallCentrifugal, Effect, Gravity, Moment, RadialForce};
 use dynamics::model::{RACEWAY_GROUP, elastic};
 use dynamics::{ContactMode, ContactSettings, Hold, Model, RingModel, ShaftDof, Tolerances};
 use fem::Material;
 use mesh::Torus;
 
 use crate::failure::Failure;
+use crate::motion::speed;
 use crate::scene::{self, Scene};
 
 /// Deviation of raceway nodes from the scene's torus that is taken for round-off of a file, over the groove
@@ -51,7 +52,7 @@ pub fn model_with_rings(scene: &Scene, rings: [Option<Arc<RingModel>>; 2]) -> Re
         rings,
         ball_material: ball_steel,
         shaft: dofs,
-        shaft_mass: 0.0,
+        shaft_mass: shaft.mass,
         load_point: shaft.load_point,
         contact: ContactSettings {
             mode: match scene.contact.mode {
@@ -90,6 +91,13 @@ fn effects(scene: &Scene) -> Vec<Box<dyn Effect>> {
     let mut effects: Vec<Box<dyn Effect>> = Vec::new();
     if let Some(value) = scene.effects.axial_force {
         effects.push(Box::new(AxialForce { value }));
+    }
+    if scene.effects.ball_centrifugal {
+        let slip = scene.effects.cage_slip.unwrap_or([0.0; 2]);
+        effects.push(Box::new(BallCentrifugal {
+            speed: speed(scene),
+            slip,
+        }));
     }
     if let Some(acceleration) = scene.effects.gravity {
         effects.push(Box::new(Gravity { acceleration }));

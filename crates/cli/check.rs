@@ -27,6 +27,13 @@ pub fn check(path: &Path, overrides: &[String]) -> Result<(), Failure> {
             print::line(format_args!("analysis static"));
             1
         }
+        Analysis::Dynamic(dynamic) => {
+            print::line(format_args!(
+                "analysis dynamic, {} steps of {} s, fields every {} steps",
+                dynamic.n_steps, dynamic.step, dynamic.output_every
+            ));
+            1 + dynamic.n_steps.div_ceil(dynamic.output_every) as usize
+        }
         Analysis::Sweep(sweep) => {
             print::line(format_args!(
                 "analysis sweep of {} over {} values",

@@ -52,6 +52,16 @@ impl Failure {
     }
 }
 
+impl Failure {
+    /// The same failure with where it happened in front.
+    pub fn context(self, text: String) -> Failure {
+        match self {
+            Failure::User(e) => Failure::User(e.context(text)),
+            Failure::Numerical(e) => Failure::Numerical(e.context(text)),
+        }
+    }
+}
+
 impl<E: Into<anyhow::Error>> From<E> for Failure {
     fn from(error: E) -> Failure {
         Failure::User(error.into())

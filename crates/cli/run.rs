@@ -1,21 +1,22 @@
 //! `raceway run`: one equilibrium or a sweep of them, with results after every point.
 
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use anyhow::anyhow;
-use checkpoint::{Compression, Output, Precision, Storage};
 use contact::Side;
-use dynamics::{DynamicsError, Model, RingMemory, StaticSolution, StaticSolver};
-use fem::StressRecovery;
+use dynamics::{DynamicsError, StaticSolution, StaticSolver};
 
 use crate::build::{build_model, model_with_rings};
 use crate::failure::Failure;
+use crate::motion;
 use crate::progress::Progress;
-use crate::results::summary::{Costs, Summary};
-use crate::results::tables::Tables;
+use crate::results::files::Files;
+use crate::results::snapshot::Snapshot;
+use crate::results::summary::{Findings, Summary};
 use crate::results::{console, fields, folder};
-use crate::scene::{self, Analysis, Scene};
+use crate::scene::{Analysis, Scene};
 
 /// One load case of a run: the swept value (None for a static scene) and its scene.
 type Point = (Option<f64>, Scene);
@@ -25,6 +26,9 @@ pub fn run(path: &Path, overrides: &[String], out: Option<PathBuf>) -> Result<Pa
     let start = Instant::now();
     let scene = Scene::load(path, overrides)?;
     let dir = folder::choose(path, out)?;
+    if let Analysis::Dynamic(dynamic) = &scene.analysis {
+        return motion::run(&scene, dynamic, dir, start);
+    }
     let points = points(&scene)?;
     let mut progress = Progress::new(points.len() as u64);
     progress.stage("reading meshes");
@@ -33,7 +37,7 @@ pub fn run(path: &Path, overrides: &[String], out: Option<PathBuf>) -> Result<Pa
     progress.stage("factoring the stiffness of the rings");
     let mut solver = StaticSolver::new(&model).map_err(Failure::solving)?;
     let mut solutions: Vec<(f64, StaticSolution)> = Vec::new();
-    let mut results: Option<Results> = None;
+    let mut results: Option<Files> = None;
     for (step, (value, point)) in points.iter().enumerate() {
         progress.stage(&stage_text(&scene, *value));
         model = model_with_rings(point, model.rings)?;
@@ -42,11 +46,15 @@ pub fn run(path: &Path, overrides: &[String], out: Option<PathBuf>) -> Result<Pa
             .solve(&model, before)
             .map_err(|e| at_point(e, &scene, *value, &dir, step))?;
         // The first solution makes the folder: a scene that has none leaves no files.
+        let snapshot = Snapshot::of_equilibrium(&solution);
         let files = match &mut results {
             Some(files) => files,
-            empty => empty.insert(Results::create(&scene, &model, &dir)?),
+            empty => empty.insert(Files::create(&scene, &model, &dir, &snapshot)?),
         };
-        files.write(&model, step as u64, *value, point, &solution)?;
+        let step = step as u64;
+        files.write_fields(|recoveries| fields::record(&model, &solution, recoveries, step, &point.text))?;
+        // The points of a sweep have no time; their number stands for it.
+        files.write_tables(step, step as f64, *value, &snapshot)?;
         // Later points start from displacements of the contacts only; fields of a long sweep would fill the memory.
         if let Some((_, earlier)) = solutions.last_mut() {
             earlier.elastic = [None, None];
@@ -57,15 +65,30 @@ pub fn run(path: &Path, overrides: &[String], out: Option<PathBuf>) -> Result<Pa
     progress.finish();
     let forecast = Side::BOTH.map(|side| solver.ring(side).map(|r| r.memory));
     let results = results.expect("a scene has at least one point");
-    let costs = results.finish(read, forecast, &solver, start)?;
-    let summary = Summary::new(&scene, &model, &solutions, &costs);
+    let costs = results.finish(read, forecast, solver.timing, start)?;
+    let summary = Summary::new(&scene, &model, findings(&solutions), &costs);
     summary.write(&dir)?;
     match &scene.analysis {
-        Analysis::Static => console::print_static(&solutions[0].1),
+        Analysis::Static | Analysis::Dynamic(_) => {
+            console::print_snapshot(&Snapshot::of_equilibrium(&solutions[0].1))
+        }
         Analysis::Sweep(sweep) => console::print_sweep(&sweep.column, &solutions),
     }
     summary.print_costs();
     Ok(dir)
+}
+
+fn findings(solutions: &[(f64, StaticSolution)]) -> Findings {
+    let last = &solutions.last().expect("a finished run has a solution").1;
+    let points = solutions
+        .iter()
+        .map(|(value, s)| (*value, Snapshot::of_equilibrium(s)));
+    Findings {
+        last: Snapshot::of_equilibrium(last),
+        points: points.collect(),
+        iterations: BTreeMap::from([("rounds", last.rounds), ("newton", last.newton_iterations)]),
+        warnings: solutions.iter().flat_map(|(_, s)| s.warnings.clone()).collect(),
+    }
 }
 
 /// The load cases of a scene: one, or those of its sweep.
@@ -124,88 +147,5 @@ fn at_point(error: DynamicsError, scene: &Scene, value: Option<f64>, dir: &Path,
             dir.display()
         ),
     };
-    match Failure::solving(error) {
-        Failure::User(e) => Failure::User(e.context(context)),
-        Failure::Numerical(e) => Failure::Numerical(e.context(context)),
-    }
-}
-
-/// Everything that is written while a run goes on.
-struct Results {
-    output: Output,
-    tables: Tables,
-    recoveries: [Option<StressRecovery>; 2],
-    stress_seconds: f64,
-    output_seconds: f64,
-}
-
-impl Results {
-    fn create(scene: &Scene, model: &Model, dir: &Path) -> Result<Results, Failure> {
-        let clock = Instant::now();
-        let output = Output::create(dir, &fields::bodies(model), storage(scene))?;
-        let swept = match &scene.analysis {
-            Analysis::Sweep(sweep) => Some(sweep.column.as_str()),
-            Analysis::Static => None,
-        };
-        let tables = Tables::create(dir, swept)?;
-        let output_seconds = clock.elapsed().as_secs_f64();
-        let recoveries = fields::recoveries(model, scene.output.stress)?;
-        Ok(Results {
-            output,
-            tables,
-            recoveries,
-            stress_seconds: 0.0,
-            output_seconds,
-        })
-    }
-
-    fn write(
-        &mut self,
-        model: &Model,
-        step: u64,
-        value: Option<f64>,
-        point: &Scene,
-        solution: &StaticSolution,
-    ) -> Result<(), Failure> {
-        let clock = Instant::now();
-        let record = fields::record(model, solution, &self.recoveries, step, &point.text);
-        self.stress_seconds += clock.elapsed().as_secs_f64();
-        let clock = Instant::now();
-        self.output.write_step(&record)?;
-        self.tables.append(step, record.time, value, solution)?;
-        self.output_seconds += clock.elapsed().as_secs_f64();
-        Ok(())
-    }
-
-    fn finish(
-        self,
-        read: f64,
-        forecast: [Option<RingMemory>; 2],
-        solver: &StaticSolver,
-        start: Instant,
-    ) -> Result<Costs, Failure> {
-        let clock = Instant::now();
-        self.output.finish()?;
-        Ok(Costs {
-            read,
-            stress: self.stress_seconds,
-            output: self.output_seconds + clock.elapsed().as_secs_f64(),
-            total: start.elapsed().as_secs_f64(),
-            forecast,
-            solver: solver.timing,
-        })
-    }
-}
-
-fn storage(scene: &Scene) -> Storage {
-    Storage {
-        stress: match scene.output.precision {
-            scene::Precision::F32 => Precision::F32,
-            scene::Precision::F64 => Precision::F64,
-        },
-        compression: match scene.output.compression {
-            0 => Compression::None,
-            level => Compression::Deflate(level),
-        },
-    }
+    Failure::solving(error).context(context)
 }

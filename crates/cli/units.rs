@@ -28,8 +28,8 @@ use thiserror::Error;
 
 use self::expression::Unit;
 pub use self::kind::{
-    ACCELERATION, ANGLE, DENSITY, FORCE, HERTZ_STIFFNESS, KINDS, Kind, LENGTH, MOMENT, STRESS,
-    kind_of_dimension,
+    ACCELERATION, ANGLE, ANGULAR_SPEED, DAMPING, DENSITY, FORCE, HERTZ_STIFFNESS, KINDS, Kind, LENGTH, MASS,
+    MOMENT, RATE, STRESS, TIME, kind_of_dimension,
 };
 use self::number::Decimal;
 
@@ -255,7 +255,7 @@ fn require_dimension(text: &str, found: Dimension, kind: &Kind, expected: String
     }
     Err(UnitError::WrongDimension {
         text: text.to_string(),
-        found: kind::describe(found),
+        found: kind::describe_instead_of(found, kind),
         expected,
     })
 }

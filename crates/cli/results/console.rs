@@ -2,17 +2,18 @@
 
 use dynamics::StaticSolution;
 
+use super::snapshot::Snapshot;
 use crate::print;
 
-/// Prints the balls and the shaft of one equilibrium.
-pub fn print_static(solution: &StaticSolution) {
+/// Prints the balls and the shaft at one instant.
+pub fn print_snapshot(snapshot: &Snapshot) {
     print::line(format_args!(
         "ball  azimuth    inner N    outer N  angle i  angle o   p_max i  p_max o"
     ));
     print::line(format_args!(
         "          deg                            deg      deg       GPa      GPa"
     ));
-    for (i, b) in solution.balls.iter().enumerate() {
+    for (i, b) in snapshot.balls.iter().enumerate() {
         print::line(format_args!(
             "{i:4} {:8.1} {:10.2} {:10.2} {:8.3} {:8.3} {:9.3} {:8.3}",
             b.azimuth_rad.to_degrees(),
@@ -24,7 +25,7 @@ pub fn print_static(solution: &StaticSolution) {
             1e-9 * b.outer.peak_pressure_pa,
         ));
     }
-    print_shaft(solution);
+    print_shaft(snapshot);
 }
 
 /// Prints a line per point of a sweep.
@@ -57,8 +58,8 @@ pub fn print_sweep(column: &str, solutions: &[(f64, StaticSolution)]) {
     }
 }
 
-fn print_shaft(solution: &StaticSolution) {
-    let [x, y, z, tilt_x, tilt_y] = solution.displacements.shaft;
+fn print_shaft(snapshot: &Snapshot) {
+    let [x, y, z, tilt_x, tilt_y] = snapshot.shaft;
     print::line(format_args!(
         "shaft: x {:.4} um, y {:.4} um, z {:.4} um, tilt x {:.3} urad, tilt y {:.3} urad",
         1e6 * x,

@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 
 use checkpoint::{Body, PointFields, StateArray, StepRecord};
 use contact::Side;
+use dynamics::balls::BallResult;
 use dynamics::{Model, StaticSolution};
 use fem::stress::{StressRecovery, von_mises};
 
@@ -68,26 +69,8 @@ pub fn record(
             }
         }
     }
-    let n_ring_points = displacement.len();
-    let mut forces = [vec![[0.0; 3]; n_ring_points], vec![[0.0; 3]; n_ring_points]];
-    for ball in &solution.balls {
-        let (sin, cos) = ball.azimuth_rad.sin_cos();
-        let d = ball.displacement_m;
-        displacement.push([d.radial * cos, d.radial * sin, d.axial]);
-        for (side, list) in Side::BOTH.into_iter().zip(&mut forces) {
-            let contact = if side == Side::Inner {
-                &ball.inner
-            } else {
-                &ball.outer
-            };
-            // The force on the ball points from the contact to the ball centre.
-            let (sin_a, cos_a) = contact.contact_angle_rad.sin_cos();
-            let radial = -side.sign() * contact.force_n * cos_a;
-            list.push([radial * cos, radial * sin, -side.sign() * contact.force_n * sin_a]);
-        }
-    }
+    let [force_inner, force_outer] = add_balls(model, &solution.balls, &mut displacement);
     stress.resize(displacement.len(), [0.0; 6]);
-    let [force_inner, force_outer] = forces;
     StepRecord {
         step,
         time: step as f64,
@@ -103,6 +86,43 @@ pub fn record(
         scene: scene.to_string(),
         state: state(solution),
     }
+}
+
+/// Adds the balls' displacements to those of the rings' points; returns the forces on the balls from the inner and the
+/// outer ring at all points, N, zero on rings.
+pub fn add_balls(
+    model: &Model,
+    balls: &[BallResult],
+    displacement: &mut Vec<[f64; 3]>,
+) -> [Vec<[f64; 3]>; 2] {
+    let mut forces = [
+        vec![[0.0; 3]; displacement.len()],
+        vec![[0.0; 3]; displacement.len()],
+    ];
+    let centre = model.geometry.ball_centre();
+    for (i, ball) in balls.iter().enumerate() {
+        let (sin, cos) = ball.azimuth_rad.sin_cos();
+        let (sin_0, cos_0) = model.geometry.azimuth(i).sin_cos();
+        let radius = centre[0] + ball.displacement_m.radial;
+        let moved = [
+            radius * cos - centre[0] * cos_0,
+            radius * sin - centre[0] * sin_0,
+            ball.displacement_m.axial,
+        ];
+        displacement.push(moved);
+        for (side, list) in Side::BOTH.into_iter().zip(&mut forces) {
+            let contact = if side == Side::Inner {
+                &ball.inner
+            } else {
+                &ball.outer
+            };
+            // The force on the ball points from the contact to the ball centre.
+            let (sin_a, cos_a) = contact.contact_angle_rad.sin_cos();
+            let radial = -side.sign() * contact.force_n * cos_a;
+            list.push([radial * cos, radial * sin, -side.sign() * contact.force_n * sin_a]);
+        }
+    }
+    forces
 }
 
 /// Total displacement of a ring's nodes in space, m.

@@ -2,6 +2,9 @@
 
 pub mod console;
 pub mod fields;
+pub mod files;
 pub mod folder;
+pub mod motion_fields;
+pub mod snapshot;
 pub mod summary;
 pub mod tables;

@@ -5,9 +5,10 @@ use std::path::Path;
 
 use anyhow::Context;
 use dynamics::balls::BallResult;
-use dynamics::{Model, RingMemory, StaticSolution, Timing, forecast_peak};
+use dynamics::{Model, RingMemory, Timing, forecast_peak};
 use serde::Serialize;
 
+use super::snapshot::Snapshot;
 use crate::print;
 use crate::scene::{Analysis, Scene};
 
@@ -32,7 +33,9 @@ pub struct Summary {
     warnings: Vec<String>,
     timing_s: BTreeMap<&'static str, f64>,
     factor_bytes_forecast: BTreeMap<&'static str, usize>,
-    peak_memory_forecast_bytes: usize,
+    /// Absent in motion, whose matrices are not forecast.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    peak_memory_forecast_bytes: Option<usize>,
     peak_memory_bytes: u64,
 }
 
@@ -42,9 +45,11 @@ pub struct Summary {
 pub struct ShaftSummary {
     displacement_m: [f64; 3],
     rotation_rad: [f64; 3],
-    /// Reaction of prescribed dofs: force, N, and moment, N m; 0 where free.
-    reaction_force_n: [f64; 3],
-    reaction_moment_n_m: [f64; 2],
+    /// Reaction of prescribed dofs: force, N, and moment, N m; 0 where free; absent in motion.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    reaction_force_n: Option<[f64; 3]>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    reaction_moment_n_m: Option<[f64; 2]>,
 }
 
 /// Every point of a sweep.
@@ -79,26 +84,38 @@ pub struct Costs {
 }
 
 impl ShaftSummary {
-    fn new(solution: &StaticSolution) -> ShaftSummary {
-        let [x, y, z, tilt_x, tilt_y] = solution.displacements.shaft;
-        let r = solution.shaft_reaction;
+    fn new(snapshot: &Snapshot) -> ShaftSummary {
+        let [x, y, z, tilt_x, tilt_y] = snapshot.shaft;
         ShaftSummary {
             displacement_m: [x, y, z],
             rotation_rad: [tilt_x, tilt_y, 0.0],
-            reaction_force_n: [r[0], r[1], r[2]],
-            reaction_moment_n_m: [r[3], r[4]],
+            reaction_force_n: snapshot.reaction.map(|r| [r[0], r[1], r[2]]),
+            reaction_moment_n_m: snapshot.reaction.map(|r| [r[3], r[4]]),
         }
     }
 }
 
+/// What a run found, besides its costs.
+pub struct Findings {
+    /// The state at its end.
+    pub last: Snapshot,
+    /// Points of a sweep: swept value and state; empty otherwise.
+    pub points: Vec<(f64, Snapshot)>,
+    /// Counts of iterations, by name.
+    pub iterations: BTreeMap<&'static str, usize>,
+    /// What a user should know.
+    pub warnings: Vec<String>,
+}
+
 impl Summary {
-    /// Summary of a finished run: `solutions` are the points of a sweep, or the one of a static scene.
-    pub fn new(scene: &Scene, model: &Model, solutions: &[(f64, StaticSolution)], costs: &Costs) -> Summary {
-        let last = &solutions.last().expect("a finished run has a solution").1;
+    /// Summary of a finished run.
+    pub fn new(scene: &Scene, model: &Model, findings: Findings, costs: &Costs) -> Summary {
+        let last = &findings.last;
         let (analysis, sweep) = match &scene.analysis {
             Analysis::Static => ("static", None),
+            Analysis::Dynamic(_) => ("dynamic", None),
             Analysis::Sweep(sweep) => {
-                let rows = solutions.iter().map(|(value, s)| SweepRow {
+                let rows = findings.points.iter().map(|(value, s)| SweepRow {
                     value: *value,
                     shaft: ShaftSummary::new(s),
                     balls: s.balls.clone(),
@@ -111,7 +128,7 @@ impl Summary {
                 ("sweep", Some(summary))
             }
         };
-        let mut warnings: Vec<String> = solutions.iter().flat_map(|(_, s)| s.warnings.clone()).collect();
+        let mut warnings = findings.warnings;
         warnings.dedup();
         Summary {
             schema: 1,
@@ -125,13 +142,16 @@ impl Summary {
             balls: last.balls.clone(),
             effects: model.effects.iter().map(|e| e.name()).collect(),
             dofs: sides(|i| model.rings[i].as_ref().map_or(0, |r| r.mesh.n_dofs())),
-            energy_j: super::tables::energies(last).into_iter().collect(),
-            iterations: BTreeMap::from([("rounds", last.rounds), ("newton", last.newton_iterations)]),
+            energy_j: last.energies.iter().copied().collect(),
+            iterations: findings.iterations,
             sweep,
             warnings,
             timing_s: timing(costs),
             factor_bytes_forecast: sides(|i| costs.forecast[i].map_or(0, |ring| ring.factorisation)),
-            peak_memory_forecast_bytes: forecast_peak(costs.forecast, rayon::current_num_threads()),
+            peak_memory_forecast_bytes: match &scene.analysis {
+                Analysis::Dynamic(_) => None,
+                _ => Some(forecast_peak(costs.forecast, rayon::current_num_threads())),
+            },
             peak_memory_bytes: peak_memory(),
         }
     }
@@ -147,10 +167,13 @@ impl Summary {
             .map(|(part, s)| format!("{part} {s:.3}"))
             .collect();
         print::line(format_args!("seconds: {}", parts.join(", ")));
+        let forecast = self.peak_memory_forecast_bytes;
+        let forecast = forecast.map_or(String::new(), |bytes| {
+            format!(", forecast {:.0} MB", bytes as f64 / 1e6)
+        });
         print::line(format_args!(
-            "peak memory: {:.0} MB, forecast {:.0} MB",
-            self.peak_memory_bytes as f64 / 1e6,
-            self.peak_memory_forecast_bytes as f64 / 1e6
+            "peak memory: {:.0} MB{forecast}",
+            self.peak_memory_bytes as f64 / 1e6
         ));
     }
 

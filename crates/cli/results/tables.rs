@@ -3,8 +3,9 @@
 use std::path::Path;
 
 use anyhow::Context;
-use dynamics::StaticSolution;
 use dynamics::balls::{BallResult, ContactResult};
+
+use super::snapshot::Snapshot;
 
 /// The tables of one run, open for appending.
 pub struct Tables {
@@ -12,6 +13,14 @@ pub struct Tables {
     shaft: csv::Writer<std::fs::File>,
     energy: csv::Writer<std::fs::File>,
 }
+
+const REACTION_COLUMNS: [&str; 5] = [
+    "reaction_x_n",
+    "reaction_y_n",
+    "reaction_z_n",
+    "reaction_tilt_x_n_m",
+    "reaction_tilt_y_n_m",
+];
 
 const CONTACT_COLUMNS: [&str; 6] = [
     "force_n",
@@ -23,8 +32,8 @@ const CONTACT_COLUMNS: [&str; 6] = [
 ];
 
 impl Tables {
-    /// Creates the files with their header lines; `swept` is the column of a swept value.
-    pub fn create(dir: &Path, swept: Option<&str>) -> anyhow::Result<Tables> {
+    /// Creates the files with the header lines of a first snapshot; `swept` is the column of a swept value.
+    pub fn create(dir: &Path, swept: Option<&str>, first: &Snapshot) -> anyhow::Result<Tables> {
         let head = |rest: &[String]| {
             let mut columns = vec!["step".to_string(), "time_s".to_string()];
             columns.extend(swept.map(str::to_string));
@@ -44,19 +53,15 @@ impl Tables {
             ball_columns.extend(CONTACT_COLUMNS[2..].iter().map(|c| format!("{side}_{c}")));
         }
         ball_columns.extend(names(&["displacement_radial_m", "displacement_axial_m"]));
-        let shaft_columns = names(&[
-            "x_m",
-            "y_m",
-            "z_m",
-            "tilt_x_rad",
-            "tilt_y_rad",
-            "reaction_x_n",
-            "reaction_y_n",
-            "reaction_z_n",
-            "reaction_tilt_x_n_m",
-            "reaction_tilt_y_n_m",
-        ]);
-        let energy_columns: Vec<String> = ENERGY_TERMS.iter().map(|t| format!("{t}_j")).collect();
+        let mut shaft_columns = names(&["x_m", "y_m", "z_m", "tilt_x_rad", "tilt_y_rad"]);
+        if first.reaction.is_some() {
+            shaft_columns.extend(names(&REACTION_COLUMNS));
+        }
+        let energy_columns: Vec<String> = first
+            .energies
+            .iter()
+            .map(|(term, _)| format!("{term}_j"))
+            .collect();
         Ok(Tables {
             balls: open(dir, "balls.csv", &head(&ball_columns))?,
             shaft: open(dir, "shaft.csv", &head(&shaft_columns))?,
@@ -70,43 +75,24 @@ impl Tables {
         step: u64,
         time: f64,
         swept: Option<f64>,
-        solution: &StaticSolution,
+        snapshot: &Snapshot,
     ) -> anyhow::Result<()> {
         let mut head = vec![step.to_string(), number(time)];
         head.extend(swept.map(number));
         let row = |cells: Vec<String>| [head.clone(), cells].concat();
-        for (i, ball) in solution.balls.iter().enumerate() {
+        for (i, ball) in snapshot.balls.iter().enumerate() {
             self.balls.write_record(row(ball_cells(i, ball)))?;
         }
-        let shaft = solution
-            .displacements
-            .shaft
-            .iter()
-            .chain(&solution.shaft_reaction);
+        let shaft = snapshot.shaft.iter().chain(snapshot.reaction.iter().flatten());
         self.shaft
             .write_record(row(shaft.map(|x| number(*x)).collect()))?;
         self.energy
-            .write_record(row(energies(solution).iter().map(|(_, x)| number(*x)).collect()))?;
+            .write_record(row(snapshot.energies.iter().map(|(_, x)| number(*x)).collect()))?;
         for writer in [&mut self.balls, &mut self.shaft, &mut self.energy] {
             writer.flush().context("cannot write a table")?;
         }
         Ok(())
     }
-}
-
-const ENERGY_TERMS: [&str; 5] = ["strain", "hertz", "load_potential", "total", "defect"];
-
-/// Energies of an equilibrium, J. `total` is the potential energy that it minimises; `defect` is what is
-/// missing in the virtual work of all forces through the displacements, zero at equilibrium.
-pub fn energies(solution: &StaticSolution) -> [(&'static str, f64); 5] {
-    let total = solution.strain_energy + solution.hertz_energy - solution.load_work;
-    [
-        ("strain", solution.strain_energy),
-        ("hertz", solution.hertz_energy),
-        ("load_potential", -solution.load_work),
-        ("total", total),
-        ("defect", solution.work_defect),
-    ]
 }
 
 fn ball_cells(index: usize, ball: &BallResult) -> Vec<String> {

@@ -2,6 +2,7 @@
 
 use serde::Deserialize;
 
+use super::damping::{ContactDamping, RawContactDamping, RawRayleighDamping, RayleighDamping};
 use super::problems::Problems;
 use crate::units::{ACCELERATION, ANGLE, FORCE, MOMENT, Quantity};
 
@@ -13,6 +14,10 @@ pub struct RawEffects {
     radial_force: Option<RawRadialForce>,
     moment: Option<RawMoment>,
     gravity: Option<RawGravity>,
+    ball_centrifugal: Option<RawBallCentrifugal>,
+    cage_slip: Option<RawCageSlip>,
+    contact_damping: Option<RawContactDamping>,
+    rayleigh_damping: Option<RawRayleighDamping>,
 }
 
 /// As typed.
@@ -46,6 +51,28 @@ struct RawGravity {
     direction: [f64; 3],
 }
 
+/// As typed: the table has no keys.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields, expecting = "the empty table [effects.ball_centrifugal]")]
+struct RawBallCentrifugal {}
+
+/// As typed.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields, expecting = "the table [effects.cage_slip]")]
+struct RawCageSlip {
+    inner: f64,
+    outer: f64,
+}
+
+/// What the effects have to go with.
+#[derive(Clone, Copy, Debug)]
+pub struct EffectsContext {
+    /// Whether equilibria are computed, not motion.
+    pub is_at_rest: bool,
+    /// Whether the scene has the table `[speed]`.
+    pub has_speed: bool,
+}
+
 /// The effects a scene calls for.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Effects {
@@ -57,6 +84,14 @@ pub struct Effects {
     pub moment: Option<[f64; 2]>,
     /// Acceleration of gravity, m/s2, `[3]` in x, y, z.
     pub gravity: Option<[f64; 3]>,
+    /// Whether balls feel the centrifugal force of their revolution with the cage.
+    pub ball_centrifugal: bool,
+    /// Shares of the rolling motion lost at the inner and at the outer raceway, dimensionless, 0 to below 1.
+    pub cage_slip: Option<[f64; 2]>,
+    /// Damping of contacts, only in motion.
+    pub contact_damping: Option<ContactDamping>,
+    /// Damping of the rings, only in motion.
+    pub rayleigh_damping: Option<RayleighDamping>,
 }
 
 /// A force across the axis.
@@ -74,8 +109,31 @@ const MAX_ACCELERATION: f64 = 1e7;
 const MAX_LOAD: f64 = 1e9;
 
 impl RawEffects {
-    /// Checks sizes and directions.
-    pub fn check(&self, problems: &mut Problems) -> Effects {
+    /// Whether the scene has the table `[effects.ball_centrifugal]`.
+    pub fn has_ball_centrifugal(&self) -> bool {
+        self.ball_centrifugal.is_some()
+    }
+
+    /// Checks sizes and directions, and that speed and analysis give each effect something to do.
+    pub fn check(&self, context: EffectsContext, problems: &mut Problems) -> Effects {
+        self.check_loads(problems);
+        self.check_context(context, problems);
+        Effects {
+            axial_force: self.axial_force.as_ref().map(|f| f.value.si()),
+            radial_force: self.radial_force.as_ref().map(|f| RadialForce {
+                value: f.value.si(),
+                direction: f.direction.si(),
+            }),
+            moment: self.moment.as_ref().map(|m| [m.x.si(), m.y.si()]),
+            gravity: self.gravity.as_ref().map(|g| g.check(problems)),
+            ball_centrifugal: self.has_ball_centrifugal(),
+            cage_slip: self.cage_slip.as_ref().map(|s| s.check(problems)),
+            contact_damping: self.contact_damping.as_ref().map(|d| d.check(problems)),
+            rayleigh_damping: self.rayleigh_damping.as_ref().map(|d| d.check(problems)),
+        }
+    }
+
+    fn check_loads(&self, problems: &mut Problems) {
         let unit = "that is more than any bearing carries, check its unit";
         let forces = [
             (
@@ -97,15 +155,45 @@ impl RawEffects {
                 problems.require(m.si().abs() <= MAX_LOAD, key, m, unit);
             }
         }
-        Effects {
-            axial_force: self.axial_force.as_ref().map(|f| f.value.si()),
-            radial_force: self.radial_force.as_ref().map(|f| RadialForce {
-                value: f.value.si(),
-                direction: f.direction.si(),
-            }),
-            moment: self.moment.as_ref().map(|m| [m.x.si(), m.y.si()]),
-            gravity: self.gravity.as_ref().map(|g| g.check(problems)),
+    }
+
+    fn check_context(&self, context: EffectsContext, problems: &mut Problems) {
+        let turning = [
+            ("ball_centrifugal", self.ball_centrifugal.is_some()),
+            ("cage_slip", self.cage_slip.is_some()),
+        ];
+        for (name, is_there) in turning {
+            if is_there && !context.has_speed {
+                problems.add(format!(
+                    "[effects.{name}] needs the speed of the inner ring; add [speed] with inner = \"1800 rpm\" or \
+                     remove the effect"
+                ));
+            }
         }
+        let moving = [
+            ("contact_damping", self.contact_damping.is_some()),
+            ("rayleigh_damping", self.rayleigh_damping.is_some()),
+        ];
+        for (name, is_there) in moving {
+            if is_there && context.is_at_rest {
+                problems.add(format!(
+                    "[effects.{name}] does nothing in a scene at rest; remove it, or compute motion with [dynamic]"
+                ));
+            }
+        }
+    }
+}
+
+impl RawCageSlip {
+    fn check(&self, problems: &mut Problems) -> [f64; 2] {
+        for (key, slip) in [
+            ("effects.cage_slip.inner", self.inner),
+            ("effects.cage_slip.outer", self.outer),
+        ] {
+            let rule = "expected 0 (pure rolling) to below 1, the share of the rolling motion that is lost";
+            problems.require((0.0..1.0).contains(&slip), key, slip, rule);
+        }
+        [self.inner, self.outer]
     }
 }
 

@@ -2,7 +2,7 @@
 //!
 //! Every quantity is a string with its unit, see [`crate::units`]. Every table is checked against the list of
 //! its keys. An effect is a table `[effects.*]`: without the table there is no effect. Exactly one of
-//! `[static]` and `[sweep]` says what is computed. Axis z is axial, + is the direction of preload; azimuth
+//! `[static]`, `[sweep]` and `[dynamic]` says what is computed. Axis z is axial, + is the direction of preload; azimuth
 //! runs from +x to +y; displacements count from the state where all balls just touch both raceways.
 //!
 //! Reading goes through two levels: the tables as typed (`Raw*`, private, in the file of their table), and
@@ -15,9 +15,17 @@
 //! ```toml
 #![doc = include_str!("example.toml")]
 //! ```
+//!
+//! A scene of motion in time has the same tables and these:
+//!
+//! ```toml
+#![doc = include_str!("example_dynamic.toml")]
+//! ```
 
 mod bearing;
 mod contact;
+mod damping;
+mod dynamic;
 mod edit;
 mod effects;
 mod error;
@@ -29,6 +37,7 @@ mod ring;
 mod section;
 mod shaft;
 mod solver;
+mod speed;
 mod sweep;
 #[cfg(test)]
 mod tests;
@@ -41,6 +50,7 @@ use toml_edit::DocumentMut;
 
 pub use self::bearing::Bearing;
 pub use self::contact::{Contact, ContactMode};
+pub use self::dynamic::{ContactScheme, Dynamic, IntegratorChoice};
 pub use self::effects::Effects;
 pub use self::error::SceneError;
 pub use self::materials::{Material, Materials};
@@ -49,17 +59,20 @@ pub use self::ring::{FlexibleRing, MeshFiles, Ring, RingName, Support};
 pub use self::section::{Section, SectionElement};
 pub use self::shaft::{Motion, Shaft};
 pub use self::solver::Solver;
+pub use self::speed::SpeedTable;
 pub use self::sweep::{Analysis, SweepPoint};
 
 use self::bearing::RawBearing;
 use self::contact::RawContact;
-use self::effects::RawEffects;
+use self::dynamic::RawDynamic;
+use self::effects::{EffectsContext, RawEffects};
 use self::materials::RawMaterials;
 use self::output::RawOutput;
 use self::problems::Problems;
 use self::ring::{RawRing, RingContext};
 use self::shaft::RawShaft;
 use self::solver::RawSolver;
+use self::speed::{RawSpeed, SpeedUse};
 use self::sweep::{RawStatic, RawSweep};
 
 /// As typed.
@@ -75,6 +88,7 @@ struct RawScene {
     #[serde(default)]
     outer: RawRing,
     shaft: RawShaft,
+    speed: Option<RawSpeed>,
     #[serde(default)]
     effects: RawEffects,
     #[serde(default)]
@@ -83,6 +97,7 @@ struct RawScene {
     output: RawOutput,
     r#static: Option<RawStatic>,
     sweep: Option<RawSweep>,
+    dynamic: Option<RawDynamic>,
 }
 
 /// A checked scene, SI.
@@ -106,6 +121,8 @@ pub struct Scene {
     pub outer: Ring,
     /// Freedoms of the shaft.
     pub shaft: Shaft,
+    /// Speed of the inner ring; it does not turn when `None`.
+    pub speed: Option<SpeedTable>,
     /// Loads and other effects.
     pub effects: Effects,
     /// How the equations are solved.
@@ -160,7 +177,7 @@ impl Scene {
         Ok(scene)
     }
 
-    /// The scenes of the points of a sweep, in order; none for a static scene.
+    /// The scenes of the points of a sweep, in order; none for any other scene.
     pub fn sweep_scenes(&self) -> Result<Vec<Scene>, SceneError> {
         let Analysis::Sweep(sweep) = &self.analysis else {
             return Ok(Vec::new());
@@ -225,7 +242,9 @@ impl Source<'_> {
             section::check_gap(inner, outer, &mut problems);
         }
         let shaft = raw.shaft.check(bearing.as_ref(), &mut problems);
-        let effects = raw.effects.check(&mut problems);
+        let effects = raw.effects.check(raw.effects_context(), &mut problems);
+        let speed = raw.speed.as_ref();
+        let speed = speed.and_then(|s| s.check(raw.speed_use(), &mut problems));
         let solver = raw.solver.check(&mut problems);
         let output = raw.output.check(&mut problems);
         let analysis = raw.analysis(document, &mut problems);
@@ -240,6 +259,7 @@ impl Source<'_> {
                 inner,
                 outer,
                 shaft,
+                speed,
                 effects,
                 solver,
                 output,
@@ -281,17 +301,49 @@ impl Source<'_> {
 
 impl RawScene {
     fn analysis(&self, document: &DocumentMut, problems: &mut Problems) -> Option<Analysis> {
-        match (&self.r#static, &self.sweep) {
-            (Some(RawStatic {}), None) => Some(Analysis::Static),
-            (None, Some(sweep)) => sweep.check(document, problems).map(Analysis::Sweep),
-            (None, None) => {
-                problems.add("the scene has no analysis; add one of the tables [static] and [sweep]");
+        match (&self.r#static, &self.sweep, &self.dynamic) {
+            (Some(RawStatic {}), None, None) => Some(Analysis::Static),
+            (None, Some(sweep), None) => sweep.check(document, problems).map(Analysis::Sweep),
+            (None, None, Some(dynamic)) => dynamic.check(problems).map(Analysis::Dynamic),
+            (None, None, None) => {
+                problems
+                    .add("the scene has no analysis; add one of the tables [static], [sweep] and [dynamic]");
                 None
             }
-            (Some(_), Some(_)) => {
-                problems.add("the scene has both [static] and [sweep]; keep exactly one analysis");
+            (at_rest, sweep, dynamic) => {
+                let found = [
+                    at_rest.as_ref().map(|_| "[static]"),
+                    sweep.as_ref().map(|_| "[sweep]"),
+                    dynamic.as_ref().map(|_| "[dynamic]"),
+                ];
+                let found: Vec<&str> = found.into_iter().flatten().collect();
+                let (both, names) = match found.as_slice() {
+                    [a, b] => ("both", format!("{a} and {b}")),
+                    _ => ("all of", found.join(", ")),
+                };
+                problems.add(format!("the scene has {both} {names}; keep exactly one analysis"));
                 None
             }
+        }
+    }
+
+    /// Whether equilibria are computed, and no motion; a scene without analysis is not judged further.
+    fn is_at_rest(&self) -> bool {
+        self.dynamic.is_none() && (self.r#static.is_some() || self.sweep.is_some())
+    }
+
+    fn effects_context(&self) -> EffectsContext {
+        EffectsContext {
+            is_at_rest: self.is_at_rest(),
+            has_speed: self.speed.is_some(),
+        }
+    }
+
+    fn speed_use(&self) -> SpeedUse {
+        match (self.is_at_rest(), self.effects.has_ball_centrifugal()) {
+            (false, _) => SpeedUse::Motion,
+            (true, true) => SpeedUse::ForceAtRest,
+            (true, false) => SpeedUse::Nothing,
         }
     }
 }

@@ -3,6 +3,9 @@
 //! Motions are of the axis point in the plane of the inner groove centres, from the state where all balls
 //! just touch both raceways. Axis z is axial, + is the direction of preload; tilts are rotations about x and
 //! y.
+//!
+//! In motion the shaft carries `mass`. A free translation without any mass (rigid inner ring, `mass` 0) is
+//! quasi-static: it follows from equilibrium at every instant.
 
 use std::fmt;
 
@@ -11,7 +14,7 @@ use serde::de::{Deserializer, Error, Visitor};
 
 use super::bearing::Bearing;
 use super::problems::Problems;
-use crate::units::{ANGLE, LENGTH, Quantity, bare_number};
+use crate::units::{ANGLE, LENGTH, MASS, Quantity, bare_number};
 
 /// As typed.
 #[derive(Debug, Deserialize)]
@@ -23,6 +26,7 @@ pub struct RawShaft {
     tilt_x: RawMotion<ANGLE>,
     tilt_y: RawMotion<ANGLE>,
     load_point: Quantity<LENGTH>,
+    mass: Option<Quantity<MASS>>,
 }
 
 /// As typed: `"free"`, `"locked"` or a value.
@@ -59,12 +63,16 @@ pub struct Shaft {
     pub tilt_y: Motion,
     /// Axial distance from the plane of the inner groove centres to the point where forces act, m, + along z.
     pub load_point: f64,
+    /// Mass carried by the shaft besides a flexible inner ring, kg; its weight acts at the load point.
+    pub mass: f64,
 }
 
 /// Rotations are small: beyond this the linear kinematics of the shaft is off by more than 0.2 %, rad.
 const MAX_TILT: f64 = 0.05;
 /// Load points farther away than this many outside diameters are slips of the unit.
 const MAX_LOAD_POINT: f64 = 100.0;
+/// A shaft beyond this is a slip of the unit, kg.
+const MAX_MASS: f64 = 1e6;
 
 impl RawShaft {
     /// Checks prescribed values, against the size of the bearing when that is sound.
@@ -97,6 +105,10 @@ impl RawShaft {
             &self.load_point,
             "that is more than 100 outside diameters from the bearing, check its unit",
         );
+        if let Some(mass) = &self.mass {
+            let rule = "expected 0 to 1e6 kg, what turns with the inner ring beside the ring itself";
+            problems.require((0.0..=MAX_MASS).contains(&mass.si()), "shaft.mass", mass, rule);
+        }
         Shaft {
             x: self.x.motion(),
             y: self.y.motion(),
@@ -104,6 +116,7 @@ impl RawShaft {
             tilt_x: self.tilt_x.motion(),
             tilt_y: self.tilt_y.motion(),
             load_point: self.load_point.si(),
+            mass: self.mass.as_ref().map_or(0.0, Quantity::si),
         }
     }
 }

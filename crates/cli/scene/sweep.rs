@@ -1,4 +1,4 @@
-//! `[static]` or `[sweep]`: what is computed.
+//! `[static]` or `[sweep]`: equilibria; with `[dynamic]`, what is computed.
 //!
 //! A sweep solves the same scene for a list of values of one key, each from the solution before it. Every
 //! point is a scene of its own: the text with the key replaced and `[sweep]` turned into `[static]`.
@@ -9,6 +9,7 @@ use serde::Deserialize;
 use serde::de::{Deserializer, Error, Visitor};
 use toml_edit::{DocumentMut, Value};
 
+use super::dynamic::Dynamic;
 use super::edit;
 use super::problems::Problems;
 use crate::units::{AnyQuantity, Dimension, kind_of_dimension};
@@ -46,6 +47,8 @@ pub enum Analysis {
     Static,
     /// Static equilibria along a list of values of one key.
     Sweep(Sweep),
+    /// Motion in time.
+    Dynamic(Dynamic),
 }
 
 /// Values of one key.
@@ -86,7 +89,8 @@ impl RawSweep {
             return None;
         }
         let root = self.key.split('.').next().unwrap_or("");
-        if matches!(root, "sweep" | "static" | "title" | "output" | "") || !self.key.contains('.') {
+        if matches!(root, "sweep" | "static" | "dynamic" | "title" | "output" | "") || !self.key.contains('.')
+        {
             problems.add(format!(
                 "sweep.key is {:?}; expected the path of a number in the scene such as \"effects.axial_force.value\"",
                 self.key

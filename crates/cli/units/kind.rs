@@ -33,6 +33,16 @@ pub const DENSITY: usize = 5;
 pub const ACCELERATION: usize = 6;
 /// Index of Hertzian point-contact stiffnesses, N/m^1.5.
 pub const HERTZ_STIFFNESS: usize = 7;
+/// Index of times, s.
+pub const TIME: usize = 8;
+/// Index of angular speeds, rad/s.
+pub const ANGULAR_SPEED: usize = 9;
+/// Index of rates, 1/s (frequencies in Hz have the same dimension).
+pub const RATE: usize = 10;
+/// Index of viscous damping coefficients, N s/m.
+pub const DAMPING: usize = 11;
+/// Index of masses, kg.
+pub const MASS: usize = 12;
 
 /// All kinds: those a scene uses first, at the index of their constant, then those only named in messages.
 pub static KINDS: [Kind; 17] = [
@@ -70,7 +80,7 @@ pub static KINDS: [Kind; 17] = [
         "1800 rpm",
         "_rad_per_s",
     ),
-    kind("a frequency", [0.0, 0.0, -1.0, 0.0], "Hz", "20 kHz", "_hz"),
+    kind("a rate", [0.0, 0.0, -1.0, 0.0], "1/s", "10 1/s", "_per_s"),
     kind(
         "a damping",
         [1.0, 0.0, -1.0, 0.0],
@@ -78,6 +88,7 @@ pub static KINDS: [Kind; 17] = [
         "5e-2 N s/mm",
         "_n_s_per_m",
     ),
+    kind("a mass", [1.0, 0.0, 0.0, 0.0], "kg", "0.25 kg", "_kg"),
     kind(
         "a stiffness",
         [1.0, 0.0, -2.0, 0.0],
@@ -85,7 +96,6 @@ pub static KINDS: [Kind; 17] = [
         "100 N/um",
         "_n_per_m",
     ),
-    kind("a mass", [1.0, 0.0, 0.0, 0.0], "kg", "0.25 kg", "_kg"),
     kind("a speed", [0.0, 1.0, -1.0, 0.0], "m/s", "3 m/s", "_m_per_s"),
     kind("a power", [1.0, 2.0, -3.0, 0.0], "W", "5 W", "_w"),
     kind("a pure number", [0.0, 0.0, 0.0, 0.0], "", "2", ""),
@@ -141,7 +151,7 @@ impl Kind {
             return format!("0 {}", self.si_unit);
         }
         let scientific = format!("{si:e}");
-        let one_symbol = matches!(self.si_unit, "m" | "rad" | "N" | "Pa" | "Hz" | "s" | "W");
+        let one_symbol = matches!(self.si_unit, "m" | "rad" | "N" | "Pa" | "s" | "W");
         let Some((digits, exponent)) = scientific.split_once('e') else {
             return format!("{si} {}", self.si_unit);
         };
@@ -183,8 +193,20 @@ pub fn kind_of_dimension(dimension: Dimension) -> Option<&'static Kind> {
     KINDS.iter().find(|k| same_dimension(k.dimension, dimension))
 }
 
+/// What `found` is where `wanted` was: its name, and for revolutions typed in Hz why that is not enough.
+pub fn describe_instead_of(found: Dimension, wanted: &Kind) -> String {
+    let name = describe(found);
+    let is_rate_of_turning = same_dimension(found, KINDS[RATE].dimension)
+        && same_dimension(wanted.dimension, KINDS[ANGULAR_SPEED].dimension);
+    if is_rate_of_turning {
+        format!("{name}, which does not say whether it counts revolutions or radians")
+    } else {
+        name
+    }
+}
+
 /// `a force`, or the base units of a dimension without a name.
-pub fn describe(dimension: Dimension) -> String {
+fn describe(dimension: Dimension) -> String {
     if let Some(kind) = kind_of_dimension(dimension) {
         return kind.name.to_string();
     }

@@ -4,7 +4,7 @@ use super::kind::KINDS;
 use super::*;
 
 /// Text, value in SI, kind.
-const VALUES: [(&str, f64, usize); 48] = [
+const VALUES: [(&str, f64, usize); 51] = [
     ("9 mm", 9e-3, LENGTH),
     ("9mm", 9e-3, LENGTH),
     ("+9.0e0 mm", 9e-3, LENGTH),
@@ -48,12 +48,15 @@ const VALUES: [(&str, f64, usize); 48] = [
     ("3e3 N*mm", 3.0, MOMENT),
     ("9.81 m/s2", 9.81, ACCELERATION),
     ("9.81 m/s/s", 9.81, ACCELERATION),
-    ("10 us", 1e-5, 8),
-    ("2 min", 120.0, 8),
-    ("1800 rpm", 188.495_559_215_387_6, 9),
-    ("1800 rev/min", 188.495_559_215_387_6, 9),
-    ("20 kHz", 2e4, 10),
-    ("5e-2 N s/mm", 50.0, 11),
+    ("10 us", 1e-5, TIME),
+    ("2 min", 120.0, TIME),
+    ("1800 rpm", 188.495_559_215_387_6, ANGULAR_SPEED),
+    ("1800 rev/min", 188.495_559_215_387_6, ANGULAR_SPEED),
+    ("188.5 rad/s", 188.5, ANGULAR_SPEED),
+    ("20 kHz", 2e4, RATE),
+    ("10 1/s", 10.0, RATE),
+    ("5e-2 N s/mm", 50.0, DAMPING),
+    ("250 g", 0.25, MASS),
 ];
 
 /// If this failed, a scene would be solved with other numbers than its author typed. The tolerance is four
@@ -168,6 +171,21 @@ fn wrong_texts_are_refused_with_the_text_and_an_example() {
             "{text}: {message}"
         );
     }
+}
+
+/// If this failed, "30 Hz" would turn the ring 30 times or 4.8 times per second, whichever the program takes it
+/// for.
+#[test]
+fn a_frequency_is_no_angular_speed_and_the_message_says_why() {
+    let why = "which does not say whether it counts revolutions or radians";
+    for text in ["30 Hz", "30 1/s"] {
+        assert_eq!(
+            error_of::<ANGULAR_SPEED>(text),
+            format!("{text:?} is a rate, {why}; expected an angular speed such as \"1800 rpm\"")
+        );
+    }
+    assert!(!error_of::<LENGTH>("30 Hz").contains(why));
+    assert!(!error_of::<ANGULAR_SPEED>("30 m").contains(why));
 }
 
 /// If this failed, some slip of the keyboard would crash the program instead of giving a message.

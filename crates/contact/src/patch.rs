@@ -54,8 +54,7 @@ impl PatchShape {
         n_spacings: f64,
     ) -> Result<PatchShape, ContactError> {
         let spacing = surface.spacing(surface.locate(azimuth, angle)?);
-        let [low, high] = surface.angle_range;
-        let room = EDGE_SHARE * surface.groove.groove_radius * (angle - low).min(high - angle);
+        let room = EDGE_SHARE * surface.rim_distance(angle);
         let along = hertz_axes[0].max(n_spacings * spacing[0]).min(room);
         let rolling = hertz_axes[1].max(n_spacings * spacing[1]);
         Ok(PatchShape {

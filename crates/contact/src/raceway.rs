@@ -141,6 +141,12 @@ impl RacewaySurface {
         }
     }
 
+    /// Distance along the groove from groove angle `angle` to the nearer rim, m; negative beyond it.
+    pub fn rim_distance(&self, angle: f64) -> f64 {
+        let [low, high] = self.angle_range;
+        self.groove.groove_radius * (angle - low).min(high - angle)
+    }
+
     /// Number of facets.
     pub fn n_facets(&self) -> usize {
         self.nodes.len() / self.kind.n_nodes()

@@ -11,14 +11,16 @@ use solver::dense::{DenseCholesky, DenseLu};
 use solver::{LinearSolver, SolverError};
 
 use crate::error::DynamicsError;
-use crate::problem::{Displacements, Problem, SHAFT_DOFS};
+use crate::problem::{Displacements, Problem, SHAFT_DOFS, Site};
 
 /// Largest residual over the force scale at which Newton may stop; it goes on to round-off while it improves.
 const RESIDUAL_LIMIT: f64 = 1e-10;
 /// Residual over the force scale below which further improvement is round-off.
 const RESIDUAL_TARGET: f64 = 1e-14;
-/// Newton iterations before giving up; a start 1 mm away needs about 40.
-const MAX_ITERATIONS: usize = 300;
+/// Newton iterations before giving up. Preloaded bearings need 6 to 40. Loose ones need up to some hundred: a ball that
+/// comes off leaves its last raceway by a factor 3 in approach per iteration, and every ball that is met on the way
+/// takes its turn.
+const MAX_ITERATIONS: usize = 2000;
 /// Proximal stiffness over the contact stiffness scale.
 const PROXIMAL: f64 = 1e-9;
 /// Slope of the energy that ends a line search, relative to its start.
@@ -72,7 +74,7 @@ pub fn minimise(
         stalled = if residual < 0.5 * best { 0 } else { stalled + 1 };
         best = best.min(residual);
         history.push(residual);
-        let good = residual <= RESIDUAL_LIMIT * scale;
+        let good = residual <= (RESIDUAL_LIMIT * scale).max(round_off(problem, &u));
         if residual <= RESIDUAL_TARGET * scale || (good && stalled >= 2) {
             return Ok((u, iteration));
         }
@@ -107,7 +109,7 @@ fn direction(
     let n = problem.n();
     let mut hessian = problem.hessian(u);
     for i in 0..n {
-        hessian[n * i + i] += PROXIMAL * scales.stiffness;
+        hessian[n * i + i] += proximal(problem, scales);
     }
     let mut direction: Vec<f64> = gradient.iter().map(|g| -g).collect();
     if problem.is_conservative() {
@@ -176,6 +178,17 @@ fn backtrack(
     (trial, trial_gradient)
 }
 
+/// Force, N, that the round-off of positions makes in all contacts together: what a light load can be balanced to.
+pub fn round_off(problem: &Problem, u: &Displacements) -> f64 {
+    let of_site = |site: &Site| {
+        let state = site.state(u);
+        // The vector between the centres is a sum of terms of the size of these two.
+        let size = state.length + site.reach[0].hypot(site.reach[1]);
+        2.0 * f64::EPSILON * size * state.force.tangent
+    };
+    problem.sites.iter().map(of_site).sum()
+}
+
 /// Largest force in the problem, N.
 fn force_scale(problem: &Problem, u: &Displacements) -> f64 {
     let contacts = problem.sites.iter().map(|s| s.state(u).force.force);
@@ -215,7 +228,7 @@ pub fn check_held(problem: &Problem, u: &Displacements, scales: SearchScales) ->
     let (n, m) = (problem.n(), free.len());
     let mut hessian = problem.hessian(u);
     for i in m..n {
-        hessian[n * i + i] += PROXIMAL * scales.stiffness;
+        hessian[n * i + i] += proximal(problem, scales);
     }
     // Condense everything but the shaft: stiffness of the shaft on its balls and rings.
     let rest = n - m;
@@ -254,6 +267,11 @@ pub fn check_held(problem: &Problem, u: &Displacements, scales: SearchScales) ->
     Ok(())
 }
 
+/// Proximal stiffness, N/m: a trace of the contacts' and more than what a growing ball load takes away.
+fn proximal(problem: &Problem, scales: SearchScales) -> f64 {
+    PROXIMAL * scales.stiffness + 2.0 * problem.ball_slope
+}
+
 fn dense_error(source: SolverError) -> DynamicsError {
     DynamicsError::ContactSystem { source }
 }
@@ -264,12 +282,18 @@ fn largest(v: &[f64]) -> f64 {
         .fold(0.0, |m, x| if x.abs() > m || x.is_nan() { x.abs() } else { m })
 }
 
-/// Unloaded balls rest midway between their raceways.
+/// Unloaded balls rest midway between their raceways: those without a load of their own that are not squeezed between
+/// both. A ball that Newton left touching one raceway, with a force below its residual, is unloaded.
 pub fn centre_unloaded(problem: &Problem, u: &mut Displacements) {
+    let size = |load: &[f64; 2]| load[0].hypot(load[1]);
+    // The weight of a ball across its meridian plane leaves round-off in that plane.
+    let heaviest = problem.ball_load.iter().map(size).fold(0.0, f64::max);
+    let weightless = 4.0 * f64::EPSILON * heaviest;
     for pair in problem.sites.chunks_exact(2) {
         let (inner, outer) = (pair[0].state(u), pair[1].state(u));
         let ball = pair[0].ball;
-        if inner.force.force > 0.0 || outer.force.force > 0.0 || problem.ball_load[ball] != [0.0; 2] {
+        let squeezed = inner.force.force > 0.0 && outer.force.force > 0.0;
+        if squeezed || size(&problem.ball_load[ball]) > weightless {
             continue;
         }
         debug_assert!(pair[0].side == Side::Inner && pair[1].side == Side::Outer);

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use contact::facets::FacetContact;
 use contact::patch::PatchShape;
-use contact::{ContactError, FacetSurface, Groove, NodalWeights, Patch, Side, Unevenness};
+use contact::{ContactError, FacetSurface, Groove, NodalWeights, Patch, RacewaySurface, Side, Unevenness};
 use rayon::prelude::*;
 
 use crate::error::DynamicsError;
@@ -12,8 +12,10 @@ use crate::model::{ContactMode, Model, RingModel, elastic};
 use crate::problem::{Displacements, Problem, Site};
 use crate::ring::RingSolver;
 
-/// Groove angle kept from the rim by an unloaded contact, as a share of the groove.
+/// Groove angle kept from the rim by a contact that is not on the groove, as a share of the groove.
 const RIM_SHARE: f64 = 0.05;
+/// Force over the largest below which a contact is unloaded: what Newton leaves on balls that touch without load.
+const LOADED_SHARE: f64 = 1e-9;
 
 /// Samples of a faceted groove from rim to rim.
 const FACET_SAMPLES: usize = 200;
@@ -43,13 +45,14 @@ pub fn place(
 ) -> Result<Vec<Footprint>, DynamicsError> {
     let ring = model.ring(side).expect("only flexible rings have footprints");
     let n_balls = model.geometry.n_balls;
+    let loaded = loaded(forces);
     let mut feet = Vec::with_capacity(n_balls);
     for ball in 0..n_balls {
         let index = 2 * ball + side.index();
         let site = &mut problem.sites[index];
         feet.push(match model.contact.mode {
-            ContactMode::Facet => place_facet(model, ring, solver, site, u)?,
-            _ => place_patch(model, ring, solver, site, u, forces[index])?,
+            ContactMode::Facet => place_facet(model, ring, solver, site, u, forces[index])?,
+            _ => place_patch(model, ring, solver, site, u, forces[index], loaded[index])?,
         });
     }
     Ok(feet)
@@ -62,10 +65,10 @@ fn place_patch(
     site: &mut Site,
     u: &Displacements,
     force: [f64; 2],
+    loaded: bool,
 ) -> Result<Footprint, DynamicsError> {
     let load = force[0].hypot(force[1]);
-    let angle = site.contact_angle(&site.state(u));
-    let angle = reachable(solver, site, angle, load)?;
+    let angle = on_groove(&solver.surface, site.contact_angle(&site.state(u)), loaded);
     let hertz = model.hertz[site.side.index()].semi_axes(load);
     let spacings = model.contact.patch_spacings;
     let shape = PatchShape::new(&solver.surface, site.azimuth, angle, hertz, spacings)?;
@@ -84,24 +87,48 @@ fn place_patch(
     })
 }
 
-/// The contact angle if the groove reaches it; an unloaded contact is moved onto the groove.
-fn reachable(solver: &RingSolver, site: &Site, angle: f64, load: f64) -> Result<f64, DynamicsError> {
-    let [low, high] = solver.surface.angle_range;
-    if load > 0.0 {
+/// Which contacts carry load, by site, from the site forces.
+pub fn loaded(forces: &[[f64; 2]]) -> Vec<bool> {
+    let size = |f: &[f64; 2]| f[0].hypot(f[1]);
+    let limit = LOADED_SHARE * forces.iter().map(size).fold(0.0, f64::max);
+    forces.iter().map(|f| size(f) > limit).collect()
+}
+
+/// The contact angle if it is on the groove, else the nearest place inside the rim: unloaded balls may be anywhere, and
+/// loaded ones on their way to equilibrium.
+fn on_groove(surface: &RacewaySurface, angle: f64, loaded: bool) -> f64 {
+    let [low, high] = surface.angle_range;
+    if loaded && low < angle && angle < high {
+        return angle;
+    }
+    let rim = RIM_SHARE * (high - low);
+    angle.clamp(low + rim, high - rim)
+}
+
+/// Fails when a loaded ball of an equilibrium lies beyond the rim of a flexible ring's groove.
+pub fn check_on_groove(
+    surface: &RacewaySurface,
+    problem: &Problem,
+    u: &Displacements,
+    forces: &[[f64; 2]],
+) -> Result<(), DynamicsError> {
+    let [low, high] = surface.angle_range;
+    let of_ring = |site: &Site| site.side == surface.groove.side;
+    let contacts = problem.sites.iter().zip(loaded(forces));
+    for (site, _) in contacts.filter(|(site, loaded)| *loaded && of_ring(site)) {
+        let angle = site.contact_angle(&site.state(u));
         if angle <= low || angle >= high {
-            return Err(ContactError::OffRaceway {
+            let off = ContactError::OffRaceway {
                 ball: site.ball,
                 side: site.side.name(),
                 angle_deg: angle.to_degrees(),
                 low_deg: low.to_degrees(),
                 high_deg: high.to_degrees(),
-            }
-            .into());
+            };
+            return Err(off.into());
         }
-        return Ok(angle);
     }
-    let rim = RIM_SHARE * (high - low);
-    Ok(angle.clamp(low + rim, high - rim))
+    Ok(())
 }
 
 /// Foot point on the facet under the ball. The offsets of the facets along the groove are sampled once; the ring's
@@ -112,17 +139,21 @@ fn place_facet(
     solver: &RingSolver,
     site: &mut Site,
     u: &Displacements,
+    force: [f64; 2],
 ) -> Result<Footprint, DynamicsError> {
     let search = FacetSearch::new(model, ring, solver, site);
     if site.unevenness.is_none() {
         site.unevenness = Some(Arc::new(search.unevenness(solver.surface.angle_range)?));
     }
-    let contact = search.foot(site.contact_angle(&site.state(u)))?;
+    // The rim itself is left out: a foot point beyond it is on no facet.
+    let angle = on_groove(&solver.surface, site.contact_angle(&site.state(u)), false);
+    let contact = search.foot(angle)?;
+    let hertz = model.hertz[site.side.index()].semi_axes(force[0].hypot(force[1]));
     let weights = NodalWeights::interpolation(contact.nodes, &contact.weights, site.azimuth);
     Ok(Footprint {
         weights,
         semi_axes: None,
-        truncated: false,
+        truncated: hertz[0] > solver.surface.rim_distance(angle),
     })
 }
 

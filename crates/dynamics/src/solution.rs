@@ -5,7 +5,7 @@ use contact::Side;
 use crate::balls::{BallResult, ball_results};
 use crate::effects::Loads;
 use crate::equilibrium::centre_unloaded;
-use crate::footprint::Footprint;
+use crate::footprint::{Footprint, loaded};
 use crate::model::Model;
 use crate::problem::{Displacements, Problem, site_forces};
 
@@ -139,9 +139,9 @@ fn shaft_balance(problem: &Problem, u: &Displacements) -> ([f64; 5], [f64; 5]) {
 }
 
 fn edge_warnings(footprints: &[Vec<Footprint>; 2], forces: &[[f64; 2]]) -> Vec<String> {
-    let mut warnings = Vec::new();
+    let (mut warnings, loaded) = (Vec::new(), loaded(forces));
     for side in Side::BOTH {
-        let loaded = |ball: usize| forces[2 * ball + side.index()] != [0.0; 2];
+        let loaded = |ball: usize| loaded[2 * ball + side.index()];
         let truncated: Vec<String> = footprints[side.index()]
             .iter()
             .enumerate()

@@ -19,9 +19,9 @@ use rayon::prelude::*;
 use solver::dense::DenseCholesky;
 
 use crate::effects::{self, Loads, Now};
-use crate::equilibrium::{SearchScales, check_held, minimise};
+use crate::equilibrium::{SearchScales, check_held, minimise, round_off};
 use crate::error::DynamicsError;
-use crate::footprint::{Footprint, place};
+use crate::footprint::{Footprint, check_on_groove, place};
 use crate::model::{ContactMode, Model, ShaftDof};
 use crate::problem::{Displacements, Problem, RingResponse, Site, site_forces};
 use crate::ring::RingSolver;
@@ -89,7 +89,7 @@ impl StaticSolver {
     }
 
     /// Equilibrium under the model's loads, from zero displacement or from an earlier solution. The model must have the
-    /// rings that were factored.
+    /// rings that were factored, and the balls of the earlier solution.
     pub fn solve(
         &mut self,
         model: &Model,
@@ -105,18 +105,10 @@ impl StaticSolver {
         let clock = Instant::now();
         let mut newton_iterations = 0;
         let all_rigid = self.rings.iter().all(Option::is_none);
-        if start.is_none() || all_rigid {
-            let rigid = Displacements {
-                grooves: [Vec::new(), Vec::new()],
-                ..u.clone()
-            };
-            let (found, iterations) = minimise(&problem, rigid, scales)?;
-            u = Displacements {
-                grooves: u.grooves,
-                ..found
-            };
-            newton_iterations += iterations;
-        }
+        // Rings as they were (undeformed without a start): places and forces near those of the new loads.
+        let (found, iterations) = minimise(&problem, u, scales)?;
+        u = found;
+        newton_iterations += iterations;
         self.timing.newton += clock.elapsed().as_secs_f64();
         if all_rigid {
             check_held(&problem, &u, scales)?;
@@ -192,7 +184,8 @@ impl StaticSolver {
             let (change, place) = largest_change(&forces, &updated);
             (forces, worst) = (updated, place);
             history.push(change);
-            if change <= tolerance {
+            if change <= tolerance.max(round_off(&problem, &u) / largest_force(&forces)) {
+                self.check_places(&problem, &u, &forces)?;
                 check_held(&problem, &u, scales)?;
                 check_patches(&problem, &u)?;
                 let rings = RingFields {
@@ -209,6 +202,7 @@ impl StaticSolver {
                 ));
             }
         }
+        self.check_places(&problem, &u, &forces)?;
         let tail = history.len().saturating_sub(6);
         Err(DynamicsError::NotSettled {
             rounds: model.tolerances.max_rounds,
@@ -218,6 +212,16 @@ impl StaticSolver {
             side: Side::BOTH[worst % 2].name(),
             history: history.split_off(tail),
         })
+    }
+
+    fn check_places(
+        &self,
+        problem: &Problem,
+        u: &Displacements,
+        forces: &[[f64; 2]],
+    ) -> Result<(), DynamicsError> {
+        let mut rings = self.rings.iter().flatten();
+        rings.try_for_each(|ring| check_on_groove(&ring.surface, problem, u, forces))
     }
 
     /// Computes the compliance columns when there are none, and again when rounds contract slowly.
@@ -359,10 +363,14 @@ fn adopt_offsets(problem: &Problem, u: &mut Displacements) {
     }
 }
 
+fn largest_force(forces: &[[f64; 2]]) -> f64 {
+    let size = |f: &[f64; 2]| f[0].hypot(f[1]);
+    forces.iter().map(size).fold(f64::MIN_POSITIVE, f64::max)
+}
+
 /// Largest change over the largest force, and where.
 fn largest_change(old: &[[f64; 2]], new: &[[f64; 2]]) -> (f64, usize) {
-    let size = |f: &[f64; 2]| f[0].hypot(f[1]);
-    let scale = new.iter().map(size).fold(f64::MIN_POSITIVE, f64::max);
+    let scale = largest_force(new);
     old.iter()
         .zip(new)
         .enumerate()

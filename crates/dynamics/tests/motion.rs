@@ -3,9 +3,8 @@
 mod support;
 
 use dynamics::motion::balls::Speed;
-use dynamics::motion::contacts::ContactScheme;
-use dynamics::motion::run::MotionSettings;
-use dynamics::motion::{Integrator, Motion, MotionState};
+use dynamics::motion::contacts::{ContactDamping, ContactScheme};
+use dynamics::motion::{Integrator, Motion, MotionSettings, MotionState};
 use dynamics::{ContactMode, Hold, Model, StaticSolution};
 use support::rings::Level;
 use support::{Case, equilibrium};
@@ -136,15 +135,159 @@ fn slow_rolling_follows_the_static_forces() {
             for (ball, f) in rest.balls.iter().zip(state.forces.iter().step_by(2)) {
                 worst = worst.max((f[0].hypot(f[1]) / ball.inner.force_n - 1.0).abs());
             }
-            println!(
-                "step {step}: worst {worst:.2e}, shaft {:?}, static {:?} defect {:.2e} {:?}",
-                motion.shaft(&state),
-                rest.displacements.shaft,
-                state.ledger.relative_defect(),
-                state.ledger
-            );
+            println!("step {step}: worst {worst:.2e}");
         }
     }
-    assert!(worst < 1e-2, "{worst}");
+    assert!(worst < 1e-3, "{worst}");
     assert!(state.ledger.relative_defect() < 1e-6, "{:?}", state.ledger);
+}
+
+/// Wrong: the ledger would not notice a scheme that makes energy. Pointwise trapezoidal contact on the unloading case gains
+/// energy while every Newton converges; this is kept as the test of the alarm.
+#[test]
+fn pointwise_contact_gains_energy_and_the_ledger_tells() {
+    let before = Case::axial(1000.0);
+    let model = before.flexible(ContactMode::Patch, SMALL, Hold::Clamped);
+    let solution = equilibrium(&model);
+    let loaded = reloaded(
+        &model,
+        &Case {
+            radial: 5000.0,
+            ..before
+        },
+    );
+    let scheme = ContactScheme::Pointwise { weight: 0.5 };
+    let states = run(
+        &loaded,
+        &solution,
+        MotionSettings {
+            scheme,
+            ..settings(2e-5)
+        },
+        150,
+    );
+    let defects: Vec<f64> = states.iter().map(|s| s.ledger.relative_defect()).collect();
+    println!(
+        "pointwise: defect {:.2e}, total {:.4} J",
+        defects[150],
+        states[150].ledger.total()
+    );
+    assert!(
+        defects.iter().any(|d| *d > 1e-3),
+        "the alarm's tolerance is 1e-6: {:.2e}",
+        defects[150]
+    );
+}
+
+/// Wrong: contact damping or Rayleigh damping would feed energy, or their losses would be missing in the ledger.
+#[test]
+fn damped_motion_loses_what_the_ledger_says() {
+    let before = Case::axial(1000.0);
+    let model = before.flexible(ContactMode::Patch, SMALL, Hold::Clamped);
+    let solution = equilibrium(&model);
+    let loaded = reloaded(
+        &model,
+        &Case {
+            radial: 2000.0,
+            ..before
+        },
+    );
+    let damping = ContactDamping {
+        coefficient: 50.0,
+        full_approach: 1e-6,
+    };
+    let damped = MotionSettings {
+        contact_damping: Some(damping),
+        rayleigh: [100.0, 1e-7],
+        ..settings(1e-5)
+    };
+    let states = run(&loaded, &solution, damped, 100);
+    for pair in states.windows(2) {
+        assert!(pair[1].ledger.contact_loss >= pair[0].ledger.contact_loss);
+        assert!(pair[1].ledger.rayleigh_loss >= pair[0].ledger.rayleigh_loss);
+    }
+    let last = states.last().unwrap().ledger;
+    assert!(last.contact_loss > 1e-6 && last.rayleigh_loss > 1e-8, "{last:?}");
+    assert!(last.relative_defect() < 1e-9, "{last:?}");
+}
+
+/// Wrong: the result would depend on the number of threads.
+#[test]
+fn motion_has_the_same_bits_on_any_number_of_threads() {
+    let case = Case {
+        radial: 1000.0,
+        ..Case::axial(2000.0)
+    };
+    let solve = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new()
+            .num_threads(threads)
+            .build()
+            .unwrap();
+        pool.install(|| {
+            let model = case.flexible(ContactMode::Patch, SMALL, Hold::Clamped);
+            let solution = equilibrium(&model);
+            let speed = Speed::constant(1000.0);
+            run(
+                &model,
+                &solution,
+                MotionSettings {
+                    speed,
+                    ..settings(1e-5)
+                },
+                5,
+            )
+        })
+    };
+    assert!(solve(1) == solve(2), "states differ");
+}
+
+/// Wrong: a rigid bearing could not move, or ball centrifugal force would not act: at speed the outer contacts carry more
+/// than the inner by m omega_c^2 r / cos of the angles, here against the static equilibrium with the same loads.
+#[test]
+fn rigid_rings_carry_the_centrifugal_force_of_the_balls() {
+    let mut model = Case::axial(500.0).rigid();
+    model.shaft_mass = 1.0;
+    let speed = Speed::constant(3000.0);
+    let effect = dynamics::effects::BallCentrifugal {
+        speed: speed.clone(),
+        slip: [0.0; 2],
+    };
+    model.effects.push(Box::new(effect));
+    let solution = equilibrium(&model);
+    let b = &solution.balls[0];
+    let radial =
+        b.outer.force_n * b.outer.contact_angle_rad.cos() - b.inner.force_n * b.inner.contact_angle_rad.cos();
+    let kinematics = dynamics::motion::balls::Kinematics::new(&model.geometry, [0.0; 2]);
+    let cage = kinematics.cage * 3000.0;
+    let radius = model.geometry.ball_centre()[0] + b.displacement_m.radial;
+    let expected = model.ball_mass() * cage * cage * radius;
+    assert!((radial / expected - 1.0).abs() < 1e-9, "{radial} {expected}");
+    let states = run(
+        &model,
+        &solution,
+        MotionSettings {
+            speed,
+            ..settings(1e-5)
+        },
+        50,
+    );
+    let last = states.last().unwrap();
+    assert!((last.balls[0][0] - states[0].balls[0][0]).abs() < 1e-10);
+    assert!(last.ledger.relative_defect() < 1e-9, "{:?}", last.ledger);
+}
+
+/// Wrong: choices that motion does not know would be ignored instead of refused.
+#[test]
+fn unsupported_choices_are_refused_by_name() {
+    let error = |model: &Model| Motion::new(model, settings(1e-5)).err().unwrap().to_string();
+    let facet = error(&Case::axial(1000.0).flexible(ContactMode::Facet, SMALL, Hold::Clamped));
+    assert!(
+        facet.contains("a moving bearing cannot have contact.mode = \"facet\"; use \"patch\""),
+        "{facet}"
+    );
+    let mean = error(&Case::axial(1000.0).flexible(ContactMode::Patch, SMALL, Hold::MeanMotion));
+    assert!(
+        mean.contains("support = \"mean_motion\"; use \"clamped\""),
+        "{mean}"
+    );
 }

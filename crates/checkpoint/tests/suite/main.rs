@@ -4,6 +4,5 @@ mod background;
 mod damage;
 mod fixture;
 mod folder;
-mod interruption;
 mod mesh_and_views;
 mod round_trip;

@@ -1,6 +1,6 @@
 //! Scenes that are not of the format, and the essential parts of their messages.
 
-use super::{Case, Scene, assert_messages, message_of, without_table};
+use super::{Case, EXAMPLE, Scene, assert_messages, message_of, without_table};
 
 /// Errors of the format: they have a line and a column.
 const FORMAT: [Case; 36] = [
@@ -32,7 +32,8 @@ const FORMAT: [Case; 36] = [
         "[effects.gravity]",
         "[effects.tides]",
         &[
-            "unknown key \"tides\" in [effects]; valid keys are \"axial_force\", \"radial_force\", \"moment\", \"gravity\"",
+            "unknown key \"tides\" in [effects]; valid keys are \"axial_force\", \"radial_force\", \"moment\", \"gravity\", \"ball_centrifugal\", \"cage_slip\", \"contact_damping\", \
+         \"rayleigh_damping\"",
         ],
     ),
     (
@@ -200,7 +201,7 @@ const FORMAT: [Case; 36] = [
 /// If this failed, a slip of the keyboard would be accepted, or its place and remedy would be hard to find.
 #[test]
 fn texts_that_are_not_of_the_format_are_refused_with_place_and_advice() {
-    assert_messages(&FORMAT);
+    assert_messages(EXAMPLE, &FORMAT);
 }
 
 /// If this failed, a scene without a table it needs would be solved with invented values.
@@ -217,7 +218,7 @@ fn missing_tables_are_named() {
         ("[outer]", "outer.mesh is missing"),
         (
             "[sweep]",
-            "the scene has no analysis; add one of the tables [static] and [sweep]",
+            "the scene has no analysis; add one of the tables [static], [sweep] and [dynamic]",
         ),
     ];
     for (header, expected) in cases {

@@ -288,7 +288,7 @@ const INVALID: [Case; 50] = [
 /// rule.
 #[test]
 fn values_that_make_no_sense_are_refused_with_key_value_and_rule() {
-    assert_messages(&INVALID);
+    assert_messages(EXAMPLE, &INVALID);
 }
 
 /// If this failed, one slip would drown in messages about its consequences, so that nobody finds it.

@@ -166,3 +166,36 @@ fn the_delivered_scenes_are_valid() {
         }
     }
 }
+
+/// If this failed, a motion delivered with the program would not run, or not solve what its name says.
+#[test]
+fn the_delivered_motions_are_valid() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes");
+    let expected = [
+        ("7010c_1800rpm", 7700, 1e-5, 180),
+        ("7010c_1800rpm_coarse", 500, 2e-5, 90),
+    ];
+    for (name, n_steps, step, sectors) in expected {
+        let path = folder.join(format!("{name}.toml"));
+        let scene = Scene::load_with(&path, &[], MeshFiles::MayBeMissing).unwrap_or_else(|e| panic!("{e}"));
+        let Analysis::Dynamic(dynamic) = &scene.analysis else {
+            panic!("{name}: {:?}", scene.analysis);
+        };
+        assert_eq!((dynamic.n_steps, dynamic.step), (n_steps, step), "{name}");
+        assert_eq!(dynamic.contact, ContactScheme::DiscreteGradient, "{name}");
+        assert_eq!(scene.speed.map(|s| s.times), Some(vec![0.0]), "{name}");
+        assert_eq!(scene.effects.axial_force, Some(2e3), "{name}");
+        assert_eq!(scene.effects.radial_force.map(|f| f.value), Some(1e3), "{name}");
+        assert_eq!(
+            (scene.shaft.tilt_x, scene.shaft.tilt_y),
+            (Motion::Locked, Motion::Locked),
+            "{name}"
+        );
+        let suffix = name.strip_prefix("7010c_1800rpm").unwrap_or("");
+        for (ring, side) in [(scene.inner, "inner"), (scene.outer, "outer")] {
+            assert_eq!(ring.section.map(|s| s.sectors), Some(sectors), "{name}");
+            let mesh = format!("../meshes/7010c_{side}{suffix}.msh");
+            assert_eq!(ring.body.map(|b| b.mesh_as_typed), Some(mesh), "{name}");
+        }
+    }
+}

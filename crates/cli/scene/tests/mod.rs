@@ -1,8 +1,10 @@
 //! Tests of scene files.
 
 mod bad_format;
+mod bad_motion;
 mod bad_values;
 mod good;
+mod motion;
 mod overrides;
 mod sweeps;
 
@@ -12,6 +14,9 @@ use super::*;
 
 /// The example of the documentation: the scene all tests start from.
 const EXAMPLE: &str = include_str!("../example.toml");
+
+/// The example of a motion in time.
+const DYNAMIC: &str = include_str!("../example_dynamic.toml");
 
 /// Parses a text as if it were `scenes/test.toml`, without looking for meshes.
 fn parse(text: &str, overrides: &[&str]) -> Result<Scene, SceneError> {
@@ -26,9 +31,14 @@ fn parse(text: &str, overrides: &[&str]) -> Result<Scene, SceneError> {
 
 /// The example with the first line that starts with `line` replaced, comment and all.
 fn with_line(line: &str, replacement: &str) -> String {
-    let old = EXAMPLE.lines().find(|l| l.starts_with(line));
+    replace_line(EXAMPLE, line, replacement)
+}
+
+/// A text with the first line that starts with `line` replaced, comment and all.
+fn replace_line(text: &str, line: &str, replacement: &str) -> String {
+    let old = text.lines().find(|l| l.starts_with(line));
     let old = old.unwrap_or_else(|| panic!("the example has no line that starts with {line:?}"));
-    EXAMPLE.replacen(old, replacement, 1)
+    text.replacen(old, replacement, 1)
 }
 
 /// The example without the table whose header is given, up to the next header.
@@ -48,6 +58,18 @@ fn without_table(header: &str) -> String {
     kept
 }
 
+/// The example of motion with the keys of its integrator replaced.
+fn with_integrator(keys: &str) -> String {
+    let text = replace_line(DYNAMIC, "rho", "");
+    replace_line(&text, "integrator", keys)
+}
+
+/// The example of motion as an equilibrium: no damping, and `[static]` for `[dynamic]`.
+fn at_rest(speed: &str) -> String {
+    let (head, _) = DYNAMIC.split_once("[effects.contact_damping]").unwrap();
+    replace_line(&format!("{head}[static]\n"), "inner = {", speed)
+}
+
 /// The message of a text that must not be accepted.
 fn message_of(text: &str, overrides: &[&str]) -> String {
     match parse(text, overrides) {
@@ -59,10 +81,10 @@ fn message_of(text: &str, overrides: &[&str]) -> String {
 /// A line of the example (by its start), what it is replaced with, and what the message must contain.
 type Case = (&'static str, &'static str, &'static [&'static str]);
 
-/// Every case is refused with all parts of its message.
-fn assert_messages(cases: &[Case]) {
+/// Every case of the text is refused with all parts of its message.
+fn assert_messages(text: &str, cases: &[Case]) {
     for (line, replacement, parts) in cases {
-        let message = message_of(&with_line(line, replacement), &[]);
+        let message = message_of(&replace_line(text, line, replacement), &[]);
         assert!(
             message.starts_with("scenes/test.toml"),
             "{replacement}: {message}"

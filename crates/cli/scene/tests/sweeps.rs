@@ -6,7 +6,7 @@ use crate::scene::sweep::Sweep;
 fn sweep_of(scene: &Scene) -> &Sweep {
     match &scene.analysis {
         Analysis::Sweep(sweep) => sweep,
-        Analysis::Static => panic!("a static scene"),
+        other => panic!("no sweep: {other:?}"),
     }
 }
 
@@ -99,6 +99,11 @@ fn bad_sweeps_are_refused() {
             "key",
             "key = \"sweep.steps\"",
             "sweep.key is \"sweep.steps\"; expected the path of a number",
+        ),
+        (
+            "key",
+            "key = \"dynamic.step\"",
+            "sweep.key is \"dynamic.step\"; expected the path of a number",
         ),
         (
             "key",

@@ -1,7 +1,6 @@
 //! The energy ledger: every joule in the model and every joule that came or went.
 //!
-//! total = kinetic + strain + Hertz energy. It may change only by work of loads, of the rotating frame, of ball centrifugal
-//! force, of patches that move and change size with the contacts, and by dissipation. What is left is the defect: the error
+//! total = kinetic + strain + Hertz energy. It may change only by work of loads (ball centrifugal force is one), of patches that move and change size with the contacts, and by dissipation. What is left is the defect: the error
 //! of the scheme. A run whose defect exceeds its tolerance stops.
 
 /// Energies and works, J, at the end of a step; works and losses are sums since the start.
@@ -15,8 +14,6 @@ pub struct Ledger {
     pub hertz: f64,
     /// Work of shaft and ball loads.
     pub load_work: f64,
-    /// Work of the frame forces of the rotating ring.
-    pub frame_work: f64,
     /// Work of moving and resized patches.
     pub patch_work: f64,
     /// Energy lost to contact damping.
@@ -37,7 +34,7 @@ impl Ledger {
 
     /// Energy that no work or loss explains.
     pub fn defect(&self) -> f64 {
-        let work = self.load_work + self.frame_work + self.patch_work;
+        let work = self.load_work + self.patch_work;
         self.total() - self.initial - work + self.contact_loss + self.rayleigh_loss
     }
 
@@ -45,7 +42,6 @@ impl Ledger {
     pub fn note_scale(&mut self) {
         let works = [
             self.load_work,
-            self.frame_work,
             self.patch_work,
             self.contact_loss,
             self.rayleigh_loss,

@@ -14,12 +14,17 @@
 pub mod balls;
 pub mod contacts;
 pub mod coordinates;
+pub mod frame;
 pub mod integrator;
 pub mod ledger;
+pub mod report;
 pub mod ring;
 pub mod run;
 pub mod small;
+pub mod start;
+pub mod state;
 
 pub use integrator::Integrator;
 pub use ledger::Ledger;
-pub use run::{Motion, MotionState, StepReport};
+pub use run::Motion;
+pub use state::{MotionSettings, MotionState, StepReport};

@@ -7,77 +7,26 @@ use contact::patch::PatchShape;
 use contact::{ContactLaw, NodalWeights, Patch, Side};
 use solver::dense::DenseCholesky;
 
-use super::balls::{Kinematics, Speed};
-use super::contacts::{ContactDamping, ContactScheme};
-use super::integrator::Integrator;
-use super::ledger::Ledger;
-use super::ring::{RingMotion, RingState, RingStep};
+use super::balls::Kinematics;
+use super::frame::{turn, turn_nodal};
+use super::ring::{RingMotion, RingStep};
 use super::small::{Inertia, RingAnswer, SmallSolution, SmallSystem};
+use super::start::check_supported;
+use super::state::{MotionSettings, MotionState, StepReport};
 use crate::effects::{self, Loads, Now};
-use crate::equilibrium::SearchScales;
 use crate::error::DynamicsError;
-use crate::model::{ContactMode, Hold, Model, ShaftDof, elastic};
+use crate::model::{Model, ShaftDof, elastic};
 use crate::problem::Site;
-use crate::solution::StaticSolution;
 
 /// Groove angle kept from the rim by an unloaded contact, as a share of the groove.
 const RIM_SHARE: f64 = 0.05;
 
-/// Choices of a motion.
-#[derive(Clone, Debug, PartialEq)]
-pub struct MotionSettings {
-    /// Step size, s.
-    pub dt: f64,
-    /// Scheme of the rings.
-    pub integrator: Integrator,
-    /// Scheme of the contacts.
-    pub scheme: ContactScheme,
-    /// Inner ring speed.
-    pub speed: Speed,
-    /// Slip ratios at the inner and outer raceway.
-    pub slip: [f64; 2],
-    /// Contact damping, when the scene calls for it.
-    pub contact_damping: Option<ContactDamping>,
-    /// Rayleigh damping C = [0] M + [1] K.
-    pub rayleigh: [f64; 2],
-}
-
-/// All that evolves.
-#[derive(Clone, Debug, PartialEq)]
-pub struct MotionState {
-    /// Steps done.
-    pub step: u64,
-    /// Coordinates of the flexible rings.
-    pub rings: [Option<RingState>; 2],
-    /// Ball displacements from the just-touching position [radial, axial], m.
-    pub balls: Vec<[f64; 2]>,
-    /// Ball velocities, m/s.
-    pub ball_velocities: Vec<[f64; 2]>,
-    /// Displacement of a rigid inner ring's shaft, m and rad, in space.
-    pub shaft: [f64; 5],
-    /// Its velocity.
-    pub shaft_velocity: [f64; 5],
-    /// Mean contact forces of the last step [radial, axial] on the rings, by site, N.
-    pub forces: Vec<[f64; 2]>,
-    /// Contact angles at the end of the last step, by site, rad.
-    pub angles: Vec<f64>,
-    /// Energy ledger.
-    pub ledger: Ledger,
-}
-
-/// What happened in a step.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct StepReport {
-    /// Newton iterations on the contacts.
-    pub newton_iterations: usize,
-}
-
 /// A model ready to move.
 pub struct Motion<'a> {
-    model: &'a Model,
-    settings: MotionSettings,
-    kinematics: Kinematics,
-    rings: [Option<RingMotion>; 2],
+    pub(super) model: &'a Model,
+    pub(super) settings: MotionSettings,
+    pub(super) kinematics: Kinematics,
+    pub(super) rings: [Option<RingMotion>; 2],
 }
 
 impl<'a> Motion<'a> {
@@ -99,49 +48,6 @@ impl<'a> Motion<'a> {
             rings: [inner?, outer?],
             settings,
         })
-    }
-
-    /// The state at static equilibrium, at rest but for the turning of the inner ring.
-    pub fn start(&self, solution: &StaticSolution) -> MotionState {
-        let model = self.model;
-        let q = solution.displacements.shaft;
-        let omega = self.settings.speed.at(0.0);
-        let ring = |side: Side| {
-            let motion = self.rings[side.index()].as_ref()?;
-            let elastic = solution.elastic[side.index()].as_ref()?;
-            Some(ring_at_start(
-                motion,
-                elastic,
-                if side == Side::Inner { q } else { [0.0; 5] },
-                omega,
-            ))
-        };
-        let forces = solution.balls.iter().flat_map(|b| {
-            [(Side::Inner, &b.inner), (Side::Outer, &b.outer)].map(|(side, c)| {
-                let (sin, cos) = c.contact_angle_rad.sin_cos();
-                [side.sign() * c.force_n * cos, side.sign() * c.force_n * sin]
-            })
-        });
-        let angles = solution
-            .balls
-            .iter()
-            .flat_map(|b| [b.inner.contact_angle_rad, b.outer.contact_angle_rad]);
-        let mut state = MotionState {
-            step: 0,
-            rings: [ring(Side::Inner), ring(Side::Outer)],
-            balls: solution.displacements.balls.clone(),
-            ball_velocities: vec![[0.0; 2]; model.geometry.n_balls],
-            shaft: q,
-            shaft_velocity: [0.0; 5],
-            forces: forces.collect(),
-            angles: angles.collect(),
-            ledger: Ledger::default(),
-        };
-        state.ledger.hertz = solution.hertz_energy;
-        self.measure_energies(&mut state);
-        state.ledger.initial = state.ledger.total();
-        state.ledger.note_scale();
-        state
     }
 
     /// Time of a step number, s.
@@ -397,6 +303,7 @@ impl<'a> Motion<'a> {
             let energy = |l: [f64; 2]| site.law.evaluate(l[0].hypot(l[1]) - site.touching).energy;
             start += energy(l0);
             end += energy(l1);
+            next.approaches[index] = site.law.evaluate(l1[0].hypot(l1[1]) - site.touching).approach;
             let sign = site.side.sign();
             next.angles[index] = (sign * l1[1]).atan2(sign * l1[0]);
             next.forces[index] = solution.forces[index].force;
@@ -409,7 +316,7 @@ impl<'a> Motion<'a> {
         next
     }
 
-    fn measure_energies(&self, state: &mut MotionState) {
+    pub(super) fn measure_energies(&self, state: &mut MotionState) {
         let energies = |i: usize| match (&self.rings[i], &state.rings[i]) {
             (Some(motion), Some(ring)) => motion.energies(ring),
             _ => [0.0; 2],
@@ -433,94 +340,4 @@ impl<'a> Motion<'a> {
         state.ledger.kinetic = [inner[0] + shaft, outer[0], balls];
         state.ledger.strain = [inner[1], outer[1]];
     }
-
-    /// Displacement of the shaft in space, m and rad.
-    pub fn shaft(&self, state: &MotionState) -> [f64; 5] {
-        let (Some(motion), Some(ring)) = (&self.rings[0], &state.rings[0]) else {
-            return state.shaft;
-        };
-        let (dofs, first) = motion.coordinates.shaft();
-        let mut q = [0.0; 5];
-        for (i, dof) in self.model.shaft.iter().enumerate() {
-            if let ShaftDof::Prescribed(value) = dof {
-                q[i] = *value;
-            }
-        }
-        dofs.iter()
-            .enumerate()
-            .for_each(|(k, &dof)| q[dof] = ring.w[first + k]);
-        turn(q, self.settings.speed.angle(self.time(state.step)))
-    }
-
-    /// Scales of the contact search, for messages and starts.
-    pub fn scales(&self) -> SearchScales {
-        SearchScales::new(&self.model.geometry, self.model.hertz[0].stiffness)
-    }
-}
-
-/// Shaft dofs seen from a frame turned by `angle` the other way: the pairs (x, y) and (tilt x, tilt y) turn.
-fn turn(q: [f64; 5], angle: f64) -> [f64; 5] {
-    let (sin, cos) = angle.sin_cos();
-    [
-        cos * q[0] - sin * q[1],
-        sin * q[0] + cos * q[1],
-        q[2],
-        cos * q[3] - sin * q[4],
-        sin * q[3] + cos * q[4],
-    ]
-}
-
-/// Nodal vectors turned about z.
-fn turn_nodal(v: &[f64], angle: f64) -> Vec<f64> {
-    let (sin, cos) = angle.sin_cos();
-    v.chunks_exact(3)
-        .flat_map(|x| [cos * x[0] - sin * x[1], sin * x[0] + cos * x[1], x[2]])
-        .collect()
-}
-
-/// Coordinates of a ring at static equilibrium: elastic part plus the shaft's motion, and the velocity that a
-/// displacement fixed in space has in the turning frame.
-fn ring_at_start(motion: &RingMotion, elastic: &[f64], q: [f64; 5], omega: f64) -> RingState {
-    let coordinates = &motion.coordinates;
-    let (dofs, first) = coordinates.shaft();
-    let field = |q: [f64; 5]| {
-        let mut y = vec![0.0; coordinates.n()];
-        for (i, &dof) in coordinates.free().iter().enumerate() {
-            y[i] = coordinates.rigid_motion(dof, q);
-        }
-        dofs.iter()
-            .enumerate()
-            .for_each(|(k, &dof)| y[first + k] = q[dof]);
-        y
-    };
-    let mut w = field(q);
-    coordinates
-        .free()
-        .iter()
-        .enumerate()
-        .for_each(|(i, &dof)| w[i] += elastic[dof]);
-    let mut state = motion.at_rest(w);
-    state.v = field([omega * q[1], -omega * q[0], 0.0, omega * q[4], -omega * q[3]]);
-    state
-}
-
-fn check_supported(model: &Model) -> Result<(), DynamicsError> {
-    let refuse = |what: &'static str| Err(DynamicsError::NotInMotion { what });
-    if model.contact.mode == ContactMode::Facet {
-        return refuse("contact.mode = \"facet\"; use \"patch\"");
-    }
-    if model.rings.iter().flatten().any(|r| r.hold == Hold::MeanMotion) {
-        return refuse("support = \"mean_motion\"; use \"clamped\"");
-    }
-    let same = |a: usize, b: usize| {
-        matches!((model.shaft[a], model.shaft[b]), (ShaftDof::Free, ShaftDof::Free))
-            || (model.shaft[a] == ShaftDof::Prescribed(0.0) && model.shaft[b] == ShaftDof::Prescribed(0.0))
-    };
-    let axial = matches!(model.shaft[2], ShaftDof::Free) || model.shaft[2] == ShaftDof::Prescribed(0.0);
-    if model.ring(Side::Inner).is_some() && !(same(0, 1) && same(3, 4) && axial) {
-        return refuse(
-            "a flexible inner ring whose shaft has x and y, or both tilts, held differently or driven",
-        );
-    }
-    Ok(())
 }

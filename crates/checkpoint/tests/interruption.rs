@@ -1,16 +1,29 @@
 //! Failing and killed writers: what has its final name is whole, what was acknowledged is there.
 //!
 //! Writers run as children of the test: the test binary starts itself with [`FOLDER`] set and only [`writer`]
-//! selected.
+//! selected. This is a test binary of its own, and its tests take turns: a child inherits the files that are open when it
+//! starts, and with them HDF5's locks.
+
+#[path = "suite/fixture.rs"]
+mod fixture;
 
 use std::io::{BufRead, BufReader, Read};
 use std::path::Path;
 use std::process::{Command, Stdio};
+use std::sync::{Mutex, MutexGuard};
 use std::{env, fs};
 
 use checkpoint::{Output, Storage, committed_steps, read_step, rebuild_index};
 
-use crate::fixture::{bare_record, bodies};
+use fixture::{bare_record, bodies};
+
+/// Held by the one test that runs.
+static TURN: Mutex<()> = Mutex::new(());
+
+fn turn() -> MutexGuard<'static, ()> {
+    // A test that failed while holding it has nothing that others need.
+    TURN.lock().unwrap_or_else(|poisoned| poisoned.into_inner())
+}
 
 /// Folder the child writes to.
 const FOLDER: &str = "RACEWAY_TEST_WRITER_FOLDER";
@@ -43,7 +56,7 @@ fn stop(error: &checkpoint::CheckpointError) -> ! {
 fn writer_command() -> String {
     let binary = env::current_exe().unwrap();
     format!(
-        "exec '{}' --exact interruption::writer --nocapture --test-threads=1",
+        "exec '{}' --exact writer --nocapture --test-threads=1",
         binary.display()
     )
 }
@@ -55,6 +68,7 @@ fn committed_in(line: &str) -> Option<u64> {
 /// Wrong if a kill lost an acknowledged step, or left a file under a final name that does not read back.
 #[test]
 fn a_killed_writer_leaves_only_whole_steps() {
+    let _turn = turn();
     for acknowledged in [1, 4, 9, 16] {
         let dir = tempfile::tempdir().unwrap();
         let mut child = Command::new("sh")
@@ -90,6 +104,7 @@ fn a_killed_writer_leaves_only_whole_steps() {
 /// full disk: the write fails in the same place, with another reason.
 #[test]
 fn a_full_disk_leaves_no_half_file() {
+    let _turn = turn();
     let dir = tempfile::tempdir().unwrap();
     let mut child = Command::new("bash")
         .args([
@@ -133,6 +148,7 @@ fn a_full_disk_leaves_no_half_file() {
 /// Wrong if a folder that vanished or cannot be written gave a message without the path or the system's reason.
 #[test]
 fn a_folder_that_cannot_be_written_is_named() {
+    let _turn = turn();
     let dir = tempfile::tempdir().unwrap();
     let folder = dir.path().join("results");
     let mut output = Output::create(&folder, &bodies(), Storage::default()).unwrap();

@@ -1,0 +1,153 @@
+//! Nodal fields of one instant of a motion. Rings are shown as they stand in space: the inner ring is turned by its
+//! angle, and so are its displacements and its stress tensors. The state of the run is stored beside, bit for bit.
+
+use std::collections::BTreeMap;
+
+use checkpoint::{PointFields, StateArray, StepRecord};
+use contact::Side;
+use dynamics::Model;
+use dynamics::motion::{Motion, MotionState};
+use fem::stress::{StressRecovery, von_mises};
+
+use super::fields::add_balls;
+
+/// The record of one instant.
+pub fn record(
+    model: &Model,
+    motion: &Motion<'_>,
+    state: &MotionState,
+    recoveries: &[Option<StressRecovery>; 2],
+    scene: &str,
+) -> StepRecord {
+    let with_stress = recoveries.iter().any(Option::is_some);
+    let (mut displacement, mut stress) = (Vec::new(), Vec::new());
+    for side in Side::BOTH {
+        let (Some(ring), Some((field, angle))) = (model.ring(side), motion.ring_displacement(state, side))
+        else {
+            continue;
+        };
+        let turn = Turn::new(angle);
+        for (x, u) in ring.mesh.nodes.iter().zip(field.chunks_exact(3)) {
+            let now = turn.vector([x[0] + u[0], x[1] + u[1], u[2]]);
+            displacement.push([now[0] - x[0], now[1] - x[1], now[2]]);
+        }
+        if let Some(recovery) = &recoveries[side.index()] {
+            stress.extend(recovery.nodal(&field).into_iter().map(|s| turn.tensor(s)));
+        }
+    }
+    let [force_inner, force_outer] = add_balls(model, &motion.balls(state), &mut displacement);
+    stress.resize(displacement.len(), [0.0; 6]);
+    StepRecord {
+        step: state.step,
+        time: motion.time(state.step),
+        points: PointFields {
+            displacement,
+            velocity: None,
+            acceleration: None,
+            von_mises: with_stress.then(|| stress.iter().map(|&s| von_mises(s)).collect()),
+            stress: with_stress.then_some(stress),
+            force_inner: Some(force_inner),
+            force_outer: Some(force_outer),
+        },
+        scene: scene.to_string(),
+        state: arrays(state),
+    }
+}
+
+/// A turn about z.
+struct Turn {
+    sin: f64,
+    cos: f64,
+}
+
+impl Turn {
+    fn new(angle: f64) -> Turn {
+        let (sin, cos) = angle.sin_cos();
+        Turn { sin, cos }
+    }
+
+    fn vector(&self, v: [f64; 3]) -> [f64; 3] {
+        [
+            self.cos * v[0] - self.sin * v[1],
+            self.sin * v[0] + self.cos * v[1],
+            v[2],
+        ]
+    }
+
+    /// R s R^T for xx yy zz xy yz xz.
+    fn tensor(&self, [xx, yy, zz, xy, yz, xz]: [f64; 6]) -> [f64; 6] {
+        let (c, s) = (self.cos, self.sin);
+        [
+            c * c * xx - 2.0 * c * s * xy + s * s * yy,
+            s * s * xx + 2.0 * c * s * xy + c * c * yy,
+            zz,
+            c * s * (xx - yy) + (c * c - s * s) * xy,
+            s * xz + c * yz,
+            c * xz - s * yz,
+        ]
+    }
+}
+
+/// Everything that evolves, by name.
+fn arrays(state: &MotionState) -> BTreeMap<String, StateArray> {
+    let ledger = &state.ledger;
+    let works = [
+        ledger.load_work,
+        ledger.patch_work,
+        ledger.contact_loss,
+        ledger.rayleigh_loss,
+    ];
+    let mut arrays = BTreeMap::from([
+        ("balls".to_string(), StateArray::Real(state.balls.concat())),
+        (
+            "ball_velocities".to_string(),
+            StateArray::Real(state.ball_velocities.concat()),
+        ),
+        ("shaft".to_string(), StateArray::Real(state.shaft.to_vec())),
+        (
+            "shaft_velocity".to_string(),
+            StateArray::Real(state.shaft_velocity.to_vec()),
+        ),
+        ("forces".to_string(), StateArray::Real(state.forces.concat())),
+        ("angles".to_string(), StateArray::Real(state.angles.clone())),
+        (
+            "approaches".to_string(),
+            StateArray::Real(state.approaches.clone()),
+        ),
+        ("ledger_works".to_string(), StateArray::Real(works.to_vec())),
+        (
+            "ledger_scale".to_string(),
+            StateArray::Real(vec![ledger.initial, ledger.largest, ledger.hertz]),
+        ),
+    ]);
+    for (side, ring) in Side::BOTH.into_iter().zip(&state.rings) {
+        if let Some(ring) = ring {
+            for (name, values) in [("w", &ring.w), ("v", &ring.v), ("a", &ring.a)] {
+                arrays.insert(
+                    format!("{}_{name}", side.name()),
+                    StateArray::Real(values.clone()),
+                );
+            }
+        }
+    }
+    arrays
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Wrong: stress of the turning ring would be shown in the wrong directions.
+    #[test]
+    fn turning_a_tensor_keeps_its_invariants_and_turns_its_axes() {
+        let turn = Turn::new(0.7);
+        let s = turn.tensor([3.0, 0.0, 1.0, 0.0, 0.0, 0.0]);
+        let axis = turn.vector([1.0, 0.0, 0.0]);
+        let traction = [s[0] * axis[0] + s[3] * axis[1], s[3] * axis[0] + s[1] * axis[1]];
+        assert!((traction[0] - 3.0 * axis[0]).abs() < 1e-15 && (traction[1] - 3.0 * axis[1]).abs() < 1e-15);
+        let full = [1.0, -2.0, 0.5, 0.3, 0.8, -0.4];
+        assert!((von_mises(turn.tensor(full)) - von_mises(full)).abs() < 1e-14);
+        let shear = turn.tensor([0.0, 0.0, 0.0, 0.0, 0.0, 1.0]);
+        assert!((shear[5] - 0.7f64.cos()).abs() < 1e-15 && (shear[4] - 0.7f64.sin()).abs() < 1e-15);
+    }
+}

@@ -1,0 +1,64 @@
+//! One instant of a run as every kind of result shows it.
+
+use dynamics::StaticSolution;
+use dynamics::balls::BallResult;
+use dynamics::motion::{Ledger, Motion, MotionState};
+
+/// Key numbers of one instant.
+pub struct Snapshot {
+    /// All balls.
+    pub balls: Vec<BallResult>,
+    /// Shaft x, y, z, m, tilt x, tilt y, rad, in space.
+    pub shaft: [f64; 5],
+    /// Force and moment that hold prescribed dofs, N and N m; None where it is not known (motion).
+    pub reaction: Option<[f64; 5]>,
+    /// Energy terms, J, by name: the columns of `energy.csv`.
+    pub energies: Vec<(&'static str, f64)>,
+}
+
+impl Snapshot {
+    /// An equilibrium. `total` is the potential energy that it minimises; `defect` is what is missing in the virtual
+    /// work of all forces through the displacements, zero at equilibrium.
+    pub fn of_equilibrium(solution: &StaticSolution) -> Snapshot {
+        let total = solution.strain_energy + solution.hertz_energy - solution.load_work;
+        Snapshot {
+            balls: solution.balls.clone(),
+            shaft: solution.displacements.shaft,
+            reaction: Some(solution.shaft_reaction),
+            energies: vec![
+                ("strain", solution.strain_energy),
+                ("hertz", solution.hertz_energy),
+                ("load_potential", -solution.load_work),
+                ("total", total),
+                ("defect", solution.work_defect),
+            ],
+        }
+    }
+
+    /// An instant of a motion: energies now, works and losses since the start.
+    pub fn of_motion(motion: &Motion<'_>, state: &MotionState) -> Snapshot {
+        Snapshot {
+            balls: motion.balls(state),
+            shaft: motion.shaft(state),
+            reaction: None,
+            energies: ledger_terms(&state.ledger),
+        }
+    }
+}
+
+fn ledger_terms(ledger: &Ledger) -> Vec<(&'static str, f64)> {
+    vec![
+        ("kinetic_inner", ledger.kinetic[0]),
+        ("kinetic_outer", ledger.kinetic[1]),
+        ("kinetic_balls", ledger.kinetic[2]),
+        ("strain_inner", ledger.strain[0]),
+        ("strain_outer", ledger.strain[1]),
+        ("hertz", ledger.hertz),
+        ("load_work", ledger.load_work),
+        ("patch_work", ledger.patch_work),
+        ("contact_loss", ledger.contact_loss),
+        ("rayleigh_loss", ledger.rayleigh_loss),
+        ("total", ledger.total()),
+        ("defect", ledger.defect()),
+    ]
+}

@@ -1,0 +1,260 @@
+//! `[dynamic]`: motion in time from t = 0, in equal steps.
+//!
+//! The bodies are integrated by a scheme of the generalised-alpha family, contact forces by a mean over the
+//! step. References: Chung and Hulbert, J. Appl. Mech. 60 (1993) 371, doi:10.1115/1.2900803; Hilbert, Hughes
+//! and Taylor, Earthq. Eng. Struct. Dyn. 5 (1977) 283, doi:10.1002/eqe.4290050306 (`alpha` here is minus theirs).
+
+use serde::Deserialize;
+
+use super::problems::Problems;
+use crate::units::{Quantity, TIME};
+
+/// As typed.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields, expecting = "the table [dynamic]")]
+pub struct RawDynamic {
+    duration: Quantity<TIME>,
+    step: Quantity<TIME>,
+    output_every: Option<i64>,
+    integrator: Option<IntegratorName>,
+    rho: Option<f64>,
+    alpha: Option<f64>,
+    beta: Option<f64>,
+    gamma: Option<f64>,
+    contact: Option<ContactScheme>,
+    ledger_tolerance: Option<f64>,
+}
+
+/// As typed.
+#[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq)]
+#[serde(rename_all = "snake_case")]
+enum IntegratorName {
+    AverageAcceleration,
+    ChungHulbert,
+    Hht,
+    Newmark,
+}
+
+/// Scheme of the rings, the shaft and the balls, with its numbers.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum IntegratorChoice {
+    /// Average acceleration in its energy-conserving form.
+    AverageAcceleration,
+    /// Chung and Hulbert's scheme.
+    ChungHulbert {
+        /// Spectral radius at infinite frequency, 0 (those modes vanish in a step) to 1 (no damping).
+        rho: f64,
+    },
+    /// The scheme of Hilbert, Hughes and Taylor.
+    Hht {
+        /// Minus the alpha of the paper, 0 (no damping) to 1/3.
+        alpha: f64,
+    },
+    /// Newmark's scheme.
+    Newmark {
+        /// Share of the end's acceleration in the displacement, at least gamma / 2.
+        beta: f64,
+        /// Share of the end's acceleration in the velocity, 1/2 (no damping) to 1.
+        gamma: f64,
+    },
+}
+
+/// How contact forces are evaluated over a step.
+#[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq)]
+#[serde(rename_all = "snake_case")]
+pub enum ContactScheme {
+    /// The mean force whose work is exactly the change of the contact's energy.
+    DiscreteGradient,
+    /// Forces of the ends, weighted by the scheme: for comparison, it feeds energy into contacts that open.
+    Pointwise,
+}
+
+/// Motion in time.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Dynamic {
+    /// Run time from t = 0, s.
+    pub duration: f64,
+    /// Size of a step, s.
+    pub step: f64,
+    /// Number of steps: duration / step.
+    pub n_steps: u64,
+    /// Steps from one field file to the next, at least 1.
+    pub output_every: u64,
+    /// Scheme of the bodies.
+    pub integrator: IntegratorChoice,
+    /// Scheme of the contacts.
+    pub contact: ContactScheme,
+    /// The run stops when more of the energy than this is unaccounted for, relative to the largest energy or work.
+    pub ledger_tolerance: f64,
+}
+
+/// Duration over step may differ from a whole number by this part: their round-off is a million times less.
+const WHOLE_TOLERANCE: f64 = 1e-9;
+/// Longer runs are slips of the unit, and beyond this `WHOLE_TOLERANCE` tells no whole numbers apart.
+const MAX_STEPS: f64 = 1e8;
+/// Energy closes to the tolerance of Newton's iteration; this is far above it and far below any physical loss.
+const DEFAULT_LEDGER_TOLERANCE: f64 = 1e-6;
+/// Least damped and least accurate of Newmark's unconditionally stable schemes.
+const DEFAULT_BETA: f64 = 0.25;
+const DEFAULT_GAMMA: f64 = 0.5;
+
+impl RawDynamic {
+    /// Checks ranges, that the step fits the duration, and that the integrator has the numbers it needs; `None` when
+    /// there are problems.
+    pub fn check(&self, problems: &mut Problems) -> Option<Dynamic> {
+        let before = problems.len();
+        let n_steps = self.n_steps(problems);
+        let every = problems.whole(
+            self.output_every.unwrap_or(1),
+            "dynamic.output_every",
+            1,
+            MAX_STEPS as i64,
+        );
+        let integrator = self.integrator(problems);
+        let ledger_tolerance = self.ledger_tolerance.unwrap_or(DEFAULT_LEDGER_TOLERANCE);
+        problems.require(
+            (1e-14..=1.0).contains(&ledger_tolerance),
+            "dynamic.ledger_tolerance",
+            ledger_tolerance,
+            "expected 1e-14 to 1, it is relative to the largest energy of the run",
+        );
+        let dynamic = Dynamic {
+            duration: self.duration.si(),
+            step: self.step.si(),
+            n_steps: n_steps?,
+            output_every: every as u64,
+            integrator: integrator?,
+            contact: self.contact.unwrap_or(ContactScheme::DiscreteGradient),
+            ledger_tolerance,
+        };
+        (problems.len() == before).then_some(dynamic)
+    }
+
+    fn n_steps(&self, problems: &mut Problems) -> Option<u64> {
+        let before = problems.len();
+        problems.require_positive(&self.duration, "dynamic.duration", "a duration");
+        problems.require_positive(&self.step, "dynamic.step", "a step");
+        if problems.len() > before {
+            return None;
+        }
+        let ratio = self.duration.si() / self.step.si();
+        if ratio > MAX_STEPS {
+            problems.add(format!(
+                "dynamic.step is {}; the duration {} has {ratio:.1e} of these steps, more than 1e8, check both units",
+                self.step, self.duration
+            ));
+            return None;
+        }
+        let whole = ratio.round().max(1.0);
+        if (ratio - whole).abs() <= WHOLE_TOLERANCE * whole {
+            return Some(whole as u64);
+        }
+        problems.add(format!(
+            "dynamic.duration is {}; that is {} steps of {}, expected a whole number; the nearest duration that fits \
+             is {}",
+            self.duration,
+            ten_digits(ratio),
+            self.step,
+            Quantity::<TIME>::from_si(ten_digits(whole * self.step.si()))
+        ));
+        None
+    }
+
+    fn integrator(&self, problems: &mut Problems) -> Option<IntegratorChoice> {
+        let before = problems.len();
+        let name = self.integrator.unwrap_or(IntegratorName::AverageAcceleration);
+        self.refuse_foreign_numbers(name, problems);
+        let choice = match name {
+            IntegratorName::AverageAcceleration => Some(IntegratorChoice::AverageAcceleration),
+            IntegratorName::ChungHulbert => self.chung_hulbert(problems),
+            IntegratorName::Hht => self.hht(problems),
+            IntegratorName::Newmark => Some(self.newmark(problems)),
+        };
+        choice.filter(|_| problems.len() == before)
+    }
+
+    fn refuse_foreign_numbers(&self, name: IntegratorName, problems: &mut Problems) {
+        let numbers = [
+            ("rho", self.rho, IntegratorName::ChungHulbert),
+            ("alpha", self.alpha, IntegratorName::Hht),
+            ("beta", self.beta, IntegratorName::Newmark),
+            ("gamma", self.gamma, IntegratorName::Newmark),
+        ];
+        for (key, number, owner) in numbers {
+            let Some(number) = number.filter(|_| owner != name) else {
+                continue;
+            };
+            let is = if self.integrator.is_none() {
+                "by default "
+            } else {
+                ""
+            };
+            problems.add(format!(
+                "dynamic.{key} is {number}; it belongs to the integrator {:?}, but the integrator is {is}{:?}",
+                owner.typed(),
+                name.typed()
+            ));
+        }
+    }
+
+    fn chung_hulbert(&self, problems: &mut Problems) -> Option<IntegratorChoice> {
+        let rule = "expected 0 to 1, the amplitude that the highest frequencies keep per step";
+        let Some(rho) = self.rho else {
+            problems.add(format!(
+                "dynamic.rho is missing; the integrator \"chung_hulbert\" needs it, {rule}, 0.8 is usual"
+            ));
+            return None;
+        };
+        problems.require((0.0..=1.0).contains(&rho), "dynamic.rho", rho, rule);
+        Some(IntegratorChoice::ChungHulbert { rho })
+    }
+
+    fn hht(&self, problems: &mut Problems) -> Option<IntegratorChoice> {
+        let rule = "expected 0 (no damping) to 1/3";
+        let Some(alpha) = self.alpha else {
+            problems.add(format!(
+                "dynamic.alpha is missing; the integrator \"hht\" needs it, {rule}, 0.1 is usual"
+            ));
+            return None;
+        };
+        problems.require((0.0..=1.0 / 3.0).contains(&alpha), "dynamic.alpha", alpha, rule);
+        Some(IntegratorChoice::Hht { alpha })
+    }
+
+    fn newmark(&self, problems: &mut Problems) -> IntegratorChoice {
+        let (beta, gamma) = (
+            self.beta.unwrap_or(DEFAULT_BETA),
+            self.gamma.unwrap_or(DEFAULT_GAMMA),
+        );
+        if !(0.5..=1.0).contains(&gamma) {
+            let rule = "expected 0.5 (no damping) to 1, less is unstable";
+            problems.require(false, "dynamic.gamma", gamma, rule);
+            return IntegratorChoice::Newmark { beta, gamma };
+        }
+        let least = 0.5 * gamma;
+        let rule = format!(
+            "expected gamma / 2 = {least} to 1, less is unstable for high frequencies; (gamma + 1/2)^2 / 4 = {} \
+             damps these most",
+            ten_digits(0.25 * (gamma + 0.5) * (gamma + 0.5))
+        );
+        problems.require((least..=1.0).contains(&beta), "dynamic.beta", beta, rule);
+        IntegratorChoice::Newmark { beta, gamma }
+    }
+}
+
+impl IntegratorName {
+    /// As a scene has it.
+    fn typed(self) -> &'static str {
+        match self {
+            IntegratorName::AverageAcceleration => "average_acceleration",
+            IntegratorName::ChungHulbert => "chung_hulbert",
+            IntegratorName::Hht => "hht",
+            IntegratorName::Newmark => "newmark",
+        }
+    }
+}
+
+/// Rounded to ten digits, for messages and to hide round-off.
+fn ten_digits(value: f64) -> f64 {
+    format!("{value:.9e}").parse().unwrap_or(value)
+}

@@ -1,0 +1,160 @@
+//! `[speed]`: how fast the inner ring turns.
+//!
+//! A constant, or a table that is linear between its times and constant before the first and after the last.
+//! Positive from +x towards +y.
+
+use std::fmt;
+
+use serde::Deserialize;
+use serde::de::value::MapAccessDeserializer;
+use serde::de::{Deserializer, Error, MapAccess, Visitor};
+
+use super::problems::Problems;
+use crate::units::{ANGULAR_SPEED, Quantity, TIME, bare_number};
+
+/// As typed.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields, expecting = "the table [speed]")]
+pub struct RawSpeed {
+    inner: RawRingSpeed,
+}
+
+/// As typed: a speed, or a table over time.
+#[derive(Debug)]
+enum RawRingSpeed {
+    Constant(Quantity<ANGULAR_SPEED>),
+    Table(RawSpeedTable),
+}
+
+/// As typed.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields, expecting = "the table [speed.inner]")]
+struct RawSpeedTable {
+    times: Vec<Quantity<TIME>>,
+    values: Vec<Quantity<ANGULAR_SPEED>>,
+}
+
+/// What the speed is for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SpeedUse {
+    /// Motion in time.
+    Motion,
+    /// The centrifugal force of balls in an equilibrium.
+    ForceAtRest,
+    /// An equilibrium without any effect of speed.
+    Nothing,
+}
+
+/// Angular speed over time: linear between the entries, constant outside; one entry is a constant speed.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SpeedTable {
+    /// Times, s, strictly growing, `[n]`, n at least 1.
+    pub times: Vec<f64>,
+    /// Angular speeds, rad/s, `[n]`.
+    pub values: Vec<f64>,
+}
+
+/// No ring turns faster: a slip of the unit, rad/s (almost a million revolutions per minute).
+const MAX_SPEED: f64 = 1e5;
+
+impl RawSpeed {
+    /// Checks sizes and the order of times; `None` when there are problems.
+    pub fn check(&self, speed_use: SpeedUse, problems: &mut Problems) -> Option<SpeedTable> {
+        let before = problems.len();
+        if speed_use == SpeedUse::Nothing {
+            problems.add(
+                "[speed] does nothing in a scene at rest without [effects.ball_centrifugal]; add that effect, compute \
+                 motion with [dynamic], or remove [speed]",
+            );
+            return None;
+        }
+        let table = match &self.inner {
+            RawRingSpeed::Constant(value) => {
+                require_plausible(value, "speed.inner", problems);
+                SpeedTable {
+                    times: vec![0.0],
+                    values: vec![value.si()],
+                }
+            }
+            RawRingSpeed::Table(table) => {
+                if speed_use == SpeedUse::ForceAtRest {
+                    problems.add(
+                        "speed.inner is a table over time, but a scene at rest has no time; expected one speed such as \
+                         \"1800 rpm\"",
+                    );
+                    return None;
+                }
+                table.check(problems)
+            }
+        };
+        (problems.len() == before).then_some(table)
+    }
+}
+
+impl RawSpeedTable {
+    fn check(&self, problems: &mut Problems) -> SpeedTable {
+        let (n_times, n_values) = (self.times.len(), self.values.len());
+        if n_times == 0 || n_times != n_values {
+            problems.add(format!(
+                "speed.inner has {n_times} times and {n_values} values; expected as many of both, at least one"
+            ));
+        }
+        for (i, pair) in self.times.windows(2).enumerate() {
+            let rule = format!("times must grow, the one before is {}", pair[0]);
+            let key = format!("speed.inner.times[{}]", i + 1);
+            problems.require(pair[1].si() > pair[0].si(), &key, &pair[1], rule);
+        }
+        for (i, value) in self.values.iter().enumerate() {
+            require_plausible(value, &format!("speed.inner.values[{i}]"), problems);
+        }
+        SpeedTable {
+            times: self.times.iter().map(Quantity::si).collect(),
+            values: self.values.iter().map(Quantity::si).collect(),
+        }
+    }
+}
+
+fn require_plausible(speed: &Quantity<ANGULAR_SPEED>, key: &str, problems: &mut Problems) {
+    problems.require(
+        speed.si().abs() <= MAX_SPEED,
+        key,
+        speed,
+        "that is more than 1e5 rad/s (955 000 rpm), check its unit",
+    );
+}
+
+impl<'de> Deserialize<'de> for RawRingSpeed {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct SpeedVisitor;
+
+        const EXPECTED: &str = "an angular speed such as \"1800 rpm\" or a table with times and values";
+
+        impl<'de> Visitor<'de> for SpeedVisitor {
+            type Value = RawRingSpeed;
+
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str(EXPECTED)
+            }
+
+            fn visit_str<E: Error>(self, text: &str) -> Result<RawRingSpeed, E> {
+                Quantity::parse_expecting(text, EXPECTED)
+                    .map(RawRingSpeed::Constant)
+                    .map_err(E::custom)
+            }
+
+            fn visit_f64<E: Error>(self, value: f64) -> Result<RawRingSpeed, E> {
+                Err(E::custom(bare_number(value, EXPECTED)))
+            }
+
+            fn visit_i64<E: Error>(self, value: i64) -> Result<RawRingSpeed, E> {
+                Err(E::custom(bare_number(value, EXPECTED)))
+            }
+
+            fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<RawRingSpeed, A::Error> {
+                RawSpeedTable::deserialize(MapAccessDeserializer::new(map)).map(RawRingSpeed::Table)
+            }
+        }
+
+        deserializer.deserialize_any(SpeedVisitor)
+    }
+}

@@ -1,0 +1,156 @@
+//! Scenes of motion in time, and what they say.
+
+use super::*;
+use crate::scene::damping::{ContactDamping, RayleighDamping};
+
+fn dynamic_of(text: &str) -> Dynamic {
+    match parse(text, &[]).unwrap_or_else(|e| panic!("{e}")).analysis {
+        Analysis::Dynamic(dynamic) => dynamic,
+        other => panic!("no motion: {other:?}"),
+    }
+}
+
+/// 1800 rpm, rad/s.
+const SPEED: f64 = 60.0 * std::f64::consts::PI;
+
+/// If this failed, the documentation would show a motion that the program refuses or reads as something else.
+#[test]
+fn the_example_of_motion_reads_as_it_says() {
+    let scene = parse(DYNAMIC, &[]).unwrap_or_else(|e| panic!("{e}"));
+    let expected = Dynamic {
+        duration: 77e-3,
+        step: 1e-5,
+        n_steps: 7700,
+        output_every: 10,
+        integrator: IntegratorChoice::ChungHulbert { rho: 0.8 },
+        contact: ContactScheme::DiscreteGradient,
+        ledger_tolerance: 1e-6,
+    };
+    assert_eq!(scene.analysis, Analysis::Dynamic(expected));
+    let speed = scene.speed.as_ref().unwrap();
+    assert_eq!(speed.times, [0.0, 1e-3]);
+    // One rounding of pi/30, one of the product.
+    for (value, exact) in speed.values.iter().zip([SPEED, 10.0 * SPEED]) {
+        assert!((value / exact - 1.0).abs() < 4e-16, "{value} instead of {exact}");
+    }
+    let effects = scene.effects;
+    assert!(effects.ball_centrifugal);
+    assert_eq!(effects.cage_slip, Some([0.0, 0.01]));
+    let contact_damping = ContactDamping {
+        coefficient: 50.0,
+        full_approach: 1e-6,
+    };
+    assert_eq!(effects.contact_damping, Some(contact_damping));
+    let rayleigh_damping = RayleighDamping {
+        mass: 10.0,
+        stiffness: 1e-7,
+    };
+    assert_eq!(effects.rayleigh_damping, Some(rayleigh_damping));
+    assert_eq!(scene.shaft.mass, 2.0);
+    assert_eq!(scene.sweep_scenes().unwrap(), []);
+}
+
+/// If this failed, a short scene of motion would be refused, or a default would differ from what the example states.
+#[test]
+fn a_motion_needs_only_duration_and_step() {
+    let (head, _) = DYNAMIC.split_once("[speed]").unwrap();
+    let head = replace_line(head, "mass", "");
+    let text = format!("{head}[dynamic]\nduration = \"1 ms\"\nstep = \"1 ms\"\n");
+    let expected = Dynamic {
+        duration: 1e-3,
+        step: 1e-3,
+        n_steps: 1,
+        output_every: 1,
+        integrator: IntegratorChoice::AverageAcceleration,
+        contact: ContactScheme::DiscreteGradient,
+        ledger_tolerance: 1e-6,
+    };
+    assert_eq!(dynamic_of(&text), expected);
+    let scene = parse(&text, &[]).unwrap();
+    assert_eq!((scene.speed, scene.shaft.mass), (None, 0.0));
+    let effects = scene.effects;
+    assert!(!effects.ball_centrifugal);
+    assert_eq!((effects.cage_slip, effects.contact_damping), (None, None));
+    assert_eq!(effects.rayleigh_damping, None);
+}
+
+/// If this failed, a motion would be integrated with another scheme or with other numbers than the scene names.
+#[test]
+fn every_integrator_has_its_own_numbers() {
+    let cases = [
+        (
+            "integrator = \"average_acceleration\"",
+            IntegratorChoice::AverageAcceleration,
+        ),
+        (
+            "integrator = \"chung_hulbert\"\nrho = 0",
+            IntegratorChoice::ChungHulbert { rho: 0.0 },
+        ),
+        (
+            "integrator = \"chung_hulbert\"\nrho = 1.0",
+            IntegratorChoice::ChungHulbert { rho: 1.0 },
+        ),
+        (
+            "integrator = \"hht\"\nalpha = 0.1",
+            IntegratorChoice::Hht { alpha: 0.1 },
+        ),
+        (
+            "integrator = \"newmark\"",
+            IntegratorChoice::Newmark {
+                beta: 0.25,
+                gamma: 0.5,
+            },
+        ),
+        (
+            "integrator = \"newmark\"\nbeta = 0.3025\ngamma = 0.6",
+            IntegratorChoice::Newmark {
+                beta: 0.3025,
+                gamma: 0.6,
+            },
+        ),
+    ];
+    for (keys, expected) in cases {
+        assert_eq!(dynamic_of(&with_integrator(keys)).integrator, expected, "{keys}");
+    }
+    let pointwise = replace_line(DYNAMIC, "contact = ", "contact = \"pointwise\"");
+    assert_eq!(dynamic_of(&pointwise).contact, ContactScheme::Pointwise);
+}
+
+/// If this failed, durations that fit would be refused because of round-off, or ones that do not would end early.
+#[test]
+fn a_duration_fits_its_step_up_to_round_off_only() {
+    for (duration, step, n) in [
+        ("0.3 s", "0.1 s", 3),
+        ("1 s", "1 us", 1_000_000),
+        ("7 min", "0.7 s", 600),
+    ] {
+        let text = replace_line(DYNAMIC, "duration", &format!("duration = \"{duration}\""));
+        let text = replace_line(&text, "step", &format!("step = \"{step}\""));
+        assert_eq!(dynamic_of(&text).n_steps, n, "{duration} of {step}");
+    }
+    let text = replace_line(DYNAMIC, "duration", "duration = \"77.0000002 ms\"");
+    let message = message_of(&text, &[]);
+    assert!(
+        message.contains("the nearest duration that fits is 77 ms"),
+        "{message}"
+    );
+}
+
+/// If this failed, the centrifugal force of balls could not be studied without motion.
+#[test]
+fn a_scene_at_rest_may_have_a_constant_speed_for_the_centrifugal_force() {
+    let text = at_rest("inner = \"1800 rpm\"");
+    let scene = parse(&text, &[]).unwrap_or_else(|e| panic!("{e}"));
+    assert_eq!(scene.analysis, Analysis::Static);
+    let speed = scene.speed.unwrap();
+    assert_eq!((speed.times.as_slice(), speed.values.len()), (&[0.0][..], 1));
+    let sweep = "[sweep]\nkey = \"speed.inner\"\nvalues = [\"0 rpm\", \"10 rad/s\"]\n";
+    let scene = parse(&text.replace("[static]\n", sweep), &[]).unwrap_or_else(|e| panic!("{e}"));
+    let speeds: Vec<_> = scene
+        .sweep_scenes()
+        .unwrap()
+        .into_iter()
+        .map(|s| s.speed.unwrap().values)
+        .collect();
+    assert_eq!(speeds, [[0.0], [10.0]]);
+}

@@ -1,0 +1,69 @@
+//! What is reported of a state: shaft, balls, ring displacements.
+
+use contact::Side;
+
+use super::frame::turn;
+use super::run::Motion;
+use super::state::MotionState;
+use crate::balls::{BallDisplacement, BallResult, ContactResult};
+use crate::model::ShaftDof;
+
+impl Motion<'_> {
+    /// Displacement of the shaft in space, m and rad.
+    pub fn shaft(&self, state: &MotionState) -> [f64; 5] {
+        let (Some(motion), Some(ring)) = (&self.rings[0], &state.rings[0]) else {
+            return state.shaft;
+        };
+        let (dofs, first) = motion.coordinates.shaft();
+        let mut q = [0.0; 5];
+        for (i, dof) in self.model.shaft.iter().enumerate() {
+            if let ShaftDof::Prescribed(value) = dof {
+                q[i] = *value;
+            }
+        }
+        dofs.iter()
+            .enumerate()
+            .for_each(|(k, &dof)| q[dof] = ring.w[first + k]);
+        turn(q, self.settings.speed.angle(self.time(state.step)))
+    }
+
+    /// Results of every ball: mean forces of the last step, angles and approaches at its end.
+    pub fn balls(&self, state: &MotionState) -> Vec<BallResult> {
+        let contact = |ball: usize, side: Side| {
+            let index = 2 * ball + side.index();
+            let force = state.forces[index][0].hypot(state.forces[index][1]);
+            let hertz = &self.model.hertz[side.index()];
+            ContactResult {
+                force_n: force,
+                contact_angle_rad: state.angles[index],
+                approach_m: state.approaches[index],
+                semi_axes_m: hertz.semi_axes(force),
+                peak_pressure_pa: hertz.peak_pressure(force),
+            }
+        };
+        let turn = 2.0 * std::f64::consts::PI;
+        let ball = |b: usize| BallResult {
+            azimuth_rad: self.ball_azimuth(b, self.time(state.step)).rem_euclid(turn),
+            inner: contact(b, Side::Inner),
+            outer: contact(b, Side::Outer),
+            displacement_m: BallDisplacement {
+                radial: state.balls[b][0],
+                axial: state.balls[b][1],
+            },
+        };
+        (0..self.model.geometry.n_balls).map(ball).collect()
+    }
+
+    /// Total nodal displacement of a flexible ring in its own frame, m, `[n_nodes][3]` flat, and the angle by which
+    /// that frame is turned in space, rad.
+    pub fn ring_displacement(&self, state: &MotionState, side: Side) -> Option<(Vec<f64>, f64)> {
+        let motion = self.rings[side.index()].as_ref()?;
+        let ring = state.rings[side.index()].as_ref()?;
+        let turned = if side == Side::Inner {
+            self.settings.speed.angle(self.time(state.step))
+        } else {
+            0.0
+        };
+        Some((motion.coordinates.expand(&ring.w), turned))
+    }
+}
