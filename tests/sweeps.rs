@@ -5,7 +5,7 @@ use std::sync::OnceLock;
 use serde_json::Value;
 
 use crate::util::tables::{Table, keys, number, summary};
-use crate::util::{Dir, Files, RIGID, SCENE, assert_close, with_line};
+use crate::util::{Dir, Files, RIGID, SCENE, assert_close, assert_within, with_line};
 
 /// A sweep of the radial force of the tests' scene.
 const SWEEP: &str =
@@ -171,4 +171,65 @@ fn a_sweep_that_breaks_down_keeps_its_points_and_ends_with_code_3() {
     {
         assert_close("force", *a, b, 1e-8);
     }
+}
+
+/// The tests' scene with rigid rings and a sweep of `key` over `values`.
+fn rigid_sweep(key: &str, values: &str) -> Dir {
+    let dir = Dir::empty();
+    let sweep = format!("[sweep]\nkey = \"{key}\"\nvalues = {values}");
+    dir.write("scene.toml", with_line("[static]", "[static]", &sweep));
+    dir
+}
+
+/// If this failed, a sweep over the number of balls would end in a crash, or in tables of changing length.
+#[test]
+fn a_sweep_over_the_number_of_balls_is_refused() {
+    let dir = rigid_sweep("bearing.balls", "[18, 17]");
+    let outcome = dir.raceway(&[&["run", "scene.toml", "--out", "out"], &RIGID[..]].concat());
+    assert_eq!(outcome.code, Some(2), "{}", outcome.stderr);
+    let message = "error: scene.toml: [sweep] key bearing.balls changes the number of balls, and with it the tables and the \
+                   result files; run one scene per value with --set";
+    assert!(outcome.stderr.contains(message), "{}", outcome.stderr);
+    assert!(!dir.path("out").exists());
+}
+
+/// If this failed, the steel of rigid rings, which changes their contacts only, could not be swept.
+#[test]
+fn the_steel_of_rigid_rings_can_be_swept() {
+    let dir = rigid_sweep("materials.rings.young_modulus", "[\"207 GPa\", \"310 GPa\"]");
+    dir.run("out", &RIGID);
+    let z = Table::read(&dir, "out/shaft.csv").column("z_m");
+    assert!(z[1] < z[0], "stiffer rings must yield less: {z:?}");
+}
+
+/// If this failed, a reader would not know which points of a sweep a warning means.
+#[test]
+fn warnings_of_a_sweep_name_their_point() {
+    let dir = rigid_sweep("effects.axial_force.value", "[\"2 kN\", \"500 kN\"]");
+    dir.run("out", &RIGID);
+    let warnings = summary(&dir, "out")["warnings"].clone();
+    let warnings = warnings.as_array().unwrap();
+    assert_eq!(warnings.len(), 1, "{warnings:?}");
+    let text = warnings[0].as_str().unwrap();
+    assert!(
+        text.starts_with("effects.axial_force.value_n = 500000: the peak pressure at ball "),
+        "{text}"
+    );
+}
+
+/// If this failed, ParaView would show the balls of a sweep over their azimuth where those of its first point are.
+#[test]
+fn balls_of_a_sweep_are_shown_where_they_are() {
+    let dir = rigid_sweep("bearing.first_ball_azimuth", "[\"0 deg\", \"7 deg\"]");
+    dir.run("out", &RIGID);
+    let record = checkpoint::read_step(&dir.path("out/step_000001.hdf")).unwrap();
+    let moved = record.points.displacement[0];
+    let balls = Table::read(&dir, "out/balls.csv").step(1);
+    // R_o - D_w/2 from the outer groove centre, at the free contact angle with cos a0 = 1 - 0.027 / (2 * 0.4).
+    let radius = 32.2685e-3 + 0.25e-3 * (1.0 - 0.027 / 0.8);
+    let now = radius + balls.column("displacement_radial_m")[0];
+    let (sin, cos) = 7f64.to_radians().sin_cos();
+    // Coordinates of 30 mm in f64.
+    assert_within("x", moved[0], now * cos - radius, 1e-15);
+    assert_within("y", moved[1], now * sin, 1e-15);
 }

@@ -33,6 +33,7 @@ pub fn run(path: &Path, overrides: &[String], out: Option<PathBuf>) -> Result<Pa
     let mut progress = Progress::new(points.len() as u64);
     progress.stage("reading meshes");
     let mut model = build_model(&points[0].1)?;
+    let placed = model.geometry;
     let read = start.elapsed().as_secs_f64();
     progress.stage("factoring the stiffness of the rings");
     let mut solver = StaticSolver::new(&model).map_err(Failure::solving)?;
@@ -52,7 +53,9 @@ pub fn run(path: &Path, overrides: &[String], out: Option<PathBuf>) -> Result<Pa
             empty => empty.insert(Files::create(&scene, &model, &dir, &snapshot)?),
         };
         let step = step as u64;
-        files.write_fields(|recoveries| fields::record(&model, &solution, recoveries, step, &point.text))?;
+        files.write_fields(|recoveries| {
+            fields::record(&model, &placed, &solution, recoveries, step, &point.text)
+        })?;
         // The points of a sweep have no time; their number stands for it.
         files.write_tables(step, step as f64, *value, &snapshot)?;
         // Later points start from displacements of the contacts only; fields of a long sweep would fill the memory.
@@ -66,7 +69,7 @@ pub fn run(path: &Path, overrides: &[String], out: Option<PathBuf>) -> Result<Pa
     let forecast = Side::BOTH.map(|side| solver.ring(side).map(|r| r.memory));
     let results = results.expect("a scene has at least one point");
     let costs = results.finish(read, forecast, solver.timing, start)?;
-    let summary = Summary::new(&scene, &model, findings(&solutions), &costs);
+    let summary = Summary::new(&scene, &model, findings(&scene, &solutions), &costs);
     summary.write(&dir)?;
     match &scene.analysis {
         Analysis::Static | Analysis::Dynamic(_) => {
@@ -78,7 +81,7 @@ pub fn run(path: &Path, overrides: &[String], out: Option<PathBuf>) -> Result<Pa
     Ok(dir)
 }
 
-fn findings(solutions: &[(f64, StaticSolution)]) -> Findings {
+fn findings(scene: &Scene, solutions: &[(f64, StaticSolution)]) -> Findings {
     let last = &solutions.last().expect("a finished run has a solution").1;
     let points = solutions
         .iter()
@@ -87,8 +90,20 @@ fn findings(solutions: &[(f64, StaticSolution)]) -> Findings {
         last: Snapshot::of_equilibrium(last),
         points: points.collect(),
         iterations: BTreeMap::from([("rounds", last.rounds), ("newton", last.newton_iterations)]),
-        warnings: solutions.iter().flat_map(|(_, s)| s.warnings.clone()).collect(),
+        warnings: solutions
+            .iter()
+            .flat_map(|point| warnings(scene, point))
+            .collect(),
     }
+}
+
+/// Warnings of one point; in a sweep they say which.
+fn warnings(scene: &Scene, (value, solution): &(f64, StaticSolution)) -> Vec<String> {
+    let at = match &scene.analysis {
+        Analysis::Sweep(sweep) => format!("{} = {value}: ", sweep.column),
+        Analysis::Static | Analysis::Dynamic(_) => String::new(),
+    };
+    solution.warnings.iter().map(|w| format!("{at}{w}")).collect()
 }
 
 /// The load cases of a scene: one, or those of its sweep.
@@ -98,6 +113,14 @@ fn points(scene: &Scene) -> Result<Vec<Point>, Failure> {
     };
     let scenes = scene.sweep_scenes()?;
     for point in &scenes {
+        if point.bearing.balls != scene.bearing.balls {
+            return Err(Failure::User(anyhow!(
+                "{}: [sweep] key {} changes the number of balls, and with it the tables and the result files; run one \
+                 scene per value with --set",
+                scene.path.display(),
+                sweep.key
+            )));
+        }
         if !same_rings(scene, point) {
             return Err(Failure::User(anyhow!(
                 "{}: [sweep] key {} changes the rings themselves; sweep loads, contacts, supports of the shaft or the \
@@ -121,11 +144,11 @@ fn same_rings(a: &Scene, b: &Scene) -> bool {
             b.outer_groove_radius,
         ]
     };
-    a.inner.body == b.inner.body
-        && a.outer.body == b.outer.body
-        && a.materials.rings == b.materials.rings
+    let same_bodies = a.inner.body == b.inner.body && a.outer.body == b.outer.body;
+    let rigid = a.inner.body.is_none() && a.outer.body.is_none();
+    same_bodies
         && a.contact.mode == b.contact.mode
-        && (grooves(a) == grooves(b) || (a.inner.body.is_none() && a.outer.body.is_none()))
+        && (rigid || (a.materials.rings == b.materials.rings && grooves(a) == grooves(b)))
 }
 
 fn stage_text(scene: &Scene, value: Option<f64>) -> String {

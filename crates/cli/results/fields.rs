@@ -4,7 +4,7 @@
 use std::collections::BTreeMap;
 
 use checkpoint::{Body, PointFields, StateArray, StepRecord};
-use contact::Side;
+use contact::{BearingGeometry, Side};
 use dynamics::balls::BallResult;
 use dynamics::{Model, StaticSolution};
 use fem::stress::{StressRecovery, von_mises};
@@ -51,9 +51,11 @@ pub fn recoveries(model: &Model, stress: StressOutput) -> Result<[Option<StressR
     Ok([recovery(Side::Inner)?, recovery(Side::Outer)?])
 }
 
-/// The record of one equilibrium.
+/// The record of one equilibrium. Points of a sweep may differ in the places of balls and rings; `placed` is the bearing
+/// of the mesh file, from whose places displacements are shown.
 pub fn record(
     model: &Model,
+    placed: &BearingGeometry,
     solution: &StaticSolution,
     recoveries: &[Option<StressRecovery>; 2],
     step: u64,
@@ -63,13 +65,13 @@ pub fn record(
     let (mut displacement, mut stress) = (Vec::new(), Vec::new());
     for side in Side::BOTH {
         if let Some(elastic) = &solution.elastic[side.index()] {
-            displacement.extend(ring_displacement(model, solution, side, elastic));
+            displacement.extend(ring_displacement(model, placed, solution, side, elastic));
             if let Some(recovery) = &recoveries[side.index()] {
                 stress.extend(recovery.nodal(elastic));
             }
         }
     }
-    let [force_inner, force_outer] = add_balls(model, &solution.balls, &mut displacement);
+    let [force_inner, force_outer] = add_balls(model, placed, &solution.balls, &mut displacement);
     stress.resize(displacement.len(), [0.0; 6]);
     StepRecord {
         step,
@@ -89,9 +91,10 @@ pub fn record(
 }
 
 /// Adds the balls' displacements to those of the rings' points; returns the forces on the balls from the inner and the
-/// outer ring at all points, N, zero on rings.
+/// outer ring at all points, N, zero on rings. `placed` is the bearing of the mesh file.
 pub fn add_balls(
     model: &Model,
+    placed: &BearingGeometry,
     balls: &[BallResult],
     displacement: &mut Vec<[f64; 3]>,
 ) -> [Vec<[f64; 3]>; 2] {
@@ -99,15 +102,15 @@ pub fn add_balls(
         vec![[0.0; 3]; displacement.len()],
         vec![[0.0; 3]; displacement.len()],
     ];
-    let centre = model.geometry.ball_centre();
+    let (centre, from) = (model.geometry.ball_centre(), placed.ball_centre());
     for (i, ball) in balls.iter().enumerate() {
         let (sin, cos) = ball.azimuth_rad.sin_cos();
-        let (sin_0, cos_0) = model.geometry.azimuth(i).sin_cos();
+        let (sin_0, cos_0) = placed.azimuth(i).sin_cos();
         let radius = centre[0] + ball.displacement_m.radial;
         let moved = [
-            radius * cos - centre[0] * cos_0,
-            radius * sin - centre[0] * sin_0,
-            ball.displacement_m.axial,
+            radius * cos - from[0] * cos_0,
+            radius * sin - from[0] * sin_0,
+            centre[1] - from[1] + ball.displacement_m.axial,
         ];
         displacement.push(moved);
         for (side, list) in Side::BOTH.into_iter().zip(&mut forces) {
@@ -126,12 +129,19 @@ pub fn add_balls(
 }
 
 /// Total displacement of a ring's nodes in space, m.
-fn ring_displacement(model: &Model, solution: &StaticSolution, side: Side, elastic: &[f64]) -> Vec<[f64; 3]> {
+fn ring_displacement(
+    model: &Model,
+    placed: &BearingGeometry,
+    solution: &StaticSolution,
+    side: Side,
+    elastic: &[f64],
+) -> Vec<[f64; 3]> {
     let mut total: Vec<[f64; 3]> = elastic.chunks_exact(3).map(|u| [u[0], u[1], u[2]]).collect();
     let Some(ring) = model.ring(side).filter(|_| side == Side::Inner) else {
         return total;
     };
     let [x, y, z, tilt_x, tilt_y] = solution.displacements.shaft;
+    let z = z + model.geometry.axial_offset() - placed.axial_offset();
     for (u, node) in total.iter_mut().zip(&ring.mesh.nodes) {
         let arm = node[2] - ring.groove.centre_z;
         u[0] += x + tilt_y * arm;

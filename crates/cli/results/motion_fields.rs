@@ -35,7 +35,8 @@ pub fn record(
             stress.extend(recovery.nodal(&field).into_iter().map(|s| turn.tensor(s)));
         }
     }
-    let [force_inner, force_outer] = add_balls(model, &motion.balls(state), &mut displacement);
+    let [force_inner, force_outer] =
+        add_balls(model, &model.geometry, &motion.balls(state), &mut displacement);
     stress.resize(displacement.len(), [0.0; 6]);
     StepRecord {
         step: state.step,

@@ -11,7 +11,8 @@ use solver::dense::{DenseCholesky, DenseLu};
 use solver::{LinearSolver, SolverError};
 
 use crate::error::DynamicsError;
-use crate::problem::{Displacements, Problem, SHAFT_DOFS, Site};
+use crate::footprint::loaded;
+use crate::problem::{Displacements, Problem, SHAFT_DOFS, Site, site_forces};
 
 /// Largest residual over the force scale at which Newton may stop; it goes on to round-off while it improves.
 const RESIDUAL_LIMIT: f64 = 1e-10;
@@ -283,17 +284,17 @@ fn largest(v: &[f64]) -> f64 {
 }
 
 /// Unloaded balls rest midway between their raceways: those without a load of their own that are not squeezed between
-/// both. A ball that Newton left touching one raceway, with a force below its residual, is unloaded.
+/// both. A ball that Newton left touching a raceway, with a force below its residual, is unloaded.
 pub fn centre_unloaded(problem: &Problem, u: &mut Displacements) {
     let size = |load: &[f64; 2]| load[0].hypot(load[1]);
     // The weight of a ball across its meridian plane leaves round-off in that plane.
     let heaviest = problem.ball_load.iter().map(size).fold(0.0, f64::max);
     let weightless = 4.0 * f64::EPSILON * heaviest;
-    for pair in problem.sites.chunks_exact(2) {
+    let loaded = loaded(&site_forces(problem, u));
+    for (pair, loaded) in problem.sites.chunks_exact(2).zip(loaded.chunks_exact(2)) {
         let (inner, outer) = (pair[0].state(u), pair[1].state(u));
         let ball = pair[0].ball;
-        let squeezed = inner.force.force > 0.0 && outer.force.force > 0.0;
-        if squeezed || size(&problem.ball_load[ball]) > weightless {
+        if loaded == [true, true] || size(&problem.ball_load[ball]) > weightless {
             continue;
         }
         debug_assert!(pair[0].side == Side::Inner && pair[1].side == Side::Outer);

@@ -145,9 +145,9 @@ fn place_facet(
     if site.unevenness.is_none() {
         site.unevenness = Some(Arc::new(search.unevenness(solver.surface.angle_range)?));
     }
+    let angle = site.contact_angle(&site.state(u));
     // The rim itself is left out: a foot point beyond it is on no facet.
-    let angle = on_groove(&solver.surface, site.contact_angle(&site.state(u)), false);
-    let contact = search.foot(angle)?;
+    let contact = search.foot(on_groove(&solver.surface, angle, false))?;
     let hertz = model.hertz[site.side.index()].semi_axes(force[0].hypot(force[1]));
     let weights = NodalWeights::interpolation(contact.nodes, &contact.weights, site.azimuth);
     Ok(Footprint {

@@ -9,6 +9,10 @@ use crate::footprint::{Footprint, loaded};
 use crate::model::Model;
 use crate::problem::{Displacements, Problem, site_forces};
 
+/// Peak pressure that leaves a permanent indentation of 1e-4 of the ball diameter in bearing steel, Pa: ISO 76, for ball
+/// bearings.
+const STATIC_LIMIT: f64 = 4.2e9;
+
 /// A static equilibrium.
 pub struct StaticSolution {
     /// Displacements of shaft, balls and groove centres.
@@ -69,9 +73,11 @@ impl StaticSolution {
             .zip(&u.balls)
             .map(|(f, x)| dot(f, x))
             .sum();
+        let balls = ball_results(model, problem, &u);
         let load_work = ball_work + dot(&problem.shaft_load, &u.shaft) + body_work;
         StaticSolution {
-            balls: ball_results(model, problem, &u),
+            warnings: warnings(&rings.footprints, &forces, &balls),
+            balls,
             work_defect: load_work + dot(&reaction, &u.shaft) - 2.0 * strain_energy - contact_work,
             shaft_residual: residual,
             shaft_reaction: reaction,
@@ -80,7 +86,6 @@ impl StaticSolution {
             load_work,
             rounds,
             newton_iterations,
-            warnings: edge_warnings(&rings.footprints, &forces),
             displacements: u,
             elastic: rings.elastic,
             footprints: rings.footprints,
@@ -136,6 +141,27 @@ fn shaft_balance(problem: &Problem, u: &Displacements) -> ([f64; 5], [f64; 5]) {
         })
     };
     (pick(true), pick(false).map(|x| -x))
+}
+
+fn warnings(footprints: &[Vec<Footprint>; 2], forces: &[[f64; 2]], balls: &[BallResult]) -> Vec<String> {
+    let mut warnings = edge_warnings(footprints, forces);
+    let pressures = balls
+        .iter()
+        .flat_map(|b| [b.inner.peak_pressure_pa, b.outer.peak_pressure_pa]);
+    let (place, highest) = pressures
+        .enumerate()
+        .fold((0, 0.0), |most, (i, p)| if p > most.1 { (i, p) } else { most });
+    if highest > STATIC_LIMIT {
+        warnings.push(format!(
+            "the peak pressure at ball {}, {} raceway, is {:.2} GPa, above the static limit of bearing steel of {:.1} GPa \
+             (ISO 76): there it yields, which this model does not know",
+            place / 2,
+            Side::BOTH[place % 2].name(),
+            1e-9 * highest,
+            1e-9 * STATIC_LIMIT
+        ));
+    }
+    warnings
 }
 
 fn edge_warnings(footprints: &[Vec<Footprint>; 2], forces: &[[f64; 2]]) -> Vec<String> {

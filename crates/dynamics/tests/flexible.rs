@@ -6,7 +6,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use contact::Side;
-use dynamics::{ContactMode, Hold, Model, StaticSolution};
+use dynamics::{ContactMode, Hold, Model, ShaftDof, StaticSolution};
 use support::rings::{Level, ring_model};
 use support::{Case, equilibrium, relative};
 
@@ -214,6 +214,52 @@ fn a_warm_start_gives_the_cold_answer() {
     let warm = solver.solve(&second, Some(&start)).unwrap();
     let (force, angle) = difference(&warm, &equilibrium(&second));
     assert!(force < 1e-8 && angle < 1e-6, "{force} {angle}");
+}
+
+/// Wrong: a sweep would call a ball off the groove that only its start has there: the shaft driven from one tilt to the
+/// opposite one passes through places where no ball is in equilibrium.
+#[test]
+fn a_warm_start_after_a_large_drive_gives_the_cold_answer() {
+    let mut model = thrust().flexible(ContactMode::Patch, COARSE, Hold::Clamped);
+    let mut solver = dynamics::StaticSolver::new(&model).unwrap();
+    model.shaft[4] = ShaftDof::Prescribed(5e-3);
+    let start = solver.solve(&model, None).unwrap();
+    model.shaft[4] = ShaftDof::Prescribed(-5e-3);
+    let warm = solver.solve(&model, Some(&start)).unwrap();
+    let (force, angle) = difference(&warm, &solver.solve(&model, None).unwrap());
+    assert!(force < 1e-8 && angle < 1e-6, "{force} {angle}");
+}
+
+/// Wrong: light loads on flexible rings would be refused: round-off moves their forces by more than the tolerance.
+#[test]
+fn light_loads_settle() {
+    let light = patch(&Case::axial(1e-4), COARSE, Hold::Clamped);
+    let rigid = equilibrium(&Case::axial(1e-4).rigid());
+    let (force, _) = difference(&light, &rigid);
+    assert!(force < 1e-3, "{force}");
+}
+
+/// Wrong: unloaded balls, which may be anywhere, would be looked for on the facets, or a ball beyond the rim would be
+/// blamed on the place of the mesh. Radial load alone: the balls opposite to it are loose. Smaller balls have a free
+/// contact angle of 61 deg, and the groove ends at 58 deg.
+#[test]
+fn only_loaded_balls_can_leave_the_groove() {
+    for mode in [ContactMode::Patch, ContactMode::Facet] {
+        let loose = Case {
+            radial: 50e3,
+            ..Case::axial(0.0)
+        };
+        let mut model = loose.flexible(mode, COARSE, Hold::Clamped);
+        let mut solver = dynamics::StaticSolver::new(&model).unwrap();
+        assert!(solver.solve(&model, None).is_ok(), "{mode:?}");
+        model.effects = Case::axial(100.0).rigid().effects;
+        model.geometry.ball_diameter = 8.6e-3;
+        let error = solver.solve(&model, None).err().unwrap().to_string();
+        assert!(
+            error.contains("leaves the inner raceway: contact angle"),
+            "{mode:?}: {error}"
+        );
+    }
 }
 
 /// Wrong: the comparison mode would not show the two known errors of facets, or the default would share them.

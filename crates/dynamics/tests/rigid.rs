@@ -2,7 +2,8 @@
 
 mod support;
 
-use contact::Side;
+use contact::{BearingGeometry, Side};
+use dynamics::effects::Gravity;
 use dynamics::{DynamicsError, ShaftDof, StaticSolver};
 use support::{Case, equilibrium, relative};
 
@@ -109,6 +110,89 @@ fn unloaded_balls_rest_midway() {
             "equal gaps"
         );
     }
+}
+
+/// Wrong: balls that Newton leaves touching one raceway, with a force below its residual, would be reported off their
+/// place and with contact angles of chance. A loose bearing under a radial load alone, its shaft free to find the middle.
+#[test]
+fn balls_that_only_touch_are_unloaded() {
+    for radial in [100.0, 1000.0, 10_000.0] {
+        let mut case = Case::axial(0.0);
+        case.radial = radial;
+        let solution = equilibrium(&case.rigid());
+        for b in &solution.balls {
+            let (i, o) = (&b.inner, &b.outer);
+            assert!(i.force_n == 0.0 || i.force_n > 1e-6 * radial, "{} N", i.force_n);
+            assert!(
+                i.force_n > 0.0 || (i.approach_m - o.approach_m).abs() < 1e-12,
+                "unequal gaps"
+            );
+            // By symmetry all forces and gaps lie in the plane of the balls; Newton finds it to 1e-10 of the load.
+            assert!(
+                i.contact_angle_rad.sin().abs() < 1e-6,
+                "{} rad",
+                i.contact_angle_rad
+            );
+        }
+    }
+}
+
+/// Wrong: gravity would press balls at its horizon, whose weight the cage carries, against one raceway by the round-off of
+/// a cosine. Two balls of 18 lie there; a thousand earths' gravity unloads them.
+#[test]
+fn gravity_leaves_unloaded_balls_at_its_horizon_midway() {
+    let mut model = Case::axial(500.0).rigid();
+    let acceleration = [0.0, -9.81e4, 0.0];
+    model.effects.push(Box::new(Gravity { acceleration }));
+    let solution = equilibrium(&model);
+    let horizon = [&solution.balls[0], &solution.balls[9]];
+    for b in horizon {
+        assert!(
+            b.inner.force_n == 0.0 && b.outer.force_n == 0.0,
+            "{}",
+            b.inner.force_n
+        );
+        assert!((b.inner.approach_m - b.outer.approach_m).abs() < 1e-12 && b.inner.approach_m < 0.0);
+    }
+}
+
+/// Wrong: a light load would be refused because round-off of positions moves forces by more than a share of it. The
+/// closed form of light thrust is Q = F / (Z sin a0), up to the rise of the contact angle.
+#[test]
+fn light_loads_down_to_none_are_solved() {
+    for axial in [1e-2, 1e-4, 1e-6] {
+        let solution = equilibrium(&Case::axial(axial).rigid());
+        let sine = BearingGeometry::reference_7010c().free_contact_angle().sin();
+        for b in &solution.balls {
+            assert!(
+                relative(b.inner.force_n, axial / (18.0 * sine)) < 2e-3,
+                "{}",
+                b.inner.force_n
+            );
+        }
+    }
+    // A contact angle at which the just-touching position is not exact in binary.
+    let mut model = Case::axial(0.0).rigid();
+    for diameter in [74.06e-3, 74.1e-3, 74.15e-3, 74.2e-3, 74.3e-3] {
+        model.geometry.outer_raceway_diameter = diameter;
+        model.shaft = [ShaftDof::Prescribed(0.0); 5];
+        let solution = equilibrium(&model);
+        assert!(solution.balls.iter().all(|b| b.inner.force_n < 1e-12));
+    }
+}
+
+/// Wrong: forces far beyond what steel carries would pass without a word.
+#[test]
+fn pressures_beyond_the_static_limit_are_warned_of() {
+    let warnings = |axial| equilibrium(&Case::axial(axial).rigid()).warnings;
+    assert!(warnings(10_000.0).is_empty());
+    let heavy = warnings(200_000.0);
+    assert_eq!(heavy.len(), 1);
+    assert!(
+        heavy[0].contains("raceway, is ") && heavy[0].contains("above the static limit"),
+        "{}",
+        heavy[0]
+    );
 }
 
 /// Wrong: the solution would not respect the mirror symmetry of load and geometry. First ball at +5 and -5 deg.

@@ -24,7 +24,7 @@ fn the_example_of_motion_reads_as_it_says() {
         output_every: 10,
         integrator: IntegratorChoice::ChungHulbert { rho: 0.8 },
         contact: ContactScheme::DiscreteGradient,
-        ledger_tolerance: 1e-6,
+        ledger_tolerance: 1e-3,
     };
     assert_eq!(scene.analysis, Analysis::Dynamic(expected));
     let speed = scene.speed.as_ref().unwrap();

@@ -24,6 +24,11 @@ impl Integrator {
         Integrator::chung_hulbert(1.0)
     }
 
+    /// Whether the scheme conserves the energy of a linear body; the others lose some on purpose.
+    pub fn is_conserving(&self) -> bool {
+        *self == Integrator::average_acceleration()
+    }
+
     /// Chung-Hulbert with spectral radius `rho` at infinite frequency, 0..=1; second order.
     pub fn chung_hulbert(rho: f64) -> Integrator {
         Integrator::second_order((2.0 * rho - 1.0) / (rho + 1.0), rho / (rho + 1.0))

@@ -50,10 +50,10 @@ impl Ledger {
         self.largest = self.largest.max(largest);
     }
 
-    /// Defect over the largest energy.
+    /// Defect over the largest energy: positive is a gain that nothing explains, negative a loss.
     pub fn relative_defect(&self) -> f64 {
         if self.largest > 0.0 {
-            self.defect().abs() / self.largest
+            self.defect() / self.largest
         } else {
             0.0
         }

@@ -217,10 +217,10 @@ impl RingMotion {
 fn with_shaft_mass(mut mass: CsMat<f64>, coordinates: &Coordinates, model: &Model) -> CsMat<f64> {
     let (dofs, first) = coordinates.shaft();
     for (k, &dof) in dofs.iter().enumerate() {
-        if dof < 3 {
-            if let Some(entry) = mass.get_mut(first + k, first + k) {
-                *entry += model.shaft_mass;
-            }
+        if dof < 3
+            && let Some(entry) = mass.get_mut(first + k, first + k)
+        {
+            *entry += model.shaft_mass;
         }
     }
     mass
