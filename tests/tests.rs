@@ -3,6 +3,7 @@
 
 mod bad_input;
 mod memory;
+mod motion;
 mod results;
 mod statics;
 mod sweeps;

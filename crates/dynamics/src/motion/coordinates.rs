@@ -4,8 +4,12 @@
 //! nodes; held shaft dofs and a clamped seat do not move. y = (w_free, q_free), w = T y, loads T^T f, matrices T^T A T:
 //! symmetric positive definite, with the few dense rows of the shaft last in the elimination order.
 
+use contact::NodalWeights;
 use mesh::Mesh;
 use sprs::CsMat;
+
+/// A generalised load with few entries: index and value.
+pub type SparseLoad = Vec<(usize, f64)>;
 
 /// What one nodal dof is made of.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -108,6 +112,35 @@ impl Coordinates {
             }
         }
         y
+    }
+
+    /// Generalised loads of a unit force in each direction of a contact: index and value, indices distinct.
+    pub fn reduce_weights(&self, weights: &NodalWeights) -> [SparseLoad; 2] {
+        [0, 1].map(|direction| {
+            let mut load = SparseLoad::new();
+            let mut shaft = vec![0.0; self.shaft.len()];
+            for (&node, coefficients) in weights.nodes.iter().zip(&weights.coefficients) {
+                for (component, &value) in coefficients[direction].iter().enumerate() {
+                    match self.sources[3 * node + component] {
+                        Source::Free(i) => load.push((i, value)),
+                        Source::Held => {
+                            for (sum, &q) in shaft.iter_mut().zip(&self.shaft) {
+                                *sum += self.lever(3 * node + component, q) * value;
+                            }
+                        }
+                    }
+                }
+            }
+            let first = self.free.len();
+            load.extend(
+                shaft
+                    .into_iter()
+                    .enumerate()
+                    .filter(|s| s.1 != 0.0)
+                    .map(|(k, value)| (first + k, value)),
+            );
+            load
+        })
     }
 
     /// T^T A T of a symmetric matrix of all nodal dofs, both triangles.

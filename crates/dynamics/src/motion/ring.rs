@@ -7,7 +7,7 @@ use contact::{NodalWeights, RacewaySurface, Side};
 use solver::{LinearSolver, SolverError, SparseCholesky, Symbolic};
 use sprs::CsMat;
 
-use super::coordinates::Coordinates;
+use super::coordinates::{Coordinates, SparseLoad};
 use super::integrator::Integrator;
 use crate::error::DynamicsError;
 use crate::model::{Model, RACEWAY_GROUP, RingModel, ShaftDof};
@@ -110,25 +110,23 @@ impl RingMotion {
         let mut predictor = self.right_side(state, load);
         self.factor.solve(&mut predictor, 1);
         let m = 2 * feet.len();
-        let mut columns = Vec::with_capacity(n * m);
-        for foot in feet {
-            for unit in [[1.0, 0.0], [0.0, 1.0]] {
-                let mut nodal = vec![0.0; self.coordinates.expanded()];
-                foot.add_load(unit, &mut nodal);
-                columns.extend(self.coordinates.reduce(&nodal));
-            }
+        let loads: Vec<SparseLoad> = feet
+            .iter()
+            .flat_map(|foot| self.coordinates.reduce_weights(foot))
+            .collect();
+        let mut columns = vec![0.0; n * m];
+        for (column, load) in columns.chunks_exact_mut(n).zip(&loads) {
+            load.iter().for_each(|&(i, value)| column[i] = value);
         }
-        let loads = columns.clone();
         self.factor.solve(&mut columns, m);
-        let row = |i: usize| &loads[n * i..n * (i + 1)];
-        let start: Vec<f64> = (0..m).map(|i| sparse_dot(row(i), &state.w)).collect();
+        let start: Vec<f64> = (0..m).map(|i| sparse_dot(&loads[i], &state.w)).collect();
         let predicted = (0..m)
-            .map(|i| start[i] + sparse_dot(row(i), &predictor))
+            .map(|i| start[i] + sparse_dot(&loads[i], &predictor))
             .collect();
         let mut compliance = vec![0.0; m * m];
         for i in 0..m {
             for j in 0..=i {
-                let value = sparse_dot(row(i), &columns[n * j..n * (j + 1)]);
+                let value = sparse_dot(&loads[i], &columns[n * j..n * (j + 1)]);
                 (compliance[m * i + j], compliance[m * j + i]) = (value, value);
             }
         }
@@ -264,11 +262,6 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(x, y)| x * y).sum()
 }
 
-/// Dot product that skips the zeros of a patch's load vector.
-fn sparse_dot(load: &[f64], x: &[f64]) -> f64 {
-    load.iter()
-        .zip(x)
-        .filter(|(l, _)| **l != 0.0)
-        .map(|(l, x)| l * x)
-        .sum()
+fn sparse_dot(load: &SparseLoad, x: &[f64]) -> f64 {
+    load.iter().map(|&(i, value)| value * x[i]).sum()
 }

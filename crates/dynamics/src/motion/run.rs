@@ -4,13 +4,14 @@
 //! loads that are fixed in space are turned into it. Contacts of a step are placed at the azimuths of its middle.
 
 use contact::patch::PatchShape;
-use contact::{ContactLaw, NodalWeights, Patch, Side};
+use contact::{ContactError, ContactLaw, NodalWeights, Patch, Side};
+use rayon::prelude::*;
 use solver::dense::DenseCholesky;
 
 use super::balls::Kinematics;
 use super::frame::{turn, turn_nodal};
 use super::ring::{RingMotion, RingStep};
-use super::small::{Inertia, RingAnswer, SmallSolution, SmallSystem};
+use super::small::{Inertia, RingAnswer, SmallSolution, SmallSystem, check_patches};
 use super::start::check_supported;
 use super::state::{MotionSettings, MotionState, StepReport};
 use crate::effects::{self, Loads, Now};
@@ -94,6 +95,7 @@ impl<'a> Motion<'a> {
             .flatten()
             .fold(loads.shaft[2].abs().max(1e-9), |m, f| m.max(f.abs()));
         let solution = system.solve(scale)?;
+        check_patches(&system, &solution)?;
         let next = self.finish(state, &system, &solution, steps, &loads, middle);
         Ok((
             next,
@@ -109,51 +111,89 @@ impl<'a> Motion<'a> {
         state: &MotionState,
         middle: f64,
     ) -> Result<(Vec<Site>, [Vec<NodalWeights>; 2]), DynamicsError> {
-        let (model, geometry) = (self.model, &self.model.geometry);
-        let ball_centre = geometry.ball_centre();
-        let turned = self.settings.speed.angle(middle);
+        let contacts: Vec<usize> = (0..2 * self.model.geometry.n_balls).collect();
+        let placed: Result<Vec<_>, DynamicsError> = contacts
+            .par_iter()
+            .map(|&index| self.place_contact(state, index, middle))
+            .collect();
         let (mut sites, mut feet) = (Vec::new(), [Vec::new(), Vec::new()]);
-        for ball in 0..geometry.n_balls {
-            let azimuth = self.ball_azimuth(ball, middle);
-            for side in Side::BOTH {
-                let index = 2 * ball + side.index();
-                let hertz = &model.hertz[side.index()];
-                let centre = geometry.groove_centre(side);
-                let mut site = Site {
-                    ball,
-                    side,
-                    azimuth,
-                    reach: [ball_centre[0] - centre[0], ball_centre[1] - centre[1]],
-                    touching: geometry.touching_distance(side),
-                    lever: geometry.centre_radius(side),
-                    law: ContactLaw {
-                        stiffness: hertz.stiffness,
-                        patch_compliance: 0.0,
-                    },
-                    unevenness: None,
-                };
-                if let (Some(ring), Some(motion)) = (model.ring(side), &self.rings[side.index()]) {
-                    let force = state.forces[index];
-                    let local = if side == Side::Inner {
-                        azimuth - turned
-                    } else {
-                        azimuth
-                    };
-                    let [low, high] = motion.surface.angle_range;
-                    let rim = RIM_SHARE * (high - low);
-                    let angle = state.angles[index].clamp(low + rim, high - rim);
-                    let axes = hertz.semi_axes(force[0].hypot(force[1]));
-                    let spacings = model.contact.patch_spacings;
-                    let shape = PatchShape::new(&motion.surface, local, angle, axes, spacings)?;
-                    let material = elastic(&ring.material);
-                    let patch = Patch::new(&motion.surface, &ring.mesh.nodes, &motion.rule, shape, material)?;
-                    site.law.patch_compliance = patch.compliance;
-                    feet[side.index()].push(patch.weights);
-                }
-                sites.push(site);
-            }
+        for (site, weights) in placed? {
+            feet[site.side.index()].extend(weights);
+            sites.push(site);
         }
         Ok((sites, feet))
+    }
+
+    /// One contact: its site and, on a flexible ring, its weights.
+    fn place_contact(
+        &self,
+        state: &MotionState,
+        index: usize,
+        middle: f64,
+    ) -> Result<(Site, Option<NodalWeights>), DynamicsError> {
+        let (model, geometry) = (self.model, &self.model.geometry);
+        let (ball, side) = (index / 2, Side::BOTH[index % 2]);
+        let azimuth = self.ball_azimuth(ball, middle);
+        let hertz = &model.hertz[side.index()];
+        let (centre, ball_centre) = (geometry.groove_centre(side), geometry.ball_centre());
+        let mut site = Site {
+            ball,
+            side,
+            azimuth,
+            reach: [ball_centre[0] - centre[0], ball_centre[1] - centre[1]],
+            touching: geometry.touching_distance(side),
+            lever: geometry.centre_radius(side),
+            law: ContactLaw {
+                stiffness: hertz.stiffness,
+                patch_compliance: 0.0,
+            },
+            unevenness: None,
+        };
+        let (Some(ring), Some(motion)) = (model.ring(side), &self.rings[side.index()]) else {
+            return Ok((site, None));
+        };
+        let force = state.forces[index];
+        let turned = if side == Side::Inner {
+            self.settings.speed.angle(middle)
+        } else {
+            0.0
+        };
+        let [low, high] = motion.surface.angle_range;
+        let rim = RIM_SHARE * (high - low);
+        let angle = state.angles[index];
+        if force != [0.0; 2] && !(low..high).contains(&angle) {
+            return Err(ContactError::OffRaceway {
+                ball,
+                side: side.name(),
+                angle_deg: angle.to_degrees(),
+                low_deg: low.to_degrees(),
+                high_deg: high.to_degrees(),
+            }
+            .into());
+        }
+        // An open contact may point anywhere; it is kept on the groove.
+        let angle = if force == [0.0; 2] {
+            angle.clamp(low + rim, high - rim)
+        } else {
+            angle
+        };
+        let axes = hertz.semi_axes(force[0].hypot(force[1]));
+        let shape = PatchShape::new(
+            &motion.surface,
+            azimuth - turned,
+            angle,
+            axes,
+            model.contact.patch_spacings,
+        )?;
+        let patch = Patch::new(
+            &motion.surface,
+            &ring.mesh.nodes,
+            &motion.rule,
+            shape,
+            elastic(&ring.material),
+        )?;
+        site.law.patch_compliance = patch.compliance;
+        Ok((site, Some(patch.weights)))
     }
 
     /// Generalised load of a ring. Loads are fixed in space: those of the inner ring and its shaft are turned into

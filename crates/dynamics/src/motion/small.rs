@@ -270,3 +270,22 @@ impl SmallSystem {
         }
     }
 }
+
+/// Fails when a contact is beyond what its patch leaves of Hertz's law.
+pub fn check_patches(system: &SmallSystem, solution: &SmallSolution) -> Result<(), DynamicsError> {
+    for (site, force) in system.sites.iter().zip(&solution.forces) {
+        let [_, end] = system.reach(site, &solution.unknowns);
+        if site
+            .law
+            .evaluate(end[0].hypot(end[1]) - site.touching)
+            .beyond_limit
+        {
+            return Err(DynamicsError::PatchTooSmall {
+                ball: site.ball,
+                side: site.side.name(),
+                force: force.force[0].hypot(force.force[1]),
+            });
+        }
+    }
+    Ok(())
+}

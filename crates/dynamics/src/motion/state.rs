@@ -21,7 +21,7 @@ pub struct MotionSettings {
     pub slip: [f64; 2],
     /// Contact damping, when the scene calls for it.
     pub contact_damping: Option<ContactDamping>,
-    /// Rayleigh damping C = [0] M + [1] K.
+    /// Rayleigh damping: factors of M and of K in C, 1/s and s.
     pub rayleigh: [f64; 2],
 }
 

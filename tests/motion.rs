@@ -1,0 +1,106 @@
+//! Motion through the whole program: histories, step files, the energy ledger and its alarm.
+
+use std::sync::OnceLock;
+
+use crate::util::tables::{Table, summary};
+use crate::util::{Dir, Files, with_line};
+
+/// Steps of the tests' scene: enough to show the layout and the ledger.
+const DYNAMIC: &str =
+    "[dynamic]\nduration = \"0.2 ms\"\nstep = \"20 us\"\noutput_every = 5\n\n[speed]\ninner = \"1800 rpm\"";
+
+/// A folder where the scene was run; once for all tests that look at it.
+fn moved() -> Dir {
+    static FILES: OnceLock<Files> = OnceLock::new();
+    Dir::with_files(FILES.get_or_init(|| {
+        let dir = Dir::with_meshes();
+        dir.write("scene.toml", with_line("[static]", "[static]", DYNAMIC));
+        dir.run("out", &[]);
+        dir.snapshot()
+    }))
+}
+
+/// If this failed, a history would miss steps, or step files would not be those asked for.
+#[test]
+fn every_step_is_in_the_tables_and_every_fifth_has_a_file() {
+    let dir = moved();
+    for (name, rows) in [("balls.csv", 18), ("shaft.csv", 1), ("energy.csv", 1)] {
+        let table = Table::read(&dir, &format!("out/{name}"));
+        assert_eq!(table.rows.len(), 11 * rows, "{name}: the start and ten steps");
+        assert_eq!(table.columns[..2], ["step", "time_s"], "{name}");
+        assert_eq!(table.step(10).column("time_s")[0], 10.0 * 20e-6, "{name}");
+    }
+    let files: Vec<String> = dir
+        .snapshot()
+        .into_keys()
+        .map(|path| path.display().to_string())
+        .collect();
+    let steps: Vec<&String> = files.iter().filter(|name| name.contains("step_")).collect();
+    assert_eq!(steps.len(), 3, "steps 0, 5 and 10: {steps:?}");
+}
+
+/// If this failed, energy would appear or vanish without a line in the ledger.
+#[test]
+fn the_ledger_of_a_run_closes() {
+    let table = Table::read(&moved(), "out/energy.csv");
+    let (total, defect) = (table.column("total_j"), table.column("defect_j"));
+    for (t, d) in total.iter().zip(&defect) {
+        assert!(d.abs() < 1e-9 * t, "{d} of {t}");
+    }
+}
+
+/// If this failed, the balls would not roll, or the summary would not be that of the last step.
+#[test]
+fn balls_roll_with_the_cage() {
+    let dir = moved();
+    let azimuth = Table::read(&dir, "out/balls.csv").step(10).column("azimuth_rad")[0];
+    // Cage speed 0.4331 of 1800 rpm (7010C, pure rolling): to the digits of that ratio.
+    let expected = 0.4331 * 1800.0 * std::f64::consts::PI / 30.0 * 0.2e-3;
+    let start = Table::read(&dir, "out/balls.csv").step(0).column("azimuth_rad")[0];
+    assert!(
+        (azimuth - start - expected).abs() < 1e-5,
+        "{azimuth} {start} {expected}"
+    );
+    let summary = summary(&dir, "out");
+    assert_eq!(summary["analysis"], "dynamic");
+    assert_eq!(summary["balls"][0]["azimuth_rad"].as_f64().unwrap(), azimuth);
+}
+
+/// If this failed, a run whose energy is wrong would be taken for a result. A tolerance below round-off must trip.
+#[test]
+fn a_ledger_that_does_not_close_stops_the_run() {
+    let dir = Dir::with_meshes();
+    dir.write("scene.toml", with_line("[static]", "[static]", DYNAMIC));
+    let outcome = dir.raceway(&[
+        "run",
+        "scene.toml",
+        "--out",
+        "out",
+        "--set",
+        "dynamic.ledger_tolerance=1e-14",
+    ]);
+    assert_eq!(outcome.code, Some(3), "{}", outcome.stderr);
+    assert!(
+        outcome
+            .stderr
+            .contains("the energy ledger does not close at step "),
+        "{}",
+        outcome.stderr
+    );
+    assert!(
+        outcome.stderr.contains("dynamic.ledger_tolerance is 1.0e-14"),
+        "{}",
+        outcome.stderr
+    );
+}
+
+/// If this failed, histories would depend on the number of threads.
+#[test]
+fn one_and_two_threads_write_the_same_histories() {
+    let dir = moved();
+    dir.run("one", &["--threads", "1"]);
+    for name in ["balls.csv", "shaft.csv", "energy.csv", "step_000010.hdf"] {
+        let read = |folder: &str| std::fs::read(dir.path(&format!("{folder}/{name}"))).unwrap();
+        assert!(read("one") == read("out"), "{name} differs");
+    }
+}
