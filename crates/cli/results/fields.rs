@@ -71,22 +71,36 @@ pub fn record(
             }
         }
     }
-    let [force_inner, force_outer] = add_balls(model, placed, &solution.balls, &mut displacement);
-    stress.resize(displacement.len(), [0.0; 6]);
+    let forces = add_balls(model, placed, &solution.balls, &mut displacement);
     StepRecord {
         step,
         time: step as f64,
-        points: PointFields {
-            displacement,
-            velocity: None,
-            acceleration: None,
-            von_mises: with_stress.then(|| stress.iter().map(|&s| von_mises(s)).collect()),
-            stress: with_stress.then_some(stress),
-            force_inner: Some(force_inner),
-            force_outer: Some(force_outer),
-        },
+        points: point_fields(displacement, with_stress.then_some(stress), forces),
         scene: scene.to_string(),
         state: state(solution),
+    }
+}
+
+/// Fields of all points from the displacements of all and the stress of the rings' points; balls have none.
+pub fn point_fields(
+    displacement: Vec<[f64; 3]>,
+    ring_stress: Option<Vec<[f64; 6]>>,
+    [force_inner, force_outer]: [Vec<[f64; 3]>; 2],
+) -> PointFields {
+    let stress = ring_stress.map(|mut stress| {
+        stress.resize(displacement.len(), [0.0; 6]);
+        stress
+    });
+    PointFields {
+        displacement,
+        velocity: None,
+        acceleration: None,
+        von_mises: stress
+            .as_ref()
+            .map(|stress| stress.iter().map(|&s| von_mises(s)).collect()),
+        stress,
+        force_inner: Some(force_inner),
+        force_outer: Some(force_outer),
     }
 }
 

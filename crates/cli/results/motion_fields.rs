@@ -3,13 +3,13 @@
 
 use std::collections::BTreeMap;
 
-use checkpoint::{PointFields, StateArray, StepRecord};
+use checkpoint::{StateArray, StepRecord};
 use contact::Side;
 use dynamics::Model;
 use dynamics::motion::{Motion, MotionState};
-use fem::stress::{StressRecovery, von_mises};
+use fem::stress::StressRecovery;
 
-use super::fields::add_balls;
+use super::fields::{add_balls, point_fields};
 
 /// The record of one instant.
 pub fn record(
@@ -35,21 +35,11 @@ pub fn record(
             stress.extend(recovery.nodal(&field).into_iter().map(|s| turn.tensor(s)));
         }
     }
-    let [force_inner, force_outer] =
-        add_balls(model, &model.geometry, &motion.balls(state), &mut displacement);
-    stress.resize(displacement.len(), [0.0; 6]);
+    let forces = add_balls(model, &model.geometry, &motion.balls(state), &mut displacement);
     StepRecord {
         step: state.step,
         time: motion.time(state.step),
-        points: PointFields {
-            displacement,
-            velocity: None,
-            acceleration: None,
-            von_mises: with_stress.then(|| stress.iter().map(|&s| von_mises(s)).collect()),
-            stress: with_stress.then_some(stress),
-            force_inner: Some(force_inner),
-            force_outer: Some(force_outer),
-        },
+        points: point_fields(displacement, with_stress.then_some(stress), forces),
         scene: scene.to_string(),
         state: arrays(state),
     }
@@ -136,6 +126,8 @@ fn arrays(state: &MotionState) -> BTreeMap<String, StateArray> {
 
 #[cfg(test)]
 mod tests {
+    use fem::stress::von_mises;
+
     use super::*;
 
     /// Wrong: stress of the turning ring would be shown in the wrong directions.

@@ -96,7 +96,7 @@ pub fn loaded(forces: &[[f64; 2]]) -> Vec<bool> {
 
 /// The contact angle if it is on the groove, else the nearest place inside the rim: unloaded balls may be anywhere, and
 /// loaded ones on their way to equilibrium.
-fn on_groove(surface: &RacewaySurface, angle: f64, loaded: bool) -> f64 {
+pub fn on_groove(surface: &RacewaySurface, angle: f64, loaded: bool) -> f64 {
     let [low, high] = surface.angle_range;
     if loaded && low < angle && angle < high {
         return angle;
@@ -112,23 +112,29 @@ pub fn check_on_groove(
     u: &Displacements,
     forces: &[[f64; 2]],
 ) -> Result<(), DynamicsError> {
-    let [low, high] = surface.angle_range;
     let of_ring = |site: &Site| site.side == surface.groove.side;
     let contacts = problem.sites.iter().zip(loaded(forces));
     for (site, _) in contacts.filter(|(site, loaded)| *loaded && of_ring(site)) {
         let angle = site.contact_angle(&site.state(u));
-        if angle <= low || angle >= high {
-            let off = ContactError::OffRaceway {
-                ball: site.ball,
-                side: site.side.name(),
-                angle_deg: angle.to_degrees(),
-                low_deg: low.to_degrees(),
-                high_deg: high.to_degrees(),
-            };
-            return Err(off.into());
-        }
+        require_on_groove(surface, site.ball, angle)?;
     }
     Ok(())
+}
+
+/// Fails when a contact angle lies beyond the rim of the groove.
+pub fn require_on_groove(surface: &RacewaySurface, ball: usize, angle: f64) -> Result<(), DynamicsError> {
+    let [low, high] = surface.angle_range;
+    if low < angle && angle < high {
+        return Ok(());
+    }
+    let off = ContactError::OffRaceway {
+        ball,
+        side: surface.groove.side.name(),
+        angle_deg: angle.to_degrees(),
+        low_deg: low.to_degrees(),
+        high_deg: high.to_degrees(),
+    };
+    Err(off.into())
 }
 
 /// Foot point on the facet under the ball. The offsets of the facets along the groove are sampled once; the ring's

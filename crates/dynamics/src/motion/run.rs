@@ -4,7 +4,7 @@
 //! loads that are fixed in space are turned into it. Contacts of a step are placed at the azimuths of its middle.
 
 use contact::patch::PatchShape;
-use contact::{ContactError, ContactLaw, NodalWeights, Patch, Side};
+use contact::{ContactLaw, NodalWeights, Patch, Side};
 use rayon::prelude::*;
 use solver::dense::DenseCholesky;
 
@@ -16,11 +16,9 @@ use super::start::check_supported;
 use super::state::{MotionSettings, MotionState, StepReport};
 use crate::effects::{self, Loads, Now};
 use crate::error::DynamicsError;
+use crate::footprint::{on_groove, require_on_groove};
 use crate::model::{Model, ShaftDof, elastic};
 use crate::problem::Site;
-
-/// Groove angle kept from the rim by an unloaded contact, as a share of the groove.
-const RIM_SHARE: f64 = 0.05;
 
 /// A model ready to move.
 pub struct Motion<'a> {
@@ -158,25 +156,11 @@ impl<'a> Motion<'a> {
         } else {
             0.0
         };
-        let [low, high] = motion.surface.angle_range;
-        let rim = RIM_SHARE * (high - low);
-        let angle = state.angles[index];
-        if force != [0.0; 2] && !(low..high).contains(&angle) {
-            return Err(ContactError::OffRaceway {
-                ball,
-                side: side.name(),
-                angle_deg: angle.to_degrees(),
-                low_deg: low.to_degrees(),
-                high_deg: high.to_degrees(),
-            }
-            .into());
+        let loaded = force != [0.0; 2];
+        if loaded {
+            require_on_groove(&motion.surface, ball, state.angles[index])?;
         }
-        // An open contact may point anywhere; it is kept on the groove.
-        let angle = if force == [0.0; 2] {
-            angle.clamp(low + rim, high - rim)
-        } else {
-            angle
-        };
+        let angle = on_groove(&motion.surface, state.angles[index], loaded);
         let axes = hertz.semi_axes(force[0].hypot(force[1]));
         let shape = PatchShape::new(
             &motion.surface,
