@@ -87,6 +87,8 @@ fn a_ledger_that_does_not_close_stops_the_run() {
         "{}",
         outcome.stderr
     );
+    let status = summary(&dir, "out")["status"].as_str().unwrap().to_string();
+    assert!(status.starts_with("failed: the energy ledger"), "{status}");
     assert!(
         outcome.stderr.contains("dynamic.ledger_tolerance is 1.0e-14"),
         "{}",

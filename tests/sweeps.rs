@@ -153,7 +153,14 @@ fn a_sweep_that_breaks_down_keeps_its_points_and_ends_with_code_3() {
                    equilibrium: z of the shaft";
     assert!(outcome.stderr.contains(message), "{}", outcome.stderr);
     assert_eq!(Table::read(&dir, "out/balls.csv").rows.len(), 2 * 18);
-    assert!(dir.path("out/step_000001.hdf").exists() && !dir.path("out/summary.json").exists());
+    assert!(dir.path("out/step_000001.hdf").exists() && dir.path("out/run.vtkhdf").exists());
+    let summary = summary(&dir, "out");
+    let status = summary["status"].as_str().unwrap();
+    assert!(
+        status.starts_with("failed: effects.axial_force.value_n = 1000000000 failed after 2"),
+        "{status}"
+    );
+    assert_eq!(summary["sweep"]["points"].as_array().unwrap().len(), 2);
 
     let rigid = Dir::with_scene(SCENE);
     rigid.run(

@@ -41,37 +41,42 @@ pub fn run(scene: &Scene, dynamic: &Dynamic, dir: PathBuf, start: Instant) -> Re
     let motion = Motion::new(&model, settings(scene, dynamic)).map_err(Failure::solving)?;
     let state = motion.start(&equilibrium);
     let mut files = Files::create(scene, &model, &dir, &Snapshot::of_motion(&motion, &state))?;
-    write(&mut files, scene, &model, &motion, &state, Fields::Write)?;
+    files
+        .write_fields(|recoveries| motion_fields::record(&model, &motion, &state, recoveries, &scene.text))?;
+    write_tables(&mut files, &motion, &state)?;
     let clock = Instant::now();
-    let (state, newton) = march(
+    let mut march = March {
         scene,
         dynamic,
-        &model,
-        &motion,
+        model: &model,
+        motion: &motion,
+        files: &mut files,
         state,
-        &mut files,
-        &mut progress,
-        &dir,
-    )?;
+        newton: 0,
+    };
+    let ended = march.run(&mut progress, &dir);
+    let (state, newton) = (march.state, march.newton);
     progress.finish();
     let seconds = clock.elapsed().as_secs_f64();
-    let costs = files.finish(
-        read,
-        forecast,
-        Timing {
-            newton: timing.newton + seconds,
-            ..timing
-        },
-        start,
-    )?;
-    let last = Snapshot::of_motion(&motion, &state);
-    console::print_snapshot(&last);
+    let spent = Timing {
+        newton: timing.newton + seconds,
+        ..timing
+    };
+    let costs = files.finish(read, forecast, spent, start)?;
     let findings = Findings {
-        last,
+        status: ended
+            .as_ref()
+            .err()
+            .map_or("finished".to_string(), |f| format!("failed: {}", f.text())),
+        last: Snapshot::of_motion(&motion, &state),
         points: Vec::new(),
         iterations: BTreeMap::from([("steps", state.step as usize), ("newton", newton)]),
         warnings: equilibrium.warnings.clone(),
     };
+    let summary = Summary::new(scene, &model, findings, &costs);
+    summary.write(&dir)?;
+    ended?;
+    console::print_snapshot(&Snapshot::of_motion(&motion, &state));
     print::line(format_args!(
         "{} steps of {} s, {:.1} ms per step; energy defect {:.1e} of the largest energy",
         state.step,
@@ -79,83 +84,74 @@ pub fn run(scene: &Scene, dynamic: &Dynamic, dir: PathBuf, start: Instant) -> Re
         1e3 * seconds / dynamic.n_steps as f64,
         state.ledger.relative_defect()
     ));
-    let summary = Summary::new(scene, &model, findings, &costs);
-    summary.write(&dir)?;
     summary.print_costs();
     Ok(dir)
 }
 
-/// Whether a step's fields are written besides its tables.
-#[derive(Clone, Copy, PartialEq)]
-enum Fields {
-    Write,
-    Skip,
+/// A run under way.
+struct March<'a> {
+    scene: &'a Scene,
+    dynamic: &'a Dynamic,
+    model: &'a Model,
+    motion: &'a Motion<'a>,
+    files: &'a mut Files,
+    /// The last good state.
+    state: MotionState,
+    /// Newton iterations so far.
+    newton: usize,
 }
 
-#[expect(
-    clippy::too_many_arguments,
-    reason = "the parts of one run; a struct of them would have no other use"
-)]
-fn march(
-    scene: &Scene,
-    dynamic: &Dynamic,
-    model: &Model,
-    motion: &Motion<'_>,
-    mut state: MotionState,
-    files: &mut Files,
-    progress: &mut Progress,
-    dir: &Path,
-) -> Result<(MotionState, usize), Failure> {
-    let mut newton = 0;
-    for n in 1..=dynamic.n_steps {
-        if n % PROGRESS_STEPS == 1 {
-            progress.stage(&format!(
-                "step {n} of {}, t = {:.4e} s",
-                dynamic.n_steps,
-                motion.time(n)
-            ));
-        }
-        let (next, report) = match motion.step(&state) {
-            Ok(done) => done,
-            Err(error) => {
-                // The last good state is the one worth looking at.
-                write(files, scene, model, motion, &state, Fields::Write)?;
-                let place = format!(
-                    "step {n}, t = {:.6e} s; the last good state is in {}",
-                    motion.time(n),
-                    dir.display()
-                );
-                return Err(Failure::solving(error).context(place));
+impl March<'_> {
+    /// Steps to the end of the run. On failure the last good state has its step file.
+    fn run(&mut self, progress: &mut Progress, dir: &Path) -> Result<(), Failure> {
+        let n_steps = self.dynamic.n_steps;
+        for n in 1..=n_steps {
+            if n % PROGRESS_STEPS == 1 {
+                progress.stage(&format!(
+                    "step {n} of {n_steps}, t = {:.4e} s",
+                    self.motion.time(n)
+                ));
             }
-        };
-        newton += report.newton_iterations;
-        state = next;
-        let last = n == dynamic.n_steps;
-        let fields = if last || n.is_multiple_of(dynamic.output_every) {
-            Fields::Write
-        } else {
-            Fields::Skip
-        };
-        write(files, scene, model, motion, &state, fields)?;
-        check_ledger(dynamic, motion, &state, dir)?;
-        progress.advance();
+            match self.motion.step(&self.state) {
+                Ok((next, report)) => {
+                    self.newton += report.newton_iterations;
+                    self.state = next;
+                }
+                Err(error) => {
+                    if !self.has_file(n - 1) {
+                        self.write_fields()?;
+                    }
+                    let time = self.motion.time(n);
+                    let place = format!(
+                        "step {n}, t = {time:.6e} s; the last good state is in {}",
+                        dir.display()
+                    );
+                    return Err(Failure::solving(error).context(place));
+                }
+            }
+            if self.has_file(n) {
+                self.write_fields()?;
+            }
+            write_tables(self.files, self.motion, &self.state)?;
+            check_ledger(self.dynamic, self.motion, &self.state, dir)?;
+            progress.advance();
+        }
+        Ok(())
     }
-    Ok((state, newton))
+
+    /// Whether a step's fields are written.
+    fn has_file(&self, step: u64) -> bool {
+        step == self.dynamic.n_steps || step.is_multiple_of(self.dynamic.output_every)
+    }
+
+    fn write_fields(&mut self) -> Result<(), Failure> {
+        let (model, motion, state, text) = (self.model, self.motion, &self.state, &self.scene.text);
+        self.files
+            .write_fields(|recoveries| motion_fields::record(model, motion, state, recoveries, text))
+    }
 }
 
-fn write(
-    files: &mut Files,
-    scene: &Scene,
-    model: &Model,
-    motion: &Motion<'_>,
-    state: &MotionState,
-    fields: Fields,
-) -> Result<(), Failure> {
-    if fields == Fields::Write {
-        files.write_fields(|recoveries| {
-            motion_fields::record(model, motion, state, recoveries, &scene.text)
-        })?;
-    }
+fn write_tables(files: &mut Files, motion: &Motion<'_>, state: &MotionState) -> Result<(), Failure> {
     files.write_tables(
         state.step,
         motion.time(state.step),

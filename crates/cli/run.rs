@@ -39,13 +39,18 @@ pub fn run(path: &Path, overrides: &[String], out: Option<PathBuf>) -> Result<Pa
     let mut solver = StaticSolver::new(&model).map_err(Failure::solving)?;
     let mut solutions: Vec<(f64, StaticSolution)> = Vec::new();
     let mut results: Option<Files> = None;
+    let mut failure = None;
     for (step, (value, point)) in points.iter().enumerate() {
         progress.stage(&stage_text(&scene, *value));
         model = model_with_rings(point, model.rings)?;
         let before = solutions.last().map(|s| &s.1);
-        let solution = solver
-            .solve(&model, before)
-            .map_err(|e| at_point(e, &scene, *value, &dir, step))?;
+        let solution = match solver.solve(&model, before) {
+            Ok(solution) => solution,
+            Err(error) => {
+                failure = Some(at_point(error, &scene, *value, &dir, step));
+                break;
+            }
+        };
         // The first solution makes the folder: a scene that has none leaves no files.
         let snapshot = Snapshot::of_equilibrium(&solution);
         let files = match &mut results {
@@ -67,26 +72,37 @@ pub fn run(path: &Path, overrides: &[String], out: Option<PathBuf>) -> Result<Pa
     }
     progress.finish();
     let forecast = Side::BOTH.map(|side| solver.ring(side).map(|r| r.memory));
-    let results = results.expect("a scene has at least one point");
-    let costs = results.finish(read, forecast, solver.timing, start)?;
-    let summary = Summary::new(&scene, &model, findings(&scene, &solutions), &costs);
-    summary.write(&dir)?;
+    // Points that were solved get their summary, whatever came after them.
+    if let Some(files) = results {
+        let costs = files.finish(read, forecast, solver.timing, start)?;
+        let summary = Summary::new(&scene, &model, findings(&scene, &solutions, &failure), &costs);
+        summary.write(&dir)?;
+        if failure.is_none() {
+            print_results(&scene, &solutions, &summary);
+        }
+    }
+    failure.map_or(Ok(dir), Err)
+}
+
+fn print_results(scene: &Scene, solutions: &[(f64, StaticSolution)], summary: &Summary) {
     match &scene.analysis {
         Analysis::Static | Analysis::Dynamic(_) => {
             console::print_snapshot(&Snapshot::of_equilibrium(&solutions[0].1))
         }
-        Analysis::Sweep(sweep) => console::print_sweep(&sweep.column, &solutions),
+        Analysis::Sweep(sweep) => console::print_sweep(&sweep.column, solutions),
     }
     summary.print_costs();
-    Ok(dir)
 }
 
-fn findings(scene: &Scene, solutions: &[(f64, StaticSolution)]) -> Findings {
+fn findings(scene: &Scene, solutions: &[(f64, StaticSolution)], failure: &Option<Failure>) -> Findings {
     let last = &solutions.last().expect("a finished run has a solution").1;
     let points = solutions
         .iter()
         .map(|(value, s)| (*value, Snapshot::of_equilibrium(s)));
     Findings {
+        status: failure
+            .as_ref()
+            .map_or("finished".to_string(), |f| format!("failed: {}", f.text())),
         last: Snapshot::of_equilibrium(last),
         points: points.collect(),
         iterations: BTreeMap::from([("rounds", last.rounds), ("newton", last.newton_iterations)]),

@@ -97,6 +97,8 @@ impl ShaftSummary {
 
 /// What a run found, besides its costs.
 pub struct Findings {
+    /// `finished`, or what ended the run before its end.
+    pub status: String,
     /// The state at its end.
     pub last: Snapshot,
     /// Points of a sweep: swept value and state; empty otherwise.
@@ -108,7 +110,7 @@ pub struct Findings {
 }
 
 impl Summary {
-    /// Summary of a finished run.
+    /// Summary of a run.
     pub fn new(scene: &Scene, model: &Model, findings: Findings, costs: &Costs) -> Summary {
         let last = &findings.last;
         let (analysis, sweep) = match &scene.analysis {
@@ -136,7 +138,7 @@ impl Summary {
             title: scene.title.clone(),
             version: env!("CARGO_PKG_VERSION"),
             analysis,
-            status: "finished".to_string(),
+            status: findings.status,
             contact_mode: mode_name(model),
             shaft: ShaftSummary::new(last),
             balls: last.balls.clone(),

@@ -157,26 +157,28 @@ fn pointwise_contact_gains_energy_and_the_ledger_tells() {
         },
     );
     let scheme = ContactScheme::Pointwise { weight: 0.5 };
-    let states = run(
+    let motion = Motion::new(
         &loaded,
-        &solution,
         MotionSettings {
             scheme,
             ..settings(2e-5)
         },
-        150,
-    );
-    let defects: Vec<f64> = states.iter().map(|s| s.ledger.relative_defect().abs()).collect();
+    )
+    .unwrap();
+    let mut state = motion.start(&solution);
+    let mut largest = 0.0f64;
+    for _ in 0..150 {
+        // In the end balls are thrown out of the groove, which is an error of its own.
+        let Ok((next, _)) = motion.step(&state) else { break };
+        state = next;
+        largest = largest.max(state.ledger.relative_defect());
+    }
     println!(
-        "pointwise: defect {:.2e}, total {:.4} J",
-        defects[150],
-        states[150].ledger.total()
+        "pointwise: defect {largest:.2e} after {} steps, total {:.4} J",
+        state.step,
+        state.ledger.total()
     );
-    assert!(
-        defects.iter().any(|d| *d > 1e-3),
-        "the alarm's tolerance is 1e-6: {:.2e}",
-        defects[150]
-    );
+    assert!(largest > 1e-3, "the alarm's tolerance is 1e-6: {largest:.2e}");
 }
 
 /// Wrong: contact damping or Rayleigh damping would feed energy, or their losses would be missing in the ledger.
