@@ -66,11 +66,16 @@ pub fn check(path: &Path, overrides: &[String]) -> Result<(), Failure> {
     }
     let n_threads = rayon::current_num_threads();
     print::line(format_args!(
-        "memory   peak about {:.0} MB with {n_threads} threads",
-        forecast_peak(memory, n_threads) as f64 / 1e6
+        "memory   peak about {:.0} MB with {n_threads} threads{}",
+        forecast_peak(memory, n_threads) as f64 / 1e6,
+        match &scene.analysis {
+            Analysis::Dynamic(_) =>
+                " for the static start; the steps hold mass and stiffness too, and are not forecast",
+            _ => "",
+        }
     ));
     let points: usize = fields::bodies(&model).iter().map(|b| b.points.len()).sum();
-    let step_bytes = points * BYTES_PER_POINT;
+    let step_bytes = points * BYTES_PER_POINT + state_bytes(&scene, &model);
     print::line(format_args!(
         "output   about {:.2} MB per step, {:.2} MB in all",
         step_bytes as f64 / 1e6,
@@ -80,6 +85,19 @@ pub fn check(path: &Path, overrides: &[String]) -> Result<(), Failure> {
 }
 
 /// Prints one ring and returns the forecast of its memory; None for a rigid ring.
+/// Bytes of the stored state of a moving bearing: displacement, velocity and acceleration of every ring dof.
+fn state_bytes(scene: &Scene, model: &dynamics::Model) -> usize {
+    match &scene.analysis {
+        Analysis::Dynamic(_) => model
+            .rings
+            .iter()
+            .flatten()
+            .map(|ring| 3 * 8 * ring.mesh.n_dofs())
+            .sum(),
+        _ => 0,
+    }
+}
+
 fn print_ring(model: &Model, side: Side) -> Result<Option<RingMemory>, Failure> {
     let stiffness = model.hertz[side.index()].stiffness / 10f64.powf(4.5);
     let Some(ring) = model.ring(side) else {
