@@ -239,10 +239,9 @@ fn node_spacing(
     n_nodes: usize,
 ) -> Vec<[f64; 2]> {
     let n = kind.n_nodes();
-    // Irregular quadratic triangles carry a pressure less well than their three nodes per edge suggest.
+    // Irregular triangles carry a pressure less well than their three nodes per edge suggest: their whole size counts.
     let order = match kind {
-        FacetKind::Quad4 => 1.0,
-        FacetKind::Tri6 => 1.5,
+        FacetKind::Quad4 | FacetKind::Tri6 => 1.0,
         FacetKind::Quad8 => 2.0,
     };
     let mut sums = vec![[0.0; 3]; n_nodes];
