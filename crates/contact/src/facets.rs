@@ -13,7 +13,8 @@
 use fem::facet;
 use mesh::{Facet, FacetKind, Mesh};
 
-use crate::raceway::Groove;
+use crate::raceway::{Groove, outside};
+use crate::vector::{cross, dot};
 
 /// Reference coordinate beyond which Newton on a facet is given up.
 const FAR: f64 = 50.0;
@@ -221,26 +222,6 @@ fn project(
         }
     }
     None
-}
-
-/// Largest distance outside the reference facet, negative or zero inside.
-fn outside(kind: FacetKind, xi: [f64; 2]) -> f64 {
-    match kind {
-        FacetKind::Tri6 => (-xi[0]).max(-xi[1]).max(xi[0] + xi[1] - 1.0),
-        _ => xi[0].abs().max(xi[1].abs()) - 1.0,
-    }
-}
-
-fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-}
-
-fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    [
-        a[1] * b[2] - a[2] * b[1],
-        a[2] * b[0] - a[0] * b[2],
-        a[0] * b[1] - a[1] * b[0],
-    ]
 }
 
 fn unit(v: [f64; 3]) -> [f64; 3] {

@@ -15,6 +15,7 @@ pub mod patch;
 pub mod quadrature;
 pub mod raceway;
 pub mod unevenness;
+mod vector;
 pub mod weights;
 
 pub use error::ContactError;

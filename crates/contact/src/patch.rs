@@ -13,6 +13,7 @@ use crate::halfspace::patch_compliance;
 use crate::hertz::Elastic;
 use crate::quadrature::PressureRule;
 use crate::raceway::RacewaySurface;
+use crate::vector::cross;
 use crate::weights::NodalWeights;
 use fem::facet;
 
@@ -151,14 +152,6 @@ fn sample(
 /// a + s b.
 fn axpy(a: [f64; 3], s: f64, b: [f64; 3]) -> [f64; 3] {
     [a[0] + s * b[0], a[1] + s * b[1], a[2] + s * b[2]]
-}
-
-fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    [
-        a[1] * b[2] - a[2] * b[1],
-        a[2] * b[0] - a[0] * b[2],
-        a[0] * b[1] - a[1] * b[0],
-    ]
 }
 
 /// Adds w (|r|^2 I - r r^T).

@@ -304,7 +304,7 @@ fn invert(kind: FacetKind, coordinates: &[[f64; 2]], target: [f64; 2]) -> Option
 }
 
 /// Largest distance outside the reference facet, negative or zero inside.
-fn outside(kind: FacetKind, xi: [f64; 2]) -> f64 {
+pub(crate) fn outside(kind: FacetKind, xi: [f64; 2]) -> f64 {
     match kind {
         FacetKind::Tri6 => (-xi[0]).max(-xi[1]).max(xi[0] + xi[1] - 1.0),
         _ => xi[0].abs().max(xi[1].abs()) - 1.0,

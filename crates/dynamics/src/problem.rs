@@ -14,6 +14,8 @@ use std::sync::Arc;
 use contact::law::ContactForce;
 use contact::{ContactLaw, Side, Unevenness};
 
+use crate::model::Model;
+
 /// Unknowns of one contact: at most 5 shaft dofs, 2 of the ball, 2 of the groove centre.
 const MAX_LOCAL: usize = 9;
 
@@ -92,6 +94,25 @@ pub struct SiteState {
 }
 
 impl Site {
+    /// A ball at an azimuth on an exact, rigid groove with the model's Hertz stiffness.
+    pub fn new(model: &Model, ball: usize, side: Side, azimuth: f64) -> Site {
+        let geometry = &model.geometry;
+        let (centre, ball_centre) = (geometry.groove_centre(side), geometry.ball_centre());
+        Site {
+            ball,
+            side,
+            azimuth,
+            reach: [ball_centre[0] - centre[0], ball_centre[1] - centre[1]],
+            touching: geometry.touching_distance(side),
+            lever: geometry.centre_radius(side),
+            law: ContactLaw {
+                stiffness: model.hertz[side.index()].stiffness,
+                patch_compliance: 0.0,
+            },
+            unevenness: None,
+        }
+    }
+
     /// Motion [radial, axial] of the groove centre per unit of each shaft dof (tilts in rad).
     pub fn shaft_rows(&self) -> [[f64; 2]; 5] {
         let (sin, cos) = self.azimuth.sin_cos();

@@ -123,9 +123,13 @@ impl RingSolver {
 
 /// Analysis of the factorisation of a held ring, from its matrix' lower triangle.
 fn analyse(mesh: &Mesh, support: &Support, stiffness: &CsMat<f64>) -> Result<Symbolic, SolverError> {
-    let order = solver::angular_dissection(&mesh.nodes, &mesh.connectivity, mesh.kind.n_nodes());
-    let order = solver::restrict_order(&solver::expand(&order, 3), &support.free);
-    Symbolic::new(stiffness, &order)
+    Symbolic::new(stiffness, &elimination_order(mesh, &support.free))
+}
+
+/// Elimination order of the free dofs of a ring (nodal dofs, ascending).
+pub(crate) fn elimination_order(mesh: &Mesh, free: &[usize]) -> Vec<usize> {
+    let nodes = solver::angular_dissection(&mesh.nodes, &mesh.connectivity, mesh.kind.n_nodes());
+    solver::restrict_order(&solver::expand(&nodes, 3), free)
 }
 
 /// Forecast of the memory of a ring in a bearing of `n_balls` balls, and the analysis it rests on: no number is

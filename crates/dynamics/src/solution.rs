@@ -186,6 +186,7 @@ fn edge_warnings(footprints: &[Vec<Footprint>; 2], forces: &[[f64; 2]]) -> Vec<S
     warnings
 }
 
-fn dot(a: &[f64], b: &[f64]) -> f64 {
+/// a . b, summed in order.
+pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(x, y)| x * y).sum()
 }

@@ -14,7 +14,7 @@
 use std::sync::Arc;
 use std::time::Instant;
 
-use contact::{ContactLaw, Side};
+use contact::Side;
 use rayon::prelude::*;
 use solver::dense::DenseCholesky;
 
@@ -299,25 +299,8 @@ impl StaticSolver {
 
 fn base_problem(model: &Model, loads: &Loads) -> Problem {
     let geometry = &model.geometry;
-    let ball = geometry.ball_centre();
-    let sites = (0..geometry.n_balls).flat_map(|i| {
-        Side::BOTH.map(|side| {
-            let centre = geometry.groove_centre(side);
-            Site {
-                ball: i,
-                side,
-                azimuth: geometry.azimuth(i),
-                reach: [ball[0] - centre[0], ball[1] - centre[1]],
-                touching: geometry.touching_distance(side),
-                lever: geometry.centre_radius(side),
-                law: ContactLaw {
-                    stiffness: model.hertz[side.index()].stiffness,
-                    patch_compliance: 0.0,
-                },
-                unevenness: None,
-            }
-        })
-    });
+    let sites = (0..geometry.n_balls)
+        .flat_map(|i| Side::BOTH.map(|side| Site::new(model, i, side, geometry.azimuth(i))));
     Problem {
         sites: sites.collect(),
         rings: [None, None],

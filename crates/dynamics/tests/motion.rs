@@ -34,6 +34,13 @@ fn reloaded(model: &Model, case: &Case) -> Model {
     other
 }
 
+/// The bearing under 1 kN of thrust at rest, and the same under a radial force (N) that comes at t = 0.
+fn radial_step(radial: f64) -> (Model, StaticSolution) {
+    let before = Case::axial(1000.0);
+    let model = before.flexible(ContactMode::Patch, SMALL, Hold::Clamped);
+    (reloaded(&model, &Case { radial, ..before }), equilibrium(&model))
+}
+
 fn run(model: &Model, start: &StaticSolution, settings: MotionSettings, n: usize) -> Vec<MotionState> {
     let motion = Motion::new(model, settings).unwrap();
     let mut states = vec![motion.start(start)];
@@ -73,16 +80,7 @@ fn a_bearing_in_equilibrium_stays_there() {
 /// meet again. 1 kN axial, radial step 0 to 5 kN, tilt locked: the ledger closes to 1e-6 of the largest energy.
 #[test]
 fn the_ledger_closes_when_balls_unload() {
-    let before = Case::axial(1000.0);
-    let model = before.flexible(ContactMode::Patch, SMALL, Hold::Clamped);
-    let solution = equilibrium(&model);
-    let loaded = reloaded(
-        &model,
-        &Case {
-            radial: 5000.0,
-            ..before
-        },
-    );
+    let (loaded, solution) = radial_step(5000.0);
     for dt in [2e-5, 1e-5] {
         let states = run(&loaded, &solution, settings(dt), (3e-3 / dt) as usize);
         let open = states
@@ -146,16 +144,7 @@ fn slow_rolling_follows_the_static_forces() {
 /// energy while every Newton converges; this is kept as the test of the alarm.
 #[test]
 fn pointwise_contact_gains_energy_and_the_ledger_tells() {
-    let before = Case::axial(1000.0);
-    let model = before.flexible(ContactMode::Patch, SMALL, Hold::Clamped);
-    let solution = equilibrium(&model);
-    let loaded = reloaded(
-        &model,
-        &Case {
-            radial: 5000.0,
-            ..before
-        },
-    );
+    let (loaded, solution) = radial_step(5000.0);
     let scheme = ContactScheme::Pointwise { weight: 0.5 };
     let motion = Motion::new(
         &loaded,
@@ -184,16 +173,7 @@ fn pointwise_contact_gains_energy_and_the_ledger_tells() {
 /// Wrong: contact damping or Rayleigh damping would feed energy, or their losses would be missing in the ledger.
 #[test]
 fn damped_motion_loses_what_the_ledger_says() {
-    let before = Case::axial(1000.0);
-    let model = before.flexible(ContactMode::Patch, SMALL, Hold::Clamped);
-    let solution = equilibrium(&model);
-    let loaded = reloaded(
-        &model,
-        &Case {
-            radial: 2000.0,
-            ..before
-        },
-    );
+    let (loaded, solution) = radial_step(2000.0);
     let damping = ContactDamping {
         coefficient: 50.0,
         full_approach: 1e-6,

@@ -59,11 +59,7 @@ impl Motion<'_> {
     pub fn ring_displacement(&self, state: &MotionState, side: Side) -> Option<(Vec<f64>, f64)> {
         let motion = self.rings[side.index()].as_ref()?;
         let ring = state.rings[side.index()].as_ref()?;
-        let turned = if side == Side::Inner {
-            self.settings.speed.angle(self.time(state.step))
-        } else {
-            0.0
-        };
+        let turned = self.frame_angle(side, self.time(state.step));
         Some((motion.coordinates.expand(&ring.w), turned))
     }
 }

@@ -11,6 +11,8 @@ use super::coordinates::{Coordinates, SparseLoad};
 use super::integrator::Integrator;
 use crate::error::DynamicsError;
 use crate::model::{Model, RACEWAY_GROUP, RingModel, ShaftDof};
+use crate::ring::elimination_order;
+use crate::solution::dot;
 
 /// Matrices and factor of one ring at one step size.
 pub struct RingMotion {
@@ -38,6 +40,18 @@ pub struct RingState {
     pub v: Vec<f64>,
     /// Acceleration.
     pub a: Vec<f64>,
+}
+
+impl RingState {
+    /// At rest, without acceleration, at the displacement `w`.
+    pub fn at_rest(w: Vec<f64>) -> RingState {
+        let zero = vec![0.0; w.len()];
+        RingState {
+            w,
+            v: zero.clone(),
+            a: zero,
+        }
+    }
 }
 
 /// What the contacts of a step see of a ring: u_c = start + predicted + C F.
@@ -79,8 +93,7 @@ impl RingMotion {
             coordinates.reduce_matrix(&fem::assemble_stiffness(mesh, &ring.material).map_err(fem_error)?);
         let mass = coordinates.reduce_matrix(&fem::assemble_mass(mesh, &ring.material).map_err(fem_error)?);
         let mass = with_shaft_mass(mass, &coordinates, model);
-        let order = solver::angular_dissection(&mesh.nodes, &mesh.connectivity, mesh.kind.n_nodes());
-        let mut order = solver::restrict_order(&solver::expand(&order, 3), coordinates.free());
+        let mut order = elimination_order(mesh, coordinates.free());
         order.extend(coordinates.free().len()..coordinates.n());
         let factor =
             factor_effective(&stiffness, &mass, &order, integrator, dt, damping).map_err(|source| {
@@ -198,17 +211,6 @@ impl RingMotion {
         };
         self.dt * (loss(am, &self.mass) + loss(ak, &self.stiffness))
     }
-
-    /// Acceleration that balances the loads at given displacement and velocity is not needed at an equilibrium start:
-    /// this is the state at rest at `w`.
-    pub fn at_rest(&self, w: Vec<f64>) -> RingState {
-        let n = w.len();
-        RingState {
-            w,
-            v: vec![0.0; n],
-            a: vec![0.0; n],
-        }
-    }
 }
 
 /// Adds the shaft's own mass to its translations.
@@ -256,10 +258,6 @@ fn product(a: &CsMat<f64>, x: &[f64]) -> Vec<f64> {
                 .sum()
         })
         .collect()
-}
-
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(x, y)| x * y).sum()
 }
 
 fn sparse_dot(load: &SparseLoad, x: &[f64]) -> f64 {

@@ -4,7 +4,7 @@
 //! loads that are fixed in space are turned into it. Contacts of a step are placed at the azimuths of its middle.
 
 use contact::patch::PatchShape;
-use contact::{ContactLaw, NodalWeights, Patch, Side};
+use contact::{NodalWeights, Patch, Side};
 use rayon::prelude::*;
 use solver::dense::DenseCholesky;
 
@@ -59,6 +59,14 @@ impl<'a> Motion<'a> {
         self.model.geometry.azimuth(ball) + self.cage_angle(time)
     }
 
+    /// Angle by which the frame of a ring is turned in space, rad.
+    pub(super) fn frame_angle(&self, side: Side, time: f64) -> f64 {
+        match side {
+            Side::Inner => self.settings.speed.angle(time),
+            Side::Outer => 0.0,
+        }
+    }
+
     /// Angle the cage has turned since the start, rad.
     fn cage_angle(&self, time: f64) -> f64 {
         self.kinematics.cage * self.settings.speed.angle(time)
@@ -74,7 +82,7 @@ impl<'a> Motion<'a> {
                 cage_angle: self.cage_angle(middle),
             },
         )?;
-        let (mut sites, feet) = self.place(state, middle)?;
+        let (sites, feet) = self.place(state, middle)?;
         let prepare = |side: Side| {
             let motion = self.rings[side.index()].as_ref()?;
             let ring = state.rings[side.index()].as_ref()?;
@@ -86,7 +94,7 @@ impl<'a> Motion<'a> {
         };
         let (inner, outer) = rayon::join(|| prepare(Side::Inner), || prepare(Side::Outer));
         let steps = [inner, outer];
-        let system = self.system(state, std::mem::take(&mut sites), &steps, &loads);
+        let system = self.system(state, sites, &steps, &loads);
         let scale = state
             .forces
             .iter()
@@ -129,42 +137,23 @@ impl<'a> Motion<'a> {
         index: usize,
         middle: f64,
     ) -> Result<(Site, Option<NodalWeights>), DynamicsError> {
-        let (model, geometry) = (self.model, &self.model.geometry);
+        let model = self.model;
         let (ball, side) = (index / 2, Side::BOTH[index % 2]);
         let azimuth = self.ball_azimuth(ball, middle);
-        let hertz = &model.hertz[side.index()];
-        let (centre, ball_centre) = (geometry.groove_centre(side), geometry.ball_centre());
-        let mut site = Site {
-            ball,
-            side,
-            azimuth,
-            reach: [ball_centre[0] - centre[0], ball_centre[1] - centre[1]],
-            touching: geometry.touching_distance(side),
-            lever: geometry.centre_radius(side),
-            law: ContactLaw {
-                stiffness: hertz.stiffness,
-                patch_compliance: 0.0,
-            },
-            unevenness: None,
-        };
+        let mut site = Site::new(model, ball, side, azimuth);
         let (Some(ring), Some(motion)) = (model.ring(side), &self.rings[side.index()]) else {
             return Ok((site, None));
         };
         let force = state.forces[index];
-        let turned = if side == Side::Inner {
-            self.settings.speed.angle(middle)
-        } else {
-            0.0
-        };
         let loaded = force != [0.0; 2];
         if loaded {
             require_on_groove(&motion.surface, ball, state.angles[index])?;
         }
         let angle = on_groove(&motion.surface, state.angles[index], loaded);
-        let axes = hertz.semi_axes(force[0].hypot(force[1]));
+        let axes = model.hertz[side.index()].semi_axes(force[0].hypot(force[1]));
         let shape = PatchShape::new(
             &motion.surface,
-            azimuth - turned,
+            azimuth - self.frame_angle(side, middle),
             angle,
             axes,
             model.contact.patch_spacings,
@@ -183,11 +172,7 @@ impl<'a> Motion<'a> {
     /// Generalised load of a ring. Loads are fixed in space: those of the inner ring and its shaft are turned into
     /// its frame.
     fn ring_load(&self, motion: &RingMotion, side: Side, loads: &Loads, middle: f64) -> Vec<f64> {
-        let back = if side == Side::Inner {
-            -self.settings.speed.angle(middle)
-        } else {
-            0.0
-        };
+        let back = -self.frame_angle(side, middle);
         let mut load = match &loads.rings[side.index()] {
             Some(body) => motion.coordinates.reduce(&turn_nodal(body, back)),
             None => vec![0.0; motion.coordinates.n()],

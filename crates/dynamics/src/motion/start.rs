@@ -81,7 +81,7 @@ fn ring_at_start(motion: &RingMotion, elastic: &[f64], q: [f64; 5], omega: f64) 
         .iter()
         .enumerate()
         .for_each(|(i, &dof)| w[i] += elastic[dof]);
-    let mut state = motion.at_rest(w);
+    let mut state = RingState::at_rest(w);
     state.v = field([omega * q[1], -omega * q[0], 0.0, omega * q[4], -omega * q[3]]);
     state
 }
