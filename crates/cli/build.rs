@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use contact::{BearingGeometry, Groove, HertzContact, Side};
-use dynamics::effects::{AxialForce, BallCentrifugal, Effect, Gravity, Moment, RadialForce};
+use dynamics::effects::{AxialForce, BallCentrifugal, Effect, FrameRotation, Gravity, Moment, RadialForce};
 use dynamics::model::{RACEWAY_GROUP, elastic};
 use dynamics::{ContactMode, ContactSettings, Hold, Model, RingModel, ShaftDof, Tolerances};
 use fem::Material;
@@ -98,6 +98,9 @@ fn effects(scene: &Scene) -> Vec<Box<dyn Effect>> {
             speed: speed(scene),
             slip,
         }));
+    }
+    if scene.effects.frame_rotation {
+        effects.push(Box::new(FrameRotation { speed: speed(scene) }));
     }
     if let Some(acceleration) = scene.effects.gravity {
         effects.push(Box::new(Gravity { acceleration }));

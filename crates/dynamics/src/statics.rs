@@ -95,7 +95,9 @@ impl StaticSolver {
         model: &Model,
         start: Option<&StaticSolution>,
     ) -> Result<StaticSolution, DynamicsError> {
-        let loads = &effects::loads(model, &Now::default())?;
+        let mut loads = effects::loads(model, &Now::default())?;
+        effects::add_static_inertia(model, &mut loads)?;
+        let loads = &loads;
         let problem = base_problem(model, loads);
         let scales = SearchScales::new(
             &model.geometry,

@@ -4,12 +4,14 @@
 
 mod axial_force;
 mod ball_centrifugal;
+mod frame_rotation;
 mod gravity;
 mod moment;
 mod radial_force;
 
 pub use axial_force::AxialForce;
 pub use ball_centrifugal::BallCentrifugal;
+pub use frame_rotation::{FrameRotation, add_static_inertia};
 pub use gravity::Gravity;
 pub use moment::Moment;
 pub use radial_force::RadialForce;
@@ -32,6 +34,17 @@ pub struct Loads {
     pub ball_slope: f64,
     /// Body loads on the nodes of a flexible ring, N, `[n_nodes][3]` flat; None: no such load.
     pub rings: [Option<Vec<f64>>; 2],
+    /// Turning of the inner ring's frame, when its inertia is called for.
+    pub frame: Option<FrameTurn>,
+}
+
+/// How the frame of the inner ring turns.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct FrameTurn {
+    /// Speed, rad/s.
+    pub speed: f64,
+    /// Angular acceleration, rad/s^2.
+    pub acceleration: f64,
 }
 
 impl Loads {
@@ -43,6 +56,7 @@ impl Loads {
             ball_slope: 0.0,
             balls: vec![[0.0; 2]; model.geometry.n_balls],
             rings: [None, None],
+            frame: None,
         }
     }
 

@@ -2,29 +2,14 @@
 
 use contact::Side;
 
-use super::frame::turn;
 use super::run::Motion;
 use super::state::MotionState;
 use crate::balls::{BallDisplacement, BallResult, ContactResult};
-use crate::model::ShaftDof;
 
 impl Motion<'_> {
     /// Displacement of the shaft in space, m and rad.
     pub fn shaft(&self, state: &MotionState) -> [f64; 5] {
-        let (Some(motion), Some(ring)) = (&self.rings[0], &state.rings[0]) else {
-            return state.shaft;
-        };
-        let (dofs, first) = motion.coordinates.shaft();
-        let mut q = [0.0; 5];
-        for (i, dof) in self.model.shaft.iter().enumerate() {
-            if let ShaftDof::Prescribed(value) = dof {
-                q[i] = *value;
-            }
-        }
-        dofs.iter()
-            .enumerate()
-            .for_each(|(k, &dof)| q[dof] = ring.w[first + k]);
-        turn(q, self.settings.speed.angle(self.time(state.step)))
+        state.shaft
     }
 
     /// Results of every ball: mean forces of the last step, angles and approaches at its end.
