@@ -79,7 +79,8 @@ impl SmallSystem {
             history.push(now);
             stalled = if now < 0.5 * best { 0 } else { stalled + 1 };
             best = best.min(now);
-            if now <= RESIDUAL_TARGET * scale || (now <= RESIDUAL_LIMIT * scale && stalled >= 2) {
+            let limit = (RESIDUAL_LIMIT * scale).max(round_off(&jacobian, &x));
+            if now <= RESIDUAL_TARGET * scale || (now <= limit && stalled >= 2) {
                 return Ok(self.solution(x, forces, iteration));
             }
             let mut step: Vec<f64> = residual.iter().map(|r| -r).collect();
@@ -124,6 +125,13 @@ impl SmallSystem {
             share *= 0.5;
         }
     }
+}
+
+/// Residual that round-off of the unknowns alone can make: decisive for bodies that fly without any force.
+fn round_off(jacobian: &[f64], x: &[f64]) -> f64 {
+    let diagonal = jacobian.iter().step_by(x.len() + 1);
+    let terms = diagonal.zip(x).map(|(slope, x)| (slope * x).abs());
+    16.0 * f64::EPSILON * terms.fold(0.0, f64::max)
 }
 
 /// Place and size of the largest entry; NaN wins.

@@ -60,10 +60,7 @@ impl Motion<'_> {
             ledger: Ledger::default(),
         };
         state.ledger.hertz = solution.hertz_energy;
-        self.measure_energies(&mut state);
-        state.ledger.initial = state.ledger.total();
-        state.ledger.note_scale();
-        state
+        self.with_energies(state)
     }
 }
 
@@ -99,6 +96,16 @@ impl Motion<'_> {
             ledger: Ledger::default(),
         };
         self.note_contacts(&mut state);
+        self.with_energies(state)
+    }
+
+    /// The state with a ledger that begins here: after its velocities were set by hand.
+    pub fn with_energies(&self, mut state: MotionState) -> MotionState {
+        let hertz = state.ledger.hertz;
+        state.ledger = Ledger {
+            hertz,
+            ..Ledger::default()
+        };
         self.measure_energies(&mut state);
         state.ledger.initial = state.ledger.total();
         state.ledger.note_scale();
