@@ -3,10 +3,12 @@
 use contact::Side;
 
 use super::body::RingBody;
+use super::contacts::ContactScheme;
+use super::integrator::Integrator;
 use super::ledger::Ledger;
 use super::ring::RingState;
 use super::run::Motion;
-use super::state::MotionState;
+use super::state::{Ladder, MotionSettings, MotionState};
 use crate::error::DynamicsError;
 use crate::model::{ContactMode, Model};
 use crate::problem::Site;
@@ -97,6 +99,36 @@ impl Motion<'_> {
         };
         self.note_contacts(&mut state);
         self.with_energies(state)
+    }
+
+    /// The state with accelerations that fit its displacements and velocities: schemes that dissipate remember them, and
+    /// would be of first order without. They are means over a trial step of the conserving scheme, which needs none.
+    pub fn with_accelerations(&self, mut state: MotionState) -> Result<MotionState, DynamicsError> {
+        if self.settings.integrator.is_conserving() {
+            return Ok(state);
+        }
+        let conserving = MotionSettings {
+            integrator: Integrator::average_acceleration(),
+            scheme: ContactScheme::DiscreteGradient { weight: 0.5 },
+            ladder: Ladder::default(),
+            ..self.settings.clone()
+        };
+        let (next, _) = Motion::new(self.model, conserving)?.step(&state)?;
+        let mean = |v1: f64, v0: f64| (v1 - v0) / self.settings.dt;
+        for (ring, moved) in state.rings.iter_mut().zip(&next.rings) {
+            if let (Some(ring), Some(moved)) = (ring, moved) {
+                ring.a = moved.v.iter().zip(&ring.v).map(|(a, b)| mean(*a, *b)).collect();
+            }
+        }
+        for (b, moved) in next.ball_velocities.iter().enumerate() {
+            state.ball_accelerations[b] = [0, 1].map(|i| mean(moved[i], state.ball_velocities[b][i]));
+        }
+        for dof in 0..3 {
+            if self.model.shaft_mass > 0.0 {
+                state.shaft_acceleration[dof] = mean(next.shaft_velocity[dof], state.shaft_velocity[dof]);
+            }
+        }
+        Ok(state)
     }
 
     /// The state with a ledger that begins here: after its velocities were set by hand.
