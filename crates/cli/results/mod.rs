@@ -6,5 +6,6 @@ pub mod files;
 pub mod folder;
 pub mod motion_fields;
 pub mod snapshot;
+pub mod state_arrays;
 pub mod summary;
 pub mod tables;

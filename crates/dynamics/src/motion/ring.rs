@@ -32,7 +32,7 @@ pub struct RingMotion {
 }
 
 /// Displacement, velocity, acceleration of a ring's coordinates, `[n]` each, SI.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct RingState {
     /// Total displacement in the ring's frame.
     pub w: Vec<f64>,

@@ -26,7 +26,7 @@ pub struct MotionSettings {
 }
 
 /// All that evolves.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct MotionState {
     /// Steps done.
     pub step: u64,
