@@ -1,17 +1,21 @@
 //! The program `raceway`: rolling bearings whose two rings are finite-element bodies.
 //!
-//! Exit codes: 0 finished, 2 wrong input, 3 no solution found.
+//! Exit codes: 0 finished, 2 wrong input, 3 no solution found, 75 stopped early with a step to resume
+//! from.
 
 mod build;
 mod check;
 mod failure;
 mod meshing;
 mod motion;
+mod options;
 mod print;
 mod progress;
 mod results;
+mod resume;
 mod run;
 mod scene;
+mod stop;
 mod units;
 
 use std::path::PathBuf;
@@ -21,6 +25,8 @@ use clap::{Parser, Subcommand};
 use mesh::Overwrite;
 
 use crate::failure::Failure;
+use crate::options::Limits;
+use crate::resume::Request;
 
 /// Simulates angular contact ball bearings with fully flexible rings.
 #[derive(Debug, Parser)]
@@ -45,7 +51,11 @@ enum Command {
         /// Folder of the results; default: results/ and the scene's name.
         #[arg(long)]
         out: Option<PathBuf>,
+        #[command(flatten)]
+        limits: Limits,
     },
+    /// Goes on with a motion from its newest whole step, to the same bits as if it had not been interrupted.
+    Resume(Request),
     /// Builds everything a run needs but solves nothing: effects, sizes, memory, output.
     Check {
         /// Scene file.
@@ -72,7 +82,7 @@ fn main() -> ExitCode {
     match execute(arguments) {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => {
-            print::note(format_args!("error: {}", failure.text()));
+            print::note(format_args!("{}: {}", failure.kind(), failure.text()));
             failure.code()
         }
     }
@@ -95,11 +105,13 @@ fn execute(arguments: Arguments) -> Result<(), Failure> {
             scene,
             overrides,
             out,
+            limits,
         } => {
-            let dir = run::run(&scene, &overrides, out)?;
+            let dir = run::run(&scene, &overrides, out, &limits)?;
             print::line(format_args!("results: {}", dir.display()));
             Ok(())
         }
+        Command::Resume(request) => resume::resume(&request),
         Command::Check { scene, overrides } => check::check(&scene, &overrides),
         Command::Mesh {
             scene,

@@ -43,6 +43,7 @@ mod seal;
 
 pub use background::{BackgroundOutput, Companion, Written};
 pub use body::{Body, CellKind, point_ranges};
+pub use checksum::file_checksum;
 pub use error::CheckpointError;
 pub use folder::{committed_steps, new_superseded_folder, newest_step, step_file_name};
 pub use index::{Views, rebuild_index};

@@ -1,6 +1,9 @@
 //! What a run leaves behind: `summary.json`, tables, VTKHDF files, and a table on the screen.
 
+pub mod about;
 pub mod console;
+pub mod cut;
+pub mod disk;
 pub mod fields;
 pub mod files;
 pub mod folder;

@@ -94,7 +94,10 @@ fn exchange_ledger(ledger: &mut Ledger, port: &mut Port<'_>) -> anyhow::Result<(
     } = ledger;
     port.values("ledger_kinetic", kinetic)?;
     port.values("ledger_strain", strain)?;
-    port.scalars("ledger_sums", [load_work, patch_work, contact_loss, rayleigh_loss])?;
+    port.scalars(
+        "ledger_sums",
+        [load_work, patch_work, contact_loss, rayleigh_loss],
+    )?;
     port.scalars("ledger_scale", [initial, largest, hertz])
 }
 
@@ -157,7 +160,11 @@ impl Port<'_> {
                 unread.retain(|known| *known != name);
                 *value = match arrays.get(name) {
                     Some(StateArray::Integer(stored)) if stored.len() == 1 => u64::try_from(stored[0])?,
-                    other => return Err(anyhow!("the state array {name} is {other:?}, expected one integer")),
+                    other => {
+                        return Err(anyhow!(
+                            "the state array {name} is {other:?}, expected one integer"
+                        ));
+                    }
                 };
             }
         }
@@ -178,7 +185,9 @@ impl Port<'_> {
                 );
                 Ok(values)
             }
-            Some(StateArray::Integer(_)) => Err(anyhow!("the state array {name} holds integers, expected reals")),
+            Some(StateArray::Integer(_)) => {
+                Err(anyhow!("the state array {name} holds integers, expected reals"))
+            }
             None => Err(anyhow!("the state array {name} is missing")),
         }
     }
@@ -239,7 +248,15 @@ mod tests {
         let back = load(&store(&state, &SHAPE), &SHAPE).unwrap();
         // Debug prints the shortest text that is one f64 only, signs of zero and NaN included.
         assert_eq!(format!("{back:?}"), format!("{state:?}"));
-        let bits = |s: &MotionState| s.rings[0].as_ref().unwrap().w.clone().into_iter().map(f64::to_bits);
+        let bits = |s: &MotionState| {
+            s.rings[0]
+                .as_ref()
+                .unwrap()
+                .w
+                .clone()
+                .into_iter()
+                .map(f64::to_bits)
+        };
         assert!(bits(&back).eq(bits(&state)));
     }
 

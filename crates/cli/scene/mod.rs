@@ -25,6 +25,7 @@
 mod bearing;
 mod contact;
 mod damping;
+mod difference;
 mod dynamic;
 mod edit;
 mod effects;
@@ -50,6 +51,7 @@ use toml_edit::DocumentMut;
 
 pub use self::bearing::Bearing;
 pub use self::contact::{Contact, ContactMode};
+pub use self::difference::difference;
 pub use self::dynamic::{ContactScheme, Dynamic, IntegratorChoice};
 pub use self::effects::Effects;
 pub use self::error::SceneError;
@@ -107,6 +109,8 @@ pub struct Scene {
     pub path: PathBuf,
     /// Its text with the overrides applied: with the path, all that is needed to read the scene again.
     pub text: String,
+    /// The `--set` arguments in it.
+    pub overrides: Vec<String>,
     /// Free text for people.
     pub title: Option<String>,
     /// Macro-geometry.
@@ -252,6 +256,7 @@ impl Source<'_> {
             (Some(bearing), Some(materials), Some(analysis), texts) if texts.is_empty() => Ok(Scene {
                 path: self.path.to_path_buf(),
                 text,
+                overrides: self.overrides.to_vec(),
                 title: raw.title,
                 bearing,
                 materials,
