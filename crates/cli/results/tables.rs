@@ -92,19 +92,36 @@ impl Tables {
         let mut head = vec![step.to_string(), number(time)];
         head.extend(swept.map(number));
         let row = |cells: Vec<String>| [head.clone(), cells].concat();
-        for (i, ball) in snapshot.balls.iter().enumerate() {
-            self.balls.write_record(row(ball_cells(i, ball)))?;
-        }
+        let balls = snapshot.balls.iter().enumerate();
         let shaft = snapshot.shaft.iter().chain(snapshot.reaction.iter().flatten());
-        self.shaft
-            .write_record(row(shaft.map(|x| number(*x)).collect()))?;
-        self.energy
-            .write_record(row(snapshot.energies.iter().map(|(_, x)| number(*x)).collect()))?;
-        for writer in [&mut self.balls, &mut self.shaft, &mut self.energy] {
-            writer.flush().context("cannot write a table")?;
-        }
-        Ok(())
+        let energies = snapshot.energies.iter();
+        append(
+            &mut self.balls,
+            BALLS,
+            balls.map(|(i, ball)| row(ball_cells(i, ball))),
+        )?;
+        append(&mut self.shaft, SHAFT, [row(shaft.map(|x| number(*x)).collect())])?;
+        append(
+            &mut self.energy,
+            ENERGY,
+            [row(energies.map(|(_, x)| number(*x)).collect())],
+        )
     }
+}
+
+/// Appends rows and hands them to the system: a killed run loses none of them.
+fn append(
+    table: &mut csv::Writer<std::fs::File>,
+    name: &str,
+    rows: impl IntoIterator<Item = Vec<String>>,
+) -> anyhow::Result<()> {
+    let write = || -> csv::Result<()> {
+        for row in rows {
+            table.write_record(row)?;
+        }
+        Ok(table.flush()?)
+    };
+    write().with_context(|| format!("cannot write {name} of the results"))
 }
 
 fn ball_cells(index: usize, ball: &BallResult) -> Vec<String> {
