@@ -4,7 +4,7 @@ use std::path::Path;
 
 use anyhow::anyhow;
 use contact::Side;
-use dynamics::Model;
+use dynamics::{Hold, Model, RingModel};
 
 use super::fields;
 use crate::failure::Failure;
@@ -102,15 +102,20 @@ impl Forecast {
 fn state_bytes(scene: &Scene, model: &Model) -> u64 {
     match &scene.analysis {
         Analysis::Dynamic(_) => {
-            let ring = |side| {
-                model
-                    .ring(side)
-                    .map_or(0, |ring| 3 * 8 * ring.mesh.n_dofs() as u64)
-            };
-            Side::BOTH.map(ring).iter().sum::<u64>() + BALL_BYTES * model.geometry.n_balls as u64
+            let rings = Side::BOTH.into_iter().filter_map(|side| model.ring(side));
+            rings.map(ring_bytes).sum::<u64>() + BALL_BYTES * model.geometry.n_balls as u64
         }
         Analysis::Static | Analysis::Sweep(_) => 8 * (5 + 2 * model.geometry.n_balls as u64),
     }
+}
+
+/// Displacement, velocity and acceleration of the dofs of a ring that can move by themselves.
+fn ring_bytes(ring: &RingModel) -> u64 {
+    let held = match ring.hold {
+        Hold::Clamped => 3 * ring.mesh.group_nodes(ring.held_group).len(),
+        Hold::MeanMotion => 0,
+    };
+    3 * 8 * (ring.mesh.n_dofs() - held) as u64
 }
 
 /// Bytes that a user may still write to the disk of `dir`, or of the folder in which it will be made.
