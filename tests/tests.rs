@@ -2,6 +2,7 @@
 //! leaves behind. One binary, a file per area; `fixtures/README.md` says where the inputs come from.
 
 mod bad_input;
+mod export;
 mod interruption;
 mod memory;
 mod motion;

@@ -5,7 +5,9 @@
 
 mod build;
 mod check;
+mod export;
 mod failure;
+mod info;
 mod meshing;
 mod motion;
 mod options;
@@ -24,7 +26,9 @@ use std::process::ExitCode;
 use clap::{Parser, Subcommand};
 use mesh::Overwrite;
 
+use crate::export::Export;
 use crate::failure::Failure;
+use crate::info::Depth;
 use crate::options::Limits;
 use crate::resume::Request;
 
@@ -56,6 +60,16 @@ enum Command {
     },
     /// Goes on with a motion from its newest whole step, to the same bits as if it had not been interrupted.
     Resume(Request),
+    /// Says what a result folder, a step file or a mesh file holds.
+    Info {
+        /// Result folder, or a file in it.
+        path: PathBuf,
+        /// Reads and checks every byte of a folder's step files.
+        #[arg(long)]
+        verify: bool,
+    },
+    /// Writes steps in a form for other tools.
+    Export(Export),
     /// Builds everything a run needs but solves nothing: effects, sizes, memory, output.
     Check {
         /// Scene file.
@@ -112,6 +126,10 @@ fn execute(arguments: Arguments) -> Result<(), Failure> {
             Ok(())
         }
         Command::Resume(request) => resume::resume(&request),
+        Command::Info { path, verify } => {
+            info::info(&path, if verify { Depth::Bytes } else { Depth::Structure })
+        }
+        Command::Export(request) => export::export(&request),
         Command::Check { scene, overrides } => check::check(&scene, &overrides),
         Command::Mesh {
             scene,

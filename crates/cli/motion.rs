@@ -256,10 +256,10 @@ impl March<'_> {
         if self.last_file == Some(self.state.step) {
             return Ok(());
         }
-        let (model, motion, state, text) = (self.model, self.motion, &self.state, &self.scene.text);
+        let (model, motion, state, scene) = (self.model, self.motion, &self.state, self.scene);
         let newton = self.newton;
         self.files.write_fields(|recoveries| {
-            let mut record = motion_fields::record(model, motion, state, recoveries, text);
+            let mut record = motion_fields::record(model, motion, state, recoveries, scene);
             Stored::add_counts(&mut record, newton);
             record
         })?;

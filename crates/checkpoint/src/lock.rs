@@ -66,6 +66,25 @@ impl FolderLock {
     }
 }
 
+/// Who writes to the folder `dir` now; changes nothing.
+pub fn writer(dir: &Path) -> Result<Option<String>, CheckpointError> {
+    let path = dir.join(LOCK_FILE);
+    if !path.exists() {
+        return Ok(None);
+    }
+    let mut file = File::open(&path).map_err(CheckpointError::io("read", &path))?;
+    match file.try_lock_shared() {
+        Ok(()) => Ok(None),
+        Err(TryLockError::WouldBlock) => {
+            let mut owner = String::new();
+            file.read_to_string(&mut owner)
+                .map_err(CheckpointError::io("read", &path))?;
+            Ok(Some(owner.trim().to_string()))
+        }
+        Err(TryLockError::Error(source)) => Err(CheckpointError::io("lock", &path)(source)),
+    }
+}
+
 impl Drop for FolderLock {
     fn drop(&mut self) {
         // If this fails the next owner reports a dead one, which is harmless.

@@ -60,6 +60,14 @@ pub(crate) struct Field<'a> {
 }
 
 impl PointFields {
+    /// Name, components per point, and row-major values of every field that is present.
+    pub fn arrays(&self) -> Vec<(&'static str, usize, &[f64])> {
+        let fields = self.present(Storage::default()).into_iter();
+        fields
+            .map(|field| (field.name, field.n_components, field.values))
+            .collect()
+    }
+
     /// Fields that are present, in the order of the files.
     pub(crate) fn present(&self, storage: Storage) -> Vec<Field<'_>> {
         let derived = |name, n_components, values| Field {

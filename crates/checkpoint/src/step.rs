@@ -143,6 +143,25 @@ pub fn read_about(path: &Path) -> Result<BTreeMap<String, String>, CheckpointErr
     about
 }
 
+/// What a step file says about itself.
+pub(crate) struct Contents {
+    pub step: u64,
+    pub time: f64,
+    pub scene: String,
+    /// Paths of its arrays.
+    pub arrays: Vec<String>,
+}
+
+/// Reads number, time, scene and the names of the arrays; the structure of the file must have been verified.
+pub(crate) fn read_contents(file: &CheckedFile) -> Result<Contents, CheckpointError> {
+    Ok(Contents {
+        step: file.scalar::<i64>(STEP)?.max(0) as u64,
+        time: file.scalar(TIME)?,
+        scene: file.text(SCENE)?,
+        arrays: file.text(CONTENTS)?.lines().map(str::to_string).collect(),
+    })
+}
+
 /// Fingerprint of the mesh a step file belongs to.
 pub(crate) fn read_mesh_hash(path: &Path) -> Result<String, CheckpointError> {
     CheckedFile::open(path)?.text(MESH_HASH)

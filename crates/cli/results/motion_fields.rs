@@ -1,5 +1,5 @@
 //! Nodal fields of one instant of a motion. Rings are shown as they stand in space: the inner ring is turned by its
-//! angle, and so are its displacements and its stress tensors. The state of the run is stored beside, bit for bit.
+//! angle, and so are its displacements and its stress tensors, unless the scene asks for its own frame. The state of the run is stored beside, bit for bit.
 
 use checkpoint::StepRecord;
 use contact::Side;
@@ -9,6 +9,7 @@ use fem::stress::StressRecovery;
 
 use super::fields::{add_balls, point_fields};
 use super::state_arrays;
+use crate::scene::{InnerRingFrame, Scene};
 
 /// The record of one instant.
 pub fn record(
@@ -16,7 +17,7 @@ pub fn record(
     motion: &Motion<'_>,
     state: &MotionState,
     recoveries: &[Option<StressRecovery>; 2],
-    scene: &str,
+    scene: &Scene,
 ) -> StepRecord {
     let with_stress = recoveries.iter().any(Option::is_some);
     let (mut displacement, mut stress) = (Vec::new(), Vec::new());
@@ -25,7 +26,10 @@ pub fn record(
         else {
             continue;
         };
-        let turn = Turn::new(angle);
+        let turn = Turn::new(match (side, scene.output.inner_ring) {
+            (Side::Inner, InnerRingFrame::OwnFrame) => 0.0,
+            (Side::Inner | Side::Outer, _) => angle,
+        });
         for (x, u) in ring.mesh.nodes.iter().zip(field.chunks_exact(3)) {
             let now = turn.vector([x[0] + u[0], x[1] + u[1], u[2]]);
             displacement.push([now[0] - x[0], now[1] - x[1], now[2]]);
@@ -39,7 +43,7 @@ pub fn record(
         step: state.step,
         time: motion.time(state.step),
         points: point_fields(displacement, with_stress.then_some(stress), forces),
-        scene: scene.to_string(),
+        scene: scene.text.clone(),
         state: state_arrays::store(state, &motion.shape()),
     }
 }

@@ -56,7 +56,7 @@ pub use self::dynamic::{ContactScheme, Dynamic, IntegratorChoice};
 pub use self::effects::Effects;
 pub use self::error::SceneError;
 pub use self::materials::{Material, Materials};
-pub use self::output::{Output, Precision, StressOutput};
+pub use self::output::{InnerRingFrame, Output, Precision, StressOutput};
 pub use self::ring::{FlexibleRing, MeshFiles, Ring, RingName, Support};
 pub use self::section::{Section, SectionElement};
 pub use self::shaft::{Motion, Shaft};
