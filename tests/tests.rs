@@ -2,9 +2,12 @@
 //! leaves behind. One binary, a file per area; `fixtures/README.md` says where the inputs come from.
 
 mod bad_input;
+mod export;
+mod interruption;
 mod memory;
 mod motion;
 mod results;
+mod resume;
 mod statics;
 mod sweeps;
 mod util;

@@ -1,11 +1,12 @@
 //! Starts the program in a folder of its own and reads what it leaves there.
 
+pub mod lockstep;
 pub mod rings;
 pub mod tables;
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output, Stdio};
+use std::process::{Child, Command, Output, Stdio};
 
 use tempfile::TempDir;
 
@@ -131,6 +132,29 @@ impl Dir {
             .spawn()
             .unwrap();
         Outcome::of(child.wait_with_output().unwrap())
+    }
+
+    /// Starts the program here and leaves it running, with its progress to be read.
+    pub fn start(&self, arguments: &[&str]) -> Child {
+        let mut command = self.command(arguments);
+        command
+            .stdout(Stdio::null())
+            .stderr(Stdio::piped())
+            .spawn()
+            .unwrap()
+    }
+
+    /// Starts the program here under a limit of the size of its files, kB; writing beyond it is an error.
+    pub fn raceway_with_small_files(&self, limit: u32, arguments: &[&str]) -> Outcome {
+        let mut shell = Command::new("bash");
+        for name in LAUNCHERS {
+            shell.env_remove(name);
+        }
+        let script = format!("trap '' XFSZ; ulimit -f {limit}; exec \"$0\" \"$@\"");
+        shell
+            .args(["-c", &script, env!("CARGO_BIN_EXE_raceway")])
+            .args(arguments);
+        Outcome::of(shell.current_dir(self.0.path()).output().unwrap())
     }
 
     fn command(&self, arguments: &[&str]) -> Command {

@@ -8,11 +8,8 @@ use dynamics::{Model, RingMemory, forecast_peak, ring};
 use crate::build::build_model;
 use crate::failure::Failure;
 use crate::print;
-use crate::results::fields;
+use crate::results::disk::{self, Forecast};
 use crate::scene::{Analysis, Scene};
-
-/// Bytes of one point in a step file: displacement f64, stress and von Mises f32, two force vectors f64.
-const BYTES_PER_POINT: usize = 3 * 8 + 7 * 4 + 6 * 8;
 
 /// Reads and checks the scene and its meshes and prints effects, sizes and forecasts.
 pub fn check(path: &Path, overrides: &[String]) -> Result<(), Failure> {
@@ -22,27 +19,18 @@ pub fn check(path: &Path, overrides: &[String]) -> Result<(), Failure> {
         "scene    {}",
         scene.title.as_deref().unwrap_or("(no title)")
     ));
-    let steps = match &scene.analysis {
-        Analysis::Static => {
-            print::line(format_args!("analysis static"));
-            1
-        }
-        Analysis::Dynamic(dynamic) => {
-            print::line(format_args!(
-                "analysis dynamic, {} steps of {} s, fields every {} steps",
-                dynamic.n_steps, dynamic.step, dynamic.output_every
-            ));
-            1 + dynamic.n_steps.div_ceil(dynamic.output_every) as usize
-        }
-        Analysis::Sweep(sweep) => {
-            print::line(format_args!(
-                "analysis sweep of {} over {} values",
-                sweep.key,
-                sweep.points.len()
-            ));
+    match &scene.analysis {
+        Analysis::Static => print::line(format_args!("analysis static")),
+        Analysis::Dynamic(dynamic) => print::line(format_args!(
+            "analysis dynamic, {} steps of {} s, fields every {} steps",
+            dynamic.n_steps, dynamic.step, dynamic.output_every
+        )),
+        Analysis::Sweep(sweep) => print::line(format_args!(
+            "analysis sweep of {} over {} values",
+            sweep.key,
             sweep.points.len()
-        }
-    };
+        )),
+    }
     let names: Vec<&str> = model.effects.iter().map(|e| e.name()).collect();
     print::line(format_args!(
         "effects  {}",
@@ -74,30 +62,20 @@ pub fn check(path: &Path, overrides: &[String]) -> Result<(), Failure> {
             _ => "",
         }
     ));
-    let points: usize = fields::bodies(&model).iter().map(|b| b.points.len()).sum();
-    let step_bytes = points * BYTES_PER_POINT + state_bytes(&scene, &model);
+    let forecast = Forecast::new(&scene, &model, 0);
+    let free = disk::free_bytes(Path::new(".")).map_or(String::new(), |free| {
+        format!("; the disk of this folder has {} free", disk::size(free))
+    });
     print::line(format_args!(
-        "output   about {:.2} MB per step, {:.2} MB in all",
-        step_bytes as f64 / 1e6,
-        (step_bytes * steps) as f64 / 1e6
+        "output   about {} per step file, {} step files, {} in all{free}",
+        disk::size(forecast.step),
+        forecast.n_files,
+        disk::size(forecast.total)
     ));
     Ok(())
 }
 
 /// Prints one ring and returns the forecast of its memory; None for a rigid ring.
-/// Bytes of the stored state of a moving bearing: displacement, velocity and acceleration of every ring dof.
-fn state_bytes(scene: &Scene, model: &dynamics::Model) -> usize {
-    match &scene.analysis {
-        Analysis::Dynamic(_) => model
-            .rings
-            .iter()
-            .flatten()
-            .map(|ring| 3 * 8 * ring.mesh.n_dofs())
-            .sum(),
-        _ => 0,
-    }
-}
-
 fn print_ring(model: &Model, side: Side) -> Result<Option<RingMemory>, Failure> {
     let stiffness = model.hertz[side.index()].stiffness / 10f64.powf(4.5);
     let Some(ring) = model.ring(side) else {

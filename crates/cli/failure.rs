@@ -9,6 +9,8 @@ use dynamics::DynamicsError;
 const USER: u8 = 2;
 /// Exit code of a solution that was not found.
 const NUMERICAL: u8 = 3;
+/// Exit code of a run that was asked to stop and can be resumed.
+const STOPPED: u8 = 75;
 
 /// A failed command.
 #[derive(Debug)]
@@ -17,6 +19,8 @@ pub enum Failure {
     User(anyhow::Error),
     /// The input is sound but no solution was found.
     Numerical(anyhow::Error),
+    /// The run was asked to stop before its end and left a step to resume from.
+    Stopped(anyhow::Error),
 }
 
 impl Failure {
@@ -25,13 +29,32 @@ impl Failure {
         ExitCode::from(match self {
             Failure::User(_) => USER,
             Failure::Numerical(_) => NUMERICAL,
+            Failure::Stopped(_) => STOPPED,
         })
     }
 
     /// The message with its causes, on one line.
     pub fn text(&self) -> String {
         match self {
-            Failure::User(error) | Failure::Numerical(error) => format!("{error:#}"),
+            Failure::User(error) | Failure::Numerical(error) | Failure::Stopped(error) => {
+                format!("{error:#}")
+            }
+        }
+    }
+
+    /// What kind of end this is: the first word of its message.
+    pub fn kind(&self) -> &'static str {
+        match self {
+            Failure::User(_) | Failure::Numerical(_) => "error",
+            Failure::Stopped(_) => "stopped",
+        }
+    }
+
+    /// The end of the run in its summary.
+    pub fn status(&self) -> String {
+        match self {
+            Failure::User(_) | Failure::Numerical(_) => format!("failed: {}", self.text()),
+            Failure::Stopped(_) => format!("stopped: {}", self.text()),
         }
     }
 
@@ -58,6 +81,7 @@ impl Failure {
         match self {
             Failure::User(e) => Failure::User(e.context(text)),
             Failure::Numerical(e) => Failure::Numerical(e.context(text)),
+            Failure::Stopped(e) => Failure::Stopped(e.context(text)),
         }
     }
 }

@@ -1,17 +1,24 @@
 //! The program `raceway`: rolling bearings whose two rings are finite-element bodies.
 //!
-//! Exit codes: 0 finished, 2 wrong input, 3 no solution found.
+//! Exit codes: 0 finished, 2 wrong input, 3 no solution found, 75 stopped early with a step to resume
+//! from.
 
 mod build;
 mod check;
+mod export;
 mod failure;
+mod info;
 mod meshing;
 mod motion;
+mod options;
 mod print;
 mod progress;
 mod results;
+mod resume;
 mod run;
 mod scene;
+mod start;
+mod stop;
 mod units;
 
 use std::path::PathBuf;
@@ -20,7 +27,11 @@ use std::process::ExitCode;
 use clap::{Parser, Subcommand};
 use mesh::Overwrite;
 
+use crate::export::Export;
 use crate::failure::Failure;
+use crate::info::Depth;
+use crate::options::Limits;
+use crate::resume::Request;
 
 /// Simulates angular contact ball bearings with fully flexible rings.
 #[derive(Debug, Parser)]
@@ -45,7 +56,21 @@ enum Command {
         /// Folder of the results; default: results/ and the scene's name.
         #[arg(long)]
         out: Option<PathBuf>,
+        #[command(flatten)]
+        limits: Limits,
     },
+    /// Goes on with a motion from its newest whole step, to the same bits as if it had not been interrupted.
+    Resume(Request),
+    /// Says what a result folder, a step file or a mesh file holds.
+    Info {
+        /// Result folder, or a file in it.
+        path: PathBuf,
+        /// Reads and checks every byte of a folder's step files.
+        #[arg(long)]
+        verify: bool,
+    },
+    /// Writes steps in a form for other tools.
+    Export(Export),
     /// Builds everything a run needs but solves nothing: effects, sizes, memory, output.
     Check {
         /// Scene file.
@@ -72,7 +97,7 @@ fn main() -> ExitCode {
     match execute(arguments) {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => {
-            print::note(format_args!("error: {}", failure.text()));
+            print::note(format_args!("{}: {}", failure.kind(), failure.text()));
             failure.code()
         }
     }
@@ -95,11 +120,17 @@ fn execute(arguments: Arguments) -> Result<(), Failure> {
             scene,
             overrides,
             out,
+            limits,
         } => {
-            let dir = run::run(&scene, &overrides, out)?;
+            let dir = run::run(&scene, &overrides, out, &limits)?;
             print::line(format_args!("results: {}", dir.display()));
             Ok(())
         }
+        Command::Resume(request) => resume::resume(&request),
+        Command::Info { path, verify } => {
+            info::info(&path, if verify { Depth::Bytes } else { Depth::Structure })
+        }
+        Command::Export(request) => export::export(&request),
         Command::Check { scene, overrides } => check::check(&scene, &overrides),
         Command::Mesh {
             scene,

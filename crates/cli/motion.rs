@@ -1,122 +1,120 @@
 //! `raceway run` of a `[dynamic]` scene: static start, then steps in time with histories, step files and the ledger.
 
 use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::time::Instant;
 
 use anyhow::anyhow;
-use contact::Side;
 use dynamics::motion::balls::Speed;
 use dynamics::motion::contacts::{ContactDamping, ContactScheme};
 use dynamics::motion::{Integrator, Ladder, Motion, MotionSettings, MotionState};
-use dynamics::{Model, RingMemory, StaticSolution, StaticSolver, Timing};
+use dynamics::{DynamicsError, Model, RingMemory, Timing};
 
 use crate::build::build_model;
 use crate::failure::Failure;
+use crate::options::Limits;
 use crate::print;
 use crate::progress::Progress;
+use crate::results::disk::Forecast;
 use crate::results::files::Files;
 use crate::results::snapshot::Snapshot;
 use crate::results::summary::{Findings, Summary};
 use crate::results::{console, motion_fields};
-use crate::scene::{self, Dynamic, IntegratorChoice, Scene, Start};
+use crate::resume::Stored;
+use crate::scene::{self, Dynamic, IntegratorChoice, Scene};
+use crate::start::settle;
+use crate::stop::Stop;
 
 /// Steps between two lines of progress in a log.
 const PROGRESS_STEPS: u64 = 50;
 
-/// Runs the motion and returns the folder of its results.
-pub fn run(scene: &Scene, dynamic: &Dynamic, dir: PathBuf, start: Instant) -> Result<PathBuf, Failure> {
-    let mut progress = Progress::new(dynamic.n_steps);
+/// Runs the motion from its static equilibrium.
+pub fn run(
+    scene: &Scene,
+    dynamic: &Dynamic,
+    dir: &Path,
+    limits: &Limits,
+    start: Instant,
+) -> Result<(), Failure> {
+    let progress = Progress::new(dynamic.n_steps);
     progress.stage("reading meshes");
     let model = build_model(scene)?;
+    Forecast::new(scene, &model, 0).require_space(dir, limits.ignore_disk_space)?;
     let read = start.elapsed().as_secs_f64();
     let settled = settle(&model, dynamic, &progress)?;
     progress.stage("factoring the effective matrices");
     let motion = Motion::new(&model, settings(scene, dynamic)).map_err(Failure::solving)?;
-    let state = match (&settled.equilibrium, dynamic.start) {
-        (Some(equilibrium), _) => motion.start(equilibrium),
-        (
-            None,
-            Start::Given {
-                displacement,
-                velocity,
-            },
-        ) => motion.rest(displacement, velocity),
-        (None, Start::Static) => unreachable!("a static start has its equilibrium"),
-    };
-    let mut files = Files::create(scene, &model, &dir, &Snapshot::of_motion(&motion, &state))?;
-    files
-        .write_fields(|recoveries| motion_fields::record(&model, &motion, &state, recoveries, &scene.text))?;
-    write_tables(&mut files, &motion, &state)?;
-    let clock = Instant::now();
+    let state = settled.first_state(&motion, dynamic)?;
+    let first = Snapshot::of_motion(&motion, &state);
+    let mut files = Files::create(scene, &model, dir, &first, &settled.warnings())?;
+    files.write_tables(0, motion.time(0), None, &first)?;
     let mut march = March {
         scene,
         dynamic,
         model: &model,
         motion: &motion,
-        files: &mut files,
+        files,
         state,
         newton: 0,
+        last_file: None,
+        dir,
     };
-    let ended = march.run(&mut progress, &dir);
-    let (state, newton) = (march.state, march.newton);
-    progress.finish();
-    let seconds = clock.elapsed().as_secs_f64();
-    let spent = Timing {
-        newton: settled.timing.newton + seconds,
-        ..settled.timing
+    march.write_fields()?;
+    let costs = StartCosts {
+        read,
+        forecast: settled.forecast,
+        timing: settled.timing,
+        start,
     };
-    let costs = files.finish(read, settled.forecast, spent, start)?;
-    let findings = Findings {
-        status: ended
-            .as_ref()
-            .err()
-            .map_or("finished".to_string(), |f| format!("failed: {}", f.text())),
-        last: Snapshot::of_motion(&motion, &state),
-        points: Vec::new(),
-        iterations: BTreeMap::from([("steps", state.step as usize), ("newton", newton)]),
-        warnings: settled
-            .equilibrium
-            .as_ref()
-            .map_or_else(Vec::new, |e| e.warnings.clone()),
-    };
-    let summary = Summary::new(scene, &model, findings, &costs);
-    summary.write(&dir)?;
-    ended?;
-    console::print_snapshot(&Snapshot::of_motion(&motion, &state));
-    print::line(format_args!(
-        "{} steps of {} s, {:.1} ms per step; energy defect {:.1e} of the largest energy",
-        state.step,
-        dynamic.step,
-        1e3 * seconds / dynamic.n_steps as f64,
-        state.ledger.relative_defect()
-    ));
-    summary.print_costs();
-    Ok(dir)
+    march.finish_run(progress, limits, settled.warnings(), costs)
 }
 
-/// What comes before a motion.
-#[derive(Default)]
-struct Settled {
-    /// The static start; None when the scene gives another.
-    equilibrium: Option<StaticSolution>,
+/// Goes on with the motion from a stored step.
+pub fn resume(
+    scene: &Scene,
+    dynamic: &Dynamic,
+    stored: Stored,
+    limits: &Limits,
+    start: Instant,
+) -> Result<(), Failure> {
+    let dir = stored.lock.dir().to_path_buf();
+    let mut progress = Progress::new(dynamic.n_steps);
+    progress.start_at(stored.step);
+    progress.stage("reading meshes");
+    let model = build_model(scene)?;
+    Forecast::new(scene, &model, stored.step).require_space(&dir, limits.ignore_disk_space)?;
+    let read = start.elapsed().as_secs_f64();
+    progress.stage("factoring the effective matrices");
+    let motion = Motion::new(&model, settings(scene, dynamic)).map_err(Failure::solving)?;
+    let (state, newton) = stored.state(&motion)?;
+    let (first, warnings) = (Snapshot::of_motion(&motion, &state), stored.warnings);
+    let files = Files::resume(scene, &model, stored.lock, &first, state.step, &warnings)?;
+    let march = March {
+        scene,
+        dynamic,
+        model: &model,
+        motion: &motion,
+        files,
+        last_file: Some(state.step),
+        state,
+        newton,
+        dir: &dir,
+    };
+    let costs = StartCosts {
+        read,
+        forecast: [None, None],
+        timing: Timing::default(),
+        start,
+    };
+    march.finish_run(progress, limits, warnings, costs)
+}
+
+/// What the start of a run cost.
+struct StartCosts {
+    read: f64,
     forecast: [Option<RingMemory>; 2],
     timing: Timing,
-}
-
-/// Static equilibrium at t = 0, if the motion starts from it. Its factors are not kept: the motion has its own.
-fn settle(model: &Model, dynamic: &Dynamic, progress: &Progress) -> Result<Settled, Failure> {
-    if dynamic.start != Start::Static {
-        return Ok(Settled::default());
-    }
-    progress.stage("static start");
-    let mut statics = StaticSolver::new(model).map_err(Failure::solving)?;
-    let equilibrium = statics.solve(model, None).map_err(Failure::solving)?;
-    Ok(Settled {
-        equilibrium: Some(equilibrium),
-        forecast: Side::BOTH.map(|side| statics.ring(side).map(|r| r.memory)),
-        timing: statics.timing,
-    })
+    start: Instant,
 }
 
 /// A run under way.
@@ -125,70 +123,143 @@ struct March<'a> {
     dynamic: &'a Dynamic,
     model: &'a Model,
     motion: &'a Motion<'a>,
-    files: &'a mut Files,
+    files: Files,
     /// The last good state.
     state: MotionState,
     /// Newton iterations so far.
-    newton: usize,
+    newton: u64,
+    /// The last step handed over to be written.
+    last_file: Option<u64>,
+    dir: &'a Path,
 }
 
 impl March<'_> {
-    /// Steps to the end of the run. On failure the last good state has its step file.
-    fn run(&mut self, progress: &mut Progress, dir: &Path) -> Result<(), Failure> {
+    /// Steps to the end of the run, closes the files and sums up, also when the run ends early.
+    fn finish_run(
+        mut self,
+        mut progress: Progress,
+        limits: &Limits,
+        warnings: Vec<String>,
+        costs: StartCosts,
+    ) -> Result<(), Failure> {
+        let clock = Instant::now();
+        let first = self.state.step;
+        let mut stop = Stop::listen(costs.start, limits.wall_time)?;
+        let ended = self.steps(&mut progress, &mut stop);
+        progress.finish();
+        let seconds = clock.elapsed().as_secs_f64();
+        let spent = Timing {
+            newton: costs.timing.newton + seconds,
+            ..costs.timing
+        };
+        let costs = self.files.finish(costs.read, costs.forecast, spent, costs.start);
+        // A run that failed says why, not what its failure did to the files; one that stopped must have its step.
+        let costs = match (costs, &ended) {
+            (Err(_), Err(Failure::User(_) | Failure::Numerical(_))) => return ended,
+            (costs, _) => costs?,
+        };
+        let (state, motion) = (&self.state, self.motion);
+        let findings = Findings {
+            status: ended
+                .as_ref()
+                .err()
+                .map_or("finished".to_string(), Failure::status),
+            last: Snapshot::of_motion(motion, state),
+            points: Vec::new(),
+            iterations: BTreeMap::from([("steps", state.step as usize), ("newton", self.newton as usize)]),
+            warnings,
+        };
+        let summary = Summary::new(self.scene, self.model, findings, &costs);
+        summary.write(self.dir)?;
+        ended?;
+        console::print_snapshot(&Snapshot::of_motion(motion, state));
+        print::line(format_args!(
+            "{} steps of {} s, {:.1} ms per step; energy defect {:.1e} of the largest energy",
+            state.step - first,
+            self.dynamic.step,
+            1e3 * seconds / (state.step - first).max(1) as f64,
+            state.ledger.relative_defect()
+        ));
+        summary.print_costs();
+        Ok(())
+    }
+
+    /// Steps to the end of the run. On failure and when asked to stop, the last good state has its step file.
+    fn steps(&mut self, progress: &mut Progress, stop: &mut Stop) -> Result<(), Failure> {
         let n_steps = self.dynamic.n_steps;
-        for n in 1..=n_steps {
-            if n % PROGRESS_STEPS == 1 {
+        let first = self.state.step + 1;
+        for n in first..=n_steps {
+            if let Some(reason) = stop.reason() {
+                return Err(self.stopped(&reason));
+            }
+            if n == first || n % PROGRESS_STEPS == 1 {
                 progress.stage(&format!(
-                    "step {n} of {n_steps}, t = {:.4e} s",
-                    self.motion.time(n)
+                    "step {n} of {n_steps}, t = {:.4e} s, waited {:.2} s for the disk",
+                    self.motion.time(n),
+                    self.files.waited().as_secs_f64()
                 ));
             }
             match self.motion.step(&self.state) {
                 Ok((next, report)) => {
-                    self.newton += report.newton_iterations;
+                    self.newton += report.newton_iterations as u64;
                     self.state = next;
                 }
-                Err(error) => {
-                    if !self.has_file(n - 1) {
-                        self.write_fields()?;
-                    }
-                    let time = self.motion.time(n);
-                    let place = format!(
-                        "step {n}, t = {time:.6e} s; the last good state is in {}",
-                        dir.display()
-                    );
-                    return Err(Failure::solving(error).context(place));
-                }
+                Err(error) => return Err(self.failed(error)),
             }
-            if self.has_file(n) {
+            let (state, motion) = (&self.state, self.motion);
+            let snapshot = Snapshot::of_motion(motion, state);
+            self.files.write_tables(n, motion.time(n), None, &snapshot)?;
+            if n == n_steps || n.is_multiple_of(self.dynamic.output_every) {
                 self.write_fields()?;
             }
-            write_tables(self.files, self.motion, &self.state)?;
-            check_ledger(self.dynamic, self.motion, &self.state, dir)?;
+            check_ledger(self.dynamic, self.motion, &self.state, self.dir)?;
             progress.advance();
         }
         Ok(())
     }
 
-    /// Whether a step's fields are written.
-    fn has_file(&self, step: u64) -> bool {
-        step == self.dynamic.n_steps || step.is_multiple_of(self.dynamic.output_every)
+    /// Saves the state and says that the run can be resumed.
+    fn stopped(&mut self, reason: &str) -> Failure {
+        if let Err(error) = self.write_fields() {
+            return error.context(format!("{reason}, but the state could not be saved"));
+        }
+        let n = self.state.step;
+        Failure::Stopped(anyhow!(
+            "{reason}; the state after step {n} of {}, t = {:.6e} s, is saved: go on with raceway resume {}",
+            self.dynamic.n_steps,
+            self.motion.time(n),
+            self.dir.display()
+        ))
     }
 
+    /// Saves the last good state and says where the failed step was.
+    fn failed(&mut self, error: DynamicsError) -> Failure {
+        if let Err(error) = self.write_fields() {
+            return error;
+        }
+        let n = self.state.step + 1;
+        Failure::solving(error).context(format!(
+            "step {n}, t = {:.6e} s; the last good state is in {}",
+            self.motion.time(n),
+            self.dir.display()
+        ))
+    }
+
+    /// Hands over the state to be written as a step file, unless it was.
     fn write_fields(&mut self) -> Result<(), Failure> {
-        let (model, motion, state, text) = (self.model, self.motion, &self.state, &self.scene.text);
-        self.files
-            .write_fields(|recoveries| motion_fields::record(model, motion, state, recoveries, text))
+        if self.last_file == Some(self.state.step) {
+            return Ok(());
+        }
+        let (model, motion, state, scene) = (self.model, self.motion, &self.state, self.scene);
+        let newton = self.newton;
+        self.files.write_fields(|recoveries| {
+            let mut record = motion_fields::record(model, motion, state, recoveries, scene);
+            Stored::add_counts(&mut record, newton);
+            record
+        })?;
+        self.last_file = Some(self.state.step);
+        Ok(())
     }
-}
-
-fn write_tables(files: &mut Files, motion: &Motion<'_>, state: &MotionState) -> Result<(), Failure> {
-    files.write_tables(
-        state.step,
-        motion.time(state.step),
-        None,
-        &Snapshot::of_motion(motion, state),
-    )
 }
 
 /// Stops a run whose energy ledger does not close.

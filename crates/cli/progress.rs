@@ -33,6 +33,14 @@ impl Progress {
         }
     }
 
+    /// `done` parts were finished before this run.
+    pub fn start_at(&mut self, done: u64) {
+        self.done = done;
+        if let Some(bar) = &self.bar {
+            bar.set_position(done);
+        }
+    }
+
     /// Says what is done now.
     pub fn stage(&self, text: &str) {
         match &self.bar {

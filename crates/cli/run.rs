@@ -11,7 +11,9 @@ use dynamics::{DynamicsError, StaticSolution, StaticSolver};
 use crate::build::{build_model, model_with_rings};
 use crate::failure::Failure;
 use crate::motion;
+use crate::options::Limits;
 use crate::progress::Progress;
+use crate::results::disk::Forecast;
 use crate::results::files::Files;
 use crate::results::snapshot::Snapshot;
 use crate::results::summary::{Findings, Summary};
@@ -22,17 +24,23 @@ use crate::scene::{Analysis, Scene};
 type Point = (Option<f64>, Scene);
 
 /// Runs a scene and returns the folder of its results.
-pub fn run(path: &Path, overrides: &[String], out: Option<PathBuf>) -> Result<PathBuf, Failure> {
+pub fn run(
+    path: &Path,
+    overrides: &[String],
+    out: Option<PathBuf>,
+    limits: &Limits,
+) -> Result<PathBuf, Failure> {
     let start = Instant::now();
     let scene = Scene::load(path, overrides)?;
     let dir = folder::choose(path, out)?;
     if let Analysis::Dynamic(dynamic) = &scene.analysis {
-        return motion::run(&scene, dynamic, dir, start);
+        return motion::run(&scene, dynamic, &dir, limits, start).map(|()| dir);
     }
     let points = points(&scene)?;
     let mut progress = Progress::new(points.len() as u64);
     progress.stage("reading meshes");
     let mut model = build_model(&points[0].1)?;
+    Forecast::new(&scene, &model, 0).require_space(&dir, limits.ignore_disk_space)?;
     let placed = model.geometry;
     let read = start.elapsed().as_secs_f64();
     progress.stage("factoring the stiffness of the rings");
@@ -55,14 +63,14 @@ pub fn run(path: &Path, overrides: &[String], out: Option<PathBuf>) -> Result<Pa
         let snapshot = Snapshot::of_equilibrium(&solution);
         let files = match &mut results {
             Some(files) => files,
-            empty => empty.insert(Files::create(&scene, &model, &dir, &snapshot)?),
+            empty => empty.insert(Files::create(&scene, &model, &dir, &snapshot, &[])?),
         };
         let step = step as u64;
+        // The points of a sweep have no time; their number stands for it.
+        files.write_tables(step, step as f64, *value, &snapshot)?;
         files.write_fields(|recoveries| {
             fields::record(&model, &placed, &solution, recoveries, step, &point.text)
         })?;
-        // The points of a sweep have no time; their number stands for it.
-        files.write_tables(step, step as f64, *value, &snapshot)?;
         // Later points start from displacements of the contacts only; fields of a long sweep would fill the memory.
         if let Some((_, earlier)) = solutions.last_mut() {
             earlier.elastic = [None, None];
@@ -100,9 +108,7 @@ fn findings(scene: &Scene, solutions: &[(f64, StaticSolution)], failure: &Option
         .iter()
         .map(|(value, s)| (*value, Snapshot::of_equilibrium(s)));
     Findings {
-        status: failure
-            .as_ref()
-            .map_or("finished".to_string(), |f| format!("failed: {}", f.text())),
+        status: failure.as_ref().map_or("finished".to_string(), Failure::status),
         last: Snapshot::of_equilibrium(last),
         points: points.collect(),
         iterations: BTreeMap::from([("rounds", last.rounds), ("newton", last.newton_iterations)]),

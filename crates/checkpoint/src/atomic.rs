@@ -6,6 +6,7 @@
 //! with a flush after each step; of 85 killed while writing like this, none did.)
 
 use std::fs::{self, File};
+use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use crate::error::CheckpointError;
@@ -46,11 +47,16 @@ pub(crate) fn write_hdf(
     sync_dir(dir)
 }
 
-/// Writes a text file `name` into `dir`. It is not brought to the disk at once: a file that can be built again
-/// is not worth the wait, and the rename alone keeps readers from seeing half of it.
+/// Writes a text file `name` into `dir`. Its content is on the disk before it gets its name, so that a crash of the
+/// machine leaves the old text or the new one; the folder is not waited for, the old text does no harm.
 pub(crate) fn write_text(dir: &Path, name: &str, text: &str) -> Result<(), CheckpointError> {
     let (tmp, path) = (temporary(dir, name), dir.join(name));
-    let written = fs::write(&tmp, text).map_err(CheckpointError::io("write", &path));
+    let write = || {
+        let mut file = File::create(&tmp)?;
+        file.write_all(text.as_bytes())?;
+        file.sync_all()
+    };
+    let written = write().map_err(CheckpointError::io("write", &path));
     publish(written, dir, &tmp, &path)
 }
 

@@ -4,58 +4,88 @@
 //! write_step`] waits, and memory stays bounded by the queue. The files are those [`Output`] writes, in the same
 //! order. A step is committed only when the thread has written it; [`BackgroundOutput::finish`] waits for all.
 
+use std::fs::File;
+use std::path::PathBuf;
 use std::sync::mpsc::{SyncSender, sync_channel};
 use std::thread::{self, JoinHandle};
+use std::time::{Duration, Instant};
 
 use crate::error::CheckpointError;
 use crate::output::Output;
 use crate::record::StepRecord;
 
+/// A file that grows beside the steps, such as a table of the run. What the caller has written to it when it hands
+/// over a step is on the disk before that step is committed: a step never knows more than the tables.
+#[derive(Debug)]
+pub struct Companion {
+    /// Path, for messages.
+    pub path: PathBuf,
+    /// The file, open for writing.
+    pub file: File,
+}
+
 /// An [`Output`] behind a queue.
 #[derive(Debug)]
 pub struct BackgroundOutput {
     queue: Option<SyncSender<StepRecord>>,
-    writer: Option<JoinHandle<Result<Output, CheckpointError>>>,
+    writer: Option<JoinHandle<Result<Written, CheckpointError>>>,
+    waited: Duration,
+}
+
+/// The folder when all steps are committed, and what that took.
+#[derive(Debug)]
+pub struct Written {
+    /// The folder, for a final [`Output::finish`].
+    pub output: Output,
+    /// Time that the thread spent writing.
+    pub busy: Duration,
+    /// Time that the caller spent waiting for it.
+    pub waited: Duration,
 }
 
 impl BackgroundOutput {
     /// Starts the thread. `queue_length` steps may wait besides the one being written; memory is
     /// `queue_length + 2` records at most, the caller's included.
-    pub fn start(output: Output, queue_length: usize) -> BackgroundOutput {
+    pub fn start(output: Output, queue_length: usize, companions: Vec<Companion>) -> BackgroundOutput {
         let (queue, waiting) = sync_channel::<StepRecord>(queue_length);
-        let mut output = output;
-        let writer = thread::spawn(move || {
-            for record in waiting {
-                output.write_step(&record)?;
-            }
-            Ok(output)
-        });
+        let writer = thread::spawn(move || write_all(output, &waiting, &companions));
         BackgroundOutput {
             queue: Some(queue),
             writer: Some(writer),
+            waited: Duration::ZERO,
         }
     }
 
     /// Hands over a step, waiting while the queue is full. An error of an earlier step is returned by the first
     /// call after it.
     pub fn write_step(&mut self, record: StepRecord) -> Result<(), CheckpointError> {
+        let clock = Instant::now();
         let accepted = self
             .queue
             .as_ref()
             .is_some_and(|queue| queue.send(record).is_ok());
+        self.waited += clock.elapsed();
         if accepted {
             return Ok(());
         }
         self.join().and(Err(CheckpointError::WriterStopped))
     }
 
-    /// Waits until all steps are committed and returns the folder, for a final [`Output::finish`].
-    pub fn finish(mut self) -> Result<Output, CheckpointError> {
-        self.join()?.ok_or(CheckpointError::WriterStopped)
+    /// Time spent waiting for the disk so far.
+    pub fn waited(&self) -> Duration {
+        self.waited
+    }
+
+    /// Waits until all steps are committed and returns the folder.
+    pub fn finish(mut self) -> Result<Written, CheckpointError> {
+        let clock = Instant::now();
+        let mut written = self.join()?.ok_or(CheckpointError::WriterStopped)?;
+        written.waited = self.waited + clock.elapsed();
+        Ok(written)
     }
 
     /// Ends the thread; `None` when it was ended before.
-    fn join(&mut self) -> Result<Option<Output>, CheckpointError> {
+    fn join(&mut self) -> Result<Option<Written>, CheckpointError> {
         self.queue = None;
         match self.writer.take().map(JoinHandle::join) {
             None => Ok(None),
@@ -63,6 +93,29 @@ impl BackgroundOutput {
             Some(Err(panic)) => std::panic::resume_unwind(panic),
         }
     }
+}
+
+/// Writes what comes until the queue is closed, stopping at the first error.
+fn write_all(
+    mut output: Output,
+    waiting: &std::sync::mpsc::Receiver<StepRecord>,
+    companions: &[Companion],
+) -> Result<Written, CheckpointError> {
+    let mut busy = Duration::ZERO;
+    for record in waiting {
+        let clock = Instant::now();
+        for companion in companions {
+            let synced = companion.file.sync_data();
+            synced.map_err(CheckpointError::io("write", &companion.path))?;
+        }
+        output.write_step(&record)?;
+        busy += clock.elapsed();
+    }
+    Ok(Written {
+        output,
+        busy,
+        waited: Duration::ZERO,
+    })
 }
 
 /// Steps already handed over are written even when the run ends early without [`BackgroundOutput::finish`].

@@ -5,7 +5,13 @@
 //! those: an array read back under another name is damage too. Values enter in little-endian order as stored,
 //! before compression. Cost: one pass over the data, several GB/s.
 
+use std::fs::File;
+use std::io::Read;
+use std::path::Path;
+
 use crc32fast::Hasher;
+
+use crate::error::CheckpointError;
 
 /// Name of the attribute that holds the checksum of a data set.
 pub const CHECKSUM_ATTRIBUTE: &str = "crc32";
@@ -56,4 +62,22 @@ pub fn checksum<T: Element>(name: &str, shape: &[usize], values: &[T]) -> u32 {
         hasher.update(bytes);
     }
     hasher.finalize()
+}
+
+/// Length in bytes and CRC-32 of a whole file of any kind: whether it is still the one it was.
+pub fn file_checksum(path: &Path) -> Result<(u64, u32), CheckpointError> {
+    let sum = || -> std::io::Result<(u64, u32)> {
+        let (mut file, mut hasher) = (File::open(path)?, Hasher::new());
+        let (mut block, mut length) = (vec![0; 1 << 18], 0);
+        loop {
+            match file.read(&mut block)? {
+                0 => return Ok((length, hasher.finalize())),
+                n => {
+                    hasher.update(&block[..n]);
+                    length += n as u64;
+                }
+            }
+        }
+    };
+    sum().map_err(CheckpointError::io("read", path))
 }

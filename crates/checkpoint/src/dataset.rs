@@ -155,6 +155,16 @@ impl<'a> CheckedFile<'a> {
         Ok(names)
     }
 
+    /// Names of the texts of a group, sorted.
+    pub fn texts(&self, group: &str) -> Result<Vec<String>, CheckpointError> {
+        let read = || self.file.group(group)?.attr_names();
+        let mut names = read().map_err(CheckpointError::hdf("read", self.path))?;
+        let checksums = format!("_{CHECKSUM_ATTRIBUTE}");
+        names.retain(|name| !name.ends_with(&checksums));
+        names.sort();
+        Ok(names)
+    }
+
     /// Shape and row-major values.
     pub fn array<T: Element>(&self, dataset: &str) -> Result<(Vec<usize>, Vec<T>), CheckpointError> {
         let read = || {

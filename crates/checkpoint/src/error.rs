@@ -35,6 +35,14 @@ pub enum CheckpointError {
         /// Last committed step.
         last: u64,
     },
+    /// Another process writes to the folder.
+    #[error("{owner} is writing to folder {}; wait until it ends, or stop it", path.display())]
+    Locked {
+        /// The folder.
+        path: PathBuf,
+        /// The owner of the lock: process and machine.
+        owner: String,
+    },
     /// The operating system refused.
     #[error("cannot {action} {}: {source}", path.display())]
     Io {

@@ -5,7 +5,8 @@ use crate::checksum::checksum;
 use crate::error::CheckpointError;
 
 /// The arrays of `mesh.hdf`.
-pub(crate) struct Grid {
+#[derive(Clone, Debug, PartialEq)]
+pub struct Grid {
     /// Points, m, `[n_points][3]`.
     pub points: Vec<[f64; 3]>,
     /// Points of the cells, one cell after the other.
@@ -22,7 +23,7 @@ pub(crate) struct Grid {
 
 impl Grid {
     /// Joins the bodies in their order.
-    pub fn join(bodies: &[Body]) -> Result<Grid, CheckpointError> {
+    pub(crate) fn join(bodies: &[Body]) -> Result<Grid, CheckpointError> {
         let mut grid = Grid {
             points: Vec::new(),
             connectivity: Vec::new(),

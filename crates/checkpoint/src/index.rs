@@ -15,8 +15,8 @@ use crate::atomic::{self, Format};
 use crate::checksum::Element;
 use crate::dataset::{CheckedFile, create_group, create_vtkhdf, link_mesh};
 use crate::error::CheckpointError;
+use crate::folder::{committed_steps, sound_steps, step_file_name};
 use crate::mesh_file::{MESH_FILE, MESH_HASH};
-use crate::output::{committed_steps, read_times, step_file_name};
 use crate::series::write_series;
 use crate::step::{POINT_DATA, read_mesh_hash};
 use crate::storage::Precision;
@@ -34,16 +34,25 @@ struct IndexedField {
     present: Vec<usize>,
 }
 
-/// Builds `run.hdf.series` and `run.vtkhdf` again from the committed steps and returns how many there are. Fields
-/// that some steps lack are NaN there.
-pub fn rebuild_index(dir: &Path) -> Result<usize, CheckpointError> {
-    let numbers = committed_steps(dir)?;
-    if numbers.is_empty() {
-        return Err(CheckpointError::NoSteps {
-            path: dir.to_path_buf(),
-        });
+/// What the views show.
+#[derive(Debug)]
+pub struct Views {
+    /// Steps in both views.
+    pub n_steps: usize,
+    /// Why other steps are left out.
+    pub damaged: Vec<CheckpointError>,
+}
+
+/// Builds `run.hdf.series` and `run.vtkhdf` again from the committed steps. Steps whose structure is damaged are left
+/// out; fields that some steps lack are NaN there.
+pub fn rebuild_index(dir: &Path) -> Result<Views, CheckpointError> {
+    let committed = committed_steps(dir)?;
+    let (steps, mut damaged) = sound_steps(dir, &committed);
+    if steps.is_empty() {
+        let path = dir.to_path_buf();
+        return Err(damaged.pop().unwrap_or(CheckpointError::NoSteps { path }));
     }
-    let steps = read_times(dir, &numbers)?;
+    let numbers: Vec<u64> = steps.iter().map(|&(step, _)| step).collect();
     let n_points = require_one_mesh(dir, &numbers)?;
     let fields = collect_fields(dir, &numbers, n_points)?;
     write_series(dir, &steps)?;
@@ -60,7 +69,10 @@ pub fn rebuild_index(dir: &Path) -> Result<usize, CheckpointError> {
         write_steps_group(file, &times, &fields, n_points)?;
         Ok(Vec::new())
     })?;
-    Ok(steps.len())
+    Ok(Views {
+        n_steps: steps.len(),
+        damaged,
+    })
 }
 
 /// Points of the mesh; fails when a step belongs to another mesh.

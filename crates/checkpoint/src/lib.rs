@@ -8,6 +8,7 @@
 //! | `step_NNNNNN.hdf` | the fields of one step and everything a restart needs | once per step |
 //! | `run.hdf.series` | names and real times of the steps, for ParaView 5.11 and later | after each step |
 //! | `run.vtkhdf` | the same steps as one temporal data set, for VTK 9.3, ParaView 5.12 and later | at the end |
+//! | `.raceway.lock` | who writes here, see [`lock`] | while a run writes |
 //!
 //! A step file is VTKHDF version 1.0 whose mesh is external links to `mesh.hdf`; what a restart needs besides the
 //! fields stands in the group `/restart`, which VTK ignores. Files appear under their final name only when they
@@ -24,7 +25,9 @@
 pub mod background;
 pub mod body;
 pub mod error;
+pub mod grid;
 pub mod index;
+pub mod lock;
 pub mod output;
 pub mod record;
 pub mod series;
@@ -34,15 +37,22 @@ pub mod storage;
 mod atomic;
 mod checksum;
 mod dataset;
-mod grid;
+mod describe;
+mod folder;
 mod mesh_file;
 mod seal;
 
-pub use background::BackgroundOutput;
+pub use background::{BackgroundOutput, Companion, Written};
 pub use body::{Body, CellKind, point_ranges};
+pub use checksum::file_checksum;
+pub use describe::{ArrayDescription, FileDescription, describe};
 pub use error::CheckpointError;
-pub use index::rebuild_index;
-pub use output::{Output, committed_steps, step_file_name};
+pub use folder::{committed_steps, new_superseded_folder, newest_step, step_file_name};
+pub use grid::Grid;
+pub use index::{Views, rebuild_index};
+pub use lock::FolderLock;
+pub use mesh_file::read_mesh;
+pub use output::{Output, Resumed};
 pub use record::{PointFields, StateArray, StepRecord};
-pub use step::{read_step, read_step_time};
+pub use step::{read_about, read_step, read_step_time};
 pub use storage::{Compression, Precision, Storage};

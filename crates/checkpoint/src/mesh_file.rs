@@ -61,6 +61,30 @@ pub(crate) fn write_mesh(dir: &Path, grid: &Grid) -> Result<(), CheckpointError>
     })
 }
 
+/// Reads `mesh.hdf` of the folder `dir`, every byte verified.
+pub fn read_mesh(dir: &Path) -> Result<Grid, CheckpointError> {
+    let path = dir.join(MESH_FILE);
+    verify_seal(&path)?;
+    let file = CheckedFile::open(&path)?;
+    let grid = Grid {
+        points: file.array::<f64>("/VTKHDF/Points")?.1.as_chunks::<3>().0.to_vec(),
+        connectivity: file.array("/VTKHDF/Connectivity")?.1,
+        offsets: file.array("/VTKHDF/Offsets")?.1,
+        types: file.array("/VTKHDF/Types")?.1,
+        body: file.array("/VTKHDF/CellData/body")?.1,
+        radius: file.array("/VTKHDF/CellData/radius")?.1,
+    };
+    let (expected, found) = (file.text(MESH_HASH)?, grid.fingerprint());
+    if expected == found {
+        return Ok(grid);
+    }
+    Err(CheckpointError::MeshMismatch {
+        path,
+        expected,
+        found,
+    })
+}
+
 /// Fails unless `mesh.hdf` in `dir` holds this grid.
 pub(crate) fn require_same_mesh(dir: &Path, grid: &Grid) -> Result<(), CheckpointError> {
     let path = dir.join(MESH_FILE);

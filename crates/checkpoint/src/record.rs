@@ -60,6 +60,14 @@ pub(crate) struct Field<'a> {
 }
 
 impl PointFields {
+    /// Name, components per point, and row-major values of every field that is present.
+    pub fn arrays(&self) -> Vec<(&'static str, usize, &[f64])> {
+        let fields = self.present(Storage::default()).into_iter();
+        fields
+            .map(|field| (field.name, field.n_components, field.values))
+            .collect()
+    }
+
     /// Fields that are present, in the order of the files.
     pub(crate) fn present(&self, storage: Storage) -> Vec<Field<'_>> {
         let derived = |name, n_components, values| Field {
@@ -133,24 +141,33 @@ impl StepRecord {
                 });
             }
         }
-        if self.scene.contains('\0') {
-            return Err(text_error(
-                "the scene text",
-                &self.scene,
-                "expected text without NUL characters",
-            ));
-        }
-        for name in self.state.keys() {
-            if name.is_empty() || !name.chars().all(|c| c.is_ascii_alphanumeric() || c == '_') {
-                return Err(text_error(
-                    "a state array named",
-                    name,
-                    "expected letters, digits and _",
-                ));
-            }
-        }
-        Ok(())
+        require_text("the scene text", &self.scene)?;
+        self.state
+            .keys()
+            .try_for_each(|name| require_name("a state array named", name))
     }
+}
+
+/// Fails unless HDF5 can hold these texts as attributes under their names.
+pub(crate) fn require_texts(texts: &BTreeMap<String, String>) -> Result<(), CheckpointError> {
+    texts.iter().try_for_each(|(name, text)| {
+        require_name("a text named", name)?;
+        require_text("a text about the run", text)
+    })
+}
+
+fn require_text(what: &'static str, text: &str) -> Result<(), CheckpointError> {
+    if text.contains('\0') {
+        return Err(text_error(what, text, "expected text without NUL characters"));
+    }
+    Ok(())
+}
+
+fn require_name(what: &'static str, name: &str) -> Result<(), CheckpointError> {
+    if name.is_empty() || !name.chars().all(|c| c.is_ascii_alphanumeric() || c == '_') {
+        return Err(text_error(what, name, "expected letters, digits and _"));
+    }
+    Ok(())
 }
 
 fn text_error(what: &'static str, text: &str, reason: &'static str) -> CheckpointError {

@@ -6,11 +6,14 @@
 //!
 //! ```text
 //! CRC OFFSET LENGTH PATH     one per contiguous array or compressed chunk
+//! CRC 0 LENGTH (structure)   all bytes outside of these arrays
 //! CRC 0 LENGTH /             the whole HDF5 content
 //! seal LENGTH CRC            of the lines above, fixed width
 //! ```
-//! The first lines are only needed to name the data set when the content is damaged. Cost: one pass over the file
-//! after it is written (from the system's cache) and one before it is read.
+//! The first lines name the data set when the content is damaged. The structure is all that the library itself
+//! interprets: it is enough to verify it before names, shapes, times and texts are read from many files. Cost: one
+//! pass over the file after it is written (from the system's cache) and one before it is read; the structure is a
+//! few kilobytes.
 
 use std::fs::{File, OpenOptions};
 use std::io::{self, Read, Seek, SeekFrom, Write};
@@ -53,27 +56,31 @@ pub(crate) fn extents(file: &hdf5::File, path: &str) -> hdf5::Result<Vec<Extent>
         .collect())
 }
 
+/// Path that stands for all bytes outside of the arrays.
+const STRUCTURE: &str = "(structure)";
+
 /// Appends the seal and brings the file to the disk. The extents do not overlap, so one pass serves them and the
 /// whole: the checksum of a sequence follows from those of its parts.
 pub(crate) fn append_seal(path: &Path, mut extents: Vec<Extent>) -> io::Result<()> {
     let mut file = OpenOptions::new().read(true).append(true).open(path)?;
     let length = file.metadata()?.len();
     extents.sort_by_key(|extent| extent.offset);
-    let (mut table, mut whole, mut end) = (String::new(), Hasher::new(), 0);
+    let (mut table, mut end) = (String::new(), 0);
+    let (mut whole, mut structure) = (Hasher::new(), Hasher::new());
     for extent in &extents {
-        whole.combine(&hash(&mut file, end, extent.offset - end)?);
+        let gap = hash(&mut file, end, extent.offset - end)?;
         let part = hash(&mut file, extent.offset, extent.length)?;
+        structure.combine(&gap);
+        whole.combine(&gap);
         whole.combine(&part);
-        table += &format!(
-            "{:08x} {} {} {}\n",
-            part.finalize(),
-            extent.offset,
-            extent.length,
-            extent.path
-        );
+        let crc = part.finalize();
+        table += &format!("{crc:08x} {} {} {}\n", extent.offset, extent.length, extent.path);
         end = extent.offset + extent.length;
     }
-    whole.combine(&hash(&mut file, end, length - end)?);
+    let gap = hash(&mut file, end, length - end)?;
+    structure.combine(&gap);
+    whole.combine(&gap);
+    table += &format!("{:08x} 0 {length} {STRUCTURE}\n", structure.finalize());
     table += &format!("{:08x} 0 {length} /\n", whole.finalize());
     let footer = format!(
         "seal {:010} {:08x}\n",
@@ -85,35 +92,73 @@ pub(crate) fn append_seal(path: &Path, mut extents: Vec<Extent>) -> io::Result<(
     file.sync_all()
 }
 
+/// The seal of a file as read.
+struct Seal {
+    /// Checksum and place of the arrays, by growing offset.
+    arrays: Vec<(u32, Extent)>,
+    /// Checksum of all other bytes.
+    structure: u32,
+    /// Checksum of all bytes.
+    whole: u32,
+    /// Bytes that are sealed.
+    length: u64,
+}
+
 /// Fails unless every byte of the file is as it was written; names the damaged data set if it can.
 pub(crate) fn verify_seal(path: &Path) -> Result<(), CheckpointError> {
-    let mut file = File::open(path).map_err(CheckpointError::io("read", path))?;
-    let read = read_table(&mut file).map_err(CheckpointError::io("read", path))?;
-    let Some(entries) = read.as_deref().and_then(parse_table) else {
-        return Err(CheckpointError::malformed(path, "its seal is missing or damaged"));
-    };
-    // The last entry is the whole content; the others are only looked at when it is wrong.
-    for (i, (expected, extent)) in entries.iter().rev().enumerate() {
+    let (mut file, seal) = open_sealed(path)?;
+    let found = hash(&mut file, 0, seal.length).map_err(CheckpointError::io("read", path))?;
+    if found.finalize() == seal.whole {
+        return Ok(());
+    }
+    for (expected, extent) in &seal.arrays {
         let found = hash(&mut file, extent.offset, extent.length);
         let found = found.map_err(CheckpointError::io("read", path))?.finalize();
-        match (i, found == *expected) {
-            (0, true) => return Ok(()),
-            (0, false) | (_, true) => continue,
-            (_, false) => {
-                let (path, dataset, expected) = (path.to_path_buf(), extent.path.clone(), *expected);
-                return Err(CheckpointError::Damaged {
-                    path,
-                    dataset,
-                    expected,
-                    found,
-                });
-            }
+        if found != *expected {
+            let (path, dataset, expected) = (path.to_path_buf(), extent.path.clone(), *expected);
+            return Err(CheckpointError::Damaged {
+                path,
+                dataset,
+                expected,
+                found,
+            });
         }
     }
-    Err(CheckpointError::malformed(
-        path,
-        "its bytes differ from those written, outside of its arrays",
-    ))
+    Err(damaged_structure(path))
+}
+
+/// Fails unless everything but the values of the arrays is as it was written: after this the library may open the
+/// file, and names, shapes and texts are right. Values have checksums of their own.
+pub(crate) fn verify_structure(path: &Path) -> Result<(), CheckpointError> {
+    let (mut file, seal) = open_sealed(path)?;
+    let mut gaps = || -> io::Result<u32> {
+        let (mut structure, mut end) = (Hasher::new(), 0);
+        for (_, extent) in &seal.arrays {
+            structure.combine(&hash(&mut file, end, extent.offset.saturating_sub(end))?);
+            end = extent.offset.saturating_add(extent.length);
+        }
+        structure.combine(&hash(&mut file, end, seal.length.saturating_sub(end))?);
+        Ok(structure.finalize())
+    };
+    let found = gaps().map_err(CheckpointError::io("read", path))?;
+    if found == seal.structure {
+        Ok(())
+    } else {
+        Err(damaged_structure(path))
+    }
+}
+
+fn damaged_structure(path: &Path) -> CheckpointError {
+    CheckpointError::malformed(path, "its bytes differ from those written, outside of its arrays")
+}
+
+fn open_sealed(path: &Path) -> Result<(File, Seal), CheckpointError> {
+    let mut file = File::open(path).map_err(CheckpointError::io("read", path))?;
+    let table = read_table(&mut file).map_err(CheckpointError::io("read", path))?;
+    match table.as_deref().and_then(parse_table) {
+        Some(seal) => Ok((file, seal)),
+        None => Err(CheckpointError::malformed(path, "its seal is missing or damaged")),
+    }
 }
 
 /// The lines above the footer, if the footer belongs to them.
@@ -144,21 +189,23 @@ fn parse_footer(footer: &[u8]) -> Option<(u64, u32)> {
     Some((length.parse().ok()?, u32::from_str_radix(crc, 16).ok()?))
 }
 
-fn parse_table(table: &str) -> Option<Vec<(u32, Extent)>> {
+fn parse_table(table: &str) -> Option<Seal> {
     let entry = |line: &str| {
         let mut words = line.splitn(4, ' ');
         let crc = u32::from_str_radix(words.next()?, 16).ok()?;
         let (offset, length) = (words.next()?.parse().ok()?, words.next()?.parse().ok()?);
-        Some((
-            crc,
-            Extent {
-                path: words.next()?.to_string(),
-                offset,
-                length,
-            },
-        ))
+        let path = words.next()?.to_string();
+        Some((crc, Extent { path, offset, length }))
     };
-    table.lines().map(entry).collect()
+    let mut arrays = table.lines().map(entry).collect::<Option<Vec<_>>>()?;
+    let (whole, all) = arrays.pop().filter(|(_, last)| last.path == "/")?;
+    let (structure, _) = arrays.pop().filter(|(_, last)| last.path == STRUCTURE)?;
+    Some(Seal {
+        arrays,
+        structure,
+        whole,
+        length: all.length,
+    })
 }
 
 fn read_range(file: &mut File, offset: u64, length: u64) -> io::Result<Vec<u8>> {

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use crate::atomic;
 use crate::error::CheckpointError;
-use crate::output::step_file_name;
+use crate::folder::step_file_name;
 
 /// Name of the file in the result folder.
 pub const SERIES_FILE: &str = "run.hdf.series";

@@ -8,9 +8,11 @@
 //!                         contents: paths of all data sets, one per line, sorted
 //!   step                  [1], i64
 //!   state/NAME            the arrays of the state, [n], f64 or i64
+//!   about                 texts about the run as attributes, the same in every step
 //! ```
 //! `contents` makes the loss of a whole data set an error instead of a field that is silently absent.
 
+use std::collections::BTreeMap;
 use std::path::Path;
 
 use hdf5::types::{IntSize, TypeDescriptor};
@@ -23,7 +25,7 @@ use crate::dataset::{
 use crate::error::CheckpointError;
 use crate::mesh_file::{MESH_FILE, MESH_HASH};
 use crate::record::{PointFields, StateArray, StepRecord};
-use crate::seal::verify_seal;
+use crate::seal::{verify_seal, verify_structure};
 use crate::storage::{Compression, Storage};
 
 /// Group of the fields.
@@ -34,6 +36,7 @@ const SCENE: &str = "/restart/scene";
 const PROGRAM_VERSION: &str = "/restart/program_version";
 const CONTENTS: &str = "/restart/contents";
 const STATE: &str = "/restart/state";
+const ABOUT: &str = "/restart/about";
 
 /// Writes a step file under `name` into `dir`; the record must have been validated.
 pub(crate) fn write_step_file(
@@ -41,6 +44,7 @@ pub(crate) fn write_step_file(
     name: &str,
     record: &StepRecord,
     mesh_hash: &str,
+    about: &BTreeMap<String, String>,
     storage: Storage,
 ) -> Result<(), CheckpointError> {
     atomic::write_hdf(dir, name, Format::Earliest, |file| {
@@ -75,6 +79,10 @@ pub(crate) fn write_step_file(
         write_text(file, SCENE, &record.scene)?;
         write_text(file, PROGRAM_VERSION, env!("CARGO_PKG_VERSION"))?;
         write_text(file, MESH_HASH, mesh_hash)?;
+        create_group(file, "restart/about")?;
+        for (name, text) in about {
+            write_text(file, &format!("{ABOUT}/{name}"), text)?;
+        }
         contents.sort();
         write_text(file, CONTENTS, &contents.join("\n"))?;
         Ok(contents)
@@ -114,9 +122,44 @@ pub fn read_step(path: &Path) -> Result<StepRecord, CheckpointError> {
     Ok(record)
 }
 
-/// Time of a step file, s, without reading its fields or verifying its seal.
+/// Time of a step file, s, without reading its fields. What is read is verified, and so is the file's structure: the
+/// library can open it safely.
 pub fn read_step_time(path: &Path) -> Result<f64, CheckpointError> {
+    verify_structure(path)?;
     CheckedFile::open(path)?.scalar(TIME)
+}
+
+/// What a step file says about its run, by name; see [`crate::Output::describe`].
+pub fn read_about(path: &Path) -> Result<BTreeMap<String, String>, CheckpointError> {
+    verify_structure(path)?;
+    let file = CheckedFile::open(path)?;
+    let read = |name: String| Ok((name.clone(), file.text(&format!("{ABOUT}/{name}"))?));
+    let mut about: Result<BTreeMap<_, _>, CheckpointError> =
+        file.texts(ABOUT)?.into_iter().map(read).collect();
+    if let Ok(texts) = &mut about {
+        texts.insert("program_version".to_string(), file.text(PROGRAM_VERSION)?);
+        texts.insert("mesh_hash".to_string(), file.text(MESH_HASH)?);
+    }
+    about
+}
+
+/// What a step file says about itself.
+pub(crate) struct Contents {
+    pub step: u64,
+    pub time: f64,
+    pub scene: String,
+    /// Paths of its arrays.
+    pub arrays: Vec<String>,
+}
+
+/// Reads number, time, scene and the names of the arrays; the structure of the file must have been verified.
+pub(crate) fn read_contents(file: &CheckedFile) -> Result<Contents, CheckpointError> {
+    Ok(Contents {
+        step: file.scalar::<i64>(STEP)?.max(0) as u64,
+        time: file.scalar(TIME)?,
+        scene: file.text(SCENE)?,
+        arrays: file.text(CONTENTS)?.lines().map(str::to_string).collect(),
+    })
 }
 
 /// Fingerprint of the mesh a step file belongs to.

@@ -13,7 +13,7 @@ use std::process::{Command, Stdio};
 use std::sync::{Mutex, MutexGuard};
 use std::{env, fs};
 
-use checkpoint::{Output, Storage, committed_steps, read_step, rebuild_index};
+use checkpoint::{FolderLock, Output, Storage, committed_steps, read_step, rebuild_index};
 
 use fixture::{bare_record, bodies};
 
@@ -93,9 +93,15 @@ fn a_killed_writer_leaves_only_whole_steps() {
             let read = read_step(&dir.path().join(checkpoint::step_file_name(step))).unwrap();
             assert_eq!(read.points, bare_record(step).points);
         }
-        let resumed = Output::resume(dir.path(), &bodies(), Storage::default(), last).unwrap();
-        resumed.finish().unwrap();
-        assert_eq!(rebuild_index(dir.path()).unwrap() as u64, last + 1);
+        let resumed = Output::resume(
+            FolderLock::acquire(dir.path()).unwrap(),
+            &bodies(),
+            Storage::default(),
+            last,
+        )
+        .unwrap();
+        resumed.output.finish().unwrap();
+        assert_eq!(rebuild_index(dir.path()).unwrap().n_steps as u64, last + 1);
     }
 }
 
@@ -140,7 +146,7 @@ fn a_full_disk_leaves_no_half_file() {
     let names = fs::read_dir(dir.path())
         .unwrap()
         .map(|entry| entry.unwrap().file_name().into_string().unwrap());
-    let odd: Vec<_> = names.filter(|name| name.starts_with('.')).collect();
+    let odd: Vec<_> = names.filter(|name| name.ends_with(".tmp")).collect();
     assert!(odd.is_empty(), "left behind: {odd:?}");
     read_step(&dir.path().join(checkpoint::step_file_name(last))).unwrap();
 }

@@ -1,22 +1,31 @@
 //! Everything that is written while a run goes on: tables, step files, and the seconds it takes.
+//!
+//! Step files are written by a thread of their own; the run only waits when it is [`QUEUE`] steps ahead of the disk.
 
 use std::path::Path;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
-use checkpoint::{Compression, Output, Precision, StepRecord, Storage};
+use checkpoint::{
+    BackgroundOutput, CheckpointError, Compression, FolderLock, Output, Precision, StepRecord, Storage,
+};
 use dynamics::{Model, RingMemory, Timing};
 use fem::StressRecovery;
 
+use super::about::about;
 use super::fields;
 use super::snapshot::Snapshot;
 use super::summary::Costs;
 use super::tables::Tables;
 use crate::failure::Failure;
+use crate::print;
 use crate::scene::{self, Analysis, Scene};
+
+/// Step files that may wait for the disk, besides the one being written.
+const QUEUE: usize = 2;
 
 /// The open files of one run.
 pub struct Files {
-    output: Output,
+    output: BackgroundOutput,
     tables: Tables,
     /// Stress recovery of the flexible rings.
     pub recoveries: [Option<StressRecovery>; 2],
@@ -25,21 +34,73 @@ pub struct Files {
 }
 
 impl Files {
-    /// Creates the folder's files; `first` tells the columns.
-    pub fn create(scene: &Scene, model: &Model, dir: &Path, first: &Snapshot) -> Result<Files, Failure> {
+    /// Creates the folder's files; `first` tells the columns, `warnings` are those of the start.
+    pub fn create(
+        scene: &Scene,
+        model: &Model,
+        dir: &Path,
+        first: &Snapshot,
+        warnings: &[String],
+    ) -> Result<Files, Failure> {
         let clock = Instant::now();
-        let output = Output::create(dir, &fields::bodies(model), storage(scene))?;
+        let mut output = Output::create(dir, &fields::bodies(model), storage(scene))?;
+        note_dead_owner(output.lock());
+        output.describe(about(scene, dir, warnings)?)?;
         let swept = match &scene.analysis {
             Analysis::Sweep(sweep) => Some(sweep.column.as_str()),
             Analysis::Static | Analysis::Dynamic(_) => None,
         };
         let tables = Tables::create(dir, swept, first)?;
+        Files::new(scene, model, output, tables, clock)
+    }
+
+    /// Opens the files of a locked folder to go on after its step `last`.
+    pub fn resume(
+        scene: &Scene,
+        model: &Model,
+        lock: FolderLock,
+        first: &Snapshot,
+        last: u64,
+        warnings: &[String],
+    ) -> Result<Files, Failure> {
+        let clock = Instant::now();
+        let dir = lock.dir().to_path_buf();
+        let texts = about(scene, &dir, warnings)?;
+        // The tables tell whether the step can be resumed from; nothing is changed before all is known to fit.
+        let cuts = Tables::cuts(&dir, first, last)?;
+        let resumed = Output::resume(lock, &fields::bodies(model), storage(scene), last)?;
+        let (mut output, damaged, mut superseded) = (resumed.output, resumed.damaged, resumed.superseded);
+        output.describe(texts)?;
+        let mut aside = || match &superseded {
+            Some(folder) => Ok(folder.clone()),
+            None => Ok(superseded
+                .insert(checkpoint::new_superseded_folder(&dir)?)
+                .clone()),
+        };
+        let tables = Tables::resume(&cuts, &mut aside)?;
+        if let Some(folder) = superseded {
+            print::note(format_args!(
+                "what the run wrote after step {last} is kept in {}",
+                folder.display()
+            ));
+        }
+        warn_of_damage(&damaged);
+        Files::new(scene, model, output, tables, clock)
+    }
+
+    fn new(
+        scene: &Scene,
+        model: &Model,
+        output: Output,
+        tables: Tables,
+        clock: Instant,
+    ) -> Result<Files, Failure> {
+        let companions = tables.companions(output.dir())?;
         let output_seconds = clock.elapsed().as_secs_f64();
-        let recoveries = fields::recoveries(model, scene.output.stress)?;
         Ok(Files {
-            output,
+            output: BackgroundOutput::start(output, QUEUE, companions),
             tables,
-            recoveries,
+            recoveries: fields::recoveries(model, scene.output.stress)?,
             stress_seconds: 0.0,
             output_seconds,
         })
@@ -59,7 +120,8 @@ impl Files {
         Ok(())
     }
 
-    /// Makes a record of the fields and writes it as a step file.
+    /// Makes a record of the fields and hands it over to be written as a step file. The tables must have the step
+    /// already: a step file vouches for the tables up to its step.
     pub fn write_fields(
         &mut self,
         record: impl FnOnce(&[Option<StressRecovery>; 2]) -> StepRecord,
@@ -68,12 +130,17 @@ impl Files {
         let record = record(&self.recoveries);
         self.stress_seconds += clock.elapsed().as_secs_f64();
         let clock = Instant::now();
-        self.output.write_step(&record)?;
+        self.output.write_step(record)?;
         self.output_seconds += clock.elapsed().as_secs_f64();
         Ok(())
     }
 
-    /// Closes the files and says what the run cost.
+    /// Time spent waiting for the disk so far.
+    pub fn waited(&self) -> Duration {
+        self.output.waited()
+    }
+
+    /// Waits for the disk, closes the files and says what the run cost.
     pub fn finish(
         self,
         read: f64,
@@ -82,15 +149,38 @@ impl Files {
         start: Instant,
     ) -> Result<Costs, Failure> {
         let clock = Instant::now();
-        self.output.finish()?;
+        let written = self.output.finish()?;
+        if let Some(views) = written.output.finish()? {
+            warn_of_damage(&views.damaged);
+        }
         Ok(Costs {
             read,
             stress: self.stress_seconds,
             output: self.output_seconds + clock.elapsed().as_secs_f64(),
+            disk_wait: written.waited.as_secs_f64(),
+            disk: written.busy.as_secs_f64(),
             total: start.elapsed().as_secs_f64(),
             forecast,
             solver,
         })
+    }
+}
+
+/// Says that the last writer of a folder did not end well.
+pub fn note_dead_owner(lock: &FolderLock) {
+    if let Some(owner) = lock.dead_owner() {
+        print::note(format_args!(
+            "note: {owner} was writing to {} and ended without giving it back; its lock is taken over",
+            lock.dir().display()
+        ));
+    }
+}
+
+fn warn_of_damage(damaged: &[CheckpointError]) {
+    for error in damaged {
+        print::note(format_args!(
+            "warning: {error}; it is left out of run.hdf.series and run.vtkhdf"
+        ));
     }
 }
 

@@ -1,10 +1,14 @@
 //! What a run leaves behind: `summary.json`, tables, VTKHDF files, and a table on the screen.
 
+pub mod about;
 pub mod console;
+pub mod cut;
+pub mod disk;
 pub mod fields;
 pub mod files;
 pub mod folder;
 pub mod motion_fields;
 pub mod snapshot;
+pub mod state_arrays;
 pub mod summary;
 pub mod tables;

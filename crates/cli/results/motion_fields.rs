@@ -1,15 +1,15 @@
 //! Nodal fields of one instant of a motion. Rings are shown as they stand in space: the inner ring is turned by its
-//! angle, and so are its displacements and its stress tensors. The state of the run is stored beside, bit for bit.
+//! angle, and so are its displacements and its stress tensors, unless the scene asks for its own frame. The state of the run is stored beside, bit for bit.
 
-use std::collections::BTreeMap;
-
-use checkpoint::{StateArray, StepRecord};
+use checkpoint::StepRecord;
 use contact::Side;
 use dynamics::Model;
 use dynamics::motion::{Motion, MotionState};
 use fem::stress::StressRecovery;
 
 use super::fields::{add_balls, point_fields};
+use super::state_arrays;
+use crate::scene::{InnerRingFrame, Scene};
 
 /// The record of one instant.
 pub fn record(
@@ -17,7 +17,7 @@ pub fn record(
     motion: &Motion<'_>,
     state: &MotionState,
     recoveries: &[Option<StressRecovery>; 2],
-    scene: &str,
+    scene: &Scene,
 ) -> StepRecord {
     let with_stress = recoveries.iter().any(Option::is_some);
     let (mut displacement, mut stress) = (Vec::new(), Vec::new());
@@ -26,7 +26,10 @@ pub fn record(
         else {
             continue;
         };
-        let turn = Turn::new(angle);
+        let turn = Turn::new(match (side, scene.output.inner_ring) {
+            (Side::Inner, InnerRingFrame::OwnFrame) => 0.0,
+            (Side::Inner | Side::Outer, _) => angle,
+        });
         for (x, u) in ring.mesh.nodes.iter().zip(field.chunks_exact(3)) {
             let now = turn.vector([x[0] + u[0], x[1] + u[1], u[2]]);
             displacement.push([now[0] - x[0], now[1] - x[1], now[2]]);
@@ -40,8 +43,8 @@ pub fn record(
         step: state.step,
         time: motion.time(state.step),
         points: point_fields(displacement, with_stress.then_some(stress), forces),
-        scene: scene.to_string(),
-        state: arrays(state),
+        scene: scene.text.clone(),
+        state: state_arrays::store(state, &motion.shape()),
     }
 }
 
@@ -77,51 +80,6 @@ impl Turn {
             c * xz - s * yz,
         ]
     }
-}
-
-/// Everything that evolves, by name.
-fn arrays(state: &MotionState) -> BTreeMap<String, StateArray> {
-    let ledger = &state.ledger;
-    let works = [
-        ledger.load_work,
-        ledger.patch_work,
-        ledger.contact_loss,
-        ledger.rayleigh_loss,
-    ];
-    let mut arrays = BTreeMap::from([
-        ("balls".to_string(), StateArray::Real(state.balls.concat())),
-        (
-            "ball_velocities".to_string(),
-            StateArray::Real(state.ball_velocities.concat()),
-        ),
-        ("shaft".to_string(), StateArray::Real(state.shaft.to_vec())),
-        (
-            "shaft_velocity".to_string(),
-            StateArray::Real(state.shaft_velocity.to_vec()),
-        ),
-        ("forces".to_string(), StateArray::Real(state.forces.concat())),
-        ("angles".to_string(), StateArray::Real(state.angles.clone())),
-        (
-            "approaches".to_string(),
-            StateArray::Real(state.approaches.clone()),
-        ),
-        ("ledger_works".to_string(), StateArray::Real(works.to_vec())),
-        (
-            "ledger_scale".to_string(),
-            StateArray::Real(vec![ledger.initial, ledger.largest, ledger.hertz]),
-        ),
-    ]);
-    for (side, ring) in Side::BOTH.into_iter().zip(&state.rings) {
-        if let Some(ring) = ring {
-            for (name, values) in [("w", &ring.w), ("v", &ring.v), ("a", &ring.a)] {
-                arrays.insert(
-                    format!("{}_{name}", side.name()),
-                    StateArray::Real(values.clone()),
-                );
-            }
-        }
-    }
-    arrays
 }
 
 #[cfg(test)]

@@ -73,8 +73,12 @@ pub struct Costs {
     pub read: f64,
     /// Stress recovery.
     pub stress: f64,
-    /// Writing.
+    /// Writing, as far as the run had to wait for it: tables, handing over steps, closing.
     pub output: f64,
+    /// Waiting for the disk, a part of `output`.
+    pub disk_wait: f64,
+    /// Writing of step files on its own thread, beside the computation.
+    pub disk: f64,
     /// Whole run.
     pub total: f64,
     /// Memory forecast for the rings, inner and outer; None is rigid.
@@ -213,6 +217,8 @@ fn timing(costs: &Costs) -> BTreeMap<&'static str, f64> {
         ("solve", s.solve),
         ("stress", costs.stress),
         ("output", costs.output),
+        ("disk", costs.disk),
+        ("disk_wait", costs.disk_wait),
         ("total", costs.total),
     ])
 }

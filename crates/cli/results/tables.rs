@@ -1,10 +1,12 @@
 //! Long tables of a run: `balls.csv`, `shaft.csv`, `energy.csv`. SI units in the column names.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use anyhow::Context;
+use checkpoint::Companion;
 use dynamics::balls::{BallResult, ContactResult};
 
+use super::cut::Cut;
 use super::snapshot::Snapshot;
 
 /// The tables of one run, open for appending.
@@ -13,6 +15,10 @@ pub struct Tables {
     shaft: csv::Writer<std::fs::File>,
     energy: csv::Writer<std::fs::File>,
 }
+
+const BALLS: &str = "balls.csv";
+const SHAFT: &str = "shaft.csv";
+const ENERGY: &str = "energy.csv";
 
 const REACTION_COLUMNS: [&str; 5] = [
     "reaction_x_n",
@@ -34,39 +40,45 @@ const CONTACT_COLUMNS: [&str; 6] = [
 impl Tables {
     /// Creates the files with the header lines of a first snapshot; `swept` is the column of a swept value.
     pub fn create(dir: &Path, swept: Option<&str>, first: &Snapshot) -> anyhow::Result<Tables> {
-        let head = |rest: &[String]| {
-            let mut columns = vec!["step".to_string(), "time_s".to_string()];
-            columns.extend(swept.map(str::to_string));
-            columns.extend(rest.iter().cloned());
-            columns
-        };
-        let names = |list: &[&str]| list.iter().map(|s| s.to_string()).collect::<Vec<_>>();
-        let mut ball_columns = names(&[
-            "ball",
-            "azimuth_rad",
-            "inner_force_n",
-            "outer_force_n",
-            "inner_contact_angle_rad",
-            "outer_contact_angle_rad",
-        ]);
-        for side in ["inner", "outer"] {
-            ball_columns.extend(CONTACT_COLUMNS[2..].iter().map(|c| format!("{side}_{c}")));
-        }
-        ball_columns.extend(names(&["displacement_radial_m", "displacement_axial_m"]));
-        let mut shaft_columns = names(&["x_m", "y_m", "z_m", "tilt_x_rad", "tilt_y_rad"]);
-        if first.reaction.is_some() {
-            shaft_columns.extend(names(&REACTION_COLUMNS));
-        }
-        let energy_columns: Vec<String> = first
-            .energies
-            .iter()
-            .map(|(term, _)| format!("{term}_j"))
-            .collect();
+        let [balls, shaft, energy] = columns(swept, first);
         Ok(Tables {
-            balls: open(dir, "balls.csv", &head(&ball_columns))?,
-            shaft: open(dir, "shaft.csv", &head(&shaft_columns))?,
-            energy: open(dir, "energy.csv", &head(&energy_columns))?,
+            balls: create(dir, BALLS, &balls)?,
+            shaft: create(dir, SHAFT, &shaft)?,
+            energy: create(dir, ENERGY, &energy)?,
         })
+    }
+
+    /// Looks where the files of an earlier run are to be cut to go on after its step `last`.
+    pub fn cuts(dir: &Path, first: &Snapshot, last: u64) -> anyhow::Result<[Cut; 3]> {
+        let [balls, shaft, energy] = columns(None, first);
+        let find = |name: &str, columns: &[String]| Cut::find(dir, name, &columns.join(","), last);
+        Ok([find(BALLS, &balls)?, find(SHAFT, &shaft)?, find(ENERGY, &energy)?])
+    }
+
+    /// Opens the files of an earlier run. Rows after the cuts are moved into the folder that `aside` makes.
+    pub fn resume(
+        [balls, shaft, energy]: &[Cut; 3],
+        aside: &mut dyn FnMut() -> anyhow::Result<PathBuf>,
+    ) -> anyhow::Result<Tables> {
+        let mut open = |cut: &Cut| Ok::<_, anyhow::Error>(csv::Writer::from_writer(cut.make(aside)?));
+        Ok(Tables {
+            balls: open(balls)?,
+            shaft: open(shaft)?,
+            energy: open(energy)?,
+        })
+    }
+
+    /// The files, for a thread that brings them to the disk.
+    pub fn companions(&self, dir: &Path) -> anyhow::Result<Vec<Companion>> {
+        [(BALLS, &self.balls), (SHAFT, &self.shaft), (ENERGY, &self.energy)]
+            .into_iter()
+            .map(|(name, table)| {
+                let path = dir.join(name);
+                let file = table.get_ref().try_clone();
+                let file = file.with_context(|| format!("cannot write {}", path.display()))?;
+                Ok(Companion { path, file })
+            })
+            .collect()
     }
 
     /// Appends one step; `swept` is the swept value in SI.
@@ -80,19 +92,36 @@ impl Tables {
         let mut head = vec![step.to_string(), number(time)];
         head.extend(swept.map(number));
         let row = |cells: Vec<String>| [head.clone(), cells].concat();
-        for (i, ball) in snapshot.balls.iter().enumerate() {
-            self.balls.write_record(row(ball_cells(i, ball)))?;
-        }
+        let balls = snapshot.balls.iter().enumerate();
         let shaft = snapshot.shaft.iter().chain(snapshot.reaction.iter().flatten());
-        self.shaft
-            .write_record(row(shaft.map(|x| number(*x)).collect()))?;
-        self.energy
-            .write_record(row(snapshot.energies.iter().map(|(_, x)| number(*x)).collect()))?;
-        for writer in [&mut self.balls, &mut self.shaft, &mut self.energy] {
-            writer.flush().context("cannot write a table")?;
-        }
-        Ok(())
+        let energies = snapshot.energies.iter();
+        append(
+            &mut self.balls,
+            BALLS,
+            balls.map(|(i, ball)| row(ball_cells(i, ball))),
+        )?;
+        append(&mut self.shaft, SHAFT, [row(shaft.map(|x| number(*x)).collect())])?;
+        append(
+            &mut self.energy,
+            ENERGY,
+            [row(energies.map(|(_, x)| number(*x)).collect())],
+        )
     }
+}
+
+/// Appends rows and hands them to the system: a killed run loses none of them.
+fn append(
+    table: &mut csv::Writer<std::fs::File>,
+    name: &str,
+    rows: impl IntoIterator<Item = Vec<String>>,
+) -> anyhow::Result<()> {
+    let write = || -> csv::Result<()> {
+        for row in rows {
+            table.write_record(row)?;
+        }
+        Ok(table.flush()?)
+    };
+    write().with_context(|| format!("cannot write {name} of the results"))
 }
 
 fn ball_cells(index: usize, ball: &BallResult) -> Vec<String> {
@@ -120,7 +149,37 @@ fn number(x: f64) -> String {
     format!("{x:?}")
 }
 
-fn open(dir: &Path, name: &str, columns: &[String]) -> anyhow::Result<csv::Writer<std::fs::File>> {
+/// Columns of the three tables.
+fn columns(swept: Option<&str>, first: &Snapshot) -> [Vec<String>; 3] {
+    let head = |rest: &[String]| {
+        let mut columns = vec!["step".to_string(), "time_s".to_string()];
+        columns.extend(swept.map(str::to_string));
+        columns.extend(rest.iter().cloned());
+        columns
+    };
+    let names = |list: &[&str]| list.iter().map(|s| s.to_string()).collect::<Vec<_>>();
+    let mut balls = names(&[
+        "ball",
+        "azimuth_rad",
+        "inner_force_n",
+        "outer_force_n",
+        "inner_contact_angle_rad",
+        "outer_contact_angle_rad",
+    ]);
+    for side in ["inner", "outer"] {
+        balls.extend(CONTACT_COLUMNS[2..].iter().map(|c| format!("{side}_{c}")));
+    }
+    balls.extend(names(&["displacement_radial_m", "displacement_axial_m"]));
+    let mut shaft = names(&["x_m", "y_m", "z_m", "tilt_x_rad", "tilt_y_rad"]);
+    if first.reaction.is_some() {
+        shaft.extend(names(&REACTION_COLUMNS));
+    }
+    let terms = first.energies.iter();
+    let energy: Vec<String> = terms.map(|(term, _)| format!("{term}_j")).collect();
+    [head(&balls), head(&shaft), head(&energy)]
+}
+
+fn create(dir: &Path, name: &str, columns: &[String]) -> anyhow::Result<csv::Writer<std::fs::File>> {
     let path = dir.join(name);
     let mut writer =
         csv::Writer::from_path(&path).with_context(|| format!("cannot create {}", path.display()))?;

@@ -25,6 +25,7 @@
 mod bearing;
 mod contact;
 mod damping;
+mod difference;
 mod dynamic;
 mod edit;
 mod effects;
@@ -51,11 +52,12 @@ use toml_edit::DocumentMut;
 
 pub use self::bearing::Bearing;
 pub use self::contact::{Contact, ContactMode};
+pub use self::difference::difference;
 pub use self::dynamic::{ContactScheme, Dynamic, IntegratorChoice};
 pub use self::effects::Effects;
 pub use self::error::SceneError;
 pub use self::materials::{Material, Materials};
-pub use self::output::{Output, Precision, StressOutput};
+pub use self::output::{InnerRingFrame, Output, Precision, StressOutput};
 pub use self::ring::{FlexibleRing, MeshFiles, Ring, RingName, Support};
 pub use self::section::{Section, SectionElement};
 pub use self::shaft::{Motion, Shaft};
@@ -109,6 +111,8 @@ pub struct Scene {
     pub path: PathBuf,
     /// Its text with the overrides applied: with the path, all that is needed to read the scene again.
     pub text: String,
+    /// The `--set` arguments in it.
+    pub overrides: Vec<String>,
     /// Free text for people.
     pub title: Option<String>,
     /// Macro-geometry.
@@ -256,6 +260,7 @@ impl Source<'_> {
             (Some(bearing), Some(materials), Some(analysis), texts) if texts.is_empty() => Ok(Scene {
                 path: self.path.to_path_buf(),
                 text,
+                overrides: self.overrides.to_vec(),
                 title: raw.title,
                 bearing,
                 materials,

@@ -11,6 +11,7 @@ pub struct RawOutput {
     stress: Option<StressOutput>,
     precision: Option<Precision>,
     compression: Option<i64>,
+    inner_ring: Option<InnerRingFrame>,
 }
 
 /// Stress fields that are written.
@@ -33,6 +34,16 @@ pub enum Precision {
     F64,
 }
 
+/// Frame in which a turning inner ring is shown.
+#[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq)]
+#[serde(rename_all = "snake_case")]
+pub enum InnerRingFrame {
+    /// As it stands in space: it turns, and the balls roll on it.
+    Space,
+    /// In its own frame: it stands still, so that its small displacements can be seen; the contacts run round it.
+    OwnFrame,
+}
+
 /// What is written, and how exactly.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Output {
@@ -42,6 +53,8 @@ pub struct Output {
     pub precision: Precision,
     /// Level of deflate, 0 (none) to 9.
     pub compression: u8,
+    /// Where a turning inner ring is shown.
+    pub inner_ring: InnerRingFrame,
 }
 
 impl RawOutput {
@@ -52,6 +65,7 @@ impl RawOutput {
             stress: self.stress.unwrap_or(StressOutput::Nodal),
             precision: self.precision.unwrap_or(Precision::F32),
             compression: level as u8,
+            inner_ring: self.inner_ring.unwrap_or(InnerRingFrame::Space),
         }
     }
 }

@@ -32,7 +32,8 @@ fn content(path: &Path) -> Vec<u8> {
 
 /// Writes `content` with a seal that fits, as if it had been damaged before it was sealed.
 fn seal(path: &Path, content: &[u8]) {
-    let table = format!("{:08x} 0 {} /\n", crc32fast::hash(content), content.len());
+    let (crc, length) = (crc32fast::hash(content), content.len());
+    let table = format!("{crc:08x} 0 {length} (structure)\n{crc:08x} 0 {length} /\n");
     let footer = format!(
         "seal {:010} {:08x}\n",
         table.len(),

@@ -4,13 +4,18 @@ use std::fs;
 use std::path::Path;
 
 use checkpoint::{
-    Body, CellKind, CheckpointError, Output, Storage, committed_steps, read_step, step_file_name,
+    Body, CellKind, CheckpointError, FolderLock, Output, Storage, committed_steps, newest_step, read_step,
+    step_file_name,
 };
 
 use crate::fixture::{N_POINTS, bare_record, bodies, record};
 
 fn create(dir: &Path) -> Output {
     Output::create(dir, &bodies(), Storage::default()).unwrap()
+}
+
+fn lock(dir: &Path) -> FolderLock {
+    FolderLock::acquire(dir).unwrap()
 }
 
 fn write_steps(dir: &Path, steps: impl IntoIterator<Item = u64>) {
@@ -168,7 +173,9 @@ fn a_resumed_run_moves_later_steps_aside() {
     checkpoint::rebuild_index(dir.path()).unwrap();
     fs::write(dir.path().join(".step_000005.hdf.tmp"), "half").unwrap();
     let kept = fs::read(dir.path().join("step_000002.hdf")).unwrap();
-    let mut output = Output::resume(dir.path(), &bodies(), Storage::default(), 2).unwrap();
+    let resumed = Output::resume(lock(dir.path()), &bodies(), Storage::default(), 2).unwrap();
+    let mut output = resumed.output;
+    assert_eq!(resumed.superseded, Some(dir.path().join("superseded_1")));
     assert_eq!(output.last_step(), Some((2, bare_record(2).time)));
     assert_eq!(committed_steps(dir.path()).unwrap(), [0, 1, 2]);
     assert!(!dir.path().join(".step_000005.hdf.tmp").exists() && !dir.path().join("run.vtkhdf").exists());
@@ -176,13 +183,14 @@ fn a_resumed_run_moves_later_steps_aside() {
     assert_eq!(committed_steps(&aside).unwrap(), [3, 4]);
     assert_eq!(read_step(&aside.join("step_000004.hdf")).unwrap(), bare_record(4));
     assert_eq!(
-        checkpoint::rebuild_index(&aside).unwrap(),
+        checkpoint::rebuild_index(&aside).unwrap().n_steps,
         2,
         "superseded steps stay viewable"
     );
     output.write_step(&bare_record(3)).unwrap();
     assert_eq!(fs::read(dir.path().join("step_000002.hdf")).unwrap(), kept);
-    Output::resume(dir.path(), &bodies(), Storage::default(), 1).unwrap();
+    drop(output);
+    Output::resume(lock(dir.path()), &bodies(), Storage::default(), 1).unwrap();
     assert_eq!(committed_steps(&dir.path().join("superseded_2")).unwrap(), [2, 3]);
 }
 
@@ -191,7 +199,7 @@ fn a_resumed_run_moves_later_steps_aside() {
 fn resuming_needs_the_step_and_the_mesh() {
     let dir = tempfile::tempdir().unwrap();
     let resume = |bodies: &[Body], step| {
-        Output::resume(dir.path(), bodies, Storage::default(), step)
+        Output::resume(lock(dir.path()), bodies, Storage::default(), step)
             .unwrap_err()
             .to_string()
     };
@@ -203,4 +211,103 @@ fn resuming_needs_the_step_and_the_mesh() {
     let text = resume(&other, 3);
     assert!(text.contains("mesh.hdf was made with mesh 20-4-"), "{text}");
     assert_eq!(committed_steps(dir.path()).unwrap(), [1, 2, 3]);
+}
+
+/// Wrong if two processes could write into one folder, or if the lock of a dead one kept the next one out.
+#[test]
+fn a_folder_has_one_writer_and_outlives_it() {
+    let dir = tempfile::tempdir().unwrap();
+    let mut output = Output::create(dir.path(), &bodies(), Storage::default()).unwrap();
+    assert_eq!(output.lock().dead_owner(), None);
+    output.write_step(&bare_record(0)).unwrap();
+    let text = FolderLock::acquire(dir.path()).unwrap_err().to_string();
+    let owner = format!("process {} on ", std::process::id());
+    assert!(
+        text.starts_with(&owner) && text.contains("is writing to folder"),
+        "{text}"
+    );
+    drop(output);
+    assert_eq!(
+        lock(dir.path()).dead_owner(),
+        None,
+        "a lock given back is no dead one"
+    );
+    // What a killed process leaves: its line, but no lock.
+    fs::write(dir.path().join(".raceway.lock"), "process 77 on elsewhere\n").unwrap();
+    let taken = lock(dir.path());
+    assert_eq!(taken.dead_owner(), Some("process 77 on elsewhere"));
+    Output::resume(taken, &bodies(), Storage::default(), 0).unwrap();
+}
+
+/// Wrong if a damaged newest step were taken to resume from, or if nobody heard of it.
+#[test]
+fn the_newest_whole_step_is_found_below_damaged_ones() {
+    let dir = tempfile::tempdir().unwrap();
+    write_steps(dir.path(), 0..4);
+    let step = |n: u64| dir.path().join(checkpoint::step_file_name(n));
+    fs::write(step(3), &fs::read(step(3)).unwrap()[..1000]).unwrap();
+    let mut bytes = fs::read(step(2)).unwrap();
+    let middle = bytes.len() / 2;
+    bytes[middle] ^= 1;
+    fs::write(step(2), bytes).unwrap();
+    let mut skipped = Vec::new();
+    let newest = newest_step(dir.path(), |error| skipped.push(error.to_string())).unwrap();
+    assert_eq!(newest, bare_record(1));
+    assert!(
+        skipped[0].contains("step_000003.hdf") && skipped[1].contains("step_000002.hdf"),
+        "{skipped:?}"
+    );
+    for n in [0, 1] {
+        fs::write(step(n), "").unwrap();
+    }
+    let text = newest_step(dir.path(), |_| {}).unwrap_err().to_string();
+    assert!(text.contains("step_000000.hdf"), "{text}");
+}
+
+/// Wrong if one damaged step made all others unusable, or if the library opened it: its structure alone is wrong here.
+#[test]
+fn a_damaged_earlier_step_is_left_out_of_the_views_and_named() {
+    let dir = tempfile::tempdir().unwrap();
+    write_steps(dir.path(), 0..4);
+    let path = dir.path().join("step_000001.hdf");
+    let mut bytes = fs::read(&path).unwrap();
+    bytes[200] ^= 0xff;
+    fs::write(&path, &bytes).unwrap();
+    let views = checkpoint::rebuild_index(dir.path()).unwrap();
+    let text = views.damaged[0].to_string();
+    assert_eq!(views.n_steps, 3);
+    assert!(text.contains("step_000001.hdf"), "{text}");
+    let resumed = Output::resume(lock(dir.path()), &bodies(), Storage::default(), 3).unwrap();
+    assert_eq!(resumed.damaged[0].to_string(), text);
+    let series = fs::read_to_string(dir.path().join("run.hdf.series")).unwrap();
+    assert!(series.contains("step_000002.hdf") && !series.contains("step_000001.hdf"));
+    drop(resumed);
+    let refused = Output::resume(lock(dir.path()), &bodies(), Storage::default(), 1).unwrap_err();
+    assert_eq!(refused.to_string(), text);
+}
+
+/// Wrong if a step did not say where its run came from, or said it in an array's place.
+#[test]
+fn steps_say_where_their_run_came_from() {
+    let dir = tempfile::tempdir().unwrap();
+    let mut output = Output::create(dir.path(), &bodies(), Storage::default()).unwrap();
+    let about = std::collections::BTreeMap::from([
+        ("scene_file".to_string(), "../scenes/ä.toml".to_string()),
+        ("overrides".to_string(), String::new()),
+    ]);
+    output.describe(about.clone()).unwrap();
+    let path = output.write_step(&bare_record(0)).unwrap();
+    let read = checkpoint::read_about(&path).unwrap();
+    assert_eq!(read["mesh_hash"], output.mesh_hash());
+    assert_eq!(read["program_version"], env!("CARGO_PKG_VERSION"));
+    assert!(about.iter().all(|(name, text)| read[name] == *text) && read.len() == 4);
+    assert_eq!(read_step(&path).unwrap(), bare_record(0));
+    let bad = std::collections::BTreeMap::from([("a".to_string(), "b\0".to_string())]);
+    assert!(
+        output
+            .describe(bad)
+            .unwrap_err()
+            .to_string()
+            .contains("without NUL")
+    );
 }

@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::Path;
 
-use checkpoint::{Output, Precision, Storage, point_ranges, rebuild_index};
+use checkpoint::{FolderLock, Output, Precision, Storage, point_ranges, rebuild_index};
 
 use crate::fixture::{N_POINTS, bare_record, bodies, record};
 
@@ -176,7 +176,9 @@ fn steps_may_differ_in_fields_and_precision() {
         .unwrap()
         .write_step(&record(0))
         .unwrap();
-    let mut output = Output::resume(dir.path(), &bodies(), EXACT, 0).unwrap();
+    let mut output = Output::resume(FolderLock::acquire(dir.path()).unwrap(), &bodies(), EXACT, 0)
+        .unwrap()
+        .output;
     output.write_step(&record(1)).unwrap();
     output.write_step(&bare_record(2)).unwrap();
     output.finish().unwrap();
@@ -207,7 +209,7 @@ fn both_views_can_be_rebuilt() {
     for name in ["run.hdf.series", "run.vtkhdf"] {
         fs::remove_file(dir.path().join(name)).unwrap();
     }
-    assert_eq!(rebuild_index(dir.path()).unwrap(), 4);
+    assert_eq!(rebuild_index(dir.path()).unwrap().n_steps, 4);
     assert!(before == views(), "rebuilt views differ");
     let empty = tempfile::tempdir().unwrap();
     assert!(

@@ -24,7 +24,7 @@ pub struct RingFactor {
 }
 
 /// Displacement, velocity, acceleration of a ring's coordinates, `[n]` each, SI.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct RingState {
     /// Total displacement in the ring's frame.
     pub w: Vec<f64>,

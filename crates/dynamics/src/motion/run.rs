@@ -123,7 +123,10 @@ impl<'a> Motion<'a> {
         let ladder = self.settings.ladder;
         // Places within the step are counted in integers, in units of the smallest part.
         let n = 1u64 << ladder.halvings;
-        let mut rung = if ladder.tolerance.is_some() { state.rung } else { 0 };
+        let mut rung = match ladder.tolerance {
+            Some(_) => ladder.halvings.min(state.rung as u32),
+            None => 0,
+        };
         let (mut at, mut next, mut report) = (0, None, StepReport::default());
         while at < n {
             let span = Span {
@@ -157,7 +160,7 @@ impl<'a> Motion<'a> {
         }
         let mut next = next.expect("a step has at least one part");
         next.step = state.step + 1;
-        next.rung = if ladder.tolerance.is_some() { rung } else { 0 };
+        next.rung = ladder.tolerance.map_or(0, |_| u64::from(rung));
         Ok((next, report))
     }
 

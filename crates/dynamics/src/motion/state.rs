@@ -37,12 +37,12 @@ pub struct Ladder {
 }
 
 /// All that evolves.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct MotionState {
     /// Steps done.
     pub step: u64,
     /// Rung k of the ladder on which the next step begins.
-    pub rung: u32,
+    pub rung: u64,
     /// Coordinates of the flexible rings.
     pub rings: [Option<RingState>; 2],
     /// Ball displacements from the just-touching position [radial, axial], m.

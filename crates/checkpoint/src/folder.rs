@@ -1,0 +1,147 @@
+//! What lies in a result folder: its steps by name, the newest whole one, leftovers, superseded steps.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use crate::atomic;
+use crate::error::CheckpointError;
+use crate::index::INDEX_FILE;
+use crate::mesh_file::MESH_FILE;
+use crate::record::StepRecord;
+use crate::series::{SERIES_FILE, write_series};
+use crate::step::{read_step, read_step_time};
+
+/// File name of a step: `step_000042.hdf`; more than six digits when needed.
+pub fn step_file_name(step: u64) -> String {
+    format!("step_{step:06}.hdf")
+}
+
+/// Numbers of the committed steps in a folder, growing. Only names are looked at.
+pub fn committed_steps(dir: &Path) -> Result<Vec<u64>, CheckpointError> {
+    let mut steps: Vec<u64> = file_names(dir)?
+        .iter()
+        .filter_map(|name| step_number(name))
+        .collect();
+    steps.sort_unstable();
+    Ok(steps)
+}
+
+/// Number and time, s, of those of `steps` whose structure is sound, and why the others are not.
+pub(crate) fn sound_steps(dir: &Path, steps: &[u64]) -> (Vec<(u64, f64)>, Vec<CheckpointError>) {
+    let (mut sound, mut damaged) = (Vec::new(), Vec::new());
+    for &step in steps {
+        match read_step_time(&dir.join(step_file_name(step))) {
+            Ok(time) => sound.push((step, time)),
+            Err(error) => damaged.push(error),
+        }
+    }
+    (sound, damaged)
+}
+
+/// The newest step that is whole, every byte verified. `skipped` hears of newer ones that are not.
+pub fn newest_step(
+    dir: &Path,
+    mut skipped: impl FnMut(&CheckpointError),
+) -> Result<StepRecord, CheckpointError> {
+    let path = dir.to_path_buf();
+    let mut error = CheckpointError::NoSteps { path };
+    for &step in committed_steps(dir)?.iter().rev() {
+        match read_step(&dir.join(step_file_name(step))) {
+            Ok(record) => return Ok(record),
+            Err(damage) => {
+                skipped(&damage);
+                error = damage;
+            }
+        }
+    }
+    Err(error)
+}
+
+/// A new folder `superseded_N` in `dir`, for what a resumed run replaces.
+pub fn new_superseded_folder(dir: &Path) -> Result<PathBuf, CheckpointError> {
+    let aside = (1_u64..)
+        .map(|n| dir.join(format!("superseded_{n}")))
+        .find(|path| !path.exists());
+    let aside = aside.expect("fewer than 2^64 folders exist");
+    fs::create_dir(&aside).map_err(CheckpointError::io("create folder", &aside))?;
+    Ok(aside)
+}
+
+/// The number in a step's file name; names this crate would not write are not steps.
+fn step_number(name: &str) -> Option<u64> {
+    let step = name.strip_prefix("step_")?.strip_suffix(".hdf")?.parse().ok()?;
+    (step_file_name(step) == name).then_some(step)
+}
+
+fn file_names(dir: &Path) -> Result<Vec<String>, CheckpointError> {
+    let list = || -> std::io::Result<Vec<String>> {
+        fs::read_dir(dir)?
+            .map(|entry| Ok(entry?.file_name().to_string_lossy().into_owned()))
+            .collect()
+    };
+    list().map_err(CheckpointError::io("list folder", dir))
+}
+
+pub(crate) fn require_no_results(dir: &Path) -> Result<(), CheckpointError> {
+    let names = file_names(dir)?;
+    let steps = committed_steps(dir)?;
+    let mut found = match steps[..] {
+        [] => Vec::new(),
+        [only] => vec![step_file_name(only)],
+        [first, .., last] => {
+            vec![format!("{} steps from {first} to {last}", steps.len())]
+        }
+    };
+    let known = [MESH_FILE, SERIES_FILE, INDEX_FILE];
+    found.extend(
+        known
+            .iter()
+            .filter(|&&name| names.iter().any(|n| n == name))
+            .map(|name| name.to_string()),
+    );
+    if found.is_empty() {
+        return Ok(());
+    }
+    Err(CheckpointError::ResultsPresent {
+        path: dir.to_path_buf(),
+        found: found.join(", "),
+    })
+}
+
+pub(crate) fn remove_leftovers(dir: &Path) -> Result<(), CheckpointError> {
+    for name in file_names(dir)?.iter().filter(|name| atomic::is_temporary(name)) {
+        remove_if_present(&dir.join(name))?;
+    }
+    Ok(())
+}
+
+pub(crate) fn remove_if_present(path: &Path) -> Result<(), CheckpointError> {
+    match fs::remove_file(path) {
+        Err(error) if error.kind() != std::io::ErrorKind::NotFound => {
+            Err(CheckpointError::io("remove", path)(error))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// Moves steps into a new folder `superseded_N`, the newest first, so that what remains has no gap if this is
+/// interrupted. A link to the mesh beside them keeps them viewable.
+pub(crate) fn move_aside(dir: &Path, steps: &[u64]) -> Result<Option<PathBuf>, CheckpointError> {
+    if steps.is_empty() {
+        return Ok(None);
+    }
+    let aside = new_superseded_folder(dir)?;
+    let (mesh, mesh_aside) = (dir.join(MESH_FILE), aside.join(MESH_FILE));
+    if fs::hard_link(&mesh, &mesh_aside).is_err() {
+        fs::copy(&mesh, &mesh_aside).map_err(CheckpointError::io("write", &mesh_aside))?;
+    }
+    for &step in steps.iter().rev() {
+        let (from, to) = (dir.join(step_file_name(step)), aside.join(step_file_name(step)));
+        fs::rename(&from, &to).map_err(CheckpointError::io("move aside", &from))?;
+    }
+    // Damaged ones are kept too, but not shown.
+    write_series(&aside, &sound_steps(&aside, steps).0)?;
+    atomic::sync_dir(&aside)?;
+    atomic::sync_dir(dir)?;
+    Ok(Some(aside))
+}

@@ -1,0 +1,105 @@
+//! The right to write into a result folder, which one process has at a time.
+//!
+//! It is an advisory lock of the operating system (`flock`) on the file `.raceway.lock`, so it ends with its process,
+//! however that ends. The file holds a line about the owner while the lock is held and is empty otherwise; a line
+//! without a lock is left by a process that died. The file stays: removing it would let two processes lock two
+//! files of the same name.
+
+use std::fs::{File, OpenOptions, TryLockError};
+use std::io::{Read, Seek, SeekFrom, Write};
+use std::path::{Path, PathBuf};
+
+use crate::error::CheckpointError;
+
+/// Name of the file in the result folder.
+const LOCK_FILE: &str = ".raceway.lock";
+
+/// A held lock; it ends when this is dropped.
+#[derive(Debug)]
+pub struct FolderLock {
+    dir: PathBuf,
+    file: File,
+    dead_owner: Option<String>,
+}
+
+impl FolderLock {
+    /// Takes the lock of the folder `dir`, or says who has it.
+    pub fn acquire(dir: &Path) -> Result<FolderLock, CheckpointError> {
+        let path = dir.join(LOCK_FILE);
+        let mut file = OpenOptions::new()
+            .read(true)
+            .write(true)
+            .create(true)
+            .truncate(false)
+            .open(&path)
+            .map_err(CheckpointError::io("open the lock", &path))?;
+        let locked = file.try_lock();
+        let mut owner = String::new();
+        file.read_to_string(&mut owner)
+            .map_err(CheckpointError::io("read", &path))?;
+        let owner = owner.trim().to_string();
+        match locked {
+            Ok(()) => {}
+            Err(TryLockError::WouldBlock) => {
+                let path = dir.to_path_buf();
+                return Err(CheckpointError::Locked { path, owner });
+            }
+            Err(TryLockError::Error(source)) => return Err(CheckpointError::io("lock", &path)(source)),
+        }
+        let text = format!("process {} on {}\n", std::process::id(), host());
+        rewrite(&mut file, &text).map_err(CheckpointError::io("write", &path))?;
+        Ok(FolderLock {
+            dir: dir.to_path_buf(),
+            file,
+            dead_owner: (!owner.is_empty()).then_some(owner),
+        })
+    }
+
+    /// The folder.
+    pub fn dir(&self) -> &Path {
+        &self.dir
+    }
+
+    /// Who had the lock and died with it.
+    pub fn dead_owner(&self) -> Option<&str> {
+        self.dead_owner.as_deref()
+    }
+}
+
+/// Who writes to the folder `dir` now; changes nothing.
+pub fn writer(dir: &Path) -> Result<Option<String>, CheckpointError> {
+    let path = dir.join(LOCK_FILE);
+    if !path.exists() {
+        return Ok(None);
+    }
+    let mut file = File::open(&path).map_err(CheckpointError::io("read", &path))?;
+    match file.try_lock_shared() {
+        Ok(()) => Ok(None),
+        Err(TryLockError::WouldBlock) => {
+            let mut owner = String::new();
+            file.read_to_string(&mut owner)
+                .map_err(CheckpointError::io("read", &path))?;
+            Ok(Some(owner.trim().to_string()))
+        }
+        Err(TryLockError::Error(source)) => Err(CheckpointError::io("lock", &path)(source)),
+    }
+}
+
+impl Drop for FolderLock {
+    fn drop(&mut self) {
+        // If this fails the next owner reports a dead one, which is harmless.
+        let _ = self.file.set_len(0);
+    }
+}
+
+fn rewrite(file: &mut File, text: &str) -> std::io::Result<()> {
+    file.set_len(0)?;
+    file.seek(SeekFrom::Start(0))?;
+    file.write_all(text.as_bytes())
+}
+
+/// Name of this machine, as far as the system tells.
+fn host() -> String {
+    std::fs::read_to_string("/proc/sys/kernel/hostname")
+        .map_or_else(|_| "this machine".to_string(), |name| name.trim().to_string())
+}

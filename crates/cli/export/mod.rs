@@ -1,0 +1,155 @@
+//! `raceway export`: steps as files for other tools, VTU for those that read VTK's XML formats, CSV for all others.
+
+mod csv;
+mod vtu;
+
+use std::ops::RangeInclusive;
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context, anyhow};
+use checkpoint::{Grid, StepRecord, committed_steps, read_mesh, read_step, step_file_name};
+use clap::{Args, ValueEnum};
+
+use crate::failure::Failure;
+use crate::print;
+
+/// What the command line asks for.
+#[derive(Debug, Args)]
+pub struct Export {
+    /// Folder of the results.
+    dir: PathBuf,
+    /// Steps: one such as 20, or a range such as 20..40 with both ends; default: all.
+    #[arg(long, value_parser = parse_steps)]
+    steps: Option<RangeInclusive<u64>>,
+    /// Form of the files.
+    #[arg(long)]
+    to: Form,
+    /// Folder of the files; default: export in the folder of the results.
+    #[arg(long)]
+    out: Option<PathBuf>,
+}
+
+/// Form of the files.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum Form {
+    /// One table per step, a row per point: place, body, fields.
+    Csv,
+    /// One VTK XML file per step, and run.pvd with their times.
+    Vtu,
+}
+
+/// Writes the steps asked for; existing files are not touched.
+pub fn export(request: &Export) -> Result<(), Failure> {
+    let dir = &request.dir;
+    let steps = chosen(&committed_steps(dir)?, request)?;
+    let grid = read_mesh(dir)?;
+    let out = request.out.clone().unwrap_or_else(|| dir.join("export"));
+    std::fs::create_dir_all(&out).with_context(|| format!("cannot create folder {}", out.display()))?;
+    let extension = match request.to {
+        Form::Csv => "csv",
+        Form::Vtu => "vtu",
+    };
+    let mut names = Vec::new();
+    for step in steps {
+        let record = read_step(&dir.join(step_file_name(step)))?;
+        require_same_points(&grid, &record)?;
+        let name = format!("step_{step:06}.{extension}");
+        let write = match request.to {
+            Form::Csv => csv::write,
+            Form::Vtu => vtu::write,
+        };
+        write_new(&out.join(&name), |file| write(file, &grid, &record))?;
+        names.push((name, record.time));
+    }
+    if request.to == Form::Vtu {
+        write_new(&out.join("run.pvd"), |file| vtu::write_collection(file, &names))?;
+    }
+    print::line(format_args!(
+        "{} steps as {extension} in {}",
+        names.len(),
+        out.display()
+    ));
+    Ok(())
+}
+
+/// The committed steps that were asked for.
+fn chosen(committed: &[u64], request: &Export) -> Result<Vec<u64>, Failure> {
+    let (Some(first), Some(last)) = (committed.first(), committed.last()) else {
+        return Err(checkpoint::CheckpointError::NoSteps {
+            path: request.dir.clone(),
+        }
+        .into());
+    };
+    let wanted = request.steps.clone().unwrap_or(*first..=*last);
+    let steps: Vec<u64> = committed
+        .iter()
+        .copied()
+        .filter(|step| wanted.contains(step))
+        .collect();
+    if steps.is_empty() {
+        return Err(anyhow!(
+            "{} has no step from {} to {}; it has {} steps from {first} to {last}",
+            request.dir.display(),
+            wanted.start(),
+            wanted.end(),
+            committed.len()
+        )
+        .into());
+    }
+    Ok(steps)
+}
+
+fn require_same_points(grid: &Grid, record: &StepRecord) -> Result<(), Failure> {
+    let (expected, found) = (grid.points.len(), record.points.displacement.len());
+    if expected == found {
+        return Ok(());
+    }
+    Err(anyhow!("step {} has {found} points, mesh.hdf has {expected}", record.step).into())
+}
+
+/// Fills a new file; one that is there already is an error.
+fn write_new(
+    path: &Path,
+    fill: impl FnOnce(&mut dyn std::io::Write) -> std::io::Result<()>,
+) -> Result<(), Failure> {
+    let create = || -> std::io::Result<()> {
+        let mut file = std::io::BufWriter::new(std::fs::File::create_new(path)?);
+        fill(&mut file)?;
+        std::io::Write::flush(&mut file)
+    };
+    create().with_context(|| format!("cannot write {}", path.display()))?;
+    Ok(())
+}
+
+fn parse_steps(text: &str) -> Result<RangeInclusive<u64>, String> {
+    let number = |part: &str| {
+        part.parse::<u64>().map_err(|_| {
+            format!("{text:?} is no range of steps; expected one step such as 20 or both ends as in 20..40")
+        })
+    };
+    let (first, last) = text.split_once("..").unwrap_or((text, text));
+    let (first, last) = (number(first)?, number(last)?);
+    if first > last {
+        return Err(format!("the range {text} ends before it starts"));
+    }
+    Ok(first..=last)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Wrong: other steps than those asked for would be written.
+    #[test]
+    fn a_range_has_both_ends() {
+        assert_eq!(parse_steps("20"), Ok(20..=20));
+        assert_eq!(parse_steps("0..40"), Ok(0..=40));
+        assert!(parse_steps("4..3").unwrap_err().contains("ends before it starts"));
+        for bad in ["", "..", "3..", "a", "1-3", "-1"] {
+            assert!(
+                parse_steps(bad).unwrap_err().contains("is no range of steps"),
+                "{bad}"
+            );
+        }
+    }
+}

@@ -1,0 +1,161 @@
+//! `raceway info`: what a result folder or one of its files holds.
+
+use std::path::Path;
+
+use anyhow::{Context, anyhow};
+use checkpoint::{
+    FileDescription, committed_steps, describe, read_mesh, read_step, read_step_time, step_file_name,
+};
+
+use crate::failure::Failure;
+use crate::print;
+use crate::results::disk::size;
+
+/// How closely the steps of a folder are looked at.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Depth {
+    /// What tells a whole file from a torn one: all but the values of the arrays.
+    Structure,
+    /// Every byte.
+    Bytes,
+}
+
+/// Prints what is there. Damage found is printed, and then an error.
+pub fn info(path: &Path, depth: Depth) -> Result<(), Failure> {
+    if path.is_dir() {
+        folder(path, depth)
+    } else if path.exists() {
+        file(path)
+    } else {
+        Err(anyhow!(
+            "{} is not there; expected a result folder, a step file or mesh.hdf",
+            path.display()
+        )
+        .into())
+    }
+}
+
+fn line(name: &str, text: &str) {
+    print::line(format_args!("{name:<11}{text}"));
+}
+
+fn folder(dir: &Path, depth: Depth) -> Result<(), Failure> {
+    let steps = committed_steps(dir)?;
+    line("folder", &dir.display().to_string());
+    let (mut damaged, mut sound, mut bytes) = (Vec::new(), Vec::new(), 0);
+    for &step in &steps {
+        let path = dir.join(step_file_name(step));
+        bytes += std::fs::metadata(&path).map_or(0, |data| data.len());
+        let time = match depth {
+            Depth::Structure => read_step_time(&path),
+            Depth::Bytes => read_step(&path).map(|record| record.time),
+        };
+        match time {
+            Ok(time) => sound.push((step, time)),
+            Err(error) => damaged.push(error.to_string()),
+        }
+    }
+    if let Some(&(newest, _)) = sound.last() {
+        about(&describe(&dir.join(step_file_name(newest)))?);
+    }
+    match (&sound[..], steps.len()) {
+        ([], 0) => line("steps", "none committed yet"),
+        ([], n) => line("steps", &format!("{n}, all damaged")),
+        ([first, ..], n) => {
+            let last = sound[sound.len() - 1];
+            line(
+                "steps",
+                &format!(
+                    "{n} from {} to {}, t = {:?} s to {:?} s, {} in all",
+                    first.0,
+                    last.0,
+                    first.1,
+                    last.1,
+                    size(bytes)
+                ),
+            );
+        }
+    }
+    match read_mesh(dir) {
+        Ok(grid) => line(
+            "mesh",
+            &format!(
+                "{} points, {} cells of {} bodies",
+                grid.points.len(),
+                grid.types.len(),
+                grid.body.iter().collect::<std::collections::BTreeSet<_>>().len()
+            ),
+        ),
+        Err(error) => damaged.push(error.to_string()),
+    }
+    folder_state(dir)?;
+    for text in &damaged {
+        line("damaged", text);
+    }
+    match damaged.len() {
+        0 => Ok(()),
+        n => Err(anyhow!("{n} files of {} are damaged", dir.display()).into()),
+    }
+}
+
+/// How the run ended, who writes, what was moved aside.
+fn folder_state(dir: &Path) -> Result<(), Failure> {
+    if let Ok(text) = std::fs::read_to_string(dir.join("summary.json")) {
+        let summary: serde_json::Value = serde_json::from_str(&text).context("summary.json is no JSON")?;
+        line("status", summary["status"].as_str().unwrap_or("unknown"));
+    }
+    if let Some(writer) = checkpoint::lock::writer(dir)? {
+        line("writer", &writer);
+    }
+    for n in 1.. {
+        let aside = dir.join(format!("superseded_{n}"));
+        if !aside.is_dir() {
+            break;
+        }
+        line(
+            "superseded",
+            &format!("{} steps in {}", committed_steps(&aside)?.len(), aside.display()),
+        );
+    }
+    Ok(())
+}
+
+fn file(path: &Path) -> Result<(), Failure> {
+    let found = describe(path)?;
+    line("file", &format!("{}, {}", path.display(), size(found.bytes)));
+    if let Some((step, time)) = found.step {
+        line("step", &format!("{step}, t = {time:?} s"));
+    }
+    about(&found);
+    for array in &found.arrays {
+        let shape: Vec<String> = array.shape.iter().map(usize::to_string).collect();
+        line(
+            "array",
+            &format!(
+                "{} {} [{}], {}",
+                array.path,
+                array.kind,
+                shape.join(", "),
+                size(array.bytes)
+            ),
+        );
+    }
+    match found.damage {
+        None => Ok(()),
+        Some(damage) => Err(damage.into()),
+    }
+}
+
+/// Texts about the run, and the title of its scene.
+fn about(found: &FileDescription) {
+    let title = found.scene.as_deref().and_then(|scene| {
+        let table = scene.parse::<toml::Table>().ok()?;
+        Some(table.get("title")?.as_str()?.to_string())
+    });
+    if let Some(title) = title {
+        line("title", &title);
+    }
+    for (name, text) in found.about.iter().filter(|(_, text)| !text.is_empty()) {
+        line(name, &text.replace('\n', "; "));
+    }
+}

@@ -1,0 +1,170 @@
+//! A table of a run that goes on from an earlier step: its later rows are moved aside, nothing of them is lost.
+//!
+//! A killed run leaves rows beyond its last step file, the last of them perhaps torn. The run that resumes computes
+//! these steps again, so that its tables end up as those of a run that was never interrupted.
+
+use std::fs::{File, OpenOptions};
+use std::io::{BufRead, BufReader, Seek, SeekFrom, Write};
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context, anyhow};
+
+/// Where a table is to be cut.
+pub struct Cut {
+    path: PathBuf,
+    header: String,
+    /// Bytes that stay.
+    keep: u64,
+    /// All bytes.
+    length: u64,
+}
+
+impl Cut {
+    /// Looks at the table `name` in `dir`: its header must be `header`, and it must have rows up to step `last`.
+    pub fn find(dir: &Path, name: &str, header: &str, last: u64) -> anyhow::Result<Cut> {
+        let path = dir.join(name);
+        let file = File::open(&path).with_context(|| format!("cannot read {}", path.display()))?;
+        let length = file.metadata().map_or(0, |data| data.len());
+        let mut lines = Lines {
+            reader: BufReader::new(file),
+            bytes: Vec::new(),
+        };
+        let found = lines.next(&path)?.unwrap_or_default().trim_end().to_string();
+        if found != header {
+            return Err(anyhow!(
+                "{} has the columns {found:?}, this version writes {header:?}; resume with the version of the run",
+                path.display()
+            ));
+        }
+        let (mut keep, mut newest) = (header.len() as u64 + 1, None);
+        while let Some(line) = lines.next(&path)? {
+            let step = line.split(',').next().and_then(|cell| cell.parse::<u64>().ok());
+            match step {
+                // A torn row has no end of line.
+                Some(step) if step <= last && line.ends_with('\n') => newest = Some(step),
+                _ => break,
+            }
+            keep += line.len() as u64;
+        }
+        if newest != Some(last) {
+            let newest = newest.map_or("the header".to_string(), |step| format!("step {step}"));
+            return Err(anyhow!(
+                "{} ends with {newest}, but the run resumes at step {last}: rows are missing; resume at an earlier step \
+                 with --step, or put the table back",
+                path.display()
+            ));
+        }
+        Ok(Cut {
+            path,
+            header: header.to_string(),
+            keep,
+            length,
+        })
+    }
+
+    /// Moves what follows the cut into the folder that `aside` makes and returns the table, open for appending.
+    pub fn make(&self, aside: &mut dyn FnMut() -> anyhow::Result<PathBuf>) -> anyhow::Result<File> {
+        let rows = if self.length > self.keep {
+            Some(aside()?)
+        } else {
+            None
+        };
+        self.make_in(rows)
+            .with_context(|| format!("cannot cut {} at the step to resume from", self.path.display()))
+    }
+
+    fn make_in(&self, aside: Option<PathBuf>) -> std::io::Result<File> {
+        if let (Some(aside), Some(name)) = (aside, self.path.file_name()) {
+            let mut rows = File::open(&self.path)?;
+            rows.seek(SeekFrom::Start(self.keep))?;
+            let mut copy = File::create(aside.join(name))?;
+            writeln!(copy, "{}", self.header)?;
+            std::io::copy(&mut rows, &mut copy)?;
+            copy.sync_all()?;
+            File::open(&aside)?.sync_all()?;
+            let table = OpenOptions::new().write(true).open(&self.path)?;
+            table.set_len(self.keep)?;
+            table.sync_all()?;
+        }
+        OpenOptions::new().append(true).open(&self.path)
+    }
+}
+
+/// Lines of a file with their ends; bytes that are no text end the reading like the end of the file.
+struct Lines {
+    reader: BufReader<File>,
+    bytes: Vec<u8>,
+}
+
+impl Lines {
+    fn next(&mut self, path: &Path) -> anyhow::Result<Option<String>> {
+        self.bytes.clear();
+        let read = self.reader.read_until(b'\n', &mut self.bytes);
+        read.with_context(|| format!("cannot read {}", path.display()))?;
+        let text = String::from_utf8(std::mem::take(&mut self.bytes)).ok();
+        Ok(text.filter(|line| !line.is_empty()))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const TABLE: &str = "step,x\n0,1.5\n1,2.5\n1,3.5\n2,4.5\n3,5.";
+
+    fn cut(dir: &Path, last: u64) -> anyhow::Result<()> {
+        let mut file = Cut::find(dir, "t.csv", "step,x", last)?.make(&mut || {
+            let aside = dir.join("aside");
+            std::fs::create_dir_all(&aside)?;
+            Ok(aside)
+        })?;
+        writeln!(file, "{},9.5", last + 1)?;
+        Ok(())
+    }
+
+    /// Wrong: a table would have steps twice, lose rows, or end in a torn row.
+    #[test]
+    fn rows_after_the_step_are_moved_aside() {
+        let dir = tempfile::tempdir().unwrap();
+        let path = dir.path().join("t.csv");
+        std::fs::write(&path, TABLE).unwrap();
+        cut(dir.path(), 1).unwrap();
+        assert_eq!(
+            std::fs::read_to_string(&path).unwrap(),
+            "step,x\n0,1.5\n1,2.5\n1,3.5\n2,9.5\n"
+        );
+        let aside = std::fs::read_to_string(dir.path().join("aside/t.csv")).unwrap();
+        assert_eq!(aside, "step,x\n2,4.5\n3,5.");
+        // The torn row of step 3 does not count as a step.
+        std::fs::write(&path, TABLE).unwrap();
+        let text = cut(dir.path(), 3).unwrap_err().to_string();
+        assert!(
+            text.contains("t.csv ends with step 2, but the run resumes at step 3"),
+            "{text}"
+        );
+        assert_eq!(
+            std::fs::read_to_string(&path).unwrap(),
+            TABLE,
+            "refused, so untouched"
+        );
+    }
+
+    /// Wrong: a table of another version would be continued with other columns.
+    #[test]
+    fn another_header_is_refused() {
+        let dir = tempfile::tempdir().unwrap();
+        std::fs::write(dir.path().join("t.csv"), "step,y\n0,1\n").unwrap();
+        let text = cut(dir.path(), 0).unwrap_err().to_string();
+        assert!(
+            text.contains("has the columns \"step,y\", this version writes \"step,x\""),
+            "{text}"
+        );
+        std::fs::remove_file(dir.path().join("t.csv")).unwrap();
+        assert!(
+            cut(dir.path(), 0)
+                .unwrap_err()
+                .to_string()
+                .contains("cannot read")
+        );
+    }
+}

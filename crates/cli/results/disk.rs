@@ -1,0 +1,138 @@
+//! Forecast of the output, and whether the disk has room for it.
+
+use std::path::Path;
+
+use anyhow::anyhow;
+use contact::Side;
+use dynamics::{Hold, Model, RingModel};
+
+use super::fields;
+use crate::failure::Failure;
+use crate::print;
+use crate::scene::{Analysis, Precision, Scene, StressOutput};
+
+/// Bytes of one point: displacement and two force vectors.
+const POINT_BYTES: u64 = 9 * 8;
+/// Numbers of one point that have the scene's precision: stress and von Mises.
+const STRESS_NUMBERS: u64 = 7;
+/// Bytes of one ball in the state of a motion: position, velocity, and force, angle and approach of two contacts.
+const BALL_BYTES: u64 = 8 * (2 + 2 + 2 * 4);
+/// HDF5's own bytes in a step file besides the arrays and the scene: groups, names, links, checksums, seal. (Measured:
+/// 28 kB with the format every library reads.)
+const FRAME_BYTES: u64 = 28_000;
+/// Bytes of a number in a table with its comma; most have all 17 digits, many an exponent.
+const CELL_BYTES: u64 = 20;
+/// Cells of a step in the tables: 16 per ball, and about 22 of shaft and energy.
+const BALL_CELLS: u64 = 16;
+const OTHER_CELLS: u64 = 22;
+
+/// Expected size of the results of a scene, bytes. Fields are counted without compression.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Forecast {
+    /// One step file.
+    pub step: u64,
+    /// Number of step files.
+    pub n_files: u64,
+    /// All files.
+    pub total: u64,
+}
+
+impl Forecast {
+    /// Forecast for the steps after `done` (0 for a new run, whose start has a file too).
+    pub fn new(scene: &Scene, model: &Model, done: u64) -> Forecast {
+        let n_points: u64 = fields::bodies(model).iter().map(|b| b.points.len() as u64).sum();
+        let numbers = match (scene.output.stress, scene.output.precision) {
+            (StressOutput::None, _) => 0,
+            (StressOutput::Nodal, Precision::F32) => 4 * STRESS_NUMBERS,
+            (StressOutput::Nodal, Precision::F64) => 8 * STRESS_NUMBERS,
+        };
+        let step = n_points * (POINT_BYTES + numbers)
+            + state_bytes(scene, model)
+            + FRAME_BYTES
+            + scene.text.len() as u64;
+        let start = u64::from(done == 0);
+        let (n_files, n_rows) = match &scene.analysis {
+            Analysis::Static => (1, 1),
+            Analysis::Sweep(sweep) => (sweep.points.len() as u64, sweep.points.len() as u64),
+            Analysis::Dynamic(dynamic) => {
+                let (every, n) = (dynamic.output_every, dynamic.n_steps);
+                let left = n.saturating_sub(done);
+                let files = n / every - done.min(n) / every + u64::from(left > 0 && n % every != 0);
+                (start + files, start + left)
+            }
+        };
+        let cells = BALL_CELLS * model.geometry.n_balls as u64 + OTHER_CELLS;
+        Forecast {
+            step,
+            n_files,
+            total: n_files * step + n_rows * cells * CELL_BYTES,
+        }
+    }
+
+    /// Fails when the disk of `dir` has no room for the results, unless told to go on, which leaves a note.
+    pub fn require_space(&self, dir: &Path, ignore: bool) -> Result<(), Failure> {
+        // A system that does not tell is no reason to stop.
+        let Some(free) = free_bytes(dir) else {
+            return Ok(());
+        };
+        if self.total <= free {
+            return Ok(());
+        }
+        let what = format!(
+            "the results need about {} ({} step files of {}), the disk of {} has {} free",
+            size(self.total),
+            self.n_files,
+            size(self.step),
+            dir.display(),
+            size(free)
+        );
+        if ignore {
+            print::note(format_args!(
+                "warning: {what}; going on because of --ignore-disk-space"
+            ));
+            return Ok(());
+        }
+        Err(Failure::User(anyhow!(
+            "{what}; write fewer steps with dynamic.output_every, choose another --out, or pass --ignore-disk-space"
+        )))
+    }
+}
+
+/// Bytes of the stored state.
+fn state_bytes(scene: &Scene, model: &Model) -> u64 {
+    match &scene.analysis {
+        Analysis::Dynamic(_) => {
+            let rings = Side::BOTH.into_iter().filter_map(|side| model.ring(side));
+            rings.map(ring_bytes).sum::<u64>() + BALL_BYTES * model.geometry.n_balls as u64
+        }
+        Analysis::Static | Analysis::Sweep(_) => 8 * (5 + 2 * model.geometry.n_balls as u64),
+    }
+}
+
+/// Displacement, velocity and acceleration of the dofs of a ring that can move by themselves.
+fn ring_bytes(ring: &RingModel) -> u64 {
+    let held = match ring.hold {
+        Hold::Clamped => 3 * ring.mesh.group_nodes(ring.held_group).len(),
+        Hold::MeanMotion | Hold::Free => 0,
+    };
+    3 * 8 * (ring.mesh.n_dofs() - held) as u64
+}
+
+/// Bytes that a user may still write to the disk of `dir`, or of the folder in which it will be made.
+pub fn free_bytes(dir: &Path) -> Option<u64> {
+    let dir = std::path::absolute(dir).ok()?;
+    let above = dir.ancestors().find(|path| path.exists())?;
+    let disk = rustix::fs::statvfs(above).ok()?;
+    Some(disk.f_bavail.saturating_mul(disk.f_frsize))
+}
+
+/// A number of bytes for people.
+pub fn size(bytes: u64) -> String {
+    const UNITS: [(f64, &str); 4] = [(1e12, "TB"), (1e9, "GB"), (1e6, "MB"), (1e3, "kB")];
+    let bytes = bytes as f64;
+    let unit = UNITS.iter().find(|(unit, _)| bytes >= *unit);
+    unit.map_or_else(
+        || format!("{bytes} bytes"),
+        |(unit, name)| format!("{:.2} {name}", bytes / unit),
+    )
+}

@@ -1,0 +1,311 @@
+//! The state of a motion as named arrays, in both directions: what step files hold and what a run resumes from.
+//!
+//! One function, [`exchange`], names every field of the state once; a [`Port`] carries the fields out or in. The
+//! state is taken apart without `..`, so a field that is added to it does not compile until it has its line there.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use anyhow::{anyhow, ensure};
+use checkpoint::StateArray;
+use contact::Side;
+use dynamics::motion::ring::RingState;
+use dynamics::motion::{Ledger, MotionState, StateShape};
+
+/// Arrays by name.
+pub type Arrays = BTreeMap<String, StateArray>;
+
+/// The arrays of a state of this shape.
+pub fn store(state: &MotionState, shape: &StateShape) -> Arrays {
+    let mut port = Port::Out(Arrays::new());
+    // The copy is emptied into the arrays.
+    exchange(&mut state.clone(), shape, &mut port).expect("storing checks nothing");
+    match port {
+        Port::Out(arrays) => arrays,
+        Port::In { .. } => unreachable!("a port keeps its direction"),
+    }
+}
+
+/// The state that was stored in `arrays`, bit for bit; fails when an array is missing, unknown or of another length.
+pub fn load(arrays: &Arrays, shape: &StateShape) -> anyhow::Result<MotionState> {
+    let mut state = MotionState::default();
+    let mut port = Port::In {
+        arrays,
+        unread: arrays.keys().collect(),
+    };
+    exchange(&mut state, shape, &mut port)?;
+    if let Port::In { unread, .. } = port
+        && let Some(name) = unread.first()
+    {
+        return Err(anyhow!("the state array {name} is not known to this version"));
+    }
+    Ok(state)
+}
+
+/// Every field of the state by its name. A new field is one line here.
+fn exchange(state: &mut MotionState, shape: &StateShape, port: &mut Port<'_>) -> anyhow::Result<()> {
+    let MotionState {
+        step,
+        rung,
+        rings,
+        balls,
+        ball_velocities,
+        ball_accelerations,
+        shaft,
+        shaft_velocity,
+        shaft_acceleration,
+        trend,
+        forces,
+        angles,
+        approaches,
+        ledger,
+    } = state;
+    let n_sites = 2 * shape.n_balls;
+    port.counter("steps", step)?;
+    port.counter("rung", rung)?;
+    port.rows("balls", balls, shape.n_balls)?;
+    port.rows("ball_velocities", ball_velocities, shape.n_balls)?;
+    port.rows("ball_accelerations", ball_accelerations, shape.n_balls)?;
+    port.values("shaft", shaft)?;
+    port.values("shaft_velocity", shaft_velocity)?;
+    port.values("shaft_acceleration", shaft_acceleration)?;
+    port.rows("trend", trend, 3 * shape.n_balls)?;
+    port.rows("forces", forces, n_sites)?;
+    port.list("angles", angles, n_sites)?;
+    port.list("approaches", approaches, n_sites)?;
+    exchange_ledger(ledger, port)?;
+    for (side, ring) in Side::BOTH.into_iter().zip(rings) {
+        if let Some(n) = shape.ring_dofs[side.index()] {
+            exchange_ring(ring.get_or_insert_default(), side.name(), n, port)?;
+        }
+    }
+    Ok(())
+}
+
+fn exchange_ring(ring: &mut RingState, side: &str, n: usize, port: &mut Port<'_>) -> anyhow::Result<()> {
+    let RingState { w, v, a } = ring;
+    port.list(&format!("{side}_w"), w, n)?;
+    port.list(&format!("{side}_v"), v, n)?;
+    port.list(&format!("{side}_a"), a, n)
+}
+
+fn exchange_ledger(ledger: &mut Ledger, port: &mut Port<'_>) -> anyhow::Result<()> {
+    let Ledger {
+        kinetic,
+        strain,
+        hertz,
+        load_work,
+        imposed_work,
+        frame_work,
+        patch_work,
+        contact_loss,
+        rayleigh_loss,
+        numerical_loss,
+        initial,
+        largest,
+    } = ledger;
+    port.values("ledger_kinetic", kinetic)?;
+    port.values("ledger_strain", strain)?;
+    port.scalars("ledger_works", [load_work, imposed_work, frame_work, patch_work])?;
+    port.scalars("ledger_losses", [contact_loss, rayleigh_loss, numerical_loss])?;
+    port.scalars("ledger_scale", [initial, largest, hertz])
+}
+
+/// Carries fields from a state into arrays or from arrays into a state.
+enum Port<'a> {
+    /// Arrays under way.
+    Out(Arrays),
+    /// Arrays as read, and the names nobody has asked for yet.
+    In {
+        arrays: &'a Arrays,
+        unread: BTreeSet<&'a String>,
+    },
+}
+
+impl Port<'_> {
+    /// A list of `n` numbers.
+    fn list(&mut self, name: &str, values: &mut Vec<f64>, n: usize) -> anyhow::Result<()> {
+        match self {
+            Port::Out(arrays) => {
+                arrays.insert(name.to_string(), StateArray::Real(std::mem::take(values)));
+            }
+            Port::In { .. } => *values = self.read(name, n)?.to_vec(),
+        }
+        Ok(())
+    }
+
+    /// A list of `n` rows.
+    fn rows<const N: usize>(&mut self, name: &str, rows: &mut Vec<[f64; N]>, n: usize) -> anyhow::Result<()> {
+        let mut flat = rows.concat();
+        self.list(name, &mut flat, N * n)?;
+        *rows = flat.as_chunks::<N>().0.to_vec();
+        Ok(())
+    }
+
+    /// Numbers whose count is fixed.
+    fn values(&mut self, name: &str, values: &mut [f64]) -> anyhow::Result<()> {
+        let mut flat = values.to_vec();
+        self.list(name, &mut flat, values.len())?;
+        // Empty when it was carried out.
+        values[..flat.len()].copy_from_slice(&flat);
+        Ok(())
+    }
+
+    /// Single numbers in one array: a data set of its own costs more than its value.
+    fn scalars<const N: usize>(&mut self, name: &str, values: [&mut f64; N]) -> anyhow::Result<()> {
+        let mut flat = values.each_ref().map(|value| **value);
+        self.values(name, &mut flat)?;
+        values.into_iter().zip(flat).for_each(|(to, from)| *to = from);
+        Ok(())
+    }
+
+    /// A count.
+    fn counter(&mut self, name: &str, value: &mut u64) -> anyhow::Result<()> {
+        match self {
+            Port::Out(arrays) => {
+                let stored = i64::try_from(*value).expect("nobody counts to 2^63");
+                arrays.insert(name.to_string(), StateArray::Integer(vec![stored]));
+            }
+            Port::In { arrays, unread } => {
+                unread.retain(|known| *known != name);
+                *value = match arrays.get(name) {
+                    Some(StateArray::Integer(stored)) if stored.len() == 1 => u64::try_from(stored[0])?,
+                    other => {
+                        return Err(anyhow!(
+                            "the state array {name} is {other:?}, expected one integer"
+                        ));
+                    }
+                };
+            }
+        }
+        Ok(())
+    }
+
+    fn read(&mut self, name: &str, n: usize) -> anyhow::Result<&[f64]> {
+        let Port::In { arrays, unread } = self else {
+            unreachable!("only a port inwards reads")
+        };
+        unread.retain(|known| *known != name);
+        match arrays.get(name) {
+            Some(StateArray::Real(values)) => {
+                ensure!(
+                    values.len() == n,
+                    "the state array {name} has {} values, expected {n}",
+                    values.len()
+                );
+                Ok(values)
+            }
+            Some(StateArray::Integer(_)) => {
+                Err(anyhow!("the state array {name} holds integers, expected reals"))
+            }
+            None => Err(anyhow!("the state array {name} is missing")),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SHAPE: StateShape = StateShape {
+        n_balls: 2,
+        ring_dofs: [Some(3), None],
+    };
+
+    /// A state in which every number is another one, with a NaN and a negative zero.
+    fn state() -> MotionState {
+        let mut next = 0.0;
+        let mut number = || {
+            next += 0.1;
+            next
+        };
+        let mut pairs = |n: usize| (0..n).map(|_| [number(), number()]).collect::<Vec<_>>();
+        let (balls, ball_velocities, ball_accelerations) = (pairs(2), pairs(2), pairs(2));
+        let (trend, forces) = (pairs(6), pairs(4));
+        let mut list = |n: usize| (0..n).map(|_| number()).collect::<Vec<_>>();
+        let ring = RingState {
+            w: vec![f64::NAN, -0.0, 1e-300],
+            v: list(3),
+            a: list(3),
+        };
+        MotionState {
+            step: 7,
+            rung: 3,
+            rings: [Some(ring), None],
+            balls,
+            ball_velocities,
+            ball_accelerations,
+            trend,
+            forces,
+            angles: list(4),
+            approaches: list(4),
+            shaft: [0, 1, 2, 3, 4].map(|_| number()),
+            shaft_velocity: [0, 1, 2, 3, 4].map(|_| number()),
+            shaft_acceleration: [0, 1, 2, 3, 4].map(|_| number()),
+            ledger: Ledger {
+                kinetic: [0, 1, 2].map(|_| number()),
+                strain: [0, 1].map(|_| number()),
+                hertz: number(),
+                load_work: number(),
+                imposed_work: number(),
+                frame_work: number(),
+                patch_work: number(),
+                contact_loss: number(),
+                rayleigh_loss: number(),
+                numerical_loss: number(),
+                initial: number(),
+                largest: number(),
+            },
+        }
+    }
+
+    /// Wrong: a resumed run would start from another state than the one that was saved.
+    #[test]
+    fn every_field_comes_back_bit_for_bit() {
+        let state = state();
+        let back = load(&store(&state, &SHAPE), &SHAPE).unwrap();
+        // Debug prints the shortest text that is one f64 only, signs of zero and NaN included.
+        assert_eq!(format!("{back:?}"), format!("{state:?}"));
+        let bits = |s: &MotionState| {
+            s.rings[0]
+                .as_ref()
+                .unwrap()
+                .w
+                .clone()
+                .into_iter()
+                .map(f64::to_bits)
+        };
+        assert!(bits(&back).eq(bits(&state)));
+    }
+
+    /// Wrong: a file of another version or bearing would be taken for a state of this run.
+    #[test]
+    fn a_state_of_another_shape_is_refused_by_name() {
+        let arrays = store(&state(), &SHAPE);
+        let refused = |arrays: &Arrays, shape: &StateShape| load(arrays, shape).unwrap_err().to_string();
+        let three = StateShape { n_balls: 3, ..SHAPE };
+        assert_eq!(
+            refused(&arrays, &three),
+            "the state array balls has 4 values, expected 6"
+        );
+        let rigid = StateShape {
+            ring_dofs: [None; 2],
+            ..SHAPE
+        };
+        assert_eq!(
+            refused(&arrays, &rigid),
+            "the state array inner_a is not known to this version"
+        );
+        for name in arrays.keys() {
+            let mut fewer = arrays.clone();
+            fewer.remove(name);
+            let text = refused(&fewer, &SHAPE);
+            assert!(text.starts_with(&format!("the state array {name} is ")), "{text}");
+        }
+        let mut other = arrays.clone();
+        other.insert("angles".to_string(), StateArray::Integer(vec![1]));
+        assert_eq!(
+            refused(&other, &SHAPE),
+            "the state array angles holds integers, expected reals"
+        );
+    }
+}

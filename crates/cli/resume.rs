@@ -1,0 +1,273 @@
+//! `raceway resume`: goes on with a motion from one of its steps, to the same bits as if it had not been interrupted.
+//!
+//! All that evolves comes from the step file, the model from the scene text stored in it. Only how long the run goes
+//! and what it writes may change ([`MAY_CHANGE`]). The scene file and the meshes must still be those of the run: a
+//! changed one is refused with the difference shown.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+use anyhow::{Context, anyhow};
+use checkpoint::{FolderLock, StateArray, StepRecord, newest_step, read_about, read_step, step_file_name};
+use clap::Args;
+use dynamics::motion::{Motion, MotionState};
+
+use crate::failure::Failure;
+use crate::motion;
+use crate::options::Limits;
+use crate::print;
+use crate::results::about::{OVERRIDES, SCENE_FILE, WARNINGS, require_same_meshes};
+use crate::results::files::note_dead_owner;
+use crate::results::state_arrays;
+use crate::scene::{Analysis, Dynamic, MeshFiles, Scene, difference};
+
+/// Keys and tables of a scene that a resumed run may change: none of them touches the motion.
+const MAY_CHANGE: [&str; 3] = ["dynamic.duration", "dynamic.output_every", "output"];
+
+/// Array of a step file that counts Newton's iterations since the start of the run.
+const NEWTON: &str = "newton_iterations";
+
+/// What the command line asks for.
+#[derive(Debug, Args)]
+pub struct Request {
+    /// Folder of the results.
+    dir: PathBuf,
+    /// Step to go on from; default: the newest whole one. Later steps are moved aside.
+    #[arg(long)]
+    step: Option<u64>,
+    /// Changes how long the run goes or what it writes: dynamic.duration, dynamic.output_every, output.*.
+    #[arg(long = "set", value_name = "PATH=VALUE")]
+    overrides: Vec<String>,
+    /// Scene file of the run, when it is not where it was.
+    #[arg(long)]
+    scene: Option<PathBuf>,
+    /// Goes on with the scene stored in the results, whatever became of the scene file.
+    #[arg(long, conflicts_with = "scene")]
+    stored_scene: bool,
+    #[command(flatten)]
+    limits: Limits,
+}
+
+/// A step to go on from.
+pub struct Stored {
+    /// The lock of its folder.
+    pub lock: FolderLock,
+    /// Its number.
+    pub step: u64,
+    /// Warnings of the start of the run.
+    pub warnings: Vec<String>,
+    time: f64,
+    arrays: BTreeMap<String, StateArray>,
+}
+
+impl Stored {
+    /// Adds what the run counts besides its state.
+    pub fn add_counts(record: &mut StepRecord, newton: u64) {
+        let newton = i64::try_from(newton).expect("nobody iterates 2^63 times");
+        record
+            .state
+            .insert(NEWTON.to_string(), StateArray::Integer(vec![newton]));
+    }
+
+    /// The state, and the number of Newton's iterations so far.
+    pub fn state(&self, motion: &Motion<'_>) -> Result<(MotionState, u64), Failure> {
+        let at = || format!("step {} of {}", self.step, self.lock.dir().display());
+        let mut arrays = self.arrays.clone();
+        let newton = match arrays.remove(NEWTON) {
+            Some(StateArray::Integer(count)) if count.len() == 1 => count[0].max(0) as u64,
+            _ => return Err(anyhow!("{} has no count of iterations", at()).into()),
+        };
+        let state = state_arrays::load(&arrays, &motion.shape()).with_context(at)?;
+        let time = motion.time(state.step);
+        if state.step != self.step || time.to_bits() != self.time.to_bits() {
+            return Err(anyhow!(
+                "{} says t = {:?} s, but its state is that of step {} at {time:?} s",
+                at(),
+                self.time,
+                state.step
+            )
+            .into());
+        }
+        Ok((state, newton))
+    }
+}
+
+/// Goes on with a run.
+pub fn resume(request: &Request) -> Result<(), Failure> {
+    let start = Instant::now();
+    let dir = &request.dir;
+    if !dir.is_dir() {
+        return Err(anyhow!("{} is no folder; expected the results of a run", dir.display()).into());
+    }
+    let lock = FolderLock::acquire(dir)?;
+    note_dead_owner(&lock);
+    let record = choose_step(dir, request.step)?;
+    let about = read_about(&dir.join(step_file_name(record.step)))?;
+    note_version(&about);
+    let scene = scene_of(request, &record, &about)?;
+    let dynamic = require_motion(&scene, dir)?;
+    require_same_meshes(&scene, &about)?;
+    let (step, n_steps) = (record.step, dynamic.n_steps);
+    if step > n_steps {
+        return Err(anyhow!(
+            "the run is at step {step}, t = {} s, beyond dynamic.duration = {} s; expected a longer duration, or an \
+             earlier --step",
+            record.time,
+            dynamic.duration
+        )
+        .into());
+    }
+    if step == n_steps && is_finished(dir, step)? {
+        print::line(format_args!(
+            "nothing to do: {} has finished with step {step} of {n_steps}, t = {} s; a longer duration goes on from \
+             there, --set dynamic.duration=...",
+            dir.display(),
+            record.time
+        ));
+        return Ok(());
+    }
+    print::note(format_args!(
+        "resuming {} after step {step} of {n_steps}, t = {:.6e} s",
+        dir.display(),
+        record.time
+    ));
+    let warnings = about.get(WARNINGS).map_or(Vec::new(), |text| lines(text));
+    let stored = Stored {
+        lock,
+        step,
+        warnings,
+        time: record.time,
+        arrays: record.state,
+    };
+    motion::resume(&scene, &dynamic, stored, &request.limits, start)?;
+    print::line(format_args!("results: {}", dir.display()));
+    Ok(())
+}
+
+/// The step asked for, or the newest whole one, with a warning for every newer one that is damaged.
+fn choose_step(dir: &Path, step: Option<u64>) -> Result<StepRecord, Failure> {
+    let Some(step) = step else {
+        return Ok(newest_step(dir, |error| {
+            print::note(format_args!("warning: {error}; falling back to the step before"));
+        })?);
+    };
+    let steps = checkpoint::committed_steps(dir)?;
+    if !steps.contains(&step) {
+        let (first, last) = match (steps.first(), steps.last()) {
+            (Some(first), Some(last)) => (*first, *last),
+            _ => {
+                return Err(checkpoint::CheckpointError::NoSteps {
+                    path: dir.to_path_buf(),
+                }
+                .into());
+            }
+        };
+        let path = dir.to_path_buf();
+        return Err(checkpoint::CheckpointError::UnknownStep {
+            path,
+            step,
+            first,
+            last,
+        }
+        .into());
+    }
+    Ok(read_step(&dir.join(step_file_name(step)))?)
+}
+
+fn note_version(about: &BTreeMap<String, String>) {
+    let (then, now) = (&about["program_version"], env!("CARGO_PKG_VERSION"));
+    if then != now {
+        print::note(format_args!(
+            "warning: the step was written by version {then}, this is {now}: later steps may differ in their last digits"
+        ));
+    }
+}
+
+/// The stored scene with the changes asked for, when these and the scene file allow it.
+fn scene_of(
+    request: &Request,
+    record: &StepRecord,
+    about: &BTreeMap<String, String>,
+) -> Result<Scene, Failure> {
+    let overrides = about.get(OVERRIDES).map_or(Vec::new(), |text| lines(text));
+    let path = match (&request.scene, about.get(SCENE_FILE)) {
+        (Some(path), _) => path.clone(),
+        (None, Some(path)) => request.dir.join(path),
+        (None, None) => return Err(anyhow!("step {} does not say where its scene is", record.step).into()),
+    };
+    if request.scene.is_some() || path.exists() {
+        if !request.stored_scene {
+            require_same_file(&path, &overrides, &record.scene)?;
+        }
+    } else {
+        print::note(format_args!(
+            "note: the scene file {} is not there any more; going on with the scene stored in step {}",
+            path.display(),
+            record.step
+        ));
+    }
+    let mut scene = Scene::parse(&record.scene, &path, &request.overrides, MeshFiles::MustExist)?;
+    let changes = difference(&record.scene, &scene.text)?;
+    if let Some(change) = changes.iter().find(|change| !change.is_below(&MAY_CHANGE)) {
+        return Err(anyhow!(
+            "--set would change {change}; a resumed run may change only {}",
+            MAY_CHANGE.join(", ")
+        )
+        .into());
+    }
+    // With these, the scene file gives the text that the next steps hold.
+    scene.overrides = [overrides, request.overrides.clone()].concat();
+    Ok(scene)
+}
+
+/// Fails when the scene file says something else than the stored scene, besides what may change.
+fn require_same_file(path: &Path, overrides: &[String], stored: &str) -> Result<(), Failure> {
+    let now = Scene::load_with(path, overrides, MeshFiles::MayBeMissing)
+        .map_err(anyhow::Error::from)
+        .context(
+            "the scene file of the run cannot be compared any more; --stored-scene goes on without it",
+        )?;
+    let changes = difference(stored, &now.text)?;
+    let refused: Vec<String> = changes
+        .iter()
+        .filter(|change| !change.is_below(&MAY_CHANGE))
+        .map(|change| change.to_string())
+        .collect();
+    if refused.is_empty() {
+        return Ok(());
+    }
+    Err(anyhow!(
+        "the scene file {} has changed since the run: {}; put it back, or go on with the scene of the run: \
+         --stored-scene",
+        path.display(),
+        refused.join("; ")
+    )
+    .into())
+}
+
+fn require_motion(scene: &Scene, dir: &Path) -> Result<Dynamic, Failure> {
+    let kind = match &scene.analysis {
+        Analysis::Dynamic(dynamic) => return Ok(*dynamic),
+        Analysis::Static => "[static]",
+        Analysis::Sweep(_) => "[sweep]",
+    };
+    Err(anyhow!(
+        "{} holds results of a {kind} scene; only a motion, a scene with [dynamic], can be resumed, run the scene again",
+        dir.display()
+    )
+    .into())
+}
+
+/// Whether a run got to its end: its last step is the newest, and all that is written after it is there.
+fn is_finished(dir: &Path, step: u64) -> Result<bool, Failure> {
+    let newest = checkpoint::committed_steps(dir)?.last() == Some(&step);
+    let summary = std::fs::read_to_string(dir.join("summary.json")).unwrap_or_default();
+    let status = serde_json::from_str::<serde_json::Value>(&summary).ok();
+    let finished = status.is_some_and(|summary| summary["status"] == "finished");
+    Ok(newest && finished && dir.join("run.vtkhdf").exists())
+}
+
+fn lines(text: &str) -> Vec<String> {
+    text.lines().map(str::to_string).collect()
+}

@@ -1,0 +1,271 @@
+//! Runs that are killed, stopped, or whose disk is full: what was committed is whole, and the run goes on from it.
+
+use std::io::{BufRead, BufReader, Read};
+use std::process::{Child, Command};
+use std::time::Duration;
+
+use checkpoint::{committed_steps, read_step, step_file_name};
+
+use crate::util::Outcome;
+use crate::util::lockstep::{assert_same_run, small_motion};
+use crate::util::tables::summary;
+
+/// Environment variable with the number of kills, when it shall not be [`KILLS`].
+const MANY: &str = "RACEWAY_TEST_KILLS";
+const KILLS: usize = 15;
+
+/// Pseudo-random numbers 0 to 1: xorshift (Marsaglia 2003).
+struct Random(u64);
+
+impl Random {
+    fn next(&mut self) -> f64 {
+        self.0 ^= self.0 << 13;
+        self.0 ^= self.0 >> 7;
+        self.0 ^= self.0 << 17;
+        (self.0 >> 11) as f64 / (1u64 << 53) as f64
+    }
+}
+
+fn signal(child: &Child, name: &str) {
+    let kill = Command::new("kill")
+        .args([&format!("-{name}"), &child.id().to_string()])
+        .status();
+    assert!(kill.unwrap().success());
+}
+
+/// Waits until the run takes steps or ends; returns the rest of its messages.
+fn wait_for_steps(child: &mut Child) -> impl Read + use<> {
+    let mut lines = BufReader::new(child.stderr.take().unwrap());
+    let mut line = "the start".to_string();
+    // Progress is "[time] done/all what", with the number of the step when it takes steps.
+    while !line.is_empty() && !(line.starts_with('[') && line.contains(" step ")) {
+        line.clear();
+        lines.read_line(&mut line).unwrap();
+    }
+    lines
+}
+
+fn outcome_of(mut child: Child, mut messages: impl Read) -> Outcome {
+    let mut stderr = String::new();
+    messages.read_to_string(&mut stderr).unwrap();
+    Outcome {
+        code: child.wait().unwrap().code(),
+        stdout: String::new(),
+        stderr,
+    }
+}
+
+/// Wrong: a kill at some instant would leave a half step under a final name, lose committed steps or rows, or keep the
+/// run from going on to the same bits.
+#[test]
+fn a_killed_run_goes_on_from_whole_steps() {
+    let kills = std::env::var(MANY).map_or(KILLS, |n| n.parse().unwrap());
+    let dir = small_motion();
+    dir.run("whole", &[]);
+    let (mut random, mut done, mut survived) = (Random(0x9e37_79b9_7f4a_7c15), 0, 0);
+    for round in 0.. {
+        let out = format!("cut{round}");
+        let mut arguments = vec!["run", "scene.toml", "--out", &out];
+        while done < kills {
+            let mut child = dir.start(&arguments);
+            let lines = wait_for_steps(&mut child);
+            // Half of the runs are hit while they write and step, the others also at their end.
+            std::thread::sleep(Duration::from_secs_f64(0.5 * random.next() * random.next()));
+            if child.try_wait().unwrap().is_some() {
+                drop(lines);
+                survived += 1;
+                break;
+            }
+            signal(&child, "KILL");
+            child.wait().unwrap();
+            done += 1;
+            let folder = dir.path(&out);
+            for step in committed_steps(&folder).unwrap() {
+                read_step(&folder.join(step_file_name(step))).unwrap();
+            }
+            arguments = vec!["resume", &out];
+            if committed_steps(&folder).unwrap().is_empty() {
+                // Killed before its first step was committed: nothing to go on from.
+                break;
+            }
+        }
+        let outcome = dir.raceway(&["resume", &out]);
+        if !outcome.stderr.contains("holds no committed step") {
+            assert_eq!(outcome.code, Some(0), "{}", outcome.stderr);
+            assert_same_run(&dir, "whole", &out);
+        }
+        if done >= kills {
+            break;
+        }
+    }
+    println!("{done} kills, {survived} runs ended before theirs");
+}
+
+/// Wrong: a batch system that warns before it kills would get no checkpoint, an unfinished step, or a run that cannot go
+/// on to the same bits; the exit code tells scripts that there is more to do.
+#[test]
+fn a_signal_stops_between_steps() {
+    let dir = small_motion();
+    let slow = [
+        "--set",
+        "dynamic.duration=2 s",
+        "--set",
+        "dynamic.output_every=100000",
+    ];
+    for (name, out) in [("TERM", "term"), ("USR1", "usr1"), ("INT", "int")] {
+        let mut child = dir.start(&[&["run", "scene.toml", "--out", out], &slow[..]].concat());
+        let lines = wait_for_steps(&mut child);
+        signal(&child, name);
+        let outcome = outcome_of(child, lines);
+        assert_eq!(outcome.code, Some(75), "{}", outcome.stderr);
+        let step = *committed_steps(&dir.path(out)).unwrap().last().unwrap();
+        let said = format!("stopped: SIG{name} received; the state after step {step} of 100000");
+        assert!(
+            outcome.stderr.contains(&said) && outcome.stderr.contains(&format!("raceway resume {out}")),
+            "{}",
+            outcome.stderr
+        );
+        let status = summary(&dir, out)["status"].as_str().unwrap().to_string();
+        assert!(
+            status.starts_with(&format!("stopped: SIG{name} received")),
+            "{status}"
+        );
+        // The longer of the two ends 5 steps later.
+        let duration = format!("dynamic.duration={} us", 20 * (step + 5));
+        let to = ["--set", &duration, "--set", "dynamic.output_every=1"];
+        assert_eq!(dir.raceway(&[&["resume", out], &to[..]].concat()).code, Some(0));
+        let whole = format!("{out}_whole");
+        let sparse = [
+            "--set",
+            &duration,
+            "--set",
+            &format!("dynamic.output_every={}", step + 5),
+        ];
+        dir.run(&whole, &sparse);
+        assert_same_run(&dir, &whole, out);
+    }
+}
+
+/// Wrong: a job would be killed by its batch system, or its run could not be chained. The time is used up at once, so
+/// the state is the start: the first step is taken by the resumed run.
+#[test]
+fn the_wall_time_stops_a_run_that_can_go_on() {
+    let dir = small_motion();
+    dir.run("whole", &[]);
+    let outcome = dir.raceway(&["run", "scene.toml", "--out", "cut", "--wall-time", "00:00:00"]);
+    assert_eq!(outcome.code, Some(75), "{}", outcome.stderr);
+    assert!(
+        outcome
+            .stderr
+            .contains("stopped: --wall-time 00:00:00 is used up"),
+        "{}",
+        outcome.stderr
+    );
+    assert_eq!(committed_steps(&dir.path("cut")).unwrap(), [0]);
+    let outcome = dir.raceway(&["resume", "cut", "--wall-time", "01:00:00"]);
+    assert_eq!(outcome.code, Some(0), "{}", outcome.stderr);
+    assert_same_run(&dir, "whole", "cut");
+}
+
+/// Wrong: a full disk would end a run without its reason, take committed steps with it, or leave what cannot go on. A
+/// limit on the size of files stands for the full disk; it is a table, which grows, that meets it.
+#[test]
+fn a_full_disk_costs_nothing_that_was_committed() {
+    let dir = small_motion();
+    dir.run("whole", &[]);
+    let step = std::fs::metadata(dir.path("whole/step_000000.hdf"))
+        .unwrap()
+        .len();
+    let table = std::fs::metadata(dir.path("whole/balls.csv")).unwrap().len();
+    let mesh = std::fs::metadata(dir.path("whole/mesh.hdf")).unwrap().len();
+    // No step fits.
+    let limit = (step.max(mesh) / 1024).saturating_sub(2) as u32;
+    let outcome = dir.raceway_with_small_files(limit, &["run", "scene.toml", "--out", "none"]);
+    assert_eq!(outcome.code, Some(2), "{}", outcome.stderr);
+    assert!(outcome.stderr.contains("File too large"), "{}", outcome.stderr);
+    assert!(committed_steps(&dir.path("none")).unwrap().is_empty());
+    // Steps fit, the table of a longer run does not.
+    let n_steps = 20 * (2 * step.max(mesh) / table + 1);
+    let longer = format!("dynamic.duration={} us", 20 * n_steps);
+    let sparse = ["--set", longer.as_str(), "--set", "dynamic.output_every=10"];
+    let limit = (step.max(mesh) / 1024 + 8) as u32;
+    let run = |out| [&["run", "scene.toml", "--out", out], &sparse[..]].concat();
+    let outcome = dir.raceway_with_small_files(limit, &run("cut"));
+    assert_eq!(outcome.code, Some(2), "{}", outcome.stderr);
+    assert!(
+        outcome.stderr.contains("cannot write balls.csv of the results")
+            && outcome.stderr.contains("File too large"),
+        "{}",
+        outcome.stderr
+    );
+    let steps = committed_steps(&dir.path("cut")).unwrap();
+    assert!(steps.len() > 2, "{steps:?}");
+    for step in steps {
+        read_step(&dir.path(&format!("cut/{}", step_file_name(step)))).unwrap();
+    }
+    let outcome = dir.raceway(&["resume", "cut"]);
+    assert_eq!(outcome.code, Some(0), "{}", outcome.stderr);
+    dir.run("long", &sparse);
+    assert_same_run(&dir, "long", "cut");
+}
+
+/// Wrong: a run would fill the disk and fail at its end, or `check` would promise another size than the run has.
+#[test]
+fn a_run_that_cannot_fit_the_disk_does_not_start() {
+    let dir = small_motion();
+    let endless = ["--set", "dynamic.duration=2000 s"];
+    let outcome = dir.raceway(&[&["run", "scene.toml", "--out", "out"], &endless[..]].concat());
+    assert_eq!(outcome.code, Some(2), "{}", outcome.stderr);
+    for part in [
+        "the results need about ",
+        " TB (100000001 step files of ",
+        " free",
+        "--ignore-disk-space",
+    ] {
+        assert!(outcome.stderr.contains(part), "{} lacks {part}", outcome.stderr);
+    }
+    assert!(!dir.path("out").exists());
+    let told = ["--ignore-disk-space", "--wall-time", "00:00:00"];
+    let outcome = dir.raceway(&[&["run", "scene.toml", "--out", "out"], &endless[..], &told[..]].concat());
+    assert_eq!(outcome.code, Some(75), "{}", outcome.stderr);
+    assert!(
+        outcome.stderr.contains("going on because of --ignore-disk-space"),
+        "{}",
+        outcome.stderr
+    );
+}
+
+/// Wrong: the forecast of the output would not be its size.
+#[test]
+fn the_forecast_of_the_output_is_its_size() {
+    let dir = small_motion();
+    for (choice, out) in [("f32", "single"), ("f64", "double")] {
+        let precision = format!("output.precision={choice}");
+        dir.run(out, &["--set", &precision]);
+        let said = dir.raceway(&["check", "scene.toml", "--set", &precision]).stdout;
+        let line = said.lines().find(|line| line.starts_with("output")).unwrap();
+        let megabytes: Vec<f64> = line
+            .split(" MB")
+            .filter_map(|part| part.rsplit(' ').next()?.parse().ok())
+            .collect();
+        let size = |name: &str| {
+            std::fs::metadata(dir.path(&format!("{out}/{name}")))
+                .unwrap()
+                .len() as f64
+                / 1e6
+        };
+        let step = line
+            .split(" kB per")
+            .next()
+            .and_then(|part| part.rsplit(' ').next()?.parse::<f64>().ok());
+        let forecast = step.map_or_else(|| megabytes[0], |kilobytes| kilobytes / 1e3);
+        crate::util::assert_close(line, forecast, size("step_000007.hdf"), 0.05);
+        let names = ["balls.csv", "shaft.csv", "energy.csv"];
+        let all = 21.0 * size("step_000007.hdf") + names.iter().map(|name| size(name)).sum::<f64>();
+        let total = line
+            .split(" MB in all")
+            .next()
+            .and_then(|part| part.rsplit(' ').next()?.parse::<f64>().ok());
+        crate::util::assert_close(line, total.unwrap(), all, 0.05);
+    }
+}
