@@ -80,6 +80,7 @@ impl<'a> Motion<'a> {
             &Now {
                 time: middle,
                 cage_angle: self.cage_angle(middle),
+                angles: Some(&state.angles),
             },
         )?;
         let (sites, feet) = self.place(state, middle)?;

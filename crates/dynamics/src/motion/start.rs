@@ -8,6 +8,7 @@ use super::run::Motion;
 use super::state::MotionState;
 use crate::error::DynamicsError;
 use crate::model::{ContactMode, Hold, Model, ShaftDof};
+use crate::schedule::Schedule;
 use crate::solution::StaticSolution;
 
 impl Motion<'_> {
@@ -94,6 +95,12 @@ pub(super) fn check_supported(model: &Model) -> Result<(), DynamicsError> {
     }
     if model.rings.iter().flatten().any(|r| r.hold == Hold::MeanMotion) {
         return refuse("support = \"mean_motion\"; use \"clamped\"");
+    }
+    if (0..5).any(|i| model.shaft[i] != ShaftDof::Free && model.shaft_schedules[i] != Schedule::Constant) {
+        return refuse("an imposed shaft displacement with a schedule");
+    }
+    if model.effects.iter().any(|e| e.name() == "gyroscopic_moment") {
+        return refuse("[effects.gyroscopic_moment]");
     }
     let same = |a: usize, b: usize| {
         matches!((model.shaft[a], model.shaft[b]), (ShaftDof::Free, ShaftDof::Free))
