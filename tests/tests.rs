@@ -5,6 +5,7 @@ mod bad_input;
 mod memory;
 mod motion;
 mod results;
+mod schedules;
 mod statics;
 mod sweeps;
 mod util;

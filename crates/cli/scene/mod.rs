@@ -29,11 +29,13 @@ mod dynamic;
 mod edit;
 mod effects;
 mod error;
+mod gyroscopic;
 mod locate;
 mod materials;
 mod output;
 mod problems;
 mod ring;
+mod schedule;
 mod section;
 mod shaft;
 mod solver;
@@ -56,6 +58,7 @@ pub use self::error::SceneError;
 pub use self::materials::{Material, Materials};
 pub use self::output::{Output, Precision, StressOutput};
 pub use self::ring::{FlexibleRing, MeshFiles, Ring, RingName, Support};
+pub use self::schedule::Scheduled;
 pub use self::section::{Section, SectionElement};
 pub use self::shaft::{Motion, Shaft};
 pub use self::solver::Solver;
@@ -70,6 +73,7 @@ use self::materials::RawMaterials;
 use self::output::RawOutput;
 use self::problems::Problems;
 use self::ring::{RawRing, RingContext};
+use self::schedule::Clock;
 use self::shaft::RawShaft;
 use self::solver::RawSolver;
 use self::speed::{RawSpeed, SpeedUse};
@@ -241,7 +245,7 @@ impl Source<'_> {
         if let (Some(inner), Some(outer)) = (&inner.section, &outer.section) {
             section::check_gap(inner, outer, &mut problems);
         }
-        let shaft = raw.shaft.check(bearing.as_ref(), &mut problems);
+        let shaft = raw.shaft.check(bearing.as_ref(), raw.clock(), &mut problems);
         let effects = raw.effects.check(raw.effects_context(), &mut problems);
         let speed = raw.speed.as_ref();
         let speed = speed.and_then(|s| s.check(raw.speed_use(), &mut problems));
@@ -332,15 +336,25 @@ impl RawScene {
         self.dynamic.is_none() && (self.r#static.is_some() || self.sweep.is_some())
     }
 
+    /// Whether loads and imposed displacements may have schedules.
+    fn clock(&self) -> Clock {
+        if self.is_at_rest() {
+            Clock::AtRest
+        } else {
+            Clock::Running
+        }
+    }
+
     fn effects_context(&self) -> EffectsContext {
         EffectsContext {
             is_at_rest: self.is_at_rest(),
+            clock: self.clock(),
             has_speed: self.speed.is_some(),
         }
     }
 
     fn speed_use(&self) -> SpeedUse {
-        match (self.is_at_rest(), self.effects.has_ball_centrifugal()) {
+        match (self.is_at_rest(), self.effects.has_effect_of_speed()) {
             (false, _) => SpeedUse::Motion,
             (true, true) => SpeedUse::ForceAtRest,
             (true, false) => SpeedUse::Nothing,
