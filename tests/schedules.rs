@@ -88,7 +88,7 @@ fn the_gyroscopic_moment_lowers_the_outer_contact_angle() {
 #[test]
 fn what_motion_cannot_do_yet_is_refused_by_name() {
     let gyroscopic = "[speed]\ninner = \"1800 rpm\"\n[effects.gyroscopic_moment]\n\n[effects.radial_force]";
-    let driven = "z = { value = \"30 um\", schedule.ramp = { start = \"0 s\", duration = \"1 ms\" } }";
+    let driven = "z = { value = \"15 um\", schedule.ramp = { from = 1, to = 2, start = \"0 s\", duration = \"1 ms\" } }";
     let cases = [
         (
             "[effects.gyroscopic_moment]",

@@ -105,7 +105,8 @@ fn friction_supplies_the_rate_of_the_angular_momentum() {
 }
 
 /// Harris's high-speed equations for one ball of a row under thrust, rigid rings: residuals over (ball radial, ball axial,
-/// shaft axial), and [Q_i, Q_o, a_i, a_o]. Written from the textbook; nothing of the program but the numbers of the bearing.
+/// shaft axial), and [Q_i, Q_o, a_i, a_o]. Nothing of the program but the numbers of the bearing; friction acts in the
+/// directions that the documentation of the effect derives.
 fn harris(model: &Model, thrust: f64, omega: f64, shares: [f64; 2], x: [f64; 3]) -> ([f64; 3], [f64; 4]) {
     let g = &model.geometry;
     let (diameter, pitch) = (g.ball_diameter, g.pitch_diameter());
@@ -230,6 +231,37 @@ fn outer_control_lowers_the_outer_contact_angle() {
     let fall = (without[3] - with[3]).to_degrees();
     assert!((0.5..3.0).contains(&fall), "{fall} deg");
     assert!(with[0] * with[2].sin() > 0.0 && relative(with[0] * with[2].sin(), 2000.0 / 18.0) < 1e-9);
+}
+
+/// Wrong: balls that the centrifugal force has lifted off the inner raceway would not come to rest, or not where they run:
+/// in the plane of their own circle, pressed outwards by m omega_c^2 r, without any moment.
+#[test]
+fn balls_off_the_inner_raceway_run_in_their_plane() {
+    let case = Case {
+        radial: 3000.0,
+        ..Case::axial(300.0)
+    };
+    let model = spinning(case.rigid(), FAST, Some(OUTER));
+    let solution = equilibrium(&model);
+    let g = &model.geometry;
+    let cage = Kinematics::new(g, [0.0; 2]).cage * FAST;
+    let off: Vec<_> = solution.balls.iter().filter(|b| b.inner.force_n == 0.0).collect();
+    assert!((4..14).contains(&off.len()), "{} balls", off.len());
+    for b in off {
+        let radius = g.ball_centre()[0] + b.displacement_m.radial;
+        let expected = model.ball_mass() * cage * cage * radius;
+        // Loads settle to 1e-10 of the largest force, about 2 kN.
+        assert!(
+            (b.outer.force_n - expected).abs() < 1e-6,
+            "{} {expected}",
+            b.outer.force_n
+        );
+        assert!(
+            b.outer.contact_angle_rad.abs() < 1e-8,
+            "{}",
+            b.outer.contact_angle_rad
+        );
+    }
 }
 
 /// Wrong: a bearing that does not turn would feel a moment, or a share of nothing would stop the iteration.
