@@ -84,28 +84,25 @@ fn the_gyroscopic_moment_lowers_the_outer_contact_angle() {
     );
 }
 
-/// If this failed, a motion would be computed without what its scene asks for.
+/// If this failed, a shaft that a scene drives would be elsewhere, or its work, or that of the gyroscopic moment, would be
+/// missing in the ledger.
 #[test]
-fn what_motion_cannot_do_yet_is_refused_by_name() {
-    let gyroscopic = "[speed]\ninner = \"1800 rpm\"\n[effects.gyroscopic_moment]\n\n[effects.radial_force]";
-    let driven = "z = { value = \"15 um\", schedule.ramp = { from = 1, to = 2, start = \"0 s\", duration = \"1 ms\" } }";
-    let cases = [
-        (
-            "[effects.gyroscopic_moment]",
-            late_force()
-                .text("scene.toml")
-                .replace("[effects.radial_force]", gyroscopic),
-        ),
-        (
-            "an imposed shaft displacement with a schedule",
-            late_force().text("scene.toml").replace("z = \"free\"", driven),
-        ),
-    ];
-    for (what, scene) in cases {
-        let dir = Dir::with_scene(&scene);
-        let outcome = dir.raceway(&[&["run", "scene.toml", "--out", "out"], &RIGID[..]].concat());
-        let expected = format!("error: a moving bearing cannot have {what} in this version");
-        assert!(outcome.stderr.contains(&expected), "{what}: {}", outcome.stderr);
-        assert_eq!(outcome.code, Some(2), "{what}");
+fn a_driven_shaft_moves_in_time() {
+    let scene = late_force().text("scene.toml");
+    let driven = "z = { value = \"30 um\", schedule.ramp = { from = 1, to = 2, start = \"0 s\", duration = \"0.2 ms\" } }";
+    let effects = "[speed]\ninner = \"15000 rpm\"\n\n[effects.ball_centrifugal]\n\n[effects.gyroscopic_moment]\n\n[effects.radial_force]";
+    let scene = scene
+        .replace("z = \"free\"", driven)
+        .replace("[effects.radial_force]", effects);
+    let dir = Dir::with_scene(&scene);
+    dir.run("out", &[&RIGID[..], &["--set", "shaft.mass=0.5 kg"]].concat());
+    let z = Table::read(&dir, "out/shaft.csv").column("z_m");
+    for (i, z) in z.iter().enumerate() {
+        let expected = 30e-6 + 1.5e-6 * (i as f64).min(20.0);
+        assert!((z - expected).abs() < 1e-18, "step {i}: {z}");
+    }
+    let energy = Table::read(&dir, "out/energy.csv");
+    for (defect, total) in energy.column("defect_j").iter().zip(energy.column("total_j")) {
+        assert!(defect.abs() < 1e-9 * total, "{defect} of {total}");
     }
 }

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use contact::{BearingGeometry, Groove, HertzContact, Side};
 use dynamics::effects::{
-    AxialForce, BallCentrifugal, Effect, Gravity, GyroscopicMoment, Moment, RadialForce,
+    AxialForce, BallCentrifugal, Effect, FrameRotation, Gravity, GyroscopicMoment, Moment, RadialForce,
 };
 use dynamics::model::{RACEWAY_GROUP, elastic};
 use dynamics::{ContactMode, ContactSettings, Hold, Model, RingModel, ShaftDof, Tolerances};
@@ -101,6 +101,9 @@ fn effects(scene: &Scene) -> Vec<Box<dyn Effect>> {
             speed: speed(scene),
             slip,
         }));
+    }
+    if asked.frame_rotation {
+        effects.push(Box::new(FrameRotation { speed: speed(scene) }));
     }
     if let Some(Scheduled { value, schedule }) = asked.gravity.clone() {
         effects.push(Box::new(Gravity {

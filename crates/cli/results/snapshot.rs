@@ -55,9 +55,12 @@ fn ledger_terms(ledger: &Ledger) -> Vec<(&'static str, f64)> {
         ("strain_outer", ledger.strain[1]),
         ("hertz", ledger.hertz),
         ("load_work", ledger.load_work),
+        ("imposed_work", ledger.imposed_work),
+        ("frame_work", ledger.frame_work),
         ("patch_work", ledger.patch_work),
         ("contact_loss", ledger.contact_loss),
         ("rayleigh_loss", ledger.rayleigh_loss),
+        ("numerical_loss", ledger.numerical_loss),
         ("total", ledger.total()),
         ("defect", ledger.defect()),
     ]

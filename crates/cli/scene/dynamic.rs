@@ -7,6 +7,8 @@
 use serde::Deserialize;
 
 use super::problems::Problems;
+use super::shaft::Shaft;
+use super::start::{RawStart, Start};
 use crate::units::{Quantity, TIME};
 
 /// As typed.
@@ -23,6 +25,16 @@ pub struct RawDynamic {
     gamma: Option<f64>,
     contact: Option<ContactScheme>,
     ledger_tolerance: Option<f64>,
+    halvings: Option<i64>,
+    adaptive: Option<RawAdaptive>,
+    start: Option<RawStart>,
+}
+
+/// As typed.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields, expecting = "the table [dynamic.adaptive]")]
+struct RawAdaptive {
+    tolerance: f64,
 }
 
 /// As typed.
@@ -86,15 +98,24 @@ pub struct Dynamic {
     pub contact: ContactScheme,
     /// The run stops when more of the energy than this is unaccounted for, relative to the largest energy or work.
     pub ledger_tolerance: f64,
+    /// How often a step may be halved.
+    pub halvings: u32,
+    /// Accepted local error over the largest contact approach; `None` for equal steps.
+    pub adaptive: Option<f64>,
+    /// The state at t = 0.
+    pub start: Start,
 }
 
 /// Duration over step may differ from a whole number by this part: their round-off is a million times less.
 const WHOLE_TOLERANCE: f64 = 1e-9;
 /// Longer runs are slips of the unit, and beyond this `WHOLE_TOLERANCE` tells no whole numbers apart.
 const MAX_STEPS: f64 = 1e8;
-/// The energy-conserving scheme closes to the tolerance of Newton's iteration, 1e-12 for the 7010C: this is far above.
-/// An integrator with damping loses more, so a scene with one says how much it may lose.
+/// Every scheme closes to the tolerance of Newton's iteration, 1e-12 for the 7010C: this is far above.
 const DEFAULT_LEDGER_TOLERANCE: f64 = 1e-6;
+/// Halvings of a step that fails, or is too inaccurate, before the run stops.
+const DEFAULT_HALVINGS: i64 = 4;
+/// A step 65 536 times smaller: what does not pass then never does.
+const MAX_HALVINGS: i64 = 16;
 /// Least damped and least accurate of Newmark's unconditionally stable schemes.
 const DEFAULT_BETA: f64 = 0.25;
 const DEFAULT_GAMMA: f64 = 0.5;
@@ -102,7 +123,7 @@ const DEFAULT_GAMMA: f64 = 0.5;
 impl RawDynamic {
     /// Checks ranges, that the step fits the duration, and that the integrator has the numbers it needs; `None` when
     /// there are problems.
-    pub fn check(&self, problems: &mut Problems) -> Option<Dynamic> {
+    pub fn check(&self, shaft: &Shaft, problems: &mut Problems) -> Option<Dynamic> {
         let before = problems.len();
         let n_steps = self.n_steps(problems);
         let every = problems.whole(
@@ -112,6 +133,24 @@ impl RawDynamic {
             MAX_STEPS as i64,
         );
         let integrator = self.integrator(problems);
+        let halvings = problems.whole(
+            self.halvings.unwrap_or(DEFAULT_HALVINGS),
+            "dynamic.halvings",
+            0,
+            MAX_HALVINGS,
+        );
+        if let Some(adaptive) = &self.adaptive {
+            problems.require(
+                (1e-9..=1e-1).contains(&adaptive.tolerance),
+                "dynamic.adaptive.tolerance",
+                adaptive.tolerance,
+                "expected 1e-9 to 0.1, the error of a step over the largest contact approach",
+            );
+        }
+        let start = self
+            .start
+            .as_ref()
+            .map_or(Start::Static, |s| s.check(shaft, problems));
         let ledger_tolerance = self.ledger_tolerance.unwrap_or(DEFAULT_LEDGER_TOLERANCE);
         problems.require(
             (1e-14..=1.0).contains(&ledger_tolerance),
@@ -127,6 +166,9 @@ impl RawDynamic {
             integrator: integrator?,
             contact: self.contact.unwrap_or(ContactScheme::DiscreteGradient),
             ledger_tolerance,
+            halvings: halvings as u32,
+            adaptive: self.adaptive.as_ref().map(|a| a.tolerance),
+            start,
         };
         (problems.len() == before).then_some(dynamic)
     }

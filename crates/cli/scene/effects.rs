@@ -20,6 +20,7 @@ pub struct RawEffects {
     ball_centrifugal: Option<RawBallCentrifugal>,
     gyroscopic_moment: Option<RawGyroscopicMoment>,
     cage_slip: Option<RawCageSlip>,
+    frame_rotation: Option<RawFrameRotation>,
     contact_damping: Option<RawContactDamping>,
     rayleigh_damping: Option<RawRayleighDamping>,
 }
@@ -72,6 +73,11 @@ struct RawCageSlip {
     outer: f64,
 }
 
+/// As typed: the table has no keys.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields, expecting = "the empty table [effects.frame_rotation]")]
+struct RawFrameRotation {}
+
 /// What the effects have to go with.
 #[derive(Clone, Copy, Debug)]
 pub struct EffectsContext {
@@ -81,6 +87,8 @@ pub struct EffectsContext {
     pub clock: Clock,
     /// Whether the scene has the table `[speed]`.
     pub has_speed: bool,
+    /// Whether the inner ring is a finite-element body.
+    pub has_flexible_inner: bool,
 }
 
 /// The effects a scene calls for.
@@ -98,6 +106,8 @@ pub struct Effects {
     pub ball_centrifugal: bool,
     /// Shares of the balls' gyroscopic moment at the inner and at the outer raceway, sum 2.
     pub gyroscopic_moment: Option<[f64; 2]>,
+    /// Whether the inner ring feels the inertia of its turning frame.
+    pub frame_rotation: bool,
     /// Shares of the rolling motion lost at the inner and at the outer raceway, dimensionless, 0 to below 1.
     pub cage_slip: Option<[f64; 2]>,
     /// Damping of contacts, only in motion.
@@ -121,9 +131,9 @@ const MAX_ACCELERATION: f64 = 1e7;
 const MAX_LOAD: f64 = 1e9;
 
 impl RawEffects {
-    /// Whether the scene has an effect that the speed gives something to do at rest.
-    pub fn has_effect_of_speed(&self) -> bool {
-        self.ball_centrifugal.is_some() || self.gyroscopic_moment.is_some()
+    /// Whether an effect needs the speed in a scene at rest too.
+    pub fn use_speed_at_rest(&self) -> bool {
+        self.ball_centrifugal.is_some() || self.frame_rotation.is_some() || self.gyroscopic_moment.is_some()
     }
 
     /// Checks sizes and directions, and that speed and analysis give each effect something to do.
@@ -135,6 +145,7 @@ impl RawEffects {
             moment: self.moment.as_ref().map(|m| m.check(clock, problems)),
             gravity: self.gravity.as_ref().map(|g| g.check(clock, problems)),
             ball_centrifugal: self.ball_centrifugal.is_some(),
+            frame_rotation: self.frame_rotation.is_some(),
             gyroscopic_moment: self.gyroscopic_moment.as_ref().map(|g| g.check(problems)),
             cage_slip: self.cage_slip.as_ref().map(|s| s.check(problems)),
             contact_damping: self.contact_damping.as_ref().map(|d| d.check(problems)),
@@ -149,6 +160,7 @@ impl RawEffects {
             ("ball_centrifugal", self.ball_centrifugal.is_some()),
             ("gyroscopic_moment", self.gyroscopic_moment.is_some()),
             ("cage_slip", self.cage_slip.is_some()),
+            ("frame_rotation", self.frame_rotation.is_some()),
         ];
         for (name, is_there) in turning {
             if is_there && !context.has_speed {
@@ -157,6 +169,12 @@ impl RawEffects {
                      remove the effect"
                 ));
             }
+        }
+        if self.frame_rotation.is_some() && !context.has_flexible_inner {
+            problems.add(
+                "[effects.frame_rotation] is the inertia of a flexible inner ring, but the inner ring is rigid; remove it"
+                    .to_string(),
+            );
         }
         let moving = [
             ("contact_damping", self.contact_damping.is_some()),

@@ -40,6 +40,7 @@ mod section;
 mod shaft;
 mod solver;
 mod speed;
+mod start;
 mod sweep;
 #[cfg(test)]
 mod tests;
@@ -63,6 +64,7 @@ pub use self::section::{Section, SectionElement};
 pub use self::shaft::{Motion, Shaft};
 pub use self::solver::Solver;
 pub use self::speed::SpeedTable;
+pub use self::start::Start;
 pub use self::sweep::{Analysis, SweepPoint};
 
 use self::bearing::RawBearing;
@@ -246,12 +248,14 @@ impl Source<'_> {
             section::check_gap(inner, outer, &mut problems);
         }
         let shaft = raw.shaft.check(bearing.as_ref(), raw.clock(), &mut problems);
-        let effects = raw.effects.check(raw.effects_context(), &mut problems);
+        let effects = raw
+            .effects
+            .check(raw.effects_context(inner.body.is_some()), &mut problems);
         let speed = raw.speed.as_ref();
         let speed = speed.and_then(|s| s.check(raw.speed_use(), &mut problems));
         let solver = raw.solver.check(&mut problems);
         let output = raw.output.check(&mut problems);
-        let analysis = raw.analysis(document, &mut problems);
+        let analysis = raw.analysis(document, &shaft, &mut problems);
         match (bearing, materials, analysis, problems.into_texts()) {
             (Some(bearing), Some(materials), Some(analysis), texts) if texts.is_empty() => Ok(Scene {
                 path: self.path.to_path_buf(),
@@ -304,11 +308,11 @@ impl Source<'_> {
 }
 
 impl RawScene {
-    fn analysis(&self, document: &DocumentMut, problems: &mut Problems) -> Option<Analysis> {
+    fn analysis(&self, document: &DocumentMut, shaft: &Shaft, problems: &mut Problems) -> Option<Analysis> {
         match (&self.r#static, &self.sweep, &self.dynamic) {
             (Some(RawStatic {}), None, None) => Some(Analysis::Static),
             (None, Some(sweep), None) => sweep.check(document, problems).map(Analysis::Sweep),
-            (None, None, Some(dynamic)) => dynamic.check(problems).map(Analysis::Dynamic),
+            (None, None, Some(dynamic)) => dynamic.check(shaft, problems).map(Analysis::Dynamic),
             (None, None, None) => {
                 problems
                     .add("the scene has no analysis; add one of the tables [static], [sweep] and [dynamic]");
@@ -345,16 +349,17 @@ impl RawScene {
         }
     }
 
-    fn effects_context(&self) -> EffectsContext {
+    fn effects_context(&self, has_flexible_inner: bool) -> EffectsContext {
         EffectsContext {
             is_at_rest: self.is_at_rest(),
             clock: self.clock(),
             has_speed: self.speed.is_some(),
+            has_flexible_inner,
         }
     }
 
     fn speed_use(&self) -> SpeedUse {
-        match (self.is_at_rest(), self.effects.has_effect_of_speed()) {
+        match (self.is_at_rest(), self.effects.use_speed_at_rest()) {
             (false, _) => SpeedUse::Motion,
             (true, true) => SpeedUse::ForceAtRest,
             (true, false) => SpeedUse::Nothing,

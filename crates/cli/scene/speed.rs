@@ -76,8 +76,8 @@ impl RawSpeed {
         let before = problems.len();
         if speed_use == SpeedUse::Nothing {
             problems.add(
-                "[speed] does nothing in a scene at rest without [effects.ball_centrifugal] or \
-                 [effects.gyroscopic_moment]; add that effect, compute motion with [dynamic], or remove [speed]",
+                "[speed] does nothing in a scene at rest without [effects.ball_centrifugal], [effects.frame_rotation] or \
+                 [effects.gyroscopic_moment]; add one, compute motion with [dynamic], or remove [speed]",
             );
             return None;
         }

@@ -67,7 +67,9 @@ impl<'a> LoadCase<'a> {
             angles: Some(&angles),
             ..self.now
         };
-        effects::loads(self.model, &now)
+        let mut loads = effects::loads(self.model, &now)?;
+        effects::add_static_inertia(self.model, &mut loads)?;
+        Ok(loads)
     }
 
     /// Newton on the problem as it is.

@@ -25,6 +25,8 @@ pub enum Hold {
     Clamped,
     /// Only the mean translation and rotation of the surface follow the partner (RBE3); it may ovalise.
     MeanMotion,
+    /// Not at all: a body that floats. Statics has no answer for it, motion has.
+    Free,
 }
 
 /// A ring that is a finite-element body.

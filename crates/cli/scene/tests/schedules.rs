@@ -114,7 +114,7 @@ fn all_loads_and_shaft_motions_take_schedules() {
         "tilt_y",
         &format!("tilt_y = {{ value = \"1 mrad\", {} }}", step("4 s")),
     );
-    let text = replace_line(&text, "z = ", "z = { value = \"-20 um\" }");
+    let text = replace_line(&text, "y = ", "y = { value = \"-20 um\" }");
     let scene = parse(&text, &[]).unwrap_or_else(|e| panic!("{e}"));
     let expected = |at: f64| Schedule::Step {
         at,
@@ -127,7 +127,7 @@ fn all_loads_and_shaft_motions_take_schedules() {
     assert_eq!(scene.effects.gravity.unwrap().schedule, expected(3.0));
     assert_eq!(scene.shaft.tilt_y, Motion::Prescribed(1e-3));
     assert_eq!(scene.shaft.schedules[4], expected(4.0));
-    assert_eq!(scene.shaft.z, Motion::Prescribed(-20e-6));
+    assert_eq!(scene.shaft.y, Motion::Prescribed(-20e-6));
     assert!(
         scene.shaft.schedules[..4]
             .iter()

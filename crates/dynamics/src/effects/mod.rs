@@ -4,6 +4,7 @@
 
 mod axial_force;
 mod ball_centrifugal;
+mod frame_rotation;
 mod gravity;
 mod gyroscopic_moment;
 mod moment;
@@ -11,6 +12,7 @@ mod radial_force;
 
 pub use axial_force::AxialForce;
 pub use ball_centrifugal::BallCentrifugal;
+pub use frame_rotation::{FrameRotation, add_static_inertia};
 pub use gravity::Gravity;
 pub use gyroscopic_moment::GyroscopicMoment;
 pub use moment::Moment;
@@ -37,6 +39,17 @@ pub struct Loads {
     /// Force on the ring at each contact [radial, axial] besides the normal one, N, by site (2 ball + side), acting at the
     /// groove centre; the ball gets its negative. Empty: no effect adds any.
     pub contacts: Vec<[f64; 2]>,
+    /// Turning of the inner ring's frame, when its inertia is called for.
+    pub frame: Option<FrameTurn>,
+}
+
+/// How the frame of the inner ring turns.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct FrameTurn {
+    /// Speed, rad/s.
+    pub speed: f64,
+    /// Angular acceleration, rad/s^2.
+    pub acceleration: f64,
 }
 
 impl Loads {
@@ -49,6 +62,7 @@ impl Loads {
             balls: vec![[0.0; 2]; model.geometry.n_balls],
             rings: [None, None],
             contacts: Vec::new(),
+            frame: None,
         }
     }
 
