@@ -8,6 +8,7 @@ mod memory;
 mod motion;
 mod results;
 mod resume;
+mod schedules;
 mod statics;
 mod sweeps;
 mod util;

@@ -3,7 +3,9 @@
 use std::sync::Arc;
 
 use contact::{BearingGeometry, Groove, HertzContact, Side};
-use dynamics::effects::{AxialForce, BallCentrifugal, Effect, FrameRotation, Gravity, Moment, RadialForce};
+use dynamics::effects::{
+    AxialForce, BallCentrifugal, Effect, FrameRotation, Gravity, GyroscopicMoment, Moment, RadialForce,
+};
 use dynamics::model::{RACEWAY_GROUP, elastic};
 use dynamics::{ContactMode, ContactSettings, Hold, Model, RingModel, ShaftDof, Tolerances};
 use fem::Material;
@@ -11,7 +13,7 @@ use mesh::Torus;
 
 use crate::failure::Failure;
 use crate::motion::speed;
-use crate::scene::{self, Scene};
+use crate::scene::{self, Scene, Scheduled};
 
 /// Deviation of raceway nodes from the scene's torus that is taken for round-off of a file, over the groove
 /// radius.
@@ -52,6 +54,7 @@ pub fn model_with_rings(scene: &Scene, rings: [Option<Arc<RingModel>>; 2]) -> Re
         rings,
         ball_material: ball_steel,
         shaft: dofs,
+        shaft_schedules: shaft.schedules.clone(),
         shaft_mass: shaft.mass,
         load_point: shaft.load_point,
         contact: ContactSettings {
@@ -89,29 +92,40 @@ fn material(m: &scene::Material) -> Result<Material, Failure> {
 
 fn effects(scene: &Scene) -> Vec<Box<dyn Effect>> {
     let mut effects: Vec<Box<dyn Effect>> = Vec::new();
-    if let Some(value) = scene.effects.axial_force {
-        effects.push(Box::new(AxialForce { value }));
+    let (asked, slip) = (&scene.effects, scene.effects.cage_slip.unwrap_or([0.0; 2]));
+    if let Some(Scheduled { value, schedule }) = asked.axial_force.clone() {
+        effects.push(Box::new(AxialForce { value, schedule }));
     }
-    if scene.effects.ball_centrifugal {
-        let slip = scene.effects.cage_slip.unwrap_or([0.0; 2]);
+    if asked.ball_centrifugal {
         effects.push(Box::new(BallCentrifugal {
             speed: speed(scene),
             slip,
         }));
     }
-    if scene.effects.frame_rotation {
+    if asked.frame_rotation {
         effects.push(Box::new(FrameRotation { speed: speed(scene) }));
     }
-    if let Some(acceleration) = scene.effects.gravity {
-        effects.push(Box::new(Gravity { acceleration }));
+    if let Some(Scheduled { value, schedule }) = asked.gravity.clone() {
+        effects.push(Box::new(Gravity {
+            acceleration: value,
+            schedule,
+        }));
     }
-    if let Some(value) = scene.effects.moment {
-        effects.push(Box::new(Moment { value }));
+    if let Some(shares) = asked.gyroscopic_moment {
+        effects.push(Box::new(GyroscopicMoment {
+            speed: speed(scene),
+            slip,
+            shares,
+        }));
     }
-    if let Some(radial) = &scene.effects.radial_force {
+    if let Some(Scheduled { value, schedule }) = asked.moment.clone() {
+        effects.push(Box::new(Moment { value, schedule }));
+    }
+    if let Some(Scheduled { value, schedule }) = asked.radial_force.clone() {
         effects.push(Box::new(RadialForce {
-            value: radial.value,
-            direction: radial.direction,
+            value: value.value,
+            direction: value.direction,
+            schedule,
         }));
     }
     effects

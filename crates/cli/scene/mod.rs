@@ -30,11 +30,13 @@ mod dynamic;
 mod edit;
 mod effects;
 mod error;
+mod gyroscopic;
 mod locate;
 mod materials;
 mod output;
 mod problems;
 mod ring;
+mod schedule;
 mod section;
 mod shaft;
 mod solver;
@@ -59,6 +61,7 @@ pub use self::error::SceneError;
 pub use self::materials::{Material, Materials};
 pub use self::output::{InnerRingFrame, Output, Precision, StressOutput};
 pub use self::ring::{FlexibleRing, MeshFiles, Ring, RingName, Support};
+pub use self::schedule::Scheduled;
 pub use self::section::{Section, SectionElement};
 pub use self::shaft::{Motion, Shaft};
 pub use self::solver::Solver;
@@ -74,6 +77,7 @@ use self::materials::RawMaterials;
 use self::output::RawOutput;
 use self::problems::Problems;
 use self::ring::{RawRing, RingContext};
+use self::schedule::Clock;
 use self::shaft::RawShaft;
 use self::solver::RawSolver;
 use self::speed::{RawSpeed, SpeedUse};
@@ -247,7 +251,7 @@ impl Source<'_> {
         if let (Some(inner), Some(outer)) = (&inner.section, &outer.section) {
             section::check_gap(inner, outer, &mut problems);
         }
-        let shaft = raw.shaft.check(bearing.as_ref(), &mut problems);
+        let shaft = raw.shaft.check(bearing.as_ref(), raw.clock(), &mut problems);
         let effects = raw
             .effects
             .check(raw.effects_context(inner.body.is_some()), &mut problems);
@@ -341,9 +345,19 @@ impl RawScene {
         self.dynamic.is_none() && (self.r#static.is_some() || self.sweep.is_some())
     }
 
+    /// Whether loads and imposed displacements may have schedules.
+    fn clock(&self) -> Clock {
+        if self.is_at_rest() {
+            Clock::AtRest
+        } else {
+            Clock::Running
+        }
+    }
+
     fn effects_context(&self, has_flexible_inner: bool) -> EffectsContext {
         EffectsContext {
             is_at_rest: self.is_at_rest(),
+            clock: self.clock(),
             has_speed: self.speed.is_some(),
             has_flexible_inner,
         }

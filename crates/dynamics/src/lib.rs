@@ -4,15 +4,18 @@
 //! contacts). This crate does no input or output.
 
 pub mod balls;
+pub mod displacements;
 pub mod effects;
 pub mod equilibrium;
 pub mod error;
 pub mod footprint;
+pub mod loading;
 pub mod memory;
 pub mod model;
 pub mod motion;
 pub mod problem;
 pub mod ring;
+pub mod schedule;
 pub mod solution;
 pub mod statics;
 pub mod support;
@@ -21,5 +24,6 @@ pub use effects::{Effect, Loads};
 pub use error::DynamicsError;
 pub use memory::{RingMemory, forecast_peak};
 pub use model::{ContactMode, ContactSettings, Hold, Model, RingModel, ShaftDof, Tolerances};
+pub use schedule::Schedule;
 pub use solution::StaticSolution;
 pub use statics::{StaticSolver, Timing};

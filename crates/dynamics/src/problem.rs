@@ -14,6 +14,7 @@ use std::sync::Arc;
 use contact::law::ContactForce;
 use contact::{ContactLaw, Side, Unevenness};
 
+pub use crate::displacements::Displacements;
 use crate::model::Model;
 
 /// Unknowns of one contact: at most 5 shaft dofs, 2 of the ball, 2 of the groove centre.
@@ -45,21 +46,10 @@ pub struct Site {
 pub struct RingResponse {
     /// Motion measured under `force`, m, `[2 n_balls]`.
     pub offset: Vec<f64>,
-    /// Forces of that measurement, N, `[2 n_balls]`.
+    /// Forces of that measurement, normal and contact loads together, N, `[2 n_balls]`.
     pub force: Vec<f64>,
     /// C^-1, N/m, row-major `[2 n_balls][2 n_balls]`.
     pub stiffness: Vec<f64>,
-}
-
-/// Displacements of everything small: m, rad.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Displacements {
-    /// Shaft x, y, z, tilt x, tilt y.
-    pub shaft: [f64; 5],
-    /// Balls [radial, axial] from the just-touching position.
-    pub balls: Vec<[f64; 2]>,
-    /// Elastic motion of the groove centres, inner ring then outer, `[n_balls][2]`.
-    pub grooves: [Vec<[f64; 2]>; 2],
 }
 
 /// The contact problem of one instant.
@@ -74,6 +64,8 @@ pub struct Problem {
     pub shaft_load: [f64; 5],
     /// Ball loads [radial, axial], N.
     pub ball_load: Vec<[f64; 2]>,
+    /// Dead load on the ring at each contact, N, by site, or empty; shaft and ball loads have theirs already.
+    pub contact_load: Vec<[f64; 2]>,
     /// Growth of the radial ball load with the radial displacement, N/m.
     pub ball_slope: f64,
     /// Length by which tilts are scaled, m.
@@ -174,17 +166,6 @@ impl Site {
     pub fn contact_angle(&self, state: &SiteState) -> f64 {
         let sign = self.side.sign();
         (sign * state.normal[1]).atan2(sign * state.normal[0])
-    }
-}
-
-impl Displacements {
-    /// Zero displacement; `flexible` tells which rings have groove motions.
-    pub fn zero(n_balls: usize, flexible: [bool; 2]) -> Displacements {
-        Displacements {
-            shaft: [0.0; 5],
-            balls: vec![[0.0; 2]; n_balls],
-            grooves: flexible.map(|f| if f { vec![[0.0; 2]; n_balls] } else { Vec::new() }),
-        }
     }
 }
 
@@ -293,8 +274,13 @@ impl Problem {
             }
         }
         gradient.extend(self.ball_loads(u).iter().flatten().map(|f| -f));
-        for (groove, ring) in u.grooves.iter().zip(&self.rings) {
-            if let Some(ring) = ring {
+        for (side, groove) in Side::BOTH.into_iter().zip(&u.grooves) {
+            if let Some(ring) = &self.rings[side.index()] {
+                let load = |i: usize| {
+                    self.contact_load
+                        .get(i - i % 2 + side.index())
+                        .map_or(0.0, |f| f[i % 2])
+                };
                 let change: Vec<f64> = groove
                     .iter()
                     .flatten()
@@ -303,11 +289,12 @@ impl Problem {
                     .collect();
                 let m = change.len();
                 gradient.extend(ring.force.iter().enumerate().map(|(i, f)| {
-                    f + ring.stiffness[m * i..m * (i + 1)]
-                        .iter()
-                        .zip(&change)
-                        .map(|(k, x)| k * x)
-                        .sum::<f64>()
+                    f - load(i)
+                        + ring.stiffness[m * i..m * (i + 1)]
+                            .iter()
+                            .zip(&change)
+                            .map(|(k, x)| k * x)
+                            .sum::<f64>()
                 }));
             }
         }

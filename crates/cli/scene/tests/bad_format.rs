@@ -32,7 +32,7 @@ const FORMAT: [Case; 36] = [
         "[effects.gravity]",
         "[effects.tides]",
         &[
-            "unknown key \"tides\" in [effects]; valid keys are \"axial_force\", \"radial_force\", \"moment\", \"gravity\", \"ball_centrifugal\", \"cage_slip\", \"frame_rotation\", \"contact_damping\", \
+            "unknown key \"tides\" in [effects]; valid keys are \"axial_force\", \"radial_force\", \"moment\", \"gravity\", \"ball_centrifugal\", \"gyroscopic_moment\", \"cage_slip\", \"frame_rotation\", \"contact_damping\", \
          \"rayleigh_damping\"",
         ],
     ),

@@ -190,7 +190,7 @@ const INVALID: [Case; 46] = [
         "inner = {",
         "inner = { times = [\"0 s\"], value = [\"1 rpm\"] }",
         &[
-            "unknown key \"value\" in [speed.inner]; did you mean \"values\"? valid keys are \"times\", \"values\"",
+            "unknown key \"value\" in [speed.inner]; did you mean \"values\"? valid keys are \"times\", \"values\", \"ramp\"",
         ],
     ),
     (
@@ -372,8 +372,8 @@ fn effects_without_anything_to_do_are_refused() {
         (constant.replace("[static]", rayleigh), nothing("rayleigh_damping")),
         (
             replace_line(&constant, "[effects.ball_centrifugal]", ""),
-            "[speed] does nothing in a scene at rest without [effects.ball_centrifugal]; add that effect, compute motion \
-             with [dynamic], or remove [speed]"
+            "[speed] does nothing in a scene at rest without [effects.ball_centrifugal], [effects.frame_rotation] or \
+             [effects.gyroscopic_moment]; add one, compute motion with [dynamic], or remove [speed]"
                 .to_string(),
         ),
         (

@@ -6,6 +6,7 @@ mod bad_values;
 mod good;
 mod motion;
 mod overrides;
+mod schedules;
 mod sweeps;
 
 use std::path::Path;

@@ -39,7 +39,7 @@ fn the_example_of_motion_reads_as_it_says() {
     for (value, exact) in speed.values.iter().zip([SPEED, 10.0 * SPEED]) {
         assert!((value / exact - 1.0).abs() < 4e-16, "{value} instead of {exact}");
     }
-    let effects = scene.effects;
+    let effects = &scene.effects;
     assert!(effects.ball_centrifugal && effects.frame_rotation);
     assert_eq!(effects.cage_slip, Some([0.0, 0.01]));
     let contact_damping = ContactDamping {
@@ -76,8 +76,8 @@ fn a_motion_needs_only_duration_and_step() {
     };
     assert_eq!(dynamic_of(&text), expected);
     let scene = parse(&text, &[]).unwrap();
-    assert_eq!((scene.speed, scene.shaft.mass), (None, 0.0));
-    let effects = scene.effects;
+    assert_eq!((&scene.speed, scene.shaft.mass), (&None, 0.0));
+    let effects = &scene.effects;
     assert!(!effects.ball_centrifugal && !effects.frame_rotation);
     assert_eq!((effects.cage_slip, effects.contact_damping), (None, None));
     assert_eq!(effects.rayleigh_damping, None);

@@ -4,18 +4,21 @@
 //! direction = [0.0, -1.0, 0.0]
 //! ```
 //! Weight of the balls (in their meridian planes; the cage carries the rest), of flexible rings and of the shaft's
-//! own mass, which acts at the load point.
+//! own mass, which acts at the load point. With a sub-table `schedule` its size changes in time.
 
 use contact::Side;
 
 use super::{Effect, Loads, Now};
 use crate::error::DynamicsError;
 use crate::model::Model;
+use crate::schedule::Schedule;
 
 /// Uniform gravity.
 pub struct Gravity {
     /// Acceleration, m/s^2.
     pub acceleration: [f64; 3],
+    /// Its factor over time.
+    pub schedule: Schedule,
 }
 
 impl Effect for Gravity {
@@ -24,7 +27,8 @@ impl Effect for Gravity {
     }
 
     fn add_loads(&self, model: &Model, now: &Now, loads: &mut Loads) -> Result<(), DynamicsError> {
-        let g = self.acceleration;
+        let factor = self.schedule.at(now.time);
+        let g = self.acceleration.map(|a| factor * a);
         let mass = model.ball_mass();
         for (ball, load) in loads.balls.iter_mut().enumerate() {
             let (sin, cos) = (model.geometry.azimuth(ball) + now.cage_angle).sin_cos();

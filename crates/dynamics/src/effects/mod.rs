@@ -6,6 +6,7 @@ mod axial_force;
 mod ball_centrifugal;
 mod frame_rotation;
 mod gravity;
+mod gyroscopic_moment;
 mod moment;
 mod radial_force;
 
@@ -13,6 +14,7 @@ pub use axial_force::AxialForce;
 pub use ball_centrifugal::BallCentrifugal;
 pub use frame_rotation::{FrameRotation, add_static_inertia};
 pub use gravity::Gravity;
+pub use gyroscopic_moment::GyroscopicMoment;
 pub use moment::Moment;
 pub use radial_force::RadialForce;
 
@@ -34,6 +36,9 @@ pub struct Loads {
     pub ball_slope: f64,
     /// Body loads on the nodes of a flexible ring, N, `[n_nodes][3]` flat; None: no such load.
     pub rings: [Option<Vec<f64>>; 2],
+    /// Force on the ring at each contact [radial, axial] besides the normal one, N, by site (2 ball + side), acting at the
+    /// groove centre; the ball gets its negative. Empty: no effect adds any.
+    pub contacts: Vec<[f64; 2]>,
     /// Turning of the inner ring's frame, when its inertia is called for.
     pub frame: Option<FrameTurn>,
 }
@@ -56,6 +61,7 @@ impl Loads {
             ball_slope: 0.0,
             balls: vec![[0.0; 2]; model.geometry.n_balls],
             rings: [None, None],
+            contacts: Vec::new(),
             frame: None,
         }
     }
@@ -68,6 +74,13 @@ impl Loads {
         // Moment of a force at distance L along the axis: L e_z x F.
         self.shaft[3] -= model.load_point * force[1];
         self.shaft[4] += model.load_point * force[0];
+    }
+
+    /// Adds a force (N) [radial, axial] on the ring at one contact; the ball gets its negative.
+    pub fn add_contact_force(&mut self, ball: usize, side: Side, force: [f64; 2]) {
+        self.contacts.resize(2 * self.balls.len(), [0.0; 2]);
+        let sum = &mut self.contacts[2 * ball + side.index()];
+        (sum[0], sum[1]) = (sum[0] + force[0], sum[1] + force[1]);
     }
 
     /// Adds nodal body loads (N) to a flexible ring; the shaft carries those of the inner ring.
@@ -92,11 +105,24 @@ impl Loads {
 
 /// An instant of a motion; the default is the start.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Now {
+pub struct Now<'a> {
     /// Time, s.
     pub time: f64,
     /// Angle the cage has turned since the start, rad.
     pub cage_angle: f64,
+    /// Contact angles, rad, by site (2 ball + side), `[2 n_balls]`; None: not known yet, the free contact angle stands for
+    /// them.
+    pub angles: Option<&'a [f64]>,
+}
+
+impl Now<'_> {
+    /// Contact angle of a ball on one raceway, rad.
+    pub fn contact_angle(&self, model: &Model, ball: usize, side: Side) -> f64 {
+        match self.angles {
+            Some(angles) => angles[2 * ball + side.index()],
+            None => model.geometry.free_contact_angle(),
+        }
+    }
 }
 
 /// A physical effect that adds loads.

@@ -6,6 +6,8 @@
 
 use contact::BearingGeometry;
 
+use crate::schedule::piecewise_linear;
+
 /// Inner ring speed as a piecewise linear function of time.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Speed {
@@ -35,24 +37,12 @@ impl Speed {
 
     /// Speed, rad/s.
     pub fn at(&self, t: f64) -> f64 {
-        let i = self.times.partition_point(|x| *x <= t);
-        if i == 0 {
-            return self.speeds[0];
-        }
-        if i == self.times.len() {
-            return self.speeds[i - 1];
-        }
-        let share = (t - self.times[i - 1]) / (self.times[i] - self.times[i - 1]);
-        self.speeds[i - 1] + share * (self.speeds[i] - self.speeds[i - 1])
+        piecewise_linear(&self.times, &self.speeds, t)[0]
     }
 
     /// Angular acceleration, rad/s^2.
     pub fn rate(&self, t: f64) -> f64 {
-        let i = self.times.partition_point(|x| *x <= t);
-        if i == 0 || i == self.times.len() {
-            return 0.0;
-        }
-        (self.speeds[i] - self.speeds[i - 1]) / (self.times[i] - self.times[i - 1])
+        piecewise_linear(&self.times, &self.speeds, t)[1]
     }
 
     /// Angle turned since t = 0, rad: the exact integral.

@@ -15,7 +15,6 @@ use super::small::{Inertia, RingAnswer, SmallSystem};
 use super::state::{MotionState, StepReport};
 use crate::effects::{self, FrameTurn, Loads, Now};
 use crate::error::DynamicsError;
-use crate::model::ShaftDof;
 use crate::problem::Site;
 
 /// Change of the frame's inertia loads in a round, sum of all, over the largest force, at which they count as settled.
@@ -65,7 +64,7 @@ impl Motion<'_> {
         };
         let mut clock = Lap::new();
         let time = span.at(1.0 - self.settings.integrator.alpha_f);
-        let loads = self.loads_at(time)?;
+        let loads = self.loads_at(state, time)?;
         report.seconds.loads = clock.lap();
         let (sites, feet) = self.place(state, time)?;
         report.seconds.patches = clock.lap();
@@ -110,10 +109,14 @@ impl Motion<'_> {
         Ok((next, report))
     }
 
-    /// Loads at a time.
-    fn loads_at(&self, time: f64) -> Result<Loads, DynamicsError> {
-        let cage_angle = self.cage_angle(time);
-        effects::loads(self.model, &Now { time, cage_angle })
+    /// Loads at a time, those that follow the contact angles with the angles of the start.
+    fn loads_at(&self, state: &MotionState, time: f64) -> Result<Loads, DynamicsError> {
+        let now = Now {
+            time,
+            cage_angle: self.cage_angle(time),
+            angles: Some(&state.angles),
+        };
+        effects::loads(self.model, &now)
     }
 
     /// Both rings under their known loads.
@@ -202,7 +205,7 @@ impl Motion<'_> {
             rings: [answer(&moving[0]), answer(&moving[1])],
             scheme: self.settings.scheme,
             damping: self.settings.contact_damping,
-            extra: Vec::new(),
+            extra: loads.contacts.clone(),
         }
     }
 
@@ -224,10 +227,7 @@ impl Motion<'_> {
             load: loads.shaft[i],
             load_slope: 0.0,
         });
-        let imposed = self.model.shaft.map(|dof| match dof {
-            ShaftDof::Free => None,
-            ShaftDof::Prescribed(value) => Some(value),
-        });
+        let imposed = [0, 1, 2, 3, 4].map(|i| self.model.prescribed(i, span.at(1.0)));
         let angle = |share: f64| self.frame_angle(Side::Inner, span.at(share));
         ShaftStep {
             bodies,
