@@ -40,6 +40,7 @@ pub fn model_with_rings(scene: &Scene, rings: [Option<Arc<RingModel>>; 2]) -> Re
         let exact = HertzContact::new(&geometry, side, elastic(&ball_steel), elastic(&ring_steel));
         given[side.index()].map_or(exact, |k| exact.with_stiffness(k))
     });
+    let effects = effects(scene, &rings)?;
     let shaft = &scene.shaft;
     let dofs = [shaft.x, shaft.y, shaft.z, shaft.tilt_x, shaft.tilt_y].map(|motion| match motion {
         scene::Motion::Free => ShaftDof::Free,
@@ -62,7 +63,7 @@ pub fn model_with_rings(scene: &Scene, rings: [Option<Arc<RingModel>>; 2]) -> Re
             },
             patch_spacings: scene.contact.patch_elements,
         },
-        effects: effects(scene),
+        effects,
         tolerances: Tolerances {
             force: scene.solver.tolerance,
             max_rounds: scene.solver.max_iterations,
@@ -87,7 +88,7 @@ fn material(m: &scene::Material) -> Result<Material, Failure> {
     Ok(Material::new(m.young_modulus, m.poisson_ratio, m.density)?)
 }
 
-fn effects(scene: &Scene) -> Vec<Box<dyn Effect>> {
+fn effects(scene: &Scene, rings: &[Option<Arc<RingModel>>; 2]) -> Result<Vec<Box<dyn Effect>>, Failure> {
     let mut effects: Vec<Box<dyn Effect>> = Vec::new();
     if let Some(value) = scene.effects.axial_force {
         effects.push(Box::new(AxialForce { value }));
@@ -100,7 +101,9 @@ fn effects(scene: &Scene) -> Vec<Box<dyn Effect>> {
         }));
     }
     if let Some(acceleration) = scene.effects.gravity {
-        effects.push(Box::new(Gravity { acceleration }));
+        effects.push(Box::new(
+            Gravity::new(acceleration, rings).map_err(Failure::solving)?,
+        ));
     }
     if let Some(value) = scene.effects.moment {
         effects.push(Box::new(Moment { value }));
@@ -111,7 +114,7 @@ fn effects(scene: &Scene) -> Vec<Box<dyn Effect>> {
             direction: radial.direction,
         }));
     }
-    effects
+    Ok(effects)
 }
 
 /// Reads and checks the mesh of one ring; None for a rigid ring.

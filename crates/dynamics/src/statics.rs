@@ -18,12 +18,14 @@ use contact::Side;
 use rayon::prelude::*;
 use solver::dense::DenseCholesky;
 
-use crate::effects::{self, Loads, Now};
+use crate::costs::{EffectCosts, Timing};
+use crate::effects::{self, Loads};
 use crate::equilibrium::{SearchScales, check_held, minimise, round_off};
 use crate::error::DynamicsError;
 use crate::footprint::{Footprint, check_on_groove, place};
 use crate::model::{ContactMode, Model, ShaftDof};
-use crate::problem::{Displacements, Problem, RingResponse, Site, site_forces};
+use crate::pose::Pose;
+use crate::problem::{Displacements, Problem, RingResponse, site_forces};
 use crate::ring::RingSolver;
 use crate::solution::{RingFields, StaticSolution};
 
@@ -35,29 +37,14 @@ const FACET_TOLERANCE: f64 = 1e-6;
 /// Stages in which the facets' offsets are brought in.
 const FACET_STAGES: usize = 8;
 
-/// Seconds spent, by part.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Timing {
-    /// Assembly of the stiffness matrices.
-    pub assemble: f64,
-    /// Ordering, analysis and factorisation.
-    pub factor: f64,
-    /// Compliance columns of the contacts.
-    pub columns: f64,
-    /// Placing of patches.
-    pub patches: f64,
-    /// Full-field solves.
-    pub solve: f64,
-    /// Newton on contacts, balls and shaft.
-    pub newton: f64,
-}
-
 /// Factored rings of a model, ready for any number of load cases.
 pub struct StaticSolver {
     rings: [Option<RingSolver>; 2],
     columns: [Option<Vec<f64>>; 2],
     /// Seconds so far.
     pub timing: Timing,
+    /// Seconds so far, by effect.
+    pub costs: EffectCosts,
 }
 
 impl StaticSolver {
@@ -80,6 +67,7 @@ impl StaticSolver {
             rings,
             columns: [None, None],
             timing,
+            costs: EffectCosts::new(model),
         })
     }
 
@@ -95,8 +83,32 @@ impl StaticSolver {
         model: &Model,
         start: Option<&StaticSolution>,
     ) -> Result<StaticSolution, DynamicsError> {
-        let loads = &effects::loads(model, &Now::default())?;
-        let problem = base_problem(model, loads);
+        self.solve_at(model, &Pose::default(), start)
+    }
+
+    /// The same for a bearing that has turned.
+    pub fn solve_at(
+        &mut self,
+        model: &Model,
+        pose: &Pose,
+        start: Option<&StaticSolution>,
+    ) -> Result<StaticSolution, DynamicsError> {
+        let loads = effects::timed_loads(model, &pose.now, &self.costs)?;
+        let loads = pose.in_frames(model, loads);
+        let problem = pose.problem(model, &loads);
+        let mut solution = self.equilibrium(model, problem, &loads, start)?;
+        solution.pose = *pose;
+        Ok(solution)
+    }
+
+    /// Equilibrium of a problem whose rings have not been measured yet.
+    fn equilibrium(
+        &mut self,
+        model: &Model,
+        problem: Problem,
+        loads: &Loads,
+        start: Option<&StaticSolution>,
+    ) -> Result<StaticSolution, DynamicsError> {
         let scales = SearchScales::new(
             &model.geometry,
             model.hertz[0].stiffness.max(model.hertz[1].stiffness),
@@ -294,21 +306,6 @@ impl StaticSolver {
                 });
             }
         }
-    }
-}
-
-fn base_problem(model: &Model, loads: &Loads) -> Problem {
-    let geometry = &model.geometry;
-    let sites = (0..geometry.n_balls)
-        .flat_map(|i| Side::BOTH.map(|side| Site::new(model, i, side, geometry.azimuth(i))));
-    Problem {
-        sites: sites.collect(),
-        rings: [None, None],
-        shaft_free: model.shaft.map(|d| d == ShaftDof::Free),
-        shaft_load: [0, 1, 2, 3, 4].map(|i| loads.shaft[i] + loads.ring_on_shaft[i]),
-        ball_load: loads.balls.clone(),
-        ball_slope: loads.ball_slope,
-        tilt_arm: geometry.centre_radius(Side::Inner),
     }
 }
 
