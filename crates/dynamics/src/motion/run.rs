@@ -14,6 +14,7 @@ use super::ring::{RingMotion, RingStep};
 use super::small::{Inertia, RingAnswer, SmallSolution, SmallSystem, check_patches};
 use super::start::check_supported;
 use super::state::{MotionSettings, MotionState, StepReport};
+use crate::costs::EffectCosts;
 use crate::effects::{self, Loads, Now};
 use crate::error::DynamicsError;
 use crate::footprint::{on_groove, require_on_groove};
@@ -26,6 +27,8 @@ pub struct Motion<'a> {
     pub(super) settings: MotionSettings,
     pub(super) kinematics: Kinematics,
     pub(super) rings: [Option<RingMotion>; 2],
+    /// Seconds so far, by effect.
+    pub costs: EffectCosts,
 }
 
 impl<'a> Motion<'a> {
@@ -46,6 +49,7 @@ impl<'a> Motion<'a> {
             kinematics,
             rings: [inner?, outer?],
             settings,
+            costs: EffectCosts::new(model),
         })
     }
 
@@ -75,14 +79,12 @@ impl<'a> Motion<'a> {
     /// One step.
     pub fn step(&self, state: &MotionState) -> Result<(MotionState, StepReport), DynamicsError> {
         let middle = self.time(state.step) + 0.5 * self.settings.dt;
-        let loads = effects::loads(
-            self.model,
-            &Now {
-                time: middle,
-                cage_angle: self.cage_angle(middle),
-                angles: Some(&state.angles),
-            },
-        )?;
+        let now = Now {
+            time: middle,
+            cage_angle: self.cage_angle(middle),
+            angles: Some(&state.angles),
+        };
+        let loads = effects::timed_loads(self.model, &now, &self.costs)?;
         let (sites, feet) = self.place(state, middle)?;
         let prepare = |side: Side| {
             let motion = self.rings[side.index()].as_ref()?;
