@@ -42,6 +42,7 @@ pub fn model_with_rings(scene: &Scene, rings: [Option<Arc<RingModel>>; 2]) -> Re
         let exact = HertzContact::new(&geometry, side, elastic(&ball_steel), elastic(&ring_steel));
         given[side.index()].map_or(exact, |k| exact.with_stiffness(k))
     });
+    let effects = effects(scene, &rings)?;
     let shaft = &scene.shaft;
     let dofs = [shaft.x, shaft.y, shaft.z, shaft.tilt_x, shaft.tilt_y].map(|motion| match motion {
         scene::Motion::Free => ShaftDof::Free,
@@ -65,7 +66,7 @@ pub fn model_with_rings(scene: &Scene, rings: [Option<Arc<RingModel>>; 2]) -> Re
             },
             patch_spacings: scene.contact.patch_elements,
         },
-        effects: effects(scene),
+        effects,
         tolerances: Tolerances {
             force: scene.solver.tolerance,
             max_rounds: scene.solver.max_iterations,
@@ -90,7 +91,7 @@ fn material(m: &scene::Material) -> Result<Material, Failure> {
     Ok(Material::new(m.young_modulus, m.poisson_ratio, m.density)?)
 }
 
-fn effects(scene: &Scene) -> Vec<Box<dyn Effect>> {
+fn effects(scene: &Scene, rings: &[Option<Arc<RingModel>>; 2]) -> Result<Vec<Box<dyn Effect>>, Failure> {
     let mut effects: Vec<Box<dyn Effect>> = Vec::new();
     let (asked, slip) = (&scene.effects, scene.effects.cage_slip.unwrap_or([0.0; 2]));
     if let Some(Scheduled { value, schedule }) = asked.axial_force.clone() {
@@ -106,10 +107,9 @@ fn effects(scene: &Scene) -> Vec<Box<dyn Effect>> {
         effects.push(Box::new(FrameRotation { speed: speed(scene) }));
     }
     if let Some(Scheduled { value, schedule }) = asked.gravity.clone() {
-        effects.push(Box::new(Gravity {
-            acceleration: value,
-            schedule,
-        }));
+        effects.push(Box::new(
+            Gravity::new(value, schedule, rings).map_err(Failure::solving)?,
+        ));
     }
     if let Some(shares) = asked.gyroscopic_moment {
         effects.push(Box::new(GyroscopicMoment {
@@ -128,7 +128,7 @@ fn effects(scene: &Scene) -> Vec<Box<dyn Effect>> {
             schedule,
         }));
     }
-    effects
+    Ok(effects)
 }
 
 /// Reads and checks the mesh of one ring; None for a rigid ring.

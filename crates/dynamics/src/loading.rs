@@ -7,18 +7,20 @@
 
 use contact::Side;
 
+use crate::costs::EffectCosts;
 use crate::effects::{self, Loads, Now};
 use crate::equilibrium::{SearchScales, minimise};
 use crate::error::DynamicsError;
-use crate::model::{Model, ShaftDof};
+use crate::model::Model;
+use crate::pose::Pose;
 use crate::problem::{Displacements, Problem, Site, site_forces};
 
 /// The contact problem of a model at an instant, with its loads.
 pub struct LoadCase<'a> {
     /// Model.
     pub model: &'a Model,
-    /// Instant; its contact angles are not used, those of the displacements are.
-    pub now: Now<'a>,
+    /// Instant.
+    pub pose: Pose,
     /// Contact problem, with the loads in it.
     pub problem: Problem,
     /// The loads.
@@ -31,45 +33,38 @@ pub struct LoadCase<'a> {
 
 impl<'a> LoadCase<'a> {
     /// The problem on rigid rings, with the loads of an instant on contacts as they stand in `u`.
-    pub fn new(model: &'a Model, now: Now<'a>, u: &Displacements) -> Result<LoadCase<'a>, DynamicsError> {
-        let geometry = &model.geometry;
-        let sites = (0..geometry.n_balls)
-            .flat_map(|i| Side::BOTH.map(|side| Site::new(model, i, side, geometry.azimuth(i))));
-        let problem = Problem {
-            sites: sites.collect(),
-            rings: [None, None],
-            shaft_free: model.shaft.map(|d| d == ShaftDof::Free),
-            shaft_load: [0.0; 5],
-            ball_load: Vec::new(),
-            contact_load: Vec::new(),
-            ball_slope: 0.0,
-            tilt_arm: geometry.centre_radius(Side::Inner),
-        };
+    pub fn new(
+        model: &'a Model,
+        pose: Pose,
+        costs: &EffectCosts,
+        u: &Displacements,
+    ) -> Result<LoadCase<'a>, DynamicsError> {
+        let problem = pose.problem(model);
         let stiffness = model.hertz[0].stiffness.max(model.hertz[1].stiffness);
         let mut case = LoadCase {
             model,
-            now,
+            pose,
             problem,
             loads: Loads::none(model),
-            scales: SearchScales::new(geometry, stiffness),
+            scales: SearchScales::new(&model.geometry, stiffness),
             newton_iterations: 0,
         };
-        case.loads = case.loads_at(u)?;
+        case.loads = case.loads_at(costs, u)?;
         case.problem.set_loads(&case.loads);
         Ok(case)
     }
 
     /// Loads at the contact angles of `u`.
-    fn loads_at(&self, u: &Displacements) -> Result<Loads, DynamicsError> {
+    fn loads_at(&self, costs: &EffectCosts, u: &Displacements) -> Result<Loads, DynamicsError> {
         let angle = |site: &Site| site.contact_angle(&site.state(u));
         let angles: Vec<f64> = self.problem.sites.iter().map(angle).collect();
         let now = Now {
             angles: Some(&angles),
-            ..self.now
+            ..self.pose.now
         };
-        let mut loads = effects::loads(self.model, &now)?;
-        effects::add_static_inertia(self.model, &mut loads)?;
-        Ok(loads)
+        let loads = effects::timed_loads(self.model, &now, costs)?;
+        let inertia = effects::static_inertia(self.model, &loads)?;
+        Ok(self.pose.in_frames(self.model, loads, inertia))
     }
 
     /// Newton on the problem as it is.
@@ -79,8 +74,13 @@ impl<'a> LoadCase<'a> {
         Ok(u)
     }
 
-    /// Equilibrium under loads that may follow the contact angles: they become those of the equilibrium.
-    pub fn settle(&mut self, start: Displacements) -> Result<Displacements, DynamicsError> {
+    /// Equilibrium under loads that may follow the contact angles: they become those of the equilibrium. The time of
+    /// effects goes to `costs`.
+    pub fn settle(
+        &mut self,
+        costs: &EffectCosts,
+        start: Displacements,
+    ) -> Result<Displacements, DynamicsError> {
         let mut u = self.minimise(start)?;
         if self.loads.contacts.is_empty() {
             return Ok(u);
@@ -88,7 +88,7 @@ impl<'a> LoadCase<'a> {
         let tolerance = self.model.tolerances.force;
         let (mut history, mut worst) = (Vec::new(), 0);
         for _ in 0..self.model.tolerances.max_rounds {
-            let next = self.loads_at(&u)?;
+            let next = self.loads_at(costs, &u)?;
             let largest = largest_force(&site_forces(&self.problem, &u));
             let (change, place) = largest_change(&self.loads.contacts, &next.contacts, largest);
             if change <= tolerance {

@@ -29,6 +29,8 @@ pub struct Site {
     pub side: Side,
     /// Azimuth of the ball, rad.
     pub azimuth: f64,
+    /// The same on the mesh of the ring, which may have turned, rad.
+    pub ring_azimuth: f64,
     /// Groove centre to ball centre at zero displacement [radial, axial], m.
     pub reach: [f64; 2],
     /// |l| at which they touch, R - D_w/2, m.
@@ -86,7 +88,7 @@ pub struct SiteState {
 }
 
 impl Site {
-    /// A ball at an azimuth on an exact, rigid groove with the model's Hertz stiffness.
+    /// A ball at an azimuth on an exact, rigid groove that has not turned, with the model's Hertz stiffness.
     pub fn new(model: &Model, ball: usize, side: Side, azimuth: f64) -> Site {
         let geometry = &model.geometry;
         let (centre, ball_centre) = (geometry.groove_centre(side), geometry.ball_centre());
@@ -94,6 +96,7 @@ impl Site {
             ball,
             side,
             azimuth,
+            ring_azimuth: azimuth,
             reach: [ball_centre[0] - centre[0], ball_centre[1] - centre[1]],
             touching: geometry.touching_distance(side),
             lever: geometry.centre_radius(side),

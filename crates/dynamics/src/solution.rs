@@ -7,6 +7,7 @@ use crate::effects::Loads;
 use crate::equilibrium::centre_unloaded;
 use crate::footprint::{Footprint, loaded};
 use crate::loading::LoadCase;
+use crate::pose::Pose;
 use crate::problem::{Displacements, Problem, site_forces};
 
 /// Peak pressure that leaves a permanent indentation of 1e-4 of the ball diameter in bearing steel, Pa: ISO 76, for ball
@@ -17,9 +18,12 @@ const STATIC_LIMIT: f64 = 4.2e9;
 pub struct StaticSolution {
     /// Displacements of shaft, balls and groove centres.
     pub displacements: Displacements,
+    /// Where the parts of the bearing stand.
+    pub pose: Pose,
     /// Results of every ball.
     pub balls: Vec<BallResult>,
-    /// Elastic nodal displacements of flexible rings relative to shaft or housing, m, `[n_nodes][3]` flat.
+    /// Elastic nodal displacements of flexible rings relative to shaft or housing, in the frame of the ring's mesh, which
+    /// may have turned, m, `[n_nodes][3]` flat.
     pub elastic: [Option<Vec<f64>>; 2],
     /// Out-of-balance force on the shaft, N and N m, about its origin; zero on prescribed dofs.
     pub shaft_residual: [f64; 5],
@@ -82,6 +86,7 @@ impl StaticSolution {
             rounds,
             newton_iterations: case.newton_iterations,
             displacements: u,
+            pose: case.pose,
             elastic: rings.elastic,
             footprints: rings.footprints,
         }

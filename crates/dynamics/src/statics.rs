@@ -19,12 +19,14 @@ use contact::Side;
 use rayon::prelude::*;
 use solver::dense::DenseCholesky;
 
-use crate::effects::{Loads, Now};
+use crate::costs::{EffectCosts, Timing};
+use crate::effects::Loads;
 use crate::equilibrium::{SearchScales, check_held, minimise, round_off};
 use crate::error::DynamicsError;
 use crate::footprint::{Footprint, check_on_groove, place};
 use crate::loading::{LoadCase, largest_change, largest_force, not_settled};
 use crate::model::{ContactMode, Model};
+use crate::pose::Pose;
 use crate::problem::{Displacements, Problem, RingResponse, site_forces};
 use crate::ring::RingSolver;
 use crate::solution::{RingFields, StaticSolution};
@@ -37,29 +39,14 @@ const FACET_TOLERANCE: f64 = 1e-6;
 /// Stages in which the facets' offsets are brought in.
 const FACET_STAGES: usize = 8;
 
-/// Seconds spent, by part.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Timing {
-    /// Assembly of the stiffness matrices.
-    pub assemble: f64,
-    /// Ordering, analysis and factorisation.
-    pub factor: f64,
-    /// Compliance columns of the contacts.
-    pub columns: f64,
-    /// Placing of patches.
-    pub patches: f64,
-    /// Full-field solves.
-    pub solve: f64,
-    /// Newton on contacts, balls and shaft.
-    pub newton: f64,
-}
-
 /// Factored rings of a model, ready for any number of load cases.
 pub struct StaticSolver {
     rings: [Option<RingSolver>; 2],
     columns: [Option<Vec<f64>>; 2],
     /// Seconds so far.
     pub timing: Timing,
+    /// Seconds so far, by effect.
+    pub costs: EffectCosts,
 }
 
 impl StaticSolver {
@@ -82,6 +69,7 @@ impl StaticSolver {
             rings,
             columns: [None, None],
             timing,
+            costs: EffectCosts::new(model),
         })
     }
 
@@ -97,21 +85,21 @@ impl StaticSolver {
         model: &Model,
         start: Option<&StaticSolution>,
     ) -> Result<StaticSolution, DynamicsError> {
-        self.solve_at(model, &Now::default(), start)
+        self.solve_at(model, &Pose::default(), start)
     }
 
-    /// The same at another instant: loads and imposed displacements are those of its time.
+    /// The same at another instant: of a bearing that has turned, with the loads and imposed displacements of its time.
     pub fn solve_at(
         &mut self,
         model: &Model,
-        now: &Now,
+        pose: &Pose,
         start: Option<&StaticSolution>,
     ) -> Result<StaticSolution, DynamicsError> {
-        let u = self.start(model, now.time, start);
-        let mut case = LoadCase::new(model, *now, &u)?;
+        let u = self.start(model, pose.now.time, start);
+        let mut case = LoadCase::new(model, *pose, &self.costs, &u)?;
         let clock = Instant::now();
         // Rings as they were (undeformed without a start): places and forces near those of the new loads.
-        let u = case.settle(u)?;
+        let u = case.settle(&self.costs, u)?;
         self.timing.newton += clock.elapsed().as_secs_f64();
         if self.rings.iter().any(Option::is_some) {
             return self.rounds(case, u);
@@ -164,7 +152,7 @@ impl StaticSolver {
                 adopt_offsets(&case.problem, &mut u);
                 u = approach_facets(&mut case.problem, u, case.scales)?;
             }
-            u = case.settle(u)?;
+            u = case.settle(&self.costs, u)?;
             self.timing.newton += clock.elapsed().as_secs_f64();
             let updated = site_forces(&case.problem, &u);
             let largest = largest_force(&updated);

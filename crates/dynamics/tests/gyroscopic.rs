@@ -5,7 +5,7 @@ mod support;
 use contact::Side;
 use dynamics::effects::{self, BallCentrifugal, GyroscopicMoment, Now};
 use dynamics::motion::balls::{Kinematics, Speed};
-use dynamics::{ContactMode, Hold, Model, StaticSolution};
+use dynamics::{ContactMode, Hold, Model, Pose, StaticSolution, StaticSolver};
 use support::rings::Level;
 use support::{Case, equilibrium, relative};
 
@@ -316,6 +316,30 @@ fn friction_of_the_balls_is_balanced_by_the_shaft() {
     }
 }
 
+/// Wrong: the moment would not go round with the balls. Half a ball spacing on, the equilibrium is that of a bearing whose
+/// first ball is there; a radial force makes balls differ.
+#[test]
+fn the_moment_goes_round_with_the_cage() {
+    let case = Case {
+        radial: 800.0,
+        free_tilt: true,
+        ..Case::axial(2000.0)
+    };
+    let model = spinning(case.rigid(), FAST, Some(BOTH));
+    let mut pose = Pose::default();
+    pose.now.cage_angle = std::f64::consts::PI / 18.0;
+    let turned = StaticSolver::new(&model)
+        .unwrap()
+        .solve_at(&model, &pose, None)
+        .unwrap();
+    let phase = pose.now.cage_angle;
+    let there = equilibrium(&spinning(Case { phase, ..case }.rigid(), FAST, Some(BOTH)));
+    for (a, b) in turned.balls.iter().zip(&there.balls) {
+        assert!(relative(a.outer.force_n, b.outer.force_n) < 1e-9);
+        assert!((a.outer.contact_angle_rad - b.outer.contact_angle_rad).abs() < 1e-9);
+    }
+}
+
 /// Wrong: on flexible rings the contact loads would miss the ring, the work or the stopping rule. Virtual work of all
 /// forces closes; rounds started from the solution have nothing to do; the angles are near those of rigid rings.
 #[test]
@@ -327,7 +351,7 @@ fn flexible_rings_settle_with_the_moment() {
     for shares in [OUTER, BOTH] {
         let flexible = case.flexible(ContactMode::Patch, Level::hex8(54, 6, 1, 2), Hold::Clamped);
         let model = spinning(flexible, FAST, Some(shares));
-        let mut solver = dynamics::StaticSolver::new(&model).unwrap();
+        let mut solver = StaticSolver::new(&model).unwrap();
         let solution = solver.solve(&model, None).unwrap();
         let scale = solution.load_work.abs();
         assert!(

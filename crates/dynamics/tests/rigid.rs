@@ -143,10 +143,8 @@ fn balls_that_only_touch_are_unloaded() {
 fn gravity_leaves_unloaded_balls_at_its_horizon_midway() {
     let mut model = Case::axial(500.0).rigid();
     let acceleration = [0.0, -9.81e4, 0.0];
-    model.effects.push(Box::new(Gravity {
-        acceleration,
-        schedule: Schedule::Constant,
-    }));
+    let gravity = Gravity::new(acceleration, Schedule::Constant, &model.rings).unwrap();
+    model.effects.push(Box::new(gravity));
     let solution = equilibrium(&model);
     let horizon = [&solution.balls[0], &solution.balls[9]];
     for b in horizon {

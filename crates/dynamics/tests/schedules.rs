@@ -3,7 +3,7 @@
 mod support;
 
 use dynamics::effects::{AxialForce, Effect, Gravity, Moment, Now, RadialForce};
-use dynamics::{Model, Schedule, ShaftDof, StaticSolution, StaticSolver};
+use dynamics::{Model, Pose, Schedule, ShaftDof, StaticSolution, StaticSolver};
 use support::Case;
 
 /// A bearing under all scheduled loads and a driven tilt; `at` makes the schedule of each from its number.
@@ -23,10 +23,7 @@ fn bearing(at: impl Fn(usize) -> Schedule) -> Model {
             value: [2.0, -1.0],
             schedule: at(2),
         }),
-        Box::new(Gravity {
-            acceleration: [0.0, -9.81e3, 0.0],
-            schedule: at(3),
-        }),
+        Box::new(Gravity::new([0.0, -9.81e3, 0.0], at(3), &[None, None]).unwrap()),
     ];
     model.shaft[3] = ShaftDof::Free;
     model.shaft[4] = ShaftDof::Prescribed(4e-4);
@@ -48,9 +45,13 @@ fn solve(model: &Model, time: f64) -> StaticSolution {
         time,
         ..Now::default()
     };
+    let pose = Pose {
+        now,
+        inner_angle: 0.0,
+    };
     StaticSolver::new(model)
         .unwrap()
-        .solve_at(model, &now, None)
+        .solve_at(model, &pose, None)
         .unwrap()
 }
 

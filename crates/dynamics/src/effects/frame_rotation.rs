@@ -39,19 +39,19 @@ impl Effect for FrameRotation {
     }
 }
 
-/// Adds the inertia of the undeformed inner ring to its body loads: what statics sees of a turning frame.
-pub fn add_static_inertia(model: &Model, loads: &mut Loads) -> Result<(), DynamicsError> {
+/// Inertia of the undeformed inner ring in its own frame, N, `[n_nodes][3]` flat: what statics sees of a turning frame.
+pub fn static_inertia(model: &Model, loads: &Loads) -> Result<Option<Vec<f64>>, DynamicsError> {
     let (Some(turn), Some(ring)) = (loads.frame, model.ring(Side::Inner)) else {
-        return Ok(());
+        return Ok(None);
     };
     let density = ring.material.density;
     let (square, rate) = (turn.speed * turn.speed, turn.acceleration);
     let inertia =
         |[x, y, _]: [f64; 3]| [square * x + rate * y, square * y - rate * x, 0.0].map(|f| density * f);
-    let load = fem::loads::body_load(&ring.mesh, inertia).map_err(|source| DynamicsError::Fem {
-        side: Side::Inner.name(),
-        source,
-    })?;
-    loads.add_ring_load(model, Side::Inner, load);
-    Ok(())
+    fem::loads::body_load(&ring.mesh, inertia)
+        .map(Some)
+        .map_err(|source| DynamicsError::Fem {
+            side: Side::Inner.name(),
+            source,
+        })
 }

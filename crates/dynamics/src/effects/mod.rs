@@ -12,7 +12,7 @@ mod radial_force;
 
 pub use axial_force::AxialForce;
 pub use ball_centrifugal::BallCentrifugal;
-pub use frame_rotation::{FrameRotation, add_static_inertia};
+pub use frame_rotation::{FrameRotation, static_inertia};
 pub use gravity::Gravity;
 pub use gyroscopic_moment::GyroscopicMoment;
 pub use moment::Moment;
@@ -20,8 +20,9 @@ pub use radial_force::RadialForce;
 
 use contact::Side;
 
+use crate::costs::EffectCosts;
 use crate::error::DynamicsError;
-use crate::model::Model;
+use crate::model::{Model, RingModel};
 
 /// Loads on all bodies at one instant.
 #[derive(Clone, Debug, PartialEq)]
@@ -87,20 +88,26 @@ impl Loads {
     pub fn add_ring_load(&mut self, model: &Model, side: Side, load: Vec<f64>) {
         let Some(ring) = model.ring(side) else { return };
         if side == Side::Inner {
-            let z0 = ring.groove.centre_z;
-            for (x, f) in ring.mesh.nodes.iter().zip(load.chunks_exact(3)) {
-                for i in 0..3 {
-                    self.ring_on_shaft[i] += f[i];
-                }
-                self.ring_on_shaft[3] += x[1] * f[2] - (x[2] - z0) * f[1];
-                self.ring_on_shaft[4] += (x[2] - z0) * f[0] - x[0] * f[2];
-            }
+            let sum = resultant(ring, &load);
+            self.ring_on_shaft.iter_mut().zip(sum).for_each(|(s, f)| *s += f);
         }
         match &mut self.rings[side.index()] {
             Some(sum) => sum.iter_mut().zip(&load).for_each(|(s, l)| *s += l),
             none => *none = Some(load),
         }
     }
+}
+
+/// Force x, y, z, N, and moment about x and y, N m, of nodal loads on the inner ring (N, `[n_nodes][3]` flat), about the
+/// shaft's origin in its mesh.
+pub(crate) fn resultant(ring: &RingModel, load: &[f64]) -> [f64; 5] {
+    let (mut sum, z0) = ([0.0; 5], ring.groove.centre_z);
+    for (x, f) in ring.mesh.nodes.iter().zip(load.chunks_exact(3)) {
+        (0..3).for_each(|i| sum[i] += f[i]);
+        sum[3] += x[1] * f[2] - (x[2] - z0) * f[1];
+        sum[4] += (x[2] - z0) * f[0] - x[0] * f[2];
+    }
+    sum
 }
 
 /// An instant of a motion; the default is the start.
@@ -136,9 +143,14 @@ pub trait Effect: Send + Sync {
 
 /// Loads of all effects of the model at an instant.
 pub fn loads(model: &Model, now: &Now) -> Result<Loads, DynamicsError> {
+    timed_loads(model, now, &EffectCosts::default())
+}
+
+/// [`loads`], with the time of each effect added to `costs`.
+pub fn timed_loads(model: &Model, now: &Now, costs: &EffectCosts) -> Result<Loads, DynamicsError> {
     let mut loads = Loads::none(model);
     for effect in &model.effects {
-        effect.add_loads(model, now, &mut loads)?;
+        costs.time(effect.name(), || effect.add_loads(model, now, &mut loads))?;
     }
     Ok(loads)
 }

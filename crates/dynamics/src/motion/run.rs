@@ -14,6 +14,7 @@ use super::ring::RingFactor;
 use super::start::check_supported;
 use super::state::{MotionSettings, MotionState, StepReport};
 use super::substep::Span;
+use crate::costs::EffectCosts;
 use crate::error::DynamicsError;
 use crate::model::Model;
 
@@ -30,6 +31,8 @@ pub struct Motion<'a> {
     pub(super) kinematics: Kinematics,
     pub(super) rings: [Option<RingBody>; 2],
     rungs: Vec<OnceLock<Rung>>,
+    /// Seconds so far, by effect.
+    pub costs: EffectCosts,
 }
 
 impl<'a> Motion<'a> {
@@ -51,6 +54,7 @@ impl<'a> Motion<'a> {
             rings: [inner?, outer?],
             settings,
             rungs,
+            costs: EffectCosts::new(model),
         };
         motion.rung(0)?;
         Ok(motion)

@@ -84,7 +84,10 @@ impl Motion<'_> {
             report.seconds.newton += clock.lap();
             let increments = self.increments(&system, &solution, &moving);
             report.seconds.update += clock.lap();
-            let settled = self.renew_inertia(span, &mut moving, &increments, scale);
+            let settled = loads.frame.is_none()
+                || self.costs.time("frame_rotation", || {
+                    self.renew_inertia(span, &mut moving, &increments, scale)
+                });
             report.seconds.frame += clock.lap();
             if settled {
                 break (solution, increments);
@@ -116,7 +119,7 @@ impl Motion<'_> {
             cage_angle: self.cage_angle(time),
             angles: Some(&state.angles),
         };
-        effects::loads(self.model, &now)
+        effects::timed_loads(self.model, &now, &self.costs)
     }
 
     /// Both rings under their known loads.
