@@ -23,6 +23,7 @@ use crate::effects::{self, Loads};
 use crate::equilibrium::{SearchScales, check_held, minimise, round_off};
 use crate::error::DynamicsError;
 use crate::footprint::{Footprint, check_on_groove, place};
+use crate::inventory::Inventory;
 use crate::model::{ContactMode, Model, ShaftDof};
 use crate::pose::Pose;
 use crate::problem::{Displacements, Problem, RingResponse, site_forces};
@@ -74,6 +75,12 @@ impl StaticSolver {
     /// The ring solver of one side.
     pub fn ring(&self, side: Side) -> Option<&RingSolver> {
         self.rings[side.index()].as_ref()
+    }
+
+    /// What both rings hold.
+    pub fn inventory(&self) -> Inventory {
+        let rings = self.rings.iter().flatten();
+        rings.fold(Inventory::default(), |sum, ring| sum + ring.inventory())
     }
 
     /// Equilibrium under the model's loads, from zero displacement or from an earlier solution. The model must have the
