@@ -125,7 +125,17 @@ fn the_summary_has_the_keys_of_schema_1() {
     assert_eq!(keys(&summary["iterations"]), ["newton", "rounds"]);
     assert_eq!(keys(&summary["factor_bytes_forecast"]), ["inner", "outer"]);
     let parts = [
-        "assemble", "columns", "contact", "factor", "output", "read", "solve", "stress", "total",
+        "assemble",
+        "columns",
+        "contact",
+        "effect_axial_force",
+        "effect_radial_force",
+        "factor",
+        "output",
+        "read",
+        "solve",
+        "stress",
+        "total",
     ];
     assert_eq!(keys(&summary["timing_s"]), parts);
     let balls = summary["balls"].as_array().unwrap();

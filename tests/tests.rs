@@ -4,6 +4,8 @@
 mod bad_input;
 mod memory;
 mod motion;
+mod probes;
+mod quasi_static;
 mod results;
 mod schedules;
 mod statics;

@@ -9,6 +9,8 @@ use crate::build::build_model;
 use crate::failure::Failure;
 use crate::print;
 use crate::results::fields;
+use crate::results::probes::Probes;
+use crate::results::summary::effects_on;
 use crate::scene::{Analysis, Scene};
 
 /// Bytes of one point in a step file: displacement f64, stress and von Mises f32, two force vectors f64.
@@ -17,7 +19,8 @@ const BYTES_PER_POINT: usize = 3 * 8 + 7 * 4 + 6 * 8;
 /// Reads and checks the scene and its meshes and prints effects, sizes and forecasts.
 pub fn check(path: &Path, overrides: &[String]) -> Result<(), Failure> {
     let scene = Scene::load(path, overrides)?;
-    let model = build_model(&scene)?;
+    let (model, tags) = build_model(&scene)?;
+    let probes = Probes::new(&scene, &model, &tags)?;
     print::line(format_args!(
         "scene    {}",
         scene.title.as_deref().unwrap_or("(no title)")
@@ -26,6 +29,13 @@ pub fn check(path: &Path, overrides: &[String]) -> Result<(), Failure> {
         Analysis::Static => {
             print::line(format_args!("analysis static"));
             1
+        }
+        Analysis::QuasiStatic(quasi) => {
+            print::line(format_args!(
+                "analysis quasi-static, {} steps of {} s, fields every {} steps",
+                quasi.n_steps, quasi.step, quasi.output_every
+            ));
+            1 + quasi.n_steps.div_ceil(quasi.output_every) as usize
         }
         Analysis::Dynamic(dynamic) => {
             print::line(format_args!(
@@ -43,7 +53,7 @@ pub fn check(path: &Path, overrides: &[String]) -> Result<(), Failure> {
             sweep.points.len()
         }
     };
-    let names: Vec<&str> = model.effects.iter().map(|e| e.name()).collect();
+    let names = effects_on(&scene, &model);
     print::line(format_args!(
         "effects  {}",
         if names.is_empty() {
@@ -60,6 +70,7 @@ pub fn check(path: &Path, overrides: &[String]) -> Result<(), Failure> {
         1e3 * geometry.groove_distance(),
         geometry.free_contact_angle().to_degrees()
     ));
+    print_probes(&scene, probes.as_ref());
     let mut memory = [None, None];
     for side in Side::BOTH {
         memory[side.index()] = print_ring(&model, side)?;
@@ -84,7 +95,31 @@ pub fn check(path: &Path, overrides: &[String]) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Prints one ring and returns the forecast of its memory; None for a rigid ring.
+/// Prints where the probes of a scene lie.
+fn print_probes(scene: &Scene, probes: Option<&Probes>) {
+    let Some(probes) = probes else { return };
+    for p in probes.places() {
+        print::line(format_args!(
+            "probe    {}: node {} of the {} ring, azimuth {:.3} deg, r {:.4} mm, z {:.4} mm, {:.4} mm from its point",
+            p.name,
+            p.tag,
+            p.ring,
+            p.azimuth_rad.to_degrees(),
+            1e3 * p.r_m,
+            1e3 * p.z_m,
+            1e3 * p.distance_m
+        ));
+    }
+    for c in &scene.probes.contacts {
+        print::line(format_args!(
+            "probe    {}: contact of ball {} with the {} ring",
+            c.name,
+            c.ball,
+            c.ring.key()
+        ));
+    }
+}
+
 /// Bytes of the stored state of a moving bearing: displacement, velocity and acceleration of every ring dof.
 fn state_bytes(scene: &Scene, model: &dynamics::Model) -> usize {
     match &scene.analysis {
@@ -98,6 +133,7 @@ fn state_bytes(scene: &Scene, model: &dynamics::Model) -> usize {
     }
 }
 
+/// Prints one ring and returns the forecast of its memory; None for a rigid ring.
 fn print_ring(model: &Model, side: Side) -> Result<Option<RingMemory>, Failure> {
     let stiffness = model.hertz[side.index()].stiffness / 10f64.powf(4.5);
     let Some(ring) = model.ring(side) else {

@@ -9,6 +9,7 @@ mod meshing;
 mod motion;
 mod print;
 mod progress;
+mod quasi_static;
 mod results;
 mod run;
 mod scene;

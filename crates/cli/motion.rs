@@ -16,6 +16,8 @@ use crate::failure::Failure;
 use crate::print;
 use crate::progress::Progress;
 use crate::results::files::Files;
+use crate::results::probes::Probes;
+use crate::results::shown::Shown;
 use crate::results::snapshot::Snapshot;
 use crate::results::summary::{Findings, Summary};
 use crate::results::{console, motion_fields};
@@ -28,7 +30,8 @@ const PROGRESS_STEPS: u64 = 50;
 pub fn run(scene: &Scene, dynamic: &Dynamic, dir: PathBuf, start: Instant) -> Result<PathBuf, Failure> {
     let mut progress = Progress::new(dynamic.n_steps);
     progress.stage("reading meshes");
-    let model = build_model(scene)?;
+    let (model, tags) = build_model(scene)?;
+    let probes = Probes::new(scene, &model, &tags)?;
     let read = start.elapsed().as_secs_f64();
     progress.stage("static start");
     let mut statics = StaticSolver::new(&model).map_err(Failure::solving)?;
@@ -41,9 +44,10 @@ pub fn run(scene: &Scene, dynamic: &Dynamic, dir: PathBuf, start: Instant) -> Re
     let motion = Motion::new(&model, settings(scene, dynamic)).map_err(Failure::solving)?;
     let state = motion.start(&equilibrium);
     let mut files = Files::create(scene, &model, &dir, &Snapshot::of_motion(&motion, &state))?;
+    files.add_probes(scene, &dir, probes)?;
     files
         .write_fields(|recoveries| motion_fields::record(&model, &motion, &state, recoveries, &scene.text))?;
-    write_tables(&mut files, &motion, &state)?;
+    write_tables(&mut files, &model, &motion, &state)?;
     let clock = Instant::now();
     let mut march = March {
         scene,
@@ -72,6 +76,7 @@ pub fn run(scene: &Scene, dynamic: &Dynamic, dir: PathBuf, start: Instant) -> Re
         points: Vec::new(),
         iterations: BTreeMap::from([("steps", state.step as usize), ("newton", newton)]),
         warnings: equilibrium.warnings.clone(),
+        effect_seconds: motion.costs.seconds(),
     };
     let summary = Summary::new(scene, &model, findings, &costs);
     summary.write(&dir)?;
@@ -132,7 +137,7 @@ impl March<'_> {
             if self.has_file(n) {
                 self.write_fields()?;
             }
-            write_tables(self.files, self.motion, &self.state)?;
+            write_tables(self.files, self.model, self.motion, &self.state)?;
             check_ledger(self.dynamic, self.motion, &self.state, dir)?;
             progress.advance();
         }
@@ -151,13 +156,16 @@ impl March<'_> {
     }
 }
 
-fn write_tables(files: &mut Files, motion: &Motion<'_>, state: &MotionState) -> Result<(), Failure> {
-    files.write_tables(
-        state.step,
-        motion.time(state.step),
-        None,
-        &Snapshot::of_motion(motion, state),
-    )
+fn write_tables(
+    files: &mut Files,
+    model: &Model,
+    motion: &Motion<'_>,
+    state: &MotionState,
+) -> Result<(), Failure> {
+    let time = motion.time(state.step);
+    files.write_tables(state.step, time, None, &Snapshot::of_motion(motion, state))?;
+    let shown = Shown::Motion { model, motion, state };
+    files.write_probes(state.step, time, None, &shown)
 }
 
 /// Stops a run whose energy ledger does not close.

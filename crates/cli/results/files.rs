@@ -8,9 +8,11 @@ use dynamics::{Model, RingMemory, Timing};
 use fem::StressRecovery;
 
 use super::fields;
+use super::probes::Probes;
+use super::shown::Shown;
 use super::snapshot::Snapshot;
 use super::summary::Costs;
-use super::tables::Tables;
+use super::tables::{ProbeTable, Tables};
 use crate::failure::Failure;
 use crate::scene::{self, Analysis, Scene};
 
@@ -18,6 +20,8 @@ use crate::scene::{self, Analysis, Scene};
 pub struct Files {
     output: Output,
     tables: Tables,
+    /// Probes and their table.
+    probes: Option<(Probes, ProbeTable)>,
     /// Stress recovery of the flexible rings.
     pub recoveries: [Option<StressRecovery>; 2],
     stress_seconds: f64,
@@ -29,20 +33,46 @@ impl Files {
     pub fn create(scene: &Scene, model: &Model, dir: &Path, first: &Snapshot) -> Result<Files, Failure> {
         let clock = Instant::now();
         let output = Output::create(dir, &fields::bodies(model), storage(scene))?;
-        let swept = match &scene.analysis {
-            Analysis::Sweep(sweep) => Some(sweep.column.as_str()),
-            Analysis::Static | Analysis::Dynamic(_) => None,
-        };
-        let tables = Tables::create(dir, swept, first)?;
+        let tables = Tables::create(dir, swept_column(scene), first)?;
         let output_seconds = clock.elapsed().as_secs_f64();
         let recoveries = fields::recoveries(model, scene.output.stress)?;
         Ok(Files {
             output,
             tables,
+            probes: None,
             recoveries,
             stress_seconds: 0.0,
             output_seconds,
         })
+    }
+
+    /// Creates the table of the probes, if the scene has any.
+    pub fn add_probes(&mut self, scene: &Scene, dir: &Path, probes: Option<Probes>) -> Result<(), Failure> {
+        if let Some(probes) = probes {
+            let table = ProbeTable::create(dir, swept_column(scene), &probes.columns())?;
+            self.probes = Some((probes, table));
+        }
+        Ok(())
+    }
+
+    /// Appends a line to the table of the probes.
+    pub fn write_probes(
+        &mut self,
+        step: u64,
+        time: f64,
+        value: Option<f64>,
+        shown: &Shown<'_>,
+    ) -> Result<(), Failure> {
+        let Some((probes, table)) = &mut self.probes else {
+            return Ok(());
+        };
+        let clock = Instant::now();
+        let values = probes.values(shown);
+        self.stress_seconds += clock.elapsed().as_secs_f64();
+        let clock = Instant::now();
+        table.append(step, time, value, &values)?;
+        self.output_seconds += clock.elapsed().as_secs_f64();
+        Ok(())
     }
 
     /// Appends a line per table.
@@ -90,7 +120,18 @@ impl Files {
             total: start.elapsed().as_secs_f64(),
             forecast,
             solver,
+            probes: self
+                .probes
+                .map_or(Vec::new(), |(p, _)| p.places().cloned().collect()),
         })
+    }
+}
+
+/// Name of the column of a swept value.
+fn swept_column(scene: &Scene) -> Option<&str> {
+    match &scene.analysis {
+        Analysis::Sweep(sweep) => Some(sweep.column.as_str()),
+        Analysis::Static | Analysis::QuasiStatic(_) | Analysis::Dynamic(_) => None,
     }
 }
 

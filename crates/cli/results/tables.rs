@@ -1,4 +1,4 @@
-//! Long tables of a run: `balls.csv`, `shaft.csv`, `energy.csv`. SI units in the column names.
+//! Long tables of a run: `balls.csv`, `shaft.csv`, `energy.csv`, `probes.csv`. SI units in the column names.
 
 use std::path::Path;
 
@@ -12,6 +12,8 @@ pub struct Tables {
     balls: csv::Writer<std::fs::File>,
     shaft: csv::Writer<std::fs::File>,
     energy: csv::Writer<std::fs::File>,
+    /// Whether balls have a spin.
+    with_spin: bool,
 }
 
 const REACTION_COLUMNS: [&str; 5] = [
@@ -32,14 +34,10 @@ const CONTACT_COLUMNS: [&str; 6] = [
 ];
 
 impl Tables {
-    /// Creates the files with the header lines of a first snapshot; `swept` is the column of a swept value.
+    /// Creates the files with the header lines of a first snapshot; `swept` is the column of a swept value. Balls have a
+    /// spin if the first snapshot has one.
     pub fn create(dir: &Path, swept: Option<&str>, first: &Snapshot) -> anyhow::Result<Tables> {
-        let head = |rest: &[String]| {
-            let mut columns = vec!["step".to_string(), "time_s".to_string()];
-            columns.extend(swept.map(str::to_string));
-            columns.extend(rest.iter().cloned());
-            columns
-        };
+        let head = |rest: &[String]| head(swept, rest);
         let names = |list: &[&str]| list.iter().map(|s| s.to_string()).collect::<Vec<_>>();
         let mut ball_columns = names(&[
             "ball",
@@ -53,6 +51,9 @@ impl Tables {
             ball_columns.extend(CONTACT_COLUMNS[2..].iter().map(|c| format!("{side}_{c}")));
         }
         ball_columns.extend(names(&["displacement_radial_m", "displacement_axial_m"]));
+        if first.spin.is_some() {
+            ball_columns.push("spin_rad_per_s".to_string());
+        }
         let mut shaft_columns = names(&["x_m", "y_m", "z_m", "tilt_x_rad", "tilt_y_rad"]);
         if first.reaction.is_some() {
             shaft_columns.extend(names(&REACTION_COLUMNS));
@@ -66,6 +67,7 @@ impl Tables {
             balls: open(dir, "balls.csv", &head(&ball_columns))?,
             shaft: open(dir, "shaft.csv", &head(&shaft_columns))?,
             energy: open(dir, "energy.csv", &head(&energy_columns))?,
+            with_spin: first.spin.is_some(),
         })
     }
 
@@ -77,11 +79,13 @@ impl Tables {
         swept: Option<f64>,
         snapshot: &Snapshot,
     ) -> anyhow::Result<()> {
-        let mut head = vec![step.to_string(), number(time)];
-        head.extend(swept.map(number));
+        let head = place_of(step, time, swept);
         let row = |cells: Vec<String>| [head.clone(), cells].concat();
+        let spin = snapshot.spin.filter(|_| self.with_spin).map(number);
         for (i, ball) in snapshot.balls.iter().enumerate() {
-            self.balls.write_record(row(ball_cells(i, ball)))?;
+            let mut cells = ball_cells(i, ball);
+            cells.extend(spin.clone());
+            self.balls.write_record(row(cells))?;
         }
         let shaft = snapshot.shaft.iter().chain(snapshot.reaction.iter().flatten());
         self.shaft
@@ -93,6 +97,39 @@ impl Tables {
         }
         Ok(())
     }
+}
+
+/// The table of the probes, open for appending.
+pub struct ProbeTable(csv::Writer<std::fs::File>);
+
+impl ProbeTable {
+    /// Creates the file with its header line; `swept` is the column of a swept value.
+    pub fn create(dir: &Path, swept: Option<&str>, columns: &[String]) -> anyhow::Result<ProbeTable> {
+        Ok(ProbeTable(open(dir, "probes.csv", &head(swept, columns))?))
+    }
+
+    /// Appends one step.
+    pub fn append(&mut self, step: u64, time: f64, swept: Option<f64>, values: &[f64]) -> anyhow::Result<()> {
+        let cells = values.iter().map(|x| number(*x)).collect();
+        self.0
+            .write_record([place_of(step, time, swept), cells].concat())?;
+        self.0.flush().context("cannot write probes.csv")
+    }
+}
+
+/// Header line: step, time, a swept value, and the rest.
+fn head(swept: Option<&str>, rest: &[String]) -> Vec<String> {
+    let mut columns = vec!["step".to_string(), "time_s".to_string()];
+    columns.extend(swept.map(str::to_string));
+    columns.extend(rest.iter().cloned());
+    columns
+}
+
+/// The first cells of a row.
+fn place_of(step: u64, time: f64, swept: Option<f64>) -> Vec<String> {
+    let mut cells = vec![step.to_string(), number(time)];
+    cells.extend(swept.map(number));
+    cells
 }
 
 fn ball_cells(index: usize, ball: &BallResult) -> Vec<String> {

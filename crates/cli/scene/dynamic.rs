@@ -7,6 +7,7 @@
 use serde::Deserialize;
 
 use super::problems::Problems;
+use super::steps::{output_every, ten_digits, whole_steps};
 use crate::units::{Quantity, TIME};
 
 /// As typed.
@@ -88,10 +89,6 @@ pub struct Dynamic {
     pub ledger_tolerance: f64,
 }
 
-/// Duration over step may differ from a whole number by this part: their round-off is a million times less.
-const WHOLE_TOLERANCE: f64 = 1e-9;
-/// Longer runs are slips of the unit, and beyond this `WHOLE_TOLERANCE` tells no whole numbers apart.
-const MAX_STEPS: f64 = 1e8;
 /// The energy-conserving scheme closes to the tolerance of Newton's iteration, 1e-12 for the 7010C: this is far above.
 /// An integrator with damping loses more, so a scene with one says how much it may lose.
 const DEFAULT_LEDGER_TOLERANCE: f64 = 1e-6;
@@ -104,13 +101,8 @@ impl RawDynamic {
     /// there are problems.
     pub fn check(&self, problems: &mut Problems) -> Option<Dynamic> {
         let before = problems.len();
-        let n_steps = self.n_steps(problems);
-        let every = problems.whole(
-            self.output_every.unwrap_or(1),
-            "dynamic.output_every",
-            1,
-            MAX_STEPS as i64,
-        );
+        let n_steps = whole_steps("dynamic", &self.duration, &self.step, problems);
+        let output_every = output_every("dynamic", self.output_every, problems);
         let integrator = self.integrator(problems);
         let ledger_tolerance = self.ledger_tolerance.unwrap_or(DEFAULT_LEDGER_TOLERANCE);
         problems.require(
@@ -123,42 +115,12 @@ impl RawDynamic {
             duration: self.duration.si(),
             step: self.step.si(),
             n_steps: n_steps?,
-            output_every: every as u64,
+            output_every,
             integrator: integrator?,
             contact: self.contact.unwrap_or(ContactScheme::DiscreteGradient),
             ledger_tolerance,
         };
         (problems.len() == before).then_some(dynamic)
-    }
-
-    fn n_steps(&self, problems: &mut Problems) -> Option<u64> {
-        let before = problems.len();
-        problems.require_positive(&self.duration, "dynamic.duration", "a duration");
-        problems.require_positive(&self.step, "dynamic.step", "a step");
-        if problems.len() > before {
-            return None;
-        }
-        let ratio = self.duration.si() / self.step.si();
-        if ratio > MAX_STEPS {
-            problems.add(format!(
-                "dynamic.step is {}; the duration {} has {ratio:.1e} of these steps, more than 1e8, check both units",
-                self.step, self.duration
-            ));
-            return None;
-        }
-        let whole = ratio.round().max(1.0);
-        if (ratio - whole).abs() <= WHOLE_TOLERANCE * whole {
-            return Some(whole as u64);
-        }
-        problems.add(format!(
-            "dynamic.duration is {}; that is {} steps of {}, expected a whole number; the nearest duration that fits \
-             is {}",
-            self.duration,
-            ten_digits(ratio),
-            self.step,
-            Quantity::<TIME>::from_si(ten_digits(whole * self.step.si()))
-        ));
-        None
     }
 
     fn integrator(&self, problems: &mut Problems) -> Option<IntegratorChoice> {
@@ -253,9 +215,4 @@ impl IntegratorName {
             IntegratorName::Newmark => "newmark",
         }
     }
-}
-
-/// Rounded to ten digits, for messages and to hide round-off.
-fn ten_digits(value: f64) -> f64 {
-    format!("{value:.9e}").parse().unwrap_or(value)
 }

@@ -9,7 +9,9 @@ use sprs::CsMat;
 
 use super::coordinates::{Coordinates, SparseLoad};
 use super::integrator::Integrator;
+use super::run::Motion;
 use crate::error::DynamicsError;
+use crate::inventory::Inventory;
 use crate::model::{Model, RACEWAY_GROUP, RingModel, ShaftDof};
 use crate::ring::elimination_order;
 use crate::solution::dot;
@@ -262,4 +264,23 @@ fn product(a: &CsMat<f64>, x: &[f64]) -> Vec<f64> {
 
 fn sparse_dot(load: &SparseLoad, x: &[f64]) -> f64 {
     load.iter().map(|&(i, value)| value * x[i]).sum()
+}
+
+impl RingMotion {
+    /// Coordinates, matrices, and the factor of the effective one.
+    pub fn inventory(&self) -> Inventory {
+        let (matrices, factors) = ([&self.stiffness, &self.mass], [&self.factor]);
+        Inventory {
+            dofs: self.coordinates.n(),
+            matrices: matrices.len() + factors.len(),
+        }
+    }
+}
+
+impl Motion<'_> {
+    /// What both rings hold.
+    pub fn inventory(&self) -> Inventory {
+        let rings = self.rings.iter().flatten();
+        rings.fold(Inventory::default(), |sum, ring| sum + ring.inventory())
+    }
 }
