@@ -106,3 +106,27 @@ fn a_driven_shaft_moves_in_time() {
         assert!(defect.abs() < 1e-9 * total, "{defect} of {total}");
     }
 }
+
+/// If this failed, an imposed displacement would not be where its schedule has it, or balls would not feel it: with
+/// rigid rings, the last instant has the forces of a shaft that is held there.
+#[test]
+fn a_driven_shaft_follows_its_schedule() {
+    let quasi = "[quasi_static]\nduration = \"2 ms\"\nstep = \"0.5 ms\"";
+    let scene = with_line("[static]", "[static]", quasi);
+    let driven =
+        "z = { value = \"40 um\", schedule.ramp = { from = 0.5, start = \"0 s\", duration = \"1 ms\" } }";
+    let dir = Dir::with_scene(&scene.replace("z = \"free\"", driven));
+    dir.run("out", &RIGID);
+    let z = Table::read(&dir, "out/shaft.csv").column("z_m");
+    for (found, expected) in z.iter().zip([20e-6, 30e-6, 40e-6, 40e-6, 40e-6]) {
+        assert!((found - expected).abs() < 1e-19, "{z:?}");
+    }
+    let held = Dir::with_scene(SCENE);
+    held.run("out", &[&RIGID[..], &["--set", "shaft.z=40 um"]].concat());
+    let force = |dir: &Dir| Table::read(dir, "out/balls.csv").column("inner_force_n");
+    let (driven, held) = (force(&dir), force(&held));
+    assert_eq!((driven.len(), held.len()), (5 * 18, 18));
+    for (a, b) in driven[4 * 18..].iter().zip(&held) {
+        assert!((a - b).abs() < 1e-6, "{a} {b}");
+    }
+}

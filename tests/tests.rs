@@ -6,6 +6,8 @@ mod export;
 mod interruption;
 mod memory;
 mod motion;
+mod probes;
+mod quasi_static;
 mod results;
 mod resume;
 mod schedules;

@@ -7,6 +7,7 @@ use dynamics::effects::{
     AxialForce, BallCentrifugal, Effect, FrameRotation, Gravity, GyroscopicMoment, Moment, RadialForce,
 };
 use dynamics::model::{RACEWAY_GROUP, elastic};
+use dynamics::motion::balls::Rolling;
 use dynamics::{ContactMode, ContactSettings, Hold, Model, RingModel, ShaftDof, Tolerances};
 use fem::Material;
 use mesh::Torus;
@@ -19,15 +20,28 @@ use crate::scene::{self, Scene, Scheduled};
 /// radius.
 const TORUS_TOLERANCE: f64 = 2e-4;
 
-/// The model of a scene. Reads both meshes.
-pub fn build_model(scene: &Scene) -> Result<Model, Failure> {
+/// Gmsh tags of the nodes of flexible rings, inner first, `[n_nodes]`.
+pub type NodeTags = [Option<Vec<u64>>; 2];
+
+/// The model of a scene, and the numbers of its nodes in the mesh files. Reads both meshes.
+pub fn build_model(scene: &Scene) -> Result<(Model, NodeTags), Failure> {
     let geometry = geometry(scene);
     geometry.validate()?;
     let rings = rayon::join(
         || ring(scene, &geometry, Side::Inner),
         || ring(scene, &geometry, Side::Outer),
     );
-    model_with_rings(scene, [rings.0?.map(Arc::new), rings.1?.map(Arc::new)])
+    let (inner, inner_tags) = rings.0?.unzip();
+    let (outer, outer_tags) = rings.1?.unzip();
+    let model = model_with_rings(scene, [inner.map(Arc::new), outer.map(Arc::new)])?;
+    Ok((model, [inner_tags, outer_tags]))
+}
+
+/// How balls and cage roll; None when the scene has no speed.
+pub fn rolling(scene: &Scene) -> Option<Rolling> {
+    let slip = scene.effects.cage_slip.unwrap_or([0.0; 2]);
+    let speed = scene.speed.as_ref().map(|_| speed(scene));
+    speed.map(|speed| Rolling::new(&geometry(scene), speed, slip))
 }
 
 /// The model of a scene with rings that were read before: the points of a sweep share them.
@@ -131,8 +145,12 @@ fn effects(scene: &Scene, rings: &[Option<Arc<RingModel>>; 2]) -> Result<Vec<Box
     Ok(effects)
 }
 
-/// Reads and checks the mesh of one ring; None for a rigid ring.
-fn ring(scene: &Scene, geometry: &BearingGeometry, side: Side) -> Result<Option<RingModel>, Failure> {
+/// Reads and checks the mesh of one ring, and tells its nodes' tags; None for a rigid ring.
+fn ring(
+    scene: &Scene,
+    geometry: &BearingGeometry,
+    side: Side,
+) -> Result<Option<(RingModel, Vec<u64>)>, Failure> {
     let (ring, held_group, diameter) = match side {
         Side::Inner => (&scene.inner, "bore", scene.bearing.inner_raceway_diameter),
         Side::Outer => (&scene.outer, "seat", scene.bearing.outside_diameter),
@@ -163,11 +181,12 @@ fn ring(scene: &Scene, geometry: &BearingGeometry, side: Side) -> Result<Option<
         scene::Support::Clamped => Hold::Clamped,
         scene::Support::MeanMotion => Hold::MeanMotion,
     };
-    Ok(Some(RingModel {
+    let ring = RingModel {
         mesh,
         material: material(&scene.materials.rings)?,
         hold,
         held_group,
         groove,
-    }))
+    };
+    Ok(Some((ring, origin.node_tags)))
 }

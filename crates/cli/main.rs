@@ -13,6 +13,7 @@ mod motion;
 mod options;
 mod print;
 mod progress;
+mod quasi_static;
 mod results;
 mod resume;
 mod run;

@@ -17,6 +17,8 @@ use crate::print;
 use crate::progress::Progress;
 use crate::results::disk::Forecast;
 use crate::results::files::Files;
+use crate::results::probes::Probes;
+use crate::results::shown::Shown;
 use crate::results::snapshot::Snapshot;
 use crate::results::summary::{Findings, Summary};
 use crate::results::{console, motion_fields};
@@ -38,7 +40,8 @@ pub fn run(
 ) -> Result<(), Failure> {
     let progress = Progress::new(dynamic.n_steps);
     progress.stage("reading meshes");
-    let model = build_model(scene)?;
+    let (model, tags) = build_model(scene)?;
+    let probes = Probes::new(scene, &model, &tags)?;
     Forecast::new(scene, &model, 0).require_space(dir, limits.ignore_disk_space)?;
     let read = start.elapsed().as_secs_f64();
     let settled = settle(&model, dynamic, &progress)?;
@@ -46,8 +49,7 @@ pub fn run(
     let motion = Motion::new(&model, settings(scene, dynamic)).map_err(Failure::solving)?;
     let state = settled.first_state(&motion, dynamic)?;
     let first = Snapshot::of_motion(&motion, &state);
-    let mut files = Files::create(scene, &model, dir, &first, &settled.warnings())?;
-    files.write_tables(0, motion.time(0), None, &first)?;
+    let files = Files::create(scene, &model, dir, &first, probes, &settled.warnings())?;
     let mut march = March {
         scene,
         dynamic,
@@ -59,6 +61,7 @@ pub fn run(
         last_file: None,
         dir,
     };
+    march.write_tables()?;
     march.write_fields()?;
     let costs = StartCosts {
         read,
@@ -81,14 +84,22 @@ pub fn resume(
     let mut progress = Progress::new(dynamic.n_steps);
     progress.start_at(stored.step);
     progress.stage("reading meshes");
-    let model = build_model(scene)?;
+    let (model, tags) = build_model(scene)?;
+    let probes = Probes::new(scene, &model, &tags)?;
     Forecast::new(scene, &model, stored.step).require_space(&dir, limits.ignore_disk_space)?;
     let read = start.elapsed().as_secs_f64();
     progress.stage("factoring the effective matrices");
     let motion = Motion::new(&model, settings(scene, dynamic)).map_err(Failure::solving)?;
     let (state, newton) = stored.state(&motion)?;
     let (first, warnings) = (Snapshot::of_motion(&motion, &state), stored.warnings);
-    let files = Files::resume(scene, &model, stored.lock, &first, state.step, &warnings)?;
+    let files = Files::resume(
+        scene,
+        &model,
+        stored.lock,
+        &first,
+        probes,
+        (state.step, &warnings),
+    )?;
     let march = March {
         scene,
         dynamic,
@@ -168,6 +179,7 @@ impl March<'_> {
             points: Vec::new(),
             iterations: BTreeMap::from([("steps", state.step as usize), ("newton", self.newton as usize)]),
             warnings,
+            effect_seconds: motion.costs.seconds(),
         };
         let summary = Summary::new(self.scene, self.model, findings, &costs);
         summary.write(self.dir)?;
@@ -206,9 +218,7 @@ impl March<'_> {
                 }
                 Err(error) => return Err(self.failed(error)),
             }
-            let (state, motion) = (&self.state, self.motion);
-            let snapshot = Snapshot::of_motion(motion, state);
-            self.files.write_tables(n, motion.time(n), None, &snapshot)?;
+            self.write_tables()?;
             if n == n_steps || n.is_multiple_of(self.dynamic.output_every) {
                 self.write_fields()?;
             }
@@ -259,6 +269,16 @@ impl March<'_> {
         })?;
         self.last_file = Some(self.state.step);
         Ok(())
+    }
+
+    /// Appends a line per table.
+    fn write_tables(&mut self) -> Result<(), Failure> {
+        let (model, motion, state) = (self.model, self.motion, &self.state);
+        let time = motion.time(state.step);
+        let snapshot = Snapshot::of_motion(motion, state);
+        self.files.write_tables(state.step, time, None, &snapshot)?;
+        let shown = Shown::Motion { model, motion, state };
+        self.files.write_probes(state.step, time, None, &shown)
     }
 }
 

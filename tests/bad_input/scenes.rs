@@ -23,7 +23,7 @@ const CASES: [Case; 28] = [
         "value = \"1 kN\"\nschedule.step = { at = \"1 ms\" }",
         &[
             "error: scene.toml has a problem: effects.radial_force.schedule changes effects.radial_force over time, but a scene \
-             at rest has no time; remove it, or compute motion with [dynamic]",
+             at rest has no time; remove it, or give it time with [dynamic] or [quasi_static]",
         ],
     ),
     (
@@ -186,7 +186,7 @@ const CASES: [Case; 28] = [
         "[static]",
         "[static]",
         "",
-        &["the scene has no analysis; add one of the tables [static], [sweep] and [dynamic]"],
+        &["the scene has no analysis; add one of the tables [static], [sweep], [quasi_static] and [dynamic]"],
     ),
     (
         "[static]",

@@ -13,6 +13,8 @@ use fem::StressRecovery;
 
 use super::about::about;
 use super::fields;
+use super::probes::Probes;
+use super::shown::Shown;
 use super::snapshot::Snapshot;
 use super::summary::Costs;
 use super::tables::Tables;
@@ -27,6 +29,7 @@ const QUEUE: usize = 2;
 pub struct Files {
     output: BackgroundOutput,
     tables: Tables,
+    probes: Option<Probes>,
     /// Stress recovery of the flexible rings.
     pub recoveries: [Option<StressRecovery>; 2],
     stress_seconds: f64,
@@ -40,18 +43,16 @@ impl Files {
         model: &Model,
         dir: &Path,
         first: &Snapshot,
+        probes: Option<Probes>,
         warnings: &[String],
     ) -> Result<Files, Failure> {
         let clock = Instant::now();
         let mut output = Output::create(dir, &fields::bodies(model), storage(scene))?;
         note_dead_owner(output.lock());
         output.describe(about(scene, dir, warnings)?)?;
-        let swept = match &scene.analysis {
-            Analysis::Sweep(sweep) => Some(sweep.column.as_str()),
-            Analysis::Static | Analysis::Dynamic(_) => None,
-        };
-        let tables = Tables::create(dir, swept, first)?;
-        Files::new(scene, model, output, tables, clock)
+        let columns = probes.as_ref().map(Probes::columns);
+        let tables = Tables::create(dir, swept_column(scene), first, columns.as_deref())?;
+        Files::new(scene, model, output, (tables, probes), clock)
     }
 
     /// Opens the files of a locked folder to go on after its step `last`.
@@ -60,14 +61,15 @@ impl Files {
         model: &Model,
         lock: FolderLock,
         first: &Snapshot,
-        last: u64,
-        warnings: &[String],
+        probes: Option<Probes>,
+        (last, warnings): (u64, &[String]),
     ) -> Result<Files, Failure> {
         let clock = Instant::now();
         let dir = lock.dir().to_path_buf();
         let texts = about(scene, &dir, warnings)?;
         // The tables tell whether the step can be resumed from; nothing is changed before all is known to fit.
-        let cuts = Tables::cuts(&dir, first, last)?;
+        let columns = probes.as_ref().map(Probes::columns);
+        let cuts = Tables::cuts(&dir, first, columns.as_deref(), last)?;
         let resumed = Output::resume(lock, &fields::bodies(model), storage(scene), last)?;
         let (mut output, damaged, mut superseded) = (resumed.output, resumed.damaged, resumed.superseded);
         output.describe(texts)?;
@@ -77,7 +79,7 @@ impl Files {
                 .insert(checkpoint::new_superseded_folder(&dir)?)
                 .clone()),
         };
-        let tables = Tables::resume(&cuts, &mut aside)?;
+        let tables = Tables::resume(&cuts, first, &mut aside)?;
         if let Some(folder) = superseded {
             print::note(format_args!(
                 "what the run wrote after step {last} is kept in {}",
@@ -85,14 +87,14 @@ impl Files {
             ));
         }
         warn_of_damage(&damaged);
-        Files::new(scene, model, output, tables, clock)
+        Files::new(scene, model, output, (tables, probes), clock)
     }
 
     fn new(
         scene: &Scene,
         model: &Model,
         output: Output,
-        tables: Tables,
+        (tables, probes): (Tables, Option<Probes>),
         clock: Instant,
     ) -> Result<Files, Failure> {
         let companions = tables.companions(output.dir())?;
@@ -101,9 +103,30 @@ impl Files {
             output: BackgroundOutput::start(output, QUEUE, companions),
             tables,
             recoveries: fields::recoveries(model, scene.output.stress)?,
+            probes,
             stress_seconds: 0.0,
             output_seconds,
         })
+    }
+
+    /// Appends a line to the table of the probes.
+    pub fn write_probes(
+        &mut self,
+        step: u64,
+        time: f64,
+        value: Option<f64>,
+        shown: &Shown<'_>,
+    ) -> Result<(), Failure> {
+        let Some(probes) = &self.probes else {
+            return Ok(());
+        };
+        let clock = Instant::now();
+        let values = probes.values(shown);
+        self.stress_seconds += clock.elapsed().as_secs_f64();
+        let clock = Instant::now();
+        self.tables.append_probes(step, time, value, &values)?;
+        self.output_seconds += clock.elapsed().as_secs_f64();
+        Ok(())
     }
 
     /// Appends a line per table.
@@ -162,6 +185,7 @@ impl Files {
             total: start.elapsed().as_secs_f64(),
             forecast,
             solver,
+            probes: self.probes.map_or(Vec::new(), |p| p.places().cloned().collect()),
         })
     }
 }
@@ -181,6 +205,14 @@ fn warn_of_damage(damaged: &[CheckpointError]) {
         print::note(format_args!(
             "warning: {error}; it is left out of run.hdf.series and run.vtkhdf"
         ));
+    }
+}
+
+/// Name of the column of a swept value.
+fn swept_column(scene: &Scene) -> Option<&str> {
+    match &scene.analysis {
+        Analysis::Sweep(sweep) => Some(sweep.column.as_str()),
+        Analysis::Static | Analysis::QuasiStatic(_) | Analysis::Dynamic(_) => None,
     }
 }
 

@@ -9,6 +9,7 @@ use serde::Deserialize;
 use super::problems::Problems;
 use super::shaft::Shaft;
 use super::start::{RawStart, Start};
+use super::steps::{output_every, ten_digits, whole_steps};
 use crate::units::{Quantity, TIME};
 
 /// As typed.
@@ -106,10 +107,6 @@ pub struct Dynamic {
     pub start: Start,
 }
 
-/// Duration over step may differ from a whole number by this part: their round-off is a million times less.
-const WHOLE_TOLERANCE: f64 = 1e-9;
-/// Longer runs are slips of the unit, and beyond this `WHOLE_TOLERANCE` tells no whole numbers apart.
-const MAX_STEPS: f64 = 1e8;
 /// Every scheme closes to the tolerance of Newton's iteration, 1e-12 for the 7010C: this is far above.
 const DEFAULT_LEDGER_TOLERANCE: f64 = 1e-6;
 /// Halvings of a step that fails, or is too inaccurate, before the run stops.
@@ -125,13 +122,8 @@ impl RawDynamic {
     /// there are problems.
     pub fn check(&self, shaft: &Shaft, problems: &mut Problems) -> Option<Dynamic> {
         let before = problems.len();
-        let n_steps = self.n_steps(problems);
-        let every = problems.whole(
-            self.output_every.unwrap_or(1),
-            "dynamic.output_every",
-            1,
-            MAX_STEPS as i64,
-        );
+        let n_steps = whole_steps("dynamic", &self.duration, &self.step, problems);
+        let output_every = output_every("dynamic", self.output_every, problems);
         let integrator = self.integrator(problems);
         let halvings = problems.whole(
             self.halvings.unwrap_or(DEFAULT_HALVINGS),
@@ -162,7 +154,7 @@ impl RawDynamic {
             duration: self.duration.si(),
             step: self.step.si(),
             n_steps: n_steps?,
-            output_every: every as u64,
+            output_every,
             integrator: integrator?,
             contact: self.contact.unwrap_or(ContactScheme::DiscreteGradient),
             ledger_tolerance,
@@ -171,36 +163,6 @@ impl RawDynamic {
             start,
         };
         (problems.len() == before).then_some(dynamic)
-    }
-
-    fn n_steps(&self, problems: &mut Problems) -> Option<u64> {
-        let before = problems.len();
-        problems.require_positive(&self.duration, "dynamic.duration", "a duration");
-        problems.require_positive(&self.step, "dynamic.step", "a step");
-        if problems.len() > before {
-            return None;
-        }
-        let ratio = self.duration.si() / self.step.si();
-        if ratio > MAX_STEPS {
-            problems.add(format!(
-                "dynamic.step is {}; the duration {} has {ratio:.1e} of these steps, more than 1e8, check both units",
-                self.step, self.duration
-            ));
-            return None;
-        }
-        let whole = ratio.round().max(1.0);
-        if (ratio - whole).abs() <= WHOLE_TOLERANCE * whole {
-            return Some(whole as u64);
-        }
-        problems.add(format!(
-            "dynamic.duration is {}; that is {} steps of {}, expected a whole number; the nearest duration that fits \
-             is {}",
-            self.duration,
-            ten_digits(ratio),
-            self.step,
-            Quantity::<TIME>::from_si(ten_digits(whole * self.step.si()))
-        ));
-        None
     }
 
     fn integrator(&self, problems: &mut Problems) -> Option<IntegratorChoice> {
@@ -295,9 +257,4 @@ impl IntegratorName {
             IntegratorName::Newmark => "newmark",
         }
     }
-}
-
-/// Rounded to ten digits, for messages and to hide round-off.
-fn ten_digits(value: f64) -> f64 {
-    format!("{value:.9e}").parse().unwrap_or(value)
 }

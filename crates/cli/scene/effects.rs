@@ -81,8 +81,8 @@ struct RawFrameRotation {}
 /// What the effects have to go with.
 #[derive(Clone, Copy, Debug)]
 pub struct EffectsContext {
-    /// Whether equilibria are computed, not motion.
-    pub is_at_rest: bool,
+    /// Whether equilibria are computed, not motion with inertia.
+    pub is_without_inertia: bool,
     /// Whether loads may change in time.
     pub clock: Clock,
     /// Whether the scene has the table `[speed]`.
@@ -129,6 +129,22 @@ pub struct RadialForce {
 const MAX_ACCELERATION: f64 = 1e7;
 /// A load beyond this is a slip of the unit, N and N m.
 const MAX_LOAD: f64 = 1e9;
+
+impl Effects {
+    /// Names of the effects that add no loads but change the steps of a motion.
+    pub fn inside_steps(&self) -> Vec<&'static str> {
+        let effects = [
+            ("cage_slip", self.cage_slip.is_some()),
+            ("contact_damping", self.contact_damping.is_some()),
+            ("rayleigh_damping", self.rayleigh_damping.is_some()),
+        ];
+        effects
+            .into_iter()
+            .filter(|(_, is_there)| *is_there)
+            .map(|(name, _)| name)
+            .collect()
+    }
+}
 
 impl RawEffects {
     /// Whether an effect needs the speed in a scene at rest too.
@@ -181,9 +197,9 @@ impl RawEffects {
             ("rayleigh_damping", self.rayleigh_damping.is_some()),
         ];
         for (name, is_there) in moving {
-            if is_there && context.is_at_rest {
+            if is_there && context.is_without_inertia {
                 problems.add(format!(
-                    "[effects.{name}] does nothing in a scene at rest; remove it, or compute motion with [dynamic]"
+                    "[effects.{name}] does nothing in a scene without inertia; remove it, or compute motion with [dynamic]"
                 ));
             }
         }

@@ -2,7 +2,7 @@
 //!
 //! Every quantity is a string with its unit, see [`crate::units`]. Every table is checked against the list of
 //! its keys. An effect is a table `[effects.*]`: without the table there is no effect. Exactly one of
-//! `[static]`, `[sweep]` and `[dynamic]` says what is computed. Axis z is axial, + is the direction of preload; azimuth
+//! `[static]`, `[sweep]`, `[quasi_static]` and `[dynamic]` says what is computed. Axis z is axial, + is the direction of preload; azimuth
 //! runs from +x to +y; displacements count from the state where all balls just touch both raceways.
 //!
 //! Reading goes through two levels: the tables as typed (`Raw*`, private, in the file of their table), and
@@ -21,6 +21,8 @@
 //! ```toml
 #![doc = include_str!("example_dynamic.toml")]
 //! ```
+//!
+//! Any scene may have [probes], and motion without inertia is a table of its own, `[quasi_static]`: see their modules.
 
 mod bearing;
 mod contact;
@@ -34,7 +36,9 @@ mod gyroscopic;
 mod locate;
 mod materials;
 mod output;
+mod probes;
 mod problems;
+mod quasi_static;
 mod ring;
 mod schedule;
 mod section;
@@ -42,6 +46,7 @@ mod shaft;
 mod solver;
 mod speed;
 mod start;
+mod steps;
 mod sweep;
 #[cfg(test)]
 mod tests;
@@ -60,6 +65,8 @@ pub use self::effects::Effects;
 pub use self::error::SceneError;
 pub use self::materials::{Material, Materials};
 pub use self::output::{InnerRingFrame, Output, Precision, StressOutput};
+pub use self::probes::{Axes, ContactProbe, NodeProbe, Probes, SectionPoint};
+pub use self::quasi_static::QuasiStatic;
 pub use self::ring::{FlexibleRing, MeshFiles, Ring, RingName, Support};
 pub use self::schedule::Scheduled;
 pub use self::section::{Section, SectionElement};
@@ -75,7 +82,9 @@ use self::dynamic::RawDynamic;
 use self::effects::{EffectsContext, RawEffects};
 use self::materials::RawMaterials;
 use self::output::RawOutput;
+use self::probes::{ProbesContext, RawProbes};
 use self::problems::Problems;
+use self::quasi_static::RawQuasiStatic;
 use self::ring::{RawRing, RingContext};
 use self::schedule::Clock;
 use self::shaft::RawShaft;
@@ -103,8 +112,11 @@ struct RawScene {
     solver: RawSolver,
     #[serde(default)]
     output: RawOutput,
+    #[serde(default)]
+    probes: RawProbes,
     r#static: Option<RawStatic>,
     sweep: Option<RawSweep>,
+    quasi_static: Option<RawQuasiStatic>,
     dynamic: Option<RawDynamic>,
 }
 
@@ -139,6 +151,8 @@ pub struct Scene {
     pub solver: Solver,
     /// What is written.
     pub output: Output,
+    /// Single numbers that are written at every step.
+    pub probes: Probes,
     /// What is computed.
     pub analysis: Analysis,
 }
@@ -259,6 +273,11 @@ impl Source<'_> {
         let speed = speed.and_then(|s| s.check(raw.speed_use(), &mut problems));
         let solver = raw.solver.check(&mut problems);
         let output = raw.output.check(&mut problems);
+        let probes = ProbesContext {
+            bearing: bearing.as_ref(),
+            rigid: [raw.inner.is_rigid(), raw.outer.is_rigid()],
+        };
+        let probes = raw.probes.check(probes, &mut problems);
         let analysis = raw.analysis(document, &shaft, &mut problems);
         match (bearing, materials, analysis, problems.into_texts()) {
             (Some(bearing), Some(materials), Some(analysis), texts) if texts.is_empty() => Ok(Scene {
@@ -276,6 +295,7 @@ impl Source<'_> {
                 effects,
                 solver,
                 output,
+                probes,
                 analysis,
             }),
             (.., texts) => Err(self.invalid(texts)),
@@ -314,29 +334,30 @@ impl Source<'_> {
 
 impl RawScene {
     fn analysis(&self, document: &DocumentMut, shaft: &Shaft, problems: &mut Problems) -> Option<Analysis> {
-        match (&self.r#static, &self.sweep, &self.dynamic) {
-            (Some(RawStatic {}), None, None) => Some(Analysis::Static),
-            (None, Some(sweep), None) => sweep.check(document, problems).map(Analysis::Sweep),
-            (None, None, Some(dynamic)) => dynamic.check(shaft, problems).map(Analysis::Dynamic),
-            (None, None, None) => {
-                problems
-                    .add("the scene has no analysis; add one of the tables [static], [sweep] and [dynamic]");
-                None
-            }
-            (at_rest, sweep, dynamic) => {
-                let found = [
-                    at_rest.as_ref().map(|_| "[static]"),
-                    sweep.as_ref().map(|_| "[sweep]"),
-                    dynamic.as_ref().map(|_| "[dynamic]"),
-                ];
-                let found: Vec<&str> = found.into_iter().flatten().collect();
-                let (both, names) = match found.as_slice() {
-                    [a, b] => ("both", format!("{a} and {b}")),
-                    _ => ("all of", found.join(", ")),
-                };
-                problems.add(format!("the scene has {both} {names}; keep exactly one analysis"));
-                None
-            }
+        let found = [
+            self.r#static.as_ref().map(|_| "[static]"),
+            self.sweep.as_ref().map(|_| "[sweep]"),
+            self.quasi_static.as_ref().map(|_| "[quasi_static]"),
+            self.dynamic.as_ref().map(|_| "[dynamic]"),
+        ];
+        let found: Vec<&str> = found.into_iter().flatten().collect();
+        match found.as_slice() {
+            [] => problems.add(
+                "the scene has no analysis; add one of the tables [static], [sweep], [quasi_static] and [dynamic]",
+            ),
+            [_] => {}
+            [a, b] => problems.add(format!("the scene has both {a} and {b}; keep exactly one analysis")),
+            many => problems.add(format!(
+                "the scene has all of {}; keep exactly one analysis",
+                many.join(", ")
+            )),
+        }
+        match (&self.r#static, &self.sweep, &self.quasi_static, &self.dynamic) {
+            (Some(RawStatic {}), None, None, None) => Some(Analysis::Static),
+            (None, Some(sweep), None, None) => sweep.check(document, problems).map(Analysis::Sweep),
+            (None, None, Some(quasi), None) => quasi.check(problems).map(Analysis::QuasiStatic),
+            (None, None, None, Some(dynamic)) => dynamic.check(shaft, problems).map(Analysis::Dynamic),
+            _ => None,
         }
     }
 
@@ -354,9 +375,14 @@ impl RawScene {
         }
     }
 
+    /// Whether inertia is left out, so that damping has nothing to do.
+    fn is_without_inertia(&self) -> bool {
+        self.is_at_rest() || (self.dynamic.is_none() && self.quasi_static.is_some())
+    }
+
     fn effects_context(&self, has_flexible_inner: bool) -> EffectsContext {
         EffectsContext {
-            is_at_rest: self.is_at_rest(),
+            is_without_inertia: self.is_without_inertia(),
             clock: self.clock(),
             has_speed: self.speed.is_some(),
             has_flexible_inner,

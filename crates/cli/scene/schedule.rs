@@ -114,7 +114,8 @@ pub fn check(raw: Option<&RawSchedule>, owner: &str, clock: Clock, problems: &mu
     let key = format!("{owner}.schedule");
     if clock == Clock::AtRest {
         problems.add(format!(
-            "{key} changes {owner} over time, but a scene at rest has no time; remove it, or compute motion with [dynamic]"
+            "{key} changes {owner} over time, but a scene at rest has no time; remove it, or give it time with [dynamic] or \
+             [quasi_static]"
         ));
         return Schedule::Constant;
     }

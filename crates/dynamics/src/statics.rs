@@ -24,6 +24,7 @@ use crate::effects::Loads;
 use crate::equilibrium::{SearchScales, check_held, minimise, round_off};
 use crate::error::DynamicsError;
 use crate::footprint::{Footprint, check_on_groove, place};
+use crate::inventory::Inventory;
 use crate::loading::{LoadCase, largest_change, largest_force, not_settled};
 use crate::model::{ContactMode, Model};
 use crate::pose::Pose;
@@ -76,6 +77,12 @@ impl StaticSolver {
     /// The ring solver of one side.
     pub fn ring(&self, side: Side) -> Option<&RingSolver> {
         self.rings[side.index()].as_ref()
+    }
+
+    /// What both rings hold.
+    pub fn inventory(&self) -> Inventory {
+        let rings = self.rings.iter().flatten();
+        rings.fold(Inventory::default(), |sum, ring| sum + ring.inventory())
     }
 
     /// Equilibrium under the model's loads, from zero displacement or from an earlier solution. The model must have the

@@ -6,7 +6,7 @@ use dynamics::effects::{BallCentrifugal, GyroscopicMoment, Now};
 use dynamics::motion::balls::Speed;
 use dynamics::motion::contacts::ContactScheme;
 use dynamics::motion::{Integrator, Ladder, Motion, MotionSettings, MotionState};
-use dynamics::{ContactMode, Hold, Model, Schedule, ShaftDof, StaticSolver};
+use dynamics::{ContactMode, Hold, Model, Pose, Schedule, ShaftDof, StaticSolver};
 use support::rings::Level;
 use support::{Case, equilibrium};
 
@@ -126,7 +126,11 @@ fn a_driven_shaft_moves_the_balls() {
                 time: end - 0.5e-5,
                 ..Now::default()
             };
-            let statics = solver.solve_at(&model, &now, None).unwrap();
+            let pose = Pose {
+                now,
+                inner_angle: 0.0,
+            };
+            let statics = solver.solve_at(&model, &pose, None).unwrap();
             let (force, still) = (
                 state.forces[0][0].hypot(state.forces[0][1]),
                 statics.balls[0].inner.force_n,

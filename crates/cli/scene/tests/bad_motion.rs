@@ -343,7 +343,7 @@ fn effects_without_anything_to_do_are_refused() {
     };
     let nothing = |name: &str| {
         format!(
-            "[effects.{name}] does nothing in a scene at rest; remove it, or compute motion with [dynamic]"
+            "[effects.{name}] does nothing in a scene without inertia; remove it, or compute motion with [dynamic]"
         )
     };
     let contact = "[effects.contact_damping]\ncoefficient = \"1 N s/m\"\nfull_approach = \"1 um\"\n[static]";

@@ -6,6 +6,8 @@ mod bad_values;
 mod good;
 mod motion;
 mod overrides;
+mod probes;
+mod quasi_static;
 mod schedules;
 mod sweeps;
 

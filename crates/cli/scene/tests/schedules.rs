@@ -322,7 +322,8 @@ fn a_scene_at_rest_has_no_schedules() {
     let force = "value = \"2 kN\"\nschedule.ramp = { start = \"1 ms\", duration = \"2 ms\" }";
     let shaft = "z = { value = \"9 um\", schedule.step = { at = \"1 ms\" } }";
     let sweep = "[sweep]\nkey = \"shaft.mass\"\nvalues = [\"1 kg\"]\n";
-    let advice = "but a scene at rest has no time; remove it, or compute motion with [dynamic]";
+    let advice =
+        "but a scene at rest has no time; remove it, or give it time with [dynamic] or [quasi_static]";
     for (line, replacement, owner) in [
         ("value = \"2 kN\"", force, "effects.axial_force"),
         ("z = ", shaft, "shaft.z"),

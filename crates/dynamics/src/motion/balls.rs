@@ -6,6 +6,8 @@
 
 use contact::BearingGeometry;
 
+use super::run::Motion;
+use super::state::MotionState;
 use crate::effects::Now;
 use crate::pose::Pose;
 use crate::schedule::piecewise_linear;
@@ -35,6 +37,11 @@ impl Speed {
             "a speed table has as many speeds as times"
         );
         Speed { times, speeds }
+    }
+
+    /// Whether it is 0 at all times.
+    pub fn is_zero(&self) -> bool {
+        self.speeds.iter().all(|speed| *speed == 0.0)
     }
 
     /// Speed, rad/s.
@@ -121,6 +128,14 @@ impl Rolling {
     /// turns against the inner ring, and + goes with a positive speed of that ring.
     pub fn spin(&self, time: f64) -> f64 {
         self.kinematics.ball * self.speed.at(time)
+    }
+}
+
+impl Motion<'_> {
+    /// Speed of every ball's rotation about its own axis relative to the cage, rad/s; None when the bearing never turns.
+    pub fn spin(&self, state: &MotionState) -> Option<f64> {
+        let speed = &self.settings.speed;
+        (!speed.is_zero()).then(|| self.kinematics.ball * speed.at(self.time(state.step)))
     }
 }
 

@@ -17,6 +17,7 @@ use super::ring::RingState;
 use super::sparse::{kronecker, node_product, product};
 use crate::effects::FrameTurn;
 use crate::error::DynamicsError;
+use crate::inventory::Inventory;
 use crate::model::{Hold, RACEWAY_GROUP, RingModel};
 use crate::ring::elimination_order;
 use crate::solution::dot;
@@ -104,6 +105,14 @@ impl RingBody {
                 side: self.name,
                 source,
             }),
+        }
+    }
+
+    /// Coordinates and matrices; those of the factors are counted by the motion.
+    pub fn inventory(&self) -> Inventory {
+        Inventory {
+            dofs: self.coordinates.n(),
+            matrices: [&self.stiffness, &self.node_mass].len(),
         }
     }
 

@@ -16,6 +16,7 @@ use super::state::{MotionSettings, MotionState, StepReport};
 use super::substep::Span;
 use crate::costs::EffectCosts;
 use crate::error::DynamicsError;
+use crate::inventory::Inventory;
 use crate::model::Model;
 
 /// Share of the accepted error below which the next rung up is tried: two orders of the step, and a margin.
@@ -81,6 +82,17 @@ impl<'a> Motion<'a> {
     /// Number of rungs that have factors.
     pub fn n_factored_rungs(&self) -> usize {
         self.rungs.iter().filter(|r| r.get().is_some()).count()
+    }
+
+    /// What both rings hold: coordinates, matrices, and the factors of the rungs in use.
+    pub fn inventory(&self) -> Inventory {
+        let rings = self.rings.iter().flatten();
+        let bodies = rings.fold(Inventory::default(), |sum, ring| sum + ring.inventory());
+        let rungs = self.rungs.iter().filter_map(OnceLock::get);
+        Inventory {
+            matrices: bodies.matrices + rungs.flatten().flatten().count(),
+            ..bodies
+        }
     }
 
     /// Bytes of all factors.
