@@ -98,7 +98,7 @@ fn the_log_and_the_summary_name_effects_and_their_costs() {
     for name in ["axial_force", "gravity", "radial_force"] {
         assert!(line.contains(&format!("{name} ")), "{line}");
         let seconds = number(&summary, &format!("/timing_s/effect_{name}"));
-        // Measured: 1e-4 s for gravity on the coarse rings, five times.
+        // Measured on the reference rings of 51 300 dofs each: 1e-4 s an instant.
         assert!((0.0..0.1).contains(&seconds), "{name}: {seconds} s");
     }
     assert!(number(&summary, "/timing_s/effect_gravity") > 0.0);

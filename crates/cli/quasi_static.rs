@@ -61,7 +61,9 @@ pub fn run(
         warned: 0,
         last: first,
     };
+    let clock = Instant::now();
     let ended = series.run(&mut bearing, &mut progress, &dir);
+    let seconds = clock.elapsed().as_secs_f64();
     progress.finish();
     let findings = series.findings(&ended, bearing.solver.costs.seconds());
     let snapshot = findings.last.clone();
@@ -75,7 +77,7 @@ pub fn run(
     print::line(format_args!(
         "{steps} steps of {} s, {:.1} ms per step",
         settings.step,
-        1e3 * (costs.total - read) / (1 + steps) as f64
+        1e3 * seconds / steps as f64
     ));
     summary.print_costs();
     Ok(dir)
