@@ -61,11 +61,14 @@ pub fn run(
         model: &model,
         rolling: rolling.as_ref(),
         files: &mut files,
-        iterations: [0; 2],
+        iterations: [0; 3],
         warnings: Vec::new(),
+        warned: 0,
         last: first,
     };
+    let clock = Instant::now();
     let ended = series.run(&mut bearing, &mut progress, dir);
+    let seconds = clock.elapsed().as_secs_f64();
     progress.finish();
     let findings = series.findings(&ended, bearing.solver.costs.seconds());
     let snapshot = findings.last.clone();
@@ -79,7 +82,7 @@ pub fn run(
     print::line(format_args!(
         "{steps} steps of {} s, {:.1} ms per step",
         settings.step,
-        1e3 * (costs.total - read) / (1 + steps) as f64
+        1e3 * seconds / steps as f64
     ));
     summary.print_costs();
     Ok(())
@@ -92,10 +95,12 @@ struct Series<'a> {
     model: &'a Model,
     rolling: Option<&'a Rolling>,
     files: &'a mut Files,
-    /// Rounds and Newton iterations so far.
-    iterations: [usize; 2],
-    /// Each once, in the order of their first appearance.
+    /// Steps done, rounds and Newton iterations so far.
+    iterations: [usize; 3],
+    /// Those of the first instant that had any.
     warnings: Vec<String>,
+    /// Number of instants that had some.
+    warned: u64,
     /// The last equilibrium.
     last: StaticSolution,
 }
@@ -142,13 +147,10 @@ impl Series<'_> {
 
     /// Writes a step and takes note of what it took.
     fn write(&mut self, bearing: &QuasiStatic<'_>, step: u64) -> Result<(), Failure> {
-        self.iterations[0] += self.last.rounds;
-        self.iterations[1] += self.last.newton_iterations;
-        for warning in &self.last.warnings {
-            if !self.warnings.contains(warning) {
-                self.warnings.push(warning.clone());
-            }
-        }
+        self.iterations[0] = step as usize;
+        self.iterations[1] += self.last.rounds;
+        self.iterations[2] += self.last.newton_iterations;
+        self.note_warnings(bearing.time(step));
         let time = bearing.time(step);
         let snapshot = Snapshot::of_equilibrium(&self.last, self.rolling);
         self.files.write_tables(step, time, None, &snapshot)?;
@@ -160,6 +162,18 @@ impl Series<'_> {
         Ok(())
     }
 
+    /// A long run warns at thousands of instants: the first stands for all.
+    fn note_warnings(&mut self, time: f64) {
+        if self.last.warnings.is_empty() {
+            return;
+        }
+        if self.warned == 0 {
+            let at = |warning: &String| format!("t = {time:.6e} s: {warning}");
+            self.warnings = self.last.warnings.iter().map(at).collect();
+        }
+        self.warned += 1;
+    }
+
     fn write_fields(&mut self, bearing: &QuasiStatic<'_>, step: u64) -> Result<(), Failure> {
         let (model, last, scene) = (self.model, &self.last, self.scene);
         let at = (step, bearing.time(step));
@@ -168,7 +182,14 @@ impl Series<'_> {
     }
 
     fn findings(self, ended: &Result<(), Failure>, effect_seconds: BTreeMap<&'static str, f64>) -> Findings {
-        let [rounds, newton] = self.iterations;
+        let [steps, rounds, newton] = self.iterations;
+        let mut warnings = self.warnings;
+        if self.warned > 1 {
+            warnings.push(format!(
+                "{} instants have warnings; those of the first are given",
+                self.warned
+            ));
+        }
         Findings {
             status: ended
                 .as_ref()
@@ -176,12 +197,8 @@ impl Series<'_> {
                 .map_or("finished".to_string(), Failure::status),
             last: Snapshot::of_equilibrium(&self.last, self.rolling),
             points: Vec::new(),
-            iterations: BTreeMap::from([
-                ("steps", self.settings.n_steps as usize),
-                ("rounds", rounds),
-                ("newton", newton),
-            ]),
-            warnings: self.warnings,
+            iterations: BTreeMap::from([("steps", steps), ("rounds", rounds), ("newton", newton)]),
+            warnings,
             effect_seconds,
         }
     }

@@ -35,6 +35,7 @@ pub fn place(probe: &NodeProbe, ring: &RingModel, tags: &[u64]) -> Result<NodePl
     let (mesh, groove) = (&ring.mesh, &ring.groove);
     let (nodes, [r, z]) = match probe.point {
         SectionPoint::Groove(angle) => {
+            require_on_raceway(probe, ring, angle)?;
             let axial = groove.groove_radius * groove.direction(angle)[1];
             (mesh.group_nodes(RACEWAY_GROUP), [groove.radius(angle), axial])
         }
@@ -59,23 +60,39 @@ pub fn place(probe: &NodeProbe, ring: &RingModel, tags: &[u64]) -> Result<NodePl
         return Ok(found);
     }
     Err(Failure::User(anyhow!(
-        "probes.node.{}: the point at azimuth {:.3} deg, r {:.4} mm, z {:.4} mm is {:.4} mm from the nearest node{} of the \
-         {} ring, farther than the {:.4} mm that an element measures there; that node is at azimuth {:.3} deg, r {:.4} mm, \
+        "probes.node.{}: the point at azimuth {:.3} deg, r {:.4} mm, z {:.4} mm is {:.4} mm from the nearest node of the {} \
+         ring, farther than the {:.4} mm that an element measures there; that node is at azimuth {:.3} deg, r {:.4} mm, \
          z {:.4} mm",
         probe.name,
         probe.azimuth.to_degrees(),
         1e3 * r,
         1e3 * z,
         1e3 * distance,
-        match probe.point {
-            SectionPoint::Groove(_) => " of the raceway",
-            SectionPoint::Anywhere(_) => "",
-        },
         found.ring,
         1e3 * size,
         found.azimuth_rad.to_degrees(),
         1e3 * found.r_m,
         1e3 * found.z_m
+    )))
+}
+
+/// Fails when a groove angle lies beyond the rims of the raceway.
+fn require_on_raceway(probe: &NodeProbe, ring: &RingModel, angle: f64) -> Result<(), Failure> {
+    let nodes = ring.mesh.group_nodes(RACEWAY_GROUP).into_iter();
+    let angles = nodes.map(|node| ring.groove.coordinates(ring.mesh.nodes[node])[1]);
+    let (low, high) = angles.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), a| {
+        (low.min(a), high.max(a))
+    });
+    if (low..=high).contains(&angle) {
+        return Ok(());
+    }
+    Err(Failure::User(anyhow!(
+        "probes.node.{}.groove_angle is {:.3} deg; the raceway of the {} ring reaches from {:.3} to {:.3} deg",
+        probe.name,
+        angle.to_degrees(),
+        probe.ring.key(),
+        low.to_degrees(),
+        high.to_degrees()
     )))
 }
 

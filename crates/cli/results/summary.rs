@@ -211,7 +211,7 @@ impl Summary {
     /// The effects that were on, with their seconds.
     fn effects_line(&self) -> String {
         let cost = |name: &&str| match self.timing_s.get(&format!("{EFFECT_TIMING}{name}")) {
-            Some(s) => format!("{name} {s:.3} s"),
+            Some(s) => format!("{name} {s:.4} s"),
             // Part of the forces and matrices of a step: its time cannot be told apart.
             None => format!("{name} not timed apart"),
         };

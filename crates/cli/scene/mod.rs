@@ -22,7 +22,8 @@
 #![doc = include_str!("example_dynamic.toml")]
 //! ```
 //!
-//! Any scene may have [probes], and motion without inertia is a table of its own, `[quasi_static]`: see their modules.
+//! Any scene may have tables `[probes.*]`, and motion without inertia is a table of its own, `[quasi_static]`: see the files of
+//! these names.
 
 mod bearing;
 mod contact;

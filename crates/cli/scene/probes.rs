@@ -23,7 +23,8 @@
 //! displacement contains the turning.
 //!
 //! A contact probe gives the force of the ring on the ball in x, y, z and its size, and its moment about the given
-//! point, likewise. Without friction the force acts along a line through the ball's centre.
+//! point, likewise. Without friction the force acts along a line through the ball's centre. In motion with inertia the
+//! force is the mean over the step that ends at the given time; its direction and place are those at that end.
 
 use std::collections::BTreeMap;
 
