@@ -22,13 +22,13 @@
 //! **Start.** The random numbers are those of a fixed linear congruential generator, so equal problems give equal bits.
 //! Everything here is sequential; the problem may use threads.
 //!
-//! Cost per step: one block solve, four products with M and 8 n m b operations for m basis vectors. Memory: the basis, 8 n
+//! Cost per step: one block solve, four products with M, and 8 n m b operations for m basis vectors. Memory: the basis, 8 n
 //! [`LanczosSettings::capacity`] bytes, once more at a restart.
 
 pub(crate) mod basis;
 
 use crate::dense_eigen::{dense_lowest, symmetric_eigen};
-use crate::eigenproblem::{EigenProblem, Eigenpairs, dot};
+use crate::eigenproblem::{EigenProblem, Eigenpairs};
 use crate::error::SolverError;
 use basis::{Basis, Block};
 
@@ -151,6 +151,7 @@ impl<'a> Search<'a> {
     fn new(problem: &'a dyn EigenProblem, settings: LanczosSettings) -> Search<'a> {
         let empty = Block {
             vectors: Vec::new(),
+            mass: Vec::new(),
             width: 0,
             factor: Vec::new(),
         };
@@ -169,33 +170,17 @@ impl<'a> Search<'a> {
 
     /// Appends the next block, projects the operator on it and finds the block after it; true when there is none.
     fn expand(&mut self) -> bool {
-        let n = self.problem.n();
         let width = self.next.width;
         self.basis.append(&self.next.vectors);
-        let mut w = self.apply(&self.next.vectors, width);
-        let lengths = self.lengths(&w, width);
-        let columns = self.basis.orthogonalise(self.problem, &mut w, width);
+        let w = self.problem.solve(std::mem::take(&mut self.next.mass), width);
+        let (next, columns) = self.basis.orthonormalise(self.problem, w, width);
         self.project(&columns, width);
-        debug_assert_eq!(w.len(), n * width);
-        self.next = self.basis.orthonormalise(self.problem, w, &lengths);
+        self.next = next;
         self.steps += 1;
         if self.next.width < width {
             self.refill(width);
         }
         self.next.width == 0
-    }
-
-    /// A X.
-    fn apply(&self, x: &[f64], width: usize) -> Vec<f64> {
-        self.problem.solve(self.problem.mass(x, width), width)
-    }
-
-    /// Lengths of columns in M.
-    fn lengths(&self, x: &[f64], width: usize) -> Vec<f64> {
-        let n = self.problem.n();
-        let mass = self.problem.mass(x, width);
-        let columns = x.chunks_exact(n).zip(mass.chunks_exact(n));
-        columns.map(|(x, mx)| dot(x, mx).max(0.0).sqrt()).collect()
     }
 
     /// Adds the last `width` columns V^T M A Q, column-major `[m][width]`, to the projection.
@@ -234,6 +219,7 @@ impl<'a> Search<'a> {
             factor[new * j..new * j + old].copy_from_slice(&self.next.factor[old * j..old * (j + 1)]);
         }
         self.next.vectors.extend(fresh.vectors);
+        self.next.mass.extend(fresh.mass);
         self.next.width = new;
         self.next.factor = factor;
     }
@@ -313,7 +299,7 @@ impl<'a> Search<'a> {
         let kept = positive.take_while(|theta| **theta > 0.0).count();
         let vectors = self.basis.combine(&ritz.vectors[..m * kept], kept);
         // Once more through the operator: what round-off has brought into dofs without mass, which M does not see, goes.
-        let vectors = self.apply(&vectors, kept);
+        let vectors = self.problem.solve(self.problem.mass(&vectors, kept), kept);
         let capacity = self.settings.capacity();
         let (steps, problem) = (self.steps, self.problem);
         drop(self);
@@ -330,12 +316,8 @@ impl<'a> Search<'a> {
 fn random_in(basis: &Basis, problem: &dyn EigenProblem, random: &mut Random, width: usize) -> Block {
     let n = problem.n();
     let noise: Vec<f64> = (0..n * width).map(|_| random.next()).collect();
-    let mut block = problem.solve(problem.mass(&noise, width), width);
-    let mass = problem.mass(&block, width);
-    let columns = block.chunks_exact(n).zip(mass.chunks_exact(n));
-    let lengths: Vec<f64> = columns.map(|(x, mx)| dot(x, mx).max(0.0).sqrt()).collect();
-    basis.orthogonalise(problem, &mut block, width);
-    basis.orthonormalise(problem, block, &lengths)
+    let smooth = problem.solve(problem.mass(&noise, width), width);
+    basis.orthonormalise(problem, smooth, width).0
 }
 
 /// Any number will do; it is fixed so that equal problems give equal bits.

@@ -51,6 +51,8 @@ pub(crate) struct Basis {
 pub(crate) struct Block {
     /// Q, column-major `[n][width]`.
     pub vectors: Vec<f64>,
+    /// M Q, column-major `[n][width]`.
+    pub mass: Vec<f64>,
     /// Number of its columns.
     pub width: usize,
     /// R, column-major `[width][n_w]`.
@@ -90,42 +92,47 @@ impl Basis {
         self.vectors = self.combine(c, n_c);
     }
 
-    /// Makes the block of `width` vectors orthogonal to the basis by two passes; returns V^T M W of what came in,
-    /// column-major `[m][width]`.
-    pub fn orthogonalise(&self, problem: &dyn EigenProblem, block: &mut [f64], width: usize) -> Vec<f64> {
-        let m = self.len();
+    /// Makes a block W orthogonal to the basis by two passes and orthonormal. Also returns V^T M W of what came in,
+    /// column-major `[m][width]`. Columns with nothing new in them are left out.
+    pub fn orthonormalise(&self, problem: &dyn EigenProblem, mut w: Vec<f64>, width: usize) -> (Block, Vec<f64>) {
+        let (n, m) = (self.n, self.len());
         let mut coefficients = vec![0.0; m * width];
-        if m == 0 || width == 0 {
-            return coefficients;
-        }
+        let mut mass = problem.mass(&w, width);
+        let columns = w.chunks_exact(n).zip(mass.chunks_exact(n));
+        let lengths: Vec<f64> = columns.map(|(x, mx)| dot(x, mx).max(0.0).sqrt()).collect();
         for _ in 0..2 {
-            let mass = problem.mass(block, width);
-            let pass = inner_products(self.n, &self.vectors, m, &mass, width);
-            add_combinations(self.n, block, &self.vectors, m, &pass, width, -1.0);
+            let pass = self.subtract_projection(&mut w, &mass, width);
             coefficients.iter_mut().zip(&pass).for_each(|(c, p)| *c += p);
+            mass = problem.mass(&w, width);
         }
-        coefficients
-    }
-
-    /// Orthonormal block of a block W that was made orthogonal to the basis; `lengths` are the lengths of its columns
-    /// before that. Columns with nothing new in them are left out.
-    pub fn orthonormalise(&self, problem: &dyn EigenProblem, mut block: Vec<f64>, lengths: &[f64]) -> Block {
-        let first = gram_schmidt(problem, &mut block, lengths);
+        let first = gram_schmidt(n, w, mass, &lengths);
         let mut vectors = first.vectors;
         // Cancellation has spoiled columns that became short: once more, now at length one.
-        self.orthogonalise(problem, &mut vectors, first.width);
-        let second = gram_schmidt(problem, &mut vectors, &vec![0.0; first.width]);
-        Block {
-            vectors: second.vectors,
-            ..first
+        self.subtract_projection(&mut vectors, &first.mass, first.width);
+        let mass = problem.mass(&vectors, first.width);
+        let second = gram_schmidt(n, vectors, mass, &vec![0.0; first.width]);
+        let block = Block {
+            factor: first.factor,
+            ..second
+        };
+        (block, coefficients)
+    }
+
+    /// W -= V C with C = V^T (M W), which is returned.
+    fn subtract_projection(&self, w: &mut [f64], mass: &[f64], width: usize) -> Vec<f64> {
+        let m = self.len();
+        if m == 0 || width == 0 {
+            return vec![0.0; m * width];
         }
+        let coefficients = inner_products(self.n, &self.vectors, m, mass, width);
+        add_combinations(self.n, w, &self.vectors, m, &coefficients, width, -1.0);
+        coefficients
     }
 }
 
-/// Gram-Schmidt in M, every column twice against those before it.
-fn gram_schmidt(problem: &dyn EigenProblem, block: &mut [f64], lengths: &[f64]) -> Block {
-    let (n, n_columns) = (problem.n(), lengths.len());
-    let mut mass = problem.mass(block, n_columns);
+/// Gram-Schmidt in M, every column twice against those before it; `lengths` are what columns count against to be new.
+fn gram_schmidt(n: usize, mut block: Vec<f64>, mut mass: Vec<f64>, lengths: &[f64]) -> Block {
+    let n_columns = lengths.len();
     let (mut kept, mut kept_mass): (Vec<f64>, Vec<f64>) = (Vec::new(), Vec::new());
     let mut rows = vec![0.0; n_columns * n_columns];
     let mut width = 0;
@@ -154,6 +161,7 @@ fn gram_schmidt(problem: &dyn EigenProblem, block: &mut [f64], lengths: &[f64]) 
     let factor = (0..n_columns).flat_map(|j| rows[n_columns * j..n_columns * j + width].to_vec());
     Block {
         vectors: kept,
+        mass: kept_mass,
         width,
         factor: factor.collect(),
     }
