@@ -6,6 +6,7 @@ mod build;
 mod check;
 mod failure;
 mod meshing;
+mod modes;
 mod motion;
 mod print;
 mod progress;

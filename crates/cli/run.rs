@@ -10,6 +10,7 @@ use dynamics::{DynamicsError, StaticSolution, StaticSolver};
 
 use crate::build::{build_model, model_with_rings};
 use crate::failure::Failure;
+use crate::modes;
 use crate::motion;
 use crate::progress::Progress;
 use crate::results::files::Files;
@@ -28,6 +29,9 @@ pub fn run(path: &Path, overrides: &[String], out: Option<PathBuf>) -> Result<Pa
     let dir = folder::choose(path, out)?;
     if let Analysis::Dynamic(dynamic) = &scene.analysis {
         return motion::run(&scene, dynamic, dir, start);
+    }
+    if let Analysis::Modes(wanted) = &scene.analysis {
+        return modes::run(&scene, wanted, dir, start);
     }
     let points = points(&scene)?;
     let mut progress = Progress::new(points.len() as u64);
@@ -86,7 +90,7 @@ pub fn run(path: &Path, overrides: &[String], out: Option<PathBuf>) -> Result<Pa
 
 fn print_results(scene: &Scene, solutions: &[(f64, StaticSolution)], summary: &Summary) {
     match &scene.analysis {
-        Analysis::Static | Analysis::Dynamic(_) => {
+        Analysis::Static | Analysis::Dynamic(_) | Analysis::Modes(_) => {
             console::print_snapshot(&Snapshot::of_equilibrium(&solutions[0].1))
         }
         Analysis::Sweep(sweep) => console::print_sweep(&sweep.column, solutions),
@@ -117,7 +121,7 @@ fn findings(scene: &Scene, solutions: &[(f64, StaticSolution)], failure: &Option
 fn warnings(scene: &Scene, (value, solution): &(f64, StaticSolution)) -> Vec<String> {
     let at = match &scene.analysis {
         Analysis::Sweep(sweep) => format!("{} = {value}: ", sweep.column),
-        Analysis::Static | Analysis::Dynamic(_) => String::new(),
+        Analysis::Static | Analysis::Dynamic(_) | Analysis::Modes(_) => String::new(),
     };
     solution.warnings.iter().map(|w| format!("{at}{w}")).collect()
 }

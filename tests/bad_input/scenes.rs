@@ -177,7 +177,7 @@ const CASES: [Case; 27] = [
         "[static]",
         "[static]",
         "",
-        &["the scene has no analysis; add one of the tables [static], [sweep] and [dynamic]"],
+        &["the scene has no analysis; add one of the tables [static], [sweep], [dynamic] and [modes]"],
     ),
     (
         "[static]",

@@ -31,7 +31,7 @@ impl Files {
         let output = Output::create(dir, &fields::bodies(model), storage(scene))?;
         let swept = match &scene.analysis {
             Analysis::Sweep(sweep) => Some(sweep.column.as_str()),
-            Analysis::Static | Analysis::Dynamic(_) => None,
+            Analysis::Static | Analysis::Dynamic(_) | Analysis::Modes(_) => None,
         };
         let tables = Tables::create(dir, swept, first)?;
         let output_seconds = clock.elapsed().as_secs_f64();
@@ -94,7 +94,8 @@ impl Files {
     }
 }
 
-fn storage(scene: &Scene) -> Storage {
+/// How fields are stored.
+pub fn storage(scene: &Scene) -> Storage {
     Storage {
         stress: match scene.output.precision {
             scene::Precision::F32 => Precision::F32,

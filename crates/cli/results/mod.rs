@@ -4,6 +4,7 @@ pub mod console;
 pub mod fields;
 pub mod files;
 pub mod folder;
+pub mod modes;
 pub mod motion_fields;
 pub mod snapshot;
 pub mod summary;

@@ -2,7 +2,7 @@
 //!
 //! Every quantity is a string with its unit, see [`crate::units`]. Every table is checked against the list of
 //! its keys. An effect is a table `[effects.*]`: without the table there is no effect. Exactly one of
-//! `[static]`, `[sweep]` and `[dynamic]` says what is computed. Axis z is axial, + is the direction of preload; azimuth
+//! `[static]`, `[sweep]`, `[dynamic]` and `[modes]` says what is computed. Axis z is axial, + is the direction of preload; azimuth
 //! runs from +x to +y; displacements count from the state where all balls just touch both raceways.
 //!
 //! Reading goes through two levels: the tables as typed (`Raw*`, private, in the file of their table), and
@@ -21,6 +21,12 @@
 //! ```toml
 #![doc = include_str!("example_dynamic.toml")]
 //! ```
+//!
+//! A scene of natural modes has the tables of a scene at rest and, as its analysis, this one:
+//!
+//! ```toml
+#![doc = include_str!("example_modes.toml")]
+//! ```
 
 mod bearing;
 mod contact;
@@ -31,6 +37,7 @@ mod effects;
 mod error;
 mod locate;
 mod materials;
+mod modes;
 mod output;
 mod problems;
 mod ring;
@@ -54,6 +61,7 @@ pub use self::dynamic::{ContactScheme, Dynamic, IntegratorChoice};
 pub use self::effects::Effects;
 pub use self::error::SceneError;
 pub use self::materials::{Material, Materials};
+pub use self::modes::{ModeBody, ModeSupport, Modes};
 pub use self::output::{Output, Precision, StressOutput};
 pub use self::ring::{FlexibleRing, MeshFiles, Ring, RingName, Support};
 pub use self::section::{Section, SectionElement};
@@ -67,6 +75,7 @@ use self::contact::RawContact;
 use self::dynamic::RawDynamic;
 use self::effects::{EffectsContext, RawEffects};
 use self::materials::RawMaterials;
+use self::modes::{ModesContext, RawModes};
 use self::output::RawOutput;
 use self::problems::Problems;
 use self::ring::{RawRing, RingContext};
@@ -98,6 +107,7 @@ struct RawScene {
     r#static: Option<RawStatic>,
     sweep: Option<RawSweep>,
     dynamic: Option<RawDynamic>,
+    modes: Option<RawModes>,
 }
 
 /// A checked scene, SI.
@@ -247,7 +257,11 @@ impl Source<'_> {
         let speed = speed.and_then(|s| s.check(raw.speed_use(), &mut problems));
         let solver = raw.solver.check(&mut problems);
         let output = raw.output.check(&mut problems);
-        let analysis = raw.analysis(document, &mut problems);
+        let modes = ModesContext {
+            flexible: [inner.body.is_some(), outer.body.is_some()],
+            contact: contact.mode,
+        };
+        let analysis = raw.analysis(document, modes, &mut problems);
         match (bearing, materials, analysis, problems.into_texts()) {
             (Some(bearing), Some(materials), Some(analysis), texts) if texts.is_empty() => Ok(Scene {
                 path: self.path.to_path_buf(),
@@ -300,36 +314,52 @@ impl Source<'_> {
 }
 
 impl RawScene {
-    fn analysis(&self, document: &DocumentMut, problems: &mut Problems) -> Option<Analysis> {
-        match (&self.r#static, &self.sweep, &self.dynamic) {
-            (Some(RawStatic {}), None, None) => Some(Analysis::Static),
-            (None, Some(sweep), None) => sweep.check(document, problems).map(Analysis::Sweep),
-            (None, None, Some(dynamic)) => dynamic.check(problems).map(Analysis::Dynamic),
-            (None, None, None) => {
-                problems
-                    .add("the scene has no analysis; add one of the tables [static], [sweep] and [dynamic]");
-                None
+    fn analysis(
+        &self,
+        document: &DocumentMut,
+        modes: ModesContext,
+        problems: &mut Problems,
+    ) -> Option<Analysis> {
+        let found = [
+            self.r#static.as_ref().map(|_| "[static]"),
+            self.sweep.as_ref().map(|_| "[sweep]"),
+            self.dynamic.as_ref().map(|_| "[dynamic]"),
+            self.modes.as_ref().map(|_| "[modes]"),
+        ];
+        let found: Vec<&str> = found.into_iter().flatten().collect();
+        match found.as_slice() {
+            [_] => {}
+            [] => {
+                problems.add(
+                    "the scene has no analysis; add one of the tables [static], [sweep], [dynamic] and [modes]",
+                );
+                return None;
             }
-            (at_rest, sweep, dynamic) => {
-                let found = [
-                    at_rest.as_ref().map(|_| "[static]"),
-                    sweep.as_ref().map(|_| "[sweep]"),
-                    dynamic.as_ref().map(|_| "[dynamic]"),
-                ];
-                let found: Vec<&str> = found.into_iter().flatten().collect();
-                let (both, names) = match found.as_slice() {
-                    [a, b] => ("both", format!("{a} and {b}")),
-                    _ => ("all of", found.join(", ")),
-                };
-                problems.add(format!("the scene has {both} {names}; keep exactly one analysis"));
-                None
+            [a, b] => {
+                problems.add(format!("the scene has both {a} and {b}; keep exactly one analysis"));
+                return None;
+            }
+            names => {
+                let names = names.join(", ");
+                problems.add(format!("the scene has all of {names}; keep exactly one analysis"));
+                return None;
             }
         }
+        if let Some(sweep) = &self.sweep {
+            return sweep.check(document, problems).map(Analysis::Sweep);
+        }
+        if let Some(dynamic) = &self.dynamic {
+            return dynamic.check(problems).map(Analysis::Dynamic);
+        }
+        if let Some(raw) = &self.modes {
+            return raw.check(modes, problems).map(Analysis::Modes);
+        }
+        self.r#static.as_ref().map(|RawStatic {}| Analysis::Static)
     }
 
     /// Whether equilibria are computed, and no motion; a scene without analysis is not judged further.
     fn is_at_rest(&self) -> bool {
-        self.dynamic.is_none() && (self.r#static.is_some() || self.sweep.is_some())
+        self.dynamic.is_none() && (self.r#static.is_some() || self.sweep.is_some() || self.modes.is_some())
     }
 
     fn effects_context(&self) -> EffectsContext {
@@ -340,6 +370,9 @@ impl RawScene {
     }
 
     fn speed_use(&self) -> SpeedUse {
+        if self.dynamic.is_none() && self.modes.is_some() {
+            return SpeedUse::Modes;
+        }
         match (self.is_at_rest(), self.effects.has_ball_centrifugal()) {
             (false, _) => SpeedUse::Motion,
             (true, true) => SpeedUse::ForceAtRest,

@@ -1,4 +1,4 @@
-//! `[static]` or `[sweep]`: equilibria; with `[dynamic]`, what is computed.
+//! `[static]` or `[sweep]`: equilibria; with `[dynamic]` and `[modes]`, what is computed.
 //!
 //! A sweep solves the same scene for a list of values of one key, each from the solution before it. Every
 //! point is a scene of its own: the text with the key replaced and `[sweep]` turned into `[static]`.
@@ -11,6 +11,7 @@ use toml_edit::{DocumentMut, Value};
 
 use super::dynamic::Dynamic;
 use super::edit;
+use super::modes::Modes;
 use super::problems::Problems;
 use crate::units::{AnyQuantity, Dimension, kind_of_dimension};
 
@@ -49,6 +50,8 @@ pub enum Analysis {
     Sweep(Sweep),
     /// Motion in time.
     Dynamic(Dynamic),
+    /// Natural frequencies and shapes.
+    Modes(Modes),
 }
 
 /// Values of one key.
@@ -89,7 +92,7 @@ impl RawSweep {
             return None;
         }
         let root = self.key.split('.').next().unwrap_or("");
-        if matches!(root, "sweep" | "static" | "dynamic" | "title" | "output" | "") || !self.key.contains('.')
+        if matches!(root, "sweep" | "static" | "dynamic" | "modes" | "title" | "output" | "") || !self.key.contains('.')
         {
             problems.add(format!(
                 "sweep.key is {:?}; expected the path of a number in the scene such as \"effects.axial_force.value\"",

@@ -94,8 +94,8 @@ fn a_thin_ring_bends_as_love_says() {
 fn free_rings_converge_and_have_six_rigid_motions() {
     for side in Side::BOTH {
         let find = |level| alone(side, &ring(side, level, Hold::Clamped), RingSupport::Free, 12);
-        let fine = find(Level::hex20(48, 10, 3, 3));
-        for (level, limit) in [(Level::hex20(36, 8, 2, 3), 1e-3), (Level::hex8(90, 10, 3, 3), 1.5e-2)] {
+        let fine = find(Level::hex20(56, 10, 3, 3));
+        for (level, limit) in [(Level::hex20(48, 8, 2, 3), 1e-3), (Level::hex8(90, 10, 3, 3), 1.5e-2)] {
             let set = find(level);
             let rigid: Vec<&Mode> = set.modes.iter().filter(|m| m.is_rigid).collect();
             assert_eq!(rigid.len(), 6);
@@ -143,7 +143,7 @@ fn coarse_and_fine_clamped_rings_agree() {
         let ring = ring(Side::Inner, level, Hold::Clamped);
         elastic(&alone(Side::Inner, &ring, RingSupport::AsHeld, 6))
     };
-    let (coarse, fine) = (find(Level::hex20(36, 8, 2, 3)), find(Level::hex20(48, 10, 3, 3)));
+    let (coarse, fine) = (find(Level::hex20(48, 8, 2, 3)), find(Level::hex20(56, 10, 3, 3)));
     println!("clamped: {coarse:?} {fine:?}");
     assert!(largest_difference(&coarse, &fine) < 5e-3);
 }
