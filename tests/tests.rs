@@ -3,6 +3,7 @@
 
 mod bad_input;
 mod memory;
+mod modes;
 mod motion;
 mod results;
 mod statics;

@@ -80,7 +80,8 @@ pub fn check(path: &Path, overrides: &[String]) -> Result<(), Failure> {
         forecast_peak(memory, n_threads) as f64 / 1e6,
         match &scene.analysis {
             Analysis::Dynamic(_) =>
-                " for the static start; the steps hold mass and stiffness too, and are not forecast".to_string(),
+                " for the static start; the steps hold mass and stiffness too, and are not forecast"
+                    .to_string(),
             Analysis::Modes(wanted) => format!(
                 " for the static start; the search for modes holds mass, stiffness and {:.0} MB of vectors beside the \
                  factors",

@@ -5,7 +5,7 @@ use std::time::Instant;
 
 use contact::Side;
 use dynamics::modes::{basis_sizes, bearing_modes, ring_modes};
-use dynamics::{Model, ModeSet, ModesSettings, RingSupport, StaticSolution, StaticSolver};
+use dynamics::{ModeSet, Model, ModesSettings, RingSupport, StaticSolution, StaticSolver};
 use solver::Searched;
 
 use crate::build::build_model;

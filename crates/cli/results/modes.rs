@@ -252,7 +252,10 @@ impl ModesSummary {
             .map(|(part, s)| format!("{part} {s:.3}"))
             .collect();
         print::line(format_args!("seconds: {}", parts.join(", ")));
-        print::line(format_args!("peak memory: {:.0} MB", self.peak_memory_bytes as f64 / 1e6));
+        print::line(format_args!(
+            "peak memory: {:.0} MB",
+            self.peak_memory_bytes as f64 / 1e6
+        ));
     }
 
     /// Writes the file: complete or not at all.

@@ -336,7 +336,9 @@ impl RawScene {
                 return None;
             }
             [a, b] => {
-                problems.add(format!("the scene has both {a} and {b}; keep exactly one analysis"));
+                problems.add(format!(
+                    "the scene has both {a} and {b}; keep exactly one analysis"
+                ));
                 return None;
             }
             names => {

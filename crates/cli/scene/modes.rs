@@ -85,7 +85,8 @@ impl RawModes {
         let number = problems.whole(self.number, "modes.number", 1, MAX_NUMBER);
         let bodies = self.bodies.clone().unwrap_or(vec![ModeBody::Bearing]);
         if bodies.is_empty() {
-            problems.add("modes.bodies is empty; expected \"inner\", \"outer\", \"bearing\" or several of them");
+            problems
+                .add("modes.bodies is empty; expected \"inner\", \"outer\", \"bearing\" or several of them");
         }
         for (i, body) in bodies.iter().enumerate() {
             if bodies[..i].contains(body) {

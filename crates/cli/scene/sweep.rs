@@ -92,7 +92,10 @@ impl RawSweep {
             return None;
         }
         let root = self.key.split('.').next().unwrap_or("");
-        if matches!(root, "sweep" | "static" | "dynamic" | "modes" | "title" | "output" | "") || !self.key.contains('.')
+        if matches!(
+            root,
+            "sweep" | "static" | "dynamic" | "modes" | "title" | "output" | ""
+        ) || !self.key.contains('.')
         {
             problems.add(format!(
                 "sweep.key is {:?}; expected the path of a number in the scene such as \"effects.axial_force.value\"",

@@ -56,8 +56,16 @@ pub fn columns(rings: &[Option<RingBody>; 2], contacts: &[Contact]) -> Vec<Colum
             ring: Some((i, load.clone())),
             small: SparseLoad::new(),
         };
-        columns.extend(ring.lumps.iter().map(|(load, mass)| of_ring(Role::Mass(*mass), load)));
-        columns.extend(ring.constraints.iter().map(|load| of_ring(Role::Constraint, load)));
+        columns.extend(
+            ring.lumps
+                .iter()
+                .map(|(load, mass)| of_ring(Role::Mass(*mass), load)),
+        );
+        columns.extend(
+            ring.constraints
+                .iter()
+                .map(|load| of_ring(Role::Constraint, load)),
+        );
     }
     columns
 }

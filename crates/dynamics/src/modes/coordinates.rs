@@ -29,7 +29,9 @@ impl Coordinates {
         let free: Vec<usize> = (0..n_dofs).filter(|&dof| !is_held[dof]).collect();
         let held: Vec<usize> = (0..n_dofs).filter(|&dof| is_held[dof]).collect();
         let mut places = vec![None; n_dofs];
-        free.iter().enumerate().for_each(|(i, &dof)| places[dof] = Some(i));
+        free.iter()
+            .enumerate()
+            .for_each(|(i, &dof)| places[dof] = Some(i));
         let lever = |motion: &&Vec<f64>| held.iter().map(|&dof| motion[dof]).collect();
         Coordinates {
             levers: motions.iter().map(lever).collect(),

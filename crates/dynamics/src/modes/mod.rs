@@ -214,8 +214,7 @@ fn search(
 ) -> Result<ModeSet, DynamicsError> {
     let built = start.elapsed().as_secs_f64();
     let lanczos = LanczosSettings::new(settings.number, block);
-    let pairs =
-        lowest_pairs(system, lanczos, progress).map_err(|source| DynamicsError::Modes { source })?;
+    let pairs = lowest_pairs(system, lanczos, progress).map_err(|source| DynamicsError::Modes { source })?;
     let n = solver::EigenProblem::n(system);
     let modes = pairs.vectors.chunks_exact(n).enumerate().map(|(i, x)| {
         let [value, bound] = [pairs.values[i], pairs.bounds[i]];

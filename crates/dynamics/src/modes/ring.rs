@@ -96,12 +96,11 @@ impl RingBody {
         let stiffness = Bordered::new(&stiffness, &coordinates);
         let mass = fem::assemble_mass(mesh, &ring.material).map_err(fem_error)?;
         let mut mass = Bordered::new(&mass, &coordinates);
-        let factor = factor(mesh, &coordinates, &stiffness, &mass, shift).map_err(|source| {
-            DynamicsError::Solver {
+        let factor =
+            factor(mesh, &coordinates, &stiffness, &mass, shift).map_err(|source| DynamicsError::Solver {
                 side: side.name(),
                 source,
-            }
-        })?;
+            })?;
         let mut body = Holding::default();
         let mut partner_mass = 0.0;
         if let Some(partner) = &partner {
@@ -157,11 +156,16 @@ impl RingBody {
         let mut free: Vec<f64> = columns.flat_map(|load| load[..n_free].to_vec()).collect();
         self.factor.solve(&mut free, n_vectors);
         for (load, z) in loads.chunks_exact_mut(n).zip(free.chunks_exact(n_free)) {
-            let mut q: Vec<f64> = (0..m).map(|k| load[n_free + k] - dot(&self.border[k], z)).collect();
+            let mut q: Vec<f64> = (0..m)
+                .map(|k| load[n_free + k] - dot(&self.border[k], z))
+                .collect();
             schur.solve(&mut q, 1);
             load[..n_free].copy_from_slice(z);
             for (column, q) in self.columns.chunks_exact(n_free).zip(&q) {
-                load[..n_free].iter_mut().zip(column).for_each(|(y, x)| *y -= x * q);
+                load[..n_free]
+                    .iter_mut()
+                    .zip(column)
+                    .for_each(|(y, x)| *y -= x * q);
             }
             load[n_free..].copy_from_slice(&q);
         }
@@ -202,7 +206,9 @@ impl Holding {
         let lumps = (0..3).filter(|dof| partner.mass > 0.0 && partner.moving.contains(dof));
         Holding {
             constraints: constraints.map(|dof| functionals[dof].clone()).collect(),
-            lumps: lumps.map(|dof| (functionals[dof].clone(), partner.mass)).collect(),
+            lumps: lumps
+                .map(|dof| (functionals[dof].clone(), partner.mass))
+                .collect(),
             mean: {
                 functionals.truncate(5);
                 functionals
@@ -227,7 +233,10 @@ fn mean_motions(
     for i in 0..6 {
         for j in 0..6 {
             let product = |&(node, w): &(usize, f64)| {
-                w * dot(&motions[i][3 * node..3 * node + 3], &motions[j][3 * node..3 * node + 3])
+                w * dot(
+                    &motions[i][3 * node..3 * node + 3],
+                    &motions[j][3 * node..3 * node + 3],
+                )
             };
             gram[6 * i + j] = scale(i) * scale(j) * weights.iter().map(product).sum::<f64>();
         }
@@ -236,9 +245,9 @@ fn mean_motions(
         .expect("a surface of facets is not a straight line, so its mean rotation is defined")
         .inverse();
     let functional = |i: usize| {
-        let entries = weights.iter().flat_map(|&(node, w)| {
-            (0..3).map(move |c| (3 * node + c, w))
-        });
+        let entries = weights
+            .iter()
+            .flat_map(|&(node, w)| (0..3).map(move |c| (3 * node + c, w)));
         coordinates.reduce(entries.map(|(dof, w)| {
             let sum: f64 = (0..6)
                 .map(|j| inverse[6 * i + j] * scale(j) * motions[j][dof])
@@ -295,7 +304,10 @@ impl Bordered {
             let start = result.len();
             result.extend_from_slice(inner);
             for (border, q) in self.border.iter().zip(q) {
-                result[start..].iter_mut().zip(border).for_each(|(r, b)| *r += b * q);
+                result[start..]
+                    .iter_mut()
+                    .zip(border)
+                    .for_each(|(r, b)| *r += b * q);
             }
             let rows = self.border.iter().zip(self.corner.chunks_exact(m));
             result.extend(rows.map(|(border, corner)| dot(border, free) + dot(corner, q)));

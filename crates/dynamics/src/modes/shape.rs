@@ -54,10 +54,12 @@ impl Mode {
         let frequency = |value: f64| value.max(0.0).sqrt() / std::f64::consts::TAU;
         let kinetic = system.kinetic(x);
         let total: f64 = kinetic.iter().sum();
+        // Round-off may leave a rigid motion below zero.
+        let value = value.abs();
+        let middle = frequency(value);
         Mode {
-            frequency: frequency(value.abs()),
-            bound: (frequency(value + bound) - frequency(value))
-                .max(frequency(value) - frequency(value - bound)),
+            frequency: middle,
+            bound: (frequency(value + bound) - middle).max(middle - frequency(value - bound)),
             residual,
             is_rigid,
             modal_mass: largest.powi(-2),
@@ -109,7 +111,9 @@ impl Shape {
 
     fn scale(&mut self, factor: f64) {
         let rings = self.rings.iter_mut().flatten().flatten();
-        let values = rings.chain(self.balls.iter_mut().flatten()).chain(&mut self.shaft);
+        let values = rings
+            .chain(self.balls.iter_mut().flatten())
+            .chain(&mut self.shaft);
         values.for_each(|x| *x *= factor);
     }
 }

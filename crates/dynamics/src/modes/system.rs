@@ -15,8 +15,8 @@
 //! No tangent or mass is inverted, so unloaded contacts and dofs without mass are nothing special. X costs one block solve per
 //! ring; after that the operator costs one solve per ring and vector.
 
-use solver::dense::DenseLu;
 use solver::EigenProblem;
+use solver::dense::DenseLu;
 
 use super::columns::{Column, Contact, Role, columns, reactions};
 use super::coordinates::sparse_dot;
@@ -122,7 +122,9 @@ impl System {
                 let y = self.part(y, i);
                 let motion = ring.partner_motion(y);
                 let clamped = ring.moving.iter().filter(|dof| **dof < 3);
-                let carried = clamped.map(|&dof| ring.partner_mass * motion[dof].powi(2)).sum::<f64>();
+                let carried = clamped
+                    .map(|&dof| ring.partner_mass * motion[dof].powi(2))
+                    .sum::<f64>();
                 parts[i] = dot(y, &ring.mass(y, 1)) - carried;
                 parts[3] += carried;
                 for (load, mass) in &ring.lumps {
@@ -229,7 +231,8 @@ impl System {
         for (j, column) in self.columns.iter().enumerate() {
             let force = force(j, &lengths);
             if let Some((i, load)) = &column.ring {
-                load.iter().for_each(|&(k, value)| result[starts[*i] + k] += value * force);
+                load.iter()
+                    .for_each(|&(k, value)| result[starts[*i] + k] += value * force);
             }
             let small = column.small.iter();
             small.for_each(|&(k, value)| result[starts[2] + k] += value * force);
@@ -265,7 +268,9 @@ impl System {
 
     /// Replaces the part of a ring in a block.
     fn put(&self, x: &mut [f64], i: usize, part: Option<&[f64]>) {
-        let (Some(part), starts) = (part, self.starts()) else { return };
+        let (Some(part), starts) = (part, self.starts()) else {
+            return;
+        };
         let columns = x.chunks_exact_mut(self.n());
         for (y, new) in columns.zip(part.chunks_exact(starts[i + 1] - starts[i])) {
             y[starts[i]..starts[i + 1]].copy_from_slice(new);

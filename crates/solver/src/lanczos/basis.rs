@@ -94,7 +94,12 @@ impl Basis {
 
     /// Makes a block W orthogonal to the basis by two passes and orthonormal. Also returns V^T M W of what came in,
     /// column-major `[m][width]`. Columns with nothing new in them are left out.
-    pub fn orthonormalise(&self, problem: &dyn EigenProblem, mut w: Vec<f64>, width: usize) -> (Block, Vec<f64>) {
+    pub fn orthonormalise(
+        &self,
+        problem: &dyn EigenProblem,
+        mut w: Vec<f64>,
+        width: usize,
+    ) -> (Block, Vec<f64>) {
         let (n, m) = (self.n, self.len());
         let mut coefficients = vec![0.0; m * width];
         let mut mass = problem.mass(&w, width);
