@@ -92,10 +92,13 @@ impl RingBody {
         };
         let moved: Vec<&Vec<f64>> = moving.iter().map(|&dof| &motions[dof]).collect();
         let coordinates = Coordinates::new(mesh.n_dofs(), &clamped, &moved);
-        let stiffness = fem::assemble_stiffness(mesh, &ring.material).map_err(fem_error)?;
-        let stiffness = Bordered::new(&stiffness, &coordinates);
-        let mass = fem::assemble_mass(mesh, &ring.material).map_err(fem_error)?;
-        let mut mass = Bordered::new(&mass, &coordinates);
+        // The whole matrices go as soon as they are reduced.
+        let stiffness = fem::assemble_stiffness(mesh, &ring.material)
+            .map(|full| Bordered::new(&full, &coordinates))
+            .map_err(fem_error)?;
+        let mut mass = fem::assemble_mass(mesh, &ring.material)
+            .map(|full| Bordered::new(&full, &coordinates))
+            .map_err(fem_error)?;
         let factor =
             factor(mesh, &coordinates, &stiffness, &mass, shift).map_err(|source| DynamicsError::Solver {
                 side: side.name(),
@@ -324,10 +327,11 @@ fn factor(
     mass: &Bordered,
     shift: f64,
 ) -> Result<SparseCholesky, solver::SolverError> {
+    // Only lower triangles are added: the factorisation needs no more.
     let all: Vec<usize> = (0..coordinates.free.len()).collect();
-    let shifted = &stiffness.block + &mass.block.map(|x| shift * x);
-    let lower = solver::restrict_lower(&shifted, &all);
-    drop(shifted);
+    let [stiffness, mass] = [stiffness, mass].map(|a| solver::restrict_lower(&a.block, &all));
+    let lower = &stiffness + &mass.map(|x| shift * x);
+    drop((stiffness, mass));
     Symbolic::new(&lower, &elimination_order(mesh, &coordinates.free))?.factor(&lower)
 }
 
