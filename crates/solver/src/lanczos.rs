@@ -16,7 +16,7 @@
 //! **Multiplicity.** A block of b vectors finds an eigenvalue of multiplicity b; a body of revolution has double ones, a row of
 //! equal balls clusters as wide as their number. What a start block misses altogether is looked for: once the pairs have
 //! converged, the search goes on from them and a fresh random block in their complement, until the best new pair of the
-//! complement is known ([`CHECKED`]) and none of the wanted has changed. That is a check, no proof: a count of the negative
+//! complement is known to a hundredth and none of the wanted has changed. That is a check, no proof: a count of the negative
 //! pivots of K - lambda M would need an indefinite factorisation.
 //!
 //! **Start.** The random numbers are those of a fixed linear congruential generator, so equal problems give equal bits.

@@ -21,10 +21,11 @@
 //!
 //! Pairs come from block Lanczos about the negative shift lambda = -s ([`solver::lanczos`]): K + s M is positive definite even
 //! for a free ring, so the rings' own sparse Cholesky factors serve, and contacts and constraints are a small dense system
-//! on top of them ([`system`]). Each ring is factored once, whatever the number of modes.
+//! on top of them. Each ring is factored once, whatever the number of modes.
 
 mod columns;
 mod coordinates;
+mod products;
 mod ring;
 mod shape;
 mod system;
