@@ -5,6 +5,7 @@ mod bad_input;
 mod export;
 mod interruption;
 mod memory;
+mod modes;
 mod motion;
 mod probes;
 mod quasi_static;

@@ -7,6 +7,7 @@ use dynamics::{Model, RingMemory, forecast_peak, ring};
 
 use crate::build::build_model;
 use crate::failure::Failure;
+use crate::modes;
 use crate::print;
 use crate::results::disk::{self, Forecast};
 use crate::results::probes::Probes;
@@ -32,6 +33,14 @@ pub fn check(path: &Path, overrides: &[String]) -> Result<(), Failure> {
             "analysis dynamic, {} steps of {} s, fields every {} steps",
             dynamic.n_steps, dynamic.step, dynamic.output_every
         )),
+        Analysis::Modes(wanted) => {
+            let names: Vec<String> = wanted.bodies.iter().map(|b| modes::name(*b, wanted)).collect();
+            print::line(format_args!(
+                "analysis modes, the {} lowest of each: {}",
+                wanted.number,
+                names.join(", ")
+            ));
+        }
         Analysis::Sweep(sweep) => print::line(format_args!(
             "analysis sweep of {} over {} values",
             sweep.key,
@@ -66,8 +75,14 @@ pub fn check(path: &Path, overrides: &[String]) -> Result<(), Failure> {
         forecast_peak(memory, n_threads) as f64 / 1e6,
         match &scene.analysis {
             Analysis::Dynamic(_) =>
-                " for the static start; the steps hold mass and stiffness too, and are not forecast",
-            _ => "",
+                " for the static start; the steps hold mass and stiffness too, and are not forecast"
+                    .to_string(),
+            Analysis::Modes(wanted) => format!(
+                " for the static start; the search for modes holds mass, stiffness and {:.0} MB of vectors beside the \
+                 factors",
+                modes::basis_bytes(&model, wanted) as f64 / 1e6
+            ),
+            _ => String::new(),
         }
     ));
     let forecast = Forecast::new(&scene, &model, 0);

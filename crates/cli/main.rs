@@ -9,6 +9,7 @@ mod export;
 mod failure;
 mod info;
 mod meshing;
+mod modes;
 mod motion;
 mod options;
 mod print;

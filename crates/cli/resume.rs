@@ -251,6 +251,7 @@ fn require_motion(scene: &Scene, dir: &Path) -> Result<Dynamic, Failure> {
         Analysis::Dynamic(dynamic) => return Ok(*dynamic),
         Analysis::Static => "[static]",
         Analysis::Sweep(_) => "[sweep]",
+        Analysis::Modes(_) => "[modes]",
         Analysis::QuasiStatic(_) => "[quasi_static]",
     };
     Err(anyhow!(

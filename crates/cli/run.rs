@@ -10,6 +10,7 @@ use dynamics::{DynamicsError, StaticSolution, StaticSolver};
 
 use crate::build::{build_model, model_with_rings, rolling};
 use crate::failure::Failure;
+use crate::modes;
 use crate::motion;
 use crate::options::Limits;
 use crate::progress::Progress;
@@ -50,6 +51,9 @@ pub fn run(
         }
         Analysis::QuasiStatic(settings) => {
             return quasi_static::run(&scene, settings, &dir, limits, start).map(|()| dir);
+        }
+        Analysis::Modes(wanted) => {
+            return modes::run(&scene, wanted, &dir, limits, start).map(|()| dir);
         }
         Analysis::Static | Analysis::Sweep(_) => {}
     }

@@ -186,7 +186,9 @@ const CASES: [Case; 28] = [
         "[static]",
         "[static]",
         "",
-        &["the scene has no analysis; add one of the tables [static], [sweep], [quasi_static] and [dynamic]"],
+        &[
+            "the scene has no analysis; add one of the tables [static], [sweep], [quasi_static], [dynamic] and [modes]",
+        ],
     ),
     (
         "[static]",

@@ -54,6 +54,7 @@ impl Forecast {
             Analysis::Static => (1, 1),
             Analysis::Sweep(sweep) => (sweep.points.len() as u64, sweep.points.len() as u64),
             Analysis::Dynamic(dynamic) => rows(dynamic.output_every, dynamic.n_steps, done),
+            Analysis::Modes(wanted) => ((wanted.number * wanted.bodies.len()) as u64, 0),
             Analysis::QuasiStatic(quasi) => rows(quasi.output_every, quasi.n_steps, done),
         };
         let cells = BALL_CELLS * model.geometry.n_balls as u64 + OTHER_CELLS;
@@ -107,6 +108,7 @@ fn state_bytes(scene: &Scene, model: &Model) -> u64 {
             let rings = Side::BOTH.into_iter().filter_map(|side| model.ring(side));
             rings.map(ring_bytes).sum::<u64>() + BALL_BYTES * model.geometry.n_balls as u64
         }
+        Analysis::Modes(_) => 3 * 8,
         Analysis::Static | Analysis::Sweep(_) | Analysis::QuasiStatic(_) => {
             8 * (5 + 2 * model.geometry.n_balls as u64)
         }

@@ -212,11 +212,12 @@ fn warn_of_damage(damaged: &[CheckpointError]) {
 fn swept_column(scene: &Scene) -> Option<&str> {
     match &scene.analysis {
         Analysis::Sweep(sweep) => Some(sweep.column.as_str()),
-        Analysis::Static | Analysis::QuasiStatic(_) | Analysis::Dynamic(_) => None,
+        Analysis::Static | Analysis::QuasiStatic(_) | Analysis::Dynamic(_) | Analysis::Modes(_) => None,
     }
 }
 
-fn storage(scene: &Scene) -> Storage {
+/// How fields are stored.
+pub fn storage(scene: &Scene) -> Storage {
     Storage {
         stress: match scene.output.precision {
             scene::Precision::F32 => Precision::F32,

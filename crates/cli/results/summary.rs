@@ -107,7 +107,8 @@ pub struct Costs {
 }
 
 impl ShaftSummary {
-    fn new(snapshot: &Snapshot) -> ShaftSummary {
+    /// The shaft of a snapshot.
+    pub fn new(snapshot: &Snapshot) -> ShaftSummary {
         let [x, y, z, tilt_x, tilt_y] = snapshot.shaft;
         ShaftSummary {
             displacement_m: [x, y, z],
@@ -142,6 +143,7 @@ impl Summary {
             Analysis::Static => ("static", None),
             Analysis::QuasiStatic(_) => ("quasi_static", None),
             Analysis::Dynamic(_) => ("dynamic", None),
+            Analysis::Modes(_) => ("modes", None),
             Analysis::Sweep(sweep) => {
                 let rows = findings.points.iter().map(|(value, s)| SweepRow {
                     value: *value,
@@ -226,20 +228,27 @@ impl Summary {
 
     /// Writes the file: complete or not at all.
     pub fn write(&self, dir: &Path) -> anyhow::Result<()> {
-        let path = dir.join("summary.json");
-        let temporary = dir.join("summary.json.tmp");
-        let text = serde_json::to_string_pretty(self).context("cannot format summary.json")?;
-        std::fs::write(&temporary, text + "\n")
-            .and_then(|()| std::fs::rename(&temporary, &path))
-            .with_context(|| format!("cannot write {}", path.display()))
+        write_summary(dir, self)
     }
 }
 
-fn sides<T>(value: impl Fn(usize) -> T) -> BTreeMap<&'static str, T> {
+/// Writes `summary.json`: complete or not at all.
+pub fn write_summary(dir: &Path, summary: &impl Serialize) -> anyhow::Result<()> {
+    let path = dir.join("summary.json");
+    let temporary = dir.join("summary.json.tmp");
+    let text = serde_json::to_string_pretty(summary).context("cannot format summary.json")?;
+    std::fs::write(&temporary, text + "\n")
+        .and_then(|()| std::fs::rename(&temporary, &path))
+        .with_context(|| format!("cannot write {}", path.display()))
+}
+
+/// A value per side, by name.
+pub fn sides<T>(value: impl Fn(usize) -> T) -> BTreeMap<&'static str, T> {
     BTreeMap::from([("inner", value(0)), ("outer", value(1))])
 }
 
-fn mode_name(model: &Model) -> &'static str {
+/// Contact mode as a scene has it.
+pub fn mode_name(model: &Model) -> &'static str {
     match model.contact.mode {
         dynamics::ContactMode::Patch => "patch",
         dynamics::ContactMode::Facet => "facet",

@@ -2,7 +2,7 @@
 //!
 //! Every quantity is a string with its unit, see [`crate::units`]. Every table is checked against the list of
 //! its keys. An effect is a table `[effects.*]`: without the table there is no effect. Exactly one of
-//! `[static]`, `[sweep]`, `[quasi_static]` and `[dynamic]` says what is computed. Axis z is axial, + is the direction of preload; azimuth
+//! `[static]`, `[sweep]`, `[quasi_static]`, `[dynamic]` and `[modes]` says what is computed. Axis z is axial, + is the direction of preload; azimuth
 //! runs from +x to +y; displacements count from the state where all balls just touch both raceways.
 //!
 //! Reading goes through two levels: the tables as typed (`Raw*`, private, in the file of their table), and
@@ -22,6 +22,12 @@
 #![doc = include_str!("example_dynamic.toml")]
 //! ```
 //!
+//! A scene of natural modes has the tables of a scene at rest and, as its analysis, this one:
+//!
+//! ```toml
+#![doc = include_str!("example_modes.toml")]
+//! ```
+//!
 //! Any scene may have tables `[probes.*]`, and motion without inertia is a table of its own, `[quasi_static]`: see the files of
 //! these names.
 
@@ -36,6 +42,7 @@ mod error;
 mod gyroscopic;
 mod locate;
 mod materials;
+mod modes;
 mod output;
 mod probes;
 mod problems;
@@ -65,6 +72,7 @@ pub use self::dynamic::{ContactScheme, Dynamic, IntegratorChoice};
 pub use self::effects::Effects;
 pub use self::error::SceneError;
 pub use self::materials::{Material, Materials};
+pub use self::modes::{ModeBody, ModeSupport, Modes};
 pub use self::output::{InnerRingFrame, Output, Precision, StressOutput};
 pub use self::probes::{Axes, ContactProbe, NodeProbe, Probes, SectionPoint};
 pub use self::quasi_static::QuasiStatic;
@@ -82,6 +90,7 @@ use self::contact::RawContact;
 use self::dynamic::RawDynamic;
 use self::effects::{EffectsContext, RawEffects};
 use self::materials::RawMaterials;
+use self::modes::{ModesContext, RawModes};
 use self::output::RawOutput;
 use self::probes::{ProbesContext, RawProbes};
 use self::problems::Problems;
@@ -119,6 +128,7 @@ struct RawScene {
     sweep: Option<RawSweep>,
     quasi_static: Option<RawQuasiStatic>,
     dynamic: Option<RawDynamic>,
+    modes: Option<RawModes>,
 }
 
 /// A checked scene, SI.
@@ -279,7 +289,11 @@ impl Source<'_> {
             rigid: [raw.inner.is_rigid(), raw.outer.is_rigid()],
         };
         let probes = raw.probes.check(probes, &mut problems);
-        let analysis = raw.analysis(document, &shaft, &mut problems);
+        let modes = ModesContext {
+            flexible: [inner.body.is_some(), outer.body.is_some()],
+            contact: contact.mode,
+        };
+        let analysis = raw.analysis(document, (&shaft, modes), &mut problems);
         match (bearing, materials, analysis, problems.into_texts()) {
             (Some(bearing), Some(materials), Some(analysis), texts) if texts.is_empty() => Ok(Scene {
                 path: self.path.to_path_buf(),
@@ -334,37 +348,58 @@ impl Source<'_> {
 }
 
 impl RawScene {
-    fn analysis(&self, document: &DocumentMut, shaft: &Shaft, problems: &mut Problems) -> Option<Analysis> {
+    fn analysis(
+        &self,
+        document: &DocumentMut,
+        (shaft, modes): (&Shaft, ModesContext),
+        problems: &mut Problems,
+    ) -> Option<Analysis> {
         let found = [
             self.r#static.as_ref().map(|_| "[static]"),
             self.sweep.as_ref().map(|_| "[sweep]"),
             self.quasi_static.as_ref().map(|_| "[quasi_static]"),
             self.dynamic.as_ref().map(|_| "[dynamic]"),
+            self.modes.as_ref().map(|_| "[modes]"),
         ];
         let found: Vec<&str> = found.into_iter().flatten().collect();
         match found.as_slice() {
-            [] => problems.add(
-                "the scene has no analysis; add one of the tables [static], [sweep], [quasi_static] and [dynamic]",
-            ),
             [_] => {}
-            [a, b] => problems.add(format!("the scene has both {a} and {b}; keep exactly one analysis")),
-            many => problems.add(format!(
-                "the scene has all of {}; keep exactly one analysis",
-                many.join(", ")
-            )),
+            [] => {
+                problems.add(
+                    "the scene has no analysis; add one of the tables [static], [sweep], [quasi_static], [dynamic] and [modes]",
+                );
+                return None;
+            }
+            [a, b] => {
+                problems.add(format!(
+                    "the scene has both {a} and {b}; keep exactly one analysis"
+                ));
+                return None;
+            }
+            names => {
+                let names = names.join(", ");
+                problems.add(format!("the scene has all of {names}; keep exactly one analysis"));
+                return None;
+            }
         }
-        match (&self.r#static, &self.sweep, &self.quasi_static, &self.dynamic) {
-            (Some(RawStatic {}), None, None, None) => Some(Analysis::Static),
-            (None, Some(sweep), None, None) => sweep.check(document, problems).map(Analysis::Sweep),
-            (None, None, Some(quasi), None) => quasi.check(problems).map(Analysis::QuasiStatic),
-            (None, None, None, Some(dynamic)) => dynamic.check(shaft, problems).map(Analysis::Dynamic),
-            _ => None,
+        if let Some(sweep) = &self.sweep {
+            return sweep.check(document, problems).map(Analysis::Sweep);
         }
+        if let Some(dynamic) = &self.dynamic {
+            return dynamic.check(shaft, problems).map(Analysis::Dynamic);
+        }
+        if let Some(quasi) = &self.quasi_static {
+            return quasi.check(problems).map(Analysis::QuasiStatic);
+        }
+        if let Some(raw) = &self.modes {
+            return raw.check(modes, problems).map(Analysis::Modes);
+        }
+        self.r#static.as_ref().map(|RawStatic {}| Analysis::Static)
     }
 
     /// Whether equilibria are computed, and no motion; a scene without analysis is not judged further.
     fn is_at_rest(&self) -> bool {
-        self.dynamic.is_none() && (self.r#static.is_some() || self.sweep.is_some())
+        self.dynamic.is_none() && (self.r#static.is_some() || self.sweep.is_some() || self.modes.is_some())
     }
 
     /// Whether loads and imposed displacements may have schedules.
@@ -391,6 +426,9 @@ impl RawScene {
     }
 
     fn speed_use(&self) -> SpeedUse {
+        if self.dynamic.is_none() && self.modes.is_some() {
+            return SpeedUse::Modes;
+        }
         match (self.is_at_rest(), self.effects.use_speed_at_rest()) {
             (false, _) => SpeedUse::Motion,
             (true, true) => SpeedUse::ForceAtRest,

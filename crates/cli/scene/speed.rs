@@ -56,6 +56,8 @@ pub enum SpeedUse {
     ForceAtRest,
     /// An equilibrium without any effect of speed.
     Nothing,
+    /// Natural modes, which are those of a bearing at rest.
+    Modes,
 }
 
 /// Angular speed over time: linear between the entries, constant outside; one entry is a constant speed.
@@ -78,6 +80,13 @@ impl RawSpeed {
             problems.add(
                 "[speed] does nothing in a scene at rest without [effects.ball_centrifugal], [effects.frame_rotation] or \
                  [effects.gyroscopic_moment]; add one, compute motion with [dynamic], or remove [speed]",
+            );
+            return None;
+        }
+        if speed_use == SpeedUse::Modes {
+            problems.add(
+                "[speed] is given, but [modes] are those of a bearing that does not turn: without gyroscopic and \
+                 centrifugal effects; remove [speed]",
             );
             return None;
         }

@@ -1,4 +1,4 @@
-//! `[static]` or `[sweep]`: equilibria; with `[quasi_static]` and `[dynamic]`, what is computed.
+//! `[static]` or `[sweep]`: equilibria; with `[quasi_static]`, `[dynamic]` and `[modes]`, what is computed.
 //!
 //! A sweep solves the same scene for a list of values of one key, each from the solution before it. Every
 //! point is a scene of its own: the text with the key replaced and `[sweep]` turned into `[static]`.
@@ -11,6 +11,7 @@ use toml_edit::{DocumentMut, Value};
 
 use super::dynamic::Dynamic;
 use super::edit;
+use super::modes::Modes;
 use super::problems::Problems;
 use super::quasi_static::QuasiStatic;
 use crate::units::{AnyQuantity, Dimension, kind_of_dimension};
@@ -52,6 +53,8 @@ pub enum Analysis {
     QuasiStatic(QuasiStatic),
     /// Motion in time.
     Dynamic(Dynamic),
+    /// Natural frequencies and shapes.
+    Modes(Modes),
 }
 
 /// Values of one key.
@@ -94,7 +97,7 @@ impl RawSweep {
         let root = self.key.split('.').next().unwrap_or("");
         if matches!(
             root,
-            "sweep" | "static" | "quasi_static" | "dynamic" | "title" | "output" | "probes" | ""
+            "sweep" | "static" | "quasi_static" | "dynamic" | "modes" | "title" | "output" | "probes" | ""
         ) || !self.key.contains('.')
         {
             problems.add(format!(

@@ -167,6 +167,18 @@ pub enum DynamicsError {
         /// The choice and its replacement.
         what: &'static str,
     },
+    /// A choice that modes do not know.
+    #[error("natural modes cannot have {what}")]
+    NotInModes {
+        /// The choice and its replacement.
+        what: &'static str,
+    },
+    /// The search for modes failed.
+    #[error("natural modes: {source}")]
+    Modes {
+        /// Cause.
+        source: SolverError,
+    },
     /// A number became NaN or infinite.
     #[error("{what} is not finite; check the loads and material of the scene")]
     NotFinite {

@@ -368,7 +368,7 @@ pub fn site_forces(problem: &Problem, u: &Displacements) -> Vec<[f64; 2]> {
 pub const SHAFT_DOFS: [&str; 5] = ["x", "y", "z", "tilt_x", "tilt_y"];
 
 /// Derivative of Q n with respect to l: k n (n + slope)^T + Q/|l| (1 - n n^T); without slope the Hessian of V(|l|).
-fn site_hessian(state: &SiteState) -> [[f64; 2]; 2] {
+pub(crate) fn site_hessian(state: &SiteState) -> [[f64; 2]; 2] {
     let n = state.normal;
     let across = if state.length > 0.0 {
         state.force.force / state.length

@@ -8,7 +8,7 @@ use crate::equilibrium::centre_unloaded;
 use crate::footprint::{Footprint, loaded};
 use crate::loading::LoadCase;
 use crate::pose::Pose;
-use crate::problem::{Displacements, Problem, site_forces};
+use crate::problem::{Displacements, Problem, Site, site_forces};
 
 /// Peak pressure that leaves a permanent indentation of 1e-4 of the ball diameter in bearing steel, Pa: ISO 76, for ball
 /// bearings.
@@ -43,6 +43,10 @@ pub struct StaticSolution {
     pub newton_iterations: usize,
     /// Warnings a user should read.
     pub warnings: Vec<String>,
+    /// All contacts with their laws: ball 0 inner, ball 0 outer, ball 1 inner, ...
+    pub sites: Vec<Site>,
+    /// Growth of the radial ball load with the radial displacement, N/m.
+    pub ball_slope: f64,
     footprints: [Vec<Footprint>; 2],
 }
 
@@ -87,9 +91,16 @@ impl StaticSolution {
             newton_iterations: case.newton_iterations,
             displacements: u,
             pose: case.pose,
+            sites: problem.sites.clone(),
+            ball_slope: problem.ball_slope,
             elastic: rings.elastic,
             footprints: rings.footprints,
         }
+    }
+
+    /// Places of the contacts on one side, by ball; empty for a rigid ring.
+    pub fn footprints(&self, side: Side) -> &[Footprint] {
+        &self.footprints[side.index()]
     }
 
     /// Semi-axes of the spread patches of one side, m, by ball; empty for a rigid ring or facets.

@@ -218,7 +218,7 @@ fn missing_tables_are_named() {
         ("[outer]", "outer.mesh is missing"),
         (
             "[sweep]",
-            "the scene has no analysis; add one of the tables [static], [sweep], [quasi_static] and [dynamic]",
+            "the scene has no analysis; add one of the tables [static], [sweep], [quasi_static], [dynamic] and [modes]",
         ),
     ];
     for (header, expected) in cases {

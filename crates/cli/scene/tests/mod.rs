@@ -4,6 +4,7 @@ mod bad_format;
 mod bad_motion;
 mod bad_values;
 mod good;
+mod modes;
 mod motion;
 mod overrides;
 mod probes;
