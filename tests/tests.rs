@@ -6,6 +6,7 @@ mod export;
 mod interruption;
 mod memory;
 mod motion;
+mod readers;
 mod results;
 mod resume;
 mod statics;
