@@ -7,7 +7,7 @@ use std::path::Path;
 use std::process::Command;
 use std::sync::OnceLock;
 
-use checkpoint::{committed_steps, read_mesh, read_step, step_file_name};
+use checkpoint::{committed_steps, read_any_step, read_mesh, read_step, step_file_name};
 use serde_json::Value;
 
 use crate::util::lockstep::small_motion;
@@ -87,7 +87,7 @@ fn compare(text: &str, folder: &Path, steps: &[u64], node: usize) {
     assert_eq!(seen.len(), steps.len(), "{text}");
     let grid = read_mesh(folder).unwrap();
     for (seen, &step) in seen.iter().zip(steps) {
-        let record = read_step(&folder.join(step_file_name(step))).unwrap();
+        let record = read_any_step(folder, step).unwrap();
         if !seen["time"].is_null() {
             assert_eq!(seen["time"], record.time);
         }
@@ -136,6 +136,10 @@ fn vtk_reads_every_step() {
     let steps = committed_steps(&folder).unwrap();
     compare(&read(&folder.join("run.vtkhdf")), &folder, &steps, node);
     compare(&read(&folder.join("step_000004.hdf")), &folder, &[4], node);
+    let outcome = dir.raceway(&["pack", "out", "--keep", "2", "--per-file", "3"]);
+    assert_eq!(outcome.code, Some(0), "{}", outcome.stderr);
+    compare(&read(&folder.join("run.vtkhdf")), &folder, &steps, node);
+    assert_eq!(dir.raceway(&["pack", "out", "--undo"]).code, Some(0));
     let outcome = dir.raceway(&["export", "out", "--to", "vtu", "--steps", "4"]);
     assert_eq!(outcome.code, Some(0), "{}", outcome.stderr);
     compare(&read(&folder.join("export/step_000004.vtu")), &folder, &[4], node);

@@ -88,6 +88,13 @@ fn folder(dir: &Path, depth: Depth) -> Result<(), Failure> {
         ),
         Err(error) => damaged.push(error.to_string()),
     }
+    for (path, steps) in checkpoint::packs(dir)? {
+        let bytes = std::fs::metadata(&path).map_or(0, |data| data.len());
+        line(
+            "pack",
+            &format!("{}, {} steps, {}", path.display(), steps.len(), size(bytes)),
+        );
+    }
     folder_state(dir)?;
     for text in &damaged {
         line("damaged", text);

@@ -153,6 +153,13 @@ fn choose_step(dir: &Path, step: Option<u64>) -> Result<StepRecord, Failure> {
         })?);
     };
     let steps = checkpoint::committed_steps(dir)?;
+    if !steps.contains(&step) && checkpoint::all_steps(dir)?.contains(&step) {
+        return Err(anyhow!(
+            "step {step} is in a pack; raceway pack {} --undo makes files of the packed steps again",
+            dir.display()
+        )
+        .into());
+    }
     if !steps.contains(&step) {
         let (first, last) = match (steps.first(), steps.last()) {
             (Some(first), Some(last)) => (*first, *last),

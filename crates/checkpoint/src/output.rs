@@ -20,7 +20,7 @@ use crate::lock::FolderLock;
 use crate::mesh_file::{require_same_mesh, write_mesh};
 use crate::record::{StepRecord, require_texts};
 use crate::series::write_series;
-use crate::step::write_step_file;
+use crate::step::{Origin, write_step_file};
 use crate::storage::Storage;
 
 /// A result folder open for writing; it is locked against other processes.
@@ -136,7 +136,12 @@ impl Output {
         }
         let name = step_file_name(record.step);
         let dir = self.lock.dir();
-        write_step_file(dir, &name, record, &self.mesh_hash, &self.about, self.storage)?;
+        let origin = Origin {
+            program_version: env!("CARGO_PKG_VERSION"),
+            mesh_hash: &self.mesh_hash,
+            about: &self.about,
+        };
+        write_step_file(dir, &name, record, &origin, self.storage)?;
         self.steps.push((record.step, record.time));
         write_series(dir, &self.steps)?;
         Ok(dir.join(name))
