@@ -127,8 +127,11 @@ pub fn packs(dir: &Path) -> Result<Vec<(PathBuf, Vec<u64>)>, CheckpointError> {
     ranges.into_iter().map(steps).collect()
 }
 
+/// Time, s, and place of steps, and why others are not among them.
+type SoundPlaces = (Vec<(f64, Place)>, Vec<CheckpointError>);
+
 /// Time and place of every step with a sound structure, growing, and why others are not.
-pub(crate) fn sound_places(dir: &Path) -> Result<(Vec<(f64, Place)>, Vec<CheckpointError>), CheckpointError> {
+pub(crate) fn sound_places(dir: &Path) -> Result<SoundPlaces, CheckpointError> {
     let (mut places, mut damaged) = (BTreeMap::new(), Vec::new());
     for (path, steps) in packs(dir)? {
         places.extend(steps.into_iter().map(|step| (step, Place::packed(&path, step))));

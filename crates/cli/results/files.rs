@@ -3,6 +3,7 @@
 //! Step files are written by a thread of their own; the run only waits when it is [`QUEUE`] steps ahead of the disk.
 
 use std::path::Path;
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use checkpoint::{
@@ -27,8 +28,8 @@ const QUEUE: usize = 2;
 pub struct Files {
     output: BackgroundOutput,
     tables: Tables,
-    /// Stress recovery of the flexible rings.
-    pub recoveries: [Option<StressRecovery>; 2],
+    /// Stress recovery of the flexible rings, shared with the thread that writes.
+    recoveries: Arc<[Option<StressRecovery>; 2]>,
     stress_seconds: f64,
     output_seconds: f64,
 }
@@ -71,6 +72,12 @@ impl Files {
         let resumed = Output::resume(lock, &fields::bodies(model), storage(scene), last)?;
         let (mut output, damaged, mut superseded) = (resumed.output, resumed.damaged, resumed.superseded);
         output.describe(texts)?;
+        if resumed.mesh_restored {
+            print::note(format_args!(
+                "note: mesh.hdf was missing in {} and is written again",
+                dir.display()
+            ));
+        }
         let mut aside = || match &superseded {
             Some(folder) => Ok(folder.clone()),
             None => Ok(superseded
@@ -100,7 +107,7 @@ impl Files {
         Ok(Files {
             output: BackgroundOutput::start(output, QUEUE, companions),
             tables,
-            recoveries: fields::recoveries(model, scene.output.stress)?,
+            recoveries: Arc::new(fields::recoveries(model, scene.output.stress)?),
             stress_seconds: 0.0,
             output_seconds,
         })
@@ -140,6 +147,18 @@ impl Files {
         self.output.waited()
     }
 
+    /// The same for a record that needs nothing but itself: the thread that writes makes it.
+    pub fn write_fields_later(
+        &mut self,
+        record: impl FnOnce(&[Option<StressRecovery>; 2]) -> StepRecord + Send + 'static,
+    ) -> Result<(), Failure> {
+        let clock = Instant::now();
+        let recoveries = self.recoveries.clone();
+        self.output.write_step_made_by(move || record(&recoveries))?;
+        self.output_seconds += clock.elapsed().as_secs_f64();
+        Ok(())
+    }
+
     /// Waits for the disk, closes the files and says what the run cost.
     pub fn finish(
         self,
@@ -155,10 +174,10 @@ impl Files {
         }
         Ok(Costs {
             read,
-            stress: self.stress_seconds,
+            stress: self.stress_seconds + written.making.as_secs_f64(),
             output: self.output_seconds + clock.elapsed().as_secs_f64(),
             disk_wait: written.waited.as_secs_f64(),
-            disk: written.busy.as_secs_f64(),
+            disk: written.writing.as_secs_f64(),
             total: start.elapsed().as_secs_f64(),
             forecast,
             solver,

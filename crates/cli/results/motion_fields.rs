@@ -8,43 +8,70 @@ use dynamics::motion::{Motion, MotionState};
 use fem::stress::StressRecovery;
 
 use super::fields::{add_balls, point_fields};
-use super::state_arrays;
+use super::state_arrays::{self, Arrays};
 use crate::scene::{InnerRingFrame, Scene};
 
-/// The record of one instant.
-pub fn record(
-    model: &Model,
-    motion: &Motion<'_>,
-    state: &MotionState,
-    recoveries: &[Option<StressRecovery>; 2],
-    scene: &Scene,
-) -> StepRecord {
-    let with_stress = recoveries.iter().any(Option::is_some);
-    let (mut displacement, mut stress) = (Vec::new(), Vec::new());
-    for side in Side::BOTH {
-        let (Some(ring), Some((field, angle))) = (model.ring(side), motion.ring_displacement(state, side))
-        else {
-            continue;
-        };
-        let turn = Turn::new(match (side, scene.output.inner_ring) {
-            (Side::Inner, InnerRingFrame::OwnFrame) => 0.0,
-            (Side::Inner | Side::Outer, _) => angle,
-        });
-        for (x, u) in ring.mesh.nodes.iter().zip(field.chunks_exact(3)) {
-            let now = turn.vector([x[0] + u[0], x[1] + u[1], u[2]]);
-            displacement.push([now[0] - x[0], now[1] - x[1], now[2]]);
+/// One instant as it is shown, but for the stress: that is recovered when the record is made.
+pub struct Shown {
+    step: u64,
+    time: f64,
+    /// Displacement of every point, m.
+    displacement: Vec<[f64; 3]>,
+    /// Displacement of the flexible rings in their own frames, m, flat, and their turn.
+    rings: [Option<(Vec<f64>, Turn)>; 2],
+    forces: [Vec<[f64; 3]>; 2],
+    state: Arrays,
+    scene: String,
+}
+
+impl Shown {
+    /// Places of rings and balls at one instant.
+    pub fn new(model: &Model, motion: &Motion<'_>, state: &MotionState, scene: &Scene) -> Shown {
+        let (mut displacement, mut rings) = (Vec::new(), [None, None]);
+        for side in Side::BOTH {
+            let (Some(ring), Some((field, angle))) =
+                (model.ring(side), motion.ring_displacement(state, side))
+            else {
+                continue;
+            };
+            let turn = Turn::new(match (side, scene.output.inner_ring) {
+                (Side::Inner, InnerRingFrame::OwnFrame) => 0.0,
+                (Side::Inner | Side::Outer, _) => angle,
+            });
+            for (x, u) in ring.mesh.nodes.iter().zip(field.chunks_exact(3)) {
+                let now = turn.vector([x[0] + u[0], x[1] + u[1], u[2]]);
+                displacement.push([now[0] - x[0], now[1] - x[1], now[2]]);
+            }
+            rings[side.index()] = Some((field, turn));
         }
-        if let Some(recovery) = &recoveries[side.index()] {
-            stress.extend(recovery.nodal(&field).into_iter().map(|s| turn.tensor(s)));
+        let forces = add_balls(model, &model.geometry, &motion.balls(state), &mut displacement);
+        Shown {
+            step: state.step,
+            time: motion.time(state.step),
+            displacement,
+            rings,
+            forces,
+            state: state_arrays::store(state, &motion.shape()),
+            scene: scene.text.clone(),
         }
     }
-    let forces = add_balls(model, &model.geometry, &motion.balls(state), &mut displacement);
-    StepRecord {
-        step: state.step,
-        time: motion.time(state.step),
-        points: point_fields(displacement, with_stress.then_some(stress), forces),
-        scene: scene.text.clone(),
-        state: state_arrays::store(state, &motion.shape()),
+
+    /// The record of the instant, with stress where it is recovered.
+    pub fn record(self, recoveries: &[Option<StressRecovery>; 2]) -> StepRecord {
+        let with_stress = recoveries.iter().any(Option::is_some);
+        let mut stress = Vec::new();
+        for (ring, recovery) in self.rings.iter().zip(recoveries) {
+            if let (Some((field, turn)), Some(recovery)) = (ring, recovery) {
+                stress.extend(recovery.nodal(field).into_iter().map(|s| turn.tensor(s)));
+            }
+        }
+        StepRecord {
+            step: self.step,
+            time: self.time,
+            points: point_fields(self.displacement, with_stress.then_some(stress), self.forces),
+            scene: self.scene,
+            state: self.state,
+        }
     }
 }
 
