@@ -132,13 +132,21 @@ fn a_wrong_byte_in_each_data_set_names_it() {
             .dataset(&array.path)
             .unwrap()
             .offset();
+        let Some(at) = at else {
+            assert_eq!(array.bytes, 0, "{array:?} lies nowhere");
+            continue;
+        };
         let mut bad = good.clone();
-        bad[at.unwrap() as usize + array.bytes as usize - 1] ^= 0x40;
+        bad[at as usize + array.bytes as usize - 1] ^= 0x40;
         fs::write(&path, &bad).unwrap();
         let text = read_step(&path).unwrap_err().to_string();
         assert!(text.contains(&format!("data set {} of", array.path)), "{text}");
-        let found = checkpoint::describe(&path).unwrap().damage.unwrap().to_string();
-        assert_eq!(found, text);
+        // Number and time are read to be told; of the others it is told that they are damaged.
+        let found = match checkpoint::describe(&path) {
+            Ok(described) => described.damage.unwrap(),
+            Err(error) => error,
+        };
+        assert!(found.to_string().contains(&array.path), "{found}");
     }
 }
 
