@@ -9,6 +9,8 @@ Mises, Pa. Needs ParaView 5.11 or later; without a screen put `xvfb-run -a -s -n
   --body N          ring: 0 inner, 1 outer; default 1
   --size WxH        pixels; default 1400x800
 
+The picture it makes: docs/images/7010c_1800rpm_probe.png (scenes/7010c_1800rpm_coarse.toml for 4.4 ms, `--at 37 0 0`: a ball pitch).
+
 Exit codes: 0 done, 2 wrong arguments or files.
 """
 

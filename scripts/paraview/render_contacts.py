@@ -12,6 +12,8 @@ ParaView 5.11 or later; without a screen put `xvfb-run -a -s -noreset` in front.
   --max MPA         colours end at this value, MPa, instead
   --size WxH        pixels; default 1600x800
 
+The picture it makes: docs/images/7010c_1800rpm_contacts.png (step 30 of scenes/7010c_1800rpm.toml).
+
 Exit codes: 0 done, 2 wrong arguments or files.
 """
 

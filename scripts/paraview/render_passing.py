@@ -13,6 +13,8 @@ without a screen put `xvfb-run -a -s -noreset` in front.
   --max MPA         colours end at this value, MPa, instead
   --size WxH        pixels; default 1000x700
 
+The picture it makes: docs/images/7010c_1800rpm_passing.png (a frame of scenes/7010c_1800rpm_coarse.toml).
+
 Exit codes: 0 done, 2 wrong arguments or files.
 """
 

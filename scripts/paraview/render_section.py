@@ -12,6 +12,8 @@ that the plane meets is drawn as its circle. Needs ParaView 5.11 or later; witho
   --max MPA         colours end at this value, MPa, instead
   --size WxH        pixels; default 1200x1000
 
+The picture it makes: docs/images/7010c_1800rpm_section.png (step 30 of scenes/7010c_1800rpm.toml).
+
 Exit codes: 0 done, 2 wrong arguments or files.
 """
 
@@ -62,7 +64,7 @@ def render(options):
     loaded = centres[most_loaded(forces)]
     azimuth = numpy.arctan2(loaded[1], loaded[0]) if options.azimuth is None else numpy.radians(options.azimuth)
     outward = numpy.array([numpy.cos(azimuth), numpy.sin(azimuth), 0.0])
-    # Seen against this, the axis points to the right when the radius points up.
+    # The viewer stands where this points to: then the axis points to the right when the radius points up.
     normal = numpy.array([-numpy.sin(azimuth), numpy.cos(azimuth), 0.0])
     section = cut_at(displaced(solids, time, 1.0), time, outward, normal)
     if section.GetDataInformation().GetNumberOfCells() == 0:
@@ -82,7 +84,7 @@ def render(options):
         servermanager.Fetch(section)).Points]])
     heights = points @ outward
     middle = 0.5 * (heights.min() + heights.max()) * outward + [0.0, 0.0, 0.5 * (low[2] + high[2])]
-    view.CameraFocalPoint, view.CameraPosition = list(middle), list(middle - 0.2 * normal)
+    view.CameraFocalPoint, view.CameraPosition = list(middle), list(middle + 0.2 * normal)
     view.CameraViewUp, view.CameraParallelProjection = list(outward), 1
     view.CameraParallelScale = 0.62 * max(heights.max() - heights.min(), high[2] - low[2])
     GetActiveCamera().SetWindowCenter(0.08, 0.0)

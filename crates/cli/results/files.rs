@@ -6,6 +6,7 @@ use std::path::Path;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
+use anyhow::anyhow;
 use checkpoint::{
     BackgroundOutput, CheckpointError, Compression, FolderLock, Output, Precision, StepRecord, Storage,
 };
@@ -15,7 +16,7 @@ use fem::StressRecovery;
 use super::about::about;
 use super::fields;
 use super::snapshot::Snapshot;
-use super::summary::Costs;
+use super::summary::{Costs, SUMMARY_FILE};
 use super::tables::Tables;
 use crate::failure::Failure;
 use crate::print;
@@ -92,6 +93,13 @@ impl Files {
             ));
         }
         warn_of_damage(&damaged);
+        // What it says is not true any more until the run ends again.
+        match std::fs::remove_file(dir.join(SUMMARY_FILE)) {
+            Err(error) if error.kind() != std::io::ErrorKind::NotFound => {
+                return Err(anyhow!("cannot remove the old {SUMMARY_FILE}: {error}").into());
+            }
+            _ => {}
+        }
         Files::new(scene, model, output, tables, clock)
     }
 

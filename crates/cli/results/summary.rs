@@ -12,6 +12,9 @@ use super::snapshot::Snapshot;
 use crate::print;
 use crate::scene::{Analysis, Scene};
 
+/// Name of the file in the result folder.
+pub const SUMMARY_FILE: &str = "summary.json";
+
 /// The whole file.
 #[derive(Debug, Serialize)]
 pub struct Summary {
@@ -185,7 +188,7 @@ impl Summary {
 
     /// Writes the file: complete or not at all.
     pub fn write(&self, dir: &Path) -> anyhow::Result<()> {
-        let path = dir.join("summary.json");
+        let path = dir.join(SUMMARY_FILE);
         let temporary = dir.join("summary.json.tmp");
         let text = serde_json::to_string_pretty(self).context("cannot format summary.json")?;
         std::fs::write(&temporary, text + "\n")
