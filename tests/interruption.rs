@@ -38,9 +38,11 @@ fn wait_for_steps(child: &mut Child) -> impl Read + use<> {
     let mut lines = BufReader::new(child.stderr.take().unwrap());
     let mut line = "the start".to_string();
     // Progress is "[time] done/all what", with the number of the step when it takes steps.
-    while !line.is_empty() && !(line.starts_with('[') && line.contains(" step ")) {
+    while !(line.starts_with('[') && line.contains(" step ")) {
         line.clear();
-        lines.read_line(&mut line).unwrap();
+        if lines.read_line(&mut line).unwrap() == 0 {
+            break;
+        }
     }
     lines
 }

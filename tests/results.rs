@@ -285,6 +285,7 @@ fn a_run_leaves_exactly_its_files() {
     let mut names = names;
     names.sort();
     let expected = [
+        ".raceway.lock",
         "balls.csv",
         "energy.csv",
         "mesh.hdf",

@@ -298,6 +298,51 @@ fn what_cannot_be_resumed_is_refused() {
     );
 }
 
+/// Wrong: a file that can be made again would be missed, or one that cannot would be made up.
+#[test]
+fn missing_files_are_made_again_where_that_can_be() {
+    let dir = moved();
+    copy(&dir, "whole", "cut");
+    for name in ["mesh.hdf", "run.hdf.series", "run.vtkhdf", "summary.json"] {
+        std::fs::remove_file(dir.path(&format!("cut/{name}"))).unwrap();
+    }
+    let outcome = resumed(&dir, &["cut"]);
+    assert!(
+        outcome
+            .stderr
+            .contains("mesh.hdf was missing in cut and is written again"),
+        "{}",
+        outcome.stderr
+    );
+    for name in ["mesh.hdf", "run.hdf.series", "run.vtkhdf"] {
+        let read = |folder: &str| std::fs::read(dir.path(&format!("{folder}/{name}"))).unwrap();
+        assert!(read("whole") == read("cut"), "{name} differs");
+    }
+    std::fs::remove_file(dir.path("cut/energy.csv")).unwrap();
+    refused(
+        &dir,
+        &["cut", "--step", "9"],
+        &["cannot read cut/energy.csv: No such file"],
+    );
+}
+
+/// Wrong: a packed step would be missed, or a run whose early steps are packed could not go on.
+#[test]
+fn a_run_goes_on_beside_its_packs() {
+    let dir = moved();
+    copy(&dir, "whole", "cut");
+    let packed = dir.raceway(&["pack", "cut", "--keep", "5", "--per-file", "10"]);
+    assert_eq!(packed.code, Some(0), "{}", packed.stderr);
+    refused(
+        &dir,
+        &["cut", "--step", "3"],
+        &["step 3 is in a pack; raceway pack cut --undo"],
+    );
+    resumed(&dir, &["cut", "--step", "17"]);
+    assert_eq!(dir.raceway(&["pack", "cut", "--undo"]).code, Some(0));
+    assert_same_run(&dir, "whole", "cut");
+}
+
 /// Wrong: a sweep would be taken for a motion.
 #[test]
 fn only_motions_are_resumed() {

@@ -9,6 +9,7 @@ mod modes;
 mod motion;
 mod probes;
 mod quasi_static;
+mod readers;
 mod results;
 mod resume;
 mod schedules;

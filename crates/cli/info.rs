@@ -10,6 +10,7 @@ use checkpoint::{
 use crate::failure::Failure;
 use crate::print;
 use crate::results::disk::size;
+use crate::results::summary::SUMMARY_FILE;
 
 /// How closely the steps of a folder are looked at.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -88,6 +89,13 @@ fn folder(dir: &Path, depth: Depth) -> Result<(), Failure> {
         ),
         Err(error) => damaged.push(error.to_string()),
     }
+    for (path, steps) in checkpoint::packs(dir)? {
+        let bytes = std::fs::metadata(&path).map_or(0, |data| data.len());
+        line(
+            "pack",
+            &format!("{}, {} steps, {}", path.display(), steps.len(), size(bytes)),
+        );
+    }
     folder_state(dir)?;
     for text in &damaged {
         line("damaged", text);
@@ -100,7 +108,7 @@ fn folder(dir: &Path, depth: Depth) -> Result<(), Failure> {
 
 /// How the run ended, who writes, what was moved aside.
 fn folder_state(dir: &Path) -> Result<(), Failure> {
-    if let Ok(text) = std::fs::read_to_string(dir.join("summary.json")) {
+    if let Ok(text) = std::fs::read_to_string(dir.join(SUMMARY_FILE)) {
         let summary: serde_json::Value = serde_json::from_str(&text).context("summary.json is no JSON")?;
         line("status", summary["status"].as_str().unwrap_or("unknown"));
     }

@@ -12,6 +12,7 @@ mod meshing;
 mod modes;
 mod motion;
 mod options;
+mod pack;
 mod print;
 mod progress;
 mod quasi_static;
@@ -33,6 +34,7 @@ use crate::export::Export;
 use crate::failure::Failure;
 use crate::info::Depth;
 use crate::options::Limits;
+use crate::pack::Pack;
 use crate::resume::Request;
 
 /// Simulates angular contact ball bearings with fully flexible rings.
@@ -71,6 +73,8 @@ enum Command {
         #[arg(long)]
         verify: bool,
     },
+    /// Puts finished steps into larger files, or takes them out again.
+    Pack(Pack),
     /// Writes steps in a form for other tools.
     Export(Export),
     /// Builds everything a run needs but solves nothing: effects, sizes, memory, output.
@@ -132,6 +136,7 @@ fn execute(arguments: Arguments) -> Result<(), Failure> {
         Command::Info { path, verify } => {
             info::info(&path, if verify { Depth::Bytes } else { Depth::Structure })
         }
+        Command::Pack(request) => pack::pack(&request),
         Command::Export(request) => export::export(&request),
         Command::Check { scene, overrides } => check::check(&scene, &overrides),
         Command::Mesh {

@@ -15,13 +15,14 @@ use crate::failure::Failure;
 use crate::options::Limits;
 use crate::print;
 use crate::progress::Progress;
+use crate::results::console;
 use crate::results::disk::Forecast;
 use crate::results::files::Files;
+use crate::results::motion_fields::Recorded;
 use crate::results::probes::Probes;
 use crate::results::shown::Shown;
 use crate::results::snapshot::Snapshot;
 use crate::results::summary::{Findings, Summary};
-use crate::results::{console, motion_fields};
 use crate::resume::Stored;
 use crate::scene::{self, Dynamic, IntegratorChoice, Scene};
 use crate::start::settle;
@@ -260,10 +261,10 @@ impl March<'_> {
         if self.last_file == Some(self.state.step) {
             return Ok(());
         }
-        let (model, motion, state, scene) = (self.model, self.motion, &self.state, self.scene);
+        let shown = Recorded::new(self.model, self.motion, &self.state, self.scene);
         let newton = self.newton;
-        self.files.write_fields(|recoveries| {
-            let mut record = motion_fields::record(model, motion, state, recoveries, scene);
+        self.files.write_fields_later(move |recoveries| {
+            let mut record = shown.record(recoveries);
             Stored::add_counts(&mut record, newton);
             record
         })?;

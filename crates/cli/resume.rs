@@ -20,6 +20,7 @@ use crate::print;
 use crate::results::about::{OVERRIDES, SCENE_FILE, WARNINGS, require_same_meshes};
 use crate::results::files::note_dead_owner;
 use crate::results::state_arrays;
+use crate::results::summary::SUMMARY_FILE;
 use crate::scene::{Analysis, Dynamic, MeshFiles, Scene, difference};
 
 /// Keys and tables of a scene that a resumed run may change: none of them touches the motion.
@@ -153,6 +154,13 @@ fn choose_step(dir: &Path, step: Option<u64>) -> Result<StepRecord, Failure> {
         })?);
     };
     let steps = checkpoint::committed_steps(dir)?;
+    if !steps.contains(&step) && checkpoint::all_steps(dir)?.contains(&step) {
+        return Err(anyhow!(
+            "step {step} is in a pack; raceway pack {} --undo makes files of the packed steps again",
+            dir.display()
+        )
+        .into());
+    }
     if !steps.contains(&step) {
         let (first, last) = match (steps.first(), steps.last()) {
             (Some(first), Some(last)) => (*first, *last),
@@ -264,7 +272,7 @@ fn require_motion(scene: &Scene, dir: &Path) -> Result<Dynamic, Failure> {
 /// Whether a run got to its end: its last step is the newest, and all that is written after it is there.
 fn is_finished(dir: &Path, step: u64) -> Result<bool, Failure> {
     let newest = checkpoint::committed_steps(dir)?.last() == Some(&step);
-    let summary = std::fs::read_to_string(dir.join("summary.json")).unwrap_or_default();
+    let summary = std::fs::read_to_string(dir.join(SUMMARY_FILE)).unwrap_or_default();
     let status = serde_json::from_str::<serde_json::Value>(&summary).ok();
     let finished = status.is_some_and(|summary| summary["status"] == "finished");
     Ok(newest && finished && dir.join("run.vtkhdf").exists())

@@ -24,10 +24,13 @@ pub struct Companion {
     pub file: File,
 }
 
+/// What makes a record when its turn comes.
+type Maker = Box<dyn FnOnce() -> StepRecord + Send>;
+
 /// An [`Output`] behind a queue.
 #[derive(Debug)]
 pub struct BackgroundOutput {
-    queue: Option<SyncSender<StepRecord>>,
+    queue: Option<SyncSender<Maker>>,
     writer: Option<JoinHandle<Result<Written, CheckpointError>>>,
     waited: Duration,
 }
@@ -37,8 +40,10 @@ pub struct BackgroundOutput {
 pub struct Written {
     /// The folder, for a final [`Output::finish`].
     pub output: Output,
+    /// Time that the thread spent making records.
+    pub making: Duration,
     /// Time that the thread spent writing.
-    pub busy: Duration,
+    pub writing: Duration,
     /// Time that the caller spent waiting for it.
     pub waited: Duration,
 }
@@ -47,7 +52,7 @@ impl BackgroundOutput {
     /// Starts the thread. `queue_length` steps may wait besides the one being written; memory is
     /// `queue_length + 2` records at most, the caller's included.
     pub fn start(output: Output, queue_length: usize, companions: Vec<Companion>) -> BackgroundOutput {
-        let (queue, waiting) = sync_channel::<StepRecord>(queue_length);
+        let (queue, waiting) = sync_channel::<Maker>(queue_length);
         let writer = thread::spawn(move || write_all(output, &waiting, &companions));
         BackgroundOutput {
             queue: Some(queue),
@@ -59,11 +64,19 @@ impl BackgroundOutput {
     /// Hands over a step, waiting while the queue is full. An error of an earlier step is returned by the first
     /// call after it.
     pub fn write_step(&mut self, record: StepRecord) -> Result<(), CheckpointError> {
+        self.write_step_made_by(move || record)
+    }
+
+    /// The same for a record that the thread makes when its turn comes, so that this costs the caller nothing.
+    pub fn write_step_made_by(
+        &mut self,
+        make: impl FnOnce() -> StepRecord + Send + 'static,
+    ) -> Result<(), CheckpointError> {
         let clock = Instant::now();
         let accepted = self
             .queue
             .as_ref()
-            .is_some_and(|queue| queue.send(record).is_ok());
+            .is_some_and(|queue| queue.send(Box::new(make)).is_ok());
         self.waited += clock.elapsed();
         if accepted {
             return Ok(());
@@ -98,22 +111,26 @@ impl BackgroundOutput {
 /// Writes what comes until the queue is closed, stopping at the first error.
 fn write_all(
     mut output: Output,
-    waiting: &std::sync::mpsc::Receiver<StepRecord>,
+    waiting: &std::sync::mpsc::Receiver<Maker>,
     companions: &[Companion],
 ) -> Result<Written, CheckpointError> {
-    let mut busy = Duration::ZERO;
-    for record in waiting {
+    let (mut making, mut writing) = (Duration::ZERO, Duration::ZERO);
+    for make in waiting {
+        let clock = Instant::now();
+        let record = make();
+        making += clock.elapsed();
         let clock = Instant::now();
         for companion in companions {
             let synced = companion.file.sync_data();
             synced.map_err(CheckpointError::io("write", &companion.path))?;
         }
         output.write_step(&record)?;
-        busy += clock.elapsed();
+        writing += clock.elapsed();
     }
     Ok(Written {
         output,
-        busy,
+        making,
+        writing,
         waited: Duration::ZERO,
     })
 }

@@ -1,7 +1,8 @@
 //! Data sets with checksums, and the frame of a VTKHDF file.
 //!
-//! A data set is named by its absolute path in the file, which also enters its checksum. Time stamps are off, so
-//! that equal content gives equal files.
+//! A data set is named by its absolute path in the file, which also enters its checksum. In a file of many steps
+//! (see [`crate::pack`]) the path starts at the group of its step. Time stamps are off, so that equal content gives
+//! equal files.
 
 use std::path::Path;
 
@@ -18,7 +19,7 @@ const CHUNK_BYTES: usize = 1 << 18;
 /// Creates the groups and attributes of a VTKHDF unstructured grid of the given version.
 ///
 /// `Type` must be a fixed-length ASCII attribute; VTK refuses other strings.
-pub(crate) fn create_vtkhdf(file: &File, version: [i64; 2]) -> hdf5::Result<()> {
+pub(crate) fn create_vtkhdf(file: &Group, version: [i64; 2]) -> hdf5::Result<()> {
     let root = create_group(file, "VTKHDF")?;
     root.new_attr::<i64>()
         .shape(2)
@@ -57,7 +58,7 @@ pub(crate) fn link_mesh(file: &File, mesh_file: &str) -> hdf5::Result<()> {
 
 /// Writes a row-major array with its checksum.
 pub(crate) fn write_array<T: Element>(
-    file: &File,
+    file: &Group,
     path: &str,
     shape: &[usize],
     values: &[T],
@@ -70,14 +71,14 @@ pub(crate) fn write_array<T: Element>(
         chunk[0] = (CHUNK_BYTES / row_bytes).clamp(1, shape[0]);
         builder = builder.chunk(chunk).shuffle().deflate(level.clamp(1, 9));
     }
-    let dataset = builder.shape(shape).create(path)?;
+    let dataset = builder.shape(shape).create(below(path))?;
     dataset.write_raw(values)?;
     write_checksum(&dataset, checksum(path, shape, values))
 }
 
 /// Writes an array over points, `[n_points][n_components]` or `[n_points]` for one component, in a precision.
 pub(crate) fn write_field(
-    file: &File,
+    file: &Group,
     path: &str,
     n_components: usize,
     values: &[f64],
@@ -101,10 +102,10 @@ pub(crate) fn write_field(
 
 /// Writes a text as an attribute of its group, with its checksum beside it. As a data set it would cost 2 ms: the
 /// library fills megabytes of buffers to write one string. HDF5 ends texts at a NUL, so there must be none.
-pub(crate) fn write_text(file: &File, path: &str, text: &str) -> hdf5::Result<()> {
+pub(crate) fn write_text(file: &Group, path: &str, text: &str) -> hdf5::Result<()> {
     let value: VarLenUnicode = text.parse().map_err(|e| format!("{path}: {e}"))?;
     let (group, name) = group_and_name(path);
-    let group = file.group(group)?;
+    let group = file.group(below(group))?;
     group
         .new_attr::<VarLenUnicode>()
         .create(name)?
@@ -114,6 +115,15 @@ pub(crate) fn write_text(file: &File, path: &str, text: &str) -> hdf5::Result<()
         .new_attr::<u32>()
         .create(&*format!("{name}_{CHECKSUM_ATTRIBUTE}"))?
         .write_scalar(&crc)
+}
+
+/// The path as HDF5 wants it relative to a group; absolute paths would leave the group.
+fn below(path: &str) -> &str {
+    match path.strip_prefix('/') {
+        Some("") => ".",
+        Some(rest) => rest,
+        None => path,
+    }
 }
 
 fn group_and_name(path: &str) -> (&str, &str) {
@@ -130,26 +140,33 @@ fn write_checksum(dataset: &Dataset, value: u32) -> hdf5::Result<()> {
 /// A file open for reading; every value it returns has passed its checksum.
 pub(crate) struct CheckedFile<'a> {
     path: &'a Path,
-    file: File,
+    /// The group at which paths start.
+    file: Group,
 }
 
 impl<'a> CheckedFile<'a> {
     /// Opens `path`.
     pub fn open(path: &'a Path) -> Result<Self, CheckpointError> {
+        CheckedFile::open_at(path, "/")
+    }
+
+    /// Opens `path` with the group `root` as the start of all paths.
+    pub fn open_at(path: &'a Path, root: &str) -> Result<Self, CheckpointError> {
         // The library's own words for a missing or forbidden file are less clear than the system's.
         std::fs::File::open(path).map_err(CheckpointError::io("read", path))?;
-        let file = File::open(path).map_err(CheckpointError::hdf("read", path))?;
+        let file = File::open(path).and_then(|file| file.group(root));
+        let file = file.map_err(CheckpointError::hdf("read", path))?;
         Ok(CheckedFile { path, file })
     }
 
     /// True when the file has this data set.
     pub fn has(&self, dataset: &str) -> bool {
-        self.file.link_exists(dataset)
+        self.file.link_exists(below(dataset))
     }
 
     /// Names in a group, sorted.
     pub fn members(&self, group: &str) -> Result<Vec<String>, CheckpointError> {
-        let read = || self.file.group(group)?.member_names();
+        let read = || self.file.group(below(group))?.member_names();
         let mut names = read().map_err(CheckpointError::hdf("read", self.path))?;
         names.sort();
         Ok(names)
@@ -157,7 +174,7 @@ impl<'a> CheckedFile<'a> {
 
     /// Names of the texts of a group, sorted.
     pub fn texts(&self, group: &str) -> Result<Vec<String>, CheckpointError> {
-        let read = || self.file.group(group)?.attr_names();
+        let read = || self.file.group(below(group))?.attr_names();
         let mut names = read().map_err(CheckpointError::hdf("read", self.path))?;
         let checksums = format!("_{CHECKSUM_ATTRIBUTE}");
         names.retain(|name| !name.ends_with(&checksums));
@@ -168,7 +185,7 @@ impl<'a> CheckedFile<'a> {
     /// Shape and row-major values.
     pub fn array<T: Element>(&self, dataset: &str) -> Result<(Vec<usize>, Vec<T>), CheckpointError> {
         let read = || {
-            let stored = self.file.dataset(dataset)?;
+            let stored = self.file.dataset(below(dataset))?;
             Ok((stored.shape(), stored.read_raw::<T>()?, read_checksum(&stored)?))
         };
         let (shape, values, expected) = read().map_err(CheckpointError::hdf("read", self.path))?;
@@ -199,9 +216,20 @@ impl<'a> CheckedFile<'a> {
         }
     }
 
+    /// How an array is compressed.
+    pub fn compression(&self, dataset: &str) -> Result<Compression, CheckpointError> {
+        let read = || Ok(self.file.dataset(below(dataset))?.filters());
+        let filters = read().map_err(CheckpointError::hdf("read", self.path))?;
+        let level = filters.iter().find_map(|filter| match filter {
+            hdf5::filters::Filter::Deflate(level) => Some(*level),
+            _ => None,
+        });
+        Ok(level.map_or(Compression::None, Compression::Deflate))
+    }
+
     /// Type of the elements.
     pub fn descriptor(&self, dataset: &str) -> Result<TypeDescriptor, CheckpointError> {
-        let read = || self.file.dataset(dataset)?.dtype()?.to_descriptor();
+        let read = || self.file.dataset(below(dataset))?.dtype()?.to_descriptor();
         read().map_err(CheckpointError::hdf("read", self.path))
     }
 
@@ -209,7 +237,7 @@ impl<'a> CheckedFile<'a> {
     pub fn shape(&self, dataset: &str) -> Result<Vec<usize>, CheckpointError> {
         Ok(self
             .file
-            .dataset(dataset)
+            .dataset(below(dataset))
             .map_err(CheckpointError::hdf("read", self.path))?
             .shape())
     }
@@ -230,7 +258,7 @@ impl<'a> CheckedFile<'a> {
     pub fn text(&self, path: &str) -> Result<String, CheckpointError> {
         let read = || {
             let (group, name) = group_and_name(path);
-            let group = self.file.group(group)?;
+            let group = self.file.group(below(group))?;
             let text: VarLenUnicode = group.attr(name)?.read_scalar()?;
             let crc: u32 = group
                 .attr(&format!("{name}_{CHECKSUM_ATTRIBUTE}"))?

@@ -7,6 +7,7 @@ use crate::atomic;
 use crate::error::CheckpointError;
 use crate::index::INDEX_FILE;
 use crate::mesh_file::MESH_FILE;
+use crate::pack::pack_range;
 use crate::record::StepRecord;
 use crate::series::{SERIES_FILE, write_series};
 use crate::step::{read_step, read_step_time};
@@ -73,7 +74,7 @@ fn step_number(name: &str) -> Option<u64> {
     (step_file_name(step) == name).then_some(step)
 }
 
-fn file_names(dir: &Path) -> Result<Vec<String>, CheckpointError> {
+pub(crate) fn file_names(dir: &Path) -> Result<Vec<String>, CheckpointError> {
     let list = || -> std::io::Result<Vec<String>> {
         fs::read_dir(dir)?
             .map(|entry| Ok(entry?.file_name().to_string_lossy().into_owned()))
@@ -99,6 +100,7 @@ pub(crate) fn require_no_results(dir: &Path) -> Result<(), CheckpointError> {
             .filter(|&&name| names.iter().any(|n| n == name))
             .map(|name| name.to_string()),
     );
+    found.extend(names.into_iter().filter(|name| pack_range(name).is_some()));
     if found.is_empty() {
         return Ok(());
     }

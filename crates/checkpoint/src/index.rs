@@ -15,8 +15,8 @@ use crate::atomic::{self, Format};
 use crate::checksum::Element;
 use crate::dataset::{CheckedFile, create_group, create_vtkhdf, link_mesh};
 use crate::error::CheckpointError;
-use crate::folder::{committed_steps, sound_steps, step_file_name};
 use crate::mesh_file::{MESH_FILE, MESH_HASH};
+use crate::pack::{Place, sound_places};
 use crate::series::write_series;
 use crate::step::{POINT_DATA, read_mesh_hash};
 use crate::storage::Precision;
@@ -43,29 +43,30 @@ pub struct Views {
     pub damaged: Vec<CheckpointError>,
 }
 
-/// Builds `run.hdf.series` and `run.vtkhdf` again from the committed steps. Steps whose structure is damaged are left
-/// out; fields that some steps lack are NaN there.
+/// Builds `run.hdf.series` and `run.vtkhdf` again from the committed steps, packed ones included in the latter. Steps
+/// whose structure is damaged are left out; fields that some steps lack are NaN there.
 pub fn rebuild_index(dir: &Path) -> Result<Views, CheckpointError> {
-    let committed = committed_steps(dir)?;
-    let (steps, mut damaged) = sound_steps(dir, &committed);
+    let (steps, mut damaged) = sound_places(dir)?;
     if steps.is_empty() {
         let path = dir.to_path_buf();
         return Err(damaged.pop().unwrap_or(CheckpointError::NoSteps { path }));
     }
-    let numbers: Vec<u64> = steps.iter().map(|&(step, _)| step).collect();
-    let n_points = require_one_mesh(dir, &numbers)?;
-    let fields = collect_fields(dir, &numbers, n_points)?;
-    write_series(dir, &steps)?;
+    let places: Vec<&Place> = steps.iter().map(|(_, place)| place).collect();
+    let n_points = require_one_mesh(dir, &places)?;
+    let fields = collect_fields(&places, n_points)?;
+    let single = steps.iter().filter(|(_, place)| !place.is_packed());
+    let single: Vec<(u64, f64)> = single.map(|(time, place)| (place.step, *time)).collect();
+    write_series(dir, &single)?;
     atomic::write_hdf(dir, INDEX_FILE, Format::V110, |file| {
         create_vtkhdf(file, [2, 0])?;
         link_mesh(file, MESH_FILE)?;
         for (name, field) in &fields {
             match field.precision {
-                Precision::F32 => map_field(file, name, field, &numbers, n_points, f32::NAN)?,
-                Precision::F64 => map_field(file, name, field, &numbers, n_points, f64::NAN)?,
+                Precision::F32 => map_field(file, name, field, &places, n_points, f32::NAN)?,
+                Precision::F64 => map_field(file, name, field, &places, n_points, f64::NAN)?,
             }
         }
-        let times: Vec<f64> = steps.iter().map(|&(_, time)| time).collect();
+        let times: Vec<f64> = steps.iter().map(|&(time, _)| time).collect();
         write_steps_group(file, &times, &fields, n_points)?;
         Ok(Vec::new())
     })?;
@@ -76,16 +77,15 @@ pub fn rebuild_index(dir: &Path) -> Result<Views, CheckpointError> {
 }
 
 /// Points of the mesh; fails when a step belongs to another mesh.
-fn require_one_mesh(dir: &Path, numbers: &[u64]) -> Result<usize, CheckpointError> {
+fn require_one_mesh(dir: &Path, places: &[&Place]) -> Result<usize, CheckpointError> {
     let mesh_path = dir.join(MESH_FILE);
     let mesh = CheckedFile::open(&mesh_path)?;
     let expected = mesh.text(MESH_HASH)?;
-    for &number in numbers {
-        let path = dir.join(step_file_name(number));
-        let found = read_mesh_hash(&path)?;
+    for place in places {
+        let found = read_mesh_hash(&place.open()?)?;
         if found != expected {
             return Err(CheckpointError::MeshMismatch {
-                path,
+                path: place.path.clone(),
                 expected,
                 found,
             });
@@ -96,14 +96,12 @@ fn require_one_mesh(dir: &Path, numbers: &[u64]) -> Result<usize, CheckpointErro
 
 /// Which fields exist, where, and how wide.
 fn collect_fields(
-    dir: &Path,
-    numbers: &[u64],
+    places: &[&Place],
     n_points: usize,
 ) -> Result<BTreeMap<String, IndexedField>, CheckpointError> {
     let mut fields: BTreeMap<String, IndexedField> = BTreeMap::new();
-    for (k, &number) in numbers.iter().enumerate() {
-        let path = dir.join(step_file_name(number));
-        let file = CheckedFile::open(&path)?;
+    for (k, place) in places.iter().enumerate() {
+        let file = place.open()?;
         for name in file.members(POINT_DATA)? {
             let dataset = format!("{POINT_DATA}/{name}");
             let (shape, precision) = (file.shape(&dataset)?, file.precision(&dataset)?);
@@ -115,7 +113,7 @@ fn collect_fields(
             });
             if shape[0] != n_points || n_components != field.n_components {
                 let what = format!("data set {dataset} has shape {shape:?}, expected [{n_points}, ..]");
-                return Err(CheckpointError::malformed(&path, what));
+                return Err(CheckpointError::malformed(&place.path, what));
             }
             if precision == Precision::F64 {
                 field.precision = precision;
@@ -131,11 +129,11 @@ fn map_field<T: Element + Into<hdf5::types::OwnedDynValue>>(
     file: &File,
     name: &str,
     field: &IndexedField,
-    numbers: &[u64],
+    places: &[&Place],
     n_points: usize,
     fill: T,
 ) -> hdf5::Result<()> {
-    let n_rows = numbers.len() * n_points;
+    let n_rows = places.len() * n_points;
     let path = format!("{POINT_DATA}/{name}");
     let shape = |rows: usize| match field.n_components {
         1 => vec![rows],
@@ -144,12 +142,12 @@ fn map_field<T: Element + Into<hdf5::types::OwnedDynValue>>(
     let mut builder = file.new_dataset::<T>().obj_track_times(false).fill_value(fill);
     for &k in &field.present {
         let rows = k * n_points..(k + 1) * n_points;
-        let source = step_file_name(numbers[k]);
+        let (source, source_path) = (places[k].file_name(), places[k].below(&path));
         builder = match field.n_components {
-            1 => builder.virtual_map(&source, &path, shape(n_points), .., shape(n_rows), rows),
+            1 => builder.virtual_map(&source, &source_path, shape(n_points), .., shape(n_rows), rows),
             _ => builder.virtual_map(
                 &source,
-                &path,
+                &source_path,
                 shape(n_points),
                 (.., ..),
                 shape(n_rows),

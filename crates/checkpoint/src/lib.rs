@@ -6,6 +6,7 @@
 //! |---|---|---|
 //! | `mesh.hdf` | all bodies as one unstructured grid, cell arrays `body` and `radius` | once, first |
 //! | `step_NNNNNN.hdf` | the fields of one step and everything a restart needs | once per step |
+//! | `pack_NNNNNN_NNNNNN.hdf` | many steps in one file, see [`pack`] | on request |
 //! | `run.hdf.series` | names and real times of the steps, for ParaView 5.11 and later | after each step |
 //! | `run.vtkhdf` | the same steps as one temporal data set, for VTK 9.3, ParaView 5.12 and later | at the end |
 //! | `.raceway.lock` | who writes here, see [`lock`] | while a run writes |
@@ -29,6 +30,7 @@ pub mod grid;
 pub mod index;
 pub mod lock;
 pub mod output;
+pub mod pack;
 pub mod record;
 pub mod series;
 pub mod step;
@@ -53,6 +55,7 @@ pub use index::{Views, rebuild_index};
 pub use lock::FolderLock;
 pub use mesh_file::read_mesh;
 pub use output::{Output, Resumed};
+pub use pack::{all_steps, pack_steps, packs, read_any_step, unpack_steps};
 pub use record::{PointFields, StateArray, StepRecord};
 pub use step::{read_about, read_step, read_step_time};
 pub use storage::{Compression, Precision, Storage};

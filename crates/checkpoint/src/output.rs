@@ -17,10 +17,10 @@ use crate::folder::{
 use crate::grid::Grid;
 use crate::index::{INDEX_FILE, Views, rebuild_index};
 use crate::lock::FolderLock;
-use crate::mesh_file::{require_same_mesh, write_mesh};
+use crate::mesh_file::{MESH_FILE, require_same_mesh, write_mesh};
 use crate::record::{StepRecord, require_texts};
 use crate::series::write_series;
-use crate::step::write_step_file;
+use crate::step::{Origin, read_about, write_step_file};
 use crate::storage::Storage;
 
 /// A result folder open for writing; it is locked against other processes.
@@ -44,6 +44,26 @@ pub struct Resumed {
     pub superseded: Option<PathBuf>,
     /// Earlier steps that are damaged: they stay where they are, but out of the views.
     pub damaged: Vec<CheckpointError>,
+    /// Whether `mesh.hdf` was missing and has been written again.
+    pub mesh_restored: bool,
+}
+
+/// Writes `mesh.hdf` again when it is missing and the step to resume from is of this mesh.
+fn restore_mesh(dir: &Path, grid: &Grid, step: u64) -> Result<bool, CheckpointError> {
+    if dir.join(MESH_FILE).exists() {
+        return Ok(false);
+    }
+    let path = dir.join(step_file_name(step));
+    let (expected, found) = (grid.fingerprint(), read_about(&path)?["mesh_hash"].clone());
+    if expected != found {
+        return Err(CheckpointError::MeshMismatch {
+            path,
+            expected,
+            found,
+        });
+    }
+    write_mesh(dir, grid)?;
+    Ok(true)
 }
 
 impl Output {
@@ -82,6 +102,7 @@ impl Output {
                 last: newest,
             });
         }
+        let mesh_restored = restore_mesh(&dir, &grid, last)?;
         require_same_mesh(&dir, &grid)?;
         let later = steps.split_off(steps.partition_point(|&step| step <= last));
         let (steps, mut damaged) = sound_steps(&dir, &steps);
@@ -97,6 +118,7 @@ impl Output {
             output: Output::new(lock, &grid, storage, steps),
             superseded,
             damaged,
+            mesh_restored,
         })
     }
 
@@ -136,7 +158,12 @@ impl Output {
         }
         let name = step_file_name(record.step);
         let dir = self.lock.dir();
-        write_step_file(dir, &name, record, &self.mesh_hash, &self.about, self.storage)?;
+        let origin = Origin {
+            program_version: env!("CARGO_PKG_VERSION"),
+            mesh_hash: &self.mesh_hash,
+            about: &self.about,
+        };
+        write_step_file(dir, &name, record, &origin, self.storage)?;
         self.steps.push((record.step, record.time));
         write_series(dir, &self.steps)?;
         Ok(dir.join(name))

@@ -26,7 +26,7 @@ use crate::error::CheckpointError;
 use crate::mesh_file::{MESH_FILE, MESH_HASH};
 use crate::record::{PointFields, StateArray, StepRecord};
 use crate::seal::{verify_seal, verify_structure};
-use crate::storage::{Compression, Storage};
+use crate::storage::{Compression, Precision, Storage};
 
 /// Group of the fields.
 pub(crate) const POINT_DATA: &str = "/VTKHDF/PointData";
@@ -38,58 +38,68 @@ const CONTENTS: &str = "/restart/contents";
 const STATE: &str = "/restart/state";
 const ABOUT: &str = "/restart/about";
 
+/// Texts of a step that are not of its record.
+pub(crate) struct Origin<'a> {
+    pub program_version: &'a str,
+    pub mesh_hash: &'a str,
+    pub about: &'a BTreeMap<String, String>,
+}
+
 /// Writes a step file under `name` into `dir`; the record must have been validated.
 pub(crate) fn write_step_file(
     dir: &Path,
     name: &str,
     record: &StepRecord,
-    mesh_hash: &str,
-    about: &BTreeMap<String, String>,
+    origin: &Origin,
     storage: Storage,
 ) -> Result<(), CheckpointError> {
     atomic::write_hdf(dir, name, Format::Earliest, |file| {
         create_vtkhdf(file, [1, 0])?;
         link_mesh(file, MESH_FILE)?;
-        create_group(file, "VTKHDF/FieldData")?;
-        create_group(file, "restart")?;
-        create_group(file, "restart/state")?;
-        let mut contents = vec![TIME.to_string(), STEP.to_string()];
-        for field in record.points.present(storage) {
-            let path = format!("{POINT_DATA}/{}", field.name);
-            write_field(
-                file,
-                &path,
-                field.n_components,
-                field.values,
-                field.precision,
-                storage.compression,
-            )?;
-            contents.push(path);
-        }
-        for (name, array) in &record.state {
-            let path = format!("{STATE}/{name}");
-            match array {
-                StateArray::Real(values) => write_state(file, &path, values)?,
-                StateArray::Integer(values) => write_state(file, &path, values)?,
-            }
-            contents.push(path);
-        }
-        write_array(file, TIME, &[1], &[record.time], Compression::None)?;
-        write_array(file, STEP, &[1], &[record.step as i64], Compression::None)?;
-        write_text(file, SCENE, &record.scene)?;
-        write_text(file, PROGRAM_VERSION, env!("CARGO_PKG_VERSION"))?;
-        write_text(file, MESH_HASH, mesh_hash)?;
-        create_group(file, "restart/about")?;
-        for (name, text) in about {
-            write_text(file, &format!("{ABOUT}/{name}"), text)?;
-        }
-        contents.sort();
-        write_text(file, CONTENTS, &contents.join("\n"))?;
-        Ok(contents)
+        fill_step(file, record, origin, storage)
     })
 }
 
-fn write_state<T: Element>(file: &hdf5::File, path: &str, values: &[T]) -> hdf5::Result<()> {
+/// Writes a step into a group that has the frame of a VTKHDF grid; returns the paths of its arrays in the group.
+pub(crate) fn fill_step(
+    group: &hdf5::Group,
+    record: &StepRecord,
+    origin: &Origin,
+    storage: Storage,
+) -> hdf5::Result<Vec<String>> {
+    create_group(group, "VTKHDF/FieldData")?;
+    create_group(group, "restart")?;
+    create_group(group, "restart/state")?;
+    let mut contents = vec![TIME.to_string(), STEP.to_string()];
+    for field in record.points.present(storage) {
+        let path = format!("{POINT_DATA}/{}", field.name);
+        let (n, compression) = (field.n_components, storage.compression);
+        write_field(group, &path, n, field.values, field.precision, compression)?;
+        contents.push(path);
+    }
+    for (name, array) in &record.state {
+        let path = format!("{STATE}/{name}");
+        match array {
+            StateArray::Real(values) => write_state(group, &path, values)?,
+            StateArray::Integer(values) => write_state(group, &path, values)?,
+        }
+        contents.push(path);
+    }
+    write_array(group, TIME, &[1], &[record.time], Compression::None)?;
+    write_array(group, STEP, &[1], &[record.step as i64], Compression::None)?;
+    write_text(group, SCENE, &record.scene)?;
+    write_text(group, PROGRAM_VERSION, origin.program_version)?;
+    write_text(group, MESH_HASH, origin.mesh_hash)?;
+    create_group(group, "restart/about")?;
+    for (name, text) in origin.about {
+        write_text(group, &format!("{ABOUT}/{name}"), text)?;
+    }
+    contents.sort();
+    write_text(group, CONTENTS, &contents.join("\n"))?;
+    Ok(contents)
+}
+
+fn write_state<T: Element>(file: &hdf5::Group, path: &str, values: &[T]) -> hdf5::Result<()> {
     write_array(file, path, &[values.len()], values, Compression::None)
 }
 
@@ -97,19 +107,23 @@ fn write_state<T: Element>(file: &hdf5::File, path: &str, values: &[T]) -> hdf5:
 /// f32 unless the run chose f64; everything else bit for bit.
 pub fn read_step(path: &Path) -> Result<StepRecord, CheckpointError> {
     verify_seal(path)?;
-    let file = CheckedFile::open(path)?;
-    require_contents(&file, path)?;
+    read_record(&CheckedFile::open(path)?, path)
+}
+
+/// Reads a step of a file whose structure has been verified; every value read is checked.
+pub(crate) fn read_record(file: &CheckedFile, path: &Path) -> Result<StepRecord, CheckpointError> {
+    require_contents(file, path)?;
     file.text(PROGRAM_VERSION)?;
     file.text(MESH_HASH)?;
     let mut record = StepRecord {
-        step: read_step_number(&file, path)?,
+        step: read_step_number(file, path)?,
         time: file.scalar(TIME)?,
         points: PointFields::default(),
         scene: file.text(SCENE)?,
         state: Default::default(),
     };
     for name in file.members(POINT_DATA)? {
-        read_field(&file, path, &name, &mut record.points)?;
+        read_field(file, path, &name, &mut record.points)?;
     }
     for name in file.members(STATE)? {
         let dataset = format!("{STATE}/{name}");
@@ -133,14 +147,31 @@ pub fn read_step_time(path: &Path) -> Result<f64, CheckpointError> {
 pub fn read_about(path: &Path) -> Result<BTreeMap<String, String>, CheckpointError> {
     verify_structure(path)?;
     let file = CheckedFile::open(path)?;
+    let mut texts = read_texts(&file)?;
+    texts.insert("program_version".to_string(), file.text(PROGRAM_VERSION)?);
+    texts.insert("mesh_hash".to_string(), file.text(MESH_HASH)?);
+    Ok(texts)
+}
+
+/// The texts that [`crate::Output::describe`] set.
+pub(crate) fn read_texts(file: &CheckedFile) -> Result<BTreeMap<String, String>, CheckpointError> {
     let read = |name: String| Ok((name.clone(), file.text(&format!("{ABOUT}/{name}"))?));
-    let mut about: Result<BTreeMap<_, _>, CheckpointError> =
-        file.texts(ABOUT)?.into_iter().map(read).collect();
-    if let Ok(texts) = &mut about {
-        texts.insert("program_version".to_string(), file.text(PROGRAM_VERSION)?);
-        texts.insert("mesh_hash".to_string(), file.text(MESH_HASH)?);
-    }
-    about
+    file.texts(ABOUT)?.into_iter().map(read).collect()
+}
+
+/// Version of the program that wrote a step.
+pub(crate) fn read_version(file: &CheckedFile) -> Result<String, CheckpointError> {
+    file.text(PROGRAM_VERSION)
+}
+
+/// How the arrays of a step are stored.
+pub(crate) fn read_storage(file: &CheckedFile) -> Result<Storage, CheckpointError> {
+    let stress = ["stress", "von_mises"].map(|name| format!("{POINT_DATA}/{name}"));
+    let stress = stress.iter().find(|path| file.has(path));
+    Ok(Storage {
+        stress: stress.map_or(Ok(Precision::default()), |path| file.precision(path))?,
+        compression: file.compression(&format!("{POINT_DATA}/displacement"))?,
+    })
 }
 
 /// What a step file says about itself.
@@ -162,9 +193,14 @@ pub(crate) fn read_contents(file: &CheckedFile) -> Result<Contents, CheckpointEr
     })
 }
 
-/// Fingerprint of the mesh a step file belongs to.
-pub(crate) fn read_mesh_hash(path: &Path) -> Result<String, CheckpointError> {
-    CheckedFile::open(path)?.text(MESH_HASH)
+/// Time of a step, s.
+pub(crate) fn read_time(file: &CheckedFile) -> Result<f64, CheckpointError> {
+    file.scalar(TIME)
+}
+
+/// Fingerprint of the mesh a step belongs to.
+pub(crate) fn read_mesh_hash(file: &CheckedFile) -> Result<String, CheckpointError> {
+    file.text(MESH_HASH)
 }
 
 fn read_step_number(file: &CheckedFile, path: &Path) -> Result<u64, CheckpointError> {

@@ -7,7 +7,7 @@ use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, anyhow};
-use checkpoint::{Grid, StepRecord, committed_steps, read_mesh, read_step, step_file_name};
+use checkpoint::{Grid, StepRecord, all_steps, read_any_step, read_mesh};
 use clap::{Args, ValueEnum};
 
 use crate::failure::Failure;
@@ -41,7 +41,7 @@ enum Form {
 /// Writes the steps asked for; existing files are not touched.
 pub fn export(request: &Export) -> Result<(), Failure> {
     let dir = &request.dir;
-    let steps = chosen(&committed_steps(dir)?, request)?;
+    let steps = chosen(&all_steps(dir)?, request)?;
     let grid = read_mesh(dir)?;
     let out = request.out.clone().unwrap_or_else(|| dir.join("export"));
     std::fs::create_dir_all(&out).with_context(|| format!("cannot create folder {}", out.display()))?;
@@ -51,7 +51,7 @@ pub fn export(request: &Export) -> Result<(), Failure> {
     };
     let mut names = Vec::new();
     for step in steps {
-        let record = read_step(&dir.join(step_file_name(step)))?;
+        let record = read_any_step(dir, step)?;
         require_same_points(&grid, &record)?;
         let name = format!("step_{step:06}.{extension}");
         let write = match request.to {

@@ -63,35 +63,54 @@ pub fn record(
     StepRecord {
         step,
         time,
-        points: points(shown, recoveries, scene.output.inner_ring),
+        points: Places::new(shown, scene.output.inner_ring).points(recoveries),
         scene: scene.text.clone(),
         state: state(solution),
     }
 }
 
-/// Fields of all points at one instant, the inner ring as it stands in space or in its own frame.
-pub fn points(
-    shown: &Shown<'_>,
-    recoveries: &[Option<StressRecovery>; 2],
-    inner_ring: InnerRingFrame,
-) -> PointFields {
-    let with_stress = recoveries.iter().any(Option::is_some);
-    let (mut displacement, mut stress) = (Vec::new(), Vec::new());
-    for side in Side::BOTH {
-        let Some(mut ring) = shown.ring(side) else {
-            continue;
-        };
-        if side == Side::Inner && inner_ring == InnerRingFrame::OwnFrame {
-            ring.turn = Turn::new(0.0);
+/// All points at one instant, but for the stress.
+pub struct Places {
+    /// Displacement of every point, m.
+    displacement: Vec<[f64; 3]>,
+    /// Displacement of the flexible rings up to a rigid motion in their own frames, m, flat, and their turn.
+    rings: [Option<(Vec<f64>, Turn)>; 2],
+    /// Forces on the balls, N.
+    forces: [Vec<[f64; 3]>; 2],
+}
+
+impl Places {
+    /// Places of rings and balls, the inner ring as it stands in space or in its own frame.
+    pub fn new(shown: &Shown<'_>, inner_ring: InnerRingFrame) -> Places {
+        let (mut displacement, mut rings) = (Vec::new(), [None, None]);
+        for side in Side::BOTH {
+            let Some(mut ring) = shown.ring(side) else {
+                continue;
+            };
+            if side == Side::Inner && inner_ring == InnerRingFrame::OwnFrame {
+                ring.turn = Turn::new(0.0);
+            }
+            displacement.extend(ring.shown_displacements());
+            rings[side.index()] = Some((ring.strained.into_owned(), ring.turn));
         }
-        displacement.extend(ring.shown_displacements());
-        if let Some(recovery) = &recoveries[side.index()] {
-            let nodal = recovery.nodal(&ring.strained);
-            stress.extend(nodal.into_iter().map(|s| ring.turn.tensor(s)));
+        let forces = add_balls(shown.model(), shown.placed(), &shown.balls(), &mut displacement);
+        Places {
+            displacement,
+            rings,
+            forces,
         }
     }
-    let forces = add_balls(shown.model(), shown.placed(), &shown.balls(), &mut displacement);
-    point_fields(displacement, with_stress.then_some(stress), forces)
+
+    /// Fields of all points, with stress where it is recovered.
+    pub fn points(self, recoveries: &[Option<StressRecovery>; 2]) -> PointFields {
+        let mut stress = recoveries.iter().any(Option::is_some).then(Vec::new);
+        for (ring, recovery) in self.rings.iter().zip(recoveries) {
+            if let (Some((field, turn)), Some(recovery), Some(stress)) = (ring, recovery, &mut stress) {
+                stress.extend(recovery.nodal(field).into_iter().map(|s| turn.tensor(s)));
+            }
+        }
+        point_fields(self.displacement, stress, self.forces)
+    }
 }
 
 /// Fields of all points from the displacements of all and the stress of the rings' points; balls have none.

@@ -3,8 +3,10 @@
 //! Step files are written by a thread of their own; the run only waits when it is [`QUEUE`] steps ahead of the disk.
 
 use std::path::Path;
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 
+use anyhow::anyhow;
 use checkpoint::{
     BackgroundOutput, CheckpointError, Compression, FolderLock, Output, Precision, StepRecord, Storage,
 };
@@ -16,7 +18,7 @@ use super::fields;
 use super::probes::Probes;
 use super::shown::Shown;
 use super::snapshot::Snapshot;
-use super::summary::Costs;
+use super::summary::{Costs, SUMMARY_FILE};
 use super::tables::Tables;
 use crate::failure::Failure;
 use crate::print;
@@ -30,8 +32,8 @@ pub struct Files {
     output: BackgroundOutput,
     tables: Tables,
     probes: Option<Probes>,
-    /// Stress recovery of the flexible rings.
-    pub recoveries: [Option<StressRecovery>; 2],
+    /// Stress recovery of the flexible rings, shared with the thread that writes.
+    recoveries: Arc<[Option<StressRecovery>; 2]>,
     stress_seconds: f64,
     output_seconds: f64,
 }
@@ -73,6 +75,12 @@ impl Files {
         let resumed = Output::resume(lock, &fields::bodies(model), storage(scene), last)?;
         let (mut output, damaged, mut superseded) = (resumed.output, resumed.damaged, resumed.superseded);
         output.describe(texts)?;
+        if resumed.mesh_restored {
+            print::note(format_args!(
+                "note: mesh.hdf was missing in {} and is written again",
+                dir.display()
+            ));
+        }
         let mut aside = || match &superseded {
             Some(folder) => Ok(folder.clone()),
             None => Ok(superseded
@@ -87,6 +95,13 @@ impl Files {
             ));
         }
         warn_of_damage(&damaged);
+        // What it says is not true any more until the run ends again.
+        match std::fs::remove_file(dir.join(SUMMARY_FILE)) {
+            Err(error) if error.kind() != std::io::ErrorKind::NotFound => {
+                return Err(anyhow!("cannot remove the old {SUMMARY_FILE}: {error}").into());
+            }
+            _ => {}
+        }
         Files::new(scene, model, output, (tables, probes), clock)
     }
 
@@ -102,7 +117,7 @@ impl Files {
         Ok(Files {
             output: BackgroundOutput::start(output, QUEUE, companions),
             tables,
-            recoveries: fields::recoveries(model, scene.output.stress)?,
+            recoveries: Arc::new(fields::recoveries(model, scene.output.stress)?),
             probes,
             stress_seconds: 0.0,
             output_seconds,
@@ -163,6 +178,18 @@ impl Files {
         self.output.waited()
     }
 
+    /// The same for a record that needs nothing but itself: the thread that writes makes it.
+    pub fn write_fields_later(
+        &mut self,
+        record: impl FnOnce(&[Option<StressRecovery>; 2]) -> StepRecord + Send + 'static,
+    ) -> Result<(), Failure> {
+        let clock = Instant::now();
+        let recoveries = self.recoveries.clone();
+        self.output.write_step_made_by(move || record(&recoveries))?;
+        self.output_seconds += clock.elapsed().as_secs_f64();
+        Ok(())
+    }
+
     /// Waits for the disk, closes the files and says what the run cost.
     pub fn finish(
         self,
@@ -178,10 +205,10 @@ impl Files {
         }
         Ok(Costs {
             read,
-            stress: self.stress_seconds,
+            stress: self.stress_seconds + written.making.as_secs_f64(),
             output: self.output_seconds + clock.elapsed().as_secs_f64(),
             disk_wait: written.waited.as_secs_f64(),
-            disk: written.busy.as_secs_f64(),
+            disk: written.writing.as_secs_f64(),
             total: start.elapsed().as_secs_f64(),
             forecast,
             solver,

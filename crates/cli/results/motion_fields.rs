@@ -5,25 +5,41 @@ use dynamics::Model;
 use dynamics::motion::{Motion, MotionState};
 use fem::stress::StressRecovery;
 
-use super::fields::points;
+use super::fields::Places;
 use super::shown::Shown;
-use super::state_arrays;
+use super::state_arrays::{self, Arrays};
 use crate::scene::Scene;
 
-/// The record of one instant.
-pub fn record(
-    model: &Model,
-    motion: &Motion<'_>,
-    state: &MotionState,
-    recoveries: &[Option<StressRecovery>; 2],
-    scene: &Scene,
-) -> StepRecord {
-    let shown = Shown::Motion { model, motion, state };
-    StepRecord {
-        step: state.step,
-        time: motion.time(state.step),
-        points: points(&shown, recoveries, scene.output.inner_ring),
-        scene: scene.text.clone(),
-        state: state_arrays::store(state, &motion.shape()),
+/// One instant as it is stored, but for the stress: that is recovered when the record is made.
+pub struct Recorded {
+    step: u64,
+    time: f64,
+    places: Places,
+    state: Arrays,
+    scene: String,
+}
+
+impl Recorded {
+    /// Places of rings and balls at one instant, and the state.
+    pub fn new(model: &Model, motion: &Motion<'_>, state: &MotionState, scene: &Scene) -> Recorded {
+        let shown = Shown::Motion { model, motion, state };
+        Recorded {
+            step: state.step,
+            time: motion.time(state.step),
+            places: Places::new(&shown, scene.output.inner_ring),
+            state: state_arrays::store(state, &motion.shape()),
+            scene: scene.text.clone(),
+        }
+    }
+
+    /// The record of the instant, with stress where it is recovered.
+    pub fn record(self, recoveries: &[Option<StressRecovery>; 2]) -> StepRecord {
+        StepRecord {
+            step: self.step,
+            time: self.time,
+            points: self.places.points(recoveries),
+            scene: self.scene,
+            state: self.state,
+        }
     }
 }

@@ -15,6 +15,8 @@ use crate::scene::{Analysis, Scene};
 
 /// Start of the keys of `timing_s` that are effects.
 const EFFECT_TIMING: &str = "effect_";
+/// Name of the file in the result folder.
+pub const SUMMARY_FILE: &str = "summary.json";
 
 /// The whole file.
 #[derive(Debug, Serialize)]
@@ -234,7 +236,7 @@ impl Summary {
 
 /// Writes `summary.json`: complete or not at all.
 pub fn write_summary(dir: &Path, summary: &impl Serialize) -> anyhow::Result<()> {
-    let path = dir.join("summary.json");
+    let path = dir.join(SUMMARY_FILE);
     let temporary = dir.join("summary.json.tmp");
     let text = serde_json::to_string_pretty(summary).context("cannot format summary.json")?;
     std::fs::write(&temporary, text + "\n")

@@ -113,6 +113,43 @@ fn a_wrong_byte_in_a_field_names_file_and_data_set() {
     assert!(text.contains("use an earlier step"), "{text}");
 }
 
+/// Wrong if a wrong byte in some data set were not noticed, or blamed on another one.
+#[test]
+fn a_wrong_byte_in_each_data_set_names_it() {
+    let dir = tempfile::tempdir().unwrap();
+    let path = one_step(dir.path());
+    let good = fs::read(&path).unwrap();
+    let arrays = checkpoint::describe(&path).unwrap().arrays;
+    assert_eq!(
+        arrays.len(),
+        2 + 7 + record(4).state.len(),
+        "time, step, all fields, the state: {arrays:?}"
+    );
+    for array in &arrays {
+        fs::write(&path, &good).unwrap();
+        let at = hdf5::File::open(&path)
+            .unwrap()
+            .dataset(&array.path)
+            .unwrap()
+            .offset();
+        let Some(at) = at else {
+            assert_eq!(array.bytes, 0, "{array:?} lies nowhere");
+            continue;
+        };
+        let mut bad = good.clone();
+        bad[at as usize + array.bytes as usize - 1] ^= 0x40;
+        fs::write(&path, &bad).unwrap();
+        let text = read_step(&path).unwrap_err().to_string();
+        assert!(text.contains(&format!("data set {} of", array.path)), "{text}");
+        // Number and time are read to be told; of the others it is told that they are damaged.
+        let found = match checkpoint::describe(&path) {
+            Ok(described) => described.damage.unwrap(),
+            Err(error) => error,
+        };
+        assert!(found.to_string().contains(&array.path), "{found}");
+    }
+}
+
 /// Wrong if there were bytes in a file whose damage goes unnoticed or crashes the library: names, types, sizes and
 /// links count too. Every 13th byte is inverted in turn, and every one of the seal.
 #[test]

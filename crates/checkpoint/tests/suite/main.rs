@@ -5,4 +5,5 @@ mod damage;
 mod fixture;
 mod folder;
 mod mesh_and_views;
+mod pack;
 mod round_trip;

@@ -1,0 +1,52 @@
+//! `raceway pack`: finished steps into larger files, and back.
+
+use std::path::PathBuf;
+
+use anyhow::anyhow;
+use checkpoint::{FolderLock, pack_steps, packs, unpack_steps};
+use clap::Args;
+
+use crate::failure::Failure;
+use crate::print;
+use crate::results::files::note_dead_owner;
+
+/// What the command line asks for.
+#[derive(Debug, Args)]
+pub struct Pack {
+    /// Folder of the results; no run may be writing to it.
+    dir: PathBuf,
+    /// Newest steps that stay files of their own; a run resumes from those only.
+    #[arg(long, default_value_t = 2, value_parser = clap::value_parser!(u32).range(1..))]
+    keep: u32,
+    /// Steps in a pack.
+    #[arg(long, default_value_t = 100, value_parser = clap::value_parser!(u32).range(1..))]
+    per_file: u32,
+    /// Makes a file of every step again, of the same bytes as before.
+    #[arg(long, conflicts_with_all = ["keep", "per_file"])]
+    undo: bool,
+}
+
+/// Packs or unpacks.
+pub fn pack(request: &Pack) -> Result<(), Failure> {
+    let dir = &request.dir;
+    if !dir.is_dir() {
+        return Err(anyhow!("{} is no folder; expected the results of a run", dir.display()).into());
+    }
+    let lock = FolderLock::acquire(dir)?;
+    note_dead_owner(&lock);
+    if request.undo {
+        let n = unpack_steps(&lock)?;
+        print::line(format_args!(
+            "{n} steps of {} are files of their own again",
+            dir.display()
+        ));
+        return Ok(());
+    }
+    let n = pack_steps(&lock, request.keep as usize, request.per_file as usize)?;
+    print::line(format_args!(
+        "{n} steps packed, {} packs in {}; run.vtkhdf shows them, run.hdf.series only the files of one step",
+        packs(dir)?.len(),
+        dir.display()
+    ));
+    Ok(())
+}
