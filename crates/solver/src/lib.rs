@@ -21,6 +21,7 @@
 //! Everything here is sequential: rings, sectors and columns are the caller's units of parallel work, so the bits
 //! of a result cannot depend on the number of threads.
 
+pub mod cyclic;
 pub mod dense;
 pub mod dissection;
 
@@ -34,6 +35,7 @@ mod submatrix;
 mod symbolic;
 
 pub use cholesky::SparseCholesky;
+pub use cyclic::{Coupling, CyclicCholesky, CyclicMatrix, CyclicRing, Symmetry};
 pub use dense::{DenseCholesky, DenseLu};
 pub use dissection::angular_dissection;
 pub use error::SolverError;

@@ -1,0 +1,294 @@
+//! The factored harmonics of a rotationally periodic ring.
+
+use std::marker::PhantomData;
+
+use pulp::Arch;
+use rayon::prelude::*;
+
+use super::kernel::{Factorise, Solve};
+use super::matrix::CyclicMatrix;
+use super::number::{Form, Hermitian, Real};
+use super::phases::{LANES, Lanes};
+use super::ring::{CyclicRing, Link};
+use crate::error::SolverError;
+use crate::linear_solver::LinearSolver;
+
+/// A section is taken for its own mirror image when no entry contradicts it by more than this share of the largest
+/// one. Assembled sections of revolved meshes differ by 1e-15 to 1e-13 of it (rounding).
+const MIRROR: f64 = 1e-12;
+
+/// Smallest accepted pivot relative to its diagonal entry, as for the sparse factorisation.
+const PIVOT_LIMIT: f64 = 1e-12;
+
+/// Right-hand sides transformed to harmonic space at a time.
+const COLUMNS: usize = 8;
+
+/// Cholesky factors of all harmonics of a [`CyclicMatrix`].
+#[derive(Clone, Debug)]
+pub struct CyclicCholesky {
+    ring: CyclicRing,
+    symmetry: Symmetry,
+    /// `[n_groups][n_blocks][3][3][parts][LANES]`.
+    values: Vec<f64>,
+}
+
+/// What the harmonics are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Symmetry {
+    /// The section is its own mirror image: real symmetric harmonics.
+    Mirrored,
+    /// Hermitian harmonics: twice the memory, about four times the operations.
+    None,
+}
+
+impl CyclicRing {
+    /// Factors a positive definite matrix of this ring's couplings, harmonics in parallel; the bits do not
+    /// depend on the number of threads. The error names the caller's row, of sector 0, where elimination breaks down.
+    pub fn factor(&self, matrix: &CyclicMatrix) -> Result<CyclicCholesky, SolverError> {
+        matrix.check_pattern(&self.shared.pattern)?;
+        let symmetry = self.symmetry(matrix);
+        match symmetry {
+            Symmetry::Mirrored => self.factor_form::<Real>(matrix, symmetry),
+            Symmetry::None => self.factor_form::<Hermitian>(matrix, symmetry),
+        }
+    }
+
+    /// What the harmonics of a matrix are: the section is its own mirror image when the block at the angle of a
+    /// step and the one at the opposite angle are each other's images, `S C S`, S = diag(1, -1, 1).
+    pub fn symmetry(&self, matrix: &CyclicMatrix) -> Symmetry {
+        let shared = &self.shared;
+        if !shared.may_be_mirrored {
+            return Symmetry::None;
+        }
+        let limit = MIRROR * matrix.largest();
+        let period = 2 * self.n_sectors() as i32;
+        for link in &shared.links {
+            let angle = (-shared.steps[link.step]).rem_euclid(period);
+            let image = shared.links.iter_row(link.row).find(|other| {
+                other.column == link.column && shared.steps[other.step].rem_euclid(period) == angle
+            });
+            let block = &matrix.blocks[link.block];
+            let zero = [0.0; 9];
+            let image = image.map_or(&zero, |other| &matrix.blocks[other.block]);
+            let sign = |ij: usize| if (ij / 3 == 1) == (ij % 3 == 1) { 1.0 } else { -1.0 };
+            if (0..9).any(|ij| (block[ij] - sign(ij) * image[ij]).abs() > limit) {
+                return Symmetry::None;
+            }
+        }
+        Symmetry::Mirrored
+    }
+
+    fn factor_form<F: Form>(
+        &self,
+        matrix: &CyclicMatrix,
+        symmetry: Symmetry,
+    ) -> Result<CyclicCholesky, SolverError> {
+        let shared = &self.shared;
+        let group_len = 9 * F::PARTS * LANES * shared.profile.n_blocks();
+        let len = group_len * shared.phases.n_groups();
+        Vec::<f64>::new()
+            .try_reserve_exact(len)
+            .map_err(|_| SolverError::OutOfMemory {
+                n: self.n(),
+                bytes: size_of::<f64>() * len,
+            })?;
+        let mut values = vec![0.0; len];
+        let arch = Arch::new();
+        let outcomes: Vec<Result<(), SolverError>> = values
+            .par_chunks_mut(group_len.max(1))
+            .enumerate()
+            .map(|(group, values)| {
+                self.fill_group::<F>(group, matrix, values);
+                let mut ratios = vec![0.0; 3 * LANES * self.n_section_nodes()];
+                arch.dispatch(Factorise::<F> {
+                    profile: &shared.profile,
+                    values,
+                    ratios: &mut ratios,
+                    form: PhantomData,
+                });
+                self.check_pivots(&ratios)
+            })
+            .collect();
+        outcomes.into_iter().collect::<Result<(), SolverError>>()?;
+        Ok(CyclicCholesky {
+            ring: self.clone(),
+            symmetry,
+            values,
+        })
+    }
+
+    /// The lower triangle of a group's matrices, `A_k = sum of C exp(i pi k q / N)` turned by D.
+    fn fill_group<F: Form>(&self, group: usize, matrix: &CyclicMatrix, values: &mut [f64]) {
+        let shared = &self.shared;
+        let phases: Vec<[Lanes; 2]> = shared
+            .steps
+            .iter()
+            .map(|&q| shared.phases.lanes(group, q))
+            .collect();
+        let block_len = 9 * F::PARTS * LANES;
+        for link in shared.links.iter().filter(|link| link.row >= link.column) {
+            let place = shared.profile.place(link.row, link.column);
+            let there = &mut values[place * block_len..][..block_len];
+            let [cos, sin] = &phases[link.step];
+            let block = &matrix.blocks[link.block];
+            for (ij, parts) in there.chunks_exact_mut(F::PARTS * LANES).enumerate() {
+                let c = block[ij];
+                // conj(d_i) d_j (cos + i sin) of the diagonal matrix D.
+                let (re, re_sign, im, im_sign) = match (ij / 3 == 1, ij % 3 == 1) {
+                    (false, true) => (sin, -c, cos, c),
+                    (true, false) => (sin, c, cos, -c),
+                    _ => (cos, c, sin, c),
+                };
+                let (first, second) = parts.split_at_mut(LANES);
+                first.iter_mut().zip(re).for_each(|(x, p)| *x += re_sign * p);
+                second.iter_mut().zip(im).for_each(|(x, p)| *x += im_sign * p);
+            }
+        }
+    }
+
+    /// Refuses pivots that are not positive or nothing but round-off.
+    fn check_pivots(&self, ratios: &[f64]) -> Result<(), SolverError> {
+        let n = self.n();
+        let mut worst = (f64::INFINITY, 0);
+        for (dof, lanes) in ratios.chunks_exact(LANES).enumerate() {
+            for &ratio in lanes {
+                // Written so that NaN is refused as well.
+                if ratio.is_nan() || ratio <= 0.0 {
+                    let row = self.row(dof / 3, dof % 3);
+                    return Err(SolverError::NotPositiveDefinite { row, n });
+                }
+                if ratio < worst.0 {
+                    worst = (ratio, dof);
+                }
+            }
+        }
+        let (relative_pivot, dof) = worst;
+        if relative_pivot < PIVOT_LIMIT {
+            return Err(SolverError::Singular {
+                row: self.row(dof / 3, dof % 3),
+                n,
+                relative_pivot,
+                limit: PIVOT_LIMIT,
+            });
+        }
+        Ok(())
+    }
+}
+
+/// The links of a row.
+trait Rows {
+    fn iter_row(&self, row: usize) -> impl Iterator<Item = &Link>;
+}
+
+impl Rows for Vec<Link> {
+    fn iter_row(&self, row: usize) -> impl Iterator<Item = &Link> {
+        let first = self.partition_point(|link| link.row < row);
+        self[first..].iter().take_while(move |link| link.row == row)
+    }
+}
+
+impl CyclicCholesky {
+    /// The ring.
+    pub fn ring(&self) -> &CyclicRing {
+        &self.ring
+    }
+
+    /// What the harmonics are.
+    pub fn symmetry(&self) -> Symmetry {
+        self.symmetry
+    }
+
+    /// Replaces right-hand sides in harmonic space, `[harmonic_len()]` each, by the solutions; harmonics in parallel.
+    ///
+    /// # Panics
+    /// When a column has another length.
+    pub fn solve_harmonic(&self, columns: &mut [&mut [f64]]) {
+        for column in columns.iter() {
+            assert_eq!(
+                column.len(),
+                self.ring.harmonic_len(),
+                "a vector in harmonic space"
+            );
+        }
+        if columns.is_empty() || self.n() == 0 {
+            return;
+        }
+        let group_len = self.ring.group_len();
+        let n_groups = self.ring.shared.phases.n_groups();
+        let mut groups: Vec<Vec<&mut [f64]>> =
+            (0..n_groups).map(|_| Vec::with_capacity(columns.len())).collect();
+        for column in columns {
+            let parts = column.chunks_exact_mut(group_len);
+            groups
+                .iter_mut()
+                .zip(parts)
+                .for_each(|(group, part)| group.push(part));
+        }
+        groups
+            .into_par_iter()
+            .enumerate()
+            .for_each(|(group, columns)| match self.symmetry {
+                Symmetry::Mirrored => self.solve_group::<Real>(group, columns),
+                Symmetry::None => self.solve_group::<Hermitian>(group, columns),
+            });
+    }
+
+    /// Solves one group, two right-hand sides at a time.
+    fn solve_group<F: Form>(&self, group: usize, columns: Vec<&mut [f64]>) {
+        let profile = &self.ring.shared.profile;
+        let group_len = 9 * F::PARTS * LANES * profile.n_blocks();
+        let values = &self.values[group * group_len..(group + 1) * group_len];
+        let (arch, form) = (Arch::new(), PhantomData);
+        let mut columns = columns.into_iter();
+        while let Some(first) = columns.next() {
+            match columns.next() {
+                Some(second) => arch.dispatch(Solve::<F, 2> {
+                    profile,
+                    values,
+                    columns: [first, second],
+                    form,
+                }),
+                None => arch.dispatch(Solve::<F, 1> {
+                    profile,
+                    values,
+                    columns: [first],
+                    form,
+                }),
+            }
+        }
+    }
+}
+
+impl LinearSolver for CyclicCholesky {
+    fn n(&self) -> usize {
+        self.ring.n()
+    }
+
+    fn solve(&self, rhs: &mut [f64], n_rhs: usize) {
+        let n = self.n();
+        assert_eq!(rhs.len(), n * n_rhs, "{n_rhs} right-hand sides of {n} rows");
+        if rhs.is_empty() {
+            return;
+        }
+        let width = self.ring.harmonic_len();
+        let mut harmonic = vec![0.0; width * n_rhs.min(COLUMNS)];
+        for block in rhs.chunks_mut(n * COLUMNS) {
+            let used = &mut harmonic[..width * (block.len() / n)];
+            for (nodal, w) in block.chunks_exact(n).zip(used.chunks_exact_mut(width)) {
+                self.ring.to_harmonic(nodal, w);
+            }
+            self.solve_harmonic(&mut used.chunks_exact_mut(width).collect::<Vec<_>>());
+            for (nodal, w) in block.chunks_exact_mut(n).zip(used.chunks_exact(width)) {
+                self.ring.from_harmonic(w, nodal);
+            }
+        }
+    }
+
+    fn factor_bytes(&self) -> usize {
+        size_of::<f64>() * self.values.capacity()
+    }
+
+    fn name(&self) -> &'static str {
+        "cyclic Cholesky"
+    }
+}
