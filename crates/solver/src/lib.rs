@@ -18,13 +18,18 @@
 //! ```
 //! Clamped degrees of freedom are taken out with [`restrict_lower`] (matrix) and [`restrict_order`] (order).
 //!
-//! Everything here is sequential: rings, sectors and columns are the caller's units of parallel work, so the bits
-//! of a result cannot depend on the number of threads.
+//! A ring whose sectors are equal is solved harmonic by harmonic ([`cyclic`]), two orders of magnitude cheaper, through
+//! the same trait. A few dense rows more, such as those of a rigid partner, are a [`Bordered`] factor.
+//!
+//! All but the cyclic solver is sequential: rings, sectors and columns are the caller's units of parallel work. The
+//! cyclic solver runs its harmonics in parallel, each in its own place. So the bits of a result cannot depend on the
+//! number of threads.
 
 pub mod cyclic;
 pub mod dense;
 pub mod dissection;
 
+mod bordered;
 mod cholesky;
 mod elimination_tree;
 mod error;
@@ -34,8 +39,9 @@ mod refinement;
 mod submatrix;
 mod symbolic;
 
+pub use bordered::Bordered;
 pub use cholesky::SparseCholesky;
-pub use cyclic::{Coupling, CyclicCholesky, CyclicMatrix, CyclicRing, Symmetry};
+pub use cyclic::{Coupling, CyclicCholesky, CyclicMatrix, CyclicRing, Patch, ResponseTable, Symmetry};
 pub use dense::{DenseCholesky, DenseLu};
 pub use dissection::angular_dissection;
 pub use error::SolverError;

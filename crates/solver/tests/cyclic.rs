@@ -8,8 +8,9 @@ use common::assert_close;
 use fem::Material;
 use mesh::{ElementKind, Mesh, PERIODIC_TOLERANCE, Periodicity, Section, find_periodicity, revolve};
 use solver::{
-    Coupling, CyclicCholesky, CyclicMatrix, CyclicRing, LinearSolver, SolverError, SparseCholesky, Symbolic,
-    Symmetry, angular_dissection, expand, restrict_lower, restrict_order,
+    Bordered, Coupling, CyclicCholesky, CyclicMatrix, CyclicRing, DenseCholesky, LinearSolver, ResponseTable,
+    SolverError, SparseCholesky, Symbolic, Symmetry, angular_dissection, expand, restrict_lower,
+    restrict_order,
 };
 use sprs::CsMat;
 
@@ -320,4 +321,206 @@ fn couplings_that_make_no_symmetric_matrix_are_refused() {
     assert!(refused(&[own, next, back], &[unit, skew, skew]).contains("expected transposed blocks"));
     skew[1] = f64::NAN;
     assert!(refused(&[own], &[skew]).contains("expected finite numbers"));
+}
+
+/// Takes the resultant force and moment out of nodal loads: subtracts the combination of rigid motions they work on.
+fn balance(mesh: &Mesh, loads: &mut [f64]) {
+    let modes = fem::rigid_modes(mesh, [0.0; 3]);
+    let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+    let gram: Vec<f64> = modes
+        .iter()
+        .flat_map(|a| modes.iter().map(|b| dot(a, b)))
+        .collect();
+    let factor = DenseCholesky::factor(modes.len(), &gram).unwrap();
+    // Twice: once leaves the rounding of the first.
+    for _ in 0..2 {
+        let mut parts: Vec<f64> = modes.iter().map(|mode| dot(mode, loads)).collect();
+        factor.solve(&mut parts, 1);
+        for (part, mode) in parts.iter().zip(&modes) {
+            loads.iter_mut().zip(mode).for_each(|(f, m)| *f -= part * m);
+        }
+    }
+}
+
+/// Wrong: a ring held in its mean motion would feel the springs that hold it, and its oval shape would be off.
+#[test]
+fn a_ring_that_nothing_holds_deforms_freely_under_balanced_loads() {
+    for (ring, symmetry) in rings() {
+        let mut balanced = loads(ring.mesh.n_dofs());
+        balance(&ring.mesh, &mut balanced);
+        let factor = ring.ring.factor_unheld(&ring.stiffness).unwrap();
+        assert_eq!(factor.symmetry(), symmetry);
+        let mut found = balanced.clone();
+        factor.solve(&mut found, 1);
+        let product = ring.ring.apply(&ring.stiffness, &found).unwrap();
+        let stiffest = ring
+            .assembled(0.0)
+            .data()
+            .iter()
+            .fold(0.0_f64, |m, x| m.max(x.abs()));
+        let largest = |x: &[f64]| x.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
+        let residual: Vec<f64> = product.iter().zip(&balanced).map(|(p, f)| p - f).collect();
+        // Backward error: rounding of some hundred operations.
+        let error = largest(&residual) / (stiffest * largest(&found) + 1.0);
+        assert!(error < 1e-14, "{error:e}");
+
+        // Six dofs fixed instead: the same but for a rigid motion, taken out in both.
+        let free: Vec<usize> = (0..ring.mesh.n_dofs())
+            .filter(|dof| !supports(&ring).contains(dof))
+            .collect();
+        let sparse = ring.sparse(&ring.assembled(0.0), &free);
+        let mut part: Vec<f64> = free.iter().map(|&dof| balanced[dof]).collect();
+        sparse.solve(&mut part, 1);
+        let mut expected = vec![0.0; found.len()];
+        free.iter().zip(part).for_each(|(&dof, x)| expected[dof] = x);
+        balance(&ring.mesh, &mut expected);
+        balance(&ring.mesh, &mut found);
+        // Rigid motions of the sparse solution are some thousand times the deformation.
+        assert_close(&found, &expected, 1e-8);
+    }
+}
+
+/// Six dofs that hold a body: a node in three directions, a second in two, a third in one.
+fn supports(ring: &Ring) -> [usize; 6] {
+    let (nodes, width) = (ring.periodicity.nodes(), ring.periodicity.n_section_nodes());
+    let quarter = ring.periodicity.n_sectors() / 4;
+    let [a, b, c] = [nodes[0], nodes[quarter * width], nodes[2 * quarter * width]];
+    [3 * a, 3 * a + 1, 3 * a + 2, 3 * b + 2, 3 * c + 1, 3 * c + 2]
+}
+
+/// Wrong: a bore that follows the shaft would not move as it does in the matrix with the shaft's rows assembled.
+#[test]
+fn a_bore_that_follows_five_rigid_dofs_is_a_border() {
+    for (ring, _) in rings() {
+        let bore = ring.mesh.group_nodes("bore");
+        let held = ring.periodicity.section_nodes(&bore).unwrap();
+        let keep: Vec<usize> = (0..ring.periodicity.n_section_nodes())
+            .filter(|node| !held.contains(node))
+            .collect();
+        let (n_dofs, shifted) = (ring.mesh.n_dofs(), ring.shifted());
+        let free: Vec<usize> = (0..n_dofs).filter(|dof| !bore.contains(&(dof / 3))).collect();
+        // Rigid motions of the bore: translations and the two tilts.
+        let modes: Vec<Vec<f64>> = [0, 1, 2, 3, 4]
+            .iter()
+            .map(|&i| {
+                let mut mode = fem::rigid_modes(&ring.mesh, [0.0; 3])[i].clone();
+                free.iter().for_each(|&dof| mode[dof] = 0.0);
+                mode
+            })
+            .collect();
+        let forces: Vec<Vec<f64>> = modes
+            .iter()
+            .map(|mode| ring.ring.apply(&shifted, mode).unwrap())
+            .collect();
+        let border: Vec<f64> = forces
+            .iter()
+            .flat_map(|f| free.iter().map(|&dof| f[dof]))
+            .collect();
+        let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+        let corner: Vec<f64> = modes
+            .iter()
+            .flat_map(|m| forces.iter().map(|f| dot(m, f)))
+            .collect();
+        let matrix = shifted.restricted(&keep);
+        let factor = ring
+            .ring
+            .restricted(&matrix, &keep)
+            .unwrap()
+            .factor(&matrix)
+            .unwrap();
+        let bordered = Bordered::new(factor, &border, 5, &corner).unwrap();
+
+        // T^T A T w with w = T [x; q] must be the load, whatever way A is applied.
+        let n = bordered.n();
+        assert_eq!(n, free.len() + 5);
+        let rhs = loads(2 * n);
+        let mut found = rhs.clone();
+        bordered.solve(&mut found, 2);
+        let assembled = ring.assembled(SHIFT);
+        for (found, rhs) in found.chunks(n).zip(rhs.chunks(n)) {
+            let mut w = vec![0.0; n_dofs];
+            free.iter().zip(found).for_each(|(&dof, x)| w[dof] = *x);
+            for (q, mode) in found[free.len()..].iter().zip(&modes) {
+                w.iter_mut().zip(mode).for_each(|(w, m)| *w += q * m);
+            }
+            let f = common::product(&assembled, &w);
+            let mut reduced: Vec<f64> = free.iter().map(|&dof| f[dof]).collect();
+            reduced.extend(modes.iter().map(|mode| dot(mode, &f)));
+            assert_close(&reduced, rhs, 1e-10);
+        }
+    }
+}
+
+/// Wrong: compliances of patches from the table would not be those that solves for the same loads give.
+#[test]
+fn the_table_gives_the_compliances_of_solves() {
+    for (ring, _) in rings() {
+        let factor = ring.ring.factor(&ring.shifted()).unwrap();
+        let chosen = [4, 1, 7, 11];
+        let table = ResponseTable::new(&factor, &chosen);
+        let (n, width) = (ring.periodicity.n_sectors(), ring.periodicity.n_section_nodes());
+        assert_eq!(table.bytes(), 8 * n * 12 * 12);
+        let node = |sector: usize, i: usize| ring.periodicity.nodes()[(sector % n) * width + chosen[i]];
+        let values = loads(200);
+        let patches: Vec<(Vec<usize>, Vec<[[f64; 3]; 2]>)> = [0, 1, n / 2, n - 1]
+            .iter()
+            .enumerate()
+            .map(|(p, &sector)| {
+                let nodes: Vec<usize> = (0..5).map(|i| node(sector + i / 2, (p + i) % 4)).collect();
+                let value = |i: usize| values[(40 * p + i) % 200];
+                let weights = (0..5)
+                    .map(|i| {
+                        [
+                            [0, 1, 2].map(|c| value(6 * i + c)),
+                            [3, 4, 5].map(|c| value(6 * i + c)),
+                        ]
+                    })
+                    .collect();
+                (nodes, weights)
+            })
+            .collect();
+        let in_table: Vec<_> = patches.iter().map(|(n, w)| table.patch(n, w).unwrap()).collect();
+        let m = 2 * patches.len();
+        let mut expected = vec![0.0; m * m];
+        for j in 0..m {
+            let mut u = vec![0.0; ring.mesh.n_dofs()];
+            let (nodes, weights) = &patches[j / 2];
+            for (&node, w) in nodes.iter().zip(weights) {
+                (0..3).for_each(|c| u[3 * node + c] += w[j % 2][c]);
+            }
+            factor.solve(&mut u, 1);
+            for i in 0..m {
+                let (nodes, weights) = &patches[i / 2];
+                let measured = nodes
+                    .iter()
+                    .zip(weights)
+                    .map(|(&node, w)| (0..3).map(|c| w[i % 2][c] * u[3 * node + c]).sum::<f64>());
+                expected[m * i + j] = measured.sum();
+            }
+        }
+        assert_close(&table.compliances(&in_table), &expected, 1e-12);
+        let other = (0..ring.mesh.n_nodes())
+            .find(|&node| !chosen.contains(&ring.periodicity.sites()[node].section_node))
+            .unwrap();
+        assert_eq!(table.patch(&[other], &[[[0.0; 3]; 2]]), Err(other));
+    }
+}
+
+/// Wrong: a new step size would be solved with the factor of the old one, or with other bits than a fresh factor.
+#[test]
+fn a_factor_made_in_the_memory_of_another_has_the_same_bits() {
+    for (ring, _) in rings() {
+        let other = ring.stiffness.combined(0.5, 9.0 * SHIFT, &ring.mass).unwrap();
+        let fresh = ring.ring.factor(&ring.shifted()).unwrap();
+        let again = ring
+            .ring
+            .factor(&other)
+            .unwrap()
+            .refactored(&ring.shifted())
+            .unwrap();
+        let mut solutions = [(); 2].map(|()| loads(ring.mesh.n_dofs()));
+        fresh.solve(&mut solutions[0], 1);
+        again.solve(&mut solutions[1], 1);
+        assert_eq!(solutions[0], solutions[1]);
+    }
 }

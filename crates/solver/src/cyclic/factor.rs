@@ -28,6 +28,7 @@ const COLUMNS: usize = 8;
 pub struct CyclicCholesky {
     ring: CyclicRing,
     symmetry: Symmetry,
+    hold: Hold,
     /// `[n_groups][n_blocks][3][3][parts][LANES]`.
     values: Vec<f64>,
 }
@@ -41,15 +42,41 @@ pub enum Symmetry {
     None,
 }
 
+/// What keeps a ring from moving as a whole.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Hold {
+    /// Supports or inertia, which are in the matrix.
+    Matrix,
+    /// Springs added to it, see [`CyclicRing::factor_unheld`].
+    Springs,
+}
+
 impl CyclicRing {
     /// Factors a positive definite matrix of this ring's couplings, harmonics in parallel; the bits do not
     /// depend on the number of threads. The error names the caller's row, of sector 0, where elimination breaks down.
     pub fn factor(&self, matrix: &CyclicMatrix) -> Result<CyclicCholesky, SolverError> {
+        self.factor_into(matrix, Hold::Matrix, Vec::new())
+    }
+
+    /// Factors the stiffness of a ring that nothing holds, with the least that holds it: springs on the mean axial and
+    /// azimuthal motion of one ring of nodes (harmonic 0), and on its radial and axial motion in harmonic 1. They carry a
+    /// load's resultants and nothing else. So for loads without resultant force and moment the solution is one of
+    /// the ring free in space, exactly; others differ by a rigid motion, which is the caller's to choose.
+    pub fn factor_unheld(&self, matrix: &CyclicMatrix) -> Result<CyclicCholesky, SolverError> {
+        self.factor_into(matrix, Hold::Springs, Vec::new())
+    }
+
+    /// Factors in memory that may be there already.
+    fn factor_into(
+        &self,
+        matrix: &CyclicMatrix,
+        hold: Hold,
+        values: Vec<f64>,
+    ) -> Result<CyclicCholesky, SolverError> {
         matrix.check_pattern(&self.shared.pattern)?;
-        let symmetry = self.symmetry(matrix);
-        match symmetry {
-            Symmetry::Mirrored => self.factor_form::<Real>(matrix, symmetry),
-            Symmetry::None => self.factor_form::<Hermitian>(matrix, symmetry),
+        match self.symmetry(matrix) {
+            Symmetry::Mirrored => self.factor_form::<Real>(matrix, Symmetry::Mirrored, hold, values),
+            Symmetry::None => self.factor_form::<Hermitian>(matrix, Symmetry::None, hold, values),
         }
     }
 
@@ -82,23 +109,29 @@ impl CyclicRing {
         &self,
         matrix: &CyclicMatrix,
         symmetry: Symmetry,
+        hold: Hold,
+        mut values: Vec<f64>,
     ) -> Result<CyclicCholesky, SolverError> {
         let shared = &self.shared;
         let group_len = 9 * F::PARTS * LANES * shared.profile.n_blocks();
         let len = group_len * shared.phases.n_groups();
-        Vec::<f64>::new()
-            .try_reserve_exact(len)
+        values.truncate(len);
+        values
+            .try_reserve_exact(len - values.len())
             .map_err(|_| SolverError::OutOfMemory {
                 n: self.n(),
                 bytes: size_of::<f64>() * len,
             })?;
-        let mut values = vec![0.0; len];
+        values.resize(len, 0.0);
         let arch = Arch::new();
         let outcomes: Vec<Result<(), SolverError>> = values
             .par_chunks_mut(group_len.max(1))
             .enumerate()
             .map(|(group, values)| {
-                self.fill_group::<F>(group, matrix, values);
+                arch.dispatch(|| self.fill_group::<F>(group, matrix, values));
+                if group == 0 && hold == Hold::Springs {
+                    self.add_springs::<F>(values);
+                }
                 let mut ratios = vec![0.0; 3 * LANES * self.n_section_nodes()];
                 arch.dispatch(Factorise::<F> {
                     profile: &shared.profile,
@@ -113,11 +146,13 @@ impl CyclicRing {
         Ok(CyclicCholesky {
             ring: self.clone(),
             symmetry,
+            hold,
             values,
         })
     }
 
     /// The lower triangle of a group's matrices, `A_k = sum of C exp(i pi k q / N)` turned by D.
+    #[inline(always)]
     fn fill_group<F: Form>(&self, group: usize, matrix: &CyclicMatrix, values: &mut [f64]) {
         let shared = &self.shared;
         let phases: Vec<[Lanes; 2]> = shared
@@ -126,6 +161,7 @@ impl CyclicRing {
             .map(|&q| shared.phases.lanes(group, q))
             .collect();
         let block_len = 9 * F::PARTS * LANES;
+        values.fill(0.0);
         for link in shared.links.iter().filter(|link| link.row >= link.column) {
             let place = shared.profile.place(link.row, link.column);
             let there = &mut values[place * block_len..][..block_len];
@@ -143,6 +179,19 @@ impl CyclicRing {
                 first.iter_mut().zip(re).for_each(|(x, p)| *x += re_sign * p);
                 second.iter_mut().zip(im).for_each(|(x, p)| *x += im_sign * p);
             }
+        }
+    }
+
+    /// Doubles the diagonal entries of the node eliminated last that hold the ring: (azimuthal, axial) in
+    /// harmonic 0, (radial, axial) in harmonic 1.
+    fn add_springs<F: Form>(&self, values: &mut [f64]) {
+        let profile = &self.shared.profile;
+        let Some(last) = profile.n().checked_sub(1) else {
+            return;
+        };
+        let block = &mut values[profile.place(last, last) * 9 * F::PARTS * LANES..];
+        for (harmonic, component) in [(0, 1), (0, 2), (1, 0), (1, 2)] {
+            block[4 * component * F::PARTS * LANES + harmonic] *= 2.0;
         }
     }
 
@@ -188,6 +237,14 @@ impl Rows for Vec<Link> {
 }
 
 impl CyclicCholesky {
+    /// The factor of another matrix of the same ring, such as that of another step size, in this one's memory.
+    pub fn refactored(self, matrix: &CyclicMatrix) -> Result<CyclicCholesky, SolverError> {
+        let CyclicCholesky {
+            ring, hold, values, ..
+        } = self;
+        ring.factor_into(matrix, hold, values)
+    }
+
     /// The ring.
     pub fn ring(&self) -> &CyclicRing {
         &self.ring

@@ -103,16 +103,13 @@ impl<F: Form> WithSimd for Factorise<'_, F> {
     fn with_simd<S: Simd>(self, simd: S) {
         let values = S::as_mut_simd_f64s(self.values).0;
         let ratios = S::as_mut_simd_f64s(self.ratios).0;
+        let len = View::<S>::block_len(F::PARTS);
         for i in 0..self.profile.n() {
+            factor_row::<S, F::Number<S>>(simd, self.profile, i, values);
+            let diagonal = &mut values[self.profile.place(i, i) * len..][..len];
+            let ratios = &mut ratios[3 * i * View::<S>::VECTORS..][..3 * View::<S>::VECTORS];
             for half in 0..View::<S>::VECTORS {
-                let view = View { simd, half };
-                factor_row::<S, F::Number<S>>(&view, self.profile, i, values);
-                let diagonal = self.profile.place(i, i) * View::<S>::block_len(F::PARTS);
-                factor_diagonal::<S, F::Number<S>>(
-                    &view,
-                    &mut values[diagonal..][..View::<S>::block_len(F::PARTS)],
-                    &mut ratios[3 * i * View::<S>::VECTORS..][..3 * View::<S>::VECTORS],
-                );
+                factor_diagonal::<S, F::Number<S>>(&View { simd, half }, diagonal, ratios);
             }
         }
     }
@@ -120,42 +117,61 @@ impl<F: Form> WithSimd for Factorise<'_, F> {
 
 /// Blocks (i, j) of the factor, j < i, and the diagonal block less their products.
 #[inline(always)]
-fn factor_row<S: Simd, N: Number<S>>(view: &View<S>, profile: &Profile, i: usize, values: &mut [S::f64s]) {
-    let (simd, len) = (view.simd, View::<S>::block_len(N::PARTS));
+fn factor_row<S: Simd, N: Number<S>>(simd: S, profile: &Profile, i: usize, values: &mut [S::f64s]) {
+    let len = View::<S>::block_len(N::PARTS);
     let first = profile.first[i];
     let (done, row) = values.split_at_mut(profile.starts[i] * len);
     for j in first..i {
         let from = first.max(profile.first[j]);
         let other = &done[profile.place(j, from) * len..][..(j + 1 - from) * len];
+        let (other, pivot) = other.split_at((j - from) * len);
         let (known, rest) = row.split_at_mut((j - first) * len);
-        let sum: [[N; 3]; 3] = view.dot_blocks(&known[(from - first) * len..], &other[..(j - from) * len]);
-        let pivot = &other[(j - from) * len..];
-        let entry = |e: usize| view.entry::<N>(pivot, e);
-        let inverse = [0, 4, 8].map(|e| entry(e).parts()[0]);
-        let block = &mut rest[..len];
-        for r in 0..3 {
-            let a = |c: usize| view.entry::<N>(block, 3 * r + c).minus(simd, sum[r][c]);
-            let x0 = a(0).scaled(simd, inverse[0]);
-            let s1 = N::zero(simd).plus_product(simd, x0, entry(3));
-            let x1 = a(1).minus(simd, s1).scaled(simd, inverse[1]);
-            let s2 = N::zero(simd)
-                .plus_product(simd, x0, entry(6))
-                .plus_product(simd, x1, entry(7));
-            let x2 = a(2).minus(simd, s2).scaled(simd, inverse[2]);
-            for (c, x) in [x0, x1, x2].into_iter().enumerate() {
-                view.set_entry(block, 3 * r + c, x);
-            }
+        let known = &known[(from - first) * len..];
+        for half in 0..View::<S>::VECTORS {
+            let view = View { simd, half };
+            let sum: [[N; 3]; 3] = view.dot_blocks(known, other);
+            solve_block(&view, pivot, &sum, &mut rest[..len]);
         }
     }
     let (known, diagonal) = row.split_at_mut((i - first) * len);
-    let sum: [[N; 3]; 3] = view.dot_blocks(known, known);
-    // The diagonal entries stay as they are for the ratios; the third and sixth places of the upper triangle are free.
-    for (r, c) in [(1, 0), (2, 0), (2, 1)] {
-        let value = view.entry::<N>(diagonal, 3 * r + c).minus(simd, sum[r][c]);
-        view.set_entry(diagonal, 3 * r + c, value);
+    let diagonal = &mut diagonal[..len];
+    for half in 0..View::<S>::VECTORS {
+        let view = View { simd, half };
+        let sum: [[N; 3]; 3] = view.dot_blocks(known, known);
+        for (r, c) in [(1, 0), (2, 0), (2, 1)] {
+            let value = view.entry::<N>(diagonal, 3 * r + c).minus(simd, sum[r][c]);
+            view.set_entry(diagonal, 3 * r + c, value);
+        }
+        // The diagonal entries stay as they are for the ratios; the sums wait in the upper triangle.
+        for (r, place) in [(0, 1), (1, 2), (2, 5)] {
+            view.set_entry(diagonal, place, sum[r][r]);
+        }
     }
-    for (r, place) in [(0, 1), (1, 2), (2, 5)] {
-        view.set_entry(diagonal, place, sum[r][r]);
+}
+
+/// `(A - sum) L_jj^-H` in place of A, with the diagonal block `pivot` of the factor.
+#[inline(always)]
+fn solve_block<S: Simd, N: Number<S>>(
+    view: &View<S>,
+    pivot: &[S::f64s],
+    sum: &[[N; 3]; 3],
+    block: &mut [S::f64s],
+) {
+    let simd = view.simd;
+    let pivot = &pivot[..View::<S>::block_len(N::PARTS)];
+    let entry = |e: usize| view.entry::<N>(pivot, e);
+    let inverse = [0, 4, 8].map(|e| entry(e).parts()[0]);
+    for r in 0..3 {
+        let a = |c: usize| view.entry::<N>(block, 3 * r + c).minus(simd, sum[r][c]);
+        let x0 = a(0).scaled(simd, inverse[0]);
+        let s1 = N::zero(simd).plus_product(simd, x0, entry(3));
+        let x1 = a(1).minus(simd, s1).scaled(simd, inverse[1]);
+        let s2 = N::zero(simd).plus_product(simd, x0, entry(6));
+        let s2 = s2.plus_product(simd, x1, entry(7));
+        let x2 = a(2).minus(simd, s2).scaled(simd, inverse[2]);
+        for (c, x) in [x0, x1, x2].into_iter().enumerate() {
+            view.set_entry(block, 3 * r + c, x);
+        }
     }
 }
 

@@ -11,8 +11,8 @@
 //! revolved one is, A_k is real symmetric once the azimuthal component is multiplied by i and each node has the phase of
 //! its own azimuth; otherwise it is Hermitian.
 //!
-//! **Vectors** come in two forms. *Nodal*: Cartesian, the caller's order, `[n]`. *Harmonic*: groups of eight harmonics,
-//! `[n_groups][n_section_nodes][3][2][8]`: section nodes in elimination order, components (radial, azimuthal, axial),
+//! **Vectors** come in two forms. *Nodal*: Cartesian, the caller's order, `[n]`. *Harmonic*: groups of four harmonics,
+//! `[n_groups][n_section_nodes][3][2][4]`: section nodes in elimination order, components (radial, azimuthal, axial),
 //! real and imaginary part, harmonic of the group; unused harmonics of the last group are zero. All operations of a step
 //! but contact and output can stay in harmonic space.
 //!
@@ -30,10 +30,12 @@ mod pattern;
 mod phases;
 mod product;
 mod profile;
+mod response;
 mod ring;
 mod transform;
 
 pub use factor::{CyclicCholesky, Symmetry};
 pub use matrix::CyclicMatrix;
 pub use pattern::Coupling;
+pub use response::{Patch, ResponseTable};
 pub use ring::CyclicRing;

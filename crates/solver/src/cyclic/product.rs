@@ -1,5 +1,6 @@
 //! Products of a matrix and a vector, in harmonic and in nodal space: no global matrix.
 
+use pulp::Arch;
 use rayon::prelude::*;
 
 use super::matrix::CyclicMatrix;
@@ -19,11 +20,11 @@ impl CyclicRing {
         if x.is_empty() {
             return Ok(());
         }
-        let len = self.group_len();
+        let (arch, len) = (Arch::new(), self.group_len());
         y.par_chunks_mut(len)
             .zip(x.par_chunks(len))
             .enumerate()
-            .for_each(|(group, (y, x))| self.apply_group(matrix, group, x, y));
+            .for_each(|(group, (y, x))| arch.dispatch(|| self.apply_group(matrix, group, x, y)));
         Ok(())
     }
 
@@ -71,6 +72,7 @@ impl CyclicRing {
     }
 
     /// One group's part of the product. Couplings of a row with one step share their phase.
+    #[inline(always)]
     fn apply_group(&self, matrix: &CyclicMatrix, group: usize, x: &[f64], y: &mut [f64]) {
         let shared = &self.shared;
         let phases: Vec<[Lanes; 2]> = shared

@@ -158,7 +158,7 @@ impl CyclicRing {
         3 * self.shared.nodes.len()
     }
 
-    /// Length of a vector in harmonic space: groups of eight harmonics, the last one filled up with zeros.
+    /// Length of a vector in harmonic space: groups of four harmonics, the last one filled up with zeros.
     pub fn harmonic_len(&self) -> usize {
         self.shared.phases.n_groups() * self.group_len()
     }
