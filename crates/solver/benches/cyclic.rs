@@ -13,7 +13,8 @@ use divan::black_box;
 use fem::Material;
 use mesh::{ElementKind, Mesh, PERIODIC_TOLERANCE, Section, find_periodicity, revolve};
 use solver::{
-    Coupling, CyclicMatrix, CyclicRing, LinearSolver, Symbolic, angular_dissection, expand, restrict_lower,
+    Coupling, CyclicMatrix, CyclicRing, LinearSolver, ResponseTable, Symbolic, angular_dissection, expand,
+    restrict_lower,
 };
 
 /// Name, sectors, nodes across and along the section, whether the sparse solver runs.
@@ -152,6 +153,12 @@ fn cyclic(mesh: &Mesh) -> (f64, f64, f64) {
         factor.solve_harmonic(&mut columns.chunks_exact_mut(w.len()).collect::<Vec<_>>());
     })
     .0;
+    let raceway: Vec<usize> = (0..8).map(|i| i % width).collect();
+    let (table, responses) = best(3, || ResponseTable::new(&factor, &raceway));
+    println!(
+        "  cyclic: table of responses of 8 section nodes {table:.1} ms, {:.1} MB",
+        responses.bytes() as f64 / 1e6
+    );
     let floor = read_once(factor.factor_bytes());
     println!(
         "  cyclic: solve in harmonic space {harmonic:.2} ms = {:.2} x reading L once ({floor:.2} ms on one thread), \

@@ -5,10 +5,11 @@ use std::marker::PhantomData;
 use pulp::Arch;
 use rayon::prelude::*;
 
+use super::assemble::Fill;
 use super::kernel::{Factorise, Solve};
 use super::matrix::CyclicMatrix;
 use super::number::{Form, Hermitian, Real};
-use super::phases::{LANES, Lanes};
+use super::phases::LANES;
 use super::ring::{CyclicRing, Link};
 use crate::error::SolverError;
 use crate::linear_solver::LinearSolver;
@@ -128,7 +129,13 @@ impl CyclicRing {
             .par_chunks_mut(group_len.max(1))
             .enumerate()
             .map(|(group, values)| {
-                arch.dispatch(|| self.fill_group::<F>(group, matrix, values));
+                arch.dispatch(Fill::<F> {
+                    shared,
+                    matrix,
+                    group,
+                    values,
+                    form: PhantomData,
+                });
                 if group == 0 && hold == Hold::Springs {
                     self.add_springs::<F>(values);
                 }
@@ -149,37 +156,6 @@ impl CyclicRing {
             hold,
             values,
         })
-    }
-
-    /// The lower triangle of a group's matrices, `A_k = sum of C exp(i pi k q / N)` turned by D.
-    #[inline(always)]
-    fn fill_group<F: Form>(&self, group: usize, matrix: &CyclicMatrix, values: &mut [f64]) {
-        let shared = &self.shared;
-        let phases: Vec<[Lanes; 2]> = shared
-            .steps
-            .iter()
-            .map(|&q| shared.phases.lanes(group, q))
-            .collect();
-        let block_len = 9 * F::PARTS * LANES;
-        values.fill(0.0);
-        for link in shared.links.iter().filter(|link| link.row >= link.column) {
-            let place = shared.profile.place(link.row, link.column);
-            let there = &mut values[place * block_len..][..block_len];
-            let [cos, sin] = &phases[link.step];
-            let block = &matrix.blocks[link.block];
-            for (ij, parts) in there.chunks_exact_mut(F::PARTS * LANES).enumerate() {
-                let c = block[ij];
-                // conj(d_i) d_j (cos + i sin) of the diagonal matrix D.
-                let (re, re_sign, im, im_sign) = match (ij / 3 == 1, ij % 3 == 1) {
-                    (false, true) => (sin, -c, cos, c),
-                    (true, false) => (sin, c, cos, -c),
-                    _ => (cos, c, sin, c),
-                };
-                let (first, second) = parts.split_at_mut(LANES);
-                first.iter_mut().zip(re).for_each(|(x, p)| *x += re_sign * p);
-                second.iter_mut().zip(im).for_each(|(x, p)| *x += im_sign * p);
-            }
-        }
     }
 
     /// Doubles the diagonal entries of the node eliminated last that hold the ring: (azimuthal, axial) in

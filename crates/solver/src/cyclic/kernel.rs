@@ -253,17 +253,13 @@ fn forward_row<S: Simd, N: Number<S>, const R: usize>(
     let (blocks, diagonal) = row.split_at((i - first) * len);
     let mut sums = [[Complex::zero(simd); 3]; R];
     for (j, block) in blocks.chunks_exact(len).enumerate() {
-        let x = [0; R];
-        let mut x = x.map(|_| [Complex::zero(simd); 3]);
-        for r in 0..R {
-            let node = &columns[r][(first + j) * node_len..][..node_len];
-            x[r] = [0, 1, 2].map(|c| view.component(node, c));
-        }
-        for a in 0..3 {
-            for c in 0..3 {
+        for c in 0..3 {
+            let x: [Complex<S>; R] =
+                std::array::from_fn(|r| view.component(&columns[r][(first + j) * node_len..][..node_len], c));
+            for a in 0..3 {
                 let entry: N = view.entry(block, 3 * a + c);
                 for r in 0..R {
-                    sums[r][a] = entry.times(simd, x[r][c], sums[r][a]);
+                    sums[r][a] = entry.times(simd, x[r], sums[r][a]);
                 }
             }
         }

@@ -22,6 +22,7 @@
 //! Cost, with m dofs per section and bandwidth b: factor N m b^2 / 2, solve 2 N m b multiplications and additions, memory
 //! N m b / 2 numbers; all with twice to four times as much when there is no mirror symmetry. Measured in `benches/cyclic.rs`.
 
+mod assemble;
 mod factor;
 mod kernel;
 mod matrix;

@@ -3,9 +3,9 @@
 use pulp::Arch;
 use rayon::prelude::*;
 
+use super::assemble::Product;
 use super::matrix::CyclicMatrix;
-use super::phases::{LANES, Lanes};
-use super::ring::{CyclicRing, Link};
+use super::ring::CyclicRing;
 use crate::error::SolverError;
 
 impl CyclicRing {
@@ -24,7 +24,15 @@ impl CyclicRing {
         y.par_chunks_mut(len)
             .zip(x.par_chunks(len))
             .enumerate()
-            .for_each(|(group, (y, x))| arch.dispatch(|| self.apply_group(matrix, group, x, y)));
+            .for_each(|(group, (y, x))| {
+                arch.dispatch(Product {
+                    shared: &self.shared,
+                    matrix,
+                    group,
+                    x,
+                    y,
+                });
+            });
         Ok(())
     }
 
@@ -69,56 +77,5 @@ impl CyclicRing {
             ]);
         }
         Ok(product)
-    }
-
-    /// One group's part of the product. Couplings of a row with one step share their phase.
-    #[inline(always)]
-    fn apply_group(&self, matrix: &CyclicMatrix, group: usize, x: &[f64], y: &mut [f64]) {
-        let shared = &self.shared;
-        let phases: Vec<[Lanes; 2]> = shared
-            .steps
-            .iter()
-            .map(|&q| shared.phases.lanes(group, q))
-            .collect();
-        y.fill(0.0);
-        let same = |a: &Link, b: &Link| a.row == b.row && a.step == b.step;
-        for links in shared.links.chunk_by(same) {
-            let mut sums = [[[0.0; LANES]; 2]; 3];
-            for link in links {
-                let node = &x[6 * LANES * link.column..][..6 * LANES];
-                add_block(&matrix.blocks[link.block], node, &mut sums);
-            }
-            let Link { row, step, .. } = links[0];
-            add_turned(&phases[step], &sums, &mut y[6 * LANES * row..][..6 * LANES]);
-        }
-    }
-}
-
-/// Adds `C D w` of one node, D = diag(1, i, 1).
-#[inline(always)]
-fn add_block(block: &[f64; 9], node: &[f64], sums: &mut [[Lanes; 2]; 3]) {
-    for (i, sum) in sums.iter_mut().enumerate() {
-        let [a, b, c] = [block[3 * i], block[3 * i + 1], block[3 * i + 2]];
-        for lane in 0..LANES {
-            let at = |part: usize| node[part * LANES + lane];
-            sum[0][lane] += a * at(0) - b * at(3) + c * at(4);
-            sum[1][lane] += a * at(1) + b * at(2) + c * at(5);
-        }
-    }
-}
-
-/// Adds `D^H exp(i phase) sums` to a node.
-#[inline(always)]
-fn add_turned([cos, sin]: &[Lanes; 2], sums: &[[Lanes; 2]; 3], node: &mut [f64]) {
-    for (i, [re, im]) in sums.iter().enumerate() {
-        let parts = &mut node[2 * i * LANES..2 * (i + 1) * LANES];
-        for lane in 0..LANES {
-            let x = cos[lane] * re[lane] - sin[lane] * im[lane];
-            let y = cos[lane] * im[lane] + sin[lane] * re[lane];
-            // Division by i of the azimuthal component.
-            let (x, y) = if i == 1 { (y, -x) } else { (x, y) };
-            parts[lane] += x;
-            parts[LANES + lane] += y;
-        }
     }
 }
