@@ -1,7 +1,8 @@
 //! Rotational periodicity: the number of sectors, the sites of nodes, and the reasons against.
 
 use mesh::{
-    ElementKind, Mesh, NotPeriodic, PERIODIC_TOLERANCE, Periodicity, RingSide, find_periodicity, revolve,
+    ElementKind, Mesh, NotPeriodic, PERIODIC_TOLERANCE, Periodicity, RingSide, find_periodicity, read_msh,
+    revolve,
 };
 
 use crate::{revolved, section};
@@ -243,4 +244,23 @@ fn the_deviation_is_that_of_the_coordinates() {
         "{:e}",
         found.deviation()
     );
+}
+
+/// Wrong: the rings that come with the program, read back from their files, would be solved as general meshes; or Gmsh's
+/// free mesh of tetrahedra would be taken for a periodic one.
+#[test]
+fn stored_rings_are_periodic_and_a_free_mesh_is_not() {
+    let stored = |name: &str| {
+        let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../meshes/");
+        read_msh(format!("{path}{name}"), 1e-3).unwrap()
+    };
+    for name in ["7010c_inner_coarse.msh", "7010c_outer_coarse.msh"] {
+        let found = find_periodicity(&stored(name), PERIODIC_TOLERANCE).unwrap();
+        assert_eq!(found.n_sectors(), 90);
+        assert!(found.half_way().is_some());
+        assert!(found.deviation() < 1e-16, "{:e}", found.deviation());
+    }
+    let reason = find_periodicity(&stored("7010c_inner_tet10.msh"), PERIODIC_TOLERANCE).unwrap_err();
+    let is_node = matches!(reason, NotPeriodic::Node { .. } | NotPeriodic::Alone { .. });
+    assert!(is_node, "{reason}");
 }
