@@ -43,6 +43,16 @@ pub enum Symmetry {
     None,
 }
 
+impl Symmetry {
+    /// Numbers per entry of a factor.
+    fn parts(self) -> usize {
+        match self {
+            Symmetry::Mirrored => 1,
+            Symmetry::None => 2,
+        }
+    }
+}
+
 /// What keeps a ring from moving as a whole.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Hold {
@@ -81,6 +91,19 @@ impl CyclicRing {
         }
     }
 
+    /// Bytes of a factor's values, known before anything is factored: to compare with [`crate::Symbolic::factor_bytes`].
+    pub fn factor_bytes(&self, symmetry: Symmetry) -> usize {
+        let group = 9 * symmetry.parts() * LANES * self.shared.profile.n_blocks();
+        size_of::<f64>() * group * self.shared.phases.n_groups()
+    }
+
+    /// Multiplications and additions of a factorisation but for the section's pivots, to compare with
+    /// [`crate::Symbolic::flops`]: few wide sectors can cost more than the ring as a whole.
+    pub fn flops(&self, symmetry: Symmetry) -> f64 {
+        let per_product = (54 * symmetry.parts() * symmetry.parts()) as f64;
+        per_product * self.shared.profile.n_products() as f64 * self.shared.phases.n_harmonics() as f64
+    }
+
     /// What the harmonics of a matrix are: the section is its own mirror image when the block at the angle of a
     /// step and the one at the opposite angle are each other's images, `S C S`, S = diag(1, -1, 1).
     pub fn symmetry(&self, matrix: &CyclicMatrix) -> Symmetry {
@@ -115,7 +138,7 @@ impl CyclicRing {
     ) -> Result<CyclicCholesky, SolverError> {
         let shared = &self.shared;
         let group_len = 9 * F::PARTS * LANES * shared.profile.n_blocks();
-        let len = group_len * shared.phases.n_groups();
+        let len = self.factor_bytes(symmetry) / size_of::<f64>();
         values.truncate(len);
         values
             .try_reserve_exact(len - values.len())

@@ -48,7 +48,7 @@ impl Profile {
     }
 
     /// Products of blocks in a factorisation.
-    fn n_products(&self) -> usize {
+    pub(crate) fn n_products(&self) -> usize {
         let row = |i: usize| -> usize {
             let first = self.first[i];
             (first..=i).map(|j| j - first.max(self.first[j])).sum()

@@ -13,6 +13,7 @@ use realfft::num_complex::Complex;
 use super::factor::CyclicCholesky;
 use super::phases::LANES;
 use super::ring::CyclicRing;
+use super::transform::{Spectrum, restore_line};
 
 /// Unit loads solved for at a time.
 const COLUMNS: usize = 6;
@@ -150,7 +151,7 @@ impl ResponseTable {
 }
 
 /// Harmonic responses of the chosen dofs to each unit load of the real basis, `[force][displacement][n_harmonics]`.
-fn spectra(factor: &CyclicCholesky, places: &[usize]) -> Vec<Complex<f64>> {
+fn spectra(factor: &CyclicCholesky, places: &[usize]) -> Vec<Spectrum> {
     let ring = factor.ring();
     let (n_harmonics, n_dofs) = (ring.shared.phases.n_harmonics(), 3 * places.len());
     let (len, group_len) = (ring.harmonic_len(), ring.group_len());
@@ -181,7 +182,7 @@ fn spectra(factor: &CyclicCholesky, places: &[usize]) -> Vec<Complex<f64>> {
 
 /// Inverse transforms of the spectra, with the phases of the nodes' azimuths and of the azimuthal components,
 /// `[n_sectors][displacement][force]`.
-fn transform(ring: &CyclicRing, places: &[usize], spectra: &[Complex<f64>]) -> Vec<f64> {
+fn transform(ring: &CyclicRing, places: &[usize], spectra: &[Spectrum]) -> Vec<f64> {
     let shared = &ring.shared;
     let (n, n_harmonics, n_dofs) = (ring.n_sectors(), shared.phases.n_harmonics(), 3 * places.len());
     let mut lines = vec![0.0; n * n_dofs * n_dofs];
@@ -205,14 +206,7 @@ fn transform(ring: &CyclicRing, places: &[usize], spectra: &[Complex<f64>]) -> V
                     let [cos, sin] = shared.phases.of(k, step);
                     *place = value * turn * Complex::new(cos, sin) / n as f64;
                 }
-                spectrum[0].im = 0.0;
-                if n % 2 == 0 {
-                    spectrum[n_harmonics - 1].im = 0.0;
-                }
-                shared
-                    .inverse
-                    .process_with_scratch(&mut spectrum, line, &mut scratch)
-                    .expect("the lengths are those of the plan");
+                restore_line(&shared.inverse, &mut spectrum, line, &mut scratch);
             }
         });
     let mut responses = vec![0.0; lines.len()];

@@ -7,7 +7,10 @@
 //! The phase of each node's own azimuth and the factor i of the azimuthal component make the harmonics of a section that
 //! is its own mirror image real. Cost: one real FFT of length N per dof of the section.
 
+use std::sync::Arc;
+
 use rayon::prelude::*;
+use realfft::ComplexToReal;
 use realfft::num_complex::Complex;
 
 use super::phases::LANES;
@@ -20,7 +23,7 @@ const TASK: usize = 4;
 const NODAL_TASK: usize = 4096;
 
 /// One coefficient of a real Fourier transform.
-type Spectrum = Complex<f64>;
+pub(super) type Spectrum = Complex<f64>;
 
 impl CyclicRing {
     /// Harmonics of the nodal vector `nodal` (Cartesian, `[n]`) into `harmonic`, `[harmonic_len()]`.
@@ -142,7 +145,6 @@ impl CyclicRing {
     fn restore_nodes(&self, first: usize, harmonic: &[f64], components: &mut [f64]) {
         let shared = &self.shared;
         let n = self.n_sectors();
-        let n_harmonics = shared.phases.n_harmonics();
         let mut spectrum = shared.inverse.make_input_vec();
         let mut scratch = shared.inverse.make_scratch_vec();
         for (i, line) in components.chunks_exact_mut(n).enumerate() {
@@ -158,17 +160,26 @@ impl CyclicRing {
                 let [cos, sin] = shared.phases.of(k, shared.halves[place]);
                 *value = w * Complex::new(cos, sin) / n as f64;
             }
-            // The harmonics that are their own conjugates are real but for rounding.
-            spectrum[0].im = 0.0;
-            if n % 2 == 0 {
-                spectrum[n_harmonics - 1].im = 0.0;
-            }
-            shared
-                .inverse
-                .process_with_scratch(&mut spectrum, line, &mut scratch)
-                .expect("the lengths are those of the plan");
+            restore_line(&shared.inverse, &mut spectrum, line, &mut scratch);
         }
     }
+}
+
+/// The values round the ring, `[n_sectors]`, of a spectrum, which is overwritten.
+pub(super) fn restore_line(
+    inverse: &Arc<dyn ComplexToReal<f64>>,
+    spectrum: &mut [Spectrum],
+    line: &mut [f64],
+    scratch: &mut [Spectrum],
+) {
+    // The harmonics that are their own conjugates are real but for rounding.
+    spectrum[0].im = 0.0;
+    if line.len().is_multiple_of(2) {
+        spectrum[line.len() / 2].im = 0.0;
+    }
+    inverse
+        .process_with_scratch(spectrum, line, scratch)
+        .expect("the lengths are those of the plan");
 }
 
 /// A group's part of a harmonic vector, `[n_section_nodes][3][2][LANES]`, from the spectra of all dofs of the section.

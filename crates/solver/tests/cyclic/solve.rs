@@ -54,6 +54,13 @@ fn the_real_and_the_hermitian_form_agree() {
         assert_eq!(factors[0].symmetry(), Symmetry::Mirrored);
         assert_eq!(factors[1].symmetry(), Symmetry::None);
         assert_eq!(2 * factors[0].factor_bytes(), factors[1].factor_bytes());
+        for factor in &factors {
+            let ring = factor.ring();
+            assert_eq!(ring.factor_bytes(factor.symmetry()), factor.factor_bytes());
+        }
+        let [real_flops, hermitian_flops] =
+            [Symmetry::Mirrored, Symmetry::None].map(|symmetry| factors[0].ring().flops(symmetry));
+        assert_eq!(4.0 * real_flops, hermitian_flops);
         let mut solutions = [(); 2].map(|()| loads(real.mesh.n_dofs()));
         factors
             .iter()

@@ -45,6 +45,9 @@ fn a_field_survives_the_way_to_harmonic_space_and_back() {
     }
 }
 
+/// Nodes and their Cartesian weights in two directions.
+type Weights = (Vec<usize>, Vec<[[f64; 3]; 2]>);
+
 /// Wrong: compliances of patches from the table would not be those that solves for the same loads give.
 #[test]
 fn the_table_gives_the_compliances_of_solves() {
@@ -56,7 +59,7 @@ fn the_table_gives_the_compliances_of_solves() {
         assert_eq!(table.bytes(), 8 * n * 12 * 12);
         let node = |sector: usize, i: usize| ring.periodicity.nodes()[(sector % n) * width + chosen[i]];
         let values = loads(200);
-        let patches: Vec<(Vec<usize>, Vec<[[f64; 3]; 2]>)> = [0, 1, n / 2, n - 1]
+        let patches: Vec<Weights> = [0, 1, n / 2, n - 1]
             .iter()
             .enumerate()
             .map(|(p, &sector)| {
