@@ -41,7 +41,9 @@ mod symbolic;
 
 pub use bordered::Bordered;
 pub use cholesky::SparseCholesky;
-pub use cyclic::{Coupling, CyclicCholesky, CyclicMatrix, CyclicRing, Patch, ResponseTable, Symmetry};
+pub use cyclic::{
+    Coupling, CyclicCholesky, CyclicMatrix, CyclicRing, NodalLoad, Patch, ResponseTable, Symmetry,
+};
 pub use dense::{DenseCholesky, DenseLu};
 pub use dissection::angular_dissection;
 pub use error::SolverError;

@@ -3,9 +3,9 @@
 //! In cylindrical components the matrix of a ring of N equal sectors is block-circulant,
 //! `(A u)_s = A_0 u_s + A_1 u_{s+1} + A_1^T u_{s-1}`. The discrete Fourier transform over the sectors splits A x = b into
 //! N/2 + 1 independent systems of the size of one section,
-//!
-//!     A_k = A_0 + A_1 exp(2 pi i k / N) + A_1^T exp(-2 pi i k / N),    k = 0..=N/2
-//!
+//! ```text
+//! A_k = A_0 + A_1 exp(2 pi i k / N) + A_1^T exp(-2 pi i k / N),    k = 0..=N/2
+//! ```
 //! (Davis, *Circulant Matrices*, 1979, section 5.6; for cyclic structures Thomas, International Journal for Numerical
 //! Methods in Engineering 14, 1979, 81-102, doi:10.1002/nme.1620140107). If the section is its own mirror image, as a
 //! revolved one is, A_k is real symmetric once the azimuthal component is multiplied by i and each node has the phase of
@@ -13,8 +13,9 @@
 //!
 //! **Vectors** come in two forms. *Nodal*: Cartesian, the caller's order, `[n]`. *Harmonic*: groups of four harmonics,
 //! `[n_groups][n_section_nodes][3][2][4]`: section nodes in elimination order, components (radial, azimuthal, axial),
-//! real and imaginary part, harmonic of the group; unused harmonics of the last group are zero. All operations of a step
-//! but contact and output can stay in harmonic space.
+//! real and imaginary part, harmonic of the group; unused harmonics of the last group are zero. A state can stay in
+//! harmonic space: solve, product, scalar product, loads and displacements of single nodes are there; output needs a
+//! transform.
 //!
 //! **Bits.** The work on one group is sequential and groups write to places of their own, so results are the same
 //! for any number of threads. They do depend on the processor's vector instructions (fused multiply-add).
@@ -33,6 +34,7 @@ mod product;
 mod profile;
 mod response;
 mod ring;
+mod sites;
 mod transform;
 
 pub use factor::{CyclicCholesky, Symmetry};
@@ -40,3 +42,4 @@ pub use matrix::CyclicMatrix;
 pub use pattern::Coupling;
 pub use response::{Patch, ResponseTable};
 pub use ring::CyclicRing;
+pub use sites::NodalLoad;

@@ -2,8 +2,9 @@
 //!
 //! With the cylindrical components u_{s,a} of node a of sector s, at o_a = 0 or 1/2 sectors beyond the sector's plane,
 //!
-//!     w_{k,a} = D^H sum over s of u_{s,a} exp(-2 pi i k (s + o_a) / N),    D = diag(1, i, 1),    k = 0..=N/2.
-//!
+//! ```text
+//! w_{k,a} = D^H sum over s of u_{s,a} exp(-2 pi i k (s + o_a) / N),    D = diag(1, i, 1),    k = 0..=N/2
+//! ```
 //! The phase of each node's own azimuth and the factor i of the azimuthal component make the harmonics of a section that
 //! is its own mirror image real. Cost: one real FFT of length N per dof of the section.
 

@@ -1,7 +1,7 @@
 //! Harmonic space: transforms, products, responses.
 
 use mesh::{ElementKind, revolve};
-use solver::{LinearSolver, ResponseTable};
+use solver::{LinearSolver, NodalLoad, ResponseTable};
 
 use crate::common::{self, assert_close};
 use crate::rings::{Ring, SHIFT, loads, rings, section};
@@ -100,5 +100,38 @@ fn the_table_gives_the_compliances_of_solves() {
             .find(|&node| !chosen.contains(&ring.periodicity.sites()[node].section_node))
             .unwrap();
         assert_eq!(table.patch(&[other], &[[[0.0; 3]; 2]]), Err(other));
+    }
+}
+
+/// Wrong: a load on a node, or the displacement of a node, would be another one in harmonic space than in nodal space.
+#[test]
+fn single_nodes_are_loaded_and_measured_as_in_the_whole_field() {
+    for (ring, _) in rings() {
+        let x = loads(ring.mesh.n_dofs());
+        let nodes: Vec<usize> = (0..30).map(|i| (37 * i + 5) % ring.mesh.n_nodes()).collect();
+        let mut w = vec![0.0; ring.ring.harmonic_len()];
+        ring.ring.to_harmonic(&x, &mut w);
+        let found: Vec<f64> = ring.ring.displacements(&nodes, &w).concat();
+        let expected: Vec<f64> = nodes.iter().flat_map(|&n| x[3 * n..3 * n + 3].to_vec()).collect();
+        assert_close(&found, &expected, 1e-13);
+
+        // The second load of a node adds to the first.
+        let forces: Vec<NodalLoad> = nodes
+            .iter()
+            .chain(&nodes[..3])
+            .enumerate()
+            .map(|(i, &node)| NodalLoad {
+                node,
+                force: [x[i], x[i + 1], x[i + 2]],
+            })
+            .collect();
+        let mut nodal = x.clone();
+        for load in &forces {
+            (0..3).for_each(|c| nodal[3 * load.node + c] += load.force[c]);
+        }
+        let mut expected = vec![0.0; w.len()];
+        ring.ring.to_harmonic(&nodal, &mut expected);
+        ring.ring.add_loads(&forces, &mut w);
+        assert_close(&w, &expected, 1e-13);
     }
 }
