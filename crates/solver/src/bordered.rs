@@ -41,24 +41,10 @@ impl<S: LinearSolver> Bordered<S> {
                 complement[m * i + j] -= dot(&border[n * i..n * (i + 1)], &columns[n * j..n * (j + 1)]);
             }
         }
-        for i in 0..m {
-            // Written so that NaN is refused as well.
-            let is_positive = complement[m * i + i] > SCHUR_LIMIT * corner[m * i + i].abs();
-            if !is_positive {
-                return Err(SolverError::NotPositiveDefinite { row: n + i, n: n + m });
-            }
-        }
-        let schur = DenseCholesky::factor(m, &complement).map_err(|error| match error {
-            SolverError::NotPositiveDefinite { row, .. } => SolverError::NotPositiveDefinite {
-                row: n + row,
-                n: n + m,
-            },
-            other => other,
-        })?;
         Ok(Bordered {
+            schur: factor_complement(n, &complement, corner)?,
             inner,
             columns,
-            schur,
         })
     }
 
@@ -80,6 +66,29 @@ impl<S: LinearSolver> Bordered<S> {
 
 /// Smallest accepted diagonal entry of the Schur complement relative to that of D: the rest would be round-off.
 const SCHUR_LIMIT: f64 = 1e-12;
+
+/// Factor of the Schur complement of a corner `corner`, both row-major, behind n rows.
+pub(crate) fn factor_complement(
+    n: usize,
+    complement: &[f64],
+    corner: &[f64],
+) -> Result<DenseCholesky, SolverError> {
+    let m = corner.len().isqrt();
+    for i in 0..m {
+        // Written so that NaN is refused as well.
+        let is_positive = complement[m * i + i] > SCHUR_LIMIT * corner[m * i + i].abs();
+        if !is_positive {
+            return Err(SolverError::NotPositiveDefinite { row: n + i, n: n + m });
+        }
+    }
+    DenseCholesky::factor(m, complement).map_err(|error| match error {
+        SolverError::NotPositiveDefinite { row, .. } => SolverError::NotPositiveDefinite {
+            row: n + row,
+            n: n + m,
+        },
+        other => other,
+    })
+}
 
 impl<S: LinearSolver> LinearSolver for Bordered<S> {
     fn n(&self) -> usize {

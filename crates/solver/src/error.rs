@@ -108,6 +108,17 @@ pub enum SolverError {
         /// Largest accepted difference.
         limit: f64,
     },
+    /// A border of a periodic ring is no rigid motion.
+    #[error(
+        "column {column} of the border reaches beyond the lowest harmonics of the ring with a share of {share:.1e}; \
+         expected rigid motions of whole rings of nodes"
+    )]
+    BorderBeyond {
+        /// Column of the border.
+        column: usize,
+        /// Largest harmonic beyond, relative to the largest of the lowest.
+        share: f64,
+    },
     /// The factor does not fit into memory.
     #[error(
         "no memory for a factorisation of {n} rows, which needs {bytes} bytes; use a coarser mesh, more sectors \

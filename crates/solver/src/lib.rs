@@ -29,7 +29,7 @@ pub mod cyclic;
 pub mod dense;
 pub mod dissection;
 
-mod bordered;
+pub mod bordered;
 mod cholesky;
 mod elimination_tree;
 mod error;
@@ -42,7 +42,8 @@ mod symbolic;
 pub use bordered::Bordered;
 pub use cholesky::SparseCholesky;
 pub use cyclic::{
-    Coupling, CyclicCholesky, CyclicMatrix, CyclicRing, NodalLoad, Patch, ResponseTable, Symmetry,
+    Coupling, CyclicBordered, CyclicCholesky, CyclicMatrix, CyclicRing, NodalLoad, Patch, ResponseTable,
+    Symmetry,
 };
 pub use dense::{DenseCholesky, DenseLu};
 pub use dissection::angular_dissection;

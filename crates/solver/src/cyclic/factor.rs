@@ -289,6 +289,14 @@ impl CyclicCholesky {
             });
     }
 
+    /// Solves one right-hand side for the first group of harmonics alone.
+    pub(super) fn solve_first_group(&self, low: &mut [f64]) {
+        match self.symmetry {
+            Symmetry::Mirrored => self.solve_group::<Real>(0, vec![low]),
+            Symmetry::None => self.solve_group::<Hermitian>(0, vec![low]),
+        }
+    }
+
     /// Solves one group, two right-hand sides at a time.
     fn solve_group<F: Form>(&self, group: usize, columns: Vec<&mut [f64]>) {
         let profile = &self.ring.shared.profile;

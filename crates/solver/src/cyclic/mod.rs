@@ -24,6 +24,7 @@
 //! N m b / 2 numbers; all with twice to four times as much when there is no mirror symmetry. Measured in `benches/cyclic.rs`.
 
 mod assemble;
+mod border;
 mod factor;
 mod kernel;
 mod matrix;
@@ -37,6 +38,7 @@ mod ring;
 mod sites;
 mod transform;
 
+pub use border::CyclicBordered;
 pub use factor::{CyclicCholesky, Symmetry};
 pub use matrix::CyclicMatrix;
 pub use pattern::Coupling;

@@ -83,22 +83,31 @@ impl CyclicRing {
     pub fn harmonic_dot(&self, a: &[f64], b: &[f64]) -> f64 {
         assert_eq!(a.len(), self.harmonic_len(), "a vector in harmonic space");
         assert_eq!(b.len(), self.harmonic_len(), "a vector in harmonic space");
+        let len = self.group_len().max(1);
+        let groups = a.chunks_exact(len).zip(b.chunks_exact(len));
+        groups
+            .enumerate()
+            .map(|(group, (a, b))| self.group_dot(group, a, b))
+            .sum()
+    }
+
+    /// One group's part of the scalar product, of its part of two vectors.
+    pub(super) fn group_dot(&self, group: usize, a: &[f64], b: &[f64]) -> f64 {
         let n = self.n_sectors();
-        let mut sums = vec![0.0; LANES * self.shared.phases.n_groups()];
-        let groups = a
-            .chunks_exact(self.group_len())
-            .zip(b.chunks_exact(self.group_len()));
-        for (sums, (a, b)) in sums.chunks_exact_mut(LANES).zip(groups) {
-            for (a, b) in a.chunks_exact(LANES).zip(b.chunks_exact(LANES)) {
-                (0..LANES).for_each(|lane| sums[lane] += a[lane] * b[lane]);
-            }
+        let mut sums = [0.0; LANES];
+        for (a, b) in a.chunks_exact(LANES).zip(b.chunks_exact(LANES)) {
+            (0..LANES).for_each(|lane| sums[lane] += a[lane] * b[lane]);
         }
         let once = |k: usize| k == 0 || 2 * k == n;
-        let weighted = sums.iter().take(self.shared.phases.n_harmonics()).enumerate();
-        weighted
-            .map(|(k, sum)| if once(k) { *sum } else { 2.0 * sum })
-            .sum::<f64>()
-            / n as f64
+        let weighted = sums.iter().enumerate().map(|(lane, sum)| {
+            // Harmonics stand for their conjugates as well; unused lanes are zero.
+            if once(group * LANES + lane) {
+                *sum
+            } else {
+                2.0 * sum
+            }
+        });
+        weighted.sum::<f64>() / n as f64
     }
 
     /// Spectra of the nodes from place `first` on, `[nodes][3][n_harmonics]`.

@@ -1,7 +1,7 @@
 //! Rings held by others than whole rings of nodes: by nothing, or by a rigid partner.
 
 use mesh::Mesh;
-use solver::{Bordered, DenseCholesky, LinearSolver};
+use solver::{Bordered, CyclicBordered, DenseCholesky, LinearSolver, SolverError};
 
 use crate::common::{self, assert_close};
 use crate::rings::{Ring, SHIFT, loads, rings};
@@ -111,7 +111,8 @@ fn a_bore_that_follows_five_rigid_dofs_is_a_border() {
             .unwrap()
             .factor(&matrix)
             .unwrap();
-        let bordered = Bordered::new(factor, &border, 5, &corner).unwrap();
+        let bordered = Bordered::new(factor.clone(), &border, 5, &corner).unwrap();
+        let low = CyclicBordered::new(factor, &border, 5, &corner).unwrap();
 
         // T^T A T w with w = T [x; q] must be the load, whatever way A is applied.
         let n = bordered.n();
@@ -119,6 +120,9 @@ fn a_bore_that_follows_five_rigid_dofs_is_a_border() {
         let rhs = loads(2 * n);
         let mut found = rhs.clone();
         bordered.solve(&mut found, 2);
+        let mut in_harmonics = rhs.clone();
+        low.solve(&mut in_harmonics, 2);
+        assert_close(&in_harmonics, &found, 1e-12);
         let assembled = ring.assembled(SHIFT);
         for (found, rhs) in found.chunks(n).zip(rhs.chunks(n)) {
             let mut w = vec![0.0; n_dofs];
@@ -132,4 +136,25 @@ fn a_bore_that_follows_five_rigid_dofs_is_a_border() {
             assert_close(&reduced, rhs, 1e-10);
         }
     }
+}
+
+/// Wrong: a partner that is not rigid, or holds parts of rings only, would lose all but its lowest harmonics in silence.
+#[test]
+fn a_border_beyond_the_lowest_harmonics_is_refused() {
+    let (ring, _) = rings().swap_remove(0);
+    let factor = ring.ring.factor(&ring.shifted()).unwrap();
+    let mut border = vec![0.0; 2 * ring.mesh.n_dofs()];
+    (0..ring.mesh.n_nodes()).for_each(|node| border[3 * node + 2] = 1.0);
+    let place = ring.mesh.n_dofs() + 7;
+    border[place] = 1.0;
+    let error = CyclicBordered::new(factor, &border, 2, &[1e12, 0.0, 0.0, 1e12]).unwrap_err();
+    assert!(
+        matches!(error, SolverError::BorderBeyond { column: 1, share } if share > 0.1),
+        "{error}"
+    );
+    assert!(
+        error
+            .to_string()
+            .contains("expected rigid motions of whole rings of nodes")
+    );
 }
