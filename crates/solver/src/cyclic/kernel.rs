@@ -326,3 +326,6 @@ fn backward_row<S: Simd, N: Number<S>, const R: usize>(
         }
     }
 }
+
+#[cfg(test)]
+mod tests;
