@@ -10,6 +10,8 @@
 //! | hex20 | full integration | 3 x 3 x 3 | 5 x 5 x 5, exact also on curved elements |
 //! | tet10 | full integration | 4 | collapsed 5 x 5 x 5, exact also on curved elements |
 //!
+//! A rotationally periodic ring needs one sector only: [`assemble_sector`].
+//!
 //! Reduced integration is not offered: it hourglasses under contact loads.
 //!
 //! Every sum over elements runs in the order of the elements ([`mesh::Mesh::connectivity`]), so results are the
