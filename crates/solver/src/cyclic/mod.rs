@@ -31,7 +31,7 @@
 //! | 151 k | 2.7 | 15.6 | 0.64 | 21 | 0.65 | 0.57, 0.60 | 1600, 560, 98, 420 |
 //! | 410 k | 12 | 57 | 3.9 | 72 | 1.75 | 2.2, 2.3 | not run |
 //!
-//! A solve takes 1.5-2.4 times as long as reading the factor once.
+//! These are the best of several runs on a loaded machine. A solve takes 1.5-3.2 times as long as reading the factor once.
 
 mod assemble;
 mod border;

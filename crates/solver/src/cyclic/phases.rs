@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-/// Harmonics treated together: one AVX2 vector. Eight, in two such vectors or in one of AVX-512, took 5-20 % longer per
+/// Harmonics treated together: one AVX2 vector. Eight, in two such vectors or in one of AVX-512, took 14-40 % longer per
 /// solve on rings of 150 k and 410 k dof (AMD EPYC 9004, November 2026): the factor of a group then leaves the L2 cache.
 pub(crate) const LANES: usize = 4;
 
