@@ -130,6 +130,8 @@ fn the_summary_has_the_keys_of_schema_1() {
         "contact",
         "disk",
         "disk_wait",
+        "effect_axial_force",
+        "effect_radial_force",
         "factor",
         "output",
         "read",

@@ -3,29 +3,45 @@
 use std::sync::Arc;
 
 use contact::{BearingGeometry, Groove, HertzContact, Side};
-use dynamics::effects::{AxialForce, BallCentrifugal, Effect, Gravity, Moment, RadialForce};
+use dynamics::effects::{
+    AxialForce, BallCentrifugal, Effect, FrameRotation, Gravity, GyroscopicMoment, Moment, RadialForce,
+};
 use dynamics::model::{RACEWAY_GROUP, elastic};
+use dynamics::motion::balls::Rolling;
 use dynamics::{ContactMode, ContactSettings, Hold, Model, RingModel, ShaftDof, Tolerances};
 use fem::Material;
 use mesh::Torus;
 
 use crate::failure::Failure;
 use crate::motion::speed;
-use crate::scene::{self, Scene};
+use crate::scene::{self, Scene, Scheduled};
 
 /// Deviation of raceway nodes from the scene's torus that is taken for round-off of a file, over the groove
 /// radius.
 const TORUS_TOLERANCE: f64 = 2e-4;
 
-/// The model of a scene. Reads both meshes.
-pub fn build_model(scene: &Scene) -> Result<Model, Failure> {
+/// Gmsh tags of the nodes of flexible rings, inner first, `[n_nodes]`.
+pub type NodeTags = [Option<Vec<u64>>; 2];
+
+/// The model of a scene, and the numbers of its nodes in the mesh files. Reads both meshes.
+pub fn build_model(scene: &Scene) -> Result<(Model, NodeTags), Failure> {
     let geometry = geometry(scene);
     geometry.validate()?;
     let rings = rayon::join(
         || ring(scene, &geometry, Side::Inner),
         || ring(scene, &geometry, Side::Outer),
     );
-    model_with_rings(scene, [rings.0?.map(Arc::new), rings.1?.map(Arc::new)])
+    let (inner, inner_tags) = rings.0?.unzip();
+    let (outer, outer_tags) = rings.1?.unzip();
+    let model = model_with_rings(scene, [inner.map(Arc::new), outer.map(Arc::new)])?;
+    Ok((model, [inner_tags, outer_tags]))
+}
+
+/// How balls and cage roll; None when the scene has no speed.
+pub fn rolling(scene: &Scene) -> Option<Rolling> {
+    let slip = scene.effects.cage_slip.unwrap_or([0.0; 2]);
+    let speed = scene.speed.as_ref().map(|_| speed(scene));
+    speed.map(|speed| Rolling::new(&geometry(scene), speed, slip))
 }
 
 /// The model of a scene with rings that were read before: the points of a sweep share them.
@@ -40,6 +56,7 @@ pub fn model_with_rings(scene: &Scene, rings: [Option<Arc<RingModel>>; 2]) -> Re
         let exact = HertzContact::new(&geometry, side, elastic(&ball_steel), elastic(&ring_steel));
         given[side.index()].map_or(exact, |k| exact.with_stiffness(k))
     });
+    let effects = effects(scene, &rings)?;
     let shaft = &scene.shaft;
     let dofs = [shaft.x, shaft.y, shaft.z, shaft.tilt_x, shaft.tilt_y].map(|motion| match motion {
         scene::Motion::Free => ShaftDof::Free,
@@ -52,6 +69,7 @@ pub fn model_with_rings(scene: &Scene, rings: [Option<Arc<RingModel>>; 2]) -> Re
         rings,
         ball_material: ball_steel,
         shaft: dofs,
+        shaft_schedules: shaft.schedules.clone(),
         shaft_mass: shaft.mass,
         load_point: shaft.load_point,
         contact: ContactSettings {
@@ -62,7 +80,7 @@ pub fn model_with_rings(scene: &Scene, rings: [Option<Arc<RingModel>>; 2]) -> Re
             },
             patch_spacings: scene.contact.patch_elements,
         },
-        effects: effects(scene),
+        effects,
         tolerances: Tolerances {
             force: scene.solver.tolerance,
             max_rounds: scene.solver.max_iterations,
@@ -87,35 +105,52 @@ fn material(m: &scene::Material) -> Result<Material, Failure> {
     Ok(Material::new(m.young_modulus, m.poisson_ratio, m.density)?)
 }
 
-fn effects(scene: &Scene) -> Vec<Box<dyn Effect>> {
+fn effects(scene: &Scene, rings: &[Option<Arc<RingModel>>; 2]) -> Result<Vec<Box<dyn Effect>>, Failure> {
     let mut effects: Vec<Box<dyn Effect>> = Vec::new();
-    if let Some(value) = scene.effects.axial_force {
-        effects.push(Box::new(AxialForce { value }));
+    let (asked, slip) = (&scene.effects, scene.effects.cage_slip.unwrap_or([0.0; 2]));
+    if let Some(Scheduled { value, schedule }) = asked.axial_force.clone() {
+        effects.push(Box::new(AxialForce { value, schedule }));
     }
-    if scene.effects.ball_centrifugal {
-        let slip = scene.effects.cage_slip.unwrap_or([0.0; 2]);
+    if asked.ball_centrifugal {
         effects.push(Box::new(BallCentrifugal {
             speed: speed(scene),
             slip,
         }));
     }
-    if let Some(acceleration) = scene.effects.gravity {
-        effects.push(Box::new(Gravity { acceleration }));
+    if asked.frame_rotation {
+        effects.push(Box::new(FrameRotation { speed: speed(scene) }));
     }
-    if let Some(value) = scene.effects.moment {
-        effects.push(Box::new(Moment { value }));
+    if let Some(Scheduled { value, schedule }) = asked.gravity.clone() {
+        effects.push(Box::new(
+            Gravity::new(value, schedule, rings).map_err(Failure::solving)?,
+        ));
     }
-    if let Some(radial) = &scene.effects.radial_force {
-        effects.push(Box::new(RadialForce {
-            value: radial.value,
-            direction: radial.direction,
+    if let Some(shares) = asked.gyroscopic_moment {
+        effects.push(Box::new(GyroscopicMoment {
+            speed: speed(scene),
+            slip,
+            shares,
         }));
     }
-    effects
+    if let Some(Scheduled { value, schedule }) = asked.moment.clone() {
+        effects.push(Box::new(Moment { value, schedule }));
+    }
+    if let Some(Scheduled { value, schedule }) = asked.radial_force.clone() {
+        effects.push(Box::new(RadialForce {
+            value: value.value,
+            direction: value.direction,
+            schedule,
+        }));
+    }
+    Ok(effects)
 }
 
-/// Reads and checks the mesh of one ring; None for a rigid ring.
-fn ring(scene: &Scene, geometry: &BearingGeometry, side: Side) -> Result<Option<RingModel>, Failure> {
+/// Reads and checks the mesh of one ring, and tells its nodes' tags; None for a rigid ring.
+fn ring(
+    scene: &Scene,
+    geometry: &BearingGeometry,
+    side: Side,
+) -> Result<Option<(RingModel, Vec<u64>)>, Failure> {
     let (ring, held_group, diameter) = match side {
         Side::Inner => (&scene.inner, "bore", scene.bearing.inner_raceway_diameter),
         Side::Outer => (&scene.outer, "seat", scene.bearing.outside_diameter),
@@ -146,11 +181,12 @@ fn ring(scene: &Scene, geometry: &BearingGeometry, side: Side) -> Result<Option<
         scene::Support::Clamped => Hold::Clamped,
         scene::Support::MeanMotion => Hold::MeanMotion,
     };
-    Ok(Some(RingModel {
+    let ring = RingModel {
         mesh,
         material: material(&scene.materials.rings)?,
         hold,
         held_group,
         groove,
-    }))
+    };
+    Ok(Some((ring, origin.node_tags)))
 }

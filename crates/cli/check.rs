@@ -7,31 +7,47 @@ use dynamics::{Model, RingMemory, forecast_peak, ring};
 
 use crate::build::build_model;
 use crate::failure::Failure;
+use crate::modes;
 use crate::print;
 use crate::results::disk::{self, Forecast};
+use crate::results::probes::Probes;
+use crate::results::summary::effects_on;
 use crate::scene::{Analysis, Scene};
 
 /// Reads and checks the scene and its meshes and prints effects, sizes and forecasts.
 pub fn check(path: &Path, overrides: &[String]) -> Result<(), Failure> {
     let scene = Scene::load(path, overrides)?;
-    let model = build_model(&scene)?;
+    let (model, tags) = build_model(&scene)?;
+    let probes = Probes::new(&scene, &model, &tags)?;
     print::line(format_args!(
         "scene    {}",
         scene.title.as_deref().unwrap_or("(no title)")
     ));
     match &scene.analysis {
         Analysis::Static => print::line(format_args!("analysis static")),
+        Analysis::QuasiStatic(quasi) => print::line(format_args!(
+            "analysis quasi-static, {} steps of {} s, fields every {} steps",
+            quasi.n_steps, quasi.step, quasi.output_every
+        )),
         Analysis::Dynamic(dynamic) => print::line(format_args!(
             "analysis dynamic, {} steps of {} s, fields every {} steps",
             dynamic.n_steps, dynamic.step, dynamic.output_every
         )),
+        Analysis::Modes(wanted) => {
+            let names: Vec<String> = wanted.bodies.iter().map(|b| modes::name(*b, wanted)).collect();
+            print::line(format_args!(
+                "analysis modes, the {} lowest of each: {}",
+                wanted.number,
+                names.join(", ")
+            ));
+        }
         Analysis::Sweep(sweep) => print::line(format_args!(
             "analysis sweep of {} over {} values",
             sweep.key,
             sweep.points.len()
         )),
     }
-    let names: Vec<&str> = model.effects.iter().map(|e| e.name()).collect();
+    let names = effects_on(&scene, &model);
     print::line(format_args!(
         "effects  {}",
         if names.is_empty() {
@@ -48,6 +64,7 @@ pub fn check(path: &Path, overrides: &[String]) -> Result<(), Failure> {
         1e3 * geometry.groove_distance(),
         geometry.free_contact_angle().to_degrees()
     ));
+    print_probes(&scene, probes.as_ref());
     let mut memory = [None, None];
     for side in Side::BOTH {
         memory[side.index()] = print_ring(&model, side)?;
@@ -58,8 +75,14 @@ pub fn check(path: &Path, overrides: &[String]) -> Result<(), Failure> {
         forecast_peak(memory, n_threads) as f64 / 1e6,
         match &scene.analysis {
             Analysis::Dynamic(_) =>
-                " for the static start; the steps hold mass and stiffness too, and are not forecast",
-            _ => "",
+                " for the static start; the steps hold mass and stiffness too, and are not forecast"
+                    .to_string(),
+            Analysis::Modes(wanted) => format!(
+                " for the static start; the search for modes holds mass, stiffness and {:.0} MB of vectors beside the \
+                 factors",
+                modes::basis_bytes(&model, wanted) as f64 / 1e6
+            ),
+            _ => String::new(),
         }
     ));
     let forecast = Forecast::new(&scene, &model, 0);
@@ -73,6 +96,31 @@ pub fn check(path: &Path, overrides: &[String]) -> Result<(), Failure> {
         disk::size(forecast.total)
     ));
     Ok(())
+}
+
+/// Prints where the probes of a scene lie.
+fn print_probes(scene: &Scene, probes: Option<&Probes>) {
+    let Some(probes) = probes else { return };
+    for p in probes.places() {
+        print::line(format_args!(
+            "probe    {}: node {} of the {} ring, azimuth {:.3} deg, r {:.4} mm, z {:.4} mm, {:.4} mm from its point",
+            p.name,
+            p.tag,
+            p.ring,
+            p.azimuth_rad.to_degrees(),
+            1e3 * p.r_m,
+            1e3 * p.z_m,
+            1e3 * p.distance_m
+        ));
+    }
+    for c in &scene.probes.contacts {
+        print::line(format_args!(
+            "probe    {}: contact of ball {} with the {} ring",
+            c.name,
+            c.ball,
+            c.ring.key()
+        ));
+    }
 }
 
 /// Prints one ring and returns the forecast of its memory; None for a rigid ring.

@@ -58,13 +58,15 @@ impl Failure {
         }
     }
 
-    /// A failure of the solver: numerical unless the scene leaves something unheld or a mesh has a hole.
+    /// A failure of the solver: numerical unless the scene leaves something unheld or asks for what cannot be, or a
+    /// mesh has a hole.
     pub fn solving(error: DynamicsError) -> Failure {
         let user = matches!(
             error,
             DynamicsError::NotHeld { .. }
                 | DynamicsError::Unheld { .. }
                 | DynamicsError::Fem { .. }
+                | DynamicsError::NotInMotion { .. }
                 | DynamicsError::Contact(ContactError::Hole { .. })
         );
         if user {

@@ -9,15 +9,18 @@ mod export;
 mod failure;
 mod info;
 mod meshing;
+mod modes;
 mod motion;
 mod options;
 mod pack;
 mod print;
 mod progress;
+mod quasi_static;
 mod results;
 mod resume;
 mod run;
 mod scene;
+mod start;
 mod stop;
 mod units;
 

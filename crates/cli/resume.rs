@@ -259,6 +259,8 @@ fn require_motion(scene: &Scene, dir: &Path) -> Result<Dynamic, Failure> {
         Analysis::Dynamic(dynamic) => return Ok(*dynamic),
         Analysis::Static => "[static]",
         Analysis::Sweep(_) => "[sweep]",
+        Analysis::Modes(_) => "[modes]",
+        Analysis::QuasiStatic(_) => "[quasi_static]",
     };
     Err(anyhow!(
         "{} holds results of a {kind} scene; only a motion, a scene with [dynamic], can be resumed, run the scene again",

@@ -8,13 +8,17 @@ use anyhow::anyhow;
 use contact::Side;
 use dynamics::{DynamicsError, StaticSolution, StaticSolver};
 
-use crate::build::{build_model, model_with_rings};
+use crate::build::{build_model, model_with_rings, rolling};
 use crate::failure::Failure;
+use crate::modes;
 use crate::motion;
 use crate::options::Limits;
 use crate::progress::Progress;
+use crate::quasi_static;
 use crate::results::disk::Forecast;
 use crate::results::files::Files;
+use crate::results::probes::Probes;
+use crate::results::shown::Shown;
 use crate::results::snapshot::Snapshot;
 use crate::results::summary::{Findings, Summary};
 use crate::results::{console, fields, folder};
@@ -22,6 +26,14 @@ use crate::scene::{Analysis, Scene};
 
 /// One load case of a run: the swept value (None for a static scene) and its scene.
 type Point = (Option<f64>, Scene);
+
+/// A finished point.
+struct Solved {
+    /// The swept value, 0 in a static scene.
+    value: f64,
+    solution: StaticSolution,
+    snapshot: Snapshot,
+}
 
 /// Runs a scene and returns the folder of its results.
 pub fn run(
@@ -33,25 +45,35 @@ pub fn run(
     let start = Instant::now();
     let scene = Scene::load(path, overrides)?;
     let dir = folder::choose(path, out)?;
-    if let Analysis::Dynamic(dynamic) = &scene.analysis {
-        return motion::run(&scene, dynamic, &dir, limits, start).map(|()| dir);
+    match &scene.analysis {
+        Analysis::Dynamic(dynamic) => {
+            return motion::run(&scene, dynamic, &dir, limits, start).map(|()| dir);
+        }
+        Analysis::QuasiStatic(settings) => {
+            return quasi_static::run(&scene, settings, &dir, limits, start).map(|()| dir);
+        }
+        Analysis::Modes(wanted) => {
+            return modes::run(&scene, wanted, &dir, limits, start).map(|()| dir);
+        }
+        Analysis::Static | Analysis::Sweep(_) => {}
     }
     let points = points(&scene)?;
     let mut progress = Progress::new(points.len() as u64);
     progress.stage("reading meshes");
-    let mut model = build_model(&points[0].1)?;
+    let (mut model, tags) = build_model(&points[0].1)?;
+    let mut probes = Probes::new(&scene, &model, &tags)?;
     Forecast::new(&scene, &model, 0).require_space(&dir, limits.ignore_disk_space)?;
     let placed = model.geometry;
     let read = start.elapsed().as_secs_f64();
     progress.stage("factoring the stiffness of the rings");
     let mut solver = StaticSolver::new(&model).map_err(Failure::solving)?;
-    let mut solutions: Vec<(f64, StaticSolution)> = Vec::new();
+    let mut solutions: Vec<Solved> = Vec::new();
     let mut results: Option<Files> = None;
     let mut failure = None;
     for (step, (value, point)) in points.iter().enumerate() {
         progress.stage(&stage_text(&scene, *value));
         model = model_with_rings(point, model.rings)?;
-        let before = solutions.last().map(|s| &s.1);
+        let before = solutions.last().map(|s| &s.solution);
         let solution = match solver.solve(&model, before) {
             Ok(solution) => solution,
             Err(error) => {
@@ -60,22 +82,38 @@ pub fn run(
             }
         };
         // The first solution makes the folder: a scene that has none leaves no files.
-        let snapshot = Snapshot::of_equilibrium(&solution);
+        let snapshot = Snapshot::of_equilibrium(&solution, rolling(point).as_ref());
         let files = match &mut results {
             Some(files) => files,
-            empty => empty.insert(Files::create(&scene, &model, &dir, &snapshot, &[])?),
+            empty => empty.insert(Files::create(
+                &scene,
+                &model,
+                &dir,
+                &snapshot,
+                probes.take(),
+                &[],
+            )?),
         };
-        let step = step as u64;
         // The points of a sweep have no time; their number stands for it.
-        files.write_tables(step, step as f64, *value, &snapshot)?;
-        files.write_fields(|recoveries| {
-            fields::record(&model, &placed, &solution, recoveries, step, &point.text)
-        })?;
+        let (step, time) = (step as u64, step as f64);
+        let shown = Shown::Equilibrium {
+            model: &model,
+            placed: &placed,
+            solution: &solution,
+        };
+        files.write_tables(step, time, *value, &snapshot)?;
+        files.write_probes(step, time, *value, &shown)?;
+        files
+            .write_fields(|recoveries| fields::record(&shown, &solution, recoveries, (step, time), point))?;
         // Later points start from displacements of the contacts only; fields of a long sweep would fill the memory.
-        if let Some((_, earlier)) = solutions.last_mut() {
-            earlier.elastic = [None, None];
+        if let Some(earlier) = solutions.last_mut() {
+            earlier.solution.elastic = [None, None];
         }
-        solutions.push((value.unwrap_or(0.0), solution));
+        solutions.push(Solved {
+            value: value.unwrap_or(0.0),
+            solution,
+            snapshot,
+        });
         progress.advance();
     }
     progress.finish();
@@ -83,7 +121,9 @@ pub fn run(
     // Points that were solved get their summary, whatever came after them.
     if let Some(files) = results {
         let costs = files.finish(read, forecast, solver.timing, start)?;
-        let summary = Summary::new(&scene, &model, findings(&scene, &solutions, &failure), &costs);
+        let mut findings = findings(&scene, &solutions, &failure);
+        findings.effect_seconds = solver.costs.seconds();
+        let summary = Summary::new(&scene, &model, findings, &costs);
         summary.write(&dir)?;
         if failure.is_none() {
             print_results(&scene, &solutions, &summary);
@@ -92,38 +132,41 @@ pub fn run(
     failure.map_or(Ok(dir), Err)
 }
 
-fn print_results(scene: &Scene, solutions: &[(f64, StaticSolution)], summary: &Summary) {
+fn print_results(scene: &Scene, solutions: &[Solved], summary: &Summary) {
     match &scene.analysis {
-        Analysis::Static | Analysis::Dynamic(_) => {
-            console::print_snapshot(&Snapshot::of_equilibrium(&solutions[0].1))
+        Analysis::Sweep(sweep) => {
+            let points: Vec<_> = solutions.iter().map(|s| (s.value, &s.solution)).collect();
+            console::print_sweep(&sweep.column, &points);
         }
-        Analysis::Sweep(sweep) => console::print_sweep(&sweep.column, solutions),
+        _ => console::print_snapshot(&solutions[0].snapshot),
     }
     summary.print_costs();
 }
 
-fn findings(scene: &Scene, solutions: &[(f64, StaticSolution)], failure: &Option<Failure>) -> Findings {
-    let last = &solutions.last().expect("a finished run has a solution").1;
-    let points = solutions
-        .iter()
-        .map(|(value, s)| (*value, Snapshot::of_equilibrium(s)));
+fn findings(scene: &Scene, solutions: &[Solved], failure: &Option<Failure>) -> Findings {
+    let last = solutions.last().expect("a finished run has a solution");
+    let points = solutions.iter().map(|s| (s.value, s.snapshot.clone()));
     Findings {
         status: failure.as_ref().map_or("finished".to_string(), Failure::status),
-        last: Snapshot::of_equilibrium(last),
+        last: last.snapshot.clone(),
         points: points.collect(),
-        iterations: BTreeMap::from([("rounds", last.rounds), ("newton", last.newton_iterations)]),
+        iterations: BTreeMap::from([
+            ("rounds", last.solution.rounds),
+            ("newton", last.solution.newton_iterations),
+        ]),
         warnings: solutions
             .iter()
             .flat_map(|point| warnings(scene, point))
             .collect(),
+        effect_seconds: BTreeMap::new(),
     }
 }
 
 /// Warnings of one point; in a sweep they say which.
-fn warnings(scene: &Scene, (value, solution): &(f64, StaticSolution)) -> Vec<String> {
+fn warnings(scene: &Scene, Solved { value, solution, .. }: &Solved) -> Vec<String> {
     let at = match &scene.analysis {
         Analysis::Sweep(sweep) => format!("{} = {value}: ", sweep.column),
-        Analysis::Static | Analysis::Dynamic(_) => String::new(),
+        _ => String::new(),
     };
     solution.warnings.iter().map(|w| format!("{at}{w}")).collect()
 }

@@ -6,7 +6,7 @@ use crate::util::{Dir, SCENE, with_line};
 /// Table and line of the scene, what the line is replaced with, and the essential parts of the message.
 type Case = (&'static str, &'static str, &'static str, &'static [&'static str]);
 
-const CASES: [Case; 27] = [
+const CASES: [Case; 28] = [
     (
         "[bearing]",
         "ball_diameter",
@@ -15,6 +15,15 @@ const CASES: [Case; 27] = [
             "error: scene.toml:6:1: unknown key \"ball_diametr\" in [bearing]; did you mean \"ball_diameter\"? valid keys \
              are \"balls\", \"ball_diameter\"",
             "6 | ball_diametr = \"9 mm\"\n  | ^^^^^^^^^^^^",
+        ],
+    ),
+    (
+        "[effects.radial_force]",
+        "value",
+        "value = \"1 kN\"\nschedule.step = { at = \"1 ms\" }",
+        &[
+            "error: scene.toml has a problem: effects.radial_force.schedule changes effects.radial_force over time, but a scene \
+             at rest has no time; remove it, or give it time with [dynamic] or [quasi_static]",
         ],
     ),
     (
@@ -177,7 +186,9 @@ const CASES: [Case; 27] = [
         "[static]",
         "[static]",
         "",
-        &["the scene has no analysis; add one of the tables [static], [sweep] and [dynamic]"],
+        &[
+            "the scene has no analysis; add one of the tables [static], [sweep], [quasi_static], [dynamic] and [modes]",
+        ],
     ),
     (
         "[static]",

@@ -29,7 +29,7 @@ pub fn print_snapshot(snapshot: &Snapshot) {
 }
 
 /// Prints a line per point of a sweep.
-pub fn print_sweep(column: &str, solutions: &[(f64, StaticSolution)]) {
+pub fn print_sweep(column: &str, solutions: &[(f64, &StaticSolution)]) {
     print::line(format_args!(
         "{column:>28}    x um     z um  tilt_y urad   force N min..max   angle deg min..max"
     ));

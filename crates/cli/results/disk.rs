@@ -50,16 +50,12 @@ impl Forecast {
             + state_bytes(scene, model)
             + FRAME_BYTES
             + scene.text.len() as u64;
-        let start = u64::from(done == 0);
         let (n_files, n_rows) = match &scene.analysis {
             Analysis::Static => (1, 1),
             Analysis::Sweep(sweep) => (sweep.points.len() as u64, sweep.points.len() as u64),
-            Analysis::Dynamic(dynamic) => {
-                let (every, n) = (dynamic.output_every, dynamic.n_steps);
-                let left = n.saturating_sub(done);
-                let files = n / every - done.min(n) / every + u64::from(left > 0 && n % every != 0);
-                (start + files, start + left)
-            }
+            Analysis::Dynamic(dynamic) => rows(dynamic.output_every, dynamic.n_steps, done),
+            Analysis::Modes(wanted) => ((wanted.number * wanted.bodies.len()) as u64, 0),
+            Analysis::QuasiStatic(quasi) => rows(quasi.output_every, quasi.n_steps, done),
         };
         let cells = BALL_CELLS * model.geometry.n_balls as u64 + OTHER_CELLS;
         Forecast {
@@ -98,6 +94,13 @@ impl Forecast {
     }
 }
 
+/// Step files and table rows of `n` steps after the first `done`, the start included when nothing is done.
+fn rows(every: u64, n: u64, done: u64) -> (u64, u64) {
+    let (start, left) = (u64::from(done == 0), n.saturating_sub(done));
+    let files = n / every - done.min(n) / every + u64::from(left > 0 && !n.is_multiple_of(every));
+    (start + files, start + left)
+}
+
 /// Bytes of the stored state.
 fn state_bytes(scene: &Scene, model: &Model) -> u64 {
     match &scene.analysis {
@@ -105,7 +108,10 @@ fn state_bytes(scene: &Scene, model: &Model) -> u64 {
             let rings = Side::BOTH.into_iter().filter_map(|side| model.ring(side));
             rings.map(ring_bytes).sum::<u64>() + BALL_BYTES * model.geometry.n_balls as u64
         }
-        Analysis::Static | Analysis::Sweep(_) => 8 * (5 + 2 * model.geometry.n_balls as u64),
+        Analysis::Modes(_) => 3 * 8,
+        Analysis::Static | Analysis::Sweep(_) | Analysis::QuasiStatic(_) => {
+            8 * (5 + 2 * model.geometry.n_balls as u64)
+        }
     }
 }
 
@@ -113,7 +119,7 @@ fn state_bytes(scene: &Scene, model: &Model) -> u64 {
 fn ring_bytes(ring: &RingModel) -> u64 {
     let held = match ring.hold {
         Hold::Clamped => 3 * ring.mesh.group_nodes(ring.held_group).len(),
-        Hold::MeanMotion => 0,
+        Hold::MeanMotion | Hold::Free => 0,
     };
     3 * 8 * (ring.mesh.n_dofs() - held) as u64
 }

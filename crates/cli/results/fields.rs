@@ -5,12 +5,13 @@ use std::collections::BTreeMap;
 
 use checkpoint::{Body, PointFields, StateArray, StepRecord};
 use contact::{BearingGeometry, Side};
-use dynamics::balls::BallResult;
+use dynamics::balls::{BallResult, ContactResult};
 use dynamics::{Model, StaticSolution};
 use fem::stress::{StressRecovery, von_mises};
 
+use super::shown::{Shown, Turn};
 use crate::failure::Failure;
-use crate::scene::StressOutput;
+use crate::scene::{InnerRingFrame, Scene, StressOutput};
 
 /// The bodies of a result, in the order of its points: flexible rings, then the balls.
 pub fn bodies(model: &Model) -> Vec<Body> {
@@ -51,38 +52,78 @@ pub fn recoveries(model: &Model, stress: StressOutput) -> Result<[Option<StressR
     Ok([recovery(Side::Inner)?, recovery(Side::Outer)?])
 }
 
-/// The record of one equilibrium. Points of a sweep may differ in the places of balls and rings; `placed` is the bearing
-/// of the mesh file, from whose places displacements are shown.
+/// The record of one equilibrium; its step also stands for its time where there is none.
 pub fn record(
-    model: &Model,
-    placed: &BearingGeometry,
+    shown: &Shown<'_>,
     solution: &StaticSolution,
     recoveries: &[Option<StressRecovery>; 2],
-    step: u64,
-    scene: &str,
+    (step, time): (u64, f64),
+    scene: &Scene,
 ) -> StepRecord {
-    let with_stress = recoveries.iter().any(Option::is_some);
-    let (mut displacement, mut stress) = (Vec::new(), Vec::new());
-    for side in Side::BOTH {
-        if let Some(elastic) = &solution.elastic[side.index()] {
-            displacement.extend(ring_displacement(model, placed, solution, side, elastic));
-            if let Some(recovery) = &recoveries[side.index()] {
-                stress.extend(recovery.nodal(elastic));
-            }
-        }
-    }
-    let forces = add_balls(model, placed, &solution.balls, &mut displacement);
     StepRecord {
         step,
-        time: step as f64,
-        points: point_fields(displacement, with_stress.then_some(stress), forces),
-        scene: scene.to_string(),
+        time,
+        points: points(shown, recoveries, scene.output.inner_ring),
+        scene: scene.text.clone(),
         state: state(solution),
     }
 }
 
+/// Fields of all points at one instant, the inner ring as it stands in space or in its own frame.
+pub fn points(
+    shown: &Shown<'_>,
+    recoveries: &[Option<StressRecovery>; 2],
+    inner_ring: InnerRingFrame,
+) -> PointFields {
+    Unstressed::new(shown, inner_ring).points(recoveries)
+}
+
+/// One instant as it is shown, but for the stress: it borrows nothing, so another thread may recover that.
+pub struct Unstressed {
+    /// Displacement of every point, m.
+    displacement: Vec<[f64; 3]>,
+    /// Field of the flexible rings in their own frames, m, flat, and their turn.
+    rings: [Option<(Vec<f64>, Turn)>; 2],
+    forces: [Vec<[f64; 3]>; 2],
+}
+
+impl Unstressed {
+    /// Places of rings and balls, and the forces on the balls.
+    pub fn new(shown: &Shown<'_>, inner_ring: InnerRingFrame) -> Unstressed {
+        let (mut displacement, mut rings) = (Vec::new(), [None, None]);
+        for side in Side::BOTH {
+            let Some(mut ring) = shown.ring(side) else {
+                continue;
+            };
+            if side == Side::Inner && inner_ring == InnerRingFrame::OwnFrame {
+                ring.turn = Turn::new(0.0);
+            }
+            displacement.extend(ring.shown_displacements());
+            rings[side.index()] = Some((ring.strained.into_owned(), ring.turn));
+        }
+        let forces = add_balls(shown.model(), shown.placed(), &shown.balls(), &mut displacement);
+        Unstressed {
+            displacement,
+            rings,
+            forces,
+        }
+    }
+
+    /// All fields, with stress where it is recovered.
+    pub fn points(self, recoveries: &[Option<StressRecovery>; 2]) -> PointFields {
+        let with_stress = recoveries.iter().any(Option::is_some);
+        let mut stress = Vec::new();
+        for (ring, recovery) in self.rings.iter().zip(recoveries) {
+            if let (Some((field, turn)), Some(recovery)) = (ring, recovery) {
+                stress.extend(recovery.nodal(field).into_iter().map(|s| turn.tensor(s)));
+            }
+        }
+        point_fields(self.displacement, with_stress.then_some(stress), self.forces)
+    }
+}
+
 /// Fields of all points from the displacements of all and the stress of the rings' points; balls have none.
-pub fn point_fields(
+fn point_fields(
     displacement: Vec<[f64; 3]>,
     ring_stress: Option<Vec<[f64; 6]>>,
     [force_inner, force_outer]: [Vec<[f64; 3]>; 2],
@@ -106,7 +147,7 @@ pub fn point_fields(
 
 /// Adds the balls' displacements to those of the rings' points; returns the forces on the balls from the inner and the
 /// outer ring at all points, N, zero on rings. `placed` is the bearing of the mesh file.
-pub fn add_balls(
+fn add_balls(
     model: &Model,
     placed: &BearingGeometry,
     balls: &[BallResult],
@@ -133,36 +174,18 @@ pub fn add_balls(
             } else {
                 &ball.outer
             };
-            // The force on the ball points from the contact to the ball centre.
-            let (sin_a, cos_a) = contact.contact_angle_rad.sin_cos();
-            let radial = -side.sign() * contact.force_n * cos_a;
-            list.push([radial * cos, radial * sin, -side.sign() * contact.force_n * sin_a]);
+            list.push(force_on_ball(side, contact, ball.azimuth_rad));
         }
     }
     forces
 }
 
-/// Total displacement of a ring's nodes in space, m.
-fn ring_displacement(
-    model: &Model,
-    placed: &BearingGeometry,
-    solution: &StaticSolution,
-    side: Side,
-    elastic: &[f64],
-) -> Vec<[f64; 3]> {
-    let mut total: Vec<[f64; 3]> = elastic.chunks_exact(3).map(|u| [u[0], u[1], u[2]]).collect();
-    let Some(ring) = model.ring(side).filter(|_| side == Side::Inner) else {
-        return total;
-    };
-    let [x, y, z, tilt_x, tilt_y] = solution.displacements.shaft;
-    let z = z + model.geometry.axial_offset() - placed.axial_offset();
-    for (u, node) in total.iter_mut().zip(&ring.mesh.nodes) {
-        let arm = node[2] - ring.groove.centre_z;
-        u[0] += x + tilt_y * arm;
-        u[1] += y - tilt_x * arm;
-        u[2] += z + tilt_x * node[1] - tilt_y * node[0];
-    }
-    total
+/// Force of a ring on a ball at an azimuth, N: from the contact to the ball centre.
+pub fn force_on_ball(side: Side, contact: &ContactResult, azimuth: f64) -> [f64; 3] {
+    let (sin, cos) = azimuth.sin_cos();
+    let (sin_a, cos_a) = contact.contact_angle_rad.sin_cos();
+    let radial = -side.sign() * contact.force_n * cos_a;
+    [radial * cos, radial * sin, -side.sign() * contact.force_n * sin_a]
 }
 
 fn state(solution: &StaticSolution) -> BTreeMap<String, StateArray> {

@@ -15,6 +15,8 @@ use fem::StressRecovery;
 
 use super::about::about;
 use super::fields;
+use super::probes::Probes;
+use super::shown::Shown;
 use super::snapshot::Snapshot;
 use super::summary::{Costs, SUMMARY_FILE};
 use super::tables::Tables;
@@ -31,6 +33,7 @@ pub struct Files {
     tables: Tables,
     /// Stress recovery of the flexible rings, shared with the thread that writes.
     recoveries: Arc<[Option<StressRecovery>; 2]>,
+    probes: Option<Probes>,
     stress_seconds: f64,
     output_seconds: f64,
 }
@@ -42,18 +45,16 @@ impl Files {
         model: &Model,
         dir: &Path,
         first: &Snapshot,
+        probes: Option<Probes>,
         warnings: &[String],
     ) -> Result<Files, Failure> {
         let clock = Instant::now();
         let mut output = Output::create(dir, &fields::bodies(model), storage(scene))?;
         note_dead_owner(output.lock());
         output.describe(about(scene, dir, warnings)?)?;
-        let swept = match &scene.analysis {
-            Analysis::Sweep(sweep) => Some(sweep.column.as_str()),
-            Analysis::Static | Analysis::Dynamic(_) => None,
-        };
-        let tables = Tables::create(dir, swept, first)?;
-        Files::new(scene, model, output, tables, clock)
+        let columns = probes.as_ref().map(Probes::columns);
+        let tables = Tables::create(dir, swept_column(scene), first, columns.as_deref())?;
+        Files::new(scene, model, output, (tables, probes), clock)
     }
 
     /// Opens the files of a locked folder to go on after its step `last`.
@@ -62,14 +63,15 @@ impl Files {
         model: &Model,
         lock: FolderLock,
         first: &Snapshot,
-        last: u64,
-        warnings: &[String],
+        probes: Option<Probes>,
+        (last, warnings): (u64, &[String]),
     ) -> Result<Files, Failure> {
         let clock = Instant::now();
         let dir = lock.dir().to_path_buf();
         let texts = about(scene, &dir, warnings)?;
         // The tables tell whether the step can be resumed from; nothing is changed before all is known to fit.
-        let cuts = Tables::cuts(&dir, first, last)?;
+        let columns = probes.as_ref().map(Probes::columns);
+        let cuts = Tables::cuts(&dir, first, columns.as_deref(), last)?;
         let resumed = Output::resume(lock, &fields::bodies(model), storage(scene), last)?;
         let (mut output, damaged, mut superseded) = (resumed.output, resumed.damaged, resumed.superseded);
         output.describe(texts)?;
@@ -85,7 +87,7 @@ impl Files {
                 .insert(checkpoint::new_superseded_folder(&dir)?)
                 .clone()),
         };
-        let tables = Tables::resume(&cuts, &mut aside)?;
+        let tables = Tables::resume(&cuts, first, &mut aside)?;
         if let Some(folder) = superseded {
             print::note(format_args!(
                 "what the run wrote after step {last} is kept in {}",
@@ -100,14 +102,14 @@ impl Files {
             }
             _ => {}
         }
-        Files::new(scene, model, output, tables, clock)
+        Files::new(scene, model, output, (tables, probes), clock)
     }
 
     fn new(
         scene: &Scene,
         model: &Model,
         output: Output,
-        tables: Tables,
+        (tables, probes): (Tables, Option<Probes>),
         clock: Instant,
     ) -> Result<Files, Failure> {
         let companions = tables.companions(output.dir())?;
@@ -116,9 +118,30 @@ impl Files {
             output: BackgroundOutput::start(output, QUEUE, companions),
             tables,
             recoveries: Arc::new(fields::recoveries(model, scene.output.stress)?),
+            probes,
             stress_seconds: 0.0,
             output_seconds,
         })
+    }
+
+    /// Appends a line to the table of the probes.
+    pub fn write_probes(
+        &mut self,
+        step: u64,
+        time: f64,
+        value: Option<f64>,
+        shown: &Shown<'_>,
+    ) -> Result<(), Failure> {
+        let Some(probes) = &self.probes else {
+            return Ok(());
+        };
+        let clock = Instant::now();
+        let values = probes.values(shown);
+        self.stress_seconds += clock.elapsed().as_secs_f64();
+        let clock = Instant::now();
+        self.tables.append_probes(step, time, value, &values)?;
+        self.output_seconds += clock.elapsed().as_secs_f64();
+        Ok(())
     }
 
     /// Appends a line per table.
@@ -189,6 +212,7 @@ impl Files {
             total: start.elapsed().as_secs_f64(),
             forecast,
             solver,
+            probes: self.probes.map_or(Vec::new(), |p| p.places().cloned().collect()),
         })
     }
 }
@@ -211,7 +235,16 @@ fn warn_of_damage(damaged: &[CheckpointError]) {
     }
 }
 
-fn storage(scene: &Scene) -> Storage {
+/// Name of the column of a swept value.
+fn swept_column(scene: &Scene) -> Option<&str> {
+    match &scene.analysis {
+        Analysis::Sweep(sweep) => Some(sweep.column.as_str()),
+        Analysis::Static | Analysis::QuasiStatic(_) | Analysis::Dynamic(_) | Analysis::Modes(_) => None,
+    }
+}
+
+/// How fields are stored.
+pub fn storage(scene: &Scene) -> Storage {
     Storage {
         stress: match scene.output.precision {
             scene::Precision::F32 => Precision::F32,

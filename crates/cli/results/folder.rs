@@ -11,11 +11,13 @@ use crate::failure::Failure;
 const MAX_FOLDERS: usize = 10_000;
 
 /// Files that say that a folder holds results, besides those of steps.
-const RESULT_FILES: [&str; 7] = [
+const RESULT_FILES: [&str; 9] = [
     "summary.json",
     "balls.csv",
     "shaft.csv",
     "energy.csv",
+    "probes.csv",
+    "modes.csv",
     "mesh.hdf",
     "run.hdf.series",
     "run.vtkhdf",

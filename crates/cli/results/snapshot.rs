@@ -2,12 +2,16 @@
 
 use dynamics::StaticSolution;
 use dynamics::balls::BallResult;
+use dynamics::motion::balls::Rolling;
 use dynamics::motion::{Ledger, Motion, MotionState};
 
 /// Key numbers of one instant.
+#[derive(Clone)]
 pub struct Snapshot {
     /// All balls.
     pub balls: Vec<BallResult>,
+    /// Speed of every ball's rotation about its own axis relative to the cage, rad/s; None where nothing turns.
+    pub spin: Option<f64>,
     /// Shaft x, y, z, m, tilt x, tilt y, rad, in space.
     pub shaft: [f64; 5],
     /// Force and moment that hold prescribed dofs, N and N m; None where it is not known (motion).
@@ -17,12 +21,13 @@ pub struct Snapshot {
 }
 
 impl Snapshot {
-    /// An equilibrium. `total` is the potential energy that it minimises; `defect` is what is missing in the virtual
+    /// An equilibrium, of a bearing that rolls or stands. `total` is the potential energy that it minimises; `defect` is what is missing in the virtual
     /// work of all forces through the displacements, zero at equilibrium.
-    pub fn of_equilibrium(solution: &StaticSolution) -> Snapshot {
+    pub fn of_equilibrium(solution: &StaticSolution, rolling: Option<&Rolling>) -> Snapshot {
         let total = solution.strain_energy + solution.hertz_energy - solution.load_work;
         Snapshot {
             balls: solution.balls.clone(),
+            spin: rolling.map(|r| r.spin(solution.pose.now.time)),
             shaft: solution.displacements.shaft,
             reaction: Some(solution.shaft_reaction),
             energies: vec![
@@ -39,6 +44,7 @@ impl Snapshot {
     pub fn of_motion(motion: &Motion<'_>, state: &MotionState) -> Snapshot {
         Snapshot {
             balls: motion.balls(state),
+            spin: motion.spin(state),
             shaft: motion.shaft(state),
             reaction: None,
             energies: ledger_terms(&state.ledger),
@@ -55,9 +61,12 @@ fn ledger_terms(ledger: &Ledger) -> Vec<(&'static str, f64)> {
         ("strain_outer", ledger.strain[1]),
         ("hertz", ledger.hertz),
         ("load_work", ledger.load_work),
+        ("imposed_work", ledger.imposed_work),
+        ("frame_work", ledger.frame_work),
         ("patch_work", ledger.patch_work),
         ("contact_loss", ledger.contact_loss),
         ("rayleigh_loss", ledger.rayleigh_loss),
+        ("numerical_loss", ledger.numerical_loss),
         ("total", ledger.total()),
         ("defect", ledger.defect()),
     ]

@@ -45,11 +45,15 @@ pub fn load(arrays: &Arrays, shape: &StateShape) -> anyhow::Result<MotionState> 
 fn exchange(state: &mut MotionState, shape: &StateShape, port: &mut Port<'_>) -> anyhow::Result<()> {
     let MotionState {
         step,
+        rung,
         rings,
         balls,
         ball_velocities,
+        ball_accelerations,
         shaft,
         shaft_velocity,
+        shaft_acceleration,
+        trend,
         forces,
         angles,
         approaches,
@@ -57,10 +61,14 @@ fn exchange(state: &mut MotionState, shape: &StateShape, port: &mut Port<'_>) ->
     } = state;
     let n_sites = 2 * shape.n_balls;
     port.counter("steps", step)?;
+    port.counter("rung", rung)?;
     port.rows("balls", balls, shape.n_balls)?;
     port.rows("ball_velocities", ball_velocities, shape.n_balls)?;
+    port.rows("ball_accelerations", ball_accelerations, shape.n_balls)?;
     port.values("shaft", shaft)?;
     port.values("shaft_velocity", shaft_velocity)?;
+    port.values("shaft_acceleration", shaft_acceleration)?;
+    port.rows("trend", trend, 3 * shape.n_balls)?;
     port.rows("forces", forces, n_sites)?;
     port.list("angles", angles, n_sites)?;
     port.list("approaches", approaches, n_sites)?;
@@ -86,18 +94,19 @@ fn exchange_ledger(ledger: &mut Ledger, port: &mut Port<'_>) -> anyhow::Result<(
         strain,
         hertz,
         load_work,
+        imposed_work,
+        frame_work,
         patch_work,
         contact_loss,
         rayleigh_loss,
+        numerical_loss,
         initial,
         largest,
     } = ledger;
     port.values("ledger_kinetic", kinetic)?;
     port.values("ledger_strain", strain)?;
-    port.scalars(
-        "ledger_sums",
-        [load_work, patch_work, contact_loss, rayleigh_loss],
-    )?;
+    port.scalars("ledger_works", [load_work, imposed_work, frame_work, patch_work])?;
+    port.scalars("ledger_losses", [contact_loss, rayleigh_loss, numerical_loss])?;
     port.scalars("ledger_scale", [initial, largest, hertz])
 }
 
@@ -210,7 +219,8 @@ mod tests {
             next
         };
         let mut pairs = |n: usize| (0..n).map(|_| [number(), number()]).collect::<Vec<_>>();
-        let (balls, ball_velocities, forces) = (pairs(2), pairs(2), pairs(4));
+        let (balls, ball_velocities, ball_accelerations) = (pairs(2), pairs(2), pairs(2));
+        let (trend, forces) = (pairs(6), pairs(4));
         let mut list = |n: usize| (0..n).map(|_| number()).collect::<Vec<_>>();
         let ring = RingState {
             w: vec![f64::NAN, -0.0, 1e-300],
@@ -219,22 +229,29 @@ mod tests {
         };
         MotionState {
             step: 7,
+            rung: 3,
             rings: [Some(ring), None],
             balls,
             ball_velocities,
+            ball_accelerations,
+            trend,
             forces,
             angles: list(4),
             approaches: list(4),
             shaft: [0, 1, 2, 3, 4].map(|_| number()),
             shaft_velocity: [0, 1, 2, 3, 4].map(|_| number()),
+            shaft_acceleration: [0, 1, 2, 3, 4].map(|_| number()),
             ledger: Ledger {
                 kinetic: [0, 1, 2].map(|_| number()),
                 strain: [0, 1].map(|_| number()),
                 hertz: number(),
                 load_work: number(),
+                imposed_work: number(),
+                frame_work: number(),
                 patch_work: number(),
                 contact_loss: number(),
                 rayleigh_loss: number(),
+                numerical_loss: number(),
                 initial: number(),
                 largest: number(),
             },

@@ -8,12 +8,16 @@ use dynamics::balls::BallResult;
 use dynamics::{Model, RingMemory, Timing, forecast_peak};
 use serde::Serialize;
 
+use super::probe_places::NodePlace;
 use super::snapshot::Snapshot;
 use crate::print;
 use crate::scene::{Analysis, Scene};
 
 /// Name of the file in the result folder.
 pub const SUMMARY_FILE: &str = "summary.json";
+
+/// Start of the keys of `timing_s` that are effects.
+const EFFECT_TIMING: &str = "effect_";
 
 /// The whole file.
 #[derive(Debug, Serialize)]
@@ -26,7 +30,7 @@ pub struct Summary {
     status: String,
     contact_mode: &'static str,
     shaft: ShaftSummary,
-    balls: Vec<BallResult>,
+    balls: Vec<BallSummary>,
     effects: Vec<&'static str>,
     dofs: BTreeMap<&'static str, usize>,
     energy_j: BTreeMap<&'static str, f64>,
@@ -34,7 +38,10 @@ pub struct Summary {
     #[serde(skip_serializing_if = "Option::is_none")]
     sweep: Option<SweepSummary>,
     warnings: Vec<String>,
-    timing_s: BTreeMap<&'static str, f64>,
+    /// Nodes that are probed; absent when there are none.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    probes: Vec<NodePlace>,
+    timing_s: BTreeMap<String, f64>,
     factor_bytes_forecast: BTreeMap<&'static str, usize>,
     /// Absent in motion, whose matrices are not forecast.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -55,6 +62,16 @@ pub struct ShaftSummary {
     reaction_moment_n_m: Option<[f64; 2]>,
 }
 
+/// One ball.
+#[derive(Debug, Serialize)]
+struct BallSummary {
+    #[serde(flatten)]
+    ball: BallResult,
+    /// Rotation about its own axis relative to the cage, rad/s; absent where nothing turns.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    spin_rad_per_s: Option<f64>,
+}
+
 /// Every point of a sweep.
 #[derive(Debug, Serialize)]
 pub struct SweepSummary {
@@ -67,7 +84,7 @@ pub struct SweepSummary {
 struct SweepRow {
     value: f64,
     shaft: ShaftSummary,
-    balls: Vec<BallResult>,
+    balls: Vec<BallSummary>,
 }
 
 /// Costs of a run that only its driver knows.
@@ -88,10 +105,13 @@ pub struct Costs {
     pub forecast: [Option<RingMemory>; 2],
     /// Parts of the solver.
     pub solver: Timing,
+    /// Nodes that were probed.
+    pub probes: Vec<NodePlace>,
 }
 
 impl ShaftSummary {
-    fn new(snapshot: &Snapshot) -> ShaftSummary {
+    /// The shaft of a snapshot.
+    pub fn new(snapshot: &Snapshot) -> ShaftSummary {
         let [x, y, z, tilt_x, tilt_y] = snapshot.shaft;
         ShaftSummary {
             displacement_m: [x, y, z],
@@ -114,6 +134,8 @@ pub struct Findings {
     pub iterations: BTreeMap<&'static str, usize>,
     /// What a user should know.
     pub warnings: Vec<String>,
+    /// Seconds by effect, of those whose time can be told apart.
+    pub effect_seconds: BTreeMap<&'static str, f64>,
 }
 
 impl Summary {
@@ -122,12 +144,14 @@ impl Summary {
         let last = &findings.last;
         let (analysis, sweep) = match &scene.analysis {
             Analysis::Static => ("static", None),
+            Analysis::QuasiStatic(_) => ("quasi_static", None),
             Analysis::Dynamic(_) => ("dynamic", None),
+            Analysis::Modes(_) => ("modes", None),
             Analysis::Sweep(sweep) => {
                 let rows = findings.points.iter().map(|(value, s)| SweepRow {
                     value: *value,
                     shaft: ShaftSummary::new(s),
-                    balls: s.balls.clone(),
+                    balls: balls(s),
                 });
                 let summary = SweepSummary {
                     key: sweep.key.clone(),
@@ -148,14 +172,15 @@ impl Summary {
             status: findings.status,
             contact_mode: mode_name(model),
             shaft: ShaftSummary::new(last),
-            balls: last.balls.clone(),
-            effects: model.effects.iter().map(|e| e.name()).collect(),
+            balls: balls(last),
+            effects: effects_on(scene, model),
             dofs: sides(|i| model.rings[i].as_ref().map_or(0, |r| r.mesh.n_dofs())),
             energy_j: last.energies.iter().copied().collect(),
             iterations: findings.iterations,
             sweep,
             warnings,
-            timing_s: timing(costs),
+            probes: costs.probes.clone(),
+            timing_s: timing(costs, &findings.effect_seconds),
             factor_bytes_forecast: sides(|i| costs.forecast[i].map_or(0, |ring| ring.factorisation)),
             peak_memory_forecast_bytes: match &scene.analysis {
                 Analysis::Dynamic(_) => None,
@@ -170,9 +195,11 @@ impl Summary {
         self.warnings
             .iter()
             .for_each(|w| print::line(format_args!("warning: {w}")));
+        print::line(format_args!("{}", self.effects_line()));
         let parts: Vec<String> = self
             .timing_s
             .iter()
+            .filter(|(part, _)| !part.starts_with(EFFECT_TIMING))
             .map(|(part, s)| format!("{part} {s:.3}"))
             .collect();
         print::line(format_args!("seconds: {}", parts.join(", ")));
@@ -186,22 +213,45 @@ impl Summary {
         ));
     }
 
+    /// The effects that were on, with their seconds.
+    fn effects_line(&self) -> String {
+        let cost = |name: &&str| match self.timing_s.get(&format!("{EFFECT_TIMING}{name}")) {
+            Some(s) => format!("{name} {s:.4} s"),
+            // Part of the forces and matrices of a step: its time cannot be told apart.
+            None => format!("{name} not timed apart"),
+        };
+        match self.effects.as_slice() {
+            [] => "effects: none".to_string(),
+            names => format!(
+                "effects: {}",
+                names.iter().map(cost).collect::<Vec<_>>().join(", ")
+            ),
+        }
+    }
+
     /// Writes the file: complete or not at all.
     pub fn write(&self, dir: &Path) -> anyhow::Result<()> {
-        let path = dir.join(SUMMARY_FILE);
-        let temporary = dir.join("summary.json.tmp");
-        let text = serde_json::to_string_pretty(self).context("cannot format summary.json")?;
-        std::fs::write(&temporary, text + "\n")
-            .and_then(|()| std::fs::rename(&temporary, &path))
-            .with_context(|| format!("cannot write {}", path.display()))
+        write_summary(dir, self)
     }
 }
 
-fn sides<T>(value: impl Fn(usize) -> T) -> BTreeMap<&'static str, T> {
+/// Writes `summary.json`: complete or not at all.
+pub fn write_summary(dir: &Path, summary: &impl Serialize) -> anyhow::Result<()> {
+    let path = dir.join(SUMMARY_FILE);
+    let temporary = dir.join("summary.json.tmp");
+    let text = serde_json::to_string_pretty(summary).context("cannot format summary.json")?;
+    std::fs::write(&temporary, text + "\n")
+        .and_then(|()| std::fs::rename(&temporary, &path))
+        .with_context(|| format!("cannot write {}", path.display()))
+}
+
+/// A value per side, by name.
+pub fn sides<T>(value: impl Fn(usize) -> T) -> BTreeMap<&'static str, T> {
     BTreeMap::from([("inner", value(0)), ("outer", value(1))])
 }
 
-fn mode_name(model: &Model) -> &'static str {
+/// Contact mode as a scene has it.
+pub fn mode_name(model: &Model) -> &'static str {
     match model.contact.mode {
         dynamics::ContactMode::Patch => "patch",
         dynamics::ContactMode::Facet => "facet",
@@ -209,9 +259,26 @@ fn mode_name(model: &Model) -> &'static str {
     }
 }
 
-fn timing(costs: &Costs) -> BTreeMap<&'static str, f64> {
+/// Names of all effects of a run: those that add loads and those inside its steps.
+pub fn effects_on(scene: &Scene, model: &Model) -> Vec<&'static str> {
+    let mut names: Vec<&str> = model.effects.iter().map(|e| e.name()).collect();
+    names.extend(scene.effects.inside_steps());
+    names.sort_unstable();
+    names
+}
+
+/// All balls of an instant.
+fn balls(snapshot: &Snapshot) -> Vec<BallSummary> {
+    let ball = |ball: &BallResult| BallSummary {
+        ball: *ball,
+        spin_rad_per_s: snapshot.spin,
+    };
+    snapshot.balls.iter().map(ball).collect()
+}
+
+fn timing(costs: &Costs, effects: &BTreeMap<&'static str, f64>) -> BTreeMap<String, f64> {
     let s = &costs.solver;
-    BTreeMap::from([
+    let parts = [
         ("read", costs.read),
         ("assemble", s.assemble),
         ("factor", s.factor),
@@ -223,7 +290,15 @@ fn timing(costs: &Costs) -> BTreeMap<&'static str, f64> {
         ("disk", costs.disk),
         ("disk_wait", costs.disk_wait),
         ("total", costs.total),
-    ])
+    ];
+    let own = effects
+        .iter()
+        .map(|(name, s)| (format!("{EFFECT_TIMING}{name}"), *s));
+    parts
+        .map(|(part, s)| (part.to_string(), s))
+        .into_iter()
+        .chain(own)
+        .collect()
 }
 
 /// Largest resident memory of this process, bytes; 0 where the system does not tell.

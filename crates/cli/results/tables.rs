@@ -1,4 +1,4 @@
-//! Long tables of a run: `balls.csv`, `shaft.csv`, `energy.csv`. SI units in the column names.
+//! Long tables of a run: `balls.csv`, `shaft.csv`, `energy.csv`, `probes.csv`. SI units in the column names.
 
 use std::path::{Path, PathBuf};
 
@@ -14,11 +14,16 @@ pub struct Tables {
     balls: csv::Writer<std::fs::File>,
     shaft: csv::Writer<std::fs::File>,
     energy: csv::Writer<std::fs::File>,
+    /// Only in a scene with probes.
+    probes: Option<csv::Writer<std::fs::File>>,
+    /// Whether balls have a spin.
+    with_spin: bool,
 }
 
 const BALLS: &str = "balls.csv";
 const SHAFT: &str = "shaft.csv";
 const ENERGY: &str = "energy.csv";
+const PROBES: &str = "probes.csv";
 
 const REACTION_COLUMNS: [&str; 5] = [
     "reaction_x_n",
@@ -38,33 +43,54 @@ const CONTACT_COLUMNS: [&str; 6] = [
 ];
 
 impl Tables {
-    /// Creates the files with the header lines of a first snapshot; `swept` is the column of a swept value.
-    pub fn create(dir: &Path, swept: Option<&str>, first: &Snapshot) -> anyhow::Result<Tables> {
+    /// Creates the files with the header lines of a first snapshot; `swept` is the column of a swept value, `probes` are
+    /// the columns of probes. Balls have a spin if the first snapshot has one.
+    pub fn create(
+        dir: &Path,
+        swept: Option<&str>,
+        first: &Snapshot,
+        probes: Option<&[String]>,
+    ) -> anyhow::Result<Tables> {
         let [balls, shaft, energy] = columns(swept, first);
         Ok(Tables {
             balls: create(dir, BALLS, &balls)?,
             shaft: create(dir, SHAFT, &shaft)?,
             energy: create(dir, ENERGY, &energy)?,
+            probes: probes.map(|p| create(dir, PROBES, &head(swept, p))).transpose()?,
+            with_spin: first.spin.is_some(),
         })
     }
 
     /// Looks where the files of an earlier run are to be cut to go on after its step `last`.
-    pub fn cuts(dir: &Path, first: &Snapshot, last: u64) -> anyhow::Result<[Cut; 3]> {
+    pub fn cuts(
+        dir: &Path,
+        first: &Snapshot,
+        probes: Option<&[String]>,
+        last: u64,
+    ) -> anyhow::Result<Vec<Cut>> {
         let [balls, shaft, energy] = columns(None, first);
         let find = |name: &str, columns: &[String]| Cut::find(dir, name, &columns.join(","), last);
-        Ok([find(BALLS, &balls)?, find(SHAFT, &shaft)?, find(ENERGY, &energy)?])
+        let mut cuts = vec![find(BALLS, &balls)?, find(SHAFT, &shaft)?, find(ENERGY, &energy)?];
+        if let Some(probes) = probes {
+            cuts.push(find(PROBES, &head(None, probes))?);
+        }
+        Ok(cuts)
     }
 
-    /// Opens the files of an earlier run. Rows after the cuts are moved into the folder that `aside` makes.
+    /// Opens the files of an earlier run at [`Tables::cuts`]. Rows after the cuts are moved into the folder that `aside`
+    /// makes.
     pub fn resume(
-        [balls, shaft, energy]: &[Cut; 3],
+        cuts: &[Cut],
+        first: &Snapshot,
         aside: &mut dyn FnMut() -> anyhow::Result<PathBuf>,
     ) -> anyhow::Result<Tables> {
         let mut open = |cut: &Cut| Ok::<_, anyhow::Error>(csv::Writer::from_writer(cut.make(aside)?));
         Ok(Tables {
-            balls: open(balls)?,
-            shaft: open(shaft)?,
-            energy: open(energy)?,
+            balls: open(&cuts[0])?,
+            shaft: open(&cuts[1])?,
+            energy: open(&cuts[2])?,
+            probes: cuts.get(3).map(open).transpose()?,
+            with_spin: first.spin.is_some(),
         })
     }
 
@@ -72,6 +98,7 @@ impl Tables {
     pub fn companions(&self, dir: &Path) -> anyhow::Result<Vec<Companion>> {
         [(BALLS, &self.balls), (SHAFT, &self.shaft), (ENERGY, &self.energy)]
             .into_iter()
+            .chain(self.probes.as_ref().map(|table| (PROBES, table)))
             .map(|(name, table)| {
                 let path = dir.join(name);
                 let file = table.get_ref().try_clone();
@@ -89,16 +116,21 @@ impl Tables {
         swept: Option<f64>,
         snapshot: &Snapshot,
     ) -> anyhow::Result<()> {
-        let mut head = vec![step.to_string(), number(time)];
-        head.extend(swept.map(number));
+        let head = place_of(step, time, swept);
         let row = |cells: Vec<String>| [head.clone(), cells].concat();
         let balls = snapshot.balls.iter().enumerate();
+        let spin: Vec<String> = snapshot
+            .spin
+            .filter(|_| self.with_spin)
+            .map(number)
+            .into_iter()
+            .collect();
         let shaft = snapshot.shaft.iter().chain(snapshot.reaction.iter().flatten());
         let energies = snapshot.energies.iter();
         append(
             &mut self.balls,
             BALLS,
-            balls.map(|(i, ball)| row(ball_cells(i, ball))),
+            balls.map(|(i, ball)| row([ball_cells(i, ball), spin.clone()].concat())),
         )?;
         append(&mut self.shaft, SHAFT, [row(shaft.map(|x| number(*x)).collect())])?;
         append(
@@ -107,6 +139,36 @@ impl Tables {
             [row(energies.map(|(_, x)| number(*x)).collect())],
         )
     }
+
+    /// Appends one step to the table of the probes.
+    pub fn append_probes(
+        &mut self,
+        step: u64,
+        time: f64,
+        swept: Option<f64>,
+        values: &[f64],
+    ) -> anyhow::Result<()> {
+        let Some(table) = &mut self.probes else {
+            return Ok(());
+        };
+        let cells = values.iter().map(|x| number(*x)).collect();
+        append(table, PROBES, [[place_of(step, time, swept), cells].concat()])
+    }
+}
+
+/// Header line: step, time, a swept value, and the rest.
+fn head(swept: Option<&str>, rest: &[String]) -> Vec<String> {
+    let mut columns = vec!["step".to_string(), "time_s".to_string()];
+    columns.extend(swept.map(str::to_string));
+    columns.extend(rest.iter().cloned());
+    columns
+}
+
+/// The first cells of a row.
+fn place_of(step: u64, time: f64, swept: Option<f64>) -> Vec<String> {
+    let mut cells = vec![step.to_string(), number(time)];
+    cells.extend(swept.map(number));
+    cells
 }
 
 /// Appends rows and hands them to the system: a killed run loses none of them.
@@ -151,12 +213,7 @@ fn number(x: f64) -> String {
 
 /// Columns of the three tables.
 fn columns(swept: Option<&str>, first: &Snapshot) -> [Vec<String>; 3] {
-    let head = |rest: &[String]| {
-        let mut columns = vec!["step".to_string(), "time_s".to_string()];
-        columns.extend(swept.map(str::to_string));
-        columns.extend(rest.iter().cloned());
-        columns
-    };
+    let head = |rest: &[String]| head(swept, rest);
     let names = |list: &[&str]| list.iter().map(|s| s.to_string()).collect::<Vec<_>>();
     let mut balls = names(&[
         "ball",
@@ -170,6 +227,9 @@ fn columns(swept: Option<&str>, first: &Snapshot) -> [Vec<String>; 3] {
         balls.extend(CONTACT_COLUMNS[2..].iter().map(|c| format!("{side}_{c}")));
     }
     balls.extend(names(&["displacement_radial_m", "displacement_axial_m"]));
+    if first.spin.is_some() {
+        balls.push("spin_rad_per_s".to_string());
+    }
     let mut shaft = names(&["x_m", "y_m", "z_m", "tilt_x_rad", "tilt_y_rad"]);
     if first.reaction.is_some() {
         shaft.extend(names(&REACTION_COLUMNS));

@@ -7,6 +7,9 @@
 use serde::Deserialize;
 
 use super::problems::Problems;
+use super::shaft::Shaft;
+use super::start::{RawStart, Start};
+use super::steps::{output_every, ten_digits, whole_steps};
 use crate::units::{Quantity, TIME};
 
 /// As typed.
@@ -23,6 +26,16 @@ pub struct RawDynamic {
     gamma: Option<f64>,
     contact: Option<ContactScheme>,
     ledger_tolerance: Option<f64>,
+    halvings: Option<i64>,
+    adaptive: Option<RawAdaptive>,
+    start: Option<RawStart>,
+}
+
+/// As typed.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields, expecting = "the table [dynamic.adaptive]")]
+struct RawAdaptive {
+    tolerance: f64,
 }
 
 /// As typed.
@@ -86,15 +99,20 @@ pub struct Dynamic {
     pub contact: ContactScheme,
     /// The run stops when more of the energy than this is unaccounted for, relative to the largest energy or work.
     pub ledger_tolerance: f64,
+    /// How often a step may be halved.
+    pub halvings: u32,
+    /// Accepted local error over the largest contact approach; `None` for equal steps.
+    pub adaptive: Option<f64>,
+    /// The state at t = 0.
+    pub start: Start,
 }
 
-/// Duration over step may differ from a whole number by this part: their round-off is a million times less.
-const WHOLE_TOLERANCE: f64 = 1e-9;
-/// Longer runs are slips of the unit, and beyond this `WHOLE_TOLERANCE` tells no whole numbers apart.
-const MAX_STEPS: f64 = 1e8;
-/// The energy-conserving scheme closes to the tolerance of Newton's iteration, 1e-12 for the 7010C: this is far above.
-/// An integrator with damping loses more, so a scene with one says how much it may lose.
+/// Every scheme closes to the tolerance of Newton's iteration, 1e-12 for the 7010C: this is far above.
 const DEFAULT_LEDGER_TOLERANCE: f64 = 1e-6;
+/// Halvings of a step that fails, or is too inaccurate, before the run stops.
+const DEFAULT_HALVINGS: i64 = 4;
+/// A step 65 536 times smaller: what does not pass then never does.
+const MAX_HALVINGS: i64 = 16;
 /// Least damped and least accurate of Newmark's unconditionally stable schemes.
 const DEFAULT_BETA: f64 = 0.25;
 const DEFAULT_GAMMA: f64 = 0.5;
@@ -102,16 +120,29 @@ const DEFAULT_GAMMA: f64 = 0.5;
 impl RawDynamic {
     /// Checks ranges, that the step fits the duration, and that the integrator has the numbers it needs; `None` when
     /// there are problems.
-    pub fn check(&self, problems: &mut Problems) -> Option<Dynamic> {
+    pub fn check(&self, shaft: &Shaft, problems: &mut Problems) -> Option<Dynamic> {
         let before = problems.len();
-        let n_steps = self.n_steps(problems);
-        let every = problems.whole(
-            self.output_every.unwrap_or(1),
-            "dynamic.output_every",
-            1,
-            MAX_STEPS as i64,
-        );
+        let n_steps = whole_steps("dynamic", &self.duration, &self.step, problems);
+        let output_every = output_every("dynamic", self.output_every, problems);
         let integrator = self.integrator(problems);
+        let halvings = problems.whole(
+            self.halvings.unwrap_or(DEFAULT_HALVINGS),
+            "dynamic.halvings",
+            0,
+            MAX_HALVINGS,
+        );
+        if let Some(adaptive) = &self.adaptive {
+            problems.require(
+                (1e-9..=1e-1).contains(&adaptive.tolerance),
+                "dynamic.adaptive.tolerance",
+                adaptive.tolerance,
+                "expected 1e-9 to 0.1, the error of a step over the largest contact approach",
+            );
+        }
+        let start = self
+            .start
+            .as_ref()
+            .map_or(Start::Static, |s| s.check(shaft, problems));
         let ledger_tolerance = self.ledger_tolerance.unwrap_or(DEFAULT_LEDGER_TOLERANCE);
         problems.require(
             (1e-14..=1.0).contains(&ledger_tolerance),
@@ -123,42 +154,15 @@ impl RawDynamic {
             duration: self.duration.si(),
             step: self.step.si(),
             n_steps: n_steps?,
-            output_every: every as u64,
+            output_every,
             integrator: integrator?,
             contact: self.contact.unwrap_or(ContactScheme::DiscreteGradient),
             ledger_tolerance,
+            halvings: halvings as u32,
+            adaptive: self.adaptive.as_ref().map(|a| a.tolerance),
+            start,
         };
         (problems.len() == before).then_some(dynamic)
-    }
-
-    fn n_steps(&self, problems: &mut Problems) -> Option<u64> {
-        let before = problems.len();
-        problems.require_positive(&self.duration, "dynamic.duration", "a duration");
-        problems.require_positive(&self.step, "dynamic.step", "a step");
-        if problems.len() > before {
-            return None;
-        }
-        let ratio = self.duration.si() / self.step.si();
-        if ratio > MAX_STEPS {
-            problems.add(format!(
-                "dynamic.step is {}; the duration {} has {ratio:.1e} of these steps, more than 1e8, check both units",
-                self.step, self.duration
-            ));
-            return None;
-        }
-        let whole = ratio.round().max(1.0);
-        if (ratio - whole).abs() <= WHOLE_TOLERANCE * whole {
-            return Some(whole as u64);
-        }
-        problems.add(format!(
-            "dynamic.duration is {}; that is {} steps of {}, expected a whole number; the nearest duration that fits \
-             is {}",
-            self.duration,
-            ten_digits(ratio),
-            self.step,
-            Quantity::<TIME>::from_si(ten_digits(whole * self.step.si()))
-        ));
-        None
     }
 
     fn integrator(&self, problems: &mut Problems) -> Option<IntegratorChoice> {
@@ -253,9 +257,4 @@ impl IntegratorName {
             IntegratorName::Newmark => "newmark",
         }
     }
-}
-
-/// Rounded to ten digits, for messages and to hide round-off.
-fn ten_digits(value: f64) -> f64 {
-    format!("{value:.9e}").parse().unwrap_or(value)
 }

@@ -1,9 +1,12 @@
 //! `[effects.*]`: one optional table per effect; an effect without its table costs nothing.
 
+use dynamics::Schedule;
 use serde::Deserialize;
 
 use super::damping::{ContactDamping, RawContactDamping, RawRayleighDamping, RayleighDamping};
+use super::gyroscopic::RawGyroscopicMoment;
 use super::problems::Problems;
+use super::schedule::{self, Clock, RawSchedule, Scheduled};
 use crate::units::{ACCELERATION, ANGLE, FORCE, MOMENT, Quantity};
 
 /// As typed.
@@ -15,7 +18,9 @@ pub struct RawEffects {
     moment: Option<RawMoment>,
     gravity: Option<RawGravity>,
     ball_centrifugal: Option<RawBallCentrifugal>,
+    gyroscopic_moment: Option<RawGyroscopicMoment>,
     cage_slip: Option<RawCageSlip>,
+    frame_rotation: Option<RawFrameRotation>,
     contact_damping: Option<RawContactDamping>,
     rayleigh_damping: Option<RawRayleighDamping>,
 }
@@ -25,6 +30,7 @@ pub struct RawEffects {
 #[serde(deny_unknown_fields, expecting = "the table [effects.axial_force]")]
 struct RawAxialForce {
     value: Quantity<FORCE>,
+    schedule: Option<RawSchedule>,
 }
 
 /// As typed.
@@ -33,6 +39,7 @@ struct RawAxialForce {
 struct RawRadialForce {
     value: Quantity<FORCE>,
     direction: Quantity<ANGLE>,
+    schedule: Option<RawSchedule>,
 }
 
 /// As typed.
@@ -41,6 +48,7 @@ struct RawRadialForce {
 struct RawMoment {
     x: Quantity<MOMENT>,
     y: Quantity<MOMENT>,
+    schedule: Option<RawSchedule>,
 }
 
 /// As typed.
@@ -49,6 +57,7 @@ struct RawMoment {
 struct RawGravity {
     acceleration: Quantity<ACCELERATION>,
     direction: [f64; 3],
+    schedule: Option<RawSchedule>,
 }
 
 /// As typed: the table has no keys.
@@ -64,28 +73,41 @@ struct RawCageSlip {
     outer: f64,
 }
 
+/// As typed: the table has no keys.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields, expecting = "the empty table [effects.frame_rotation]")]
+struct RawFrameRotation {}
+
 /// What the effects have to go with.
 #[derive(Clone, Copy, Debug)]
 pub struct EffectsContext {
-    /// Whether equilibria are computed, not motion.
-    pub is_at_rest: bool,
+    /// Whether equilibria are computed, not motion with inertia.
+    pub is_without_inertia: bool,
+    /// Whether loads may change in time.
+    pub clock: Clock,
     /// Whether the scene has the table `[speed]`.
     pub has_speed: bool,
+    /// Whether the inner ring is a finite-element body.
+    pub has_flexible_inner: bool,
 }
 
 /// The effects a scene calls for.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Effects {
     /// Force on the shaft along z, N, + = the direction of preload.
-    pub axial_force: Option<f64>,
+    pub axial_force: Option<Scheduled<f64>>,
     /// Force on the shaft across z.
-    pub radial_force: Option<RadialForce>,
+    pub radial_force: Option<Scheduled<RadialForce>>,
     /// Moment on the shaft about x and y, N m.
-    pub moment: Option<[f64; 2]>,
+    pub moment: Option<Scheduled<[f64; 2]>>,
     /// Acceleration of gravity, m/s2, `[3]` in x, y, z.
-    pub gravity: Option<[f64; 3]>,
+    pub gravity: Option<Scheduled<[f64; 3]>>,
     /// Whether balls feel the centrifugal force of their revolution with the cage.
     pub ball_centrifugal: bool,
+    /// Shares of the balls' gyroscopic moment at the inner and at the outer raceway, sum 2.
+    pub gyroscopic_moment: Option<[f64; 2]>,
+    /// Whether the inner ring feels the inertia of its turning frame.
+    pub frame_rotation: bool,
     /// Shares of the rolling motion lost at the inner and at the outer raceway, dimensionless, 0 to below 1.
     pub cage_slip: Option<[f64; 2]>,
     /// Damping of contacts, only in motion.
@@ -108,59 +130,53 @@ const MAX_ACCELERATION: f64 = 1e7;
 /// A load beyond this is a slip of the unit, N and N m.
 const MAX_LOAD: f64 = 1e9;
 
+impl Effects {
+    /// Names of the effects that add no loads but change the steps of a motion.
+    pub fn inside_steps(&self) -> Vec<&'static str> {
+        let effects = [
+            ("cage_slip", self.cage_slip.is_some()),
+            ("contact_damping", self.contact_damping.is_some()),
+            ("rayleigh_damping", self.rayleigh_damping.is_some()),
+        ];
+        effects
+            .into_iter()
+            .filter(|(_, is_there)| *is_there)
+            .map(|(name, _)| name)
+            .collect()
+    }
+}
+
 impl RawEffects {
-    /// Whether the scene has the table `[effects.ball_centrifugal]`.
-    pub fn has_ball_centrifugal(&self) -> bool {
-        self.ball_centrifugal.is_some()
+    /// Whether an effect needs the speed in a scene at rest too.
+    pub fn use_speed_at_rest(&self) -> bool {
+        self.ball_centrifugal.is_some() || self.frame_rotation.is_some() || self.gyroscopic_moment.is_some()
     }
 
     /// Checks sizes and directions, and that speed and analysis give each effect something to do.
     pub fn check(&self, context: EffectsContext, problems: &mut Problems) -> Effects {
-        self.check_loads(problems);
-        self.check_context(context, problems);
-        Effects {
-            axial_force: self.axial_force.as_ref().map(|f| f.value.si()),
-            radial_force: self.radial_force.as_ref().map(|f| RadialForce {
-                value: f.value.si(),
-                direction: f.direction.si(),
-            }),
-            moment: self.moment.as_ref().map(|m| [m.x.si(), m.y.si()]),
-            gravity: self.gravity.as_ref().map(|g| g.check(problems)),
-            ball_centrifugal: self.has_ball_centrifugal(),
+        let clock = context.clock;
+        let effects = Effects {
+            axial_force: self.axial_force.as_ref().map(|f| f.check(clock, problems)),
+            radial_force: self.radial_force.as_ref().map(|f| f.check(clock, problems)),
+            moment: self.moment.as_ref().map(|m| m.check(clock, problems)),
+            gravity: self.gravity.as_ref().map(|g| g.check(clock, problems)),
+            ball_centrifugal: self.ball_centrifugal.is_some(),
+            frame_rotation: self.frame_rotation.is_some(),
+            gyroscopic_moment: self.gyroscopic_moment.as_ref().map(|g| g.check(problems)),
             cage_slip: self.cage_slip.as_ref().map(|s| s.check(problems)),
             contact_damping: self.contact_damping.as_ref().map(|d| d.check(problems)),
             rayleigh_damping: self.rayleigh_damping.as_ref().map(|d| d.check(problems)),
-        }
-    }
-
-    fn check_loads(&self, problems: &mut Problems) {
-        let unit = "that is more than any bearing carries, check its unit";
-        let forces = [
-            (
-                "effects.axial_force.value",
-                self.axial_force.as_ref().map(|f| &f.value),
-            ),
-            (
-                "effects.radial_force.value",
-                self.radial_force.as_ref().map(|f| &f.value),
-            ),
-        ];
-        for (key, force) in forces {
-            if let Some(force) = force {
-                problems.require(force.si().abs() <= MAX_LOAD, key, force, unit);
-            }
-        }
-        if let Some(moment) = &self.moment {
-            for (key, m) in [("effects.moment.x", &moment.x), ("effects.moment.y", &moment.y)] {
-                problems.require(m.si().abs() <= MAX_LOAD, key, m, unit);
-            }
-        }
+        };
+        self.check_context(context, problems);
+        effects
     }
 
     fn check_context(&self, context: EffectsContext, problems: &mut Problems) {
         let turning = [
             ("ball_centrifugal", self.ball_centrifugal.is_some()),
+            ("gyroscopic_moment", self.gyroscopic_moment.is_some()),
             ("cage_slip", self.cage_slip.is_some()),
+            ("frame_rotation", self.frame_rotation.is_some()),
         ];
         for (name, is_there) in turning {
             if is_there && !context.has_speed {
@@ -170,16 +186,72 @@ impl RawEffects {
                 ));
             }
         }
+        if self.frame_rotation.is_some() && !context.has_flexible_inner {
+            problems.add(
+                "[effects.frame_rotation] is the inertia of a flexible inner ring, but the inner ring is rigid; remove it"
+                    .to_string(),
+            );
+        }
         let moving = [
             ("contact_damping", self.contact_damping.is_some()),
             ("rayleigh_damping", self.rayleigh_damping.is_some()),
         ];
         for (name, is_there) in moving {
-            if is_there && context.is_at_rest {
+            if is_there && context.is_without_inertia {
                 problems.add(format!(
-                    "[effects.{name}] does nothing in a scene at rest; remove it, or compute motion with [dynamic]"
+                    "[effects.{name}] does nothing in a scene without inertia; remove it, or compute motion with [dynamic]"
                 ));
             }
+        }
+    }
+}
+
+/// Reports a load that is beyond any bearing at the peak of its schedule.
+fn require_load<const KIND: usize>(
+    load: &Quantity<KIND>,
+    schedule: &Schedule,
+    key: &str,
+    problems: &mut Problems,
+) {
+    let rule = match schedule {
+        Schedule::Constant => "that is more than any bearing carries, check its unit",
+        _ => "times its schedule that is more than any bearing carries, check its unit and factors",
+    };
+    let size = load.si().abs();
+    problems.require(size * schedule.peak() <= MAX_LOAD, key, load, rule);
+}
+
+impl RawAxialForce {
+    fn check(&self, clock: Clock, problems: &mut Problems) -> Scheduled<f64> {
+        let schedule = schedule::check(self.schedule.as_ref(), "effects.axial_force", clock, problems);
+        require_load(&self.value, &schedule, "effects.axial_force.value", problems);
+        Scheduled {
+            value: self.value.si(),
+            schedule,
+        }
+    }
+}
+
+impl RawRadialForce {
+    fn check(&self, clock: Clock, problems: &mut Problems) -> Scheduled<RadialForce> {
+        let schedule = schedule::check(self.schedule.as_ref(), "effects.radial_force", clock, problems);
+        require_load(&self.value, &schedule, "effects.radial_force.value", problems);
+        let value = RadialForce {
+            value: self.value.si(),
+            direction: self.direction.si(),
+        };
+        Scheduled { value, schedule }
+    }
+}
+
+impl RawMoment {
+    fn check(&self, clock: Clock, problems: &mut Problems) -> Scheduled<[f64; 2]> {
+        let schedule = schedule::check(self.schedule.as_ref(), "effects.moment", clock, problems);
+        require_load(&self.x, &schedule, "effects.moment.x", problems);
+        require_load(&self.y, &schedule, "effects.moment.y", problems);
+        Scheduled {
+            value: [self.x.si(), self.y.si()],
+            schedule,
         }
     }
 }
@@ -198,7 +270,7 @@ impl RawCageSlip {
 }
 
 impl RawGravity {
-    fn check(&self, problems: &mut Problems) -> [f64; 3] {
+    fn check(&self, clock: Clock, problems: &mut Problems) -> Scheduled<[f64; 3]> {
         let (key, g) = ("effects.gravity.acceleration", self.acceleration.si());
         problems.require(
             (0.0..=MAX_ACCELERATION).contains(&g),
@@ -213,6 +285,9 @@ impl RawGravity {
             format!("{:?}", self.direction),
             "expected a vector with a direction such as [0.0, -1.0, 0.0]; its length does not matter",
         );
-        self.direction.map(|d| g * d / length)
+        Scheduled {
+            value: self.direction.map(|d| g * d / length),
+            schedule: schedule::check(self.schedule.as_ref(), "effects.gravity", clock, problems),
+        }
     }
 }

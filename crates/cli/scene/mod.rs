@@ -2,7 +2,7 @@
 //!
 //! Every quantity is a string with its unit, see [`crate::units`]. Every table is checked against the list of
 //! its keys. An effect is a table `[effects.*]`: without the table there is no effect. Exactly one of
-//! `[static]`, `[sweep]` and `[dynamic]` says what is computed. Axis z is axial, + is the direction of preload; azimuth
+//! `[static]`, `[sweep]`, `[quasi_static]`, `[dynamic]` and `[modes]` says what is computed. Axis z is axial, + is the direction of preload; azimuth
 //! runs from +x to +y; displacements count from the state where all balls just touch both raceways.
 //!
 //! Reading goes through two levels: the tables as typed (`Raw*`, private, in the file of their table), and
@@ -21,7 +21,17 @@
 //! ```toml
 #![doc = include_str!("example_dynamic.toml")]
 //! ```
+//!
+//! A scene of natural modes has the tables of a scene at rest and, as its analysis, this one:
+//!
+//! ```toml
+#![doc = include_str!("example_modes.toml")]
+//! ```
+//!
+//! Any scene may have tables `[probes.*]`, and motion without inertia is a table of its own, `[quasi_static]`: see the files of
+//! these names.
 
+mod analysis;
 mod bearing;
 mod contact;
 mod damping;
@@ -30,15 +40,22 @@ mod dynamic;
 mod edit;
 mod effects;
 mod error;
+mod gyroscopic;
 mod locate;
 mod materials;
+mod modes;
 mod output;
+mod probes;
 mod problems;
+mod quasi_static;
 mod ring;
+mod schedule;
 mod section;
 mod shaft;
 mod solver;
 mod speed;
+mod start;
+mod steps;
 mod sweep;
 #[cfg(test)]
 mod tests;
@@ -56,25 +73,33 @@ pub use self::dynamic::{ContactScheme, Dynamic, IntegratorChoice};
 pub use self::effects::Effects;
 pub use self::error::SceneError;
 pub use self::materials::{Material, Materials};
+pub use self::modes::{ModeBody, ModeSupport, Modes};
 pub use self::output::{InnerRingFrame, Output, Precision, StressOutput};
+pub use self::probes::{Axes, ContactProbe, NodeProbe, Probes, SectionPoint};
+pub use self::quasi_static::QuasiStatic;
 pub use self::ring::{FlexibleRing, MeshFiles, Ring, RingName, Support};
+pub use self::schedule::Scheduled;
 pub use self::section::{Section, SectionElement};
 pub use self::shaft::{Motion, Shaft};
 pub use self::solver::Solver;
 pub use self::speed::SpeedTable;
+pub use self::start::Start;
 pub use self::sweep::{Analysis, SweepPoint};
 
 use self::bearing::RawBearing;
 use self::contact::RawContact;
 use self::dynamic::RawDynamic;
-use self::effects::{EffectsContext, RawEffects};
+use self::effects::RawEffects;
 use self::materials::RawMaterials;
+use self::modes::{ModesContext, RawModes};
 use self::output::RawOutput;
+use self::probes::{ProbesContext, RawProbes};
 use self::problems::Problems;
+use self::quasi_static::RawQuasiStatic;
 use self::ring::{RawRing, RingContext};
 use self::shaft::RawShaft;
 use self::solver::RawSolver;
-use self::speed::{RawSpeed, SpeedUse};
+use self::speed::RawSpeed;
 use self::sweep::{RawStatic, RawSweep};
 
 /// As typed.
@@ -97,9 +122,13 @@ struct RawScene {
     solver: RawSolver,
     #[serde(default)]
     output: RawOutput,
+    #[serde(default)]
+    probes: RawProbes,
     r#static: Option<RawStatic>,
     sweep: Option<RawSweep>,
+    quasi_static: Option<RawQuasiStatic>,
     dynamic: Option<RawDynamic>,
+    modes: Option<RawModes>,
 }
 
 /// A checked scene, SI.
@@ -133,6 +162,8 @@ pub struct Scene {
     pub solver: Solver,
     /// What is written.
     pub output: Output,
+    /// Single numbers that are written at every step.
+    pub probes: Probes,
     /// What is computed.
     pub analysis: Analysis,
 }
@@ -245,13 +276,24 @@ impl Source<'_> {
         if let (Some(inner), Some(outer)) = (&inner.section, &outer.section) {
             section::check_gap(inner, outer, &mut problems);
         }
-        let shaft = raw.shaft.check(bearing.as_ref(), &mut problems);
-        let effects = raw.effects.check(raw.effects_context(), &mut problems);
+        let shaft = raw.shaft.check(bearing.as_ref(), raw.clock(), &mut problems);
+        let effects = raw
+            .effects
+            .check(raw.effects_context(inner.body.is_some()), &mut problems);
         let speed = raw.speed.as_ref();
         let speed = speed.and_then(|s| s.check(raw.speed_use(), &mut problems));
         let solver = raw.solver.check(&mut problems);
         let output = raw.output.check(&mut problems);
-        let analysis = raw.analysis(document, &mut problems);
+        let probes = ProbesContext {
+            bearing: bearing.as_ref(),
+            rigid: [raw.inner.is_rigid(), raw.outer.is_rigid()],
+        };
+        let probes = raw.probes.check(probes, &mut problems);
+        let modes = ModesContext {
+            flexible: [inner.body.is_some(), outer.body.is_some()],
+            contact: contact.mode,
+        };
+        let analysis = raw.analysis(document, (&shaft, modes), &mut problems);
         match (bearing, materials, analysis, problems.into_texts()) {
             (Some(bearing), Some(materials), Some(analysis), texts) if texts.is_empty() => Ok(Scene {
                 path: self.path.to_path_buf(),
@@ -268,6 +310,7 @@ impl Source<'_> {
                 effects,
                 solver,
                 output,
+                probes,
                 analysis,
             }),
             (.., texts) => Err(self.invalid(texts)),
@@ -300,55 +343,6 @@ impl Source<'_> {
             Ok(())
         } else {
             Err(self.invalid(problems))
-        }
-    }
-}
-
-impl RawScene {
-    fn analysis(&self, document: &DocumentMut, problems: &mut Problems) -> Option<Analysis> {
-        match (&self.r#static, &self.sweep, &self.dynamic) {
-            (Some(RawStatic {}), None, None) => Some(Analysis::Static),
-            (None, Some(sweep), None) => sweep.check(document, problems).map(Analysis::Sweep),
-            (None, None, Some(dynamic)) => dynamic.check(problems).map(Analysis::Dynamic),
-            (None, None, None) => {
-                problems
-                    .add("the scene has no analysis; add one of the tables [static], [sweep] and [dynamic]");
-                None
-            }
-            (at_rest, sweep, dynamic) => {
-                let found = [
-                    at_rest.as_ref().map(|_| "[static]"),
-                    sweep.as_ref().map(|_| "[sweep]"),
-                    dynamic.as_ref().map(|_| "[dynamic]"),
-                ];
-                let found: Vec<&str> = found.into_iter().flatten().collect();
-                let (both, names) = match found.as_slice() {
-                    [a, b] => ("both", format!("{a} and {b}")),
-                    _ => ("all of", found.join(", ")),
-                };
-                problems.add(format!("the scene has {both} {names}; keep exactly one analysis"));
-                None
-            }
-        }
-    }
-
-    /// Whether equilibria are computed, and no motion; a scene without analysis is not judged further.
-    fn is_at_rest(&self) -> bool {
-        self.dynamic.is_none() && (self.r#static.is_some() || self.sweep.is_some())
-    }
-
-    fn effects_context(&self) -> EffectsContext {
-        EffectsContext {
-            is_at_rest: self.is_at_rest(),
-            has_speed: self.speed.is_some(),
-        }
-    }
-
-    fn speed_use(&self) -> SpeedUse {
-        match (self.is_at_rest(), self.effects.has_ball_centrifugal()) {
-            (false, _) => SpeedUse::Motion,
-            (true, true) => SpeedUse::ForceAtRest,
-            (true, false) => SpeedUse::Nothing,
         }
     }
 }

@@ -23,7 +23,8 @@ pub struct RawRing {
 }
 
 /// Which of the two rings.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq)]
+#[serde(rename_all = "snake_case")]
 pub enum RingName {
     /// The ring on the shaft.
     Inner,
@@ -108,6 +109,11 @@ pub struct RingContext<'a> {
 }
 
 impl RawRing {
+    /// Whether the scene says that the ring does not deform.
+    pub fn is_rigid(&self) -> bool {
+        !self.flexible.unwrap_or(true)
+    }
+
     /// Checks the ring. A rigid ring may keep the other keys, unused, so that one `--set` switches it.
     pub fn check(&self, ring: RingName, context: RingContext<'_>, problems: &mut Problems) -> Ring {
         let key = ring.key();
@@ -115,7 +121,7 @@ impl RawRing {
             .section
             .as_ref()
             .map(|s| s.check(ring, context.bearing, problems));
-        if !self.flexible.unwrap_or(true) {
+        if self.is_rigid() {
             return Ring { body: None, section };
         }
         if context.mode == ContactMode::Rigid {

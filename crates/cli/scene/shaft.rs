@@ -4,16 +4,31 @@
 //! just touch both raceways. Axis z is axial, + is the direction of preload; tilts are rotations about x and
 //! y.
 //!
+//! A prescribed motion may have a schedule, as loads have: an imposed displacement that changes in time,
+//!
+//! ```toml
+//! [shaft.z]
+//! value = "20 um"
+//! schedule.ramp = { start = "1 ms", duration = "2 ms" }
+//! ```
+//!
+//! In motion the displacement follows the schedule exactly. Its velocity and acceleration are those of the integrator: with
+//! average acceleration they alternate about the right ones from step to step after a corner (ramp, step, impact), with an
+//! integrator that has damping they settle.
+//!
 //! In motion the shaft carries `mass`. A free translation without any mass (rigid inner ring, `mass` 0) is
 //! quasi-static: it follows from equilibrium at every instant.
 
 use std::fmt;
 
+use dynamics::Schedule;
 use serde::Deserialize;
-use serde::de::{Deserializer, Error, Visitor};
+use serde::de::value::MapAccessDeserializer;
+use serde::de::{Deserializer, Error, MapAccess, Visitor};
 
 use super::bearing::Bearing;
 use super::problems::Problems;
+use super::schedule::{self, Clock, RawSchedule};
 use crate::units::{ANGLE, LENGTH, MASS, Quantity, bare_number};
 
 /// As typed.
@@ -29,12 +44,20 @@ pub struct RawShaft {
     mass: Option<Quantity<MASS>>,
 }
 
-/// As typed: `"free"`, `"locked"` or a value.
+/// As typed: `"free"`, `"locked"`, a value, or a table with a value and its schedule.
 #[derive(Debug)]
 enum RawMotion<const KIND: usize> {
     Free,
     Locked,
-    Prescribed(Quantity<KIND>),
+    Prescribed(RawPrescribed<KIND>),
+}
+
+/// As typed.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields, expecting = "a table with the value of a shaft motion")]
+struct RawPrescribed<const KIND: usize> {
+    value: Quantity<KIND>,
+    schedule: Option<Box<RawSchedule>>,
 }
 
 /// One degree of freedom of the shaft.
@@ -44,12 +67,12 @@ pub enum Motion {
     Free,
     /// It is zero.
     Locked,
-    /// It has this value, m or rad.
+    /// It has this value, m or rad, times its schedule.
     Prescribed(f64),
 }
 
 /// The rigid shaft that carries the inner ring.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Shaft {
     /// Displacement along x.
     pub x: Motion,
@@ -61,6 +84,8 @@ pub struct Shaft {
     pub tilt_x: Motion,
     /// Rotation about y.
     pub tilt_y: Motion,
+    /// Factors over time of x, y, z, tilt x, tilt y where they are prescribed.
+    pub schedules: [Schedule; 5],
     /// Axial distance from the plane of the inner groove centres to the point where forces act, m, + along z.
     pub load_point: f64,
     /// Mass carried by the shaft besides a flexible inner ring, kg; its weight acts at the load point.
@@ -76,28 +101,25 @@ const MAX_MASS: f64 = 1e6;
 
 impl RawShaft {
     /// Checks prescribed values, against the size of the bearing when that is sound.
-    pub fn check(&self, bearing: Option<&Bearing>, problems: &mut Problems) -> Shaft {
-        for (key, motion) in [("shaft.x", &self.x), ("shaft.y", &self.y), ("shaft.z", &self.z)] {
-            if let RawMotion::Prescribed(value) = motion {
-                let small = bearing.is_none_or(|b| value.si().abs() <= 0.5 * b.ball_diameter);
-                problems.require(
-                    small,
-                    key,
-                    value,
-                    "a prescribed displacement must be less than a ball radius",
-                );
+    pub fn check(&self, bearing: Option<&Bearing>, clock: Clock, problems: &mut Problems) -> Shaft {
+        let schedules = [
+            self.x.schedule("shaft.x", clock, problems),
+            self.y.schedule("shaft.y", clock, problems),
+            self.z.schedule("shaft.z", clock, problems),
+            self.tilt_x.schedule("shaft.tilt_x", clock, problems),
+            self.tilt_y.schedule("shaft.tilt_y", clock, problems),
+        ];
+        let lengths = [("shaft.x", &self.x), ("shaft.y", &self.y), ("shaft.z", &self.z)];
+        for ((key, motion), schedule) in lengths.into_iter().zip(&schedules) {
+            if let Some(ball_diameter) = bearing.map(|b| b.ball_diameter) {
+                let rule = "a prescribed displacement must be less than a ball radius";
+                motion.require_small(0.5 * ball_diameter, key, schedule, rule, problems);
             }
         }
-        for (key, motion) in [("shaft.tilt_x", &self.tilt_x), ("shaft.tilt_y", &self.tilt_y)] {
-            if let RawMotion::Prescribed(value) = motion {
-                let small = value.si().abs() <= MAX_TILT;
-                problems.require(
-                    small,
-                    key,
-                    value,
-                    "a prescribed tilt must be small, at most 50 mrad",
-                );
-            }
+        let tilts = [("shaft.tilt_x", &self.tilt_x), ("shaft.tilt_y", &self.tilt_y)];
+        for ((key, motion), schedule) in tilts.into_iter().zip(&schedules[3..]) {
+            let rule = "a prescribed tilt must be small, at most 50 mrad";
+            motion.require_small(MAX_TILT, key, schedule, rule, problems);
         }
         problems.require(
             bearing.is_none_or(|b| self.load_point.si().abs() <= MAX_LOAD_POINT * b.outside_diameter),
@@ -115,6 +137,7 @@ impl RawShaft {
             z: self.z.motion(),
             tilt_x: self.tilt_x.motion(),
             tilt_y: self.tilt_y.motion(),
+            schedules,
             load_point: self.load_point.si(),
             mass: self.mass.as_ref().map_or(0.0, Quantity::si),
         }
@@ -126,8 +149,28 @@ impl<const KIND: usize> RawMotion<KIND> {
         match self {
             RawMotion::Free => Motion::Free,
             RawMotion::Locked => Motion::Locked,
-            RawMotion::Prescribed(value) => Motion::Prescribed(value.si()),
+            RawMotion::Prescribed(prescribed) => Motion::Prescribed(prescribed.value.si()),
         }
+    }
+
+    fn schedule(&self, key: &str, clock: Clock, problems: &mut Problems) -> Schedule {
+        match self {
+            RawMotion::Prescribed(p) => schedule::check(p.schedule.as_deref(), key, clock, problems),
+            _ => Schedule::Constant,
+        }
+    }
+
+    /// Reports a prescribed motion that exceeds `limit` at the peak of its schedule.
+    fn require_small(&self, limit: f64, key: &str, schedule: &Schedule, rule: &str, problems: &mut Problems) {
+        let RawMotion::Prescribed(RawPrescribed { value, .. }) = self else {
+            return;
+        };
+        let at_peak = match schedule {
+            Schedule::Constant => "",
+            _ => ", at the peak of its schedule too",
+        };
+        let small = value.si().abs() * schedule.peak() <= limit;
+        problems.require(small, key, value, format!("{rule}{at_peak}"));
     }
 
     fn expected() -> String {
@@ -139,7 +182,7 @@ impl<'de, const KIND: usize> Deserialize<'de> for RawMotion<KIND> {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         struct MotionVisitor<const KIND: usize>;
 
-        impl<const KIND: usize> Visitor<'_> for MotionVisitor<KIND> {
+        impl<'de, const KIND: usize> Visitor<'de> for MotionVisitor<KIND> {
             type Value = RawMotion<KIND>;
 
             fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -156,7 +199,12 @@ impl<'de, const KIND: usize> Deserialize<'de> for RawMotion<KIND> {
                         "{text:?} is no state of a shaft motion; expected {expected}"
                     ))),
                     _ => Quantity::parse_expecting(text, &expected)
-                        .map(RawMotion::Prescribed)
+                        .map(|value| {
+                            RawMotion::Prescribed(RawPrescribed {
+                                value,
+                                schedule: None,
+                            })
+                        })
                         .map_err(E::custom),
                 }
             }
@@ -167,6 +215,10 @@ impl<'de, const KIND: usize> Deserialize<'de> for RawMotion<KIND> {
 
             fn visit_i64<E: Error>(self, value: i64) -> Result<Self::Value, E> {
                 Err(E::custom(bare_number(value, &RawMotion::<KIND>::expected())))
+            }
+
+            fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<Self::Value, A::Error> {
+                RawPrescribed::deserialize(MapAccessDeserializer::new(map)).map(RawMotion::Prescribed)
             }
         }
 

@@ -1,6 +1,7 @@
 //! `[speed]`: how fast the inner ring turns.
 //!
-//! A constant, or a table that is linear between its times and constant before the first and after the last.
+//! A constant, a ramp from one speed to another, or a table that is linear between its times and constant before the first
+//! and after the last.
 //! Positive from +x towards +y.
 
 use std::fmt;
@@ -10,6 +11,7 @@ use serde::de::value::MapAccessDeserializer;
 use serde::de::{Deserializer, Error, MapAccess, Visitor};
 
 use super::problems::Problems;
+use super::schedule::require_growing;
 use crate::units::{ANGULAR_SPEED, Quantity, TIME, bare_number};
 
 /// As typed.
@@ -30,8 +32,19 @@ enum RawRingSpeed {
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields, expecting = "the table [speed.inner]")]
 struct RawSpeedTable {
-    times: Vec<Quantity<TIME>>,
-    values: Vec<Quantity<ANGULAR_SPEED>>,
+    times: Option<Vec<Quantity<TIME>>>,
+    values: Option<Vec<Quantity<ANGULAR_SPEED>>>,
+    ramp: Option<RawSpeedRamp>,
+}
+
+/// As typed.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields, expecting = "the table [speed.inner.ramp]")]
+struct RawSpeedRamp {
+    from: Quantity<ANGULAR_SPEED>,
+    to: Quantity<ANGULAR_SPEED>,
+    start: Quantity<TIME>,
+    duration: Quantity<TIME>,
 }
 
 /// What the speed is for.
@@ -39,10 +52,12 @@ struct RawSpeedTable {
 pub enum SpeedUse {
     /// Motion in time.
     Motion,
-    /// The centrifugal force of balls in an equilibrium.
+    /// The centrifugal force or the gyroscopic moment of balls in an equilibrium.
     ForceAtRest,
     /// An equilibrium without any effect of speed.
     Nothing,
+    /// Natural modes, which are those of a bearing at rest.
+    Modes,
 }
 
 /// Angular speed over time: linear between the entries, constant outside; one entry is a constant speed.
@@ -63,8 +78,15 @@ impl RawSpeed {
         let before = problems.len();
         if speed_use == SpeedUse::Nothing {
             problems.add(
-                "[speed] does nothing in a scene at rest without [effects.ball_centrifugal]; add that effect, compute \
-                 motion with [dynamic], or remove [speed]",
+                "[speed] does nothing in a scene at rest without [effects.ball_centrifugal], [effects.frame_rotation] or \
+                 [effects.gyroscopic_moment]; add one, compute motion with [dynamic], or remove [speed]",
+            );
+            return None;
+        }
+        if speed_use == SpeedUse::Modes {
+            problems.add(
+                "[speed] is given, but [modes] are those of a bearing that does not turn: without gyroscopic and \
+                 centrifugal effects; remove [speed]",
             );
             return None;
         }
@@ -84,7 +106,7 @@ impl RawSpeed {
                     );
                     return None;
                 }
-                table.check(problems)
+                table.check(problems)?
             }
         };
         (problems.len() == before).then_some(table)
@@ -92,24 +114,54 @@ impl RawSpeed {
 }
 
 impl RawSpeedTable {
+    fn check(&self, problems: &mut Problems) -> Option<SpeedTable> {
+        match (&self.times, &self.values, &self.ramp) {
+            (Some(times), Some(values), None) => Some(check_table(times, values, problems)),
+            (None, None, Some(ramp)) => Some(ramp.check(problems)),
+            _ => {
+                problems.add("speed.inner needs either both times and values, or ramp");
+                None
+            }
+        }
+    }
+}
+
+fn check_table(
+    times: &[Quantity<TIME>],
+    values: &[Quantity<ANGULAR_SPEED>],
+    problems: &mut Problems,
+) -> SpeedTable {
+    let (n_times, n_values) = (times.len(), values.len());
+    if n_times == 0 || n_times != n_values {
+        problems.add(format!(
+            "speed.inner has {n_times} times and {n_values} values; expected as many of both, at least one"
+        ));
+    }
+    require_growing(times, "speed.inner", problems);
+    for (i, value) in values.iter().enumerate() {
+        require_plausible(value, &format!("speed.inner.values[{i}]"), problems);
+    }
+    SpeedTable {
+        times: times.iter().map(Quantity::si).collect(),
+        values: values.iter().map(Quantity::si).collect(),
+    }
+}
+
+impl RawSpeedRamp {
     fn check(&self, problems: &mut Problems) -> SpeedTable {
-        let (n_times, n_values) = (self.times.len(), self.values.len());
-        if n_times == 0 || n_times != n_values {
-            problems.add(format!(
-                "speed.inner has {n_times} times and {n_values} values; expected as many of both, at least one"
-            ));
-        }
-        for (i, pair) in self.times.windows(2).enumerate() {
-            let rule = format!("times must grow, the one before is {}", pair[0]);
-            let key = format!("speed.inner.times[{}]", i + 1);
-            problems.require(pair[1].si() > pair[0].si(), &key, &pair[1], rule);
-        }
-        for (i, value) in self.values.iter().enumerate() {
-            require_plausible(value, &format!("speed.inner.values[{i}]"), problems);
-        }
+        require_plausible(&self.from, "speed.inner.ramp.from", problems);
+        require_plausible(&self.to, "speed.inner.ramp.to", problems);
+        let (start, duration) = (self.start.si(), self.duration.si());
+        // A duration that is lost in the round-off of the start takes no time either.
+        problems.require(
+            start + duration > start,
+            "speed.inner.ramp.duration",
+            &self.duration,
+            "a duration must be positive; a ring cannot change its speed in no time",
+        );
         SpeedTable {
-            times: self.times.iter().map(Quantity::si).collect(),
-            values: self.values.iter().map(Quantity::si).collect(),
+            times: vec![start, start + duration],
+            values: vec![self.from.si(), self.to.si()],
         }
     }
 }

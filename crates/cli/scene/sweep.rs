@@ -1,4 +1,4 @@
-//! `[static]` or `[sweep]`: equilibria; with `[dynamic]`, what is computed.
+//! `[static]` or `[sweep]`: equilibria; with `[quasi_static]`, `[dynamic]` and `[modes]`, what is computed.
 //!
 //! A sweep solves the same scene for a list of values of one key, each from the solution before it. Every
 //! point is a scene of its own: the text with the key replaced and `[sweep]` turned into `[static]`.
@@ -11,7 +11,9 @@ use toml_edit::{DocumentMut, Value};
 
 use super::dynamic::Dynamic;
 use super::edit;
+use super::modes::Modes;
 use super::problems::Problems;
+use super::quasi_static::QuasiStatic;
 use crate::units::{AnyQuantity, Dimension, kind_of_dimension};
 
 /// As typed: the table has no keys.
@@ -47,8 +49,12 @@ pub enum Analysis {
     Static,
     /// Static equilibria along a list of values of one key.
     Sweep(Sweep),
+    /// Equilibria in time, while the bearing turns.
+    QuasiStatic(QuasiStatic),
     /// Motion in time.
     Dynamic(Dynamic),
+    /// Natural frequencies and shapes.
+    Modes(Modes),
 }
 
 /// Values of one key.
@@ -89,7 +95,10 @@ impl RawSweep {
             return None;
         }
         let root = self.key.split('.').next().unwrap_or("");
-        if matches!(root, "sweep" | "static" | "dynamic" | "title" | "output" | "") || !self.key.contains('.')
+        if matches!(
+            root,
+            "sweep" | "static" | "quasi_static" | "dynamic" | "modes" | "title" | "output" | "probes" | ""
+        ) || !self.key.contains('.')
         {
             problems.add(format!(
                 "sweep.key is {:?}; expected the path of a number in the scene such as \"effects.axial_force.value\"",

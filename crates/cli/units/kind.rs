@@ -43,6 +43,8 @@ pub const RATE: usize = 10;
 pub const DAMPING: usize = 11;
 /// Index of masses, kg.
 pub const MASS: usize = 12;
+/// A speed.
+pub const SPEED: usize = 14;
 
 /// All kinds: those a scene uses first, at the index of their constant, then those only named in messages.
 pub static KINDS: [Kind; 17] = [

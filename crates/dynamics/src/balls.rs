@@ -33,7 +33,7 @@ pub struct BallDisplacement {
 /// One ball.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct BallResult {
-    /// Azimuth, rad.
+    /// Azimuth, rad, from 0 to below 2 pi.
     pub azimuth_rad: f64,
     /// Inner contact.
     pub inner: ContactResult,
@@ -59,7 +59,9 @@ pub fn ball_results(model: &Model, problem: &Problem, u: &Displacements) -> Vec<
     };
     (0..model.geometry.n_balls)
         .map(|ball| BallResult {
-            azimuth_rad: model.geometry.azimuth(ball),
+            azimuth_rad: problem.sites[2 * ball]
+                .azimuth
+                .rem_euclid(2.0 * std::f64::consts::PI),
             inner: contact(2 * ball + Side::Inner.index()),
             outer: contact(2 * ball + Side::Outer.index()),
             displacement_m: BallDisplacement {

@@ -128,11 +128,56 @@ pub enum DynamicsError {
         /// `inner` or `outer`.
         side: &'static str,
     },
+    /// The inertia of the turning frame does not settle within a step.
+    #[error(
+        "the inertia of the frame that turns at {speed:.1} rad/s does not settle in {rounds} rounds; use a smaller step"
+    )]
+    FrameNotSettled {
+        /// Rounds done.
+        rounds: usize,
+        /// Speed, rad/s.
+        speed: f64,
+    },
+    /// The local error of a part of a step is too large.
+    #[error(
+        "the local error is {error:.2e} of the largest contact approach, expected {limit:.1e}; \
+         allow smaller steps or a larger error"
+    )]
+    StepInaccurate {
+        /// Error found.
+        error: f64,
+        /// Error accepted.
+        limit: f64,
+    },
+    /// A step failed at its smallest size.
+    #[error("the step of {dt:.3e} s ({halvings} times halved) from t = {time:.6e} s failed: {source}")]
+    StepFailed {
+        /// Its size, s.
+        dt: f64,
+        /// Halvings done.
+        halvings: u32,
+        /// Time at its start, s.
+        time: f64,
+        /// Cause.
+        source: Box<DynamicsError>,
+    },
     /// A choice that statics knows and motion does not.
     #[error("a moving bearing cannot have {what} in this version")]
     NotInMotion {
         /// The choice and its replacement.
         what: &'static str,
+    },
+    /// A choice that modes do not know.
+    #[error("natural modes cannot have {what}")]
+    NotInModes {
+        /// The choice and its replacement.
+        what: &'static str,
+    },
+    /// The search for modes failed.
+    #[error("natural modes: {source}")]
+    Modes {
+        /// Cause.
+        source: SolverError,
     },
     /// A number became NaN or infinite.
     #[error("{what} is not finite; check the loads and material of the scene")]
@@ -140,4 +185,22 @@ pub enum DynamicsError {
         /// Quantity.
         what: &'static str,
     },
+}
+
+impl DynamicsError {
+    /// Whether a smaller step in time may do what this one could not.
+    pub fn may_pass_with_smaller_step(&self) -> bool {
+        use DynamicsError::{
+            ContactSystem, FrameNotSettled, NewtonStalled, NotFinite, PatchTooSmall, StepInaccurate,
+        };
+        matches!(
+            self,
+            NewtonStalled { .. }
+                | ContactSystem { .. }
+                | NotFinite { .. }
+                | FrameNotSettled { .. }
+                | PatchTooSmall { .. }
+                | StepInaccurate { .. }
+        )
+    }
 }

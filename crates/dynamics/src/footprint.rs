@@ -71,7 +71,7 @@ fn place_patch(
     let angle = on_groove(&solver.surface, site.contact_angle(&site.state(u)), loaded);
     let hertz = model.hertz[site.side.index()].semi_axes(load);
     let spacings = model.contact.patch_spacings;
-    let shape = PatchShape::new(&solver.surface, site.azimuth, angle, hertz, spacings)?;
+    let shape = PatchShape::new(&solver.surface, site.ring_azimuth, angle, hertz, spacings)?;
     let patch = Patch::new(
         &solver.surface,
         &ring.mesh.nodes,
@@ -155,7 +155,7 @@ fn place_facet(
     // The rim itself is left out: a foot point beyond it is on no facet.
     let contact = search.foot(on_groove(&solver.surface, angle, false))?;
     let hertz = model.hertz[site.side.index()].semi_axes(force[0].hypot(force[1]));
-    let weights = NodalWeights::interpolation(contact.nodes, &contact.weights, site.azimuth);
+    let weights = NodalWeights::interpolation(contact.nodes, &contact.weights, site.ring_azimuth);
     Ok(Footprint {
         weights,
         semi_axes: None,
@@ -171,6 +171,7 @@ struct FacetSearch<'a> {
     /// Distance from groove centre to a touching ball's centre, and ball radius, m.
     touching: f64,
     radius: f64,
+    /// Azimuth of the ball on the mesh, rad.
     azimuth: f64,
     ball: usize,
 }
@@ -186,7 +187,7 @@ impl<'a> FacetSearch<'a> {
             groove: ring.groove,
             touching: site.touching,
             radius: 0.5 * model.geometry.ball_diameter,
-            azimuth: site.azimuth,
+            azimuth: site.ring_azimuth,
             ball: site.ball,
         }
     }

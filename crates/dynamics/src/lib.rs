@@ -4,22 +4,36 @@
 //! contacts). This crate does no input or output.
 
 pub mod balls;
+pub mod costs;
+pub mod displacements;
 pub mod effects;
 pub mod equilibrium;
 pub mod error;
 pub mod footprint;
+pub mod inventory;
+pub mod loading;
 pub mod memory;
 pub mod model;
+pub mod modes;
 pub mod motion;
+pub mod pose;
 pub mod problem;
+pub mod quasi_static;
 pub mod ring;
+pub mod schedule;
 pub mod solution;
 pub mod statics;
 pub mod support;
 
+pub use costs::{EffectCosts, Timing};
 pub use effects::{Effect, Loads};
 pub use error::DynamicsError;
+pub use inventory::Inventory;
 pub use memory::{RingMemory, forecast_peak};
 pub use model::{ContactMode, ContactSettings, Hold, Model, RingModel, ShaftDof, Tolerances};
+pub use modes::{Mode, ModeSet, ModesSettings, RingSupport};
+pub use pose::Pose;
+pub use quasi_static::QuasiStatic;
+pub use schedule::Schedule;
 pub use solution::StaticSolution;
-pub use statics::{StaticSolver, Timing};
+pub use statics::StaticSolver;

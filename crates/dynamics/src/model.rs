@@ -13,6 +13,7 @@ use fem::Material;
 use mesh::Mesh;
 
 use crate::effects::Effect;
+use crate::schedule::Schedule;
 
 /// Name of the facet group on which balls run.
 pub const RACEWAY_GROUP: &str = "raceway";
@@ -24,6 +25,8 @@ pub enum Hold {
     Clamped,
     /// Only the mean translation and rotation of the surface follow the partner (RBE3); it may ovalise.
     MeanMotion,
+    /// Not at all: a body that floats. Statics has no answer for it, motion has.
+    Free,
 }
 
 /// A ring that is a finite-element body.
@@ -45,7 +48,7 @@ pub struct RingModel {
 pub enum ShaftDof {
     /// Moves until forces balance.
     Free,
-    /// Held at a given displacement, m or rad; locked is 0.
+    /// Held at a given displacement, m or rad, times its schedule in `Model::shaft_schedules`; locked is 0.
     Prescribed(f64),
 }
 
@@ -99,6 +102,8 @@ pub struct Model {
     pub ball_material: Material,
     /// Shaft dofs x, y, z, tilt about x, tilt about y.
     pub shaft: [ShaftDof; 5],
+    /// Factors over time of the prescribed ones; those of free dofs do nothing.
+    pub shaft_schedules: [Schedule; 5],
     /// Mass carried by the shaft besides a flexible inner ring, kg.
     pub shaft_mass: f64,
     /// Axial distance of the load point from the plane of the inner groove centres, m.
@@ -121,6 +126,23 @@ impl Model {
     pub fn ring_shift(&self, side: Side) -> f64 {
         let centre_z = self.ring(side).map_or(0.0, |r| r.groove.centre_z);
         self.geometry.groove_centre(side)[1] - centre_z
+    }
+
+    /// Imposed displacement of a shaft dof (0..5) at a time in s, m or rad; None: it is free.
+    pub fn prescribed(&self, dof: usize, time: f64) -> Option<f64> {
+        self.imposed(dof, |schedule| schedule.at(time))
+    }
+
+    /// Rate of the imposed displacement of a shaft dof, m/s or rad/s; None: it is free.
+    pub fn prescribed_rate(&self, dof: usize, time: f64) -> Option<f64> {
+        self.imposed(dof, |schedule| schedule.rate(time))
+    }
+
+    fn imposed(&self, dof: usize, factor: impl Fn(&Schedule) -> f64) -> Option<f64> {
+        match self.shaft[dof] {
+            ShaftDof::Free => None,
+            ShaftDof::Prescribed(value) => Some(value * factor(&self.shaft_schedules[dof])),
+        }
     }
 
     /// Mass of one ball, kg.

@@ -14,6 +14,7 @@ use std::sync::Arc;
 use contact::law::ContactForce;
 use contact::{ContactLaw, Side, Unevenness};
 
+pub use crate::displacements::Displacements;
 use crate::model::Model;
 
 /// Unknowns of one contact: at most 5 shaft dofs, 2 of the ball, 2 of the groove centre.
@@ -28,6 +29,8 @@ pub struct Site {
     pub side: Side,
     /// Azimuth of the ball, rad.
     pub azimuth: f64,
+    /// The same on the mesh of the ring, which may have turned, rad.
+    pub ring_azimuth: f64,
     /// Groove centre to ball centre at zero displacement [radial, axial], m.
     pub reach: [f64; 2],
     /// |l| at which they touch, R - D_w/2, m.
@@ -45,21 +48,10 @@ pub struct Site {
 pub struct RingResponse {
     /// Motion measured under `force`, m, `[2 n_balls]`.
     pub offset: Vec<f64>,
-    /// Forces of that measurement, N, `[2 n_balls]`.
+    /// Forces of that measurement, normal and contact loads together, N, `[2 n_balls]`.
     pub force: Vec<f64>,
     /// C^-1, N/m, row-major `[2 n_balls][2 n_balls]`.
     pub stiffness: Vec<f64>,
-}
-
-/// Displacements of everything small: m, rad.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Displacements {
-    /// Shaft x, y, z, tilt x, tilt y.
-    pub shaft: [f64; 5],
-    /// Balls [radial, axial] from the just-touching position.
-    pub balls: Vec<[f64; 2]>,
-    /// Elastic motion of the groove centres, inner ring then outer, `[n_balls][2]`.
-    pub grooves: [Vec<[f64; 2]>; 2],
 }
 
 /// The contact problem of one instant.
@@ -74,6 +66,8 @@ pub struct Problem {
     pub shaft_load: [f64; 5],
     /// Ball loads [radial, axial], N.
     pub ball_load: Vec<[f64; 2]>,
+    /// Dead load on the ring at each contact, N, by site, or empty; shaft and ball loads have theirs already.
+    pub contact_load: Vec<[f64; 2]>,
     /// Growth of the radial ball load with the radial displacement, N/m.
     pub ball_slope: f64,
     /// Length by which tilts are scaled, m.
@@ -94,7 +88,7 @@ pub struct SiteState {
 }
 
 impl Site {
-    /// A ball at an azimuth on an exact, rigid groove with the model's Hertz stiffness.
+    /// A ball at an azimuth on an exact, rigid groove that has not turned, with the model's Hertz stiffness.
     pub fn new(model: &Model, ball: usize, side: Side, azimuth: f64) -> Site {
         let geometry = &model.geometry;
         let (centre, ball_centre) = (geometry.groove_centre(side), geometry.ball_centre());
@@ -102,6 +96,7 @@ impl Site {
             ball,
             side,
             azimuth,
+            ring_azimuth: azimuth,
             reach: [ball_centre[0] - centre[0], ball_centre[1] - centre[1]],
             touching: geometry.touching_distance(side),
             lever: geometry.centre_radius(side),
@@ -174,17 +169,6 @@ impl Site {
     pub fn contact_angle(&self, state: &SiteState) -> f64 {
         let sign = self.side.sign();
         (sign * state.normal[1]).atan2(sign * state.normal[0])
-    }
-}
-
-impl Displacements {
-    /// Zero displacement; `flexible` tells which rings have groove motions.
-    pub fn zero(n_balls: usize, flexible: [bool; 2]) -> Displacements {
-        Displacements {
-            shaft: [0.0; 5],
-            balls: vec![[0.0; 2]; n_balls],
-            grooves: flexible.map(|f| if f { vec![[0.0; 2]; n_balls] } else { Vec::new() }),
-        }
     }
 }
 
@@ -293,8 +277,13 @@ impl Problem {
             }
         }
         gradient.extend(self.ball_loads(u).iter().flatten().map(|f| -f));
-        for (groove, ring) in u.grooves.iter().zip(&self.rings) {
-            if let Some(ring) = ring {
+        for (side, groove) in Side::BOTH.into_iter().zip(&u.grooves) {
+            if let Some(ring) = &self.rings[side.index()] {
+                let load = |i: usize| {
+                    self.contact_load
+                        .get(i - i % 2 + side.index())
+                        .map_or(0.0, |f| f[i % 2])
+                };
                 let change: Vec<f64> = groove
                     .iter()
                     .flatten()
@@ -303,11 +292,12 @@ impl Problem {
                     .collect();
                 let m = change.len();
                 gradient.extend(ring.force.iter().enumerate().map(|(i, f)| {
-                    f + ring.stiffness[m * i..m * (i + 1)]
-                        .iter()
-                        .zip(&change)
-                        .map(|(k, x)| k * x)
-                        .sum::<f64>()
+                    f - load(i)
+                        + ring.stiffness[m * i..m * (i + 1)]
+                            .iter()
+                            .zip(&change)
+                            .map(|(k, x)| k * x)
+                            .sum::<f64>()
                 }));
             }
         }
@@ -378,7 +368,7 @@ pub fn site_forces(problem: &Problem, u: &Displacements) -> Vec<[f64; 2]> {
 pub const SHAFT_DOFS: [&str; 5] = ["x", "y", "z", "tilt_x", "tilt_y"];
 
 /// Derivative of Q n with respect to l: k n (n + slope)^T + Q/|l| (1 - n n^T); without slope the Hessian of V(|l|).
-fn site_hessian(state: &SiteState) -> [[f64; 2]; 2] {
+pub(crate) fn site_hessian(state: &SiteState) -> [[f64; 2]; 2] {
     let n = state.normal;
     let across = if state.length > 0.0 {
         state.force.force / state.length

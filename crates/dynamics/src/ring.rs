@@ -12,6 +12,7 @@ use solver::{LinearSolver, SolverError, SparseCholesky, Symbolic};
 use sprs::CsMat;
 
 use crate::error::DynamicsError;
+use crate::inventory::Inventory;
 use crate::memory::RingMemory;
 use crate::model::{ContactMode, Model, RACEWAY_GROUP, RingModel};
 use crate::support::Support;
@@ -113,6 +114,14 @@ impl RingSolver {
             }
         }
         compliance
+    }
+
+    /// Dofs, and the factor.
+    pub fn inventory(&self) -> Inventory {
+        Inventory {
+            dofs: self.n_dofs,
+            matrices: [&self.factor].len(),
+        }
     }
 
     /// Number of dofs of the ring, held ones included.

@@ -6,8 +6,9 @@ use crate::balls::{BallResult, ball_results};
 use crate::effects::Loads;
 use crate::equilibrium::centre_unloaded;
 use crate::footprint::{Footprint, loaded};
-use crate::model::Model;
-use crate::problem::{Displacements, Problem, site_forces};
+use crate::loading::LoadCase;
+use crate::pose::Pose;
+use crate::problem::{Displacements, Problem, Site, site_forces};
 
 /// Peak pressure that leaves a permanent indentation of 1e-4 of the ball diameter in bearing steel, Pa: ISO 76, for ball
 /// bearings.
@@ -17,9 +18,12 @@ const STATIC_LIMIT: f64 = 4.2e9;
 pub struct StaticSolution {
     /// Displacements of shaft, balls and groove centres.
     pub displacements: Displacements,
+    /// Where the parts of the bearing stand.
+    pub pose: Pose,
     /// Results of every ball.
     pub balls: Vec<BallResult>,
-    /// Elastic nodal displacements of flexible rings relative to shaft or housing, m, `[n_nodes][3]` flat.
+    /// Elastic nodal displacements of flexible rings relative to shaft or housing, in the frame of the ring's mesh, which
+    /// may have turned, m, `[n_nodes][3]` flat.
     pub elastic: [Option<Vec<f64>>; 2],
     /// Out-of-balance force on the shaft, N and N m, about its origin; zero on prescribed dofs.
     pub shaft_residual: [f64; 5],
@@ -39,6 +43,10 @@ pub struct StaticSolution {
     pub newton_iterations: usize,
     /// Warnings a user should read.
     pub warnings: Vec<String>,
+    /// All contacts with their laws: ball 0 inner, ball 0 outer, ball 1 inner, ...
+    pub sites: Vec<Site>,
+    /// Growth of the radial ball load with the radial displacement, N/m.
+    pub ball_slope: f64,
     footprints: [Vec<Footprint>; 2],
 }
 
@@ -51,20 +59,15 @@ pub struct RingFields {
 }
 
 impl StaticSolution {
-    /// Evaluates everything at the equilibrium `u`; `rounds` and `newton_iterations` say what it took.
-    pub fn new(
-        model: &Model,
-        problem: &Problem,
-        mut u: Displacements,
-        loads: &Loads,
-        rings: RingFields,
-        [rounds, newton_iterations]: [usize; 2],
-    ) -> StaticSolution {
+    /// Evaluates everything at the equilibrium `u` of a load case, found in a number of rounds.
+    pub fn new(case: &LoadCase, mut u: Displacements, rings: RingFields, rounds: usize) -> StaticSolution {
+        let (model, problem) = (case.model, &case.problem);
         centre_unloaded(problem, &mut u);
         let (residual, reaction) = shaft_balance(problem, &u);
         let forces = site_forces(problem, &u);
-        let body_work = body_work(loads, &rings);
-        let strain_energy = 0.5 * (ring_contact_work(&rings, &forces) + body_work);
+        // Loads on the rings, through their elastic motion: on their bodies and, besides the normal forces, at contacts.
+        let ring_load_work = body_work(&case.loads, &rings) + ring_contact_work(&rings, &case.loads.contacts);
+        let strain_energy = 0.5 * (ring_contact_work(&rings, &forces) + ring_load_work);
         let hertz_energy = problem.sites.iter().map(|s| s.state(&u).force.energy).sum();
         let contact_work: f64 = problem.sites.iter().map(|s| s.work(&u)).sum();
         let ball_work: f64 = problem
@@ -74,7 +77,7 @@ impl StaticSolution {
             .map(|(f, x)| dot(f, x))
             .sum();
         let balls = ball_results(model, problem, &u);
-        let load_work = ball_work + dot(&problem.shaft_load, &u.shaft) + body_work;
+        let load_work = ball_work + dot(&problem.shaft_load, &u.shaft) + ring_load_work;
         StaticSolution {
             warnings: warnings(&rings.footprints, &forces, &balls),
             balls,
@@ -85,11 +88,19 @@ impl StaticSolution {
             hertz_energy,
             load_work,
             rounds,
-            newton_iterations,
+            newton_iterations: case.newton_iterations,
             displacements: u,
+            pose: case.pose,
+            sites: problem.sites.clone(),
+            ball_slope: problem.ball_slope,
             elastic: rings.elastic,
             footprints: rings.footprints,
         }
+    }
+
+    /// Places of the contacts on one side, by ball; empty for a rigid ring.
+    pub fn footprints(&self, side: Side) -> &[Footprint] {
+        &self.footprints[side.index()]
     }
 
     /// Semi-axes of the spread patches of one side, m, by ball; empty for a rigid ring or facets.
@@ -101,13 +112,15 @@ impl StaticSolution {
     }
 }
 
-/// Contact forces times the elastic motion of the groove centres, J.
+/// Forces at the contacts, by site or none at all, times the elastic motion of the groove centres, J.
 fn ring_contact_work(rings: &RingFields, forces: &[[f64; 2]]) -> f64 {
     let mut work = 0.0;
     for side in Side::BOTH {
         if let Some(field) = &rings.elastic[side.index()] {
             for (ball, foot) in rings.footprints[side.index()].iter().enumerate() {
-                work += dot(&foot.weights.measure(field), &forces[2 * ball + side.index()]);
+                if let Some(force) = forces.get(2 * ball + side.index()) {
+                    work += dot(&foot.weights.measure(field), force);
+                }
             }
         }
     }

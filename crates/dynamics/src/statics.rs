@@ -7,6 +7,7 @@
 //!     place patches from the forces and contact angles
 //!     u = K^-1 (patch loads), one solve per ring; c = motion measured by the same patches
 //!     Newton on balls, shaft and groove motions with u_c = c + C (F - F0)
+//!         (again while loads that follow the contact angles change)
 //! until no force changes
 //! ```
 //! C is only a tangent: a slightly outdated one costs rounds, never accuracy; it is renewed when rounds contract slowly.
@@ -18,12 +19,16 @@ use contact::Side;
 use rayon::prelude::*;
 use solver::dense::DenseCholesky;
 
-use crate::effects::{self, Loads, Now};
+use crate::costs::{EffectCosts, Timing};
+use crate::effects::Loads;
 use crate::equilibrium::{SearchScales, check_held, minimise, round_off};
 use crate::error::DynamicsError;
 use crate::footprint::{Footprint, check_on_groove, place};
-use crate::model::{ContactMode, Model, ShaftDof};
-use crate::problem::{Displacements, Problem, RingResponse, Site, site_forces};
+use crate::inventory::Inventory;
+use crate::loading::{LoadCase, largest_change, largest_force, not_settled};
+use crate::model::{ContactMode, Model};
+use crate::pose::Pose;
+use crate::problem::{Displacements, Problem, RingResponse, site_forces};
 use crate::ring::RingSolver;
 use crate::solution::{RingFields, StaticSolution};
 
@@ -35,29 +40,14 @@ const FACET_TOLERANCE: f64 = 1e-6;
 /// Stages in which the facets' offsets are brought in.
 const FACET_STAGES: usize = 8;
 
-/// Seconds spent, by part.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Timing {
-    /// Assembly of the stiffness matrices.
-    pub assemble: f64,
-    /// Ordering, analysis and factorisation.
-    pub factor: f64,
-    /// Compliance columns of the contacts.
-    pub columns: f64,
-    /// Placing of patches.
-    pub patches: f64,
-    /// Full-field solves.
-    pub solve: f64,
-    /// Newton on contacts, balls and shaft.
-    pub newton: f64,
-}
-
 /// Factored rings of a model, ready for any number of load cases.
 pub struct StaticSolver {
     rings: [Option<RingSolver>; 2],
     columns: [Option<Vec<f64>>; 2],
     /// Seconds so far.
     pub timing: Timing,
+    /// Seconds so far, by effect.
+    pub costs: EffectCosts,
 }
 
 impl StaticSolver {
@@ -80,12 +70,19 @@ impl StaticSolver {
             rings,
             columns: [None, None],
             timing,
+            costs: EffectCosts::new(model),
         })
     }
 
     /// The ring solver of one side.
     pub fn ring(&self, side: Side) -> Option<&RingSolver> {
         self.rings[side.index()].as_ref()
+    }
+
+    /// What both rings hold.
+    pub fn inventory(&self) -> Inventory {
+        let rings = self.rings.iter().flatten();
+        rings.fold(Inventory::default(), |sum, ring| sum + ring.inventory())
     }
 
     /// Equilibrium under the model's loads, from zero displacement or from an earlier solution. The model must have the
@@ -95,123 +92,95 @@ impl StaticSolver {
         model: &Model,
         start: Option<&StaticSolution>,
     ) -> Result<StaticSolution, DynamicsError> {
-        let loads = &effects::loads(model, &Now::default())?;
-        let problem = base_problem(model, loads);
-        let scales = SearchScales::new(
-            &model.geometry,
-            model.hertz[0].stiffness.max(model.hertz[1].stiffness),
-        );
-        let mut u = self.start(model, &problem, start);
+        self.solve_at(model, &Pose::default(), start)
+    }
+
+    /// The same at another instant: of a bearing that has turned, with the loads and imposed displacements of its time.
+    pub fn solve_at(
+        &mut self,
+        model: &Model,
+        pose: &Pose,
+        start: Option<&StaticSolution>,
+    ) -> Result<StaticSolution, DynamicsError> {
+        let u = self.start(model, pose.now.time, start);
+        let mut case = LoadCase::new(model, *pose, &self.costs, &u)?;
         let clock = Instant::now();
-        let mut newton_iterations = 0;
-        let all_rigid = self.rings.iter().all(Option::is_none);
         // Rings as they were (undeformed without a start): places and forces near those of the new loads.
-        let (found, iterations) = minimise(&problem, u, scales)?;
-        u = found;
-        newton_iterations += iterations;
+        let u = case.settle(&self.costs, u)?;
         self.timing.newton += clock.elapsed().as_secs_f64();
-        if all_rigid {
-            check_held(&problem, &u, scales)?;
-            let rings = RingFields {
-                elastic: [None, None],
-                footprints: [Vec::new(), Vec::new()],
-            };
-            return Ok(StaticSolution::new(
-                model,
-                &problem,
-                u,
-                loads,
-                rings,
-                [1, newton_iterations],
-            ));
+        if self.rings.iter().any(Option::is_some) {
+            return self.rounds(case, u);
         }
-        self.rounds(model, problem, u, loads, scales, newton_iterations)
+        check_held(&case.problem, &u, case.scales)?;
+        let rings = RingFields {
+            elastic: [None, None],
+            footprints: [Vec::new(), Vec::new()],
+        };
+        Ok(StaticSolution::new(&case, u, rings, 1))
     }
 
     /// Displacements to start from.
-    fn start(&self, model: &Model, problem: &Problem, start: Option<&StaticSolution>) -> Displacements {
+    fn start(&self, model: &Model, time: f64, start: Option<&StaticSolution>) -> Displacements {
         let flexible = [self.rings[0].is_some(), self.rings[1].is_some()];
         let mut u = match start {
             Some(solution) => solution.displacements.clone(),
-            None => Displacements::zero(problem.ball_load.len(), flexible),
+            None => Displacements::zero(model.geometry.n_balls, flexible),
         };
-        for (i, dof) in model.shaft.iter().enumerate() {
-            if let ShaftDof::Prescribed(value) = dof {
-                u.shaft[i] = *value;
-            }
+        for (i, q) in u.shaft.iter_mut().enumerate() {
+            *q = model.prescribed(i, time).unwrap_or(*q);
         }
         u
     }
 
-    fn rounds(
-        &mut self,
-        model: &Model,
-        mut problem: Problem,
-        mut u: Displacements,
-        loads: &Loads,
-        scales: SearchScales,
-        mut newton_iterations: usize,
-    ) -> Result<StaticSolution, DynamicsError> {
+    fn rounds(&mut self, mut case: LoadCase, mut u: Displacements) -> Result<StaticSolution, DynamicsError> {
+        let model = case.model;
         let tolerance = match model.contact.mode {
             ContactMode::Facet => model.tolerances.force.max(FACET_TOLERANCE),
             _ => model.tolerances.force,
         };
-        let mut forces = site_forces(&problem, &u);
-        let mut history = Vec::new();
-        let mut worst = 0;
+        let mut forces = site_forces(&case.problem, &u);
+        let (mut history, mut worst) = (Vec::new(), 0);
         for round in 1..=model.tolerances.max_rounds {
             let clock = Instant::now();
             let mut feet = [Vec::new(), Vec::new()];
             for side in Side::BOTH {
                 if let Some(ring) = &self.rings[side.index()] {
-                    feet[side.index()] = place(model, side, ring, &mut problem, &u, &forces)?;
+                    feet[side.index()] = place(model, side, ring, &mut case.problem, &u, &forces)?;
                 }
             }
             self.timing.patches += clock.elapsed().as_secs_f64();
             self.renew_columns(&feet, &history);
-            let fields = self.fields(&feet, &forces, loads);
-            self.respond(&mut problem, &feet, &forces, &fields);
+            let ring_forces = case.ring_forces(&forces);
+            let fields = self.fields(&feet, &ring_forces, &case.loads);
+            self.respond(&mut case.problem, &feet, &ring_forces, &fields);
+            let contact_loads = case.loads.contacts.clone();
             let clock = Instant::now();
             if round == 1 {
-                adopt_offsets(&problem, &mut u);
-                u = approach_facets(&mut problem, u, scales)?;
+                adopt_offsets(&case.problem, &mut u);
+                u = approach_facets(&mut case.problem, u, case.scales)?;
             }
-            let (next, iterations) = minimise(&problem, u, scales)?;
+            u = case.settle(&self.costs, u)?;
             self.timing.newton += clock.elapsed().as_secs_f64();
-            newton_iterations += iterations;
-            u = next;
-            let updated = site_forces(&problem, &u);
-            let (change, place) = largest_change(&forces, &updated);
+            let updated = site_forces(&case.problem, &u);
+            let largest = largest_force(&updated);
+            let normal = largest_change(&forces, &updated, largest);
+            let across = largest_change(&contact_loads, &case.loads.contacts, largest);
+            let (change, place) = if across.0 > normal.0 { across } else { normal };
             (forces, worst) = (updated, place);
             history.push(change);
-            if change <= tolerance.max(round_off(&problem, &u) / largest_force(&forces)) {
-                self.check_places(&problem, &u, &forces)?;
-                check_held(&problem, &u, scales)?;
-                check_patches(&problem, &u)?;
+            if change <= tolerance.max(round_off(&case.problem, &u) / largest) {
+                self.check_places(&case.problem, &u, &forces)?;
+                check_held(&case.problem, &u, case.scales)?;
+                check_patches(&case.problem, &u)?;
                 let rings = RingFields {
                     elastic: fields,
                     footprints: feet,
                 };
-                return Ok(StaticSolution::new(
-                    model,
-                    &problem,
-                    u,
-                    loads,
-                    rings,
-                    [round, newton_iterations],
-                ));
+                return Ok(StaticSolution::new(&case, u, rings, round));
             }
         }
-        self.check_places(&problem, &u, &forces)?;
-        let tail = history.len().saturating_sub(6);
-        Err(DynamicsError::NotSettled {
-            rounds: model.tolerances.max_rounds,
-            change: *history.last().unwrap_or(&f64::NAN),
-            limit: tolerance,
-            ball: worst / 2,
-            side: Side::BOTH[worst % 2].name(),
-            history: history.split_off(tail),
-        })
+        self.check_places(&case.problem, &u, &forces)?;
+        Err(not_settled(model, tolerance, worst, history))
     }
 
     fn check_places(
@@ -297,21 +266,6 @@ impl StaticSolver {
     }
 }
 
-fn base_problem(model: &Model, loads: &Loads) -> Problem {
-    let geometry = &model.geometry;
-    let sites = (0..geometry.n_balls)
-        .flat_map(|i| Side::BOTH.map(|side| Site::new(model, i, side, geometry.azimuth(i))));
-    Problem {
-        sites: sites.collect(),
-        rings: [None, None],
-        shaft_free: model.shaft.map(|d| d == ShaftDof::Free),
-        shaft_load: [0, 1, 2, 3, 4].map(|i| loads.shaft[i] + loads.ring_on_shaft[i]),
-        ball_load: loads.balls.clone(),
-        ball_slope: loads.ball_slope,
-        tilt_arm: geometry.centre_radius(Side::Inner),
-    }
-}
-
 /// Follows the equilibrium from exact grooves to their facets, whose offsets exceed the approach of the balls.
 fn approach_facets(
     problem: &mut Problem,
@@ -344,27 +298,6 @@ fn adopt_offsets(problem: &Problem, u: &mut Displacements) {
             }
         }
     }
-}
-
-fn largest_force(forces: &[[f64; 2]]) -> f64 {
-    let size = |f: &[f64; 2]| f[0].hypot(f[1]);
-    forces.iter().map(size).fold(f64::MIN_POSITIVE, f64::max)
-}
-
-/// Largest change over the largest force, and where.
-fn largest_change(old: &[[f64; 2]], new: &[[f64; 2]]) -> (f64, usize) {
-    let scale = largest_force(new);
-    old.iter()
-        .zip(new)
-        .enumerate()
-        .fold((0.0, 0), |(largest, place), (i, (a, b))| {
-            let change = (a[0] - b[0]).hypot(a[1] - b[1]) / scale;
-            if change > largest {
-                (change, i)
-            } else {
-                (largest, place)
-            }
-        })
 }
 
 fn check_patches(problem: &Problem, u: &Displacements) -> Result<(), DynamicsError> {

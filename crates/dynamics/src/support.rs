@@ -20,6 +20,10 @@ pub struct Support {
 
 /// The mean motion of a surface as six functionals.
 struct MeanMotion {
+    /// Reference point of the surface, m.
+    centre: [f64; 3],
+    /// Its radius of gyration, m: the unit of the arms.
+    size: f64,
     /// Node positions relative to the surface's reference point over `size`, `[n_nodes][3]`.
     arms: Vec<[f64; 3]>,
     /// Held nodes and their area weights.
@@ -40,6 +44,10 @@ impl Support {
                     mean: None,
                 }
             }
+            Hold::Free => Support {
+                free: (0..mesh.n_dofs()).collect(),
+                mean: None,
+            },
             Hold::MeanMotion => {
                 let mean = MeanMotion::new(mesh, weights);
                 let fixed = mean.determinate_dofs();
@@ -65,6 +73,31 @@ impl Support {
             mean.remove_rigid(displacement);
         }
     }
+}
+
+/// The mean rigid motion of a surface as six functionals of the nodal dofs, (dof, value): translations x, y, z of the
+/// axis point `z = origin_z` in m per m, rotations about x, y, z in rad per m; area-weighted least squares.
+pub fn mean_motion(mesh: &Mesh, weights: Vec<(usize, f64)>, origin_z: f64) -> [Vec<(usize, f64)>; 6] {
+    let mean = MeanMotion::new(mesh, weights);
+    let (centre, size) = (mean.centre, mean.size);
+    let mut rows: [Vec<(usize, f64)>; 6] = Default::default();
+    for &(node, w) in &mean.weights {
+        for c in 0..3 {
+            let motion = mean.apply_inverse(rigid_row(mean.arms[node], c).map(|r| w * r));
+            let turn = [motion[3] / size, motion[4] / size, motion[5] / size];
+            // From the surface's reference point to the origin: t + phi x (origin - centre).
+            let arm = [-centre[0], -centre[1], origin_z - centre[2]];
+            let moved = [
+                motion[0] + turn[1] * arm[2] - turn[2] * arm[1],
+                motion[1] + turn[2] * arm[0] - turn[0] * arm[2],
+                motion[2] + turn[0] * arm[1] - turn[1] * arm[0],
+            ];
+            for (row, value) in rows.iter_mut().zip(moved.into_iter().chain(turn)) {
+                row.push((3 * node + c, value));
+            }
+        }
+    }
+    rows
 }
 
 /// Rows of the rigid modes at one node: u = q[0..3] + q[3..6] x arm.
@@ -108,6 +141,8 @@ impl MeanMotion {
             .expect("a surface of facets is not a straight line, so its mean rotation is defined")
             .inverse();
         MeanMotion {
+            centre,
+            size,
             arms,
             weights,
             inverse,

@@ -4,7 +4,7 @@ mod support;
 
 use contact::{BearingGeometry, Side};
 use dynamics::effects::Gravity;
-use dynamics::{DynamicsError, ShaftDof, StaticSolver};
+use dynamics::{DynamicsError, Schedule, ShaftDof, StaticSolver};
 use support::{Case, equilibrium, relative};
 
 /// Wrong: the thrust equilibrium. Harris (4th ed.), eq. 7.30-7.33: F = Z K A^1.5 sin a (cos a0/cos a - 1)^1.5, with
@@ -143,7 +143,8 @@ fn balls_that_only_touch_are_unloaded() {
 fn gravity_leaves_unloaded_balls_at_its_horizon_midway() {
     let mut model = Case::axial(500.0).rigid();
     let acceleration = [0.0, -9.81e4, 0.0];
-    model.effects.push(Box::new(Gravity { acceleration }));
+    let gravity = Gravity::new(acceleration, Schedule::Constant, &model.rings).unwrap();
+    model.effects.push(Box::new(gravity));
     let solution = equilibrium(&model);
     let horizon = [&solution.balls[0], &solution.balls[9]];
     for b in horizon {

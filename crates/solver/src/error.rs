@@ -87,6 +87,22 @@ pub enum SolverError {
         /// Bytes asked for.
         bytes: usize,
     },
+    /// Lanczos gave up.
+    #[error(
+        "{converged} of {wanted} eigenpairs have converged after {steps} blocks; ask for fewer, or move the shift \
+         towards their frequencies"
+    )]
+    EigenNotConverged {
+        /// Pairs asked for.
+        wanted: usize,
+        /// Pairs that have converged.
+        converged: usize,
+        /// Blocks tried.
+        steps: usize,
+    },
+    /// An eigenvalue became infinite or not a number.
+    #[error("an eigenvalue is not finite; check coordinates, material and masses")]
+    EigenNotFinite,
 }
 
 impl SolverError {

@@ -23,8 +23,11 @@
 
 pub mod dense;
 pub mod dissection;
+pub mod eigenproblem;
+pub mod lanczos;
 
 mod cholesky;
+mod dense_eigen;
 mod elimination_tree;
 mod error;
 mod linear_solver;
@@ -35,8 +38,11 @@ mod symbolic;
 
 pub use cholesky::SparseCholesky;
 pub use dense::{DenseCholesky, DenseLu};
+pub use dense_eigen::{dense_lowest, symmetric_eigen};
 pub use dissection::angular_dissection;
+pub use eigenproblem::{EigenProblem, Eigenpairs};
 pub use error::SolverError;
+pub use lanczos::{LanczosSettings, Searched, lowest_pairs};
 pub use linear_solver::LinearSolver;
 pub use permutation::{expand, restrict_order};
 pub use refinement::{Refined, solve_refined};

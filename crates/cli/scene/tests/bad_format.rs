@@ -32,7 +32,7 @@ const FORMAT: [Case; 36] = [
         "[effects.gravity]",
         "[effects.tides]",
         &[
-            "unknown key \"tides\" in [effects]; valid keys are \"axial_force\", \"radial_force\", \"moment\", \"gravity\", \"ball_centrifugal\", \"cage_slip\", \"contact_damping\", \
+            "unknown key \"tides\" in [effects]; valid keys are \"axial_force\", \"radial_force\", \"moment\", \"gravity\", \"ball_centrifugal\", \"gyroscopic_moment\", \"cage_slip\", \"frame_rotation\", \"contact_damping\", \
          \"rayleigh_damping\"",
         ],
     ),
@@ -218,7 +218,7 @@ fn missing_tables_are_named() {
         ("[outer]", "outer.mesh is missing"),
         (
             "[sweep]",
-            "the scene has no analysis; add one of the tables [static], [sweep] and [dynamic]",
+            "the scene has no analysis; add one of the tables [static], [sweep], [quasi_static], [dynamic] and [modes]",
         ),
     ];
     for (header, expected) in cases {

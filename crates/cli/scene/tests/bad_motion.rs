@@ -3,7 +3,32 @@
 use super::*;
 
 /// Texts that must be refused: what is wrong with a line of the example of motion.
-const INVALID: [Case; 42] = [
+const INVALID: [Case; 46] = [
+    (
+        "halvings",
+        "halvings = 17",
+        &["dynamic.halvings is 17; expected a whole number from 0 to 16"],
+    ),
+    (
+        "tolerance",
+        "tolerance = 0.0",
+        &[
+            "dynamic.adaptive.tolerance is 0; expected 1e-9 to 0.1, the error of a step over the largest contact approach",
+        ],
+    ),
+    (
+        "velocity_x",
+        "velocity_tilt_x = \"1 rad/s\"",
+        &[
+            "[dynamic.start.given] moves tilt_x, which shaft.tilt_x does not leave free; remove it there or set \
+           shaft.tilt_x = \"free\"",
+        ],
+    ),
+    (
+        "velocity_x",
+        "velocity_x = \"1 mm/s\"\n[dynamic.start.free]",
+        &["[dynamic.start] has free and given; expected one of them, or none for static equilibrium"],
+    ),
     (
         "duration",
         "",
@@ -165,7 +190,7 @@ const INVALID: [Case; 42] = [
         "inner = {",
         "inner = { times = [\"0 s\"], value = [\"1 rpm\"] }",
         &[
-            "unknown key \"value\" in [speed.inner]; did you mean \"values\"? valid keys are \"times\", \"values\"",
+            "unknown key \"value\" in [speed.inner]; did you mean \"values\"? valid keys are \"times\", \"values\", \"ramp\"",
         ],
     ),
     (
@@ -301,7 +326,8 @@ fn numbers_that_make_an_integrator_unstable_are_refused() {
 /// If this failed, an effect would be computed without what it needs, or a table would be accepted that does nothing.
 #[test]
 fn effects_without_anything_to_do_are_refused() {
-    let constant = at_rest("inner = \"1800 rpm\"");
+    let turning = at_rest("inner = \"1800 rpm\"");
+    let constant = replace_line(&turning, "[effects.frame_rotation]", "");
     let without_speed = |text: &str| {
         let text = replace_line(text, "[speed]", "");
         replace_line(&text, "inner = \"1800 rpm\"", "")
@@ -317,7 +343,7 @@ fn effects_without_anything_to_do_are_refused() {
     };
     let nothing = |name: &str| {
         format!(
-            "[effects.{name}] does nothing in a scene at rest; remove it, or compute motion with [dynamic]"
+            "[effects.{name}] does nothing in a scene without inertia; remove it, or compute motion with [dynamic]"
         )
     };
     let contact = "[effects.contact_damping]\ncoefficient = \"1 N s/m\"\nfull_approach = \"1 um\"\n[static]";
@@ -329,6 +355,15 @@ fn effects_without_anything_to_do_are_refused() {
             replace_line(&without_speed(&constant), "[effects.ball_centrifugal]", ""),
             needs("cage_slip"),
         ),
+        (
+            no_slip(&replace_line(&without_speed(&turning), "[effects.ball_centrifugal]", "")),
+            needs("frame_rotation"),
+        ),
+        (
+            turning.replace("mesh = \"../meshes/7010c_inner.msh\"", "flexible = false"),
+            "[effects.frame_rotation] is the inertia of a flexible inner ring, but the inner ring is rigid; remove it"
+                .to_string(),
+        ),
         (constant.replace("[static]", contact), nothing("contact_damping")),
         (
             constant.replace("[static]", contact).replace("[static]", sweep),
@@ -337,8 +372,8 @@ fn effects_without_anything_to_do_are_refused() {
         (constant.replace("[static]", rayleigh), nothing("rayleigh_damping")),
         (
             replace_line(&constant, "[effects.ball_centrifugal]", ""),
-            "[speed] does nothing in a scene at rest without [effects.ball_centrifugal]; add that effect, compute motion \
-             with [dynamic], or remove [speed]"
+            "[speed] does nothing in a scene at rest without [effects.ball_centrifugal], [effects.frame_rotation] or \
+             [effects.gyroscopic_moment]; add one, compute motion with [dynamic], or remove [speed]"
                 .to_string(),
         ),
         (

@@ -328,7 +328,10 @@ fn all_problems_are_reported_together() {
 #[test]
 fn a_shaft_free_along_its_axis_may_be_pushed_either_way() {
     let scene = super::parse(&with_line("value = \"2 kN\"", "value = \"-2 kN\""), &[]).unwrap();
-    assert_eq!(scene.effects.axial_force, Some(-2000.0));
+    assert_eq!(
+        scene.effects.axial_force,
+        Some(crate::scene::Scheduled::constant(-2000.0))
+    );
 }
 
 /// If this failed, sections whose shoulders run into each other would be meshed.

@@ -37,13 +37,16 @@ fn the_example_of_the_documentation_reads_as_it_says() {
     assert_eq!(scene.shaft.tilt_x, Motion::Locked);
     assert_eq!(
         scene.effects.radial_force,
-        Some(RadialForce {
+        Some(Scheduled::constant(RadialForce {
             value: 1e3,
             direction: 0.0
-        })
+        }))
     );
-    assert_eq!(scene.effects.moment, Some([0.0, 3.0]));
-    assert_eq!(scene.effects.gravity, Some([0.0, -9.81, 0.0]));
+    assert_eq!(scene.effects.moment, Some(Scheduled::constant([0.0, 3.0])));
+    assert_eq!(
+        scene.effects.gravity,
+        Some(Scheduled::constant([0.0, -9.81, 0.0]))
+    );
     assert_eq!(scene.text, EXAMPLE);
     let inner = scene.inner.body.unwrap();
     assert_eq!(inner.mesh, Path::new("scenes/../meshes/7010c_inner.msh"));
@@ -154,8 +157,16 @@ fn the_delivered_scenes_are_valid() {
     for (name, axial, radial, n_points, tilt) in expected {
         let path = folder.join(format!("{name}.toml"));
         let scene = Scene::load_with(&path, &[], MeshFiles::MayBeMissing).unwrap_or_else(|e| panic!("{e}"));
-        assert_eq!(scene.effects.axial_force, Some(axial), "{name}");
-        assert_eq!(scene.effects.radial_force.map(|f| f.value), radial, "{name}");
+        assert_eq!(
+            scene.effects.axial_force,
+            Some(Scheduled::constant(axial)),
+            "{name}"
+        );
+        assert_eq!(
+            scene.effects.radial_force.as_ref().map(|f| f.value.value),
+            radial,
+            "{name}"
+        );
         assert_eq!(scene.sweep_scenes().unwrap().len(), n_points, "{name}");
         assert_eq!((scene.shaft.tilt_x, scene.shaft.tilt_y), (tilt, tilt), "{name}");
         assert_eq!(scene.bearing, parse(EXAMPLE, &[]).unwrap().bearing, "{name}");
@@ -184,8 +195,16 @@ fn the_delivered_motions_are_valid() {
         assert_eq!((dynamic.n_steps, dynamic.step), (n_steps, step), "{name}");
         assert_eq!(dynamic.contact, ContactScheme::DiscreteGradient, "{name}");
         assert_eq!(scene.speed.map(|s| s.times), Some(vec![0.0]), "{name}");
-        assert_eq!(scene.effects.axial_force, Some(2e3), "{name}");
-        assert_eq!(scene.effects.radial_force.map(|f| f.value), Some(1e3), "{name}");
+        assert_eq!(
+            scene.effects.axial_force,
+            Some(Scheduled::constant(2e3)),
+            "{name}"
+        );
+        assert_eq!(
+            scene.effects.radial_force.map(|f| f.value.value),
+            Some(1e3),
+            "{name}"
+        );
         assert_eq!(
             (scene.shaft.tilt_x, scene.shaft.tilt_y),
             (Motion::Locked, Motion::Locked),

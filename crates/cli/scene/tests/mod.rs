@@ -4,8 +4,12 @@ mod bad_format;
 mod bad_motion;
 mod bad_values;
 mod good;
+mod modes;
 mod motion;
 mod overrides;
+mod probes;
+mod quasi_static;
+mod schedules;
 mod sweeps;
 
 use std::path::Path;

@@ -24,7 +24,13 @@ fn the_example_of_motion_reads_as_it_says() {
         output_every: 10,
         integrator: IntegratorChoice::ChungHulbert { rho: 0.8 },
         contact: ContactScheme::DiscreteGradient,
-        ledger_tolerance: 1e-3,
+        ledger_tolerance: 1e-6,
+        halvings: 4,
+        adaptive: Some(1e-4),
+        start: Start::Given {
+            displacement: [0.0, 0.0, 1e-6, 0.0, 0.0],
+            velocity: [1e-3, 0.0, 0.0, 0.0, 0.0],
+        },
     };
     assert_eq!(scene.analysis, Analysis::Dynamic(expected));
     let speed = scene.speed.as_ref().unwrap();
@@ -33,8 +39,8 @@ fn the_example_of_motion_reads_as_it_says() {
     for (value, exact) in speed.values.iter().zip([SPEED, 10.0 * SPEED]) {
         assert!((value / exact - 1.0).abs() < 4e-16, "{value} instead of {exact}");
     }
-    let effects = scene.effects;
-    assert!(effects.ball_centrifugal);
+    let effects = &scene.effects;
+    assert!(effects.ball_centrifugal && effects.frame_rotation);
     assert_eq!(effects.cage_slip, Some([0.0, 0.01]));
     let contact_damping = ContactDamping {
         coefficient: 50.0,
@@ -64,12 +70,15 @@ fn a_motion_needs_only_duration_and_step() {
         integrator: IntegratorChoice::AverageAcceleration,
         contact: ContactScheme::DiscreteGradient,
         ledger_tolerance: 1e-6,
+        halvings: 4,
+        adaptive: None,
+        start: Start::Static,
     };
     assert_eq!(dynamic_of(&text), expected);
     let scene = parse(&text, &[]).unwrap();
-    assert_eq!((scene.speed, scene.shaft.mass), (None, 0.0));
-    let effects = scene.effects;
-    assert!(!effects.ball_centrifugal);
+    assert_eq!((&scene.speed, scene.shaft.mass), (&None, 0.0));
+    let effects = &scene.effects;
+    assert!(!effects.ball_centrifugal && !effects.frame_rotation);
     assert_eq!((effects.cage_slip, effects.contact_damping), (None, None));
     assert_eq!(effects.rayleigh_damping, None);
 }

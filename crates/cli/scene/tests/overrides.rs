@@ -7,9 +7,9 @@ use super::*;
 fn an_override_replaces_exactly_its_key() {
     let plain = parse(EXAMPLE, &[]).unwrap();
     let set = parse(EXAMPLE, &["effects.axial_force.value=3 kN"]).unwrap();
-    assert_eq!(set.effects.axial_force, Some(3000.0));
+    assert_eq!(set.effects.axial_force, Some(Scheduled::constant(3000.0)));
     let restored = Effects {
-        axial_force: Some(2000.0),
+        axial_force: Some(Scheduled::constant(2000.0)),
         ..set.effects
     };
     assert_eq!(restored, plain.effects);
@@ -70,7 +70,7 @@ fn an_override_adds_missing_tables() {
         "effects.gravity.direction=[0.0, 3.0, 0.0]",
     ];
     let scene = parse(&text, &set).unwrap();
-    assert_eq!(scene.effects.gravity, Some([0.0, 2.0, 0.0]));
+    assert_eq!(scene.effects.gravity, Some(Scheduled::constant([0.0, 2.0, 0.0])));
     assert_eq!(parse(&scene.text, &[]).unwrap(), without_arguments(&scene));
 }
 

@@ -20,11 +20,14 @@ fn a_sweep_has_a_static_scene_per_value() {
     let values: Vec<f64> = sweep.points.iter().map(|p| p.value).collect();
     assert_eq!(values, [0.0, 500.0, 1000.0]);
     for (point, value) in points.iter().zip(values) {
-        assert_eq!(point.effects.radial_force.map(|f| f.value), Some(value));
+        assert_eq!(
+            point.effects.radial_force.as_ref().map(|f| f.value.value),
+            Some(value)
+        );
         assert_eq!(point.analysis, Analysis::Static);
         let same = Scene {
             text: scene.text.clone(),
-            effects: scene.effects,
+            effects: scene.effects.clone(),
             analysis: scene.analysis.clone(),
             ..point.clone()
         };
@@ -43,7 +46,7 @@ fn equal_steps_include_both_ends() {
         .sweep_scenes()
         .unwrap()
         .iter()
-        .map(|s| s.effects.radial_force.map(|f| f.value))
+        .map(|s| s.effects.radial_force.as_ref().map(|f| f.value.value))
         .collect();
     assert_eq!(forces, values.iter().map(|v| Some(*v)).collect::<Vec<_>>());
 }

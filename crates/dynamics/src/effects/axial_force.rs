@@ -2,16 +2,19 @@
 //! [effects.axial_force]
 //! value = "2 kN"      # + presses the inner ring along +z into the balls (preload)
 //! ```
-//! An axial force on the shaft. On the axis, so it has no moment.
+//! An axial force on the shaft. On the axis, so it has no moment. With a sub-table `schedule` it changes in time.
 
 use super::{Effect, Loads, Now};
 use crate::error::DynamicsError;
 use crate::model::Model;
+use crate::schedule::Schedule;
 
 /// Axial force on the shaft.
 pub struct AxialForce {
     /// Force along +z, N.
     pub value: f64,
+    /// Its factor over time.
+    pub schedule: Schedule,
 }
 
 impl Effect for AxialForce {
@@ -19,8 +22,8 @@ impl Effect for AxialForce {
         "axial_force"
     }
 
-    fn add_loads(&self, model: &Model, _now: &Now, loads: &mut Loads) -> Result<(), DynamicsError> {
-        loads.add_shaft_force(model, [0.0, 0.0, self.value]);
+    fn add_loads(&self, model: &Model, now: &Now, loads: &mut Loads) -> Result<(), DynamicsError> {
+        loads.add_shaft_force(model, [0.0, 0.0, self.value * self.schedule.at(now.time)]);
         Ok(())
     }
 }

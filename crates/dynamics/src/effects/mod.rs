@@ -4,20 +4,25 @@
 
 mod axial_force;
 mod ball_centrifugal;
+mod frame_rotation;
 mod gravity;
+mod gyroscopic_moment;
 mod moment;
 mod radial_force;
 
 pub use axial_force::AxialForce;
 pub use ball_centrifugal::BallCentrifugal;
+pub use frame_rotation::{FrameRotation, static_inertia};
 pub use gravity::Gravity;
+pub use gyroscopic_moment::GyroscopicMoment;
 pub use moment::Moment;
 pub use radial_force::RadialForce;
 
 use contact::Side;
 
+use crate::costs::EffectCosts;
 use crate::error::DynamicsError;
-use crate::model::Model;
+use crate::model::{Model, RingModel};
 
 /// Loads on all bodies at one instant.
 #[derive(Clone, Debug, PartialEq)]
@@ -32,6 +37,20 @@ pub struct Loads {
     pub ball_slope: f64,
     /// Body loads on the nodes of a flexible ring, N, `[n_nodes][3]` flat; None: no such load.
     pub rings: [Option<Vec<f64>>; 2],
+    /// Force on the ring at each contact [radial, axial] besides the normal one, N, by site (2 ball + side), acting at the
+    /// groove centre; the ball gets its negative. Empty: no effect adds any.
+    pub contacts: Vec<[f64; 2]>,
+    /// Turning of the inner ring's frame, when its inertia is called for.
+    pub frame: Option<FrameTurn>,
+}
+
+/// How the frame of the inner ring turns.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct FrameTurn {
+    /// Speed, rad/s.
+    pub speed: f64,
+    /// Angular acceleration, rad/s^2.
+    pub acceleration: f64,
 }
 
 impl Loads {
@@ -43,6 +62,8 @@ impl Loads {
             ball_slope: 0.0,
             balls: vec![[0.0; 2]; model.geometry.n_balls],
             rings: [None, None],
+            contacts: Vec::new(),
+            frame: None,
         }
     }
 
@@ -56,18 +77,19 @@ impl Loads {
         self.shaft[4] += model.load_point * force[0];
     }
 
+    /// Adds a force (N) [radial, axial] on the ring at one contact; the ball gets its negative.
+    pub fn add_contact_force(&mut self, ball: usize, side: Side, force: [f64; 2]) {
+        self.contacts.resize(2 * self.balls.len(), [0.0; 2]);
+        let sum = &mut self.contacts[2 * ball + side.index()];
+        (sum[0], sum[1]) = (sum[0] + force[0], sum[1] + force[1]);
+    }
+
     /// Adds nodal body loads (N) to a flexible ring; the shaft carries those of the inner ring.
     pub fn add_ring_load(&mut self, model: &Model, side: Side, load: Vec<f64>) {
         let Some(ring) = model.ring(side) else { return };
         if side == Side::Inner {
-            let z0 = ring.groove.centre_z;
-            for (x, f) in ring.mesh.nodes.iter().zip(load.chunks_exact(3)) {
-                for i in 0..3 {
-                    self.ring_on_shaft[i] += f[i];
-                }
-                self.ring_on_shaft[3] += x[1] * f[2] - (x[2] - z0) * f[1];
-                self.ring_on_shaft[4] += (x[2] - z0) * f[0] - x[0] * f[2];
-            }
+            let sum = resultant(ring, &load);
+            self.ring_on_shaft.iter_mut().zip(sum).for_each(|(s, f)| *s += f);
         }
         match &mut self.rings[side.index()] {
             Some(sum) => sum.iter_mut().zip(&load).for_each(|(s, l)| *s += l),
@@ -76,13 +98,38 @@ impl Loads {
     }
 }
 
+/// Force x, y, z, N, and moment about x and y, N m, of nodal loads on the inner ring (N, `[n_nodes][3]` flat), about the
+/// shaft's origin in its mesh.
+pub(crate) fn resultant(ring: &RingModel, load: &[f64]) -> [f64; 5] {
+    let (mut sum, z0) = ([0.0; 5], ring.groove.centre_z);
+    for (x, f) in ring.mesh.nodes.iter().zip(load.chunks_exact(3)) {
+        (0..3).for_each(|i| sum[i] += f[i]);
+        sum[3] += x[1] * f[2] - (x[2] - z0) * f[1];
+        sum[4] += (x[2] - z0) * f[0] - x[0] * f[2];
+    }
+    sum
+}
+
 /// An instant of a motion; the default is the start.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Now {
+pub struct Now<'a> {
     /// Time, s.
     pub time: f64,
     /// Angle the cage has turned since the start, rad.
     pub cage_angle: f64,
+    /// Contact angles, rad, by site (2 ball + side), `[2 n_balls]`; None: not known yet, the free contact angle stands for
+    /// them.
+    pub angles: Option<&'a [f64]>,
+}
+
+impl Now<'_> {
+    /// Contact angle of a ball on one raceway, rad.
+    pub fn contact_angle(&self, model: &Model, ball: usize, side: Side) -> f64 {
+        match self.angles {
+            Some(angles) => angles[2 * ball + side.index()],
+            None => model.geometry.free_contact_angle(),
+        }
+    }
 }
 
 /// A physical effect that adds loads.
@@ -96,9 +143,14 @@ pub trait Effect: Send + Sync {
 
 /// Loads of all effects of the model at an instant.
 pub fn loads(model: &Model, now: &Now) -> Result<Loads, DynamicsError> {
+    timed_loads(model, now, &EffectCosts::default())
+}
+
+/// [`loads`], with the time of each effect added to `costs`.
+pub fn timed_loads(model: &Model, now: &Now, costs: &EffectCosts) -> Result<Loads, DynamicsError> {
     let mut loads = Loads::none(model);
     for effect in &model.effects {
-        effect.add_loads(model, now, &mut loads)?;
+        costs.time(effect.name(), || effect.add_loads(model, now, &mut loads))?;
     }
     Ok(loads)
 }

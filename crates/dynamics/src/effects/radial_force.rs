@@ -3,11 +3,13 @@
 //! value = "1 kN"
 //! direction = "0 deg"     # azimuth, fixed in space
 //! ```
-//! A radial force on the shaft at the scene's load point; off the groove plane it also tilts.
+//! A radial force on the shaft at the scene's load point; off the groove plane it also tilts. With a sub-table
+//! `schedule` it changes in time.
 
 use super::{Effect, Loads, Now};
 use crate::error::DynamicsError;
 use crate::model::Model;
+use crate::schedule::Schedule;
 
 /// Radial force on the shaft.
 pub struct RadialForce {
@@ -15,6 +17,8 @@ pub struct RadialForce {
     pub value: f64,
     /// Azimuth of its direction, rad.
     pub direction: f64,
+    /// Factor of the force over time.
+    pub schedule: Schedule,
 }
 
 impl Effect for RadialForce {
@@ -22,9 +26,10 @@ impl Effect for RadialForce {
         "radial_force"
     }
 
-    fn add_loads(&self, model: &Model, _now: &Now, loads: &mut Loads) -> Result<(), DynamicsError> {
+    fn add_loads(&self, model: &Model, now: &Now, loads: &mut Loads) -> Result<(), DynamicsError> {
         let (sin, cos) = self.direction.sin_cos();
-        loads.add_shaft_force(model, [self.value * cos, self.value * sin, 0.0]);
+        let value = self.value * self.schedule.at(now.time);
+        loads.add_shaft_force(model, [value * cos, value * sin, 0.0]);
         Ok(())
     }
 }

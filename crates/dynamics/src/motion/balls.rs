@@ -6,6 +6,12 @@
 
 use contact::BearingGeometry;
 
+use super::run::Motion;
+use super::state::MotionState;
+use crate::effects::Now;
+use crate::pose::Pose;
+use crate::schedule::piecewise_linear;
+
 /// Inner ring speed as a piecewise linear function of time.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Speed {
@@ -33,26 +39,19 @@ impl Speed {
         Speed { times, speeds }
     }
 
+    /// Whether it is 0 at all times.
+    pub fn is_zero(&self) -> bool {
+        self.speeds.iter().all(|speed| *speed == 0.0)
+    }
+
     /// Speed, rad/s.
     pub fn at(&self, t: f64) -> f64 {
-        let i = self.times.partition_point(|x| *x <= t);
-        if i == 0 {
-            return self.speeds[0];
-        }
-        if i == self.times.len() {
-            return self.speeds[i - 1];
-        }
-        let share = (t - self.times[i - 1]) / (self.times[i] - self.times[i - 1]);
-        self.speeds[i - 1] + share * (self.speeds[i] - self.speeds[i - 1])
+        piecewise_linear(&self.times, &self.speeds, t)[0]
     }
 
     /// Angular acceleration, rad/s^2.
     pub fn rate(&self, t: f64) -> f64 {
-        let i = self.times.partition_point(|x| *x <= t);
-        if i == 0 || i == self.times.len() {
-            return 0.0;
-        }
-        (self.speeds[i] - self.speeds[i - 1]) / (self.times[i] - self.times[i - 1])
+        piecewise_linear(&self.times, &self.speeds, t)[1]
     }
 
     /// Angle turned since t = 0, rad: the exact integral.
@@ -94,6 +93,52 @@ impl Kinematics {
     }
 }
 
+/// Turning of all parts over time: a speed of the inner ring and the rolling it drives.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Rolling {
+    /// Speed of the inner ring.
+    pub speed: Speed,
+    /// What follows from it.
+    pub kinematics: Kinematics,
+}
+
+impl Rolling {
+    /// Rolling in a bearing with slip ratios at the inner and outer raceway.
+    pub fn new(geometry: &BearingGeometry, speed: Speed, slip: [f64; 2]) -> Rolling {
+        Rolling {
+            speed,
+            kinematics: Kinematics::new(geometry, slip),
+        }
+    }
+
+    /// Where the parts stand at a time, s.
+    pub fn pose(&self, time: f64) -> Pose {
+        let inner_angle = self.speed.angle(time);
+        Pose {
+            now: Now {
+                time,
+                cage_angle: self.kinematics.cage * inner_angle,
+                angles: None,
+            },
+            inner_angle,
+        }
+    }
+
+    /// Speed of a ball's rotation about its own axis relative to the cage at a time, rad/s (Harris, 4th ed., eq. 8.25). It
+    /// turns against the inner ring, and + goes with a positive speed of that ring.
+    pub fn spin(&self, time: f64) -> f64 {
+        self.kinematics.ball * self.speed.at(time)
+    }
+}
+
+impl Motion<'_> {
+    /// Speed of every ball's rotation about its own axis relative to the cage, rad/s; None when the bearing never turns.
+    pub fn spin(&self, state: &MotionState) -> Option<f64> {
+        let speed = &self.settings.speed;
+        (!speed.is_zero()).then(|| self.kinematics.ball * speed.at(self.time(state.step)))
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -110,6 +155,29 @@ mod tests {
         assert!((outer - 234.0).abs() < 1.0, "{outer}");
         assert!((inner - 306.0).abs() < 1.0, "{inner}");
         assert!((outer + inner - 540.0).abs() < 1e-9);
+    }
+
+    /// Wrong: the spin of balls. Pure rolling: the ball's surface moves with both raceways, seen from the cage, and Harris'
+    /// n_R = n_i D_m / (2 D_w) (1 - gamma^2).
+    #[test]
+    fn rolling_balls_spin_as_both_raceways_drive_them() {
+        let geometry = BearingGeometry::reference_7010c();
+        let rolling = Rolling::new(&geometry, Speed::constant(100.0), [0.0; 2]);
+        let (ratio, angle) = (
+            geometry.ball_diameter / geometry.pitch_diameter(),
+            geometry.free_contact_angle(),
+        );
+        let gamma = ratio * angle.cos();
+        let harris = 100.0 / (2.0 * ratio) * (1.0 - gamma * gamma);
+        assert!(
+            (rolling.spin(3.0) / harris - 1.0).abs() < 1e-14,
+            "{}",
+            rolling.spin(3.0)
+        );
+        let surface = rolling.spin(0.0) * ratio;
+        let cage = rolling.kinematics.cage * 100.0;
+        assert!((surface - (100.0 - cage) * (1.0 - gamma)).abs() < 1e-12 * surface);
+        assert!((surface - cage * (1.0 + gamma)).abs() < 1e-12 * surface);
     }
 
     /// Wrong: the angle would not be the integral of the speed, so contacts would slip against the kinematics.

@@ -2,8 +2,8 @@
 //! doi:10.1115/1.2900803).
 //!
 //! Balance: M a[1-am] + C v[1-af] + K w[1-af] = f, where x[1-s] = (1-s) x1 + s x0; Newmark: w1 = w0 + dt v0 + dt^2
-//! ((1/2-beta) a0 + beta a1), v1 = v0 + dt ((1-gamma) a0 + gamma a1). Contact forces are means over the step. With
-//! am = af = 1/2, beta = 1/4, gamma = 1/2 this is the midpoint rule, which conserves the energy of a linear body exactly.
+//! ((1/2-beta) a0 + beta a1), v1 = v0 + dt ((1-gamma) a0 + gamma a1). Contact forces are means
+//! over the step, moved to the weighted time ([`super::contacts`]). With am = af = 1/2, beta = 1/4, gamma = 1/2 this is the midpoint rule, which conserves the energy of a linear body exactly.
 
 /// Parameters of the scheme.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -73,6 +73,13 @@ impl Integrator {
         let mass = [m / (b * dt), m * (0.5 / b - 1.0) - self.alpha_m];
         let damping = [f * (g / b - 1.0) - self.alpha_f, f * dt * (0.5 * g / b - 1.0)];
         [mass, damping]
+    }
+
+    /// Weighted acceleration a[1-am] of a step with displacement increment `dw`, and its derivative with respect to it.
+    pub fn weighted_acceleration(&self, dt: f64, dw: f64, v0: f64, a0: f64) -> [f64; 2] {
+        let (m, slope) = (1.0 - self.alpha_m, 1.0 / (self.beta * dt * dt));
+        let old = self.alpha_m - m * (0.5 / self.beta - 1.0);
+        [m * slope * (dw - dt * v0) + old * a0, m * slope]
     }
 
     /// Velocity and acceleration at the end of a step with displacement increment `dw`.

@@ -1,7 +1,9 @@
 //! The energy ledger: every joule in the model and every joule that came or went.
 //!
-//! total = kinetic + strain + Hertz energy. It may change only by work of loads (ball centrifugal force is one), of patches that move and change size with the contacts, and by dissipation. What is left is the defect: the error
-//! of the scheme. A run whose defect exceeds its tolerance stops.
+//! total = kinetic + strain + Hertz energy, each body in its own frame. It may change only by work of loads (ball
+//! centrifugal force is one), of imposed shaft displacements, of the turning frame (its inertia forces, and what the drive
+//! gives because loads fixed in space turn against the ring), of patches that move and change size with the contacts,
+//! and by dissipation. What is left is the defect: the error of the scheme. A run whose defect exceeds its tolerance stops.
 
 /// Energies and works, J, at the end of a step; works and losses are sums since the start.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -12,14 +14,20 @@ pub struct Ledger {
     pub strain: [f64; 2],
     /// Energy of the local contacts.
     pub hertz: f64,
-    /// Work of shaft and ball loads.
+    /// Work of shaft, ring and ball loads.
     pub load_work: f64,
+    /// Work of imposed shaft displacements.
+    pub imposed_work: f64,
+    /// Work of the turning frame.
+    pub frame_work: f64,
     /// Work of moving and resized patches.
     pub patch_work: f64,
     /// Energy lost to contact damping.
     pub contact_loss: f64,
     /// Energy lost to Rayleigh damping.
     pub rayleigh_loss: f64,
+    /// Energy lost to the numerical dissipation of the integrator.
+    pub numerical_loss: f64,
     /// Total at the start.
     pub initial: f64,
     /// Largest energy or work so far: the scale of the defect.
@@ -32,21 +40,32 @@ impl Ledger {
         self.kinetic.iter().chain(&self.strain).sum::<f64>() + self.hertz
     }
 
+    /// Works since the start: of loads, imposed displacements, frame, patches.
+    pub fn works(&self) -> [f64; 4] {
+        [
+            self.load_work,
+            self.imposed_work,
+            self.frame_work,
+            self.patch_work,
+        ]
+    }
+
+    /// Losses since the start: contact damping, Rayleigh damping, integrator.
+    pub fn losses(&self) -> [f64; 3] {
+        [self.contact_loss, self.rayleigh_loss, self.numerical_loss]
+    }
+
     /// Energy that no work or loss explains.
     pub fn defect(&self) -> f64 {
-        let work = self.load_work + self.patch_work;
-        self.total() - self.initial - work + self.contact_loss + self.rayleigh_loss
+        let works: f64 = self.works().iter().sum();
+        let losses: f64 = self.losses().iter().sum();
+        self.total() - self.initial - works + losses
     }
 
     /// Notes the present energies as a candidate for the scale.
     pub fn note_scale(&mut self) {
-        let works = [
-            self.load_work,
-            self.patch_work,
-            self.contact_loss,
-            self.rayleigh_loss,
-        ];
-        let largest = works.iter().fold(self.total().abs(), |m, w| m.max(w.abs()));
+        let entries = self.works().into_iter().chain(self.losses());
+        let largest = entries.fold(self.total().abs(), |m, w| m.max(w.abs()));
         self.largest = self.largest.max(largest);
     }
 

@@ -12,21 +12,28 @@
 //! ```
 
 pub mod balls;
+pub mod body;
 pub mod contacts;
 pub mod coordinates;
+mod finish;
 pub mod frame;
 pub mod integrator;
 pub mod ledger;
+pub mod newton;
+mod place;
 pub mod report;
 pub mod ring;
 pub mod run;
+pub mod shaft;
 pub mod shape;
 pub mod small;
+mod sparse;
 pub mod start;
 pub mod state;
+mod substep;
 
 pub use integrator::Integrator;
 pub use ledger::Ledger;
 pub use run::Motion;
 pub use shape::StateShape;
-pub use state::{MotionSettings, MotionState, StepReport};
+pub use state::{Ladder, MotionSettings, MotionState, StepReport, StepSeconds};

@@ -2,29 +2,15 @@
 
 use contact::Side;
 
-use super::frame::turn;
 use super::run::Motion;
 use super::state::MotionState;
 use crate::balls::{BallDisplacement, BallResult, ContactResult};
-use crate::model::ShaftDof;
+use crate::error::DynamicsError;
 
 impl Motion<'_> {
     /// Displacement of the shaft in space, m and rad.
     pub fn shaft(&self, state: &MotionState) -> [f64; 5] {
-        let (Some(motion), Some(ring)) = (&self.rings[0], &state.rings[0]) else {
-            return state.shaft;
-        };
-        let (dofs, first) = motion.coordinates.shaft();
-        let mut q = [0.0; 5];
-        for (i, dof) in self.model.shaft.iter().enumerate() {
-            if let ShaftDof::Prescribed(value) = dof {
-                q[i] = *value;
-            }
-        }
-        dofs.iter()
-            .enumerate()
-            .for_each(|(k, &dof)| q[dof] = ring.w[first + k]);
-        turn(q, self.settings.speed.angle(self.time(state.step)))
+        state.shaft
     }
 
     /// Results of every ball: mean forces of the last step, angles and approaches at its end.
@@ -61,5 +47,33 @@ impl Motion<'_> {
         let ring = state.rings[side.index()].as_ref()?;
         let turned = self.frame_angle(side, self.time(state.step));
         Some((motion.coordinates.expand(&ring.w), turned))
+    }
+
+    /// Linear momentum, kg m/s, and moment of momentum about the groove's centre on the axis, kg m^2/s, of a flexible ring in
+    /// its own frame, with its nodes at their undeformed places.
+    pub fn ring_momentum(&self, state: &MotionState, side: Side) -> Option<[[f64; 3]; 2]> {
+        let body = self.rings[side.index()].as_ref()?;
+        Some(body.momentum(state.rings[side.index()].as_ref()?))
+    }
+
+    /// Mean motion [radial, axial] of the groove centre under a ball over a step of one part, m, measured by the patch of
+    /// that step; zero on a rigid ring.
+    pub fn groove_motion(
+        &self,
+        from: &MotionState,
+        to: &MotionState,
+        ball: usize,
+        side: Side,
+    ) -> Result<[f64; 2], DynamicsError> {
+        let share = 1.0 - self.settings.integrator.alpha_f;
+        let time = self.time(from.step) + share * self.settings.dt;
+        let (_, feet) = self.place(from, time)?;
+        let i = side.index();
+        let (Some(body), Some(old), Some(new)) = (&self.rings[i], &from.rings[i], &to.rings[i]) else {
+            return Ok([0.0; 2]);
+        };
+        let measure = |w: &[f64]| feet[i][ball].measure(&body.coordinates.expand(w));
+        let (a, b) = (measure(&old.w), measure(&new.w));
+        Ok([0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1])])
     }
 }

@@ -1,32 +1,24 @@
-//! One flexible ring in motion: its matrices, its factored effective matrix, and what a step does to it.
+//! What a step does to one flexible ring: predictor, columns, the compliance its contacts and its partner see, update.
 //!
-//! Cost of a step: one solve, one block solve of 2 n_balls columns, two products with K and M.
+//! Cost of a step: one block solve of 1 + 2 n_balls right-hand sides, which reads the factor once, one product with K and
+//! one with M; the columns of the mount are solved once per step size.
 
-use contact::quadrature::PressureRule;
-use contact::{NodalWeights, RacewaySurface, Side};
-use solver::{LinearSolver, SolverError, SparseCholesky, Symbolic};
-use sprs::CsMat;
+use contact::NodalWeights;
+use solver::LinearSolver;
 
-use super::coordinates::{Coordinates, SparseLoad};
+use super::body::RingBody;
+use super::coordinates::SparseLoad;
 use super::integrator::Integrator;
+use super::sparse::{product, sparse_dot};
 use crate::error::DynamicsError;
-use crate::model::{Model, RACEWAY_GROUP, RingModel, ShaftDof};
-use crate::ring::elimination_order;
-use crate::solution::dot;
 
-/// Matrices and factor of one ring at one step size.
-pub struct RingMotion {
-    /// Coordinates of the ring.
-    pub coordinates: Coordinates,
-    /// Raceway in (azimuth, groove angle).
-    pub surface: RacewaySurface,
-    /// Integration rule of the patches.
-    pub rule: PressureRule,
-    stiffness: CsMat<f64>,
-    mass: CsMat<f64>,
-    /// Rayleigh damping: C = damping[0] M + damping[1] K.
-    damping: [f64; 2],
-    factor: SparseCholesky,
+/// The factor of one ring at one step size.
+pub struct RingFactor {
+    factor: Box<dyn LinearSolver>,
+    /// S^-1 times the mount's functionals, column-major `[n][n_mount]`.
+    mount: Vec<f64>,
+    /// The mount's compliance, row-major.
+    mount_compliance: Vec<f64>,
     integrator: Integrator,
     dt: f64,
 }
@@ -52,110 +44,129 @@ impl RingState {
             a: zero,
         }
     }
+
+    /// Displacement and velocity at the weighted time of the scheme when the step's increment is `dw`.
+    pub fn within(&self, integrator: Integrator, dt: f64, dw: &[f64]) -> [Vec<f64>; 2] {
+        let s = 1.0 - integrator.alpha_f;
+        let w = self.w.iter().zip(dw).map(|(w, d)| w + s * d).collect();
+        let v = self.v.iter().zip(&self.a).zip(dw).map(|((v0, a0), d)| {
+            let [v1, _] = integrator.update(dt, *d, *v0, *a0);
+            v0 + s * (v1 - v0)
+        });
+        [w, v.collect()]
+    }
 }
 
-/// What the contacts of a step see of a ring: u_c = start + predicted + C F.
+/// A ring over one step as contacts and partner see it: g = start, then g1 = predicted + C F, over the two directions
+/// of every contact and the functionals of the mount.
 pub struct RingStep {
-    /// Predicted increment without contact forces, `[n]`.
-    predictor: Vec<f64>,
-    /// Increment per unit force, column-major `[n][2 n_contacts]`.
-    columns: Vec<f64>,
-    /// Motion of the groove centres at the start of the step, `[2 n_contacts]`, m.
+    /// The predictor, which is the increment without forces of contacts and partner, then the increments per unit
+    /// contact force: column-major `[n][1 + 2 n_contacts]`.
+    block: Vec<f64>,
+    /// Functionals of the contacts.
+    contacts: Vec<SparseLoad>,
+    /// g at the start of the step, m and rad.
     pub start: Vec<f64>,
-    /// Their predicted motion at its end without contact forces.
+    /// g at its end without forces.
     pub predicted: Vec<f64>,
-    /// Their compliance over the step, row-major, m/N.
+    /// Compliance over the step, row-major, SI.
     pub compliance: Vec<f64>,
+    /// Wall time of the predictor's right-hand side and of the block solve, s.
+    pub seconds: [f64; 2],
 }
 
-impl RingMotion {
-    /// Assembles and factors the ring on `side` for steps of `dt` seconds.
-    pub fn new(
-        model: &Model,
-        side: Side,
-        ring: &RingModel,
-        integrator: Integrator,
-        dt: f64,
-        damping: [f64; 2],
-    ) -> Result<RingMotion, DynamicsError> {
-        let fem_error = |source| DynamicsError::Fem {
-            side: side.name(),
-            source,
-        };
-        let mesh = &ring.mesh;
-        let shaft = match side {
-            Side::Inner => (0..5).filter(|&i| model.shaft[i] == ShaftDof::Free).collect(),
-            Side::Outer => Vec::new(),
-        };
-        let held = mesh.group_nodes(ring.held_group);
-        let coordinates = Coordinates::new(mesh, &held, shaft, ring.groove.centre_z);
-        let stiffness =
-            coordinates.reduce_matrix(&fem::assemble_stiffness(mesh, &ring.material).map_err(fem_error)?);
-        let mass = coordinates.reduce_matrix(&fem::assemble_mass(mesh, &ring.material).map_err(fem_error)?);
-        let mass = with_shaft_mass(mass, &coordinates, model);
-        let mut order = elimination_order(mesh, coordinates.free());
-        order.extend(coordinates.free().len()..coordinates.n());
-        let factor =
-            factor_effective(&stiffness, &mass, &order, integrator, dt, damping).map_err(|source| {
-                DynamicsError::Solver {
-                    side: side.name(),
-                    source,
-                }
-            })?;
-        let surface = RacewaySurface::new(mesh, mesh.group(RACEWAY_GROUP), ring.groove);
-        Ok(RingMotion {
-            coordinates,
-            surface,
-            rule: PressureRule::new(),
-            stiffness,
-            mass,
-            damping,
+impl RingStep {
+    /// Motion of the groove centres, `[2 n_contacts]`, when the coordinates move by `x`.
+    pub fn contact_motion(&self, x: &[f64]) -> Vec<f64> {
+        self.contacts.iter().map(|g| sparse_dot(g, x)).collect()
+    }
+}
+
+impl RingFactor {
+    /// Factors the ring for steps of `dt` seconds.
+    pub fn new(body: &RingBody, integrator: Integrator, dt: f64) -> Result<RingFactor, DynamicsError> {
+        let factor = body.factor(integrator, dt)?;
+        let n = body.coordinates.n();
+        let mount = columns(&*factor, &body.mount, n);
+        let m = body.mount.len();
+        let mut mount_compliance = vec![0.0; m * m];
+        for i in 0..m {
+            for j in 0..m {
+                mount_compliance[m * i + j] = sparse_dot(&body.mount[i], &mount[n * j..n * (j + 1)]);
+            }
+        }
+        Ok(RingFactor {
             factor,
+            mount,
+            mount_compliance,
             integrator,
             dt,
         })
     }
 
-    /// Predictor and columns of a step from `state` under the constant generalised load `load` and with contacts at
-    /// `feet`.
-    pub fn prepare(&self, state: &RingState, load: &[f64], feet: &[NodalWeights]) -> RingStep {
-        let n = self.coordinates.n();
-        let mut predictor = self.right_side(state, load);
-        self.factor.solve(&mut predictor, 1);
-        let m = 2 * feet.len();
-        let loads: Vec<SparseLoad> = feet
+    /// Bytes of the factor.
+    pub fn bytes(&self) -> usize {
+        self.factor.factor_bytes()
+    }
+
+    /// Predictor and columns of a step from `state` under the generalised load `load` and with contacts at `feet`.
+    pub fn prepare(
+        &self,
+        body: &RingBody,
+        state: &RingState,
+        load: &[f64],
+        feet: &[NodalWeights],
+    ) -> RingStep {
+        let clock = std::time::Instant::now();
+        let n = body.coordinates.n();
+        let contacts: Vec<SparseLoad> = feet
             .iter()
-            .flat_map(|foot| self.coordinates.reduce_weights(foot))
+            .flat_map(|foot| body.coordinates.reduce_weights(foot))
             .collect();
-        let mut columns = vec![0.0; n * m];
-        for (column, load) in columns.chunks_exact_mut(n).zip(&loads) {
-            load.iter().for_each(|&(i, value)| column[i] = value);
-        }
-        self.factor.solve(&mut columns, m);
-        let start: Vec<f64> = (0..m).map(|i| sparse_dot(&loads[i], &state.w)).collect();
-        let predicted = (0..m)
-            .map(|i| start[i] + sparse_dot(&loads[i], &predictor))
+        let mut block = self.right_side(body, state, load);
+        block.resize(n * (1 + contacts.len()), 0.0);
+        fill(&mut block[n..], &contacts, n);
+        let sides = clock.elapsed().as_secs_f64();
+        self.factor.solve(&mut block, 1 + contacts.len());
+        let all: Vec<&SparseLoad> = contacts.iter().chain(&body.mount).collect();
+        let start: Vec<f64> = all.iter().map(|g| sparse_dot(g, &state.w)).collect();
+        let predicted = all
+            .iter()
+            .zip(&start)
+            .map(|(g, s)| s + sparse_dot(g, &block[..n]))
             .collect();
-        let mut compliance = vec![0.0; m * m];
-        for i in 0..m {
-            for j in 0..=i {
-                let value = sparse_dot(&loads[i], &columns[n * j..n * (j + 1)]);
-                (compliance[m * i + j], compliance[m * j + i]) = (value, value);
-            }
-        }
+        let compliance = self.compliance(&all, &block[n..], n);
         RingStep {
-            predictor,
-            columns,
+            block,
             start,
             predicted,
             compliance,
+            seconds: [sides, clock.elapsed().as_secs_f64() - sides],
+            contacts,
         }
     }
 
+    /// Compliance of contacts, then mount, exactly symmetric.
+    fn compliance(&self, all: &[&SparseLoad], columns: &[f64], n: usize) -> Vec<f64> {
+        let (size, contacts) = (all.len(), columns.len() / n);
+        let mut compliance = vec![0.0; size * size];
+        for i in 0..size {
+            for j in 0..=i {
+                let value = if j < contacts {
+                    sparse_dot(all[i], &columns[n * j..n * (j + 1)])
+                } else {
+                    self.mount_compliance[(size - contacts) * (i - contacts) + j - contacts]
+                };
+                (compliance[size * i + j], compliance[size * j + i]) = (value, value);
+            }
+        }
+        compliance
+    }
+
     /// f - K w0 + M (history) + C (history), the right-hand side of S dw.
-    fn right_side(&self, state: &RingState, load: &[f64]) -> Vec<f64> {
+    fn right_side(&self, body: &RingBody, state: &RingState, load: &[f64]) -> Vec<f64> {
         let [mass, damping] = self.integrator.history(self.dt);
-        let [am, ak] = self.damping;
+        let [am, ak] = body.damping;
         let combine = |c: [f64; 2]| move |(v, a): (&f64, &f64)| c[0] * v + c[1] * a;
         let c_mass = [mass[0] + am * damping[0], mass[1] + am * damping[1]];
         let c_stiff = [ak * damping[0], ak * damping[1]];
@@ -166,100 +177,60 @@ impl RingMotion {
             .zip(state.v.iter().zip(&state.a).map(combine(c_stiff)))
             .map(|(w, c)| c - w)
             .collect();
-        let (m, k) = (product(&self.mass, &inertial), product(&self.stiffness, &elastic));
+        let (m, k) = (body.mass_product(&inertial), product(&body.stiffness, &elastic));
         load.iter().zip(&m).zip(&k).map(|((f, m), k)| f + m + k).collect()
     }
 
-    /// The state at the end of the step under contact forces `forces` (N, `[2 n_contacts]`).
-    pub fn finish(&self, state: &RingState, step: RingStep, forces: &[f64]) -> RingState {
-        let n = self.coordinates.n();
-        let mut dw = step.predictor;
-        for (column, &f) in step.columns.chunks_exact(n).zip(forces) {
+    /// Adds a generalised load to the step; one solve.
+    pub fn add_load(&self, body: &RingBody, step: &mut RingStep, mut load: Vec<f64>) {
+        self.factor.solve(&mut load, 1);
+        step.block.iter_mut().zip(&load).for_each(|(p, d)| *p += d);
+        for (p, g) in step
+            .predicted
+            .iter_mut()
+            .zip(step.contacts.iter().chain(&body.mount))
+        {
+            *p += sparse_dot(g, &load);
+        }
+    }
+
+    /// Increment of the coordinates under forces on contacts (N, `[2 n_contacts]`) and mount (N and N m).
+    pub fn increment(&self, step: &RingStep, contacts: &[f64], mount: &[f64]) -> Vec<f64> {
+        let n = step.block.len() / (1 + step.contacts.len());
+        let mut dw = step.block[..n].to_vec();
+        let columns = step.block[n..].chunks_exact(n).zip(contacts);
+        for (column, &f) in columns.chain(self.mount.chunks_exact(n).zip(mount)) {
             if f != 0.0 {
                 dw.iter_mut().zip(column).for_each(|(d, c)| *d += f * c);
             }
         }
-        let (mut v, mut a) = (Vec::with_capacity(n), Vec::with_capacity(n));
+        dw
+    }
+
+    /// The state at the end of a step with increment `dw`.
+    pub fn advance(&self, state: &RingState, dw: &[f64]) -> RingState {
+        let (mut v, mut a) = (Vec::with_capacity(dw.len()), Vec::with_capacity(dw.len()));
         for ((d, v0), a0) in dw.iter().zip(&state.v).zip(&state.a) {
             let [v1, a1] = self.integrator.update(self.dt, *d, *v0, *a0);
             v.push(v1);
             a.push(a1);
         }
-        let w = state.w.iter().zip(&dw).map(|(w, d)| w + d).collect();
+        let w = state.w.iter().zip(dw).map(|(w, d)| w + d).collect();
         RingState { w, v, a }
     }
+}
 
-    /// Kinetic and strain energy, J.
-    pub fn energies(&self, state: &RingState) -> [f64; 2] {
-        let energy = |a: &CsMat<f64>, x: &[f64]| 0.5 * dot(x, &product(a, x));
-        [energy(&self.mass, &state.v), energy(&self.stiffness, &state.w)]
+/// S^-1 of sparse loads, column-major `[n][loads]`.
+fn columns(factor: &dyn LinearSolver, loads: &[SparseLoad], n: usize) -> Vec<f64> {
+    let mut columns = vec![0.0; n * loads.len()];
+    fill(&mut columns, loads, n);
+    factor.solve(&mut columns, loads.len());
+    columns
+}
+
+/// Writes sparse loads into zeroed columns.
+fn fill(columns: &mut [f64], loads: &[SparseLoad], n: usize) {
+    for (column, load) in columns.chunks_exact_mut(n).zip(loads) {
+        load.iter().for_each(|&(i, value)| column[i] = value);
     }
-
-    /// Energy lost to Rayleigh damping over a step at the mean velocity of its two ends, J.
-    pub fn damping_loss(&self, old: &RingState, new: &RingState) -> f64 {
-        if self.damping == [0.0; 2] {
-            return 0.0;
-        }
-        let mean: Vec<f64> = old.v.iter().zip(&new.v).map(|(a, b)| 0.5 * (a + b)).collect();
-        let [am, ak] = self.damping;
-        let loss = |c: f64, a: &CsMat<f64>| {
-            if c == 0.0 {
-                0.0
-            } else {
-                c * dot(&mean, &product(a, &mean))
-            }
-        };
-        self.dt * (loss(am, &self.mass) + loss(ak, &self.stiffness))
-    }
-}
-
-/// Adds the shaft's own mass to its translations.
-fn with_shaft_mass(mut mass: CsMat<f64>, coordinates: &Coordinates, model: &Model) -> CsMat<f64> {
-    let (dofs, first) = coordinates.shaft();
-    for (k, &dof) in dofs.iter().enumerate() {
-        if dof < 3
-            && let Some(entry) = mass.get_mut(first + k, first + k)
-        {
-            *entry += model.shaft_mass;
-        }
-    }
-    mass
-}
-
-fn factor_effective(
-    stiffness: &CsMat<f64>,
-    mass: &CsMat<f64>,
-    order: &[usize],
-    integrator: Integrator,
-    dt: f64,
-    damping: [f64; 2],
-) -> Result<SparseCholesky, SolverError> {
-    let [m, c, k] = integrator.effective(dt);
-    let (cm, ck) = (m + c * damping[0], k + c * damping[1]);
-    let effective = &mass.map(|x| cm * x) + &stiffness.map(|x| ck * x);
-    Symbolic::new(&effective, order)?.factor(&effective)
-}
-
-/// A x, rows in order.
-fn product(a: &CsMat<f64>, x: &[f64]) -> Vec<f64> {
-    use rayon::prelude::*;
-    let (starts, columns, values) = (a.indptr(), a.indices(), a.data());
-    let starts = starts.raw_storage();
-    // Every row is summed by one thread in its own order: the same bits on any number of threads.
-    (0..a.rows())
-        .into_par_iter()
-        .with_min_len(2048)
-        .map(|i| {
-            let range = starts[i]..starts[i + 1];
-            columns[range.clone()]
-                .iter()
-                .zip(&values[range])
-                .map(|(&j, v)| v * x[j])
-                .sum()
-        })
-        .collect()
-}
-
-fn sparse_dot(load: &SparseLoad, x: &[f64]) -> f64 {
-    load.iter().map(|&(i, value)| value * x[i]).sum()
 }

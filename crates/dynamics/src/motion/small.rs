@@ -1,61 +1,74 @@
-//! The small nonlinear system of one step: balls, groove centres of flexible rings, a rigid shaft.
+//! The small nonlinear system of one step: free shaft dofs, balls, groove centres of flexible rings.
 //!
 //! Unknowns are the displacements at the end of the step. Residuals are forces: inertia and loads of balls and shaft
-//! at the middle of the step, and for every flexible ring its linear answer C^-1 (g1 - predicted) against the mean
-//! contact forces. Newton with residual line search, dense LU.
+//! at the weighted time of the step, and for every flexible ring the forces C^-1 (g1 - predicted) it asks for, against those of
+//! contacts and shaft. [`super::newton`] solves it.
 
 use contact::Side;
-use solver::dense::DenseLu;
 
 use super::contacts::{ContactDamping, ContactScheme, MeanForce, mean_force};
-use crate::error::DynamicsError;
+use super::integrator::Integrator;
+use super::shaft::ShaftStep;
 use crate::problem::Site;
 
-/// Newton iterations before a step counts as failed.
-const MAX_ITERATIONS: usize = 40;
-/// Residual over the force scale at which iteration may stop; it goes on while it improves.
-const RESIDUAL_LIMIT: f64 = 1e-9;
-/// Residual over the force scale that counts as round-off.
-const RESIDUAL_TARGET: f64 = 1e-14;
-
-/// A point mass or rigid body dof over one step: inertia m (v1 - v0)/dt at the midpoint rule.
+/// A point mass or rigid body dof over one step, by the rings' integrator.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Inertia {
     /// Mass or moment of inertia, kg or kg m^2.
     pub mass: f64,
-    /// Displacement and velocity at the start.
-    pub start: [f64; 2],
-    /// Load at the middle of the step.
+    /// Displacement, velocity and acceleration at the start.
+    pub start: [f64; 3],
+    /// Load at the weighted time of the step.
     pub load: f64,
-    /// Load per unit of mean displacement (ball centrifugal force), N/m.
+    /// Load per unit of weighted displacement (ball centrifugal force), N/m.
     pub load_slope: f64,
 }
 
 impl Inertia {
+    /// Load at the end displacement `x`.
+    pub fn load_at(&self, scheme: Integrator, x: f64) -> f64 {
+        self.load + self.load_slope * (scheme.alpha_f * self.start[0] + (1.0 - scheme.alpha_f) * x)
+    }
+
     /// Out-of-balance force at displacement `x` and its derivative.
-    fn residual(&self, x: f64, dt: f64) -> [f64; 2] {
-        let [x0, v0] = self.start;
-        let acceleration = 2.0 * ((x - x0) / dt - v0) / dt;
-        let load = self.load + self.load_slope * 0.5 * (x + x0);
+    pub fn residual(&self, scheme: Integrator, x: f64, dt: f64) -> [f64; 2] {
+        let [x0, v0, a0] = self.start;
+        let [acceleration, slope] = scheme.weighted_acceleration(dt, x - x0, v0, a0);
         [
-            self.mass * acceleration - load,
-            2.0 * self.mass / (dt * dt) - 0.5 * self.load_slope,
+            self.mass * acceleration - self.load_at(scheme, x),
+            self.mass * slope - (1.0 - scheme.alpha_f) * self.load_slope,
         ]
     }
 
-    /// Velocity at the end.
-    pub fn velocity(&self, x: f64, dt: f64) -> f64 {
-        2.0 * (x - self.start[0]) / dt - self.start[1]
+    /// Velocity and acceleration at the end; without mass nothing is remembered but the mean velocity.
+    pub fn update(&self, scheme: Integrator, x: f64, dt: f64) -> [f64; 2] {
+        let [x0, v0, a0] = self.start;
+        if self.mass > 0.0 {
+            scheme.update(dt, x - x0, v0, a0)
+        } else {
+            [(x - x0) / dt, 0.0]
+        }
+    }
+
+    /// Energy that the scheme takes from the body, J: work of its inertia less the gain of kinetic energy.
+    pub fn numerical_loss(&self, scheme: Integrator, x: f64, dt: f64) -> f64 {
+        if self.mass == 0.0 || scheme.is_conserving() {
+            return 0.0;
+        }
+        let [x0, v0, a0] = self.start;
+        let [v1, _] = scheme.update(dt, x - x0, v0, a0);
+        let [acceleration, _] = scheme.weighted_acceleration(dt, x - x0, v0, a0);
+        self.mass * (acceleration * (x - x0) - 0.5 * (v1 + v0) * (v1 - v0))
     }
 }
 
-/// A flexible ring as its contacts see it over the step.
+/// A flexible ring as contacts and partner see it over the step.
 pub struct RingAnswer {
-    /// Groove motions at the start, m, `[2 n_balls]`.
+    /// Groove motions at the start, then the mount's, m and rad.
     pub start: Vec<f64>,
-    /// At the end without contact forces.
+    /// At the end without forces.
     pub predicted: Vec<f64>,
-    /// Inverse compliance, N/m, row-major.
+    /// Inverse compliance, SI, row-major.
     pub stiffness: Vec<f64>,
 }
 
@@ -63,45 +76,47 @@ pub struct RingAnswer {
 pub struct SmallSystem {
     /// Step size, s.
     pub dt: f64,
+    /// Scheme of all bodies.
+    pub integrator: Integrator,
     /// Contacts, ball 0 inner, ball 0 outer, ...
     pub sites: Vec<Site>,
     /// Balls [radial, axial].
     pub balls: Vec<[Inertia; 2]>,
-    /// Free dofs of a rigid inner ring with its shaft: dof number and inertia; empty for a flexible inner ring.
-    pub shaft: Vec<(usize, Inertia)>,
+    /// Shaft.
+    pub shaft: ShaftStep,
     /// Flexible rings.
     pub rings: [Option<RingAnswer>; 2],
     /// Force scheme.
     pub scheme: ContactScheme,
     /// Contact damping.
     pub damping: Option<ContactDamping>,
-}
-
-/// Solution of a step.
-pub struct SmallSolution {
-    /// Shaft dofs, balls, groove motions: in the order of the unknowns.
-    pub unknowns: Vec<f64>,
-    /// Mean forces, by site.
-    pub forces: Vec<MeanForce>,
-    /// Newton iterations.
-    pub iterations: usize,
+    /// Additional forces on the rings at the contacts, [radial, axial], N, by site; none when empty.
+    pub extra: Vec<[f64; 2]>,
 }
 
 impl SmallSystem {
-    /// Number of unknowns.
-    fn n(&self) -> usize {
-        self.shaft.len() + 2 * self.balls.len() * (1 + self.rings.iter().flatten().count())
+    pub(super) fn n_shaft(&self) -> usize {
+        self.shaft.free().len()
+    }
+
+    pub(super) fn n(&self) -> usize {
+        self.n_shaft() + 2 * self.balls.len() * (1 + self.rings.iter().flatten().count())
     }
 
     /// Index of a ball's radial unknown.
     pub fn ball_index(&self, ball: usize) -> usize {
-        self.shaft.len() + 2 * ball
+        self.n_shaft() + 2 * ball
     }
 
     /// Index of the first groove unknown of a ring.
-    fn ring_index(&self, side: Side) -> usize {
+    pub(super) fn ring_index(&self, side: Side) -> usize {
         let before = usize::from(side == Side::Outer && self.rings[0].is_some());
-        self.shaft.len() + 2 * self.balls.len() * (1 + before)
+        self.n_shaft() + 2 * self.balls.len() * (1 + before)
+    }
+
+    /// Shaft displacement at the end of the step.
+    pub fn shaft_end(&self, x: &[f64]) -> [f64; 5] {
+        self.shaft.end(&x[..self.n_shaft()])
     }
 
     /// l at the start and at the end of the step.
@@ -119,11 +134,11 @@ impl SmallSystem {
                 l[1][i] -= x[first + i];
             }
         } else if site.side == Side::Inner {
-            for (k, (dof, inertia)) in self.shaft.iter().enumerate() {
-                let row = site.shaft_rows()[*dof];
+            let (start, end, rows) = (self.shaft.start(), self.shaft_end(x), site.shaft_rows());
+            for (dof, row) in rows.iter().enumerate() {
                 for i in 0..2 {
-                    l[0][i] -= row[i] * inertia.start[0];
-                    l[1][i] -= row[i] * x[k];
+                    l[0][i] -= row[i] * start[dof];
+                    l[1][i] -= row[i] * end[dof];
                 }
             }
         }
@@ -139,51 +154,81 @@ impl SmallSystem {
             list.extend([(first, [-1.0, 0.0]), (first + 1, [0.0, -1.0])]);
         } else if site.side == Side::Inner {
             let rows = site.shaft_rows();
-            list.extend(
-                self.shaft
-                    .iter()
-                    .enumerate()
-                    .map(|(k, (dof, _))| (k, rows[*dof].map(|r| -r))),
-            );
+            let free = self.shaft.free().into_iter().enumerate();
+            list.extend(free.map(|(k, dof)| (k, rows[dof].map(|r| -r))));
         }
         list
     }
 
-    fn forces(&self, x: &[f64]) -> Vec<MeanForce> {
+    pub(super) fn forces(&self, x: &[f64]) -> Vec<MeanForce> {
         let damping = self.damping.as_ref().map(|d| (d, self.dt));
         let force = |s: &Site| mean_force(&s.law, s.touching, self.reach(s, x), self.scheme, damping);
         self.sites.iter().map(force).collect()
     }
 
+    /// g of a ring at the end of the step: its groove unknowns, then the mount, which follows its partner.
+    fn ring_motion(&self, side: Side, ring: &RingAnswer, x: &[f64]) -> Vec<f64> {
+        let first = self.ring_index(side);
+        let mut g = x[first..first + 2 * self.balls.len()].to_vec();
+        let n_mount = ring.start.len() - g.len();
+        let partner = match side {
+            Side::Inner => self.shaft.in_frame(self.shaft_end(x)),
+            Side::Outer => [0.0; 5],
+        };
+        // A sixth functional is the rotation about z, which nothing turns in the ring's frame.
+        g.extend(partner.iter().chain(&[0.0]).take(n_mount));
+        g
+    }
+
+    /// Forces that a ring asks for at its functionals to move as `x` says.
+    pub(super) fn ring_forces(&self, side: Side, ring: &RingAnswer, x: &[f64]) -> Vec<f64> {
+        let motion = self.ring_motion(side, ring, x);
+        let m = motion.len();
+        let off: Vec<f64> = motion.iter().zip(&ring.predicted).map(|(g, p)| g - p).collect();
+        let row = |i: usize| (0..m).map(|k| ring.stiffness[m * i + k] * off[k]).sum();
+        (0..m).map(row).collect()
+    }
+
+    /// dg of the mount per unit of a free shaft dof.
+    fn mount_slope(&self, dof: usize, n_mount: usize) -> Vec<f64> {
+        let mut unit = [0.0; 5];
+        unit[dof] = 1.0;
+        let slope = self.shaft.in_frame(unit);
+        slope.iter().chain(&[0.0]).take(n_mount).copied().collect()
+    }
+
     /// Residual, and the Jacobian, row-major, when asked for.
-    fn residual(&self, x: &[f64], forces: &[MeanForce], mut jacobian: Option<&mut [f64]>) -> Vec<f64> {
+    pub(super) fn residual(
+        &self,
+        x: &[f64],
+        forces: &[MeanForce],
+        mut jacobian: Option<&mut [f64]>,
+    ) -> Vec<f64> {
         let n = self.n();
         let mut residual = vec![0.0; n];
-        let bodies = self.shaft.iter().map(|s| &s.1).chain(self.balls.iter().flatten());
-        for (i, body) in bodies.enumerate() {
-            let [force, slope] = body.residual(x[i], self.dt);
+        let shaft = self.shaft.free().into_iter().map(|dof| &self.shaft.bodies[dof]);
+        for (i, body) in shaft.chain(self.balls.iter().flatten()).enumerate() {
+            let [force, slope] = body.residual(self.integrator, x[i], self.dt);
             residual[i] = force;
             if let Some(j) = &mut jacobian {
                 j[n * i + i] += slope;
             }
         }
         for side in Side::BOTH {
-            let Some(ring) = &self.rings[side.index()] else {
-                continue;
-            };
-            let (first, m) = (self.ring_index(side), ring.start.len());
-            for i in 0..m {
-                let row = &ring.stiffness[m * i..m * (i + 1)];
-                residual[first + i] = (0..m).map(|k| row[k] * (x[first + k] - ring.predicted[k])).sum();
+            if let Some(ring) = &self.rings[side.index()] {
+                self.add_ring(side, ring, x, &mut residual);
                 if let Some(j) = &mut jacobian {
-                    (0..m).for_each(|k| j[n * (first + i) + first + k] += row[k]);
+                    self.add_ring_slope(side, ring, j);
                 }
             }
         }
-        for (site, force) in self.sites.iter().zip(forces) {
+        for (index, (site, force)) in self.sites.iter().zip(forces).enumerate() {
             let local = self.local(site);
+            let extra = self.extra.get(index).copied().unwrap_or_default();
             for (a, row_a) in &local {
-                residual[*a] += row_a[0] * force.force[0] + row_a[1] * force.force[1];
+                // An additional force on the ring acts on the ball with the opposite sign, as the contact's.
+                residual[*a] +=
+                    row_a[0] * (force.force[0] + extra[0]) + row_a[1] * (force.force[1] + extra[1]);
                 if let Some(j) = &mut jacobian {
                     for (b, row_b) in &local {
                         let t = &force.tangent;
@@ -197,95 +242,62 @@ impl SmallSystem {
         residual
     }
 
-    /// Unknowns of a step in which nothing accelerates: the start of Newton.
-    fn guess(&self) -> Vec<f64> {
-        let bodies = self.shaft.iter().map(|s| &s.1).chain(self.balls.iter().flatten());
-        let mut x: Vec<f64> = bodies
-            .map(|b| b.start[0] + if b.mass > 0.0 { self.dt * b.start[1] } else { 0.0 })
-            .collect();
-        for ring in self.rings.iter().flatten() {
-            x.extend_from_slice(&ring.start);
+    /// Forces a ring asks for: on its groove unknowns, and from the shaft.
+    fn add_ring(&self, side: Side, ring: &RingAnswer, x: &[f64], residual: &mut [f64]) {
+        let forces = self.ring_forces(side, ring, x);
+        let (first, m) = (self.ring_index(side), 2 * self.balls.len());
+        residual[first..first + m].copy_from_slice(&forces[..m]);
+        if side == Side::Inner {
+            let on_shaft = self.shaft.in_space(first_five(&forces[m..]));
+            for (k, dof) in self.shaft.free().into_iter().enumerate() {
+                residual[k] += on_shaft[dof];
+            }
         }
-        x
     }
 
-    /// Solves the step. Fails with the residual history.
-    pub fn solve(&self, scale: f64) -> Result<SmallSolution, DynamicsError> {
-        let (n, mut x) = (self.n(), self.guess());
-        let size = |r: &[f64]| {
-            r.iter()
-                .fold(0.0f64, |m, v| if v.is_nan() { f64::NAN } else { m.max(v.abs()) })
+    fn add_ring_slope(&self, side: Side, ring: &RingAnswer, jacobian: &mut [f64]) {
+        let (n, first, m) = (self.n(), self.ring_index(side), 2 * self.balls.len());
+        let size = ring.start.len();
+        let free = if side == Side::Inner {
+            self.shaft.free()
+        } else {
+            Vec::new()
         };
-        let (mut history, mut best, mut stalled) = (Vec::new(), f64::INFINITY, 0);
-        for iteration in 0..MAX_ITERATIONS {
-            let forces = self.forces(&x);
-            let mut jacobian = vec![0.0; n * n];
-            let residual = self.residual(&x, &forces, Some(&mut jacobian));
-            let now = size(&residual);
-            if !now.is_finite() {
-                return Err(DynamicsError::NotFinite {
-                    what: "a contact force",
-                });
-            }
-            let scale = forces
-                .iter()
-                .fold(scale, |m, f| m.max(f.force[0].abs()).max(f.force[1].abs()));
-            history.push(now);
-            stalled = if now < 0.5 * best { 0 } else { stalled + 1 };
-            best = best.min(now);
-            if now <= RESIDUAL_TARGET * scale || (now <= RESIDUAL_LIMIT * scale && stalled >= 2) {
-                return Ok(SmallSolution {
-                    unknowns: x,
-                    forces,
-                    iterations: iteration,
-                });
-            }
-            let mut step: Vec<f64> = residual.iter().map(|r| -r).collect();
-            DenseLu::factor(n, &jacobian)
-                .map_err(|source| DynamicsError::ContactSystem { source })?
-                .solve(&mut step, 1);
-            x = self.search(&x, &step, &residual);
+        // Columns of all unknowns that move the ring: place in x, and dg.
+        let slope_of = |k: usize| {
+            let mut slope = vec![0.0; size];
+            slope[k] = 1.0;
+            slope
+        };
+        let mut columns: Vec<(usize, Vec<f64>)> = (0..m).map(|k| (first + k, slope_of(k))).collect();
+        for (k, &dof) in free.iter().enumerate() {
+            let mut slope = vec![0.0; m];
+            slope.extend(self.mount_slope(dof, size - m));
+            columns.push((k, slope));
         }
-        let tail = history.len().saturating_sub(8);
-        Err(DynamicsError::NewtonStalled {
-            iterations: MAX_ITERATIONS,
-            residual: *history.last().unwrap_or(&f64::NAN),
-            place: "a step in time".to_string(),
-            limit: RESIDUAL_LIMIT * scale,
-            history: history.split_off(tail),
-        })
-    }
-
-    /// Halves the step until the residual shrinks.
-    fn search(&self, x: &[f64], step: &[f64], residual: &[f64]) -> Vec<f64> {
-        let size = |r: &[f64]| r.iter().map(|v| v * v).sum::<f64>();
-        let mut share = 1.0;
-        loop {
-            let trial: Vec<f64> = x.iter().zip(step).map(|(x, s)| x + share * s).collect();
-            let after = self.residual(&trial, &self.forces(&trial), None);
-            if size(&after) <= size(residual) || share < 1e-3 {
-                return trial;
+        for (column, slope) in columns {
+            let moved: Vec<usize> = (0..size).filter(|&k| slope[k] != 0.0).collect();
+            let row = |i: usize| -> f64 {
+                moved
+                    .iter()
+                    .map(|&k| ring.stiffness[size * i + k] * slope[k])
+                    .sum()
+            };
+            for i in 0..m {
+                jacobian[n * (first + i) + column] += row(i);
             }
-            share *= 0.5;
+            if !free.is_empty() {
+                let mount: Vec<f64> = (m..size).map(row).collect();
+                let on_shaft = self.shaft.in_space(first_five(&mount));
+                for (k, &dof) in free.iter().enumerate() {
+                    jacobian[n * k + column] += on_shaft[dof];
+                }
+            }
         }
     }
 }
 
-/// Fails when a contact is beyond what its patch leaves of Hertz's law.
-pub fn check_patches(system: &SmallSystem, solution: &SmallSolution) -> Result<(), DynamicsError> {
-    for (site, force) in system.sites.iter().zip(&solution.forces) {
-        let [_, end] = system.reach(site, &solution.unknowns);
-        if site
-            .law
-            .evaluate(end[0].hypot(end[1]) - site.touching)
-            .beyond_limit
-        {
-            return Err(DynamicsError::PatchTooSmall {
-                ball: site.ball,
-                side: site.side.name(),
-                force: force.force[0].hypot(force.force[1]),
-            });
-        }
-    }
-    Ok(())
+/// The first five entries; zeros when there are fewer.
+pub fn first_five(values: &[f64]) -> [f64; 5] {
+    [0, 1, 2, 3, 4].map(|i| values.get(i).copied().unwrap_or(0.0))
 }

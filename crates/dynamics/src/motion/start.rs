@@ -2,12 +2,16 @@
 
 use contact::Side;
 
+use super::body::RingBody;
+use super::contacts::ContactScheme;
+use super::integrator::Integrator;
 use super::ledger::Ledger;
-use super::ring::{RingMotion, RingState};
+use super::ring::RingState;
 use super::run::Motion;
-use super::state::MotionState;
+use super::state::{Ladder, MotionSettings, MotionState};
 use crate::error::DynamicsError;
-use crate::model::{ContactMode, Hold, Model, ShaftDof};
+use crate::model::{ContactMode, Model};
+use crate::problem::Site;
 use crate::solution::StaticSolution;
 
 impl Motion<'_> {
@@ -17,13 +21,14 @@ impl Motion<'_> {
         let q = solution.displacements.shaft;
         let omega = self.settings.speed.at(0.0);
         let ring = |side: Side| {
-            let motion = self.rings[side.index()].as_ref()?;
+            let body = self.rings[side.index()].as_ref()?;
             let elastic = solution.elastic[side.index()].as_ref()?;
             Some(ring_at_start(
-                motion,
+                body,
                 elastic,
                 if side == Side::Inner { q } else { [0.0; 5] },
-                omega,
+                [0.0; 5],
+                if side == Side::Inner { omega } else { 0.0 },
             ))
         };
         let forces = solution.balls.iter().flat_map(|b| {
@@ -38,11 +43,15 @@ impl Motion<'_> {
             .flat_map(|b| [b.inner.contact_angle_rad, b.outer.contact_angle_rad]);
         let mut state = MotionState {
             step: 0,
+            rung: 0,
             rings: [ring(Side::Inner), ring(Side::Outer)],
             balls: solution.displacements.balls.clone(),
             ball_velocities: vec![[0.0; 2]; model.geometry.n_balls],
+            ball_accelerations: vec![[0.0; 2]; model.geometry.n_balls],
             shaft: q,
             shaft_velocity: [0.0; 5],
+            shaft_acceleration: [0.0; 5],
+            trend: vec![[0.0; 2]; 3 * model.geometry.n_balls],
             forces: forces.collect(),
             angles: angles.collect(),
             approaches: solution
@@ -53,17 +62,117 @@ impl Motion<'_> {
             ledger: Ledger::default(),
         };
         state.ledger.hertz = solution.hertz_energy;
+        self.with_energies(state)
+    }
+}
+
+impl Motion<'_> {
+    /// A bearing without elastic deformation: shaft and inner ring at displacement `q` (m, rad) with velocity `velocity`
+    /// (m/s, rad/s) in space, balls at their just-touching position, at rest.
+    pub fn rest(&self, q: [f64; 5], velocity: [f64; 5]) -> MotionState {
+        let n = self.model.geometry.n_balls;
+        let omega = self.settings.speed.at(0.0);
+        let ring = |side: Side| {
+            let body = self.rings[side.index()].as_ref()?;
+            let none = vec![0.0; body.coordinates.expanded()];
+            let (q, v) = match side {
+                Side::Inner => (q, velocity),
+                Side::Outer => ([0.0; 5], [0.0; 5]),
+            };
+            Some(ring_at_start(body, &none, q, v, omega))
+        };
+        let mut state = MotionState {
+            step: 0,
+            rung: 0,
+            rings: [ring(Side::Inner), ring(Side::Outer)],
+            balls: vec![[0.0; 2]; n],
+            ball_velocities: vec![[0.0; 2]; n],
+            ball_accelerations: vec![[0.0; 2]; n],
+            shaft: q,
+            shaft_velocity: velocity,
+            shaft_acceleration: [0.0; 5],
+            trend: vec![[0.0; 2]; 3 * n],
+            forces: vec![[0.0; 2]; 2 * n],
+            angles: vec![self.model.geometry.free_contact_angle(); 2 * n],
+            approaches: vec![0.0; 2 * n],
+            ledger: Ledger::default(),
+        };
+        self.note_contacts(&mut state);
+        self.with_energies(state)
+    }
+
+    /// The state with accelerations that fit its displacements and velocities: schemes that dissipate remember them, and
+    /// would be of first order without. They are means over a trial step of the conserving scheme, which needs none.
+    pub fn with_accelerations(&self, mut state: MotionState) -> Result<MotionState, DynamicsError> {
+        if self.settings.integrator.is_conserving() {
+            return Ok(state);
+        }
+        let conserving = MotionSettings {
+            integrator: Integrator::average_acceleration(),
+            scheme: ContactScheme::DiscreteGradient { weight: 0.5 },
+            ladder: Ladder::default(),
+            ..self.settings.clone()
+        };
+        let (next, _) = Motion::new(self.model, conserving)?.step(&state)?;
+        let mean = |v1: f64, v0: f64| (v1 - v0) / self.settings.dt;
+        for (ring, moved) in state.rings.iter_mut().zip(&next.rings) {
+            if let (Some(ring), Some(moved)) = (ring, moved) {
+                ring.a = moved.v.iter().zip(&ring.v).map(|(a, b)| mean(*a, *b)).collect();
+            }
+        }
+        for (b, moved) in next.ball_velocities.iter().enumerate() {
+            state.ball_accelerations[b] = [0, 1].map(|i| mean(moved[i], state.ball_velocities[b][i]));
+        }
+        for dof in 0..3 {
+            if self.model.shaft_mass > 0.0 {
+                state.shaft_acceleration[dof] = mean(next.shaft_velocity[dof], state.shaft_velocity[dof]);
+            }
+        }
+        Ok(state)
+    }
+
+    /// The state with a ledger that begins here: after its velocities were set by hand.
+    pub fn with_energies(&self, mut state: MotionState) -> MotionState {
+        let hertz = state.ledger.hertz;
+        state.ledger = Ledger {
+            hertz,
+            ..Ledger::default()
+        };
         self.measure_energies(&mut state);
         state.ledger.initial = state.ledger.total();
         state.ledger.note_scale();
         state
     }
+
+    /// Contacts of rigid bodies at the state's displacements: angles, approaches, forces and their energy.
+    fn note_contacts(&self, state: &mut MotionState) {
+        for index in 0..state.forces.len() {
+            let (ball, side) = (index / 2, Side::BOTH[index % 2]);
+            let site = Site::new(self.model, ball, side, self.ball_azimuth(ball, 0.0));
+            let mut l = site.reach;
+            for (i, l) in l.iter_mut().enumerate() {
+                *l += state.balls[ball][i];
+                if side == Side::Inner {
+                    *l -= (0..5)
+                        .map(|dof| site.shaft_rows()[dof][i] * state.shaft[dof])
+                        .sum::<f64>();
+                }
+            }
+            let length = l[0].hypot(l[1]);
+            let at = site.law.evaluate(length - site.touching);
+            let sign = side.sign();
+            state.approaches[index] = at.approach;
+            state.angles[index] = (sign * l[1]).atan2(sign * l[0]);
+            state.forces[index] = l.map(|x| at.force * x / length);
+            state.ledger.hertz += at.energy;
+        }
+    }
 }
 
-/// Coordinates of a ring at static equilibrium: elastic part plus the shaft's motion, and the velocity that a
-/// displacement fixed in space has in the turning frame.
-fn ring_at_start(motion: &RingMotion, elastic: &[f64], q: [f64; 5], omega: f64) -> RingState {
-    let coordinates = &motion.coordinates;
+/// Coordinates of a ring: elastic part plus the rigid motion `q`, and in its frame, which turns at `omega`, the velocity of
+/// that motion, which has `velocity` in space.
+fn ring_at_start(body: &RingBody, elastic: &[f64], q: [f64; 5], velocity: [f64; 5], omega: f64) -> RingState {
+    let coordinates = &body.coordinates;
     let (dofs, first) = coordinates.shaft();
     let field = |q: [f64; 5]| {
         let mut y = vec![0.0; coordinates.n()];
@@ -82,7 +191,8 @@ fn ring_at_start(motion: &RingMotion, elastic: &[f64], q: [f64; 5], omega: f64) 
         .enumerate()
         .for_each(|(i, &dof)| w[i] += elastic[dof]);
     let mut state = RingState::at_rest(w);
-    state.v = field([omega * q[1], -omega * q[0], 0.0, omega * q[4], -omega * q[3]]);
+    let turned = [omega * q[1], -omega * q[0], 0.0, omega * q[4], -omega * q[3]];
+    state.v = field([0, 1, 2, 3, 4].map(|i| velocity[i] + turned[i]));
     state
 }
 
@@ -91,19 +201,6 @@ pub(super) fn check_supported(model: &Model) -> Result<(), DynamicsError> {
     let refuse = |what: &'static str| Err(DynamicsError::NotInMotion { what });
     if model.contact.mode == ContactMode::Facet {
         return refuse("contact.mode = \"facet\"; use \"patch\"");
-    }
-    if model.rings.iter().flatten().any(|r| r.hold == Hold::MeanMotion) {
-        return refuse("support = \"mean_motion\"; use \"clamped\"");
-    }
-    let same = |a: usize, b: usize| {
-        matches!((model.shaft[a], model.shaft[b]), (ShaftDof::Free, ShaftDof::Free))
-            || (model.shaft[a] == ShaftDof::Prescribed(0.0) && model.shaft[b] == ShaftDof::Prescribed(0.0))
-    };
-    let axial = matches!(model.shaft[2], ShaftDof::Free) || model.shaft[2] == ShaftDof::Prescribed(0.0);
-    if model.ring(Side::Inner).is_some() && !(same(0, 1) && same(3, 4) && axial) {
-        return refuse(
-            "a flexible inner ring whose shaft has x and y, or both tilts, held differently or driven",
-        );
     }
     Ok(())
 }

@@ -9,8 +9,10 @@ use super::ring::RingState;
 /// Choices of a motion.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MotionSettings {
-    /// Step size, s.
+    /// Step size, s: the largest when steps adapt.
     pub dt: f64,
+    /// How steps are halved.
+    pub ladder: Ladder,
     /// Scheme of the rings.
     pub integrator: Integrator,
     /// Scheme of the contacts.
@@ -25,21 +27,39 @@ pub struct MotionSettings {
     pub rayleigh: [f64; 2],
 }
 
+/// The ladder of step sizes dt 2^-k; each keeps its factors.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Ladder {
+    /// Largest k. A step that fails is done again in halves down to it.
+    pub halvings: u32,
+    /// Accepted local error over the largest contact approach; None: steps are halved only when they fail.
+    pub tolerance: Option<f64>,
+}
+
 /// All that evolves.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct MotionState {
     /// Steps done.
     pub step: u64,
+    /// Rung k of the ladder on which the next step begins.
+    pub rung: u64,
     /// Coordinates of the flexible rings.
     pub rings: [Option<RingState>; 2],
     /// Ball displacements from the just-touching position [radial, axial], m.
     pub balls: Vec<[f64; 2]>,
     /// Ball velocities, m/s.
     pub ball_velocities: Vec<[f64; 2]>,
-    /// Displacement of a rigid inner ring's shaft, m and rad, in space.
+    /// Ball accelerations, m/s^2.
+    pub ball_accelerations: Vec<[f64; 2]>,
+    /// Displacement of the shaft in space, m and rad.
     pub shaft: [f64; 5],
-    /// Its velocity.
+    /// Its velocity; the mean over the last step for dofs without mass of their own.
     pub shaft_velocity: [f64; 5],
+    /// Its acceleration; 0 for dofs without mass of their own.
+    pub shaft_acceleration: [f64; 5],
+    /// Mean accelerations [radial, axial] over the last part of a step, of the balls, then of the groove centres by site,
+    /// m/s^2: what the local error is estimated from. Zero when steps do not adapt.
+    pub trend: Vec<[f64; 2]>,
     /// Mean contact forces of the last step [radial, axial] on the rings, by site, N.
     pub forces: Vec<[f64; 2]>,
     /// Contact angles at the end of the last step, by site, rad.
@@ -51,8 +71,71 @@ pub struct MotionState {
 }
 
 /// What happened in a step.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct StepReport {
     /// Newton iterations on the contacts.
     pub newton_iterations: usize,
+    /// Rounds for the inertia of the turning frame.
+    pub frame_rounds: usize,
+    /// Parts in which the step was done.
+    pub substeps: usize,
+    /// Parts that failed or were too inaccurate and were done again.
+    pub retries: usize,
+    /// Largest accepted local error over the largest contact approach; 0 when steps do not adapt.
+    pub error: f64,
+    /// Wall time by part.
+    pub seconds: StepSeconds,
+}
+
+/// Wall time of a step by part, s; of two rings side by side, the longer.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct StepSeconds {
+    /// Loads of the effects.
+    pub loads: f64,
+    /// Placing of the patches.
+    pub patches: f64,
+    /// Right-hand sides: products with K and M.
+    pub right_side: f64,
+    /// Predictor and columns: the block solve.
+    pub solve: f64,
+    /// Newton on contacts, balls and shaft.
+    pub newton: f64,
+    /// Inertia of the turning frame: products and solves.
+    pub frame: f64,
+    /// New state, energies and ledger.
+    pub update: f64,
+}
+
+impl StepSeconds {
+    /// Names and times of all parts.
+    pub fn parts(&self) -> [(&'static str, f64); 7] {
+        [
+            ("loads", self.loads),
+            ("patches", self.patches),
+            ("right_side", self.right_side),
+            ("solve", self.solve),
+            ("newton", self.newton),
+            ("frame", self.frame),
+            ("update", self.update),
+        ]
+    }
+}
+
+impl StepReport {
+    /// Adds another part of the same step, or another step.
+    pub fn add(&mut self, other: &StepReport) {
+        self.newton_iterations += other.newton_iterations;
+        self.frame_rounds += other.frame_rounds;
+        self.substeps += other.substeps;
+        self.retries += other.retries;
+        self.error = self.error.max(other.error);
+        let (to, from) = (&mut self.seconds, &other.seconds);
+        to.loads += from.loads;
+        to.patches += from.patches;
+        to.right_side += from.right_side;
+        to.solve += from.solve;
+        to.newton += from.newton;
+        to.frame += from.frame;
+        to.update += from.update;
+    }
 }

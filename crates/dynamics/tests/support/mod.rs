@@ -4,7 +4,9 @@
 
 use contact::{BearingGeometry, HertzContact, Side};
 use dynamics::effects::{AxialForce, Effect, Moment, RadialForce};
-use dynamics::{ContactMode, ContactSettings, Model, ShaftDof, StaticSolution, StaticSolver, Tolerances};
+use dynamics::{
+    ContactMode, ContactSettings, Model, Schedule, ShaftDof, StaticSolution, StaticSolver, Tolerances,
+};
 use fem::Material;
 
 /// A load case of the 7010C.
@@ -44,13 +46,18 @@ impl Case {
         }
         let steel = steel();
         let elastic = dynamics::model::elastic(&steel);
-        let mut effects: Vec<Box<dyn Effect>> = vec![Box::new(AxialForce { value: self.axial })];
+        let mut effects: Vec<Box<dyn Effect>> = vec![Box::new(AxialForce {
+            value: self.axial,
+            schedule: Schedule::Constant,
+        })];
         effects.push(Box::new(RadialForce {
             value: self.radial,
             direction: 0.0,
+            schedule: Schedule::Constant,
         }));
         effects.push(Box::new(Moment {
             value: [self.moment, 0.0],
+            schedule: Schedule::Constant,
         }));
         let dof = |free: bool| {
             if free {
@@ -71,6 +78,7 @@ impl Case {
                 dof(self.free_tilt),
                 dof(self.free_tilt),
             ],
+            shaft_schedules: Default::default(),
             shaft_mass: 0.0,
             load_point: self.load_point,
             contact: ContactSettings {

@@ -175,7 +175,7 @@ impl StressRecovery {
     }
 
     /// Number of elements.
-    fn n_elements(&self) -> usize {
+    pub(super) fn n_elements(&self) -> usize {
         self.connectivity.len() / self.table.kind.n_nodes()
     }
 

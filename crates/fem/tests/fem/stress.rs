@@ -1,5 +1,6 @@
 //! Stress recovery and invariants.
 
+use fem::stress::NodeRecovery;
 use fem::{StressRecovery, principal, von_mises};
 use mesh::ElementKind;
 
@@ -167,5 +168,27 @@ fn nodal_stress_is_the_volume_weighted_mean_of_its_elements() {
             0.0
         };
         assert_close(stress[0], expected, 1e-14, &format!("at {x:?}"));
+    }
+}
+
+/// Otherwise a history of the stress at a node would not be that of the fields, or would cost as much as they do: the same
+/// bits, from the elements around the nodes alone.
+#[test]
+fn stress_at_chosen_nodes_has_the_bits_of_the_whole_field() {
+    for kind in ElementKind::ALL {
+        let mesh = wavy_cube(kind, 4);
+        let u = nodal_field(&mesh, |[x, y, z]| [x * y - z * z, (2.0 * x).sin() * z, y * y * x]);
+        let whole = StressRecovery::new(&mesh, &steel()).unwrap().nodal(&u);
+        let nodes = [mesh.n_nodes() - 1, 7, mesh.n_nodes() / 2, 7];
+        let chosen = NodeRecovery::new(&mesh, &steel(), &nodes).unwrap();
+        let stress = chosen.stress(&u);
+        for (&node, found) in nodes.iter().zip(stress) {
+            assert_eq!(found, whole[node], "{} node {node}", kind.name());
+        }
+        assert!(
+            chosen.n_elements() < mesh.n_elements() / 2,
+            "{}",
+            chosen.n_elements()
+        );
     }
 }

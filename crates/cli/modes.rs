@@ -1,0 +1,163 @@
+//! `raceway run` of a `[modes]` scene: natural frequencies and shapes of rings alone and of the loaded bearing.
+
+use std::path::Path;
+use std::time::Instant;
+
+use contact::Side;
+use dynamics::modes::{basis_sizes, bearing_modes, ring_modes};
+use dynamics::{ModeSet, Model, ModesSettings, RingSupport, StaticSolution, StaticSolver};
+use solver::Searched;
+
+use crate::build::build_model;
+use crate::failure::Failure;
+use crate::options::Limits;
+use crate::progress::Progress;
+use crate::results::disk::Forecast;
+use crate::results::modes::{ModeFiles, ModesSummary, print_modes};
+use crate::results::snapshot::Snapshot;
+use crate::scene::{ModeBody, ModeSupport, Modes, Scene};
+
+/// Blocks of the search between two lines of progress in a log.
+const PROGRESS_STEPS: usize = 10;
+
+/// Computes the modes.
+pub fn run(
+    scene: &Scene,
+    wanted: &Modes,
+    dir: &Path,
+    limits: &Limits,
+    start: Instant,
+) -> Result<(), Failure> {
+    let mut progress = Progress::new(wanted.bodies.len() as u64);
+    progress.stage("reading meshes");
+    let (model, _) = build_model(scene)?;
+    Forecast::new(scene, &model, 0).require_space(dir, limits.ignore_disk_space)?;
+    let equilibrium = if wanted.bodies.contains(&ModeBody::Bearing) {
+        progress.stage("equilibrium");
+        let mut statics = StaticSolver::new(&model).map_err(Failure::solving)?;
+        Some(statics.solve(&model, None).map_err(Failure::solving)?)
+    } else {
+        None
+    };
+    let mut files: Option<ModeFiles> = None;
+    let mut sets = Vec::new();
+    for &body in &wanted.bodies {
+        progress.stage(&format!("{}: factoring", name(body, wanted)));
+        let set = modes_of(&model, body, wanted, equilibrium.as_ref(), &progress)?;
+        // The first modes make the folder: a scene that has none leaves no files.
+        let files = match &mut files {
+            Some(files) => files,
+            empty => empty.insert(ModeFiles::create(scene, &model, dir)?),
+        };
+        files.write(scene, &model, body, &set)?;
+        sets.push((body, set));
+        progress.advance();
+    }
+    progress.finish();
+    if let Some(files) = files {
+        files.finish()?;
+    }
+    let snapshot = equilibrium.as_ref().map(|e| Snapshot::of_equilibrium(e, None));
+    let warnings = warnings(&sets, equilibrium.as_ref(), wanted);
+    let summary = ModesSummary::new(scene, &model, &sets, snapshot.as_ref(), warnings, start);
+    summary.write(dir)?;
+    for (body, set) in &sets {
+        print_modes(&name(*body, wanted), set);
+    }
+    summary.print_costs();
+    Ok(())
+}
+
+/// A body in words, with its support.
+pub fn name(body: ModeBody, wanted: &Modes) -> String {
+    let support = match wanted.support {
+        ModeSupport::Free => "free",
+        ModeSupport::AsHeld => "as held",
+    };
+    match body {
+        ModeBody::Inner => format!("inner ring alone, {support}"),
+        ModeBody::Outer => format!("outer ring alone, {support}"),
+        ModeBody::Bearing => "bearing".to_string(),
+    }
+}
+
+/// Bytes of the vectors of the largest search, its restart included.
+pub fn basis_bytes(model: &Model, wanted: &Modes) -> usize {
+    let [alone, bearing] = basis_sizes(wanted.number, model.geometry.n_balls);
+    let n_dofs = |side: Side| model.ring(side).map_or(0, |ring| ring.mesh.n_dofs());
+    let of_body = |body: &ModeBody| match body {
+        ModeBody::Inner => alone * n_dofs(Side::Inner),
+        ModeBody::Outer => alone * n_dofs(Side::Outer),
+        ModeBody::Bearing => bearing * (n_dofs(Side::Inner) + n_dofs(Side::Outer)),
+    };
+    2 * size_of::<f64>() * wanted.bodies.iter().map(of_body).max().unwrap_or(0)
+}
+
+fn modes_of(
+    model: &Model,
+    body: ModeBody,
+    wanted: &Modes,
+    equilibrium: Option<&StaticSolution>,
+    progress: &Progress,
+) -> Result<ModeSet, Failure> {
+    let settings = ModesSettings {
+        number: wanted.number,
+        shift: wanted.shift,
+    };
+    let support = match wanted.support {
+        ModeSupport::Free => RingSupport::Free,
+        ModeSupport::AsHeld => RingSupport::AsHeld,
+    };
+    let mut report = |searched: Searched| {
+        if searched.steps.is_multiple_of(PROGRESS_STEPS) {
+            progress.stage(&format!(
+                "{}: {} of {} modes after {} blocks",
+                name(body, wanted),
+                searched.converged,
+                wanted.number,
+                searched.steps
+            ));
+        }
+    };
+    let mut alone = |side: Side| {
+        let ring = model
+            .ring(side)
+            .expect("the scene was refused when a ring without a body is named");
+        ring_modes(side, ring, support, settings, &mut report)
+    };
+    match (body, equilibrium) {
+        (ModeBody::Inner, _) => alone(Side::Inner),
+        (ModeBody::Outer, _) => alone(Side::Outer),
+        (ModeBody::Bearing, equilibrium) => {
+            let equilibrium = equilibrium.expect("the equilibrium of a bearing was found first");
+            bearing_modes(model, equilibrium, settings, &mut report)
+        }
+    }
+    .map_err(Failure::solving)
+}
+
+/// What a user should know: those of the equilibrium, missing modes, and balls without load.
+fn warnings(
+    sets: &[(ModeBody, ModeSet)],
+    equilibrium: Option<&StaticSolution>,
+    wanted: &Modes,
+) -> Vec<String> {
+    let mut warnings: Vec<String> = equilibrium.map_or(Vec::new(), |e| e.warnings.clone());
+    for (body, set) in sets {
+        if set.modes.len() < wanted.number {
+            warnings.push(format!(
+                "{}: it has only {} modes, not {}",
+                name(*body, wanted),
+                set.modes.len(),
+                wanted.number
+            ));
+        }
+        let rigid = set.modes.iter().filter(|m| m.is_rigid).count();
+        if *body == ModeBody::Bearing && rigid > 0 {
+            warnings.push(format!(
+                "bearing: {rigid} modes are motions without stiffness; balls without load have two each"
+            ));
+        }
+    }
+    warnings
+}

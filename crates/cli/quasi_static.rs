@@ -1,0 +1,213 @@
+//! `raceway run` of a `[quasi_static]` scene: equilibria in time, each started from the one before.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+use std::time::Instant;
+
+use contact::Side;
+use dynamics::motion::balls::{Rolling, Speed};
+use dynamics::{Model, QuasiStatic, StaticSolution};
+
+use crate::build::{build_model, rolling};
+use crate::failure::Failure;
+use crate::options::Limits;
+use crate::print;
+use crate::progress::Progress;
+use crate::results::disk::Forecast;
+use crate::results::files::Files;
+use crate::results::probes::Probes;
+use crate::results::shown::Shown;
+use crate::results::snapshot::Snapshot;
+use crate::results::summary::{Findings, Summary};
+use crate::results::{console, fields};
+use crate::scene::{self, Scene};
+
+/// Steps between two lines of progress in a log.
+const PROGRESS_STEPS: u64 = 50;
+
+/// Runs the equilibria.
+pub fn run(
+    scene: &Scene,
+    settings: &scene::QuasiStatic,
+    dir: &Path,
+    limits: &Limits,
+    start: Instant,
+) -> Result<(), Failure> {
+    let mut progress = Progress::new(1 + settings.n_steps);
+    progress.stage("reading meshes");
+    let (model, tags) = build_model(scene)?;
+    let probes = Probes::new(scene, &model, &tags)?;
+    Forecast::new(scene, &model, 0).require_space(dir, limits.ignore_disk_space)?;
+    let read = start.elapsed().as_secs_f64();
+    progress.stage("factoring the stiffness of the rings");
+    let rolling = rolling(scene);
+    let at_rest = || Rolling::new(&model.geometry, Speed::constant(0.0), [0.0; 2]);
+    let turning = rolling.clone().unwrap_or_else(at_rest);
+    let mut bearing = QuasiStatic::new(&model, turning, settings.step).map_err(Failure::solving)?;
+    progress.stage("first equilibrium");
+    let first = bearing.step(0, None).map_err(Failure::solving)?;
+    // The first solution makes the folder: a scene that has none leaves no files.
+    let mut files = Files::create(
+        scene,
+        &model,
+        dir,
+        &Snapshot::of_equilibrium(&first, rolling.as_ref()),
+        probes,
+        &first.warnings,
+    )?;
+    let mut series = Series {
+        scene,
+        settings,
+        model: &model,
+        rolling: rolling.as_ref(),
+        files: &mut files,
+        iterations: [0; 3],
+        warnings: Vec::new(),
+        warned: 0,
+        last: first,
+    };
+    let clock = Instant::now();
+    let ended = series.run(&mut bearing, &mut progress, dir);
+    let seconds = clock.elapsed().as_secs_f64();
+    progress.finish();
+    let findings = series.findings(&ended, bearing.solver.costs.seconds());
+    let snapshot = findings.last.clone();
+    let forecast = Side::BOTH.map(|side| bearing.solver.ring(side).map(|r| r.memory));
+    let costs = files.finish(read, forecast, bearing.solver.timing, start)?;
+    let summary = Summary::new(scene, &model, findings, &costs);
+    summary.write(dir)?;
+    ended?;
+    console::print_snapshot(&snapshot);
+    let steps = settings.n_steps;
+    print::line(format_args!(
+        "{steps} steps of {} s, {:.1} ms per step",
+        settings.step,
+        1e3 * seconds / steps as f64
+    ));
+    summary.print_costs();
+    Ok(())
+}
+
+/// A run under way.
+struct Series<'a> {
+    scene: &'a Scene,
+    settings: &'a scene::QuasiStatic,
+    model: &'a Model,
+    rolling: Option<&'a Rolling>,
+    files: &'a mut Files,
+    /// Steps done, rounds and Newton iterations so far.
+    iterations: [usize; 3],
+    /// Those of the first instant that had any.
+    warnings: Vec<String>,
+    /// Number of instants that had some.
+    warned: u64,
+    /// The last equilibrium.
+    last: StaticSolution,
+}
+
+impl Series<'_> {
+    /// Steps to the end of the run. On failure the last equilibrium has its step file.
+    fn run(
+        &mut self,
+        bearing: &mut QuasiStatic<'_>,
+        progress: &mut Progress,
+        dir: &Path,
+    ) -> Result<(), Failure> {
+        self.write(bearing, 0)?;
+        progress.advance();
+        let n_steps = self.settings.n_steps;
+        for n in 1..=n_steps {
+            if n % PROGRESS_STEPS == 1 {
+                progress.stage(&format!("step {n} of {n_steps}, t = {:.4e} s", bearing.time(n)));
+            }
+            match bearing.step(n, Some(&self.last)) {
+                Ok(next) => self.last = next,
+                Err(error) => {
+                    if !self.has_file(n - 1) {
+                        self.write_fields(bearing, n - 1)?;
+                    }
+                    let place = format!(
+                        "step {n}, t = {:.6e} s; the last equilibrium is in {}",
+                        bearing.time(n),
+                        dir.display()
+                    );
+                    return Err(Failure::solving(error).context(place));
+                }
+            }
+            self.write(bearing, n)?;
+            progress.advance();
+        }
+        Ok(())
+    }
+
+    /// Whether a step's fields are written.
+    fn has_file(&self, step: u64) -> bool {
+        step == self.settings.n_steps || step.is_multiple_of(self.settings.output_every)
+    }
+
+    /// Writes a step and takes note of what it took.
+    fn write(&mut self, bearing: &QuasiStatic<'_>, step: u64) -> Result<(), Failure> {
+        self.iterations[0] = step as usize;
+        self.iterations[1] += self.last.rounds;
+        self.iterations[2] += self.last.newton_iterations;
+        self.note_warnings(bearing.time(step));
+        let time = bearing.time(step);
+        let snapshot = Snapshot::of_equilibrium(&self.last, self.rolling);
+        self.files.write_tables(step, time, None, &snapshot)?;
+        let shown = shown(self.model, &self.last);
+        self.files.write_probes(step, time, None, &shown)?;
+        if self.has_file(step) {
+            self.write_fields(bearing, step)?;
+        }
+        Ok(())
+    }
+
+    /// A long run warns at thousands of instants: the first stands for all.
+    fn note_warnings(&mut self, time: f64) {
+        if self.last.warnings.is_empty() {
+            return;
+        }
+        if self.warned == 0 {
+            let at = |warning: &String| format!("t = {time:.6e} s: {warning}");
+            self.warnings = self.last.warnings.iter().map(at).collect();
+        }
+        self.warned += 1;
+    }
+
+    fn write_fields(&mut self, bearing: &QuasiStatic<'_>, step: u64) -> Result<(), Failure> {
+        let (model, last, scene) = (self.model, &self.last, self.scene);
+        let at = (step, bearing.time(step));
+        self.files
+            .write_fields(|recoveries| fields::record(&shown(model, last), last, recoveries, at, scene))
+    }
+
+    fn findings(self, ended: &Result<(), Failure>, effect_seconds: BTreeMap<&'static str, f64>) -> Findings {
+        let [steps, rounds, newton] = self.iterations;
+        let mut warnings = self.warnings;
+        if self.warned > 1 {
+            warnings.push(format!(
+                "{} instants have warnings; those of the first are given",
+                self.warned
+            ));
+        }
+        Findings {
+            status: ended
+                .as_ref()
+                .err()
+                .map_or("finished".to_string(), Failure::status),
+            last: Snapshot::of_equilibrium(&self.last, self.rolling),
+            points: Vec::new(),
+            iterations: BTreeMap::from([("steps", steps), ("rounds", rounds), ("newton", newton)]),
+            warnings,
+            effect_seconds,
+        }
+    }
+}
+
+fn shown<'a>(model: &'a Model, solution: &'a StaticSolution) -> Shown<'a> {
+    Shown::Equilibrium {
+        model,
+        placed: &model.geometry,
+        solution,
+    }
+}

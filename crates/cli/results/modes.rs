@@ -1,0 +1,265 @@
+//! Results of a `[modes]` scene: `modes.csv`, a step file per mode, `summary.json`, and tables on the screen.
+//!
+//! A step file holds one shape as the field `displacement`, scaled so that the largest displacement is 1 mm, and the stress
+//! that goes with it. Steps count from 1 through all bodies; the time of a step is its number, because viewers need times
+//! that grow and double modes share a frequency: `modes.csv` and the group `/restart` of the file give it.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+use std::time::Instant;
+
+use anyhow::Context;
+use checkpoint::{Output, PointFields, StateArray, StepRecord};
+use contact::Side;
+use dynamics::balls::BallResult;
+use dynamics::{Mode, ModeSet, Model};
+use fem::stress::{StressRecovery, von_mises};
+use serde::Serialize;
+
+use super::fields;
+use super::files::storage;
+use super::snapshot::Snapshot;
+use super::summary::{ShaftSummary, mode_name, peak_memory, sides, write_summary};
+use crate::failure::Failure;
+use crate::print;
+use crate::scene::{ModeBody, Scene};
+
+/// Largest displacement of a shape in a step file, m.
+const AMPLITUDE: f64 = 1e-3;
+
+const COLUMNS: [&str; 12] = [
+    "step",
+    "body",
+    "mode",
+    "frequency_hz",
+    "bound_hz",
+    "residual",
+    "rigid",
+    "modal_mass_kg",
+    "kinetic_inner",
+    "kinetic_outer",
+    "kinetic_balls",
+    "kinetic_shaft",
+];
+
+/// The open files of a run.
+pub struct ModeFiles {
+    output: Output,
+    table: csv::Writer<std::fs::File>,
+    recoveries: [Option<StressRecovery>; 2],
+    step: u64,
+}
+
+impl ModeFiles {
+    /// Creates the folder's files.
+    pub fn create(scene: &Scene, model: &Model, dir: &Path) -> Result<ModeFiles, Failure> {
+        let output = Output::create(dir, &fields::bodies(model), storage(scene))?;
+        let path = dir.join("modes.csv");
+        let mut table =
+            csv::Writer::from_path(&path).with_context(|| format!("cannot create {}", path.display()))?;
+        table.write_record(COLUMNS)?;
+        Ok(ModeFiles {
+            output,
+            table,
+            recoveries: fields::recoveries(model, scene.output.stress)?,
+            step: 0,
+        })
+    }
+
+    /// Writes the modes of one body.
+    pub fn write(
+        &mut self,
+        scene: &Scene,
+        model: &Model,
+        body: ModeBody,
+        set: &ModeSet,
+    ) -> Result<(), Failure> {
+        for (i, mode) in set.modes.iter().enumerate() {
+            self.step += 1;
+            let record = StepRecord {
+                step: self.step,
+                time: self.step as f64,
+                points: self.points(model, mode),
+                scene: scene.text.clone(),
+                state: BTreeMap::from([
+                    ("frequency_hz".to_string(), StateArray::Real(vec![mode.frequency])),
+                    ("mode".to_string(), StateArray::Integer(vec![i as i64 + 1])),
+                    ("modes_body".to_string(), StateArray::Integer(vec![body as i64])),
+                ]),
+            };
+            self.output.write_step(&record)?;
+            self.table.write_record(cells(self.step, body, i + 1, mode))?;
+        }
+        self.table.flush().context("cannot write modes.csv")?;
+        Ok(())
+    }
+
+    /// Closes the files.
+    pub fn finish(self) -> Result<(), Failure> {
+        self.output.finish()?;
+        Ok(())
+    }
+
+    /// Fields of a shape over the points of all bodies; those that do not take part are at rest.
+    fn points(&self, model: &Model, mode: &Mode) -> PointFields {
+        let (mut displacement, mut stress) = (Vec::new(), Vec::new());
+        for side in Side::BOTH {
+            let (Some(ring), i) = (model.ring(side), side.index()) else {
+                continue;
+            };
+            let field: Vec<f64> = match &mode.shape.rings[i] {
+                Some(shape) => shape.iter().map(|u| AMPLITUDE * u).collect(),
+                None => vec![0.0; ring.mesh.n_dofs()],
+            };
+            displacement.extend(field.chunks_exact(3).map(|u| [u[0], u[1], u[2]]));
+            if let Some(recovery) = &self.recoveries[i] {
+                stress.extend(recovery.nodal(&field));
+            }
+        }
+        for ball in 0..model.geometry.n_balls {
+            let [radial, axial] = mode.shape.balls.get(ball).copied().unwrap_or_default();
+            let (sin, cos) = model.geometry.azimuth(ball).sin_cos();
+            displacement.push([radial * cos, radial * sin, axial].map(|u| AMPLITUDE * u));
+        }
+        let with_stress = self.recoveries.iter().any(Option::is_some);
+        let stress = with_stress.then(|| {
+            stress.resize(displacement.len(), [0.0; 6]);
+            stress
+        });
+        PointFields {
+            displacement,
+            von_mises: stress.as_ref().map(|s| s.iter().map(|&s| von_mises(s)).collect()),
+            stress,
+            ..PointFields::default()
+        }
+    }
+}
+
+fn cells(step: u64, body: ModeBody, number: usize, mode: &Mode) -> Vec<String> {
+    let mut cells = vec![step.to_string(), body.typed().to_string(), number.to_string()];
+    cells.extend([mode.frequency, mode.bound, mode.residual].map(|x| format!("{x:?}")));
+    cells.push(u8::from(mode.is_rigid).to_string());
+    cells.push(format!("{:?}", mode.modal_mass));
+    cells.extend(mode.kinetic.map(|x| format!("{x:?}")));
+    cells
+}
+
+/// Prints the modes of one body.
+pub fn print_modes(name: &str, set: &ModeSet) {
+    print::line(format_args!(
+        "{name}: {} unknowns, {} blocks, {:.2} s",
+        set.n_unknowns,
+        set.steps,
+        set.seconds.iter().sum::<f64>()
+    ));
+    print::line(format_args!(
+        "mode  frequency Hz    bound Hz  modal kg   kinetic energy: inner  outer  balls  shaft"
+    ));
+    for (i, mode) in set.modes.iter().enumerate() {
+        let [inner, outer, balls, shaft] = mode.kinetic;
+        print::line(format_args!(
+            "{:4} {:13.4} {:11.1e} {:9.3e} {:22.3} {outer:6.3} {balls:6.3} {shaft:6.3}{}",
+            i + 1,
+            mode.frequency,
+            mode.bound,
+            mode.modal_mass,
+            inner,
+            if mode.is_rigid { "  without stiffness" } else { "" }
+        ));
+    }
+}
+
+/// `summary.json` of a `[modes]` scene; `schema`, `scene`, `title`, `version`, `status`, `contact_mode`, `effects`, `dofs`,
+/// `warnings` and `peak_memory_bytes` as in all runs.
+#[derive(Debug, Serialize)]
+pub struct ModesSummary {
+    schema: u32,
+    scene: String,
+    title: Option<String>,
+    version: &'static str,
+    analysis: &'static str,
+    status: &'static str,
+    contact_mode: &'static str,
+    effects: Vec<&'static str>,
+    dofs: BTreeMap<&'static str, usize>,
+    modes: BTreeMap<&'static str, BodySummary>,
+    /// The equilibrium about which the bearing vibrates; absent for rings alone.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    shaft: Option<ShaftSummary>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    balls: Option<Vec<BallResult>>,
+    warnings: Vec<String>,
+    timing_s: BTreeMap<&'static str, f64>,
+    peak_memory_bytes: u64,
+}
+
+#[derive(Debug, Serialize)]
+struct BodySummary {
+    unknowns: usize,
+    blocks: usize,
+    frequency_hz: Vec<f64>,
+    bound_hz: Vec<f64>,
+}
+
+impl ModesSummary {
+    /// Summary of a finished run that began at `start`.
+    pub fn new(
+        scene: &Scene,
+        model: &Model,
+        sets: &[(ModeBody, ModeSet)],
+        equilibrium: Option<&Snapshot>,
+        warnings: Vec<String>,
+        start: Instant,
+    ) -> ModesSummary {
+        let part = |i: usize| sets.iter().map(|(_, set)| set.seconds[i]).sum();
+        let body = |set: &ModeSet| BodySummary {
+            unknowns: set.n_unknowns,
+            blocks: set.steps,
+            frequency_hz: set.modes.iter().map(|m| m.frequency).collect(),
+            bound_hz: set.modes.iter().map(|m| m.bound).collect(),
+        };
+        ModesSummary {
+            schema: 1,
+            scene: scene.path.display().to_string(),
+            title: scene.title.clone(),
+            version: env!("CARGO_PKG_VERSION"),
+            analysis: "modes",
+            status: "finished",
+            contact_mode: mode_name(model),
+            effects: model.effects.iter().map(|e| e.name()).collect(),
+            dofs: sides(|i| model.rings[i].as_ref().map_or(0, |r| r.mesh.n_dofs())),
+            modes: sets.iter().map(|(b, set)| (b.typed(), body(set))).collect(),
+            shaft: equilibrium.map(ShaftSummary::new),
+            balls: equilibrium.map(|e| e.balls.clone()),
+            warnings,
+            timing_s: BTreeMap::from([
+                ("factor", part(0)),
+                ("search", part(1)),
+                ("total", start.elapsed().as_secs_f64()),
+            ]),
+            peak_memory_bytes: peak_memory(),
+        }
+    }
+
+    /// Prints warnings, then where the time went.
+    pub fn print_costs(&self) {
+        for warning in &self.warnings {
+            print::line(format_args!("warning: {warning}"));
+        }
+        let parts: Vec<String> = self
+            .timing_s
+            .iter()
+            .map(|(part, s)| format!("{part} {s:.3}"))
+            .collect();
+        print::line(format_args!("seconds: {}", parts.join(", ")));
+        print::line(format_args!(
+            "peak memory: {:.0} MB",
+            self.peak_memory_bytes as f64 / 1e6
+        ));
+    }
+
+    /// Writes the file: complete or not at all.
+    pub fn write(&self, dir: &Path) -> anyhow::Result<()> {
+        write_summary(dir, self)
+    }
+}

@@ -1,0 +1,163 @@
+//! Probes: single numbers of a run, a line per step in `probes.csv`. The scene's own documentation says what they are.
+
+use contact::Side;
+use dynamics::Model;
+use dynamics::balls::BallResult;
+use fem::stress::{NodeRecovery, von_mises};
+
+use super::fields::force_on_ball;
+use super::probe_places::{NodePlace, place};
+use super::shown::{RingField, Shown, Turn};
+use crate::build::NodeTags;
+use crate::failure::Failure;
+use crate::scene::{self, Axes, ContactProbe, RingName, Scene};
+
+/// The probes of a run, placed on its meshes.
+pub struct Probes {
+    nodes: Vec<NodeProbe>,
+    /// Stress of the probed nodes of each ring, in the order of `nodes`; None where nothing is probed.
+    recoveries: [Option<NodeRecovery>; 2],
+    contacts: Vec<ContactProbe>,
+}
+
+struct NodeProbe {
+    place: NodePlace,
+    side: Side,
+    axes: Axes,
+}
+
+const CYLINDRICAL: [&str; 6] = ["rr", "tt", "zz", "rt", "tz", "rz"];
+const CARTESIAN: [&str; 6] = ["xx", "yy", "zz", "xy", "yz", "xz"];
+
+impl Probes {
+    /// Finds the nodes of a scene's probes; None when it has no probes, and then nothing is made.
+    pub fn new(scene: &Scene, model: &Model, tags: &NodeTags) -> Result<Option<Probes>, Failure> {
+        if scene.probes.is_empty() {
+            return Ok(None);
+        }
+        let find = |probe: &scene::NodeProbe| {
+            let side = side_of(probe.ring);
+            let (ring, tags) = match (model.ring(side), &tags[side.index()]) {
+                (Some(ring), Some(tags)) => (ring, tags),
+                _ => unreachable!("the scene refuses nodes of rigid rings"),
+            };
+            Ok::<_, Failure>(NodeProbe {
+                place: place(probe, ring, tags)?,
+                side,
+                axes: probe.axes,
+            })
+        };
+        let nodes: Vec<NodeProbe> = scene.probes.nodes.iter().map(find).collect::<Result<_, _>>()?;
+        let recovery = |side: Side| {
+            let own = nodes.iter().filter(|probe| probe.side == side);
+            let own: Vec<usize> = own.map(|probe| probe.place.node).collect();
+            match model.ring(side) {
+                Some(ring) if !own.is_empty() => {
+                    Ok(Some(NodeRecovery::new(&ring.mesh, &ring.material, &own)?))
+                }
+                _ => Ok::<_, Failure>(None),
+            }
+        };
+        Ok(Some(Probes {
+            recoveries: [recovery(Side::Inner)?, recovery(Side::Outer)?],
+            nodes,
+            contacts: scene.probes.contacts.clone(),
+        }))
+    }
+
+    /// Nodes that are probed and where they lie.
+    pub fn places(&self) -> impl Iterator<Item = &NodePlace> {
+        self.nodes.iter().map(|probe| &probe.place)
+    }
+
+    /// Names of the columns, without step and time.
+    pub fn columns(&self) -> Vec<String> {
+        let mut columns = Vec::new();
+        for probe in &self.nodes {
+            let name = &probe.place.name;
+            let (pairs, axes) = match probe.axes {
+                Axes::Cylindrical => (CYLINDRICAL, ["r", "t", "z"]),
+                Axes::Cartesian => (CARTESIAN, ["x", "y", "z"]),
+            };
+            columns.extend(pairs.map(|ij| format!("{name}_stress_{ij}_pa")));
+            columns.push(format!("{name}_von_mises_pa"));
+            columns.extend(axes.map(|i| format!("{name}_displacement_{i}_m")));
+        }
+        for ContactProbe { name, .. } in &self.contacts {
+            columns.extend(["x", "y", "z"].map(|i| format!("{name}_force_{i}_n")));
+            columns.push(format!("{name}_force_n"));
+            columns.extend(["x", "y", "z"].map(|i| format!("{name}_moment_{i}_n_m")));
+            columns.push(format!("{name}_moment_n_m"));
+        }
+        columns
+    }
+
+    /// Values of the columns at one instant, SI.
+    pub fn values(&self, shown: &Shown<'_>) -> Vec<f64> {
+        let rings = Side::BOTH.map(|side| {
+            let recovery = self.recoveries[side.index()].as_ref()?;
+            let ring = shown.ring(side)?;
+            let stress = recovery.stress(&ring.strained);
+            Some((ring, stress.into_iter()))
+        });
+        let mut rings = rings;
+        let mut values = Vec::new();
+        for probe in &self.nodes {
+            let Some((ring, stress)) = &mut rings[probe.side.index()] else {
+                unreachable!("a ring with probed nodes has a field while it is shown")
+            };
+            let stress = stress.next().expect("one stress per probed node of the ring");
+            values.extend(node_values(probe, ring, stress));
+        }
+        let balls = shown.balls();
+        for probe in &self.contacts {
+            values.extend(contact_values(probe, shown.model(), &balls[probe.ball]));
+        }
+        values
+    }
+}
+
+/// The side of a ring's name.
+pub fn side_of(ring: RingName) -> Side {
+    match ring {
+        RingName::Inner => Side::Inner,
+        RingName::Outer => Side::Outer,
+    }
+}
+
+/// Stress, von Mises stress and displacement of a node.
+fn node_values(probe: &NodeProbe, ring: &RingField<'_>, stress: [f64; 6]) -> Vec<f64> {
+    let node = probe.place.node;
+    let in_space = ring.turn.tensor(stress);
+    let (tensor, displacement) = match probe.axes {
+        Axes::Cylindrical => {
+            let back = Turn::new(-probe.place.azimuth_rad);
+            (back.tensor(stress), back.vector(ring.displacement(node)))
+        }
+        Axes::Cartesian => (in_space, ring.shown_displacement(node)),
+    };
+    // An invariant, evaluated as the step files have it.
+    [&tensor[..], &[von_mises(in_space)], &displacement].concat()
+}
+
+/// Force of the ring on the ball and its moment about the probe's point, each with its size.
+fn contact_values(probe: &ContactProbe, model: &Model, ball: &BallResult) -> Vec<f64> {
+    let side = side_of(probe.ring);
+    let contact = match side {
+        Side::Inner => &ball.inner,
+        Side::Outer => &ball.outer,
+    };
+    let force = force_on_ball(side, contact, ball.azimuth_rad);
+    let [radial, axial] = model.geometry.ball_centre();
+    let (sin, cos) = ball.azimuth_rad.sin_cos();
+    let radius = radial + ball.displacement_m.radial;
+    let centre = [radius * cos, radius * sin, axial + ball.displacement_m.axial];
+    let arm = [0, 1, 2].map(|i| centre[i] - probe.about[i]);
+    let moment = [
+        arm[1] * force[2] - arm[2] * force[1],
+        arm[2] * force[0] - arm[0] * force[2],
+        arm[0] * force[1] - arm[1] * force[0],
+    ];
+    let size = |v: [f64; 3]| v[0].hypot(v[1]).hypot(v[2]);
+    [&force[..], &[size(force)], &moment, &[size(moment)]].concat()
+}

@@ -1,0 +1,194 @@
+//! One instant of a run, as fields and probes show it.
+//!
+//! A ring's field is known in the frame of its mesh, which is turned in space by the ring's angle. It is shown as it
+//! stands in space: its displacement is that from the mesh, turning included, and its stress tensors are turned.
+
+use std::borrow::Cow;
+
+use contact::{BearingGeometry, Side};
+use dynamics::balls::BallResult;
+use dynamics::motion::frame::turn;
+use dynamics::motion::{Motion, MotionState};
+use dynamics::{Model, RingModel, StaticSolution};
+
+/// Bearing, kinematics and state of one instant.
+#[derive(Clone, Copy)]
+pub enum Shown<'a> {
+    /// An equilibrium. Points of a sweep may differ in the places of balls and rings; `placed` is the bearing of the
+    /// mesh file, from whose places displacements are shown.
+    Equilibrium {
+        /// The bearing with its loads.
+        model: &'a Model,
+        /// Bearing of the mesh file.
+        placed: &'a BearingGeometry,
+        /// Its equilibrium.
+        solution: &'a StaticSolution,
+    },
+    /// An instant of a motion.
+    Motion {
+        /// The bearing with its loads.
+        model: &'a Model,
+        /// Kinematics and coordinates.
+        motion: &'a Motion<'a>,
+        /// The instant.
+        state: &'a MotionState,
+    },
+}
+
+/// A flexible ring at one instant.
+pub struct RingField<'a> {
+    ring: &'a RingModel,
+    /// Displacement up to a rigid motion, in the ring's frame, m, `[n_nodes][3]` flat.
+    pub strained: Cow<'a, [f64]>,
+    /// That rigid motion: shaft dofs in the ring's frame, m and rad; None when it is contained or zero.
+    rigid: Option<[f64; 5]>,
+    /// From the ring's frame to space.
+    pub turn: Turn,
+}
+
+impl<'a> Shown<'a> {
+    /// The bearing with its loads.
+    pub fn model(&self) -> &'a Model {
+        match self {
+            Shown::Equilibrium { model, .. } | Shown::Motion { model, .. } => model,
+        }
+    }
+
+    /// The bearing from whose places displacements are shown.
+    pub fn placed(&self) -> &'a BearingGeometry {
+        match self {
+            Shown::Equilibrium { placed, .. } => placed,
+            Shown::Motion { model, .. } => &model.geometry,
+        }
+    }
+
+    /// All balls.
+    pub fn balls(&self) -> Cow<'a, [BallResult]> {
+        match self {
+            Shown::Equilibrium { solution, .. } => Cow::Borrowed(&solution.balls),
+            Shown::Motion { motion, state, .. } => Cow::Owned(motion.balls(state)),
+        }
+    }
+
+    /// A ring; None when it is rigid, or its field was not kept.
+    pub fn ring(&self, side: Side) -> Option<RingField<'a>> {
+        let ring = self.model().ring(side)?;
+        match self {
+            Shown::Equilibrium {
+                model,
+                placed,
+                solution,
+            } => {
+                let strained = solution.elastic[side.index()].as_ref()?;
+                let angle = solution.pose.frame_angle(side);
+                let rigid = (side == Side::Inner).then(|| {
+                    let mut q = solution.displacements.shaft;
+                    q[2] = q[2] + model.geometry.axial_offset() - placed.axial_offset();
+                    turn(q, -angle)
+                });
+                Some(RingField {
+                    ring,
+                    strained: Cow::Borrowed(strained),
+                    rigid,
+                    turn: Turn::new(angle),
+                })
+            }
+            Shown::Motion { motion, state, .. } => {
+                let (field, angle) = motion.ring_displacement(state, side)?;
+                Some(RingField {
+                    ring,
+                    strained: Cow::Owned(field),
+                    rigid: None,
+                    turn: Turn::new(angle),
+                })
+            }
+        }
+    }
+}
+
+impl RingField<'_> {
+    /// Total displacement of a node in the ring's frame, m.
+    pub fn displacement(&self, node: usize) -> [f64; 3] {
+        let u = &self.strained[3 * node..3 * node + 3];
+        let mut u = [u[0], u[1], u[2]];
+        if let Some([x, y, z, tilt_x, tilt_y]) = self.rigid {
+            let [node_x, node_y, node_z] = self.ring.mesh.nodes[node];
+            let arm = node_z - self.ring.groove.centre_z;
+            u[0] += x + tilt_y * arm;
+            u[1] += y - tilt_x * arm;
+            u[2] += z + tilt_x * node_y - tilt_y * node_x;
+        }
+        u
+    }
+
+    /// Displacement of a node in space from its place in the mesh, turning included, m.
+    pub fn shown_displacement(&self, node: usize) -> [f64; 3] {
+        let place = self.ring.mesh.nodes[node];
+        let (turned, u) = (self.turn.vector(place), self.turn.vector(self.displacement(node)));
+        // Without turning this is the displacement itself, to the last bit.
+        [0, 1, 2].map(|i| u[i] + (turned[i] - place[i]))
+    }
+
+    /// Displacements of all nodes in space, m.
+    pub fn shown_displacements(&self) -> impl Iterator<Item = [f64; 3]> + '_ {
+        (0..self.ring.mesh.n_nodes()).map(|node| self.shown_displacement(node))
+    }
+}
+
+/// A turn about z.
+#[derive(Clone, Copy, Debug)]
+pub struct Turn {
+    sin: f64,
+    cos: f64,
+}
+
+impl Turn {
+    /// By an angle from +x towards +y, rad.
+    pub fn new(angle: f64) -> Turn {
+        let (sin, cos) = angle.sin_cos();
+        Turn { sin, cos }
+    }
+
+    /// A vector, turned.
+    pub fn vector(&self, v: [f64; 3]) -> [f64; 3] {
+        [
+            self.cos * v[0] - self.sin * v[1],
+            self.sin * v[0] + self.cos * v[1],
+            v[2],
+        ]
+    }
+
+    /// R s R^T for xx yy zz xy yz xz.
+    pub fn tensor(&self, [xx, yy, zz, xy, yz, xz]: [f64; 6]) -> [f64; 6] {
+        let (c, s) = (self.cos, self.sin);
+        [
+            c * c * xx - 2.0 * c * s * xy + s * s * yy,
+            s * s * xx + 2.0 * c * s * xy + c * c * yy,
+            zz,
+            c * s * (xx - yy) + (c * c - s * s) * xy,
+            s * xz + c * yz,
+            c * xz - s * yz,
+        ]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use fem::stress::von_mises;
+
+    use super::*;
+
+    /// Wrong: stress of the turning ring would be shown in the wrong directions.
+    #[test]
+    fn turning_a_tensor_keeps_its_invariants_and_turns_its_axes() {
+        let turn = Turn::new(0.7);
+        let s = turn.tensor([3.0, 0.0, 1.0, 0.0, 0.0, 0.0]);
+        let axis = turn.vector([1.0, 0.0, 0.0]);
+        let traction = [s[0] * axis[0] + s[3] * axis[1], s[3] * axis[0] + s[1] * axis[1]];
+        assert!((traction[0] - 3.0 * axis[0]).abs() < 1e-15 && (traction[1] - 3.0 * axis[1]).abs() < 1e-15);
+        let full = [1.0, -2.0, 0.5, 0.3, 0.8, -0.4];
+        assert!((von_mises(turn.tensor(full)) - von_mises(full)).abs() < 1e-14);
+        let shear = turn.tensor([0.0, 0.0, 0.0, 0.0, 0.0, 1.0]);
+        assert!((shear[5] - 0.7f64.cos()).abs() < 1e-15 && (shear[4] - 0.7f64.sin()).abs() < 1e-15);
+    }
+}

@@ -1,0 +1,102 @@
+//! Which analysis a scene asks for, and what that means for its other tables.
+
+use toml_edit::DocumentMut;
+
+use super::RawScene;
+use super::effects::EffectsContext;
+use super::modes::ModesContext;
+use super::problems::Problems;
+use super::schedule::Clock;
+use super::shaft::Shaft;
+use super::speed::SpeedUse;
+use super::sweep::{Analysis, RawStatic};
+
+impl RawScene {
+    pub(super) fn analysis(
+        &self,
+        document: &DocumentMut,
+        (shaft, modes): (&Shaft, ModesContext),
+        problems: &mut Problems,
+    ) -> Option<Analysis> {
+        let found = [
+            self.r#static.as_ref().map(|_| "[static]"),
+            self.sweep.as_ref().map(|_| "[sweep]"),
+            self.quasi_static.as_ref().map(|_| "[quasi_static]"),
+            self.dynamic.as_ref().map(|_| "[dynamic]"),
+            self.modes.as_ref().map(|_| "[modes]"),
+        ];
+        let found: Vec<&str> = found.into_iter().flatten().collect();
+        match found.as_slice() {
+            [_] => {}
+            [] => {
+                problems.add(
+                    "the scene has no analysis; add one of the tables [static], [sweep], [quasi_static], [dynamic] and [modes]",
+                );
+                return None;
+            }
+            [a, b] => {
+                problems.add(format!(
+                    "the scene has both {a} and {b}; keep exactly one analysis"
+                ));
+                return None;
+            }
+            names => {
+                let names = names.join(", ");
+                problems.add(format!("the scene has all of {names}; keep exactly one analysis"));
+                return None;
+            }
+        }
+        if let Some(sweep) = &self.sweep {
+            return sweep.check(document, problems).map(Analysis::Sweep);
+        }
+        if let Some(dynamic) = &self.dynamic {
+            return dynamic.check(shaft, problems).map(Analysis::Dynamic);
+        }
+        if let Some(quasi) = &self.quasi_static {
+            return quasi.check(problems).map(Analysis::QuasiStatic);
+        }
+        if let Some(raw) = &self.modes {
+            return raw.check(modes, problems).map(Analysis::Modes);
+        }
+        self.r#static.as_ref().map(|RawStatic {}| Analysis::Static)
+    }
+
+    /// Whether equilibria are computed, and no motion; a scene without analysis is not judged further.
+    fn is_at_rest(&self) -> bool {
+        self.dynamic.is_none() && (self.r#static.is_some() || self.sweep.is_some() || self.modes.is_some())
+    }
+
+    /// Whether loads and imposed displacements may have schedules.
+    pub(super) fn clock(&self) -> Clock {
+        if self.is_at_rest() {
+            Clock::AtRest
+        } else {
+            Clock::Running
+        }
+    }
+
+    /// Whether inertia is left out, so that damping has nothing to do.
+    fn is_without_inertia(&self) -> bool {
+        self.is_at_rest() || (self.dynamic.is_none() && self.quasi_static.is_some())
+    }
+
+    pub(super) fn effects_context(&self, has_flexible_inner: bool) -> EffectsContext {
+        EffectsContext {
+            is_without_inertia: self.is_without_inertia(),
+            clock: self.clock(),
+            has_speed: self.speed.is_some(),
+            has_flexible_inner,
+        }
+    }
+
+    pub(super) fn speed_use(&self) -> SpeedUse {
+        if self.dynamic.is_none() && self.modes.is_some() {
+            return SpeedUse::Modes;
+        }
+        match (self.is_at_rest(), self.effects.use_speed_at_rest()) {
+            (false, _) => SpeedUse::Motion,
+            (true, true) => SpeedUse::ForceAtRest,
+            (true, false) => SpeedUse::Nothing,
+        }
+    }
+}

@@ -1,0 +1,60 @@
+//! What comes before the first step of a motion: static equilibrium, or a state that the scene gives.
+
+use contact::Side;
+use dynamics::motion::{Motion, MotionState};
+use dynamics::{Model, RingMemory, StaticSolution, StaticSolver, Timing};
+
+use crate::failure::Failure;
+use crate::progress::Progress;
+use crate::scene::{Dynamic, Start};
+
+/// The static start, when there is one, and its costs.
+#[derive(Default)]
+pub struct Settled {
+    equilibrium: Option<StaticSolution>,
+    /// Forecast of the memory of both rings.
+    pub forecast: [Option<RingMemory>; 2],
+    /// Seconds of the static solution.
+    pub timing: Timing,
+}
+
+/// Static equilibrium at t = 0, if the motion starts from it. Its factors are not kept: the motion has its own.
+pub fn settle(model: &Model, dynamic: &Dynamic, progress: &Progress) -> Result<Settled, Failure> {
+    if dynamic.start != Start::Static {
+        return Ok(Settled::default());
+    }
+    progress.stage("static start");
+    let mut statics = StaticSolver::new(model).map_err(Failure::solving)?;
+    let equilibrium = statics.solve(model, None).map_err(Failure::solving)?;
+    Ok(Settled {
+        equilibrium: Some(equilibrium),
+        forecast: Side::BOTH.map(|side| statics.ring(side).map(|r| r.memory)),
+        timing: statics.timing,
+    })
+}
+
+impl Settled {
+    /// The state at t = 0.
+    pub fn first_state(&self, motion: &Motion<'_>, dynamic: &Dynamic) -> Result<MotionState, Failure> {
+        match (&self.equilibrium, dynamic.start) {
+            (Some(equilibrium), _) => Ok(motion.start(equilibrium)),
+            (
+                None,
+                Start::Given {
+                    displacement,
+                    velocity,
+                },
+            ) => motion
+                .with_accelerations(motion.rest(displacement, velocity))
+                .map_err(Failure::solving),
+            (None, Start::Static) => unreachable!("a static start has its equilibrium"),
+        }
+    }
+
+    /// What the static solution warns of.
+    pub fn warnings(&self) -> Vec<String> {
+        self.equilibrium
+            .as_ref()
+            .map_or_else(Vec::new, |e| e.warnings.clone())
+    }
+}

@@ -1,0 +1,231 @@
+//! Natural frequencies and shapes: of one ring alone, or of the loaded bearing about its static equilibrium.
+//!
+//! Small free vibration, K x = omega^2 M x, without damping and without rotation: no gyroscopic splitting of modes, no cage,
+//! the contacts stay where they are and keep the tangent of their law. Unknowns of a bearing: the nodes of its flexible rings,
+//! the shaft's free dofs, and two dofs per ball, radial and axial. K holds the rings' stiffness and per contact, with
+//! l the vector from groove centre to ball centre,
+//!
+//! ```text
+//! k n n^T + Q/|l| (1 - n n^T),    k = dQ/dg,  n = l/|l|
+//! ```
+//!
+//! spread over the ring by the weights of its patch. The second term is the geometric stiffness of the contact force: all
+//! that holds a ball across the contact normals. A contact without load has none, so unloaded balls have modes at zero.
+//!
+//! - **Free** ring: six rigid motions at zero, then elastic modes, most of them double.
+//! - **Held** ring: its bore or seat is clamped or held in its mean motion, as the scene has it, by a partner at rest.
+//! - **Bearing**: the outer ring is held by the housing, which is at rest; the inner ring by the shaft, whose free dofs move
+//!   and carry `shaft_mass` (translations only: the shaft has no rotary inertia of its own). The rotation of the
+//!   shaft about z is held. A rigid inner ring has the mass of the shaft and no other; dofs of the shaft without mass
+//!   follow quasi-statically.
+//!
+//! Pairs come from block Lanczos about the negative shift lambda = -s ([`solver::lanczos`]): K + s M is positive definite even
+//! for a free ring, so the rings' own sparse Cholesky factors serve, and contacts and constraints are a small dense system
+//! on top of them. Each ring is factored once, whatever the number of modes.
+
+mod columns;
+mod coordinates;
+mod products;
+mod ring;
+mod shape;
+mod system;
+
+use std::time::Instant;
+
+use contact::Side;
+use solver::{LanczosSettings, Searched, lowest_pairs};
+
+use crate::error::DynamicsError;
+use crate::model::{ContactMode, Model, RingModel, ShaftDof};
+use crate::problem::site_hessian;
+use crate::solution::StaticSolution;
+use columns::Contact;
+use ring::{Partner, RingBody};
+use system::System;
+
+pub use shape::{Mode, Shape};
+
+/// omega^2 over the shift below which a mode is a rigid motion: far above round-off (1e-9 on 60 000 dofs), and a
+/// thirty-thousandth of the first elastic frequency of a ring.
+const RIGID: f64 = 1e-7;
+/// Frequency of the shift over that of a wave along the radius, sqrt(E/rho)/R: near the first elastic modes of rings.
+const SHIFT: f64 = 0.1;
+/// Vectors per block of a ring: its modes are double, and two more speed up the search.
+const RING_BLOCK: usize = 4;
+/// Largest block of a bearing: clusters of modes are as wide as its number of balls.
+const LARGEST_BLOCK: usize = 32;
+
+/// What holds a ring that is looked at alone.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum RingSupport {
+    /// Nothing.
+    Free,
+    /// Its bore or seat is held as in the bearing, by a partner at rest.
+    AsHeld,
+}
+
+/// How many modes, and where the search is centred.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ModesSettings {
+    /// Number of modes, from the lowest, rigid motions included.
+    pub number: usize,
+    /// Frequency of the shift, Hz: s = (2 pi shift)^2. None: chosen from size and material.
+    pub shift: Option<f64>,
+}
+
+/// Modes of one body, ascending.
+#[derive(Clone, Debug)]
+pub struct ModeSet {
+    /// The modes; fewer than asked for when the body has no more.
+    pub modes: Vec<Mode>,
+    /// Number of unknowns.
+    pub n_unknowns: usize,
+    /// Blocks of Lanczos; 0 by the dense method.
+    pub steps: usize,
+    /// Seconds of assembly and factorisation, and of the search.
+    pub seconds: [f64; 2],
+}
+
+/// Modes of a ring alone.
+pub fn ring_modes(
+    side: Side,
+    ring: &RingModel,
+    support: RingSupport,
+    settings: ModesSettings,
+    progress: &mut dyn FnMut(Searched),
+) -> Result<ModeSet, DynamicsError> {
+    let start = Instant::now();
+    let speed = (ring.material.young_modulus / ring.material.density).sqrt();
+    let shift = shift(settings, speed / ring.groove.centre_radius);
+    let partner = match support {
+        RingSupport::Free => None,
+        RingSupport::AsHeld => Some(Partner::at_rest()),
+    };
+    let body = RingBody::new(side, ring, partner, shift)?;
+    let mut rings = [None, None];
+    rings[side.index()] = Some(body);
+    let system = System::new(rings, Vec::new(), Vec::new(), shift)?;
+    search(&system, settings, RING_BLOCK, start, progress)
+}
+
+/// Modes of the loaded bearing about an equilibrium of the model.
+pub fn bearing_modes(
+    model: &Model,
+    equilibrium: &StaticSolution,
+    settings: ModesSettings,
+    progress: &mut dyn FnMut(Searched),
+) -> Result<ModeSet, DynamicsError> {
+    let start = Instant::now();
+    check_supported(model, equilibrium)?;
+    let steel = &model.ball_material;
+    let speed = (steel.young_modulus / steel.density).sqrt();
+    let shift = shift(settings, speed / model.geometry.centre_radius(Side::Inner));
+    let free: Vec<usize> = (0..5).filter(|&i| model.shaft[i] == ShaftDof::Free).collect();
+    let build = |side: Side| {
+        let partner = match side {
+            Side::Inner => Partner::new(free.clone(), model.shaft_mass),
+            Side::Outer => Partner::at_rest(),
+        };
+        let ring = model.ring(side);
+        ring.map(|ring| RingBody::new(side, ring, Some(partner), shift))
+            .transpose()
+    };
+    let (inner, outer) = rayon::join(|| build(Side::Inner), || build(Side::Outer));
+    let rings = [inner?, outer?];
+    let mut small_mass = vec![model.ball_mass(); 2 * model.geometry.n_balls];
+    let mut shaft = Vec::new();
+    if rings[0].is_none() {
+        for &dof in &free {
+            shaft.push((dof, small_mass.len()));
+            small_mass.push(if dof < 3 { model.shaft_mass } else { 0.0 });
+        }
+    }
+    let contacts = contacts(equilibrium, &rings, &shaft);
+    let block = model.geometry.n_balls.clamp(RING_BLOCK, LARGEST_BLOCK);
+    let mut system = System::new(rings, small_mass, contacts, shift)?;
+    system.set_bearing(
+        model.geometry.n_balls,
+        shaft,
+        model.geometry.centre_radius(Side::Inner),
+    );
+    search(&system, settings, block, start, progress)
+}
+
+/// Largest number of basis vectors that a search keeps, for forecasts of memory: ring alone, bearing.
+pub fn basis_sizes(number: usize, n_balls: usize) -> [usize; 2] {
+    [RING_BLOCK, n_balls.clamp(RING_BLOCK, LARGEST_BLOCK)]
+        .map(|block| LanczosSettings::new(number, block).capacity())
+}
+
+fn check_supported(model: &Model, equilibrium: &StaticSolution) -> Result<(), DynamicsError> {
+    if model.contact.mode == ContactMode::Facet {
+        let what = "contact.mode = \"facet\", whose forces have no energy; use \"patch\"";
+        return Err(DynamicsError::NotInModes { what });
+    }
+    if equilibrium.ball_slope != 0.0 {
+        let what = "the centrifugal force of balls: they belong to a bearing that does not turn";
+        return Err(DynamicsError::NotInModes { what });
+    }
+    Ok(())
+}
+
+/// The shift s, 1/s^2.
+fn shift(settings: ModesSettings, wave_rate: f64) -> f64 {
+    match settings.shift {
+        Some(frequency) => (std::f64::consts::TAU * frequency).powi(2),
+        None => (SHIFT * wave_rate).powi(2),
+    }
+}
+
+/// Tangents of all contacts and what they connect.
+fn contacts(
+    equilibrium: &StaticSolution,
+    rings: &[Option<RingBody>; 2],
+    shaft: &[(usize, usize)],
+) -> Vec<Contact> {
+    let of_site = |site: &crate::problem::Site| {
+        let i = site.side.index();
+        let weights = rings[i].as_ref().map(|ring| {
+            let foot = &equilibrium.footprints(site.side)[site.ball];
+            ring.coordinates.reduce_weights(&foot.weights)
+        });
+        let small = [0, 1].map(|direction| {
+            let mut row = vec![(2 * site.ball + direction, 1.0)];
+            if site.side == Side::Inner {
+                let rows = site.shaft_rows();
+                row.extend(shaft.iter().map(|&(dof, place)| (place, -rows[dof][direction])));
+            }
+            row
+        });
+        Contact {
+            stiffness: site_hessian(&site.state(&equilibrium.displacements)),
+            ring: weights.map(|w| (i, w)),
+            small,
+        }
+    };
+    equilibrium.sites.iter().map(of_site).collect()
+}
+
+fn search(
+    system: &System,
+    settings: ModesSettings,
+    block: usize,
+    start: Instant,
+    progress: &mut dyn FnMut(Searched),
+) -> Result<ModeSet, DynamicsError> {
+    let built = start.elapsed().as_secs_f64();
+    let lanczos = LanczosSettings::new(settings.number, block);
+    let pairs = lowest_pairs(system, lanczos, progress).map_err(|source| DynamicsError::Modes { source })?;
+    let n = solver::EigenProblem::n(system);
+    let modes = pairs.vectors.chunks_exact(n).enumerate().map(|(i, x)| {
+        let [value, bound] = [pairs.values[i], pairs.bounds[i]];
+        let is_rigid = value <= RIGID * solver::EigenProblem::shift(system);
+        Mode::new(system, x, [value, bound], pairs.residuals[i], is_rigid)
+    });
+    Ok(ModeSet {
+        modes: modes.collect(),
+        n_unknowns: n,
+        steps: pairs.steps,
+        seconds: [built, start.elapsed().as_secs_f64() - built],
+    })
+}

@@ -1,0 +1,367 @@
+//! One ring as a vibrating body: K and M in its coordinates, the factor of K + s M, and what its partner imposes.
+//!
+//! With a clamped surface that moves with q dofs of the partner, w = T y, the matrices are
+//! `[A_ff, B; B^T, C]`, B = A R at the free dofs, C = R^T A R with the motions R of the clamped nodes: solved by the factor of
+//! the free block and a Schur complement of q rows. A mean-motion hold leaves all nodes free; its held motions are
+//! constraints c^T w = 0, where c takes the area-weighted least-squares rigid motion of the surface.
+
+use contact::Side;
+use mesh::Mesh;
+use solver::dense::DenseCholesky;
+use solver::{LinearSolver, SparseCholesky, Symbolic};
+use sprs::CsMat;
+
+use super::coordinates::{Coordinates, SparseLoad, sparse_dot};
+use super::products::products;
+use crate::error::DynamicsError;
+use crate::model::{Hold, RingModel};
+use crate::ring::elimination_order;
+use crate::solution::dot;
+
+/// The rigid body that holds a ring: shaft or housing.
+pub struct Partner {
+    /// Dofs that move, of x, y, z, tilt x, tilt y.
+    moving: Vec<usize>,
+    /// Mass that its translations carry, kg.
+    mass: f64,
+}
+
+impl Partner {
+    /// A partner with moving dofs.
+    pub fn new(moving: Vec<usize>, mass: f64) -> Partner {
+        Partner { moving, mass }
+    }
+
+    /// A partner that does not move.
+    pub fn at_rest() -> Partner {
+        Partner::new(Vec::new(), 0.0)
+    }
+}
+
+/// A symmetric matrix in the coordinates of a ring.
+struct Bordered {
+    /// Free block, both triangles.
+    block: CsMat<f64>,
+    /// Columns of the moving partner dofs, `[n_moving][n_free]`.
+    border: Vec<Vec<f64>>,
+    /// Their own block, row-major.
+    corner: Vec<f64>,
+}
+
+/// A ring ready to vibrate.
+pub struct RingBody {
+    /// Its coordinates.
+    pub coordinates: Coordinates,
+    /// Partner dofs that move the ring: the last coordinates of a clamped ring.
+    pub moving: Vec<usize>,
+    /// Held motions of a mean-motion hold, as generalised loads.
+    pub constraints: Vec<SparseLoad>,
+    /// Masses that a mean motion carries: generalised load and kg.
+    pub lumps: Vec<(SparseLoad, f64)>,
+    /// Mean motions x, y, z, tilt x, tilt y of the held surface; empty when it is clamped or free.
+    pub mean: Vec<SparseLoad>,
+    /// Mass of the partner that the moving coordinates carry, kg.
+    pub partner_mass: f64,
+    stiffness: Bordered,
+    mass: Bordered,
+    factor: SparseCholesky,
+    /// (K + s M)_ff^-1 times the border, column-major `[n_free][n_moving]`.
+    columns: Vec<f64>,
+    schur: Option<DenseCholesky>,
+    /// Border of K + s M, `[n_moving][n_free]`.
+    border: Vec<Vec<f64>>,
+}
+
+impl RingBody {
+    /// Assembles and factors the ring on `side`, held by a partner or free.
+    pub fn new(
+        side: Side,
+        ring: &RingModel,
+        partner: Option<Partner>,
+        shift: f64,
+    ) -> Result<RingBody, DynamicsError> {
+        let fem_error = |source| DynamicsError::Fem {
+            side: side.name(),
+            source,
+        };
+        let mesh = &ring.mesh;
+        let motions = fem::rigid_modes(mesh, [0.0, 0.0, ring.groove.centre_z]);
+        let (clamped, moving) = match (&partner, ring.hold) {
+            (Some(partner), Hold::Clamped) => (mesh.group_nodes(ring.held_group), partner.moving.clone()),
+            _ => (Vec::new(), Vec::new()),
+        };
+        let moved: Vec<&Vec<f64>> = moving.iter().map(|&dof| &motions[dof]).collect();
+        let coordinates = Coordinates::new(mesh.n_dofs(), &clamped, &moved);
+        // The whole matrices go as soon as they are reduced.
+        let stiffness = fem::assemble_stiffness(mesh, &ring.material)
+            .map(|full| Bordered::new(&full, &coordinates))
+            .map_err(fem_error)?;
+        let mut mass = fem::assemble_mass(mesh, &ring.material)
+            .map(|full| Bordered::new(&full, &coordinates))
+            .map_err(fem_error)?;
+        let factor =
+            factor(mesh, &coordinates, &stiffness, &mass, shift).map_err(|source| DynamicsError::Solver {
+                side: side.name(),
+                source,
+            })?;
+        let mut body = Holding::default();
+        let mut partner_mass = 0.0;
+        if let Some(partner) = &partner {
+            match ring.hold {
+                Hold::Clamped => {
+                    partner_mass = partner.mass;
+                    mass.add_to_translations(&moving, partner.mass);
+                }
+                Hold::MeanMotion => body = Holding::mean(mesh, ring, &motions, partner, &coordinates),
+                Hold::Free => {}
+            }
+        }
+        let (border, columns, schur) = eliminate(&factor, &stiffness, &mass, shift);
+        Ok(RingBody {
+            coordinates,
+            moving,
+            constraints: body.constraints,
+            lumps: body.lumps,
+            mean: body.mean,
+            partner_mass,
+            stiffness,
+            mass,
+            factor,
+            columns,
+            schur,
+            border,
+        })
+    }
+
+    /// Number of coordinates.
+    pub fn n(&self) -> usize {
+        self.coordinates.n()
+    }
+
+    /// K Y of a block of vectors, column-major, without what constraints and contacts add.
+    pub fn stiffness(&self, y: &[f64], n_vectors: usize) -> Vec<f64> {
+        self.stiffness.times(y, n_vectors)
+    }
+
+    /// M Y of a block of vectors without the masses that mean motions carry.
+    pub fn mass(&self, y: &[f64], n_vectors: usize) -> Vec<f64> {
+        self.mass.times(y, n_vectors)
+    }
+
+    /// (K + s M)^-1 of a block of `n_vectors` loads, column-major `[n][n_vectors]`.
+    pub fn solve(&self, loads: &mut [f64], n_vectors: usize) {
+        let (n, m) = (self.n(), self.border.len());
+        let n_free = n - m;
+        let Some(schur) = &self.schur else {
+            self.factor.solve(loads, n_vectors);
+            return;
+        };
+        let columns = loads.chunks_exact(n);
+        let mut free: Vec<f64> = columns.flat_map(|load| load[..n_free].to_vec()).collect();
+        self.factor.solve(&mut free, n_vectors);
+        for (load, z) in loads.chunks_exact_mut(n).zip(free.chunks_exact(n_free)) {
+            let mut q: Vec<f64> = (0..m)
+                .map(|k| load[n_free + k] - dot(&self.border[k], z))
+                .collect();
+            schur.solve(&mut q, 1);
+            load[..n_free].copy_from_slice(z);
+            for (column, q) in self.columns.chunks_exact(n_free).zip(&q) {
+                load[..n_free]
+                    .iter_mut()
+                    .zip(column)
+                    .for_each(|(y, x)| *y -= x * q);
+            }
+            load[n_free..].copy_from_slice(&q);
+        }
+    }
+
+    /// Motion x, y, z, tilt x, tilt y of the partner, m and rad.
+    pub fn partner_motion(&self, y: &[f64]) -> [f64; 5] {
+        let mut motion = [0.0; 5];
+        let n_free = self.n() - self.moving.len();
+        for (&dof, q) in self.moving.iter().zip(&y[n_free..]) {
+            motion[dof] = *q;
+        }
+        for (q, mean) in motion.iter_mut().zip(&self.mean) {
+            *q = sparse_dot(mean, y);
+        }
+        motion
+    }
+}
+
+/// What a mean-motion hold adds to a ring.
+#[derive(Default)]
+struct Holding {
+    constraints: Vec<SparseLoad>,
+    lumps: Vec<(SparseLoad, f64)>,
+    mean: Vec<SparseLoad>,
+}
+
+impl Holding {
+    fn mean(
+        mesh: &Mesh,
+        ring: &RingModel,
+        motions: &[Vec<f64>; 6],
+        partner: &Partner,
+        coordinates: &Coordinates,
+    ) -> Holding {
+        let mut functionals = mean_motions(mesh, ring, motions, coordinates);
+        let constraints = (0..6).filter(|dof| !partner.moving.contains(dof));
+        let lumps = (0..3).filter(|dof| partner.mass > 0.0 && partner.moving.contains(dof));
+        Holding {
+            constraints: constraints.map(|dof| functionals[dof].clone()).collect(),
+            lumps: lumps
+                .map(|dof| (functionals[dof].clone(), partner.mass))
+                .collect(),
+            mean: {
+                functionals.truncate(5);
+                functionals
+            },
+        }
+    }
+}
+
+/// The six functionals (R^T W R)^-1 R^T W of the nodal displacements: mean motion of the held surface about the shaft's
+/// origin.
+fn mean_motions(
+    mesh: &Mesh,
+    ring: &RingModel,
+    motions: &[Vec<f64>; 6],
+    coordinates: &Coordinates,
+) -> Vec<SparseLoad> {
+    let weights = fem::facet_node_weights(mesh, mesh.group(ring.held_group));
+    // Rotations times a radius, so that all six are lengths.
+    let radius = ring.groove.centre_radius;
+    let scale = |mode: usize| if mode < 3 { 1.0 } else { 1.0 / radius };
+    let mut gram = vec![0.0; 36];
+    for i in 0..6 {
+        for j in 0..6 {
+            let product = |&(node, w): &(usize, f64)| {
+                w * dot(
+                    &motions[i][3 * node..3 * node + 3],
+                    &motions[j][3 * node..3 * node + 3],
+                )
+            };
+            gram[6 * i + j] = scale(i) * scale(j) * weights.iter().map(product).sum::<f64>();
+        }
+    }
+    let inverse = DenseCholesky::factor(6, &gram)
+        .expect("a surface of facets is not a straight line, so its mean rotation is defined")
+        .inverse();
+    let functional = |i: usize| {
+        let entries = weights
+            .iter()
+            .flat_map(|&(node, w)| (0..3).map(move |c| (3 * node + c, w)));
+        coordinates.reduce(entries.map(|(dof, w)| {
+            let sum: f64 = (0..6)
+                .map(|j| inverse[6 * i + j] * scale(j) * motions[j][dof])
+                .sum();
+            (dof, w * scale(i) * sum)
+        }))
+    };
+    (0..6).map(functional).collect()
+}
+
+impl Bordered {
+    fn new(full: &CsMat<f64>, coordinates: &Coordinates) -> Bordered {
+        let free = &coordinates.free;
+        let m = coordinates.n_moving();
+        let motions: Vec<Vec<f64>> = (0..m).map(|k| coordinates.held_motion(k)).collect();
+        let forces: Vec<Vec<f64>> = motions.iter().map(|motion| products(full, motion, 1)).collect();
+        let mut corner = vec![0.0; m * m];
+        for k in 0..m {
+            for l in 0..m {
+                corner[m * k + l] = 0.5 * (dot(&motions[k], &forces[l]) + dot(&motions[l], &forces[k]));
+            }
+        }
+        Bordered {
+            block: solver::restrict(full, free),
+            border: forces
+                .iter()
+                .map(|force| free.iter().map(|&dof| force[dof]).collect())
+                .collect(),
+            corner,
+        }
+    }
+
+    /// Adds a mass to the translations among the moving dofs.
+    fn add_to_translations(&mut self, moving: &[usize], mass: f64) {
+        for (k, &dof) in moving.iter().enumerate() {
+            if dof < 3 {
+                self.corner[moving.len() * k + k] += mass;
+            }
+        }
+    }
+
+    /// Product with a block of vectors, column-major.
+    fn times(&self, y: &[f64], n_vectors: usize) -> Vec<f64> {
+        let (m, n_free) = (self.border.len(), self.block.rows());
+        if m == 0 {
+            return products(&self.block, y, n_vectors);
+        }
+        let columns = y.chunks_exact(n_free + m);
+        let free: Vec<f64> = columns.clone().flat_map(|y| y[..n_free].to_vec()).collect();
+        let inner = products(&self.block, &free, n_vectors);
+        let mut result = Vec::with_capacity(y.len());
+        for (y, inner) in columns.zip(inner.chunks_exact(n_free)) {
+            let (free, q) = y.split_at(n_free);
+            let start = result.len();
+            result.extend_from_slice(inner);
+            for (border, q) in self.border.iter().zip(q) {
+                result[start..]
+                    .iter_mut()
+                    .zip(border)
+                    .for_each(|(r, b)| *r += b * q);
+            }
+            let rows = self.border.iter().zip(self.corner.chunks_exact(m));
+            result.extend(rows.map(|(border, corner)| dot(border, free) + dot(corner, q)));
+        }
+        result
+    }
+}
+
+/// Factor of the free block of K + s M.
+fn factor(
+    mesh: &Mesh,
+    coordinates: &Coordinates,
+    stiffness: &Bordered,
+    mass: &Bordered,
+    shift: f64,
+) -> Result<SparseCholesky, solver::SolverError> {
+    // Only lower triangles are added: the factorisation needs no more.
+    let all: Vec<usize> = (0..coordinates.free.len()).collect();
+    let [stiffness, mass] = [stiffness, mass].map(|a| solver::restrict_lower(&a.block, &all));
+    let lower = &stiffness + &mass.map(|x| shift * x);
+    drop((stiffness, mass));
+    Symbolic::new(&lower, &elimination_order(mesh, &coordinates.free))?.factor(&lower)
+}
+
+/// Border of K + s M, its solution by the free block, and the Schur complement of the moving dofs.
+fn eliminate(
+    factor: &SparseCholesky,
+    stiffness: &Bordered,
+    mass: &Bordered,
+    shift: f64,
+) -> (Vec<Vec<f64>>, Vec<f64>, Option<DenseCholesky>) {
+    let m = stiffness.border.len();
+    let pairs = stiffness.border.iter().zip(&mass.border);
+    let border: Vec<Vec<f64>> = pairs
+        .map(|(k, m)| k.iter().zip(m).map(|(k, m)| k + shift * m).collect())
+        .collect();
+    if m == 0 {
+        return (border, Vec::new(), None);
+    }
+    let mut columns = border.concat();
+    factor.solve(&mut columns, m);
+    let n_free = columns.len() / m;
+    let mut schur = vec![0.0; m * m];
+    for k in 0..m {
+        for l in 0..m {
+            let corner = stiffness.corner[m * k + l] + shift * mass.corner[m * k + l];
+            schur[m * k + l] = corner - dot(&border[k], &columns[n_free * l..n_free * (l + 1)]);
+        }
+    }
+    let schur = DenseCholesky::factor(m, &schur)
+        .expect("K + s M of a ring with mass is positive definite, and so is its Schur complement");
+    (border, columns, Some(schur))
+}

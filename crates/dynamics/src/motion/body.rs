@@ -1,0 +1,212 @@
+//! One flexible ring as a moving body: its coordinates, matrices and mount; energies, losses, inertia of its frame.
+//!
+//! **Mount.** The ring's partner (shaft or housing) meets it in a few *functionals* of the coordinates, the rigid motion of
+//! its bore or seat: for a clamped bore the five shaft dofs that carry it, which are coordinates; for a mean-motion
+//! hold the six rows B of the area-weighted rigid motion, w stays free. Forces of the partner act through the same
+//! functionals. A clamped seat has none: its nodes are held. Cost: K (nnz entries) and the scalar node mass.
+
+use contact::quadrature::PressureRule;
+use contact::{RacewaySurface, Side};
+use mesh::Mesh;
+use solver::Symbolic;
+use sprs::CsMat;
+
+use super::coordinates::{Coordinates, SparseLoad};
+use super::integrator::Integrator;
+use super::ring::RingState;
+use super::sparse::{kronecker, node_product, product};
+use crate::effects::FrameTurn;
+use crate::error::DynamicsError;
+use crate::inventory::Inventory;
+use crate::model::{Hold, RACEWAY_GROUP, RingModel};
+use crate::ring::elimination_order;
+use crate::solution::dot;
+use crate::support::mean_motion;
+
+/// A ring's matrices, raceway and mount.
+pub struct RingBody {
+    /// Coordinates of the ring.
+    pub coordinates: Coordinates,
+    /// Raceway in (azimuth, groove angle).
+    pub surface: RacewaySurface,
+    /// Integration rule of the patches.
+    pub rule: PressureRule,
+    /// Functionals of the mount: translations, tilts, and for a mean-motion hold the rotation about z.
+    pub mount: Vec<SparseLoad>,
+    /// `inner` or `outer`.
+    pub name: &'static str,
+    pub(super) stiffness: CsMat<f64>,
+    node_mass: CsMat<f64>,
+    /// Node positions, m, `[n_nodes][3]` flat.
+    positions: Vec<f64>,
+    /// Rayleigh damping: C = damping[0] M + damping[1] K.
+    pub(super) damping: [f64; 2],
+    symbolic: Symbolic,
+}
+
+/// Energy that a step took from a ring, J.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Losses {
+    /// Rayleigh damping.
+    pub rayleigh: f64,
+    /// Numerical dissipation of the integrator.
+    pub numerical: f64,
+}
+
+impl RingBody {
+    /// Assembles the ring on `side` and analyses its effective matrix.
+    pub fn new(side: Side, ring: &RingModel, damping: [f64; 2]) -> Result<RingBody, DynamicsError> {
+        let fem_error = |source| DynamicsError::Fem {
+            side: side.name(),
+            source,
+        };
+        let mesh = &ring.mesh;
+        let (coordinates, mount) = hold(mesh, side, ring);
+        let stiffness =
+            coordinates.reduce_matrix(&fem::assemble_stiffness(mesh, &ring.material).map_err(fem_error)?);
+        let pattern = fem::Pattern::new(mesh).map_err(fem_error)?;
+        let node_mass = fem::assemble_node_mass(&pattern, mesh, &ring.material).map_err(fem_error)?;
+        let mut order = elimination_order(mesh, coordinates.free());
+        order.extend(coordinates.free().len()..coordinates.n());
+        let mass = coordinates.reduce_matrix(&kronecker(&node_mass));
+        let symbolic =
+            Symbolic::new(&(&mass + &stiffness), &order).map_err(|source| DynamicsError::Solver {
+                side: side.name(),
+                source,
+            })?;
+        Ok(RingBody {
+            surface: RacewaySurface::new(mesh, mesh.group(RACEWAY_GROUP), ring.groove),
+            rule: PressureRule::new(),
+            positions: mesh.nodes.concat(),
+            name: side.name(),
+            coordinates,
+            mount,
+            stiffness,
+            node_mass,
+            damping,
+            symbolic,
+        })
+    }
+
+    /// The effective matrix S of a step of `dt` seconds, factored.
+    pub fn factor(
+        &self,
+        integrator: Integrator,
+        dt: f64,
+    ) -> Result<Box<dyn solver::LinearSolver>, DynamicsError> {
+        let [m, c, k] = integrator.effective(dt);
+        let (cm, ck) = (m + c * self.damping[0], k + c * self.damping[1]);
+        let mass = self.coordinates.reduce_matrix(&kronecker(&self.node_mass));
+        let effective = &mass.map(|x| cm * x) + &self.stiffness.map(|x| ck * x);
+        drop(mass);
+        match self.symbolic.factor(&effective) {
+            Ok(factor) => Ok(Box::new(factor)),
+            Err(source) => Err(DynamicsError::Solver {
+                side: self.name,
+                source,
+            }),
+        }
+    }
+
+    /// Coordinates and matrices; those of the factors are counted by the motion.
+    pub fn inventory(&self) -> Inventory {
+        Inventory {
+            dofs: self.coordinates.n(),
+            matrices: [&self.stiffness, &self.node_mass].len(),
+        }
+    }
+
+    /// M x of coordinates, `[n]`.
+    pub fn mass_product(&self, x: &[f64]) -> Vec<f64> {
+        let nodal = node_product(&self.node_mass, &self.coordinates.expand(x));
+        self.coordinates.reduce(&nodal)
+    }
+
+    /// Kinetic and strain energy, J.
+    pub fn energies(&self, state: &RingState) -> [f64; 2] {
+        [
+            0.5 * dot(&state.v, &self.mass_product(&state.v)),
+            0.5 * dot(&state.w, &product(&self.stiffness, &state.w)),
+        ]
+    }
+
+    /// Generalised inertia load of the turning frame at displacement `w` and velocity `v` of the coordinates.
+    pub fn frame_load(&self, turn: FrameTurn, w: &[f64], v: &[f64]) -> Vec<f64> {
+        let (speed, acceleration) = (turn.speed, turn.acceleration);
+        let (u, v) = (self.coordinates.expand(w), self.coordinates.expand(v));
+        let mut field = vec![0.0; u.len()];
+        for (i, f) in field.chunks_exact_mut(3).enumerate() {
+            let [x, y] = [0, 1].map(|c| self.positions[3 * i + c] + u[3 * i + c]);
+            let (vx, vy) = (v[3 * i], v[3 * i + 1]);
+            f[0] = speed * speed * x + 2.0 * speed * vy + acceleration * y;
+            f[1] = speed * speed * y - 2.0 * speed * vx - acceleration * x;
+        }
+        self.coordinates.reduce(&node_product(&self.node_mass, &field))
+    }
+
+    /// Linear momentum, kg m/s, and moment of momentum about the point z = 0 of the mesh's axis, kg m^2/s, at the
+    /// undeformed places of the nodes.
+    pub fn momentum(&self, state: &RingState) -> [[f64; 3]; 2] {
+        let p = node_product(&self.node_mass, &self.coordinates.expand(&state.v));
+        let mut sums = [[0.0; 3]; 2];
+        for (x, p) in self.positions.chunks_exact(3).zip(p.chunks_exact(3)) {
+            for i in 0..3 {
+                let (j, k) = ((i + 1) % 3, (i + 2) % 3);
+                sums[0][i] += p[i];
+                sums[1][i] += x[j] * p[k] - x[k] * p[j];
+            }
+        }
+        sums
+    }
+
+    /// What a step took away. The balance of the step, M a[1-am] + C v[1-af] + K w[1-af] = f, times dw, is the work of f;
+    /// the numerical dissipation is what of it is neither stored nor lost in C.
+    pub fn losses(&self, integrator: Integrator, old: &RingState, new: &RingState) -> Losses {
+        let mut losses = Losses::default();
+        let weighted = |s: f64, x0: &[f64], x1: &[f64]| -> Vec<f64> {
+            x0.iter().zip(x1).map(|(a, b)| s * a + (1.0 - s) * b).collect()
+        };
+        let change: Vec<f64> = old.w.iter().zip(&new.w).map(|(a, b)| b - a).collect();
+        if self.damping != [0.0; 2] {
+            let v = weighted(integrator.alpha_f, &old.v, &new.v);
+            let [am, ak] = self.damping;
+            if am != 0.0 {
+                losses.rayleigh += am * dot(&change, &self.mass_product(&v));
+            }
+            if ak != 0.0 {
+                losses.rayleigh += ak * dot(&change, &product(&self.stiffness, &v));
+            }
+        }
+        if !integrator.is_conserving() {
+            let a = weighted(integrator.alpha_m, &old.a, &new.a);
+            let v = weighted(0.5, &old.v, &new.v);
+            let gain: Vec<f64> = old.v.iter().zip(&new.v).map(|(a, b)| b - a).collect();
+            losses.numerical = dot(&change, &self.mass_product(&a)) - dot(&v, &self.mass_product(&gain))
+                + (0.5 - integrator.alpha_f) * dot(&change, &product(&self.stiffness, &change));
+        }
+        losses
+    }
+}
+
+/// Coordinates and mount of a held ring.
+fn hold(mesh: &Mesh, side: Side, ring: &RingModel) -> (Coordinates, Vec<SparseLoad>) {
+    let origin = ring.groove.centre_z;
+    match (ring.hold, side) {
+        (Hold::Clamped, Side::Inner) => {
+            let held = mesh.group_nodes(ring.held_group);
+            let coordinates = Coordinates::new(mesh, &held, vec![0, 1, 2, 3, 4], origin);
+            let first = coordinates.free().len();
+            (coordinates, (0..5).map(|k| vec![(first + k, 1.0)]).collect())
+        }
+        (Hold::Clamped, Side::Outer) => {
+            let held = mesh.group_nodes(ring.held_group);
+            (Coordinates::new(mesh, &held, Vec::new(), origin), Vec::new())
+        }
+        (Hold::MeanMotion, _) => {
+            let weights = fem::facet_node_weights(mesh, mesh.group(ring.held_group));
+            let rows = mean_motion(mesh, weights, origin);
+            (Coordinates::new(mesh, &[], Vec::new(), origin), rows.to_vec())
+        }
+        (Hold::Free, _) => (Coordinates::new(mesh, &[], Vec::new(), origin), Vec::new()),
+    }
+}

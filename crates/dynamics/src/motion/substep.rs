@@ -1,0 +1,322 @@
+//! One part of a step, of one size: loads, patches, predictor and columns, Newton, inertia of the turning frame, new state.
+
+use std::time::Instant;
+
+use contact::{NodalWeights, Side};
+use solver::dense::DenseCholesky;
+
+use super::body::RingBody;
+use super::frame::turn_nodal;
+use super::newton::{SmallSolution, check_patches};
+use super::ring::{RingFactor, RingState, RingStep};
+use super::run::Motion;
+use super::shaft::ShaftStep;
+use super::small::{Inertia, RingAnswer, SmallSystem};
+use super::state::{MotionState, StepReport};
+use crate::effects::{self, FrameTurn, Loads, Now};
+use crate::error::DynamicsError;
+use crate::problem::Site;
+
+/// Change of the frame's inertia loads in a round, sum of all, over the largest force, at which they count as settled.
+const FRAME_TOLERANCE: f64 = 1e-9;
+/// Rounds before a step counts as failed; each contracts by about speed times step size.
+const MAX_FRAME_ROUNDS: usize = 25;
+
+/// A part of a step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Span {
+    /// Time at its start, s.
+    pub start: f64,
+    /// Its size, s.
+    pub dt: f64,
+    /// Its rung of the ladder.
+    pub rung: u32,
+}
+
+impl Span {
+    /// Time at a share of the part, s.
+    pub fn at(&self, share: f64) -> f64 {
+        self.start + share * self.dt
+    }
+}
+
+/// A flexible ring during a part.
+pub(super) struct Moving<'m> {
+    pub body: &'m RingBody,
+    pub factor: &'m RingFactor,
+    pub old: &'m RingState,
+    pub step: RingStep,
+    /// Generalised load that is fixed in space, `[n]`.
+    pub load: Vec<f64>,
+    /// Inertia load of the turning frame, `[n]`, when there is one.
+    pub inertia: Option<(FrameTurn, Vec<f64>)>,
+}
+
+impl Motion<'_> {
+    pub(super) fn substep(
+        &self,
+        state: &MotionState,
+        span: Span,
+    ) -> Result<(MotionState, StepReport), DynamicsError> {
+        let mut report = StepReport {
+            substeps: 1,
+            ..StepReport::default()
+        };
+        let mut clock = Lap::new();
+        let time = span.at(1.0 - self.settings.integrator.alpha_f);
+        let loads = self.loads_at(state, time)?;
+        report.seconds.loads = clock.lap();
+        let (sites, feet) = self.place(state, time)?;
+        report.seconds.patches = clock.lap();
+        let mut moving = self.prepare(state, span, &loads, &feet)?;
+        let times = moving.iter().flatten().map(|m| m.step.seconds);
+        [report.seconds.right_side, report.seconds.solve] = longest(times);
+        clock.lap();
+        let mut system = self.system(state, span, sites, &moving, &loads);
+        let scale = state
+            .forces
+            .iter()
+            .flatten()
+            .fold(loads.shaft[2].abs().max(1e-9), |m, f| m.max(f.abs()));
+        let (solution, increments) = loop {
+            let solution = system.solve(scale)?;
+            report.newton_iterations += solution.iterations;
+            report.seconds.newton += clock.lap();
+            let increments = self.increments(&system, &solution, &moving);
+            report.seconds.update += clock.lap();
+            let settled = loads.frame.is_none()
+                || self.costs.time("frame_rotation", || {
+                    self.renew_inertia(span, &mut moving, &increments, scale)
+                });
+            report.seconds.frame += clock.lap();
+            if settled {
+                break (solution, increments);
+            }
+            report.frame_rounds += 1;
+            if report.frame_rounds > MAX_FRAME_ROUNDS {
+                return Err(DynamicsError::FrameNotSettled {
+                    rounds: MAX_FRAME_ROUNDS,
+                    speed: loads.frame.unwrap_or_default().speed,
+                });
+            }
+            for (answer, ring) in system.rings.iter_mut().zip(&moving) {
+                if let (Some(answer), Some(ring)) = (answer, ring) {
+                    answer.predicted.clone_from(&ring.step.predicted);
+                }
+            }
+        };
+        check_patches(&system, &solution)?;
+        let (next, error) = self.finish(state, &system, &solution, moving, increments);
+        report.error = error;
+        report.seconds.update += clock.lap();
+        Ok((next, report))
+    }
+
+    /// Loads at a time, those that follow the contact angles with the angles of the start.
+    fn loads_at(&self, state: &MotionState, time: f64) -> Result<Loads, DynamicsError> {
+        let now = Now {
+            time,
+            cage_angle: self.cage_angle(time),
+            angles: Some(&state.angles),
+        };
+        effects::timed_loads(self.model, &now, &self.costs)
+    }
+
+    /// Both rings under their known loads.
+    fn prepare<'m>(
+        &'m self,
+        state: &'m MotionState,
+        span: Span,
+        loads: &Loads,
+        feet: &[Vec<NodalWeights>; 2],
+    ) -> Result<[Option<Moving<'m>>; 2], DynamicsError> {
+        let rung = self.rung(span.rung)?;
+        let prepare = |side: Side| {
+            let i = side.index();
+            let body = self.rings[i].as_ref()?;
+            let (factor, old) = (rung[i].as_ref()?, state.rings[i].as_ref()?);
+            let load = self.ring_load(body, side, loads, span);
+            let inertia = loads.frame.filter(|_| side == Side::Inner).map(|turn| {
+                // First guess: the velocity stays.
+                let guess: Vec<f64> = old.v.iter().map(|v| span.dt * v).collect();
+                let [w, v] = old.within(self.settings.integrator, span.dt, &guess);
+                (turn, body.frame_load(turn, &w, &v))
+            });
+            let known = match &inertia {
+                Some((_, f)) => load.iter().zip(f).map(|(a, b)| a + b).collect(),
+                None => load.clone(),
+            };
+            let step = factor.prepare(body, old, &known, &feet[i]);
+            Some(Moving {
+                body,
+                factor,
+                old,
+                step,
+                load,
+                inertia,
+            })
+        };
+        let (inner, outer) = rayon::join(|| prepare(Side::Inner), || prepare(Side::Outer));
+        Ok([inner, outer])
+    }
+
+    /// Generalised body load of a ring. Loads are fixed in space: those of the inner ring are turned into its frame.
+    fn ring_load(&self, body: &RingBody, side: Side, loads: &Loads, span: Span) -> Vec<f64> {
+        let back = -self.frame_angle(side, span.at(1.0 - self.settings.integrator.alpha_f));
+        match &loads.rings[side.index()] {
+            Some(load) => body.coordinates.reduce(&turn_nodal(load, back)),
+            None => vec![0.0; body.coordinates.n()],
+        }
+    }
+
+    fn system(
+        &self,
+        state: &MotionState,
+        span: Span,
+        sites: Vec<Site>,
+        moving: &[Option<Moving<'_>>; 2],
+        loads: &Loads,
+    ) -> SmallSystem {
+        let mass = self.model.ball_mass();
+        let balls = (0..self.model.geometry.n_balls).map(|b| {
+            [0, 1].map(|i| Inertia {
+                mass,
+                start: [
+                    state.balls[b][i],
+                    state.ball_velocities[b][i],
+                    state.ball_accelerations[b][i],
+                ],
+                load: loads.balls[b][i],
+                load_slope: if i == 0 { loads.ball_slope } else { 0.0 },
+            })
+        });
+        let answer = |ring: &Option<Moving<'_>>| {
+            ring.as_ref().map(|m| RingAnswer {
+                start: m.step.start.clone(),
+                predicted: m.step.predicted.clone(),
+                stiffness: DenseCholesky::factor(m.step.start.len(), &m.step.compliance)
+                    .expect("a ring with mass has a positive definite compliance")
+                    .inverse(),
+            })
+        };
+        SmallSystem {
+            dt: span.dt,
+            integrator: self.settings.integrator,
+            sites,
+            balls: balls.collect(),
+            shaft: self.shaft_step(state, span, loads),
+            rings: [answer(&moving[0]), answer(&moving[1])],
+            scheme: self.settings.scheme,
+            damping: self.settings.contact_damping,
+            extra: loads.contacts.clone(),
+        }
+    }
+
+    fn shaft_step(&self, state: &MotionState, span: Span, loads: &Loads) -> ShaftStep {
+        let inertia = [
+            self.model.shaft_mass,
+            self.model.shaft_mass,
+            self.model.shaft_mass,
+            0.0,
+            0.0,
+        ];
+        let bodies = [0, 1, 2, 3, 4].map(|i| Inertia {
+            mass: inertia[i],
+            start: [
+                state.shaft[i],
+                state.shaft_velocity[i],
+                state.shaft_acceleration[i],
+            ],
+            load: loads.shaft[i],
+            load_slope: 0.0,
+        });
+        let imposed = [0, 1, 2, 3, 4].map(|i| self.model.prescribed(i, span.at(1.0)));
+        let angle = |share: f64| self.frame_angle(Side::Inner, span.at(share));
+        ShaftStep {
+            bodies,
+            imposed,
+            frame: [angle(1.0 - self.settings.integrator.alpha_f), angle(1.0)],
+        }
+    }
+
+    /// Increments of both rings under the forces of a solution.
+    fn increments(
+        &self,
+        system: &SmallSystem,
+        solution: &SmallSolution,
+        moving: &[Option<Moving<'_>>; 2],
+    ) -> [Option<Vec<f64>>; 2] {
+        let increment = |side: Side| {
+            let ring = moving[side.index()].as_ref()?;
+            let forces = system.ring_loads(side, solution);
+            Some(
+                ring.factor
+                    .increment(&ring.step, &forces, &solution.mounts[side.index()]),
+            )
+        };
+        let (inner, outer) = rayon::join(|| increment(Side::Inner), || increment(Side::Outer));
+        [inner, outer]
+    }
+
+    /// Inertia loads of the turning frame at the motion found. True when they are what the step used.
+    fn renew_inertia(
+        &self,
+        span: Span,
+        moving: &mut [Option<Moving<'_>>; 2],
+        increments: &[Option<Vec<f64>>; 2],
+        scale: f64,
+    ) -> bool {
+        let (Some(ring), Some(dw)) = (&mut moving[0], &increments[0]) else {
+            return true;
+        };
+        let Some((turn, used)) = &mut ring.inertia else {
+            return true;
+        };
+        let [w, v] = ring.old.within(self.settings.integrator, span.dt, dw);
+        let new = ring.body.frame_load(*turn, &w, &v);
+        let change: Vec<f64> = new.iter().zip(used.iter()).map(|(a, b)| a - b).collect();
+        if change.iter().map(|c| c.abs()).sum::<f64>() <= FRAME_TOLERANCE * scale {
+            return true;
+        }
+        *used = new;
+        ring.factor.add_load(ring.body, &mut ring.step, change);
+        false
+    }
+}
+
+impl SmallSystem {
+    /// Forces on a ring's contacts, `[2 n_balls]`, N.
+    pub(super) fn ring_loads(&self, side: Side, solution: &SmallSolution) -> Vec<f64> {
+        let n = self.balls.len();
+        (0..n)
+            .flat_map(|ball| {
+                let site = 2 * ball + side.index();
+                let extra = self.extra.get(site).copied().unwrap_or_default();
+                let force = solution.forces[site].force;
+                [force[0] + extra[0], force[1] + extra[1]]
+            })
+            .collect()
+    }
+}
+
+/// Component-wise largest.
+fn longest(times: impl Iterator<Item = [f64; 2]>) -> [f64; 2] {
+    times.fold([0.0; 2], |m, t| [m[0].max(t[0]), m[1].max(t[1])])
+}
+
+/// A stop watch.
+struct Lap(Instant);
+
+impl Lap {
+    fn new() -> Lap {
+        Lap(Instant::now())
+    }
+
+    /// Seconds since the last lap.
+    fn lap(&mut self) -> f64 {
+        let now = Instant::now();
+        let seconds = (now - self.0).as_secs_f64();
+        self.0 = now;
+        seconds
+    }
+}

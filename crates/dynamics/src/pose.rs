@@ -1,0 +1,72 @@
+//! Where the parts of a bearing stand at an instant: what an equilibrium depends on besides its loads.
+//!
+//! The cage has carried the balls round by its angle. The inner ring has turned by its own: its mesh is turned with it, so a
+//! ball at azimuth psi in space touches the mesh at psi minus that angle, and loads that are fixed in space turn
+//! backwards on it. Shaft, balls and groove motions are measured in space, in the meridian planes of the balls.
+
+use contact::Side;
+
+use crate::effects::{Loads, Now, resultant};
+use crate::model::{Model, ShaftDof};
+use crate::motion::frame::{turn, turn_nodal};
+use crate::problem::{Problem, Site};
+
+/// Time and angles of an instant; the default is a bearing that has not turned, at time 0.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Pose {
+    /// Time, s, and angle the cage has turned, rad.
+    pub now: Now<'static>,
+    /// Angle the inner ring has turned since the start, rad.
+    pub inner_angle: f64,
+}
+
+impl Pose {
+    /// Angle by which the mesh of a ring is turned in space, rad.
+    pub fn frame_angle(&self, side: Side) -> f64 {
+        match side {
+            Side::Inner => self.inner_angle,
+            Side::Outer => 0.0,
+        }
+    }
+
+    /// Contact problem of this instant on rings that do not deform, still without loads.
+    pub(crate) fn problem(&self, model: &Model) -> Problem {
+        let geometry = &model.geometry;
+        let site = |ball: usize, side: Side| {
+            let azimuth = geometry.azimuth(ball) + self.now.cage_angle;
+            let mut site = Site::new(model, ball, side, azimuth);
+            site.ring_azimuth -= self.frame_angle(side);
+            site
+        };
+        let sites = (0..geometry.n_balls).flat_map(|ball| Side::BOTH.map(|side| site(ball, side)));
+        Problem {
+            sites: sites.collect(),
+            rings: [None, None],
+            shaft_free: model.shaft.map(|d| d == ShaftDof::Free),
+            shaft_load: [0.0; 5],
+            ball_load: vec![[0.0; 2]; geometry.n_balls],
+            contact_load: Vec::new(),
+            ball_slope: 0.0,
+            tilt_arm: geometry.centre_radius(Side::Inner),
+        }
+    }
+
+    /// Loads of which those on the nodes of a flexible inner ring are given in its own frame, and the shaft carries
+    /// their resultant where the turned nodes stand. `inertia` is a load in that frame, N, `[n_nodes][3]` flat.
+    pub(crate) fn in_frames(&self, model: &Model, mut loads: Loads, inertia: Option<Vec<f64>>) -> Loads {
+        let Some(ring) = model.ring(Side::Inner) else {
+            return loads;
+        };
+        let in_space = loads.rings[Side::Inner.index()].take();
+        let turned = in_space.map(|load| turn_nodal(&load, -self.inner_angle));
+        let load = match (turned, inertia) {
+            (Some(load), Some(inertia)) => Some(load.iter().zip(&inertia).map(|(a, b)| a + b).collect()),
+            (load, inertia) => load.or(inertia),
+        };
+        if let Some(load) = &load {
+            loads.ring_on_shaft = turn(resultant(ring, load), self.inner_angle);
+        }
+        loads.rings[Side::Inner.index()] = load;
+        loads
+    }
+}

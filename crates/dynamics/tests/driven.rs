@@ -1,0 +1,146 @@
+//! Motion under loads that follow the contact angles, and with a shaft that is driven.
+
+mod support;
+
+use dynamics::effects::{BallCentrifugal, GyroscopicMoment, Now};
+use dynamics::motion::balls::Speed;
+use dynamics::motion::contacts::ContactScheme;
+use dynamics::motion::{Integrator, Ladder, Motion, MotionSettings, MotionState};
+use dynamics::{ContactMode, Hold, Model, Pose, Schedule, ShaftDof, StaticSolver};
+use support::rings::Level;
+use support::{Case, equilibrium};
+
+const SMALL: Level = Level::hex8(54, 6, 1, 2);
+/// 15 000 rpm, rad/s.
+const FAST: f64 = 500.0 * std::f64::consts::PI;
+
+fn settings(dt: f64, speed: f64) -> MotionSettings {
+    MotionSettings {
+        dt,
+        ladder: Ladder::default(),
+        integrator: Integrator::average_acceleration(),
+        scheme: ContactScheme::DiscreteGradient { weight: 0.5 },
+        speed: Speed::constant(speed),
+        slip: [0.0; 2],
+        contact_damping: None,
+        rayleigh: [0.0; 2],
+    }
+}
+
+fn spinning(mut model: Model, shares: [f64; 2]) -> Model {
+    let (speed, slip) = (Speed::constant(FAST), [0.0; 2]);
+    model.effects.push(Box::new(BallCentrifugal {
+        speed: speed.clone(),
+        slip,
+    }));
+    model
+        .effects
+        .push(Box::new(GyroscopicMoment { speed, slip, shares }));
+    model.shaft_mass = 0.5;
+    model
+}
+
+fn run(model: &Model, settings: MotionSettings, n: usize) -> Vec<MotionState> {
+    let motion = Motion::new(model, settings).unwrap();
+    let mut states = vec![motion.start(&equilibrium(model))];
+    for _ in 0..n {
+        let next = motion.step(states.last().unwrap()).unwrap().0;
+        states.push(next);
+    }
+    states
+}
+
+fn assert_ledger_closes(states: &[MotionState]) {
+    for (i, state) in states.iter().enumerate() {
+        let defect = state.ledger.relative_defect();
+        assert!(defect.abs() < 1e-9, "step {i}: {defect}");
+    }
+}
+
+/// Wrong: motion would load the balls otherwise than statics does. Thrust alone is the same all round, so the equilibrium
+/// at speed lasts while the balls go round.
+#[test]
+fn an_equilibrium_with_the_gyroscopic_moment_lasts() {
+    for shares in [[0.0, 2.0], [1.0, 1.0]] {
+        let model = spinning(Case::axial(2000.0).rigid(), shares);
+        let states = run(&model, settings(1e-5, FAST), 50);
+        for (a, b) in states[0].balls.iter().zip(&states[50].balls) {
+            assert!(
+                (a[0] - b[0]).abs() < 1e-12 && (a[1] - b[1]).abs() < 1e-12,
+                "{a:?} {b:?}"
+            );
+        }
+        assert!((states[0].angles[1] - states[50].angles[1]).abs() < 1e-8);
+        assert_ledger_closes(&states);
+    }
+}
+
+/// Wrong: the work of friction on rings and balls would be missing in the ledger, or be counted twice. A radial force, so
+/// all angles change; flexible and rigid rings.
+#[test]
+fn the_ledger_closes_with_the_gyroscopic_moment() {
+    let case = Case {
+        radial: 800.0,
+        ..Case::axial(2000.0)
+    };
+    let flexible = case.flexible(ContactMode::Patch, SMALL, Hold::Clamped);
+    for model in [case.rigid(), flexible] {
+        assert_ledger_closes(&run(&spinning(model, [1.0, 1.0]), settings(1e-5, FAST), 60));
+    }
+}
+
+/// The bearing whose shaft is driven along z from 15 to 30 um, first at rest and then without a jump of its velocity.
+fn driven(rigid: bool) -> Model {
+    let case = Case::axial(0.0);
+    let mut model = if rigid {
+        case.rigid()
+    } else {
+        case.flexible(ContactMode::Patch, SMALL, Hold::Clamped)
+    };
+    model.effects.clear();
+    model.shaft_mass = 0.5;
+    model.shaft[2] = ShaftDof::Prescribed(30e-6);
+    // Half a period of 1 ms about the mean, then the mean: from the trough upwards.
+    model.shaft_schedules[2] = Schedule::Harmonic {
+        frequency: 500.0,
+        phase: -0.5 * std::f64::consts::PI,
+        mean: 0.75,
+        amplitude: 0.25,
+    };
+    model
+}
+
+/// Wrong: a driven shaft would not be where its schedule has it, its work would be missing in the ledger, or balls would not
+/// follow: driven slowly against their modes, their forces are those of statics at the same place.
+#[test]
+fn a_driven_shaft_moves_the_balls() {
+    for rigid in [true, false] {
+        let model = driven(rigid);
+        let states = run(&model, settings(1e-5, 0.0), 100);
+        assert_ledger_closes(&states);
+        let mut solver = StaticSolver::new(&model).unwrap();
+        for (i, state) in states.iter().enumerate().skip(10).step_by(10) {
+            let end = 1e-5 * i as f64;
+            assert!((state.shaft[2] - model.prescribed(2, end).unwrap()).abs() < 1e-18);
+            let now = Now {
+                time: end - 0.5e-5,
+                ..Now::default()
+            };
+            let pose = Pose {
+                now,
+                inner_angle: 0.0,
+            };
+            let statics = solver.solve_at(&model, &pose, None).unwrap();
+            let (force, still) = (
+                state.forces[0][0].hypot(state.forces[0][1]),
+                statics.balls[0].inner.force_n,
+            );
+            // Forces are means over the step. The ball's modes are above 4 kHz, the drive is at 0.5 kHz: (1/8)^2 / 2 of the
+            // change at most.
+            assert!(
+                (force - still).abs() < 0.01 * still,
+                "{rigid}, step {i}: {force} {still}"
+            );
+        }
+    }
+}

@@ -1,0 +1,218 @@
+//! The turning frame, mounts and integrators of a motion.
+
+mod support;
+
+use contact::Side;
+use dynamics::effects::FrameRotation;
+use dynamics::motion::balls::Speed;
+use dynamics::motion::contacts::ContactScheme;
+use dynamics::motion::{Integrator, Ladder, Motion, MotionSettings, MotionState};
+use dynamics::{ContactMode, Hold, Model, ShaftDof, StaticSolution};
+use support::rings::Level;
+use support::{Case, equilibrium};
+
+const SMALL: Level = Level::hex8(54, 6, 1, 2);
+
+fn settings(dt: f64) -> MotionSettings {
+    MotionSettings {
+        dt,
+        ladder: Ladder::default(),
+        integrator: Integrator::average_acceleration(),
+        scheme: ContactScheme::DiscreteGradient { weight: 0.5 },
+        speed: Speed::constant(0.0),
+        slip: [0.0; 2],
+        contact_damping: None,
+        rayleigh: [0.0; 2],
+    }
+}
+
+fn run(model: &Model, start: &StaticSolution, settings: MotionSettings, n: usize) -> Vec<MotionState> {
+    let motion = Motion::new(model, settings).unwrap();
+    let mut states = vec![motion.start(start)];
+    for _ in 0..n {
+        let next = motion.step(states.last().unwrap()).unwrap().0;
+        states.push(next);
+    }
+    states
+}
+
+/// The model at rest under 1 kN of thrust, and under a radial force that comes at t = 0.
+fn radial_step(radial: f64, hold: Hold, free_tilt: bool) -> (Model, StaticSolution) {
+    let before = Case {
+        free_tilt,
+        ..Case::axial(1000.0)
+    };
+    let model = before.flexible(ContactMode::Patch, SMALL, hold);
+    let mut loaded = Model {
+        rings: model.rings.clone(),
+        ..Case { radial, ..before }.rigid()
+    };
+    loaded.contact.mode = ContactMode::Patch;
+    (loaded, equilibrium(&model))
+}
+
+fn worst_defect(states: &[MotionState]) -> f64 {
+    states
+        .iter()
+        .map(|s| s.ledger.relative_defect().abs())
+        .fold(0.0, f64::max)
+}
+
+/// Position of a free inner ring at the end, seen in space, when it starts with velocity `v` along x from the axis.
+fn free_flight(speed: Speed, dt: f64, n: usize, v: f64) -> [f64; 2] {
+    let mut model = Case::axial(0.0).flexible(ContactMode::Patch, SMALL, Hold::Free);
+    model.rings[1] = None;
+    // Room for the ring: a large clearance.
+    model.geometry.outer_raceway_diameter += 0.1e-3;
+    model.effects = vec![Box::new(FrameRotation { speed: speed.clone() })];
+    model.shaft = [ShaftDof::Prescribed(0.0); 5];
+    let motion = Motion::new(
+        &model,
+        MotionSettings {
+            speed: speed.clone(),
+            ..settings(dt)
+        },
+    )
+    .unwrap();
+    // The balls lie on the bottom of the inner groove without touching it.
+    let back = model.geometry.ball_centre()[1] - model.geometry.groove_centre(Side::Inner)[1];
+    let mut state = motion.rest([0.0, 0.0, back, 0.0, 0.0], [v, 0.0, 0.0, 0.0, 0.0]);
+    assert!(state.approaches.iter().step_by(2).all(|d| *d < -20e-6));
+    for _ in 0..n {
+        state = motion.step(&state).unwrap().0;
+        assert!(state.forces.iter().step_by(2).all(|f| *f == [0.0; 2]));
+    }
+    let (u, angle) = motion.ring_displacement(&state, Side::Inner).unwrap();
+    let mass = &model.ring(Side::Inner).unwrap().mesh;
+    let n = mass.n_nodes() as f64;
+    let mean = [0, 1].map(|c| u.iter().skip(c).step_by(3).sum::<f64>() / n);
+    let (sin, cos) = angle.sin_cos();
+    [cos * mean[0] - sin * mean[1], sin * mean[0] + cos * mean[1]]
+}
+
+/// Wrong: Coriolis force, spin softening or Euler force have a wrong sign or size. A ring that no force holds flies straight
+/// through space, whatever its frame does; in the turning frame only these forces bend its path. Second order in the step.
+#[test]
+fn a_free_ring_flies_straight_in_a_turning_frame() {
+    let (v, time) = (10e-3, 3e-4);
+    for speed in [
+        Speed::constant(1500.0),
+        Speed::table(vec![0.0, 1e-3], vec![500.0, 5000.0]),
+    ] {
+        let error = |n: usize| {
+            let [x, y] = free_flight(speed.clone(), time / n as f64, n, v);
+            (x - v * time).hypot(y)
+        };
+        let (coarse, fine) = (error(15), error(30));
+        println!("{coarse:.3e} {fine:.3e} of {:.3e}", v * time);
+        assert!(coarse < 0.02 * v * time, "{coarse}");
+        let order = (coarse / fine).log2();
+        assert!((order - 2.0).abs() < 0.2, "order {order}");
+    }
+}
+
+/// Wrong: a bearing whose bore and seat are held in their mean motion would not be in motion what it is in statics.
+#[test]
+fn a_mean_motion_bearing_rests_and_closes_its_ledger() {
+    let (model, start) = radial_step(0.0, Hold::MeanMotion, true);
+    let states = run(&model, &start, settings(1e-5), 5);
+    let (first, last) = (&states[0], states.last().unwrap());
+    for (a, b) in first.balls.iter().zip(&last.balls) {
+        assert!(
+            (a[0] - b[0]).abs() < 1e-12 && (a[1] - b[1]).abs() < 1e-12,
+            "{a:?} {b:?}"
+        );
+    }
+    let (model, start) = radial_step(300.0, Hold::MeanMotion, true);
+    let states = run(&model, &start, settings(1e-5), 150);
+    println!("{:?}", states.last().unwrap().ledger);
+    assert!(worst_defect(&states) < 1e-8, "{}", worst_defect(&states));
+}
+
+/// Wrong: shaft dofs that are held differently, in space, would turn with the ring. y is locked, x free, at speed.
+#[test]
+fn a_locked_direction_stays_locked_in_space() {
+    let (mut model, _) = radial_step(500.0, Hold::Clamped, false);
+    model.shaft[1] = ShaftDof::Prescribed(0.0);
+    let start = equilibrium(&model);
+    let turning = MotionSettings {
+        speed: Speed::constant(2000.0),
+        ..settings(1e-5)
+    };
+    let states = run(&model, &start, turning, 60);
+    let last = states.last().unwrap();
+    assert_eq!(last.shaft[1], 0.0);
+    assert!(
+        (last.shaft[0] / states[0].shaft[0] - 1.0).abs() < 0.01,
+        "{:?}",
+        last.shaft
+    );
+    assert!(worst_defect(&states) < 1e-8, "{}", worst_defect(&states));
+}
+
+/// Wrong: numerical dissipation would not be in the ledger, or a setting would gain energy. The unloading case under every
+/// setting of the family: the ledger closes, and what the integrator takes it never gives back.
+#[test]
+fn every_integrator_closes_the_ledger() {
+    let (model, start) = radial_step(5000.0, Hold::Clamped, false);
+    let family = [
+        ("chung_hulbert 0.8", Integrator::chung_hulbert(0.8)),
+        ("chung_hulbert 0", Integrator::chung_hulbert(0.0)),
+        ("hht 0.1", Integrator::hht(0.1)),
+        ("newmark 0.3025 0.6", Integrator::newmark(0.3025, 0.6)),
+    ];
+    for (name, integrator) in family {
+        let scheme = ContactScheme::DiscreteGradient {
+            weight: integrator.alpha_f,
+        };
+        let choices = MotionSettings {
+            integrator,
+            scheme,
+            ..settings(2e-5)
+        };
+        let states = run(&model, &start, choices, 50);
+        let last = states.last().unwrap().ledger;
+        println!(
+            "{name}: defect {:.1e}, lost {:.2e} of {:.2e} J",
+            worst_defect(&states),
+            last.numerical_loss,
+            last.largest
+        );
+        assert!(worst_defect(&states) < 1e-8, "{name}: {}", worst_defect(&states));
+        assert!(last.numerical_loss > 0.0, "{name}: {}", last.numerical_loss);
+    }
+}
+
+/// Wrong: a spinning bearing under centrifugal force would not rest where statics puts it, or the frame's work would be
+/// missing in the ledger. 30 000 rpm from static equilibrium with the same effect.
+#[test]
+fn a_spinning_ring_rests_in_its_static_expansion() {
+    let speed = Speed::constant(30_000.0 * std::f64::consts::PI / 30.0);
+    let mut model = Case::axial(1000.0).flexible(ContactMode::Patch, SMALL, Hold::MeanMotion);
+    let still = equilibrium(&model);
+    model
+        .effects
+        .push(Box::new(FrameRotation { speed: speed.clone() }));
+    let start = equilibrium(&model);
+    // The expansion of the ring closes the clearance: less axial approach under the same thrust.
+    assert!(still.displacements.shaft[2] - start.displacements.shaft[2] > 1e-6);
+    let states = run(
+        &model,
+        &start,
+        MotionSettings {
+            speed,
+            ..settings(5e-6)
+        },
+        100,
+    );
+    let force = |s: &MotionState, site: usize| s.forces[site][0].hypot(s.forces[site][1]);
+    let worst = (0..36)
+        .map(|i| (force(states.last().unwrap(), i) / force(&states[0], i) - 1.0).abs())
+        .fold(0.0, f64::max);
+    println!(
+        "forces change by {worst:.2e}; {:?}",
+        states.last().unwrap().ledger
+    );
+    assert!(worst < 0.02, "{worst}");
+    assert!(worst_defect(&states) < 1e-8, "{}", worst_defect(&states));
+}
