@@ -18,7 +18,7 @@ use crate::progress::Progress;
 use crate::results::console;
 use crate::results::disk::Forecast;
 use crate::results::files::Files;
-use crate::results::motion_fields::record_later;
+use crate::results::motion_fields::Recorded;
 use crate::results::probes::Probes;
 use crate::results::shown::Shown;
 use crate::results::snapshot::Snapshot;
@@ -261,10 +261,10 @@ impl March<'_> {
         if self.last_file == Some(self.state.step) {
             return Ok(());
         }
-        let make = record_later(self.model, self.motion, &self.state, self.scene);
+        let shown = Recorded::new(self.model, self.motion, &self.state, self.scene);
         let newton = self.newton;
         self.files.write_fields_later(move |recoveries| {
-            let mut record = make(recoveries);
+            let mut record = shown.record(recoveries);
             Stored::add_counts(&mut record, newton);
             record
         })?;

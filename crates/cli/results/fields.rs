@@ -63,33 +63,25 @@ pub fn record(
     StepRecord {
         step,
         time,
-        points: points(shown, recoveries, scene.output.inner_ring),
+        points: Places::new(shown, scene.output.inner_ring).points(recoveries),
         scene: scene.text.clone(),
         state: state(solution),
     }
 }
 
-/// Fields of all points at one instant, the inner ring as it stands in space or in its own frame.
-pub fn points(
-    shown: &Shown<'_>,
-    recoveries: &[Option<StressRecovery>; 2],
-    inner_ring: InnerRingFrame,
-) -> PointFields {
-    Unstressed::new(shown, inner_ring).points(recoveries)
-}
-
-/// One instant as it is shown, but for the stress: it borrows nothing, so another thread may recover that.
-pub struct Unstressed {
+/// All points at one instant, but for the stress.
+pub struct Places {
     /// Displacement of every point, m.
     displacement: Vec<[f64; 3]>,
-    /// Field of the flexible rings in their own frames, m, flat, and their turn.
+    /// Displacement of the flexible rings up to a rigid motion in their own frames, m, flat, and their turn.
     rings: [Option<(Vec<f64>, Turn)>; 2],
+    /// Forces on the balls, N.
     forces: [Vec<[f64; 3]>; 2],
 }
 
-impl Unstressed {
-    /// Places of rings and balls, and the forces on the balls.
-    pub fn new(shown: &Shown<'_>, inner_ring: InnerRingFrame) -> Unstressed {
+impl Places {
+    /// Places of rings and balls, the inner ring as it stands in space or in its own frame.
+    pub fn new(shown: &Shown<'_>, inner_ring: InnerRingFrame) -> Places {
         let (mut displacement, mut rings) = (Vec::new(), [None, None]);
         for side in Side::BOTH {
             let Some(mut ring) = shown.ring(side) else {
@@ -102,23 +94,22 @@ impl Unstressed {
             rings[side.index()] = Some((ring.strained.into_owned(), ring.turn));
         }
         let forces = add_balls(shown.model(), shown.placed(), &shown.balls(), &mut displacement);
-        Unstressed {
+        Places {
             displacement,
             rings,
             forces,
         }
     }
 
-    /// All fields, with stress where it is recovered.
+    /// Fields of all points, with stress where it is recovered.
     pub fn points(self, recoveries: &[Option<StressRecovery>; 2]) -> PointFields {
-        let with_stress = recoveries.iter().any(Option::is_some);
-        let mut stress = Vec::new();
+        let mut stress = recoveries.iter().any(Option::is_some).then(Vec::new);
         for (ring, recovery) in self.rings.iter().zip(recoveries) {
-            if let (Some((field, turn)), Some(recovery)) = (ring, recovery) {
+            if let (Some((field, turn)), Some(recovery), Some(stress)) = (ring, recovery, &mut stress) {
                 stress.extend(recovery.nodal(field).into_iter().map(|s| turn.tensor(s)));
             }
         }
-        point_fields(self.displacement, with_stress.then_some(stress), self.forces)
+        point_fields(self.displacement, stress, self.forces)
     }
 }
 

@@ -31,9 +31,9 @@ const QUEUE: usize = 2;
 pub struct Files {
     output: BackgroundOutput,
     tables: Tables,
+    probes: Option<Probes>,
     /// Stress recovery of the flexible rings, shared with the thread that writes.
     recoveries: Arc<[Option<StressRecovery>; 2]>,
-    probes: Option<Probes>,
     stress_seconds: f64,
     output_seconds: f64,
 }

@@ -1,33 +1,45 @@
 //! Nodal fields of one instant of a motion; the state of the run is stored beside, bit for bit.
 
-use checkpoint::{PointFields, StepRecord};
+use checkpoint::StepRecord;
 use dynamics::Model;
 use dynamics::motion::{Motion, MotionState};
 use fem::stress::StressRecovery;
 
-use super::fields::Unstressed;
+use super::fields::Places;
 use super::shown::Shown;
-use super::state_arrays;
+use super::state_arrays::{self, Arrays};
 use crate::scene::Scene;
 
-/// What makes the record of one instant. It has copied all it needs, so that stress is recovered where and when it is
-/// called.
-pub fn record_later(
-    model: &Model,
-    motion: &Motion<'_>,
-    state: &MotionState,
-    scene: &Scene,
-) -> impl FnOnce(&[Option<StressRecovery>; 2]) -> StepRecord + Send + use<> {
-    let unstressed = Unstressed::new(&Shown::Motion { model, motion, state }, scene.output.inner_ring);
-    let record = StepRecord {
-        step: state.step,
-        time: motion.time(state.step),
-        points: PointFields::default(),
-        scene: scene.text.clone(),
-        state: state_arrays::store(state, &motion.shape()),
-    };
-    move |recoveries| StepRecord {
-        points: unstressed.points(recoveries),
-        ..record
+/// One instant as it is stored, but for the stress: that is recovered when the record is made.
+pub struct Recorded {
+    step: u64,
+    time: f64,
+    places: Places,
+    state: Arrays,
+    scene: String,
+}
+
+impl Recorded {
+    /// Places of rings and balls at one instant, and the state.
+    pub fn new(model: &Model, motion: &Motion<'_>, state: &MotionState, scene: &Scene) -> Recorded {
+        let shown = Shown::Motion { model, motion, state };
+        Recorded {
+            step: state.step,
+            time: motion.time(state.step),
+            places: Places::new(&shown, scene.output.inner_ring),
+            state: state_arrays::store(state, &motion.shape()),
+            scene: scene.text.clone(),
+        }
+    }
+
+    /// The record of the instant, with stress where it is recovered.
+    pub fn record(self, recoveries: &[Option<StressRecovery>; 2]) -> StepRecord {
+        StepRecord {
+            step: self.step,
+            time: self.time,
+            points: self.places.points(recoveries),
+            scene: self.scene,
+            state: self.state,
+        }
     }
 }

@@ -13,11 +13,10 @@ use super::snapshot::Snapshot;
 use crate::print;
 use crate::scene::{Analysis, Scene};
 
-/// Name of the file in the result folder.
-pub const SUMMARY_FILE: &str = "summary.json";
-
 /// Start of the keys of `timing_s` that are effects.
 const EFFECT_TIMING: &str = "effect_";
+/// Name of the file in the result folder.
+pub const SUMMARY_FILE: &str = "summary.json";
 
 /// The whole file.
 #[derive(Debug, Serialize)]

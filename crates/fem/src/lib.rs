@@ -10,6 +10,8 @@
 //! | hex20 | full integration | 3 x 3 x 3 | 5 x 5 x 5, exact also on curved elements |
 //! | tet10 | full integration | 4 | collapsed 5 x 5 x 5, exact also on curved elements |
 //!
+//! A rotationally periodic ring needs one sector only: [`assemble_sector`].
+//!
 //! Reduced integration is not offered: it hourglasses under contact loads.
 //!
 //! Every sum over elements runs in the order of the elements ([`mesh::Mesh::connectivity`]), so results are the
@@ -27,6 +29,7 @@ pub mod norms;
 pub mod pattern;
 pub mod quadrature;
 pub mod rigid;
+pub mod sector;
 pub mod stiffness;
 pub mod stress;
 pub mod surface;
@@ -39,6 +42,7 @@ pub use mass::{assemble_mass, assemble_mass_into, assemble_node_mass};
 pub use material::Material;
 pub use pattern::Pattern;
 pub use rigid::{Inertia, inertia, rigid_modes, volume};
+pub use sector::{SectorCoupling, SectorMatrices, assemble_sector, azimuth_directions};
 pub use stiffness::{assemble_stiffness, assemble_stiffness_into};
 pub use stress::{StressRecovery, StressWorkspace, principal, von_mises};
 pub use surface::{area, facet_node_weights, pressure_load, traction_load};

@@ -2,7 +2,7 @@
 //!
 //! The rule integrates it exactly on every element, curved ones included ([`crate::quadrature::mass_rule`]).
 
-use mesh::Mesh;
+use mesh::{ElementKind, Mesh};
 use sprs::CsMat;
 
 use crate::chunks::for_each_element;
@@ -60,14 +60,39 @@ fn node_mass(pattern: &Pattern, mesh: &Mesh, material: &Material) -> Result<Vec<
         "the pattern belongs to another mesh"
     );
     material.validate()?;
-    let table = Table::new(mesh.kind, &quadrature::mass_rule(mesh.kind));
+    let kernel = NodeMass::new(mesh.kind, material);
     let n = mesh.kind.n_nodes();
-    let compute = |e: usize, matrix: &mut [f64]| {
+    let compute = |e: usize, matrix: &mut [f64]| kernel.compute(mesh, e, matrix);
+    let mut scalars = vec![0.0; pattern.n_pairs()];
+    for_each_element(mesh.n_elements(), n * n, compute, |e, matrix| {
+        pattern.add_scalars(e, mesh.element(e), matrix, &mut scalars);
+    })?;
+    Ok(scalars)
+}
+
+/// What the masses of all elements of a kind and material share.
+pub(crate) struct NodeMass {
+    table: Table,
+    density: f64,
+}
+
+impl NodeMass {
+    /// Tabulates the functions of a kind for a valid material.
+    pub fn new(kind: ElementKind, material: &Material) -> NodeMass {
+        NodeMass {
+            table: Table::new(kind, &quadrature::mass_rule(kind)),
+            density: material.density,
+        }
+    }
+
+    /// Overwrites `matrix` with the mass between the nodes of element `e`, kg, `[n][n]`.
+    pub fn compute(&self, mesh: &Mesh, e: usize, matrix: &mut [f64]) -> Result<(), FemError> {
+        let n = mesh.kind.n_nodes();
         let x = coordinates(mesh, e);
         matrix.fill(0.0);
-        for q in 0..table.n_points() {
-            let weight = material.density * table.weights[q] * checked_map(&table, q, &x, e)?.det;
-            let values = &table.values[q][..n];
+        for q in 0..self.table.n_points() {
+            let weight = self.density * self.table.weights[q] * checked_map(&self.table, q, &x, e)?.det;
+            let values = &self.table.values[q][..n];
             for a in 0..n {
                 for b in a..n {
                     matrix[a * n + b] += weight * (values[a] * values[b]);
@@ -80,10 +105,5 @@ fn node_mass(pattern: &Pattern, mesh: &Mesh, material: &Material) -> Result<Vec<
             }
         }
         Ok(())
-    };
-    let mut scalars = vec![0.0; pattern.n_pairs()];
-    for_each_element(mesh.n_elements(), n * n, compute, |e, matrix| {
-        pattern.add_scalars(e, mesh.element(e), matrix, &mut scalars);
-    })?;
-    Ok(scalars)
+    }
 }

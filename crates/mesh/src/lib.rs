@@ -2,7 +2,8 @@
 //!
 //! Two ways lead to a [`Mesh`]: [`read_msh`] takes any 3-D Gmsh mesh of a ring (physical volume `ring`, named
 //! physical surfaces); [`read_section`] and [`revolve`] take a 2-D mesh of its section and make a ring that is
-//! exactly rotationally periodic. [`ring_geo`] writes the section of a ring for Gmsh.
+//! exactly rotationally periodic. [`ring_geo`] writes the section of a ring for Gmsh. [`find_periodicity`] finds the equal
+//! sectors of any mesh, or the reason why there are none.
 
 pub mod check;
 pub mod element;
@@ -12,6 +13,7 @@ pub mod gmsh;
 pub mod mesh;
 pub mod msh;
 pub mod origin;
+pub mod periodic;
 pub mod ring;
 pub mod section;
 
@@ -24,5 +26,6 @@ pub use mesh::{Facet, Mesh};
 pub use msh::write::{MshFormat, Overwrite, write_msh};
 pub use msh::{read_msh, read_msh_with_origin};
 pub use origin::Origin;
+pub use periodic::{NotPeriodic, PERIODIC_TOLERANCE, Periodicity, Site, find_periodicity};
 pub use ring::{RingGeometry, RingSection, RingSide, ring_geo, ring_tet_geo};
 pub use section::{Arc, Section, SectionEdge, Snap, read_section, read_section_with_origin, revolve};

@@ -76,6 +76,49 @@ pub enum SolverError {
         /// Smallest accepted ratio.
         limit: f64,
     },
+    /// A coupling of a periodic ring's sector cannot be.
+    #[error(
+        "the coupling of section node {row} with section node {column}, {shift} sectors farther, {problem}; expected \
+         couplings in opposite pairs, each once, and one of every node with itself"
+    )]
+    BadCoupling {
+        /// Section node of the rows.
+        row: usize,
+        /// Section node of the columns.
+        column: usize,
+        /// Sectors from the first to the second.
+        shift: i32,
+        /// What is wrong.
+        problem: &'static str,
+    },
+    /// The blocks of a periodic ring's sector do not make a symmetric matrix.
+    #[error(
+        "the coupling of section node {row} with section node {column}, {shift} sectors farther, differs from its \
+         opposite by {difference:.1e}, the limit is {limit:.1e}; expected transposed blocks"
+    )]
+    NotSymmetric {
+        /// Section node of the rows.
+        row: usize,
+        /// Section node of the columns.
+        column: usize,
+        /// Sectors from the first to the second.
+        shift: i32,
+        /// Largest difference of an entry.
+        difference: f64,
+        /// Largest accepted difference.
+        limit: f64,
+    },
+    /// A border of a periodic ring is no rigid motion.
+    #[error(
+        "column {column} of the border reaches beyond the lowest harmonics of the ring with a share of {share:.1e}; \
+         expected rigid motions of whole rings of nodes"
+    )]
+    BorderBeyond {
+        /// Column of the border.
+        column: usize,
+        /// Largest harmonic beyond, relative to the largest of the lowest.
+        share: f64,
+    },
     /// The factor does not fit into memory.
     #[error(
         "no memory for a factorisation of {n} rows, which needs {bytes} bytes; use a coarser mesh, more sectors \

@@ -49,16 +49,39 @@ pub fn assemble_stiffness_into(
         "values must have the pattern's length"
     );
     material.validate()?;
-    let (lambda, mu) = (material.lame_lambda(), material.shear_modulus());
-    let table = Table::new(mesh.kind, &quadrature::stiffness_rule(mesh.kind));
-    let compute = |e: usize, matrix: &mut [f64]| match mesh.kind {
-        ElementKind::Hex8 => kernel::with_modes(&table, mesh, e, lambda, mu, matrix),
-        ElementKind::Hex20 => kernel::compatible::<20>(&table, mesh, e, lambda, mu, matrix),
-        ElementKind::Tet10 => kernel::compatible::<10>(&table, mesh, e, lambda, mu, matrix),
-    };
+    let kernel = ElementStiffness::new(mesh.kind, material);
     values.fill(0.0);
     let n = 3 * mesh.kind.n_nodes();
+    let compute = |e: usize, matrix: &mut [f64]| kernel.compute(mesh, e, matrix);
     for_each_element(mesh.n_elements(), n * n, compute, |e, matrix| {
         pattern.add_blocks(e, mesh.element(e), matrix, values);
     })
+}
+
+/// What all elements of a kind and material share.
+pub(crate) struct ElementStiffness {
+    table: Table,
+    lambda: f64,
+    mu: f64,
+}
+
+impl ElementStiffness {
+    /// Tabulates the functions of a kind for a valid material.
+    pub fn new(kind: ElementKind, material: &Material) -> ElementStiffness {
+        ElementStiffness {
+            table: Table::new(kind, &quadrature::stiffness_rule(kind)),
+            lambda: material.lame_lambda(),
+            mu: material.shear_modulus(),
+        }
+    }
+
+    /// Overwrites `matrix` with the stiffness of element `e`, N/m, `[3 n][3 n]`.
+    pub fn compute(&self, mesh: &Mesh, e: usize, matrix: &mut [f64]) -> Result<(), FemError> {
+        let ElementStiffness { table, lambda, mu } = self;
+        match mesh.kind {
+            ElementKind::Hex8 => kernel::with_modes(table, mesh, e, *lambda, *mu, matrix),
+            ElementKind::Hex20 => kernel::compatible::<20>(table, mesh, e, *lambda, *mu, matrix),
+            ElementKind::Tet10 => kernel::compatible::<10>(table, mesh, e, *lambda, *mu, matrix),
+        }
+    }
 }

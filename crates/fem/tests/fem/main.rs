@@ -7,5 +7,6 @@ mod matrices;
 mod patch;
 mod reference;
 mod rings;
+mod sector;
 mod stress;
 mod support;

@@ -1,0 +1,235 @@
+//! The cyclic solver beside the sparse one on rings of 65 k, 151 k and 410 k dof: set-up, 1 and 36 right-hand sides,
+//! memory, and the time to read the factor once, which no solve can beat.
+//!
+//!     cargo bench -p raceway-solver --bench cyclic -- [65k] [150k] [400k] [sparse]
+//!
+//! Without arguments all sizes, the sparse solver at the smaller two. All on the threads of RAYON_NUM_THREADS; best of
+//! several runs.
+
+use std::collections::BTreeMap;
+use std::time::Instant;
+
+use divan::black_box;
+use fem::Material;
+use mesh::{ElementKind, Mesh, PERIODIC_TOLERANCE, Section, find_periodicity, revolve};
+use solver::{
+    Coupling, CyclicMatrix, CyclicRing, LinearSolver, ResponseTable, Symbolic, angular_dissection, expand,
+    restrict_lower,
+};
+
+/// Name, sectors, nodes across and along the section, whether the sparse solver runs.
+const SIZES: [(&str, usize, [usize; 2], bool); 3] = [
+    ("65k", 360, [12, 5], true),
+    ("150k", 360, [20, 7], true),
+    ("400k", 720, [19, 10], false),
+];
+
+/// Shift by the mass, 1/s^2: that of a step of 1e-5 s.
+const SHIFT: f64 = 4e10;
+
+fn ring(n_sectors: usize, [n_z, n_r]: [usize; 2]) -> Mesh {
+    let mut points = Vec::new();
+    for j in 0..n_z {
+        for i in 0..n_r {
+            points.push([
+                0.025 + 0.004 * i as f64 / (n_r - 1) as f64,
+                0.016 * j as f64 / (n_z - 1) as f64,
+            ]);
+        }
+    }
+    let at = |i: usize, j: usize| j * n_r + i;
+    let quads = (0..n_z - 1)
+        .flat_map(|j| (0..n_r - 1).map(move |i| [at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)]));
+    let section =
+        Section::new(points, quads.collect(), &BTreeMap::new()).expect("a grid of rectangles is a section");
+    revolve(&section, n_sectors, ElementKind::Hex8, &[]).expect("a grid can be revolved")
+}
+
+/// Shortest of several runs, ms, and the last result. On one thread of Linux it is the processor time of all threads of
+/// this process, which other programs disturb less than the clock on the wall.
+fn best<T>(runs: usize, mut run: impl FnMut() -> T) -> (f64, T) {
+    let mut timed = || {
+        let (start, busy) = (Instant::now(), processor_time());
+        let result = run();
+        let wall = start.elapsed().as_secs_f64();
+        let time = match (busy, processor_time()) {
+            (Some(busy), Some(now)) if rayon::current_num_threads() == 1 => now - busy,
+            _ => wall,
+        };
+        (1e3 * time, result)
+    };
+    let (mut shortest, mut last) = timed();
+    for _ in 1..runs {
+        let (time, result) = timed();
+        (shortest, last) = (shortest.min(time), result);
+    }
+    (shortest, last)
+}
+
+/// Seconds that the threads of this process have run, from Linux' scheduler statistics.
+fn processor_time() -> Option<f64> {
+    // The kernel brings a thread's statistics up to date when it gives way.
+    std::thread::yield_now();
+    let mut nanoseconds = 0;
+    for task in std::fs::read_dir("/proc/self/task").ok()? {
+        let text = std::fs::read_to_string(task.ok()?.path().join("schedstat")).ok()?;
+        nanoseconds += text.split_whitespace().next()?.parse::<u64>().ok()?;
+    }
+    Some(1e-9 * nanoseconds as f64)
+}
+
+/// Time to read `bytes` bytes once on this thread, ms.
+fn read_once(bytes: usize) -> f64 {
+    let array = vec![1.0_f64; bytes / 8];
+    let read = || {
+        let mut sums = [0.0; 32];
+        for chunk in array.chunks_exact(32) {
+            sums.iter_mut().zip(chunk).for_each(|(sum, value)| *sum += value);
+        }
+        black_box(sums)
+    };
+    best(50, read).0
+}
+
+fn cyclic(mesh: &Mesh) -> (f64, f64, f64) {
+    let material = Material::new(207e9, 0.3, 7800.0).expect("steel");
+    let (find, periodicity) = best(3, || {
+        find_periodicity(mesh, PERIODIC_TOLERANCE).expect("a revolved ring is periodic")
+    });
+    let (assemble, sector) = best(3, || {
+        fem::assemble_sector(mesh, &periodicity, &material).expect("a valid mesh")
+    });
+    let couplings: Vec<Coupling> = sector
+        .couplings
+        .iter()
+        .map(|c| Coupling {
+            row: c.row,
+            column: c.column,
+            shift: c.shift,
+        })
+        .collect();
+    let (n, width) = (periodicity.n_sectors(), periodicity.n_section_nodes());
+    let stiffness = CyclicMatrix::new(n, width, &couplings, &sector.stiffness).expect("symmetric");
+    let mass = stiffness
+        .with_blocks(&couplings, &sector.mass)
+        .expect("symmetric");
+    let matrix = stiffness.combined(1.0, SHIFT, &mass).expect("one pattern");
+    let directions = fem::azimuth_directions(mesh);
+    let (analyse, ring) = best(3, || {
+        CyclicRing::new(&matrix, periodicity.nodes(), &directions, periodicity.half_way()).expect("a ring")
+    });
+    let mut factor = Some(ring.factor(&matrix).expect("positive definite"));
+    let refactor = best(30, || {
+        let old = factor.take().expect("put back below");
+        factor = Some(old.refactored(&matrix).expect("positive definite"));
+    })
+    .0;
+    let factor = factor.expect("put back above");
+    println!(
+        "  cyclic: find sectors {find:.1} ms, assemble {assemble:.2} ms, order {analyse:.2} ms, factor {refactor:.2} ms, \
+         {:.1} MB, {:?}",
+        factor.factor_bytes() as f64 / 1e6,
+        factor.symmetry()
+    );
+    let mut w = vec![0.0; ring.harmonic_len()];
+    let mut y = w.clone();
+    let mut u = vec![1.0; mesh.n_dofs()];
+    let forward = best(50, || ring.to_harmonic(&u, &mut w)).0;
+    let product = best(50, || {
+        ring.apply_harmonic(&mass, &w, &mut y).expect("one pattern")
+    })
+    .0;
+    let harmonic = best(100, || {
+        y.copy_from_slice(&w);
+        factor.solve_harmonic(&mut [&mut y]);
+    })
+    .0;
+    let inverse = best(50, || ring.from_harmonic(&w, &mut u)).0;
+    let one = best(50, || factor.solve(&mut u, 1)).0;
+    let mut block = vec![1.0; 36 * mesh.n_dofs()];
+    let many = best(3, || factor.solve(&mut block, 36)).0;
+    let mut columns = vec![1.0; 36 * w.len()];
+    let many_harmonic = best(6, || {
+        factor.solve_harmonic(&mut columns.chunks_exact_mut(w.len()).collect::<Vec<_>>());
+    })
+    .0;
+    let raceway: Vec<usize> = (0..8).map(|i| i % width).collect();
+    let (table, responses) = best(3, || ResponseTable::new(&factor, &raceway));
+    println!(
+        "  cyclic: table of responses of 8 section nodes {table:.1} ms, {:.1} MB",
+        responses.bytes() as f64 / 1e6
+    );
+    let floor = read_once(factor.factor_bytes());
+    println!(
+        "  cyclic: solve in harmonic space {harmonic:.2} ms = {:.2} x reading L once ({floor:.2} ms on one thread), \
+         36 columns {many_harmonic:.1} ms = {:.1} x one",
+        harmonic / floor,
+        many_harmonic / harmonic
+    );
+    println!(
+        "  cyclic: transforms {forward:.2} and {inverse:.2} ms, mass product {product:.2} ms, nodal solve {one:.2} ms, \
+         36 nodal {many:.1} ms"
+    );
+    (refactor, harmonic, factor.factor_bytes() as f64)
+}
+
+fn sparse(mesh: &Mesh, (refactor, harmonic, bytes): (f64, f64, f64)) {
+    let material = Material::new(207e9, 0.3, 7800.0).expect("steel");
+    let start = Instant::now();
+    let mut matrix = fem::assemble_stiffness(mesh, &material).expect("a valid mesh");
+    let mass = fem::assemble_mass(mesh, &material).expect("a valid mesh");
+    matrix
+        .data_mut()
+        .iter_mut()
+        .zip(mass.data())
+        .for_each(|(k, m)| *k += SHIFT * m);
+    drop(mass);
+    let assemble = 1e3 * start.elapsed().as_secs_f64();
+    let matrix = restrict_lower(&matrix, &(0..mesh.n_dofs()).collect::<Vec<_>>());
+    let start = Instant::now();
+    let order = angular_dissection(&mesh.nodes, &mesh.connectivity, mesh.kind.n_nodes());
+    let symbolic = Symbolic::new(&matrix, &expand(&order, 3)).expect("a permutation");
+    let analyse = 1e3 * start.elapsed().as_secs_f64();
+    let (factorise, factor) = best(2, || symbolic.factor(&matrix).expect("positive definite"));
+    let mut u = vec![1.0; mesh.n_dofs()];
+    let one = best(10, || factor.solve(&mut u, 1)).0;
+    let mut block = vec![1.0; 36 * mesh.n_dofs()];
+    let many = best(2, || factor.solve(&mut block, 36)).0;
+    println!(
+        "  sparse: assemble {assemble:.0} ms, order and analyse {analyse:.0} ms, factor {factorise:.0} ms, {:.0} MB, \
+         solve {one:.1} ms, 36 columns {many:.0} ms",
+        factor.factor_bytes() as f64 / 1e6
+    );
+    println!(
+        "  sparse / cyclic: factor {:.0} x, solve {:.0} x, memory {:.1} x",
+        factorise / refactor,
+        one / harmonic,
+        factor.factor_bytes() as f64 / bytes
+    );
+}
+
+fn main() {
+    let arguments: Vec<String> = std::env::args()
+        .skip(1)
+        .filter(|a| !a.starts_with("--"))
+        .collect();
+    let is_named = |name: &str| arguments.iter().any(|a| a == name);
+    let all = arguments.is_empty();
+    println!("threads: {}", rayon::current_num_threads());
+    for (name, n_sectors, grid, with_sparse) in SIZES {
+        if !all && !is_named(name) {
+            continue;
+        }
+        let mesh = ring(n_sectors, grid);
+        println!(
+            "{name}: {n_sectors} sectors of {} x {} nodes, {} dof",
+            grid[0],
+            grid[1],
+            mesh.n_dofs()
+        );
+        let times = cyclic(&mesh);
+        if (all && with_sparse) || is_named("sparse") {
+            sparse(&mesh, times);
+        }
+    }
+}

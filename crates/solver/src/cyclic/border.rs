@@ -1,0 +1,137 @@
+//! A periodic ring whose held nodes follow a rigid partner: a border that touches the lowest harmonics only.
+//!
+//! Rigid translations and tilts of a ring of nodes are harmonics 0 and 1. So the columns of the border, and A^-1 times
+//! them, are zero beyond the first group of harmonics, and the border costs next to nothing: the block elimination of
+//! [`crate::bordered`], in harmonic space.
+
+use super::factor::CyclicCholesky;
+use crate::bordered::factor_complement;
+use crate::dense::DenseCholesky;
+use crate::error::SolverError;
+use crate::linear_solver::LinearSolver;
+
+/// Largest share of a border's column beyond the first group: rounding of transforms and of coordinates.
+const BEYOND: f64 = 1e-9;
+
+/// Factor of `[A B; B^T D]` with a cyclic A; the rows of the border come last.
+#[derive(Clone, Debug)]
+pub struct CyclicBordered {
+    factor: CyclicCholesky,
+    /// First group of the harmonics of A^-1 B, `[m][group]`.
+    columns: Vec<f64>,
+    schur: DenseCholesky,
+}
+
+impl CyclicBordered {
+    /// Borders the matrix of `factor` with B, nodal, column-major `[n][m]`, and the symmetric D, row-major `[m][m]`, of
+    /// which the lower triangle counts. Columns that reach beyond the first group of harmonics are an error, see
+    /// [`crate::Bordered`] for those.
+    ///
+    /// # Panics
+    /// When the sizes disagree.
+    pub fn new(
+        factor: CyclicCholesky,
+        border: &[f64],
+        m: usize,
+        corner: &[f64],
+    ) -> Result<CyclicBordered, SolverError> {
+        let (n, ring) = (factor.n(), factor.ring().clone());
+        assert_eq!(border.len(), n * m, "a border of {m} columns of {n} rows");
+        assert_eq!(corner.len(), m * m, "a corner of {m} rows");
+        let (len, group_len) = (ring.harmonic_len(), ring.group_len());
+        let mut rows = vec![0.0; group_len * m];
+        let mut columns = rows.clone();
+        let mut harmonic = vec![0.0; len];
+        for (column, nodal) in border.chunks_exact(n.max(1)).enumerate() {
+            ring.to_harmonic(nodal, &mut harmonic);
+            let (low, high) = harmonic.split_at_mut(group_len);
+            let largest = |x: &[f64]| x.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
+            let share = largest(high) / largest(low).max(f64::MIN_POSITIVE);
+            // Written so that NaN is refused as well.
+            let is_low = share <= BEYOND && low.iter().all(|x| x.is_finite());
+            if !is_low {
+                return Err(SolverError::BorderBeyond { column, share });
+            }
+            high.fill(0.0);
+            let range = group_len * column..group_len * (column + 1);
+            rows[range.clone()].copy_from_slice(low);
+            factor.solve_first_group(low);
+            columns[range].copy_from_slice(low);
+        }
+        let mut complement = corner.to_vec();
+        for i in 0..m {
+            for j in 0..=i {
+                let (b, z) = (&rows[group_len * i..], &columns[group_len * j..]);
+                complement[m * i + j] -= ring.group_dot(0, &b[..group_len], &z[..group_len]);
+            }
+        }
+        Ok(CyclicBordered {
+            schur: factor_complement(n, &complement, corner)?,
+            factor,
+            columns,
+        })
+    }
+
+    /// The factor inside.
+    pub fn inner(&self) -> &CyclicCholesky {
+        &self.factor
+    }
+
+    /// Replaces right-hand sides by solutions: `columns` in harmonic space, `[harmonic_len()]` each, and the rows of the
+    /// border `border`, `[columns.len()][m]`.
+    ///
+    /// # Panics
+    /// When the lengths are others.
+    pub fn solve_harmonic(&self, columns: &mut [&mut [f64]], border: &mut [f64]) {
+        let m = self.schur.n();
+        assert_eq!(border.len(), m * columns.len(), "{m} rows of border per column");
+        let (ring, group_len) = (self.factor.ring(), self.factor.ring().group_len());
+        if m > 0 && group_len > 0 {
+            for (w, q) in columns.iter().zip(border.chunks_exact_mut(m)) {
+                for (q, z) in q.iter_mut().zip(self.columns.chunks_exact(group_len)) {
+                    *q -= ring.group_dot(0, z, &w[..group_len]);
+                }
+            }
+        }
+        self.schur.solve(border, columns.len());
+        self.factor.solve_harmonic(columns);
+        if m > 0 && group_len > 0 {
+            for (w, q) in columns.iter_mut().zip(border.chunks_exact(m)) {
+                for (q, z) in q.iter().zip(self.columns.chunks_exact(group_len)) {
+                    w.iter_mut().zip(z).for_each(|(w, z)| *w -= q * z);
+                }
+            }
+        }
+    }
+}
+
+impl LinearSolver for CyclicBordered {
+    fn n(&self) -> usize {
+        self.factor.n() + self.schur.n()
+    }
+
+    fn solve(&self, rhs: &mut [f64], n_rhs: usize) {
+        let (n, m, ring) = (self.factor.n(), self.schur.n(), self.factor.ring());
+        assert_eq!(
+            rhs.len(),
+            (n + m) * n_rhs,
+            "{n_rhs} right-hand sides of {} rows",
+            n + m
+        );
+        let mut harmonic = vec![0.0; ring.harmonic_len()];
+        for column in rhs.chunks_exact_mut((n + m).max(1)) {
+            let (nodal, border) = column.split_at_mut(n);
+            ring.to_harmonic(nodal, &mut harmonic);
+            self.solve_harmonic(&mut [&mut harmonic], border);
+            ring.from_harmonic(&harmonic, nodal);
+        }
+    }
+
+    fn factor_bytes(&self) -> usize {
+        self.factor.factor_bytes() + self.schur.factor_bytes() + size_of::<f64>() * self.columns.capacity()
+    }
+
+    fn name(&self) -> &'static str {
+        self.factor.name()
+    }
+}

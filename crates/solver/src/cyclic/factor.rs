@@ -1,0 +1,358 @@
+//! The factored harmonics of a rotationally periodic ring.
+
+use std::marker::PhantomData;
+
+use pulp::Arch;
+use rayon::prelude::*;
+
+use super::assemble::Fill;
+use super::kernel::{Factorise, Solve};
+use super::matrix::CyclicMatrix;
+use super::number::{Form, Hermitian, Real};
+use super::phases::LANES;
+use super::ring::{CyclicRing, Link};
+use crate::error::SolverError;
+use crate::linear_solver::LinearSolver;
+
+/// A section is taken for its own mirror image when no entry contradicts it by more than this share of the largest
+/// one. Assembled sections of revolved meshes differ by 1e-15 to 1e-13 of it (rounding).
+const MIRROR: f64 = 1e-12;
+
+/// Smallest accepted pivot relative to its diagonal entry, as for the sparse factorisation.
+const PIVOT_LIMIT: f64 = 1e-12;
+
+/// Right-hand sides transformed to harmonic space at a time.
+const COLUMNS: usize = 8;
+
+/// Cholesky factors of all harmonics of a [`CyclicMatrix`].
+#[derive(Clone, Debug)]
+pub struct CyclicCholesky {
+    ring: CyclicRing,
+    symmetry: Symmetry,
+    hold: Hold,
+    /// `[n_groups][n_blocks][3][3][parts][LANES]`.
+    values: Vec<f64>,
+}
+
+/// What the harmonics are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Symmetry {
+    /// The section is its own mirror image: real symmetric harmonics.
+    Mirrored,
+    /// Hermitian harmonics: twice the memory, about four times the operations.
+    None,
+}
+
+impl Symmetry {
+    /// Numbers per entry of a factor.
+    fn parts(self) -> usize {
+        match self {
+            Symmetry::Mirrored => 1,
+            Symmetry::None => 2,
+        }
+    }
+}
+
+/// What keeps a ring from moving as a whole.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Hold {
+    /// Supports or inertia, which are in the matrix.
+    Matrix,
+    /// Springs added to it, see [`CyclicRing::factor_unheld`].
+    Springs,
+}
+
+impl CyclicRing {
+    /// Factors a positive definite matrix of this ring's couplings, harmonics in parallel; the bits do not
+    /// depend on the number of threads. The error names the caller's row, of sector 0, where elimination breaks down.
+    pub fn factor(&self, matrix: &CyclicMatrix) -> Result<CyclicCholesky, SolverError> {
+        self.factor_into(matrix, Hold::Matrix, Vec::new())
+    }
+
+    /// Factors the stiffness of a ring that nothing holds, with the least that holds it: springs on the mean axial and
+    /// azimuthal motion of one ring of nodes (harmonic 0), and on its radial and axial motion in harmonic 1. They carry a
+    /// load's resultants and nothing else. So for loads without resultant force and moment the solution is one of
+    /// the ring free in space, exactly; others differ by a rigid motion, which is the caller's to choose.
+    pub fn factor_unheld(&self, matrix: &CyclicMatrix) -> Result<CyclicCholesky, SolverError> {
+        self.factor_into(matrix, Hold::Springs, Vec::new())
+    }
+
+    /// Factors in memory that may be there already.
+    fn factor_into(
+        &self,
+        matrix: &CyclicMatrix,
+        hold: Hold,
+        values: Vec<f64>,
+    ) -> Result<CyclicCholesky, SolverError> {
+        matrix.check_pattern(&self.shared.pattern)?;
+        match self.symmetry(matrix) {
+            Symmetry::Mirrored => self.factor_form::<Real>(matrix, Symmetry::Mirrored, hold, values),
+            Symmetry::None => self.factor_form::<Hermitian>(matrix, Symmetry::None, hold, values),
+        }
+    }
+
+    /// Bytes of a factor's values, known before anything is factored: to compare with [`crate::Symbolic::factor_bytes`].
+    pub fn factor_bytes(&self, symmetry: Symmetry) -> usize {
+        let group = 9 * symmetry.parts() * LANES * self.shared.profile.n_blocks();
+        size_of::<f64>() * group * self.shared.phases.n_groups()
+    }
+
+    /// Multiplications and additions of a factorisation but for the section's pivots, to compare with
+    /// [`crate::Symbolic::flops`]: few wide sectors can cost more than the ring as a whole.
+    pub fn flops(&self, symmetry: Symmetry) -> f64 {
+        let per_product = (54 * symmetry.parts() * symmetry.parts()) as f64;
+        per_product * self.shared.profile.n_products() as f64 * self.shared.phases.n_harmonics() as f64
+    }
+
+    /// What the harmonics of a matrix are: the section is its own mirror image when the block at the angle of a
+    /// step and the one at the opposite angle are each other's images, `S C S`, S = diag(1, -1, 1).
+    pub fn symmetry(&self, matrix: &CyclicMatrix) -> Symmetry {
+        let shared = &self.shared;
+        if !shared.may_be_mirrored {
+            return Symmetry::None;
+        }
+        let limit = MIRROR * matrix.largest();
+        let period = 2 * self.n_sectors() as i32;
+        for link in &shared.links {
+            let angle = (-shared.steps[link.step]).rem_euclid(period);
+            let image = shared.links.iter_row(link.row).find(|other| {
+                other.column == link.column && shared.steps[other.step].rem_euclid(period) == angle
+            });
+            let block = &matrix.blocks[link.block];
+            let zero = [0.0; 9];
+            let image = image.map_or(&zero, |other| &matrix.blocks[other.block]);
+            let sign = |ij: usize| if (ij / 3 == 1) == (ij % 3 == 1) { 1.0 } else { -1.0 };
+            if (0..9).any(|ij| (block[ij] - sign(ij) * image[ij]).abs() > limit) {
+                return Symmetry::None;
+            }
+        }
+        Symmetry::Mirrored
+    }
+
+    fn factor_form<F: Form>(
+        &self,
+        matrix: &CyclicMatrix,
+        symmetry: Symmetry,
+        hold: Hold,
+        mut values: Vec<f64>,
+    ) -> Result<CyclicCholesky, SolverError> {
+        let shared = &self.shared;
+        let group_len = 9 * F::PARTS * LANES * shared.profile.n_blocks();
+        let len = self.factor_bytes(symmetry) / size_of::<f64>();
+        values.truncate(len);
+        values
+            .try_reserve_exact(len - values.len())
+            .map_err(|_| SolverError::OutOfMemory {
+                n: self.n(),
+                bytes: size_of::<f64>() * len,
+            })?;
+        values.resize(len, 0.0);
+        let arch = Arch::new();
+        let outcomes: Vec<Result<(), SolverError>> = values
+            .par_chunks_mut(group_len.max(1))
+            .enumerate()
+            .map(|(group, values)| {
+                arch.dispatch(Fill::<F> {
+                    shared,
+                    matrix,
+                    group,
+                    values,
+                    form: PhantomData,
+                });
+                if group == 0 && hold == Hold::Springs {
+                    self.add_springs::<F>(values);
+                }
+                let mut ratios = vec![0.0; 3 * LANES * self.n_section_nodes()];
+                arch.dispatch(Factorise::<F> {
+                    profile: &shared.profile,
+                    values,
+                    ratios: &mut ratios,
+                    form: PhantomData,
+                });
+                self.check_pivots(&ratios)
+            })
+            .collect();
+        outcomes.into_iter().collect::<Result<(), SolverError>>()?;
+        Ok(CyclicCholesky {
+            ring: self.clone(),
+            symmetry,
+            hold,
+            values,
+        })
+    }
+
+    /// Doubles the diagonal entries of the node eliminated last that hold the ring: (azimuthal, axial) in
+    /// harmonic 0, (radial, axial) in harmonic 1.
+    fn add_springs<F: Form>(&self, values: &mut [f64]) {
+        let profile = &self.shared.profile;
+        let Some(last) = profile.n().checked_sub(1) else {
+            return;
+        };
+        let block = &mut values[profile.place(last, last) * 9 * F::PARTS * LANES..];
+        for (harmonic, component) in [(0, 1), (0, 2), (1, 0), (1, 2)] {
+            block[4 * component * F::PARTS * LANES + harmonic] *= 2.0;
+        }
+    }
+
+    /// Refuses pivots that are not positive or nothing but round-off.
+    fn check_pivots(&self, ratios: &[f64]) -> Result<(), SolverError> {
+        let n = self.n();
+        let mut worst = (f64::INFINITY, 0);
+        for (dof, lanes) in ratios.chunks_exact(LANES).enumerate() {
+            for &ratio in lanes {
+                // Written so that NaN is refused as well.
+                if ratio.is_nan() || ratio <= 0.0 {
+                    let row = self.row(dof / 3, dof % 3);
+                    return Err(SolverError::NotPositiveDefinite { row, n });
+                }
+                if ratio < worst.0 {
+                    worst = (ratio, dof);
+                }
+            }
+        }
+        let (relative_pivot, dof) = worst;
+        if relative_pivot < PIVOT_LIMIT {
+            return Err(SolverError::Singular {
+                row: self.row(dof / 3, dof % 3),
+                n,
+                relative_pivot,
+                limit: PIVOT_LIMIT,
+            });
+        }
+        Ok(())
+    }
+}
+
+/// The links of a row.
+trait Rows {
+    fn iter_row(&self, row: usize) -> impl Iterator<Item = &Link>;
+}
+
+impl Rows for Vec<Link> {
+    fn iter_row(&self, row: usize) -> impl Iterator<Item = &Link> {
+        let first = self.partition_point(|link| link.row < row);
+        self[first..].iter().take_while(move |link| link.row == row)
+    }
+}
+
+impl CyclicCholesky {
+    /// The factor of another matrix of the same ring, such as that of another step size, in this one's memory.
+    pub fn refactored(self, matrix: &CyclicMatrix) -> Result<CyclicCholesky, SolverError> {
+        let CyclicCholesky {
+            ring, hold, values, ..
+        } = self;
+        ring.factor_into(matrix, hold, values)
+    }
+
+    /// The ring.
+    pub fn ring(&self) -> &CyclicRing {
+        &self.ring
+    }
+
+    /// What the harmonics are.
+    pub fn symmetry(&self) -> Symmetry {
+        self.symmetry
+    }
+
+    /// Replaces right-hand sides in harmonic space, `[harmonic_len()]` each, by the solutions; harmonics in parallel.
+    ///
+    /// # Panics
+    /// When a column has another length.
+    pub fn solve_harmonic(&self, columns: &mut [&mut [f64]]) {
+        for column in columns.iter() {
+            assert_eq!(
+                column.len(),
+                self.ring.harmonic_len(),
+                "a vector in harmonic space"
+            );
+        }
+        if columns.is_empty() || self.n() == 0 {
+            return;
+        }
+        let group_len = self.ring.group_len();
+        let n_groups = self.ring.shared.phases.n_groups();
+        let mut groups: Vec<Vec<&mut [f64]>> =
+            (0..n_groups).map(|_| Vec::with_capacity(columns.len())).collect();
+        for column in columns {
+            let parts = column.chunks_exact_mut(group_len);
+            groups
+                .iter_mut()
+                .zip(parts)
+                .for_each(|(group, part)| group.push(part));
+        }
+        groups
+            .into_par_iter()
+            .enumerate()
+            .for_each(|(group, columns)| match self.symmetry {
+                Symmetry::Mirrored => self.solve_group::<Real>(group, columns),
+                Symmetry::None => self.solve_group::<Hermitian>(group, columns),
+            });
+    }
+
+    /// Solves one right-hand side for the first group of harmonics alone.
+    pub(super) fn solve_first_group(&self, low: &mut [f64]) {
+        match self.symmetry {
+            Symmetry::Mirrored => self.solve_group::<Real>(0, vec![low]),
+            Symmetry::None => self.solve_group::<Hermitian>(0, vec![low]),
+        }
+    }
+
+    /// Solves one group, two right-hand sides at a time.
+    fn solve_group<F: Form>(&self, group: usize, columns: Vec<&mut [f64]>) {
+        let profile = &self.ring.shared.profile;
+        let group_len = 9 * F::PARTS * LANES * profile.n_blocks();
+        let values = &self.values[group * group_len..(group + 1) * group_len];
+        let (arch, form) = (Arch::new(), PhantomData);
+        let mut columns = columns.into_iter();
+        while let Some(first) = columns.next() {
+            match columns.next() {
+                Some(second) => arch.dispatch(Solve::<F, 2> {
+                    profile,
+                    values,
+                    columns: [first, second],
+                    form,
+                }),
+                None => arch.dispatch(Solve::<F, 1> {
+                    profile,
+                    values,
+                    columns: [first],
+                    form,
+                }),
+            }
+        }
+    }
+}
+
+impl LinearSolver for CyclicCholesky {
+    fn n(&self) -> usize {
+        self.ring.n()
+    }
+
+    fn solve(&self, rhs: &mut [f64], n_rhs: usize) {
+        let n = self.n();
+        assert_eq!(rhs.len(), n * n_rhs, "{n_rhs} right-hand sides of {n} rows");
+        if rhs.is_empty() {
+            return;
+        }
+        let width = self.ring.harmonic_len();
+        let mut harmonic = vec![0.0; width * n_rhs.min(COLUMNS)];
+        for block in rhs.chunks_mut(n * COLUMNS) {
+            let used = &mut harmonic[..width * (block.len() / n)];
+            for (nodal, w) in block.chunks_exact(n).zip(used.chunks_exact_mut(width)) {
+                self.ring.to_harmonic(nodal, w);
+            }
+            self.solve_harmonic(&mut used.chunks_exact_mut(width).collect::<Vec<_>>());
+            for (nodal, w) in block.chunks_exact_mut(n).zip(used.chunks_exact(width)) {
+                self.ring.from_harmonic(w, nodal);
+            }
+        }
+    }
+
+    fn factor_bytes(&self) -> usize {
+        size_of::<f64>() * self.values.capacity()
+    }
+
+    fn name(&self) -> &'static str {
+        "cyclic Cholesky"
+    }
+}

@@ -1,0 +1,210 @@
+//! A rotationally periodic ring: where its nodes are in the caller's vectors and in harmonic space, and in which order
+//! its section is eliminated.
+
+use std::fmt;
+use std::sync::Arc;
+
+use realfft::{ComplexToReal, RealFftPlanner, RealToComplex};
+
+use super::matrix::{CyclicMatrix, check_ascending};
+use super::pattern::CyclicPattern;
+use super::phases::{LANES, Phases};
+use super::profile::{Profile, ordered};
+use crate::error::SolverError;
+use crate::permutation::invert;
+
+/// A ring of N equal sectors; clones share everything. Vectors of the ring come in two forms, see [`crate::cyclic`].
+#[derive(Clone)]
+pub struct CyclicRing {
+    pub(crate) shared: Arc<Shared>,
+}
+
+/// What clones share. Places count section nodes in elimination order.
+pub(crate) struct Shared {
+    pub(crate) pattern: Arc<CyclicPattern>,
+    /// Place of every section node.
+    pub(crate) place: Vec<usize>,
+    pub(crate) profile: Profile,
+    /// Half sectors from the first plane to the node, 0 or 1, by place.
+    pub(crate) halves: Vec<i32>,
+    /// Whether the offsets are known, so that the section may be its own mirror image.
+    pub(crate) may_be_mirrored: bool,
+    /// The caller's node by sector and place, `[n_sectors][n_section_nodes]`.
+    pub(crate) nodes: Vec<usize>,
+    /// Where each of the caller's nodes is in `nodes`.
+    pub(crate) sites: Vec<usize>,
+    /// (cos, sin) of its azimuth, in the layout of `nodes`.
+    pub(crate) directions: Vec<[f64; 2]>,
+    pub(crate) phases: Phases,
+    /// Half sectors between coupled nodes, the different values, ascending.
+    pub(crate) steps: Vec<i32>,
+    /// Couplings by (row, step), which the products run over.
+    pub(crate) links: Vec<Link>,
+    pub(crate) forward: Arc<dyn RealToComplex<f64>>,
+    pub(crate) inverse: Arc<dyn ComplexToReal<f64>>,
+}
+
+/// A coupling in elimination order.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) struct Link {
+    /// Place of the row's node.
+    pub(crate) row: usize,
+    /// Index of the step in [`Shared::steps`].
+    pub(crate) step: usize,
+    /// Place of the column's node.
+    pub(crate) column: usize,
+    /// Place of the block in the matrix.
+    pub(crate) block: usize,
+}
+
+impl CyclicRing {
+    /// A ring with the couplings of `matrix`. `nodes` is the caller's node at each (sector, section node),
+    /// `[n_sectors][n_section_nodes]` flat, each node once; `directions` the (cos, sin) of the azimuth of each of the
+    /// caller's nodes; `half_way` says which section nodes lie half a sector beyond the plane of the others, `None` when
+    /// nodes lie anywhere. Finds the elimination order; no number is factored.
+    ///
+    /// # Panics
+    /// When the lengths disagree.
+    pub fn new(
+        matrix: &CyclicMatrix,
+        nodes: &[usize],
+        directions: &[[f64; 2]],
+        half_way: Option<&[bool]>,
+    ) -> Result<CyclicRing, SolverError> {
+        let pattern = matrix.pattern.clone();
+        let (n_sectors, width) = (pattern.n_sectors, pattern.n_section_nodes);
+        assert_eq!(nodes.len(), n_sectors * width, "one node per site");
+        assert_eq!(directions.len(), nodes.len(), "one direction per node");
+        invert(nodes, nodes.len())?;
+        let (order, profile) = ordered(&pattern.neighbours());
+        let halves: Vec<i32> = match half_way {
+            None => vec![0; width],
+            Some(half_way) => {
+                assert_eq!(half_way.len(), width, "one offset per section node");
+                order.iter().map(|&node| i32::from(half_way[node])).collect()
+            }
+        };
+        let mut place = vec![0; width];
+        order.iter().enumerate().for_each(|(k, &node)| place[node] = k);
+        let (steps, links) = links(&pattern, &place, &halves);
+        let nodes: Vec<usize> = nodes
+            .chunks_exact(width.max(1))
+            .flat_map(|sector| order.iter().map(|&node| sector[node]))
+            .collect();
+        let mut planner = RealFftPlanner::new();
+        Ok(CyclicRing {
+            shared: Arc::new(Shared {
+                sites: invert(&nodes, nodes.len())?,
+                directions: nodes.iter().map(|&node| directions[node]).collect(),
+                phases: Phases::new(n_sectors),
+                forward: planner.plan_fft_forward(n_sectors),
+                inverse: planner.plan_fft_inverse(n_sectors),
+                may_be_mirrored: half_way.is_some(),
+                pattern,
+                place,
+                profile,
+                halves,
+                nodes,
+                steps,
+                links,
+            }),
+        })
+    }
+
+    /// The ring of the section nodes `keep` (ascending) alone; the others are held. The caller's vectors then hold the
+    /// nodes that stay, in the order they had. Goes with [`CyclicMatrix::restricted`], whose result is `matrix`.
+    ///
+    /// # Panics
+    /// When `keep` is not ascending or names a node outside.
+    pub fn restricted(&self, matrix: &CyclicMatrix, keep: &[usize]) -> Result<CyclicRing, SolverError> {
+        let shared = &self.shared;
+        let width = self.n_section_nodes();
+        check_ascending(keep, width);
+        let mut kept: Vec<(usize, usize)> = Vec::with_capacity(keep.len() * self.n_sectors());
+        for sector in 0..self.n_sectors() {
+            kept.extend(keep.iter().map(|&node| {
+                let site = sector * width + shared.place[node];
+                (shared.nodes[site], site)
+            }));
+        }
+        let mut ranks: Vec<usize> = (0..kept.len()).collect();
+        ranks.sort_unstable_by_key(|&i| kept[i].0);
+        let mut nodes = vec![0; kept.len()];
+        let mut directions = Vec::with_capacity(kept.len());
+        for (rank, &i) in ranks.iter().enumerate() {
+            nodes[i] = rank;
+            directions.push(shared.directions[kept[i].1]);
+        }
+        let half_way: Vec<bool> = keep
+            .iter()
+            .map(|&node| shared.halves[shared.place[node]] == 1)
+            .collect();
+        let half_way = shared.may_be_mirrored.then_some(half_way.as_slice());
+        CyclicRing::new(matrix, &nodes, &directions, half_way)
+    }
+
+    /// Number of sectors N.
+    pub fn n_sectors(&self) -> usize {
+        self.shared.pattern.n_sectors
+    }
+
+    /// Nodes per sector.
+    pub fn n_section_nodes(&self) -> usize {
+        self.shared.pattern.n_section_nodes
+    }
+
+    /// Length of the caller's vectors, three per node.
+    pub fn n(&self) -> usize {
+        3 * self.shared.nodes.len()
+    }
+
+    /// Length of a vector in harmonic space: groups of four harmonics, the last one filled up with zeros.
+    pub fn harmonic_len(&self) -> usize {
+        self.shared.phases.n_groups() * self.group_len()
+    }
+
+    /// Length of one group's part of a vector in harmonic space.
+    pub(crate) fn group_len(&self) -> usize {
+        6 * LANES * self.n_section_nodes()
+    }
+
+    /// The caller's row of component `component` of the node at a place of sector 0.
+    pub(crate) fn row(&self, place: usize, component: usize) -> usize {
+        3 * self.shared.nodes[place] + component
+    }
+}
+
+impl fmt::Debug for CyclicRing {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("CyclicRing")
+            .field("n_sectors", &self.n_sectors())
+            .field("n_section_nodes", &self.n_section_nodes())
+            .finish_non_exhaustive()
+    }
+}
+
+/// Steps that occur, and the couplings sorted by row and step.
+fn links(pattern: &CyclicPattern, place: &[usize], halves: &[i32]) -> (Vec<i32>, Vec<Link>) {
+    let step = |row: usize, column: usize, shift: i32| 2 * shift + halves[column] - halves[row];
+    let mut steps: Vec<i32> = pattern
+        .couplings
+        .iter()
+        .map(|c| step(place[c.row], place[c.column], c.shift))
+        .collect();
+    let of_couplings = steps.clone();
+    steps.sort_unstable();
+    steps.dedup();
+    let mut links: Vec<Link> = pattern
+        .couplings
+        .iter()
+        .enumerate()
+        .map(|(block, c)| Link {
+            row: place[c.row],
+            step: steps.partition_point(|&s| s < of_couplings[block]),
+            column: place[c.column],
+            block,
+        })
+        .collect();
+    links.sort_unstable();
+    (steps, links)
+}

@@ -1,0 +1,8 @@
+//! The cyclic solver against the sparse one on assembled rings: one file per subject.
+
+#[path = "../common/mod.rs"]
+mod common;
+mod hold;
+mod rings;
+mod solve;
+mod space;

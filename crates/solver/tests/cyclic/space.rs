@@ -1,0 +1,137 @@
+//! Harmonic space: transforms, products, responses.
+
+use mesh::{ElementKind, revolve};
+use solver::{LinearSolver, NodalLoad, ResponseTable};
+
+use crate::common::{self, assert_close};
+use crate::rings::{Ring, SHIFT, loads, rings, section};
+
+/// Wrong: products through the sectors, in nodal and in harmonic space, would not be those of the assembled matrix; or
+/// energies summed in harmonic space would not be those of the nodal vectors.
+#[test]
+fn products_through_the_sector_are_those_of_the_assembled_matrix() {
+    for (ring, _) in rings() {
+        let n = ring.mesh.n_dofs();
+        let x = loads(n);
+        let matrix = ring.assembled(SHIFT);
+        let expected = common::product(&matrix, &x);
+        let shifted = ring.shifted();
+        assert_close(&ring.ring.apply(&shifted, &x).unwrap(), &expected, 1e-13);
+
+        let mut w = vec![0.0; ring.ring.harmonic_len()];
+        let mut product = w.clone();
+        ring.ring.to_harmonic(&x, &mut w);
+        ring.ring.apply_harmonic(&shifted, &w, &mut product).unwrap();
+        let mut nodal = vec![0.0; n];
+        ring.ring.from_harmonic(&product, &mut nodal);
+        assert_close(&nodal, &expected, 1e-13);
+
+        let energy: f64 = x.iter().zip(&expected).map(|(x, f)| x * f).sum();
+        let harmonic = ring.ring.harmonic_dot(&w, &product);
+        assert_close(&[harmonic], &[energy], 1e-12);
+    }
+}
+
+/// Wrong: a field would change on its way to harmonic space and back, for some number of sectors.
+#[test]
+fn a_field_survives_the_way_to_harmonic_space_and_back() {
+    for n in [3, 4, 7, 16, 97] {
+        let ring = Ring::new(revolve(&section(), n, ElementKind::Hex20, &[]).unwrap());
+        let x = loads(ring.mesh.n_dofs());
+        let (mut w, mut back) = (vec![0.0; ring.ring.harmonic_len()], vec![0.0; x.len()]);
+        ring.ring.to_harmonic(&x, &mut w);
+        ring.ring.from_harmonic(&w, &mut back);
+        assert_close(&back, &x, 1e-14);
+    }
+}
+
+/// Nodes and their Cartesian weights in two directions.
+type Weights = (Vec<usize>, Vec<[[f64; 3]; 2]>);
+
+/// Wrong: compliances of patches from the table would not be those that solves for the same loads give.
+#[test]
+fn the_table_gives_the_compliances_of_solves() {
+    for (ring, _) in rings() {
+        let factor = ring.ring.factor(&ring.shifted()).unwrap();
+        let chosen = [4, 1, 7, 11];
+        let table = ResponseTable::new(&factor, &chosen);
+        let (n, width) = (ring.periodicity.n_sectors(), ring.periodicity.n_section_nodes());
+        assert_eq!(table.bytes(), 8 * n * 12 * 12);
+        let node = |sector: usize, i: usize| ring.periodicity.nodes()[(sector % n) * width + chosen[i]];
+        let values = loads(200);
+        let patches: Vec<Weights> = [0, 1, n / 2, n - 1]
+            .iter()
+            .enumerate()
+            .map(|(p, &sector)| {
+                let nodes: Vec<usize> = (0..5).map(|i| node(sector + i / 2, (p + i) % 4)).collect();
+                let value = |i: usize| values[(40 * p + i) % 200];
+                let weights = (0..5)
+                    .map(|i| {
+                        [
+                            [0, 1, 2].map(|c| value(6 * i + c)),
+                            [3, 4, 5].map(|c| value(6 * i + c)),
+                        ]
+                    })
+                    .collect();
+                (nodes, weights)
+            })
+            .collect();
+        let in_table: Vec<_> = patches.iter().map(|(n, w)| table.patch(n, w).unwrap()).collect();
+        let m = 2 * patches.len();
+        let mut expected = vec![0.0; m * m];
+        for j in 0..m {
+            let mut u = vec![0.0; ring.mesh.n_dofs()];
+            let (nodes, weights) = &patches[j / 2];
+            for (&node, w) in nodes.iter().zip(weights) {
+                (0..3).for_each(|c| u[3 * node + c] += w[j % 2][c]);
+            }
+            factor.solve(&mut u, 1);
+            for i in 0..m {
+                let (nodes, weights) = &patches[i / 2];
+                let measured = nodes
+                    .iter()
+                    .zip(weights)
+                    .map(|(&node, w)| (0..3).map(|c| w[i % 2][c] * u[3 * node + c]).sum::<f64>());
+                expected[m * i + j] = measured.sum();
+            }
+        }
+        assert_close(&table.compliances(&in_table), &expected, 1e-12);
+        let other = (0..ring.mesh.n_nodes())
+            .find(|&node| !chosen.contains(&ring.periodicity.sites()[node].section_node))
+            .unwrap();
+        assert_eq!(table.patch(&[other], &[[[0.0; 3]; 2]]), Err(other));
+    }
+}
+
+/// Wrong: a load on a node, or the displacement of a node, would be another one in harmonic space than in nodal space.
+#[test]
+fn single_nodes_are_loaded_and_measured_as_in_the_whole_field() {
+    for (ring, _) in rings() {
+        let x = loads(ring.mesh.n_dofs());
+        let nodes: Vec<usize> = (0..30).map(|i| (37 * i + 5) % ring.mesh.n_nodes()).collect();
+        let mut w = vec![0.0; ring.ring.harmonic_len()];
+        ring.ring.to_harmonic(&x, &mut w);
+        let found: Vec<f64> = ring.ring.displacements(&nodes, &w).concat();
+        let expected: Vec<f64> = nodes.iter().flat_map(|&n| x[3 * n..3 * n + 3].to_vec()).collect();
+        assert_close(&found, &expected, 1e-13);
+
+        // The second load of a node adds to the first.
+        let forces: Vec<NodalLoad> = nodes
+            .iter()
+            .chain(&nodes[..3])
+            .enumerate()
+            .map(|(i, &node)| NodalLoad {
+                node,
+                force: [x[i], x[i + 1], x[i + 2]],
+            })
+            .collect();
+        let mut nodal = x.clone();
+        for load in &forces {
+            (0..3).for_each(|c| nodal[3 * load.node + c] += load.force[c]);
+        }
+        let mut expected = vec![0.0; w.len()];
+        ring.ring.to_harmonic(&nodal, &mut expected);
+        ring.ring.add_loads(&forces, &mut w);
+        assert_close(&w, &expected, 1e-13);
+    }
+}
