@@ -8,7 +8,7 @@ use dynamics::effects::{
 };
 use dynamics::model::{RACEWAY_GROUP, elastic};
 use dynamics::motion::balls::Rolling;
-use dynamics::{ContactMode, ContactSettings, Hold, Model, RingModel, ShaftDof, Tolerances};
+use dynamics::{Backend, ContactMode, ContactSettings, Hold, Model, RingModel, ShaftDof, Tolerances};
 use fem::Material;
 use mesh::Torus;
 
@@ -81,6 +81,11 @@ pub fn model_with_rings(scene: &Scene, rings: [Option<Arc<RingModel>>; 2]) -> Re
             patch_spacings: scene.contact.patch_elements,
         },
         effects,
+        backend: match scene.solver.backend {
+            scene::Backend::Auto => Backend::Auto,
+            scene::Backend::Cyclic => Backend::Cyclic,
+            scene::Backend::Sparse => Backend::Sparse,
+        },
         tolerances: Tolerances {
             force: scene.solver.tolerance,
             max_rounds: scene.solver.max_iterations,

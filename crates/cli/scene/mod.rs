@@ -81,7 +81,7 @@ pub use self::ring::{FlexibleRing, MeshFiles, Ring, RingName, Support};
 pub use self::schedule::Scheduled;
 pub use self::section::{Section, SectionElement};
 pub use self::shaft::{Motion, Shaft};
-pub use self::solver::Solver;
+pub use self::solver::{Backend, Solver};
 pub use self::speed::SpeedTable;
 pub use self::start::Start;
 pub use self::sweep::{Analysis, SweepPoint};

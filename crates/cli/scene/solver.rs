@@ -17,6 +17,10 @@ pub struct RawSolver {
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq)]
 #[serde(rename_all = "snake_case")]
 pub enum Backend {
+    /// Harmonics for a rotationally periodic ring in motion, else sparse Cholesky.
+    Auto,
+    /// Harmonics in motion; a ring that is not periodic is refused.
+    Cyclic,
     /// Sparse Cholesky factorisation of each ring.
     Sparse,
 }
@@ -49,7 +53,7 @@ impl RawSolver {
         );
         let max_iterations = self.max_iterations.unwrap_or(DEFAULT_MAX_ITERATIONS);
         Solver {
-            backend: self.backend.unwrap_or(Backend::Sparse),
+            backend: self.backend.unwrap_or(Backend::Auto),
             tolerance,
             max_iterations: problems.whole(max_iterations, "solver.max_iterations", 1, 10_000),
         }

@@ -20,6 +20,17 @@ pub enum DynamicsError {
         /// Held group.
         group: &'static str,
     },
+    /// A ring that the cyclic solver was asked for is not rotationally periodic.
+    #[error(
+        "the {side} ring is not rotationally periodic, so solver.backend = \"cyclic\" cannot be: {reason}; use \"auto\" or \
+         \"sparse\""
+    )]
+    NotPeriodic {
+        /// `inner` or `outer`.
+        side: &'static str,
+        /// The first difference.
+        reason: String,
+    },
     /// The linear solver failed otherwise.
     #[error("{side} ring: {source}")]
     Solver {

@@ -30,7 +30,7 @@ pub use effects::{Effect, Loads};
 pub use error::DynamicsError;
 pub use inventory::Inventory;
 pub use memory::{RingMemory, forecast_peak};
-pub use model::{ContactMode, ContactSettings, Hold, Model, RingModel, ShaftDof, Tolerances};
+pub use model::{Backend, ContactMode, ContactSettings, Hold, Model, RingModel, ShaftDof, Tolerances};
 pub use modes::{Mode, ModeSet, ModesSettings, RingSupport};
 pub use pose::Pose;
 pub use quasi_static::QuasiStatic;

@@ -72,6 +72,18 @@ pub struct ContactSettings {
     pub patch_spacings: f64,
 }
 
+/// Linear solver of the rings in motion.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Backend {
+    /// Harmonics for a rotationally periodic ring, else a sparse factorisation.
+    #[default]
+    Auto,
+    /// Harmonics; a ring that is not periodic is an error.
+    Cyclic,
+    /// Sparse Cholesky factorisation.
+    Sparse,
+}
+
 /// Dimensionless stopping rules.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tolerances {
@@ -112,6 +124,8 @@ pub struct Model {
     pub contact: ContactSettings,
     /// Effects the scene calls for, in the order of their names.
     pub effects: Vec<Box<dyn Effect>>,
+    /// Linear solver of the rings in motion.
+    pub backend: Backend,
     /// Stopping rules.
     pub tolerances: Tolerances,
 }

@@ -7,8 +7,8 @@ use dynamics::effects::FrameRotation;
 use dynamics::motion::balls::Speed;
 use dynamics::motion::contacts::ContactScheme;
 use dynamics::motion::{Integrator, Ladder, Motion, MotionSettings, MotionState};
-use dynamics::{ContactMode, Hold, Model, ShaftDof, StaticSolution};
-use support::rings::Level;
+use dynamics::{Backend, ContactMode, Hold, Model, ShaftDof, StaticSolution};
+use support::rings::{self, Level};
 use support::{Case, equilibrium};
 
 const SMALL: Level = Level::hex8(54, 6, 1, 2);
@@ -215,4 +215,62 @@ fn a_spinning_ring_rests_in_its_static_expansion() {
     );
     assert!(worst < 0.02, "{worst}");
     assert!(worst_defect(&states) < 1e-8, "{}", worst_defect(&states));
+}
+
+/// Wrong: the cyclic solver would solve other equations than the sparse one. 60 steps of a load step with both, at speed,
+/// clamped and in mean motion: forces and displacements agree to 1e-10 of their size; each names itself.
+#[test]
+fn cyclic_and_sparse_steps_agree() {
+    for hold in [Hold::Clamped, Hold::MeanMotion] {
+        let (mut model, start) = radial_step(1500.0, hold, false);
+        model.effects.push(Box::new(FrameRotation {
+            speed: Speed::constant(1000.0),
+        }));
+        let mut ends = Vec::new();
+        for (backend, name) in [(Backend::Auto, "cyclic"), (Backend::Sparse, "sparse")] {
+            model.backend = backend;
+            let turning = MotionSettings {
+                speed: Speed::constant(1000.0),
+                ..settings(1e-5)
+            };
+            let motion = Motion::new(&model, turning.clone()).unwrap();
+            assert_eq!(Side::BOTH.map(|side| motion.solver_name(side)), [Some(name); 2]);
+            ends.push(run(&model, &start, turning, 60).pop().unwrap());
+        }
+        let size = |f: &[f64; 2]| f[0].hypot(f[1]);
+        let largest = ends[0].forces.iter().map(size).fold(0.0, f64::max);
+        for (a, b) in ends[0].forces.iter().zip(&ends[1].forces) {
+            assert!((a[0] - b[0]).hypot(a[1] - b[1]) < 1e-10 * largest, "{a:?} {b:?}");
+        }
+        for (a, b) in ends[0].shaft.iter().zip(&ends[1].shaft) {
+            assert!((a - b).abs() < 1e-10 * ends[0].shaft[2].abs(), "{a} {b}");
+        }
+        assert!(ends.iter().all(|s| s.ledger.relative_defect().abs() < 1e-9));
+    }
+}
+
+/// Wrong: a ring without equal sectors would be solved as if it had them, or be refused without a reason.
+#[test]
+fn a_ring_that_is_not_periodic_is_solved_as_a_whole_or_refused_with_the_reason() {
+    let mut model = Case::axial(1000.0).flexible(ContactMode::Patch, SMALL, Hold::Clamped);
+    let ring = model.ring(Side::Outer).unwrap();
+    let mut mesh = ring.mesh.clone();
+    // One node on a side face moves.
+    let face = mesh.nodes.iter().map(|x| x[2]).fold(f64::MIN, f64::max);
+    let node = mesh.nodes.iter().position(|x| x[2] == face).unwrap();
+    mesh.nodes[node][2] += 1e-5;
+    let bumped = rings::ring_model(Side::Outer, mesh, Hold::Clamped);
+    model.rings[1] = Some(std::sync::Arc::new(bumped));
+    let motion = Motion::new(&model, settings(1e-5)).unwrap();
+    let names = Side::BOTH.map(|side| motion.solver_name(side));
+    assert_eq!(names, [Some("cyclic"), Some("sparse")]);
+    model.backend = Backend::Cyclic;
+    let text = Motion::new(&model, settings(1e-5)).err().unwrap().to_string();
+    assert!(
+        text.starts_with(
+            "the outer ring is not rotationally periodic, so solver.backend = \"cyclic\" cannot be: "
+        ) && text.ends_with("; use \"auto\" or \"sparse\""),
+        "{text}"
+    );
+    assert!(text.contains("node"), "{text}");
 }

@@ -172,7 +172,7 @@ const FORMAT: [Case; 36] = [
     (
         "backend",
         "backend = \"mumps\"",
-        &["solver.backend is \"mumps\"; the only valid value is \"sparse\""],
+        &["solver.backend is \"mumps\"; valid values are \"auto\", \"cyclic\", \"sparse\""],
     ),
     (
         "tilt_x",

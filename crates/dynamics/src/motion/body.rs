@@ -8,18 +8,17 @@
 use contact::quadrature::PressureRule;
 use contact::{RacewaySurface, Side};
 use mesh::Mesh;
-use solver::Symbolic;
 use sprs::CsMat;
 
 use super::coordinates::{Coordinates, SparseLoad};
+use super::effective::Effective;
 use super::integrator::Integrator;
 use super::ring::RingState;
 use super::sparse::{kronecker, node_product, product};
 use crate::effects::FrameTurn;
 use crate::error::DynamicsError;
 use crate::inventory::Inventory;
-use crate::model::{Hold, RACEWAY_GROUP, RingModel};
-use crate::ring::elimination_order;
+use crate::model::{Backend, Hold, RACEWAY_GROUP, RingModel};
 use crate::solution::dot;
 use crate::support::mean_motion;
 
@@ -41,7 +40,7 @@ pub struct RingBody {
     positions: Vec<f64>,
     /// Rayleigh damping: C = damping[0] M + damping[1] K.
     pub(super) damping: [f64; 2],
-    symbolic: Symbolic,
+    effective: Effective,
 }
 
 /// Energy that a step took from a ring, J.
@@ -54,8 +53,13 @@ pub struct Losses {
 }
 
 impl RingBody {
-    /// Assembles the ring on `side` and analyses its effective matrix.
-    pub fn new(side: Side, ring: &RingModel, damping: [f64; 2]) -> Result<RingBody, DynamicsError> {
+    /// Assembles the ring on `side` and prepares the factorisation of its effective matrix.
+    pub fn new(
+        side: Side,
+        ring: &RingModel,
+        damping: [f64; 2],
+        backend: Backend,
+    ) -> Result<RingBody, DynamicsError> {
         let fem_error = |source| DynamicsError::Fem {
             side: side.name(),
             source,
@@ -66,14 +70,7 @@ impl RingBody {
             coordinates.reduce_matrix(&fem::assemble_stiffness(mesh, &ring.material).map_err(fem_error)?);
         let pattern = fem::Pattern::new(mesh).map_err(fem_error)?;
         let node_mass = fem::assemble_node_mass(&pattern, mesh, &ring.material).map_err(fem_error)?;
-        let mut order = elimination_order(mesh, coordinates.free());
-        order.extend(coordinates.free().len()..coordinates.n());
-        let mass = coordinates.reduce_matrix(&kronecker(&node_mass));
-        let symbolic =
-            Symbolic::new(&(&mass + &stiffness), &order).map_err(|source| DynamicsError::Solver {
-                side: side.name(),
-                source,
-            })?;
+        let effective = Effective::new(ring, side.name(), backend, &coordinates, (&stiffness, &node_mass))?;
         Ok(RingBody {
             surface: RacewaySurface::new(mesh, mesh.group(RACEWAY_GROUP), ring.groove),
             rule: PressureRule::new(),
@@ -84,7 +81,7 @@ impl RingBody {
             stiffness,
             node_mass,
             damping,
-            symbolic,
+            effective,
         })
     }
 
@@ -96,16 +93,45 @@ impl RingBody {
     ) -> Result<Box<dyn solver::LinearSolver>, DynamicsError> {
         let [m, c, k] = integrator.effective(dt);
         let (cm, ck) = (m + c * self.damping[0], k + c * self.damping[1]);
-        let mass = self.coordinates.reduce_matrix(&kronecker(&self.node_mass));
-        let effective = &mass.map(|x| cm * x) + &self.stiffness.map(|x| ck * x);
-        drop(mass);
-        match self.symbolic.factor(&effective) {
-            Ok(factor) => Ok(Box::new(factor)),
-            Err(source) => Err(DynamicsError::Solver {
-                side: self.name,
-                source,
-            }),
+        let factored = match &self.effective {
+            Effective::Sparse(symbolic) => {
+                let mass = self.coordinates.reduce_matrix(&kronecker(&self.node_mass));
+                let effective = &mass.map(|x| cm * x) + &self.stiffness.map(|x| ck * x);
+                drop(mass);
+                symbolic
+                    .factor(&effective)
+                    .map(|factor| Box::new(factor) as Box<dyn solver::LinearSolver>)
+            }
+            Effective::Cyclic(sectors) => {
+                let [border, corner] = self.border([cm, ck]);
+                sectors.factor([cm, ck], &border, &corner)
+            }
+        };
+        factored.map_err(|source| DynamicsError::Solver {
+            side: self.name,
+            source,
+        })
+    }
+
+    /// Columns of c_M M + c_K K that belong to the shaft dofs: the rows of the free dofs, column-major, and those of the
+    /// shaft, row-major.
+    fn border(&self, [cm, ck]: [f64; 2]) -> [Vec<f64>; 2] {
+        let (n_free, n) = (self.coordinates.free().len(), self.coordinates.n());
+        let (mut border, mut corner) = (Vec::new(), Vec::new());
+        for k in n_free..n {
+            let mut unit = vec![0.0; n];
+            unit[k] = 1.0;
+            let (m, k) = (self.mass_product(&unit), product(&self.stiffness, &unit));
+            let column: Vec<f64> = m.iter().zip(&k).map(|(m, k)| cm * m + ck * k).collect();
+            border.extend_from_slice(&column[..n_free]);
+            corner.extend_from_slice(&column[n_free..]);
         }
+        [border, corner]
+    }
+
+    /// Name of the ring's linear solver.
+    pub fn solver_name(&self) -> &'static str {
+        self.effective.name()
     }
 
     /// Coordinates and matrices; those of the factors are counted by the motion.

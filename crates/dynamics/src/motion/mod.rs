@@ -15,6 +15,7 @@ pub mod balls;
 pub mod body;
 pub mod contacts;
 pub mod coordinates;
+pub mod effective;
 mod finish;
 pub mod frame;
 pub mod integrator;

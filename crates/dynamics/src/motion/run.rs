@@ -43,7 +43,7 @@ impl<'a> Motion<'a> {
         let build = |side: Side| {
             model
                 .ring(side)
-                .map(|ring| RingBody::new(side, ring, settings.rayleigh))
+                .map(|ring| RingBody::new(side, ring, settings.rayleigh, model.backend))
                 .transpose()
         };
         let (inner, outer) = rayon::join(|| build(Side::Inner), || build(Side::Outer));
@@ -99,6 +99,11 @@ impl<'a> Motion<'a> {
     pub fn factor_bytes(&self) -> usize {
         let rungs = self.rungs.iter().filter_map(OnceLock::get);
         rungs.flatten().flatten().map(RingFactor::bytes).sum()
+    }
+
+    /// Linear solver of a flexible ring: `cyclic` or `sparse`.
+    pub fn solver_name(&self, side: Side) -> Option<&'static str> {
+        self.rings[side.index()].as_ref().map(RingBody::solver_name)
     }
 
     /// Number of generalised coordinates of a ring; 0 for a rigid one.

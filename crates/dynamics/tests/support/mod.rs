@@ -86,6 +86,7 @@ impl Case {
                 patch_spacings: 2.0,
             },
             effects,
+            backend: dynamics::Backend::Auto,
             tolerances: Tolerances::default(),
         }
     }
