@@ -3,6 +3,7 @@
 //! Both are optional: where they are not installed, these tests say so and pass. `RACEWAY_TEST_PYTHON` names a Python
 //! that has the package `vtk` (9.3 or later), default python3; ParaView's pvpython and xvfb-run must be on the path.
 
+use std::io::Write;
 use std::path::Path;
 use std::process::Command;
 use std::sync::OnceLock;
@@ -36,6 +37,12 @@ fn runs(program: &str, arguments: &[&str]) -> bool {
         .is_ok_and(|output| output.status.success())
 }
 
+/// Says so even though the test passes: what is printed in other ways is hidden then.
+fn skipped(why: &str) {
+    let text = format!("SKIPPED, readers are not tested: {why}\n");
+    std::io::stderr().write_all(text.as_bytes()).unwrap();
+}
+
 fn python() -> Option<String> {
     let python = std::env::var("RACEWAY_TEST_PYTHON").unwrap_or("python3".to_string());
     if runs(
@@ -44,7 +51,7 @@ fn python() -> Option<String> {
     ) {
         return Some(python);
     }
-    eprintln!("SKIPPED: {python} has no package vtk");
+    skipped(&format!("{python} has no package vtk"));
     None
 }
 
@@ -60,7 +67,7 @@ const SCREEN: [&str; 5] = [
 fn has_paraview() -> bool {
     let found = runs("pvpython", &["--version"]) && runs("xvfb-run", &["--help"]);
     if !found {
-        eprintln!("SKIPPED: no pvpython or no xvfb-run");
+        skipped("no pvpython or no xvfb-run");
     }
     found
 }
