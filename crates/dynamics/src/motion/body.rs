@@ -11,7 +11,7 @@ use mesh::Mesh;
 use sprs::CsMat;
 
 use super::coordinates::{Coordinates, SparseLoad};
-use super::effective::Effective;
+use super::effective::{Effective, Factored};
 use super::integrator::Integrator;
 use super::ring::RingState;
 use super::sparse::{kronecker, node_product, product};
@@ -86,11 +86,7 @@ impl RingBody {
     }
 
     /// The effective matrix S of a step of `dt` seconds, factored.
-    pub fn factor(
-        &self,
-        integrator: Integrator,
-        dt: f64,
-    ) -> Result<Box<dyn solver::LinearSolver>, DynamicsError> {
+    pub fn factor(&self, integrator: Integrator, dt: f64) -> Result<Factored, DynamicsError> {
         let [m, c, k] = integrator.effective(dt);
         let (cm, ck) = (m + c * self.damping[0], k + c * self.damping[1]);
         let factored = match &self.effective {
@@ -98,9 +94,10 @@ impl RingBody {
                 let mass = self.coordinates.reduce_matrix(&kronecker(&self.node_mass));
                 let effective = &mass.map(|x| cm * x) + &self.stiffness.map(|x| ck * x);
                 drop(mass);
-                symbolic
-                    .factor(&effective)
-                    .map(|factor| Box::new(factor) as Box<dyn solver::LinearSolver>)
+                symbolic.factor(&effective).map(|factor| Factored {
+                    solver: Box::new(factor),
+                    table: None,
+                })
             }
             Effective::Cyclic(sectors) => {
                 let [border, corner] = self.border([cm, ck]);
@@ -127,6 +124,11 @@ impl RingBody {
             corner.extend_from_slice(&column[n_free..]);
         }
         [border, corner]
+    }
+
+    /// Whether S has a border: shaft dofs among the coordinates.
+    pub fn is_bordered(&self) -> bool {
+        !self.coordinates.shaft().0.is_empty()
     }
 
     /// Name of the ring's linear solver.

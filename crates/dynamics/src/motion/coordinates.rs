@@ -71,6 +71,14 @@ impl Coordinates {
         (&self.shaft, self.free.len())
     }
 
+    /// Number of a node among the free ones; None when it is held.
+    pub fn free_node(&self, node: usize) -> Option<usize> {
+        match self.sources[3 * node] {
+            Source::Free(i) => Some(i / 3),
+            Source::Held => None,
+        }
+    }
+
     /// Motion of a held nodal dof per unit of shaft dof `q`.
     fn lever(&self, dof: usize, q: usize) -> f64 {
         rigid_lever(self.arms[dof / 3], dof % 3, q)

@@ -5,14 +5,14 @@
 //! ([`solver::cyclic`]). The clamped bore that follows the shaft is a border in both.
 
 use mesh::{Mesh, PERIODIC_TOLERANCE, find_periodicity};
-use solver::cyclic::{CyclicBordered, CyclicMatrix, CyclicRing};
+use solver::cyclic::{CyclicBordered, CyclicMatrix, CyclicRing, ResponseTable};
 use solver::{Coupling, LinearSolver, SolverError, Symbolic};
 use sprs::CsMat;
 
 use super::coordinates::Coordinates;
 use super::sparse::kronecker;
 use crate::error::DynamicsError;
-use crate::model::{Backend, RingModel};
+use crate::model::{Backend, RACEWAY_GROUP, RingModel};
 use crate::ring::elimination_order;
 
 /// Sectors from which on harmonics pay: a few wide ones cost more than the ring as a whole.
@@ -31,6 +31,16 @@ pub struct Sectors {
     ring: CyclicRing,
     stiffness: CyclicMatrix,
     mass: CyclicMatrix,
+    /// Section nodes of the raceway, counted among those that stay.
+    raceway: Vec<usize>,
+}
+
+/// A factored effective matrix.
+pub struct Factored {
+    /// Solves S x = b.
+    pub solver: Box<dyn LinearSolver>,
+    /// Responses of all raceway nodes under S without its border, when the ring is periodic: contacts then need no columns.
+    pub table: Option<ResponseTable>,
 }
 
 impl Effective {
@@ -75,14 +85,17 @@ impl Sectors {
         [mass, stiffness]: [f64; 2],
         border: &[f64],
         corner: &[f64],
-    ) -> Result<Box<dyn LinearSolver>, SolverError> {
+    ) -> Result<Factored, SolverError> {
         let effective = self.stiffness.combined(stiffness, mass, &self.mass)?;
         let factor = self.ring.factor(&effective)?;
+        let table = Some(ResponseTable::new(&factor, &self.raceway));
         let m = corner.len().isqrt();
-        if m == 0 {
-            return Ok(Box::new(factor));
-        }
-        Ok(Box::new(CyclicBordered::new(factor, border, m, corner)?))
+        let solver: Box<dyn LinearSolver> = if m == 0 {
+            Box::new(factor)
+        } else {
+            Box::new(CyclicBordered::new(factor, border, m, corner)?)
+        };
+        Ok(Factored { solver, table })
     }
 }
 
@@ -112,6 +125,16 @@ fn sectors(
             )));
         }
     };
+    let keep: Vec<usize> = (0..periodicity.n_section_nodes())
+        .filter(|i| held.binary_search(i).is_err())
+        .collect();
+    let touched = periodicity.section_nodes(&mesh.group_nodes(RACEWAY_GROUP));
+    let places = |nodes: Vec<usize>| nodes.iter().map(|n| keep.binary_search(n).ok()).collect();
+    let Some(raceway): Option<Vec<usize>> = touched.ok().and_then(places) else {
+        return Ok(Err(
+            "its raceway is not the same in all sectors, or touches what is held".to_string(),
+        ));
+    };
     let sector = fem::assemble_sector(mesh, &periodicity, &ring.material)
         .map_err(|source| DynamicsError::Fem { side: name, source })?;
     let couplings: Vec<Coupling> = sector
@@ -134,12 +157,12 @@ fn sectors(
             &directions,
             periodicity.half_way(),
         )?;
-        let keep: Vec<usize> = (0..width).filter(|i| held.binary_search(i).is_err()).collect();
         let (stiffness, mass) = (stiffness.restricted(&keep), mass.restricted(&keep));
         Ok(Sectors {
             ring: whole.restricted(&stiffness, &keep)?,
             stiffness,
             mass,
+            raceway,
         })
     };
     build()

@@ -1,13 +1,18 @@
 //! What a step does to one flexible ring: predictor, columns, the compliance its contacts and its partner see, update.
 //!
-//! Cost of a step: one block solve of 1 + 2 n_balls right-hand sides, which reads the factor once, one product with K and
-//! one with M; the columns of the mount are solved once per step size.
+//! Contacts and partner act by a compliance C and then by the increment that their forces make. A sparse factor gives both by
+//! columns, one block solve of 1 + 2 n_balls right-hand sides per step, which reads the factor once. A periodic ring has C in a
+//! table of the responses of its raceway, made once per step size; then a step takes two solves. The columns of the mount
+//! are solved once per step size.
 
 use contact::NodalWeights;
 use solver::LinearSolver;
+use solver::cyclic::ResponseTable;
+use solver::dense::DenseCholesky;
 
 use super::body::RingBody;
 use super::coordinates::SparseLoad;
+use super::effective::Factored;
 use super::integrator::Integrator;
 use super::sparse::{product, sparse_dot};
 use crate::error::DynamicsError;
@@ -15,6 +20,10 @@ use crate::error::DynamicsError;
 /// The factor of one ring at one step size.
 pub struct RingFactor {
     factor: Box<dyn LinearSolver>,
+    /// Responses of the raceway of a periodic ring.
+    table: Option<ResponseTable>,
+    /// Inverse of the border's compliance where S has one, row-major.
+    border: Option<Vec<f64>>,
     /// S^-1 times the mount's functionals, column-major `[n][n_mount]`.
     mount: Vec<f64>,
     /// The mount's compliance, row-major.
@@ -60,8 +69,8 @@ impl RingState {
 /// A ring over one step as contacts and partner see it: g = start, then g1 = predicted + C F, over the two directions
 /// of every contact and the functionals of the mount.
 pub struct RingStep {
-    /// The predictor, which is the increment without forces of contacts and partner, then the increments per unit
-    /// contact force: column-major `[n][1 + 2 n_contacts]`.
+    /// The predictor, which is the increment without forces of contacts and partner, then, if they were solved for, the
+    /// increments per unit contact force: column-major `[n][1 + 2 n_contacts]`.
     block: Vec<f64>,
     /// Functionals of the contacts.
     contacts: Vec<SparseLoad>,
@@ -85,7 +94,10 @@ impl RingStep {
 impl RingFactor {
     /// Factors the ring for steps of `dt` seconds.
     pub fn new(body: &RingBody, integrator: Integrator, dt: f64) -> Result<RingFactor, DynamicsError> {
-        let factor = body.factor(integrator, dt)?;
+        let Factored {
+            solver: factor,
+            table,
+        } = body.factor(integrator, dt)?;
         let n = body.coordinates.n();
         let mount = columns(&*factor, &body.mount, n);
         let m = body.mount.len();
@@ -95,8 +107,16 @@ impl RingFactor {
                 mount_compliance[m * i + j] = sparse_dot(&body.mount[i], &mount[n * j..n * (j + 1)]);
             }
         }
+        // The border of S is the mount of a clamped bore.
+        let border = body.is_bordered().then(|| {
+            DenseCholesky::factor(m, &mount_compliance)
+                .expect("the shaft's compliance is positive definite")
+                .inverse()
+        });
         Ok(RingFactor {
             factor,
+            table,
+            border,
             mount,
             mount_compliance,
             integrator,
@@ -104,9 +124,9 @@ impl RingFactor {
         })
     }
 
-    /// Bytes of the factor.
+    /// Bytes of the factor and of the table.
     pub fn bytes(&self) -> usize {
-        self.factor.factor_bytes()
+        self.factor.factor_bytes() + self.table.as_ref().map_or(0, ResponseTable::bytes)
     }
 
     /// Predictor and columns of a step from `state` under the generalised load `load` and with contacts at `feet`.
@@ -124,10 +144,12 @@ impl RingFactor {
             .flat_map(|foot| body.coordinates.reduce_weights(foot))
             .collect();
         let mut block = self.right_side(body, state, load);
-        block.resize(n * (1 + contacts.len()), 0.0);
-        fill(&mut block[n..], &contacts, n);
+        if self.table.is_none() {
+            block.resize(n * (1 + contacts.len()), 0.0);
+            fill(&mut block[n..], &contacts, n);
+        }
         let sides = clock.elapsed().as_secs_f64();
-        self.factor.solve(&mut block, 1 + contacts.len());
+        self.factor.solve(&mut block, self.n_columns(contacts.len()));
         let all: Vec<&SparseLoad> = contacts.iter().chain(&body.mount).collect();
         let start: Vec<f64> = all.iter().map(|g| sparse_dot(g, &state.w)).collect();
         let predicted = all
@@ -135,7 +157,10 @@ impl RingFactor {
             .zip(&start)
             .map(|(g, s)| s + sparse_dot(g, &block[..n]))
             .collect();
-        let compliance = self.compliance(&all, &block[n..], n);
+        let compliance = match &self.table {
+            Some(table) => self.table_compliance(body, table, feet, &contacts),
+            None => self.column_compliance(&all, &block[n..], n),
+        };
         RingStep {
             block,
             start,
@@ -146,8 +171,64 @@ impl RingFactor {
         }
     }
 
-    /// Compliance of contacts, then mount, exactly symmetric.
-    fn compliance(&self, all: &[&SparseLoad], columns: &[f64], n: usize) -> Vec<f64> {
+    /// Right-hand sides of a step with `contacts` functionals.
+    fn n_columns(&self, contacts: usize) -> usize {
+        match self.table {
+            Some(_) => 1,
+            None => 1 + contacts,
+        }
+    }
+
+    /// Compliance of contacts, then mount, from the responses of the raceway: those of the ring without its border, plus what
+    /// the border adds, V M^-1 V^T, with M the border's compliance and V the motion of the contacts under its unit forces.
+    fn table_compliance(
+        &self,
+        body: &RingBody,
+        table: &ResponseTable,
+        feet: &[NodalWeights],
+        contacts: &[SparseLoad],
+    ) -> Vec<f64> {
+        let patch = |foot: &NodalWeights| {
+            let free = |node: &usize| body.coordinates.free_node(*node);
+            let nodes: Option<Vec<usize>> = foot.nodes.iter().map(free).collect();
+            let nodes = nodes.expect("no raceway node of a periodic ring is held");
+            table
+                .patch(&nodes, &foot.coefficients)
+                .expect("patches lie on the raceway")
+        };
+        let patches: Vec<_> = feet.iter().map(patch).collect();
+        let direct = table.compliances(&patches);
+        let (n, m) = (contacts.len(), body.mount.len());
+        let columns: Vec<&[f64]> = self.mount.chunks_exact(body.coordinates.n()).collect();
+        let moved = |i: usize| columns.iter().map(move |y| sparse_dot(&contacts[i], y));
+        let v: Vec<f64> = (0..n).flat_map(moved).collect();
+        let size = n + m;
+        let mut compliance = vec![0.0; size * size];
+        for i in 0..size {
+            for j in 0..=i {
+                let value = match (i < n, j < n) {
+                    (true, _) => {
+                        direct[n * i + j] + self.by_border(&v[m * i..m * (i + 1)], &v[m * j..m * (j + 1)])
+                    }
+                    (false, true) => v[m * j + i - n],
+                    (false, false) => self.mount_compliance[m * (i - n) + j - n],
+                };
+                (compliance[size * i + j], compliance[size * j + i]) = (value, value);
+            }
+        }
+        compliance
+    }
+
+    /// a M^-1 b for two rows of V; zero without a border.
+    fn by_border(&self, a: &[f64], b: &[f64]) -> f64 {
+        let Some(inverse) = &self.border else { return 0.0 };
+        let m = b.len();
+        let row = |i: usize| (0..m).map(|j| inverse[m * i + j] * b[j]).sum::<f64>();
+        a.iter().enumerate().map(|(i, a)| a * row(i)).sum()
+    }
+
+    /// Compliance of contacts, then mount, exactly symmetric, from the columns of the contacts.
+    fn column_compliance(&self, all: &[&SparseLoad], columns: &[f64], n: usize) -> Vec<f64> {
         let (size, contacts) = (all.len(), columns.len() / n);
         let mut compliance = vec![0.0; size * size];
         for i in 0..size {
@@ -196,8 +277,18 @@ impl RingFactor {
 
     /// Increment of the coordinates under forces on contacts (N, `[2 n_contacts]`) and mount (N and N m).
     pub fn increment(&self, step: &RingStep, contacts: &[f64], mount: &[f64]) -> Vec<f64> {
-        let n = step.block.len() / (1 + step.contacts.len());
-        let mut dw = step.block[..n].to_vec();
+        let n = step.block.len() / self.n_columns(step.contacts.len());
+        let mut dw = if self.table.is_some() {
+            let mut load = vec![0.0; n];
+            for (contact, f) in step.contacts.iter().zip(contacts) {
+                contact.iter().for_each(|&(i, w)| load[i] += f * w);
+            }
+            self.factor.solve(&mut load, 1);
+            load.iter_mut().zip(&step.block).for_each(|(d, p)| *d += p);
+            load
+        } else {
+            step.block[..n].to_vec()
+        };
         let columns = step.block[n..].chunks_exact(n).zip(contacts);
         for (column, &f) in columns.chain(self.mount.chunks_exact(n).zip(mount)) {
             if f != 0.0 {
