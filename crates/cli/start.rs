@@ -20,6 +20,7 @@ pub struct Settled {
 
 /// Static equilibrium at t = 0, if the motion starts from it. Its factors are not kept: the motion has its own.
 pub fn settle(model: &Model, dynamic: &Dynamic, progress: &Progress) -> Result<Settled, Failure> {
+    dynamics::motion::check_supported(model).map_err(Failure::solving)?;
     if dynamic.start != Start::Static {
         return Ok(Settled::default());
     }

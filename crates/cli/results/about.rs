@@ -13,6 +13,8 @@ use crate::scene::{FlexibleRing, Scene};
 pub const SCENE_FILE: &str = "scene_file";
 /// Its `--set` arguments, one per line.
 pub const OVERRIDES: &str = "overrides";
+/// Commit of the program's source, `unknown` when it was not built from a repository; `+` marks changes beside it.
+pub const COMMIT: &str = "commit";
 /// Warnings of the start of the run, one per line.
 pub const WARNINGS: &str = "warnings";
 
@@ -26,6 +28,7 @@ pub fn about(scene: &Scene, dir: &Path, warnings: &[String]) -> anyhow::Result<B
         (SCENE_FILE.to_string(), file.to_string_lossy().into_owned()),
         (OVERRIDES.to_string(), scene.overrides.join("\n")),
         (WARNINGS.to_string(), warnings.join("\n")),
+        (COMMIT.to_string(), env!("RACEWAY_COMMIT").to_string()),
     ]);
     for side in Side::BOTH {
         if let Some(ring) = flexible(scene, side) {

@@ -118,6 +118,11 @@ fn a_driven_shaft_moves_the_balls() {
         let model = driven(rigid);
         let states = run(&model, settings(1e-5, 0.0), 100);
         assert_ledger_closes(&states);
+        assert_eq!(
+            Some(states[0].shaft_velocity[2]),
+            model.prescribed_rate(2, 0.0),
+            "it starts with the drive"
+        );
         let mut solver = StaticSolver::new(&model).unwrap();
         for (i, state) in states.iter().enumerate().skip(10).step_by(10) {
             let end = 1e-5 * i as f64;

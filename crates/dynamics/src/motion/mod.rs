@@ -37,4 +37,5 @@ pub use integrator::Integrator;
 pub use ledger::Ledger;
 pub use run::Motion;
 pub use shape::StateShape;
+pub use start::check_supported;
 pub use state::{Ladder, MotionSettings, MotionState, StepReport, StepSeconds};

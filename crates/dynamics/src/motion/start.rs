@@ -15,11 +15,13 @@ use crate::problem::Site;
 use crate::solution::StaticSolution;
 
 impl Motion<'_> {
-    /// The state at static equilibrium, at rest but for the turning of the inner ring.
+    /// The state at static equilibrium, at rest but for the turning of the inner ring and what drives the shaft.
     pub fn start(&self, solution: &StaticSolution) -> MotionState {
         let model = self.model;
         let q = solution.displacements.shaft;
         let omega = self.settings.speed.at(0.0);
+        // A driven shaft moves already.
+        let velocity = [0, 1, 2, 3, 4].map(|dof| model.prescribed_rate(dof, 0.0).unwrap_or(0.0));
         let ring = |side: Side| {
             let body = self.rings[side.index()].as_ref()?;
             let elastic = solution.elastic[side.index()].as_ref()?;
@@ -27,7 +29,7 @@ impl Motion<'_> {
                 body,
                 elastic,
                 if side == Side::Inner { q } else { [0.0; 5] },
-                [0.0; 5],
+                if side == Side::Inner { velocity } else { [0.0; 5] },
                 if side == Side::Inner { omega } else { 0.0 },
             ))
         };
@@ -49,7 +51,7 @@ impl Motion<'_> {
             ball_velocities: vec![[0.0; 2]; model.geometry.n_balls],
             ball_accelerations: vec![[0.0; 2]; model.geometry.n_balls],
             shaft: q,
-            shaft_velocity: [0.0; 5],
+            shaft_velocity: velocity,
             shaft_acceleration: [0.0; 5],
             trend: vec![[0.0; 2]; 3 * model.geometry.n_balls],
             forces: forces.collect(),
@@ -197,7 +199,7 @@ fn ring_at_start(body: &RingBody, elastic: &[f64], q: [f64; 5], velocity: [f64; 
 }
 
 /// Refuses what statics knows and motion does not.
-pub(super) fn check_supported(model: &Model) -> Result<(), DynamicsError> {
+pub fn check_supported(model: &Model) -> Result<(), DynamicsError> {
     let refuse = |what: &'static str| Err(DynamicsError::NotInMotion { what });
     if model.contact.mode == ContactMode::Facet {
         return refuse("contact.mode = \"facet\"; use \"patch\"");
