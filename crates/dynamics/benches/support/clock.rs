@@ -99,9 +99,9 @@ impl Laps {
         [0, 1].map(|i| self.least_sum(above, i) / self.least_sum(below, i))
     }
 
-    /// Least wall seconds of a part.
-    pub fn least_wall(&self, part: &str) -> f64 {
-        self.least_sum(&[part], 1)
+    /// Least seconds of a part, [processor, wall].
+    pub fn least(&self, part: &str) -> [f64; 2] {
+        [0, 1].map(|i| self.least_sum(&[part], i))
     }
 
     /// Sum over the parts of their least seconds.
