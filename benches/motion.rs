@@ -12,14 +12,14 @@
 //!
 //! | part | least | median | floor |
 //! |---|---|---|---|
-//! | step | 140 | 217 | |
+//! | step | 140 | 215 | |
 //! | loads | 0.0 | 0.0 | |
 //! | patches | 4.7 | 7.5 | |
 //! | right side | 4.1 | 8.3 | |
-//! | block solve, 37 right-hand sides | 110 | 190 | 17.5: factors of 227 MB, twice, at 26 GB/s |
+//! | block solve, 37 right-hand sides | 110 | 189 | 17.5: factors of 227 MB, twice, at 26 GB/s |
 //! | newton, 2 iterations | 0.4 | 0.5 | |
 //! | update: state, energies, ledger | 7.1 | 9.2 | |
-//! | frame, 1 round, with `frame_rotation` | 22.5 | 24.1 | 17.5: one factor of 114 MB, twice, at half the bandwidth |
+//! | frame, 1 round, with `frame_rotation` | 22.5 | 24.1 | 8.7: the factor of one ring, twice |
 //! | stress at the nodes of both rings | 22.9 | 29 | 0.1: 2.7 MB |
 //! | step file of 6.0 MB, synced | 9.2 | 20 | 7: the disk's own 0.85 GB/s |
 //!
