@@ -29,10 +29,12 @@ pub fn symmetric_eigen(n: usize, a: &[f64]) -> Result<(Vec<f64>, Vec<f64>), Solv
     if !a.iter().all(|x| x.is_finite()) {
         return Err(SolverError::EigenNotFinite);
     }
+    let scale = power_of_two(a);
+    let scaled: Vec<f64> = a.iter().map(|x| x / scale).collect();
     let (mut values, mut vectors) = (Diag::<f64>::zeros(n), Mat::<f64>::zeros(n, n));
     let request = self_adjoint_evd_scratch::<f64>(n, ComputeEigenvectors::Yes, Par::Seq, Default::default());
     self_adjoint_evd(
-        MatRef::from_row_major_slice(a, n, n),
+        MatRef::from_row_major_slice(&scaled, n, n),
         values.as_mut(),
         Some(vectors.as_mut()),
         Par::Seq,
@@ -44,9 +46,20 @@ pub fn symmetric_eigen(n: usize, a: &[f64]) -> Result<(Vec<f64>, Vec<f64>), Solv
         converged: 0,
         steps: 0,
     })?;
-    let values = (0..n).map(|i| values[i]).collect();
+    let values = (0..n).map(|i| scale * values[i]).collect();
     let vectors = (0..n * n).map(|k| vectors[(k % n, k / n)]).collect();
     Ok((values, vectors))
+}
+
+/// The power of two next below the largest entry; 1 for a zero matrix. Dividing by it is exact, and the factorisation, whose
+/// thresholds are absolute, then sees a matrix of ordinary size: unscaled, entries of 1e-11 cost ten digits.
+fn power_of_two(a: &[f64]) -> f64 {
+    let largest = a.iter().fold(0.0f64, |m, x| m.max(x.abs()));
+    if largest == 0.0 {
+        return 1.0;
+    }
+    // Not 2^-1074 and the like, by which 1 cannot be divided.
+    largest.log2().floor().clamp(-1000.0, 1000.0).exp2()
 }
 
 /// The lowest pairs of a small problem, at most `n_pairs`: all finite ones are found.

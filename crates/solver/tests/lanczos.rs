@@ -258,3 +258,39 @@ fn symmetric_matrices_have_their_eigenpairs() {
     a[5] = f64::NAN;
     assert_eq!(symmetric_eigen(n, &a), Err(SolverError::EigenNotFinite));
 }
+
+/// Wrong: small entries would cost digits: the thresholds by which the library divides large matrices are absolute. A power of two times the matrix
+/// has that times the values and the same vectors, bit for bit.
+#[test]
+fn the_eigenvectors_of_a_matrix_do_not_depend_on_its_unit() {
+    let (n, mut numbers) = (200, Numbers::new(9));
+    let a: Vec<f64> = (0..n * n).map(|_| numbers.next()).collect();
+    let (values, vectors) = symmetric_eigen(n, &a).unwrap();
+    for unit in [(-40f64).exp2(), (-400f64).exp2(), 60f64.exp2()] {
+        let scaled: Vec<f64> = a.iter().map(|x| unit * x).collect();
+        let (small, same) = symmetric_eigen(n, &scaled).unwrap();
+        assert!(vectors == same, "{unit:e}");
+        assert!(values.iter().zip(&small).all(|(a, b)| unit * a == *b), "{unit:e}");
+    }
+    let (values, _) = symmetric_eigen(n, &vec![0.0; n * n]).unwrap();
+    assert!(values.iter().all(|x| *x == 0.0));
+}
+
+/// Wrong: a search that must restart would lose what it has found when lambda is large, as in metres and kilograms: 90 pairs
+/// of a row of springs with omega^2 up to 1e15.
+#[test]
+fn restarts_keep_what_was_found_in_any_unit() {
+    let stiff = 4e14;
+    let soft = chains(1, 2000, false, 1e-3);
+    let problem = Sparse::new(soft.k.map(|x| stiff * x), soft.m.clone(), stiff * 1e-3);
+    let pairs = lanczos(&problem, LanczosSettings::new(90, 2), &mut |_| ()).unwrap();
+    println!("{} steps", pairs.steps);
+    assert!(pairs.steps < 150, "{}", pairs.steps);
+    for (i, value) in pairs.values.iter().enumerate() {
+        let expected = stiff * fixed(2000, i + 1);
+        assert!(
+            (value / expected - 1.0).abs() < 1e-9,
+            "{i}: {value:e} {expected:e}"
+        );
+    }
+}

@@ -1,4 +1,6 @@
-//! Clocks of the benchmark: processor time of all threads and wall time, by part and run.
+//! Clocks of the benchmarks: processor time of all threads and wall time, by part and run.
+
+#![allow(dead_code)]
 
 use std::time::Instant;
 
@@ -97,6 +99,11 @@ impl Laps {
         [0, 1].map(|i| self.least_sum(above, i) / self.least_sum(below, i))
     }
 
+    /// Least seconds of a part, [processor, wall].
+    pub fn least(&self, part: &str) -> [f64; 2] {
+        [0, 1].map(|i| self.least_sum(&[part], i))
+    }
+
     /// Sum over the parts of their least seconds.
     fn least_sum(&self, names: &[&str], i: usize) -> f64 {
         let chosen = self
@@ -133,7 +140,7 @@ pub fn read_bandwidth(bytes: usize) -> f64 {
         for chunk in array.chunks_exact(32) {
             sums.iter_mut().zip(chunk).for_each(|(sum, value)| *sum += value);
         }
-        divan::black_box(sums);
+        std::hint::black_box(sums);
     });
     bytes as f64 / seconds
 }

@@ -1,0 +1,328 @@
+//! A step in time of a bearing of 2 x 57 k dof, part by part, with stress and step file, each beside its floor.
+//!
+//! The bearing rolls at 1800 rpm under 2 kN and 1 kN with two threads. Steps with and without `frame_rotation` take turns,
+//! so that other work on the machine meets both. Floors: the block solve reads the factor of each ring twice, once
+//! down and once up, from memory; stress reads displacements and writes six components per node; a step file
+//! is written and synced. Bandwidth of memory and disk are measured in the same run. Run with
+//! `cargo bench -p raceway --bench motion`.
+//!
+//! Measured 21 November 2026 on 2 cores of an AMD EPYC (2.6 GHz) that others used too (load 4, so the median is mostly one
+//! ring after the other on one core; the least is both at once), ms of wall time, 45 365 and 45 360 coordinates that are not
+//! held. Least of 5 runs of 12 steps, median of the quietest:
+//!
+//! | part | least | median | floor |
+//! |---|---|---|---|
+//! | step | 140 | 215 | |
+//! | loads | 0.0 | 0.0 | |
+//! | patches | 4.7 | 7.5 | |
+//! | right side | 4.1 | 8.3 | |
+//! | block solve, 37 right-hand sides | 110 | 189 | 17.5: factors of 227 MB, twice, at 26 GB/s |
+//! | newton, 2 iterations | 0.4 | 0.5 | |
+//! | update: state, energies, ledger | 7.1 | 9.2 | |
+//! | frame, 1 round, with `frame_rotation` | 22.5 | 24.1 | 8.7: the factor of one ring, twice |
+//! | stress at the nodes of both rings | 22.9 | 29 | 0.1: 2.7 MB |
+//! | step file of 6.0 MB, synced | 9.2 | 20 | 7: the disk's own 0.85 GB/s |
+//!
+//! In processor time a step takes 0.209 s, with `frame_rotation` 1.13 times that; stress takes 0.14 and the file 0.03 of it. The
+//! block solve is bound by arithmetic, 38 Gflop/s on both cores: its floor in memory holds for one right-hand side.
+
+#[path = "../crates/dynamics/tests/support/mod.rs"]
+mod support;
+
+#[path = "../crates/dynamics/benches/support/clock.rs"]
+mod clock;
+
+use std::fs::{self, File};
+use std::io::Write;
+use std::path::Path;
+
+use checkpoint::{Body, Output, PointFields, StateArray, StepRecord, Storage};
+use clock::{Laps, least_wall};
+use contact::Side;
+use dynamics::effects::FrameRotation;
+use dynamics::motion::balls::Speed;
+use dynamics::motion::contacts::ContactScheme;
+use dynamics::motion::{Integrator, Ladder, Motion, MotionSettings, MotionState, StepReport};
+use dynamics::{ContactMode, Hold, Model, StaticSolver};
+use fem::stress::{StressRecovery, von_mises};
+use rayon::prelude::*;
+use support::Case;
+use support::rings::Level;
+
+/// Steps of each kind, and step files.
+const REPEATS: usize = 12;
+/// hex8, 56 700 dof per ring.
+const HEX8: Level = Level::hex8(180, 14, 3, 4);
+/// Step size, s, and speed, rad/s (1800 rpm).
+const DT: f64 = 1e-5;
+const SPEED: f64 = 60.0 * std::f64::consts::PI;
+/// Right-hand sides of a block solve: the predictor, two directions of 18 contacts.
+const N_RHS: usize = 37;
+
+fn bearing(frame_rotation: bool) -> Model {
+    let case = Case {
+        radial: 1000.0,
+        ..Case::axial(2000.0)
+    };
+    let mut model = case.flexible(ContactMode::Patch, HEX8, Hold::Clamped);
+    if frame_rotation {
+        model.effects.push(Box::new(FrameRotation {
+            speed: Speed::constant(SPEED),
+        }));
+    }
+    model
+}
+
+fn settings() -> MotionSettings {
+    MotionSettings {
+        dt: DT,
+        ladder: Ladder::default(),
+        integrator: Integrator::average_acceleration(),
+        scheme: ContactScheme::DiscreteGradient { weight: 0.5 },
+        speed: Speed::constant(SPEED),
+        slip: [0.0; 2],
+        contact_damping: None,
+        rayleigh: [0.0; 2],
+    }
+}
+
+/// A bearing on its way.
+struct Rolling<'a> {
+    motion: Motion<'a>,
+    state: MotionState,
+    laps: Laps,
+    report: StepReport,
+}
+
+impl<'a> Rolling<'a> {
+    fn new(model: &'a Model) -> Rolling<'a> {
+        let start = StaticSolver::new(model)
+            .and_then(|mut solver| solver.solve(model, None))
+            .expect("the bearing has an equilibrium");
+        let motion = Motion::new(model, settings()).expect("the rings can be factored");
+        let state = motion.start(&start);
+        // The first step touches memory for the first time.
+        let state = motion.step(&state).expect("a step from equilibrium").0;
+        Rolling {
+            motion,
+            state,
+            laps: Laps::default(),
+            report: StepReport::default(),
+        }
+    }
+
+    fn step(&mut self) {
+        let (next, report) = self
+            .laps
+            .time("step", || self.motion.step(&self.state))
+            .expect("slow rolling");
+        for (part, seconds) in report.seconds.parts() {
+            self.laps.add_wall(&format!("  {part}"), seconds);
+        }
+        self.laps.end_run();
+        self.report.add(&report);
+        self.state = next;
+    }
+
+    fn print(&self, name: &str) {
+        let per_step = |n: usize| n as f64 / REPEATS as f64;
+        println!(
+            "\n{name}: {REPEATS} steps, {:.1} newton iterations and {:.1} frame rounds each",
+            per_step(self.report.newton_iterations),
+            per_step(self.report.frame_rounds)
+        );
+        self.laps.print();
+    }
+}
+
+/// Stress of both rings at their nodes, Pa, and the file of the step.
+struct Writer {
+    recoveries: Vec<StressRecovery>,
+    output: Output,
+    centres: Vec<[f64; 3]>,
+}
+
+impl Writer {
+    fn new(model: &Model, dir: &Path) -> Writer {
+        let rings = || model.rings.iter().flatten();
+        let mut bodies: Vec<Body> = rings()
+            .zip(0..)
+            .map(|(ring, id)| {
+                Body::from_mesh(
+                    ["inner ring", "outer ring"][id as usize],
+                    id,
+                    &ring.mesh,
+                    [0.0; 3],
+                )
+            })
+            .collect();
+        let [radius, z] = model.geometry.ball_centre();
+        let centre = |ball: usize| {
+            let (sin, cos) = model.geometry.azimuth(ball).sin_cos();
+            [radius * cos, radius * sin, z]
+        };
+        let centres: Vec<[f64; 3]> = (0..model.geometry.n_balls).map(centre).collect();
+        bodies.push(Body::balls(
+            "balls",
+            2,
+            &centres,
+            0.5 * model.geometry.ball_diameter,
+        ));
+        Writer {
+            recoveries: rings()
+                .map(|ring| StressRecovery::new(&ring.mesh, &ring.material).expect("the mesh is sound"))
+                .collect(),
+            output: Output::create(dir, &bodies, Storage::default()).expect("an empty folder"),
+            centres,
+        }
+    }
+
+    /// Stress and file of one state; bytes of the file.
+    fn write(&mut self, bearing: &Rolling<'_>, step: u64, laps: &mut Laps) -> u64 {
+        let state = &bearing.state;
+        let fields = Side::BOTH.map(|side| bearing.motion.ring_displacement(state, side).expect("a ring").0);
+        let rings: Vec<Vec<[f64; 6]>> = laps.time("stress, both rings", || {
+            let jobs = self.recoveries.par_iter().zip(fields.par_iter());
+            jobs.map(|(recovery, u)| recovery.nodal(u)).collect()
+        });
+        let record = self.record(state, &fields, rings, step);
+        let path = laps
+            .time("step file", || self.output.write_step(&record))
+            .expect("the disk has room");
+        laps.end_run();
+        fs::metadata(path).expect("it was written").len()
+    }
+
+    fn record(
+        &self,
+        state: &MotionState,
+        fields: &[Vec<f64>; 2],
+        rings: Vec<Vec<[f64; 6]>>,
+        step: u64,
+    ) -> StepRecord {
+        let mut displacement: Vec<[f64; 3]> = fields
+            .iter()
+            .flat_map(|u| u.chunks_exact(3).map(|u| [u[0], u[1], u[2]]))
+            .collect();
+        displacement.extend(&self.centres);
+        let mut stress = rings.concat();
+        stress.resize(displacement.len(), [0.0; 6]);
+        let forces = vec![[0.0; 3]; displacement.len()];
+        let kinds = ["w", "v", "a"];
+        let arrays = state.rings.iter().flatten().zip(["inner", "outer"]);
+        let named = arrays.flat_map(|(ring, name)| {
+            let values = [&ring.w, &ring.v, &ring.a].map(|x| StateArray::Real(x.clone()));
+            kinds.map(|kind| format!("{name}_{kind}")).into_iter().zip(values)
+        });
+        StepRecord {
+            step,
+            time: step as f64 * DT,
+            points: PointFields {
+                displacement,
+                von_mises: Some(stress.iter().map(|&s| von_mises(s)).collect()),
+                stress: Some(stress),
+                force_inner: Some(forces.clone()),
+                force_outer: Some(forces),
+                ..PointFields::default()
+            },
+            scene: String::new(),
+            state: named.collect(),
+        }
+    }
+}
+
+/// Bytes per second at which all threads together read an array of `bytes` bytes.
+fn read_bandwidth(bytes: usize) -> f64 {
+    let array = vec![1.0_f64; bytes / 8];
+    let part = array.len().div_ceil(rayon::current_num_threads());
+    let seconds = least_wall(10, || {
+        array.par_chunks(part).for_each(|part| {
+            let mut sums = [0.0; 32];
+            for chunk in part.chunks_exact(32) {
+                sums.iter_mut().zip(chunk).for_each(|(sum, value)| *sum += value);
+            }
+            std::hint::black_box(sums);
+        });
+    });
+    bytes as f64 / seconds
+}
+
+/// Bytes per second of writing and syncing a file of `bytes` bytes in a folder.
+fn disk_bandwidth(dir: &Path, bytes: usize) -> f64 {
+    let data = vec![7_u8; bytes];
+    let path = dir.join("bandwidth.bin");
+    let seconds = least_wall(REPEATS, || {
+        let mut file = File::create(&path).expect("the folder can be written");
+        file.write_all(&data).expect("the disk has room");
+        file.sync_all().expect("the disk can be synced");
+    });
+    fs::remove_file(&path).expect("it was written");
+    bytes as f64 / seconds
+}
+
+fn print_floor(name: &str, seconds: f64, bytes: f64, bandwidth: f64) {
+    let floor = bytes / bandwidth;
+    println!(
+        "{name:22} {:8.2} ms, {:6.1} MB at {:5.2} GB/s: floor {:6.2} ms, {:5.1} x",
+        1e3 * seconds,
+        1e-6 * bytes,
+        1e-9 * bandwidth,
+        1e3 * floor,
+        seconds / floor
+    );
+}
+
+fn main() {
+    let models = [bearing(false), bearing(true)];
+    let [mut plain, mut turning] = [Rolling::new(&models[0]), Rolling::new(&models[1])];
+    for _ in 0..REPEATS {
+        plain.step();
+        turning.step();
+    }
+    let n = Side::BOTH.map(|side| plain.motion.n_coordinates(side));
+    println!(
+        "{} and {} coordinates, {} threads",
+        n[0],
+        n[1],
+        rayon::current_num_threads()
+    );
+    plain.print("without effects but two forces");
+    turning.print("with frame_rotation");
+    let dir = tempfile::tempdir().expect("a folder for temporary files");
+    let mut writer = Writer::new(&models[0], dir.path());
+    let (mut laps, mut file) = (Laps::default(), 0);
+    for step in 0..REPEATS {
+        file = writer.write(&plain, step as u64, &mut laps);
+    }
+    println!("\nresults of a step");
+    laps.print();
+
+    let factor = plain.motion.factor_bytes();
+    let memory = read_bandwidth(factor);
+    let solve = plain.laps.least("  solve")[1];
+    println!("\nleast times against floors");
+    print_floor("block solve", solve, 2.0 * factor as f64, memory);
+    let flops = 4.0 * (factor / 8) as f64 * N_RHS as f64;
+    println!(
+        "{:22} {:8.1} Gflop/s in {N_RHS} right-hand sides",
+        "",
+        1e-9 * flops / solve
+    );
+    let nodes: usize = models[0]
+        .rings
+        .iter()
+        .flatten()
+        .map(|ring| ring.mesh.n_nodes())
+        .sum();
+    let stress = laps.least("stress, both rings")[1];
+    print_floor("stress, both rings", stress, (8 * (3 + 6) * nodes) as f64, memory);
+    let disk = disk_bandwidth(dir.path(), file as usize);
+    print_floor("step file", laps.least("step file")[1], file as f64, disk);
+    let share = |part: [f64; 2]| part[0] / plain.laps.least("step")[0];
+    println!(
+        "processor time over that of the step without effects: frame_rotation {:.2}, stress {:.2}, file {:.2}",
+        share(turning.laps.least("step")),
+        share(laps.least("stress, both rings")),
+        share(laps.least("step file"))
+    );
+}
