@@ -57,6 +57,7 @@ fn exchange(state: &mut MotionState, shape: &StateShape, port: &mut Port<'_>) ->
         forces,
         angles,
         approaches,
+        places,
         ledger,
     } = state;
     let n_sites = 2 * shape.n_balls;
@@ -72,6 +73,7 @@ fn exchange(state: &mut MotionState, shape: &StateShape, port: &mut Port<'_>) ->
     port.rows("forces", forces, n_sites)?;
     port.list("angles", angles, n_sites)?;
     port.list("approaches", approaches, n_sites)?;
+    port.rows("places", places, n_sites)?;
     exchange_ledger(ledger, port)?;
     for (side, ring) in Side::BOTH.into_iter().zip(rings) {
         if let Some(n) = shape.ring_dofs[side.index()] {
@@ -220,7 +222,7 @@ mod tests {
         };
         let mut pairs = |n: usize| (0..n).map(|_| [number(), number()]).collect::<Vec<_>>();
         let (balls, ball_velocities, ball_accelerations) = (pairs(2), pairs(2), pairs(2));
-        let (trend, forces) = (pairs(6), pairs(4));
+        let (trend, forces, places) = (pairs(6), pairs(4), pairs(4));
         let mut list = |n: usize| (0..n).map(|_| number()).collect::<Vec<_>>();
         let ring = RingState {
             w: vec![f64::NAN, -0.0, 1e-300],
@@ -236,6 +238,7 @@ mod tests {
             ball_accelerations,
             trend,
             forces,
+            places,
             angles: list(4),
             approaches: list(4),
             shaft: [0, 1, 2, 3, 4].map(|_| number()),

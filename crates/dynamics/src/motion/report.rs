@@ -67,7 +67,7 @@ impl Motion<'_> {
     ) -> Result<[f64; 2], DynamicsError> {
         let share = 1.0 - self.settings.integrator.alpha_f;
         let time = self.time(from.step) + share * self.settings.dt;
-        let (_, feet) = self.place(from, time)?;
+        let feet = self.place(from, time)?.feet;
         let i = side.index();
         let (Some(body), Some(old), Some(new)) = (&self.rings[i], &from.rings[i], &to.rings[i]) else {
             return Ok([0.0; 2]);

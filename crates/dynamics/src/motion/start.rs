@@ -33,6 +33,10 @@ impl Motion<'_> {
                 if side == Side::Inner { omega } else { 0.0 },
             ))
         };
+        let places = solution
+            .balls
+            .iter()
+            .flat_map(|b| [&b.inner, &b.outer].map(|c| [c.contact_angle_rad, c.force_n]));
         let forces = solution.balls.iter().flat_map(|b| {
             [(Side::Inner, &b.inner), (Side::Outer, &b.outer)].map(|(side, c)| {
                 let (sin, cos) = c.contact_angle_rad.sin_cos();
@@ -55,6 +59,7 @@ impl Motion<'_> {
             shaft_acceleration: [0.0; 5],
             trend: vec![[0.0; 2]; 3 * model.geometry.n_balls],
             forces: forces.collect(),
+            places: places.collect(),
             angles: angles.collect(),
             approaches: solution
                 .balls
@@ -95,6 +100,7 @@ impl Motion<'_> {
             shaft_acceleration: [0.0; 5],
             trend: vec![[0.0; 2]; 3 * n],
             forces: vec![[0.0; 2]; 2 * n],
+            places: vec![[self.model.geometry.free_contact_angle(), 0.0]; 2 * n],
             angles: vec![self.model.geometry.free_contact_angle(); 2 * n],
             approaches: vec![0.0; 2 * n],
             ledger: Ledger::default(),
@@ -166,6 +172,7 @@ impl Motion<'_> {
             state.approaches[index] = at.approach;
             state.angles[index] = (sign * l[1]).atan2(sign * l[0]);
             state.forces[index] = l.map(|x| at.force * x / length);
+            state.places[index] = [state.angles[index], at.force];
             state.ledger.hertz += at.energy;
         }
     }

@@ -66,6 +66,8 @@ pub struct MotionState {
     pub angles: Vec<f64>,
     /// Hertz approaches at the end of the last step, by site, m; negative is a gap.
     pub approaches: Vec<f64>,
+    /// Groove angle, rad, and load, N, of the patches, by site: they follow angles and forces with play.
+    pub places: Vec<[f64; 2]>,
     /// Energy ledger.
     pub ledger: Ledger,
 }

@@ -66,13 +66,13 @@ impl Motion<'_> {
         let time = span.at(1.0 - self.settings.integrator.alpha_f);
         let loads = self.loads_at(state, time)?;
         report.seconds.loads = clock.lap();
-        let (sites, feet) = self.place(state, time)?;
+        let placing = self.place(state, time)?;
         report.seconds.patches = clock.lap();
-        let mut moving = self.prepare(state, span, &loads, &feet)?;
+        let mut moving = self.prepare(state, span, &loads, &placing.feet)?;
         let times = moving.iter().flatten().map(|m| m.step.seconds);
         [report.seconds.right_side, report.seconds.solve] = longest(times);
         clock.lap();
-        let mut system = self.system(state, span, sites, &moving, &loads);
+        let mut system = self.system(state, span, placing.sites, &moving, &loads);
         let scale = state
             .forces
             .iter()
@@ -106,7 +106,8 @@ impl Motion<'_> {
             }
         };
         check_patches(&system, &solution)?;
-        let (next, error) = self.finish(state, &system, &solution, moving, increments);
+        let (mut next, error) = self.finish(state, &system, &solution, moving, increments);
+        next.places = placing.places;
         report.error = error;
         report.seconds.update += clock.lap();
         Ok((next, report))
