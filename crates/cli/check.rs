@@ -147,5 +147,16 @@ fn print_ring(model: &Model, side: Side) -> Result<Option<RingMemory>, Failure> 
         symbolic.flops(),
         (memory.mesh + memory.making()) as f64 / 1e6
     ));
+    print::line(format_args!(
+        "         {}",
+        match mesh::find_periodicity(mesh, mesh::PERIODIC_TOLERANCE) {
+            Ok(periodicity) => format!(
+                "rotationally periodic, {} equal sectors, to {:.1e} m",
+                periodicity.n_sectors(),
+                periodicity.deviation()
+            ),
+            Err(reason) => format!("not rotationally periodic: {reason}"),
+        }
+    ));
     Ok(Some(memory))
 }

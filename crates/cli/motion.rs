@@ -5,6 +5,7 @@ use std::path::Path;
 use std::time::Instant;
 
 use anyhow::anyhow;
+use contact::Side;
 use dynamics::motion::balls::Speed;
 use dynamics::motion::contacts::{ContactDamping, ContactScheme};
 use dynamics::motion::{Integrator, Ladder, Motion, MotionSettings, MotionState};
@@ -48,6 +49,7 @@ pub fn run(
     let settled = settle(&model, dynamic, &progress)?;
     progress.stage("factoring the effective matrices");
     let motion = Motion::new(&model, settings(scene, dynamic)).map_err(Failure::solving)?;
+    say_solvers(&motion, &progress);
     let state = settled.first_state(&motion, dynamic)?;
     let first = Snapshot::of_motion(&motion, &state);
     let files = Files::create(scene, &model, dir, &first, probes, &settled.warnings())?;
@@ -91,6 +93,7 @@ pub fn resume(
     let read = start.elapsed().as_secs_f64();
     progress.stage("factoring the effective matrices");
     let motion = Motion::new(&model, settings(scene, dynamic)).map_err(Failure::solving)?;
+    say_solvers(&motion, &progress);
     let (state, newton) = stored.state(&motion)?;
     let (first, warnings) = (Snapshot::of_motion(&motion, &state), stored.warnings);
     let files = Files::resume(
@@ -119,6 +122,15 @@ pub fn resume(
         start,
     };
     march.finish_run(progress, limits, warnings, costs)
+}
+
+/// Says how each ring is solved.
+fn say_solvers(motion: &Motion<'_>, progress: &Progress) {
+    for side in Side::BOTH {
+        if let Some(note) = motion.solver_note(side) {
+            progress.stage(&format!("{} ring: {note}", side.name()));
+        }
+    }
 }
 
 /// What the start of a run cost.

@@ -90,7 +90,7 @@ impl RingBody {
         let [m, c, k] = integrator.effective(dt);
         let (cm, ck) = (m + c * self.damping[0], k + c * self.damping[1]);
         let factored = match &self.effective {
-            Effective::Sparse(symbolic) => {
+            Effective::Sparse(symbolic, _) => {
                 let mass = self.coordinates.reduce_matrix(&kronecker(&self.node_mass));
                 let effective = &mass.map(|x| cm * x) + &self.stiffness.map(|x| ck * x);
                 drop(mass);
@@ -129,6 +129,11 @@ impl RingBody {
     /// Whether S has a border: shaft dofs among the coordinates.
     pub fn is_bordered(&self) -> bool {
         !self.coordinates.shaft().0.is_empty()
+    }
+
+    /// The ring's linear solver and why it is that one, for a log.
+    pub fn solver_note(&self) -> String {
+        self.effective.note()
     }
 
     /// Name of the ring's linear solver.

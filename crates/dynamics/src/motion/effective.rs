@@ -20,8 +20,8 @@ const LEAST_SECTORS: usize = 12;
 
 /// What stays of the matrices of a ring to factor S for any step size.
 pub enum Effective {
-    /// Analysis of the sparse matrix.
-    Sparse(Box<Symbolic>),
+    /// Analysis of the sparse matrix, and why the ring is not solved by harmonics.
+    Sparse(Box<Symbolic>, String),
     /// Sectors of a periodic ring, without what is held.
     Cyclic(Box<Sectors>),
 }
@@ -52,28 +52,37 @@ impl Effective {
         coordinates: &Coordinates,
         (stiffness, node_mass): (&CsMat<f64>, &CsMat<f64>),
     ) -> Result<Effective, DynamicsError> {
+        let mut why = "the scene asks for it".to_string();
         if backend != Backend::Sparse {
             match sectors(ring, name, coordinates)? {
                 Ok(sectors) => return Ok(Effective::Cyclic(Box::new(sectors))),
                 Err(reason) if backend == Backend::Cyclic => {
                     return Err(DynamicsError::NotPeriodic { side: name, reason });
                 }
-                Err(_) => {}
+                Err(reason) => why = reason,
             }
         }
         let mut order = elimination_order(&ring.mesh, coordinates.free());
         order.extend(coordinates.free().len()..coordinates.n());
         let mass = coordinates.reduce_matrix(&kronecker(node_mass));
         Symbolic::new(&(&mass + stiffness), &order)
-            .map(|symbolic| Effective::Sparse(Box::new(symbolic)))
+            .map(|symbolic| Effective::Sparse(Box::new(symbolic), why))
             .map_err(|source| DynamicsError::Solver { side: name, source })
     }
 
     /// Name of the solver as a scene has it.
     pub fn name(&self) -> &'static str {
         match self {
-            Effective::Sparse(_) => "sparse",
+            Effective::Sparse(..) => "sparse",
             Effective::Cyclic(_) => "cyclic",
+        }
+    }
+
+    /// The solver and why it is that one, for a log.
+    pub fn note(&self) -> String {
+        match self {
+            Effective::Sparse(_, why) => format!("sparse ({why})"),
+            Effective::Cyclic(sectors) => format!("cyclic ({} equal sectors)", sectors.ring.n_sectors()),
         }
     }
 }

@@ -106,6 +106,11 @@ impl<'a> Motion<'a> {
         self.rings[side.index()].as_ref().map(RingBody::solver_name)
     }
 
+    /// The linear solver of a flexible ring and why it is that one, for a log.
+    pub fn solver_note(&self, side: Side) -> Option<String> {
+        self.rings[side.index()].as_ref().map(RingBody::solver_note)
+    }
+
     /// Number of generalised coordinates of a ring; 0 for a rigid one.
     pub fn n_coordinates(&self, side: Side) -> usize {
         self.rings[side.index()].as_ref().map_or(0, |r| r.coordinates.n())
