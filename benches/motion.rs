@@ -1,30 +1,30 @@
 //! A step in time of a bearing of 2 x 57 k dof, part by part, with stress and step file, each beside its floor.
 //!
 //! The bearing rolls at 1800 rpm under 2 kN and 1 kN with two threads. Steps with and without `frame_rotation` take turns,
-//! so that other work on the machine meets both. Floors: the block solve reads the factor of each ring twice, once
+//! so that other work on the machine meets both. Floors: a solve reads the factor of each ring twice, once
 //! down and once up, from memory; stress reads displacements and writes six components per node; a step file
 //! is written and synced. Bandwidth of memory and disk are measured in the same run. Run with
 //! `cargo bench -p raceway --bench motion`.
 //!
-//! Measured 21 November 2026 on 2 cores of an AMD EPYC (2.6 GHz) that others used too (load 4, so the median is mostly one
-//! ring after the other on one core; the least is both at once), ms of wall time, 45 365 and 45 360 coordinates that are not
-//! held. Least of 5 runs of 12 steps, median of the quietest:
+//! Measured 21 November 2026 on 2 cores of an AMD EPYC (2.6 GHz) that others used too (load 3), 12 steps, ms of wall time, 45 365
+//! and 45 360 coordinates that are not held, both rings solved by harmonics:
 //!
 //! | part | least | median | floor |
 //! |---|---|---|---|
-//! | step | 140 | 215 | |
+//! | step | 20.0 | 28.9 | |
 //! | loads | 0.0 | 0.0 | |
-//! | patches | 4.7 | 7.5 | |
-//! | right side | 4.1 | 8.3 | |
-//! | block solve, 37 right-hand sides | 110 | 189 | 17.5: factors of 227 MB, twice, at 26 GB/s |
-//! | newton, 2 iterations | 0.4 | 0.5 | |
-//! | update: state, energies, ledger | 7.1 | 9.2 | |
-//! | frame, 1 round, with `frame_rotation` | 22.5 | 24.1 | 8.7: the factor of one ring, twice |
-//! | stress at the nodes of both rings | 22.9 | 29 | 0.1: 2.7 MB |
-//! | step file of 6.0 MB, synced | 9.2 | 20 | 7: the disk's own 0.85 GB/s |
+//! | patches | 3.9 | 7.4 | |
+//! | right side | 3.5 | 4.7 | |
+//! | solve: predictor, and contacts by the table of responses | 2.2 | 3.6 | 0.4: factors and tables, 24 MB in cache |
+//! | newton, 2 iterations | 0.4 | 0.4 | |
+//! | update: second solve, state, energies, ledger | 6.0 | 9.4 | |
+//! | frame, 1 round, with `frame_rotation` | 2.5 | 3.3 | |
+//! | stress at the nodes of both rings | 25.5 | 32 | 0.1: 2.7 MB |
+//! | step file of 6.0 MB, synced | 11.2 | 22 | 6.8: the disk's own 0.88 GB/s |
 //!
-//! In processor time a step takes 0.209 s, with `frame_rotation` 1.13 times that; stress takes 0.14 and the file 0.03 of it. The
-//! block solve is bound by arithmetic, 38 Gflop/s on both cores: its floor in memory holds for one right-hand side.
+//! In processor time a step takes 0.029 s, with `frame_rotation` 1.22 times that; stress takes 0.96 and the file 0.22 of it. The two
+//! largest costs are the recovery of stress, which runs beside the steps, and the products and energies of the update.
+//! With sparse factors and columns a step took 0.209 s of processor time, 85 % of it in the block solve of 37 right-hand sides.
 
 #[path = "../crates/dynamics/tests/support/mod.rs"]
 mod support;
@@ -56,8 +56,6 @@ const HEX8: Level = Level::hex8(180, 14, 3, 4);
 /// Step size, s, and speed, rad/s (1800 rpm).
 const DT: f64 = 1e-5;
 const SPEED: f64 = 60.0 * std::f64::consts::PI;
-/// Right-hand sides of a block solve: the predictor, two directions of 18 contacts.
-const N_RHS: usize = 37;
 
 fn bearing(frame_rotation: bool) -> Model {
     let case = Case {
@@ -301,13 +299,7 @@ fn main() {
     let memory = read_bandwidth(factor);
     let solve = plain.laps.least("  solve")[1];
     println!("\nleast times against floors");
-    print_floor("block solve", solve, 2.0 * factor as f64, memory);
-    let flops = 4.0 * (factor / 8) as f64 * N_RHS as f64;
-    println!(
-        "{:22} {:8.1} Gflop/s in {N_RHS} right-hand sides",
-        "",
-        1e-9 * flops / solve
-    );
+    print_floor("solve", solve, 2.0 * factor as f64, memory);
     let nodes: usize = models[0]
         .rings
         .iter()
