@@ -18,6 +18,9 @@ pub struct CellFields {
 }
 
 /// Stress at the integration points of every cell, in the precision of [`Storage::stress`].
+///
+/// VTKHDF has no names for components: ParaView numbers them, component `6 q + c` is component c at point q, and
+/// "Magnitude" means nothing. To colour cells there is [`CellFields::von_mises_largest`].
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct IntegrationPointStress {
     /// Integration points in a row: the most that a cell of the grid has. The rows of cells with fewer end in zeros.
