@@ -3,6 +3,8 @@
 //! Both are optional: where they are not installed, these tests say so and pass. `RACEWAY_TEST_PYTHON` names a Python
 //! that has the package `vtk` (9.3 or later), default python3; ParaView's pvpython and xvfb-run must be on the path.
 
+mod known_stress;
+
 use std::io::Write;
 use std::path::Path;
 use std::process::Command;

@@ -3,6 +3,7 @@
 
 mod bad_input;
 mod export;
+mod integration_points;
 mod interruption;
 mod memory;
 mod modes;

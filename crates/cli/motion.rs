@@ -275,8 +275,8 @@ impl March<'_> {
         }
         let shown = Recorded::new(self.model, self.motion, &self.state, self.scene);
         let newton = self.newton;
-        self.files.write_fields_later(move |recoveries| {
-            let mut record = shown.record(recoveries);
+        self.files.write_fields_later(move |stress| {
+            let mut record = shown.record(stress);
             Stored::add_counts(&mut record, newton);
             record
         })?;

@@ -178,7 +178,7 @@ impl Series<'_> {
         let (model, last, scene) = (self.model, &self.last, self.scene);
         let at = (step, bearing.time(step));
         self.files
-            .write_fields(|recoveries| fields::record(&shown(model, last), last, recoveries, at, scene))
+            .write_fields(|stress| fields::record(&shown(model, last), last, stress, at, scene))
     }
 
     fn findings(self, ended: &Result<(), Failure>, effect_seconds: BTreeMap<&'static str, f64>) -> Findings {

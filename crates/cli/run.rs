@@ -103,8 +103,7 @@ pub fn run(
         };
         files.write_tables(step, time, *value, &snapshot)?;
         files.write_probes(step, time, *value, &shown)?;
-        files
-            .write_fields(|recoveries| fields::record(&shown, &solution, recoveries, (step, time), point))?;
+        files.write_fields(|stress| fields::record(&shown, &solution, stress, (step, time), point))?;
         // Later points start from displacements of the contacts only; fields of a long sweep would fill the memory.
         if let Some(earlier) = solutions.last_mut() {
             earlier.solution.elastic = [None, None];

@@ -83,7 +83,8 @@ def open_series(series, time):
     for data, needed in [(reader.PointData, ["von_mises", "displacement"]), (reader.CellData, ["radius", "body"])]:
         missing = [name for name in needed if name not in data.keys()]
         if missing:
-            raise UserError("%s has no array %s; its arrays are %s" % (series, missing[0], ", ".join(data.keys())))
+            raise UserError("%s has no array %s; its arrays are %s; pictures of stress need output.stress = \"nodal\""
+                            % (series, missing[0], ", ".join(data.keys())))
     return reader
 
 

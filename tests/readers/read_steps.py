@@ -1,4 +1,5 @@
-"""Reads every time step of a file as a user of VTK or ParaView does, and prints what it sees as JSON.
+"""Reads every time step of a file as a user of VTK or ParaView does, and prints what it sees as JSON: the stress at a
+node and in the first cell, where the file has them.
 
     python3 read_steps.py vtk FILE NODE          VTK's own readers: .vtkhdf, .vtu
     pvpython read_steps.py paraview FILE NODE    what ParaView opens: .hdf.series, .pvd, .vtkhdf
@@ -12,14 +13,16 @@ TENSOR_COMPONENTS = 6
 
 def seen(data, time, node):
     stress = data.GetPointData().GetArray("stress")
-    assert stress.GetNumberOfComponents() == TENSOR_COMPONENTS
+    assert stress is None or stress.GetNumberOfComponents() == TENSOR_COMPONENTS
     body = data.GetCellData().GetArray("body")
+    cells = data.GetCellData().GetArray("stress_integration_points")
     return {
         "time": time,
         "points": data.GetNumberOfPoints(),
         "cells": data.GetNumberOfCells(),
         "bodies": sorted({int(body.GetTuple1(i)) for i in range(body.GetNumberOfTuples())}),
-        "stress": list(stress.GetTuple(node)),
+        "stress": None if stress is None else list(stress.GetTuple(node)),
+        "first_cell": None if cells is None else [cells.GetComponent(0, i) for i in range(cells.GetNumberOfComponents())],
     }
 
 

@@ -78,6 +78,7 @@ fn first_difference(a: &StepRecord, b: &StepRecord) -> Option<String> {
         ("von_mises", p.von_mises == q.von_mises),
         ("force_inner", p.force_inner == q.force_inner),
         ("force_outer", p.force_outer == q.force_outer),
+        ("fields over cells", a.cells == b.cells),
         ("all fields", p == q),
     ];
     let different = fields.iter().find(|(_, same)| !same);

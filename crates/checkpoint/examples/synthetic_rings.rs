@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 use std::path::Path;
 
-use checkpoint::{Body, Output, PointFields, StateArray, StepRecord, Storage, point_ranges};
+use checkpoint::{Body, CellFields, Output, PointFields, StateArray, StepRecord, Storage, point_ranges};
 use mesh::{ElementKind, Mesh};
 
 /// Pitch radius, ball radius and half width of the rings, m.
@@ -152,6 +152,7 @@ fn record(step: u64, bodies: &[Body]) -> StepRecord {
         step,
         time: 1.25e-5 * step as f64,
         points,
+        cells: CellFields::default(),
         scene: "# invented\n".to_string(),
         state,
     }

@@ -7,7 +7,7 @@
 use std::path::Path;
 
 use hdf5::types::{FixedAscii, FloatSize, TypeDescriptor, VarLenUnicode};
-use hdf5::{Dataset, File, Group};
+use hdf5::{Dataset, File, Group, Location};
 
 use crate::checksum::{CHECKSUM_ATTRIBUTE, Element, checksum};
 use crate::error::CheckpointError;
@@ -76,7 +76,7 @@ pub(crate) fn write_array<T: Element>(
     write_checksum(&dataset, checksum(path, shape, values))
 }
 
-/// Writes an array over points, `[n_points][n_components]` or `[n_points]` for one component, in a precision.
+/// Writes an array over points or cells, `[n_rows][n_components]` or `[n_rows]` for one component, in a precision.
 pub(crate) fn write_field(
     file: &Group,
     path: &str,
@@ -100,18 +100,18 @@ pub(crate) fn write_field(
     }
 }
 
-/// Writes a text as an attribute of its group, with its checksum beside it. As a data set it would cost 2 ms: the
+/// Writes a text as an attribute of its group or data set, with its checksum beside it. As a data set it would cost 2 ms: the
 /// library fills megabytes of buffers to write one string. HDF5 ends texts at a NUL, so there must be none.
 pub(crate) fn write_text(file: &Group, path: &str, text: &str) -> hdf5::Result<()> {
     let value: VarLenUnicode = text.parse().map_err(|e| format!("{path}: {e}"))?;
-    let (group, name) = group_and_name(path);
-    let group = file.group(below(group))?;
-    group
+    let (owner, name) = owner_and_name(path);
+    let owner = object(file, owner)?;
+    owner
         .new_attr::<VarLenUnicode>()
         .create(name)?
         .write_scalar(&value)?;
     let crc = checksum(path, &[text.len()], text.as_bytes());
-    group
+    owner
         .new_attr::<u32>()
         .create(&*format!("{name}_{CHECKSUM_ATTRIBUTE}"))?
         .write_scalar(&crc)
@@ -126,7 +126,15 @@ fn below(path: &str) -> &str {
     }
 }
 
-fn group_and_name(path: &str) -> (&str, &str) {
+/// A group or a data set.
+fn object(file: &Group, path: &str) -> hdf5::Result<Location> {
+    match file.group(below(path)) {
+        Ok(group) => Ok((*group).clone()),
+        Err(_) => file.dataset(below(path)).map(|dataset| (**dataset).clone()),
+    }
+}
+
+fn owner_and_name(path: &str) -> (&str, &str) {
     path.rsplit_once('/').expect("texts are named by absolute paths")
 }
 
@@ -257,10 +265,10 @@ impl<'a> CheckedFile<'a> {
     /// A text.
     pub fn text(&self, path: &str) -> Result<String, CheckpointError> {
         let read = || {
-            let (group, name) = group_and_name(path);
-            let group = self.file.group(below(group))?;
-            let text: VarLenUnicode = group.attr(name)?.read_scalar()?;
-            let crc: u32 = group
+            let (owner, name) = owner_and_name(path);
+            let owner = object(&self.file, owner)?;
+            let text: VarLenUnicode = owner.attr(name)?.read_scalar()?;
+            let crc: u32 = owner
                 .attr(&format!("{name}_{CHECKSUM_ATTRIBUTE}"))?
                 .read_scalar()?;
             Ok((text.as_bytes().to_vec(), crc))

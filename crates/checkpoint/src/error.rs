@@ -86,16 +86,18 @@ pub enum CheckpointError {
         /// What is missing or unexpected.
         what: String,
     },
-    /// A field has the wrong number of points.
-    #[error("field {field} of step {step} has {found} points, the mesh has {expected}")]
+    /// A field has the wrong number of points or cells.
+    #[error("field {field} of step {step} has {found} {rows}, the mesh has {expected}")]
     FieldLength {
         /// Name of the field.
         field: &'static str,
         /// The step.
         step: u64,
-        /// Points of the mesh.
+        /// "points" or "cells".
+        rows: &'static str,
+        /// Points or cells of the mesh.
         expected: usize,
-        /// Points of the field.
+        /// Points or cells of the field.
         found: usize,
     },
     /// Steps must be written in order.

@@ -25,6 +25,7 @@
 
 pub mod background;
 pub mod body;
+pub mod cells;
 pub mod error;
 pub mod grid;
 pub mod index;
@@ -46,6 +47,7 @@ mod seal;
 
 pub use background::{BackgroundOutput, Companion, Written};
 pub use body::{Body, CellKind, point_ranges};
+pub use cells::{CellFields, IntegrationPointStress};
 pub use checksum::file_checksum;
 pub use describe::{ArrayDescription, FileDescription, describe};
 pub use error::CheckpointError;

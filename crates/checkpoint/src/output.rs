@@ -29,6 +29,7 @@ pub struct Output {
     lock: FolderLock,
     storage: Storage,
     n_points: usize,
+    n_cells: usize,
     mesh_hash: String,
     about: BTreeMap<String, String>,
     /// Number and time, s, of the committed steps, growing.
@@ -127,6 +128,7 @@ impl Output {
             lock,
             storage,
             n_points: grid.points.len(),
+            n_cells: grid.types.len(),
             mesh_hash: grid.fingerprint(),
             about: BTreeMap::new(),
             steps,
@@ -144,7 +146,7 @@ impl Output {
     /// Writes one step and returns the path of its file. When this returns, the step survives a crash. Steps and
     /// times must grow.
     pub fn write_step(&mut self, record: &StepRecord) -> Result<PathBuf, CheckpointError> {
-        record.validate(self.n_points)?;
+        record.validate(self.n_points, self.n_cells)?;
         if let Some(&(last, last_time)) = self.steps.last()
             && (record.step <= last || record.time <= last_time)
         {
@@ -188,9 +190,14 @@ impl Output {
         &self.lock
     }
 
-    /// Points of all bodies together; every field has this many rows.
+    /// Points of all bodies together; every field over points has this many rows.
     pub fn n_points(&self) -> usize {
         self.n_points
+    }
+
+    /// Cells of all bodies together; every field over cells has this many rows.
+    pub fn n_cells(&self) -> usize {
+        self.n_cells
     }
 
     /// Fingerprint of the mesh, as stored in every step.

@@ -1,7 +1,8 @@
-//! One step as the rest of the program sees it: fields over points, and the state a restart needs.
+//! One step as the rest of the program sees it: fields over points and cells, and the state a restart needs.
 
 use std::collections::BTreeMap;
 
+use crate::cells::CellFields;
 use crate::error::CheckpointError;
 use crate::storage::{Precision, Storage};
 
@@ -14,6 +15,8 @@ pub struct StepRecord {
     pub time: f64,
     /// Fields over the points of all bodies.
     pub points: PointFields,
+    /// Fields over the cells of all bodies.
+    pub cells: CellFields,
     /// Text of the scene the run was started with, so that a step file alone can be resumed.
     pub scene: String,
     /// Everything else that evolves, by name (letters, digits, `_`). Never shown by viewers.
@@ -54,7 +57,7 @@ pub enum StateArray {
 pub(crate) struct Field<'a> {
     pub name: &'static str,
     pub n_components: usize,
-    /// Row-major values, `[n_points][n_components]`, flat.
+    /// Row-major values, `[n_rows][n_components]`, flat; a row is a point or a cell.
     pub values: &'a [f64],
     pub precision: Precision,
 }
@@ -122,29 +125,49 @@ fn exact_vector<'a>(name: &'static str, rows: &'a [[f64; 3]]) -> Field<'a> {
 
 impl StepRecord {
     /// Checks everything that can be checked before the first byte is written.
-    pub(crate) fn validate(&self, n_points: usize) -> Result<(), CheckpointError> {
+    pub(crate) fn validate(&self, n_points: usize, n_cells: usize) -> Result<(), CheckpointError> {
         if !self.time.is_finite() || i64::try_from(self.step).is_err() {
             return Err(CheckpointError::Time {
                 step: self.step,
                 time: self.time,
             });
         }
-        for field in self.points.present(Storage::default()) {
-            let found = field.values.len() / field.n_components;
-            if found != n_points {
-                let (field, step) = (field.name, self.step);
-                return Err(CheckpointError::FieldLength {
-                    field,
-                    step,
-                    expected: n_points,
-                    found,
-                });
+        let storage = Storage::default();
+        let fields = [
+            ("points", n_points, self.points.present(storage)),
+            ("cells", n_cells, self.cells.present(storage)),
+        ];
+        for (rows, expected, fields) in fields {
+            for field in fields {
+                self.require_rows(&field, rows, expected)?;
             }
+        }
+        if let Some(stress) = &self.cells.stress_integration_points {
+            require_text("the layout of stress_integration_points", &stress.layout)?;
         }
         require_text("the scene text", &self.scene)?;
         self.state
             .keys()
             .try_for_each(|name| require_name("a state array named", name))
+    }
+
+    fn require_rows(
+        &self,
+        field: &Field<'_>,
+        rows: &'static str,
+        expected: usize,
+    ) -> Result<(), CheckpointError> {
+        let found = field.values.len().checked_div(field.n_components).unwrap_or(0);
+        if found == expected && field.values.len() == found * field.n_components {
+            return Ok(());
+        }
+        Err(CheckpointError::FieldLength {
+            field: field.name,
+            step: self.step,
+            rows,
+            expected,
+            found,
+        })
     }
 }
 

@@ -2,7 +2,9 @@
 //!
 //! ```text
 //! /VTKHDF                 Version (1,0), Type UnstructuredGrid, the mesh by external links to mesh.hdf
-//!   PointData/NAME        the fields
+//!   PointData/NAME        the fields over points
+//!   CellData/NAME         the fields over cells, beside the links to mesh.hdf; stress_integration_points has the
+//!                         attribute layout, which says the order of points and components
 //!   FieldData/time        [1], s
 //! /restart                texts as attributes: scene, program_version, mesh_hash,
 //!                         contents: paths of all data sets, one per line, sorted
@@ -18,6 +20,7 @@ use std::path::Path;
 use hdf5::types::{IntSize, TypeDescriptor};
 
 use crate::atomic::{self, Format};
+use crate::cells::{CellFields, IntegrationPointStress, TENSOR};
 use crate::checksum::Element;
 use crate::dataset::{
     CheckedFile, create_group, create_vtkhdf, link_mesh, write_array, write_field, write_text,
@@ -30,6 +33,11 @@ use crate::storage::{Compression, Precision, Storage};
 
 /// Group of the fields.
 pub(crate) const POINT_DATA: &str = "/VTKHDF/PointData";
+/// Group of the fields over cells.
+pub(crate) const CELL_DATA: &str = "/VTKHDF/CellData";
+/// Arrays of the mesh in that group.
+pub(crate) const MESH_CELL_DATA: [&str; 2] = ["body", "radius"];
+const STRESS_LAYOUT: &str = "/VTKHDF/CellData/stress_integration_points/layout";
 const TIME: &str = "/VTKHDF/FieldData/time";
 const STEP: &str = "/restart/step";
 const SCENE: &str = "/restart/scene";
@@ -71,11 +79,20 @@ pub(crate) fn fill_step(
     create_group(group, "restart")?;
     create_group(group, "restart/state")?;
     let mut contents = vec![TIME.to_string(), STEP.to_string()];
-    for field in record.points.present(storage) {
-        let path = format!("{POINT_DATA}/{}", field.name);
-        let (n, compression) = (field.n_components, storage.compression);
-        write_field(group, &path, n, field.values, field.precision, compression)?;
-        contents.push(path);
+    let fields = [
+        (POINT_DATA, record.points.present(storage)),
+        (CELL_DATA, record.cells.present(storage)),
+    ];
+    for (folder, fields) in fields {
+        for field in fields {
+            let path = format!("{folder}/{}", field.name);
+            let (n, compression) = (field.n_components, storage.compression);
+            write_field(group, &path, n, field.values, field.precision, compression)?;
+            contents.push(path);
+        }
+    }
+    if let Some(stress) = &record.cells.stress_integration_points {
+        write_text(group, STRESS_LAYOUT, &stress.layout)?;
     }
     for (name, array) in &record.state {
         let path = format!("{STATE}/{name}");
@@ -119,11 +136,15 @@ pub(crate) fn read_record(file: &CheckedFile, path: &Path) -> Result<StepRecord,
         step: read_step_number(file, path)?,
         time: file.scalar(TIME)?,
         points: PointFields::default(),
+        cells: CellFields::default(),
         scene: file.text(SCENE)?,
         state: Default::default(),
     };
     for name in file.members(POINT_DATA)? {
         read_field(file, path, &name, &mut record.points)?;
+    }
+    for name in step_cell_fields(file)? {
+        read_cell_field(file, path, &name, &mut record.cells)?;
     }
     for name in file.members(STATE)? {
         let dataset = format!("{STATE}/{name}");
@@ -166,7 +187,12 @@ pub(crate) fn read_version(file: &CheckedFile) -> Result<String, CheckpointError
 
 /// How the arrays of a step are stored.
 pub(crate) fn read_storage(file: &CheckedFile) -> Result<Storage, CheckpointError> {
-    let stress = ["stress", "von_mises"].map(|name| format!("{POINT_DATA}/{name}"));
+    let stress = [
+        format!("{POINT_DATA}/stress"),
+        format!("{POINT_DATA}/von_mises"),
+        format!("{CELL_DATA}/stress_integration_points"),
+        format!("{CELL_DATA}/von_mises_largest"),
+    ];
     let stress = stress.iter().find(|path| file.has(path));
     Ok(Storage {
         stress: stress.map_or(Ok(Precision::default()), |path| file.precision(path))?,
@@ -221,8 +247,13 @@ fn require_contents(file: &CheckedFile, path: &Path) -> Result<(), CheckpointErr
             ));
         }
     }
-    for group in [POINT_DATA, STATE] {
-        for name in file.members(group)? {
+    let groups = [
+        (POINT_DATA, file.members(POINT_DATA)?),
+        (CELL_DATA, step_cell_fields(file)?),
+        (STATE, file.members(STATE)?),
+    ];
+    for (group, names) in groups {
+        for name in names {
             let dataset = format!("{group}/{name}");
             if !contents.lines().any(|line| line == dataset) {
                 return Err(CheckpointError::malformed(
@@ -251,12 +282,43 @@ fn read_field(
         ("von_mises", [_]) => points.von_mises = Some(values),
         ("force_inner", [_, 3]) => points.force_inner = Some(rows(&values)),
         ("force_outer", [_, 3]) => points.force_outer = Some(rows(&values)),
-        _ => {
-            let what = format!("data set {dataset} with shape {shape:?} is not known to this version");
-            return Err(CheckpointError::malformed(path, what));
-        }
+        _ => return Err(unknown(path, &dataset, &shape)),
     }
     Ok(())
+}
+
+/// Names of the fields over cells that are the step's own.
+pub(crate) fn step_cell_fields(file: &CheckedFile) -> Result<Vec<String>, CheckpointError> {
+    let mut names = file.members(CELL_DATA)?;
+    names.retain(|name| !MESH_CELL_DATA.contains(&name.as_str()));
+    Ok(names)
+}
+
+fn read_cell_field(
+    file: &CheckedFile,
+    path: &Path,
+    name: &str,
+    cells: &mut CellFields,
+) -> Result<(), CheckpointError> {
+    let dataset = format!("{CELL_DATA}/{name}");
+    let (shape, values) = file.field(&dataset)?;
+    match (name, &shape[..]) {
+        ("stress_integration_points", &[_, n]) if n > 0 && n % TENSOR == 0 => {
+            cells.stress_integration_points = Some(IntegrationPointStress {
+                points_per_cell: n / TENSOR,
+                values,
+                layout: file.text(STRESS_LAYOUT)?,
+            });
+        }
+        ("von_mises_largest", [_]) => cells.von_mises_largest = Some(values),
+        _ => return Err(unknown(path, &dataset, &shape)),
+    }
+    Ok(())
+}
+
+fn unknown(path: &Path, dataset: &str, shape: &[usize]) -> CheckpointError {
+    let what = format!("data set {dataset} with shape {shape:?} is not known to this version");
+    CheckpointError::malformed(path, what)
 }
 
 /// Rows of a flat array.

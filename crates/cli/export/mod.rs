@@ -1,6 +1,7 @@
 //! `raceway export`: steps as files for other tools, VTU for those that read VTK's XML formats, CSV for all others.
 
 mod csv;
+mod integration_points;
 mod vtu;
 
 use std::ops::RangeInclusive;
@@ -32,7 +33,7 @@ pub struct Export {
 /// Form of the files.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 enum Form {
-    /// One table per step, a row per point: place, body, fields.
+    /// One table per step, a row per point: place, body, fields; another of stress at the integration points.
     Csv,
     /// One VTK XML file per step, and run.pvd with their times.
     Vtu,
@@ -52,13 +53,17 @@ pub fn export(request: &Export) -> Result<(), Failure> {
     let mut names = Vec::new();
     for step in steps {
         let record = read_any_step(dir, step)?;
-        require_same_points(&grid, &record)?;
+        require_same_mesh(&grid, &record)?;
         let name = format!("step_{step:06}.{extension}");
         let write = match request.to {
             Form::Csv => csv::write,
             Form::Vtu => vtu::write,
         };
         write_new(&out.join(&name), |file| write(file, &grid, &record))?;
+        if let (Form::Csv, Some(stress)) = (request.to, &record.cells.stress_integration_points) {
+            let path = out.join(format!("step_{step:06}_integration_points.csv"));
+            write_new(&path, |file| integration_points::write(file, &grid, stress))?;
+        }
         names.push((name, record.time));
     }
     if request.to == Form::Vtu {
@@ -99,12 +104,22 @@ fn chosen(committed: &[u64], request: &Export) -> Result<Vec<u64>, Failure> {
     Ok(steps)
 }
 
-fn require_same_points(grid: &Grid, record: &StepRecord) -> Result<(), Failure> {
-    let (expected, found) = (grid.points.len(), record.points.displacement.len());
-    if expected == found {
-        return Ok(());
-    }
-    Err(anyhow!("step {} has {found} points, mesh.hdf has {expected}", record.step).into())
+fn require_same_mesh(grid: &Grid, record: &StepRecord) -> Result<(), Failure> {
+    let rows = |arrays: Vec<(&str, usize, &[f64])>, kind, expected| {
+        let found = arrays
+            .iter()
+            .map(|(_, n, values)| values.len() / n)
+            .find(|&n| n != expected);
+        found.map_or(Ok(()), |found| {
+            Err(anyhow!(
+                "step {} has {found} {kind}, mesh.hdf has {expected}",
+                record.step
+            ))
+        })
+    };
+    rows(record.points.arrays(), "points", grid.points.len())?;
+    rows(record.cells.arrays(), "cells", grid.types.len())?;
+    Ok(())
 }
 
 /// Fills a new file; one that is there already is an error.

@@ -34,6 +34,9 @@ pub fn write(file: &mut dyn Write, grid: &Grid, record: &StepRecord) -> io::Resu
     writeln!(file, "</PointData>\n<CellData>")?;
     array(file, "UInt8", "body", "", &grid.body)?;
     array(file, "Float64", "radius", "", &reals(&grid.radius))?;
+    for (name, n_components, values) in record.cells.arrays() {
+        array(file, "Float64", name, &components(n_components), &reals(values))?;
+    }
     writeln!(file, "</CellData>\n<Points>")?;
     array(
         file,
@@ -76,9 +79,17 @@ fn array(file: &mut dyn Write, kind: &str, name: &str, more: &str, bytes: &[u8])
 }
 
 fn components(n: usize) -> String {
-    let names = TENSOR.iter().enumerate().filter(|_| n == TENSOR.len());
-    let names: String = names
-        .map(|(i, name)| format!(" ComponentName{i}=\"{name}\""))
+    let name = |i: usize| {
+        let (point, name) = (i / TENSOR.len(), TENSOR[i % TENSOR.len()]);
+        if n == TENSOR.len() {
+            name.to_string()
+        } else {
+            format!("{point}_{name}")
+        }
+    };
+    let tensors = if n.is_multiple_of(TENSOR.len()) { n } else { 0 };
+    let names: String = (0..tensors)
+        .map(|i| format!(" ComponentName{i}=\"{}\"", name(i)))
         .collect();
     format!(" NumberOfComponents=\"{n}\"{names}")
 }

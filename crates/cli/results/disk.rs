@@ -3,8 +3,10 @@
 use std::path::Path;
 
 use anyhow::anyhow;
+use checkpoint::Body;
 use contact::Side;
 use dynamics::{Hold, Model, RingModel};
+use fem::quadrature::stiffness_rule;
 
 use super::fields;
 use crate::failure::Failure;
@@ -13,8 +15,8 @@ use crate::scene::{Analysis, Precision, Scene, StressOutput};
 
 /// Bytes of one point: displacement and two force vectors.
 const POINT_BYTES: u64 = 9 * 8;
-/// Numbers of one point that have the scene's precision: stress and von Mises.
-const STRESS_NUMBERS: u64 = 7;
+/// Numbers of a stress tensor.
+const TENSOR: u64 = 6;
 /// Bytes of one ball in the state of a motion: position, velocity, and force, angle and approach of two contacts.
 const BALL_BYTES: u64 = 8 * (2 + 2 + 2 * 4);
 /// HDF5's own bytes in a step file besides the arrays and the scene: groups, names, links, checksums, seal. (Measured:
@@ -40,22 +42,18 @@ pub struct Forecast {
 impl Forecast {
     /// Forecast for the steps after `done` (0 for a new run, whose start has a file too).
     pub fn new(scene: &Scene, model: &Model, done: u64) -> Forecast {
-        let n_points: u64 = fields::bodies(model).iter().map(|b| b.points.len() as u64).sum();
-        let numbers = match (scene.output.stress, scene.output.precision) {
-            (StressOutput::None, _) => 0,
-            (StressOutput::Nodal, Precision::F32) => 4 * STRESS_NUMBERS,
-            (StressOutput::Nodal, Precision::F64) => 8 * STRESS_NUMBERS,
-        };
-        let step = n_points * (POINT_BYTES + numbers)
+        let n_points = rows(&fields::bodies(model), |body| body.points.len());
+        let step = n_points * POINT_BYTES
+            + stress_bytes(scene, model)
             + state_bytes(scene, model)
             + FRAME_BYTES
             + scene.text.len() as u64;
         let (n_files, n_rows) = match &scene.analysis {
             Analysis::Static => (1, 1),
             Analysis::Sweep(sweep) => (sweep.points.len() as u64, sweep.points.len() as u64),
-            Analysis::Dynamic(dynamic) => rows(dynamic.output_every, dynamic.n_steps, done),
+            Analysis::Dynamic(dynamic) => files_and_rows(dynamic.output_every, dynamic.n_steps, done),
             Analysis::Modes(wanted) => ((wanted.number * wanted.bodies.len()) as u64, 0),
-            Analysis::QuasiStatic(quasi) => rows(quasi.output_every, quasi.n_steps, done),
+            Analysis::QuasiStatic(quasi) => files_and_rows(quasi.output_every, quasi.n_steps, done),
         };
         let cells = BALL_CELLS * model.geometry.n_balls as u64 + OTHER_CELLS;
         Forecast {
@@ -95,10 +93,35 @@ impl Forecast {
 }
 
 /// Step files and table rows of `n` steps after the first `done`, the start included when nothing is done.
-fn rows(every: u64, n: u64, done: u64) -> (u64, u64) {
+fn files_and_rows(every: u64, n: u64, done: u64) -> (u64, u64) {
     let (start, left) = (u64::from(done == 0), n.saturating_sub(done));
     let files = n / every - done.min(n) / every + u64::from(left > 0 && !n.is_multiple_of(every));
     (start + files, start + left)
+}
+
+/// Sum over bodies.
+fn rows(bodies: &[Body], count: impl Fn(&Body) -> usize) -> u64 {
+    bodies.iter().map(|body| count(body) as u64).sum()
+}
+
+/// Bytes of stress in a step file: a tensor and its von Mises stress per point, or the tensors of the integration points
+/// of a cell and the largest of their von Mises stresses.
+fn stress_bytes(scene: &Scene, model: &Model) -> u64 {
+    let bodies = fields::bodies(model);
+    let kinds = Side::BOTH.into_iter().filter_map(|side| model.ring(side));
+    let points = kinds.map(|ring| stiffness_rule(ring.mesh.kind).points.len() as u64);
+    let Some(points_per_cell) = points.max() else {
+        return 0;
+    };
+    let numbers = match scene.output.stress {
+        StressOutput::None => 0,
+        StressOutput::Nodal => rows(&bodies, |body| body.points.len()) * (TENSOR + 1),
+        StressOutput::IntegrationPoints => rows(&bodies, Body::n_cells) * (points_per_cell * TENSOR + 1),
+    };
+    match scene.output.precision {
+        Precision::F32 => 4 * numbers,
+        Precision::F64 => 8 * numbers,
+    }
 }
 
 /// Bytes of the stored state.

@@ -1,17 +1,16 @@
-//! Nodal fields of one step for ParaView: rings with displacement and stress, balls as points with their
-//! forces.
+//! Fields of one step for ParaView: rings with displacement and stress, balls as points with their forces.
 
 use std::collections::BTreeMap;
 
-use checkpoint::{Body, PointFields, StateArray, StepRecord};
+use checkpoint::{Body, CellFields, PointFields, StateArray, StepRecord};
 use contact::{BearingGeometry, Side};
 use dynamics::balls::{BallResult, ContactResult};
 use dynamics::{Model, StaticSolution};
-use fem::stress::{StressRecovery, von_mises};
+use fem::stress::von_mises;
 
+use super::ring_stress::{RingStress, StressFields, TurnedField};
 use super::shown::{Shown, Turn};
-use crate::failure::Failure;
-use crate::scene::{InnerRingFrame, Scene, StressOutput};
+use crate::scene::{InnerRingFrame, Scene};
 
 /// The bodies of a result, in the order of its points: flexible rings, then the balls.
 pub fn bodies(model: &Model) -> Vec<Body> {
@@ -43,27 +42,20 @@ pub fn bodies(model: &Model) -> Vec<Body> {
     bodies
 }
 
-/// Stress recovery of the flexible rings, made once per run; none when the scene writes no stress.
-pub fn recoveries(model: &Model, stress: StressOutput) -> Result<[Option<StressRecovery>; 2], Failure> {
-    let recovery = |side: Side| match (stress, model.ring(side)) {
-        (StressOutput::Nodal, Some(ring)) => Ok(Some(StressRecovery::new(&ring.mesh, &ring.material)?)),
-        _ => Ok::<_, Failure>(None),
-    };
-    Ok([recovery(Side::Inner)?, recovery(Side::Outer)?])
-}
-
 /// The record of one equilibrium; its step also stands for its time where there is none.
 pub fn record(
     shown: &Shown<'_>,
     solution: &StaticSolution,
-    recoveries: &[Option<StressRecovery>; 2],
+    stress: &RingStress,
     (step, time): (u64, f64),
     scene: &Scene,
 ) -> StepRecord {
+    let (points, cells) = Places::new(shown, scene.output.inner_ring).fields(stress);
     StepRecord {
         step,
         time,
-        points: Places::new(shown, scene.output.inner_ring).points(recoveries),
+        points,
+        cells,
         scene: scene.text.clone(),
         state: state(solution),
     }
@@ -73,8 +65,8 @@ pub fn record(
 pub struct Places {
     /// Displacement of every point, m.
     displacement: Vec<[f64; 3]>,
-    /// Displacement of the flexible rings up to a rigid motion in their own frames, m, flat, and their turn.
-    rings: [Option<(Vec<f64>, Turn)>; 2],
+    /// Fields of the flexible rings from which their stress follows.
+    rings: [Option<TurnedField>; 2],
     /// Forces on the balls, N.
     forces: [Vec<[f64; 3]>; 2],
 }
@@ -101,39 +93,32 @@ impl Places {
         }
     }
 
-    /// Fields of all points, with stress where it is recovered.
-    pub fn points(self, recoveries: &[Option<StressRecovery>; 2]) -> PointFields {
-        let mut stress = recoveries.iter().any(Option::is_some).then(Vec::new);
-        for (ring, recovery) in self.rings.iter().zip(recoveries) {
-            if let (Some((field, turn)), Some(recovery), Some(stress)) = (ring, recovery, &mut stress) {
-                stress.extend(recovery.nodal(field).into_iter().map(|s| turn.tensor(s)));
-            }
-        }
-        point_fields(self.displacement, stress, self.forces)
+    /// Fields of all points and cells, with the stress that is asked for.
+    pub fn fields(self, stress: &RingStress) -> (PointFields, CellFields) {
+        let stress = stress.fields(&self.rings);
+        let [force_inner, force_outer] = self.forces;
+        let (points, cells) = with_stress(self.displacement, stress);
+        let points = PointFields {
+            force_inner: Some(force_inner),
+            force_outer: Some(force_outer),
+            ..points
+        };
+        (points, cells)
     }
 }
 
-/// Fields of all points from the displacements of all and the stress of the rings' points; balls have none.
-fn point_fields(
-    displacement: Vec<[f64; 3]>,
-    ring_stress: Option<Vec<[f64; 6]>>,
-    [force_inner, force_outer]: [Vec<[f64; 3]>; 2],
-) -> PointFields {
-    let stress = ring_stress.map(|mut stress| {
-        stress.resize(displacement.len(), [0.0; 6]);
-        stress
-    });
-    PointFields {
+/// Displacement and stress of all points and cells.
+pub fn with_stress(displacement: Vec<[f64; 3]>, stress: StressFields) -> (PointFields, CellFields) {
+    let nodal = stress.nodal;
+    let points = PointFields {
         displacement,
-        velocity: None,
-        acceleration: None,
-        von_mises: stress
+        von_mises: nodal
             .as_ref()
             .map(|stress| stress.iter().map(|&s| von_mises(s)).collect()),
-        stress,
-        force_inner: Some(force_inner),
-        force_outer: Some(force_outer),
-    }
+        stress: nodal,
+        ..PointFields::default()
+    };
+    (points, stress.cells)
 }
 
 /// Adds the balls' displacements to those of the rings' points; returns the forces on the balls from the inner and the

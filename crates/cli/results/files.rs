@@ -11,11 +11,11 @@ use checkpoint::{
     BackgroundOutput, CheckpointError, Compression, FolderLock, Output, Precision, StepRecord, Storage,
 };
 use dynamics::{Model, RingMemory, Timing};
-use fem::StressRecovery;
 
 use super::about::about;
 use super::fields;
 use super::probes::Probes;
+use super::ring_stress::RingStress;
 use super::shown::Shown;
 use super::snapshot::Snapshot;
 use super::summary::{Costs, SUMMARY_FILE};
@@ -32,8 +32,8 @@ pub struct Files {
     output: BackgroundOutput,
     tables: Tables,
     probes: Option<Probes>,
-    /// Stress recovery of the flexible rings, shared with the thread that writes.
-    recoveries: Arc<[Option<StressRecovery>; 2]>,
+    /// Stress of the rings, shared with the thread that writes.
+    ring_stress: Arc<RingStress>,
     stress_seconds: f64,
     output_seconds: f64,
 }
@@ -117,7 +117,7 @@ impl Files {
         Ok(Files {
             output: BackgroundOutput::start(output, QUEUE, companions),
             tables,
-            recoveries: Arc::new(fields::recoveries(model, scene.output.stress)?),
+            ring_stress: Arc::new(RingStress::new(model, scene.output.stress)?),
             probes,
             stress_seconds: 0.0,
             output_seconds,
@@ -160,12 +160,9 @@ impl Files {
 
     /// Makes a record of the fields and hands it over to be written as a step file. The tables must have the step
     /// already: a step file vouches for the tables up to its step.
-    pub fn write_fields(
-        &mut self,
-        record: impl FnOnce(&[Option<StressRecovery>; 2]) -> StepRecord,
-    ) -> Result<(), Failure> {
+    pub fn write_fields(&mut self, record: impl FnOnce(&RingStress) -> StepRecord) -> Result<(), Failure> {
         let clock = Instant::now();
-        let record = record(&self.recoveries);
+        let record = record(&self.ring_stress);
         self.stress_seconds += clock.elapsed().as_secs_f64();
         let clock = Instant::now();
         self.output.write_step(record)?;
@@ -181,11 +178,11 @@ impl Files {
     /// The same for a record that needs nothing but itself: the thread that writes makes it.
     pub fn write_fields_later(
         &mut self,
-        record: impl FnOnce(&[Option<StressRecovery>; 2]) -> StepRecord + Send + 'static,
+        record: impl FnOnce(&RingStress) -> StepRecord + Send + 'static,
     ) -> Result<(), Failure> {
         let clock = Instant::now();
-        let recoveries = self.recoveries.clone();
-        self.output.write_step_made_by(move || record(&recoveries))?;
+        let ring_stress = self.ring_stress.clone();
+        self.output.write_step_made_by(move || record(&ring_stress))?;
         self.output_seconds += clock.elapsed().as_secs_f64();
         Ok(())
     }

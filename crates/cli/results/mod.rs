@@ -11,6 +11,7 @@ pub mod modes;
 pub mod motion_fields;
 pub mod probe_places;
 pub mod probes;
+pub mod ring_stress;
 pub mod shown;
 pub mod snapshot;
 pub mod state_arrays;

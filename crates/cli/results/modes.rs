@@ -9,15 +9,16 @@ use std::path::Path;
 use std::time::Instant;
 
 use anyhow::Context;
-use checkpoint::{Output, PointFields, StateArray, StepRecord};
+use checkpoint::{CellFields, Output, PointFields, StateArray, StepRecord};
 use contact::Side;
 use dynamics::balls::BallResult;
 use dynamics::{Mode, ModeSet, Model};
-use fem::stress::{StressRecovery, von_mises};
 use serde::Serialize;
 
 use super::fields;
 use super::files::storage;
+use super::ring_stress::RingStress;
+use super::shown::Turn;
 use super::snapshot::Snapshot;
 use super::summary::{ShaftSummary, mode_name, peak_memory, sides, write_summary};
 use crate::failure::Failure;
@@ -46,7 +47,7 @@ const COLUMNS: [&str; 12] = [
 pub struct ModeFiles {
     output: Output,
     table: csv::Writer<std::fs::File>,
-    recoveries: [Option<StressRecovery>; 2],
+    stress: RingStress,
     step: u64,
 }
 
@@ -61,7 +62,7 @@ impl ModeFiles {
         Ok(ModeFiles {
             output,
             table,
-            recoveries: fields::recoveries(model, scene.output.stress)?,
+            stress: RingStress::new(model, scene.output.stress)?,
             step: 0,
         })
     }
@@ -76,10 +77,12 @@ impl ModeFiles {
     ) -> Result<(), Failure> {
         for (i, mode) in set.modes.iter().enumerate() {
             self.step += 1;
+            let (points, cell_fields) = self.fields(model, mode);
             let record = StepRecord {
                 step: self.step,
                 time: self.step as f64,
-                points: self.points(model, mode),
+                points,
+                cells: cell_fields,
                 scene: scene.text.clone(),
                 state: BTreeMap::from([
                     ("frequency_hz".to_string(), StateArray::Real(vec![mode.frequency])),
@@ -100,9 +103,9 @@ impl ModeFiles {
         Ok(())
     }
 
-    /// Fields of a shape over the points of all bodies; those that do not take part are at rest.
-    fn points(&self, model: &Model, mode: &Mode) -> PointFields {
-        let (mut displacement, mut stress) = (Vec::new(), Vec::new());
+    /// Fields of a shape over the points and cells of all bodies; those that do not take part are at rest.
+    fn fields(&self, model: &Model, mode: &Mode) -> (PointFields, CellFields) {
+        let (mut displacement, mut rings) = (Vec::new(), [None, None]);
         for side in Side::BOTH {
             let (Some(ring), i) = (model.ring(side), side.index()) else {
                 continue;
@@ -112,26 +115,14 @@ impl ModeFiles {
                 None => vec![0.0; ring.mesh.n_dofs()],
             };
             displacement.extend(field.chunks_exact(3).map(|u| [u[0], u[1], u[2]]));
-            if let Some(recovery) = &self.recoveries[i] {
-                stress.extend(recovery.nodal(&field));
-            }
+            rings[i] = Some((field, Turn::new(0.0)));
         }
         for ball in 0..model.geometry.n_balls {
             let [radial, axial] = mode.shape.balls.get(ball).copied().unwrap_or_default();
             let (sin, cos) = model.geometry.azimuth(ball).sin_cos();
             displacement.push([radial * cos, radial * sin, axial].map(|u| AMPLITUDE * u));
         }
-        let with_stress = self.recoveries.iter().any(Option::is_some);
-        let stress = with_stress.then(|| {
-            stress.resize(displacement.len(), [0.0; 6]);
-            stress
-        });
-        PointFields {
-            displacement,
-            von_mises: stress.as_ref().map(|s| s.iter().map(|&s| von_mises(s)).collect()),
-            stress,
-            ..PointFields::default()
-        }
+        fields::with_stress(displacement, self.stress.fields(&rings))
     }
 }
 

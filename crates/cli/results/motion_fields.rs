@@ -1,11 +1,11 @@
-//! Nodal fields of one instant of a motion; the state of the run is stored beside, bit for bit.
+//! Fields of one instant of a motion; the state of the run is stored beside, bit for bit.
 
 use checkpoint::StepRecord;
 use dynamics::Model;
 use dynamics::motion::{Motion, MotionState};
-use fem::stress::StressRecovery;
 
 use super::fields::Places;
+use super::ring_stress::RingStress;
 use super::shown::Shown;
 use super::state_arrays::{self, Arrays};
 use crate::scene::Scene;
@@ -32,12 +32,14 @@ impl Recorded {
         }
     }
 
-    /// The record of the instant, with stress where it is recovered.
-    pub fn record(self, recoveries: &[Option<StressRecovery>; 2]) -> StepRecord {
+    /// The record of the instant, with the stress that is asked for.
+    pub fn record(self, stress: &RingStress) -> StepRecord {
+        let (points, cells) = self.places.fields(stress);
         StepRecord {
             step: self.step,
             time: self.time,
-            points: self.places.points(recoveries),
+            points,
+            cells,
             scene: self.scene,
             state: self.state,
         }

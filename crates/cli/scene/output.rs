@@ -20,6 +20,8 @@ pub struct RawOutput {
 pub enum StressOutput {
     /// Averaged at nodes.
     Nodal,
+    /// As computed, at the integration points of the elements.
+    IntegrationPoints,
     /// None.
     None,
 }

@@ -122,7 +122,7 @@ fn a_wrong_byte_in_each_data_set_names_it() {
     let arrays = checkpoint::describe(&path).unwrap().arrays;
     assert_eq!(
         arrays.len(),
-        2 + 7 + record(4).state.len(),
+        2 + 7 + 2 + record(4).state.len(),
         "time, step, all fields, the state: {arrays:?}"
     );
     for array in &arrays {

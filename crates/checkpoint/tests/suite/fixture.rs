@@ -2,11 +2,13 @@
 
 use std::collections::BTreeMap;
 
-use checkpoint::{Body, PointFields, StateArray, StepRecord};
+use checkpoint::{Body, CellFields, IntegrationPointStress, PointFields, StateArray, StepRecord};
 use mesh::{ElementKind, Mesh};
 
 /// Points of all bodies: 8 + 10 + 2.
 pub const N_POINTS: usize = 20;
+/// Cells of all bodies: 1 + 1 + 2.
+pub const N_CELLS: usize = 4;
 
 pub fn hexahedron() -> Mesh {
     let corner = |i: usize| [[0, 1, 1, 0][i % 4], [0, 0, 1, 1][i % 4], i / 4].map(|c| c as f64 * 1e-3);
@@ -77,8 +79,24 @@ pub fn record(step: u64) -> StepRecord {
         step,
         time: 1e-5 * step as f64,
         points,
+        cells: cells(step),
         scene,
         state,
+    }
+}
+
+/// Fields over the cells: one hexahedron with eight points, one tetrahedron with four, two balls with none.
+fn cells(step: u64) -> CellFields {
+    let value = |i: usize| (1.0 + step as f64) * (0.1 + (7000 + i) as f64);
+    let mut values: Vec<f64> = (0..N_CELLS * 48).map(value).collect();
+    values[48 + 4 * 6..].fill(0.0);
+    CellFields {
+        stress_integration_points: Some(IntegrationPointStress {
+            points_per_cell: 8,
+            values,
+            layout: "Größen: xx yy zz xy yz xz of 8 points".to_string(),
+        }),
+        von_mises_largest: Some((0..N_CELLS).map(|i| value(900 + i)).collect()),
     }
 }
 
@@ -91,6 +109,7 @@ pub fn bare_record(step: u64) -> StepRecord {
     };
     StepRecord {
         points,
+        cells: CellFields::default(),
         state: BTreeMap::new(),
         ..full
     }

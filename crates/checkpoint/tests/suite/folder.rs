@@ -108,6 +108,23 @@ fn a_field_of_the_wrong_length_is_refused() {
     short.points.stress.as_mut().unwrap().pop();
     let text = create(dir.path()).write_step(&short).unwrap_err().to_string();
     assert_eq!(text, "field stress of step 0 has 19 points, the mesh has 20");
+    let dir = tempfile::tempdir().unwrap();
+    let mut short = record(0);
+    short.cells.von_mises_largest.as_mut().unwrap().pop();
+    let text = create(dir.path()).write_step(&short).unwrap_err().to_string();
+    assert_eq!(
+        text,
+        "field von_mises_largest of step 0 has 3 cells, the mesh has 4"
+    );
+    let dir = tempfile::tempdir().unwrap();
+    let mut pointless = record(0);
+    let stress = pointless.cells.stress_integration_points.as_mut().unwrap();
+    (stress.points_per_cell, stress.values) = (0, vec![0.0; 4]);
+    let text = create(dir.path()).write_step(&pointless).unwrap_err().to_string();
+    assert_eq!(
+        text,
+        "field stress_integration_points of step 0 has 0 cells, the mesh has 4"
+    );
     assert!(committed_steps(dir.path()).unwrap().is_empty());
 }
 

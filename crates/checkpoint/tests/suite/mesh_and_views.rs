@@ -149,6 +149,26 @@ fn the_index_shows_the_values_of_every_step() {
             "{name}"
         );
     }
+    let cells = records.map(|r| r.cells);
+    let stress = cells
+        .each_ref()
+        .map(|c| c.stress_integration_points.clone().unwrap().values);
+    let name = "CellData/stress_integration_points";
+    assert_eq!(array::<f64>(&file, name), stress.concat());
+    assert_eq!(
+        file.dataset(&format!("VTKHDF/{name}")).unwrap().shape(),
+        [12, 48],
+        "rows of eight tensors"
+    );
+    let largest = cells.map(|c| c.von_mises_largest.unwrap());
+    assert_eq!(
+        array::<f64>(&file, "CellData/von_mises_largest"),
+        largest.concat()
+    );
+    for name in ["stress_integration_points", "von_mises_largest"] {
+        let rows = array::<i64>(&file, &format!("Steps/CellDataOffsets/{name}"));
+        assert_eq!(rows, [0, 4, 8], "{name}");
+    }
 }
 
 /// Wrong if a step file that was deleted or not copied along read as zeros: an unloaded bearing.

@@ -1,0 +1,113 @@
+//! Stress of the rings as step files hold it: averaged at nodes, or at the integration points of the elements.
+
+use checkpoint::{CellFields, IntegrationPointStress};
+use contact::Side;
+use dynamics::Model;
+use fem::stress::{StressRecovery, von_mises};
+
+use super::shown::Turn;
+use crate::failure::Failure;
+use crate::scene::StressOutput;
+
+/// Order of points and components, as every step file states it. Points beyond those of a cell's kind are zero.
+pub const LAYOUT: &str = "stress in Pa, tension positive; a row per cell: points one after the other, each with the \
+                          components xx yy zz xy yz xz in the axes in which the ring is shown; VTK cell type 12 (hex8): \
+                          8 points of the 2x2x2 Gauss rule, 25 (hex20): 27 points of the 3x3x3 Gauss rule, the first \
+                          reference coordinate fastest, then the second; 24 (tet10): 4 points of the Hammer-Stroud rule, \
+                          point 0 near node 0 and so on; 1 (ball): none; numbers beyond the points of a cell are zero";
+
+/// Stress recovery of the flexible rings, made once per run.
+pub struct RingStress {
+    kind: StressOutput,
+    /// By side; None for rigid rings.
+    rings: [Option<StressRecovery>; 2],
+    /// Balls, which have a point and a cell each.
+    n_balls: usize,
+}
+
+/// Displacement of a ring up to a rigid motion in its own frame, m, `[n_nodes][3]` flat, and its turn in space.
+pub type TurnedField = (Vec<f64>, Turn);
+
+/// Stress of one instant over points and cells; what the scene does not ask for is absent.
+#[derive(Debug, Default)]
+pub struct StressFields {
+    /// Stress of all points, Pa, zero on balls.
+    pub nodal: Option<Vec<[f64; 6]>>,
+    /// Stress of all cells, zero on balls.
+    pub cells: CellFields,
+}
+
+impl RingStress {
+    /// Prepares what the scene asks for.
+    pub fn new(model: &Model, kind: StressOutput) -> Result<RingStress, Failure> {
+        let recovery = |side: Side| match (kind, model.ring(side)) {
+            (StressOutput::None, _) | (_, None) => Ok::<_, Failure>(None),
+            (StressOutput::Nodal | StressOutput::IntegrationPoints, Some(ring)) => {
+                Ok(Some(StressRecovery::new(&ring.mesh, &ring.material)?))
+            }
+        };
+        Ok(RingStress {
+            kind,
+            rings: [recovery(Side::Inner)?, recovery(Side::Outer)?],
+            n_balls: model.geometry.n_balls,
+        })
+    }
+
+    /// Stress of one instant, from the fields of the flexible rings.
+    pub fn fields(&self, rings: &[Option<TurnedField>; 2]) -> StressFields {
+        let known: Vec<(&StressRecovery, &TurnedField)> = self
+            .rings
+            .iter()
+            .zip(rings)
+            .filter_map(|(recovery, field)| recovery.as_ref().zip(field.as_ref()))
+            .collect();
+        if known.is_empty() {
+            return StressFields::default();
+        }
+        match self.kind {
+            StressOutput::None => StressFields::default(),
+            StressOutput::Nodal => StressFields {
+                nodal: Some(self.nodal(&known)),
+                cells: CellFields::default(),
+            },
+            StressOutput::IntegrationPoints => StressFields {
+                nodal: None,
+                cells: self.cells(&known),
+            },
+        }
+    }
+
+    fn nodal(&self, rings: &[(&StressRecovery, &TurnedField)]) -> Vec<[f64; 6]> {
+        let mut stress = Vec::new();
+        for (recovery, (field, turn)) in rings {
+            stress.extend(recovery.nodal(field).into_iter().map(|s| turn.tensor(s)));
+        }
+        stress.resize(stress.len() + self.n_balls, [0.0; 6]);
+        stress
+    }
+
+    fn cells(&self, rings: &[(&StressRecovery, &TurnedField)]) -> CellFields {
+        let points = rings.iter().map(|(recovery, _)| recovery.points_per_element());
+        let points_per_cell = points.max().unwrap_or(0);
+        let (mut values, mut largest) = (Vec::new(), Vec::new());
+        for (recovery, (field, turn)) in rings {
+            let stress = recovery.integration_points(field);
+            for cell in stress.chunks_exact(recovery.points_per_element()) {
+                let end = values.len() + 6 * points_per_cell;
+                values.extend(cell.iter().flat_map(|&s| turn.tensor(s)));
+                values.resize(end, 0.0);
+                largest.push(cell.iter().map(|&s| von_mises(s)).fold(0.0, f64::max));
+            }
+        }
+        values.resize(values.len() + 6 * points_per_cell * self.n_balls, 0.0);
+        largest.resize(largest.len() + self.n_balls, 0.0);
+        CellFields {
+            stress_integration_points: Some(IntegrationPointStress {
+                points_per_cell,
+                values,
+                layout: LAYOUT.to_string(),
+            }),
+            von_mises_largest: Some(largest),
+        }
+    }
+}
