@@ -36,7 +36,7 @@ use std::fs::{self, File};
 use std::io::Write;
 use std::path::Path;
 
-use checkpoint::{Body, Output, PointFields, StateArray, StepRecord, Storage};
+use checkpoint::{Body, CellFields, Output, PointFields, StateArray, StepRecord, Storage};
 use clock::{Laps, least_wall};
 use contact::Side;
 use dynamics::effects::FrameRotation;
@@ -223,6 +223,7 @@ impl Writer {
                 force_outer: Some(forces),
                 ..PointFields::default()
             },
+            cells: CellFields::default(),
             scene: String::new(),
             state: named.collect(),
         }
