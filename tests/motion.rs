@@ -94,6 +94,28 @@ fn a_ledger_that_does_not_close_stops_the_run() {
         "{}",
         outcome.stderr
     );
+    // The tables have the step that was rejected, the newest step file is the one before: resuming comes to the same end.
+    let energy = dir.text("out/energy.csv");
+    let rejected: u64 = energy
+        .lines()
+        .last()
+        .unwrap()
+        .split(',')
+        .next()
+        .unwrap()
+        .parse()
+        .unwrap();
+    let step_file = |step: u64| dir.path(&format!("out/step_{step:06}.hdf")).exists();
+    assert!(step_file(rejected - 1) && !step_file(rejected), "step {rejected}");
+    let again = dir.raceway(&["resume", "out"]);
+    assert_eq!(again.code, Some(3), "{}", again.stderr);
+    assert!(
+        again.stderr.contains("the energy ledger does not close"),
+        "{}",
+        again.stderr
+    );
+    assert!(!step_file(rejected), "the rejected step was stored");
+    assert_eq!(dir.text("out/energy.csv"), energy);
 }
 
 /// If this failed, histories would depend on the number of threads.

@@ -227,6 +227,9 @@ impl March<'_> {
             match self.motion.step(&self.state) {
                 Ok((next, report)) => {
                     self.newton += report.newton_iterations as u64;
+                    if let Err(failure) = check_ledger(self.dynamic, self.motion, &next, self.dir) {
+                        return Err(self.rejected(next, failure));
+                    }
                     self.state = next;
                 }
                 Err(error) => return Err(self.failed(error)),
@@ -235,7 +238,6 @@ impl March<'_> {
             if n == n_steps || n.is_multiple_of(self.dynamic.output_every) {
                 self.write_fields()?;
             }
-            check_ledger(self.dynamic, self.motion, &self.state, self.dir)?;
             progress.advance();
         }
         Ok(())
@@ -257,15 +259,33 @@ impl March<'_> {
 
     /// Saves the last good state and says where the failed step was.
     fn failed(&mut self, error: DynamicsError) -> Failure {
-        if let Err(error) = self.write_fields() {
-            return error;
-        }
+        let saved = self.write_fields();
         let n = self.state.step + 1;
-        Failure::solving(error).context(format!(
-            "step {n}, t = {:.6e} s; the last good state is in {}",
-            self.motion.time(n),
-            self.dir.display()
-        ))
+        let place = format!("step {n}, t = {:.6e} s", self.motion.time(n));
+        let failure = Failure::solving(error);
+        match saved {
+            Ok(()) => failure.context(format!(
+                "{place}; the last good state is in {}",
+                self.dir.display()
+            )),
+            Err(unsaved) => failure.context(format!(
+                "{place}; the last good state could not be saved: {}",
+                unsaved.text()
+            )),
+        }
+    }
+
+    /// Saves the last good state. The tables get a line of the state that was rejected, but it gets no step file.
+    fn rejected(&mut self, state: MotionState, failure: Failure) -> Failure {
+        let saved = self.write_fields();
+        self.state = state;
+        match saved.and_then(|()| self.write_tables()) {
+            Ok(()) => failure,
+            Err(unsaved) => failure.context(format!(
+                "the last good state could not be saved: {}",
+                unsaved.text()
+            )),
+        }
     }
 
     /// Hands over the state to be written as a step file, unless it was.

@@ -37,19 +37,18 @@ pub fn settle(model: &Model, dynamic: &Dynamic, progress: &Progress) -> Result<S
 impl Settled {
     /// The state at t = 0.
     pub fn first_state(&self, motion: &Motion<'_>, dynamic: &Dynamic) -> Result<MotionState, Failure> {
-        match (&self.equilibrium, dynamic.start) {
-            (Some(equilibrium), _) => Ok(motion.start(equilibrium)),
+        let state = match (&self.equilibrium, dynamic.start) {
+            (Some(equilibrium), _) => motion.start(equilibrium),
             (
                 None,
                 Start::Given {
                     displacement,
                     velocity,
                 },
-            ) => motion
-                .with_accelerations(motion.rest(displacement, velocity))
-                .map_err(Failure::solving),
+            ) => motion.rest(displacement, velocity),
             (None, Start::Static) => unreachable!("a static start has its equilibrium"),
-        }
+        };
+        motion.with_accelerations(state).map_err(Failure::solving)
     }
 
     /// What the static solution warns of.

@@ -6,7 +6,7 @@ use contact::Side;
 use dynamics::motion::balls::Speed;
 use dynamics::motion::contacts::ContactScheme;
 use dynamics::motion::{Integrator, Ladder, Motion, MotionSettings, MotionState};
-use dynamics::{ContactMode, DynamicsError, Hold, Model, StaticSolution};
+use dynamics::{ContactMode, DynamicsError, Hold, Model, ShaftDof, StaticSolution};
 use support::rings::Level;
 use support::{Case, equilibrium};
 
@@ -137,5 +137,28 @@ fn the_floor_of_the_ladder_is_an_error_that_says_so() {
             "of the largest contact approach, expected 1.0e-9; allow smaller steps or a larger error"
         ),
         "{text}"
+    );
+}
+
+/// Wrong: steps could not adapt from undeformed bodies, whose first acceleration is no error; or a driven shaft would start
+/// elsewhere than it is driven. 2 kN of thrust come on at t = 0, x is held 1 um aside.
+#[test]
+fn undeformed_bodies_start_under_load_with_adaptive_steps() {
+    let mut model = Case::axial(2000.0).flexible(ContactMode::Patch, SMALL, Hold::Clamped);
+    model.shaft[0] = ShaftDof::Prescribed(1e-6);
+    let ladder = Ladder {
+        halvings: 6,
+        tolerance: Some(1e-2),
+    };
+    let motion = Motion::new(&model, settings(1e-5, ladder)).unwrap();
+    let mut state = motion.rest([0.0; 5], [0.0; 5]);
+    assert_eq!((state.shaft[0], state.shaft_velocity[0]), (1e-6, 0.0));
+    for _ in 0..20 {
+        state = motion.step(&state).unwrap().0;
+    }
+    assert!(
+        state.shaft[2] > 1e-6 && state.ledger.relative_defect().abs() < 1e-9,
+        "{:?}",
+        state.ledger
     );
 }

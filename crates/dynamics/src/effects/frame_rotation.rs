@@ -9,7 +9,7 @@
 //!
 //! centrifugal force with spin softening, Coriolis force, Euler force (e.g. Shabana, Dynamics of Multibody Systems, 4th ed.,
 //! ch. 5). They are small against the stiffness (W dt ~ 1e-3), so they stay on the right-hand side of every step and are
-//! iterated there; S keeps its one factor. Statics takes the centrifugal force of the undeformed ring: the rest is
+//! iterated there; S keeps its one factor. Statics takes the centrifugal and Euler forces of the undeformed ring: the rest is
 //! (W / first natural frequency)^2 of it.
 
 use contact::Side;

@@ -136,7 +136,14 @@ impl Motion<'_> {
 /// leading term of average acceleration.
 fn local_error(new: &[[f64; 2]], old: &[[f64; 2]], dt: f64, approaches: &[f64]) -> f64 {
     let largest = |values: &mut dyn Iterator<Item = f64>| values.fold(0.0, |m: f64, x| m.max(x.abs()));
-    let change = |i: usize, c: usize| new[i][c] - old[i][c];
+    // After a start from undeformed bodies there is no earlier acceleration: no estimate.
+    let change = |i: usize, c: usize| {
+        if old[i][c].is_nan() {
+            0.0
+        } else {
+            new[i][c] - old[i][c]
+        }
+    };
     let change = largest(&mut (0..new.len()).flat_map(|i| [change(i, 0), change(i, 1)]));
     let scale = largest(&mut approaches.iter().copied());
     if scale > 0.0 {

@@ -1,15 +1,16 @@
 //! Motion in time: rings, balls and shaft by an implicit one-step scheme with energy-conserving contact.
 //!
-//! Per step and ring, one predictor solve and one block of columns; then a small Newton on contacts and balls; no further
-//! solve:
+//! Per step and ring, a predictor and the compliance of the contacts; then a small Newton on contacts, balls and shaft:
 //!
 //! ```text
-//! place patches at the azimuths of the middle of the step, measure the motion at its start with them
-//! predictor: S dw = f - K w + M (...)             one solve per ring
-//! columns:   X = S^-1 W                           one block solve per ring, 2 directions per contact
-//! Newton on balls and groove centres: discrete-gradient forces F
-//! dw = predictor + X F; v, a; energies; ledger
+//! place patches at the azimuths of the weighted time of the integrator, measure the motion at the start with them
+//! predictor:  S dw = f - K w + M (...)             one solve per ring
+//! compliance: of a periodic ring by a table, of another by columns S^-1 W in the same block solve
+//! Newton on shaft, balls and groove centres: discrete-gradient forces F
+//! dw = predictor + S^-1 W F; v, a; energies; ledger
 //! ```
+//!
+//! With a periodic ring the last line is one solve more, and each round for the inertia of the turning frame another.
 
 pub mod balls;
 pub mod body;

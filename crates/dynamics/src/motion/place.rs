@@ -14,7 +14,7 @@ use rayon::prelude::*;
 use super::run::Motion;
 use super::state::MotionState;
 use crate::error::DynamicsError;
-use crate::footprint::{on_groove, require_on_groove};
+use crate::footprint::{loaded, on_groove, require_on_groove};
 use crate::model::elastic;
 use crate::problem::Site;
 
@@ -43,10 +43,10 @@ pub(super) struct Placing {
 impl Motion<'_> {
     /// Contacts at a time.
     pub(super) fn place(&self, state: &MotionState, time: f64) -> Result<Placing, DynamicsError> {
-        let contacts: Vec<usize> = (0..2 * self.model.geometry.n_balls).collect();
-        let placed: Result<Vec<_>, DynamicsError> = contacts
-            .par_iter()
-            .map(|&index| self.place_contact(state, index, time))
+        let placed: Result<Vec<_>, DynamicsError> = loaded(&state.forces)
+            .into_par_iter()
+            .enumerate()
+            .map(|(index, loaded)| self.place_contact(state, (index, loaded), time))
             .collect();
         let mut placing = Placing {
             sites: Vec::new(),
@@ -62,7 +62,12 @@ impl Motion<'_> {
     }
 
     /// One contact: its site and, on a flexible ring, its patch.
-    fn place_contact(&self, state: &MotionState, index: usize, time: f64) -> Result<Placed, DynamicsError> {
+    fn place_contact(
+        &self,
+        state: &MotionState,
+        (index, loaded): (usize, bool),
+        time: f64,
+    ) -> Result<Placed, DynamicsError> {
         let model = self.model;
         let (ball, side) = (index / 2, Side::BOTH[index % 2]);
         let azimuth = self.ball_azimuth(ball, time);
@@ -75,7 +80,6 @@ impl Motion<'_> {
             });
         };
         let force = state.forces[index][0].hypot(state.forces[index][1]);
-        let loaded = force > 0.0;
         if loaded {
             require_on_groove(&body.surface, ball, state.angles[index])?;
         }

@@ -1,7 +1,7 @@
 //! The time loop's step: from one State to the next, in parts on the ladder dt 2^-k if need be.
 //!
 //! The outer ring lives in space, the inner in a frame turned by theta_i(t): its contacts stand at azimuth minus theta_i,
-//! loads that are fixed in space are turned into it. Contacts of a step are placed at the azimuths of its middle. Factors of
+//! loads that are fixed in space are turned into it. Contacts of a step are placed at the azimuths of its weighted time. Factors of
 //! a rung are made when it is first used, and kept.
 
 use std::sync::OnceLock;

@@ -76,8 +76,13 @@ impl Motion<'_> {
 impl Motion<'_> {
     /// A bearing without elastic deformation: shaft and inner ring at displacement `q` (m, rad) with velocity `velocity`
     /// (m/s, rad/s) in space, balls at their just-touching position, at rest.
-    pub fn rest(&self, q: [f64; 5], velocity: [f64; 5]) -> MotionState {
+    /// Imposed dofs are where they are imposed.
+    pub fn rest(&self, mut q: [f64; 5], mut velocity: [f64; 5]) -> MotionState {
         let n = self.model.geometry.n_balls;
+        for dof in 0..5 {
+            q[dof] = self.model.prescribed(dof, 0.0).unwrap_or(q[dof]);
+            velocity[dof] = self.model.prescribed_rate(dof, 0.0).unwrap_or(velocity[dof]);
+        }
         let omega = self.settings.speed.at(0.0);
         let ring = |side: Side| {
             let body = self.rings[side.index()].as_ref()?;
@@ -98,7 +103,8 @@ impl Motion<'_> {
             shaft: q,
             shaft_velocity: velocity,
             shaft_acceleration: [0.0; 5],
-            trend: vec![[0.0; 2]; 3 * n],
+            // Nothing is known of the accelerations.
+            trend: vec![[f64::NAN; 2]; 3 * n],
             forces: vec![[0.0; 2]; 2 * n],
             places: vec![[self.model.geometry.free_contact_angle(), 0.0]; 2 * n],
             angles: vec![self.model.geometry.free_contact_angle(); 2 * n],
@@ -118,7 +124,10 @@ impl Motion<'_> {
         let conserving = MotionSettings {
             integrator: Integrator::average_acceleration(),
             scheme: ContactScheme::DiscreteGradient { weight: 0.5 },
-            ladder: Ladder::default(),
+            ladder: Ladder {
+                tolerance: None,
+                ..self.settings.ladder
+            },
             ..self.settings.clone()
         };
         let (next, _) = Motion::new(self.model, conserving)?.step(&state)?;

@@ -58,7 +58,7 @@ pub struct MotionState {
     /// Its acceleration; 0 for dofs without mass of their own.
     pub shaft_acceleration: [f64; 5],
     /// Mean accelerations [radial, axial] over the last part of a step, of the balls, then of the groove centres by site,
-    /// m/s^2: what the local error is estimated from. Zero when steps do not adapt.
+    /// m/s^2: what the local error is estimated from. Zero when steps do not adapt, NaN where nothing is known yet.
     pub trend: Vec<[f64; 2]>,
     /// Mean contact forces of the last step [radial, axial] on the rings, by site, N.
     pub forces: Vec<[f64; 2]>,
