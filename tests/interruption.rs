@@ -1,11 +1,13 @@
 //! Runs that are killed, stopped, or whose disk is full: what was committed is whole, and the run goes on from it.
 
 use std::io::{BufRead, BufReader, Read};
+use std::path::Path;
 use std::process::{Child, Command};
 use std::time::Duration;
 
 use checkpoint::{committed_steps, read_step, step_file_name};
 
+use crate::readers::python;
 use crate::util::Outcome;
 use crate::util::lockstep::{assert_same_run, small_motion};
 use crate::util::tables::summary;
@@ -57,11 +59,39 @@ fn outcome_of(mut child: Child, mut messages: impl Read) -> Outcome {
     }
 }
 
+/// VTK opens every step file, with finite displacements at all its points.
+#[track_caller]
+fn assert_vtk_reads(python: &str, folder: &Path, steps: &[u64]) {
+    const READ: &str = "
+import sys, vtk
+from vtk.util.numpy_support import vtk_to_numpy
+for name in sys.argv[1:]:
+    reader = vtk.vtkHDFReader()
+    reader.SetFileName(name)
+    reader.Update()
+    grid = reader.GetOutput()
+    moved = vtk_to_numpy(grid.GetPointData().GetArray('displacement'))
+    assert len(moved) == grid.GetNumberOfPoints() > 0 and abs(moved).max() < 1, name
+";
+    let files = steps.iter().map(|step| folder.join(step_file_name(*step)));
+    let output = Command::new(python)
+        .args(["-c", READ])
+        .args(files)
+        .output()
+        .unwrap();
+    assert!(
+        output.status.success(),
+        "{}",
+        String::from_utf8_lossy(&output.stderr)
+    );
+}
+
 /// Wrong: a kill at some instant would leave a half step under a final name, lose committed steps or rows, or keep the
 /// run from going on to the same bits.
 #[test]
 fn a_killed_run_goes_on_from_whole_steps() {
     let kills = std::env::var(MANY).map_or(KILLS, |n| n.parse().unwrap());
+    let python = python();
     let dir = small_motion();
     dir.run("whole", &[]);
     let (mut random, mut done, mut survived) = (Random(0x9e37_79b9_7f4a_7c15), 0, 0);
@@ -82,8 +112,12 @@ fn a_killed_run_goes_on_from_whole_steps() {
             child.wait().unwrap();
             done += 1;
             let folder = dir.path(&out);
-            for step in committed_steps(&folder).unwrap() {
-                read_step(&folder.join(step_file_name(step))).unwrap();
+            let steps = committed_steps(&folder).unwrap();
+            for step in &steps {
+                read_step(&folder.join(step_file_name(*step))).unwrap();
+            }
+            if let Some(python) = &python {
+                assert_vtk_reads(python, &folder, &steps);
             }
             arguments = vec!["resume", &out];
             if committed_steps(&folder).unwrap().is_empty() {

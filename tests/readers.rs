@@ -45,7 +45,8 @@ fn skipped(why: &str) {
     std::io::stderr().write_all(text.as_bytes()).unwrap();
 }
 
-fn python() -> Option<String> {
+/// A Python that has VTK, if there is one.
+pub fn python() -> Option<String> {
     let python = std::env::var("RACEWAY_TEST_PYTHON").unwrap_or("python3".to_string());
     if runs(
         &python,

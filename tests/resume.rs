@@ -72,6 +72,31 @@ fn a_run_cut_at_any_step_continues_bit_for_bit() {
     }
 }
 
+/// Wrong: a run would go on from a cut with another step size than it had. Steps adapt here, and balls load and unload.
+#[test]
+fn a_run_whose_steps_adapt_continues_bit_for_bit() {
+    let dir = moved();
+    let adaptive = [
+        "--set",
+        "dynamic.adaptive.tolerance=1e-4",
+        "--set",
+        "dynamic.halvings=6",
+    ];
+    dir.run("adaptive", &adaptive);
+    let energy = |out: &str| dir.text(&format!("{out}/energy.csv"));
+    assert!(
+        energy("adaptive") != energy("whole"),
+        "the tolerance must change steps"
+    );
+    for step in ["3", "11"] {
+        let cut = format!("cut{step}");
+        copy(&dir, "adaptive", &cut);
+        std::fs::remove_file(dir.path(&format!("{cut}/summary.json"))).unwrap();
+        resumed(&dir, &[&cut, "--step", step]);
+        assert_same_run(&dir, "adaptive", &cut);
+    }
+}
+
 /// Wrong: what a resumed run replaces would be lost, or shown twice.
 #[test]
 fn superseded_steps_and_rows_are_kept_aside() {
