@@ -65,7 +65,9 @@ fn free_flight(speed: Speed, dt: f64, n: usize, v: f64) -> [f64; 2] {
     // Room for the ring: a large clearance.
     model.geometry.outer_raceway_diameter += 0.1e-3;
     model.effects = vec![Box::new(FrameRotation { speed: speed.clone() })];
-    model.shaft = [ShaftDof::Prescribed(0.0); 5];
+    // A shaft that flies beside its ring.
+    model.shaft[2] = ShaftDof::Free;
+    model.shaft_mass = 1.0;
     let motion = Motion::new(
         &model,
         MotionSettings {
