@@ -41,8 +41,7 @@ use clock::{Laps, least_wall};
 use contact::Side;
 use dynamics::effects::FrameRotation;
 use dynamics::motion::balls::Speed;
-use dynamics::motion::contacts::ContactScheme;
-use dynamics::motion::{Integrator, Ladder, Motion, MotionSettings, MotionState, StepReport};
+use dynamics::motion::{Motion, MotionSettings, MotionState, StepReport};
 use dynamics::{ContactMode, Hold, Model, StaticSolver};
 use fem::stress::{StressRecovery, von_mises};
 use rayon::prelude::*;
@@ -72,16 +71,7 @@ fn bearing(frame_rotation: bool) -> Model {
 }
 
 fn settings() -> MotionSettings {
-    MotionSettings {
-        dt: DT,
-        ladder: Ladder::default(),
-        integrator: Integrator::average_acceleration(),
-        scheme: ContactScheme::DiscreteGradient { weight: 0.5 },
-        speed: Speed::constant(SPEED),
-        slip: [0.0; 2],
-        contact_damping: None,
-        rayleigh: [0.0; 2],
-    }
+    MotionSettings::conserving(DT, Speed::constant(SPEED))
 }
 
 /// A bearing on its way.

@@ -356,12 +356,8 @@ fn settings(scene: &Scene, dynamic: &Dynamic) -> MotionSettings {
         },
         integrator,
         scheme: match dynamic.contact {
-            scene::ContactScheme::DiscreteGradient => ContactScheme::DiscreteGradient {
-                weight: integrator.alpha_f,
-            },
-            scene::ContactScheme::Pointwise => ContactScheme::Pointwise {
-                weight: integrator.alpha_f,
-            },
+            scene::ContactScheme::DiscreteGradient => ContactScheme::DiscreteGradient,
+            scene::ContactScheme::Pointwise => ContactScheme::Pointwise,
         },
         speed: speed(scene),
         slip: scene.effects.cage_slip.unwrap_or([0.0; 2]),

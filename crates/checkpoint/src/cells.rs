@@ -1,6 +1,6 @@
 //! Fields over the cells of all bodies.
 
-use crate::record::Field;
+use crate::record::{Field, listed};
 use crate::storage::Storage;
 
 /// Components of a stress tensor, in the order xx yy zz xy yz xz.
@@ -41,10 +41,7 @@ impl IntegrationPointStress {
 impl CellFields {
     /// Name, components per cell, and row-major values of every field that is present.
     pub fn arrays(&self) -> Vec<(&'static str, usize, &[f64])> {
-        let fields = self.present(Storage::default()).into_iter();
-        fields
-            .map(|field| (field.name, field.n_components, field.values))
-            .collect()
+        listed(self.present(Storage::default()))
     }
 
     /// Fields that are present, in the order of the files.

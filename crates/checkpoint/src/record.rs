@@ -62,13 +62,18 @@ pub(crate) struct Field<'a> {
     pub precision: Precision,
 }
 
+/// Name, components per row, and row-major values of fields.
+pub(crate) fn listed(fields: Vec<Field<'_>>) -> Vec<(&'static str, usize, &[f64])> {
+    fields
+        .into_iter()
+        .map(|field| (field.name, field.n_components, field.values))
+        .collect()
+}
+
 impl PointFields {
     /// Name, components per point, and row-major values of every field that is present.
     pub fn arrays(&self) -> Vec<(&'static str, usize, &[f64])> {
-        let fields = self.present(Storage::default()).into_iter();
-        fields
-            .map(|field| (field.name, field.n_components, field.values))
-            .collect()
+        listed(self.present(Storage::default()))
     }
 
     /// Fields that are present, in the order of the files.

@@ -45,7 +45,7 @@ impl Snapshot {
         Snapshot {
             balls: motion.balls(state),
             spin: motion.spin(state),
-            shaft: motion.shaft(state),
+            shaft: state.shaft,
             reaction: None,
             energies: ledger_terms(&state.ledger),
         }

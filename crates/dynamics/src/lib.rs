@@ -22,6 +22,7 @@ pub mod quasi_static;
 pub mod ring;
 pub mod schedule;
 pub mod solution;
+pub mod sparse;
 pub mod statics;
 pub mod support;
 

@@ -5,8 +5,8 @@ mod support;
 use contact::Side;
 use dynamics::effects::{self, AxialForce, Effect, Gravity, Now};
 use dynamics::motion::balls::Speed;
-use dynamics::motion::contacts::{ContactDamping, ContactScheme};
-use dynamics::motion::{Integrator, Ladder, Motion, MotionSettings};
+use dynamics::motion::contacts::ContactDamping;
+use dynamics::motion::{Motion, MotionSettings};
 use dynamics::{ContactMode, EffectCosts, Hold, Inventory, Model, Schedule, StaticSolver};
 use support::Case;
 use support::rings::Level;
@@ -20,16 +20,7 @@ fn flexible(effects: Vec<Box<dyn Effect>>) -> Model {
 }
 
 fn settings() -> MotionSettings {
-    MotionSettings {
-        dt: 1e-5,
-        integrator: Integrator::average_acceleration(),
-        scheme: ContactScheme::DiscreteGradient { weight: 0.5 },
-        ladder: Ladder::default(),
-        speed: Speed::constant(0.0),
-        slip: [0.0; 2],
-        contact_damping: None,
-        rayleigh: [0.0; 2],
-    }
+    MotionSettings::conserving(1e-5, Speed::constant(0.0))
 }
 
 /// Wrong: a scene would pay for an effect it does not name. Rigid rings have no dofs and no matrices; without effects there

@@ -4,8 +4,7 @@ mod support;
 
 use dynamics::effects::{BallCentrifugal, GyroscopicMoment, Now};
 use dynamics::motion::balls::Speed;
-use dynamics::motion::contacts::ContactScheme;
-use dynamics::motion::{Integrator, Ladder, Motion, MotionSettings, MotionState};
+use dynamics::motion::{Motion, MotionSettings, MotionState};
 use dynamics::{ContactMode, Hold, Model, Pose, Schedule, ShaftDof, StaticSolver};
 use support::rings::Level;
 use support::{Case, equilibrium};
@@ -15,16 +14,7 @@ const SMALL: Level = Level::hex8(54, 6, 1, 2);
 const FAST: f64 = 500.0 * std::f64::consts::PI;
 
 fn settings(dt: f64, speed: f64) -> MotionSettings {
-    MotionSettings {
-        dt,
-        ladder: Ladder::default(),
-        integrator: Integrator::average_acceleration(),
-        scheme: ContactScheme::DiscreteGradient { weight: 0.5 },
-        speed: Speed::constant(speed),
-        slip: [0.0; 2],
-        contact_damping: None,
-        rayleigh: [0.0; 2],
-    }
+    MotionSettings::conserving(dt, Speed::constant(speed))
 }
 
 fn spinning(mut model: Model, shares: [f64; 2]) -> Model {

@@ -5,8 +5,7 @@ mod support;
 use contact::Side;
 use dynamics::effects::FrameRotation;
 use dynamics::motion::balls::Speed;
-use dynamics::motion::contacts::ContactScheme;
-use dynamics::motion::{Integrator, Ladder, Motion, MotionSettings, MotionState};
+use dynamics::motion::{Integrator, Motion, MotionSettings, MotionState};
 use dynamics::{Backend, ContactMode, Hold, Model, ShaftDof, StaticSolution};
 use support::rings::{self, Level};
 use support::{Case, equilibrium};
@@ -14,16 +13,7 @@ use support::{Case, equilibrium};
 const SMALL: Level = Level::hex8(54, 6, 1, 2);
 
 fn settings(dt: f64) -> MotionSettings {
-    MotionSettings {
-        dt,
-        ladder: Ladder::default(),
-        integrator: Integrator::average_acceleration(),
-        scheme: ContactScheme::DiscreteGradient { weight: 0.5 },
-        speed: Speed::constant(0.0),
-        slip: [0.0; 2],
-        contact_damping: None,
-        rayleigh: [0.0; 2],
-    }
+    MotionSettings::conserving(dt, Speed::constant(0.0))
 }
 
 fn run(model: &Model, start: &StaticSolution, settings: MotionSettings, n: usize) -> Vec<MotionState> {
@@ -164,12 +154,8 @@ fn every_integrator_closes_the_ledger() {
         ("newmark 0.3025 0.6", Integrator::newmark(0.3025, 0.6)),
     ];
     for (name, integrator) in family {
-        let scheme = ContactScheme::DiscreteGradient {
-            weight: integrator.alpha_f,
-        };
         let choices = MotionSettings {
             integrator,
-            scheme,
             ..settings(2e-5)
         };
         let states = run(&model, &start, choices, 50);

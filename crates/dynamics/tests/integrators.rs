@@ -9,8 +9,7 @@ use contact::Side;
 use dynamics::effects::{Effect, Loads, Now};
 use dynamics::modes::ring_modes;
 use dynamics::motion::balls::Speed;
-use dynamics::motion::contacts::ContactScheme;
-use dynamics::motion::{Integrator, Ladder, Motion, MotionSettings, MotionState};
+use dynamics::motion::{Integrator, Motion, MotionSettings, MotionState};
 use dynamics::{
     ContactMode, DynamicsError, Hold, Mode, Model, ModesSettings, RingModel, RingSupport, ShaftDof,
 };
@@ -54,16 +53,8 @@ fn lonely(ring: &Arc<RingModel>, load: Vec<f64>) -> Model {
 /// Displacements of the ring's nodes at the end of each of `n` steps, from rest, m, `[n][n_nodes][3]`.
 fn response(model: &Model, integrator: Integrator, dt: f64, n: usize) -> Vec<Vec<f64>> {
     let settings = MotionSettings {
-        dt,
-        ladder: Ladder::default(),
         integrator,
-        scheme: ContactScheme::DiscreteGradient {
-            weight: integrator.alpha_f,
-        },
-        speed: Speed::constant(0.0),
-        slip: [0.0; 2],
-        contact_damping: None,
-        rayleigh: [0.0; 2],
+        ..MotionSettings::conserving(dt, Speed::constant(0.0))
     };
     let motion = Motion::new(model, settings).unwrap();
     let ShaftDof::Prescribed(back) = model.shaft[2] else {

@@ -4,8 +4,7 @@ mod support;
 
 use contact::Side;
 use dynamics::motion::balls::Speed;
-use dynamics::motion::contacts::ContactScheme;
-use dynamics::motion::{Integrator, Ladder, Motion, MotionSettings, MotionState};
+use dynamics::motion::{Ladder, Motion, MotionSettings, MotionState};
 use dynamics::{ContactMode, DynamicsError, Hold, Model, ShaftDof, StaticSolution};
 use support::rings::Level;
 use support::{Case, equilibrium};
@@ -14,14 +13,8 @@ const SMALL: Level = Level::hex8(54, 6, 1, 2);
 
 fn settings(dt: f64, ladder: Ladder) -> MotionSettings {
     MotionSettings {
-        dt,
         ladder,
-        integrator: Integrator::average_acceleration(),
-        scheme: ContactScheme::DiscreteGradient { weight: 0.5 },
-        speed: Speed::constant(0.0),
-        slip: [0.0; 2],
-        contact_damping: None,
-        rayleigh: [0.0; 2],
+        ..MotionSettings::conserving(dt, Speed::constant(0.0))
     }
 }
 

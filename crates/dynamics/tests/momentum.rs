@@ -4,8 +4,7 @@ mod support;
 
 use contact::Side;
 use dynamics::motion::balls::Speed;
-use dynamics::motion::contacts::ContactScheme;
-use dynamics::motion::{Integrator, Ladder, Motion, MotionSettings, MotionState};
+use dynamics::motion::{Motion, MotionSettings, MotionState};
 use dynamics::{ContactMode, Hold, Model, ShaftDof};
 use support::Case;
 use support::rings::Level;
@@ -67,16 +66,7 @@ fn momentum(model: &Model, motion: &Motion<'_>, state: &MotionState) -> Momentum
 #[test]
 fn free_balls_in_a_free_ring_keep_their_momentum() {
     let model = floating();
-    let settings = MotionSettings {
-        dt: 2e-6,
-        ladder: Ladder::default(),
-        integrator: Integrator::average_acceleration(),
-        scheme: ContactScheme::DiscreteGradient { weight: 0.5 },
-        speed: Speed::constant(0.0),
-        slip: [0.0; 2],
-        contact_damping: None,
-        rayleigh: [0.0; 2],
-    };
+    let settings = MotionSettings::conserving(2e-6, Speed::constant(0.0));
     let motion = Motion::new(&model, settings).unwrap();
     let ShaftDof::Prescribed(back) = model.shaft[2] else {
         unreachable!()

@@ -4,22 +4,13 @@ mod support;
 
 use dynamics::motion::balls::Speed;
 use dynamics::motion::contacts::{ContactDamping, ContactScheme};
-use dynamics::motion::{Integrator, Ladder, Motion, MotionSettings, MotionState};
+use dynamics::motion::{Motion, MotionSettings, MotionState};
 use dynamics::{ContactMode, Hold, Model, StaticSolution};
 use support::rings::Level;
 use support::{Case, equilibrium};
 
 fn settings(dt: f64) -> MotionSettings {
-    MotionSettings {
-        dt,
-        ladder: Ladder::default(),
-        integrator: Integrator::average_acceleration(),
-        scheme: ContactScheme::DiscreteGradient { weight: 0.5 },
-        speed: Speed::constant(0.0),
-        slip: [0.0; 2],
-        contact_damping: None,
-        rayleigh: [0.0; 2],
-    }
+    MotionSettings::conserving(dt, Speed::constant(0.0))
 }
 
 const SMALL: Level = Level::hex8(54, 6, 1, 2);
@@ -146,7 +137,7 @@ fn slow_rolling_follows_the_static_forces() {
 #[test]
 fn pointwise_contact_gains_energy_and_the_ledger_tells() {
     let (loaded, solution) = radial_step(5000.0);
-    let scheme = ContactScheme::Pointwise { weight: 0.5 };
+    let scheme = ContactScheme::Pointwise;
     let motion = Motion::new(
         &loaded,
         MotionSettings {

@@ -5,8 +5,7 @@ mod support;
 use contact::Side;
 use dynamics::effects::{Effect, Loads, Now};
 use dynamics::motion::balls::Speed;
-use dynamics::motion::contacts::ContactScheme;
-use dynamics::motion::{Integrator, Ladder, Motion, MotionSettings};
+use dynamics::motion::{Motion, MotionSettings};
 use dynamics::{DynamicsError, Model};
 use ode_solvers::rk4::Rk4;
 use ode_solvers::{DVector, System};
@@ -124,16 +123,7 @@ fn rigid_rings_follow_an_independent_ode_solution() {
     let exact = solver.y_out().last().unwrap() * 1e-6;
     let scale = exact[0].abs();
     let error = |steps: usize| {
-        let settings = MotionSettings {
-            dt: PERIOD / steps as f64,
-            ladder: Ladder::default(),
-            integrator: Integrator::average_acceleration(),
-            scheme: ContactScheme::DiscreteGradient { weight: 0.5 },
-            speed: Speed::constant(0.0),
-            slip: [0.0; 2],
-            contact_damping: None,
-            rayleigh: [0.0; 2],
-        };
+        let settings = MotionSettings::conserving(PERIOD / steps as f64, Speed::constant(0.0));
         let motion = Motion::new(&model, settings).unwrap();
         let mut state = motion.start(&start);
         for _ in 0..steps {

@@ -7,8 +7,7 @@ use std::f64::consts::PI;
 use contact::Side;
 use dynamics::effects::{AxialForce, BallCentrifugal, Gravity, Now, RadialForce};
 use dynamics::motion::balls::{Rolling, Speed};
-use dynamics::motion::contacts::ContactScheme;
-use dynamics::motion::{Integrator, Ladder, Motion, MotionSettings};
+use dynamics::motion::{Motion, MotionSettings};
 use dynamics::{ContactMode, Hold, Model, Pose, QuasiStatic, Schedule, StaticSolution, StaticSolver};
 use support::rings::Level;
 use support::{Case, relative};
@@ -173,16 +172,7 @@ fn slow_motion_follows_the_quasi_static_run() {
     let dt = 2e-5;
     let mut quasi = QuasiStatic::new(&model, rolling(&model), 0.5 * dt).unwrap();
     let start = quasi.step(0, None).unwrap();
-    let settings = MotionSettings {
-        dt,
-        integrator: Integrator::average_acceleration(),
-        scheme: ContactScheme::DiscreteGradient { weight: 0.5 },
-        ladder: Ladder::default(),
-        speed: Speed::constant(SPEED),
-        slip: [0.0; 2],
-        contact_damping: None,
-        rayleigh: [0.0; 2],
-    };
+    let settings = MotionSettings::conserving(dt, Speed::constant(SPEED));
     let motion = Motion::new(&model, settings).unwrap();
     let mut state = motion.start(&start);
     let (mut earlier, mut worst) = (start, 0.0f64);

@@ -8,8 +8,8 @@ use std::sync::LazyLock;
 use contact::Side;
 use dynamics::balls::BallResult;
 use dynamics::motion::balls::{Rolling, Speed};
-use dynamics::motion::contacts::{ContactDamping, ContactScheme};
-use dynamics::motion::{Integrator, Ladder, Motion, MotionSettings, MotionState};
+use dynamics::motion::contacts::ContactDamping;
+use dynamics::motion::{Motion, MotionSettings, MotionState};
 use dynamics::{ContactMode, Hold, Model, QuasiStatic};
 use support::Case;
 use support::rings::Level;
@@ -64,17 +64,11 @@ impl Run {
             .and_then(|mut quasi| quasi.step(0, None))
             .unwrap();
         let settings = MotionSettings {
-            dt: self.dt,
-            ladder: Ladder::default(),
-            integrator: Integrator::average_acceleration(),
-            scheme: ContactScheme::DiscreteGradient { weight: 0.5 },
-            speed: self.rolling.speed.clone(),
-            slip: [0.0; 2],
             contact_damping: Some(ContactDamping {
                 coefficient: 50.0,
                 full_approach: 1e-6,
             }),
-            rayleigh: [0.0; 2],
+            ..MotionSettings::conserving(self.dt, self.rolling.speed.clone())
         };
         let motion = Motion::new(&self.model, settings).unwrap();
         let mut state = motion.start(&start);

@@ -3,8 +3,7 @@
 
 use contact::NodalWeights;
 
-/// A generalised load with few entries: index and value, indices distinct.
-pub type SparseLoad = Vec<(usize, f64)>;
+use crate::sparse::SparseLoad;
 
 /// Map between nodal dofs and coordinates.
 pub struct Coordinates {
@@ -101,9 +100,4 @@ impl Coordinates {
             self.reduce(nodes.flat_map(|(&node, c)| (0..3).map(move |k| (3 * node + k, c[direction][k]))))
         })
     }
-}
-
-/// load . x.
-pub fn sparse_dot(load: &SparseLoad, x: &[f64]) -> f64 {
-    load.iter().map(|&(i, value)| value * x[i]).sum()
 }

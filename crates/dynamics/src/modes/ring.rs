@@ -11,12 +11,14 @@ use solver::dense::DenseCholesky;
 use solver::{LinearSolver, SparseCholesky, Symbolic};
 use sprs::CsMat;
 
-use super::coordinates::{Coordinates, SparseLoad, sparse_dot};
+use super::coordinates::Coordinates;
 use super::products::products;
 use crate::error::DynamicsError;
 use crate::model::{Hold, RingModel};
 use crate::ring::elimination_order;
 use crate::solution::dot;
+use crate::sparse::{SparseLoad, sparse_dot};
+use crate::support::mean_motion;
 
 /// The rigid body that holds a ring: shaft or housing.
 pub struct Partner {
@@ -112,7 +114,7 @@ impl RingBody {
                     partner_mass = partner.mass;
                     mass.add_to_translations(&moving, partner.mass);
                 }
-                Hold::MeanMotion => body = Holding::mean(mesh, ring, &motions, partner, &coordinates),
+                Hold::MeanMotion => body = Holding::mean(mesh, ring, partner, &coordinates),
                 Hold::Free => {}
             }
         }
@@ -198,14 +200,13 @@ struct Holding {
 }
 
 impl Holding {
-    fn mean(
-        mesh: &Mesh,
-        ring: &RingModel,
-        motions: &[Vec<f64>; 6],
-        partner: &Partner,
-        coordinates: &Coordinates,
-    ) -> Holding {
-        let mut functionals = mean_motions(mesh, ring, motions, coordinates);
+    fn mean(mesh: &Mesh, ring: &RingModel, partner: &Partner, coordinates: &Coordinates) -> Holding {
+        let weights = fem::facet_node_weights(mesh, mesh.group(ring.held_group));
+        let rows = mean_motion(mesh, weights, ring.groove.centre_z);
+        let mut functionals: Vec<SparseLoad> = rows
+            .into_iter()
+            .map(|row| coordinates.reduce(row.into_iter()))
+            .collect();
         let constraints = (0..6).filter(|dof| !partner.moving.contains(dof));
         let lumps = (0..3).filter(|dof| partner.mass > 0.0 && partner.moving.contains(dof));
         Holding {
@@ -219,47 +220,6 @@ impl Holding {
             },
         }
     }
-}
-
-/// The six functionals (R^T W R)^-1 R^T W of the nodal displacements: mean motion of the held surface about the shaft's
-/// origin.
-fn mean_motions(
-    mesh: &Mesh,
-    ring: &RingModel,
-    motions: &[Vec<f64>; 6],
-    coordinates: &Coordinates,
-) -> Vec<SparseLoad> {
-    let weights = fem::facet_node_weights(mesh, mesh.group(ring.held_group));
-    // Rotations times a radius, so that all six are lengths.
-    let radius = ring.groove.centre_radius;
-    let scale = |mode: usize| if mode < 3 { 1.0 } else { 1.0 / radius };
-    let mut gram = vec![0.0; 36];
-    for i in 0..6 {
-        for j in 0..6 {
-            let product = |&(node, w): &(usize, f64)| {
-                w * dot(
-                    &motions[i][3 * node..3 * node + 3],
-                    &motions[j][3 * node..3 * node + 3],
-                )
-            };
-            gram[6 * i + j] = scale(i) * scale(j) * weights.iter().map(product).sum::<f64>();
-        }
-    }
-    let inverse = DenseCholesky::factor(6, &gram)
-        .expect("a surface of facets is not a straight line, so its mean rotation is defined")
-        .inverse();
-    let functional = |i: usize| {
-        let entries = weights
-            .iter()
-            .flat_map(|&(node, w)| (0..3).map(move |c| (3 * node + c, w)));
-        coordinates.reduce(entries.map(|(dof, w)| {
-            let sum: f64 = (0..6)
-                .map(|j| inverse[6 * i + j] * scale(j) * motions[j][dof])
-                .sum();
-            (dof, w * scale(i) * sum)
-        }))
-    };
-    (0..6).map(functional).collect()
 }
 
 impl Bordered {

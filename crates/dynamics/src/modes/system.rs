@@ -19,10 +19,10 @@ use solver::EigenProblem;
 use solver::dense::DenseLu;
 
 use super::columns::{Column, Contact, Role, columns, reactions};
-use super::coordinates::sparse_dot;
 use super::ring::RingBody;
 use crate::error::DynamicsError;
 use crate::solution::dot;
+use crate::sparse::sparse_dot;
 
 /// The bearing's own dofs among the small ones.
 #[derive(Default)]

@@ -10,16 +10,16 @@ use contact::{RacewaySurface, Side};
 use mesh::Mesh;
 use sprs::CsMat;
 
-use super::coordinates::{Coordinates, SparseLoad};
+use super::coordinates::Coordinates;
 use super::effective::{Effective, Factored};
 use super::integrator::Integrator;
 use super::ring::RingState;
-use super::sparse::{kronecker, node_product, product};
 use crate::effects::FrameTurn;
 use crate::error::DynamicsError;
 use crate::inventory::Inventory;
 use crate::model::{Backend, Hold, RACEWAY_GROUP, RingModel};
 use crate::solution::dot;
+use crate::sparse::{SparseLoad, kronecker, node_product, product};
 use crate::support::mean_motion;
 
 /// A ring's matrices, raceway and mount.

@@ -21,20 +21,14 @@ const GAUSS: [(f64, f64); 3] = [
     (0.887_298_334_620_741_7, 5.0 / 18.0),
 ];
 
-/// How forces are evaluated over a step; `weight` is the integrator's alpha_f.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// How forces are evaluated over a step.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ContactScheme {
     /// Energy-conserving mean force, plus (1/2 - weight) times its change over the step: the force at the weighted time of
     /// an integrator that dissipates. V is convex, so this term only takes energy.
-    DiscreteGradient {
-        /// Weight of the start.
-        weight: f64,
-    },
+    DiscreteGradient,
     /// (1 - weight) times the force at the end plus `weight` times the force at the start.
-    Pointwise {
-        /// Weight of the start.
-        weight: f64,
-    },
+    Pointwise,
 }
 
 /// The paper's contact damping.
@@ -83,12 +77,13 @@ fn coefficient(damping: &ContactDamping, d: f64) -> [f64; 2] {
     ]
 }
 
-/// Mean force over a step of `dt` seconds between l0 and l1 (m); they touch at |l| = `touching`.
+/// Mean force over a step of `dt` seconds between l0 and l1 (m); they touch at |l| = `touching`. `weight` is that of the start,
+/// the integrator's alpha_f.
 pub fn mean_force(
     law: &ContactLaw,
     touching: f64,
     [l0, l1]: [[f64; 2]; 2],
-    scheme: ContactScheme,
+    (scheme, weight): (ContactScheme, f64),
     damping: Option<(&ContactDamping, f64)>,
 ) -> MeanForce {
     let size = |l: [f64; 2]| l[0].hypot(l[1]);
@@ -97,8 +92,8 @@ pub fn mean_force(
     let (sum, total) = ([l0[0] + l1[0], l0[1] + l1[1]], s0 + s1);
     let end = [l1[0] / s1, l1[1] / s1];
     let [mut normal, mut stiffness] = match scheme {
-        ContactScheme::DiscreteGradient { .. } => mean_normal(law, d0, d1),
-        ContactScheme::Pointwise { weight } => {
+        ContactScheme::DiscreteGradient => mean_normal(law, d0, d1),
+        ContactScheme::Pointwise => {
             let (start, end) = (law.evaluate(d0), law.evaluate(d1));
             [
                 weight * start.force + (1.0 - weight) * end.force,
@@ -132,9 +127,7 @@ pub fn mean_force(
                 stiffness * mean[i] * end[j] + normal * (identity - mean[i] * end[j]) / total;
         }
     }
-    if let ContactScheme::DiscreteGradient { weight } = scheme
-        && weight != 0.5
-    {
+    if scheme == ContactScheme::DiscreteGradient && weight != 0.5 {
         add_change(law, touching, [l0, l1], 0.5 - weight, &mut result);
     }
     result
@@ -196,7 +189,7 @@ mod tests {
         patch_compliance: 2e-9,
     };
     const TOUCHING: f64 = 0.15e-3;
-    const CONSERVING: ContactScheme = ContactScheme::DiscreteGradient { weight: 0.5 };
+    const CONSERVING: (ContactScheme, f64) = (ContactScheme::DiscreteGradient, 0.5);
 
     fn cases() -> Vec<[[f64; 2]; 2]> {
         let mut cases = Vec::new();
@@ -229,7 +222,7 @@ mod tests {
     fn the_weighted_discrete_gradient_only_takes_energy() {
         for [l0, l1] in cases() {
             for weight in [0.0, 0.3] {
-                let scheme = ContactScheme::DiscreteGradient { weight };
+                let scheme = (ContactScheme::DiscreteGradient, weight);
                 let f = mean_force(&LAW, TOUCHING, [l0, l1], scheme, None);
                 assert!(f.numerical_loss >= 0.0, "{l0:?} {l1:?}: {}", f.numerical_loss);
                 let pull = f.force[0] * (l0[0] + l1[0]) + f.force[1] * (l0[1] + l1[1]);
@@ -248,8 +241,8 @@ mod tests {
         };
         for scheme in [
             CONSERVING,
-            ContactScheme::DiscreteGradient { weight: 0.3 },
-            ContactScheme::Pointwise { weight: 0.4 },
+            (ContactScheme::DiscreteGradient, 0.3),
+            (ContactScheme::Pointwise, 0.4),
         ] {
             for damped in [None, Some((&damping, 1e-5))] {
                 for [l0, l1] in cases() {

@@ -8,8 +8,7 @@ use contact::NodalWeights;
 use mesh::Mesh;
 use sprs::CsMat;
 
-/// A generalised load with few entries: index and value.
-pub type SparseLoad = Vec<(usize, f64)>;
+use crate::sparse::SparseLoad;
 
 /// What one nodal dof is made of.
 #[derive(Clone, Copy, Debug, PartialEq)]

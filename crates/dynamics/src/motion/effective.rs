@@ -10,10 +10,10 @@ use solver::{Coupling, LinearSolver, SolverError, Symbolic};
 use sprs::CsMat;
 
 use super::coordinates::Coordinates;
-use super::sparse::kronecker;
 use crate::error::DynamicsError;
 use crate::model::{Backend, RACEWAY_GROUP, RingModel};
 use crate::ring::elimination_order;
+use crate::sparse::kronecker;
 
 /// Sectors from which on harmonics pay: a few wide ones cost more than the ring as a whole.
 const LEAST_SECTORS: usize = 12;

@@ -29,7 +29,6 @@ pub mod run;
 pub mod shaft;
 pub mod shape;
 pub mod small;
-mod sparse;
 pub mod start;
 pub mod state;
 mod substep;

@@ -8,11 +8,6 @@ use crate::balls::{BallDisplacement, BallResult, ContactResult};
 use crate::error::DynamicsError;
 
 impl Motion<'_> {
-    /// Displacement of the shaft in space, m and rad.
-    pub fn shaft(&self, state: &MotionState) -> [f64; 5] {
-        state.shaft
-    }
-
     /// Results of every ball: mean forces of the last step, angles and approaches at its end.
     pub fn balls(&self, state: &MotionState) -> Vec<BallResult> {
         let contact = |ball: usize, side: Side| {

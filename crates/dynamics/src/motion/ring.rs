@@ -11,11 +11,10 @@ use solver::cyclic::ResponseTable;
 use solver::dense::DenseCholesky;
 
 use super::body::RingBody;
-use super::coordinates::SparseLoad;
 use super::effective::Factored;
 use super::integrator::Integrator;
-use super::sparse::{product, sparse_dot};
 use crate::error::DynamicsError;
+use crate::sparse::{SparseLoad, product, sparse_dot};
 
 /// The factor of one ring at one step size.
 pub struct RingFactor {

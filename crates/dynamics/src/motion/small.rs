@@ -162,7 +162,8 @@ impl SmallSystem {
 
     pub(super) fn forces(&self, x: &[f64]) -> Vec<MeanForce> {
         let damping = self.damping.as_ref().map(|d| (d, self.dt));
-        let force = |s: &Site| mean_force(&s.law, s.touching, self.reach(s, x), self.scheme, damping);
+        let scheme = (self.scheme, self.integrator.alpha_f);
+        let force = |s: &Site| mean_force(&s.law, s.touching, self.reach(s, x), scheme, damping);
         self.sites.iter().map(force).collect()
     }
 

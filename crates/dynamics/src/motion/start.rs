@@ -123,7 +123,7 @@ impl Motion<'_> {
         }
         let conserving = MotionSettings {
             integrator: Integrator::average_acceleration(),
-            scheme: ContactScheme::DiscreteGradient { weight: 0.5 },
+            scheme: ContactScheme::DiscreteGradient,
             ladder: Ladder {
                 tolerance: None,
                 ..self.settings.ladder

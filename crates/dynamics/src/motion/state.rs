@@ -27,6 +27,22 @@ pub struct MotionSettings {
     pub rayleigh: [f64; 2],
 }
 
+impl MotionSettings {
+    /// Equal steps of `dt` seconds that conserve energy, without slip and damping.
+    pub fn conserving(dt: f64, speed: Speed) -> MotionSettings {
+        MotionSettings {
+            dt,
+            ladder: Ladder::default(),
+            integrator: Integrator::average_acceleration(),
+            scheme: ContactScheme::DiscreteGradient,
+            speed,
+            slip: [0.0; 2],
+            contact_damping: None,
+            rayleigh: [0.0; 2],
+        }
+    }
+}
+
 /// The ladder of step sizes dt 2^-k; each keeps its factors.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Ladder {

@@ -3,7 +3,8 @@
 use rayon::prelude::*;
 use sprs::CsMat;
 
-use super::coordinates::SparseLoad;
+/// A functional or generalised load with few entries: index and value, indices distinct.
+pub type SparseLoad = Vec<(usize, f64)>;
 
 /// Rows per task: below, splitting costs more than it gains.
 const ROWS: usize = 2048;
