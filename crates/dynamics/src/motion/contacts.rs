@@ -67,6 +67,16 @@ fn mean_normal(law: &ContactLaw, d0: f64, d1: f64) -> [f64; 2] {
     [mean, (end.force - mean) / change]
 }
 
+/// Viscous force along the normal, N, and its derivative with respect to |l1|, N/m: c at the mean approach times the mean rate of
+/// a step of `dt` seconds.
+pub fn viscous(damping: &ContactDamping, dt: f64, touching: f64, [l0, l1]: [[f64; 2]; 2]) -> [f64; 2] {
+    let approach = |l: [f64; 2]| l[0].hypot(l[1]) - touching;
+    let (d0, d1) = (approach(l0), approach(l1));
+    let [c, slope] = coefficient(damping, 0.5 * (d0 + d1));
+    let rate = (d1 - d0) / dt;
+    [c * rate, c / dt + 0.5 * slope * rate]
+}
+
 /// Damping coefficient at an approach and its derivative.
 fn coefficient(damping: &ContactDamping, d: f64) -> [f64; 2] {
     let x = (d / damping.full_approach).clamp(0.0, 1.0);
@@ -77,14 +87,14 @@ fn coefficient(damping: &ContactDamping, d: f64) -> [f64; 2] {
     ]
 }
 
-/// Mean force over a step of `dt` seconds between l0 and l1 (m); they touch at |l| = `touching`. `weight` is that of the start,
-/// the integrator's alpha_f.
+/// Mean force over a step between l0 and l1 (m); they touch at |l| = `touching`. `weight` is that of the start, the integrator's
+/// alpha_f; `viscous` what [`viscous`] gives, if there is damping.
 pub fn mean_force(
     law: &ContactLaw,
     touching: f64,
     [l0, l1]: [[f64; 2]; 2],
     (scheme, weight): (ContactScheme, f64),
-    damping: Option<(&ContactDamping, f64)>,
+    viscous: Option<[f64; 2]>,
 ) -> MeanForce {
     let size = |l: [f64; 2]| l[0].hypot(l[1]);
     let (s0, s1) = (size(l0), size(l1));
@@ -102,12 +112,10 @@ pub fn mean_force(
         }
     };
     let mut loss = 0.0;
-    if let Some((damping, dt)) = damping {
-        let [c, slope] = coefficient(damping, 0.5 * (d0 + d1));
-        let rate = (d1 - d0) / dt;
+    if let Some([force, slope]) = viscous {
         let elastic = normal;
-        normal += c * rate;
-        stiffness += c / dt + 0.5 * slope * rate;
+        normal += force;
+        stiffness += slope;
         if normal < 0.0 {
             (normal, stiffness) = (0.0, 0.0);
         }
@@ -244,9 +252,17 @@ mod tests {
             (ContactScheme::DiscreteGradient, 0.3),
             (ContactScheme::Pointwise, 0.4),
         ] {
-            for damped in [None, Some((&damping, 1e-5))] {
+            for damped in [None, Some(&damping)] {
                 for [l0, l1] in cases() {
-                    let at = |l| mean_force(&LAW, TOUCHING, [l0, l], scheme, damped);
+                    let at = |l| {
+                        mean_force(
+                            &LAW,
+                            TOUCHING,
+                            [l0, l],
+                            scheme,
+                            damped.map(|d| viscous(d, 1e-5, TOUCHING, [l0, l])),
+                        )
+                    };
                     let h = 1e-11;
                     for j in 0..2 {
                         let (mut low, mut high) = (l1, l1);
@@ -276,7 +292,8 @@ mod tests {
             full_approach: 1e-6,
         };
         for [l0, l1] in cases() {
-            let f = mean_force(&LAW, TOUCHING, [l0, l1], CONSERVING, Some((&damping, 1e-6)));
+            let damped = viscous(&damping, 1e-6, TOUCHING, [l0, l1]);
+            let f = mean_force(&LAW, TOUCHING, [l0, l1], CONSERVING, Some(damped));
             assert!(f.loss >= 0.0, "{}", f.loss);
             assert!(f.force[0] * (l0[0] + l1[0]) + f.force[1] * (l0[1] + l1[1]) >= 0.0);
         }

@@ -63,9 +63,11 @@ impl Motion<'_> {
         if let Some((_, inertia)) = &ring.inertia {
             ledger.frame_work += dot(inertia, dw);
         }
-        let losses = ring.body.losses(integrator, ring.old, &new);
-        ledger.rayleigh_loss += losses.rayleigh;
-        ledger.numerical_loss += losses.numerical;
+        if ring.body.damping != [0.0; 2] {
+            let loss = || ring.body.rayleigh_loss(integrator, ring.old, &new);
+            ledger.rayleigh_loss += self.costs.time("rayleigh_damping", loss);
+        }
+        ledger.numerical_loss += ring.body.numerical_loss(integrator, ring.old, &new);
         if side == Side::Inner {
             // What the shaft gives in space and what the ring gets in its frame differ by the work of the turning.
             let mount = &solution.mounts[0];

@@ -5,6 +5,7 @@ use solver::dense::DenseLu;
 
 use super::contacts::MeanForce;
 use super::small::SmallSystem;
+use crate::costs::EffectCosts;
 use crate::error::DynamicsError;
 
 /// Newton iterations before a step counts as failed.
@@ -59,11 +60,11 @@ impl SmallSystem {
     }
 
     /// Solves the step. Fails with the residual history and the place of the largest residual.
-    pub fn solve(&self, scale: f64) -> Result<SmallSolution, DynamicsError> {
+    pub fn solve(&self, scale: f64, costs: &EffectCosts) -> Result<SmallSolution, DynamicsError> {
         let (n, mut x) = (self.n(), self.guess());
         let (mut history, mut best, mut stalled, mut worst) = (Vec::new(), f64::INFINITY, 0, 0);
         for iteration in 0..MAX_ITERATIONS {
-            let forces = self.forces(&x);
+            let forces = self.forces(&x, costs);
             let mut jacobian = vec![0.0; n * n];
             let residual = self.residual(&x, &forces, Some(&mut jacobian));
             let (place, now) = largest(&residual);
@@ -87,7 +88,7 @@ impl SmallSystem {
             DenseLu::factor(n, &jacobian)
                 .map_err(|source| DynamicsError::ContactSystem { source })?
                 .solve(&mut step, 1);
-            x = self.search(&x, &step, &residual);
+            x = self.search(&x, &step, &residual, costs);
         }
         let tail = history.len().saturating_sub(8);
         Err(DynamicsError::NewtonStalled {
@@ -113,12 +114,12 @@ impl SmallSystem {
     }
 
     /// Halves the step until the residual shrinks.
-    fn search(&self, x: &[f64], step: &[f64], residual: &[f64]) -> Vec<f64> {
+    fn search(&self, x: &[f64], step: &[f64], residual: &[f64], costs: &EffectCosts) -> Vec<f64> {
         let size = |r: &[f64]| r.iter().map(|v| v * v).sum::<f64>();
         let mut share = 1.0;
         loop {
             let trial: Vec<f64> = x.iter().zip(step).map(|(x, s)| x + share * s).collect();
-            let after = self.residual(&trial, &self.forces(&trial), None);
+            let after = self.residual(&trial, &self.forces(&trial, costs), None);
             if size(&after) <= size(residual) || share < 1e-3 {
                 return trial;
             }

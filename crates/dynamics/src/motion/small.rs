@@ -6,9 +6,10 @@
 
 use contact::Side;
 
-use super::contacts::{ContactDamping, ContactScheme, MeanForce, mean_force};
+use super::contacts::{ContactDamping, ContactScheme, MeanForce, mean_force, viscous};
 use super::integrator::Integrator;
 use super::shaft::ShaftStep;
+use crate::costs::EffectCosts;
 use crate::problem::Site;
 
 /// A point mass or rigid body dof over one step, by the rings' integrator.
@@ -160,11 +161,22 @@ impl SmallSystem {
         list
     }
 
-    pub(super) fn forces(&self, x: &[f64]) -> Vec<MeanForce> {
-        let damping = self.damping.as_ref().map(|d| (d, self.dt));
+    /// Mean forces of all contacts; `costs` gets the time of the damping.
+    pub(super) fn forces(&self, x: &[f64], costs: &EffectCosts) -> Vec<MeanForce> {
+        let reaches: Vec<_> = self.sites.iter().map(|s| self.reach(s, x)).collect();
+        let places = || self.sites.iter().zip(&reaches);
+        let damping = self.damping.as_ref().map(|damping| {
+            costs.time("contact_damping", || {
+                let at = |(s, l): (&Site, &_)| viscous(damping, self.dt, s.touching, *l);
+                places().map(at).collect::<Vec<_>>()
+            })
+        });
         let scheme = (self.scheme, self.integrator.alpha_f);
-        let force = |s: &Site| mean_force(&s.law, s.touching, self.reach(s, x), scheme, damping);
-        self.sites.iter().map(force).collect()
+        let viscous = |index: usize| damping.as_ref().map(|terms| terms[index]);
+        places()
+            .enumerate()
+            .map(|(index, (s, l))| mean_force(&s.law, s.touching, *l, scheme, viscous(index)))
+            .collect()
     }
 
     /// g of a ring at the end of the step: its groove unknowns, then the mount, which follows its partner.

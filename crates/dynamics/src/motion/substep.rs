@@ -79,7 +79,7 @@ impl Motion<'_> {
             .flatten()
             .fold(loads.shaft[2].abs().max(1e-9), |m, f| m.max(f.abs()));
         let (solution, increments) = loop {
-            let solution = system.solve(scale)?;
+            let solution = system.solve(scale, &self.costs)?;
             report.newton_iterations += solution.iterations;
             report.seconds.newton += clock.lap();
             let increments = self.increments(&system, &solution, &moving);
