@@ -1,0 +1,206 @@
+//! Who gets which part of the picture. Lengths are SVG pixels, y downward.
+
+use crate::axis::Axis;
+use crate::legend::{self, Legend};
+use crate::text::{self, LINE, Weight};
+use crate::ticks::Ticks;
+use crate::{Figure, FigureError};
+
+/// Size of running text.
+pub const TEXT: f64 = 13.0;
+/// Size of titles.
+pub const TITLE: f64 = 15.0;
+/// Free space at the edges of the picture, and between its parts.
+pub const GAP: f64 = 8.0;
+/// Distance of the labels of ticks from their axis.
+pub const TICK: f64 = 10.0;
+/// Width of the lines of axes and references, in units of the drawing.
+pub const LINE_WIDTH: u32 = 10;
+/// Width of the colour bar.
+const BAR: f64 = 16.0;
+/// Smallest width and height of the area between the axes.
+const SMALLEST: f64 = 60.0;
+
+/// A rectangle with left, top, right and bottom.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Rect {
+    pub left: f64,
+    pub top: f64,
+    pub right: f64,
+    pub bottom: f64,
+}
+
+impl Rect {
+    /// Whether two rectangles share an area.
+    pub fn overlaps(&self, other: &Rect) -> bool {
+        self.left < other.right
+            && other.left < self.right
+            && self.top < other.bottom
+            && other.top < self.bottom
+    }
+
+    /// Whether `other` lies inside.
+    pub fn holds(&self, other: &Rect) -> bool {
+        self.left <= other.left
+            && other.right <= self.right
+            && self.top <= other.top
+            && other.bottom <= self.bottom
+    }
+}
+
+/// Range of an axis, in places, and its ticks.
+#[derive(Clone, Debug)]
+pub struct Span {
+    pub range: [f64; 2],
+    pub ticks: Ticks,
+}
+
+/// The parts of the picture.
+#[derive(Clone, Debug)]
+pub struct Layout {
+    pub title: Vec<String>,
+    pub legend: Legend,
+    /// Area between the axes.
+    pub plot: Rect,
+    pub x: Span,
+    pub y: Span,
+    /// The colour bar with its range.
+    pub bar: Option<(Rect, Span)>,
+}
+
+/// Lays a figure out.
+pub fn lay_out(figure: &Figure) -> Result<Layout, FigureError> {
+    let (mut x, mut y) = (span_of(figure, 0)?, span_of(figure, 1)?);
+    let mut value = figure
+        .surface
+        .as_ref()
+        .map(|s| value_span(figure, &s.value))
+        .transpose()?;
+    let [width, height] = [f64::from(figure.size.0), f64::from(figure.size.1)];
+    let title = wrap(&figure.title, TITLE, width - 2.0 * GAP);
+    let left = GAP + LINE * TEXT + GAP + widest(&y.ticks) + TICK;
+    let bar_room = value.as_ref().map_or(0.0, |v| {
+        2.0 * GAP + BAR + TICK + widest(&v.ticks) + GAP + LINE * TEXT
+    });
+    let right = width - GAP - bar_room - 0.5 * widest(&x.ticks).min(40.0);
+    let legend = legend::arrange(figure, width - left - GAP);
+    let legend_top = GAP + title.len() as f64 * LINE * TITLE + 0.5 * GAP;
+    let top = legend_top + legend.height() + GAP;
+    let bottom = height - GAP - LINE * TEXT - GAP - LINE * TEXT - TICK + 4.0;
+    if right - left < SMALLEST || bottom - top < SMALLEST {
+        return Err(FigureError::NoRoom {
+            title: figure.title.clone(),
+            width: figure.size.0,
+            height: figure.size.1,
+        });
+    }
+    let plot = Rect {
+        left,
+        top,
+        right,
+        bottom,
+    };
+    let text_width = |text: &str| text::width(text, TEXT, Weight::Regular) + 10.0;
+    let line_height = |_: &str| 1.15 * TEXT;
+    separate(&mut x, right - left, text_width);
+    separate(&mut y, bottom - top, line_height);
+    if let Some(value) = &mut value {
+        separate(value, bottom - top, line_height);
+    }
+    let bar_left = right + 2.0 * GAP;
+    let bar = Rect {
+        left: bar_left,
+        right: bar_left + BAR,
+        ..plot
+    };
+    Ok(Layout {
+        title,
+        legend: legend.at(left, legend_top),
+        plot,
+        x,
+        y,
+        bar: value.map(|span| (bar, span)),
+    })
+}
+
+/// Range and ticks of axis 0 (x) or 1 (y), from all that is drawn.
+fn span_of(figure: &Figure, component: usize) -> Result<Span, FigureError> {
+    let axis = [&figure.x, &figure.y][component];
+    let other = [&figure.y, &figure.x][component];
+    let shown = |p: &&[f64; 2]| axis.place(p[component]).is_some() && other.place(p[1 - component]).is_some();
+    let points = figure.series.iter().flat_map(|series| &series.points);
+    let mut values: Vec<f64> = points.filter(shown).map(|p| p[component]).collect();
+    values.extend(figure.labels.iter().map(|label| label.at[component]));
+    if let Some(surface) = &figure.surface {
+        values.extend([&surface.x_edges, &surface.y_edges][component]);
+    }
+    if component == 1 {
+        let spreads = figure.series.iter().flat_map(|s| s.errors.iter().chain(&s.band));
+        values.extend(spreads.flatten().flatten());
+    }
+    let range = (!values.is_empty())
+        .then(|| axis.range(values.into_iter()))
+        .flatten();
+    let (range, ticks) = range.ok_or_else(|| empty(figure))?;
+    Ok(Span { range, ticks })
+}
+
+fn value_span(figure: &Figure, axis: &Axis) -> Result<Span, FigureError> {
+    let values = figure.surface.iter().flat_map(|s| s.values.iter().copied());
+    let (range, ticks) = axis.range(values).ok_or_else(|| empty(figure))?;
+    Ok(Span { range, ticks })
+}
+
+fn empty(figure: &Figure) -> FigureError {
+    let logarithmic = [&figure.x, &figure.y]
+        .iter()
+        .any(|a| a.scale == crate::Scale::Logarithmic);
+    FigureError::Empty {
+        title: figure.title.clone(),
+        n_points: figure.series.iter().map(|s| s.points.len()).sum(),
+        on_axes: if logarithmic {
+            " and positive where an axis is logarithmic"
+        } else {
+            ""
+        },
+    }
+}
+
+fn widest(ticks: &Ticks) -> f64 {
+    let widths = ticks
+        .labelled
+        .iter()
+        .map(|(_, text)| text::width(text, TEXT, Weight::Regular));
+    widths.fold(0.0, f64::max)
+}
+
+/// Takes the labels off every second tick until none touches its neighbour.
+fn separate(span: &mut Span, length: f64, extent: impl Fn(&str) -> f64) {
+    let [low, high] = span.range;
+    let scale = length / (high - low);
+    while span.ticks.labelled.windows(2).any(|pair| {
+        let distance = (pair[1].0 - pair[0].0) * scale;
+        distance < 0.5 * (extent(&pair[0].1) + extent(&pair[1].1))
+    }) {
+        let labelled = std::mem::take(&mut span.ticks.labelled);
+        for (i, tick) in labelled.into_iter().enumerate() {
+            match i % 2 {
+                0 => span.ticks.labelled.push(tick),
+                _ => span.ticks.minor.push(tick.0),
+            }
+        }
+    }
+}
+
+/// The text in lines of at most `room`, broken at spaces; a word that is longer is cut.
+fn wrap(text: &str, size: f64, room: f64) -> Vec<String> {
+    let mut lines: Vec<String> = Vec::new();
+    for word in text.split_whitespace() {
+        let longer = lines.last().map(|line| format!("{line} {word}"));
+        match longer.filter(|line| text::width(line, size, Weight::Bold) <= room) {
+            Some(line) => *lines.last_mut().expect("there is a line to lengthen") = line,
+            None => lines.push(text::fit(word, size, Weight::Bold, room)),
+        }
+    }
+    lines
+}

@@ -1,0 +1,93 @@
+//! The legend: rows of names above the axes, so that it covers no data.
+
+use crate::Figure;
+use crate::layout::{GAP, TEXT};
+use crate::series::{Look, Series};
+use crate::text::{self, Weight};
+
+/// Width of the sample of a line or mark.
+pub const SAMPLE: f64 = 26.0;
+/// Height of a row.
+const ROW: f64 = 1.5 * TEXT;
+
+/// Names in their places.
+#[derive(Clone, Debug, Default)]
+pub struct Legend {
+    pub entries: Vec<Entry>,
+    n_rows: usize,
+}
+
+/// A name and the series that it stands for.
+#[derive(Clone, Debug)]
+pub struct Entry {
+    /// Number of the series.
+    pub series: usize,
+    pub name: String,
+    /// Left end of the sample.
+    pub x: f64,
+    /// Middle of the row.
+    pub y: f64,
+}
+
+impl Legend {
+    /// Height of all rows.
+    pub fn height(&self) -> f64 {
+        self.n_rows as f64 * ROW
+    }
+
+    /// Moved to the given left and top.
+    pub fn at(mut self, left: f64, top: f64) -> Legend {
+        for entry in &mut self.entries {
+            entry.x += left;
+            entry.y += top;
+        }
+        self
+    }
+}
+
+/// Arranges the names of all series in rows of the given width, from the origin.
+pub fn arrange(figure: &Figure, room: f64) -> Legend {
+    let mut legend = Legend::default();
+    let mut x = 0.0;
+    for (series, name) in names(&figure.series) {
+        let name = text::fit(name, TEXT, Weight::Regular, room - SAMPLE - GAP);
+        let width = SAMPLE + 0.5 * GAP + text::width(&name, TEXT, Weight::Regular);
+        if legend.n_rows == 0 || x + width > room {
+            legend.n_rows += 1;
+            x = 0.0;
+        }
+        let y = (legend.n_rows as f64 - 0.5) * ROW;
+        legend.entries.push(Entry { series, name, x, y });
+        x += width + 2.0 * GAP;
+    }
+    legend
+}
+
+/// Each name once, with the first series that has it.
+fn names(series: &[Series]) -> Vec<(usize, &str)> {
+    let mut names: Vec<(usize, &str)> = Vec::new();
+    for (i, s) in series.iter().enumerate() {
+        if !s.name.is_empty() && !names.iter().any(|(_, name)| *name == s.name) {
+            names.push((i, &s.name));
+        }
+    }
+    names
+}
+
+/// The number that gives a series its colour and mark: series of equal names share it, references have none.
+pub fn style_index(series: &[Series], index: usize) -> usize {
+    let own = &series[index];
+    let first = series
+        .iter()
+        .position(|s| !own.name.is_empty() && s.name == own.name)
+        .unwrap_or(index);
+    let counts =
+        |s: &&Series| !matches!(s.look, Look::Reference | Look::Outline | Look::Rings) && s.shade.is_none();
+    let mut seen: Vec<&str> = Vec::new();
+    for s in series[..first].iter().filter(counts) {
+        if s.name.is_empty() || !seen.contains(&s.name.as_str()) {
+            seen.push(&s.name);
+        }
+    }
+    seen.len()
+}

@@ -1,0 +1,121 @@
+//! Figures of numbers: lines, points and surfaces over two axes with units, as SVG and as PNG with the same look.
+//!
+//! A figure is data ([`Figure`], [`Axis`], [`Series`], [`Surface`]); [`Figure::svg`] lays it out and draws it. Layout
+//! keeps every text inside the picture and off every other: margins follow the widths of the labels, the legend
+//! stands in rows above the axes, labels of points look for a free place. Text is measured with the font that is
+//! built in (DejaVu Sans), and the PNG is that same SVG, rasterised with that font: a machine needs no fonts.
+//! Colours are those of Okabe and Ito (*Color Universal Design*, 2008) and the map viridis, which readers with
+//! colour-blindness can tell apart.
+
+mod axis;
+mod chart;
+mod clashes;
+mod error;
+mod labels;
+mod layout;
+mod legend;
+mod marks;
+mod palette;
+mod png;
+mod series;
+mod surface;
+mod text;
+mod thin;
+mod ticked;
+mod ticks;
+
+use std::path::Path;
+
+pub use axis::{Axis, Scale};
+pub use clashes::clashes;
+pub use error::FigureError;
+pub use series::{Look, Series};
+pub use surface::Surface;
+
+/// Width and height of a figure in SVG pixels.
+pub const SIZE: (u32, u32) = (720, 450);
+
+/// A figure.
+#[derive(Clone, Debug)]
+pub struct Figure {
+    pub(crate) title: String,
+    pub(crate) x: Axis,
+    pub(crate) y: Axis,
+    pub(crate) series: Vec<Series>,
+    pub(crate) surface: Option<Surface>,
+    pub(crate) labels: Vec<Label>,
+    pub(crate) size: (u32, u32),
+}
+
+/// A text at a point of the data.
+#[derive(Clone, Debug)]
+pub(crate) struct Label {
+    pub at: [f64; 2],
+    pub text: String,
+}
+
+impl Figure {
+    /// An empty figure over two axes.
+    pub fn new(title: impl Into<String>, x: Axis, y: Axis) -> Figure {
+        Figure {
+            title: title.into(),
+            x,
+            y,
+            series: Vec::new(),
+            surface: None,
+            labels: Vec::new(),
+            size: SIZE,
+        }
+    }
+
+    /// Adds a series. Series of equal names share an entry of the legend; a series without a name has none.
+    pub fn series(mut self, series: Series) -> Figure {
+        self.series.push(series);
+        self
+    }
+
+    /// Colours the area between the axes; series are drawn on top.
+    pub fn surface(mut self, surface: Surface) -> Figure {
+        self.surface = Some(surface);
+        self
+    }
+
+    /// Writes a short text beside a point of the data, where there is room.
+    pub fn label(mut self, at: [f64; 2], text: impl Into<String>) -> Figure {
+        self.labels.push(Label {
+            at,
+            text: text.into(),
+        });
+        self
+    }
+
+    /// Width and height in SVG pixels; default: [`SIZE`].
+    pub fn size(mut self, width: u32, height: u32) -> Figure {
+        self.size = (width, height);
+        self
+    }
+
+    /// The figure as an SVG document.
+    pub fn svg(&self) -> Result<String, FigureError> {
+        chart::draw(self)
+    }
+
+    /// The figure as a PNG image, `scale` image pixels per SVG pixel.
+    pub fn png(&self, scale: f32) -> Result<Vec<u8>, FigureError> {
+        png::rasterise(&self.svg()?, scale)
+    }
+
+    /// Writes `path` with the endings svg and png; an existing file is replaced.
+    pub fn write(&self, path: &Path) -> Result<(), FigureError> {
+        let svg = self.svg()?;
+        let png = png::rasterise(&svg, PNG_SCALE)?;
+        for (ending, bytes) in [("svg", svg.as_bytes()), ("png", png.as_slice())] {
+            let path = path.with_added_extension(ending);
+            std::fs::write(&path, bytes).map_err(|source| FigureError::Write { path, source })?;
+        }
+        Ok(())
+    }
+}
+
+/// Image pixels per SVG pixel of the PNG files.
+const PNG_SCALE: f32 = 1.5;

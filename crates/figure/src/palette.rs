@@ -1,0 +1,47 @@
+//! Colours that readers with colour-blindness can tell apart.
+
+use plotters::style::RGBColor;
+
+/// Okabe and Ito, *Color Universal Design* (2008), without yellow, which is too light for lines on white.
+const SERIES: [RGBColor; 7] = [
+    RGBColor(0, 114, 178),
+    RGBColor(213, 94, 0),
+    RGBColor(0, 158, 115),
+    RGBColor(204, 121, 167),
+    RGBColor(86, 180, 233),
+    RGBColor(230, 159, 0),
+    RGBColor(0, 0, 0),
+];
+
+/// Colour of reference lines.
+pub const REFERENCE: RGBColor = RGBColor(110, 110, 110);
+
+/// Colour of the series with this number.
+pub fn of_series(index: usize) -> RGBColor {
+    SERIES[index % SERIES.len()]
+}
+
+/// Viridis (Smith and van der Walt, matplotlib 1.5, CC0) at nine equal distances.
+const VIRIDIS: [[f64; 3]; 9] = [
+    [68.0, 1.0, 84.0],
+    [72.0, 40.0, 120.0],
+    [62.0, 74.0, 137.0],
+    [49.0, 104.0, 142.0],
+    [38.0, 130.0, 142.0],
+    [31.0, 158.0, 137.0],
+    [53.0, 183.0, 121.0],
+    [110.0, 206.0, 88.0],
+    [253.0, 231.0, 37.0],
+];
+
+/// Colour of the part `t` from 0 to 1 of a range.
+pub fn of_part(t: f64) -> RGBColor {
+    let last = VIRIDIS.len() - 1;
+    let place = t.clamp(0.0, 1.0) * last as f64;
+    let i = (place.floor() as usize).min(last - 1);
+    let between = |c: usize| {
+        let (a, b) = (VIRIDIS[i][c], VIRIDIS[i + 1][c]);
+        (a + (b - a) * (place - i as f64)).round() as u8
+    };
+    RGBColor(between(0), between(1), between(2))
+}

@@ -1,0 +1,86 @@
+//! A series of points and how it looks.
+
+/// How the points of a series are shown.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Look {
+    /// Joined by a line.
+    Line,
+    /// A mark at each point.
+    Marks,
+    /// A mark at each point, joined by a line.
+    LineAndMarks,
+    /// A large ring round each point: it marks points of other series.
+    Rings,
+    /// A dashed grey line: a value to compare with.
+    Reference,
+    /// A thin white line with a dark edge, for outlines on a surface.
+    Outline,
+}
+
+/// Points with a name. A point that is not finite, or not positive on a logarithmic axis, interrupts the line.
+#[derive(Clone, Debug)]
+pub struct Series {
+    pub(crate) name: String,
+    pub(crate) points: Vec<[f64; 2]>,
+    pub(crate) look: Look,
+    pub(crate) errors: Option<Vec<[f64; 2]>>,
+    pub(crate) band: Option<Vec<[f64; 2]>>,
+    pub(crate) shade: Option<f64>,
+}
+
+impl Series {
+    /// A series.
+    pub fn new(name: impl Into<String>, look: Look, points: Vec<[f64; 2]>) -> Series {
+        Series {
+            name: name.into(),
+            points,
+            look,
+            errors: None,
+            band: None,
+            shade: None,
+        }
+    }
+
+    /// A line.
+    pub fn line(name: impl Into<String>, points: Vec<[f64; 2]>) -> Series {
+        Series::new(name, Look::Line, points)
+    }
+
+    /// A line with marks.
+    pub fn line_and_marks(name: impl Into<String>, points: Vec<[f64; 2]>) -> Series {
+        Series::new(name, Look::LineAndMarks, points)
+    }
+
+    /// Marks.
+    pub fn marks(name: impl Into<String>, points: Vec<[f64; 2]>) -> Series {
+        Series::new(name, Look::Marks, points)
+    }
+
+    /// Rings round points, such as those of a Pareto front.
+    pub fn rings(name: impl Into<String>, points: Vec<[f64; 2]>) -> Series {
+        Series::new(name, Look::Rings, points)
+    }
+
+    /// A dashed grey line to compare with.
+    pub fn reference(name: impl Into<String>, points: Vec<[f64; 2]>) -> Series {
+        Series::new(name, Look::Reference, points)
+    }
+
+    /// Vertical error bars: lowest and highest value at each point.
+    pub fn errors(mut self, errors: Vec<[f64; 2]>) -> Series {
+        self.errors = Some(errors);
+        self
+    }
+
+    /// A light band: lowest and highest value at each point.
+    pub fn band(mut self, band: Vec<[f64; 2]>) -> Series {
+        self.band = Some(band);
+        self
+    }
+
+    /// A colour by a number from 0 to 1 instead of the next of the palette, for families of curves.
+    pub fn shade(mut self, part: f64) -> Series {
+        self.shade = Some(part);
+        self
+    }
+}

@@ -1,0 +1,277 @@
+//! Nothing in a figure overlaps or leaves the picture, measured on the SVG by another library.
+
+use figure::{Axis, Figure, FigureError, Look, Series, Surface, clashes};
+
+fn wave(n: usize, phase: f64) -> Vec<[f64; 2]> {
+    let x = |i: usize| 360.0 * i as f64 / (n - 1) as f64;
+    (0..n)
+        .map(|i| [x(i), 300.0 + 80.0 * (x(i).to_radians() + phase).cos()])
+        .collect()
+}
+
+fn histories() -> Figure {
+    let azimuth = Axis::linear("azimuth of the ball", "deg")
+        .ticks_every(45.0)
+        .tight();
+    Figure::new(
+        "Force of ball 1 over one revolution",
+        azimuth,
+        Axis::linear("contact force", "N"),
+    )
+    .series(Series::line("inner contact", wave(500, 0.0)))
+    .series(Series::line("outer contact", wave(500, 0.3)))
+    .series(Series::reference(
+        "without radial force",
+        vec![[0.0, 331.8], [360.0, 331.8]],
+    ))
+}
+
+/// Errors against cost of two methods, Pareto front marked, labels at every point of the front.
+fn work_precision() -> Figure {
+    let points = |factor: f64| -> Vec<[f64; 2]> {
+        (0..6)
+            .map(|i| [factor * 0.1 * 4f64.powi(i), 0.1 * 2.3f64.powi(-i)])
+            .collect()
+    };
+    let errors = points(1.0).iter().map(|p| [0.8 * p[1], 1.3 * p[1]]).collect();
+    let figure = Figure::new(
+        "Error of the ball force against cost",
+        Axis::logarithmic("CPU time", "s"),
+        Axis::logarithmic("error of the ball force", "1"),
+    )
+    .series(Series::line_and_marks("hex8 with incompatible modes", points(1.0)).errors(errors))
+    .series(Series::line_and_marks("hex20", points(3.0)))
+    .series(Series::rings("Pareto front", points(1.0)));
+    let labels = points(1.0).into_iter().enumerate();
+    labels.fold(figure, |figure, (i, at)| {
+        figure.label(at, format!("{} sectors", 45 << i))
+    })
+}
+
+fn map() -> Figure {
+    let edges = |n: usize, length: f64| (0..=n).map(|i| length * i as f64 / n as f64).collect::<Vec<_>>();
+    let value = |i: usize| 100.0 * ((i % 90) as f64 * 0.4).sin().powi(2) + (i / 90) as f64;
+    let values = (0..90 * 12).map(value).collect();
+    let surface = Surface::new(
+        Axis::linear("von Mises stress", "MPa"),
+        edges(90, 360.0),
+        edges(12, 5.0),
+        values,
+    );
+    let circle = (0..=40)
+        .map(|i| 0.157 * f64::from(i))
+        .map(|t| [90.0 + 8.0 * t.cos(), 2.5 + t.sin()]);
+    Figure::new(
+        "Stress of the outer raceway",
+        Axis::linear("azimuth", "deg").tight(),
+        Axis::linear("arc of the groove", "mm").tight(),
+    )
+    .surface(surface.expect("sizes agree"))
+    .series(Series::new("contact ellipse", Look::Outline, circle.collect()))
+}
+
+/// Long names, large numbers, many series, tiny ranges.
+fn awkward() -> Vec<Figure> {
+    let long =
+        "a very long name of a quantity that nobody would write on an axis but which a scene may ask for";
+    let many = |n: usize| {
+        let axes = (Axis::linear("time", "s"), Axis::linear("pressure", "Pa"));
+        (0..n).fold(
+            Figure::new(format!("{n} curves under {long}"), axes.0, axes.1),
+            |f, i| {
+                f.series(
+                    Series::line(
+                        format!("radial force {i} kN, {}", &long[..5 * i.min(15)]),
+                        wave(50, 0.1 * i as f64),
+                    )
+                    .shade(i as f64 / n as f64),
+                )
+            },
+        )
+    };
+    let crowded = (0..30).fold(
+        Figure::new("crowd", Axis::linear("x", "1"), Axis::linear("y", "1")).size(420, 300),
+        |f, i| {
+            f.series(Series::marks("", vec![[f64::from(i % 6), f64::from(i / 6)]]))
+                .label([f64::from(i % 6), f64::from(i / 6)], format!("point {i}"))
+        },
+    );
+    let numbers = [[0.0, 1e-12], [1e9, 1.0000001e-12]];
+    vec![
+        many(14),
+        Figure::new(long, Axis::linear(long, "m"), Axis::linear(long, "N"))
+            .series(Series::marks(long, numbers.to_vec())),
+        Figure::new("one point", Axis::linear("x", "1"), Axis::logarithmic("y", "1"))
+            .series(Series::marks("p", vec![[0.0, 7.0]])),
+        Figure::new(
+            "wide range",
+            Axis::logarithmic("x", "s"),
+            Axis::logarithmic("y", "1"),
+        )
+        .series(Series::line(
+            "p",
+            vec![[1e-30, 1e-300], [1.0, 1e300], [2.0, 0.0], [f64::NAN, 1.0]],
+        )),
+        Figure::new(
+            "few decades",
+            Axis::logarithmic("x", "s"),
+            Axis::logarithmic("y", "1"),
+        )
+        .series(Series::line("p", vec![[1.1, 0.31], [1.3, 0.39]])),
+        crowded,
+    ]
+}
+
+/// Wrong: a reader could not read a label, because another lies on it or the picture ends.
+#[test]
+fn no_text_overlaps_another_or_leaves_the_picture() {
+    let figures = [histories(), work_precision(), map()]
+        .into_iter()
+        .chain(awkward());
+    for figure in figures {
+        let svg = figure.svg().expect("the figure can be drawn");
+        assert_eq!(
+            clashes(&svg).expect("it is an SVG"),
+            Vec::<String>::new(),
+            "{}",
+            &svg[..200]
+        );
+    }
+}
+
+/// Wrong: the check above would find nothing in any picture.
+#[test]
+fn a_clash_is_found() {
+    let text = |x: i32, word: &str| {
+        format!("<text x=\"{x}\" y=\"50\" font-size=\"13\" font-family=\"DejaVu Sans\">{word}</text>")
+    };
+    let svg = |parts: &[String]| {
+        format!(
+            "<svg width=\"200\" height=\"100\" viewBox=\"0 0 200 100\" xmlns=\"http://www.w3.org/2000/svg\">{}</svg>",
+            parts.concat()
+        )
+    };
+    assert!(
+        clashes(&svg(&[text(10, "abc"), text(60, "def")]))
+            .unwrap()
+            .is_empty()
+    );
+    let overlapping = clashes(&svg(&[text(10, "abc"), text(20, "def")])).unwrap();
+    assert!(
+        overlapping[0].contains("\"abc\" overlaps \"def\""),
+        "{overlapping:?}"
+    );
+    let outside = clashes(&svg(&[text(190, "abc")])).unwrap();
+    assert!(outside[0].contains("leaves the picture"), "{outside:?}");
+}
+
+/// Wrong: an axis would not say what it shows or in which unit.
+#[test]
+fn every_axis_has_its_unit() {
+    let svg = map().svg().unwrap();
+    for text in [
+        "azimuth (deg)",
+        "arc of the groove (mm)",
+        "von Mises stress (MPa)",
+    ] {
+        assert!(svg.contains(text), "{text}");
+    }
+    assert!(
+        work_precision()
+            .svg()
+            .unwrap()
+            .contains("error of the ball force (-)")
+    );
+}
+
+/// Wrong: a machine without fonts would make images without text.
+#[test]
+fn an_image_has_text_without_system_fonts() {
+    let axes = || (Axis::linear("x", "m"), Axis::linear("y", "m"));
+    let image = |title: &str| {
+        let (x, y) = axes();
+        let figure = Figure::new(title, x, y).series(Series::line("", vec![[0.0, 0.0], [1.0, 1.0]]));
+        figure.png(1.0).unwrap()
+    };
+    assert!(image("Title of some length").len() > image(".").len() + 500);
+}
+
+/// Wrong: the same data would give other files.
+#[test]
+fn the_same_figure_has_the_same_bytes() {
+    assert_eq!(work_precision().svg().unwrap(), work_precision().svg().unwrap());
+    assert_eq!(histories().png(1.0).unwrap(), histories().png(1.0).unwrap());
+}
+
+/// Wrong: an empty figure would be a picture of nothing, or a crash.
+#[test]
+fn nothing_to_draw_is_an_error() {
+    let figure = Figure::new("forces", Axis::linear("x", "m"), Axis::logarithmic("y", "N"))
+        .series(Series::line("a", vec![[0.0, -1.0], [1.0, f64::NAN]]));
+    let error = figure.svg().unwrap_err().to_string();
+    assert!(
+        error.contains("\"forces\" has nothing to draw: none of its 2 points is finite and positive"),
+        "{error}"
+    );
+    assert!(matches!(
+        figure.size(50, 50).svg(),
+        Err(FigureError::Empty { .. })
+    ));
+    let axes = (Axis::linear("x", "m"), Axis::linear("y", "m"));
+    let small = Figure::new("small", axes.0, axes.1)
+        .series(Series::line("a", vec![[0.0, 1.0]]))
+        .size(60, 60);
+    assert!(
+        small
+            .svg()
+            .unwrap_err()
+            .to_string()
+            .contains("no room for its axes")
+    );
+    let surface = Surface::new(
+        Axis::linear("v", "m"),
+        vec![0.0, 1.0],
+        vec![0.0, 1.0],
+        vec![1.0, 2.0],
+    );
+    assert!(
+        surface
+            .unwrap_err()
+            .to_string()
+            .contains("has 2 values; expected 1")
+    );
+}
+
+/// Wrong: the files would not be there, or one of them would be of another kind.
+#[test]
+fn a_figure_is_written_as_svg_and_png() {
+    let dir = tempfile::tempdir().unwrap();
+    histories().write(&dir.path().join("force_1.5kN")).unwrap();
+    let svg = std::fs::read_to_string(dir.path().join("force_1.5kN.svg")).unwrap();
+    assert!(
+        svg.starts_with("<svg width=\"720\" height=\"450\""),
+        "{}",
+        &svg[..80]
+    );
+    assert!(svg.len() < 40_000, "{}", svg.len());
+    assert_eq!(
+        &std::fs::read(dir.path().join("force_1.5kN.png")).unwrap()[1..4],
+        b"PNG"
+    );
+}
+
+/// The figures of these tests as files, to look at: FIGURES=DIR.
+#[test]
+fn examples_can_be_looked_at() {
+    let Some(dir) = std::env::var_os("FIGURES") else {
+        return;
+    };
+    let figures = [histories(), work_precision(), map()]
+        .into_iter()
+        .chain(awkward());
+    for (i, figure) in figures.enumerate() {
+        figure
+            .write(&std::path::Path::new(&dir).join(format!("example_{i}")))
+            .unwrap();
+    }
+}
