@@ -71,6 +71,43 @@ fn points_of_a_sweep_agree_with_single_runs() {
     }
 }
 
+/// Wrong: jobs that share a sweep would solve other points than the whole sweep has, or number them otherwise.
+#[test]
+fn points_of_a_sweep_can_be_solved_apart() {
+    let swept = swept();
+    let whole = Table::read(&swept, "out/balls.csv");
+    swept.run("part", &["--points", "1-2"]);
+    let part = Table::read(&swept, "part/balls.csv");
+    assert_eq!(part.columns, whole.columns);
+    assert_eq!(part.rows.len(), 2 * 18);
+    for step in [1, 2] {
+        assert_eq!(part.step(step).column(COLUMN), vec![VALUES[step]; 18]);
+        let forces = |table: &Table| table.step(step).column("outer_force_n");
+        for (a, b) in forces(&part).into_iter().zip(forces(&whole)) {
+            assert_close(&format!("force at point {step}"), a, b, 1e-8);
+        }
+    }
+    for (arguments, text) in [
+        (
+            ["--points", "2-3"],
+            "--points names point 3, but the sweep of scene.toml has 3, from 0 to 2",
+        ),
+        (["--points", "2-1"], "\"2-1\" names no points; expected a number"),
+    ] {
+        let outcome = swept.raceway(&[&["run", "scene.toml", "--out", "no"], &arguments[..]].concat());
+        assert_eq!(outcome.code, Some(2), "{}", outcome.stderr);
+        assert!(outcome.stderr.contains(text), "{}", outcome.stderr);
+    }
+    swept.write("single.toml", SCENE);
+    let single = swept.raceway(&["run", "single.toml", "--points", "0"]);
+    let text = "--points chooses points of a [sweep], and single.toml has none";
+    assert!(
+        single.code == Some(2) && single.stderr.contains(text),
+        "{}",
+        single.stderr
+    );
+}
+
 /// If this failed, scripts would find other numbers in the summary of a sweep than in its tables.
 #[test]
 fn the_summary_of_a_sweep_has_all_its_points() {

@@ -33,7 +33,7 @@ use mesh::Overwrite;
 use crate::export::Export;
 use crate::failure::Failure;
 use crate::info::Depth;
-use crate::options::Limits;
+use crate::options::{Limits, Part, parse_part};
 use crate::pack::Pack;
 use crate::resume::Request;
 
@@ -60,6 +60,9 @@ enum Command {
         /// Folder of the results; default: results/ and the scene's name.
         #[arg(long)]
         out: Option<PathBuf>,
+        /// Solves only these points of a sweep, the first from its own start: a number, or first-last, such as 0-9.
+        #[arg(long, value_name = "POINTS", value_parser = parse_part)]
+        points: Option<Part>,
         #[command(flatten)]
         limits: Limits,
     },
@@ -126,9 +129,10 @@ fn execute(arguments: Arguments) -> Result<(), Failure> {
             scene,
             overrides,
             out,
+            points,
             limits,
         } => {
-            let dir = run::run(&scene, &overrides, out, &limits)?;
+            let dir = run::run(&scene, &overrides, out, &limits, points)?;
             print::line(format_args!("results: {}", dir.display()));
             Ok(())
         }

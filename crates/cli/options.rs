@@ -1,9 +1,13 @@
 //! What the command line says about a run besides its scene.
 
+use std::ops::Range;
 use std::time::Duration;
 
+use anyhow::anyhow;
 use clap::Args;
 
+use crate::failure::Failure;
+use crate::scene::{Analysis, Scene};
 use crate::stop::parse_wall_time;
 
 /// Limits of a run.
@@ -15,4 +19,77 @@ pub struct Limits {
     /// Starts even when the forecast of the output does not fit the disk.
     #[arg(long)]
     pub ignore_disk_space: bool,
+}
+
+/// Some of the points of a sweep, one after the other, by their numbers from 0; the last is among them.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Part {
+    first: usize,
+    last: usize,
+}
+
+impl Part {
+    /// The points as a range.
+    pub fn range(self) -> Range<usize> {
+        self.first..self.last + 1
+    }
+
+    /// Refuses a scene that has no such points.
+    pub fn check(self, scene: &Scene) -> Result<(), Failure> {
+        let Analysis::Sweep(sweep) = &scene.analysis else {
+            return Err(Failure::User(anyhow!(
+                "--points chooses points of a [sweep], and {} has none",
+                scene.path.display()
+            )));
+        };
+        let n = sweep.points.len();
+        if self.last >= n {
+            return Err(Failure::User(anyhow!(
+                "--points names point {}, but the sweep of {} has {n}, from 0 to {}",
+                self.last,
+                scene.path.display(),
+                n - 1
+            )));
+        }
+        Ok(())
+    }
+}
+
+/// Reads a number, or the first and the last of several: 3 or 0-9.
+pub fn parse_part(text: &str) -> Result<Part, String> {
+    let error =
+        || format!("{text:?} names no points; expected a number or the first and the last, such as 3 or 0-9");
+    let number = |part: &str| {
+        let digits = !part.is_empty() && part.len() <= 6 && part.bytes().all(|b| b.is_ascii_digit());
+        digits
+            .then(|| part.parse::<usize>().ok())
+            .flatten()
+            .ok_or_else(error)
+    };
+    let (first, last) = text.split_once('-').unwrap_or((text, text));
+    let part = Part {
+        first: number(first)?,
+        last: number(last)?,
+    };
+    (part.first <= part.last).then_some(part).ok_or_else(error)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Wrong: a job of an array would solve other points than it was given.
+    #[test]
+    fn points_are_a_number_or_the_first_and_the_last() {
+        let range = |text| parse_part(text).map(Part::range);
+        assert_eq!(range("3"), Ok(3..4));
+        assert_eq!(range("0-9"), Ok(0..10));
+        for bad in ["", "-1", "3-", "9-0", "a", "1-2-3", "1.5"] {
+            let text = range(bad).unwrap_err();
+            assert!(
+                text.starts_with(&format!("{bad:?} names no points; expected")),
+                "{text}"
+            );
+        }
+    }
 }

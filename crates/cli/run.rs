@@ -12,7 +12,7 @@ use crate::build::{build_model, model_with_rings, rolling};
 use crate::failure::Failure;
 use crate::modes;
 use crate::motion;
-use crate::options::Limits;
+use crate::options::{Limits, Part};
 use crate::progress::Progress;
 use crate::quasi_static;
 use crate::results::disk::Forecast;
@@ -41,9 +41,13 @@ pub fn run(
     overrides: &[String],
     out: Option<PathBuf>,
     limits: &Limits,
+    part: Option<Part>,
 ) -> Result<PathBuf, Failure> {
     let start = Instant::now();
     let scene = Scene::load(path, overrides)?;
+    if let Some(part) = part {
+        part.check(&scene)?;
+    }
     let dir = folder::choose(path, out)?;
     match &scene.analysis {
         Analysis::Dynamic(dynamic) => {
@@ -57,7 +61,9 @@ pub fn run(
         }
         Analysis::Static | Analysis::Sweep(_) => {}
     }
-    let points = points(&scene)?;
+    let all = points(&scene)?;
+    let chosen = part.map_or(0..all.len(), Part::range);
+    let (first, points) = (chosen.start, &all[chosen]);
     let mut progress = Progress::new(points.len() as u64);
     progress.stage("reading meshes");
     let (mut model, tags) = build_model(&points[0].1)?;
@@ -95,6 +101,7 @@ pub fn run(
             )?),
         };
         // The points of a sweep have no time; their number stands for it.
+        let step = first + step;
         let (step, time) = (step as u64, step as f64);
         let shown = Shown::Equilibrium {
             model: &model,

@@ -1,0 +1,192 @@
+# One link of a chain of jobs that together do one run; sourced by run.sbatch, resume.sbatch and sweep.sbatch.
+#
+# A link starts raceway, hands it the signals of Slurm, waits, and decides by its exit code: 0 done, 75 stopped early,
+# to be continued, anything else the end of the chain. DIR.links tells what every link did.
+set -uo pipefail
+
+# Links in a row that may end at the step they began with; a signal can come up to a minute early, even at once.
+max_stalled=2
+stopped_early=75
+# Exit code of a shell's child that USR1 killed: raceway had not come as far as listening.
+killed_by_usr1=138
+said_to_stop= ended= signalled=
+
+program() {
+    echo "${RACEWAY:-$root/target/release/raceway}"
+}
+
+say() {
+    echo "link: $*" >&2
+}
+
+# Number of this link in its chain, from 0: a requeued job counts for itself, a chained one is told.
+link_number() {
+    echo $((${SLURM_RESTART_COUNT:-0} + ${RACEWAY_LINK:-0}))
+}
+
+continues() {
+    [ "$(link_number)" -gt 0 ]
+}
+
+# Number of the newest step in a folder, packed or not; none when there is none.
+newest_step() {
+    local newest=-1 name number
+    for name in "$1"/step_*.hdf "$1"/pack_*.hdf; do
+        number=${name##*_}
+        number=${number%.hdf}
+        [[ "$number" =~ ^[0-9]+$ && -e "$name" ]] || continue
+        number=$((10#$number))
+        [ "$number" -le "$newest" ] || newest=$number
+    done
+    [ "$newest" -ge 0 ] || newest=none
+    echo "$newest"
+}
+
+# Whether as many links as may have begun at this step, one after the other.
+is_stalled() {
+    local log="$1" step="$2"
+    [ -e "$log" ] || return 1
+    awk -v step="$step" -v most="$max_stalled" '
+        $1 == "chain" { stalled = 0 }
+        $1 == "start" { stalled = $NF == step ? stalled + 1 : 0 }
+        END { exit !(stalled >= most) }' "$log"
+}
+
+# Command that starts the ranks, in the array launcher; empty for one rank.
+choose_launcher() {
+    local ranks="${SLURM_NTASKS:-1}"
+    launcher=()
+    [ "$ranks" -gt 1 ] || return 0
+    if [ -n "${RACEWAY_LAUNCHER:-}" ]; then
+        read -r -a launcher <<< "$RACEWAY_LAUNCHER"
+    elif command -v mpirun > /dev/null; then
+        # Open MPI would tie a rank and all its threads to one core.
+        launcher=(mpirun -n "$ranks")
+        mpirun --version 2> /dev/null | grep -q "Open MPI" && launcher+=(--bind-to none)
+    else
+        launcher=(srun)
+    fi
+    command -v "${launcher[0]}" > /dev/null || {
+        say "$ranks ranks need a launcher, and ${launcher[0]} is not on the PATH; set RACEWAY_LAUNCHER"
+        exit 2
+    }
+}
+
+# Passes a signal on to raceway, or to the launcher, which passes it to the ranks.
+forward() {
+    signalled=yes
+    kill -s "$1" "$child" 2> /dev/null
+}
+
+# Starts a command, hands it USR1 and TERM, and leaves its exit code in code.
+run_with_signals() {
+    child=
+    trap 'said_to_stop=yes; [ -z "$child" ] || forward USR1' USR1
+    trap 'ended=yes; [ -z "$child" ] || forward TERM' TERM
+    "$@" &
+    child=$!
+    # A signal that came before there was a child.
+    [ -z "$said_to_stop" ] || kill -s USR1 "$child"
+    [ -z "$ended" ] || kill -s TERM "$child"
+    code=0
+    wait "$child" || code=$?
+    # A trap ends the wait, not the child.
+    while [ -n "$signalled" ]; do
+        signalled=
+        wait "$child"
+        local again=$?
+        # The child had ended before the trap came: the first answer holds.
+        [ "$again" -eq 127 ] || code=$again
+    done
+    trap '' USR1
+}
+
+# Puts this job, or a new one, into the queue.
+continue_chain() {
+    local script="$1"
+    shift
+    case "${RACEWAY_CONTINUE:-requeue}" in
+        no)
+            say "stopped early; go on with: sbatch slurm/resume.sbatch $dir"
+            exit "$stopped_early"
+            ;;
+        requeue)
+            # Slurm ends this script; waiting, it can be ended.
+            trap - TERM
+            if scontrol requeue "$SLURM_JOB_ID"; then
+                sleep 300 &
+                wait $!
+            fi
+            say "Slurm did not requeue the job; go on with: sbatch slurm/resume.sbatch $dir"
+            exit "$stopped_early"
+            ;;
+        chain)
+            chain_next "$script" "$@"
+            ;;
+    esac
+}
+
+# Submits the next link with the resources of this one, to start when it has ended.
+chain_next() {
+    local script="$1" limit log next
+    shift
+    limit=$(squeue -h -j "$SLURM_JOB_ID" -o %l)
+    # One log for the whole chain.
+    log=$(scontrol show job "$SLURM_JOB_ID" -o | tr ' ' '\n' | sed -n 's|^StdOut=||p')
+    local resources=(--ntasks="${SLURM_NTASKS:-1}" --cpus-per-task="${SLURM_CPUS_PER_TASK:-1}" --time="$limit"
+        --job-name="$SLURM_JOB_NAME" --output="${log:-raceway-%j.log}")
+    [ -z "${SLURM_JOB_PARTITION:-}" ] || resources+=(--partition="$SLURM_JOB_PARTITION")
+    [ -z "${SLURM_JOB_ACCOUNT:-}" ] || resources+=(--account="$SLURM_JOB_ACCOUNT")
+    [ -z "${SLURM_MEM_PER_NODE:-}" ] || resources+=(--mem="$SLURM_MEM_PER_NODE")
+    next=$(RACEWAY_LINK=$(($(link_number) + 1)) sbatch --parsable --dependency=afterany:"$SLURM_JOB_ID" \
+        --kill-on-invalid-dep=yes "${resources[@]}" "$root/slurm/$script" "$@") || {
+        say "sbatch did not take the next link; go on with: sbatch slurm/resume.sbatch $dir"
+        exit "$stopped_early"
+    }
+    say "job $next goes on"
+    exit 0
+}
+
+# link SCRIPT DIR SUBCOMMAND [ARGUMENT]... -- [ARGUMENTS OF SCRIPT]...
+link() {
+    local script="$1" dir="$2" begun command=() log
+    shift 2
+    while [ $# -gt 0 ] && [ "$1" != -- ]; do
+        command+=("$1")
+        shift
+    done
+    shift
+    case "${RACEWAY_CONTINUE:-requeue}" in
+        no | requeue | chain) ;;
+        *) say "RACEWAY_CONTINUE is $RACEWAY_CONTINUE; expected requeue, chain or no"; exit 2 ;;
+    esac
+    [ -x "$(program)" ] || {
+        say "$(program) is not there; build it (cargo build --release) or set RACEWAY to the program"
+        exit 2
+    }
+    choose_launcher
+    dir=${dir%/}
+    log=$dir.links
+    mkdir -p "$(dirname "$log")" || exit 2
+    begun=$(newest_step "$dir")
+    continues || echo "chain of job ${SLURM_JOB_ID:-none}" >> "$log"
+    if is_stalled "$log" "$begun"; then
+        say "$max_stalled links in a row did not get beyond step $begun; give them more time (--time), then" \
+            "sbatch slurm/resume.sbatch $dir"
+        echo "end stalled" >> "$log"
+        exit 1
+    fi
+    echo "start job ${SLURM_JOB_ID:-none} link $(link_number) ranks ${SLURM_NTASKS:-1} threads" \
+        "${SLURM_CPUS_PER_TASK:-1} ${command[0]} from step $begun" >> "$log"
+    run_with_signals "${launcher[@]}" "$(program)" --threads "${SLURM_CPUS_PER_TASK:-1}" "${command[@]}"
+    echo "end exit code $code at step $(newest_step "$dir")" >> "$log"
+    if [ -n "$said_to_stop" ] && [ "$code" -eq "$killed_by_usr1" ]; then
+        say "the signal came before the first step"
+        code=$stopped_early
+    fi
+    if [ "$code" -eq "$stopped_early" ] && [ -z "$ended" ]; then
+        continue_chain "$script" "$@"
+    fi
+    [ "$code" -eq 0 ] || say "raceway ended with exit code $code at step $(newest_step "$dir"); the chain ends here"
+    exit "$code"
+}
