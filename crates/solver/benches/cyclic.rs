@@ -6,12 +6,18 @@
 //! Without arguments all sizes, the sparse solver at the smaller two. All on the threads of RAYON_NUM_THREADS; best of
 //! several runs.
 
-use std::collections::BTreeMap;
+#[path = "support/clock.rs"]
+mod clock;
+#[path = "support/ring.rs"]
+mod ring;
+
 use std::time::Instant;
 
+use clock::best;
 use divan::black_box;
 use fem::Material;
-use mesh::{ElementKind, Mesh, PERIODIC_TOLERANCE, Section, find_periodicity, revolve};
+use mesh::{Mesh, PERIODIC_TOLERANCE, find_periodicity};
+use ring::{SHIFT, ring};
 use solver::{
     Coupling, CyclicMatrix, CyclicRing, LinearSolver, ResponseTable, Symbolic, angular_dissection, expand,
     restrict_lower,
@@ -23,60 +29,6 @@ const SIZES: [(&str, usize, [usize; 2], bool); 3] = [
     ("150k", 360, [20, 7], true),
     ("400k", 720, [19, 10], false),
 ];
-
-/// Shift by the mass, 1/s^2: that of a step of 1e-5 s.
-const SHIFT: f64 = 4e10;
-
-fn ring(n_sectors: usize, [n_z, n_r]: [usize; 2]) -> Mesh {
-    let mut points = Vec::new();
-    for j in 0..n_z {
-        for i in 0..n_r {
-            points.push([
-                0.025 + 0.004 * i as f64 / (n_r - 1) as f64,
-                0.016 * j as f64 / (n_z - 1) as f64,
-            ]);
-        }
-    }
-    let at = |i: usize, j: usize| j * n_r + i;
-    let quads = (0..n_z - 1)
-        .flat_map(|j| (0..n_r - 1).map(move |i| [at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)]));
-    let section =
-        Section::new(points, quads.collect(), &BTreeMap::new()).expect("a grid of rectangles is a section");
-    revolve(&section, n_sectors, ElementKind::Hex8, &[]).expect("a grid can be revolved")
-}
-
-/// Shortest of several runs, ms, and the last result. On one thread of Linux it is the processor time of all threads of
-/// this process, which other programs disturb less than the clock on the wall.
-fn best<T>(runs: usize, mut run: impl FnMut() -> T) -> (f64, T) {
-    let mut timed = || {
-        let (start, busy) = (Instant::now(), processor_time());
-        let result = run();
-        let wall = start.elapsed().as_secs_f64();
-        let time = match (busy, processor_time()) {
-            (Some(busy), Some(now)) if rayon::current_num_threads() == 1 => now - busy,
-            _ => wall,
-        };
-        (1e3 * time, result)
-    };
-    let (mut shortest, mut last) = timed();
-    for _ in 1..runs {
-        let (time, result) = timed();
-        (shortest, last) = (shortest.min(time), result);
-    }
-    (shortest, last)
-}
-
-/// Seconds that the threads of this process have run, from Linux' scheduler statistics.
-fn processor_time() -> Option<f64> {
-    // The kernel brings a thread's statistics up to date when it gives way.
-    std::thread::yield_now();
-    let mut nanoseconds = 0;
-    for task in std::fs::read_dir("/proc/self/task").ok()? {
-        let text = std::fs::read_to_string(task.ok()?.path().join("schedstat")).ok()?;
-        nanoseconds += text.split_whitespace().next()?.parse::<u64>().ok()?;
-    }
-    Some(1e-9 * nanoseconds as f64)
-}
 
 /// Time to read `bytes` bytes once on this thread, ms.
 fn read_once(bytes: usize) -> f64 {
