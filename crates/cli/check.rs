@@ -12,6 +12,7 @@ use crate::print;
 use crate::results::disk::{self, Forecast};
 use crate::results::probes::Probes;
 use crate::results::summary::effects_on;
+use crate::rules;
 use crate::scene::{Analysis, Scene};
 
 /// Reads and checks the scene and its meshes and prints effects, sizes and forecasts.
@@ -95,6 +96,9 @@ pub fn check(path: &Path, overrides: &[String]) -> Result<(), Failure> {
         forecast.n_files,
         disk::size(forecast.total)
     ));
+    for line in rules::advice(&scene, &model) {
+        print::line(format_args!("advice   {line}"));
+    }
     Ok(())
 }
 

@@ -13,15 +13,18 @@ mod modes;
 mod motion;
 mod options;
 mod pack;
+mod prices;
 mod print;
 mod progress;
 mod quasi_static;
 mod results;
 mod resume;
+mod rules;
 mod run;
 mod scene;
 mod start;
 mod stop;
+mod study;
 mod units;
 
 use std::path::PathBuf;
@@ -88,6 +91,12 @@ enum Command {
         #[arg(long = "set", value_name = "PATH=VALUE")]
         overrides: Vec<String>,
     },
+    /// Runs a grid of settings of a scene and tables errors and costs.
+    Study(study::Request),
+    /// Says which settings of a study reach an error at the lowest cost.
+    Advise(study::Question),
+    /// Turns every effect of a scene off or on and tables what that changes and costs.
+    Prices(prices::Request),
     /// Builds the ring meshes that a scene describes; needs Gmsh.
     Mesh {
         /// Scene file.
@@ -142,6 +151,9 @@ fn execute(arguments: Arguments) -> Result<(), Failure> {
         }
         Command::Pack(request) => pack::pack(&request),
         Command::Export(request) => export::export(&request),
+        Command::Study(request) => study::study(&request),
+        Command::Prices(request) => prices::prices(&request),
+        Command::Advise(question) => study::advise(&question),
         Command::Check { scene, overrides } => check::check(&scene, &overrides),
         Command::Mesh {
             scene,

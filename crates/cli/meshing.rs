@@ -38,17 +38,40 @@ pub fn build_meshes(path: &Path, overrides: &[String], overwrite: Overwrite) -> 
         }
     }
     for (side, (body, section)) in jobs {
-        let mesh = build_ring(&scene, side, body, section)?;
-        mesh::write_msh(&body.mesh, &mesh, body.mesh_unit, MshFormat::Binary, overwrite)?;
-        print::line(format_args!(
-            "{}: {} {} elements, {} nodes, {} dofs",
-            body.mesh.display(),
-            mesh.n_elements(),
-            mesh.kind.name(),
-            mesh.n_nodes(),
-            mesh.n_dofs()
-        ));
+        build_file(&scene, side, body, section, overwrite)?;
     }
+    Ok(())
+}
+
+/// Builds those meshes of a scene that it describes and that do not exist.
+pub fn build_missing(scene: &Scene) -> Result<(), Failure> {
+    for (side, ring) in [(RingSide::Inner, &scene.inner), (RingSide::Outer, &scene.outer)] {
+        if let Some((body, section)) = job(ring)
+            && !body.mesh.exists()
+        {
+            build_file(scene, side, body, section, Overwrite::Refuse)?;
+        }
+    }
+    Ok(())
+}
+
+fn build_file(
+    scene: &Scene,
+    side: RingSide,
+    body: &FlexibleRing,
+    section: &Section,
+    overwrite: Overwrite,
+) -> Result<(), Failure> {
+    let mesh = build_ring(scene, side, body, section)?;
+    mesh::write_msh(&body.mesh, &mesh, body.mesh_unit, MshFormat::Binary, overwrite)?;
+    print::line(format_args!(
+        "{}: {} {} elements, {} nodes, {} dofs",
+        body.mesh.display(),
+        mesh.n_elements(),
+        mesh.kind.name(),
+        mesh.n_nodes(),
+        mesh.n_dofs()
+    ));
     Ok(())
 }
 

@@ -5,12 +5,19 @@
 
 use toml_edit::{DocumentMut, Item, Key, Table, TableLike, Value};
 
-/// Applies `path=value` to the document. The value is read as TOML, or else taken as a string.
+/// The value that takes a table out, `--set effects.gravity=none`.
+const REMOVE: &str = "none";
+
+/// Applies `path=value` to the document. The value is read as TOML, or else taken as a string; `none` for a table takes it
+/// out.
 pub fn apply_override(document: &mut DocumentMut, text: &str) -> Result<(), String> {
     let Some((path, value)) = text.split_once('=') else {
         return Err("expected path=value such as \"effects.axial_force.value=3 kN\"".to_string());
     };
     let value = value.trim();
+    if value == REMOVE && remove_table(document, path.trim()) {
+        return Ok(());
+    }
     let parsed = value.parse::<Value>().unwrap_or_else(|_| Value::from(value));
     set(document, path.trim(), parsed)
 }
@@ -22,6 +29,23 @@ pub fn point_text(document: &DocumentMut, key: &str, value: Value) -> Result<Str
     point.remove("sweep");
     point.insert("static", Item::Table(Table::new()));
     Ok(point.to_string())
+}
+
+/// Takes out the table at a dotted path; whether there was one.
+fn remove_table(document: &mut DocumentMut, path: &str) -> bool {
+    let Ok(keys) = Key::parse(path) else { return false };
+    let Some((last, tables)) = keys.split_last() else {
+        return false;
+    };
+    let mut table: &mut dyn TableLike = document.as_table_mut();
+    for key in tables {
+        match table.get_mut(key.get()).and_then(Item::as_table_like_mut) {
+            Some(next) => table = next,
+            None => return false,
+        }
+    }
+    let is_table = table.get(last.get()).is_some_and(Item::is_table_like);
+    is_table && table.remove(last.get()).is_some()
 }
 
 /// Sets the value at a dotted path; tables on the way are made when they are missing.

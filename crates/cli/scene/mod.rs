@@ -72,6 +72,7 @@ pub use self::difference::difference;
 pub use self::dynamic::{ContactScheme, Dynamic, IntegratorChoice};
 pub use self::effects::Effects;
 pub use self::error::SceneError;
+pub use self::locate::locate;
 pub use self::materials::{Material, Materials};
 pub use self::modes::{ModeBody, ModeSupport, Modes};
 pub use self::output::{InnerRingFrame, Output, Precision, StressOutput};

@@ -125,3 +125,21 @@ fn bad_overrides_are_refused_with_their_text() {
         assert!(message.contains(expected), "{argument}: {message}");
     }
 }
+
+/// If this failed, a study could not leave an effect out, or would leave out something else.
+#[test]
+fn none_takes_a_table_out_and_is_a_word_elsewhere() {
+    let plain = parse(EXAMPLE, &[]).unwrap();
+    let set = parse(EXAMPLE, &["effects.gravity=none", "output.stress = none"]).unwrap();
+    assert!(plain.effects.gravity.is_some() && set.effects.gravity.is_none());
+    assert_eq!(set.output.stress, StressOutput::None);
+    let restored = Effects {
+        gravity: plain.effects.gravity.clone(),
+        ..set.effects
+    };
+    assert_eq!(restored, plain.effects);
+    let error = parse(EXAMPLE, &["effects.gravitation=none"])
+        .unwrap_err()
+        .to_string();
+    assert!(error.contains("unknown key \"gravitation\""), "{error}");
+}

@@ -1,0 +1,212 @@
+//! Reads the quantities of a study out of the results of one run.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use anyhow::{Context, bail};
+use serde_json::Value;
+
+use super::format::{Cell, Take};
+use super::plan::Source;
+use crate::results::summary::SUMMARY_FILE;
+
+/// Numbers in a table that differ by less than this, relatively, are the same: azimuths and times are sums.
+const SAME: f64 = 1e-9;
+
+/// A number of a run, and the rows it was taken from where all of them are compared.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Reading {
+    /// The number, unit of its quantity.
+    pub value: f64,
+    /// Time and value of every row; empty unless histories are compared.
+    pub history: Vec<[f64; 2]>,
+}
+
+/// Reads one quantity from the result folder `dir`.
+pub fn read(source: &Source, dir: &Path) -> anyhow::Result<Reading> {
+    let reading = match source {
+        Source::Summary(pointer) => Reading {
+            value: summary_number(dir, pointer)?,
+            history: Vec::new(),
+        },
+        Source::Table {
+            file,
+            column,
+            rows,
+            take,
+        } => {
+            let history = table_rows(dir, file, column, rows)?;
+            Reading {
+                value: reduce(&history, *take),
+                history: if *take == Take::History {
+                    history
+                } else {
+                    Vec::new()
+                },
+            }
+        }
+    };
+    if !reading.value.is_finite() {
+        bail!("{} is no number", reading.value);
+    }
+    Ok(reading)
+}
+
+fn summary_number(dir: &Path, pointer: &str) -> anyhow::Result<f64> {
+    let path = dir.join(SUMMARY_FILE);
+    let text = std::fs::read_to_string(&path).with_context(|| format!("cannot read {}", path.display()))?;
+    let json: Value =
+        serde_json::from_str(&text).with_context(|| format!("cannot read {}", path.display()))?;
+    match json.pointer(pointer) {
+        Some(Value::Array(list)) => Ok(list.len() as f64),
+        Some(value) if value.is_f64() || value.is_i64() || value.is_u64() => {
+            Ok(value.as_f64().unwrap_or(f64::NAN))
+        }
+        Some(_) => bail!("{SUMMARY_FILE} has no number at {pointer:?}"),
+        None => bail!(
+            "{SUMMARY_FILE} has nothing at {pointer:?}{}",
+            deepest(&json, pointer)
+        ),
+    }
+}
+
+/// The keys that the summary has where the pointer goes astray.
+fn deepest(json: &Value, pointer: &str) -> String {
+    let mut here = json;
+    for part in pointer.split('/').skip(1) {
+        match here.pointer(&format!("/{part}")) {
+            Some(next) => here = next,
+            None => break,
+        }
+    }
+    match here {
+        Value::Object(keys) => {
+            let keys: Vec<&str> = keys.keys().map(String::as_str).collect();
+            format!("; keys there are {}", keys.join(", "))
+        }
+        Value::Array(list) => format!("; there is a list of {} there, counted from 0", list.len()),
+        _ => String::new(),
+    }
+}
+
+/// Time and value of the rows that match; the number of the row stands for the time where there is none.
+fn table_rows(
+    dir: &Path,
+    file: &str,
+    column: &str,
+    wanted: &BTreeMap<String, Cell>,
+) -> anyhow::Result<Vec<[f64; 2]>> {
+    let path = dir.join(file);
+    let mut reader =
+        csv::Reader::from_path(&path).with_context(|| format!("cannot read {}", path.display()))?;
+    let header: Vec<String> = reader.headers()?.iter().map(str::to_string).collect();
+    let index = |name: &str| match header.iter().position(|h| h == name) {
+        Some(i) => Ok(i),
+        None => bail!("{file} has no column {name:?}; columns are {}", header.join(", ")),
+    };
+    let value = index(column)?;
+    let time = header.iter().position(|h| h == "time_s");
+    let wanted = wanted
+        .iter()
+        .map(|(name, cell)| Ok((index(name)?, cell)))
+        .collect::<anyhow::Result<Vec<_>>>()?;
+    let mut rows = Vec::new();
+    for (i, row) in reader.records().enumerate() {
+        let row = row.with_context(|| format!("cannot read {}", path.display()))?;
+        if !wanted.iter().all(|(c, cell)| matches_cell(&row[*c], cell)) {
+            continue;
+        }
+        let number = |c: usize| {
+            row[c]
+                .parse::<f64>()
+                .with_context(|| format!("{file}, row {}: {:?} is no number", i + 1, &row[c]))
+        };
+        rows.push([time.map_or(Ok(i as f64), number)?, number(value)?]);
+    }
+    if rows.is_empty() {
+        bail!("{file} has no row that matches where");
+    }
+    Ok(rows)
+}
+
+fn matches_cell(text: &str, wanted: &Cell) -> bool {
+    match wanted {
+        Cell::Text(wanted) => text == wanted,
+        Cell::Number(wanted) => text
+            .parse::<f64>()
+            .is_ok_and(|x| (x - wanted).abs() <= SAME * wanted.abs().max(x.abs())),
+    }
+}
+
+/// One number from all rows. `rows` is not empty.
+fn reduce(rows: &[[f64; 2]], take: Take) -> f64 {
+    let values = || rows.iter().map(|r| r[1]);
+    let n = rows.len() as f64;
+    let mean = values().sum::<f64>() / n;
+    let max = values().fold(f64::NEG_INFINITY, f64::max);
+    let min = values().fold(f64::INFINITY, f64::min);
+    let root_mean_square = |about: f64| (values().map(|x| (x - about) * (x - about)).sum::<f64>() / n).sqrt();
+    match take {
+        Take::Final => rows[rows.len() - 1][1],
+        Take::Mean => mean,
+        Take::Max => max,
+        Take::Min => min,
+        Take::Rms | Take::History => root_mean_square(0.0),
+        Take::Deviation => root_mean_square(mean),
+        Take::Range => max - min,
+        Take::Ripple => (max - min) / mean.abs(),
+    }
+}
+
+/// RMS of the difference of two histories at the times that both have. At least two such times are needed.
+pub fn history_difference(a: &[[f64; 2]], b: &[[f64; 2]]) -> anyhow::Result<f64> {
+    let span = b.last().map_or(0.0, |l| l[0].abs());
+    let (mut j, mut n, mut sum) = (0, 0usize, 0.0);
+    for [time, value] in a {
+        while j < b.len() && b[j][0] < time - SAME * span {
+            j += 1;
+        }
+        if j < b.len() && (b[j][0] - time).abs() <= SAME * span {
+            sum += (value - b[j][1]) * (value - b[j][1]);
+            n += 1;
+        }
+    }
+    if n < 2 {
+        bail!("its history and that of the reference have {n} times in common; steps must divide each other");
+    }
+    Ok((sum / n as f64).sqrt())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Wrong: a study would print other statistics than it names.
+    #[test]
+    fn reductions_are_those_of_their_names() {
+        let rows = [[0.0, 3.0], [1.0, 5.0], [2.0, 4.0]];
+        let close = |take, expected: f64| assert!((reduce(&rows, take) - expected).abs() < 1e-15, "{take:?}");
+        close(Take::Final, 4.0);
+        close(Take::Mean, 4.0);
+        close(Take::Max, 5.0);
+        close(Take::Min, 3.0);
+        close(Take::Rms, (50.0f64 / 3.0).sqrt());
+        close(Take::Deviation, (2.0f64 / 3.0).sqrt());
+        close(Take::Range, 2.0);
+        close(Take::Ripple, 0.5);
+    }
+
+    /// Wrong: histories of different steps would be compared at different times.
+    #[test]
+    fn histories_are_compared_at_common_times_only() {
+        let coarse = [[0.0, 0.0], [0.2, 1.0], [0.4, 3.0]];
+        let fine = [[0.0, 0.0], [0.1, 9.0], [0.2, 1.5], [0.3, 9.0], [0.4, 3.0]];
+        let difference = history_difference(&coarse, &fine).unwrap();
+        assert!(
+            (difference - (0.25f64 / 3.0).sqrt()).abs() < 1e-15,
+            "{difference}"
+        );
+        let error = history_difference(&coarse, &[[0.15, 1.0], [0.35, 1.0]]).unwrap_err();
+        assert!(error.to_string().contains("have 0 times in common"), "{error}");
+    }
+}

@@ -1,0 +1,110 @@
+//! `point.json`: what became of one point of a study, beside the results of its run.
+
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context, bail};
+use serde::{Deserialize, Serialize};
+
+use super::plan::{Plan, Point};
+
+/// Name of the file in the folder of a point.
+const FILE: &str = "point.json";
+/// Folder of the results in the folder of a point.
+pub const RUN: &str = "run";
+/// What the program printed.
+pub const LOG: &str = "log.txt";
+
+/// A point that was run, to its end or not.
+#[derive(Clone, Debug, Deserialize, Serialize, PartialEq)]
+pub struct Record {
+    /// Its number.
+    pub index: usize,
+    /// Its values, in words.
+    pub name: String,
+    /// Its `--set` arguments; `{out}` stands for the folder of the study.
+    pub set: Vec<String>,
+    /// Text of the scene before the arguments.
+    pub scene: String,
+    /// Threads of the run.
+    pub threads: usize,
+    /// Version and commit of the program.
+    pub program: String,
+    /// Why there are no results; `None` when there are.
+    pub failure: Option<String>,
+    /// Costs of every repeat; empty when it failed.
+    pub costs: Vec<Cost>,
+}
+
+/// What one run cost.
+#[derive(Clone, Debug, Deserialize, Serialize, PartialEq)]
+pub struct Cost {
+    /// From start to end, s.
+    pub wall_s: f64,
+    /// Work of all processors, s.
+    pub cpu_s: f64,
+    /// Largest resident memory, bytes.
+    pub peak_memory_bytes: u64,
+    /// Size of all files of the results, bytes.
+    pub bytes_written: u64,
+    /// Why the times are not its own, if so.
+    pub disturbed: Option<String>,
+}
+
+/// Folder of a point.
+pub fn folder(out: &Path, index: usize) -> PathBuf {
+    out.join("points").join(format!("{index:04}"))
+}
+
+/// Version and commit of this program.
+pub fn program() -> String {
+    format!("{} {}", env!("CARGO_PKG_VERSION"), env!("RACEWAY_COMMIT"))
+}
+
+/// The record of a point; `None` when it was not run, or not to an end. A record of another scene or of other settings is an
+/// error.
+pub fn find(plan: &Plan, point: &Point, out: &Path) -> anyhow::Result<Option<Record>> {
+    let dir = folder(out, point.index);
+    let path = dir.join(FILE);
+    if !path.exists() {
+        return Ok(None);
+    }
+    let text = std::fs::read_to_string(&path).with_context(|| format!("cannot read {}", path.display()))?;
+    let record: Record = serde_json::from_str(&text).with_context(|| {
+        format!(
+            "{} is no record of a point; remove its folder to run it again",
+            path.display()
+        )
+    })?;
+    let changed = [
+        ("other settings", record.set != point.set),
+        ("another text of the scene", record.scene != plan.scene_text),
+        ("another number of threads", record.threads != plan.threads),
+    ];
+    if let Some((what, _)) = changed.iter().find(|(_, is)| *is) {
+        bail!(
+            "{} was run with {what} than {} asks for now; choose another --out, or remove that folder to run the point \
+             again",
+            dir.display(),
+            plan.path.display()
+        );
+    }
+    Ok(Some(record))
+}
+
+/// Writes a record: complete or not at all.
+pub fn write(record: &Record, out: &Path) -> anyhow::Result<()> {
+    write_whole(&folder(out, record.index).join(FILE), &to_json(record)?)
+}
+
+/// JSON as all files of a study have it.
+pub fn to_json(value: &impl Serialize) -> anyhow::Result<String> {
+    Ok(serde_json::to_string_pretty(value).context("cannot format JSON")? + "\n")
+}
+
+/// Writes a text file: complete or not at all.
+pub fn write_whole(path: &Path, text: &str) -> anyhow::Result<()> {
+    let temporary = path.with_extension("tmp");
+    std::fs::write(&temporary, text)
+        .and_then(|()| std::fs::rename(&temporary, path))
+        .with_context(|| format!("cannot write {}", path.display()))
+}
