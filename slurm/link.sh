@@ -171,8 +171,7 @@ link() {
     begun=$(newest_step "$dir")
     continues || echo "chain of job ${SLURM_JOB_ID:-none}" >> "$log"
     if is_stalled "$log" "$begun"; then
-        say "$max_stalled links in a row did not get beyond step $begun; give them more time (--time), then" \
-            "sbatch slurm/resume.sbatch $dir"
+        say "$max_stalled links in a row did not get beyond step $begun; give them more time (--time) and submit again"
         echo "end stalled" >> "$log"
         exit 1
     fi
