@@ -49,6 +49,7 @@ fn effects_that_matter_and_are_off_are_pointed_out() {
     let force: f64 = force.split(' ').next().unwrap().parse().unwrap();
     assert_close("centrifugal force", force, centrifugal(40000.0), 5e-3);
     line("[effects.gyroscopic_moment] is off, but");
+    line("friction may not hold the balls: the gyroscopic moment");
     line("[effects.cage_slip] is off, but balls may skid: F_a / (Z F_c) = 0.3");
     line("inner.flexible is false, but a ring that nothing holds stretches");
     assert!(!advice.contains("gravity"), "2 kN and a light shaft: {advice}");

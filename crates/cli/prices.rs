@@ -238,7 +238,7 @@ fn write_table(report: &Report, s: &mut String) -> std::fmt::Result {
             .collect();
         writeln!(
             s,
-            "| effect | {} | processor s | ms per step | memory MB | written MB |\n|{}",
+            "| effect | {} | processor s | ms per step, set-up included | memory MB | written MB |\n|{}",
             names.join(" | "),
             "---|".repeat(names.len() + 5)
         )?;

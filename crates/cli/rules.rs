@@ -9,6 +9,7 @@
 //! load of a ball         Q = F_a / (Z sin a) + 4.37 F_r / (Z cos a)     Stribeck's number for ball bearings
 //! ball_centrifugal       m r omega_c^2 / Q
 //! gyroscopic_moment      2 M_g / (D_w Q),  M_g = J omega_b omega_c sin a: force across the contact normal
+//! friction holds         M_g < 0.02 Q D_w: else balls turn about the tangent of their path
 //! cage_slip              balls keep rolling while F_a > 10 Z F_c                Hirano
 //! frame_rotation         u / d: growth of the turning inner ring over the Hertz approach d = (Q / K)^(2/3);
 //!                        u = rho omega^2 r^3 / E of a free ring, rho omega^2 r t^2 / (2 E) of one of thickness t on a solid shaft
@@ -35,6 +36,8 @@ const NEGLIGIBLE: f64 = 1e-3;
 const STRIBECK: f64 = 4.37;
 /// Axial load per ball over its centrifugal force below which balls skid (Hirano).
 const HIRANO: f64 = 10.0;
+/// Friction coefficient that holds a ball against its gyroscopic moment, M_g < 0.02 Q D_w (Harris, chapter 5).
+const HOLD: f64 = 0.02;
 /// Acceleration of the earth, m/s2.
 const GRAVITY: f64 = 9.81;
 
@@ -161,6 +164,13 @@ fn gyroscopic(case: &Case<'_>, lines: &mut Vec<String>) {
     );
     let is_on = case.scene.effects.gyroscopic_moment.is_some();
     judge(lines, "[effects.gyroscopic_moment]", is_on, ratio, &estimate);
+    let hold = HOLD * case.ball_load * diameter;
+    if moment > hold {
+        lines.push(format!(
+            "friction may not hold the balls: the gyroscopic moment {moment:.2e} N m is more than {HOLD} Q D_w = {hold:.2e} N m \
+             (Harris), and balls that turn with it are not modelled"
+        ));
+    }
 }
 
 fn skidding(case: &Case<'_>, lines: &mut Vec<String>) {
