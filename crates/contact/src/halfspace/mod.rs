@@ -1,0 +1,11 @@
+//! An elastic half-space under a semi-ellipsoidal (Hertz) pressure: its compliance and its stress.
+
+mod axis;
+mod carlson;
+mod compliance;
+mod confocal;
+mod stress;
+
+pub use axis::{Extreme, Subsurface, subsurface};
+pub use compliance::patch_compliance;
+pub use stress::EllipticPressure;
