@@ -43,6 +43,16 @@ pub struct BallResult {
     pub displacement_m: BallDisplacement,
 }
 
+impl BallResult {
+    /// The contact with the ring of one side.
+    pub fn contact(&self, side: Side) -> &ContactResult {
+        match side {
+            Side::Inner => &self.inner,
+            Side::Outer => &self.outer,
+        }
+    }
+}
+
 /// Results of all balls at given displacements.
 pub fn ball_results(model: &Model, problem: &Problem, u: &Displacements) -> Vec<BallResult> {
     let contact = |i: usize| {

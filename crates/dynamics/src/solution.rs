@@ -1,6 +1,6 @@
 //! A static equilibrium: displacements, forces, energies and the checks on them.
 
-use contact::Side;
+use contact::{LoadedPatch, Side};
 
 use crate::balls::{BallResult, ball_results};
 use crate::effects::Loads;
@@ -101,6 +101,24 @@ impl StaticSolution {
     /// Places of the contacts on one side, by ball; empty for a rigid ring.
     pub fn footprints(&self, side: Side) -> &[Footprint] {
         &self.footprints[side.index()]
+    }
+
+    /// Contact forces on the ring of one side and the patches over which they are spread, by ball; empty for a rigid ring or facets.
+    pub fn patches(&self, side: Side) -> Vec<LoadedPatch> {
+        let patch = |(ball, foot): (usize, &Footprint)| {
+            let contact = self.balls[ball].contact(side);
+            let angle = contact.contact_angle_rad;
+            Some(LoadedPatch {
+                azimuth: self.sites[2 * ball + side.index()].ring_azimuth,
+                force: contact.force_n,
+                angle,
+                semi_axes: contact.semi_axes_m,
+                patch_angle: angle,
+                patch_axes: foot.semi_axes?,
+            })
+        };
+        let feet = self.footprints[side.index()].iter().enumerate();
+        feet.filter_map(patch).collect()
     }
 
     /// Semi-axes of the spread patches of one side, m, by ball; empty for a rigid ring or facets.

@@ -7,6 +7,9 @@ use crate::quadrature;
 
 const NU: f64 = 0.3;
 
+/// A number of a stress tensor.
+type Measure<'a> = &'a dyn Fn([f64; 6]) -> f64;
+
 #[track_caller]
 fn assert_extreme(what: &str, found: Extreme, [stress, depth]: [f64; 2], tolerance: f64) {
     let close = |x: f64, y: f64| (x - y).abs() <= tolerance;
@@ -93,7 +96,7 @@ fn an_ellipse_has_its_largest_stresses_where_the_sum_of_point_loads_has_them() {
             let s = principal(s);
             0.5 * (s[0] - s[2])
         };
-        let measures: [(Extreme, &dyn Fn([f64; 6]) -> f64); 2] = [
+        let measures: [(Extreme, Measure<'_>); 2] = [
             (found.maximum_shear, &shear),
             (found.von_mises, &|s| von_mises(s)),
         ];

@@ -1,11 +1,13 @@
 //! What is reported of a state: shaft, balls, ring displacements.
 
-use contact::Side;
+use contact::patch::PatchShape;
+use contact::{LoadedPatch, Side};
 
 use super::run::Motion;
 use super::state::MotionState;
 use crate::balls::{BallDisplacement, BallResult, ContactResult};
 use crate::error::DynamicsError;
+use crate::footprint::on_groove;
 
 impl Motion<'_> {
     /// Results of every ball: mean forces of the last step, angles and approaches at its end.
@@ -33,6 +35,39 @@ impl Motion<'_> {
             },
         };
         (0..self.model.geometry.n_balls).map(ball).collect()
+    }
+
+    /// Contact forces on a flexible ring at the end of the last step, and the patches over which they are spread, by ball, with
+    /// azimuths in the ring's frame; empty for a rigid ring. Forces are means over the step.
+    pub fn patches(&self, state: &MotionState, side: Side) -> Result<Vec<LoadedPatch>, DynamicsError> {
+        let Some(body) = &self.rings[side.index()] else {
+            return Ok(Vec::new());
+        };
+        let (time, hertz) = (self.time(state.step), &self.model.hertz[side.index()]);
+        let patch = |ball: usize| {
+            let index = 2 * ball + side.index();
+            let force = state.forces[index][0].hypot(state.forces[index][1]);
+            let azimuth = self.ball_azimuth(ball, time) - self.frame_angle(side, time);
+            let [patch_angle, load] = state.places[index];
+            let spacings = self.model.contact.patch_spacings;
+            let patch_angle = on_groove(&body.surface, patch_angle, force > 0.0);
+            let shape = PatchShape::new(
+                &body.surface,
+                azimuth,
+                patch_angle,
+                hertz.semi_axes(load),
+                spacings,
+            )?;
+            Ok(LoadedPatch {
+                azimuth,
+                force,
+                angle: state.angles[index],
+                semi_axes: hertz.semi_axes(force),
+                patch_angle,
+                patch_axes: shape.semi_axes,
+            })
+        };
+        (0..self.model.geometry.n_balls).map(patch).collect()
     }
 
     /// Total nodal displacement of a flexible ring in its own frame, m, `[n_nodes][3]` flat, and the angle by which
