@@ -62,6 +62,16 @@ pub enum FemError {
         /// Determinant of the derivative of position with respect to reference coordinates, m^3.
         det: f64,
     },
+    /// A point is not in the mesh.
+    #[error(
+        "no element holds the point ({:.6e}, {:.6e}, {:.6e}) m, not even within a seventh of its size; \
+         expected a point of the body",
+        point[0], point[1], point[2]
+    )]
+    OutsideMesh {
+        /// The point, m, `[3]`.
+        point: [f64; 3],
+    },
     /// A node belongs to more elements than the pattern can number.
     #[error(
         "node {node} shares elements with {neighbours} nodes, expected at most {limit}; \

@@ -6,10 +6,12 @@
 mod invariants;
 pub(crate) mod kernel;
 mod nodes;
+mod points;
 mod recovery;
 
 pub use invariants::{principal, von_mises};
 pub use nodes::NodeRecovery;
+pub use points::{MeshPoint, PointRecovery};
 pub use recovery::{StressRecovery, StressWorkspace};
 
 /// Small strain with engineering shear from a displacement gradient, `gradient[i][j] = du_i/dx_j`.

@@ -5,6 +5,7 @@ mod errors;
 mod loads;
 mod matrices;
 mod patch;
+mod points;
 mod reference;
 mod rings;
 mod sector;
