@@ -8,7 +8,7 @@ use crate::statics::reference;
 use crate::util::tables::{Table, keys, number, summary};
 use crate::util::{Dir, RIGID, SCENE, assert_within};
 
-const SUMMARY_KEYS: [&str; 18] = [
+const SUMMARY_KEYS: [&str; 19] = [
     "analysis",
     "balls",
     "contact_mode",
@@ -23,6 +23,7 @@ const SUMMARY_KEYS: [&str; 18] = [
     "schema",
     "shaft",
     "status",
+    "subsurface",
     "timing_s",
     "title",
     "version",

@@ -17,5 +17,6 @@ mod resume;
 mod schedules;
 mod statics;
 mod study;
+mod stress;
 mod sweeps;
 mod util;

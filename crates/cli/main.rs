@@ -5,6 +5,7 @@
 
 mod build;
 mod check;
+mod cycles;
 mod export;
 mod failure;
 mod info;
@@ -33,6 +34,7 @@ use std::process::ExitCode;
 use clap::{Parser, Subcommand};
 use mesh::Overwrite;
 
+use crate::cycles::Cycles;
 use crate::export::Export;
 use crate::failure::Failure;
 use crate::info::Depth;
@@ -81,6 +83,8 @@ enum Command {
     },
     /// Puts finished steps into larger files, or takes them out again.
     Pack(Pack),
+    /// Counts the stress cycles of probes: amplitude, mean and rain-flow.
+    Cycles(Cycles),
     /// Writes steps in a form for other tools.
     Export(Export),
     /// Builds everything a run needs but solves nothing: effects, sizes, memory, output.
@@ -150,6 +154,7 @@ fn execute(arguments: Arguments) -> Result<(), Failure> {
             info::info(&path, if verify { Depth::Bytes } else { Depth::Structure })
         }
         Command::Pack(request) => pack::pack(&request),
+        Command::Cycles(request) => cycles::cycles(&request),
         Command::Export(request) => export::export(&request),
         Command::Study(request) => study::study(&request),
         Command::Prices(request) => prices::prices(&request),

@@ -293,7 +293,11 @@ impl March<'_> {
         if self.last_file == Some(self.state.step) {
             return Ok(());
         }
-        let shown = Recorded::new(self.model, self.motion, &self.state, self.scene);
+        let (model, motion, state) = (self.model, self.motion, &self.state);
+        let time = motion.time(state.step);
+        self.files
+            .write_profiles(state.step, time, None, &Shown::Motion { model, motion, state })?;
+        let shown = Recorded::new(self.model, self.motion, &self.state, self.scene)?;
         let newton = self.newton;
         self.files.write_fields_later(move |stress| {
             let mut record = shown.record(stress);

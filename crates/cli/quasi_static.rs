@@ -177,6 +177,7 @@ impl Series<'_> {
     fn write_fields(&mut self, bearing: &QuasiStatic<'_>, step: u64) -> Result<(), Failure> {
         let (model, last, scene) = (self.model, &self.last, self.scene);
         let at = (step, bearing.time(step));
+        self.files.write_profiles(step, at.1, None, &shown(model, last))?;
         self.files
             .write_fields(|stress| fields::record(&shown(model, last), last, stress, at, scene))
     }

@@ -110,6 +110,7 @@ pub fn run(
         };
         files.write_tables(step, time, *value, &snapshot)?;
         files.write_probes(step, time, *value, &shown)?;
+        files.write_profiles(step, time, *value, &shown)?;
         files.write_fields(|stress| fields::record(&shown, &solution, stress, (step, time), point))?;
         // Later points start from displacements of the contacts only; fields of a long sweep would fill the memory.
         if let Some(earlier) = solutions.last_mut() {

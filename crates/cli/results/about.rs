@@ -7,7 +7,7 @@ use std::path::{Component, Path, PathBuf};
 use anyhow::{Context, anyhow};
 use contact::Side;
 
-use crate::scene::{FlexibleRing, Scene};
+use crate::scene::{FlexibleRing, Scene, StressOutput};
 
 /// Scene file, relative to the result folder.
 pub const SCENE_FILE: &str = "scene_file";
@@ -15,6 +15,8 @@ pub const SCENE_FILE: &str = "scene_file";
 pub const OVERRIDES: &str = "overrides";
 /// Commit of the program's source, `unknown` when it was not built from a repository; `+` marks changes beside it.
 pub const COMMIT: &str = "commit";
+/// Where the stress of the step file lives, and what it contains.
+pub const STRESS: &str = "stress";
 /// Warnings of the start of the run, one per line.
 pub const WARNINGS: &str = "warnings";
 
@@ -29,6 +31,7 @@ pub fn about(scene: &Scene, dir: &Path, warnings: &[String]) -> anyhow::Result<B
         (OVERRIDES.to_string(), scene.overrides.join("\n")),
         (WARNINGS.to_string(), warnings.join("\n")),
         (COMMIT.to_string(), env!("RACEWAY_COMMIT").to_string()),
+        (STRESS.to_string(), stress_text(scene)),
     ]);
     for side in Side::BOTH {
         if let Some(ring) = flexible(scene, side) {
@@ -36,6 +39,23 @@ pub fn about(scene: &Scene, dir: &Path, warnings: &[String]) -> anyhow::Result<B
         }
     }
     Ok(texts)
+}
+
+/// Where stress lives and whether it contains the near field.
+fn stress_text(scene: &Scene) -> String {
+    let place = match scene.output.stress {
+        StressOutput::None => return "none".to_string(),
+        StressOutput::Nodal => {
+            "at nodes: extrapolated from the integration points of every element, averaged by volume"
+        }
+        StressOutput::IntegrationPoints => "at the integration points of the elements, as computed",
+    };
+    match scene.stress.near_field_reach {
+        Some(reach) => format!(
+            "{place}; with the near field of contacts within {reach} larger semi-axes of their patches"
+        ),
+        None => format!("{place}; near contacts that of the spread patch, not of the Hertz ellipse"),
+    }
 }
 
 /// Fails unless the meshes of the scene are, byte for byte, those that `texts` tells of.

@@ -8,8 +8,9 @@ use dynamics::balls::{BallResult, ContactResult};
 use dynamics::{Model, StaticSolution};
 use fem::stress::von_mises;
 
-use super::ring_stress::{RingStress, StressFields, TurnedField};
+use super::ring_stress::{RingStress, ShownRing, StressFields};
 use super::shown::{Shown, Turn};
+use crate::failure::Failure;
 use crate::scene::{InnerRingFrame, Scene};
 
 /// The bodies of a result, in the order of its points: flexible rings, then the balls.
@@ -49,16 +50,16 @@ pub fn record(
     stress: &RingStress,
     (step, time): (u64, f64),
     scene: &Scene,
-) -> StepRecord {
-    let (points, cells) = Places::new(shown, scene.output.inner_ring).fields(stress);
-    StepRecord {
+) -> Result<StepRecord, Failure> {
+    let (points, cells) = Places::new(shown, scene)?.fields(stress);
+    Ok(StepRecord {
         step,
         time,
         points,
         cells,
         scene: scene.text.clone(),
         state: state(solution),
-    }
+    })
 }
 
 /// All points at one instant, but for the stress.
@@ -66,31 +67,39 @@ pub struct Places {
     /// Displacement of every point, m.
     displacement: Vec<[f64; 3]>,
     /// Fields of the flexible rings from which their stress follows.
-    rings: [Option<TurnedField>; 2],
+    rings: [Option<ShownRing>; 2],
     /// Forces on the balls, N.
     forces: [Vec<[f64; 3]>; 2],
 }
 
 impl Places {
     /// Places of rings and balls, the inner ring as it stands in space or in its own frame.
-    pub fn new(shown: &Shown<'_>, inner_ring: InnerRingFrame) -> Places {
+    pub fn new(shown: &Shown<'_>, scene: &Scene) -> Result<Places, Failure> {
         let (mut displacement, mut rings) = (Vec::new(), [None, None]);
         for side in Side::BOTH {
             let Some(mut ring) = shown.ring(side) else {
                 continue;
             };
-            if side == Side::Inner && inner_ring == InnerRingFrame::OwnFrame {
+            if side == Side::Inner && scene.output.inner_ring == InnerRingFrame::OwnFrame {
                 ring.turn = Turn::new(0.0);
             }
             displacement.extend(ring.shown_displacements());
-            rings[side.index()] = Some((ring.strained.into_owned(), ring.turn));
+            let patches = match scene.stress.near_field_reach {
+                Some(_) => shown.patches(side).map_err(Failure::solving)?,
+                None => Vec::new(),
+            };
+            rings[side.index()] = Some(ShownRing {
+                field: ring.strained.into_owned(),
+                turn: ring.turn,
+                patches,
+            });
         }
         let forces = add_balls(shown.model(), shown.placed(), &shown.balls(), &mut displacement);
-        Places {
+        Ok(Places {
             displacement,
             rings,
             forces,
-        }
+        })
     }
 
     /// Fields of all points and cells, with the stress that is asked for.

@@ -19,7 +19,7 @@ use super::ring_stress::RingStress;
 use super::shown::Shown;
 use super::snapshot::Snapshot;
 use super::summary::{Costs, SUMMARY_FILE};
-use super::tables::Tables;
+use super::tables::{OwnColumns, Tables};
 use crate::failure::Failure;
 use crate::print;
 use crate::scene::{self, Analysis, Scene};
@@ -52,8 +52,7 @@ impl Files {
         let mut output = Output::create(dir, &fields::bodies(model), storage(scene))?;
         note_dead_owner(output.lock());
         output.describe(about(scene, dir, warnings)?)?;
-        let columns = probes.as_ref().map(Probes::columns);
-        let tables = Tables::create(dir, swept_column(scene), first, columns.as_deref())?;
+        let tables = Tables::create(dir, swept_column(scene), first, &own_columns(probes.as_ref()))?;
         Files::new(scene, model, output, (tables, probes), clock)
     }
 
@@ -70,8 +69,8 @@ impl Files {
         let dir = lock.dir().to_path_buf();
         let texts = about(scene, &dir, warnings)?;
         // The tables tell whether the step can be resumed from; nothing is changed before all is known to fit.
-        let columns = probes.as_ref().map(Probes::columns);
-        let cuts = Tables::cuts(&dir, first, columns.as_deref(), last)?;
+        let columns = own_columns(probes.as_ref());
+        let cuts = Tables::cuts(&dir, first, &columns, last)?;
         let resumed = Output::resume(lock, &fields::bodies(model), storage(scene), last)?;
         let (mut output, damaged, mut superseded) = (resumed.output, resumed.damaged, resumed.superseded);
         output.describe(texts)?;
@@ -87,7 +86,7 @@ impl Files {
                 .insert(checkpoint::new_superseded_folder(&dir)?)
                 .clone()),
         };
-        let tables = Tables::resume(&cuts, first, &mut aside)?;
+        let tables = Tables::resume(&cuts, first, &columns, &mut aside)?;
         if let Some(folder) = superseded {
             print::note(format_args!(
                 "what the run wrote after step {last} is kept in {}",
@@ -117,7 +116,7 @@ impl Files {
         Ok(Files {
             output: BackgroundOutput::start(output, QUEUE, companions),
             tables,
-            ring_stress: Arc::new(RingStress::new(model, scene.output.stress)?),
+            ring_stress: Arc::new(RingStress::new(model, scene)?),
             probes,
             stress_seconds: 0.0,
             output_seconds,
@@ -136,7 +135,7 @@ impl Files {
             return Ok(());
         };
         let clock = Instant::now();
-        let values = probes.values(shown);
+        let values = probes.values(shown)?;
         self.stress_seconds += clock.elapsed().as_secs_f64();
         let clock = Instant::now();
         self.tables.append_probes(step, time, value, &values)?;
@@ -158,11 +157,32 @@ impl Files {
         Ok(())
     }
 
+    /// Appends the profiles of a step whose fields are written next.
+    pub fn write_profiles(
+        &mut self,
+        step: u64,
+        time: f64,
+        value: Option<f64>,
+        shown: &Shown<'_>,
+    ) -> Result<(), Failure> {
+        let Some(probes) = &self.probes else {
+            return Ok(());
+        };
+        let clock = Instant::now();
+        let rows = probes.profile_rows(shown)?;
+        self.stress_seconds += clock.elapsed().as_secs_f64();
+        self.tables.append_profiles(step, time, value, rows)?;
+        Ok(())
+    }
+
     /// Makes a record of the fields and hands it over to be written as a step file. The tables must have the step
     /// already: a step file vouches for the tables up to its step.
-    pub fn write_fields(&mut self, record: impl FnOnce(&RingStress) -> StepRecord) -> Result<(), Failure> {
+    pub fn write_fields(
+        &mut self,
+        record: impl FnOnce(&RingStress) -> Result<StepRecord, Failure>,
+    ) -> Result<(), Failure> {
         let clock = Instant::now();
-        let record = record(&self.ring_stress);
+        let record = record(&self.ring_stress)?;
         self.stress_seconds += clock.elapsed().as_secs_f64();
         let clock = Instant::now();
         self.output.write_step(record)?;
@@ -197,12 +217,14 @@ impl Files {
     ) -> Result<Costs, Failure> {
         let clock = Instant::now();
         let written = self.output.finish()?;
+        let near_field = self.ring_stress.near_field_time();
         if let Some(views) = written.output.finish()? {
             warn_of_damage(&views.damaged);
         }
         Ok(Costs {
             read,
             stress: self.stress_seconds + written.making.as_secs_f64(),
+            near_field: near_field.map(|time| time.as_secs_f64()),
             output: self.output_seconds + clock.elapsed().as_secs_f64(),
             disk_wait: written.waited.as_secs_f64(),
             disk: written.writing.as_secs_f64(),
@@ -211,6 +233,14 @@ impl Files {
             solver,
             probes: self.probes.map_or(Vec::new(), |p| p.places().cloned().collect()),
         })
+    }
+}
+
+/// Columns of the tables that probes need.
+fn own_columns(probes: Option<&Probes>) -> OwnColumns {
+    OwnColumns {
+        probes: probes.and_then(Probes::columns),
+        profiles: probes.and_then(Probes::profile_columns),
     }
 }
 

@@ -15,5 +15,7 @@ pub mod ring_stress;
 pub mod shown;
 pub mod snapshot;
 pub mod state_arrays;
+pub mod stress_points;
+pub mod subsurface;
 pub mod summary;
 pub mod tables;

@@ -17,7 +17,7 @@ use serde::Serialize;
 
 use super::fields;
 use super::files::storage;
-use super::ring_stress::RingStress;
+use super::ring_stress::{RingStress, ShownRing};
 use super::shown::Turn;
 use super::snapshot::Snapshot;
 use super::summary::{ShaftSummary, mode_name, peak_memory, sides, write_summary};
@@ -62,7 +62,7 @@ impl ModeFiles {
         Ok(ModeFiles {
             output,
             table,
-            stress: RingStress::new(model, scene.output.stress)?,
+            stress: RingStress::new(model, scene)?,
             step: 0,
         })
     }
@@ -115,7 +115,11 @@ impl ModeFiles {
                 None => vec![0.0; ring.mesh.n_dofs()],
             };
             displacement.extend(field.chunks_exact(3).map(|u| [u[0], u[1], u[2]]));
-            rings[i] = Some((field, Turn::new(0.0)));
+            rings[i] = Some(ShownRing {
+                field,
+                turn: Turn::new(0.0),
+                patches: Vec::new(),
+            });
         }
         for ball in 0..model.geometry.n_balls {
             let [radial, axial] = mode.shape.balls.get(ball).copied().unwrap_or_default();

@@ -8,6 +8,7 @@ use super::fields::Places;
 use super::ring_stress::RingStress;
 use super::shown::Shown;
 use super::state_arrays::{self, Arrays};
+use crate::failure::Failure;
 use crate::scene::Scene;
 
 /// One instant as it is stored, but for the stress: that is recovered when the record is made.
@@ -21,15 +22,20 @@ pub struct Recorded {
 
 impl Recorded {
     /// Places of rings and balls at one instant, and the state.
-    pub fn new(model: &Model, motion: &Motion<'_>, state: &MotionState, scene: &Scene) -> Recorded {
+    pub fn new(
+        model: &Model,
+        motion: &Motion<'_>,
+        state: &MotionState,
+        scene: &Scene,
+    ) -> Result<Recorded, Failure> {
         let shown = Shown::Motion { model, motion, state };
-        Recorded {
+        Ok(Recorded {
             step: state.step,
             time: motion.time(state.step),
-            places: Places::new(&shown, scene.output.inner_ring),
+            places: Places::new(&shown, scene)?,
             state: state_arrays::store(state, &motion.shape()),
             scene: scene.text.clone(),
-        }
+        })
     }
 
     /// The record of the instant, with the stress that is asked for.

@@ -1,6 +1,6 @@
 //! Probes: single numbers of a run, a line per step in `probes.csv`. The scene's own documentation says what they are.
 
-use contact::Side;
+use contact::{NearField, Side};
 use dynamics::Model;
 use dynamics::balls::BallResult;
 use fem::stress::{NodeRecovery, von_mises};
@@ -8,6 +8,7 @@ use fem::stress::{NodeRecovery, von_mises};
 use super::fields::force_on_ball;
 use super::probe_places::{NodePlace, place};
 use super::shown::{RingField, Shown, Turn};
+use super::stress_points::{self, StressPoints};
 use crate::build::NodeTags;
 use crate::failure::Failure;
 use crate::scene::{self, Axes, ContactProbe, RingName, Scene};
@@ -17,8 +18,15 @@ pub struct Probes {
     nodes: Vec<NodeProbe>,
     /// Stress of the probed nodes of each ring, in the order of `nodes`; None where nothing is probed.
     recoveries: [Option<NodeRecovery>; 2],
+    /// The probed nodes of each ring for the near field, if the scene asks for it.
+    near_fields: [Option<NearField>; 2],
     contacts: Vec<ContactProbe>,
+    points: Option<StressPoints>,
+    profiles: Option<StressPoints>,
 }
+
+/// Profile, number of the point, and azimuth, groove angle, depth and stress in SI.
+pub type ProfileRow = (String, usize, Vec<f64>);
 
 struct NodeProbe {
     place: NodePlace,
@@ -58,7 +66,22 @@ impl Probes {
                 _ => Ok::<_, Failure>(None),
             }
         };
+        let reach = scene.stress.near_field_reach;
+        let near_field = |side: Side| {
+            let (ring, reach) = (model.ring(side)?, reach?);
+            let own = nodes.iter().filter(|probe| probe.side == side);
+            let positions: Vec<[f64; 3]> = own.map(|probe| ring.mesh.nodes[probe.place.node]).collect();
+            let poisson_ratio = ring.material.poisson_ratio;
+            (!positions.is_empty()).then(|| NearField::new(ring.groove, poisson_ratio, reach, &positions))
+        };
+        let lines = |lines: &[scene::StressLine]| {
+            let some = !lines.is_empty();
+            some.then(|| StressPoints::new(lines, model, reach)).transpose()
+        };
         Ok(Some(Probes {
+            near_fields: Side::BOTH.map(near_field),
+            points: lines(&scene.probes.points)?,
+            profiles: lines(&scene.probes.profiles)?,
             recoveries: [recovery(Side::Inner)?, recovery(Side::Outer)?],
             nodes,
             contacts: scene.probes.contacts.clone(),
@@ -70,8 +93,8 @@ impl Probes {
         self.nodes.iter().map(|probe| &probe.place)
     }
 
-    /// Names of the columns, without step and time.
-    pub fn columns(&self) -> Vec<String> {
+    /// Names of the columns of probes, without step and time; None where there are only profiles.
+    pub fn columns(&self) -> Option<Vec<String>> {
         let mut columns = Vec::new();
         for probe in &self.nodes {
             let name = &probe.place.name;
@@ -89,18 +112,48 @@ impl Probes {
             columns.extend(["x", "y", "z"].map(|i| format!("{name}_moment_{i}_n_m")));
             columns.push(format!("{name}_moment_n_m"));
         }
-        columns
+        for line in self.points.iter().flat_map(StressPoints::lines) {
+            columns.extend(stress_points::COLUMNS.map(|column| format!("{}_{column}", line.name)));
+        }
+        (!columns.is_empty()).then_some(columns)
+    }
+
+    /// Names of the columns of profiles, without step and time; None without profiles.
+    pub fn profile_columns(&self) -> Option<Vec<String>> {
+        self.profiles.as_ref()?;
+        let place = ["profile", "point", "azimuth_rad", "groove_angle_rad", "depth_m"];
+        let names = place.iter().chain(&stress_points::COLUMNS);
+        Some(names.map(|name| name.to_string()).collect())
+    }
+
+    /// Rows of the profiles at one instant: name, number of the point, and numbers in SI.
+    pub fn profile_rows(&self, shown: &Shown<'_>) -> Result<Vec<ProfileRow>, Failure> {
+        let Some(profiles) = &self.profiles else {
+            return Ok(Vec::new());
+        };
+        let mut values = profiles.values(shown)?.into_iter();
+        let mut rows = Vec::new();
+        for line in profiles.lines() {
+            for (i, place) in line.points().into_iter().enumerate() {
+                let stress = values.next().expect("a stress per point of every line");
+                rows.push((line.name.clone(), i, [&place[..], &stress[..]].concat()));
+            }
+        }
+        Ok(rows)
     }
 
     /// Values of the columns at one instant, SI.
-    pub fn values(&self, shown: &Shown<'_>) -> Vec<f64> {
-        let rings = Side::BOTH.map(|side| {
-            let recovery = self.recoveries[side.index()].as_ref()?;
-            let ring = shown.ring(side)?;
-            let stress = recovery.stress(&ring.strained);
-            Some((ring, stress.into_iter()))
-        });
-        let mut rings = rings;
+    pub fn values(&self, shown: &Shown<'_>) -> Result<Vec<f64>, Failure> {
+        let mut rings = [None, None];
+        for side in Side::BOTH {
+            if let (Some(recovery), Some(ring)) = (&self.recoveries[side.index()], shown.ring(side)) {
+                let mut stress = recovery.stress(&ring.strained);
+                if let Some(near_field) = &self.near_fields[side.index()] {
+                    near_field.add(&shown.patches(side).map_err(Failure::solving)?, &mut stress);
+                }
+                rings[side.index()] = Some((ring, stress.into_iter()));
+            }
+        }
         let mut values = Vec::new();
         for probe in &self.nodes {
             let Some((ring, stress)) = &mut rings[probe.side.index()] else {
@@ -113,7 +166,10 @@ impl Probes {
         for probe in &self.contacts {
             values.extend(contact_values(probe, shown.model(), &balls[probe.ball]));
         }
-        values
+        if let Some(points) = &self.points {
+            values.extend(points.values(shown)?.into_iter().flatten());
+        }
+        Ok(values)
     }
 }
 

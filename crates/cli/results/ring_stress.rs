@@ -1,13 +1,16 @@
 //! Stress of the rings as step files hold it: averaged at nodes, or at the integration points of the elements.
 
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::time::{Duration, Instant};
+
 use checkpoint::{CellFields, IntegrationPointStress};
-use contact::Side;
-use dynamics::Model;
+use contact::{LoadedPatch, NearField, Side};
+use dynamics::{Model, RingModel};
 use fem::stress::{StressRecovery, von_mises};
 
 use super::shown::Turn;
 use crate::failure::Failure;
-use crate::scene::StressOutput;
+use crate::scene::{Scene, StressOutput};
 
 /// Order of points and components, as every step file states it. Points beyond those of a cell's kind are zero.
 pub const LAYOUT: &str = "stress in Pa, tension positive; a row per cell: points one after the other, each with the \
@@ -20,13 +23,28 @@ pub const LAYOUT: &str = "stress in Pa, tension positive; a row per cell: points
 pub struct RingStress {
     kind: StressOutput,
     /// By side; None for rigid rings.
-    rings: [Option<StressRecovery>; 2],
+    rings: [Option<Recovery>; 2],
     /// Balls, which have a point and a cell each.
     n_balls: usize,
+    /// Nanoseconds spent on near fields.
+    near_field_time: AtomicU64,
 }
 
-/// Displacement of a ring up to a rigid motion in its own frame, m, `[n_nodes][3]` flat, and its turn in space.
-pub type TurnedField = (Vec<f64>, Turn);
+/// Recovery of one ring, and the places of its stress for the near field if that is asked for.
+struct Recovery {
+    elements: StressRecovery,
+    near_field: Option<NearField>,
+}
+
+/// A flexible ring at one instant.
+pub struct ShownRing {
+    /// Displacement up to a rigid motion in the ring's own frame, m, `[n_nodes][3]` flat.
+    pub field: Vec<f64>,
+    /// From that frame to space.
+    pub turn: Turn,
+    /// Contact forces on it; empty without near field.
+    pub patches: Vec<LoadedPatch>,
+}
 
 /// Stress of one instant over points and cells; what the scene does not ask for is absent.
 #[derive(Debug, Default)]
@@ -39,23 +57,41 @@ pub struct StressFields {
 
 impl RingStress {
     /// Prepares what the scene asks for.
-    pub fn new(model: &Model, kind: StressOutput) -> Result<RingStress, Failure> {
-        let recovery = |side: Side| match (kind, model.ring(side)) {
-            (StressOutput::None, _) | (_, None) => Ok::<_, Failure>(None),
-            (StressOutput::Nodal | StressOutput::IntegrationPoints, Some(ring)) => {
-                Ok(Some(StressRecovery::new(&ring.mesh, &ring.material)?))
+    pub fn new(model: &Model, scene: &Scene) -> Result<RingStress, Failure> {
+        let recovery = |side: Side| match model.ring(side) {
+            Some(ring) if scene.output.stress != StressOutput::None => {
+                Recovery::new(ring, scene.output.stress, scene.stress.near_field_reach).map(Some)
             }
+            _ => Ok::<_, Failure>(None),
         };
         Ok(RingStress {
-            kind,
+            kind: scene.output.stress,
             rings: [recovery(Side::Inner)?, recovery(Side::Outer)?],
             n_balls: model.geometry.n_balls,
+            near_field_time: AtomicU64::new(0),
         })
     }
 
+    /// Time spent on near fields so far; None where no ring has one.
+    pub fn near_field_time(&self) -> Option<Duration> {
+        let has_one = |ring: &Option<Recovery>| ring.as_ref().is_some_and(|r| r.near_field.is_some());
+        let nanoseconds = self.near_field_time.load(Ordering::Relaxed);
+        (self.rings.iter().any(has_one)).then(|| Duration::from_nanos(nanoseconds))
+    }
+
+    /// Adds the near field of a ring's contacts to its stress.
+    fn add_near_field(&self, recovery: &Recovery, ring: &ShownRing, stress: &mut [[f64; 6]]) {
+        if let Some(near_field) = &recovery.near_field {
+            let clock = Instant::now();
+            near_field.add(&ring.patches, stress);
+            let spent = clock.elapsed().as_nanos() as u64;
+            self.near_field_time.fetch_add(spent, Ordering::Relaxed);
+        }
+    }
+
     /// Stress of one instant, from the fields of the flexible rings.
-    pub fn fields(&self, rings: &[Option<TurnedField>; 2]) -> StressFields {
-        let known: Vec<(&StressRecovery, &TurnedField)> = self
+    pub fn fields(&self, rings: &[Option<ShownRing>; 2]) -> StressFields {
+        let known: Vec<(&Recovery, &ShownRing)> = self
             .rings
             .iter()
             .zip(rings)
@@ -77,24 +113,29 @@ impl RingStress {
         }
     }
 
-    fn nodal(&self, rings: &[(&StressRecovery, &TurnedField)]) -> Vec<[f64; 6]> {
+    fn nodal(&self, rings: &[(&Recovery, &ShownRing)]) -> Vec<[f64; 6]> {
         let mut stress = Vec::new();
-        for (recovery, (field, turn)) in rings {
-            stress.extend(recovery.nodal(field).into_iter().map(|s| turn.tensor(s)));
+        for (recovery, ring) in rings {
+            let mut own = recovery.elements.nodal(&ring.field);
+            self.add_near_field(recovery, ring, &mut own);
+            stress.extend(own.into_iter().map(|s| ring.turn.tensor(s)));
         }
         stress.resize(stress.len() + self.n_balls, [0.0; 6]);
         stress
     }
 
-    fn cells(&self, rings: &[(&StressRecovery, &TurnedField)]) -> CellFields {
-        let points = rings.iter().map(|(recovery, _)| recovery.points_per_element());
+    fn cells(&self, rings: &[(&Recovery, &ShownRing)]) -> CellFields {
+        let points = rings
+            .iter()
+            .map(|(recovery, _)| recovery.elements.points_per_element());
         let points_per_cell = points.max().unwrap_or(0);
         let (mut values, mut largest) = (Vec::new(), Vec::new());
-        for (recovery, (field, turn)) in rings {
-            let stress = recovery.integration_points(field);
-            for cell in stress.chunks_exact(recovery.points_per_element()) {
+        for (recovery, ring) in rings {
+            let mut stress = recovery.elements.integration_points(&ring.field);
+            self.add_near_field(recovery, ring, &mut stress);
+            for cell in stress.chunks_exact(recovery.elements.points_per_element()) {
                 let end = values.len() + 6 * points_per_cell;
-                values.extend(cell.iter().flat_map(|&s| turn.tensor(s)));
+                values.extend(cell.iter().flat_map(|&s| ring.turn.tensor(s)));
                 values.resize(end, 0.0);
                 largest.push(cell.iter().map(|&s| von_mises(s)).fold(0.0, f64::max));
             }
@@ -109,6 +150,22 @@ impl RingStress {
             }),
             von_mises_largest: Some(largest),
         }
+    }
+}
+
+impl Recovery {
+    fn new(ring: &RingModel, kind: StressOutput, reach: Option<f64>) -> Result<Recovery, Failure> {
+        let elements = StressRecovery::new(&ring.mesh, &ring.material)?;
+        let near_field = reach.map(|reach| {
+            let poisson_ratio = ring.material.poisson_ratio;
+            match kind {
+                StressOutput::IntegrationPoints => {
+                    NearField::new(ring.groove, poisson_ratio, reach, &elements.point_positions())
+                }
+                _ => NearField::new(ring.groove, poisson_ratio, reach, &ring.mesh.nodes),
+            }
+        });
+        Ok(Recovery { elements, near_field })
     }
 }
 
@@ -139,16 +196,27 @@ mod tests {
         let meshes = [ElementKind::Tet10, ElementKind::Hex20].map(element);
         let stress = RingStress {
             kind: StressOutput::IntegrationPoints,
-            rings: meshes
-                .each_ref()
-                .map(|mesh| Some(StressRecovery::new(mesh, &steel).unwrap())),
+            rings: meshes.each_ref().map(|mesh| {
+                Some(Recovery {
+                    elements: StressRecovery::new(mesh, &steel).unwrap(),
+                    near_field: None,
+                })
+            }),
             n_balls: 1,
+            near_field_time: AtomicU64::new(0),
         };
         let stretched = |mesh: &Mesh| mesh.nodes.iter().flat_map(|x| [1e-3 * x[0], 0.0, 0.0]).collect();
         let quarter = std::f64::consts::FRAC_PI_2;
+        let shown = |field: Vec<f64>, angle: f64| {
+            Some(ShownRing {
+                field,
+                turn: Turn::new(angle),
+                patches: Vec::new(),
+            })
+        };
         let fields = [
-            Some((stretched(&meshes[0]), Turn::new(quarter))),
-            Some((stretched(&meshes[1]), Turn::new(0.0))),
+            shown(stretched(&meshes[0]), quarter),
+            shown(stretched(&meshes[1]), 0.0),
         ];
         let found = stress.fields(&fields);
         assert!(found.nodal.is_none());

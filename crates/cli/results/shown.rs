@@ -5,11 +5,11 @@
 
 use std::borrow::Cow;
 
-use contact::{BearingGeometry, Side};
+use contact::{BearingGeometry, LoadedPatch, Side};
 use dynamics::balls::BallResult;
 use dynamics::motion::frame::turn;
 use dynamics::motion::{Motion, MotionState};
-use dynamics::{Model, RingModel, StaticSolution};
+use dynamics::{DynamicsError, Model, RingModel, StaticSolution};
 
 /// Bearing, kinematics and state of one instant.
 #[derive(Clone, Copy)]
@@ -67,6 +67,14 @@ impl<'a> Shown<'a> {
         match self {
             Shown::Equilibrium { solution, .. } => Cow::Borrowed(&solution.balls),
             Shown::Motion { motion, state, .. } => Cow::Owned(motion.balls(state)),
+        }
+    }
+
+    /// Contact forces on a ring and the patches over which they are spread, by ball; empty for a rigid ring or facets.
+    pub fn patches(&self, side: Side) -> Result<Vec<LoadedPatch>, DynamicsError> {
+        match self {
+            Shown::Equilibrium { solution, .. } => Ok(solution.patches(side)),
+            Shown::Motion { motion, state, .. } => motion.patches(state, side),
         }
     }
 

@@ -4,12 +4,14 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use anyhow::Context;
+use contact::Side;
 use dynamics::balls::BallResult;
 use dynamics::{Model, RingMemory, Timing, forecast_peak};
 use serde::Serialize;
 
 use super::probe_places::NodePlace;
 use super::snapshot::Snapshot;
+use super::subsurface::{self, ContactSubsurface};
 use crate::print;
 use crate::scene::{Analysis, Scene};
 
@@ -30,6 +32,8 @@ pub struct Summary {
     contact_mode: &'static str,
     shaft: ShaftSummary,
     balls: Vec<BallSummary>,
+    /// Stress below the surfaces of balls and raceways, by Hertz.
+    subsurface: BTreeMap<&'static str, ContactSubsurface>,
     effects: Vec<&'static str>,
     dofs: BTreeMap<&'static str, usize>,
     energy_j: BTreeMap<&'static str, f64>,
@@ -92,6 +96,8 @@ pub struct Costs {
     pub read: f64,
     /// Stress recovery.
     pub stress: f64,
+    /// Near fields of the step files, a part of `stress`; None where the scene asks for none.
+    pub near_field: Option<f64>,
     /// Writing, as far as the run had to wait for it: tables, handing over steps, closing.
     pub output: f64,
     /// Waiting for the disk, a part of `output`.
@@ -172,6 +178,11 @@ impl Summary {
             contact_mode: mode_name(model),
             shaft: ShaftSummary::new(last),
             balls: balls(last),
+            subsurface: Side::BOTH
+                .map(Side::name)
+                .into_iter()
+                .zip(subsurface::contacts(model, &scene.materials, &last.balls))
+                .collect(),
             effects: effects_on(scene, model),
             dofs: sides(|i| model.rings[i].as_ref().map_or(0, |r| r.mesh.n_dofs())),
             energy_j: last.energies.iter().copied().collect(),
@@ -293,10 +304,12 @@ fn timing(costs: &Costs, effects: &BTreeMap<&'static str, f64>) -> BTreeMap<Stri
     let own = effects
         .iter()
         .map(|(name, s)| (format!("{EFFECT_TIMING}{name}"), *s));
+    let near_field = costs.near_field.map(|s| ("near_field".to_string(), s));
     parts
         .map(|(part, s)| (part.to_string(), s))
         .into_iter()
         .chain(own)
+        .chain(near_field)
         .collect()
 }
 

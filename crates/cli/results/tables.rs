@@ -1,4 +1,4 @@
-//! Long tables of a run: `balls.csv`, `shaft.csv`, `energy.csv`, `probes.csv`. SI units in the column names.
+//! Long tables of a run: `balls.csv`, `shaft.csv`, `energy.csv`, `probes.csv`, `profiles.csv`. SI units in the column names.
 
 use std::path::{Path, PathBuf};
 
@@ -7,6 +7,7 @@ use checkpoint::Companion;
 use dynamics::balls::{BallResult, ContactResult};
 
 use super::cut::Cut;
+use super::probes::ProfileRow;
 use super::snapshot::Snapshot;
 
 /// The tables of one run, open for appending.
@@ -16,6 +17,8 @@ pub struct Tables {
     energy: csv::Writer<std::fs::File>,
     /// Only in a scene with probes.
     probes: Option<csv::Writer<std::fs::File>>,
+    /// Only in a scene with profiles.
+    profiles: Option<csv::Writer<std::fs::File>>,
     /// Whether balls have a spin.
     with_spin: bool,
 }
@@ -24,6 +27,7 @@ const BALLS: &str = "balls.csv";
 const SHAFT: &str = "shaft.csv";
 const ENERGY: &str = "energy.csv";
 const PROBES: &str = "probes.csv";
+const PROFILES: &str = "profiles.csv";
 
 const REACTION_COLUMNS: [&str; 5] = [
     "reaction_x_n",
@@ -49,30 +53,32 @@ impl Tables {
         dir: &Path,
         swept: Option<&str>,
         first: &Snapshot,
-        probes: Option<&[String]>,
+        own: &OwnColumns,
     ) -> anyhow::Result<Tables> {
         let [balls, shaft, energy] = columns(swept, first);
+        let make = |name: &str, columns: &Option<Vec<String>>| {
+            let columns = columns.as_ref().map(|own| head(swept, own));
+            columns.map(|columns| create(dir, name, &columns)).transpose()
+        };
         Ok(Tables {
             balls: create(dir, BALLS, &balls)?,
             shaft: create(dir, SHAFT, &shaft)?,
             energy: create(dir, ENERGY, &energy)?,
-            probes: probes.map(|p| create(dir, PROBES, &head(swept, p))).transpose()?,
+            probes: make(PROBES, &own.probes)?,
+            profiles: make(PROFILES, &own.profiles)?,
             with_spin: first.spin.is_some(),
         })
     }
 
     /// Looks where the files of an earlier run are to be cut to go on after its step `last`.
-    pub fn cuts(
-        dir: &Path,
-        first: &Snapshot,
-        probes: Option<&[String]>,
-        last: u64,
-    ) -> anyhow::Result<Vec<Cut>> {
+    pub fn cuts(dir: &Path, first: &Snapshot, own: &OwnColumns, last: u64) -> anyhow::Result<Vec<Cut>> {
         let [balls, shaft, energy] = columns(None, first);
         let find = |name: &str, columns: &[String]| Cut::find(dir, name, &columns.join(","), last);
         let mut cuts = vec![find(BALLS, &balls)?, find(SHAFT, &shaft)?, find(ENERGY, &energy)?];
-        if let Some(probes) = probes {
-            cuts.push(find(PROBES, &head(None, probes))?);
+        for (name, columns) in [(PROBES, &own.probes), (PROFILES, &own.profiles)] {
+            if let Some(columns) = columns {
+                cuts.push(find(name, &head(None, columns))?);
+            }
         }
         Ok(cuts)
     }
@@ -82,14 +88,22 @@ impl Tables {
     pub fn resume(
         cuts: &[Cut],
         first: &Snapshot,
+        own: &OwnColumns,
         aside: &mut dyn FnMut() -> anyhow::Result<PathBuf>,
     ) -> anyhow::Result<Tables> {
         let mut open = |cut: &Cut| Ok::<_, anyhow::Error>(csv::Writer::from_writer(cut.make(aside)?));
+        let [balls, shaft, energy] = [open(&cuts[0])?, open(&cuts[1])?, open(&cuts[2])?];
+        let mut rest = cuts[3..].iter();
+        let mut next = |columns: &Option<Vec<String>>| {
+            let cut = columns.as_ref().and_then(|_| rest.next());
+            cut.map(&mut open).transpose()
+        };
         Ok(Tables {
-            balls: open(&cuts[0])?,
-            shaft: open(&cuts[1])?,
-            energy: open(&cuts[2])?,
-            probes: cuts.get(3).map(open).transpose()?,
+            balls,
+            shaft,
+            energy,
+            probes: next(&own.probes)?,
+            profiles: next(&own.profiles)?,
             with_spin: first.spin.is_some(),
         })
     }
@@ -99,6 +113,7 @@ impl Tables {
         [(BALLS, &self.balls), (SHAFT, &self.shaft), (ENERGY, &self.energy)]
             .into_iter()
             .chain(self.probes.as_ref().map(|table| (PROBES, table)))
+            .chain(self.profiles.as_ref().map(|table| (PROFILES, table)))
             .map(|(name, table)| {
                 let path = dir.join(name);
                 let file = table.get_ref().try_clone();
@@ -154,6 +169,35 @@ impl Tables {
         let cells = values.iter().map(|x| number(*x)).collect();
         append(table, PROBES, [[place_of(step, time, swept), cells].concat()])
     }
+
+    /// Appends the profiles of one step.
+    pub fn append_profiles(
+        &mut self,
+        step: u64,
+        time: f64,
+        swept: Option<f64>,
+        rows: Vec<ProfileRow>,
+    ) -> anyhow::Result<()> {
+        let Some(table) = &mut self.profiles else {
+            return Ok(());
+        };
+        let cells = |(name, point, values): ProfileRow| {
+            let own = [name, point.to_string()]
+                .into_iter()
+                .chain(values.into_iter().map(number));
+            place_of(step, time, swept).into_iter().chain(own).collect()
+        };
+        append(table, PROFILES, rows.into_iter().map(cells))
+    }
+}
+
+/// Columns of the tables that only some scenes have, without step and time; None where there is no table.
+#[derive(Debug, Default)]
+pub struct OwnColumns {
+    /// Of `probes.csv`.
+    pub probes: Option<Vec<String>>,
+    /// Of `profiles.csv`.
+    pub profiles: Option<Vec<String>>,
 }
 
 /// Header line: step, time, a swept value, and the rest.

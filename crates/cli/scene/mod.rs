@@ -28,7 +28,7 @@
 #![doc = include_str!("example_modes.toml")]
 //! ```
 //!
-//! Any scene may have tables `[probes.*]`, and motion without inertia is a table of its own, `[quasi_static]`: see the files of
+//! Any scene may have tables `[stress]` and `[probes.*]`, and motion without inertia is a table of its own, `[quasi_static]`: see the files of
 //! these names.
 
 mod analysis;
@@ -56,6 +56,8 @@ mod solver;
 mod speed;
 mod start;
 mod steps;
+mod stress;
+mod stress_probes;
 mod sweep;
 #[cfg(test)]
 mod tests;
@@ -85,6 +87,8 @@ pub use self::shaft::{Motion, Shaft};
 pub use self::solver::{Backend, Solver};
 pub use self::speed::SpeedTable;
 pub use self::start::Start;
+pub use self::stress::Stress;
+pub use self::stress_probes::StressLine;
 pub use self::sweep::{Analysis, SweepPoint};
 
 use self::bearing::RawBearing;
@@ -101,6 +105,7 @@ use self::ring::{RawRing, RingContext};
 use self::shaft::RawShaft;
 use self::solver::RawSolver;
 use self::speed::RawSpeed;
+use self::stress::{RawStress, StressContext};
 use self::sweep::{RawStatic, RawSweep};
 
 /// As typed.
@@ -123,6 +128,8 @@ struct RawScene {
     solver: RawSolver,
     #[serde(default)]
     output: RawOutput,
+    #[serde(default)]
+    stress: RawStress,
     #[serde(default)]
     probes: RawProbes,
     r#static: Option<RawStatic>,
@@ -163,6 +170,8 @@ pub struct Scene {
     pub solver: Solver,
     /// What is written.
     pub output: Output,
+    /// How stress is computed.
+    pub stress: Stress,
     /// Single numbers that are written at every step.
     pub probes: Probes,
     /// What is computed.
@@ -285,6 +294,11 @@ impl Source<'_> {
         let speed = speed.and_then(|s| s.check(raw.speed_use(), &mut problems));
         let solver = raw.solver.check(&mut problems);
         let output = raw.output.check(&mut problems);
+        let stress = StressContext {
+            contact: contact.mode,
+            is_modes: raw.modes.is_some(),
+        };
+        let stress = raw.stress.check(stress, &mut problems);
         let probes = ProbesContext {
             bearing: bearing.as_ref(),
             rigid: [raw.inner.is_rigid(), raw.outer.is_rigid()],
@@ -311,6 +325,7 @@ impl Source<'_> {
                 effects,
                 solver,
                 output,
+                stress,
                 probes,
                 analysis,
             }),

@@ -22,6 +22,8 @@
 //! the displacement is that within the turning ring; Cartesian axes are fixed in space, as in the step files, and the
 //! displacement contains the turning.
 //!
+//! Points and profiles are in the file `stress_probes`.
+//!
 //! A contact probe gives the force of the ring on the ball in x, y, z and its size, and its moment about the given
 //! point, likewise. Without friction the force acts along a line through the ball's centre. In motion with inertia the
 //! force is the mean over the step that ends at the given time; its direction and place are those at that end.
@@ -33,19 +35,24 @@ use serde::Deserialize;
 use super::bearing::Bearing;
 use super::problems::Problems;
 use super::ring::RingName;
+use super::stress_probes::{RawPointProbe, RawProfile, StressLine};
 use crate::units::{ANGLE, LENGTH, Quantity};
 
 /// As typed.
 #[derive(Debug, Default, Deserialize)]
 #[serde(
     deny_unknown_fields,
-    expecting = "tables [probes.node.*] and [probes.contact.*]"
+    expecting = "tables [probes.node.*], [probes.point.*], [probes.profile.*] and [probes.contact.*]"
 )]
 pub struct RawProbes {
     #[serde(default)]
     node: BTreeMap<String, RawNodeProbe>,
     #[serde(default)]
     contact: BTreeMap<String, RawContactProbe>,
+    #[serde(default)]
+    point: BTreeMap<String, RawPointProbe>,
+    #[serde(default)]
+    profile: BTreeMap<String, RawProfile>,
 }
 
 /// As typed.
@@ -124,12 +131,19 @@ pub struct Probes {
     pub nodes: Vec<NodeProbe>,
     /// Contacts.
     pub contacts: Vec<ContactProbe>,
+    /// Points of rings.
+    pub points: Vec<StressLine>,
+    /// Lines of points of rings.
+    pub profiles: Vec<StressLine>,
 }
 
 impl Probes {
     /// Whether the scene asks for none.
     pub fn is_empty(&self) -> bool {
-        self.nodes.is_empty() && self.contacts.is_empty()
+        self.nodes.is_empty()
+            && self.contacts.is_empty()
+            && self.points.is_empty()
+            && self.profiles.is_empty()
     }
 }
 
@@ -161,10 +175,37 @@ impl RawProbes {
             check_name(&key, name, problems);
             raw.check(&key, name, context, problems)
         };
+        let contacts = self.contact.iter().map(contact).collect();
+        let mut points = Vec::new();
+        for (name, raw) in &self.point {
+            let key = format!("probes.point.{name}");
+            check_name(&key, name, problems);
+            require_flexible(&key, raw.ring, context, problems);
+            points.push(raw.check(&key, name, problems));
+        }
+        let mut profiles = Vec::new();
+        for (name, raw) in &self.profile {
+            let key = format!("probes.profile.{name}");
+            check_name(&key, name, problems);
+            require_flexible(&key, raw.ring, context, problems);
+            profiles.push(raw.check(&key, name, problems));
+        }
         Probes {
             nodes,
-            contacts: self.contact.iter().map(contact).collect(),
+            contacts,
+            points,
+            profiles,
         }
+    }
+}
+
+/// Only a flexible ring has stress.
+fn require_flexible(key: &str, ring: RingName, context: ProbesContext<'_>, problems: &mut Problems) {
+    if context.rigid[ring as usize] {
+        problems.add(format!(
+            "{key}.ring is {:?}, but that ring is rigid and has no nodes; make it flexible or remove the probe",
+            ring.key()
+        ));
     }
 }
 
@@ -188,12 +229,7 @@ impl RawNodeProbe {
         context: ProbesContext<'_>,
         problems: &mut Problems,
     ) -> Option<NodeProbe> {
-        let ring = self.ring.key();
-        if context.rigid[self.ring as usize] {
-            problems.add(format!(
-                "{key}.ring is {ring:?}, but that ring is rigid and has no nodes; make it flexible or remove the probe"
-            ));
-        }
+        require_flexible(key, self.ring, context, problems);
         Some(NodeProbe {
             name: name.to_string(),
             ring: self.ring,

@@ -97,7 +97,16 @@ impl RawSweep {
         let root = self.key.split('.').next().unwrap_or("");
         if matches!(
             root,
-            "sweep" | "static" | "quasi_static" | "dynamic" | "modes" | "title" | "output" | "probes" | ""
+            "sweep"
+                | "static"
+                | "quasi_static"
+                | "dynamic"
+                | "modes"
+                | "title"
+                | "output"
+                | "stress"
+                | "probes"
+                | ""
         ) || !self.key.contains('.')
         {
             problems.add(format!(
