@@ -67,8 +67,11 @@ pub struct Grading {
     pub growth: f64,
 }
 
-/// Places from 0 to `end`: steps of `size` up to `width`, then growing ones, stretched so that the last place is `end`.
-fn graded([size, width]: [f64; 2], growth: f64, end: f64) -> Vec<f64> {
+/// Largest element along the groove, rad: the arc of a wider one would reach through the thin elements below it.
+const WIDEST: f64 = 0.1;
+
+/// Places from 0 to `end`: steps of `size` up to `width`, then growing ones up to `cap`, stretched so that the last place is `end`.
+fn graded([size, width]: [f64; 2], growth: f64, end: f64, cap: f64) -> Vec<f64> {
     let mut places = vec![0.0];
     while *places.last().unwrap() < width - 0.5 * size {
         places.push(places.len() as f64 * size);
@@ -76,7 +79,7 @@ fn graded([size, width]: [f64; 2], growth: f64, end: f64) -> Vec<f64> {
     let (start, mut step, mut rest) = (*places.last().unwrap(), size, vec![]);
     let mut at = start;
     while at < end {
-        step *= growth;
+        step = (growth * step).min(cap);
         at += step;
         rest.push(at);
     }
@@ -91,16 +94,16 @@ pub fn graded_ring(side: Side, grading: Grading, hold: Hold) -> RingModel {
     let own = groove(side);
     let edge = (own.side.sign() * (shoulder - own.centre_radius) / own.groove_radius).acos();
     let axial = own.side.sign() * grading.angle;
-    let up = graded(grading.along, grading.growth, edge - axial);
-    let down = graded(grading.along, grading.growth, edge + axial);
+    let up = graded(grading.along, grading.growth, edge - axial, WIDEST);
+    let down = graded(grading.along, grading.growth, edge + axial, WIDEST);
     let mut angles: Vec<f64> = down.iter().rev().map(|x| axial - x).collect();
     angles.extend(up[1..].iter().map(|x| axial + x));
     let thickness = (seat - own.radius(0.0)).abs();
-    let rows: Vec<f64> = graded(grading.depth, grading.growth, thickness)
+    let rows: Vec<f64> = graded(grading.depth, grading.growth, thickness, thickness)
         .iter()
         .map(|x| x / thickness)
         .collect();
-    let half = graded(grading.rolling, grading.growth, std::f64::consts::PI);
+    let half = graded(grading.rolling, grading.growth, std::f64::consts::PI, 1.0);
     let mut azimuths: Vec<f64> = half[..half.len() - 1].to_vec();
     azimuths.extend(half.iter().rev().map(|x| 2.0 * std::f64::consts::PI - x));
     let shares: Vec<f64> = angles.iter().map(|x| x / edge).collect();
