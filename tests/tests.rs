@@ -16,7 +16,7 @@ mod results;
 mod resume;
 mod schedules;
 mod statics;
-mod study;
 mod stress;
+mod study;
 mod sweeps;
 mod util;
