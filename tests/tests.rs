@@ -2,6 +2,7 @@
 //! leaves behind. One binary, a file per area; `fixtures/README.md` says where the inputs come from.
 
 mod bad_input;
+mod batch;
 mod export;
 mod integration_points;
 mod interruption;

@@ -1,0 +1,149 @@
+//! The batch scripts in `slurm/`, with a stand-in for Slurm that only takes notes; `scripts/test-slurm` runs real jobs.
+
+use std::os::unix::fs::PermissionsExt;
+use std::process::{Child, Command, Stdio};
+use std::time::{Duration, Instant};
+
+use crate::util::Dir;
+
+/// A folder with a stand-in for the program, which does what `body` says, and one for Slurm, which refuses to requeue.
+fn job(body: &str) -> Dir {
+    let dir = Dir::empty();
+    std::fs::create_dir(dir.path("bin")).unwrap();
+    for (name, text) in [
+        ("raceway", format!("#!/bin/bash\necho \"$@\" >> calls\n{body}\n")),
+        (
+            "bin/scontrol",
+            "#!/bin/bash\necho \"$@\" >> requeued\nexit 1\n".to_string(),
+        ),
+    ] {
+        dir.write(name, text);
+        std::fs::set_permissions(dir.path(name), std::fs::Permissions::from_mode(0o755)).unwrap();
+    }
+    dir
+}
+
+/// Starts `slurm/run.sbatch scene.toml out` as link number `link` of a chain.
+fn start(dir: &Dir, link: usize) -> Child {
+    let root = env!("CARGO_MANIFEST_DIR");
+    let mut command = Command::new("bash");
+    for (name, _) in
+        std::env::vars().filter(|(name, _)| name.starts_with("SLURM") || name.starts_with("RACEWAY"))
+    {
+        command.env_remove(name);
+    }
+    command
+        .arg(format!("{root}/slurm/run.sbatch"))
+        .args(["scene.toml", "out", "--set", "title=\"two words\""])
+        .current_dir(dir.path(""))
+        .env("RACEWAY_ROOT", root)
+        .env("RACEWAY", dir.path("raceway"))
+        .env(
+            "PATH",
+            format!("{}:{}", dir.path("bin").display(), std::env::var("PATH").unwrap()),
+        )
+        .env("SLURM_JOB_ID", "7")
+        .env("SLURM_CPUS_PER_TASK", "3")
+        .env("SLURM_RESTART_COUNT", link.to_string())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap()
+}
+
+/// Exit code and messages of the script at its end.
+fn end(child: Child) -> (Option<i32>, String) {
+    let output = child.wait_with_output().unwrap();
+    (output.status.code(), String::from_utf8(output.stderr).unwrap())
+}
+
+fn was_requeued(dir: &Dir) -> bool {
+    dir.path("requeued").exists()
+}
+
+/// Wrong: a failed run would be queued for ever, or a run that was only stopped would be lost.
+#[test]
+fn only_a_run_that_stopped_early_is_queued_again() {
+    for (code, requeued) in [(0, false), (2, false), (3, false), (137, false), (75, true)] {
+        let dir = job(&format!("exit {code}"));
+        let (ended, stderr) = end(start(&dir, 0));
+        assert_eq!((ended, was_requeued(&dir)), (Some(code), requeued), "{stderr}");
+        assert_eq!(
+            dir.text("calls"),
+            "--threads 3 run scene.toml --out out --set title=\"two words\"\n"
+        );
+        assert!(
+            dir.text("out.links")
+                .ends_with(&format!("end exit code {code} at step none\n"))
+        );
+    }
+    let dir = job("exit 75");
+    end(start(&dir, 0));
+    assert_eq!(dir.text("requeued"), "requeue 7\n");
+}
+
+/// Wrong: a later link would begin again instead of going on, or go on from nothing.
+#[test]
+fn a_later_link_resumes_when_there_is_a_step() {
+    let dir = job("exit 0");
+    assert_eq!(end(start(&dir, 1)).0, Some(0));
+    std::fs::create_dir(dir.path("out")).unwrap();
+    for name in ["step_000008.hdf", "pack_000009_000041.hdf", "step_000010.hdf.tmp"] {
+        dir.write(&format!("out/{name}"), "");
+    }
+    assert_eq!(end(start(&dir, 1)).0, Some(0));
+    let calls = dir.text("calls");
+    let (first, second) = calls.trim_end().split_once('\n').unwrap();
+    assert!(first.contains(" run scene.toml "), "{first}");
+    assert_eq!(second, "--threads 3 resume out");
+    assert!(dir.text("out.links").contains("resume from step 41\n"));
+}
+
+/// Wrong: the run would not hear that its time is over; a job that somebody cancels would come back.
+#[test]
+fn signals_reach_the_run_and_only_usr1_queues_it_again() {
+    let waits = "trap 'exit 75' USR1 TERM\ntouch started\nfor i in {1..600}; do sleep 0.05; done";
+    for (signal, requeued) in [("USR1", true), ("TERM", false)] {
+        let dir = job(waits);
+        let child = start(&dir, 0);
+        let begun = Instant::now();
+        while !dir.path("started").exists() {
+            assert!(
+                begun.elapsed() < Duration::from_secs(20),
+                "the program does not start"
+            );
+            std::thread::sleep(Duration::from_millis(20));
+        }
+        let sent = Command::new("kill")
+            .args(["-s", signal, &child.id().to_string()])
+            .status();
+        assert!(sent.unwrap().success());
+        let (code, stderr) = end(child);
+        assert_eq!(
+            (code, was_requeued(&dir)),
+            (Some(75), requeued),
+            "{signal}: {stderr}"
+        );
+        assert!(
+            begun.elapsed() < Duration::from_secs(25),
+            "{signal} did not arrive"
+        );
+    }
+}
+
+/// Wrong: a job whose limit leaves no time for a step would be queued for ever.
+#[test]
+fn links_without_progress_are_not_followed_by_another() {
+    let dir = job("exit 75");
+    for link in [0, 1] {
+        assert_eq!(end(start(&dir, link)).0, Some(75));
+    }
+    let (code, stderr) = end(start(&dir, 2));
+    assert_eq!(code, Some(1));
+    assert!(
+        stderr.contains("2 links in a row did not get beyond step none; give them more time"),
+        "{stderr}"
+    );
+    assert_eq!(dir.text("calls").lines().count(), 2);
+    // A chain that a user submits anew may try again.
+    assert_eq!(end(start(&dir, 0)).0, Some(75));
+}
