@@ -11,7 +11,8 @@ use crate::util::{Dir, Files, assert_within, with_line};
 const STUDY: &str = include_str!("fixtures/study.toml");
 const DYNAMIC: &str = "[dynamic]\nduration = \"0.2 ms\"\nstep = \"4 us\"\noutput_every = 1000";
 
-fn inputs() -> Dir {
+/// A folder with the scene and the study.
+pub fn inputs() -> Dir {
     let dir = Dir::with_scene(&with_line("[static]", "[static]", DYNAMIC));
     dir.write("study.toml", STUDY);
     dir

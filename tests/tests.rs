@@ -19,5 +19,6 @@ mod schedules;
 mod statics;
 mod stress;
 mod study;
+mod study_jobs;
 mod sweeps;
 mod util;
