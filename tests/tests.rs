@@ -16,6 +16,7 @@ mod readers;
 mod results;
 mod resume;
 mod schedules;
+mod sectors;
 mod statics;
 mod stress;
 mod study;

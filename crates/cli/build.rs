@@ -2,13 +2,16 @@
 
 use std::sync::Arc;
 
+use comm::Communicator;
 use contact::{BearingGeometry, Groove, HertzContact, Side};
 use dynamics::effects::{
     AxialForce, BallCentrifugal, Effect, FrameRotation, Gravity, GyroscopicMoment, Moment, RadialForce,
 };
 use dynamics::model::{RACEWAY_GROUP, elastic};
 use dynamics::motion::balls::Rolling;
-use dynamics::{Backend, ContactMode, ContactSettings, Hold, Model, RingModel, ShaftDof, Tolerances};
+use dynamics::{
+    Backend, ContactMode, ContactSettings, Hold, Model, RingModel, Sectors, ShaftDof, Tolerances,
+};
 use fem::Material;
 use mesh::Torus;
 
@@ -85,6 +88,10 @@ pub fn model_with_rings(scene: &Scene, rings: [Option<Arc<RingModel>>; 2]) -> Re
             scene::Backend::Auto => Backend::Auto,
             scene::Backend::Cyclic => Backend::Cyclic,
             scene::Backend::Sparse => Backend::Sparse,
+            scene::Backend::Sector => Backend::Sector(Sectors {
+                n_sectors: scene.solver.sectors,
+                comm: Communicator::world(),
+            }),
         },
         tolerances: Tolerances {
             force: scene.solver.tolerance,

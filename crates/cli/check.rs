@@ -1,9 +1,10 @@
 //! `raceway check`: builds everything a run needs except factors, and says what the run would be.
 
+use std::ops::Range;
 use std::path::Path;
 
 use contact::Side;
-use dynamics::{Model, RingMemory, forecast_peak, ring};
+use dynamics::{Model, RingMemory, Substructures, forecast_peak, ring};
 
 use crate::build::build_model;
 use crate::failure::Failure;
@@ -138,7 +139,9 @@ fn print_ring(model: &Model, side: Side) -> Result<Option<RingMemory>, Failure> 
         return Ok(None);
     };
     let mesh = &ring.mesh;
-    let (memory, symbolic) = ring::forecast(side, ring, model.geometry.n_balls).map_err(Failure::solving)?;
+    let forecast =
+        ring::forecast(side, ring, model.geometry.n_balls, model.backend).map_err(Failure::solving)?;
+    let memory = forecast.memory;
     print::line(format_args!(
         "{}    {} {}, {} nodes, {} dofs; Hertz stiffness {stiffness:.4e} N/mm^1.5; factor {:.1} MB, {:.2e} flops, \
          peak {:.1} MB",
@@ -147,8 +150,8 @@ fn print_ring(model: &Model, side: Side) -> Result<Option<RingMemory>, Failure> 
         mesh.kind.name(),
         mesh.n_nodes(),
         mesh.n_dofs(),
-        symbolic.factor_bytes() as f64 / 1e6,
-        symbolic.flops(),
+        forecast.factor_bytes as f64 / 1e6,
+        forecast.flops,
         (memory.mesh + memory.making()) as f64 / 1e6
     ));
     print::line(format_args!(
@@ -162,5 +165,35 @@ fn print_ring(model: &Model, side: Side) -> Result<Option<RingMemory>, Failure> 
             Err(reason) => format!("not rotationally periodic: {reason}"),
         }
     ));
+    if let Some(parts) = &forecast.parts {
+        print_sectors(parts);
+    }
     Ok(Some(memory))
+}
+
+/// Prints the balance of the sectors, and what a rank holds of them.
+fn print_sectors(parts: &Substructures) {
+    print::line(format_args!("         {}", parts.note()));
+    let (costs, interface) = (parts.symbolic().costs(), parts.symbolic().interface_bytes());
+    let whole: f64 = costs.iter().map(|c| c.flops).sum();
+    for (s, cost) in costs.iter().enumerate() {
+        print::line(format_args!(
+            "         sector {s}: {} elements, {} dofs, factor {:.1} MB, {:.1} % of the flops",
+            cost.n_elements,
+            cost.n_rows,
+            cost.factor_bytes as f64 / 1e6,
+            100.0 * cost.flops / whole
+        ));
+    }
+    let ranks = std::iter::successors(Some(1), |n| Some(2 * n)).take_while(|&n| n <= costs.len());
+    let share = |n: usize| {
+        let bytes = |range: Range<usize>| costs[range].iter().map(|c| c.factor_bytes).sum::<usize>();
+        let largest = comm::shares(costs.len(), n).into_iter().map(bytes).max();
+        format!("{:.1} MB on {n}", (largest.unwrap_or(0) + interface) as f64 / 1e6)
+    };
+    let shares: Vec<String> = ranks.map(share).collect();
+    print::line(format_args!(
+        "         factor per rank, by number of ranks: {}",
+        shares.join(", ")
+    ));
 }

@@ -4,6 +4,7 @@ use std::process::ExitCode;
 
 use contact::ContactError;
 use dynamics::DynamicsError;
+use solver::SolverError;
 
 /// Exit code of a user error: bad input, missing files, results that would be overwritten.
 const USER: u8 = 2;
@@ -68,6 +69,10 @@ impl Failure {
                 | DynamicsError::Fem { .. }
                 | DynamicsError::NotInMotion { .. }
                 | DynamicsError::Contact(ContactError::Hole { .. })
+                | DynamicsError::Solver {
+                    source: SolverError::BadSectors { .. },
+                    ..
+                }
         );
         if user {
             Failure::User(error.into())

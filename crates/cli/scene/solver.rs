@@ -9,6 +9,7 @@ use super::problems::Problems;
 #[serde(deny_unknown_fields, expecting = "the table [solver]")]
 pub struct RawSolver {
     backend: Option<Backend>,
+    sectors: Option<i64>,
     tolerance: Option<f64>,
     max_iterations: Option<i64>,
 }
@@ -23,6 +24,8 @@ pub enum Backend {
     Cyclic,
     /// Sparse Cholesky factorisation of each ring.
     Sparse,
+    /// Rings cut by angle into sectors, which threads and ranks share.
+    Sector,
 }
 
 /// How the equations are solved.
@@ -30,6 +33,8 @@ pub enum Backend {
 pub struct Solver {
     /// Linear solver.
     pub backend: Backend,
+    /// Number of sectors of each ring with the backend `sector`; None: by the size of the ring.
+    pub sectors: Option<usize>,
     /// Newton stops when the residual is below this part of the loads, dimensionless.
     pub tolerance: f64,
     /// Newton iterations before a solution counts as failed.
@@ -51,9 +56,20 @@ impl RawSolver {
             tolerance,
             "expected 1e-14 to 1e-2, it is relative to the loads",
         );
+        let backend = self.backend.unwrap_or(Backend::Auto);
+        if let Some(sectors) = self.sectors {
+            problems.require(
+                backend == Backend::Sector,
+                "solver.sectors",
+                sectors,
+                "expected only with backend = \"sector\"",
+            );
+        }
+        let sectors = self.sectors.map(|n| problems.whole(n, "solver.sectors", 1, 4096));
         let max_iterations = self.max_iterations.unwrap_or(DEFAULT_MAX_ITERATIONS);
         Solver {
-            backend: self.backend.unwrap_or(Backend::Auto),
+            backend,
+            sectors,
             tolerance,
             max_iterations: problems.whole(max_iterations, "solver.max_iterations", 1, 10_000),
         }

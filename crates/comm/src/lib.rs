@@ -4,6 +4,8 @@
 //! before the next collective. With one process every operation is the identity, at no cost; what matters is
 //! [`refuse_parallel_launch`], without which `mpirun -n 4` would start four runs that overwrite each other's files.
 
+use std::ops::Range;
+
 use thiserror::Error;
 
 /// Failures of this crate.
@@ -22,60 +24,76 @@ pub enum CommError {
     },
 }
 
-/// One process: rank 0 of 1.
+/// The ranks of a run.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Serial;
+pub enum Communicator {
+    /// One process: rank 0 of 1.
+    #[default]
+    Serial,
+}
 
-impl Serial {
+impl Communicator {
     /// Number of this rank, from 0.
     pub fn rank(self) -> usize {
-        0
+        match self {
+            Communicator::Serial => 0,
+        }
     }
 
     /// Number of ranks.
     pub fn size(self) -> usize {
-        1
+        match self {
+            Communicator::Serial => 1,
+        }
     }
 
-    /// Replaces `values`, `[n]`, by their sums over the ranks, added in rank order.
-    pub fn all_reduce_sum(self, _values: &mut [f64]) {}
+    /// The ranks that the launcher has started.
+    pub fn world() -> Communicator {
+        Communicator::Serial
+    }
 
-    /// Replaces `values`, `[n]`, by their maxima over the ranks.
-    pub fn all_reduce_max(self, _values: &mut [f64]) {}
+    /// Units of work of each rank when `n` of them are dealt out.
+    pub fn shares(self, n: usize) -> Vec<Range<usize>> {
+        shares(n, self.size())
+    }
 
-    /// Replaces `bytes` on every rank by those of rank `root`.
+    /// Units of work of this rank.
+    pub fn share(self, n: usize) -> Range<usize> {
+        self.shares(n)[self.rank()].clone()
+    }
+
+    /// The `values` of all ranks, one after the other in rank order; rank r has `lengths[r]` of them.
     ///
     /// # Panics
-    /// When there is no such rank.
-    pub fn broadcast_bytes(self, _bytes: &mut Vec<u8>, root: usize) {
-        self.check_rank(root);
-    }
-
-    /// The `bytes` of all ranks in rank order, on rank `root`; nothing on the others.
-    ///
-    /// # Panics
-    /// When there is no such rank.
-    pub fn gather_bytes(self, bytes: &[u8], root: usize) -> Option<Vec<Vec<u8>>> {
-        self.check_rank(root);
-        Some(vec![bytes.to_vec()])
-    }
-
-    /// Returns when every rank has called it.
-    pub fn barrier(self) {}
-
-    /// The result, if every rank has one; otherwise the error of the lowest rank that has none. To be called before a
-    /// collective, so that no rank waits for one that has given up.
-    pub fn agree<T, E>(self, result: Result<T, E>) -> Result<T, E> {
-        result
-    }
-
-    fn check_rank(self, root: usize) {
-        assert!(
-            root < self.size(),
-            "rank {root} of {} does not exist",
-            self.size()
+    /// When `values` has another length than was announced.
+    pub fn all_gather(self, values: Vec<f64>, lengths: &[usize]) -> Vec<f64> {
+        assert_eq!(
+            values.len(),
+            lengths[self.rank()],
+            "numbers of rank {}",
+            self.rank()
         );
+        match self {
+            Communicator::Serial => values,
+        }
     }
+
+    /// The result, if every rank has one. Otherwise an error on all: a rank's own, or what `elsewhere` makes of the lowest
+    /// failed rank and its message. To be called before a collective, so that no rank waits for one that has given up.
+    pub fn agree<T, E: std::fmt::Display>(
+        self,
+        result: Result<T, E>,
+        _elsewhere: impl FnOnce(usize, String) -> E,
+    ) -> Result<T, E> {
+        match self {
+            Communicator::Serial => result,
+        }
+    }
+}
+
+/// Equal runs of `n` units of work for each of `size` ranks, in order.
+pub fn shares(n: usize, size: usize) -> Vec<Range<usize>> {
+    (0..size).map(|r| r * n / size..(r + 1) * n / size).collect()
 }
 
 /// Task counts that launchers put into the environment of what they start: Open MPI's mpirun, MPICH's and its kin's
@@ -148,27 +166,14 @@ mod tests {
         assert_eq!(launch(&[("PMI_SIZE", "not a number")]), Ok(()));
     }
 
-    /// If this failed, the same program would compute something else with one rank than its sums say.
+    /// Wrong: a run of one process would compute something else than its sums say.
     #[test]
     fn collectives_of_one_rank_are_the_identity() {
-        let comm = Serial;
-        let mut values = [1.5, -0.0, f64::MAX];
-        comm.all_reduce_sum(&mut values);
-        comm.all_reduce_max(&mut values);
-        assert_eq!(values.map(f64::to_bits), [1.5, -0.0, f64::MAX].map(f64::to_bits));
-        let mut bytes = vec![1, 2, 3];
-        comm.broadcast_bytes(&mut bytes, 0);
-        assert_eq!(comm.gather_bytes(&bytes, 0), Some(vec![vec![1, 2, 3]]));
-        comm.barrier();
-        assert_eq!(comm.agree(Err::<(), _>("no memory")), Err("no memory"));
-        assert_eq!(comm.agree(Ok::<_, ()>(7)), Ok(7));
-        assert_eq!((comm.rank(), comm.size()), (0, 1));
-    }
-
-    /// If this failed, a wrong root would pass with one rank and hang with several.
-    #[test]
-    #[should_panic(expected = "rank 1 of 1 does not exist")]
-    fn a_root_that_does_not_exist_is_a_program_error() {
-        Serial.broadcast_bytes(&mut Vec::new(), 1);
+        let comm = Communicator::Serial;
+        assert_eq!(comm.all_gather(vec![1.5, -0.0], &[2]), [1.5, -0.0]);
+        let elsewhere = |_, _| unreachable!("there is no other rank");
+        assert_eq!(comm.agree(Err::<(), _>("no memory"), elsewhere), Err("no memory"));
+        assert_eq!(comm.agree(Ok::<_, &str>(7), elsewhere), Ok(7));
+        assert_eq!((comm.rank(), comm.size(), comm.share(5)), (0, 1, 0..5));
     }
 }

@@ -31,6 +31,14 @@ pub enum DynamicsError {
         /// The first difference.
         reason: String,
     },
+    /// Another rank has failed.
+    #[error("on rank {rank}: {message}")]
+    OnRank {
+        /// The rank.
+        rank: usize,
+        /// Its error.
+        message: String,
+    },
     /// The linear solver failed otherwise.
     #[error("{side} ring: {source}")]
     Solver {

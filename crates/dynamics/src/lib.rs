@@ -24,6 +24,7 @@ pub mod schedule;
 pub mod solution;
 pub mod sparse;
 pub mod statics;
+pub mod substructures;
 pub mod support;
 
 pub use costs::{EffectCosts, Timing};
@@ -31,10 +32,13 @@ pub use effects::{Effect, Loads};
 pub use error::DynamicsError;
 pub use inventory::Inventory;
 pub use memory::{RingMemory, forecast_peak};
-pub use model::{Backend, ContactMode, ContactSettings, Hold, Model, RingModel, ShaftDof, Tolerances};
+pub use model::{
+    Backend, ContactMode, ContactSettings, Hold, Model, RingModel, Sectors, ShaftDof, Tolerances,
+};
 pub use modes::{Mode, ModeSet, ModesSettings, RingSupport};
 pub use pose::Pose;
 pub use quasi_static::QuasiStatic;
 pub use schedule::Schedule;
 pub use solution::StaticSolution;
 pub use statics::StaticSolver;
+pub use substructures::Substructures;

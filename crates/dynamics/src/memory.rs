@@ -22,6 +22,8 @@
 use mesh::Mesh;
 use solver::Symbolic;
 
+use crate::substructures::Substructures;
+
 /// Program, libraries and small buffers, bytes: resident memory of a run with rigid rings, 2-core machine with glibc.
 pub const PROGRAM_BYTES: usize = 16_000_000;
 
@@ -59,6 +61,25 @@ impl RingMemory {
             factorisation: triangle + symbolic.bytes() + symbolic.peak_bytes(),
             kept,
             columns: kept + 3 * 8 * mesh.n_dofs() * 2 * n_balls,
+            results: 240 * mesh.n_nodes()
+                + 24 * mesh.connectivity.len()
+                + 48 * mesh.kind.n_corners() * mesh.n_elements(),
+        }
+    }
+
+    /// The same for a ring in sectors, on this rank: matrices of its sectors, which stay until the factor is made, work space
+    /// of as many sectors as there are threads, and gathered vectors.
+    pub fn of_sectors(mesh: &Mesh, parts: &Substructures, n_balls: usize, n_threads: usize) -> RingMemory {
+        let symbolic = parts.symbolic();
+        let matrices = ENTRY_BYTES * parts.n_entries() * 10 / 9;
+        let factors: usize = symbolic.costs().iter().map(|c| c.factor_bytes).sum();
+        let kept = factors + symbolic.interface_bytes() + 8 * mesh.n_dofs();
+        RingMemory {
+            mesh: 24 * mesh.n_nodes() + 8 * mesh.connectivity.len(),
+            assembly: matrices,
+            factorisation: matrices + symbolic.peak_bytes(n_threads),
+            kept,
+            columns: kept + 4 * 8 * mesh.n_dofs() * 2 * n_balls,
             results: 240 * mesh.n_nodes()
                 + 24 * mesh.connectivity.len()
                 + 48 * mesh.kind.n_corners() * mesh.n_elements(),

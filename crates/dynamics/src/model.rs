@@ -7,6 +7,7 @@
 
 use std::sync::Arc;
 
+use comm::Communicator;
 use contact::hertz::Elastic;
 use contact::{BearingGeometry, Groove, HertzContact, Side};
 use fem::Material;
@@ -72,6 +73,15 @@ pub struct ContactSettings {
     pub patch_spacings: f64,
 }
 
+/// How rings are cut into sectors, and the ranks that share these.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Sectors {
+    /// Number of sectors of each ring; None: by its size.
+    pub n_sectors: Option<usize>,
+    /// The ranks.
+    pub comm: Communicator,
+}
+
 /// Linear solver of the rings in motion.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Backend {
@@ -82,6 +92,23 @@ pub enum Backend {
     Cyclic,
     /// Sparse Cholesky factorisation.
     Sparse,
+    /// Sectors, factored and solved in parallel and joined exactly; in statics as well.
+    Sector(Sectors),
+}
+
+impl Backend {
+    /// Both of two independent pieces of work on the rings: at the same time, but one after the other where ranks share
+    /// a ring, as all ranks must meet in the same order.
+    pub fn both<A: Send, B: Send>(
+        self,
+        first: impl FnOnce() -> A + Send,
+        second: impl FnOnce() -> B + Send,
+    ) -> (A, B) {
+        match self {
+            Backend::Sector(sectors) if sectors.comm.size() > 1 => (first(), second()),
+            _ => rayon::join(first, second),
+        }
+    }
 }
 
 /// Dimensionless stopping rules.

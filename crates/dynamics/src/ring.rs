@@ -8,19 +8,20 @@ use std::time::Instant;
 use contact::quadrature::PressureRule;
 use contact::{FacetSurface, NodalWeights, RacewaySurface, Side};
 use mesh::Mesh;
-use solver::{LinearSolver, SolverError, SparseCholesky, Symbolic};
+use solver::{LinearSolver, SolverError, Symbolic};
 use sprs::CsMat;
 
 use crate::error::DynamicsError;
 use crate::inventory::Inventory;
 use crate::memory::RingMemory;
-use crate::model::{ContactMode, Model, RACEWAY_GROUP, RingModel};
+use crate::model::{Backend, ContactMode, Model, RACEWAY_GROUP, RingModel, Sectors};
+use crate::substructures::Substructures;
 use crate::support::Support;
 
 /// Factored stiffness, raceway search and rule of one ring.
 pub struct RingSolver {
     support: Support,
-    factor: SparseCholesky,
+    factor: Box<dyn LinearSolver>,
     n_dofs: usize,
     /// Raceway in (azimuth, groove angle).
     pub surface: RacewaySurface,
@@ -38,24 +39,14 @@ impl RingSolver {
     /// Assembles and factors the stiffness of the ring on `side`.
     pub fn new(model: &Model, side: Side, ring: &RingModel) -> Result<RingSolver, DynamicsError> {
         let start = Instant::now();
-        let fem_error = |source| DynamicsError::Fem {
-            side: side.name(),
-            source,
-        };
         let mesh = &ring.mesh;
         let weights = fem::surface::facet_node_weights(mesh, mesh.group(ring.held_group));
         let support = Support::new(mesh, ring.hold, weights);
-        // Only the lower triangle outlives the assembly: the whole matrix takes half as much as a hex8 ring's factor.
-        let full = fem::assemble_stiffness(mesh, &ring.material).map_err(fem_error)?;
-        let (stiffness, n_entries) = (solver::restrict_lower(&full, &support.free), full.nnz());
-        drop(full);
-        let assembled = start.elapsed().as_secs_f64();
-        let symbolic = analyse(mesh, &support, &stiffness).map_err(|e| named(e, side, ring, &support))?;
-        let memory = RingMemory::new(mesh, n_entries, &symbolic, model.geometry.n_balls);
-        let factor = symbolic
-            .factor(&stiffness)
-            .map_err(|e| named(e, side, ring, &support))?;
-        drop(stiffness);
+        let n_balls = model.geometry.n_balls;
+        let (factor, memory, assembled) = match model.backend {
+            Backend::Sector(sectors) => sector_factor(side, ring, &support, n_balls, sectors)?,
+            _ => sparse_factor(side, ring, &support, n_balls)?,
+        };
         let facets = matches!(model.contact.mode, ContactMode::Facet)
             .then(|| FacetSurface::new(mesh, mesh.group(RACEWAY_GROUP), ring.groove));
         Ok(RingSolver {
@@ -130,6 +121,52 @@ impl RingSolver {
     }
 }
 
+/// A factor, the forecast of its memory, and the seconds of its assembly.
+type Made = (Box<dyn LinearSolver>, RingMemory, f64);
+
+/// The stiffness of a held ring as one sparse matrix.
+fn sparse_factor(
+    side: Side,
+    ring: &RingModel,
+    support: &Support,
+    n_balls: usize,
+) -> Result<Made, DynamicsError> {
+    let (start, mesh) = (Instant::now(), &ring.mesh);
+    // Only the lower triangle outlives the assembly: the whole matrix takes half as much as a hex8 ring's factor.
+    let full = fem::assemble_stiffness(mesh, &ring.material).map_err(|source| DynamicsError::Fem {
+        side: side.name(),
+        source,
+    })?;
+    let (stiffness, n_entries) = (solver::restrict_lower(&full, &support.free), full.nnz());
+    drop(full);
+    let assembled = start.elapsed().as_secs_f64();
+    let symbolic = analyse(mesh, support, &stiffness).map_err(|e| named(e, side, ring, support))?;
+    let memory = RingMemory::new(mesh, n_entries, &symbolic, n_balls);
+    let factor = symbolic
+        .factor(&stiffness)
+        .map_err(|e| named(e, side, ring, support))?;
+    Ok((Box::new(factor), memory, assembled))
+}
+
+/// The same in sectors.
+fn sector_factor(
+    side: Side,
+    ring: &RingModel,
+    support: &Support,
+    n_balls: usize,
+    sectors: Sectors,
+) -> Result<Made, DynamicsError> {
+    let start = Instant::now();
+    let parts = Substructures::new(ring, side.name(), &support.free, sectors)?;
+    let assembled = start.elapsed().as_secs_f64();
+    let memory = RingMemory::of_sectors(&ring.mesh, &parts, n_balls, rayon::current_num_threads());
+    let factor = parts.factor([0.0, 1.0]).map_err(|error| match error {
+        DynamicsError::Solver { source, .. } => named(source, side, ring, support),
+        other => other,
+    })?;
+    Ok((Box::new(factor), memory, assembled))
+}
+
 /// Analysis of the factorisation of a held ring, from its matrix' lower triangle.
 fn analyse(mesh: &Mesh, support: &Support, stiffness: &CsMat<f64>) -> Result<Symbolic, SolverError> {
     Symbolic::new(stiffness, &elimination_order(mesh, &support.free))
@@ -141,19 +178,42 @@ pub(crate) fn elimination_order(mesh: &Mesh, free: &[usize]) -> Vec<usize> {
     solver::restrict_order(&solver::expand(&nodes, 3), free)
 }
 
-/// Forecast of the memory of a ring in a bearing of `n_balls` balls, and the analysis it rests on: no number is
-/// computed.
+/// What the static factor of a ring will cost.
+pub struct Forecast {
+    /// Bytes by phase.
+    pub memory: RingMemory,
+    /// Bytes of the factor.
+    pub factor_bytes: usize,
+    /// Operations of the factorisation.
+    pub flops: f64,
+    /// The ring in sectors, when the scene asks for them.
+    pub parts: Option<Substructures>,
+}
+
+/// Forecast of a ring in a bearing of `n_balls` balls: no number is computed.
 pub fn forecast(
     side: Side,
     ring: &RingModel,
     n_balls: usize,
-) -> Result<(RingMemory, Symbolic), DynamicsError> {
+    backend: Backend,
+) -> Result<Forecast, DynamicsError> {
     let mesh = &ring.mesh;
     let support = Support::new(
         mesh,
         ring.hold,
         fem::facet_node_weights(mesh, mesh.group(ring.held_group)),
     );
+    if let Backend::Sector(sectors) = backend {
+        let parts = Substructures::pattern(ring, side.name(), &support.free, sectors)?;
+        let costs = parts.symbolic().costs();
+        return Ok(Forecast {
+            memory: RingMemory::of_sectors(mesh, &parts, n_balls, rayon::current_num_threads()),
+            factor_bytes: costs.iter().map(|c| c.factor_bytes).sum::<usize>()
+                + parts.symbolic().interface_bytes(),
+            flops: costs.iter().map(|c| c.flops).sum(),
+            parts: Some(parts),
+        });
+    }
     let fem_error = |source| DynamicsError::Fem {
         side: side.name(),
         source,
@@ -162,7 +222,12 @@ pub fn forecast(
     let full = pattern.matrix(vec![0.0; pattern.n_values()]);
     let lower = solver::restrict_lower(&full, &support.free);
     let symbolic = analyse(mesh, &support, &lower).map_err(|e| named(e, side, ring, &support))?;
-    Ok((RingMemory::new(mesh, full.nnz(), &symbolic, n_balls), symbolic))
+    Ok(Forecast {
+        memory: RingMemory::new(mesh, full.nnz(), &symbolic, n_balls),
+        factor_bytes: symbolic.factor_bytes(),
+        flops: symbolic.flops(),
+        parts: None,
+    })
 }
 
 fn named(error: SolverError, side: Side, ring: &RingModel, support: &Support) -> DynamicsError {

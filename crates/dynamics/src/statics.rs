@@ -16,7 +16,6 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use contact::Side;
-use rayon::prelude::*;
 use solver::dense::DenseCholesky;
 
 use crate::costs::{EffectCosts, Timing};
@@ -26,7 +25,7 @@ use crate::error::DynamicsError;
 use crate::footprint::{Footprint, check_on_groove, place};
 use crate::inventory::Inventory;
 use crate::loading::{LoadCase, largest_change, largest_force, not_settled};
-use crate::model::{ContactMode, Model};
+use crate::model::{Backend, ContactMode, Model};
 use crate::pose::Pose;
 use crate::problem::{Displacements, Problem, RingResponse, site_forces};
 use crate::ring::RingSolver;
@@ -59,7 +58,7 @@ impl StaticSolver {
                 .map(|ring| RingSolver::new(model, side, ring))
                 .transpose()
         };
-        let (inner, outer) = rayon::join(|| build(Side::Inner), || build(Side::Outer));
+        let (inner, outer) = model.backend.both(|| build(Side::Inner), || build(Side::Outer));
         let rings = [inner?, outer?];
         let mut timing = Timing::default();
         for ring in rings.iter().flatten() {
@@ -149,9 +148,9 @@ impl StaticSolver {
                 }
             }
             self.timing.patches += clock.elapsed().as_secs_f64();
-            self.renew_columns(&feet, &history);
+            self.renew_columns(model.backend, &feet, &history);
             let ring_forces = case.ring_forces(&forces);
-            let fields = self.fields(&feet, &ring_forces, &case.loads);
+            let fields = self.fields(model.backend, &feet, &ring_forces, &case.loads);
             self.respond(&mut case.problem, &feet, &ring_forces, &fields);
             let contact_loads = case.loads.contacts.clone();
             let clock = Instant::now();
@@ -194,27 +193,26 @@ impl StaticSolver {
     }
 
     /// Computes the compliance columns when there are none, and again when rounds contract slowly.
-    fn renew_columns(&mut self, feet: &[Vec<Footprint>; 2], history: &[f64]) {
+    fn renew_columns(&mut self, backend: Backend, feet: &[Vec<Footprint>; 2], history: &[f64]) {
         let slow = matches!(history, [.., before, last] if *last > SLOW_CONTRACTION * before);
         let clock = Instant::now();
         let rings = &self.rings;
-        let renewed: Vec<Option<Vec<f64>>> = Side::BOTH
-            .par_iter()
-            .map(|side| {
-                let i = side.index();
-                let ring = rings[i].as_ref()?;
-                if self.columns[i].is_some() && !slow {
-                    return None;
-                }
-                let weights: Vec<_> = feet[i].iter().map(|f| f.weights.clone()).collect();
-                let n = 2 * weights.len();
-                let compliance = ring.compliance(&weights);
-                let factor = DenseCholesky::factor(n, &compliance)
-                    .expect("the compliance of distinct contacts on a held ring is positive definite");
-                Some(factor.inverse())
-            })
-            .collect();
-        for (columns, new) in self.columns.iter_mut().zip(renewed) {
+        let columns = &self.columns;
+        let renewed = |side: Side| {
+            let i = side.index();
+            let ring = rings[i].as_ref()?;
+            if columns[i].is_some() && !slow {
+                return None;
+            }
+            let weights: Vec<_> = feet[i].iter().map(|f| f.weights.clone()).collect();
+            let n = 2 * weights.len();
+            let compliance = ring.compliance(&weights);
+            let factor = DenseCholesky::factor(n, &compliance)
+                .expect("the compliance of distinct contacts on a held ring is positive definite");
+            Some(factor.inverse())
+        };
+        let (inner, outer) = backend.both(|| renewed(Side::Inner), || renewed(Side::Outer));
+        for (columns, new) in self.columns.iter_mut().zip([inner, outer]) {
             if new.is_some() {
                 *columns = new;
             }
@@ -225,6 +223,7 @@ impl StaticSolver {
     /// Elastic fields of both rings under the contact forces and body loads.
     fn fields(
         &mut self,
+        backend: Backend,
         feet: &[Vec<Footprint>; 2],
         forces: &[[f64; 2]],
         loads: &Loads,
@@ -240,7 +239,7 @@ impl StaticSolver {
             }
             Some(ring.solve(load, 1))
         };
-        let (inner, outer) = rayon::join(|| field(Side::Inner), || field(Side::Outer));
+        let (inner, outer) = backend.both(|| field(Side::Inner), || field(Side::Outer));
         self.timing.solve += clock.elapsed().as_secs_f64();
         [inner, outer]
     }

@@ -6,7 +6,7 @@ use contact::Side;
 use dynamics::effects::FrameRotation;
 use dynamics::motion::balls::Speed;
 use dynamics::motion::{Integrator, Motion, MotionSettings, MotionState};
-use dynamics::{Backend, ContactMode, Hold, Model, ShaftDof, StaticSolution};
+use dynamics::{Backend, ContactMode, Hold, Model, Sectors, ShaftDof, StaticSolution};
 use support::rings::{self, Level};
 use support::{Case, equilibrium};
 
@@ -205,17 +205,22 @@ fn a_spinning_ring_rests_in_its_static_expansion() {
     assert!(worst_defect(&states) < 1e-8, "{}", worst_defect(&states));
 }
 
-/// Wrong: the cyclic solver would solve other equations than the sparse one. 60 steps of a load step with both, at speed,
+/// Wrong: the cyclic solver or sectors would solve other equations than the sparse one. 60 steps of a load step with each, at speed,
 /// clamped and in mean motion: forces and displacements agree to 1e-10 of their size; each names itself.
 #[test]
-fn cyclic_and_sparse_steps_agree() {
+fn cyclic_sparse_and_sector_steps_agree() {
     for hold in [Hold::Clamped, Hold::MeanMotion] {
         let (mut model, start) = radial_step(1500.0, hold, false);
         model.effects.push(Box::new(FrameRotation {
             speed: Speed::constant(1000.0),
         }));
         let mut ends = Vec::new();
-        for (backend, name) in [(Backend::Auto, "cyclic"), (Backend::Sparse, "sparse")] {
+        let backends = [
+            (Backend::Auto, "cyclic"),
+            (Backend::Sparse, "sparse"),
+            (Backend::Sector(five_sectors()), "sector"),
+        ];
+        for (backend, name) in backends {
             model.backend = backend;
             let turning = MotionSettings {
                 speed: Speed::constant(1000.0),
@@ -227,13 +232,51 @@ fn cyclic_and_sparse_steps_agree() {
         }
         let size = |f: &[f64; 2]| f[0].hypot(f[1]);
         let largest = ends[0].forces.iter().map(size).fold(0.0, f64::max);
-        for (a, b) in ends[0].forces.iter().zip(&ends[1].forces) {
-            assert!((a[0] - b[0]).hypot(a[1] - b[1]) < 1e-10 * largest, "{a:?} {b:?}");
-        }
-        for (a, b) in ends[0].shaft.iter().zip(&ends[1].shaft) {
-            assert!((a - b).abs() < 1e-10 * ends[0].shaft[2].abs(), "{a} {b}");
+        for end in &ends[1..] {
+            for (a, b) in ends[0].forces.iter().zip(&end.forces) {
+                assert!((a[0] - b[0]).hypot(a[1] - b[1]) < 1e-10 * largest, "{a:?} {b:?}");
+            }
+            for (a, b) in ends[0].shaft.iter().zip(&end.shaft) {
+                assert!((a - b).abs() < 1e-10 * ends[0].shaft[2].abs(), "{a} {b}");
+            }
         }
         assert!(ends.iter().all(|s| s.ledger.relative_defect().abs() < 1e-9));
+    }
+}
+
+fn five_sectors() -> Sectors {
+    Sectors {
+        n_sectors: Some(5),
+        ..Sectors::default()
+    }
+}
+
+/// Wrong: a ring in sectors would have another equilibrium than as a whole.
+#[test]
+fn sectors_have_the_equilibrium_of_the_whole_ring() {
+    for hold in [Hold::Clamped, Hold::MeanMotion] {
+        let case = Case {
+            radial: 500.0,
+            ..Case::axial(1000.0)
+        };
+        let mut model = case.flexible(ContactMode::Patch, SMALL, hold);
+        let whole = equilibrium(&model);
+        model.backend = Backend::Sector(five_sectors());
+        let sectors = equilibrium(&model);
+        for (a, b) in whole.balls.iter().zip(&sectors.balls) {
+            let change = (a.inner.force_n - b.inner.force_n).abs();
+            assert!(change < 1e-9 * whole.balls[0].inner.force_n, "{a:?} {b:?}");
+        }
+        for (a, b) in whole
+            .elastic
+            .iter()
+            .flatten()
+            .zip(sectors.elastic.iter().flatten())
+        {
+            let largest = a.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
+            let error = a.iter().zip(b).fold(0.0, |m: f64, (x, y)| m.max((x - y).abs()));
+            assert!(error < 1e-9 * largest, "{hold:?}: {error:.1e} of {largest:.1e}");
+        }
     }
 }
 

@@ -70,4 +70,26 @@ impl Mesh {
         nodes.dedup();
         nodes
     }
+
+    /// The mesh of some elements alone, without groups. `nodes` are the nodes of these elements, ascending; the part numbers
+    /// them 0.. in this order.
+    ///
+    /// # Panics
+    /// When `nodes` lacks a node of an element.
+    pub fn part(&self, elements: &[usize], nodes: &[usize]) -> Mesh {
+        let local = |node: &usize| {
+            let found = nodes.binary_search(node);
+            found.expect("the nodes of a part are those of its elements")
+        };
+        Mesh {
+            kind: self.kind,
+            nodes: nodes.iter().map(|&node| self.nodes[node]).collect(),
+            connectivity: elements
+                .iter()
+                .flat_map(|&e| self.element(e))
+                .map(local)
+                .collect(),
+            groups: BTreeMap::new(),
+        }
+    }
 }

@@ -66,6 +66,11 @@ impl SparseCholesky {
         Ok(factor)
     }
 
+    /// The analysis and the values of the factor, in the layout of faer's supernodes.
+    pub(crate) fn into_parts(self) -> (Symbolic, Vec<f64>) {
+        (self.symbolic, self.values)
+    }
+
     /// The analysis this factor was made with.
     pub fn symbolic(&self) -> &Symbolic {
         &self.symbolic

@@ -48,6 +48,17 @@ const PROMISING: f64 = 2.0;
 /// # Panics
 /// When an element names a node outside `points`, or `elements.len()` is no multiple of `nodes_per_element`.
 pub fn angular_dissection(points: &[[f64; 3]], elements: &[usize], nodes_per_element: usize) -> Vec<usize> {
+    dissection_within(points, elements, nodes_per_element, &vec![false; points.len()])
+}
+
+/// The same for the nodes that are not `outside`, `[n_nodes]`: those are eliminated later by the caller, and fill is
+/// counted with them.
+pub(crate) fn dissection_within(
+    points: &[[f64; 3]],
+    elements: &[usize],
+    nodes_per_element: usize,
+    outside: &[bool],
+) -> Vec<usize> {
     let n_elements = elements.len().checked_div(nodes_per_element).unwrap_or(0);
     assert_eq!(
         n_elements * nodes_per_element,
@@ -60,8 +71,10 @@ pub fn angular_dissection(points: &[[f64; 3]], elements: &[usize], nodes_per_ele
         elements,
         nodes_per_element,
         centroids: cylindrical_centroids(points, elements, nodes_per_element),
-        order: (0..points.len()).filter(|&node| !touched[node]).collect(),
-        placed: touched.iter().map(|&t| !t).collect(),
+        order: (0..points.len())
+            .filter(|&node| !touched[node] && !outside[node])
+            .collect(),
+        placed: touched.iter().zip(outside).map(|(&t, &out)| !t || out).collect(),
         local: vec![usize::MAX; points.len()],
     };
     dissection.dissect((0..n_elements).collect());

@@ -119,6 +119,24 @@ pub enum SolverError {
         /// Largest harmonic beyond, relative to the largest of the lowest.
         share: f64,
     },
+    /// A ring cannot be cut into that many sectors.
+    #[error(
+        "a ring of {n_elements} elements cannot be cut into {n_sectors} sectors; expected 1 to {n_elements}"
+    )]
+    BadSectors {
+        /// Sectors asked for.
+        n_sectors: usize,
+        /// Elements of the ring.
+        n_elements: usize,
+    },
+    /// Another rank has failed.
+    #[error("on rank {rank}: {message}")]
+    OnRank {
+        /// The rank.
+        rank: usize,
+        /// Its error.
+        message: String,
+    },
     /// The factor does not fit into memory.
     #[error(
         "no memory for a factorisation of {n} rows, which needs {bytes} bytes; use a coarser mesh, more sectors \

@@ -21,15 +21,17 @@
 //! A ring whose sectors are equal is solved harmonic by harmonic ([`cyclic`]), two orders of magnitude cheaper, through
 //! the same trait. A few dense rows more, such as those of a rigid partner, are a [`Bordered`] factor.
 //!
-//! All but the cyclic solver is sequential: rings, sectors and columns are the caller's units of parallel work. The
-//! cyclic solver runs its harmonics in parallel, each in its own place. So the bits of a result cannot depend on the
-//! number of threads.
+//! Any other ring is cut by angle into sectors ([`sector`]), which are factored and solved in parallel and joined exactly.
+//!
+//! All but the cyclic and the sector solver is sequential. Those run their harmonics and sectors in parallel, each in its
+//! own place, and sum in a fixed order. So the bits of a result cannot depend on the number of threads.
 
 pub mod cyclic;
 pub mod dense;
 pub mod dissection;
 pub mod eigenproblem;
 pub mod lanczos;
+pub mod sector;
 
 pub mod bordered;
 mod cholesky;
@@ -57,5 +59,6 @@ pub use lanczos::{LanczosSettings, Searched, lowest_pairs};
 pub use linear_solver::LinearSolver;
 pub use permutation::{expand, restrict_order};
 pub use refinement::{Refined, solve_refined};
+pub use sector::{Sector, SectorCholesky, SectorCost, SectorLayout, SectorSymbolic, default_sectors};
 pub use submatrix::{restrict, restrict_lower};
 pub use symbolic::Symbolic;

@@ -55,9 +55,22 @@ impl Symbolic {
     /// `order` (`order[k]` is the row eliminated in place k, `[n]`; see [`crate::angular_dissection`]). The order is
     /// postordered first, which changes neither fill nor flops. Time O(n_entries + n_supernodal_indices).
     pub fn new(matrix: &CsMat<f64>, order: &[usize]) -> Result<Self, SolverError> {
+        Symbolic::with_tail(matrix, order, 0)
+    }
+
+    /// The same with the last `n_tail` rows of `order` kept last, in any order among themselves. A postorder may put
+    /// columns that do not depend on them behind them; moving these forward again changes no entry of the factor.
+    pub(crate) fn with_tail(
+        matrix: &CsMat<f64>,
+        order: &[usize],
+        n_tail: usize,
+    ) -> Result<Self, SolverError> {
         let n = square_size(matrix)?;
         let inverse = invert(order, n)?;
-        let order = postordered(matrix, order, &inverse);
+        let (head, tail): (Vec<usize>, Vec<usize>) = postordered(matrix, order, &inverse)
+            .into_iter()
+            .partition(|&row| inverse[row] < n - n_tail);
+        let order = [head, tail].concat();
         let inverse = invert(&order, n)?;
         let params = CholeskySymbolicParams {
             supernodal_flop_ratio_threshold: SupernodalThreshold::FORCE_SUPERNODAL,

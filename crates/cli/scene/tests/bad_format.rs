@@ -172,7 +172,7 @@ const FORMAT: [Case; 36] = [
     (
         "backend",
         "backend = \"mumps\"",
-        &["solver.backend is \"mumps\"; valid values are \"auto\", \"cyclic\", \"sparse\""],
+        &["solver.backend is \"mumps\"; valid values are \"auto\", \"cyclic\", \"sparse\", \"sector\""],
     ),
     (
         "tilt_x",

@@ -5,9 +5,12 @@
 //! hold the six rows B of the area-weighted rigid motion, w stays free. Forces of the partner act through the same
 //! functionals. A clamped seat has none: its nodes are held. Cost: K (nnz entries) and the scalar node mass.
 
+use std::sync::Arc;
+
 use contact::quadrature::PressureRule;
 use contact::{RacewaySurface, Side};
 use mesh::Mesh;
+use solver::Bordered;
 use sprs::CsMat;
 
 use super::coordinates::Coordinates;
@@ -20,6 +23,7 @@ use crate::inventory::Inventory;
 use crate::model::{Backend, Hold, RACEWAY_GROUP, RingModel};
 use crate::solution::dot;
 use crate::sparse::{SparseLoad, kronecker, node_product, product};
+use crate::substructures::Substructures;
 use crate::support::mean_motion;
 
 /// A ring's matrices, raceway and mount.
@@ -34,13 +38,23 @@ pub struct RingBody {
     pub mount: Vec<SparseLoad>,
     /// `inner` or `outer`.
     pub name: &'static str,
-    pub(super) stiffness: CsMat<f64>,
-    node_mass: CsMat<f64>,
+    matrices: Matrices,
     /// Node positions, m, `[n_nodes][3]` flat.
     positions: Vec<f64>,
     /// Rayleigh damping: C = damping[0] M + damping[1] K.
     pub(super) damping: [f64; 2],
     effective: Effective,
+}
+
+/// Stiffness and mass of a ring.
+enum Matrices {
+    /// K of the coordinates, and the mass between nodes.
+    Whole {
+        stiffness: CsMat<f64>,
+        node_mass: CsMat<f64>,
+    },
+    /// As sums of sectors.
+    Sectors(Arc<Substructures>),
 }
 
 impl RingBody {
@@ -57,11 +71,19 @@ impl RingBody {
         };
         let mesh = &ring.mesh;
         let (coordinates, mount) = hold(mesh, side, ring);
-        let stiffness =
-            coordinates.reduce_matrix(&fem::assemble_stiffness(mesh, &ring.material).map_err(fem_error)?);
-        let pattern = fem::Pattern::new(mesh).map_err(fem_error)?;
-        let node_mass = fem::assemble_node_mass(&pattern, mesh, &ring.material).map_err(fem_error)?;
-        let effective = Effective::new(ring, side.name(), backend, &coordinates, (&stiffness, &node_mass))?;
+        let (matrices, effective) = if let Backend::Sector(sectors) = backend {
+            let parts = Substructures::new(ring, side.name(), coordinates.free(), sectors)?;
+            let parts = Arc::new(parts);
+            (Matrices::Sectors(parts.clone()), Effective::Sectors(parts))
+        } else {
+            let stiffness =
+                coordinates.reduce_matrix(&fem::assemble_stiffness(mesh, &ring.material).map_err(fem_error)?);
+            let pattern = fem::Pattern::new(mesh).map_err(fem_error)?;
+            let node_mass = fem::assemble_node_mass(&pattern, mesh, &ring.material).map_err(fem_error)?;
+            let whole = (&stiffness, &node_mass);
+            let effective = Effective::new(ring, side.name(), backend, &coordinates, whole)?;
+            (Matrices::Whole { stiffness, node_mass }, effective)
+        };
         Ok(RingBody {
             surface: RacewaySurface::new(mesh, mesh.group(RACEWAY_GROUP), ring.groove),
             rule: PressureRule::new(),
@@ -69,8 +91,7 @@ impl RingBody {
             name: side.name(),
             coordinates,
             mount,
-            stiffness,
-            node_mass,
+            matrices,
             damping,
             effective,
         })
@@ -81,14 +102,22 @@ impl RingBody {
         let [m, c, k] = integrator.effective(dt);
         let (cm, ck) = (m + c * self.damping[0], k + c * self.damping[1]);
         let factored = match &self.effective {
+            Effective::Sectors(parts) => {
+                let inner = parts.factor([cm, ck])?;
+                let [border, corner] = self.border([cm, ck]);
+                match corner.len().isqrt() {
+                    0 => Ok(Factored::without_table(inner)),
+                    m => Bordered::new(inner, &border, m, &corner).map(Factored::without_table),
+                }
+            }
             Effective::Sparse(symbolic, _) => {
-                let mass = self.coordinates.reduce_matrix(&kronecker(&self.node_mass));
-                let effective = &mass.map(|x| cm * x) + &self.stiffness.map(|x| ck * x);
+                let Matrices::Whole { stiffness, node_mass } = &self.matrices else {
+                    unreachable!("only a ring in sectors has no whole matrix")
+                };
+                let mass = self.coordinates.reduce_matrix(&kronecker(node_mass));
+                let effective = &mass.map(|x| cm * x) + &stiffness.map(|x| ck * x);
                 drop(mass);
-                symbolic.factor(&effective).map(|factor| Factored {
-                    solver: Box::new(factor),
-                    table: None,
-                })
+                symbolic.factor(&effective).map(Factored::without_table)
             }
             Effective::Cyclic(sectors) => {
                 let [border, corner] = self.border([cm, ck]);
@@ -109,7 +138,7 @@ impl RingBody {
         for k in n_free..n {
             let mut unit = vec![0.0; n];
             unit[k] = 1.0;
-            let (m, k) = (self.mass_product(&unit), product(&self.stiffness, &unit));
+            let (m, k) = (self.mass_product(&unit), self.stiffness_product(&unit));
             let column: Vec<f64> = m.iter().zip(&k).map(|(m, k)| cm * m + ck * k).collect();
             border.extend_from_slice(&column[..n_free]);
             corner.extend_from_slice(&column[n_free..]);
@@ -136,21 +165,43 @@ impl RingBody {
     pub fn inventory(&self) -> Inventory {
         Inventory {
             dofs: self.coordinates.n(),
-            matrices: [&self.stiffness, &self.node_mass].len(),
+            matrices: match &self.matrices {
+                Matrices::Whole { stiffness, node_mass } => [stiffness, node_mass].len(),
+                Matrices::Sectors(parts) => parts.n_matrices(),
+            },
         }
     }
 
     /// M x of coordinates, `[n]`.
     pub fn mass_product(&self, x: &[f64]) -> Vec<f64> {
-        let nodal = node_product(&self.node_mass, &self.coordinates.expand(x));
+        let nodal = self.nodal_mass_product(&self.coordinates.expand(x));
         self.coordinates.reduce(&nodal)
+    }
+
+    /// K x of coordinates, `[n]`.
+    pub fn stiffness_product(&self, x: &[f64]) -> Vec<f64> {
+        match &self.matrices {
+            Matrices::Whole { stiffness, .. } => product(stiffness, x),
+            Matrices::Sectors(parts) => {
+                let nodal = parts.stiffness_product(&self.coordinates.expand(x));
+                self.coordinates.reduce(&nodal)
+            }
+        }
+    }
+
+    /// M u of all nodes, `[n_dofs]`.
+    fn nodal_mass_product(&self, u: &[f64]) -> Vec<f64> {
+        match &self.matrices {
+            Matrices::Whole { node_mass, .. } => node_product(node_mass, u),
+            Matrices::Sectors(parts) => parts.mass_product(u),
+        }
     }
 
     /// Kinetic and strain energy, J.
     pub fn energies(&self, state: &RingState) -> [f64; 2] {
         [
             0.5 * dot(&state.v, &self.mass_product(&state.v)),
-            0.5 * dot(&state.w, &product(&self.stiffness, &state.w)),
+            0.5 * dot(&state.w, &self.stiffness_product(&state.w)),
         ]
     }
 
@@ -165,13 +216,13 @@ impl RingBody {
             f[0] = speed * speed * x + 2.0 * speed * vy + acceleration * y;
             f[1] = speed * speed * y - 2.0 * speed * vx - acceleration * x;
         }
-        self.coordinates.reduce(&node_product(&self.node_mass, &field))
+        self.coordinates.reduce(&self.nodal_mass_product(&field))
     }
 
     /// Linear momentum, kg m/s, and moment of momentum about the point z = 0 of the mesh's axis, kg m^2/s, at the
     /// undeformed places of the nodes.
     pub fn momentum(&self, state: &RingState) -> [[f64; 3]; 2] {
-        let p = node_product(&self.node_mass, &self.coordinates.expand(&state.v));
+        let p = self.nodal_mass_product(&self.coordinates.expand(&state.v));
         let mut sums = [[0.0; 3]; 2];
         for (x, p) in self.positions.chunks_exact(3).zip(p.chunks_exact(3)) {
             for i in 0..3 {
@@ -193,7 +244,7 @@ impl RingBody {
             loss += am * dot(&change, &self.mass_product(&v));
         }
         if ak != 0.0 {
-            loss += ak * dot(&change, &product(&self.stiffness, &v));
+            loss += ak * dot(&change, &self.stiffness_product(&v));
         }
         loss
     }
@@ -209,7 +260,7 @@ impl RingBody {
         let v = weighted(0.5, &old.v, &new.v);
         let gain = difference(&old.v, &new.v);
         dot(&change, &self.mass_product(&a)) - dot(&v, &self.mass_product(&gain))
-            + (0.5 - integrator.alpha_f) * dot(&change, &product(&self.stiffness, &change))
+            + (0.5 - integrator.alpha_f) * dot(&change, &self.stiffness_product(&change))
     }
 }
 

@@ -1,8 +1,10 @@
 //! The effective matrix of a moving ring, S = c_M M + c_K K, factored: harmonic by harmonic when the ring is rotationally
-//! periodic, else as one sparse matrix.
+//! periodic, else as one sparse matrix, or in sectors where the scene says so.
 //!
 //! Both give the same solution to round-off. Of 65 k dofs, a periodic ring factors 300 times and solves 40 times faster
 //! ([`solver::cyclic`]). The clamped bore that follows the shaft is a border in both.
+
+use std::sync::Arc;
 
 use mesh::{Mesh, PERIODIC_TOLERANCE, find_periodicity};
 use solver::cyclic::{CyclicBordered, CyclicMatrix, CyclicRing, ResponseTable};
@@ -14,6 +16,7 @@ use crate::error::DynamicsError;
 use crate::model::{Backend, RACEWAY_GROUP, RingModel};
 use crate::ring::elimination_order;
 use crate::sparse::kronecker;
+use crate::substructures::Substructures;
 
 /// Sectors from which on harmonics pay: a few wide ones cost more than the ring as a whole.
 const LEAST_SECTORS: usize = 12;
@@ -24,6 +27,8 @@ pub enum Effective {
     Sparse(Box<Symbolic>, String),
     /// Sectors of a periodic ring, without what is held.
     Cyclic(Box<Sectors>),
+    /// The ring cut by angle, which solves itself.
+    Sectors(Arc<Substructures>),
 }
 
 /// One sector of a held ring.
@@ -75,6 +80,7 @@ impl Effective {
         match self {
             Effective::Sparse(..) => "sparse",
             Effective::Cyclic(_) => "cyclic",
+            Effective::Sectors(_) => "sector",
         }
     }
 
@@ -82,7 +88,18 @@ impl Effective {
     pub fn note(&self) -> String {
         match self {
             Effective::Sparse(_, why) => format!("sparse ({why})"),
+            Effective::Sectors(parts) => format!("sector ({})", parts.note()),
             Effective::Cyclic(sectors) => format!("cyclic ({} equal sectors)", sectors.ring.n_sectors()),
+        }
+    }
+}
+
+impl Factored {
+    /// A factor without a table: contacts need columns.
+    pub fn without_table(factor: impl LinearSolver + 'static) -> Factored {
+        Factored {
+            solver: Box::new(factor),
+            table: None,
         }
     }
 }

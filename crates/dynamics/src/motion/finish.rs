@@ -116,7 +116,7 @@ impl Motion<'_> {
             (Some(body), Some(ring)) => body.energies(ring),
             _ => [0.0; 2],
         };
-        let (inner, outer) = rayon::join(|| energies(0), || energies(1));
+        let (inner, outer) = self.model.backend.both(|| energies(0), || energies(1));
         let kinetic = |mass: f64, v: &f64| 0.5 * mass * v * v;
         let mass = self.model.ball_mass();
         let balls: f64 = state

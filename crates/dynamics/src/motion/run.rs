@@ -46,7 +46,7 @@ impl<'a> Motion<'a> {
                 .map(|ring| RingBody::new(side, ring, settings.rayleigh, model.backend))
                 .transpose()
         };
-        let (inner, outer) = rayon::join(|| build(Side::Inner), || build(Side::Outer));
+        let (inner, outer) = model.backend.both(|| build(Side::Inner), || build(Side::Outer));
         let kinematics = Kinematics::new(&model.geometry, settings.slip);
         let rungs = (0..=settings.ladder.halvings).map(|_| OnceLock::new()).collect();
         let motion = Motion {
@@ -73,7 +73,10 @@ impl<'a> Motion<'a> {
                 .map(|b| RingFactor::new(b, self.settings.integrator, dt))
                 .transpose()
         };
-        let (inner, outer) = rayon::join(|| build(&self.rings[0]), || build(&self.rings[1]));
+        let (inner, outer) = self
+            .model
+            .backend
+            .both(|| build(&self.rings[0]), || build(&self.rings[1]));
         let rung = [inner?, outer?];
         // A second thread may have been faster: it made the same bits.
         Ok(cell.get_or_init(|| rung))

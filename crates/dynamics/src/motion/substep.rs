@@ -157,7 +157,10 @@ impl Motion<'_> {
                 inertia,
             })
         };
-        let (inner, outer) = rayon::join(|| prepare(Side::Inner), || prepare(Side::Outer));
+        let (inner, outer) = self
+            .model
+            .backend
+            .both(|| prepare(Side::Inner), || prepare(Side::Outer));
         Ok([inner, outer])
     }
 
@@ -255,7 +258,10 @@ impl Motion<'_> {
                     .increment(&ring.step, &forces, &solution.mounts[side.index()]),
             )
         };
-        let (inner, outer) = rayon::join(|| increment(Side::Inner), || increment(Side::Outer));
+        let (inner, outer) = self
+            .model
+            .backend
+            .both(|| increment(Side::Inner), || increment(Side::Outer));
         [inner, outer]
     }
 

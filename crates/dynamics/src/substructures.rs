@@ -1,0 +1,221 @@
+//! A ring as a sum of sectors: each sector's own stiffness and mass, the products with the sums, and their factor.
+//!
+//! Where several ranks run, each assembles, holds and factors its own sectors only; vectors are whole on all ranks. The
+//! whole matrix exists nowhere. Sums over sectors run in the order of the sectors, so results have the same bits
+//! on any number of threads and ranks. Cost of a product: one gather of the nodes of all sectors.
+
+use std::borrow::Cow;
+use std::ops::Range;
+
+use comm::Communicator;
+use rayon::prelude::*;
+use solver::{Sector, SectorCholesky, SectorLayout, SectorSymbolic, default_sectors};
+use sprs::CsMat;
+
+use crate::error::DynamicsError;
+use crate::model::{RingModel, Sectors};
+use crate::sparse::{node_product, product};
+
+/// A ring cut into sectors.
+pub struct Substructures {
+    name: &'static str,
+    comm: Communicator,
+    n_dofs: usize,
+    symbolic: SectorSymbolic,
+    /// Matrices of the sectors that this rank owns.
+    matrices: Vec<Matrices>,
+}
+
+/// A sector's own matrices.
+struct Matrices {
+    stiffness: CsMat<f64>,
+    /// Mass between nodes, kg.
+    node_mass: CsMat<f64>,
+}
+
+impl Substructures {
+    /// Cuts the ring, assembles the sectors owned, and analyses them for rows of the dofs `free`, ascending. Collective.
+    pub fn new(
+        ring: &RingModel,
+        name: &'static str,
+        free: &[usize],
+        sectors: Sectors,
+    ) -> Result<Substructures, DynamicsError> {
+        Substructures::build(ring, name, free, sectors, |sector| assemble(ring, name, sector))
+    }
+
+    /// The same with zeros for numbers: enough for a forecast.
+    pub fn pattern(
+        ring: &RingModel,
+        name: &'static str,
+        free: &[usize],
+        sectors: Sectors,
+    ) -> Result<Substructures, DynamicsError> {
+        Substructures::build(ring, name, free, sectors, |sector| pattern(ring, name, sector))
+    }
+
+    fn build(
+        ring: &RingModel,
+        name: &'static str,
+        free: &[usize],
+        Sectors { n_sectors, comm }: Sectors,
+        matrices: impl Fn(&Sector) -> Result<Matrices, DynamicsError> + Sync,
+    ) -> Result<Substructures, DynamicsError> {
+        let mesh = &ring.mesh;
+        let solver_error = |source| DynamicsError::Solver { side: name, source };
+        let n_sectors = n_sectors.unwrap_or_else(|| default_sectors(mesh.n_dofs()));
+        let per_element = mesh.kind.n_nodes();
+        let layout = SectorLayout::new(&mesh.nodes, &mesh.connectivity, per_element, free, n_sectors)
+            .map_err(solver_error)?;
+        let owned = comm.share(n_sectors);
+        let made: Result<Vec<Matrices>, DynamicsError> = layout.sectors()[owned.clone()]
+            .par_iter()
+            .map(&matrices)
+            .collect();
+        let elsewhere = |rank, message| DynamicsError::OnRank { rank, message };
+        let matrices = comm.agree(made, elsewhere)?;
+        let cells = (&mesh.nodes[..], &mesh.connectivity[..], per_element);
+        let of = |s: usize| Cow::Borrowed(&matrices[s - owned.start].stiffness);
+        let symbolic = SectorSymbolic::new(layout, comm, cells, of).map_err(solver_error)?;
+        Ok(Substructures {
+            name,
+            comm,
+            n_dofs: mesh.n_dofs(),
+            symbolic,
+            matrices,
+        })
+    }
+
+    /// Sectors, their order and costs.
+    pub fn symbolic(&self) -> &SectorSymbolic {
+        &self.symbolic
+    }
+
+    /// Number of matrices this rank holds.
+    pub fn n_matrices(&self) -> usize {
+        2 * self.matrices.len()
+    }
+
+    /// Stored entries of the stiffness matrices of this rank.
+    pub fn n_entries(&self) -> usize {
+        self.matrices.iter().map(|m| m.stiffness.nnz()).sum()
+    }
+
+    /// K u of nodal vectors, N, `[n_dofs]`. Collective.
+    pub fn stiffness_product(&self, u: &[f64]) -> Vec<f64> {
+        self.sum(u, |matrices, u| product(&matrices.stiffness, u))
+    }
+
+    /// M u of nodal vectors, kg times u, `[n_dofs]`. Collective.
+    pub fn mass_product(&self, u: &[f64]) -> Vec<f64> {
+        self.sum(u, |matrices, u| node_product(&matrices.node_mass, u))
+    }
+
+    /// Factor of `mass` M + `stiffness` K of the free dofs. Collective.
+    pub fn factor(&self, [mass, stiffness]: [f64; 2]) -> Result<SectorCholesky, DynamicsError> {
+        let first = self.owned().start;
+        let of = |s: usize| Cow::Owned(self.matrices[s - first].combined([mass, stiffness]));
+        let factor = self.symbolic.factor(of);
+        factor.map_err(|source| DynamicsError::Solver {
+            side: self.name,
+            source,
+        })
+    }
+
+    /// What a log says of the cut: sectors, their sizes, and where they are.
+    pub fn note(&self) -> String {
+        let costs = self.symbolic.costs();
+        let range = |of: &dyn Fn(usize) -> usize| {
+            let values = (0..costs.len()).map(of);
+            (values.clone().min().unwrap_or(0), values.max().unwrap_or(0))
+        };
+        let elements = range(&|i| costs[i].n_elements);
+        let bytes = range(&|i| costs[i].factor_bytes);
+        let n = self.symbolic.layout().sectors().len();
+        let whose = match self.comm.size() {
+            1 => String::new(),
+            ranks => format!(" on {ranks} ranks, of which this one has {}", costs.len()),
+        };
+        format!(
+            "{n} sectors{whose}, {} to {} elements and {:.1} to {:.1} MB of factor each, {:.1} MB of interface",
+            elements.0,
+            elements.1,
+            bytes.0 as f64 / 1e6,
+            bytes.1 as f64 / 1e6,
+            self.symbolic.interface_bytes() as f64 / 1e6
+        )
+    }
+
+    fn owned(&self) -> Range<usize> {
+        self.symbolic.owned()
+    }
+
+    /// Sum over all sectors, in their order, of `of(matrices, u of the sector)`.
+    fn sum(&self, u: &[f64], of: impl Fn(&Matrices, &[f64]) -> Vec<f64> + Sync) -> Vec<f64> {
+        let sectors = self.symbolic.layout().sectors();
+        let mine = &sectors[self.owned()];
+        let parts: Vec<Vec<f64>> = mine
+            .par_iter()
+            .zip(&self.matrices)
+            .map(|(sector, matrices)| {
+                let nodes = sector.nodes.iter().flat_map(|&n| 3 * n..3 * n + 3);
+                let own: Vec<f64> = nodes.map(|dof| u[dof]).collect();
+                of(matrices, &own)
+            })
+            .collect();
+        let length = |range: Range<usize>| sectors[range].iter().map(|s| 3 * s.nodes.len()).sum();
+        let shares = self.comm.shares(sectors.len());
+        let lengths: Vec<usize> = shares.into_iter().map(length).collect();
+        let all = self.comm.all_gather(parts.concat(), &lengths);
+        let mut sum = vec![0.0; self.n_dofs];
+        let mut values = all.chunks_exact(3);
+        for sector in sectors {
+            for (&node, value) in sector.nodes.iter().zip(values.by_ref()) {
+                (0..3).for_each(|c| sum[3 * node + c] += value[c]);
+            }
+        }
+        sum
+    }
+}
+
+impl Matrices {
+    /// c_M M + c_K K. The entries of M between two nodes are the diagonal of their block.
+    fn combined(&self, [mass, stiffness]: [f64; 2]) -> CsMat<f64> {
+        let mut matrix = self.stiffness.map(|k| stiffness * k);
+        if mass == 0.0 {
+            return matrix;
+        }
+        let starts: Vec<usize> = matrix.indptr().raw_storage().to_vec();
+        let values = matrix.data_mut();
+        for (node, row) in self.node_mass.outer_iterator().enumerate() {
+            for c in 0..3 {
+                let start = starts[3 * node + c];
+                for (k, m) in row.data().iter().enumerate() {
+                    values[start + 3 * k + c] += mass * m;
+                }
+            }
+        }
+        matrix
+    }
+}
+
+fn assemble(ring: &RingModel, name: &'static str, sector: &Sector) -> Result<Matrices, DynamicsError> {
+    let part = ring.mesh.part(&sector.elements, &sector.nodes);
+    let assemble = || -> Result<Matrices, fem::FemError> {
+        let pattern = fem::Pattern::new(&part)?;
+        Ok(Matrices {
+            stiffness: fem::assemble_stiffness(&part, &ring.material)?,
+            node_mass: fem::assemble_node_mass(&pattern, &part, &ring.material)?,
+        })
+    };
+    assemble().map_err(|source| DynamicsError::Fem { side: name, source })
+}
+
+fn pattern(ring: &RingModel, name: &'static str, sector: &Sector) -> Result<Matrices, DynamicsError> {
+    let part = ring.mesh.part(&sector.elements, &sector.nodes);
+    let pattern = fem::Pattern::new(&part).map_err(|source| DynamicsError::Fem { side: name, source })?;
+    Ok(Matrices {
+        stiffness: pattern.matrix(vec![0.0; pattern.n_values()]),
+        node_mass: CsMat::zero((0, 0)),
+    })
+}

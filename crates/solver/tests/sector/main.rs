@@ -1,0 +1,7 @@
+//! A ring in sectors against the ring as a whole and against dense solutions.
+
+#[path = "../common/mod.rs"]
+mod common;
+mod rings;
+mod solve;
+mod wrong;
