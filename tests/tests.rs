@@ -12,6 +12,7 @@ mod motion;
 mod prices;
 mod probes;
 mod quasi_static;
+mod ranks;
 mod readers;
 mod results;
 mod resume;

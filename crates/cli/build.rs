@@ -17,6 +17,7 @@ use mesh::Torus;
 
 use crate::failure::Failure;
 use crate::motion::speed;
+use crate::results::probes::Probes;
 use crate::scene::{self, Scene, Scheduled};
 
 /// Deviation of raceway nodes from the scene's torus that is taken for round-off of a file, over the groove
@@ -38,6 +39,18 @@ pub fn build_model(scene: &Scene) -> Result<(Model, NodeTags), Failure> {
     let (outer, outer_tags) = rings.1?.unzip();
     let model = model_with_rings(scene, [inner.map(Arc::new), outer.map(Arc::new)])?;
     Ok((model, [inner_tags, outer_tags]))
+}
+
+/// The model of a scene (a point of `scene` when that is a sweep), and its probes, if a last test passes.
+pub fn build_with_probes(
+    point: &Scene,
+    scene: &Scene,
+    test: impl FnOnce(&Model) -> Result<(), Failure>,
+) -> Result<(Model, Option<Probes>), Failure> {
+    let (model, tags) = build_model(point)?;
+    let probes = Probes::new(scene, &model, &tags)?;
+    test(&model)?;
+    Ok((model, probes))
 }
 
 /// How balls and cage roll; None when the scene has no speed.

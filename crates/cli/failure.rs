@@ -1,7 +1,9 @@
 //! How a command ends when it does not end well: the exit code and the message.
 
-use std::process::ExitCode;
+use std::fmt;
 
+use anyhow::anyhow;
+use comm::Communicator;
 use contact::ContactError;
 use dynamics::DynamicsError;
 use solver::SolverError;
@@ -26,12 +28,12 @@ pub enum Failure {
 
 impl Failure {
     /// Exit code of the process.
-    pub fn code(&self) -> ExitCode {
-        ExitCode::from(match self {
+    pub fn number(&self) -> u8 {
+        match self {
             Failure::User(_) => USER,
             Failure::Numerical(_) => NUMERICAL,
             Failure::Stopped(_) => STOPPED,
-        })
+        }
     }
 
     /// The message with its causes, on one line.
@@ -90,6 +92,36 @@ impl Failure {
             Failure::Numerical(e) => Failure::Numerical(e.context(text)),
             Failure::Stopped(e) => Failure::Stopped(e.context(text)),
         }
+    }
+}
+
+/// The result of all ranks: one that fails is a failure of all. To be called where a rank may fail alone, such as with its files,
+/// before ranks meet again.
+pub fn agree<T>(result: Result<T, Failure>) -> Result<T, Failure> {
+    let result = result.map_err(Coded);
+    Communicator::world()
+        .agree(result, Coded::elsewhere)
+        .map_err(|coded| coded.0)
+}
+
+/// A failure as ranks tell each other of it: its exit code, then its text.
+struct Coded(Failure);
+
+impl fmt::Display for Coded {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} {}", self.0.number(), self.0.text())
+    }
+}
+
+impl Coded {
+    fn elsewhere(rank: usize, message: String) -> Coded {
+        let (code, text) = message.split_once(' ').unwrap_or(("", &message));
+        let error = anyhow!("on rank {rank}: {text}");
+        Coded(match code.parse() {
+            Ok(NUMERICAL) => Failure::Numerical(error),
+            Ok(STOPPED) => Failure::Stopped(error),
+            _ => Failure::User(error),
+        })
     }
 }
 

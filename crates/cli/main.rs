@@ -32,6 +32,7 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
+use comm::{Communicator, End, Environment};
 use mesh::Overwrite;
 
 use crate::cycles::Cycles;
@@ -116,17 +117,47 @@ enum Command {
 
 fn main() -> ExitCode {
     let arguments = Arguments::parse();
-    match execute(arguments) {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(failure) => {
+    let environment = match Environment::start() {
+        Ok(environment) => environment,
+        Err(error) => {
+            let failure = Failure::from(error);
             print::note(format_args!("{}: {}", failure.kind(), failure.text()));
-            failure.code()
+            return ExitCode::from(failure.number());
         }
+    };
+    let failure = execute(arguments).err();
+    if let Some(failure) = &failure {
+        print::note(format_args!("{}: {}", failure.kind(), failure.text()));
     }
+    let end = environment.finish(failure.is_none());
+    let Some(failure) = failure else {
+        return ExitCode::SUCCESS;
+    };
+    if end == End::Alone {
+        let rank = Communicator::world().rank();
+        if rank > 0 {
+            let (kind, text) = (failure.kind(), failure.text());
+            print::from_any_rank(format_args!("{kind}: on rank {rank}: {text}"));
+        }
+        environment.abort(failure.number());
+    }
+    ExitCode::from(failure.number())
+}
+
+/// Several ranks only do runs together.
+fn require_one_task(command: &Command) -> Result<(), Failure> {
+    let ranks = Communicator::world().size();
+    let runs = matches!(command, Command::Run { .. } | Command::Resume(_));
+    if ranks == 1 || runs {
+        return Ok(());
+    }
+    Err(Failure::User(anyhow::anyhow!(
+        "the launcher started {ranks} tasks, but only raceway run and raceway resume are shared by several; start one task"
+    )))
 }
 
 fn execute(arguments: Arguments) -> Result<(), Failure> {
-    comm::refuse_parallel_launch()?;
+    require_one_task(&arguments.command)?;
     if let Some(threads) = arguments.threads {
         if threads == 0 {
             return Err(Failure::User(anyhow::anyhow!(
@@ -136,6 +167,11 @@ fn execute(arguments: Arguments) -> Result<(), Failure> {
         rayon::ThreadPoolBuilder::new()
             .num_threads(threads)
             .build_global()?;
+    }
+    let ranks = Communicator::world().size();
+    if ranks > 1 {
+        let threads = rayon::current_num_threads();
+        print::note(format_args!("{ranks} ranks, {threads} threads on rank 0"));
     }
     match arguments.command {
         Command::Run {

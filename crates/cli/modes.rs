@@ -3,6 +3,8 @@
 use std::path::Path;
 use std::time::Instant;
 
+use anyhow::anyhow;
+use comm::Communicator;
 use contact::Side;
 use dynamics::modes::{basis_sizes, bearing_modes, ring_modes};
 use dynamics::{ModeSet, Model, ModesSettings, RingSupport, StaticSolution, StaticSolver};
@@ -28,6 +30,13 @@ pub fn run(
     limits: &Limits,
     start: Instant,
 ) -> Result<(), Failure> {
+    let ranks = Communicator::world().size();
+    if ranks > 1 {
+        return Err(Failure::User(anyhow!(
+            "the search for modes runs as one process, but the launcher started {ranks} tasks; start one and give it the \
+             cores as threads"
+        )));
+    }
     let mut progress = Progress::new(wanted.bodies.len() as u64);
     progress.stage("reading meshes");
     let (model, _) = build_model(scene)?;

@@ -11,8 +11,8 @@ use dynamics::motion::contacts::{ContactDamping, ContactScheme};
 use dynamics::motion::{Integrator, Ladder, Motion, MotionSettings, MotionState};
 use dynamics::{DynamicsError, Model, RingMemory, Timing};
 
-use crate::build::build_model;
-use crate::failure::Failure;
+use crate::build::build_with_probes;
+use crate::failure::{Failure, agree};
 use crate::options::Limits;
 use crate::print;
 use crate::progress::Progress;
@@ -20,7 +20,6 @@ use crate::results::console;
 use crate::results::disk::Forecast;
 use crate::results::files::Files;
 use crate::results::motion_fields::Recorded;
-use crate::results::probes::Probes;
 use crate::results::shown::Shown;
 use crate::results::snapshot::Snapshot;
 use crate::results::summary::{Findings, Summary};
@@ -42,9 +41,9 @@ pub fn run(
 ) -> Result<(), Failure> {
     let progress = Progress::new(dynamic.n_steps);
     progress.stage("reading meshes");
-    let (model, tags) = build_model(scene)?;
-    let probes = Probes::new(scene, &model, &tags)?;
-    Forecast::new(scene, &model, 0).require_space(dir, limits.ignore_disk_space)?;
+    let (model, probes) = agree(build_with_probes(scene, scene, |model| {
+        Forecast::new(scene, model, 0).require_space(dir, limits.ignore_disk_space)
+    }))?;
     let read = start.elapsed().as_secs_f64();
     let settled = settle(&model, dynamic, &progress)?;
     progress.stage("factoring the effective matrices");
@@ -52,7 +51,14 @@ pub fn run(
     say_solvers(&motion, &progress);
     let state = settled.first_state(&motion, dynamic)?;
     let first = Snapshot::of_motion(&motion, &state);
-    let files = Files::create(scene, &model, dir, &first, probes, &settled.warnings())?;
+    let files = agree(Files::create(
+        scene,
+        &model,
+        dir,
+        &first,
+        probes,
+        &settled.warnings(),
+    ))?;
     let mut march = March {
         scene,
         dynamic,
@@ -64,8 +70,8 @@ pub fn run(
         last_file: None,
         dir,
     };
-    march.write_tables()?;
-    march.write_fields()?;
+    let written = march.write_tables().and_then(|()| march.write_fields());
+    agree(written)?;
     let costs = StartCosts {
         read,
         forecast: settled.forecast,
@@ -83,27 +89,27 @@ pub fn resume(
     limits: &Limits,
     start: Instant,
 ) -> Result<(), Failure> {
-    let dir = stored.lock.dir().to_path_buf();
+    let dir = stored.dir.clone();
     let mut progress = Progress::new(dynamic.n_steps);
     progress.start_at(stored.step);
     progress.stage("reading meshes");
-    let (model, tags) = build_model(scene)?;
-    let probes = Probes::new(scene, &model, &tags)?;
-    Forecast::new(scene, &model, stored.step).require_space(&dir, limits.ignore_disk_space)?;
+    let (model, probes) = agree(build_with_probes(scene, scene, |model| {
+        Forecast::new(scene, model, stored.step).require_space(&dir, limits.ignore_disk_space)
+    }))?;
     let read = start.elapsed().as_secs_f64();
     progress.stage("factoring the effective matrices");
     let motion = Motion::new(&model, settings(scene, dynamic)).map_err(Failure::solving)?;
     say_solvers(&motion, &progress);
-    let (state, newton) = stored.state(&motion)?;
+    let (state, newton) = agree(stored.state(&motion))?;
     let (first, warnings) = (Snapshot::of_motion(&motion, &state), stored.warnings);
-    let files = Files::resume(
+    let files = agree(Files::resume(
         scene,
         &model,
         stored.lock,
         &first,
         probes,
         (state.step, &warnings),
-    )?;
+    ))?;
     let march = March {
         scene,
         dynamic,
@@ -176,7 +182,8 @@ impl March<'_> {
             newton: costs.timing.newton + seconds,
             ..costs.timing
         };
-        let costs = self.files.finish(costs.read, costs.forecast, spent, costs.start);
+        let finished = self.files.finish(costs.read, costs.forecast, spent, costs.start);
+        let costs = agree(finished);
         // A run that failed says why, not what its failure did to the files; one that stopped must have its step.
         let costs = match (costs, &ended) {
             (Err(_), Err(Failure::User(_) | Failure::Numerical(_))) => return ended,
@@ -234,10 +241,11 @@ impl March<'_> {
                 }
                 Err(error) => return Err(self.failed(error)),
             }
-            self.write_tables()?;
+            let mut written = self.write_tables();
             if n == n_steps || n.is_multiple_of(self.dynamic.output_every) {
-                self.write_fields()?;
+                written = written.and_then(|()| self.write_fields());
             }
+            agree(written)?;
             progress.advance();
         }
         Ok(())
@@ -245,7 +253,7 @@ impl March<'_> {
 
     /// Saves the state and says that the run can be resumed.
     fn stopped(&mut self, reason: &str) -> Failure {
-        if let Err(error) = self.write_fields() {
+        if let Err(error) = agree(self.write_fields()) {
             return error.context(format!("{reason}, but the state could not be saved"));
         }
         let n = self.state.step;

@@ -3,6 +3,7 @@
 use std::io::IsTerminal;
 use std::time::{Duration, Instant};
 
+use comm::Communicator;
 use indicatif::{ProgressBar, ProgressStyle};
 
 use crate::print;
@@ -18,7 +19,7 @@ pub struct Progress {
 impl Progress {
     /// Progress over `total` equal parts.
     pub fn new(total: u64) -> Progress {
-        let bar = std::io::stderr().is_terminal().then(|| {
+        let bar = (Communicator::world().is_root() && std::io::stderr().is_terminal()).then(|| {
             let bar = ProgressBar::new(total);
             let style = ProgressStyle::with_template("{bar:30} {pos}/{len} {elapsed} {msg}");
             bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));

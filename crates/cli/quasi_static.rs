@@ -8,14 +8,13 @@ use contact::Side;
 use dynamics::motion::balls::{Rolling, Speed};
 use dynamics::{Model, QuasiStatic, StaticSolution};
 
-use crate::build::{build_model, rolling};
-use crate::failure::Failure;
+use crate::build::{build_with_probes, rolling};
+use crate::failure::{Failure, agree};
 use crate::options::Limits;
 use crate::print;
 use crate::progress::Progress;
 use crate::results::disk::Forecast;
 use crate::results::files::Files;
-use crate::results::probes::Probes;
 use crate::results::shown::Shown;
 use crate::results::snapshot::Snapshot;
 use crate::results::summary::{Findings, Summary};
@@ -35,9 +34,9 @@ pub fn run(
 ) -> Result<(), Failure> {
     let mut progress = Progress::new(1 + settings.n_steps);
     progress.stage("reading meshes");
-    let (model, tags) = build_model(scene)?;
-    let probes = Probes::new(scene, &model, &tags)?;
-    Forecast::new(scene, &model, 0).require_space(dir, limits.ignore_disk_space)?;
+    let (model, probes) = agree(build_with_probes(scene, scene, |model| {
+        Forecast::new(scene, model, 0).require_space(dir, limits.ignore_disk_space)
+    }))?;
     let read = start.elapsed().as_secs_f64();
     progress.stage("factoring the stiffness of the rings");
     let rolling = rolling(scene);
@@ -47,14 +46,15 @@ pub fn run(
     progress.stage("first equilibrium");
     let first = bearing.step(0, None).map_err(Failure::solving)?;
     // The first solution makes the folder: a scene that has none leaves no files.
-    let mut files = Files::create(
+    let files = Files::create(
         scene,
         &model,
         dir,
         &Snapshot::of_equilibrium(&first, rolling.as_ref()),
         probes,
         &first.warnings,
-    )?;
+    );
+    let mut files = agree(files)?;
     let mut series = Series {
         scene,
         settings,
@@ -73,7 +73,7 @@ pub fn run(
     let findings = series.findings(&ended, bearing.solver.costs.seconds());
     let snapshot = findings.last.clone();
     let forecast = Side::BOTH.map(|side| bearing.solver.ring(side).map(|r| r.memory));
-    let costs = files.finish(read, forecast, bearing.solver.timing, start)?;
+    let costs = agree(files.finish(read, forecast, bearing.solver.timing, start))?;
     let summary = Summary::new(scene, &model, findings, &costs);
     summary.write(dir)?;
     ended?;
@@ -113,7 +113,7 @@ impl Series<'_> {
         progress: &mut Progress,
         dir: &Path,
     ) -> Result<(), Failure> {
-        self.write(bearing, 0)?;
+        agree(self.write(bearing, 0))?;
         progress.advance();
         let n_steps = self.settings.n_steps;
         for n in 1..=n_steps {
@@ -134,7 +134,7 @@ impl Series<'_> {
                     return Err(Failure::solving(error).context(place));
                 }
             }
-            self.write(bearing, n)?;
+            agree(self.write(bearing, n))?;
             progress.advance();
         }
         Ok(())

@@ -11,9 +11,10 @@ use std::time::Instant;
 use anyhow::{Context, anyhow};
 use checkpoint::{FolderLock, StateArray, StepRecord, newest_step, read_about, read_step, step_file_name};
 use clap::Args;
+use comm::Communicator;
 use dynamics::motion::{Motion, MotionState};
 
-use crate::failure::Failure;
+use crate::failure::{Failure, agree};
 use crate::motion;
 use crate::options::Limits;
 use crate::print;
@@ -21,6 +22,7 @@ use crate::results::about::{OVERRIDES, SCENE_FILE, WARNINGS, require_same_meshes
 use crate::results::files::note_dead_owner;
 use crate::results::state_arrays;
 use crate::results::summary::SUMMARY_FILE;
+use crate::run::note_unshared;
 use crate::scene::{Analysis, Dynamic, MeshFiles, Scene, difference};
 
 /// Keys and tables of a scene that a resumed run may change: none of them touches the motion.
@@ -52,8 +54,10 @@ pub struct Request {
 
 /// A step to go on from.
 pub struct Stored {
-    /// The lock of its folder.
-    pub lock: FolderLock,
+    /// The lock of its folder, on rank 0.
+    pub lock: Option<FolderLock>,
+    /// The folder.
+    pub dir: PathBuf,
     /// Its number.
     pub step: u64,
     /// Warnings of the start of the run.
@@ -73,7 +77,7 @@ impl Stored {
 
     /// The state, and the number of Newton's iterations so far.
     pub fn state(&self, motion: &Motion<'_>) -> Result<(MotionState, u64), Failure> {
-        let at = || format!("step {} of {}", self.step, self.lock.dir().display());
+        let at = || format!("step {} of {}", self.step, self.dir.display());
         let mut arrays = self.arrays.clone();
         let newton = match arrays.remove(NEWTON) {
             Some(StateArray::Integer(count)) if count.len() == 1 => count[0].max(0) as u64,
@@ -101,9 +105,9 @@ pub fn resume(request: &Request) -> Result<(), Failure> {
     if !dir.is_dir() {
         return Err(anyhow!("{} is no folder; expected the results of a run", dir.display()).into());
     }
-    let lock = FolderLock::acquire(dir)?;
-    note_dead_owner(&lock);
-    let record = choose_step(dir, request.step)?;
+    let lock = agree(acquire(dir))?;
+    // All ranks read before the first one writes: what follows may fail on one of them, and ends with an agreement.
+    let record = agree(choose_step(dir, request.step))?;
     let about = read_about(&dir.join(step_file_name(record.step)))?;
     note_version(&about);
     let scene = scene_of(request, &record, &about)?;
@@ -133,9 +137,11 @@ pub fn resume(request: &Request) -> Result<(), Failure> {
         dir.display(),
         record.time
     ));
+    note_unshared(&scene);
     let warnings = about.get(WARNINGS).map_or(Vec::new(), |text| lines(text));
     let stored = Stored {
         lock,
+        dir: dir.clone(),
         step,
         warnings,
         time: record.time,
@@ -144,6 +150,16 @@ pub fn resume(request: &Request) -> Result<(), Failure> {
     motion::resume(&scene, &dynamic, stored, &request.limits, start)?;
     print::line(format_args!("results: {}", dir.display()));
     Ok(())
+}
+
+/// The lock of the folder, which rank 0 holds for all.
+fn acquire(dir: &Path) -> Result<Option<FolderLock>, Failure> {
+    if !Communicator::world().is_root() {
+        return Ok(None);
+    }
+    let lock = FolderLock::acquire(dir)?;
+    note_dead_owner(&lock);
+    Ok(Some(lock))
 }
 
 /// The step asked for, or the newest whole one, with a warning for every newer one that is damaged.

@@ -5,24 +5,25 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use anyhow::anyhow;
+use comm::Communicator;
 use contact::Side;
 use dynamics::{DynamicsError, StaticSolution, StaticSolver};
 
-use crate::build::{build_model, model_with_rings, rolling};
-use crate::failure::Failure;
+use crate::build::{build_with_probes, model_with_rings, rolling};
+use crate::failure::{Failure, agree};
 use crate::modes;
 use crate::motion;
 use crate::options::{Limits, Part};
+use crate::print;
 use crate::progress::Progress;
 use crate::quasi_static;
 use crate::results::disk::Forecast;
 use crate::results::files::Files;
-use crate::results::probes::Probes;
 use crate::results::shown::Shown;
 use crate::results::snapshot::Snapshot;
 use crate::results::summary::{Findings, Summary};
 use crate::results::{console, fields, folder};
-use crate::scene::{Analysis, Scene};
+use crate::scene::{Analysis, Backend, Scene};
 
 /// One load case of a run: the swept value (None for a static scene) and its scene.
 type Point = (Option<f64>, Scene);
@@ -44,11 +45,12 @@ pub fn run(
     part: Option<Part>,
 ) -> Result<PathBuf, Failure> {
     let start = Instant::now();
-    let scene = Scene::load(path, overrides)?;
+    let scene = agree(Scene::load(path, overrides).map_err(Failure::from))?;
     if let Some(part) = part {
         part.check(&scene)?;
     }
     let dir = folder::choose(path, out)?;
+    note_unshared(&scene);
     match &scene.analysis {
         Analysis::Dynamic(dynamic) => {
             return motion::run(&scene, dynamic, &dir, limits, start).map(|()| dir);
@@ -61,14 +63,14 @@ pub fn run(
         }
         Analysis::Static | Analysis::Sweep(_) => {}
     }
-    let all = points(&scene)?;
+    let all = agree(points(&scene))?;
     let chosen = part.map_or(0..all.len(), Part::range);
     let (first, points) = (chosen.start, &all[chosen]);
     let mut progress = Progress::new(points.len() as u64);
     progress.stage("reading meshes");
-    let (mut model, tags) = build_model(&points[0].1)?;
-    let mut probes = Probes::new(&scene, &model, &tags)?;
-    Forecast::new(&scene, &model, 0).require_space(&dir, limits.ignore_disk_space)?;
+    let (mut model, mut probes) = agree(build_with_probes(&points[0].1, &scene, |model| {
+        Forecast::new(&scene, model, 0).require_space(&dir, limits.ignore_disk_space)
+    }))?;
     let placed = model.geometry;
     let read = start.elapsed().as_secs_f64();
     progress.stage("factoring the stiffness of the rings");
@@ -91,14 +93,10 @@ pub fn run(
         let snapshot = Snapshot::of_equilibrium(&solution, rolling(point).as_ref());
         let files = match &mut results {
             Some(files) => files,
-            empty => empty.insert(Files::create(
-                &scene,
-                &model,
-                &dir,
-                &snapshot,
-                probes.take(),
-                &[],
-            )?),
+            empty => {
+                let files = Files::create(&scene, &model, &dir, &snapshot, probes.take(), &[]);
+                empty.insert(agree(files)?)
+            }
         };
         // The points of a sweep have no time; their number stands for it.
         let step = first + step;
@@ -108,10 +106,13 @@ pub fn run(
             placed: &placed,
             solution: &solution,
         };
-        files.write_tables(step, time, *value, &snapshot)?;
-        files.write_probes(step, time, *value, &shown)?;
-        files.write_profiles(step, time, *value, &shown)?;
-        files.write_fields(|stress| fields::record(&shown, &solution, stress, (step, time), point))?;
+        let mut write = || {
+            files.write_tables(step, time, *value, &snapshot)?;
+            files.write_probes(step, time, *value, &shown)?;
+            files.write_profiles(step, time, *value, &shown)?;
+            files.write_fields(|stress| fields::record(&shown, &solution, stress, (step, time), point))
+        };
+        agree(write())?;
         // Later points start from displacements of the contacts only; fields of a long sweep would fill the memory.
         if let Some(earlier) = solutions.last_mut() {
             earlier.solution.elastic = [None, None];
@@ -127,7 +128,7 @@ pub fn run(
     let forecast = Side::BOTH.map(|side| solver.ring(side).map(|r| r.memory));
     // Points that were solved get their summary, whatever came after them.
     if let Some(files) = results {
-        let costs = files.finish(read, forecast, solver.timing, start)?;
+        let costs = agree(files.finish(read, forecast, solver.timing, start))?;
         let mut findings = findings(&scene, &solutions, &failure);
         findings.effect_seconds = solver.costs.seconds();
         let summary = Summary::new(&scene, &model, findings, &costs);
@@ -137,6 +138,16 @@ pub fn run(
         }
     }
     failure.map_or(Ok(dir), Err)
+}
+
+/// Says when ranks have nothing to share.
+pub fn note_unshared(scene: &Scene) {
+    let ranks = Communicator::world().size();
+    if ranks > 1 && scene.solver.backend != Backend::Sector {
+        print::note(format_args!(
+            "note: each of the {ranks} ranks computes the whole run; only with solver.backend = \"sector\" do they share it"
+        ));
+    }
 }
 
 fn print_results(scene: &Scene, solutions: &[Solved], summary: &Summary) {

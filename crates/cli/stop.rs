@@ -9,6 +9,7 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
 
 use anyhow::Context;
+use comm::Communicator;
 use signal_hook::consts::{SIGINT, SIGTERM, SIGUSR1};
 use signal_hook::flag;
 
@@ -45,14 +46,23 @@ impl Stop {
         }
         Ok(Stop {
             signal,
-            wall: wall_time.map(|time| (start, time)),
+            // Clocks differ: that of rank 0 counts.
+            wall: wall_time
+                .filter(|_| Communicator::world().is_root())
+                .map(|time| (start, time)),
             last_step: Instant::now(),
             longest_step: Duration::ZERO,
         })
     }
 
-    /// Called between steps: why the run has to stop now, if it has to.
+    /// Called by all ranks between steps: why the run has to stop now, if it has to. What one rank knows stops all.
     pub fn reason(&mut self) -> Option<String> {
+        let own = self.own_reason().map_or(Ok(()), Err);
+        let elsewhere = |rank, reason| format!("{reason} on rank {rank}");
+        Communicator::world().agree(own, elsewhere).err()
+    }
+
+    fn own_reason(&mut self) -> Option<String> {
         self.longest_step = self.longest_step.max(self.last_step.elapsed());
         self.last_step = Instant::now();
         let number = self.signal.load(Ordering::Relaxed);

@@ -10,6 +10,7 @@ use anyhow::anyhow;
 use checkpoint::{
     BackgroundOutput, CheckpointError, Compression, FolderLock, Output, Precision, StepRecord, Storage,
 };
+use comm::Communicator;
 use dynamics::{Model, RingMemory, Timing};
 
 use super::about::about;
@@ -27,8 +28,11 @@ use crate::scene::{self, Analysis, Scene};
 /// Step files that may wait for the disk, besides the one being written.
 const QUEUE: usize = 2;
 
+/// The files of one run. Rank 0 writes for all; on the others there are none, and writing does nothing.
+pub struct Files(Option<Open>);
+
 /// The open files of one run.
-pub struct Files {
+struct Open {
     output: BackgroundOutput,
     tables: Tables,
     probes: Option<Probes>,
@@ -48,6 +52,9 @@ impl Files {
         probes: Option<Probes>,
         warnings: &[String],
     ) -> Result<Files, Failure> {
+        if !Communicator::world().is_root() {
+            return Ok(Files(None));
+        }
         let clock = Instant::now();
         let mut output = Output::create(dir, &fields::bodies(model), storage(scene))?;
         note_dead_owner(output.lock());
@@ -60,11 +67,14 @@ impl Files {
     pub fn resume(
         scene: &Scene,
         model: &Model,
-        lock: FolderLock,
+        lock: Option<FolderLock>,
         first: &Snapshot,
         probes: Option<Probes>,
         (last, warnings): (u64, &[String]),
     ) -> Result<Files, Failure> {
+        let Some(lock) = lock else {
+            return Ok(Files(None));
+        };
         let clock = Instant::now();
         let dir = lock.dir().to_path_buf();
         let texts = about(scene, &dir, warnings)?;
@@ -113,14 +123,14 @@ impl Files {
     ) -> Result<Files, Failure> {
         let companions = tables.companions(output.dir())?;
         let output_seconds = clock.elapsed().as_secs_f64();
-        Ok(Files {
+        Ok(Files(Some(Open {
             output: BackgroundOutput::start(output, QUEUE, companions),
             tables,
             ring_stress: Arc::new(RingStress::new(model, scene)?),
             probes,
             stress_seconds: 0.0,
             output_seconds,
-        })
+        })))
     }
 
     /// Appends a line to the table of the probes.
@@ -131,15 +141,16 @@ impl Files {
         value: Option<f64>,
         shown: &Shown<'_>,
     ) -> Result<(), Failure> {
-        let Some(probes) = &self.probes else {
+        let Some(open) = &mut self.0 else { return Ok(()) };
+        let Some(probes) = &open.probes else {
             return Ok(());
         };
         let clock = Instant::now();
         let values = probes.values(shown)?;
-        self.stress_seconds += clock.elapsed().as_secs_f64();
+        open.stress_seconds += clock.elapsed().as_secs_f64();
         let clock = Instant::now();
-        self.tables.append_probes(step, time, value, &values)?;
-        self.output_seconds += clock.elapsed().as_secs_f64();
+        open.tables.append_probes(step, time, value, &values)?;
+        open.output_seconds += clock.elapsed().as_secs_f64();
         Ok(())
     }
 
@@ -151,9 +162,10 @@ impl Files {
         value: Option<f64>,
         snapshot: &Snapshot,
     ) -> Result<(), Failure> {
+        let Some(open) = &mut self.0 else { return Ok(()) };
         let clock = Instant::now();
-        self.tables.append(step, time, value, snapshot)?;
-        self.output_seconds += clock.elapsed().as_secs_f64();
+        open.tables.append(step, time, value, snapshot)?;
+        open.output_seconds += clock.elapsed().as_secs_f64();
         Ok(())
     }
 
@@ -165,13 +177,14 @@ impl Files {
         value: Option<f64>,
         shown: &Shown<'_>,
     ) -> Result<(), Failure> {
-        let Some(probes) = &self.probes else {
+        let Some(open) = &mut self.0 else { return Ok(()) };
+        let Some(probes) = &open.probes else {
             return Ok(());
         };
         let clock = Instant::now();
         let rows = probes.profile_rows(shown)?;
-        self.stress_seconds += clock.elapsed().as_secs_f64();
-        self.tables.append_profiles(step, time, value, rows)?;
+        open.stress_seconds += clock.elapsed().as_secs_f64();
+        open.tables.append_profiles(step, time, value, rows)?;
         Ok(())
     }
 
@@ -181,18 +194,21 @@ impl Files {
         &mut self,
         record: impl FnOnce(&RingStress) -> Result<StepRecord, Failure>,
     ) -> Result<(), Failure> {
+        let Some(open) = &mut self.0 else { return Ok(()) };
         let clock = Instant::now();
-        let record = record(&self.ring_stress)?;
-        self.stress_seconds += clock.elapsed().as_secs_f64();
+        let record = record(&open.ring_stress)?;
+        open.stress_seconds += clock.elapsed().as_secs_f64();
         let clock = Instant::now();
-        self.output.write_step(record)?;
-        self.output_seconds += clock.elapsed().as_secs_f64();
+        open.output.write_step(record)?;
+        open.output_seconds += clock.elapsed().as_secs_f64();
         Ok(())
     }
 
     /// Time spent waiting for the disk so far.
     pub fn waited(&self) -> Duration {
-        self.output.waited()
+        self.0
+            .as_ref()
+            .map_or(Duration::ZERO, |open| open.output.waited())
     }
 
     /// The same for a record that needs nothing but itself: the thread that writes makes it.
@@ -200,10 +216,11 @@ impl Files {
         &mut self,
         record: impl FnOnce(&RingStress) -> StepRecord + Send + 'static,
     ) -> Result<(), Failure> {
+        let Some(open) = &mut self.0 else { return Ok(()) };
         let clock = Instant::now();
-        let ring_stress = self.ring_stress.clone();
-        self.output.write_step_made_by(move || record(&ring_stress))?;
-        self.output_seconds += clock.elapsed().as_secs_f64();
+        let ring_stress = open.ring_stress.clone();
+        open.output.write_step_made_by(move || record(&ring_stress))?;
+        open.output_seconds += clock.elapsed().as_secs_f64();
         Ok(())
     }
 
@@ -215,23 +232,32 @@ impl Files {
         solver: Timing,
         start: Instant,
     ) -> Result<Costs, Failure> {
+        let Some(open) = self.0 else {
+            return Ok(Costs {
+                read,
+                total: start.elapsed().as_secs_f64(),
+                forecast,
+                solver,
+                ..Costs::default()
+            });
+        };
         let clock = Instant::now();
-        let written = self.output.finish()?;
-        let near_field = self.ring_stress.near_field_time();
+        let written = open.output.finish()?;
+        let near_field = open.ring_stress.near_field_time();
         if let Some(views) = written.output.finish()? {
             warn_of_damage(&views.damaged);
         }
         Ok(Costs {
             read,
-            stress: self.stress_seconds + written.making.as_secs_f64(),
+            stress: open.stress_seconds + written.making.as_secs_f64(),
             near_field: near_field.map(|time| time.as_secs_f64()),
-            output: self.output_seconds + clock.elapsed().as_secs_f64(),
+            output: open.output_seconds + clock.elapsed().as_secs_f64(),
             disk_wait: written.waited.as_secs_f64(),
             disk: written.writing.as_secs_f64(),
             total: start.elapsed().as_secs_f64(),
             forecast,
             solver,
-            probes: self.probes.map_or(Vec::new(), |p| p.places().cloned().collect()),
+            probes: open.probes.map_or(Vec::new(), |p| p.places().cloned().collect()),
         })
     }
 }

@@ -1,11 +1,14 @@
 //! The folder of a run's results: chosen, found free and found writable before anything expensive, made when there
 //! is something to put into it. A run that fails before its first equilibrium leaves no trace.
 
+use std::ffi::OsString;
+use std::os::unix::ffi::OsStringExt;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, anyhow};
+use comm::Communicator;
 
-use crate::failure::Failure;
+use crate::failure::{Failure, agree};
 
 /// Largest number that a default result folder may carry.
 const MAX_FOLDERS: usize = 10_000;
@@ -24,7 +27,19 @@ const RESULT_FILES: [&str; 9] = [
 ];
 
 /// Where the results of `scene` go: `out`, which must not hold results, or the next free `results/NAME`.
+/// Rank 0 chooses for all.
 pub fn choose(scene: &Path, out: Option<PathBuf>) -> Result<PathBuf, Failure> {
+    let comm = Communicator::world();
+    let chosen = agree(if comm.is_root() {
+        choose_alone(scene, out)
+    } else {
+        Ok(PathBuf::new())
+    })?;
+    let bytes = comm.from_root(chosen.into_os_string().into_vec());
+    Ok(PathBuf::from(OsString::from_vec(bytes)))
+}
+
+fn choose_alone(scene: &Path, out: Option<PathBuf>) -> Result<PathBuf, Failure> {
     let dir = match out {
         Some(dir) => dir,
         None => next_free(scene)?,

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use anyhow::Context;
+use comm::Communicator;
 use contact::Side;
 use dynamics::balls::BallResult;
 use dynamics::{Model, RingMemory, Timing, forecast_peak};
@@ -91,6 +92,7 @@ struct SweepRow {
 }
 
 /// Costs of a run that only its driver knows.
+#[derive(Default)]
 pub struct Costs {
     /// Seconds of reading and checking, stress recovery, writing, and in all.
     pub read: f64,
@@ -245,8 +247,11 @@ impl Summary {
     }
 }
 
-/// Writes `summary.json`: complete or not at all.
+/// Writes `summary.json`: complete or not at all. Rank 0 writes for all.
 pub fn write_summary(dir: &Path, summary: &impl Serialize) -> anyhow::Result<()> {
+    if !Communicator::world().is_root() {
+        return Ok(());
+    }
     let path = dir.join(SUMMARY_FILE);
     let temporary = dir.join("summary.json.tmp");
     let text = serde_json::to_string_pretty(summary).context("cannot format summary.json")?;

@@ -1,0 +1,138 @@
+//! The ranks and what they exchange.
+
+use std::ops::Range;
+
+use crate::environment;
+
+/// The ranks of a run.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Communicator {
+    /// One process: rank 0 of 1.
+    #[default]
+    Serial,
+    /// The ranks of an MPI launcher.
+    #[cfg(feature = "mpi")]
+    Mpi,
+}
+
+impl Communicator {
+    /// The ranks that the launcher has started, once [`crate::Environment::start`] has been called; one before.
+    pub fn world() -> Communicator {
+        environment::world()
+    }
+
+    /// Number of this rank, from 0.
+    pub fn rank(self) -> usize {
+        match self {
+            Communicator::Serial => 0,
+            #[cfg(feature = "mpi")]
+            Communicator::Mpi => crate::messages::rank(),
+        }
+    }
+
+    /// Number of ranks.
+    pub fn size(self) -> usize {
+        match self {
+            Communicator::Serial => 1,
+            #[cfg(feature = "mpi")]
+            Communicator::Mpi => crate::messages::size(),
+        }
+    }
+
+    /// Whether this is the rank that writes files and speaks to the user.
+    pub fn is_root(self) -> bool {
+        self.rank() == 0
+    }
+
+    /// Units of work of each rank when `n` of them are dealt out.
+    pub fn shares(self, n: usize) -> Vec<Range<usize>> {
+        shares(n, self.size())
+    }
+
+    /// Units of work of this rank.
+    pub fn share(self, n: usize) -> Range<usize> {
+        self.shares(n)[self.rank()].clone()
+    }
+
+    /// The `values` of all ranks, one after the other in rank order; rank r has `lengths[r]` of them.
+    ///
+    /// # Panics
+    /// When `values` has another length than was announced.
+    pub fn all_gather(self, values: Vec<f64>, lengths: &[usize]) -> Vec<f64> {
+        assert_eq!(
+            values.len(),
+            lengths[self.rank()],
+            "numbers of rank {}",
+            self.rank()
+        );
+        match self {
+            Communicator::Serial => values,
+            #[cfg(feature = "mpi")]
+            Communicator::Mpi => crate::messages::all_gather(&values, lengths),
+        }
+    }
+
+    /// The bytes of rank 0, on all ranks; those of the others do not matter.
+    pub fn from_root(self, bytes: Vec<u8>) -> Vec<u8> {
+        match self {
+            Communicator::Serial => bytes,
+            #[cfg(feature = "mpi")]
+            Communicator::Mpi => crate::messages::from_root(bytes),
+        }
+    }
+
+    /// The result, if every rank has one. Otherwise an error on all: a rank's own, or what `elsewhere` makes of the lowest
+    /// failed rank and its message. To be called before a collective, so that no rank waits for one that has given up.
+    pub fn agree<T, E: std::fmt::Display>(
+        self,
+        result: Result<T, E>,
+        elsewhere: impl FnOnce(usize, String) -> E,
+    ) -> Result<T, E> {
+        match self {
+            Communicator::Serial => {
+                drop(elsewhere);
+                result
+            }
+            #[cfg(feature = "mpi")]
+            Communicator::Mpi => {
+                let message = result.as_ref().err().map(E::to_string);
+                match crate::messages::first_failure(message) {
+                    None => result,
+                    Some((rank, text)) => Err(result.err().unwrap_or_else(|| elsewhere(rank, text))),
+                }
+            }
+        }
+    }
+}
+
+/// Equal runs of `n` units of work for each of `size` ranks, in order.
+pub fn shares(n: usize, size: usize) -> Vec<Range<usize>> {
+    (0..size).map(|r| r * n / size..(r + 1) * n / size).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Wrong: a run of one process would compute something else than its sums say.
+    #[test]
+    fn collectives_of_one_rank_are_the_identity() {
+        let comm = Communicator::Serial;
+        assert_eq!(comm.all_gather(vec![1.5, -0.0], &[2]), [1.5, -0.0]);
+        let elsewhere = |_, _| unreachable!("there is no other rank");
+        assert_eq!(comm.agree(Err::<(), _>("no memory"), elsewhere), Err("no memory"));
+        assert_eq!(comm.agree(Ok::<_, &str>(7), elsewhere), Ok(7));
+        assert_eq!((comm.rank(), comm.size(), comm.share(5)), (0, 1, 0..5));
+    }
+
+    /// Wrong: a unit of work would be done twice or by nobody, or one rank would do most of it.
+    #[test]
+    fn work_is_dealt_out_in_equal_runs() {
+        for (n, size) in [(8, 3), (3, 8), (16, 4), (0, 2), (1, 1)] {
+            let all: Vec<usize> = shares(n, size).into_iter().flatten().collect();
+            assert!(all.iter().copied().eq(0..n), "{all:?}");
+            let lengths: Vec<usize> = shares(n, size).iter().map(Range::len).collect();
+            assert!(lengths.iter().max().unwrap() - lengths.iter().min().unwrap() <= 1);
+        }
+    }
+}

@@ -1,0 +1,72 @@
+//! The operations by MPI.
+
+use mpi::collective::CommunicatorCollectives;
+use mpi::datatype::PartitionMut;
+use mpi::topology::{Communicator, SimpleCommunicator};
+use mpi::traits::Root;
+
+fn world() -> SimpleCommunicator {
+    SimpleCommunicator::world()
+}
+
+pub(crate) fn rank() -> usize {
+    usize::try_from(world().rank()).expect("ranks count from 0")
+}
+
+pub(crate) fn size() -> usize {
+    usize::try_from(world().size()).expect("a number of ranks is positive")
+}
+
+/// MPI counts in 32-bit integers.
+fn count(n: usize) -> i32 {
+    i32::try_from(n).unwrap_or_else(|_| {
+        panic!("{n} numbers in one message, MPI counts to 2^31; solve for fewer right-hand sides at a time")
+    })
+}
+
+/// The values of all ranks in rank order.
+pub(crate) fn all_gather(values: &[f64], lengths: &[usize]) -> Vec<f64> {
+    let total = lengths.iter().sum();
+    count(total);
+    let counts: Vec<i32> = lengths.iter().map(|&n| count(n)).collect();
+    let starts: Vec<i32> = counts
+        .iter()
+        .scan(0, |start, n| {
+            *start += n;
+            Some(*start - n)
+        })
+        .collect();
+    let mut all = vec![0.0; total];
+    let mut parts = PartitionMut::new(&mut all[..], counts, starts);
+    world().all_gather_varcount_into(values, &mut parts);
+    all
+}
+
+/// The bytes of rank 0.
+pub(crate) fn from_root(mut bytes: Vec<u8>) -> Vec<u8> {
+    let mut length = bytes.len() as u64;
+    let world = world();
+    let root = world.process_at_rank(0);
+    root.broadcast_into(&mut length);
+    bytes.resize(length as usize, 0);
+    root.broadcast_into(&mut bytes[..]);
+    bytes
+}
+
+/// The lowest rank with a message and that message, on all ranks.
+pub(crate) fn first_failure(message: Option<String>) -> Option<(usize, String)> {
+    let bytes = message.map(String::into_bytes);
+    // One more than the length: an empty message is one too.
+    let own = bytes.as_ref().map_or(0, |b| b.len() as u64 + 1);
+    let mut lengths = vec![0_u64; size()];
+    world().all_gather_into(&own, &mut lengths[..]);
+    let failed = lengths.iter().position(|&n| n > 0)?;
+    let mut text = match bytes {
+        Some(bytes) if failed == rank() => bytes,
+        _ => vec![0; lengths[failed] as usize - 1],
+    };
+    world()
+        .process_at_rank(i32::try_from(failed).expect("a rank"))
+        .broadcast_into(&mut text[..]);
+    Some((failed, String::from_utf8_lossy(&text).into_owned()))
+}
