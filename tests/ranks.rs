@@ -250,24 +250,37 @@ fn a_bad_mesh_on_one_rank_ends_all_with_its_message() {
     );
 }
 
-/// Wrong: a full disk, which only rank 0 sees, would hang the run or be lost.
+/// Wrong: a full disk, which only rank 0 sees, would hang the run or be lost. Before the first step, and in the middle of a run.
 #[test]
 #[ignore = "needs mpirun and a program built with MPI: scripts/test-mpi"]
 fn a_full_disk_ends_all_with_its_message() {
     let dir = small_motion();
+    dir.run("alone", &SECTOR);
+    let size = |name: &str| {
+        std::fs::metadata(dir.path(&format!("alone/{name}")))
+            .unwrap()
+            .len()
+    };
+    let (largest, table) = (size("step_000000.hdf").max(size("mesh.hdf")), size("balls.csv"));
+    let longer = format!("dynamic.duration={} us", 400 * (2 * largest / table + 1));
     let program = program();
-    let run = [
-        &[&program[..], "run", "scene.toml", "--out", "out"][..],
-        &SECTOR[..],
-    ]
-    .concat();
-    let limited = "trap '' XFSZ; ulimit -f 600; exec \"$0\" \"$@\"";
-    let first = [&["bash", "-c", limited][..], &run[..]].concat();
-    let (outcome, time) = different(&dir, &first, &run);
-    assert_eq!(outcome.code, Some(2), "{}", outcome.stderr);
-    assert!(outcome.stderr.contains("error: "), "{}", outcome.stderr);
-    assert!(outcome.stderr.contains("File too large"), "{}", outcome.stderr);
-    assert!(time < SECONDS, "{time:?}");
+    for (out, limit) in [("start", largest / 1024 - 2), ("middle", largest / 1024 + 8)] {
+        let run = [
+            &[&program[..], "run", "scene.toml", "--out", out][..],
+            &SECTOR[..],
+        ]
+        .concat();
+        let run = [&run[..], &["--set", &longer, "--set", "dynamic.output_every=10"]].concat();
+        let limited = format!("trap '' XFSZ; ulimit -f {limit}; exec \"$0\" \"$@\"");
+        // Shared memory between ranks is a file as well: messages go through sockets here.
+        let socket = ["env", "OMPI_MCA_btl=self,tcp"];
+        let first = [&socket[..], &["bash", "-c", &limited], &run[..]].concat();
+        let (outcome, time) = different(&dir, &first, &[&socket[..], &run[..]].concat());
+        assert_eq!(outcome.code, Some(2), "{}", outcome.stderr);
+        assert!(outcome.stderr.contains("error: "), "{}", outcome.stderr);
+        assert!(outcome.stderr.contains("File too large"), "{}", outcome.stderr);
+        assert!(time < 2 * SECONDS, "{time:?}");
+    }
 }
 
 /// Wrong: tasks that a launcher of another MPI has started would each do the whole run and overwrite each other.
