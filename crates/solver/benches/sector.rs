@@ -74,9 +74,12 @@ struct Least {
     ms: [f64; 2],
 }
 
+/// Something to measure, and its name.
+type Variant<'a> = (String, Box<dyn FnMut() + 'a>);
+
 /// Runs all variants in turn, several times.
-fn measure(variants: &mut [(String, Box<dyn FnMut() + '_>)], rounds: usize) -> Vec<Least> {
-    let start = |(name, _): &(String, _)| Least {
+fn measure(variants: &mut [Variant<'_>], rounds: usize) -> Vec<Least> {
+    let start = |(name, _): &Variant<'_>| Least {
         name: name.clone(),
         ms: [f64::INFINITY; 2],
     };
@@ -134,7 +137,7 @@ fn report(name: &str, layers: usize, section: [usize; 2]) {
     );
     let factors = [0, 1].map(|_| std::cell::RefCell::new(None::<SectorCholesky>));
     let kept = std::cell::RefCell::new(None);
-    let mut variants: Vec<(String, Box<dyn FnMut()>)> = vec![(
+    let mut variants: Vec<Variant<'_>> = vec![(
         "factor, whole".to_string(),
         Box::new(|| *kept.borrow_mut() = sparse_symbolic.factor(&whole).ok()),
     )];
@@ -167,7 +170,7 @@ fn solves(sparse: &dyn LinearSolver, sectors: &SectorCholesky, pools: &[ThreadPo
     for n_rhs in [1, 36] {
         let mut rhs = vec![1.0; n_rhs * sparse.n()];
         let mut others = pools.iter().map(|_| rhs.clone()).collect::<Vec<_>>();
-        let mut variants: Vec<(String, Box<dyn FnMut() + '_>)> = vec![(
+        let mut variants: Vec<Variant<'_>> = vec![(
             format!("{n_rhs} right-hand sides, whole"),
             Box::new(|| sparse.solve(&mut rhs, n_rhs)),
         )];
