@@ -4,6 +4,7 @@
 mod bad_input;
 mod batch;
 mod export;
+mod hard;
 mod integration_points;
 mod interruption;
 mod memory;

@@ -73,7 +73,12 @@ pub fn run(
     let findings = series.findings(&ended, bearing.solver.costs.seconds());
     let snapshot = findings.last.clone();
     let forecast = Side::BOTH.map(|side| bearing.solver.ring(side).map(|r| r.memory));
-    let costs = agree(files.finish(read, forecast, bearing.solver.timing, start))?;
+    let costs = agree(files.finish(read, forecast, bearing.solver.timing, start));
+    // A run that failed says why, not what its failure did to the files.
+    let costs = match (costs, &ended) {
+        (Err(_), Err(_)) => return ended,
+        (costs, _) => costs?,
+    };
     let summary = Summary::new(scene, &model, findings, &costs);
     summary.write(dir)?;
     ended?;

@@ -44,6 +44,19 @@ pub enum ContactError {
         /// Highest groove angle of the mesh, deg.
         high_deg: f64,
     },
+    /// A ball presses where no groove can be.
+    #[error(
+        "ball {ball} presses on the {side} ring at a contact angle of {angle_deg:.1} deg, but no groove reaches beyond 90 deg: the \
+         load pulls the ring off its balls, or the ball has left its groove; turn the load, add preload, or hold the shaft"
+    )]
+    OffGroove {
+        /// Ball number, from 0.
+        ball: usize,
+        /// `inner` or `outer`.
+        side: &'static str,
+        /// Contact angle, deg.
+        angle_deg: f64,
+    },
     /// A patch point lies in no facet.
     #[error(
         "no facet of the {side} raceway holds azimuth {azimuth_deg:.4} deg, groove angle {angle_deg:.4} deg: \

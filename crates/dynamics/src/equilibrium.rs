@@ -184,8 +184,9 @@ pub fn round_off(problem: &Problem, u: &Displacements) -> f64 {
     let of_site = |site: &Site| {
         let state = site.state(u);
         // The vector between the centres is a sum of terms of the size of these two.
-        let size = state.length + site.reach[0].hypot(site.reach[1]);
-        2.0 * f64::EPSILON * size * state.force.tangent
+        let place = 2.0 * f64::EPSILON * (state.length + site.reach[0].hypot(site.reach[1]));
+        // A contact that has no stiffness yet has the force of an approach that cannot be told from zero.
+        (place * state.force.tangent).max(site.law.evaluate(place).force)
     };
     problem.sites.iter().map(of_site).sum()
 }

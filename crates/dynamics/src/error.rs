@@ -105,6 +105,39 @@ pub enum DynamicsError {
         /// Stiffness over the largest.
         stiffness: f64,
     },
+    /// A free shaft dof of a motion has neither inertia nor a contact that holds it.
+    #[error(
+        "{dof} of the shaft is free, but it has no mass and no ball touches it, so nothing says where it goes: \
+         give shaft.mass, lock it in [shaft], or load the bearing so that balls touch"
+    )]
+    Adrift {
+        /// Shaft dof.
+        dof: &'static str,
+    },
+    /// A motion went where the equations do not hold.
+    #[error(
+        "{what} is at {value}, beyond {limit}: it has left the bearing, and what follows would mean nothing; hold it by a \
+         load or in [shaft], or use contact = \"discrete_gradient\" and smaller steps if it should have stayed"
+    )]
+    LeftBearing {
+        /// What moved.
+        what: String,
+        /// Where it is, with unit.
+        value: String,
+        /// Its limit, with unit.
+        limit: String,
+    },
+    /// Contacts of a ring share so few nodes that they are not independent.
+    #[error(
+        "the mesh of the {side} ring has too few nodes on its raceway to tell {n_balls} balls apart: the compliance of its \
+         contacts is singular; use more elements round the ring or across the groove, or fewer balls"
+    )]
+    ContactsNotDistinct {
+        /// `inner` or `outer`.
+        side: &'static str,
+        /// Number of balls.
+        n_balls: usize,
+    },
     /// Patches and forces do not settle.
     #[error(
         "contact places do not settle after {rounds} rounds: forces still change by {change:.3e} of the largest \
@@ -220,6 +253,7 @@ impl DynamicsError {
                 | FrameNotSettled { .. }
                 | PatchTooSmall { .. }
                 | StepInaccurate { .. }
+                | DynamicsError::Contact(ContactError::OffGroove { .. })
         )
     }
 }

@@ -121,6 +121,32 @@ pub fn check_on_groove(
     Ok(())
 }
 
+/// Fails when a loaded ball of an equilibrium presses where no groove can be: on a rigid ring nothing else says so.
+pub fn check_in_grooves(
+    problem: &Problem,
+    u: &Displacements,
+    forces: &[[f64; 2]],
+) -> Result<(), DynamicsError> {
+    let contacts = problem.sites.iter().zip(loaded(forces));
+    for (site, _) in contacts.filter(|(_, loaded)| *loaded) {
+        require_in_groove(site.ball, site.side, site.contact_angle(&site.state(u)))?;
+    }
+    Ok(())
+}
+
+/// Fails when a contact angle, rad, is 90 deg or more.
+pub fn require_in_groove(ball: usize, side: Side, angle: f64) -> Result<(), DynamicsError> {
+    if angle.abs() < std::f64::consts::FRAC_PI_2 {
+        return Ok(());
+    }
+    let off = ContactError::OffGroove {
+        ball,
+        side: side.name(),
+        angle_deg: angle.to_degrees(),
+    };
+    Err(off.into())
+}
+
 /// Fails when a contact angle lies beyond the rim of the groove.
 pub fn require_on_groove(surface: &RacewaySurface, ball: usize, angle: f64) -> Result<(), DynamicsError> {
     let [low, high] = surface.angle_range;

@@ -4,6 +4,7 @@
 //! contacts). This crate does no input or output.
 
 pub mod balls;
+mod compliance;
 pub mod costs;
 pub mod displacements;
 pub mod effects;

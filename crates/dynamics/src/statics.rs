@@ -16,13 +16,13 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use contact::Side;
-use solver::dense::DenseCholesky;
 
+use crate::compliance;
 use crate::costs::{EffectCosts, Timing};
 use crate::effects::Loads;
 use crate::equilibrium::{SearchScales, check_held, minimise, round_off};
 use crate::error::DynamicsError;
-use crate::footprint::{Footprint, check_on_groove, place};
+use crate::footprint::{Footprint, check_in_grooves, check_on_groove, place};
 use crate::inventory::Inventory;
 use crate::loading::{LoadCase, largest_change, largest_force, not_settled};
 use crate::model::{Backend, ContactMode, Model};
@@ -110,6 +110,7 @@ impl StaticSolver {
         if self.rings.iter().any(Option::is_some) {
             return self.rounds(case, u);
         }
+        check_in_grooves(&case.problem, &u, &site_forces(&case.problem, &u))?;
         check_held(&case.problem, &u, case.scales)?;
         let rings = RingFields {
             elastic: [None, None],
@@ -148,7 +149,7 @@ impl StaticSolver {
                 }
             }
             self.timing.patches += clock.elapsed().as_secs_f64();
-            self.renew_columns(model.backend, &feet, &history);
+            self.renew_columns(model.backend, &feet, &history)?;
             let ring_forces = case.ring_forces(&forces);
             let fields = self.fields(model.backend, &feet, &ring_forces, &case.loads);
             self.respond(&mut case.problem, &feet, &ring_forces, &fields);
@@ -189,16 +190,22 @@ impl StaticSolver {
         forces: &[[f64; 2]],
     ) -> Result<(), DynamicsError> {
         let mut rings = self.rings.iter().flatten();
-        rings.try_for_each(|ring| check_on_groove(&ring.surface, problem, u, forces))
+        rings.try_for_each(|ring| check_on_groove(&ring.surface, problem, u, forces))?;
+        check_in_grooves(problem, u, forces)
     }
 
     /// Computes the compliance columns when there are none, and again when rounds contract slowly.
-    fn renew_columns(&mut self, backend: Backend, feet: &[Vec<Footprint>; 2], history: &[f64]) {
+    fn renew_columns(
+        &mut self,
+        backend: Backend,
+        feet: &[Vec<Footprint>; 2],
+        history: &[f64],
+    ) -> Result<(), DynamicsError> {
         let slow = matches!(history, [.., before, last] if *last > SLOW_CONTRACTION * before);
         let clock = Instant::now();
         let rings = &self.rings;
         let columns = &self.columns;
-        let renewed = |side: Side| {
+        let renewed = |side: Side| -> Option<Result<Vec<f64>, DynamicsError>> {
             let i = side.index();
             let ring = rings[i].as_ref()?;
             if columns[i].is_some() && !slow {
@@ -206,18 +213,17 @@ impl StaticSolver {
             }
             let weights: Vec<_> = feet[i].iter().map(|f| f.weights.clone()).collect();
             let n = 2 * weights.len();
-            let compliance = ring.compliance(&weights);
-            let factor = DenseCholesky::factor(n, &compliance)
-                .expect("the compliance of distinct contacts on a held ring is positive definite");
-            Some(factor.inverse())
+            let columns = ring.compliance(&weights);
+            Some(compliance::inverse(side, n, n / 2, &columns))
         };
         let (inner, outer) = backend.both(|| renewed(Side::Inner), || renewed(Side::Outer));
         for (columns, new) in self.columns.iter_mut().zip([inner, outer]) {
-            if new.is_some() {
-                *columns = new;
+            if let Some(new) = new {
+                *columns = Some(new?);
             }
         }
         self.timing.columns += clock.elapsed().as_secs_f64();
+        Ok(())
     }
 
     /// Elastic fields of both rings under the contact forces and body loads.

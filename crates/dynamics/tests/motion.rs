@@ -289,3 +289,88 @@ fn moving_patches_do_not_feed_an_oscillating_ball() {
         state.ledger
     );
 }
+
+/// Steps until one fails, and its error.
+fn failure(model: &Model, state: MotionState, settings: MotionSettings) -> String {
+    let motion = Motion::new(model, settings).unwrap();
+    let mut state = state;
+    for _ in 0..100_000 {
+        match motion.step(&state) {
+            Ok((next, _)) => state = next,
+            Err(error) => return error.to_string(),
+        }
+    }
+    panic!("nothing failed: {:?}", state.shaft);
+}
+
+/// Wrong: a shaft without mass that nothing touches would be "a singular matrix", or go anywhere.
+#[test]
+fn a_massless_shaft_that_nothing_touches_is_named() {
+    let model = Case::axial(-10.0).rigid();
+    let motion = Motion::new(&model, settings(1e-5)).unwrap();
+    let error = failure(&model, motion.rest([0.0; 5], [0.0; 5]), settings(1e-5));
+    let expected = "z of the shaft is free, but it has no mass and no ball touches it";
+    assert!(error.contains(expected), "{error}");
+}
+
+/// Wrong: a ring that is shot out of the bearing would fly on for ever and be called a result.
+#[test]
+fn a_shaft_that_leaves_the_bearing_stops_the_motion() {
+    let mut model = Case::axial(0.0).rigid();
+    model.shaft_mass = 0.5;
+    let motion = Motion::new(&model, settings(1e-6)).unwrap();
+    let state = motion.rest([0.0; 5], [0.0, 0.0, -3000.0, 0.0, 0.0]);
+    let error = failure(&model, motion.with_energies(state), settings(1e-6));
+    assert!(error.contains("z of the shaft is at -"), "{error}");
+    assert!(
+        error.contains("beyond 4.500 mm: it has left the bearing"),
+        "{error}"
+    );
+}
+
+/// Wrong: more balls than the mesh can tell apart would end in a panic.
+#[test]
+fn a_mesh_with_too_few_nodes_round_is_named() {
+    let case = Case::axial(1000.0);
+    let mut model = case.flexible(ContactMode::Patch, Level::hex8(6, 1, 1, 1), Hold::Clamped);
+    model.geometry.n_balls = 18;
+    let error = dynamics::StaticSolver::new(&model)
+        .unwrap()
+        .solve(&model, None)
+        .err()
+        .unwrap()
+        .to_string();
+    assert!(error.contains("to tell 18 balls apart"), "{error}");
+}
+
+/// Wrong: a ring that its load pulls off its only ball would find the far side of a groove, which is not there.
+#[test]
+fn a_ball_that_presses_where_no_groove_is_is_refused() {
+    let case = Case {
+        radial: -1000.0,
+        free_axial: false,
+        ..Case::axial(0.0)
+    };
+    let mut model = case.rigid();
+    model.geometry.n_balls = 1;
+    model.shaft[1] = dynamics::ShaftDof::Prescribed(0.0);
+    let statics = dynamics::StaticSolver::new(&model).unwrap().solve(&model, None);
+    let error = statics.err().unwrap().to_string();
+    let expected = "ball 0 presses on the inner ring at a contact angle of";
+    assert!(error.contains(expected), "{error}");
+    model.shaft_mass = 0.5;
+    let motion = Motion::new(&model, settings(1e-5)).unwrap();
+    let error = failure(&model, motion.rest([0.0; 5], [0.0; 5]), settings(1e-5));
+    assert!(error.contains("ball 0 presses on the"), "{error}");
+}
+
+/// Wrong: a load below the resolution of positions would keep Newton busy instead of being called no load.
+#[test]
+fn a_load_below_round_off_is_no_load() {
+    let statics = |model: &Model| dynamics::StaticSolver::new(model).unwrap().solve(model, None);
+    let error = statics(&Case::axial(1e-310).rigid()).err().unwrap().to_string();
+    assert!(
+        error.contains("of the shaft is free but nothing resists it"),
+        "{error}"
+    );
+}

@@ -5,8 +5,13 @@ use solver::dense::DenseLu;
 
 use super::contacts::MeanForce;
 use super::small::SmallSystem;
+
 use crate::costs::EffectCosts;
+use crate::equilibrium::MAX_TILT;
 use crate::error::DynamicsError;
+use crate::footprint::require_in_groove;
+use crate::model::Model;
+use crate::problem::SHAFT_DOFS;
 
 /// Newton iterations before a step counts as failed.
 const MAX_ITERATIONS: usize = 40;
@@ -43,11 +48,10 @@ impl SmallSystem {
 
     /// What an unknown is, for messages.
     fn name(&self, unknown: usize) -> String {
-        const DOFS: [&str; 5] = ["x", "y", "z", "tilt x", "tilt y"];
         let component = ["radial", "axial"];
         let n_shaft = self.n_shaft();
         if unknown < n_shaft {
-            return format!("{} of the shaft", DOFS[self.shaft.free()[unknown]]);
+            return format!("{} of the shaft", SHAFT_DOFS[self.shaft.free()[unknown]]);
         }
         let (index, balls) = (unknown - n_shaft, self.balls.len());
         let (body, ball) = (index / (2 * balls), index % (2 * balls) / 2);
@@ -84,6 +88,7 @@ impl SmallSystem {
             if now <= RESIDUAL_TARGET * scale || (now <= limit && stalled >= 2) {
                 return Ok(self.solution(x, forces, iteration));
             }
+            self.check_held(&jacobian, &residual)?;
             let mut step: Vec<f64> = residual.iter().map(|r| -r).collect();
             DenseLu::factor(n, &jacobian)
                 .map_err(|source| DynamicsError::ContactSystem { source })?
@@ -110,6 +115,18 @@ impl SmallSystem {
             forces,
             mounts,
             iterations,
+        }
+    }
+
+    /// Fails when a free shaft dof has neither inertia nor stiffness: its row of the Jacobian is empty. Names the one that the
+    /// loads push most.
+    fn check_held(&self, jacobian: &[f64], residual: &[f64]) -> Result<(), DynamicsError> {
+        let rows = jacobian.chunks_exact(self.n());
+        let dofs = self.shaft.free().into_iter().zip(rows).zip(residual);
+        let adrift = dofs.filter(|((_, row), _)| row.iter().all(|x| *x == 0.0));
+        match adrift.max_by(|a, b| a.1.abs().total_cmp(&b.1.abs())) {
+            Some(((dof, _), _)) => Err(DynamicsError::Adrift { dof: SHAFT_DOFS[dof] }),
+            None => Ok(()),
         }
     }
 
@@ -144,6 +161,52 @@ fn largest(r: &[f64]) -> (usize, f64) {
             (place, most)
         }
     })
+}
+
+/// Fails when a ball presses where no groove can be.
+fn check_grooves(system: &SmallSystem, solution: &SmallSolution) -> Result<(), DynamicsError> {
+    for site in &system.sites {
+        let [_, end] = system.reach(site, &solution.unknowns);
+        if end[0].hypot(end[1]) > site.touching {
+            let sign = site.side.sign();
+            let angle = (sign * end[1]).atan2(sign * end[0]);
+            require_in_groove(site.ball, site.side, angle)?;
+        }
+    }
+    Ok(())
+}
+
+/// Fails when shaft or balls are where small motions and the search for equilibrium end.
+pub fn check_range(
+    model: &Model,
+    system: &SmallSystem,
+    solution: &SmallSolution,
+) -> Result<(), DynamicsError> {
+    let diameter = model.geometry.ball_diameter;
+    let in_mm = |x: f64| format!("{:.3} mm", 1e3 * x);
+    for (dof, q) in system.shaft_end(&solution.unknowns).into_iter().enumerate() {
+        let (limit, text): (f64, fn(f64) -> String) = match dof {
+            0..3 => (0.5 * diameter, in_mm),
+            _ => (MAX_TILT, |x| format!("{x:.3} rad")),
+        };
+        if q.abs() > limit {
+            let what = format!("{} of the shaft", SHAFT_DOFS[dof]);
+            return Err(left(what, text(q), text(limit)));
+        }
+    }
+    for ball in 0..system.balls.len() {
+        let at = system.ball_index(ball);
+        let [radial, axial] = [0, 1].map(|i| solution.unknowns[at + i]);
+        if radial.hypot(axial) > diameter {
+            let what = format!("ball {ball}");
+            return Err(left(what, in_mm(radial.hypot(axial)), in_mm(diameter)));
+        }
+    }
+    check_grooves(system, solution)
+}
+
+fn left(what: String, value: String, limit: String) -> DynamicsError {
+    DynamicsError::LeftBearing { what, value, limit }
 }
 
 /// Fails when a contact is beyond what its patch leaves of Hertz's law.

@@ -3,16 +3,16 @@
 use std::time::Instant;
 
 use contact::{NodalWeights, Side};
-use solver::dense::DenseCholesky;
 
 use super::body::RingBody;
 use super::frame::turn_nodal;
-use super::newton::{SmallSolution, check_patches};
+use super::newton::{SmallSolution, check_patches, check_range};
 use super::ring::{RingFactor, RingState, RingStep};
 use super::run::Motion;
 use super::shaft::ShaftStep;
 use super::small::{Inertia, RingAnswer, SmallSystem};
 use super::state::{MotionState, StepReport};
+use crate::compliance;
 use crate::effects::{self, FrameTurn, Loads, Now};
 use crate::error::DynamicsError;
 use crate::problem::Site;
@@ -21,6 +21,9 @@ use crate::problem::Site;
 const FRAME_TOLERANCE: f64 = 1e-9;
 /// Rounds before a step counts as failed; each contracts by about speed times step size.
 const MAX_FRAME_ROUNDS: usize = 25;
+
+/// Force scale of a bearing on which nothing acts, N.
+const LEAST_FORCE: f64 = 1e-9;
 
 /// A part of a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -72,12 +75,8 @@ impl Motion<'_> {
         let times = moving.iter().flatten().map(|m| m.step.seconds);
         [report.seconds.right_side, report.seconds.solve] = longest(times);
         clock.lap();
-        let mut system = self.system(state, span, placing.sites, &moving, &loads);
-        let scale = state
-            .forces
-            .iter()
-            .flatten()
-            .fold(loads.shaft[2].abs().max(1e-9), |m, f| m.max(f.abs()));
+        let mut system = self.system(state, span, placing.sites, &moving, &loads)?;
+        let scale = self.force_scale(state, &loads);
         let (solution, increments) = loop {
             let solution = system.solve(scale, &self.costs)?;
             report.newton_iterations += solution.iterations;
@@ -106,6 +105,7 @@ impl Motion<'_> {
             }
         };
         check_patches(&system, &solution)?;
+        check_range(self.model, &system, &solution)?;
         let (mut next, error) = self.finish(state, &system, &solution, moving, increments);
         next.places = placing.places;
         report.error = error;
@@ -180,7 +180,7 @@ impl Motion<'_> {
         sites: Vec<Site>,
         moving: &[Option<Moving<'_>>; 2],
         loads: &Loads,
-    ) -> SmallSystem {
+    ) -> Result<SmallSystem, DynamicsError> {
         let mass = self.model.ball_mass();
         let balls = (0..self.model.geometry.n_balls).map(|b| {
             [0, 1].map(|i| Inertia {
@@ -194,26 +194,46 @@ impl Motion<'_> {
                 load_slope: if i == 0 { loads.ball_slope } else { 0.0 },
             })
         });
-        let answer = |ring: &Option<Moving<'_>>| {
-            ring.as_ref().map(|m| RingAnswer {
-                start: m.step.start.clone(),
-                predicted: m.step.predicted.clone(),
-                stiffness: DenseCholesky::factor(m.step.start.len(), &m.step.compliance)
-                    .expect("a ring with mass has a positive definite compliance")
-                    .inverse(),
-            })
+        let answer = |side: Side| {
+            let answer = |m: &Moving<'_>| -> Result<RingAnswer, DynamicsError> {
+                let (n, n_balls) = (m.step.start.len(), self.model.geometry.n_balls);
+                Ok(RingAnswer {
+                    start: m.step.start.clone(),
+                    predicted: m.step.predicted.clone(),
+                    stiffness: compliance::inverse(side, n, n_balls, &m.step.compliance)?,
+                })
+            };
+            moving[side.index()].as_ref().map(answer).transpose()
         };
-        SmallSystem {
+        Ok(SmallSystem {
             dt: span.dt,
             integrator: self.settings.integrator,
             sites,
             balls: balls.collect(),
             shaft: self.shaft_step(state, span, loads),
-            rings: [answer(&moving[0]), answer(&moving[1])],
+            rings: [answer(Side::Inner)?, answer(Side::Outer)?],
             scheme: self.settings.scheme,
             damping: self.settings.contact_damping,
             extra: loads.contacts.clone(),
-        }
+        })
+    }
+
+    /// Largest force that acts at the start of a part, N: of the contacts, on shaft, balls and rings.
+    fn force_scale(&self, state: &MotionState, loads: &Loads) -> f64 {
+        let arm = self.model.geometry.centre_radius(Side::Inner);
+        let forces = state.forces.iter().chain(&loads.balls).flatten().copied();
+        let moments = loads.shaft[3..].iter().map(|m| m / arm);
+        let rings = Side::BOTH.into_iter().flat_map(|side| {
+            let load = self.model.ring(side).zip(loads.rings[side.index()].as_ref());
+            load.map_or([0.0; 5], |(ring, load)| effects::resultant(ring, load))
+                .into_iter()
+                .take(3)
+        });
+        forces
+            .chain(loads.shaft[..3].iter().copied())
+            .chain(moments)
+            .chain(rings)
+            .fold(LEAST_FORCE, |m, f| m.max(f.abs()))
     }
 
     fn shaft_step(&self, state: &MotionState, span: Span, loads: &Loads) -> ShaftStep {

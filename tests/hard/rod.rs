@@ -1,0 +1,251 @@
+//! An elastic bar on a rigid wall, by the code of a ring: `RingBody` on a mesh that happens to be a straight bar, its predictor
+//! and compliance (`RingFactor`), the discrete gradient of the contact and the small Newton (`SmallSystem`).
+//!
+//! The bar lies along z, one element thick, Poisson's ratio 0: its waves are those of a rod. Its end face is the "groove centre"
+//! of one contact; the "ball" is the wall (1e9 masses of the bar) or a free body. Closed form: the end stops at impact, a
+//! wave c = sqrt(E/rho) runs to the far end and back, force A rho c V meanwhile, and the bar parts after 2 L/c with -V.
+//! References: Doyen, Ern, Piperno, SIAM J. Sci. Comput. 33 (2011) 223, doi:10.1137/090777542 (L = 10 m, E = 900 Pa,
+//! rho = 1 kg/m3, 5 m from the wall, 10 m/s); ANSYS Verification Manual, VM85 (a rod in inches and pounds).
+
+use std::collections::BTreeMap;
+
+use contact::{ContactLaw, Groove, NodalWeights, Side};
+use dynamics::motion::Integrator;
+use dynamics::motion::body::RingBody;
+use dynamics::motion::contacts::ContactScheme;
+use dynamics::motion::ring::{RingFactor, RingState};
+use dynamics::motion::shaft::ShaftStep;
+use dynamics::motion::small::{Inertia, RingAnswer, SmallSystem};
+use dynamics::problem::Site;
+use dynamics::{Backend, EffectCosts, Hold, RingModel};
+use fem::Material;
+use mesh::{ElementKind, Facet, Mesh};
+use solver::dense::DenseCholesky;
+
+/// Dimensions and numbers of a bar and its flight.
+#[derive(Clone, Copy)]
+pub struct Rod {
+    pub length: f64,
+    pub side: f64,
+    pub modulus: f64,
+    pub density: f64,
+    pub gap: f64,
+    pub speed: f64,
+    pub gravity: f64,
+    /// Approach at the force A rho c V over the length.
+    pub softness: f64,
+    /// Mass of what it meets over its own.
+    pub wall: f64,
+}
+
+pub const DOYEN: Rod = Rod {
+    length: 10.0,
+    side: 1.0,
+    modulus: 900.0,
+    density: 1.0,
+    gap: 5.0,
+    speed: 10.0,
+    gravity: 0.0,
+    softness: 1e-4,
+    wall: 1e9,
+};
+
+pub const ELEMENTS: usize = 100;
+
+/// What happened to a rod.
+#[derive(Default)]
+pub struct Flight {
+    /// First touch and last contact, s.
+    pub touch: f64,
+    pub part: f64,
+    /// Impulse of all contacts, N s.
+    pub impulse: f64,
+    /// Energy in bar, contact and wall less the work of gravity, over the first: smallest and largest.
+    pub energy: [f64; 2],
+    /// Largest ledger defect: energy that neither work nor the integrator's own balance explains, over the first.
+    pub defect: f64,
+    /// Velocity of the centre of mass at the end, and of the wall, m/s.
+    pub end: [f64; 2],
+    /// Times of all touches, s.
+    pub touches: Vec<f64>,
+    pub force: Vec<[f64; 2]>,
+    pub total: Vec<[f64; 2]>,
+}
+
+impl Rod {
+    pub fn area(&self) -> f64 {
+        self.side * self.side
+    }
+
+    pub fn mass(&self) -> f64 {
+        self.density * self.area() * self.length
+    }
+
+    pub fn wave(&self) -> f64 {
+        (self.modulus / self.density).sqrt()
+    }
+
+    /// A rho c V.
+    pub fn force(&self, speed: f64) -> f64 {
+        self.area() * self.density * self.wave() * speed
+    }
+
+    pub fn model(&self) -> RingModel {
+        RingModel {
+            mesh: bar_mesh(self.length, self.side),
+            material: Material::new(self.modulus, 0.0, self.density).unwrap(),
+            hold: Hold::Free,
+            held_group: "seat",
+            groove: Groove {
+                side: Side::Outer,
+                centre_radius: 2.0 * self.side,
+                groove_radius: self.side,
+                centre_z: 0.0,
+            },
+        }
+    }
+
+    pub fn fly(&self, integrator: Integrator, scheme: ContactScheme, dt: f64, n: usize) -> Flight {
+        let body = RingBody::new(Side::Outer, &self.model(), [0.0; 2], Backend::Sparse).unwrap();
+        let factor = RingFactor::new(&body, integrator, dt).unwrap();
+        let coordinates = body.coordinates.n();
+        let along = |value: f64| -> Vec<f64> {
+            (0..coordinates)
+                .map(|i| if i % 3 == 2 { value } else { 0.0 })
+                .collect()
+        };
+        let mut state = RingState::at_rest(vec![0.0; coordinates]);
+        state.v = along(-self.speed);
+        let weight = body.mass_product(&along(-self.gravity));
+        state.a = along(-self.gravity);
+        let foot = NodalWeights {
+            nodes: vec![0, 1, 2, 3],
+            coefficients: vec![[[0.25, 0.0, 0.0], [0.0, 0.0, 0.25]]; 4],
+        };
+        let scale = self.force(self.speed.max((2.0 * self.gravity * self.gap).sqrt()));
+        let law = ContactLaw {
+            stiffness: scale / (self.softness * self.length).powf(1.5),
+            patch_compliance: 0.0,
+        };
+        let touching = 10.0 * self.length;
+        let mass = self.wall * self.mass();
+        let mut wall = [[0.0; 3]; 2];
+        let mut flight = Flight::default();
+        let costs = EffectCosts::default();
+        let (mut work, mut loss, mut first) = (0.0, 0.0, None);
+        let site = Site {
+            ball: 0,
+            side: Side::Outer,
+            azimuth: 0.0,
+            ring_azimuth: 0.0,
+            reach: [0.0, touching - self.gap],
+            touching,
+            lever: 0.0,
+            law,
+            unevenness: None,
+        };
+        for step in 0..n {
+            let prepared = factor.prepare(&body, &state, &weight, std::slice::from_ref(&foot));
+            let inverse = DenseCholesky::factor(2, &prepared.compliance).unwrap().inverse();
+            let system = SmallSystem {
+                dt,
+                integrator,
+                sites: vec![site.clone()],
+                balls: vec![wall.map(|start| Inertia {
+                    mass,
+                    start,
+                    ..Inertia::default()
+                })],
+                shaft: ShaftStep {
+                    bodies: [Inertia::default(); 5],
+                    imposed: [Some(0.0); 5],
+                    frame: [0.0; 2],
+                },
+                rings: [
+                    None,
+                    Some(RingAnswer {
+                        start: prepared.start.clone(),
+                        predicted: prepared.predicted.clone(),
+                        stiffness: inverse,
+                    }),
+                ],
+                scheme,
+                damping: None,
+                extra: Vec::new(),
+            };
+            let solution = system.solve(scale, &costs).unwrap();
+            let contact = solution.forces[0];
+            let dw = factor.increment(&prepared, &contact.force, &[]);
+            let next = factor.advance(&state, &dw);
+            work += weight.iter().zip(&dw).map(|(f, d)| f * d).sum::<f64>();
+            loss += body.numerical_loss(integrator, &state, &next) + contact.numerical_loss;
+            for (i, place) in wall.iter_mut().enumerate() {
+                let inertia = system.balls[0][i];
+                let x = solution.unknowns[i];
+                loss += inertia.numerical_loss(integrator, x, dt);
+                let [v, a] = inertia.update(integrator, x, dt);
+                *place = [x, v, a];
+            }
+            state = next;
+            let [_, end] = system.reach(&site, &solution.unknowns);
+            let stored = law.evaluate(end[0].hypot(end[1]) - touching).energy;
+            let energy =
+                body.energies(&state).iter().sum::<f64>() + stored + 0.5 * mass * wall[1][1] * wall[1][1];
+            let before = *first.get_or_insert(0.5 * self.mass() * self.speed * self.speed);
+            let scale = before.max(self.mass() * self.gravity * self.gap);
+            flight.note(
+                step,
+                dt,
+                contact.force[1].abs(),
+                (energy - work) / scale,
+                (energy - work + loss - before) / scale,
+            );
+        }
+        let momentum = body.momentum(&state)[0][2];
+        flight.end = [momentum / self.mass(), wall[1][1]];
+        flight
+    }
+}
+
+impl Flight {
+    pub fn note(&mut self, step: usize, dt: f64, force: f64, energy: f64, defect: f64) {
+        let t = dt * (step as f64 + 0.5);
+        let last = self.force.last().map_or(0.0, |f| f[1]);
+        if force > 0.0 && last == 0.0 {
+            self.touches.push(t);
+            if self.touches.len() == 1 {
+                self.touch = t;
+            }
+        }
+        if force > 0.0 {
+            self.part = t;
+        }
+        self.impulse += dt * force;
+        if step == 0 {
+            self.energy = [energy; 2];
+        }
+        self.energy = [self.energy[0].min(energy), self.energy[1].max(energy)];
+        self.defect = self.defect.max(defect.abs());
+        self.force.push([t, force]);
+        self.total.push([t, energy]);
+    }
+}
+
+/// One column of cubes along z from 0; facet group `raceway` at z = 0, `seat` at the other end.
+fn bar_mesh(length: f64, side: f64) -> Mesh {
+    let corners = [[0.0, 0.0], [side, 0.0], [side, side], [0.0, side]];
+    let layer = |i: usize| {
+        let z = length * i as f64 / ELEMENTS as f64;
+        corners.map(|c| [c[0], c[1], z])
+    };
+    let group = |element, face| vec![Facet { element, face }];
+    Mesh {
+        kind: ElementKind::Hex8,
+        nodes: (0..=ELEMENTS).flat_map(layer).collect(),
+        connectivity: (0..ELEMENTS).flat_map(|e| 4 * e..4 * e + 8).collect(),
+        groups: BTreeMap::from([
+            ("raceway".to_string(), group(0, 0)),
+            ("seat".to_string(), group(ELEMENTS - 1, 1)),
+        ]),
+    }
+}

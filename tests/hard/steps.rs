@@ -1,0 +1,302 @@
+//! The same cases at steps from 1 to 50 us with every integrator a scene offers: stable, stopped with an error, or caught by the
+//! ledger.
+//!
+//! A run that comes to its end with a closed ledger must also be right: forces bounded, and up to 20 us (a ball's period is
+//! 23 us) its mean place that of the reference, average acceleration at 1 us.
+
+use dynamics::motion::contacts::ContactScheme;
+use dynamics::motion::{Integrator, MotionSettings};
+use dynamics::{Model, Schedule, ShaftDof};
+
+use super::bearings::{Load, RPM, conserving, equilibrium_at, flexible, rigid, transient};
+use super::course::Course;
+use super::record::{LEDGER, Record};
+use super::{HardCase, Pace};
+
+/// Step sizes, us.
+const ALL: [f64; 5] = [1.0, 5.0, 10.0, 20.0, 50.0];
+const COARSE: [f64; 3] = [10.0, 20.0, 50.0];
+/// Largest step whose mean place is compared, us.
+const RESOLVED: f64 = 20.0;
+/// Share of the way by which mean places may differ.
+const MEAN: f64 = 0.3;
+/// A run may not have a larger force than so many times that of the reference.
+const PEAK: f64 = 3.0;
+/// Time of every run, s.
+const DURATION: f64 = 1e-3;
+
+pub fn cases() -> Vec<HardCase> {
+    let case = |name, pace, why, settings, run| HardCase {
+        name,
+        pace,
+        why,
+        settings,
+        run,
+    };
+    let all = "1 to 50 us, 11 settings, 1 ms, 4 halvings";
+    vec![
+        case(
+            "steps_unloading_coarse",
+            Pace::Slow,
+            "half the balls unload, in steps up to two periods of a ball",
+            "10 to 50 us, 11 settings, 1 ms, rigid rings",
+            |r| table(r, &unloading(), &COARSE, 0.0),
+        ),
+        case("steps_unloading", Pace::Slow, "half the balls unload", all, |r| {
+            table(r, &unloading(), &ALL, 0.0)
+        }),
+        case(
+            "steps_radial",
+            Pace::Slow,
+            "radial 200 N to 2 kN in 10 us on 1 kN",
+            all,
+            |r| table(r, &radial(), &ALL, 0.0),
+        ),
+        case("steps_axial", Pace::Slow, "axial 2 to 20 kN in 10 us", all, |r| {
+            table(r, &axial(), &ALL, 0.0)
+        }),
+        case(
+            "steps_thrown_out",
+            Pace::Slow,
+            "axial 2 kN to 100 N in 10 us",
+            all,
+            |r| table(r, &thrown_out(), &ALL, 0.0),
+        ),
+        case(
+            "steps_impact",
+            Pace::Slow,
+            "10 kN for 50 us, down to one step",
+            all,
+            |r| table(r, &impact(), &ALL, 0.0),
+        ),
+        case(
+            "steps_loose",
+            Pace::Slow,
+            "0.05 mm of clearance, radial 0 to 1 kN in 10 us",
+            all,
+            |r| table(r, &loose(), &ALL, 0.0),
+        ),
+        case(
+            "steps_turning",
+            Pace::Slow,
+            "half the balls unload at 18 000 rpm",
+            all,
+            |r| table(r, &unloading(), &ALL, 18_000.0),
+        ),
+        case(
+            "steps_flexible",
+            Pace::Slow,
+            "half the balls unload, rings that answer",
+            "10 to 50 us, 11 settings, 1 ms, both rings flexible",
+            |r| table(r, &unloading_flexible(), &COARSE, 0.0),
+        ),
+        case(
+            "smallest_step_fails",
+            Pace::Fast,
+            "a step that fails at every size must stop the run and say where",
+            "half the balls unload, dt 50 us, local error of 1e-9 asked for, two halvings",
+            floor,
+        ),
+    ]
+}
+
+/// All settings a scene offers.
+fn settings() -> Vec<(&'static str, Integrator, ContactScheme)> {
+    let gradient = ContactScheme::DiscreteGradient;
+    let pointwise = ContactScheme::Pointwise;
+    vec![
+        (
+            "average_acceleration",
+            Integrator::average_acceleration(),
+            gradient,
+        ),
+        ("chung_hulbert 0.8", Integrator::chung_hulbert(0.8), gradient),
+        ("chung_hulbert 0.5", Integrator::chung_hulbert(0.5), gradient),
+        ("chung_hulbert 0", Integrator::chung_hulbert(0.0), gradient),
+        ("hht 0.1", Integrator::hht(0.1), gradient),
+        ("hht 0.33", Integrator::hht(0.33), gradient),
+        ("newmark 0.25 0.5", Integrator::newmark(0.25, 0.5), gradient),
+        ("newmark 0.3025 0.6", Integrator::newmark(0.3025, 0.6), gradient),
+        (
+            "average_acceleration, pointwise",
+            Integrator::average_acceleration(),
+            pointwise,
+        ),
+        (
+            "chung_hulbert 0.8, pointwise",
+            Integrator::chung_hulbert(0.8),
+            pointwise,
+        ),
+        ("hht 0.1, pointwise", Integrator::hht(0.1), pointwise),
+    ]
+}
+
+fn unloading() -> Model {
+    locked_in_place(rigid(Load::dead(100.0), Load::jump(0.0, 3e3)))
+}
+
+fn unloading_flexible() -> Model {
+    locked_in_place(flexible(Load::dead(100.0), Load::jump(0.0, 3e3)))
+}
+
+fn locked_in_place(mut model: Model) -> Model {
+    let rest = equilibrium_at(&model, 0.0).unwrap();
+    model.shaft[2] = ShaftDof::Prescribed(rest.displacements.shaft[2]);
+    model
+}
+
+fn radial() -> Model {
+    rigid(Load::dead(1e3), Load::jump(200.0, 2e3))
+}
+
+fn axial() -> Model {
+    rigid(Load::jump(2e3, 20e3), Load::dead(0.0))
+}
+
+fn thrown_out() -> Model {
+    rigid(Load::jump(2e3, 100.0), Load::dead(0.0))
+}
+
+fn impact() -> Model {
+    let pulse = Schedule::Impact {
+        start: 0.0,
+        duration: 50e-6,
+    };
+    rigid(Load::dead(1e3), Load(10e3, pulse))
+}
+
+fn loose() -> Model {
+    let mut model = rigid(Load::dead(500.0), Load::jump(0.0, 1e3));
+    let g = &mut model.geometry;
+    g.outer_raceway_diameter = g.inner_raceway_diameter + 2.0 * g.ball_diameter + 0.05e-3;
+    model
+}
+
+/// What became of a run.
+enum End {
+    Stable,
+    /// Its ledger did not close.
+    Caught(f64),
+    /// It stopped with an error.
+    Stopped(String),
+    /// It came to its end, but its numbers are wrong.
+    Silent(String),
+}
+
+fn table(record: &mut Record, model: &Model, steps: &[f64], rpm: f64) {
+    let with = |dt: f64| MotionSettings {
+        speed: dynamics::motion::balls::Speed::constant(rpm * RPM),
+        ..conserving(1e-6 * dt)
+    };
+    let reference = transient(model, with(1.0), DURATION);
+    record.closed(&reference);
+    let mut text = "| setting |".to_string();
+    steps.iter().for_each(|dt| text.push_str(&format!(" {dt} us |")));
+    text.push_str(&format!("\n|---|{}", "---|".repeat(steps.len())));
+    let (mut counts, mut least) = ([0; 3], 0.0f64);
+    for (name, integrator, scheme) in settings() {
+        text.push_str(&format!("\n| {name} |"));
+        for dt in steps {
+            let course = transient(
+                model,
+                MotionSettings {
+                    integrator,
+                    scheme,
+                    ..with(*dt)
+                },
+                DURATION,
+            );
+            let conserving = scheme == ContactScheme::DiscreteGradient && integrator.is_conserving();
+            let end = judge(&course, &reference, *dt);
+            text.push_str(&format!(" {} |", word(&end)));
+            match end {
+                End::Stable => {
+                    counts[0] += 1;
+                    if scheme == ContactScheme::DiscreteGradient {
+                        record.note_defect(course.defect);
+                    }
+                }
+                End::Caught(_) => counts[1] += 1,
+                End::Stopped(_) => counts[2] += 1,
+                End::Silent(ref why) => {
+                    record.that(&format!("{name} at {dt} us is not silently wrong: {why}"), false)
+                }
+            }
+            if conserving {
+                record.that(
+                    &format!("{name} at {dt} us is stable{}", course.ending()),
+                    matches!(end, End::Stable),
+                );
+            } else if scheme == ContactScheme::DiscreteGradient {
+                let caught = matches!(end, End::Caught(_));
+                record.that(
+                    &format!("the ledger of {name} at {dt} us closes{}", course.ending()),
+                    !caught,
+                );
+                least = least.min(course.least_loss);
+            }
+        }
+    }
+    let [stable, caught, stopped] = counts;
+    record.note(format!(
+        "{stable} stable, {caught} caught by the ledger, {stopped} stopped with an error, none silently wrong"
+    ));
+    // Their dissipation is monotone in a norm of their own, which holds accelerations, not in the energy.
+    record.note(format!(
+        "a dissipating integrator had given up to {:.1e} of the largest energy at a time, all of it in the ledger",
+        -least
+    ));
+    record.that(
+        "the comparison fails somewhere, or the case is not hard",
+        caught + stopped > 0,
+    );
+    record.tables.push(text);
+}
+
+fn judge(course: &Course, reference: &Course, dt: f64) -> End {
+    if let Some(error) = &course.error {
+        return match error.contains("ledger") {
+            true => End::Caught(course.defect),
+            false => End::Stopped(error.clone()),
+        };
+    }
+    let largest = |q: [f64; 5]| q.into_iter().fold(0.0f64, |m, x| m.max(x.abs()));
+    let off = largest([0, 1, 2, 3, 4].map(|i| course.mean_shaft[i] - reference.mean_shaft[i]));
+    let way = largest(reference.mean_shaft);
+    if !course.is_finite() || course.defect.is_nan() || course.defect > LEDGER {
+        End::Silent("not finite".to_string())
+    } else if course.peak > PEAK * reference.peak {
+        End::Silent(format!(
+            "a force of {:.0} N, the reference has {:.0} N",
+            course.peak, reference.peak
+        ))
+    } else if dt <= RESOLVED && off > MEAN * way {
+        End::Silent(format!("mean place off by {off:.1e} m of {way:.1e} m"))
+    } else {
+        End::Stable
+    }
+}
+
+fn word(end: &End) -> String {
+    match end {
+        End::Stable => "stable".to_string(),
+        End::Caught(defect) => format!("ledger {defect:.0e}"),
+        End::Stopped(error) => format!("stopped: {}", error.split([':', ';']).next().unwrap_or_default()),
+        End::Silent(why) => format!("**wrong**: {why}"),
+    }
+}
+
+fn floor(record: &mut Record) {
+    let model = unloading();
+    let mut settings = conserving(5e-5);
+    settings.ladder = dynamics::motion::Ladder {
+        halvings: 2,
+        tolerance: Some(1e-9),
+    };
+    let start = equilibrium_at(&model, 0.0).unwrap();
+    let course = super::course::from_equilibrium(&model, &start, settings, 40);
+    let error = course.error.clone().unwrap_or_default();
+    record.says(&error, "the step of 1.250e-5 s (2 times halved) from t =");
+    record.says(&error, "the local error is");
+    record.that("its last good state is finite", course.is_finite());
+}
