@@ -3,17 +3,20 @@
 
 mod bad_input;
 mod batch;
+mod examples;
 mod export;
 mod integration_points;
 mod interruption;
 mod memory;
 mod modes;
 mod motion;
+mod plot;
 mod prices;
 mod probes;
 mod quasi_static;
 mod ranks;
 mod readers;
+mod report;
 mod results;
 mod resume;
 mod schedules;
