@@ -3,6 +3,7 @@
 
 mod bad_input;
 mod batch;
+mod examples;
 mod export;
 mod hard;
 mod integration_points;
@@ -10,11 +11,13 @@ mod interruption;
 mod memory;
 mod modes;
 mod motion;
+mod plot;
 mod prices;
 mod probes;
 mod quasi_static;
 mod ranks;
 mod readers;
+mod report;
 mod results;
 mod resume;
 mod schedules;

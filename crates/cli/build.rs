@@ -113,7 +113,7 @@ pub fn model_with_rings(scene: &Scene, rings: [Option<Arc<RingModel>>; 2]) -> Re
     })
 }
 
-fn geometry(scene: &Scene) -> BearingGeometry {
+pub fn geometry(scene: &Scene) -> BearingGeometry {
     let b = &scene.bearing;
     BearingGeometry {
         n_balls: b.balls,

@@ -14,10 +14,12 @@ mod modes;
 mod motion;
 mod options;
 mod pack;
+mod plot;
 mod prices;
 mod print;
 mod progress;
 mod quasi_static;
+mod report;
 mod results;
 mod resume;
 mod rules;
@@ -41,6 +43,8 @@ use crate::failure::Failure;
 use crate::info::Depth;
 use crate::options::{Limits, Part, parse_part};
 use crate::pack::Pack;
+use crate::plot::Plot;
+use crate::report::Report;
 use crate::resume::Request;
 
 /// Simulates angular contact ball bearings with fully flexible rings.
@@ -88,6 +92,10 @@ enum Command {
     Cycles(Cycles),
     /// Writes steps in a form for other tools.
     Export(Export),
+    /// Draws figures of a run from its tables and step files.
+    Plot(Plot),
+    /// Writes one HTML page of a run: scene, numbers, figures, energy, cost, warnings.
+    Report(Report),
     /// Builds everything a run needs but solves nothing: effects, sizes, memory, output.
     Check {
         /// Scene file.
@@ -195,6 +203,8 @@ fn execute(arguments: Arguments) -> Result<(), Failure> {
         Command::Study(request) => study::study(&request),
         Command::Prices(request) => prices::prices(&request),
         Command::Advise(question) => study::advise(&question),
+        Command::Plot(request) => plot::plot(&request),
+        Command::Report(request) => report::report(&request),
         Command::Check { scene, overrides } => check::check(&scene, &overrides),
         Command::Mesh {
             scene,

@@ -81,6 +81,19 @@ impl Axis {
         }
     }
 
+    /// A value of this axis in words: name, number, unit.
+    pub fn value(&self, value: f64) -> String {
+        let number = format!("{value:.4}");
+        let number = match number.contains('.') {
+            true => number.trim_end_matches('0').trim_end_matches('.'),
+            false => &number,
+        };
+        match self.unit.as_str() {
+            "" | "1" => format!("{} {number}", self.name),
+            unit => format!("{} {number} {unit}", self.name),
+        }
+    }
+
     /// Place of a value along the axis, before its mapping to pixels; none if it has no place.
     pub(crate) fn place(&self, value: f64) -> Option<f64> {
         match self.scale {

@@ -11,6 +11,10 @@ use crate::{Figure, Look, palette};
 
 /// Width of the lines of series, units.
 const SERIES_WIDTH: u32 = 16;
+/// Width of the first series: it shows at both sides of another on the same points.
+const FIRST_WIDTH: u32 = 30;
+/// The same for marks: size of those of the first series over that of others.
+const FIRST_MARK: f64 = 1.4;
 /// Half the size of a mark, pixels.
 const MARK: f64 = 4.0;
 /// Radius of a ring, pixels.
@@ -103,7 +107,7 @@ pub fn draw_series(figure: &Figure, index: usize, pen: &Pen, canvas: &Canvas) ->
     }
     if !matches!(series.look, Look::Marks | Look::Rings) {
         for line in pen.lines(&series.points) {
-            draw_line(&line, series.look, colour, canvas)?;
+            draw_line(&line, series.look, colour, width(figure, index), canvas)?;
         }
     }
     for place in series.points.iter().filter_map(|&p| pen.pixel(p)) {
@@ -118,7 +122,8 @@ pub fn draw_sample(figure: &Figure, entry: &Entry, canvas: &Canvas) -> Drawn {
     if !matches!(series.look, Look::Marks | Look::Rings) {
         let (from, to) = (units([entry.x, entry.y]), units([entry.x + SAMPLE, entry.y]));
         let line = [[from.0, from.1], [to.0, to.1]];
-        draw_line(&line, series.look, colour(figure, entry.series), canvas)?;
+        let (colour, width) = (colour(figure, entry.series), width(figure, entry.series));
+        draw_line(&line, series.look, colour, width, canvas)?;
     }
     draw_mark(figure, entry.series, [entry.x + 0.5 * SAMPLE, entry.y], canvas)?;
     let at = [entry.x + SAMPLE + 4.0, entry.y];
@@ -132,7 +137,21 @@ pub fn draw_sample(figure: &Figure, entry: &Entry, canvas: &Canvas) -> Drawn {
     )
 }
 
-fn draw_line(line: &[[i32; 2]], look: Look, colour: RGBColor, canvas: &Canvas) -> Drawn {
+/// Width of the line of a series, units.
+fn width(figure: &Figure, index: usize) -> u32 {
+    match is_under_others(figure, index) {
+        true => FIRST_WIDTH,
+        false => SERIES_WIDTH,
+    }
+}
+
+/// Whether a series is the first of several of the palette.
+fn is_under_others(figure: &Figure, index: usize) -> bool {
+    let own = &figure.series[index];
+    own.shade.is_none() && figure.series.len() > 1 && style_index(&figure.series, index) == 0
+}
+
+fn draw_line(line: &[[i32; 2]], look: Look, colour: RGBColor, width: u32, canvas: &Canvas) -> Drawn {
     let points: Vec<(i32, i32)> = line.iter().map(|&[x, y]| (x, y)).collect();
     match look {
         Look::Reference => {
@@ -142,13 +161,10 @@ fn draw_line(line: &[[i32; 2]], look: Look, colour: RGBColor, canvas: &Canvas) -
             Ok(())
         }
         Look::Outline => {
-            canvas.draw(&PathElement::new(
-                points.clone(),
-                BLACK.stroke_width(SERIES_WIDTH + 8),
-            ))?;
+            canvas.draw(&PathElement::new(points.clone(), BLACK.stroke_width(width)))?;
             canvas.draw(&PathElement::new(points, WHITE.stroke_width(LINE_WIDTH)))
         }
-        _ => canvas.draw(&PathElement::new(points, colour.stroke_width(SERIES_WIDTH))),
+        _ => canvas.draw(&PathElement::new(points, colour.stroke_width(width))),
     }
 }
 
@@ -204,12 +220,17 @@ fn draw_mark(figure: &Figure, index: usize, place: [f64; 2], canvas: &Canvas) ->
             ))
         }
         Look::Marks | Look::LineAndMarks => {
+            let size = if is_under_others(figure, index) {
+                FIRST_MARK * MARK
+            } else {
+                MARK
+            };
             let corners = shape(style_index(&figure.series, index));
             if corners.is_empty() {
-                let radius = (MARK * UNITS) as i32;
+                let radius = (size * UNITS) as i32;
                 return canvas.draw(&Circle::new(units(place), radius, colour.filled()));
             }
-            let corner = |[x, y]: &[f64; 2]| units([place[0] + MARK * x, place[1] + MARK * y]);
+            let corner = |[x, y]: &[f64; 2]| units([place[0] + size * x, place[1] + size * y]);
             canvas.draw(&Polygon::new(
                 corners.iter().map(corner).collect::<Vec<_>>(),
                 colour.filled(),

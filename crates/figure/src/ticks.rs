@@ -71,13 +71,14 @@ fn values_on_logarithmic(low: f64, high: f64) -> Ticks {
     }
 }
 
-/// The smallest of 1, 2, 5 times a power of ten that is not below `raw`.
+/// The one of 1, 2, 5 times a power of ten whose ratio to `raw` is nearest to one.
 fn round_step(raw: f64) -> f64 {
     let power = 10f64.powf(raw.log10().floor());
-    let factor = [1.0, 2.0, 5.0, 10.0]
+    let ratio = |factor: &f64| (factor * power / raw).ln().abs();
+    let nearest = [1.0, 2.0, 5.0, 10.0]
         .into_iter()
-        .find(|f| f * power >= raw * (1.0 - 1e-9));
-    factor.unwrap_or(10.0) * power
+        .min_by(|a, b| ratio(a).total_cmp(&ratio(b)));
+    nearest.unwrap_or(10.0) * power
 }
 
 fn decimals_of(step: f64) -> usize {

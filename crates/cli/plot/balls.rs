@@ -1,0 +1,235 @@
+//! Forces, contact angles and pressures of the balls: round the bearing, and against time or the swept value.
+
+use figure::{Axis, Figure, Series};
+
+use super::quantity::{DEGREE, GIGAPASCAL, MICROMETRE, NEWTON, Unit, azimuth_axis, points};
+use super::results::Steps;
+use super::table::Table;
+use super::{Choice, Named, Results};
+
+/// A quantity of both contacts of a ball.
+struct Contact {
+    name: &'static str,
+    title: &'static str,
+    axis: &'static str,
+    column: &'static str,
+    unit: Unit,
+}
+
+const CONTACTS: [Contact; 3] = [
+    Contact {
+        name: "ball_force",
+        title: "Contact force",
+        axis: "contact force",
+        column: "force_n",
+        unit: NEWTON,
+    },
+    Contact {
+        name: "contact_angle",
+        title: "Contact angle",
+        axis: "contact angle",
+        column: "contact_angle_rad",
+        unit: DEGREE,
+    },
+    Contact {
+        name: "peak_pressure",
+        title: "Peak Hertz pressure",
+        axis: "peak pressure",
+        column: "peak_pressure_pa",
+        unit: GIGAPASCAL,
+    },
+];
+
+const SIDES: [&str; 2] = ["inner", "outer"];
+
+/// All figures of `balls.csv`.
+pub fn figures(results: &Results, choice: &Choice) -> anyhow::Result<Vec<Named>> {
+    let Some(table) = &results.balls else {
+        return Ok(Vec::new());
+    };
+    let steps = Rows::new(table)?;
+    let mut figures = Vec::new();
+    for contact in &CONTACTS {
+        match &results.steps {
+            Steps::Single => figures.push(round(table, &steps.of_step(0), contact)?),
+            Steps::Sweep(_) => {
+                figures.push(over_values(results, table, &steps, contact)?);
+                figures.push(round_each(results, table, &steps, contact)?);
+            }
+            Steps::Times => {
+                figures.push(way_round(table, &steps, contact, choice.ball)?);
+                figures.push(over_values(results, table, &steps, contact)?);
+            }
+        }
+    }
+    if results.steps == Steps::Times {
+        figures.push(displacement(results, table, &steps, choice.ball)?);
+    }
+    Ok(figures)
+}
+
+/// Which rows of the table belong to which step and ball.
+struct Rows {
+    /// First row of each step, and the end, `[n_steps + 1]`.
+    starts: Vec<usize>,
+    balls: Vec<usize>,
+}
+
+impl Rows {
+    fn new(table: &Table) -> anyhow::Result<Rows> {
+        let steps = table.column("step")?;
+        let first_of_step = |&row: &usize| row == 0 || steps[row] != steps[row - 1];
+        let mut starts: Vec<usize> = (0..steps.len()).filter(first_of_step).collect();
+        starts.push(steps.len());
+        let balls = table.column("ball")?.iter().map(|b| *b as usize).collect();
+        Ok(Rows { starts, balls })
+    }
+
+    fn n_steps(&self) -> usize {
+        self.starts.len() - 1
+    }
+
+    fn of_step(&self, step: usize) -> Vec<usize> {
+        (self.starts[step]..self.starts[step + 1]).collect()
+    }
+
+    fn of_ball(&self, ball: usize) -> anyhow::Result<Vec<usize>> {
+        let rows: Vec<usize> = (0..self.balls.len())
+            .filter(|&row| self.balls[row] == ball)
+            .collect();
+        if rows.is_empty() {
+            let last = self.balls.iter().max().unwrap_or(&0);
+            return Err(anyhow::anyhow!("there is no ball {ball}; balls are 0 to {last}"));
+        }
+        Ok(rows)
+    }
+}
+
+/// Values of a contact at the given rows; an unloaded contact has a force but no angle and no pressure.
+fn values(table: &Table, contact: &Contact, side: &str, rows: &[usize]) -> anyhow::Result<Vec<f64>> {
+    let column = table.column(&format!("{side}_{}", contact.column))?;
+    let force = table.column(&format!("{side}_force_n"))?;
+    let value = |&row: &usize| match force[row] > 0.0 || contact.column == "force_n" {
+        true => column[row] * contact.unit.factor,
+        false => f64::NAN,
+    };
+    Ok(rows.iter().map(value).collect())
+}
+
+/// One equilibrium: both contacts against the azimuth of the balls.
+fn round(table: &Table, rows: &[usize], contact: &Contact) -> anyhow::Result<Named> {
+    let title = format!("{} of the balls", contact.title);
+    let mut figure = Figure::new(title, azimuth_axis(), contact.unit.axis(contact.axis));
+    for side in SIDES {
+        let places = by_azimuth(table, rows, &values(table, contact, side, rows)?)?;
+        figure = figure.series(Series::line_and_marks(format!("{side} contact"), places));
+    }
+    Ok(Named::new(contact.name, figure))
+}
+
+/// A sweep: the inner contacts against the azimuth of the balls, a curve per point.
+fn round_each(results: &Results, table: &Table, steps: &Rows, contact: &Contact) -> anyhow::Result<Named> {
+    let title = format!("{} of the balls at the inner ring", contact.title);
+    let mut figure = Figure::new(title, azimuth_axis(), contact.unit.axis(contact.axis));
+    let against = results.against(table)?;
+    let n = steps.n_steps();
+    for step in 0..n {
+        let rows = steps.of_step(step);
+        let places = by_azimuth(table, &rows, &values(table, contact, "inner", &rows)?)?;
+        let name = against
+            .as_ref()
+            .map_or(String::new(), |(axis, value)| axis.value(value[rows[0]]));
+        let part = step as f64 / (n - 1).max(1) as f64;
+        figure = figure.series(Series::line_and_marks(name, places).shade(part));
+    }
+    Ok(Named::new(format!("{}_round", contact.name), figure))
+}
+
+/// Points in the order of their azimuth from 0 to 360 deg.
+fn by_azimuth(table: &Table, rows: &[usize], values: &[f64]) -> anyhow::Result<Vec<[f64; 2]>> {
+    let azimuth = table.column("azimuth_rad")?;
+    let places = rows
+        .iter()
+        .map(|&row| (azimuth[row] * DEGREE.factor).rem_euclid(360.0));
+    let mut places: Vec<[f64; 2]> = places.zip(values).map(|(x, &y)| [x, y]).collect();
+    places.sort_by(|a, b| a[0].total_cmp(&b[0]));
+    if let Some(&first) = places.first() {
+        // The curve closes.
+        places.push([first[0] + 360.0, first[1]]);
+        places.retain(|place| place[0] <= 360.0 + 1e-9);
+    }
+    Ok(places)
+}
+
+/// Mean over the balls with the band from the smallest to the largest, against time or the swept value.
+fn over_values(results: &Results, table: &Table, steps: &Rows, contact: &Contact) -> anyhow::Result<Named> {
+    let Some((x_axis, x)) = results.against(table)? else {
+        unreachable!("a single step has nothing to be plotted against")
+    };
+    let title = format!("{}, mean and range over the balls", contact.title);
+    let mut figure = Figure::new(title, x_axis, contact.unit.axis(contact.axis));
+    for side in SIDES {
+        let (mut mean, mut band) = (Vec::new(), Vec::new());
+        for step in 0..steps.n_steps() {
+            let rows = steps.of_step(step);
+            let mut loaded = values(table, contact, side, &rows)?;
+            loaded.retain(|v| v.is_finite());
+            let of_all = |f: fn(f64, f64) -> f64| loaded.iter().copied().reduce(f).unwrap_or(f64::NAN);
+            mean.push([x[rows[0]], loaded.iter().sum::<f64>() / loaded.len() as f64]);
+            band.push([of_all(f64::min), of_all(f64::max)]);
+        }
+        let name = format!("{side} contact");
+        let series = match results.steps {
+            Steps::Times => Series::line(name, mean),
+            _ => Series::line_and_marks(name, mean),
+        };
+        figure = figure.series(series.band(band));
+    }
+    let suffix = if results.steps == Steps::Times {
+        "_of_all"
+    } else {
+        ""
+    };
+    Ok(Named::new(format!("{}{suffix}", contact.name), figure))
+}
+
+/// A motion: the contacts of one ball against its azimuth.
+fn way_round(table: &Table, steps: &Rows, contact: &Contact, ball: usize) -> anyhow::Result<Named> {
+    let rows = steps.of_ball(ball)?;
+    let azimuth = table.column("azimuth_rad")?;
+    let title = format!("{} of ball {ball} on its way round", contact.title);
+    let x_axis = Axis::linear(format!("azimuth of ball {ball}"), "deg")
+        .ticks_every(45.0)
+        .tight();
+    let mut figure = Figure::new(title, x_axis, contact.unit.axis(contact.axis));
+    for side in SIDES {
+        let along = rows.iter().zip(values(table, contact, side, &rows)?);
+        let mut line: Vec<[f64; 2]> = Vec::new();
+        for (&row, value) in along {
+            let place = (azimuth[row] * DEGREE.factor).rem_euclid(360.0);
+            if line.last().is_some_and(|last| (last[0] - place).abs() > 180.0) {
+                line.push([f64::NAN; 2]);
+            }
+            line.push([place, value]);
+        }
+        figure = figure.series(Series::line(format!("{side} contact"), line));
+    }
+    Ok(Named::new(contact.name, figure))
+}
+
+/// A motion: displacement of one ball in its meridian plane against time.
+fn displacement(results: &Results, table: &Table, steps: &Rows, ball: usize) -> anyhow::Result<Named> {
+    let rows = steps.of_ball(ball)?;
+    let Some((x_axis, x)) = results.against(table)? else {
+        unreachable!("a motion has times")
+    };
+    let title = format!("Displacement of ball {ball} from the just-touching state");
+    let mut figure = Figure::new(title, x_axis, MICROMETRE.axis("displacement"));
+    let times: Vec<f64> = rows.iter().map(|&row| x[row]).collect();
+    for direction in ["radial", "axial"] {
+        let column = table.column(&format!("displacement_{direction}_m"))?;
+        let values: Vec<f64> = rows.iter().map(|&row| column[row] * MICROMETRE.factor).collect();
+        figure = figure.series(Series::line(direction, points(&times, &values)));
+    }
+    Ok(Named::new("ball_displacement", figure))
+}

@@ -1,0 +1,46 @@
+//! Natural frequencies of a `[modes]` scene.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use anyhow::Context;
+use figure::{Axis, Figure, Series};
+use serde::Deserialize;
+
+use super::Named;
+
+/// A row of `modes.csv`, as far as it is shown.
+#[derive(Deserialize)]
+struct Row {
+    body: String,
+    mode: f64,
+    frequency_hz: f64,
+    bound_hz: f64,
+}
+
+/// Frequencies against the number of the mode, a series per body, with the largest possible error.
+pub fn figures(dir: &Path) -> anyhow::Result<Vec<Named>> {
+    let path = dir.join("modes.csv");
+    if !path.exists() {
+        return Ok(Vec::new());
+    }
+    let mut bodies: BTreeMap<String, Vec<Row>> = BTreeMap::new();
+    let damaged = || format!("{} is damaged", path.display());
+    for row in csv::Reader::from_path(&path).with_context(damaged)?.deserialize() {
+        let row: Row = row.with_context(damaged)?;
+        bodies.entry(row.body.clone()).or_default().push(row);
+    }
+    let axes = (
+        Axis::linear("number of the mode", "1"),
+        Axis::linear("frequency", "kHz").including(0.0),
+    );
+    let mut figure = Figure::new("Natural frequencies", axes.0, axes.1);
+    for (body, rows) in bodies {
+        let place = |row: &Row| [row.mode, 1e-3 * row.frequency_hz];
+        let error =
+            |row: &Row| [row.frequency_hz - row.bound_hz, row.frequency_hz + row.bound_hz].map(|f| 1e-3 * f);
+        let series = Series::marks(body, rows.iter().map(place).collect());
+        figure = figure.series(series.errors(rows.iter().map(error).collect()));
+    }
+    Ok(vec![Named::new("frequencies", figure)])
+}

@@ -1,0 +1,103 @@
+//! The nodes of the raceways in the step files, in coordinates of their grooves.
+//!
+//! A node belongs to a raceway if it lies on its torus. Its azimuth is that in space: the inner ring of a motion is turned
+//! in the step files.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use checkpoint::{Grid, StepRecord};
+use contact::{BearingGeometry, Groove, Side};
+
+use crate::build::geometry;
+use crate::scene::{MeshFiles, Scene};
+
+/// How far a node may lie off the torus, in groove radii: meshes are exact to rounding in their files.
+const ON_TORUS: f64 = 1e-4;
+
+/// A node of a raceway with its stress.
+#[derive(Clone, Copy, Debug)]
+pub struct Node {
+    /// Azimuth in space, deg, 0 to 360.
+    pub azimuth: f64,
+    /// Groove angle, deg, + as contact angles are.
+    pub groove_angle: f64,
+    /// Von Mises stress, Pa.
+    pub von_mises: f64,
+}
+
+/// The grooves of the bearing of a step, inner first.
+pub fn grooves(record: &StepRecord) -> anyhow::Result<[Groove; 2]> {
+    let scene = Scene::parse(
+        &record.scene,
+        Path::new("scene of the step"),
+        &[],
+        MeshFiles::MayBeMissing,
+    )?;
+    let geometry = geometry(&scene);
+    Ok(Side::BOTH.map(|side| groove(&geometry, side)))
+}
+
+fn groove(geometry: &BearingGeometry, side: Side) -> Groove {
+    let [centre_radius, centre_z] = geometry.groove_centre(side);
+    Groove {
+        side,
+        centre_radius,
+        groove_radius: geometry.groove_radius(side),
+        centre_z,
+    }
+}
+
+/// The nodes on a groove with their stress; none if the step has no nodal stress.
+pub fn nodes(grid: &Grid, record: &StepRecord, groove: &Groove) -> Vec<Node> {
+    let Some(von_mises) = &record.points.von_mises else {
+        return Vec::new();
+    };
+    let rows = grid.points.iter().zip(&record.points.displacement).zip(von_mises);
+    rows.filter(|((x, _), _)| on_torus(**x, groove))
+        .map(|((x, u), &von_mises)| {
+            let [_, angle] = groove.coordinates(*x);
+            let azimuth = (x[1] + u[1]).atan2(x[0] + u[0]).to_degrees();
+            Node {
+                azimuth: azimuth.rem_euclid(360.0),
+                groove_angle: angle.to_degrees(),
+                von_mises,
+            }
+        })
+        .collect()
+}
+
+fn on_torus(x: [f64; 3], groove: &Groove) -> bool {
+    let radial = x[0].hypot(x[1]) - groove.centre_radius;
+    let distance = radial.hypot(x[2] - groove.centre_z);
+    let towards_raceway = radial * groove.side.sign() > 0.0;
+    towards_raceway && (distance / groove.groove_radius - 1.0).abs() < ON_TORUS
+}
+
+/// Nodes by their groove angle in rows, each row in the order of its azimuths; the raceways of revolved meshes are such
+/// grids, a free mesh gives rows of few nodes.
+pub fn rows(nodes: &[Node]) -> BTreeMap<i64, Vec<Node>> {
+    let mut rows: BTreeMap<i64, Vec<Node>> = BTreeMap::new();
+    for node in nodes {
+        rows.entry((1e3 * node.groove_angle).round() as i64)
+            .or_default()
+            .push(*node);
+    }
+    for row in rows.values_mut() {
+        row.sort_by(|a, b| a.azimuth.total_cmp(&b.azimuth));
+    }
+    rows
+}
+
+/// Stress at an azimuth from the nodes of a row, linear between neighbours.
+pub fn at_azimuth(row: &[Node], azimuth: f64) -> f64 {
+    let azimuth = azimuth.rem_euclid(360.0);
+    let after = row.partition_point(|node| node.azimuth <= azimuth);
+    let (before, next) = (row[(after + row.len() - 1) % row.len()], row[after % row.len()]);
+    let gap = (next.azimuth - before.azimuth).rem_euclid(360.0);
+    if gap == 0.0 {
+        return before.von_mises;
+    }
+    let part = (azimuth - before.azimuth).rem_euclid(360.0) / gap;
+    before.von_mises + part * (next.von_mises - before.von_mises)
+}

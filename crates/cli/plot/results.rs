@@ -1,0 +1,99 @@
+//! The results of a run as the figures need them.
+
+use std::path::{Path, PathBuf};
+
+use anyhow::anyhow;
+
+use super::quantity::{self, MILLISECOND};
+use super::table::Table;
+use figure::Axis;
+
+/// Tables of a run and what its steps are.
+pub struct Results {
+    /// Folder.
+    pub dir: PathBuf,
+    /// `balls.csv`.
+    pub balls: Option<Table>,
+    /// `shaft.csv`.
+    pub shaft: Option<Table>,
+    /// `energy.csv`.
+    pub energy: Option<Table>,
+    /// `probes.csv`.
+    pub probes: Option<Table>,
+    /// What the steps are.
+    pub steps: Steps,
+}
+
+/// What the steps of a run are.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Steps {
+    /// One equilibrium, or none.
+    Single,
+    /// Equilibria for values of the scene; the column that has them.
+    Sweep(String),
+    /// Instants.
+    Times,
+}
+
+impl Results {
+    /// Reads the tables in `dir`.
+    pub fn read(dir: &Path) -> anyhow::Result<Results> {
+        if !dir.is_dir() {
+            return Err(anyhow!(
+                "{} is no folder; expected the results of a run",
+                dir.display()
+            ));
+        }
+        let [balls, shaft, energy, probes] =
+            ["balls.csv", "shaft.csv", "energy.csv", "probes.csv"].map(|name| Table::read(dir, name));
+        let balls = balls?;
+        Ok(Results {
+            dir: dir.to_path_buf(),
+            steps: balls.as_ref().map_or(Ok(Steps::Single), steps)?,
+            balls,
+            shaft: shaft?,
+            energy: energy?,
+            probes: probes?,
+        })
+    }
+
+    /// What the steps are plotted against: the axis, and its value for each row of `table`; none for a single step.
+    pub fn against(&self, table: &Table) -> anyhow::Result<Option<(Axis, Vec<f64>)>> {
+        match &self.steps {
+            Steps::Single => Ok(None),
+            Steps::Times => {
+                let times = MILLISECOND.of(table.column("time_s")?);
+                Ok(Some((MILLISECOND.axis("time").tight(), times)))
+            }
+            Steps::Sweep(column) => {
+                let (name, unit) = quantity::split(column);
+                let values = unit.of(table.column(column)?);
+                if values.iter().all(|v| v.is_nan()) {
+                    // Words have no place on an axis; the points have their numbers.
+                    let axis = Axis::linear(format!("point of the sweep of {name}"), "1").ticks_every(1.0);
+                    return Ok(Some((axis, table.column("step")?.to_vec())));
+                }
+                Ok(Some((unit.axis(readable(name)), values)))
+            }
+        }
+    }
+}
+
+/// The key of a scene without what a reader can tell from its other parts.
+pub fn readable(key: &str) -> String {
+    let key = key.strip_prefix("effects.").unwrap_or(key);
+    let key = key.strip_suffix(".value").unwrap_or(key);
+    key.replace(['_', '.'], " ")
+}
+
+fn steps(balls: &Table) -> anyhow::Result<Steps> {
+    let third = balls.names().get(2).map_or("", String::as_str);
+    if third != "ball" && third != "azimuth_rad" {
+        return Ok(Steps::Sweep(third.to_string()));
+    }
+    let steps = balls.column("step")?;
+    Ok(match steps.iter().any(|step| *step != steps[0]) {
+        true => Steps::Times,
+        false => Steps::Single,
+    })
+}

@@ -1,0 +1,129 @@
+//! The raceways unrolled: von Mises stress over azimuth and arc of the groove, with the contact ellipses.
+//!
+//! An ellipse is Hertz's, around the contact of its ball: its semi-axis across is an arc of the groove, that along the
+//! raceway an angle about the axis, so it is not distorted.
+
+use std::f64::consts::TAU;
+
+use checkpoint::{all_steps, read_any_step, read_mesh};
+use contact::Groove;
+use figure::{Axis, Figure, Look, Series, Surface};
+
+use super::quantity::{DEGREE, MEGAPASCAL, azimuth_axis};
+use super::raceways::{self, Node};
+use super::table::Table;
+use super::{Choice, Named, Results};
+
+/// Columns and rows of the picture of a raceway.
+const CELLS: [usize; 2] = [240, 24];
+/// Corners of an ellipse.
+const CORNERS: usize = 48;
+
+/// A figure per raceway of the chosen step; none if it has no nodal stress.
+pub fn figures(results: &Results, choice: &Choice) -> anyhow::Result<Vec<Named>> {
+    let Some(balls) = &results.balls else {
+        return Ok(Vec::new());
+    };
+    let Some(step) = choice.step.or(all_steps(&results.dir)?.last().copied()) else {
+        return Ok(Vec::new());
+    };
+    let record = read_any_step(&results.dir, step)?;
+    let grid = read_mesh(&results.dir)?;
+    let mut figures = Vec::new();
+    for groove in raceways::grooves(&record)? {
+        let nodes = raceways::nodes(&grid, &record, &groove);
+        if raceways::rows(&nodes).len() > 1 {
+            figures.push(unrolled(&nodes, &groove, balls, step)?);
+        }
+    }
+    Ok(figures)
+}
+
+fn unrolled(nodes: &[Node], groove: &Groove, balls: &Table, step: u64) -> anyhow::Result<Named> {
+    let side = groove.side.name();
+    let arc = |angle: f64| 1e3 * groove.groove_radius * angle.to_radians();
+    let angles = nodes.iter().map(|node| node.groove_angle);
+    let [low, high] = angles.fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], x| {
+        [a.min(x), b.max(x)]
+    });
+    let [n_x, n_y] = CELLS;
+    let edges = |n: usize, from: f64, to: f64| -> Vec<f64> {
+        (0..=n)
+            .map(|i| from + (to - from) * i as f64 / n as f64)
+            .collect()
+    };
+    let (x_edges, y_edges) = (edges(n_x, 0.0, 360.0), edges(n_y, low, high));
+    let rows: Vec<(f64, Vec<Node>)> = raceways::rows(nodes)
+        .into_iter()
+        .map(|(k, row)| (1e-3 * k as f64, row))
+        .collect();
+    let mut values = Vec::with_capacity(n_x * n_y);
+    for y in y_edges.windows(2) {
+        for x in x_edges.windows(2) {
+            let value = interpolate(&rows, 0.5 * (x[0] + x[1]), 0.5 * (y[0] + y[1]));
+            values.push(value * MEGAPASCAL.factor);
+        }
+    }
+    let value_axis = MEGAPASCAL.axis("von Mises stress").including(0.0);
+    let y_edges = y_edges.into_iter().map(arc).collect();
+    let title = format!("Stress of the {side} raceway with the contact ellipses, step {step}");
+    let y_axis = Axis::linear("arc of the groove from its bottom", "mm").tight();
+    let mut figure = Figure::new(title, azimuth_axis(), y_axis)
+        .surface(Surface::new(value_axis, x_edges, y_edges, values)?)
+        .size(900, 380);
+    for ellipse in ellipses(groove, balls, step)? {
+        figure = figure.series(Series::new("contact ellipse", Look::Outline, ellipse));
+    }
+    Ok(Named::new(format!("raceway_{side}"), figure))
+}
+
+/// Bilinear between rows of groove angle and, in each, between neighbours in azimuth.
+fn interpolate(rows: &[(f64, Vec<Node>)], azimuth: f64, angle: f64) -> f64 {
+    let after = rows
+        .partition_point(|(a, _)| *a <= angle)
+        .clamp(1, rows.len() - 1);
+    let ((low, below), (high, above)) = (&rows[after - 1], &rows[after]);
+    let part = ((angle - low) / (high - low)).clamp(0.0, 1.0);
+    let (a, b) = (
+        raceways::at_azimuth(below, azimuth),
+        raceways::at_azimuth(above, azimuth),
+    );
+    a + part * (b - a)
+}
+
+/// Outlines of the loaded contacts of a step, `[azimuth in deg, arc in mm]`, cut where the picture ends.
+fn ellipses(groove: &Groove, balls: &Table, step: u64) -> anyhow::Result<Vec<Vec<[f64; 2]>>> {
+    let side = groove.side.name();
+    let column = |name: &str| balls.column(&format!("{side}_{name}"));
+    let (force, angle) = (column("force_n")?, column("contact_angle_rad")?);
+    let (along, across) = (column("semi_axis_rolling_m")?, column("semi_axis_groove_m")?);
+    let (steps, azimuth) = (balls.column("step")?, balls.column("azimuth_rad")?);
+    let loaded = (0..balls.n_rows()).filter(|&row| steps[row] == step as f64 && force[row] > 0.0);
+    let outline = |row: usize| {
+        let half_width = along[row] / groove.radius(angle[row]) * DEGREE.factor;
+        let middle = (azimuth[row] * DEGREE.factor).rem_euclid(360.0);
+        let corner = |i: usize| {
+            let t = TAU * i as f64 / CORNERS as f64;
+            let arc = groove.groove_radius * angle[row] + across[row] * t.sin();
+            [middle + half_width * t.cos(), 1e3 * arc]
+        };
+        let inside = |p: [f64; 2]| {
+            if (0.0..=360.0).contains(&p[0]) {
+                p
+            } else {
+                [f64::NAN; 2]
+            }
+        };
+        // At the ends of the picture both halves are drawn.
+        [-360.0, 0.0, 360.0].map(|turn| {
+            (0..=CORNERS)
+                .map(corner)
+                .map(|[x, y]| inside([x + turn, y]))
+                .collect::<Vec<_>>()
+        })
+    };
+    let drawn = loaded
+        .flat_map(outline)
+        .filter(|line| line.iter().any(|p| p[0].is_finite()));
+    Ok(drawn.collect())
+}

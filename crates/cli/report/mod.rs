@@ -1,0 +1,46 @@
+//! `raceway report`: one HTML page of a finished run that needs no other file: what was run, what came out, what it cost and
+//! what a reader should know before believing it.
+
+mod numbers;
+mod page;
+mod source;
+
+use std::path::PathBuf;
+
+use anyhow::Context;
+use clap::Args;
+
+use crate::failure::Failure;
+use crate::plot::{self, Choice, Results};
+use crate::print;
+
+/// What the command line asks for.
+#[derive(Debug, Args)]
+pub struct Report {
+    /// Folder of the results.
+    dir: PathBuf,
+    /// File of the page; default: report.html in the folder of the results. It is replaced.
+    #[arg(long)]
+    out: Option<PathBuf>,
+    #[command(flatten)]
+    choice: Choice,
+}
+
+/// Writes the page of a run.
+pub fn report(request: &Report) -> Result<(), Failure> {
+    let source = source::read(&request.dir)?;
+    let figures = plot::figures(&request.dir, &request.choice)?;
+    let numbers = numbers::numbers(&Results::read(&request.dir)?)?;
+    let pictures = figures
+        .iter()
+        .map(|named| Ok((named.name.clone(), named.figure.svg()?)))
+        .collect::<Result<Vec<_>, Failure>>()?;
+    let page = page::page(&source, &numbers, &pictures);
+    let path = request
+        .out
+        .clone()
+        .unwrap_or_else(|| request.dir.join("report.html"));
+    std::fs::write(&path, page).with_context(|| format!("cannot write {}", path.display()))?;
+    print::line(format_args!("report: {}", path.display()));
+    Ok(())
+}

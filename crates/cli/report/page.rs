@@ -1,0 +1,264 @@
+//! The page itself: every text of the run is escaped, nothing is loaded from elsewhere.
+
+use html_escape::{encode_double_quoted_attribute, encode_text};
+use serde_json::Value;
+
+use super::numbers::Number;
+use super::source::Source;
+
+const STYLE: &str = include_str!("style.css");
+
+/// The HTML of a run. Pictures are names and SVG documents.
+pub fn page(source: &Source, numbers: &[Number], pictures: &[(String, String)]) -> String {
+    let summary = &source.summary;
+    let title = text(summary, "title");
+    let title = encode_text(&title);
+    let parts = [
+        format!("<h1>{title}</h1>"),
+        about(summary),
+        warnings(summary),
+        key_numbers(numbers),
+        figures(pictures),
+        energy(summary),
+        cost(summary, &source.files),
+        scene(source.scene.as_deref()),
+    ];
+    format!(
+        "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
+         <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>{title}</title>\n\
+         <style>\n{STYLE}</style>\n</head>\n<body>\n{}\n</body>\n</html>\n",
+        parts.join("\n")
+    )
+}
+
+/// What was run, by which program, and how it ended.
+fn about(summary: &Value) -> String {
+    let effects = list(summary, "effects").join(", ").replace('_', " ");
+    let rows = [
+        ("status", text(summary, "status")),
+        ("scene file", text(summary, "scene")),
+        ("analysis", text(summary, "analysis").replace('_', " ")),
+        ("contact mode", text(summary, "contact_mode")),
+        (
+            "effects",
+            if effects.is_empty() {
+                "none".into()
+            } else {
+                effects
+            },
+        ),
+        ("program", format!("raceway {}", text(summary, "version"))),
+    ];
+    let rows = rows.iter().filter(|(_, value)| !value.is_empty());
+    let rows = rows.map(|(name, value)| row(name, std::slice::from_ref(value), Cells::Text));
+    table("about", None, rows)
+}
+
+fn warnings(summary: &Value) -> String {
+    let warnings = list(summary, "warnings");
+    let items: Vec<String> = warnings
+        .iter()
+        .map(|w| format!("<li>{}</li>", encode_text(w)))
+        .collect();
+    match items.is_empty() {
+        true => "<h2>Warnings</h2>\n<p>None.</p>".into(),
+        false => format!(
+            "<h2>Warnings</h2>\n<ul class=\"warnings\">\n{}\n</ul>",
+            items.join("\n")
+        ),
+    }
+}
+
+fn key_numbers(numbers: &[Number]) -> String {
+    if numbers.is_empty() {
+        return "<h2>Key numbers</h2>\n<p>The run has no tables of balls or shaft.</p>".into();
+    }
+    let rows = numbers.iter().map(|n| {
+        let rms = n.rms.map_or(String::new(), digits);
+        let cells = [
+            digits(n.smallest),
+            digits(n.mean),
+            digits(n.largest),
+            rms,
+            n.unit.to_string(),
+        ];
+        row(&n.name, &cells, Cells::Numbers)
+    });
+    let head = [
+        "quantity",
+        "smallest",
+        "mean",
+        "largest",
+        "RMS about the mean",
+        "unit",
+    ];
+    format!(
+        "<h2>Key numbers</h2>\n<div class=\"wide\">{}</div>\n<p class=\"note\">Over all balls and all steps of the tables; \
+         the root mean square is that over time, of single quantities of a motion. Peak pressures are Hertz's.</p>",
+        table("numbers", Some(&head), rows)
+    )
+}
+
+fn figures(pictures: &[(String, String)]) -> String {
+    let figure = |(name, svg): &(String, String)| {
+        let name = name.replace('_', " ");
+        format!(
+            "<figure aria-label=\"{}\">\n{svg}</figure>",
+            encode_double_quoted_attribute(&name)
+        )
+    };
+    let figures: Vec<String> = pictures.iter().map(figure).collect();
+    format!(
+        "<h2>Figures</h2>\n<div class=\"figures\">\n{}\n</div>",
+        figures.join("\n")
+    )
+}
+
+/// The energies of the end of the run.
+fn energy(summary: &Value) -> String {
+    let Some(Value::Object(terms)) = summary.get("energy_j") else {
+        return String::new();
+    };
+    let rows = terms.iter().filter_map(|(name, value)| {
+        let millijoule = digits(1e3 * value.as_f64()?);
+        Some(row(&name.replace('_', " "), &[millijoule], Cells::Numbers))
+    });
+    format!(
+        "<h2>Energy at the end</h2>\n{}",
+        table("numbers", Some(&["term", "mJ"]), rows)
+    )
+}
+
+/// Time by part, memory, files.
+fn cost(summary: &Value, files: &[(String, u64)]) -> String {
+    let mut parts = vec!["<h2>Cost</h2>".to_string()];
+    if let Some(timing) = summary.get("timing_s").and_then(Value::as_object) {
+        let total = timing.get("total").and_then(Value::as_f64).unwrap_or(0.0);
+        let rows = timing.iter().filter_map(|(name, value)| {
+            let seconds = value.as_f64()?;
+            let share = if total > 0.0 { 100.0 * seconds / total } else { 0.0 };
+            let cells = [format!("{seconds:.3}"), format!("{share:.1} %")];
+            Some(row(&name.replace('_', " "), &cells, Cells::Numbers))
+        });
+        parts.push(table("numbers", Some(&["part", "s", "share"]), rows));
+        parts.push(
+            "<p class=\"note\">Parts that run at the same time may add up to more than the total.</p>".into(),
+        );
+    }
+    if let Some(bytes) = summary.get("peak_memory_bytes").and_then(Value::as_f64) {
+        parts.push(format!("<p>Peak memory: {}.</p>", megabytes(bytes)));
+    }
+    let rows = files
+        .iter()
+        .map(|(name, bytes)| row(name, &[megabytes(*bytes as f64)], Cells::Numbers));
+    parts.push(table("numbers", Some(&["file", "size"]), rows));
+    parts.join("\n")
+}
+
+fn scene(scene: Option<&str>) -> String {
+    let pre = |text: &str| format!("<h2>Scene</h2>\n<pre class=\"scene\">{}</pre>", encode_text(text));
+    scene.map_or(String::new(), pre)
+}
+
+/// What the cells of a row hold.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Cells {
+    Text,
+    Numbers,
+}
+
+fn row(name: &str, cells: &[String], kind: Cells) -> String {
+    let class = if kind == Cells::Numbers {
+        " class=\"number\""
+    } else {
+        ""
+    };
+    let cells: Vec<String> = cells
+        .iter()
+        .map(|c| format!("<td{class}>{}</td>", encode_text(c)))
+        .collect();
+    format!("<tr><th>{}</th>{}</tr>", encode_text(name), cells.concat())
+}
+
+fn table(class: &str, head: Option<&[&str]>, rows: impl Iterator<Item = String>) -> String {
+    let head = head.map_or(String::new(), |names| {
+        let cells: Vec<String> = names.iter().map(|name| format!("<th>{name}</th>")).collect();
+        format!("<tr>{}</tr>\n", cells.concat())
+    });
+    let rows: Vec<String> = rows.collect();
+    format!("<table class=\"{class}\">\n{head}{}\n</table>", rows.join("\n"))
+}
+
+fn text(summary: &Value, key: &str) -> String {
+    summary
+        .get(key)
+        .and_then(Value::as_str)
+        .unwrap_or_default()
+        .to_string()
+}
+
+fn list(summary: &Value, key: &str) -> Vec<String> {
+    let items = summary.get(key).and_then(Value::as_array).into_iter().flatten();
+    items
+        .filter_map(|item| item.as_str().map(str::to_string))
+        .collect()
+}
+
+/// Five digits, plain where that is short.
+fn digits(value: f64) -> String {
+    match value.abs() {
+        0.0 => "0".into(),
+        size if (1e-3..1e6).contains(&size) => {
+            let decimals = (4 - size.log10().floor() as i32).clamp(0, 7) as usize;
+            format!("{value:.decimals$}")
+        }
+        _ => format!("{value:.4e}"),
+    }
+}
+
+fn megabytes(bytes: f64) -> String {
+    match bytes {
+        b if b >= 1e6 => format!("{:.1} MB", b / 1e6),
+        b => format!("{:.1} kB", b / 1e3),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Wrong: numbers would carry too few digits, or more than anyone reads.
+    #[test]
+    fn numbers_have_five_digits() {
+        let pairs = [
+            (331.783_2, "331.78"),
+            (0.0, "0"),
+            (-0.012_345_6, "-0.012346"),
+            (1.23456e-9, "1.2346e-9"),
+            (12345.6, "12346"),
+        ];
+        for (value, text) in pairs {
+            assert_eq!(digits(value), text);
+        }
+    }
+
+    /// Wrong: a title with signs of HTML would break the page.
+    #[test]
+    fn texts_are_escaped() {
+        let summary = serde_json::json!({ "title": "a < b & <script>", "warnings": ["x > y"] });
+        let source = Source {
+            summary,
+            scene: Some("# <pre>".into()),
+            files: vec![],
+        };
+        let page = page(&source, &[], &[]);
+        assert!(
+            page.contains("a &lt; b &amp; &lt;script&gt;") && !page.contains("<script>"),
+            "{page}"
+        );
+        assert!(
+            page.contains("x &gt; y") && page.contains("# &lt;pre&gt;"),
+            "{page}"
+        );
+    }
+}

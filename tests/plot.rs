@@ -1,0 +1,167 @@
+//! Figures of a run through the whole program: which there are, that they show the numbers of the tables, and that they can
+//! be read.
+
+use std::sync::OnceLock;
+
+use crate::util::tables::Table;
+use crate::util::{Dir, Files, RIGID, assert_within, with_line};
+
+const SWEEP: &str = "[sweep]\nkey = \"effects.radial_force.value\"\nvalues = [\"0 kN\", \"1 kN\"]";
+const MOTION: &str = "[dynamic]\nduration = \"0.2 ms\"\nstep = \"20 us\"\noutput_every = 5\n\n[speed]\ninner = \"1800 rpm\"\n\n\
+                      [probes.node.p]\nring = \"outer\"\nazimuth = \"0 deg\"\ngroove_angle = \"15 deg\"\n\n\
+                      [probes.contact.c]\nball = 0\nring = \"inner\"";
+
+/// Folders `sweep` and `motion` on the coarse meshes, with their figures; solved once for all tests.
+pub fn plotted() -> Dir {
+    static FILES: OnceLock<Files> = OnceLock::new();
+    Dir::with_files(FILES.get_or_init(|| {
+        let dir = Dir::with_meshes();
+        for (out, analysis) in [("sweep", SWEEP), ("motion", MOTION)] {
+            dir.write("scene.toml", with_line("[static]", "[static]", analysis));
+            dir.run(out, &[]);
+            let outcome = dir.raceway(&["plot", out]);
+            assert_eq!(outcome.code, Some(0), "{}", outcome.stderr);
+        }
+        dir.snapshot()
+    }))
+}
+
+/// Names of the files with an ending in a folder, without the ending.
+fn names(dir: &Dir, folder: &str, ending: &str) -> Vec<String> {
+    let below = dir.snapshot().into_keys().map(|path| path.display().to_string());
+    below
+        .filter_map(|path| Some(path.strip_prefix(folder)?.strip_suffix(ending)?.to_string()))
+        .collect()
+}
+
+/// Wrong: a user would miss a figure of what the run computed.
+#[test]
+fn every_run_has_the_figures_of_its_kind() {
+    let dir = plotted();
+    let of_sweep = [
+        "ball_force",
+        "ball_force_round",
+        "contact_angle",
+        "contact_angle_round",
+        "peak_pressure",
+        "peak_pressure_round",
+        "raceway_inner",
+        "raceway_outer",
+        "section_inner",
+        "section_outer",
+        "shaft_displacement",
+    ];
+    let of_motion = [
+        "ball_displacement",
+        "ball_force",
+        "ball_force_of_all",
+        "contact_angle",
+        "contact_angle_of_all",
+        "energy_defect",
+        "energy_ledger",
+        "peak_pressure",
+        "peak_pressure_of_all",
+        "probe_c_force",
+        "probe_c_moment",
+        "probe_p_displacement",
+        "probe_p_stress",
+        "raceway_inner",
+        "raceway_outer",
+        "section_inner",
+        "section_outer",
+        "shaft_displacement",
+    ];
+    for (folder, expected) in [
+        ("sweep/figures/", &of_sweep[..]),
+        ("motion/figures/", &of_motion[..]),
+    ] {
+        for ending in [".svg", ".png"] {
+            assert_eq!(names(&dir, folder, ending), expected, "{folder} {ending}");
+        }
+    }
+}
+
+/// Wrong: a label would lie on another or be cut off, or an axis would not tell its unit.
+#[test]
+fn figures_of_runs_can_be_read() {
+    let dir = plotted();
+    for folder in ["sweep/figures/", "motion/figures/"] {
+        for name in names(&dir, folder, ".svg") {
+            let svg = dir.text(&format!("{folder}{name}.svg"));
+            assert_eq!(figure::clashes(&svg).unwrap(), Vec::<String>::new(), "{name}");
+            let units = svg.lines().filter(|line| line.trim_end().ends_with(')')).count();
+            let axes = if name.starts_with("raceway_") { 3 } else { 2 };
+            assert!(units >= axes, "{name}: {units} of {axes} axes have a unit");
+            assert!(svg.len() < 400_000, "{name}: {} bytes", svg.len());
+        }
+    }
+}
+
+/// Wrong: the figure would show other numbers than the table.
+#[test]
+fn a_figure_shows_the_numbers_of_the_table() {
+    let dir = Dir::with_scene(crate::util::SCENE);
+    dir.run("out", &RIGID);
+    assert_eq!(dir.raceway(&["plot", "out", "--out", "pictures"]).code, Some(0));
+    let svg = dir.text("pictures/ball_force.svg");
+    let attribute = |line: &str, name: &str| -> Option<f64> {
+        let (_, rest) = line.split_once(&format!("{name}=\""))?;
+        rest.split('"').next()?.parse().ok()
+    };
+    // The first series has circles; the first circle after them is the sample in the legend.
+    let circles = svg.lines().filter(|line| line.starts_with("<circle"));
+    let places: Vec<[f64; 2]> = circles
+        .filter_map(|line| Some([attribute(line, "cx")?, attribute(line, "cy")?]))
+        .collect();
+    let table = Table::read(&dir, "out/balls.csv");
+    let (azimuth, force) = (table.column("azimuth_rad"), table.column("inner_force_n"));
+    assert_eq!(
+        places.len(),
+        force.len() + 2,
+        "balls, the first again at 360 deg, and the legend"
+    );
+    let y_scale = (places[9][1] - places[0][1]) / (force[9] - force[0]);
+    let x_scale = (places[9][0] - places[0][0]) / (azimuth[9] - azimuth[0]);
+    assert!(y_scale < 0.0 && x_scale > 0.0, "{x_scale} {y_scale}");
+    for i in 0..force.len() {
+        // Places are whole tenths of a pixel.
+        assert_within(
+            "force",
+            places[i][1],
+            places[0][1] + y_scale * (force[i] - force[0]),
+            1.5,
+        );
+        assert_within(
+            "azimuth",
+            places[i][0],
+            places[0][0] + x_scale * (azimuth[i] - azimuth[0]),
+            1.5,
+        );
+    }
+}
+
+/// Wrong: a wrong folder, ball or step would end in a crash or an empty picture.
+#[test]
+fn what_cannot_be_plotted_is_said() {
+    let dir = plotted();
+    std::fs::create_dir(dir.path("empty")).unwrap();
+    let refused = |arguments: &[&str], expected: &str| {
+        let outcome = dir.raceway(&[&["plot"], arguments].concat());
+        assert_eq!(outcome.code, Some(2), "{arguments:?}");
+        assert!(
+            outcome.stderr.contains(expected),
+            "{arguments:?}: {}",
+            outcome.stderr
+        );
+    };
+    refused(
+        &["nowhere"],
+        "nowhere is no folder; expected the results of a run",
+    );
+    refused(&["empty"], "empty has nothing to plot");
+    refused(
+        &["motion", "--ball", "40"],
+        "there is no ball 40; balls are 0 to 17",
+    );
+    refused(&["sweep", "--step", "7"], "7");
+}
