@@ -192,6 +192,7 @@ fn ring(
         hold,
         held_group,
         groove,
+        sectors: Default::default(),
     };
     Ok(Some((ring, origin.node_tags)))
 }

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use contact::Side;
-use dynamics::{Model, RingMemory, forecast_peak, ring};
+use dynamics::{Model, Prepared, RingMemory, forecast_peak};
 
 use crate::build::build_model;
 use crate::failure::Failure;
@@ -138,7 +138,8 @@ fn print_ring(model: &Model, side: Side) -> Result<Option<RingMemory>, Failure> 
         return Ok(None);
     };
     let mesh = &ring.mesh;
-    let (memory, symbolic) = ring::forecast(side, ring, model.geometry.n_balls).map_err(Failure::solving)?;
+    let prepared = Prepared::new(model, side, ring).map_err(Failure::solving)?;
+    let memory = prepared.memory;
     print::line(format_args!(
         "{}    {} {}, {} nodes, {} dofs; Hertz stiffness {stiffness:.4e} N/mm^1.5; factor {:.1} MB, {:.2e} flops, \
          peak {:.1} MB",
@@ -147,13 +148,13 @@ fn print_ring(model: &Model, side: Side) -> Result<Option<RingMemory>, Failure> 
         mesh.kind.name(),
         mesh.n_nodes(),
         mesh.n_dofs(),
-        symbolic.factor_bytes() as f64 / 1e6,
-        symbolic.flops(),
+        prepared.factor_bytes() as f64 / 1e6,
+        prepared.flops(),
         (memory.mesh + memory.making()) as f64 / 1e6
     ));
     print::line(format_args!(
         "         {}",
-        match mesh::find_periodicity(mesh, mesh::PERIODIC_TOLERANCE) {
+        match ring.periodicity() {
             Ok(periodicity) => format!(
                 "rotationally periodic, {} equal sectors, to {:.1e} m",
                 periodicity.n_sectors(),

@@ -8,18 +8,18 @@
 use contact::quadrature::PressureRule;
 use contact::{RacewaySurface, Side};
 use mesh::Mesh;
-use sprs::CsMat;
 
 use super::coordinates::Coordinates;
-use super::effective::{Effective, Factored};
+use super::effective::{Effective, Factored, prepare};
 use super::integrator::Integrator;
+use super::matrices::RingMatrices;
 use super::ring::RingState;
 use crate::effects::FrameTurn;
 use crate::error::DynamicsError;
 use crate::inventory::Inventory;
 use crate::model::{Backend, Hold, RACEWAY_GROUP, RingModel};
 use crate::solution::dot;
-use crate::sparse::{SparseLoad, kronecker, node_product, product};
+use crate::sparse::SparseLoad;
 use crate::support::mean_motion;
 
 /// A ring's matrices, raceway and mount.
@@ -34,8 +34,7 @@ pub struct RingBody {
     pub mount: Vec<SparseLoad>,
     /// `inner` or `outer`.
     pub name: &'static str,
-    pub(super) stiffness: CsMat<f64>,
-    node_mass: CsMat<f64>,
+    pub(super) matrices: RingMatrices,
     /// Node positions, m, `[n_nodes][3]` flat.
     positions: Vec<f64>,
     /// Rayleigh damping: C = damping[0] M + damping[1] K.
@@ -51,17 +50,9 @@ impl RingBody {
         damping: [f64; 2],
         backend: Backend,
     ) -> Result<RingBody, DynamicsError> {
-        let fem_error = |source| DynamicsError::Fem {
-            side: side.name(),
-            source,
-        };
         let mesh = &ring.mesh;
         let (coordinates, mount) = hold(mesh, side, ring);
-        let stiffness =
-            coordinates.reduce_matrix(&fem::assemble_stiffness(mesh, &ring.material).map_err(fem_error)?);
-        let pattern = fem::Pattern::new(mesh).map_err(fem_error)?;
-        let node_mass = fem::assemble_node_mass(&pattern, mesh, &ring.material).map_err(fem_error)?;
-        let effective = Effective::new(ring, side.name(), backend, &coordinates, (&stiffness, &node_mass))?;
+        let (matrices, effective) = prepare(ring, side.name(), backend, &coordinates)?;
         Ok(RingBody {
             surface: RacewaySurface::new(mesh, mesh.group(RACEWAY_GROUP), ring.groove),
             rule: PressureRule::new(),
@@ -69,8 +60,7 @@ impl RingBody {
             name: side.name(),
             coordinates,
             mount,
-            stiffness,
-            node_mass,
+            matrices,
             damping,
             effective,
         })
@@ -80,19 +70,16 @@ impl RingBody {
     pub fn factor(&self, integrator: Integrator, dt: f64) -> Result<Factored, DynamicsError> {
         let [m, c, k] = integrator.effective(dt);
         let (cm, ck) = (m + c * self.damping[0], k + c * self.damping[1]);
-        let factored = match &self.effective {
-            Effective::Sparse(symbolic, _) => {
-                let mass = self.coordinates.reduce_matrix(&kronecker(&self.node_mass));
-                let effective = &mass.map(|x| cm * x) + &self.stiffness.map(|x| ck * x);
-                drop(mass);
-                symbolic.factor(&effective).map(|factor| Factored {
-                    solver: Box::new(factor),
-                    table: None,
-                })
-            }
-            Effective::Cyclic(sectors) => {
+        let factored = match (&self.effective, &self.matrices) {
+            (Effective::Sparse(symbolic, _), RingMatrices::Sparse(matrices)) => matrices
+                .factor(symbolic, &self.coordinates, [cm, ck])
+                .map(|solver| Factored { solver, table: None }),
+            (Effective::Cyclic(sectors), _) => {
                 let [border, corner] = self.border([cm, ck]);
                 sectors.factor([cm, ck], &border, &corner)
+            }
+            (Effective::Sparse(..), RingMatrices::Sectors { .. }) => {
+                unreachable!("a sparse factor comes with sparse matrices")
             }
         };
         factored.map_err(|source| DynamicsError::Solver {
@@ -109,8 +96,8 @@ impl RingBody {
         for k in n_free..n {
             let mut unit = vec![0.0; n];
             unit[k] = 1.0;
-            let (m, k) = (self.mass_product(&unit), product(&self.stiffness, &unit));
-            let column: Vec<f64> = m.iter().zip(&k).map(|(m, k)| cm * m + ck * k).collect();
+            let [m, k] = [cm, ck].map(|c| unit.iter().map(|x| c * x).collect::<Vec<f64>>());
+            let column = self.matrices.sum_of_products(&self.coordinates, &m, &k);
             border.extend_from_slice(&column[..n_free]);
             corner.extend_from_slice(&column[n_free..]);
         }
@@ -136,22 +123,24 @@ impl RingBody {
     pub fn inventory(&self) -> Inventory {
         Inventory {
             dofs: self.coordinates.n(),
-            matrices: [&self.stiffness, &self.node_mass].len(),
+            // K and M, whole or of one sector.
+            matrices: 2,
         }
     }
 
     /// M x of coordinates, `[n]`.
     pub fn mass_product(&self, x: &[f64]) -> Vec<f64> {
-        let nodal = node_product(&self.node_mass, &self.coordinates.expand(x));
-        self.coordinates.reduce(&nodal)
+        self.matrices.mass_product(&self.coordinates, x)
+    }
+
+    /// K x of coordinates, `[n]`.
+    pub fn stiffness_product(&self, x: &[f64]) -> Vec<f64> {
+        self.matrices.stiffness_product(&self.coordinates, x)
     }
 
     /// Kinetic and strain energy, J.
     pub fn energies(&self, state: &RingState) -> [f64; 2] {
-        [
-            0.5 * dot(&state.v, &self.mass_product(&state.v)),
-            0.5 * dot(&state.w, &product(&self.stiffness, &state.w)),
-        ]
+        self.matrices.energies(&self.coordinates, &state.v, &state.w)
     }
 
     /// Generalised inertia load of the turning frame at displacement `w` and velocity `v` of the coordinates.
@@ -165,13 +154,15 @@ impl RingBody {
             f[0] = speed * speed * x + 2.0 * speed * vy + acceleration * y;
             f[1] = speed * speed * y - 2.0 * speed * vx - acceleration * x;
         }
-        self.coordinates.reduce(&node_product(&self.node_mass, &field))
+        self.coordinates.reduce(&self.matrices.nodal_mass_product(&field))
     }
 
     /// Linear momentum, kg m/s, and moment of momentum about the point z = 0 of the mesh's axis, kg m^2/s, at the
     /// undeformed places of the nodes.
     pub fn momentum(&self, state: &RingState) -> [[f64; 3]; 2] {
-        let p = node_product(&self.node_mass, &self.coordinates.expand(&state.v));
+        let p = self
+            .matrices
+            .nodal_mass_product(&self.coordinates.expand(&state.v));
         let mut sums = [[0.0; 3]; 2];
         for (x, p) in self.positions.chunks_exact(3).zip(p.chunks_exact(3)) {
             for i in 0..3 {
@@ -193,7 +184,7 @@ impl RingBody {
             loss += am * dot(&change, &self.mass_product(&v));
         }
         if ak != 0.0 {
-            loss += ak * dot(&change, &product(&self.stiffness, &v));
+            loss += ak * dot(&change, &self.stiffness_product(&v));
         }
         loss
     }
@@ -209,7 +200,7 @@ impl RingBody {
         let v = weighted(0.5, &old.v, &new.v);
         let gain = difference(&old.v, &new.v);
         dot(&change, &self.mass_product(&a)) - dot(&v, &self.mass_product(&gain))
-            + (0.5 - integrator.alpha_f) * dot(&change, &product(&self.stiffness, &change))
+            + (0.5 - integrator.alpha_f) * dot(&change, &self.stiffness_product(&change))
     }
 }
 

@@ -21,6 +21,7 @@ mod finish;
 pub mod frame;
 pub mod integrator;
 pub mod ledger;
+pub mod matrices;
 pub mod newton;
 mod place;
 pub mod report;

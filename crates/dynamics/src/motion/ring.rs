@@ -14,7 +14,7 @@ use super::body::RingBody;
 use super::effective::Factored;
 use super::integrator::Integrator;
 use crate::error::DynamicsError;
-use crate::sparse::{SparseLoad, product, sparse_dot};
+use crate::sparse::{SparseLoad, sparse_dot};
 
 /// The factor of one ring at one step size.
 pub struct RingFactor {
@@ -257,8 +257,11 @@ impl RingFactor {
             .zip(state.v.iter().zip(&state.a).map(combine(c_stiff)))
             .map(|(w, c)| c - w)
             .collect();
-        let (m, k) = (body.mass_product(&inertial), product(&body.stiffness, &elastic));
-        load.iter().zip(&m).zip(&k).map(|((f, m), k)| f + m + k).collect()
+        let mut side = body
+            .matrices
+            .sum_of_products(&body.coordinates, &inertial, &elastic);
+        side.iter_mut().zip(load).for_each(|(side, f)| *side += f);
+        side
     }
 
     /// Adds a generalised load to the step; one solve.
