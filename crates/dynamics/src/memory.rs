@@ -18,7 +18,8 @@
 //! rings the forecast is high by as much, a few per cent.
 //!
 //! A periodic ring of n nodes has no matrix: its harmonics' factor takes F bytes, its sites, order and directions 152 n, a
-//! block of 8 columns 77 n each (loads, right-hand sides, harmonics). What its results take fits into what the columns left.
+//! block of 8 columns 77 n each (loads, right-hand sides, harmonics), each coupling of its sector 600 (blocks of K, M, stress).
+//! What its results take fits into what the columns left.
 //!
 //! The threads need not be in step, and the measured peak is then lower, down to that of one thread.
 
@@ -35,7 +36,10 @@ const ENTRY_BYTES: usize = 16;
 const PERIODICITY_BYTES: usize = 152;
 
 /// Buffers of a periodic ring that do not grow with it, bytes, measured.
-const SMALL_BYTES: usize = 2_500_000;
+const SMALL_BYTES: usize = 1_500_000;
+
+/// Blocks and lists of a sector's couplings: stiffness, mass and stress, whole and held, bytes per coupling.
+const COUPLING_BYTES: usize = 600;
 
 /// What the search for periodicity holds beside the mesh, bytes per node.
 const SEARCH_BYTES: usize = 250;
@@ -77,9 +81,9 @@ impl RingMemory {
         }
     }
 
-    /// Forecast for a periodic ring whose harmonics' factor takes `factor` bytes and solves blocks of `block` columns: see
-    /// the module.
-    pub fn cyclic(mesh: &Mesh, factor: usize, block: usize) -> RingMemory {
+    /// Forecast for a periodic ring of `n_couplings` couplings per sector, whose harmonics' factor takes `factor` bytes and
+    /// solves blocks of `block` columns: see the module.
+    pub fn cyclic(mesh: &Mesh, n_couplings: usize, factor: usize, block: usize) -> RingMemory {
         let (n, list) = (mesh.n_nodes(), 8 * mesh.connectivity.len());
         let kept = factor + PERIODICITY_BYTES * n;
         RingMemory {
@@ -88,7 +92,7 @@ impl RingMemory {
             factorisation: kept,
             kept,
             columns: kept + 77 * n * block,
-            results: SMALL_BYTES,
+            results: SMALL_BYTES + COUPLING_BYTES * n_couplings,
         }
     }
 

@@ -47,7 +47,12 @@ impl Prepared {
                 let sectors = &held.sectors;
                 let symmetry = sectors.ring.symmetry(&sectors.stiffness);
                 return Ok(Prepared {
-                    memory: RingMemory::cyclic(mesh, sectors.ring.factor_bytes(symmetry), CYCLIC_BLOCK),
+                    memory: RingMemory::cyclic(
+                        mesh,
+                        sectors.stiffness.n_couplings(),
+                        sectors.ring.factor_bytes(symmetry),
+                        CYCLIC_BLOCK,
+                    ),
                     support: Support::unfixed(mesh, ring.hold, weights),
                     matrix: Matrix::Cyclic(Box::new(held), symmetry),
                 });

@@ -46,7 +46,7 @@ pub use bordered::Bordered;
 pub use cholesky::SparseCholesky;
 pub use cyclic::{
     Coupling, CyclicBordered, CyclicCholesky, CyclicMatrix, CyclicRing, CyclicStencil, NodalLoad, Patch,
-    ResponseTable, Symmetry,
+    ResponseTable, SectionPart, Symmetry,
 };
 pub use dense::{DenseCholesky, DenseLu};
 pub use dense_eigen::{dense_lowest, symmetric_eigen};

@@ -73,10 +73,13 @@ impl RingBody {
         let factored = match (&self.effective, &self.matrices) {
             (Effective::Sparse(symbolic, _), RingMatrices::Sparse(matrices)) => matrices
                 .factor(symbolic, &self.coordinates, [cm, ck])
-                .map(|solver| Factored { solver, table: None }),
+                .map(Factored::Sparse),
             (Effective::Cyclic(sectors), _) => {
                 let [border, corner] = self.border([cm, ck]);
-                sectors.factor([cm, ck], &border, &corner)
+                let n_free = self.coordinates.free().len();
+                let mounted = self.mount.iter().flatten().map(|&(i, _)| i);
+                let nodes = mounted.filter(|&i| i < n_free).map(|i| i / 3);
+                sectors.factor([cm, ck], &border, &corner, nodes)
             }
             (Effective::Sparse(..), RingMatrices::Sectors { .. }) => {
                 unreachable!("a sparse factor comes with sparse matrices")

@@ -6,7 +6,7 @@
 
 use mesh::Mesh;
 use solver::cyclic::{CyclicBordered, ResponseTable};
-use solver::{LinearSolver, SolverError, Symbolic};
+use solver::{LinearSolver, SectionPart, SolverError, Symbolic};
 
 use super::coordinates::Coordinates;
 use super::matrices::{RingMatrices, SparseMatrices};
@@ -23,11 +23,39 @@ pub enum Effective {
 }
 
 /// A factored effective matrix.
-pub struct Factored {
+pub enum Factored {
     /// Solves S x = b.
-    pub solver: Box<dyn LinearSolver>,
-    /// Responses of all raceway nodes under S without its border, when the ring is periodic: contacts then need no columns.
-    pub table: Option<ResponseTable>,
+    Sparse(Box<dyn LinearSolver>),
+    /// Harmonics of a periodic ring.
+    Cyclic(Box<CyclicFactor>),
+}
+
+/// Harmonics of a periodic ring under S.
+pub struct CyclicFactor {
+    /// The factor with the border of the shaft's dofs, if any.
+    pub solver: CyclicBordered,
+    /// Responses of all raceway nodes under S without its border: contacts need no columns.
+    pub table: ResponseTable,
+    /// Nodes that contacts and partner load and measure.
+    pub touched: SectionPart,
+}
+
+impl Factored {
+    /// The solver of nodal vectors.
+    pub fn solver(&self) -> &dyn LinearSolver {
+        match self {
+            Factored::Sparse(solver) => &**solver,
+            Factored::Cyclic(factor) => &factor.solver,
+        }
+    }
+
+    /// Bytes of the factor and of the table.
+    pub fn bytes(&self) -> usize {
+        match self {
+            Factored::Sparse(solver) => solver.factor_bytes(),
+            Factored::Cyclic(factor) => factor.solver.factor_bytes() + factor.table.bytes(),
+        }
+    }
 }
 
 /// Chooses and prepares matrices and solver of a ring; `side` is `inner` or `outer`.
@@ -79,24 +107,23 @@ impl Effective {
 }
 
 impl HeldSectors {
-    /// Factors c_M M + c_K K with the dense border `border` (column-major `[n_free][m]`) and `corner` (row-major).
+    /// Factors c_M M + c_K K with the dense border `border` (column-major `[n_free][m]`) and `corner` (row-major). The
+    /// partner touches the free nodes `mounted`.
     pub fn factor(
         &self,
         [mass, stiffness]: [f64; 2],
         border: &[f64],
         corner: &[f64],
+        mounted: impl IntoIterator<Item = usize>,
     ) -> Result<Factored, SolverError> {
         let sectors = &self.sectors;
         let effective = sectors.stiffness.combined(stiffness, mass, &sectors.mass)?;
         let factor = sectors.ring.factor(&effective)?;
-        let table = Some(ResponseTable::new(&factor, &self.raceway));
-        let m = corner.len().isqrt();
-        let solver: Box<dyn LinearSolver> = if m == 0 {
-            Box::new(factor)
-        } else {
-            Box::new(CyclicBordered::new(factor, border, m, corner)?)
-        };
-        Ok(Factored { solver, table })
+        Ok(Factored::Cyclic(Box::new(CyclicFactor {
+            table: ResponseTable::new(&factor, &self.raceway),
+            touched: sectors.ring.section_part(&self.raceway, mounted),
+            solver: CyclicBordered::new(factor, border, corner.len().isqrt(), corner)?,
+        })))
     }
 }
 

@@ -19,6 +19,7 @@ pub mod coordinates;
 pub mod effective;
 mod finish;
 pub mod frame;
+mod harmonic;
 pub mod integrator;
 pub mod ledger;
 pub mod matrices;

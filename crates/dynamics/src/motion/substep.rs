@@ -252,7 +252,7 @@ impl Motion<'_> {
             let forces = system.ring_loads(side, solution);
             Some(
                 ring.factor
-                    .increment(&ring.step, &forces, &solution.mounts[side.index()]),
+                    .increment(ring.body, &ring.step, &forces, &solution.mounts[side.index()]),
             )
         };
         let (inner, outer) = rayon::join(|| increment(Side::Inner), || increment(Side::Outer));
