@@ -156,9 +156,10 @@ fn print_ring(model: &Model, side: Side) -> Result<Option<RingMemory>, Failure> 
         "         {}",
         match ring.periodicity() {
             Ok(periodicity) => format!(
-                "rotationally periodic, {} equal sectors, to {:.1e} m",
+                "rotationally periodic, {} equal sectors, to {:.1e} m; solver {}",
                 periodicity.n_sectors(),
-                periodicity.deviation()
+                periodicity.deviation(),
+                prepared.note()
             ),
             Err(reason) => format!("not rotationally periodic: {reason}"),
         }
