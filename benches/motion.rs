@@ -6,25 +6,11 @@
 //! is written and synced. Bandwidth of memory and disk are measured in the same run. Run with
 //! `cargo bench -p raceway --bench motion`.
 //!
-//! Measured 21 November 2026 on 2 cores of an AMD EPYC (2.6 GHz) that others used too (load 3), 12 steps, ms of wall time, 45 365
-//! and 45 360 coordinates that are not held, both rings solved by harmonics:
+//!     cargo bench -p raceway --bench motion -- [57k] [159k] [410k] [1M] [paper]
 //!
-//! | part | least | median | floor |
-//! |---|---|---|---|
-//! | step | 20.0 | 28.9 | |
-//! | loads | 0.0 | 0.0 | |
-//! | patches | 3.9 | 7.4 | |
-//! | right side | 3.5 | 4.7 | |
-//! | solve: predictor, and contacts by the table of responses | 2.2 | 3.6 | 0.4: factors and tables, 24 MB in cache |
-//! | newton, 2 iterations | 0.4 | 0.4 | |
-//! | update: second solve, state, energies, ledger | 6.0 | 9.4 | |
-//! | frame, 1 round, with `frame_rotation` | 2.5 | 3.3 | |
-//! | stress at the nodes of both rings | 25.5 | 32 | 0.1: 2.7 MB |
-//! | step file of 6.0 MB, synced | 11.2 | 22 | 6.8: the disk's own 0.88 GB/s |
-//!
-//! In processor time a step takes 0.029 s, with `frame_rotation` 1.22 times that; stress takes 0.96 and the file 0.22 of it. The two
-//! largest costs are the recovery of stress, which runs beside the steps, and the products and energies of the update.
-//! With sparse factors and columns a step took 0.209 s of processor time, 85 % of it in the block solve of 37 right-hand sides.
+//! The names are dofs per ring; without names 57k. With more than one the growth of the cost of a step from the first to the
+//! last is printed as an exponent. `paper` rolls 2 x 410 k dofs for a hundredth of a ball's revolution, 77 steps of 1e-5 s,
+//! each with the stress of all nodes and a step file, and says what the whole would take. Results: docs/performance.md.
 
 #[path = "../crates/dynamics/tests/support/mod.rs"]
 mod support;
@@ -42,26 +28,33 @@ use contact::Side;
 use dynamics::effects::FrameRotation;
 use dynamics::motion::balls::Speed;
 use dynamics::motion::{Motion, MotionSettings, MotionState, StepReport};
-use dynamics::{ContactMode, Hold, Model, StaticSolver};
-use fem::stress::{StressRecovery, von_mises};
+use dynamics::{Backend, ContactMode, Hold, Model, NodalStress, StaticSolver};
+use fem::stress::von_mises;
 use rayon::prelude::*;
 use support::Case;
 use support::rings::Level;
 
 /// Steps of each kind, and step files.
 const REPEATS: usize = 12;
-/// hex8, 56 700 dof per ring.
-const HEX8: Level = Level::hex8(180, 14, 3, 4);
+/// Rings of hex8 by their dofs: 56 700, 158 760, 410 400 and 1 010 880.
+const SIZES: [(&str, Level); 4] = [
+    ("57k", Level::hex8(180, 14, 3, 4)),
+    ("159k", Level::hex8(360, 14, 3, 6)),
+    ("410k", Level::hex8(720, 12, 3, 9)),
+    ("1M", Level::hex8(1080, 17, 4, 11)),
+];
+/// Steps of a hundredth of a ball's revolution of 77 ms.
+const HUNDREDTH: usize = 77;
 /// Step size, s, and speed, rad/s (1800 rpm).
 const DT: f64 = 1e-5;
 const SPEED: f64 = 60.0 * std::f64::consts::PI;
 
-fn bearing(frame_rotation: bool) -> Model {
+fn bearing(level: Level, frame_rotation: bool) -> Model {
     let case = Case {
         radial: 1000.0,
         ..Case::axial(2000.0)
     };
-    let mut model = case.flexible(ContactMode::Patch, HEX8, Hold::Clamped);
+    let mut model = case.flexible(ContactMode::Patch, level, Hold::Clamped);
     if frame_rotation {
         model.effects.push(Box::new(FrameRotation {
             speed: Speed::constant(SPEED),
@@ -80,6 +73,7 @@ struct Rolling<'a> {
     state: MotionState,
     laps: Laps,
     report: StepReport,
+    n_steps: usize,
 }
 
 impl<'a> Rolling<'a> {
@@ -96,6 +90,7 @@ impl<'a> Rolling<'a> {
             state,
             laps: Laps::default(),
             report: StepReport::default(),
+            n_steps: 0,
         }
     }
 
@@ -109,13 +104,15 @@ impl<'a> Rolling<'a> {
         }
         self.laps.end_run();
         self.report.add(&report);
+        self.n_steps += 1;
         self.state = next;
     }
 
     fn print(&self, name: &str) {
-        let per_step = |n: usize| n as f64 / REPEATS as f64;
+        let per_step = |n: usize| n as f64 / self.n_steps as f64;
         println!(
-            "\n{name}: {REPEATS} steps, {:.1} newton iterations and {:.1} frame rounds each",
+            "\n{name}: {} steps, {:.1} newton iterations and {:.1} frame rounds each",
+            self.n_steps,
             per_step(self.report.newton_iterations),
             per_step(self.report.frame_rounds)
         );
@@ -125,7 +122,7 @@ impl<'a> Rolling<'a> {
 
 /// Stress of both rings at their nodes, Pa, and the file of the step.
 struct Writer {
-    recoveries: Vec<StressRecovery>,
+    recoveries: Vec<NodalStress>,
     output: Output,
     centres: Vec<[f64; 3]>,
 }
@@ -158,7 +155,7 @@ impl Writer {
         ));
         Writer {
             recoveries: rings()
-                .map(|ring| StressRecovery::new(&ring.mesh, &ring.material).expect("the mesh is sound"))
+                .map(|ring| NodalStress::new(ring, "ring", Backend::Auto).expect("the mesh is sound"))
                 .collect(),
             output: Output::create(dir, &bodies, Storage::default()).expect("an empty folder"),
             centres,
@@ -261,8 +258,9 @@ fn print_floor(name: &str, seconds: f64, bytes: f64, bandwidth: f64) {
     );
 }
 
-fn main() {
-    let models = [bearing(false), bearing(true)];
+/// Steps of a bearing part by part, its stress and its step file; processor time of a step, s, and dofs of a ring.
+fn measure(name: &str, level: Level) -> (f64, f64) {
+    let models = [bearing(level, false), bearing(level, true)];
     let [mut plain, mut turning] = [Rolling::new(&models[0]), Rolling::new(&models[1])];
     for _ in 0..REPEATS {
         plain.step();
@@ -270,10 +268,11 @@ fn main() {
     }
     let n = Side::BOTH.map(|side| plain.motion.n_coordinates(side));
     println!(
-        "{} and {} coordinates, {} threads",
+        "\n== {name}: {} and {} coordinates, {} threads, factors and tables {:.1} MB",
         n[0],
         n[1],
-        rayon::current_num_threads()
+        rayon::current_num_threads(),
+        1e-6 * plain.motion.factor_bytes() as f64
     );
     plain.print("without effects but two forces");
     turning.print("with frame_rotation");
@@ -285,22 +284,19 @@ fn main() {
     }
     println!("\nresults of a step");
     laps.print();
-
-    let factor = plain.motion.factor_bytes();
-    let memory = read_bandwidth(factor);
-    let solve = plain.laps.least("  solve")[1];
-    println!("\nleast times against floors");
-    print_floor("solve", solve, 2.0 * factor as f64, memory);
-    let nodes: usize = models[0]
+    let nodes: Vec<usize> = models[0]
         .rings
         .iter()
         .flatten()
-        .map(|ring| ring.mesh.n_nodes())
-        .sum();
-    let stress = laps.least("stress, both rings")[1];
-    print_floor("stress, both rings", stress, (8 * (3 + 6) * nodes) as f64, memory);
-    let disk = disk_bandwidth(dir.path(), file as usize);
-    print_floor("step file", laps.least("step file")[1], file as f64, disk);
+        .map(|r| r.mesh.n_nodes())
+        .collect();
+    print_floors(
+        &plain,
+        &writer,
+        &laps,
+        (nodes.iter().sum(), file as usize),
+        dir.path(),
+    );
     let share = |part: [f64; 2]| part[0] / plain.laps.least("step")[0];
     println!(
         "processor time over that of the step without effects: frame_rotation {:.2}, stress {:.2}, file {:.2}",
@@ -308,4 +304,75 @@ fn main() {
         share(laps.least("stress, both rings")),
         share(laps.least("step file"))
     );
+    (plain.laps.least("step")[0], 3.0 * nodes[0] as f64)
+}
+
+/// Solve, stress and file beside the bytes that they cannot do without.
+fn print_floors(
+    rolling: &Rolling<'_>,
+    writer: &Writer,
+    laps: &Laps,
+    (nodes, file): (usize, usize),
+    dir: &Path,
+) {
+    println!("\nleast times against floors");
+    let factor = rolling.motion.factor_bytes();
+    let memory = read_bandwidth(factor);
+    let solve = rolling.laps.least("  solve")[1];
+    print_floor("solve", solve, 2.0 * factor as f64, memory);
+    let weights: usize = writer
+        .recoveries
+        .iter()
+        .filter_map(NodalStress::operator_bytes)
+        .sum();
+    let stress = laps.least("stress, both rings")[1];
+    let bytes = (8 * (3 + 6) * nodes + weights) as f64;
+    print_floor("stress, both rings", stress, bytes, memory);
+    let disk = disk_bandwidth(dir, file);
+    print_floor("step file", laps.least("step file")[1], file as f64, disk);
+}
+
+/// A hundredth of a ball's revolution with stress and file of every step.
+fn paper() {
+    let (name, level) = SIZES[2];
+    let model = bearing(level, true);
+    let mut rolling = Rolling::new(&model);
+    let dir = tempfile::tempdir().expect("a folder for temporary files");
+    let mut writer = Writer::new(&model, dir.path());
+    let (mut laps, mut file, clock) = (Laps::default(), 0, std::time::Instant::now());
+    for step in 0..HUNDREDTH {
+        rolling.step();
+        file = writer.write(&rolling, step as u64, &mut laps);
+        fs::remove_file(dir.path().join(format!("step_{step:06}.hdf"))).expect("it was written");
+    }
+    let seconds = clock.elapsed().as_secs_f64();
+    println!(
+        "\n== paper: 2 x {name} dofs, {HUNDREDTH} steps with stress and file of each: {seconds:.1} s, {:.1} ms per step; the \
+         revolution of {} steps: {:.0} min, {:.0} GB",
+        1e3 * seconds / HUNDREDTH as f64,
+        100 * HUNDREDTH,
+        100.0 * seconds / 60.0,
+        1e-9 * (100 * HUNDREDTH) as f64 * file as f64
+    );
+    rolling.print("with frame_rotation");
+    laps.print();
+}
+
+fn main() {
+    let wanted: Vec<String> = std::env::args()
+        .skip(1)
+        .filter(|a| !a.starts_with("--"))
+        .collect();
+    let is_wanted = |name: &str| wanted.iter().any(|w| w == name) || (wanted.is_empty() && name == "57k");
+    let sizes = SIZES.iter().filter(|(name, _)| is_wanted(name));
+    let costs: Vec<(f64, f64)> = sizes.map(|(name, level)| measure(name, *level)).collect();
+    if let [first, .., last] = costs.as_slice() {
+        println!(
+            "\ncost of a step grows with the dofs to the power {:.2}",
+            (last.0 / first.0).ln() / (last.1 / first.1).ln()
+        );
+    }
+    if is_wanted("paper") {
+        paper();
+    }
 }

@@ -212,6 +212,7 @@ fn ring(
         hold,
         held_group,
         groove,
+        sectors: Default::default(),
     };
     Ok(Some((ring, origin.node_tags)))
 }

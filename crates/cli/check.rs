@@ -4,7 +4,7 @@ use std::ops::Range;
 use std::path::Path;
 
 use contact::Side;
-use dynamics::{Model, RingMemory, Substructures, forecast_peak, ring};
+use dynamics::{Model, Prepared, RingMemory, Substructures, forecast_peak};
 
 use crate::build::build_model;
 use crate::failure::Failure;
@@ -139,9 +139,8 @@ fn print_ring(model: &Model, side: Side) -> Result<Option<RingMemory>, Failure> 
         return Ok(None);
     };
     let mesh = &ring.mesh;
-    let forecast =
-        ring::forecast(side, ring, model.geometry.n_balls, model.backend).map_err(Failure::solving)?;
-    let memory = forecast.memory;
+    let prepared = Prepared::new(model, side, ring).map_err(Failure::solving)?;
+    let memory = prepared.memory;
     print::line(format_args!(
         "{}    {} {}, {} nodes, {} dofs; Hertz stiffness {stiffness:.4e} N/mm^1.5; factor {:.1} MB, {:.2e} flops, \
          peak {:.1} MB",
@@ -150,22 +149,23 @@ fn print_ring(model: &Model, side: Side) -> Result<Option<RingMemory>, Failure> 
         mesh.kind.name(),
         mesh.n_nodes(),
         mesh.n_dofs(),
-        forecast.factor_bytes as f64 / 1e6,
-        forecast.flops,
+        prepared.factor_bytes() as f64 / 1e6,
+        prepared.flops(),
         (memory.mesh + memory.making()) as f64 / 1e6
     ));
     print::line(format_args!(
         "         {}",
-        match mesh::find_periodicity(mesh, mesh::PERIODIC_TOLERANCE) {
+        match ring.periodicity() {
             Ok(periodicity) => format!(
-                "rotationally periodic, {} equal sectors, to {:.1e} m",
+                "rotationally periodic, {} equal sectors, to {:.1e} m; solver {}",
                 periodicity.n_sectors(),
-                periodicity.deviation()
+                periodicity.deviation(),
+                prepared.note()
             ),
             Err(reason) => format!("not rotationally periodic: {reason}"),
         }
     ));
-    if let Some(parts) = &forecast.parts {
+    if let Some(parts) = prepared.parts() {
         print_sectors(parts);
     }
     Ok(Some(memory))

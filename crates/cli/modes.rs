@@ -112,6 +112,7 @@ fn modes_of(
     let settings = ModesSettings {
         number: wanted.number,
         shift: wanted.shift,
+        backend: model.backend,
     };
     let support = match wanted.support {
         ModeSupport::Free => RingSupport::Free,

@@ -75,6 +75,11 @@ pub fn run(
     let read = start.elapsed().as_secs_f64();
     progress.stage("factoring the stiffness of the rings");
     let mut solver = StaticSolver::new(&model).map_err(Failure::solving)?;
+    for side in Side::BOTH {
+        if let Some(ring) = solver.ring(side) {
+            progress.stage(&format!("{} ring: {}", side.name(), ring.solver_note()));
+        }
+    }
     let mut solutions: Vec<Solved> = Vec::new();
     let mut results: Option<Files> = None;
     let mut failure = None;

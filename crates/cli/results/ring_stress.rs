@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 
 use checkpoint::{CellFields, IntegrationPointStress};
 use contact::{LoadedPatch, NearField, Side};
-use dynamics::{Model, RingModel};
+use dynamics::{Model, NodalStress, RingModel};
 use fem::stress::{StressRecovery, von_mises};
 
 use super::shown::Turn;
@@ -33,6 +33,8 @@ pub struct RingStress {
 /// Recovery of one ring, and the places of its stress for the near field if that is asked for.
 struct Recovery {
     elements: StressRecovery,
+    /// What averages at nodes, when the scene asks for it.
+    nodal: Option<NodalStress>,
     near_field: Option<NearField>,
 }
 
@@ -60,7 +62,12 @@ impl RingStress {
     pub fn new(model: &Model, scene: &Scene) -> Result<RingStress, Failure> {
         let recovery = |side: Side| match model.ring(side) {
             Some(ring) if scene.output.stress != StressOutput::None => {
-                Recovery::new(ring, scene.output.stress, scene.stress.near_field_reach).map(Some)
+                let mut recovery = Recovery::new(ring, scene.output.stress, scene.stress.near_field_reach)?;
+                if scene.output.stress == StressOutput::Nodal {
+                    let nodal = NodalStress::new(ring, side.name(), model.backend);
+                    recovery.nodal = Some(nodal.map_err(Failure::solving)?);
+                }
+                Ok(Some(recovery))
             }
             _ => Ok::<_, Failure>(None),
         };
@@ -116,7 +123,10 @@ impl RingStress {
     fn nodal(&self, rings: &[(&Recovery, &ShownRing)]) -> Vec<[f64; 6]> {
         let mut stress = Vec::new();
         for (recovery, ring) in rings {
-            let mut own = recovery.elements.nodal(&ring.field);
+            let mut own = match &recovery.nodal {
+                Some(nodal) => nodal.nodal(&ring.field),
+                None => recovery.elements.nodal(&ring.field),
+            };
             self.add_near_field(recovery, ring, &mut own);
             stress.extend(own.into_iter().map(|s| ring.turn.tensor(s)));
         }
@@ -165,7 +175,11 @@ impl Recovery {
                 _ => NearField::new(ring.groove, poisson_ratio, reach, &ring.mesh.nodes),
             }
         });
-        Ok(Recovery { elements, near_field })
+        Ok(Recovery {
+            elements,
+            nodal: None,
+            near_field,
+        })
     }
 }
 
@@ -199,6 +213,7 @@ mod tests {
             rings: meshes.each_ref().map(|mesh| {
                 Some(Recovery {
                     elements: StressRecovery::new(mesh, &steel).unwrap(),
+                    nodal: None,
                     near_field: None,
                 })
             }),

@@ -13,6 +13,10 @@ use mesh::{Facet, FacetKind, Mesh};
 use crate::error::ContactError;
 use crate::geometry::Side;
 
+/// Newton's step, in reference coordinates, after which a point is found: the error left is about its square. Azimuths are
+/// rounded to 1e-14 of a facet, so that smaller steps may never come.
+const CONVERGED: f64 = 1e-9;
+
 /// How far outside a facet, in reference coordinates, a point may lie and still be taken (curved edges).
 const OUTSIDE_TOLERANCE: f64 = 0.02;
 
@@ -293,7 +297,7 @@ fn invert(kind: FacetKind, coordinates: &[[f64; 2]], target: [f64; 2]) -> Option
             (residual[1] * j[0][0] - residual[0] * j[1][0]) / det,
         ];
         xi = [xi[0] + step[0], xi[1] + step[1]];
-        if step[0].abs().max(step[1].abs()) < 1e-14 {
+        if step[0].abs().max(step[1].abs()) < CONVERGED {
             return Some(xi);
         }
         if xi[0].abs().max(xi[1].abs()) > 10.0 {

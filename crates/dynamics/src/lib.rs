@@ -17,11 +17,14 @@ pub mod memory;
 pub mod model;
 pub mod modes;
 pub mod motion;
+pub mod nodal_stress;
 pub mod pose;
+pub mod prepared;
 pub mod problem;
 pub mod quasi_static;
 pub mod ring;
 pub mod schedule;
+pub mod sectors;
 pub mod solution;
 pub mod sparse;
 pub mod statics;
@@ -37,7 +40,9 @@ pub use model::{
     Backend, ContactMode, ContactSettings, Hold, Model, RingModel, Sectors, ShaftDof, Tolerances,
 };
 pub use modes::{Mode, ModeSet, ModesSettings, RingSupport};
+pub use nodal_stress::NodalStress;
 pub use pose::Pose;
+pub use prepared::Prepared;
 pub use quasi_static::QuasiStatic;
 pub use schedule::Schedule;
 pub use solution::StaticSolution;

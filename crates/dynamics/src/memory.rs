@@ -17,6 +17,10 @@
 //! glibc returns no freed block below 32 MiB to the system, so they find that memory in use, or in pieces. On larger
 //! rings the forecast is high by as much, a few per cent.
 //!
+//! A periodic ring of n nodes has no matrix: its harmonics' factor takes F bytes, its sites, order and directions 152 n, a
+//! block of 8 columns 77 n each (loads, right-hand sides, harmonics), each coupling of its sector 600 (blocks of K, M, stress).
+//! What its results take fits into what the columns left.
+//!
 //! The threads need not be in step, and the measured peak is then lower, down to that of one thread.
 
 use mesh::Mesh;
@@ -29,6 +33,18 @@ pub const PROGRAM_BYTES: usize = 16_000_000;
 
 /// Bytes of one stored entry: value and column index.
 const ENTRY_BYTES: usize = 16;
+
+/// Sites, order, directions and support of a periodic ring, whole and held, bytes per node.
+const PERIODICITY_BYTES: usize = 152;
+
+/// Buffers of a periodic ring that do not grow with it, bytes, measured.
+const SMALL_BYTES: usize = 1_500_000;
+
+/// Blocks and lists of a sector's couplings: stiffness, mass and stress, whole and held, bytes per coupling.
+const COUPLING_BYTES: usize = 600;
+
+/// What the search for periodicity holds beside the mesh, bytes per node.
+const SEARCH_BYTES: usize = 250;
 
 /// Bytes of one ring by phase: see the module.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -83,6 +99,21 @@ impl RingMemory {
             results: 240 * mesh.n_nodes()
                 + 24 * mesh.connectivity.len()
                 + 48 * mesh.kind.n_corners() * mesh.n_elements(),
+        }
+    }
+
+    /// Forecast for a periodic ring of `n_couplings` couplings per sector, whose harmonics' factor takes `factor` bytes and
+    /// solves blocks of `block` columns: see the module.
+    pub fn cyclic(mesh: &Mesh, n_couplings: usize, factor: usize, block: usize) -> RingMemory {
+        let (n, list) = (mesh.n_nodes(), 8 * mesh.connectivity.len());
+        let kept = factor + PERIODICITY_BYTES * n;
+        RingMemory {
+            mesh: 24 * n + list,
+            assembly: SEARCH_BYTES * n + 2 * list,
+            factorisation: kept,
+            kept,
+            columns: kept + 77 * n * block,
+            results: SMALL_BYTES + COUPLING_BYTES * n_couplings,
         }
     }
 

@@ -5,13 +5,13 @@
 //! inner groove centres. A rigid motion is u(x) = t + phi x (x - origin), linear in the tilts phi: consistent with
 //! small strain, and the reason why statics is a convex problem.
 
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use comm::Communicator;
 use contact::hertz::Elastic;
 use contact::{BearingGeometry, Groove, HertzContact, Side};
 use fem::Material;
-use mesh::Mesh;
+use mesh::{Mesh, NotPeriodic, PERIODIC_TOLERANCE, Periodicity, find_periodicity};
 
 use crate::effects::Effect;
 use crate::schedule::Schedule;
@@ -42,6 +42,17 @@ pub struct RingModel {
     pub held_group: &'static str,
     /// The raceway's torus in mesh coordinates.
     pub groove: Groove,
+    /// Sectors of the mesh, found when [`RingModel::periodicity`] is first asked; a new model has the default.
+    pub sectors: OnceLock<Result<Periodicity, NotPeriodic>>,
+}
+
+impl RingModel {
+    /// The equal sectors of the mesh, or the reason why there are none.
+    pub fn periodicity(&self) -> Result<&Periodicity, &NotPeriodic> {
+        self.sectors
+            .get_or_init(|| find_periodicity(&self.mesh, PERIODIC_TOLERANCE))
+            .as_ref()
+    }
 }
 
 /// One degree of freedom of the shaft.

@@ -60,6 +60,17 @@ impl Support {
         }
     }
 
+    /// The same for a factor that needs no dofs fixed in a mean motion: all stay, and loads must be balanced.
+    pub fn unfixed(mesh: &Mesh, hold: Hold, weights: Vec<(usize, f64)>) -> Support {
+        match hold {
+            Hold::Clamped | Hold::Free => Support::new(mesh, hold, weights),
+            Hold::MeanMotion => Support {
+                free: (0..mesh.n_dofs()).collect(),
+                mean: Some(MeanMotion::new(mesh, weights)),
+            },
+        }
+    }
+
     /// Replaces loads by what the ring sees with its partner's reaction: P^T f.
     pub fn balance(&self, load: &mut [f64]) {
         if let Some(mean) = &self.mean {

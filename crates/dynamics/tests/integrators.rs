@@ -72,7 +72,11 @@ fn response(model: &Model, integrator: Integrator, dt: f64, n: usize) -> Vec<Vec
 }
 
 fn modes(ring: &RingModel, number: usize) -> Vec<Mode> {
-    let settings = ModesSettings { number, shift: None };
+    let settings = ModesSettings {
+        number,
+        shift: None,
+        backend: dynamics::Backend::Auto,
+    };
     let set = ring_modes(Side::Outer, ring, RingSupport::Free, settings, &mut |_| ()).unwrap();
     set.modes
 }

@@ -17,7 +17,11 @@ use support::{Case, equilibrium};
 const SMALL: Level = Level::hex8(54, 6, 1, 2);
 
 fn settings(number: usize) -> ModesSettings {
-    ModesSettings { number, shift: None }
+    ModesSettings {
+        number,
+        shift: None,
+        backend: dynamics::Backend::Auto,
+    }
 }
 
 fn alone(side: Side, ring: &RingModel, support: RingSupport, number: usize) -> ModeSet {

@@ -44,5 +44,5 @@ pub use pattern::Pattern;
 pub use rigid::{Inertia, inertia, rigid_modes, volume};
 pub use sector::{SectorCoupling, SectorMatrices, assemble_sector, azimuth_directions};
 pub use stiffness::{assemble_stiffness, assemble_stiffness_into};
-pub use stress::{StressRecovery, StressWorkspace, principal, von_mises};
+pub use stress::{SectorStress, StressRecovery, StressWorkspace, principal, von_mises};
 pub use surface::{area, facet_node_weights, pressure_load, traction_load};

@@ -111,7 +111,7 @@ fn mass_blocks<'a>(
 }
 
 /// Couplings of all pairs of nodes of the sector's elements.
-fn couplings(mesh: &Mesh, periodicity: &Periodicity) -> Vec<SectorCoupling> {
+pub(crate) fn couplings(mesh: &Mesh, periodicity: &Periodicity) -> Vec<SectorCoupling> {
     let mut couplings = Vec::new();
     for &e in periodicity.elements() {
         for &a in mesh.element(e) {
@@ -124,7 +124,7 @@ fn couplings(mesh: &Mesh, periodicity: &Periodicity) -> Vec<SectorCoupling> {
 }
 
 /// Coupling of two nodes of the mesh.
-fn coupling(periodicity: &Periodicity, a: usize, b: usize) -> SectorCoupling {
+pub(crate) fn coupling(periodicity: &Periodicity, a: usize, b: usize) -> SectorCoupling {
     let [a, b] = [a, b].map(|node| periodicity.sites()[node]);
     let n = periodicity.n_sectors();
     let forward = (b.sector + n - a.sector) % n;

@@ -1,10 +1,11 @@
-//! The cyclic solver beside the sparse one on rings of 65 k, 151 k and 410 k dof: set-up, 1 and 36 right-hand sides,
-//! memory, and the time to read the factor once, which no solve can beat.
+//! The cyclic solver beside the sparse one on rings of 65 k, 151 k, 410 k and 1 M dof: set-up, 1 and 36 right-hand sides,
+//! memory, and the time to read the factor once, which no solve can beat. Then products and stress of one sector's blocks.
 //!
-//!     cargo bench -p raceway-solver --bench cyclic -- [65k] [150k] [400k] [sparse]
+//!     cargo bench -p raceway-solver --bench cyclic -- [65k] [150k] [400k] [1M] [sparse] [hermitian]
 //!
-//! Without arguments all sizes, the sparse solver at the smaller two. All on the threads of RAYON_NUM_THREADS; best of
-//! several runs.
+//! Without sizes all but 1M, the sparse solver at the smaller two. `hermitian` turns the planes of the ring against each
+//! other, so that no section is its own mirror image. The sparse factor of 1 M dof takes 7 GB. All on the threads of
+//! RAYON_NUM_THREADS; best of several runs.
 
 #[path = "support/clock.rs"]
 mod clock;
@@ -16,7 +17,7 @@ use std::time::Instant;
 use clock::best;
 use divan::black_box;
 use fem::Material;
-use mesh::{Mesh, PERIODIC_TOLERANCE, find_periodicity};
+use mesh::{Mesh, PERIODIC_TOLERANCE, Periodicity, find_periodicity};
 use ring::{SHIFT, ring};
 use solver::{
     Coupling, CyclicMatrix, CyclicRing, LinearSolver, ResponseTable, Symbolic, angular_dissection, expand,
@@ -24,10 +25,11 @@ use solver::{
 };
 
 /// Name, sectors, nodes across and along the section, whether the sparse solver runs.
-const SIZES: [(&str, usize, [usize; 2], bool); 3] = [
+const SIZES: [(&str, usize, [usize; 2], bool); 4] = [
     ("65k", 360, [12, 5], true),
     ("150k", 360, [20, 7], true),
     ("400k", 720, [19, 10], false),
+    ("1M", 1080, [26, 12], false),
 ];
 
 /// Time to read `bytes` bytes once on this thread, ms.
@@ -122,7 +124,42 @@ fn cyclic(mesh: &Mesh) -> (f64, f64, f64) {
         "  cyclic: transforms {forward:.2} and {inverse:.2} ms, mass product {product:.2} ms, nodal solve {one:.2} ms, \
          36 nodal {many:.1} ms"
     );
+    stencils(mesh, &periodicity, (&ring, &stiffness));
     (refactor, harmonic, factor.factor_bytes() as f64)
+}
+
+/// Products and stress through the blocks of one sector, beside recovery element by element.
+fn stencils(mesh: &Mesh, periodicity: &Periodicity, (ring, stiffness): (&CyclicRing, &CyclicMatrix)) {
+    let steel = Material::new(207e9, 0.3, 7800.0).expect("steel");
+    let operator = ring.operator(stiffness).expect("one pattern");
+    let u: Vec<f64> = (0..mesh.n_dofs()).map(|i| 1e-9 * (i % 97) as f64).collect();
+    let mut lines = vec![0.0; ring.lines_len()];
+    let there = best(30, || ring.to_lines(&u, &mut lines)).0;
+    let mut product = vec![0.0; operator.product_len()];
+    let inner = best(30, || operator.add_product(&lines, &mut product)).0;
+    let whole = best(30, || operator.apply(&u)).0;
+    let recovery = fem::StressRecovery::new(mesh, &steel).expect("a valid mesh");
+    let (build, sector) = best(2, || recovery.sector(mesh, periodicity));
+    let couplings: Vec<Coupling> = sector
+        .couplings
+        .iter()
+        .map(|c| Coupling {
+            row: c.row,
+            column: c.column,
+            shift: c.shift,
+        })
+        .collect();
+    let stress = ring.stencil(6, &couplings, sector.weights.as_flattened().as_flattened());
+    let mut tensors = vec![[0.0; 6]; mesh.n_nodes()];
+    let fast = best(30, || stress.tensors(&u, &mut tensors)).0;
+    let slow = best(3, || recovery.nodal(&u)).0;
+    let floor = read_once(8 * 9 * mesh.n_nodes());
+    println!(
+        "  stencils: K u {whole:.2} ms (there {there:.2}, product {inner:.2}); stress {fast:.2} ms = {:.1} x reading u and \
+         stress once, weights {:.2} MB made in {build:.1} ms; element by element {slow:.1} ms",
+        fast / floor,
+        stress.bytes() as f64 / 1e6
+    );
 }
 
 fn sparse(mesh: &Mesh, (refactor, harmonic, bytes): (f64, f64, f64)) {
@@ -166,13 +203,19 @@ fn main() {
         .filter(|a| !a.starts_with("--"))
         .collect();
     let is_named = |name: &str| arguments.iter().any(|a| a == name);
-    let all = arguments.is_empty();
+    let all = !SIZES.iter().any(|(name, ..)| is_named(name));
     println!("threads: {}", rayon::current_num_threads());
     for (name, n_sectors, grid, with_sparse) in SIZES {
-        if !all && !is_named(name) {
+        if !(all && name != "1M" || is_named(name)) {
             continue;
         }
-        let mesh = ring(n_sectors, grid);
+        let mut mesh = ring(n_sectors, grid);
+        if is_named("hermitian") {
+            for [x, y, z] in &mut mesh.nodes {
+                let (s, c) = (20.0 * *z).sin_cos();
+                (*x, *y) = (c * *x - s * *y, s * *x + c * *y);
+            }
+        }
         println!(
             "{name}: {n_sectors} sectors of {} x {} nodes, {} dof",
             grid[0],

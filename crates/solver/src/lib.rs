@@ -47,8 +47,8 @@ mod symbolic;
 pub use bordered::Bordered;
 pub use cholesky::SparseCholesky;
 pub use cyclic::{
-    Coupling, CyclicBordered, CyclicCholesky, CyclicMatrix, CyclicRing, NodalLoad, Patch, ResponseTable,
-    Symmetry,
+    Coupling, CyclicBordered, CyclicCholesky, CyclicMatrix, CyclicRing, CyclicStencil, NodalLoad, Patch,
+    ResponseTable, SectionPart, Symmetry,
 };
 pub use dense::{DenseCholesky, DenseLu};
 pub use dense_eigen::{dense_lowest, symmetric_eigen};

@@ -36,7 +36,7 @@ use contact::Side;
 use solver::{LanczosSettings, Searched, lowest_pairs};
 
 use crate::error::DynamicsError;
-use crate::model::{ContactMode, Model, RingModel, ShaftDof};
+use crate::model::{Backend, ContactMode, Model, RingModel, ShaftDof};
 use crate::problem::site_hessian;
 use crate::solution::StaticSolution;
 use columns::Contact;
@@ -71,6 +71,8 @@ pub struct ModesSettings {
     pub number: usize,
     /// Frequency of the shift, Hz: s = (2 pi shift)^2. None: chosen from size and material.
     pub shift: Option<f64>,
+    /// Linear solver of the rings.
+    pub backend: Backend,
 }
 
 /// Modes of one body, ascending.
@@ -101,7 +103,7 @@ pub fn ring_modes(
         RingSupport::Free => None,
         RingSupport::AsHeld => Some(Partner::at_rest()),
     };
-    let body = RingBody::new(side, ring, partner, shift)?;
+    let body = RingBody::new(side, ring, partner, shift, settings.backend)?;
     let mut rings = [None, None];
     rings[side.index()] = Some(body);
     let system = System::new(rings, Vec::new(), Vec::new(), shift)?;
@@ -127,7 +129,7 @@ pub fn bearing_modes(
             Side::Outer => Partner::at_rest(),
         };
         let ring = model.ring(side);
-        ring.map(|ring| RingBody::new(side, ring, Some(partner), shift))
+        ring.map(|ring| RingBody::new(side, ring, Some(partner), shift, settings.backend))
             .transpose()
     };
     let (inner, outer) = rayon::join(|| build(Side::Inner), || build(Side::Outer));

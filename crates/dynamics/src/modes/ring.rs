@@ -8,14 +8,15 @@
 use contact::Side;
 use mesh::Mesh;
 use solver::dense::DenseCholesky;
-use solver::{LinearSolver, SparseCholesky, Symbolic};
+use solver::{CyclicMatrix, CyclicStencil, LinearSolver, SolverError, Symbolic};
 use sprs::CsMat;
 
 use super::coordinates::Coordinates;
 use super::products::products;
 use crate::error::DynamicsError;
-use crate::model::{Hold, RingModel};
+use crate::model::{Backend, Hold, RingModel};
 use crate::ring::elimination_order;
+use crate::sectors::Sectors;
 use crate::solution::dot;
 use crate::sparse::{SparseLoad, sparse_dot};
 use crate::support::mean_motion;
@@ -42,12 +43,20 @@ impl Partner {
 
 /// A symmetric matrix in the coordinates of a ring.
 struct Bordered {
-    /// Free block, both triangles.
-    block: CsMat<f64>,
+    /// Free block.
+    block: Block,
     /// Columns of the moving partner dofs, `[n_moving][n_free]`.
     border: Vec<Vec<f64>>,
     /// Their own block, row-major.
     corner: Vec<f64>,
+}
+
+/// The free block of a matrix.
+enum Block {
+    /// Both triangles.
+    Sparse(CsMat<f64>),
+    /// Of a periodic ring: the blocks of one sector.
+    Sectors(Box<CyclicStencil>),
 }
 
 /// A ring ready to vibrate.
@@ -66,7 +75,7 @@ pub struct RingBody {
     pub partner_mass: f64,
     stiffness: Bordered,
     mass: Bordered,
-    factor: SparseCholesky,
+    factor: Box<dyn LinearSolver>,
     /// (K + s M)_ff^-1 times the border, column-major `[n_free][n_moving]`.
     columns: Vec<f64>,
     schur: Option<DenseCholesky>,
@@ -81,11 +90,8 @@ impl RingBody {
         ring: &RingModel,
         partner: Option<Partner>,
         shift: f64,
+        backend: Backend,
     ) -> Result<RingBody, DynamicsError> {
-        let fem_error = |source| DynamicsError::Fem {
-            side: side.name(),
-            source,
-        };
         let mesh = &ring.mesh;
         let motions = fem::rigid_modes(mesh, [0.0, 0.0, ring.groove.centre_z]);
         let (clamped, moving) = match (&partner, ring.hold) {
@@ -94,18 +100,18 @@ impl RingBody {
         };
         let moved: Vec<&Vec<f64>> = moving.iter().map(|&dof| &motions[dof]).collect();
         let coordinates = Coordinates::new(mesh.n_dofs(), &clamped, &moved);
-        // The whole matrices go as soon as they are reduced.
-        let stiffness = fem::assemble_stiffness(mesh, &ring.material)
-            .map(|full| Bordered::new(&full, &coordinates))
-            .map_err(fem_error)?;
-        let mut mass = fem::assemble_mass(mesh, &ring.material)
-            .map(|full| Bordered::new(&full, &coordinates))
-            .map_err(fem_error)?;
-        let factor =
-            factor(mesh, &coordinates, &stiffness, &mass, shift).map_err(|source| DynamicsError::Solver {
-                side: side.name(),
-                source,
-            })?;
+        let parts = match Sectors::held(ring, side.name(), backend, &clamped)? {
+            Ok((whole, held)) => cyclic_parts(&whole, &held.sectors, &coordinates, shift),
+            Err(_) => sparse_parts(ring, side, &coordinates, shift)?,
+        };
+        let Parts {
+            stiffness,
+            mut mass,
+            factor,
+        } = parts.map_err(|source| DynamicsError::Solver {
+            side: side.name(),
+            source,
+        })?;
         let mut body = Holding::default();
         let mut partner_mass = 0.0;
         if let Some(partner) = &partner {
@@ -118,7 +124,7 @@ impl RingBody {
                 Hold::Free => {}
             }
         }
-        let (border, columns, schur) = eliminate(&factor, &stiffness, &mass, shift);
+        let (border, columns, schur) = eliminate(&*factor, &stiffness, &mass, shift);
         Ok(RingBody {
             coordinates,
             moving,
@@ -222,12 +228,26 @@ impl Holding {
     }
 }
 
+impl Block {
+    /// Product with a block of vectors, column-major.
+    fn times(&self, x: &[f64], n_vectors: usize) -> Vec<f64> {
+        match self {
+            Block::Sparse(matrix) => products(matrix, x, n_vectors),
+            Block::Sectors(operator) => {
+                let columns = x.chunks_exact((x.len() / n_vectors.max(1)).max(1));
+                columns.flat_map(|x| operator.apply(x)).collect()
+            }
+        }
+    }
+}
+
 impl Bordered {
-    fn new(full: &CsMat<f64>, coordinates: &Coordinates) -> Bordered {
+    /// A matrix from its free block and the product of the whole one with a nodal vector.
+    fn new(block: Block, whole: impl Fn(&[f64]) -> Vec<f64>, coordinates: &Coordinates) -> Bordered {
         let free = &coordinates.free;
         let m = coordinates.n_moving();
         let motions: Vec<Vec<f64>> = (0..m).map(|k| coordinates.held_motion(k)).collect();
-        let forces: Vec<Vec<f64>> = motions.iter().map(|motion| products(full, motion, 1)).collect();
+        let forces: Vec<Vec<f64>> = motions.iter().map(|motion| whole(motion)).collect();
         let mut corner = vec![0.0; m * m];
         for k in 0..m {
             for l in 0..m {
@@ -235,7 +255,7 @@ impl Bordered {
             }
         }
         Bordered {
-            block: solver::restrict(full, free),
+            block,
             border: forces
                 .iter()
                 .map(|force| free.iter().map(|&dof| force[dof]).collect())
@@ -255,13 +275,14 @@ impl Bordered {
 
     /// Product with a block of vectors, column-major.
     fn times(&self, y: &[f64], n_vectors: usize) -> Vec<f64> {
-        let (m, n_free) = (self.border.len(), self.block.rows());
+        let m = self.border.len();
         if m == 0 {
-            return products(&self.block, y, n_vectors);
+            return self.block.times(y, n_vectors);
         }
+        let n_free = self.border[0].len();
         let columns = y.chunks_exact(n_free + m);
         let free: Vec<f64> = columns.clone().flat_map(|y| y[..n_free].to_vec()).collect();
-        let inner = products(&self.block, &free, n_vectors);
+        let inner = self.block.times(&free, n_vectors);
         let mut result = Vec::with_capacity(y.len());
         for (y, inner) in columns.zip(inner.chunks_exact(n_free)) {
             let (free, q) = y.split_at(n_free);
@@ -280,25 +301,77 @@ impl Bordered {
     }
 }
 
-/// Factor of the free block of K + s M.
-fn factor(
-    mesh: &Mesh,
+/// Matrices and factor of a ring's free block.
+struct Parts {
+    stiffness: Bordered,
+    mass: Bordered,
+    factor: Box<dyn LinearSolver>,
+}
+
+/// Those of a periodic ring, `held` without its clamped nodes.
+fn cyclic_parts(
+    whole: &Sectors,
+    held: &Sectors,
     coordinates: &Coordinates,
-    stiffness: &Bordered,
-    mass: &Bordered,
     shift: f64,
-) -> Result<SparseCholesky, solver::SolverError> {
+) -> Result<Parts, SolverError> {
+    let bordered = |of_whole: &CyclicMatrix, of_held: &CyclicMatrix| {
+        let operator = whole.ring.operator(of_whole)?;
+        let block = Block::Sectors(Box::new(held.ring.operator(of_held)?));
+        Ok(Bordered::new(block, |x| operator.apply(x), coordinates))
+    };
+    let shifted = held.stiffness.combined(1.0, shift, &held.mass)?;
+    Ok(Parts {
+        stiffness: bordered(&whole.stiffness, &held.stiffness)?,
+        mass: bordered(&whole.mass, &held.mass)?,
+        factor: Box::new(held.ring.factor(&shifted)?),
+    })
+}
+
+/// Those of any other ring; the inner error is the factorisation's.
+fn sparse_parts(
+    ring: &RingModel,
+    side: Side,
+    coordinates: &Coordinates,
+    shift: f64,
+) -> Result<Result<Parts, SolverError>, DynamicsError> {
+    let fem_error = |source| DynamicsError::Fem {
+        side: side.name(),
+        source,
+    };
+    // The whole matrices go as soon as they are reduced.
+    let bordered = |full: CsMat<f64>| {
+        let block = solver::restrict(&full, &coordinates.free);
+        let border = |x: &[f64]| products(&full, x, 1);
+        Bordered::new(Block::Sparse(block), border, coordinates)
+    };
+    let (mesh, material) = (&ring.mesh, &ring.material);
+    let stiffness = fem::assemble_stiffness(mesh, material)
+        .map(bordered)
+        .map_err(fem_error)?;
+    let mass = fem::assemble_mass(mesh, material)
+        .map(bordered)
+        .map_err(fem_error)?;
+    let (Block::Sparse(k), Block::Sparse(m)) = (&stiffness.block, &mass.block) else {
+        unreachable!("both were just made from sparse matrices")
+    };
     // Only lower triangles are added: the factorisation needs no more.
     let all: Vec<usize> = (0..coordinates.free.len()).collect();
-    let [stiffness, mass] = [stiffness, mass].map(|a| solver::restrict_lower(&a.block, &all));
-    let lower = &stiffness + &mass.map(|x| shift * x);
-    drop((stiffness, mass));
-    Symbolic::new(&lower, &elimination_order(mesh, &coordinates.free))?.factor(&lower)
+    let [k, m] = [k, m].map(|a| solver::restrict_lower(a, &all));
+    let lower = &k + &m.map(|x| shift * x);
+    drop((k, m));
+    let order = elimination_order(mesh, &coordinates.free);
+    let factor = Symbolic::new(&lower, &order).and_then(|symbolic| symbolic.factor(&lower));
+    Ok(factor.map(|factor| Parts {
+        stiffness,
+        mass,
+        factor: Box::new(factor),
+    }))
 }
 
 /// Border of K + s M, its solution by the free block, and the Schur complement of the moving dofs.
 fn eliminate(
-    factor: &SparseCholesky,
+    factor: &dyn LinearSolver,
     stiffness: &Bordered,
     mass: &Bordered,
     shift: f64,

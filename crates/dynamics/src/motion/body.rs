@@ -5,25 +5,22 @@
 //! hold the six rows B of the area-weighted rigid motion, w stays free. Forces of the partner act through the same
 //! functionals. A clamped seat has none: its nodes are held. Cost: K (nnz entries) and the scalar node mass.
 
-use std::sync::Arc;
-
 use contact::quadrature::PressureRule;
 use contact::{RacewaySurface, Side};
 use mesh::Mesh;
 use solver::Bordered;
-use sprs::CsMat;
 
 use super::coordinates::Coordinates;
-use super::effective::{Effective, Factored};
+use super::effective::{Effective, Factored, prepare};
 use super::integrator::Integrator;
+use super::matrices::RingMatrices;
 use super::ring::RingState;
 use crate::effects::FrameTurn;
 use crate::error::DynamicsError;
 use crate::inventory::Inventory;
 use crate::model::{Backend, Hold, RACEWAY_GROUP, RingModel};
 use crate::solution::dot;
-use crate::sparse::{SparseLoad, kronecker, node_product, product};
-use crate::substructures::Substructures;
+use crate::sparse::SparseLoad;
 use crate::support::mean_motion;
 
 /// A ring's matrices, raceway and mount.
@@ -38,23 +35,12 @@ pub struct RingBody {
     pub mount: Vec<SparseLoad>,
     /// `inner` or `outer`.
     pub name: &'static str,
-    matrices: Matrices,
+    pub(super) matrices: RingMatrices,
     /// Node positions, m, `[n_nodes][3]` flat.
     positions: Vec<f64>,
     /// Rayleigh damping: C = damping[0] M + damping[1] K.
     pub(super) damping: [f64; 2],
     effective: Effective,
-}
-
-/// Stiffness and mass of a ring.
-enum Matrices {
-    /// K of the coordinates, and the mass between nodes.
-    Whole {
-        stiffness: CsMat<f64>,
-        node_mass: CsMat<f64>,
-    },
-    /// As sums of sectors.
-    Sectors(Arc<Substructures>),
 }
 
 impl RingBody {
@@ -65,25 +51,9 @@ impl RingBody {
         damping: [f64; 2],
         backend: Backend,
     ) -> Result<RingBody, DynamicsError> {
-        let fem_error = |source| DynamicsError::Fem {
-            side: side.name(),
-            source,
-        };
         let mesh = &ring.mesh;
         let (coordinates, mount) = hold(mesh, side, ring);
-        let (matrices, effective) = if let Backend::Sector(sectors) = backend {
-            let parts = Substructures::new(ring, side.name(), coordinates.free(), sectors)?;
-            let parts = Arc::new(parts);
-            (Matrices::Sectors(parts.clone()), Effective::Sectors(parts))
-        } else {
-            let stiffness =
-                coordinates.reduce_matrix(&fem::assemble_stiffness(mesh, &ring.material).map_err(fem_error)?);
-            let pattern = fem::Pattern::new(mesh).map_err(fem_error)?;
-            let node_mass = fem::assemble_node_mass(&pattern, mesh, &ring.material).map_err(fem_error)?;
-            let whole = (&stiffness, &node_mass);
-            let effective = Effective::new(ring, side.name(), backend, &coordinates, whole)?;
-            (Matrices::Whole { stiffness, node_mass }, effective)
-        };
+        let (matrices, effective) = prepare(ring, side.name(), backend, &coordinates)?;
         Ok(RingBody {
             surface: RacewaySurface::new(mesh, mesh.group(RACEWAY_GROUP), ring.groove),
             rule: PressureRule::new(),
@@ -101,27 +71,28 @@ impl RingBody {
     pub fn factor(&self, integrator: Integrator, dt: f64) -> Result<Factored, DynamicsError> {
         let [m, c, k] = integrator.effective(dt);
         let (cm, ck) = (m + c * self.damping[0], k + c * self.damping[1]);
-        let factored = match &self.effective {
-            Effective::Sectors(parts) => {
+        let factored = match (&self.effective, &self.matrices) {
+            (Effective::Sparse(symbolic, _), RingMatrices::Sparse(matrices)) => matrices
+                .factor(symbolic, &self.coordinates, [cm, ck])
+                .map(Factored::Sparse),
+            (Effective::Sectors(parts), _) => {
                 let inner = parts.factor([cm, ck])?;
                 let [border, corner] = self.border([cm, ck]);
                 match corner.len().isqrt() {
-                    0 => Ok(Factored::without_table(inner)),
-                    m => Bordered::new(inner, &border, m, &corner).map(Factored::without_table),
+                    0 => Ok(Factored::Sparse(Box::new(inner))),
+                    m => Bordered::new(inner, &border, m, &corner)
+                        .map(|factor| Factored::Sparse(Box::new(factor))),
                 }
             }
-            Effective::Sparse(symbolic, _) => {
-                let Matrices::Whole { stiffness, node_mass } = &self.matrices else {
-                    unreachable!("only a ring in sectors has no whole matrix")
-                };
-                let mass = self.coordinates.reduce_matrix(&kronecker(node_mass));
-                let effective = &mass.map(|x| cm * x) + &stiffness.map(|x| ck * x);
-                drop(mass);
-                symbolic.factor(&effective).map(Factored::without_table)
-            }
-            Effective::Cyclic(sectors) => {
+            (Effective::Cyclic(sectors), _) => {
                 let [border, corner] = self.border([cm, ck]);
-                sectors.factor([cm, ck], &border, &corner)
+                let n_free = self.coordinates.free().len();
+                let mounted = self.mount.iter().flatten().map(|&(i, _)| i);
+                let nodes = mounted.filter(|&i| i < n_free).map(|i| i / 3);
+                sectors.factor([cm, ck], &border, &corner, nodes)
+            }
+            (Effective::Sparse(..), _) => {
+                unreachable!("a sparse factor comes with sparse matrices")
             }
         };
         factored.map_err(|source| DynamicsError::Solver {
@@ -138,8 +109,8 @@ impl RingBody {
         for k in n_free..n {
             let mut unit = vec![0.0; n];
             unit[k] = 1.0;
-            let (m, k) = (self.mass_product(&unit), self.stiffness_product(&unit));
-            let column: Vec<f64> = m.iter().zip(&k).map(|(m, k)| cm * m + ck * k).collect();
+            let [m, k] = [cm, ck].map(|c| unit.iter().map(|x| c * x).collect::<Vec<f64>>());
+            let column = self.matrices.sum_of_products(&self.coordinates, &m, &k);
             border.extend_from_slice(&column[..n_free]);
             corner.extend_from_slice(&column[n_free..]);
         }
@@ -165,44 +136,23 @@ impl RingBody {
     pub fn inventory(&self) -> Inventory {
         Inventory {
             dofs: self.coordinates.n(),
-            matrices: match &self.matrices {
-                Matrices::Whole { stiffness, node_mass } => [stiffness, node_mass].len(),
-                Matrices::Sectors(parts) => parts.n_matrices(),
-            },
+            matrices: self.matrices.n_matrices(),
         }
     }
 
     /// M x of coordinates, `[n]`.
     pub fn mass_product(&self, x: &[f64]) -> Vec<f64> {
-        let nodal = self.nodal_mass_product(&self.coordinates.expand(x));
-        self.coordinates.reduce(&nodal)
+        self.matrices.mass_product(&self.coordinates, x)
     }
 
     /// K x of coordinates, `[n]`.
     pub fn stiffness_product(&self, x: &[f64]) -> Vec<f64> {
-        match &self.matrices {
-            Matrices::Whole { stiffness, .. } => product(stiffness, x),
-            Matrices::Sectors(parts) => {
-                let nodal = parts.stiffness_product(&self.coordinates.expand(x));
-                self.coordinates.reduce(&nodal)
-            }
-        }
-    }
-
-    /// M u of all nodes, `[n_dofs]`.
-    fn nodal_mass_product(&self, u: &[f64]) -> Vec<f64> {
-        match &self.matrices {
-            Matrices::Whole { node_mass, .. } => node_product(node_mass, u),
-            Matrices::Sectors(parts) => parts.mass_product(u),
-        }
+        self.matrices.stiffness_product(&self.coordinates, x)
     }
 
     /// Kinetic and strain energy, J.
     pub fn energies(&self, state: &RingState) -> [f64; 2] {
-        [
-            0.5 * dot(&state.v, &self.mass_product(&state.v)),
-            0.5 * dot(&state.w, &self.stiffness_product(&state.w)),
-        ]
+        self.matrices.energies(&self.coordinates, &state.v, &state.w)
     }
 
     /// Generalised inertia load of the turning frame at displacement `w` and velocity `v` of the coordinates.
@@ -216,13 +166,15 @@ impl RingBody {
             f[0] = speed * speed * x + 2.0 * speed * vy + acceleration * y;
             f[1] = speed * speed * y - 2.0 * speed * vx - acceleration * x;
         }
-        self.coordinates.reduce(&self.nodal_mass_product(&field))
+        self.coordinates.reduce(&self.matrices.nodal_mass_product(&field))
     }
 
     /// Linear momentum, kg m/s, and moment of momentum about the point z = 0 of the mesh's axis, kg m^2/s, at the
     /// undeformed places of the nodes.
     pub fn momentum(&self, state: &RingState) -> [[f64; 3]; 2] {
-        let p = self.nodal_mass_product(&self.coordinates.expand(&state.v));
+        let p = self
+            .matrices
+            .nodal_mass_product(&self.coordinates.expand(&state.v));
         let mut sums = [[0.0; 3]; 2];
         for (x, p) in self.positions.chunks_exact(3).zip(p.chunks_exact(3)) {
             for i in 0..3 {

@@ -6,75 +6,96 @@
 
 use std::sync::Arc;
 
-use mesh::{Mesh, PERIODIC_TOLERANCE, find_periodicity};
-use solver::cyclic::{CyclicBordered, CyclicMatrix, CyclicRing, ResponseTable};
-use solver::{Coupling, LinearSolver, SolverError, Symbolic};
-use sprs::CsMat;
+use mesh::Mesh;
+use solver::cyclic::{CyclicBordered, ResponseTable};
+use solver::{LinearSolver, SectionPart, SolverError, Symbolic};
 
 use super::coordinates::Coordinates;
+use super::matrices::{RingMatrices, SparseMatrices};
 use crate::error::DynamicsError;
-use crate::model::{Backend, RACEWAY_GROUP, RingModel};
-use crate::ring::elimination_order;
-use crate::sparse::kronecker;
+use crate::model::{Backend, RingModel};
+use crate::sectors::{HeldSectors, Sectors};
 use crate::substructures::Substructures;
-
-/// Sectors from which on harmonics pay: a few wide ones cost more than the ring as a whole.
-const LEAST_SECTORS: usize = 12;
 
 /// What stays of the matrices of a ring to factor S for any step size.
 pub enum Effective {
     /// Analysis of the sparse matrix, and why the ring is not solved by harmonics.
     Sparse(Box<Symbolic>, String),
     /// Sectors of a periodic ring, without what is held.
-    Cyclic(Box<Sectors>),
+    Cyclic(Box<HeldSectors>),
     /// The ring cut by angle, which solves itself.
     Sectors(Arc<Substructures>),
 }
 
-/// One sector of a held ring.
-pub struct Sectors {
-    ring: CyclicRing,
-    stiffness: CyclicMatrix,
-    mass: CyclicMatrix,
-    /// Section nodes of the raceway, counted among those that stay.
-    raceway: Vec<usize>,
+/// A factored effective matrix.
+pub enum Factored {
+    /// Solves S x = b: one sparse matrix, or sectors.
+    Sparse(Box<dyn LinearSolver>),
+    /// Harmonics of a periodic ring.
+    Cyclic(Box<CyclicFactor>),
 }
 
-/// A factored effective matrix.
-pub struct Factored {
-    /// Solves S x = b.
-    pub solver: Box<dyn LinearSolver>,
-    /// Responses of all raceway nodes under S without its border, when the ring is periodic: contacts then need no columns.
-    pub table: Option<ResponseTable>,
+/// Harmonics of a periodic ring under S.
+pub struct CyclicFactor {
+    /// The factor with the border of the shaft's dofs, if any.
+    pub solver: CyclicBordered,
+    /// Responses of all raceway nodes under S without its border: contacts need no columns.
+    pub table: ResponseTable,
+    /// Nodes that contacts and partner load and measure.
+    pub touched: SectionPart,
+}
+
+impl Factored {
+    /// The solver of nodal vectors.
+    pub fn solver(&self) -> &dyn LinearSolver {
+        match self {
+            Factored::Sparse(solver) => &**solver,
+            Factored::Cyclic(factor) => &factor.solver,
+        }
+    }
+
+    /// Bytes of the factor and of the table.
+    pub fn bytes(&self) -> usize {
+        match self {
+            Factored::Sparse(solver) => solver.factor_bytes(),
+            Factored::Cyclic(factor) => factor.solver.factor_bytes() + factor.table.bytes(),
+        }
+    }
+}
+
+/// Chooses and prepares matrices and solver of a ring; `side` is `inner` or `outer`.
+pub fn prepare(
+    ring: &RingModel,
+    side: &'static str,
+    backend: Backend,
+    coordinates: &Coordinates,
+) -> Result<(RingMatrices, Effective), DynamicsError> {
+    let solver_error = |source| DynamicsError::Solver { side, source };
+    if let Backend::Sector(sectors) = backend {
+        let parts = Arc::new(Substructures::new(ring, side, coordinates.free(), sectors)?);
+        return Ok((RingMatrices::Cut(parts.clone()), Effective::Sectors(parts)));
+    }
+    match Sectors::held(ring, side, backend, &held_nodes(&ring.mesh, coordinates))? {
+        Ok((whole, held)) => {
+            let operator = |matrix| whole.ring.operator(matrix).map(Box::new).map_err(solver_error);
+            let matrices = RingMatrices::Sectors {
+                stiffness: operator(&whole.stiffness)?,
+                mass: operator(&whole.mass)?,
+            };
+            Ok((matrices, Effective::Cyclic(Box::new(held))))
+        }
+        Err(why) => {
+            let matrices = SparseMatrices::new(ring, side, coordinates)?;
+            let symbolic = matrices.analyse(ring, coordinates).map_err(solver_error)?;
+            Ok((
+                RingMatrices::Sparse(matrices),
+                Effective::Sparse(Box::new(symbolic), why),
+            ))
+        }
+    }
 }
 
 impl Effective {
-    /// Chooses and prepares the solver of a ring. `stiffness` is K of its coordinates, `node_mass` the mass between nodes.
-    pub fn new(
-        ring: &RingModel,
-        name: &'static str,
-        backend: Backend,
-        coordinates: &Coordinates,
-        (stiffness, node_mass): (&CsMat<f64>, &CsMat<f64>),
-    ) -> Result<Effective, DynamicsError> {
-        let mut why = "the scene asks for it".to_string();
-        if backend != Backend::Sparse {
-            match sectors(ring, name, coordinates)? {
-                Ok(sectors) => return Ok(Effective::Cyclic(Box::new(sectors))),
-                Err(reason) if backend == Backend::Cyclic => {
-                    return Err(DynamicsError::NotPeriodic { side: name, reason });
-                }
-                Err(reason) => why = reason,
-            }
-        }
-        let mut order = elimination_order(&ring.mesh, coordinates.free());
-        order.extend(coordinates.free().len()..coordinates.n());
-        let mass = coordinates.reduce_matrix(&kronecker(node_mass));
-        Symbolic::new(&(&mass + stiffness), &order)
-            .map(|symbolic| Effective::Sparse(Box::new(symbolic), why))
-            .map_err(|source| DynamicsError::Solver { side: name, source })
-    }
-
     /// Name of the solver as a scene has it.
     pub fn name(&self) -> &'static str {
         match self {
@@ -89,111 +110,32 @@ impl Effective {
         match self {
             Effective::Sparse(_, why) => format!("sparse ({why})"),
             Effective::Sectors(parts) => format!("sector ({})", parts.note()),
-            Effective::Cyclic(sectors) => format!("cyclic ({} equal sectors)", sectors.ring.n_sectors()),
+            Effective::Cyclic(sectors) => {
+                format!("cyclic ({} equal sectors)", sectors.sectors.ring.n_sectors())
+            }
         }
     }
 }
 
-impl Factored {
-    /// A factor without a table: contacts need columns.
-    pub fn without_table(factor: impl LinearSolver + 'static) -> Factored {
-        Factored {
-            solver: Box::new(factor),
-            table: None,
-        }
-    }
-}
-
-impl Sectors {
-    /// Factors c_M M + c_K K with the dense border `border` (column-major `[n_free][m]`) and `corner` (row-major).
+impl HeldSectors {
+    /// Factors c_M M + c_K K with the dense border `border` (column-major `[n_free][m]`) and `corner` (row-major). The
+    /// partner touches the free nodes `mounted`.
     pub fn factor(
         &self,
         [mass, stiffness]: [f64; 2],
         border: &[f64],
         corner: &[f64],
+        mounted: impl IntoIterator<Item = usize>,
     ) -> Result<Factored, SolverError> {
-        let effective = self.stiffness.combined(stiffness, mass, &self.mass)?;
-        let factor = self.ring.factor(&effective)?;
-        let table = Some(ResponseTable::new(&factor, &self.raceway));
-        let m = corner.len().isqrt();
-        let solver: Box<dyn LinearSolver> = if m == 0 {
-            Box::new(factor)
-        } else {
-            Box::new(CyclicBordered::new(factor, border, m, corner)?)
-        };
-        Ok(Factored { solver, table })
+        let sectors = &self.sectors;
+        let effective = sectors.stiffness.combined(stiffness, mass, &sectors.mass)?;
+        let factor = sectors.ring.factor(&effective)?;
+        Ok(Factored::Cyclic(Box::new(CyclicFactor {
+            table: ResponseTable::new(&factor, &self.raceway),
+            touched: sectors.ring.section_part(&self.raceway, mounted),
+            solver: CyclicBordered::new(factor, border, corner.len().isqrt(), corner)?,
+        })))
     }
-}
-
-/// The sectors of a ring, or why it has none.
-fn sectors(
-    ring: &RingModel,
-    name: &'static str,
-    coordinates: &Coordinates,
-) -> Result<Result<Sectors, String>, DynamicsError> {
-    let mesh = &ring.mesh;
-    let periodicity = match find_periodicity(mesh, PERIODIC_TOLERANCE) {
-        Ok(periodicity) => periodicity,
-        Err(reason) => return Ok(Err(reason.to_string())),
-    };
-    let n = periodicity.n_sectors();
-    if n < LEAST_SECTORS {
-        return Ok(Err(format!(
-            "its mesh has {n} equal sectors, expected at least {LEAST_SECTORS}"
-        )));
-    }
-    let held = match periodicity.section_nodes(&held_nodes(mesh, coordinates)) {
-        Ok(held) => held,
-        Err(site) => {
-            return Ok(Err(format!(
-                "what holds it is not the same in all sectors: section node {} is not held in sector {}",
-                site.section_node, site.sector
-            )));
-        }
-    };
-    let keep: Vec<usize> = (0..periodicity.n_section_nodes())
-        .filter(|i| held.binary_search(i).is_err())
-        .collect();
-    let touched = periodicity.section_nodes(&mesh.group_nodes(RACEWAY_GROUP));
-    let places = |nodes: Vec<usize>| nodes.iter().map(|n| keep.binary_search(n).ok()).collect();
-    let Some(raceway): Option<Vec<usize>> = touched.ok().and_then(places) else {
-        return Ok(Err(
-            "its raceway is not the same in all sectors, or touches what is held".to_string(),
-        ));
-    };
-    let sector = fem::assemble_sector(mesh, &periodicity, &ring.material)
-        .map_err(|source| DynamicsError::Fem { side: name, source })?;
-    let couplings: Vec<Coupling> = sector
-        .couplings
-        .iter()
-        .map(|c| Coupling {
-            row: c.row,
-            column: c.column,
-            shift: c.shift,
-        })
-        .collect();
-    let build = || -> Result<Sectors, SolverError> {
-        let width = periodicity.n_section_nodes();
-        let stiffness = CyclicMatrix::new(n, width, &couplings, &sector.stiffness)?;
-        let mass = stiffness.with_blocks(&couplings, &sector.mass)?;
-        let directions = fem::azimuth_directions(mesh);
-        let whole = CyclicRing::new(
-            &stiffness,
-            periodicity.nodes(),
-            &directions,
-            periodicity.half_way(),
-        )?;
-        let (stiffness, mass) = (stiffness.restricted(&keep), mass.restricted(&keep));
-        Ok(Sectors {
-            ring: whole.restricted(&stiffness, &keep)?,
-            stiffness,
-            mass,
-            raceway,
-        })
-    };
-    build()
-        .map(Ok)
-        .map_err(|source| DynamicsError::Solver { side: name, source })
 }
 
 /// Nodes that are not free.

@@ -2,8 +2,9 @@
 //!
 //! Contacts and partner act by a compliance C and then by the increment that their forces make. A sparse factor gives both by
 //! columns, one block solve of 1 + 2 n_balls right-hand sides per step, which reads the factor once. A periodic ring has C in a
-//! table of the responses of its raceway, made once per step size; then a step takes two solves. The columns of the mount
-//! are solved once per step size.
+//! table of the responses of its raceway, made once per step size; its predictor stays in harmonic space, where contact
+//! forces are added, so that a step takes two solves but transforms one whole field there and one back. The columns of the
+//! mount are solved once per step size.
 
 use contact::NodalWeights;
 use solver::LinearSolver;
@@ -18,9 +19,7 @@ use crate::sparse::{SparseLoad, sparse_dot};
 
 /// The factor of one ring at one step size.
 pub struct RingFactor {
-    factor: Box<dyn LinearSolver>,
-    /// Responses of the raceway of a periodic ring.
-    table: Option<ResponseTable>,
+    factor: Factored,
     /// Inverse of the border's compliance where S has one, row-major.
     border: Option<Vec<f64>>,
     /// S^-1 times the mount's functionals, column-major `[n][n_mount]`.
@@ -68,9 +67,7 @@ impl RingState {
 /// A ring over one step as contacts and partner see it: g = start, then g1 = predicted + C F, over the two directions
 /// of every contact and the functionals of the mount.
 pub struct RingStep {
-    /// The predictor, which is the increment without forces of contacts and partner, then, if they were solved for, the
-    /// increments per unit contact force: column-major `[n][1 + 2 n_contacts]`.
-    block: Vec<f64>,
+    predictor: Predictor,
     /// Functionals of the contacts.
     contacts: Vec<SparseLoad>,
     /// g at the start of the step, m and rad.
@@ -83,6 +80,14 @@ pub struct RingStep {
     pub seconds: [f64; 2],
 }
 
+/// The increment without forces of contacts and partner.
+enum Predictor {
+    /// Itself, then the increments per unit contact force: column-major `[n][1 + 2 n_contacts]`.
+    Columns(Vec<f64>),
+    /// In harmonic space, and the rows of the border.
+    Harmonic(Vec<f64>, Vec<f64>),
+}
+
 impl RingStep {
     /// Motion of the groove centres, `[2 n_contacts]`, when the coordinates move by `x`.
     pub fn contact_motion(&self, x: &[f64]) -> Vec<f64> {
@@ -93,12 +98,9 @@ impl RingStep {
 impl RingFactor {
     /// Factors the ring for steps of `dt` seconds.
     pub fn new(body: &RingBody, integrator: Integrator, dt: f64) -> Result<RingFactor, DynamicsError> {
-        let Factored {
-            solver: factor,
-            table,
-        } = body.factor(integrator, dt)?;
+        let factor = body.factor(integrator, dt)?;
         let n = body.coordinates.n();
-        let mount = columns(&*factor, &body.mount, n);
+        let mount = columns(factor.solver(), &body.mount, n);
         let m = body.mount.len();
         let mut mount_compliance = vec![0.0; m * m];
         for i in 0..m {
@@ -114,7 +116,6 @@ impl RingFactor {
         });
         Ok(RingFactor {
             factor,
-            table,
             border,
             mount,
             mount_compliance,
@@ -125,7 +126,7 @@ impl RingFactor {
 
     /// Bytes of the factor and of the table.
     pub fn bytes(&self) -> usize {
-        self.factor.factor_bytes() + self.table.as_ref().map_or(0, ResponseTable::bytes)
+        self.factor.bytes()
     }
 
     /// Predictor and columns of a step from `state` under the generalised load `load` and with contacts at `feet`.
@@ -142,39 +143,33 @@ impl RingFactor {
             .iter()
             .flat_map(|foot| body.coordinates.reduce_weights(foot))
             .collect();
-        let mut block = self.right_side(body, state, load);
-        if self.table.is_none() {
-            block.resize(n * (1 + contacts.len()), 0.0);
-            fill(&mut block[n..], &contacts, n);
-        }
-        let sides = clock.elapsed().as_secs_f64();
-        self.factor.solve(&mut block, self.n_columns(contacts.len()));
+        let mut side = self.right_side(body, state, load);
         let all: Vec<&SparseLoad> = contacts.iter().chain(&body.mount).collect();
         let start: Vec<f64> = all.iter().map(|g| sparse_dot(g, &state.w)).collect();
-        let predicted = all
-            .iter()
-            .zip(&start)
-            .map(|(g, s)| s + sparse_dot(g, &block[..n]))
-            .collect();
-        let compliance = match &self.table {
-            Some(table) => self.table_compliance(body, table, feet, &contacts),
-            None => self.column_compliance(&all, &block[n..], n),
+        let sides = clock.elapsed().as_secs_f64();
+        let (predictor, moved, compliance) = match &self.factor {
+            Factored::Cyclic(factor) => {
+                let (harmonic, border) = factor.solve(&side);
+                let moved = factor.motions(&harmonic, &border, &all);
+                let compliance = self.table_compliance(body, &factor.table, feet, &contacts);
+                (Predictor::Harmonic(harmonic, border), moved, compliance)
+            }
+            Factored::Sparse(solver) => {
+                side.resize(n * (1 + contacts.len()), 0.0);
+                fill(&mut side[n..], &contacts, n);
+                solver.solve(&mut side, 1 + contacts.len());
+                let moved: Vec<f64> = all.iter().map(|g| sparse_dot(g, &side[..n])).collect();
+                let compliance = self.column_compliance(&all, &side[n..], n);
+                (Predictor::Columns(side), moved, compliance)
+            }
         };
         RingStep {
-            block,
+            predictor,
+            predicted: start.iter().zip(&moved).map(|(s, d)| s + d).collect(),
             start,
-            predicted,
             compliance,
             seconds: [sides, clock.elapsed().as_secs_f64() - sides],
             contacts,
-        }
-    }
-
-    /// Right-hand sides of a step with `contacts` functionals.
-    fn n_columns(&self, contacts: usize) -> usize {
-        match self.table {
-            Some(_) => 1,
-            None => 1 + contacts,
         }
     }
 
@@ -257,44 +252,61 @@ impl RingFactor {
             .zip(state.v.iter().zip(&state.a).map(combine(c_stiff)))
             .map(|(w, c)| c - w)
             .collect();
-        let (m, k) = (body.mass_product(&inertial), body.stiffness_product(&elastic));
-        load.iter().zip(&m).zip(&k).map(|((f, m), k)| f + m + k).collect()
+        let mut side = body
+            .matrices
+            .sum_of_products(&body.coordinates, &inertial, &elastic);
+        side.iter_mut().zip(load).for_each(|(side, f)| *side += f);
+        side
     }
 
     /// Adds a generalised load to the step; one solve.
     pub fn add_load(&self, body: &RingBody, step: &mut RingStep, mut load: Vec<f64>) {
-        self.factor.solve(&mut load, 1);
-        step.block.iter_mut().zip(&load).for_each(|(p, d)| *p += d);
-        for (p, g) in step
-            .predicted
-            .iter_mut()
-            .zip(step.contacts.iter().chain(&body.mount))
-        {
-            *p += sparse_dot(g, &load);
-        }
+        let all: Vec<&SparseLoad> = step.contacts.iter().chain(&body.mount).collect();
+        let moved: Vec<f64> = match (&self.factor, &mut step.predictor) {
+            (Factored::Cyclic(factor), Predictor::Harmonic(harmonic, border)) => {
+                let (more, q) = factor.solve(&load);
+                harmonic.iter_mut().zip(&more).for_each(|(p, d)| *p += d);
+                border.iter_mut().zip(&q).for_each(|(p, d)| *p += d);
+                factor.motions(&more, &q, &all)
+            }
+            (Factored::Sparse(solver), Predictor::Columns(block)) => {
+                solver.solve(&mut load, 1);
+                block.iter_mut().zip(&load).for_each(|(p, d)| *p += d);
+                all.iter().map(|g| sparse_dot(g, &load)).collect()
+            }
+            _ => unreachable!("a step keeps what its factor made"),
+        };
+        step.predicted.iter_mut().zip(&moved).for_each(|(p, d)| *p += d);
     }
 
     /// Increment of the coordinates under forces on contacts (N, `[2 n_contacts]`) and mount (N and N m).
-    pub fn increment(&self, step: &RingStep, contacts: &[f64], mount: &[f64]) -> Vec<f64> {
-        let n = step.block.len() / self.n_columns(step.contacts.len());
-        let mut dw = if self.table.is_some() {
-            let mut load = vec![0.0; n];
-            for (contact, f) in step.contacts.iter().zip(contacts) {
-                contact.iter().for_each(|&(i, w)| load[i] += f * w);
+    pub fn increment(&self, body: &RingBody, step: &RingStep, contacts: &[f64], mount: &[f64]) -> Vec<f64> {
+        match (&self.factor, &step.predictor) {
+            (Factored::Cyclic(factor), Predictor::Harmonic(harmonic, border)) => {
+                let mut load = vec![0.0; body.coordinates.n()];
+                let loads = step
+                    .contacts
+                    .iter()
+                    .zip(contacts)
+                    .chain(body.mount.iter().zip(mount));
+                for (functional, f) in loads {
+                    functional.iter().for_each(|&(i, w)| load[i] += f * w);
+                }
+                factor.increment((harmonic, border), load)
             }
-            self.factor.solve(&mut load, 1);
-            load.iter_mut().zip(&step.block).for_each(|(d, p)| *d += p);
-            load
-        } else {
-            step.block[..n].to_vec()
-        };
-        let columns = step.block[n..].chunks_exact(n).zip(contacts);
-        for (column, &f) in columns.chain(self.mount.chunks_exact(n).zip(mount)) {
-            if f != 0.0 {
-                dw.iter_mut().zip(column).for_each(|(d, c)| *d += f * c);
+            (_, Predictor::Columns(block)) => {
+                let n = body.coordinates.n();
+                let mut dw = block[..n].to_vec();
+                let columns = block[n..].chunks_exact(n).zip(contacts);
+                for (column, &f) in columns.chain(self.mount.chunks_exact(n).zip(mount)) {
+                    if f != 0.0 {
+                        dw.iter_mut().zip(column).for_each(|(d, c)| *d += f * c);
+                    }
+                }
+                dw
             }
+            _ => unreachable!("a step keeps what its factor made"),
         }
-        dw
     }
 
     /// The state at the end of a step with increment `dw`.

@@ -19,6 +19,9 @@ use crate::problem::Site;
 
 /// Change of the frame's inertia loads in a round, sum of all, over the largest force, at which they count as settled.
 const FRAME_TOLERANCE: f64 = 1e-9;
+/// The same over the inertia loads themselves, which a body without other forces has alone: what rounding of a transform of
+/// its motion leaves of them.
+const FRAME_ROUND_OFF: f64 = 1e-13;
 /// Rounds before a step counts as failed; each contracts by about speed times step size.
 const MAX_FRAME_ROUNDS: usize = 25;
 
@@ -275,7 +278,7 @@ impl Motion<'_> {
             let forces = system.ring_loads(side, solution);
             Some(
                 ring.factor
-                    .increment(&ring.step, &forces, &solution.mounts[side.index()]),
+                    .increment(ring.body, &ring.step, &forces, &solution.mounts[side.index()]),
             )
         };
         let (inner, outer) = self
@@ -302,7 +305,8 @@ impl Motion<'_> {
         let [w, v] = ring.old.within(self.settings.integrator, span.dt, dw);
         let new = ring.body.frame_load(*turn, &w, &v);
         let change: Vec<f64> = new.iter().zip(used.iter()).map(|(a, b)| a - b).collect();
-        if change.iter().map(|c| c.abs()).sum::<f64>() <= FRAME_TOLERANCE * scale {
+        let size = |f: &[f64]| f.iter().map(|c| c.abs()).sum::<f64>();
+        if size(&change) <= (FRAME_TOLERANCE * scale).max(FRAME_ROUND_OFF * size(&new)) {
             return true;
         }
         *used = new;

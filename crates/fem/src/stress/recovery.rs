@@ -14,7 +14,7 @@
 use mesh::{ElementKind, Mesh};
 use rayon::prelude::*;
 
-use super::kernel::{MAX_POINTS, node_state, strains};
+use super::kernel::{MAX_POINTS, NodeState, node_state, strains};
 use crate::element;
 use crate::error::FemError;
 use crate::geometry::{check_connectivity, checked_map, coordinates, position};
@@ -185,11 +185,20 @@ impl StressRecovery {
         &self.connectivity[n * e..n * (e + 1)]
     }
 
+    /// Number of nodes.
+    pub(super) fn n_nodes(&self) -> usize {
+        self.positions.len()
+    }
+
     /// Stress at the stress points of element `e`, Pa, and its volume, m^3.
     fn element_stress(&self, e: usize, u: &[f64]) -> ([[f64; 6]; MAX_POINTS], f64) {
-        let state = node_state(&self.positions, self.element(e), u);
+        self.state_stress(&node_state(&self.positions, self.element(e), u))
+    }
+
+    /// Stress at the stress points of an element whose nodes are at and move by `state`, Pa, and its volume, m^3.
+    fn state_stress(&self, state: &NodeState) -> ([[f64; 6]; MAX_POINTS], f64) {
         let mut values = [[0.0; 6]; MAX_POINTS];
-        let volume = strains(&self.table, &state, self.lame, &mut values);
+        let volume = strains(&self.table, state, self.lame, &mut values);
         for value in &mut values[..self.table.n_points()] {
             *value = hooke(self.lame[0], self.lame[1], *value);
         }
@@ -198,7 +207,18 @@ impl StressRecovery {
 
     /// Corner stresses of element `e` times its volume, N m, `[n_corners][6]`.
     fn corner_stress(&self, e: usize, u: &[f64], corners: &mut [[f64; 6]]) {
-        let (points, volume) = self.element_stress(e, u);
+        self.project(self.element_stress(e, u), corners);
+    }
+
+    /// The same of an element in any state, zero beyond its corners.
+    pub(super) fn weighted_corners(&self, state: &NodeState) -> [[f64; 6]; MAX_CORNERS] {
+        let mut corners = [[0.0; 6]; MAX_CORNERS];
+        self.project(self.state_stress(state), &mut corners);
+        corners
+    }
+
+    /// Corner stresses times the volume from those at the stress points.
+    fn project(&self, (points, volume): ([[f64; 6]; MAX_POINTS], f64), corners: &mut [[f64; 6]]) {
         for (corner, factors) in corners.iter_mut().zip(&self.projection) {
             let mut sum = [0.0; 6];
             for (point, factor) in points.iter().zip(factors) {
@@ -215,13 +235,21 @@ impl StressRecovery {
         let n = self.table.kind.n_corners();
         let mut sum = [0.0; 6];
         for &(e, a) in self.elements.of(node) {
-            let own = &corners[n * e as usize..][..n];
-            let [first, second] = self.ends[a as usize];
-            for c in 0..6 {
-                sum[c] += 0.5 * (own[first][c] + own[second][c]);
-            }
+            let value = self.at_node(a as usize, &corners[n * e as usize..][..n]);
+            (0..6).for_each(|c| sum[c] += value[c]);
         }
         sum.map(|s| s * self.inverse_volumes[node])
+    }
+
+    /// What an element gives to the mean of `node`, its node `a`, Pa, from its corner stresses times its volume.
+    pub(super) fn node_share(&self, node: usize, a: usize, corners: &[[f64; 6]]) -> [f64; 6] {
+        self.at_node(a, corners).map(|s| s * self.inverse_volumes[node])
+    }
+
+    /// Value at node `a` of an element.
+    fn at_node(&self, a: usize, corners: &[[f64; 6]]) -> [f64; 6] {
+        let [first, second] = self.ends[a];
+        std::array::from_fn(|c| 0.5 * (corners[first][c] + corners[second][c]))
     }
 }
 

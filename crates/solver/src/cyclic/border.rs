@@ -93,7 +93,9 @@ impl CyclicBordered {
                 }
             }
         }
-        self.schur.solve(border, columns.len());
+        if m > 0 {
+            self.schur.solve(border, columns.len());
+        }
         self.factor.solve_harmonic(columns);
         if m > 0 && group_len > 0 {
             for (w, q) in columns.iter_mut().zip(border.chunks_exact(m)) {

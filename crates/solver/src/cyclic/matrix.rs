@@ -91,6 +91,11 @@ impl CyclicMatrix {
         self.pattern.n_sectors
     }
 
+    /// Number of couplings of one sector, 3 x 3 numbers each.
+    pub fn n_couplings(&self) -> usize {
+        self.blocks.len()
+    }
+
     /// Number of rows of the whole ring.
     pub fn n(&self) -> usize {
         3 * self.pattern.n_sectors * self.pattern.n_section_nodes

@@ -46,6 +46,7 @@ mod profile;
 mod response;
 mod ring;
 mod sites;
+mod stencil;
 mod transform;
 
 pub use border::CyclicBordered;
@@ -55,3 +56,5 @@ pub use pattern::Coupling;
 pub use response::{Patch, ResponseTable};
 pub use ring::CyclicRing;
 pub use sites::NodalLoad;
+pub use stencil::CyclicStencil;
+pub use transform::SectionPart;

@@ -41,41 +41,6 @@ impl CyclicRing {
     /// # Panics
     /// When the length is another.
     pub fn apply(&self, matrix: &CyclicMatrix, x: &[f64]) -> Result<Vec<f64>, SolverError> {
-        matrix.check_pattern(&self.shared.pattern)?;
-        assert_eq!(x.len(), self.n(), "three components per node");
-        let shared = &self.shared;
-        let (n, width) = (self.n_sectors(), self.n_section_nodes());
-        let mut cylindrical = vec![0.0; x.len()];
-        for (site, u) in cylindrical.chunks_exact_mut(3).enumerate() {
-            let (node, [c, s]) = (shared.nodes[site], shared.directions[site]);
-            let [x, y, z] = [0, 1, 2].map(|i| x[3 * node + i]);
-            u.copy_from_slice(&[c * x + s * y, c * y - s * x, z]);
-        }
-        let mut forces = vec![0.0; x.len()];
-        forces
-            .par_chunks_mut((3 * width).max(1))
-            .enumerate()
-            .for_each(|(sector, forces)| {
-                for link in &shared.links {
-                    let shift =
-                        (shared.steps[link.step] + shared.halves[link.row] - shared.halves[link.column]) / 2;
-                    let there = (sector as i64 + i64::from(shift)).rem_euclid(n as i64) as usize;
-                    let u = &cylindrical[3 * (there * width + link.column)..][..3];
-                    let block = &matrix.blocks[link.block];
-                    for (i, f) in forces[3 * link.row..3 * link.row + 3].iter_mut().enumerate() {
-                        *f += block[3 * i] * u[0] + block[3 * i + 1] * u[1] + block[3 * i + 2] * u[2];
-                    }
-                }
-            });
-        let mut product = vec![0.0; x.len()];
-        for (site, f) in forces.chunks_exact(3).enumerate() {
-            let (node, [c, s]) = (shared.nodes[site], shared.directions[site]);
-            product[3 * node..3 * node + 3].copy_from_slice(&[
-                c * f[0] - s * f[1],
-                s * f[0] + c * f[1],
-                f[2],
-            ]);
-        }
-        Ok(product)
+        Ok(self.operator(matrix)?.apply(x))
     }
 }

@@ -36,6 +36,8 @@ pub(crate) struct Shared {
     /// (cos, sin) of its azimuth, in the layout of `nodes`.
     pub(crate) directions: Vec<[f64; 2]>,
     pub(crate) phases: Phases,
+    /// Most sectors between coupled nodes.
+    pub(crate) reach: usize,
     /// Half sectors between coupled nodes, the different values, ascending.
     pub(crate) steps: Vec<i32>,
     /// Couplings by (row, step), which the products run over.
@@ -97,6 +99,12 @@ impl CyclicRing {
                 sites: invert(&nodes, nodes.len())?,
                 directions: nodes.iter().map(|&node| directions[node]).collect(),
                 phases: Phases::new(n_sectors),
+                reach: pattern
+                    .couplings
+                    .iter()
+                    .map(|c| c.shift.unsigned_abs() as usize)
+                    .max()
+                    .unwrap_or(0),
                 forward: planner.plan_fft_forward(n_sectors),
                 inverse: planner.plan_fft_inverse(n_sectors),
                 may_be_mirrored: half_way.is_some(),

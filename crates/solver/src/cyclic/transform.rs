@@ -26,27 +26,49 @@ const NODAL_TASK: usize = 4096;
 /// One coefficient of a real Fourier transform.
 pub(super) type Spectrum = Complex<f64>;
 
+/// Some nodes of a section with their images in all sectors, such as those of the raceway.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct SectionPart {
+    /// Places in elimination order, ascending.
+    places: Vec<usize>,
+}
+
 impl CyclicRing {
     /// Harmonics of the nodal vector `nodal` (Cartesian, `[n]`) into `harmonic`, `[harmonic_len()]`.
     ///
     /// # Panics
     /// When the lengths are others.
     pub fn to_harmonic(&self, nodal: &[f64], harmonic: &mut [f64]) {
+        let all: Vec<usize> = (0..self.n_section_nodes()).collect();
+        self.transform_places(&all, nodal, harmonic);
+    }
+
+    /// The same of a vector that is zero but at the nodes of `part`, which alone are read.
+    ///
+    /// # Panics
+    /// When the lengths are others.
+    pub fn to_harmonic_from(&self, part: &SectionPart, nodal: &[f64], harmonic: &mut [f64]) {
+        harmonic.fill(0.0);
+        self.transform_places(&part.places, nodal, harmonic);
+    }
+
+    /// Overwrites the harmonics of the nodes at `places`.
+    fn transform_places(&self, places: &[usize], nodal: &[f64], harmonic: &mut [f64]) {
         assert_eq!(nodal.len(), self.n(), "three components per node");
         assert_eq!(harmonic.len(), self.harmonic_len(), "a vector in harmonic space");
         let n_harmonics = self.shared.phases.n_harmonics();
-        let mut spectra = vec![Spectrum::default(); 3 * self.n_section_nodes() * n_harmonics];
+        let mut spectra = vec![Spectrum::default(); 3 * places.len() * n_harmonics];
         if spectra.is_empty() {
             return;
         }
         spectra
             .par_chunks_mut(3 * TASK * n_harmonics)
-            .enumerate()
-            .for_each(|(task, spectra)| self.transform_nodes(TASK * task, nodal, spectra));
+            .zip(places.par_chunks(TASK))
+            .for_each(|(spectra, places)| self.transform_nodes(places, nodal, spectra));
         harmonic
             .par_chunks_mut(self.group_len())
             .enumerate()
-            .for_each(|(group, lanes)| collect_group(group, n_harmonics, &spectra, lanes));
+            .for_each(|(group, lanes)| collect_group(group, n_harmonics, (places, &spectra), lanes));
     }
 
     /// Nodal vector (Cartesian, `[n]`) of the harmonics `harmonic`, `[harmonic_len()]`.
@@ -55,14 +77,9 @@ impl CyclicRing {
     /// When the lengths are others.
     pub fn from_harmonic(&self, harmonic: &[f64], nodal: &mut [f64]) {
         assert_eq!(nodal.len(), self.n(), "three components per node");
-        assert_eq!(harmonic.len(), self.harmonic_len(), "a vector in harmonic space");
-        let (n, width) = (self.n_sectors(), self.n_section_nodes());
-        let mut components = vec![0.0; 3 * n * width];
-        components
-            .par_chunks_mut(3 * TASK * n)
-            .enumerate()
-            .for_each(|(task, components)| self.restore_nodes(TASK * task, harmonic, components));
-        let shared = &self.shared;
+        let all: Vec<usize> = (0..self.n_section_nodes()).collect();
+        let components = self.restore_places(&all, harmonic);
+        let (shared, n, width) = (&self.shared, self.n_sectors(), self.n_section_nodes());
         nodal
             .par_chunks_mut(3 * NODAL_TASK)
             .enumerate()
@@ -74,6 +91,59 @@ impl CyclicRing {
                     u.copy_from_slice(&[c * r - s * t, s * r + c * t, z]);
                 }
             });
+    }
+
+    /// The same for the nodes of `part` alone; other nodes keep their values.
+    ///
+    /// # Panics
+    /// When the lengths are others.
+    pub fn from_harmonic_at(&self, part: &SectionPart, harmonic: &[f64], nodal: &mut [f64]) {
+        assert_eq!(nodal.len(), self.n(), "three components per node");
+        let components = self.restore_places(&part.places, harmonic);
+        let (shared, n, width) = (&self.shared, self.n_sectors(), self.n_section_nodes());
+        for (lines, &place) in components.chunks_exact(3 * n).zip(&part.places) {
+            for sector in 0..n {
+                let site = sector * width + place;
+                let ([c, s], node) = (shared.directions[site], shared.nodes[site]);
+                let [r, t, z] = [0, 1, 2].map(|i| lines[i * n + sector]);
+                nodal[3 * node..3 * node + 3].copy_from_slice(&[c * r - s * t, s * r + c * t, z]);
+            }
+        }
+    }
+
+    /// The section nodes to which the caller's nodes `nodes` belong, and the section nodes `section_nodes`.
+    ///
+    /// # Panics
+    /// When a node does not exist.
+    pub fn section_part(
+        &self,
+        section_nodes: &[usize],
+        nodes: impl IntoIterator<Item = usize>,
+    ) -> SectionPart {
+        let shared = &self.shared;
+        let of_nodes = nodes
+            .into_iter()
+            .map(|n| shared.sites[n] % self.n_section_nodes());
+        let mut places: Vec<usize> = section_nodes
+            .iter()
+            .map(|&n| shared.place[n])
+            .chain(of_nodes)
+            .collect();
+        places.sort_unstable();
+        places.dedup();
+        SectionPart { places }
+    }
+
+    /// Cylindrical components of the nodes at `places`, `[places][3][n_sectors]`.
+    fn restore_places(&self, places: &[usize], harmonic: &[f64]) -> Vec<f64> {
+        assert_eq!(harmonic.len(), self.harmonic_len(), "a vector in harmonic space");
+        let n = self.n_sectors();
+        let mut components = vec![0.0; 3 * n * places.len()];
+        components
+            .par_chunks_mut(3 * TASK * n)
+            .zip(places.par_chunks(TASK))
+            .for_each(|(components, places)| self.restore_nodes(places, harmonic, components));
+        components
     }
 
     /// The nodal scalar product of two vectors in harmonic space (Parseval), in a fixed order.
@@ -110,15 +180,14 @@ impl CyclicRing {
         weighted.sum::<f64>() / n as f64
     }
 
-    /// Spectra of the nodes from place `first` on, `[nodes][3][n_harmonics]`.
-    fn transform_nodes(&self, first: usize, nodal: &[f64], spectra: &mut [Spectrum]) {
+    /// Spectra of the nodes at `places`, `[places][3][n_harmonics]`.
+    fn transform_nodes(&self, places: &[usize], nodal: &[f64], spectra: &mut [Spectrum]) {
         let shared = &self.shared;
         let (n, width) = (self.n_sectors(), self.n_section_nodes());
         let n_harmonics = shared.phases.n_harmonics();
         let mut lines = vec![0.0; 3 * n];
         let mut scratch = shared.forward.make_scratch_vec();
-        for (i, spectra) in spectra.chunks_exact_mut(3 * n_harmonics).enumerate() {
-            let place = first + i;
+        for (spectra, &place) in spectra.chunks_exact_mut(3 * n_harmonics).zip(places) {
             for sector in 0..n {
                 let site = sector * width + place;
                 let node = shared.nodes[site];
@@ -151,14 +220,14 @@ impl CyclicRing {
         }
     }
 
-    /// Cylindrical components of the nodes from place `first` on, `[nodes][3][n_sectors]`.
-    fn restore_nodes(&self, first: usize, harmonic: &[f64], components: &mut [f64]) {
+    /// Cylindrical components of the nodes at `places`, `[places][3][n_sectors]`.
+    fn restore_nodes(&self, places: &[usize], harmonic: &[f64], components: &mut [f64]) {
         let shared = &self.shared;
         let n = self.n_sectors();
         let mut spectrum = shared.inverse.make_input_vec();
         let mut scratch = shared.inverse.make_scratch_vec();
         for (i, line) in components.chunks_exact_mut(n).enumerate() {
-            let (place, component) = (first + i / 3, i % 3);
+            let (place, component) = (places[i / 3], i % 3);
             for (k, value) in spectrum.iter_mut().enumerate() {
                 let start = (k / LANES) * self.group_len() + 2 * LANES * (3 * place + component) + k % LANES;
                 let w = Complex::new(harmonic[start], harmonic[start + LANES]);
@@ -192,18 +261,27 @@ pub(super) fn restore_line(
         .expect("the lengths are those of the plan");
 }
 
-/// A group's part of a harmonic vector, `[n_section_nodes][3][2][LANES]`, from the spectra of all dofs of the section.
-fn collect_group(group: usize, n_harmonics: usize, spectra: &[Spectrum], lanes: &mut [f64]) {
+/// Writes the harmonics of the nodes at `places` into a group's part of a vector, `[n_section_nodes][3][2][LANES]`, from
+/// their spectra.
+fn collect_group(
+    group: usize,
+    n_harmonics: usize,
+    (places, spectra): (&[usize], &[Spectrum]),
+    lanes: &mut [f64],
+) {
     let first = group * LANES;
     let last = n_harmonics.min(first + LANES);
-    for (spectrum, parts) in spectra
-        .chunks_exact(n_harmonics)
-        .zip(lanes.chunks_exact_mut(2 * LANES))
-    {
-        parts.fill(0.0);
-        for (lane, value) in spectrum[first..last].iter().enumerate() {
-            parts[lane] = value.re;
-            parts[LANES + lane] = value.im;
+    for (spectra, &place) in spectra.chunks_exact(3 * n_harmonics).zip(places) {
+        let node = &mut lanes[6 * LANES * place..][..6 * LANES];
+        for (spectrum, parts) in spectra
+            .chunks_exact(n_harmonics)
+            .zip(node.chunks_exact_mut(2 * LANES))
+        {
+            parts.fill(0.0);
+            for (lane, value) in spectrum[first..last].iter().enumerate() {
+                parts[lane] = value.re;
+                parts[LANES + lane] = value.im;
+            }
         }
     }
 }

@@ -6,3 +6,4 @@ mod hold;
 mod rings;
 mod solve;
 mod space;
+mod stencil;

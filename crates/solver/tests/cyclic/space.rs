@@ -135,3 +135,32 @@ fn single_nodes_are_loaded_and_measured_as_in_the_whole_field() {
         assert_close(&w, &expected, 1e-13);
     }
 }
+
+/// Wrong: a vector on the raceway alone would get other harmonics than as part of the whole field, or nodes read back from a
+/// field would be others; nodes left out must keep their values.
+#[test]
+fn part_of_a_section_is_transformed_as_in_the_whole() {
+    for (ring, _) in rings() {
+        let part = ring.ring.section_part(&[2, 5], [7, 3]);
+        let sites = ring.periodicity.sites();
+        let chosen = [2, 5, sites[7].section_node, sites[3].section_node];
+        let is_inside = |node: usize| chosen.contains(&sites[node].section_node);
+        let x = loads(ring.mesh.n_dofs());
+        let alone: Vec<f64> = (0..x.len())
+            .map(|i| if is_inside(i / 3) { x[i] } else { 0.0 })
+            .collect();
+        let mut expected = vec![0.0; ring.ring.harmonic_len()];
+        let mut found = vec![f64::NAN; expected.len()];
+        ring.ring.to_harmonic(&alone, &mut expected);
+        ring.ring.to_harmonic_from(&part, &x, &mut found);
+        assert_eq!(found, expected);
+
+        ring.ring.to_harmonic(&x, &mut found);
+        let mut nodal = vec![7.0; x.len()];
+        ring.ring.from_harmonic_at(&part, &found, &mut nodal);
+        let expected: Vec<f64> = (0..x.len())
+            .map(|i| if is_inside(i / 3) { x[i] } else { 7.0 })
+            .collect();
+        assert_close(&nodal, &expected, 1e-14);
+    }
+}

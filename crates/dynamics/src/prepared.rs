@@ -1,0 +1,174 @@
+//! A held ring ready to be factored for statics, with a forecast of its memory: all that is known before a number is
+//! factored.
+
+use contact::Side;
+use mesh::Mesh;
+use solver::{LinearSolver, SolverError, Symbolic, Symmetry};
+use sprs::CsMat;
+
+use crate::error::DynamicsError;
+use crate::memory::RingMemory;
+use crate::model::{Backend, Hold, Model, RingModel};
+use crate::ring::{elimination_order, named};
+use crate::sectors::{HeldSectors, Sectors};
+use crate::substructures::Substructures;
+use crate::support::Support;
+
+/// Columns of a block that harmonics solve for: more take memory and save nothing.
+const CYCLIC_BLOCK: usize = 8;
+
+/// A ring before its factorisation.
+pub struct Prepared {
+    /// Forecast of its memory.
+    pub memory: RingMemory,
+    support: Support,
+    matrix: Matrix,
+}
+
+/// The stiffness of a held ring.
+enum Matrix {
+    /// Lower triangle, its analysis, and why the ring is not solved by harmonics.
+    Sparse(CsMat<f64>, Box<Symbolic>, String),
+    /// One sector, and what its harmonics are.
+    Cyclic(Box<HeldSectors>, Symmetry),
+    /// Sectors cut by angle.
+    Cut(Box<Substructures>),
+}
+
+impl Prepared {
+    /// Assembles the ring on `side` and analyses its factorisation.
+    pub fn new(model: &Model, side: Side, ring: &RingModel) -> Result<Prepared, DynamicsError> {
+        let (mesh, name) = (&ring.mesh, side.name());
+        let n_balls = model.geometry.n_balls;
+        let weights = fem::surface::facet_node_weights(mesh, mesh.group(ring.held_group));
+        if let Backend::Sector(sectors) = model.backend {
+            let support = Support::new(mesh, ring.hold, weights);
+            let parts = Substructures::new(ring, name, &support.free, sectors)?;
+            return Ok(Prepared {
+                memory: RingMemory::of_sectors(mesh, &parts, n_balls, rayon::current_num_threads()),
+                support,
+                matrix: Matrix::Cut(Box::new(parts)),
+            });
+        }
+        let held = match ring.hold {
+            Hold::Clamped => mesh.group_nodes(ring.held_group),
+            Hold::MeanMotion | Hold::Free => Vec::new(),
+        };
+        let why = match Sectors::held(ring, name, model.backend, &held)? {
+            Ok((_, held)) => {
+                let sectors = &held.sectors;
+                let symmetry = sectors.ring.symmetry(&sectors.stiffness);
+                return Ok(Prepared {
+                    memory: RingMemory::cyclic(
+                        mesh,
+                        sectors.stiffness.n_couplings(),
+                        sectors.ring.factor_bytes(symmetry),
+                        CYCLIC_BLOCK,
+                    ),
+                    support: Support::unfixed(mesh, ring.hold, weights),
+                    matrix: Matrix::Cyclic(Box::new(held), symmetry),
+                });
+            }
+            Err(why) => why,
+        };
+        let support = Support::new(mesh, ring.hold, weights);
+        // Only the lower triangle outlives the assembly: the whole matrix takes half as much as a hex8 ring's factor.
+        let full = fem::assemble_stiffness(mesh, &ring.material)
+            .map_err(|source| DynamicsError::Fem { side: name, source })?;
+        let (stiffness, n_entries) = (solver::restrict_lower(&full, &support.free), full.nnz());
+        drop(full);
+        let symbolic =
+            analyse(mesh, &support, &stiffness).map_err(|source| named(source, side, ring, &support))?;
+        Ok(Prepared {
+            memory: RingMemory::new(mesh, n_entries, &symbolic, n_balls),
+            support,
+            matrix: Matrix::Sparse(stiffness, Box::new(symbolic), why),
+        })
+    }
+
+    /// Columns to solve for together: all contacts with a sparse factor, which is then read once.
+    pub fn block(&self, model: &Model) -> usize {
+        match self.matrix {
+            Matrix::Sparse(..) | Matrix::Cut(_) => 2 * model.geometry.n_balls,
+            Matrix::Cyclic(..) => CYCLIC_BLOCK,
+        }
+    }
+
+    /// The solver and why it is that one, for a log.
+    pub fn note(&self) -> String {
+        match &self.matrix {
+            Matrix::Sparse(_, _, why) => format!("sparse ({why})"),
+            Matrix::Cut(parts) => format!("sector ({})", parts.note()),
+            Matrix::Cyclic(held, _) => format!("cyclic ({} equal sectors)", held.sectors.ring.n_sectors()),
+        }
+    }
+
+    /// Bytes of the factor.
+    pub fn factor_bytes(&self) -> usize {
+        match &self.matrix {
+            Matrix::Sparse(_, symbolic, _) => symbolic.factor_bytes(),
+            Matrix::Cut(parts) => {
+                let own: usize = parts.symbolic().costs().iter().map(|c| c.factor_bytes).sum();
+                own + parts.symbolic().interface_bytes()
+            }
+            Matrix::Cyclic(held, symmetry) => held.sectors.ring.factor_bytes(*symmetry),
+        }
+    }
+
+    /// Multiplications and additions of the factorisation.
+    pub fn flops(&self) -> f64 {
+        match &self.matrix {
+            Matrix::Sparse(_, symbolic, _) => symbolic.flops(),
+            Matrix::Cut(parts) => parts.symbolic().costs().iter().map(|c| c.flops).sum(),
+            Matrix::Cyclic(held, symmetry) => held.sectors.ring.flops(*symmetry),
+        }
+    }
+
+    /// The ring in sectors, when the scene asks for them.
+    pub fn parts(&self) -> Option<&Substructures> {
+        match &self.matrix {
+            Matrix::Cut(parts) => Some(parts),
+            Matrix::Sparse(..) | Matrix::Cyclic(..) => None,
+        }
+    }
+
+    /// Factors the ring.
+    pub fn factor(
+        self,
+        side: Side,
+        ring: &RingModel,
+    ) -> Result<(Support, Box<dyn LinearSolver>), DynamicsError> {
+        let factor: Result<Box<dyn LinearSolver>, SolverError> = match self.matrix {
+            Matrix::Sparse(stiffness, symbolic, _) => symbolic
+                .factor(&stiffness)
+                .map(|factor| Box::new(factor) as Box<dyn LinearSolver>),
+            Matrix::Cyclic(held, _) => {
+                let Sectors {
+                    ring: cyclic,
+                    stiffness,
+                    ..
+                } = &held.sectors;
+                // In its mean motion a ring gets balanced loads only, and what rigid motion is left is removed.
+                let factor = match ring.hold {
+                    Hold::MeanMotion => cyclic.factor_unheld(stiffness),
+                    Hold::Clamped | Hold::Free => cyclic.factor(stiffness),
+                };
+                factor.map(|factor| Box::new(factor) as Box<dyn LinearSolver>)
+            }
+            Matrix::Cut(parts) => match parts.factor([0.0, 1.0]) {
+                Ok(factor) => Ok(Box::new(factor)),
+                Err(DynamicsError::Solver { source, .. }) => Err(source),
+                Err(other) => return Err(other),
+            },
+        };
+        match factor {
+            Ok(factor) => Ok((self.support, factor)),
+            Err(error) => Err(named(error, side, ring, &self.support)),
+        }
+    }
+}
+
+/// Analysis of the factorisation of a held ring, from its matrix' lower triangle.
+fn analyse(mesh: &Mesh, support: &Support, stiffness: &CsMat<f64>) -> Result<Symbolic, SolverError> {
+    Symbolic::new(stiffness, &elimination_order(mesh, &support.free))
+}
