@@ -102,6 +102,7 @@ impl Rod {
                 groove_radius: self.side,
                 centre_z: 0.0,
             },
+            sectors: Default::default(),
         }
     }
 
@@ -175,7 +176,7 @@ impl Rod {
             };
             let solution = system.solve(scale, &costs).unwrap();
             let contact = solution.forces[0];
-            let dw = factor.increment(&prepared, &contact.force, &[]);
+            let dw = factor.increment(&body, &prepared, &contact.force, &[]);
             let next = factor.advance(&state, &dw);
             work += weight.iter().zip(&dw).map(|(f, d)| f * d).sum::<f64>();
             loss += body.numerical_loss(integrator, &state, &next) + contact.numerical_loss;
