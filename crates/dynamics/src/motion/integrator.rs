@@ -39,11 +39,14 @@ impl Integrator {
         Integrator::second_order(0.0, alpha)
     }
 
-    /// Newmark with balance at the end of the step; second order only for gamma = 1/2.
+    /// Newmark; second order only for gamma = 1/2. Balance is at the end of the step. Without numerical damping, gamma = 1/2,
+    /// it is the mean of the balances at both ends: the same scheme for linear bodies, and contacts then exchange exactly the
+    /// energy that they store. Their force at the end of the step would feed energy into flexible rings.
     pub fn newmark(beta: f64, gamma: f64) -> Integrator {
+        let weight = if gamma == 0.5 { 0.5 } else { 0.0 };
         Integrator {
-            alpha_m: 0.0,
-            alpha_f: 0.0,
+            alpha_m: weight,
+            alpha_f: weight,
             beta,
             gamma,
         }
@@ -146,6 +149,14 @@ mod tests {
             w += dw;
             assert!((0.5 * v * v + 0.5 * k * w * w - 12.5).abs() < 1e-11);
         }
+    }
+
+    /// Wrong: Newmark without numerical damping would be another scheme than average acceleration, and contacts would gain
+    /// energy with it.
+    #[test]
+    fn newmark_without_damping_is_average_acceleration() {
+        assert!(Integrator::newmark(0.25, 0.5).is_conserving());
+        assert_eq!(Integrator::newmark(0.3025, 0.6).alpha_f, 0.0);
     }
 
     /// Wrong: `rho` would not be the damping of the highest frequencies per step.
