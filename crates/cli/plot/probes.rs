@@ -52,8 +52,11 @@ pub fn figures(results: &Results) -> anyhow::Result<Vec<Named>> {
     Ok(figures)
 }
 
-/// The probe of a column and what it shows.
+/// The probe of a column and what it shows; the swept key of a scene, which has dots, is no probe.
 fn kind(column: &str) -> Option<(&str, &'static str)> {
+    if column.contains('.') {
+        return None;
+    }
     KINDS.iter().find_map(|(word, kind)| {
         let at = column.rfind(word)?;
         (at > 0).then_some((&column[..at], *kind))
