@@ -154,7 +154,15 @@ fn a_node_probe_has_the_near_field_of_the_step_file() {
                 0
             };
             let node = first + number(&told, "/probes/0/node") as usize;
-            assert_eq!(probed, points.stress.unwrap()[node], "{analysis} {out}");
+            // The file's stress may come from the weights of a sector: equal to rounding.
+            let stress = points.stress.unwrap();
+            let rounding = 1e-12 * stress.as_flattened().iter().fold(0.0f64, |m, s| m.max(s.abs()));
+            for (found, expected) in probed.iter().zip(stress[node]) {
+                assert!(
+                    (found - expected).abs() <= rounding,
+                    "{analysis} {out}: {found} Pa, {expected} Pa in the file"
+                );
+            }
             found.push(row.column("n_von_mises_pa")[0]);
         }
         assert!(found[1] > 2.0 * found[0], "{analysis}: {found:?}");

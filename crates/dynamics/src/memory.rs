@@ -29,7 +29,7 @@ use solver::Symbolic;
 use crate::substructures::Substructures;
 
 /// Program, libraries and small buffers, bytes: resident memory of a run with rigid rings, 2-core machine with glibc.
-pub const PROGRAM_BYTES: usize = 16_000_000;
+pub const PROGRAM_BYTES: usize = 22_000_000;
 
 /// Bytes of one stored entry: value and column index.
 const ENTRY_BYTES: usize = 16;
