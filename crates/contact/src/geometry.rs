@@ -171,13 +171,15 @@ impl BearingGeometry {
     }
 }
 
-/// Point with equal approach to two groove centres at touching distances `di`, `do_`, on their line.
+/// Point with equal approach to two groove centres at touching distances `di`, `do_`, on their line. Where one groove is so much
+/// wider that there is none between the centres, the point is at most half a touching distance beyond one: it touches neither.
 pub fn midway(inner: [f64; 2], outer: [f64; 2], di: f64, do_: f64) -> [f64; 2] {
     let line = [inner[0] - outer[0], inner[1] - outer[1]];
     let length = line[0].hypot(line[1]);
     // From the outer centre: |x - outer| - do_ = |x - inner| - di.
     let share = if length > 0.0 {
-        0.5 * (length + do_ - di) / length
+        let equal = 0.5 * (length + do_ - di) / length;
+        equal.clamp(-0.5 * do_ / length, 1.0 + 0.5 * di / length)
     } else {
         0.5
     };
@@ -187,6 +189,23 @@ pub fn midway(inner: [f64; 2], outer: [f64; 2], di: f64, do_: f64) -> [f64; 2] {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// Wrong: a loose ball would be pushed through the narrower groove when the other is much wider.
+    #[test]
+    fn a_ball_midway_touches_neither_groove() {
+        for (di, do_) in [(0.2, 0.3), (0.3, 5.7), (5.7, 0.3), (1.0, 1.0)] {
+            for gap in [1e-3, 0.1, 0.9] {
+                // The discs in which the ball is free overlap by `gap` of the smaller one, or hold one another.
+                let outer = [0.0, (di + do_ - gap * f64::min(di, do_)).min(1.5)];
+                let x = midway([0.0, 0.0], outer, di, do_);
+                let from = |c: [f64; 2]| (x[0] - c[0]).hypot(x[1] - c[1]);
+                assert!(
+                    from([0.0; 2]) < di && from(outer) < do_,
+                    "{di} {do_} {gap}: {x:?}"
+                );
+            }
+        }
+    }
 
     /// Wrong: the derived numbers of the reference bearing (clearance 0.027 mm, A 0.4 mm, 14.93 deg).
     #[test]
