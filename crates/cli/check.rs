@@ -4,7 +4,7 @@ use std::ops::Range;
 use std::path::Path;
 
 use contact::Side;
-use dynamics::{Model, Prepared, RingMemory, Substructures, forecast_peak};
+use dynamics::{Model, Numbers, Prepared, RingMemory, Substructures, forecast_peak};
 
 use crate::build::build_model;
 use crate::failure::Failure;
@@ -139,7 +139,7 @@ fn print_ring(model: &Model, side: Side) -> Result<Option<RingMemory>, Failure> 
         return Ok(None);
     };
     let mesh = &ring.mesh;
-    let prepared = Prepared::new(model, side, ring).map_err(Failure::solving)?;
+    let prepared = Prepared::new(model, side, ring, Numbers::Pattern).map_err(Failure::solving)?;
     let memory = prepared.memory;
     print::line(format_args!(
         "{}    {} {}, {} nodes, {} dofs; Hertz stiffness {stiffness:.4e} N/mm^1.5; factor {:.1} MB, {:.2e} flops, \

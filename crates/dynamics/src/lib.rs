@@ -42,7 +42,7 @@ pub use model::{
 pub use modes::{Mode, ModeSet, ModesSettings, RingSupport};
 pub use nodal_stress::NodalStress;
 pub use pose::Pose;
-pub use prepared::Prepared;
+pub use prepared::{Numbers, Prepared};
 pub use quasi_static::QuasiStatic;
 pub use schedule::Schedule;
 pub use solution::StaticSolution;

@@ -93,7 +93,7 @@ pub struct Sectors {
     pub comm: Communicator,
 }
 
-/// Linear solver of the rings in motion.
+/// Linear solver of the rings.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Backend {
     /// Harmonics for a rotationally periodic ring, else a sparse factorisation.
@@ -103,7 +103,7 @@ pub enum Backend {
     Cyclic,
     /// Sparse Cholesky factorisation.
     Sparse,
-    /// Sectors, factored and solved in parallel and joined exactly; in statics as well.
+    /// Sectors, factored and solved in parallel and joined exactly.
     Sector(Sectors),
 }
 
@@ -162,7 +162,7 @@ pub struct Model {
     pub contact: ContactSettings,
     /// Effects the scene calls for, in the order of their names.
     pub effects: Vec<Box<dyn Effect>>,
-    /// Linear solver of the rings in motion.
+    /// Linear solver of the rings.
     pub backend: Backend,
     /// Stopping rules.
     pub tolerances: Tolerances,

@@ -35,15 +35,32 @@ enum Matrix {
     Cut(Box<Substructures>),
 }
 
+/// What the matrices of a [`Prepared`] ring hold.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Numbers {
+    /// The ring's own numbers.
+    Assembled,
+    /// Zeros where they will stand: enough for a forecast, nothing that can be factored. One sector is assembled all the same.
+    Pattern,
+}
+
 impl Prepared {
     /// Assembles the ring on `side` and analyses its factorisation.
-    pub fn new(model: &Model, side: Side, ring: &RingModel) -> Result<Prepared, DynamicsError> {
+    pub fn new(
+        model: &Model,
+        side: Side,
+        ring: &RingModel,
+        numbers: Numbers,
+    ) -> Result<Prepared, DynamicsError> {
         let (mesh, name) = (&ring.mesh, side.name());
         let n_balls = model.geometry.n_balls;
         let weights = fem::surface::facet_node_weights(mesh, mesh.group(ring.held_group));
         if let Backend::Sector(sectors) = model.backend {
             let support = Support::new(mesh, ring.hold, weights);
-            let parts = Substructures::new(ring, name, &support.free, sectors)?;
+            let parts = match numbers {
+                Numbers::Assembled => Substructures::new(ring, name, &support.free, sectors)?,
+                Numbers::Pattern => Substructures::pattern(ring, name, &support.free, sectors)?,
+            };
             return Ok(Prepared {
                 memory: RingMemory::of_sectors(mesh, &parts, n_balls, rayon::current_num_threads()),
                 support,
@@ -73,8 +90,11 @@ impl Prepared {
         };
         let support = Support::new(mesh, ring.hold, weights);
         // Only the lower triangle outlives the assembly: the whole matrix takes half as much as a hex8 ring's factor.
-        let full = fem::assemble_stiffness(mesh, &ring.material)
-            .map_err(|source| DynamicsError::Fem { side: name, source })?;
+        let full = match numbers {
+            Numbers::Assembled => fem::assemble_stiffness(mesh, &ring.material),
+            Numbers::Pattern => fem::Pattern::new(mesh).map(|p| p.matrix(vec![0.0; p.n_values()])),
+        };
+        let full = full.map_err(|source| DynamicsError::Fem { side: name, source })?;
         let (stiffness, n_entries) = (solver::restrict_lower(&full, &support.free), full.nnz());
         drop(full);
         let symbolic =

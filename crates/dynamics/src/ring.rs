@@ -14,7 +14,7 @@ use crate::error::DynamicsError;
 use crate::inventory::Inventory;
 use crate::memory::RingMemory;
 use crate::model::{ContactMode, Model, RACEWAY_GROUP, RingModel};
-use crate::prepared::Prepared;
+use crate::prepared::{Numbers, Prepared};
 use crate::support::Support;
 
 /// Factored stiffness, raceway search and rule of one ring.
@@ -43,7 +43,7 @@ impl RingSolver {
     pub fn new(model: &Model, side: Side, ring: &RingModel) -> Result<RingSolver, DynamicsError> {
         let start = Instant::now();
         let mesh = &ring.mesh;
-        let prepared = Prepared::new(model, side, ring)?;
+        let prepared = Prepared::new(model, side, ring, Numbers::Assembled)?;
         let assembled = start.elapsed().as_secs_f64();
         let (memory, note, block) = (prepared.memory, prepared.note(), prepared.block(model));
         let (support, factor) = prepared.factor(side, ring)?;
