@@ -10,13 +10,7 @@ use super::{HardCase, Pace};
 use super::rod::{DOYEN, ELEMENTS, Rod};
 
 pub fn cases() -> Vec<HardCase> {
-    let case = |name, why, settings, run| HardCase {
-        name,
-        pace: Pace::Fast,
-        why,
-        settings,
-        run,
-    };
+    let case = |name, why, settings, run| HardCase::new(name, Pace::Fast, why, settings, run);
     let conserving = "100 elements, time step of one element's wave; average acceleration, discrete gradient";
     vec![
         case(

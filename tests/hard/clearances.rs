@@ -17,13 +17,7 @@ pub fn cases() -> Vec<HardCase> {
 }
 
 fn clearances() -> Vec<HardCase> {
-    let case = |name, why, settings, run| HardCase {
-        name,
-        pace: Pace::Slow,
-        why,
-        settings,
-        run,
-    };
+    let case = |name, why, settings, run| HardCase::new(name, Pace::Slow, why, settings, run);
     vec![
         case(
             "no_preload",
@@ -65,13 +59,7 @@ fn clearances() -> Vec<HardCase> {
 }
 
 fn contacts() -> Vec<HardCase> {
-    let case = |name, why, settings, run| HardCase {
-        name,
-        pace: Pace::Fast,
-        why,
-        settings,
-        run,
-    };
+    let case = |name, why, settings, run| HardCase::new(name, Pace::Fast, why, settings, run);
     let loads = "half_the_balls_unload with these contacts";
     vec![
         case(

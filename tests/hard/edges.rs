@@ -13,13 +13,7 @@ use super::{HardCase, Pace};
 use super::meshes::{difference, loaded, rings, solve};
 
 pub fn cases() -> Vec<HardCase> {
-    let case = |name, pace, why, settings, run| HardCase {
-        name,
-        pace,
-        why,
-        settings,
-        run,
-    };
+    let case = HardCase::new;
     vec![
         case(
             "ball_on_the_edge",

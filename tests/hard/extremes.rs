@@ -20,13 +20,7 @@ use crate::util::{Dir, RIGID, SCENE};
 use super::meshes::{difference, loaded, rings, solve};
 
 pub fn cases() -> Vec<HardCase> {
-    let case = |name, pace, why, settings, run| HardCase {
-        name,
-        pace,
-        why,
-        settings,
-        run,
-    };
+    let case = HardCase::new;
     vec![
         case(
             "nearly_incompressible",

@@ -15,13 +15,7 @@ use crate::util::tables::Table;
 use crate::util::{Dir, RIGID, SCENE};
 
 pub fn cases() -> Vec<HardCase> {
-    let case = |name, pace, why, settings, run| HardCase {
-        name,
-        pace,
-        why,
-        settings,
-        run,
-    };
+    let case = HardCase::new;
     vec![
         case(
             "units_of_the_scene",

@@ -13,13 +13,7 @@ use super::record::Record;
 use super::{HardCase, Pace};
 
 pub fn cases() -> Vec<HardCase> {
-    let case = |name, pace, why, settings, run| HardCase {
-        name,
-        pace,
-        why,
-        settings,
-        run,
-    };
+    let case = HardCase::new;
     vec![
         case(
             "radial_step_x10",

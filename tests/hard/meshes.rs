@@ -14,13 +14,7 @@ use super::support::rings::{Level, ring};
 use super::{HardCase, Pace};
 
 pub fn cases() -> Vec<HardCase> {
-    let case = |name, pace, why, settings, run| HardCase {
-        name,
-        pace,
-        why,
-        settings,
-        run,
-    };
+    let case = HardCase::new;
     let loaded = "2 kN axial, 1 kN radial, at rest; then half the balls unload in motion, dt 5 us, 1 ms";
     vec![
         case(

@@ -51,6 +51,24 @@ struct HardCase {
     run: fn(&mut Record),
 }
 
+impl HardCase {
+    fn new(
+        name: &'static str,
+        pace: Pace,
+        why: &'static str,
+        settings: &'static str,
+        run: fn(&mut Record),
+    ) -> HardCase {
+        HardCase {
+            name,
+            pace,
+            why,
+            settings,
+            run,
+        }
+    }
+}
+
 /// Cases that belong together.
 struct Group {
     title: &'static str,

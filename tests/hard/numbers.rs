@@ -13,13 +13,7 @@ use crate::util::{Dir, RIGID, SCENE};
 use super::invariance::{loaded, results};
 
 pub fn cases() -> Vec<HardCase> {
-    let case = |name, pace, why, settings, run| HardCase {
-        name,
-        pace,
-        why,
-        settings,
-        run,
-    };
+    let case = HardCase::new;
     vec![
         case(
             "late_time",

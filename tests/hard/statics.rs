@@ -10,13 +10,7 @@ use super::support::{Case, relative};
 use super::{HardCase, Pace};
 
 pub fn cases() -> Vec<HardCase> {
-    let case = |name, why, settings, run| HardCase {
-        name,
-        pace: Pace::Fast,
-        why,
-        settings,
-        run,
-    };
+    let case = |name, why, settings, run| HardCase::new(name, Pace::Fast, why, settings, run);
     vec![
         case(
             "load_away_from_contact",

@@ -26,13 +26,7 @@ const PEAK: f64 = 3.0;
 const DURATION: f64 = 1e-3;
 
 pub fn cases() -> Vec<HardCase> {
-    let case = |name, pace, why, settings, run| HardCase {
-        name,
-        pace,
-        why,
-        settings,
-        run,
-    };
+    let case = HardCase::new;
     let all = "1 to 50 us, 11 settings, 1 ms, 4 halvings";
     vec![
         case(
