@@ -9,6 +9,8 @@
 
 #[path = "support/clock.rs"]
 mod clock;
+#[path = "support/matrix.rs"]
+mod matrix;
 #[path = "support/ring.rs"]
 mod ring;
 
@@ -16,11 +18,11 @@ use std::time::Instant;
 
 use clock::best;
 use divan::black_box;
-use fem::Material;
+use matrix::{couplings, steel};
 use mesh::{Mesh, PERIODIC_TOLERANCE, Periodicity, find_periodicity};
-use ring::{SHIFT, ring};
+use ring::ring;
 use solver::{
-    Coupling, CyclicMatrix, CyclicRing, LinearSolver, ResponseTable, Symbolic, angular_dissection, expand,
+    CyclicMatrix, CyclicRing, LinearSolver, ResponseTable, Symbolic, angular_dissection, expand,
     restrict_lower,
 };
 
@@ -46,28 +48,13 @@ fn read_once(bytes: usize) -> f64 {
 }
 
 fn cyclic(mesh: &Mesh) -> (f64, f64, f64) {
-    let material = Material::new(207e9, 0.3, 7800.0).expect("steel");
     let (find, periodicity) = best(3, || {
         find_periodicity(mesh, PERIODIC_TOLERANCE).expect("a revolved ring is periodic")
     });
     let (assemble, sector) = best(3, || {
-        fem::assemble_sector(mesh, &periodicity, &material).expect("a valid mesh")
+        fem::assemble_sector(mesh, &periodicity, &steel()).expect("a valid mesh")
     });
-    let couplings: Vec<Coupling> = sector
-        .couplings
-        .iter()
-        .map(|c| Coupling {
-            row: c.row,
-            column: c.column,
-            shift: c.shift,
-        })
-        .collect();
-    let (n, width) = (periodicity.n_sectors(), periodicity.n_section_nodes());
-    let stiffness = CyclicMatrix::new(n, width, &couplings, &sector.stiffness).expect("symmetric");
-    let mass = stiffness
-        .with_blocks(&couplings, &sector.mass)
-        .expect("symmetric");
-    let matrix = stiffness.combined(1.0, SHIFT, &mass).expect("one pattern");
+    let [matrix, stiffness, mass] = matrix::cyclic(&periodicity, &sector);
     let directions = fem::azimuth_directions(mesh);
     let (analyse, ring) = best(3, || {
         CyclicRing::new(&matrix, periodicity.nodes(), &directions, periodicity.half_way()).expect("a ring")
@@ -107,7 +94,7 @@ fn cyclic(mesh: &Mesh) -> (f64, f64, f64) {
         factor.solve_harmonic(&mut columns.chunks_exact_mut(w.len()).collect::<Vec<_>>());
     })
     .0;
-    let raceway: Vec<usize> = (0..8).map(|i| i % width).collect();
+    let raceway: Vec<usize> = (0..8).map(|i| i % periodicity.n_section_nodes()).collect();
     let (table, responses) = best(3, || ResponseTable::new(&factor, &raceway));
     println!(
         "  cyclic: table of responses of 8 section nodes {table:.1} ms, {:.1} MB",
@@ -130,7 +117,6 @@ fn cyclic(mesh: &Mesh) -> (f64, f64, f64) {
 
 /// Products and stress through the blocks of one sector, beside recovery element by element.
 fn stencils(mesh: &Mesh, periodicity: &Periodicity, (ring, stiffness): (&CyclicRing, &CyclicMatrix)) {
-    let steel = Material::new(207e9, 0.3, 7800.0).expect("steel");
     let operator = ring.operator(stiffness).expect("one pattern");
     let u: Vec<f64> = (0..mesh.n_dofs()).map(|i| 1e-9 * (i % 97) as f64).collect();
     let mut lines = vec![0.0; ring.lines_len()];
@@ -138,17 +124,9 @@ fn stencils(mesh: &Mesh, periodicity: &Periodicity, (ring, stiffness): (&CyclicR
     let mut product = vec![0.0; operator.product_len()];
     let inner = best(30, || operator.add_product(&lines, &mut product)).0;
     let whole = best(30, || operator.apply(&u)).0;
-    let recovery = fem::StressRecovery::new(mesh, &steel).expect("a valid mesh");
+    let recovery = fem::StressRecovery::new(mesh, &steel()).expect("a valid mesh");
     let (build, sector) = best(2, || recovery.sector(mesh, periodicity));
-    let couplings: Vec<Coupling> = sector
-        .couplings
-        .iter()
-        .map(|c| Coupling {
-            row: c.row,
-            column: c.column,
-            shift: c.shift,
-        })
-        .collect();
+    let couplings = couplings(&sector.couplings);
     let stress = ring.stencil(6, &couplings, sector.weights.as_flattened().as_flattened());
     let mut tensors = vec![[0.0; 6]; mesh.n_nodes()];
     let fast = best(30, || stress.tensors(&u, &mut tensors)).0;
@@ -163,16 +141,8 @@ fn stencils(mesh: &Mesh, periodicity: &Periodicity, (ring, stiffness): (&CyclicR
 }
 
 fn sparse(mesh: &Mesh, (refactor, harmonic, bytes): (f64, f64, f64)) {
-    let material = Material::new(207e9, 0.3, 7800.0).expect("steel");
     let start = Instant::now();
-    let mut matrix = fem::assemble_stiffness(mesh, &material).expect("a valid mesh");
-    let mass = fem::assemble_mass(mesh, &material).expect("a valid mesh");
-    matrix
-        .data_mut()
-        .iter_mut()
-        .zip(mass.data())
-        .for_each(|(k, m)| *k += SHIFT * m);
-    drop(mass);
+    let matrix = matrix::sparse(mesh);
     let assemble = 1e3 * start.elapsed().as_secs_f64();
     let matrix = restrict_lower(&matrix, &(0..mesh.n_dofs()).collect::<Vec<_>>());
     let start = Instant::now();

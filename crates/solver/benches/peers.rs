@@ -13,6 +13,8 @@
 
 #[path = "support/clock.rs"]
 mod clock;
+#[path = "support/matrix.rs"]
+mod matrix;
 #[path = "support/ring.rs"]
 mod ring;
 
@@ -21,13 +23,10 @@ use std::io::{BufWriter, Write};
 use std::path::Path;
 
 use clock::{Time, least};
-use fem::Material;
+use matrix::steel;
 use mesh::{Mesh, PERIODIC_TOLERANCE, find_periodicity};
-use ring::{SHIFT, ring};
-use solver::{
-    Coupling, CyclicMatrix, CyclicRing, LinearSolver, Symbolic, angular_dissection, expand, restrict_lower,
-};
-use sprs::CsMat;
+use ring::ring;
+use solver::{CyclicMatrix, CyclicRing, LinearSolver, Symbolic, angular_dissection, expand, restrict_lower};
 
 /// Name, sectors, nodes across and along the section.
 const SIZES: [(&str, usize, [usize; 2]); 5] = [
@@ -41,19 +40,6 @@ const SIZES: [(&str, usize, [usize; 2]); 5] = [
 /// Right-hand sides of a block: two directions of 18 contacts.
 const BLOCK: usize = 36;
 
-fn steel() -> Material {
-    Material::new(207e9, 0.3, 7800.0).expect("steel")
-}
-
-/// S, both triangles.
-fn matrix(mesh: &Mesh) -> CsMat<f64> {
-    let mut matrix = fem::assemble_stiffness(mesh, &steel()).expect("a valid mesh");
-    let mass = fem::assemble_mass(mesh, &steel()).expect("a valid mesh");
-    let pairs = matrix.data_mut().iter_mut().zip(mass.data());
-    pairs.for_each(|(k, m)| *k += SHIFT * m);
-    matrix
-}
-
 /// The known solution: no two neighbours alike, between -1 and 1.
 fn known(row: usize) -> f64 {
     ((row % 1009) as f64 / 504.0 - 1.0) * if row.is_multiple_of(2) { 1.0 } else { -0.5 }
@@ -63,7 +49,7 @@ fn export(mesh: &Mesh, dir: &Path) -> std::io::Result<()> {
     fs::create_dir_all(dir)?;
     let n = mesh.n_dofs();
     // Columns of the lower triangle are rows of the upper one, and the matrix is symmetric.
-    let lower = restrict_lower(&matrix(mesh), &(0..n).collect::<Vec<_>>()).to_csc();
+    let lower = restrict_lower(&matrix::sparse(mesh), &(0..n).collect::<Vec<_>>()).to_csc();
     let file = |name: &str| fs::File::create(dir.join(name)).map(BufWriter::new);
     writeln!(file("size.txt")?, "{n} {}", lower.nnz())?;
     let (mut starts, mut rows, mut values) = (file("starts.i64")?, file("rows.i32")?, file("values.f64")?);
@@ -119,12 +105,12 @@ fn solve(solver: &dyn LinearSolver, rhs: &[f64], repeats: usize) -> (Time, Time,
 fn rhs(mesh: &Mesh) -> Vec<f64> {
     let x: Vec<f64> = (0..mesh.n_dofs()).map(known).collect();
     let mut b = vec![0.0; x.len()];
-    sprs::prod::mul_acc_mat_vec_csr(matrix(mesh).view(), &x, &mut b);
+    sprs::prod::mul_acc_mat_vec_csr(matrix::sparse(mesh).view(), &x, &mut b);
     b
 }
 
 fn sparse(mesh: &Mesh, rhs: &[f64]) -> Costs {
-    let lower = restrict_lower(&matrix(mesh), &(0..mesh.n_dofs()).collect::<Vec<_>>());
+    let lower = restrict_lower(&matrix::sparse(mesh), &(0..mesh.n_dofs()).collect::<Vec<_>>());
     let (analyse, symbolic) = least(1, || {
         let order = angular_dissection(&mesh.nodes, &mesh.connectivity, mesh.kind.n_nodes());
         Symbolic::new(&lower, &expand(&order, 3)).expect("a permutation")
@@ -150,21 +136,7 @@ fn sparse(mesh: &Mesh, rhs: &[f64]) -> Costs {
 fn periodic(mesh: &Mesh) -> (CyclicMatrix, impl Fn() -> CyclicRing) {
     let periodicity = find_periodicity(mesh, PERIODIC_TOLERANCE).expect("a revolved ring is periodic");
     let sector = fem::assemble_sector(mesh, &periodicity, &steel()).expect("a valid mesh");
-    let couplings: Vec<Coupling> = sector
-        .couplings
-        .iter()
-        .map(|c| Coupling {
-            row: c.row,
-            column: c.column,
-            shift: c.shift,
-        })
-        .collect();
-    let (n, width) = (periodicity.n_sectors(), periodicity.n_section_nodes());
-    let stiffness = CyclicMatrix::new(n, width, &couplings, &sector.stiffness).expect("symmetric");
-    let mass = stiffness
-        .with_blocks(&couplings, &sector.mass)
-        .expect("symmetric");
-    let matrix = stiffness.combined(1.0, SHIFT, &mass).expect("one pattern");
+    let [matrix, ..] = matrix::cyclic(&periodicity, &sector);
     let directions = fem::azimuth_directions(mesh);
     let of_ring = matrix.clone();
     let ring = move || {
@@ -198,7 +170,7 @@ fn cyclic(mesh: &Mesh, rhs: &[f64]) -> Costs {
 
 /// Sizes of the factors, and operations.
 fn count(mesh: &Mesh) {
-    let lower = restrict_lower(&matrix(mesh), &(0..mesh.n_dofs()).collect::<Vec<_>>());
+    let lower = restrict_lower(&matrix::sparse(mesh), &(0..mesh.n_dofs()).collect::<Vec<_>>());
     let order = angular_dissection(&mesh.nodes, &mesh.connectivity, mesh.kind.n_nodes());
     let symbolic = Symbolic::new(&lower, &expand(&order, 3)).expect("a permutation");
     let (matrix, new_ring) = periodic(mesh);

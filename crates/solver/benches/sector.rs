@@ -6,21 +6,25 @@
 //! the least of all rounds counts, so that other programs disturb all alike; wall and processor time are given. The floor
 //! of a solve is the time to read the stored factor twice, in pieces of a sector's size, by as many threads.
 
+#[path = "support/clock.rs"]
+mod clock;
+#[path = "support/matrix.rs"]
+mod matrix;
+#[path = "support/ring.rs"]
+mod ring;
+
 use std::borrow::Cow;
-use std::collections::BTreeMap;
 use std::hint::black_box;
 use std::time::Instant;
 
 use comm::Communicator;
-use fem::Material;
-use mesh::{ElementKind, Mesh, Section, revolve};
 use rayon::prelude::*;
 use rayon::{ThreadPool, ThreadPoolBuilder};
+use ring::ring;
 use solver::{
     LinearSolver, SectorCholesky, SectorLayout, SectorSymbolic, Symbolic, angular_dissection,
     default_sectors, expand, restrict_lower,
 };
-use sprs::CsMat;
 
 /// Name, layers, nodes of a section across and along.
 const SIZES: [(&str, usize, [usize; 2]); 4] = [
@@ -29,43 +33,7 @@ const SIZES: [(&str, usize, [usize; 2]); 4] = [
     ("150k", 360, [20, 7]),
     ("400k", 720, [19, 10]),
 ];
-/// Shift by the mass, 1/s^2: that of a step of 1e-5 s.
-const SHIFT: f64 = 4e10;
 const ROUNDS: usize = 7;
-
-fn ring(layers: usize, [n_z, n_r]: [usize; 2]) -> Mesh {
-    let (dz, dr) = (0.016 / (n_z - 1) as f64, 0.006 / (n_r - 1) as f64);
-    let points = (0..n_z * n_r).map(|k| [0.025 + dr * (k % n_r) as f64, dz * (k / n_r) as f64]);
-    let at = |i: usize, j: usize| j * n_r + i;
-    let quads = (0..n_z - 1)
-        .flat_map(|j| (0..n_r - 1).map(move |i| [at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)]));
-    let section = Section::new(points.collect(), quads.collect(), &BTreeMap::new()).expect("a grid");
-    revolve(&section, layers, ElementKind::Hex8, &[]).expect("a ring")
-}
-
-/// K + c M of a mesh or a part of one.
-fn matrix(mesh: &Mesh) -> CsMat<f64> {
-    let steel = Material::new(207e9, 0.3, 7800.0).expect("steel");
-    let mut matrix = fem::assemble_stiffness(mesh, &steel).expect("a valid mesh");
-    let mass = fem::assemble_mass(mesh, &steel).expect("a valid mesh");
-    let pairs = matrix.data_mut().iter_mut().zip(mass.data());
-    pairs.for_each(|(k, m)| *k += SHIFT * m);
-    matrix
-}
-
-/// Seconds of all threads of this process so far, from Linux' scheduler statistics.
-fn processor_seconds() -> f64 {
-    std::thread::yield_now();
-    let tasks = std::fs::read_dir("/proc/self/task").expect("Linux");
-    let nanoseconds = |task: std::fs::DirEntry| {
-        let text = std::fs::read_to_string(task.path().join("schedstat")).unwrap_or_default();
-        text.split_whitespace()
-            .next()
-            .and_then(|n| n.parse::<f64>().ok())
-            .unwrap_or(0.0)
-    };
-    1e-9 * tasks.flatten().map(nanoseconds).sum::<f64>()
-}
 
 /// Least wall and processor time, ms, of one variant.
 #[derive(Clone)]
@@ -86,9 +54,8 @@ fn measure(variants: &mut [Variant<'_>], rounds: usize) -> Vec<Least> {
     let mut least: Vec<Least> = variants.iter().map(start).collect();
     for _ in 0..rounds {
         for ((_, run), least) in variants.iter_mut().zip(&mut least) {
-            let (cpu, wall) = (processor_seconds(), Instant::now());
-            run();
-            let ms = [wall.elapsed().as_secs_f64(), processor_seconds() - cpu].map(|s| 1e3 * s);
+            let time = clock::least(1, run).0;
+            let ms = [time.wall, time.cpu].map(|s| 1e3 * s);
             (0..2).for_each(|i| least.ms[i] = least.ms[i].min(ms[i]));
         }
     }
@@ -117,17 +84,17 @@ fn report(name: &str, layers: usize, section: [usize; 2]) {
         .into();
     let free: Vec<usize> = (0..n).collect();
     let layout = SectorLayout::new(&mesh.nodes, &mesh.connectivity, 8, &free, n_sectors).expect("sectors");
-    let parts: Vec<CsMat<f64>> = layout
+    let parts: Vec<_> = layout
         .sectors()
         .iter()
-        .map(|s| matrix(&mesh.part(&s.elements, &s.nodes)))
+        .map(|s| matrix::sparse(&mesh.part(&s.elements, &s.nodes)))
         .collect();
     let of = |s: usize| Cow::Borrowed(&parts[s]);
     let cells = (&mesh.nodes[..], &mesh.connectivity[..], 8);
     let clock = Instant::now();
     let symbolic = SectorSymbolic::new(layout, Communicator::Serial, cells, of).expect("a pattern");
     let analysis = clock.elapsed().as_secs_f64();
-    let whole = restrict_lower(&matrix(&mesh), &free);
+    let whole = restrict_lower(&matrix::sparse(&mesh), &free);
     let clock = Instant::now();
     let order = expand(&angular_dissection(&mesh.nodes, &mesh.connectivity, 8), 3);
     let sparse_symbolic = Symbolic::new(&whole, &order).expect("a pattern");

@@ -55,6 +55,16 @@ pub struct Ring {
     pub ring: CyclicRing,
 }
 
+/// Couplings of a sector as the solver has them.
+pub fn couplings(couplings: &[fem::SectorCoupling]) -> Vec<Coupling> {
+    let coupling = |c: &fem::SectorCoupling| Coupling {
+        row: c.row,
+        column: c.column,
+        shift: c.shift,
+    };
+    couplings.iter().map(coupling).collect()
+}
+
 impl Ring {
     pub fn new(mesh: Mesh) -> Ring {
         let periodicity = find_periodicity(&mesh, PERIODIC_TOLERANCE).unwrap();
@@ -64,15 +74,7 @@ impl Ring {
 
     pub fn with_offsets(mesh: Mesh, periodicity: Periodicity, half_way: Option<&[bool]>) -> Ring {
         let sector = fem::assemble_sector(&mesh, &periodicity, &steel()).unwrap();
-        let couplings: Vec<Coupling> = sector
-            .couplings
-            .iter()
-            .map(|c| Coupling {
-                row: c.row,
-                column: c.column,
-                shift: c.shift,
-            })
-            .collect();
+        let couplings = couplings(&sector.couplings);
         let (n, width) = (periodicity.n_sectors(), periodicity.n_section_nodes());
         let stiffness = CyclicMatrix::new(n, width, &couplings, &sector.stiffness).unwrap();
         let mass = stiffness.with_blocks(&couplings, &sector.mass).unwrap();

@@ -1,24 +1,15 @@
 //! Operators round the ring with more rows than a matrix: stress at the nodes.
 
 use fem::{StressRecovery, rigid_modes};
-use solver::Coupling;
 
 use crate::common::assert_close;
-use crate::rings::{Ring, loads, rings, steel};
+use crate::rings::{Ring, couplings, loads, rings, steel};
 
 /// Stress of a displacement field by the weights of one sector, and element by element.
 fn both(ring: &Ring, u: &[f64]) -> [Vec<[f64; 6]>; 2] {
     let recovery = StressRecovery::new(&ring.mesh, &steel()).unwrap();
     let sector = recovery.sector(&ring.mesh, &ring.periodicity);
-    let couplings: Vec<Coupling> = sector
-        .couplings
-        .iter()
-        .map(|c| Coupling {
-            row: c.row,
-            column: c.column,
-            shift: c.shift,
-        })
-        .collect();
+    let couplings = couplings(&sector.couplings);
     let weights = sector.weights.as_flattened().as_flattened();
     let mut found = vec![[f64::NAN; 6]; ring.mesh.n_nodes()];
     ring.ring.stencil(6, &couplings, weights).tensors(u, &mut found);
