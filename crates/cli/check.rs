@@ -162,6 +162,8 @@ fn print_ring(model: &Model, side: Side) -> Result<Option<RingMemory>, Failure> 
                 periodicity.deviation(),
                 prepared.note()
             ),
+            Err(_) if prepared.is_cyclic() =>
+                format!("rotationally periodic up to a defect; solver {}", prepared.note()),
             Err(reason) => format!("not rotationally periodic: {reason}"),
         }
     ));

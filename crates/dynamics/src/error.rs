@@ -31,6 +31,15 @@ pub enum DynamicsError {
         /// The first difference.
         reason: String,
     },
+    /// Harmonics do not give the modes of a ring with a defect.
+    #[error(
+        "the {side} ring is rotationally periodic only up to a defect, whose natural modes solver.backend = \"cyclic\" does \
+         not find; use \"auto\" or \"sparse\""
+    )]
+    ModesOfDefect {
+        /// `inner` or `outer`.
+        side: &'static str,
+    },
     /// Another rank has failed.
     #[error("on rank {rank}: {message}")]
     OnRank {

@@ -6,6 +6,7 @@
 pub mod balls;
 mod compliance;
 pub mod costs;
+pub mod defect;
 pub mod displacements;
 pub mod effects;
 pub mod equilibrium;

@@ -117,6 +117,20 @@ impl RingMemory {
         }
     }
 
+    /// The same for a ring with a defect that takes `bytes`: its factor, made of a table of responses, and stress element by
+    /// element.
+    pub fn with_defect(self, mesh: &Mesh, bytes: usize) -> RingMemory {
+        let recovery = 240 * mesh.n_nodes()
+            + 24 * mesh.connectivity.len()
+            + 48 * mesh.kind.n_corners() * mesh.n_elements();
+        RingMemory {
+            factorisation: self.factorisation + bytes,
+            columns: self.columns + bytes,
+            results: self.results.max(recovery),
+            ..self
+        }
+    }
+
     /// Peak from the assembly to the factor, without the mesh.
     pub fn making(&self) -> usize {
         self.assembly.max(self.factorisation)

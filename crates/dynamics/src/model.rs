@@ -11,7 +11,10 @@ use comm::Communicator;
 use contact::hertz::Elastic;
 use contact::{BearingGeometry, Groove, HertzContact, Side};
 use fem::Material;
-use mesh::{Mesh, NotPeriodic, PERIODIC_TOLERANCE, Periodicity, find_periodicity};
+use mesh::{
+    Mesh, NearlyPeriodic, NotPeriodic, PERIODIC_TOLERANCE, Periodicity, find_nearly_periodic,
+    find_periodicity,
+};
 
 use crate::effects::Effect;
 use crate::schedule::Schedule;
@@ -42,16 +45,33 @@ pub struct RingModel {
     pub held_group: &'static str,
     /// The raceway's torus in mesh coordinates.
     pub groove: Groove,
-    /// Sectors of the mesh, found when [`RingModel::periodicity`] is first asked; a new model has the default.
-    pub sectors: OnceLock<Result<Periodicity, NotPeriodic>>,
+    /// Sectors of the mesh, found when first asked for; a new model has the default.
+    pub sectors: FoundSectors,
+}
+
+/// What is known of the sectors of a mesh.
+#[derive(Default)]
+pub struct FoundSectors {
+    equal: OnceLock<Result<Periodicity, NotPeriodic>>,
+    nearly: OnceLock<Option<NearlyPeriodic>>,
 }
 
 impl RingModel {
     /// The equal sectors of the mesh, or the reason why there are none.
     pub fn periodicity(&self) -> Result<&Periodicity, &NotPeriodic> {
         self.sectors
+            .equal
             .get_or_init(|| find_periodicity(&self.mesh, PERIODIC_TOLERANCE))
             .as_ref()
+    }
+
+    /// The mesh as a periodic one with a defect; None when it has no defect, or is not one.
+    pub fn nearly_periodic(&self) -> Option<&NearlyPeriodic> {
+        let find = || match self.periodicity() {
+            Ok(_) => None,
+            Err(_) => find_nearly_periodic(&self.mesh, PERIODIC_TOLERANCE),
+        };
+        self.sectors.nearly.get_or_init(find).as_ref()
     }
 }
 

@@ -3,14 +3,17 @@
 
 use contact::Side;
 use mesh::Mesh;
+use solver::cyclic::{CyclicBordered, CyclicDefect};
 use solver::{LinearSolver, SolverError, Symbolic, Symmetry};
 use sprs::CsMat;
 
+use crate::defect::{Changes, RingDefect};
 use crate::error::DynamicsError;
 use crate::memory::RingMemory;
 use crate::model::{Backend, Hold, Model, RingModel};
+use crate::motion::coordinates::Coordinates;
 use crate::ring::{elimination_order, named};
-use crate::sectors::{HeldSectors, Sectors};
+use crate::sectors::{HeldSectors, Periodic, Sectors};
 use crate::substructures::Substructures;
 use crate::support::Support;
 
@@ -29,10 +32,29 @@ pub struct Prepared {
 enum Matrix {
     /// Lower triangle, its analysis, and why the ring is not solved by harmonics.
     Sparse(CsMat<f64>, Box<Symbolic>, String),
-    /// One sector, and what its harmonics are.
-    Cyclic(Box<HeldSectors>, Symmetry),
+    /// One sector.
+    Cyclic(Box<Harmonics>),
     /// Sectors cut by angle.
     Cut(Box<Substructures>),
+}
+
+/// A ring that harmonics solve.
+struct Harmonics {
+    held: HeldSectors,
+    symmetry: Symmetry,
+    /// Rows that its defect changes.
+    changes: Option<Changes>,
+    note: String,
+}
+
+/// A factored ring.
+pub struct FactoredRing {
+    /// Its hold.
+    pub support: Support,
+    /// Solves for the free dofs.
+    pub solver: Box<dyn LinearSolver>,
+    /// Of a ring with a defect, see [`solver::cyclic::Defect::iterations`].
+    pub iterations: Option<usize>,
 }
 
 /// What the matrices of a [`Prepared`] ring hold.
@@ -71,19 +93,28 @@ impl Prepared {
             Hold::Clamped => mesh.group_nodes(ring.held_group),
             Hold::MeanMotion | Hold::Free => Vec::new(),
         };
-        let why = match Sectors::held(ring, name, model.backend, &held)? {
-            Ok((_, held)) => {
-                let sectors = &held.sectors;
+        let why = match Periodic::new(ring, name, model.backend, &held)? {
+            Ok(periodic) => {
+                let sectors = &periodic.held.sectors;
                 let symmetry = sectors.ring.symmetry(&sectors.stiffness);
+                let memory = RingMemory::cyclic(
+                    mesh,
+                    sectors.stiffness.n_couplings(),
+                    sectors.ring.factor_bytes(symmetry),
+                    CYCLIC_BLOCK,
+                );
                 return Ok(Prepared {
-                    memory: RingMemory::cyclic(
-                        mesh,
-                        sectors.stiffness.n_couplings(),
-                        sectors.ring.factor_bytes(symmetry),
-                        CYCLIC_BLOCK,
-                    ),
+                    memory: match &periodic.defect {
+                        Some(defect) => memory.with_defect(mesh, defect.bytes()),
+                        None => memory,
+                    },
                     support: Support::unfixed(mesh, ring.hold, weights),
-                    matrix: Matrix::Cyclic(Box::new(held), symmetry),
+                    matrix: Matrix::Cyclic(Box::new(Harmonics {
+                        symmetry,
+                        changes: periodic.defect.as_ref().map(|d| changes(mesh, &held, d)),
+                        note: periodic.note(),
+                        held: periodic.held,
+                    })),
                 });
             }
             Err(why) => why,
@@ -119,8 +150,13 @@ impl Prepared {
         match &self.matrix {
             Matrix::Sparse(_, _, why) => format!("sparse ({why})"),
             Matrix::Cut(parts) => format!("sector ({})", parts.note()),
-            Matrix::Cyclic(held, _) => format!("cyclic ({} equal sectors)", held.sectors.ring.n_sectors()),
+            Matrix::Cyclic(harmonics) => harmonics.note.clone(),
         }
+    }
+
+    /// Whether harmonics solve the ring.
+    pub fn is_cyclic(&self) -> bool {
+        matches!(self.matrix, Matrix::Cyclic(_))
     }
 
     /// Bytes of the factor.
@@ -131,7 +167,7 @@ impl Prepared {
                 let own: usize = parts.symbolic().costs().iter().map(|c| c.factor_bytes).sum();
                 own + parts.symbolic().interface_bytes()
             }
-            Matrix::Cyclic(held, symmetry) => held.sectors.ring.factor_bytes(*symmetry),
+            Matrix::Cyclic(h) => h.held.sectors.ring.factor_bytes(h.symmetry),
         }
     }
 
@@ -140,7 +176,7 @@ impl Prepared {
         match &self.matrix {
             Matrix::Sparse(_, symbolic, _) => symbolic.flops(),
             Matrix::Cut(parts) => parts.symbolic().costs().iter().map(|c| c.flops).sum(),
-            Matrix::Cyclic(held, symmetry) => held.sectors.ring.flops(*symmetry),
+            Matrix::Cyclic(h) => h.held.sectors.ring.flops(h.symmetry),
         }
     }
 
@@ -153,39 +189,56 @@ impl Prepared {
     }
 
     /// Factors the ring.
-    pub fn factor(
-        self,
-        side: Side,
-        ring: &RingModel,
-    ) -> Result<(Support, Box<dyn LinearSolver>), DynamicsError> {
-        let factor: Result<Box<dyn LinearSolver>, SolverError> = match self.matrix {
-            Matrix::Sparse(stiffness, symbolic, _) => symbolic
-                .factor(&stiffness)
-                .map(|factor| Box::new(factor) as Box<dyn LinearSolver>),
-            Matrix::Cyclic(held, _) => {
-                let Sectors {
-                    ring: cyclic,
-                    stiffness,
-                    ..
-                } = &held.sectors;
-                // In its mean motion a ring gets balanced loads only, and what rigid motion is left is removed.
-                let factor = match ring.hold {
-                    Hold::MeanMotion => cyclic.factor_unheld(stiffness),
-                    Hold::Clamped | Hold::Free => cyclic.factor(stiffness),
-                };
-                factor.map(|factor| Box::new(factor) as Box<dyn LinearSolver>)
+    pub fn factor(self, side: Side, ring: &RingModel) -> Result<FactoredRing, DynamicsError> {
+        let boxed = |solver: Box<dyn LinearSolver>| (solver, None);
+        let factor = match self.matrix {
+            Matrix::Sparse(stiffness, symbolic, _) => {
+                symbolic.factor(&stiffness).map(|factor| boxed(Box::new(factor)))
             }
+            Matrix::Cyclic(harmonics) => harmonics.factor(ring.hold),
             Matrix::Cut(parts) => match parts.factor([0.0, 1.0]) {
-                Ok(factor) => Ok(Box::new(factor)),
+                Ok(factor) => Ok(boxed(Box::new(factor))),
                 Err(DynamicsError::Solver { source, .. }) => Err(source),
                 Err(other) => return Err(other),
             },
         };
         match factor {
-            Ok(factor) => Ok((self.support, factor)),
+            Ok((solver, iterations)) => Ok(FactoredRing {
+                support: self.support,
+                solver,
+                iterations,
+            }),
             Err(error) => Err(named(error, side, ring, &self.support)),
         }
     }
+}
+
+impl Harmonics {
+    /// The factor, and the iterations of a defect.
+    fn factor(&self, hold: Hold) -> Result<(Box<dyn LinearSolver>, Option<usize>), SolverError> {
+        let Sectors {
+            ring: cyclic,
+            stiffness,
+            ..
+        } = &self.held.sectors;
+        // In its mean motion a ring gets balanced loads only, and what rigid motion is left is removed.
+        let factor = match hold {
+            Hold::MeanMotion => cyclic.factor_unheld(stiffness),
+            Hold::Clamped | Hold::Free => cyclic.factor(stiffness),
+        }?;
+        let Some(changes) = &self.changes else {
+            return Ok((Box::new(factor), None));
+        };
+        let base = CyclicBordered::new(factor, &[], 0, &[])?;
+        let factor = CyclicDefect::new(base, &changes.of([0.0, 1.0]))?;
+        let iterations = factor.defect().iterations();
+        Ok((Box::new(factor), Some(iterations)))
+    }
+}
+
+/// What a defect changes in the stiffness of a ring without the nodes `held`.
+fn changes(mesh: &Mesh, held: &[usize], defect: &RingDefect) -> Changes {
+    defect.changes(&Coordinates::new(mesh, held, Vec::new(), 0.0))
 }
 
 /// Analysis of the factorisation of a held ring, from its matrix' lower triangle.

@@ -14,7 +14,7 @@ use crate::error::DynamicsError;
 use crate::inventory::Inventory;
 use crate::memory::RingMemory;
 use crate::model::{ContactMode, Model, RACEWAY_GROUP, RingModel};
-use crate::prepared::{Numbers, Prepared};
+use crate::prepared::{FactoredRing, Numbers, Prepared};
 use crate::support::Support;
 
 /// Factored stiffness, raceway search and rule of one ring.
@@ -45,8 +45,15 @@ impl RingSolver {
         let mesh = &ring.mesh;
         let prepared = Prepared::new(model, side, ring, Numbers::Assembled)?;
         let assembled = start.elapsed().as_secs_f64();
-        let (memory, note, block) = (prepared.memory, prepared.note(), prepared.block(model));
-        let (support, factor) = prepared.factor(side, ring)?;
+        let (memory, mut note, block) = (prepared.memory, prepared.note(), prepared.block(model));
+        let FactoredRing {
+            support,
+            solver: factor,
+            iterations,
+        } = prepared.factor(side, ring)?;
+        if let Some(iterations) = iterations {
+            note.push_str(&iterations_note(iterations));
+        }
         let facets = matches!(model.contact.mode, ContactMode::Facet)
             .then(|| FacetSurface::new(mesh, mesh.group(RACEWAY_GROUP), ring.groove));
         Ok(RingSolver {
@@ -129,6 +136,13 @@ impl RingSolver {
     pub fn n_dofs(&self) -> usize {
         self.n_dofs
     }
+}
+
+/// What a log says of the iterations of a defect.
+pub(crate) fn iterations_note(iterations: usize) -> String {
+    format!(
+        "; conjugate gradients preconditioned by the equal sectors need {iterations} iterations on the defect, solved directly"
+    )
 }
 
 /// Elimination order of the free dofs of a ring (nodal dofs, ascending).

@@ -4,13 +4,18 @@
 //! ([`solver::CyclicStencil`]), and the harmonics are factored from them.
 
 use fem::SectorCoupling;
+use mesh::{Mesh, Periodicity};
 use solver::{Coupling, CyclicMatrix, CyclicRing, CyclicStencil, SolverError};
 
+use crate::defect::RingDefect;
 use crate::error::DynamicsError;
 use crate::model::{Backend, RingModel};
 
 /// Sectors from which on harmonics pay: a few wide ones cost more than the ring as a whole.
 const LEAST_SECTORS: usize = 12;
+
+/// Largest table of responses of a ring with a defect, bytes: a tenth of a small machine.
+const MOST_TABLE_BYTES: usize = 1_600_000_000;
 
 /// One sector of a ring with some of its section nodes.
 pub struct Sectors {
@@ -30,50 +35,133 @@ pub struct HeldSectors {
     pub raceway: Vec<usize>,
 }
 
-impl Sectors {
-    /// The whole ring, and the ring without the nodes `held` of the mesh; the inner error is the reason why it has no
-    /// sectors or is not to be solved by them. A scene that forces them gets that reason as the outer error.
-    pub fn held(
+/// A ring that harmonics solve.
+pub struct Periodic {
+    /// All of it, without its defect.
+    pub whole: Sectors,
+    /// What is left when some nodes are held.
+    pub held: HeldSectors,
+    /// Its defect, if it has one.
+    pub defect: Option<RingDefect>,
+}
+
+impl Periodic {
+    /// The ring with the nodes `held` of the mesh held; the inner error is the reason why it has no sectors or is not to be
+    /// solved by them. A scene that forces them gets that reason as the outer error.
+    pub fn new(
         ring: &RingModel,
         side: &'static str,
         backend: Backend,
         held: &[usize],
-    ) -> Result<Result<(Sectors, HeldSectors), String>, DynamicsError> {
-        let pair = match Sectors::whole(ring, side, backend)? {
-            Ok(whole) => whole.without(ring, held, side)?.map(|held| (whole, held)),
-            Err(reason) => Err(reason),
+    ) -> Result<Result<Periodic, String>, DynamicsError> {
+        let found = match backend {
+            Backend::Sparse | Backend::Sector(_) => Err("the scene asks for it".to_string()),
+            Backend::Auto | Backend::Cyclic => match usable(ring) {
+                Ok(_) => Periodic::without_defect(ring, side, held)?,
+                Err(reason) => Periodic::with_defect(ring, side, held)?
+                    .map_err(|no_defect| format!("{reason}; {no_defect}")),
+            },
         };
-        match pair {
+        match found {
             Err(reason) if backend == Backend::Cyclic => Err(DynamicsError::NotPeriodic { side, reason }),
-            pair => Ok(pair),
+            found => Ok(found),
         }
     }
 
-    /// The whole ring; the inner error is the reason why it has no sectors or is not to be solved by them.
-    fn whole(
+    /// The same for natural modes, which harmonics do not give of a ring with a defect.
+    pub fn for_modes(
         ring: &RingModel,
         side: &'static str,
         backend: Backend,
-    ) -> Result<Result<Sectors, String>, DynamicsError> {
-        if matches!(backend, Backend::Sparse | Backend::Sector(_)) {
-            return Ok(Err("the scene asks for it".to_string()));
-        }
-        match usable(ring) {
-            Ok(_) => Sectors::assemble(ring, side).map(Ok),
-            Err(reason) => Ok(Err(reason)),
+        held: &[usize],
+    ) -> Result<Result<Periodic, String>, DynamicsError> {
+        match Periodic::new(ring, side, backend, held)? {
+            Ok(found) if found.defect.is_some() => match backend {
+                Backend::Cyclic => Err(DynamicsError::ModesOfDefect { side }),
+                _ => Ok(Err("it has a defect".to_string())),
+            },
+            found => Ok(found),
         }
     }
 
-    fn assemble(ring: &RingModel, side: &'static str) -> Result<Sectors, DynamicsError> {
+    fn without_defect(
+        ring: &RingModel,
+        side: &'static str,
+        held: &[usize],
+    ) -> Result<Result<Periodic, String>, DynamicsError> {
         let periodicity = ring.periodicity().expect("the caller knows that it has sectors");
-        let sector = fem::assemble_sector(&ring.mesh, periodicity, &ring.material)
+        let whole = Sectors::assemble(ring, &ring.mesh, periodicity, side)?;
+        let held = whole.without(ring, periodicity, held, side)?;
+        Ok(held.map(|held| Periodic {
+            whole,
+            held,
+            defect: None,
+        }))
+    }
+
+    fn with_defect(
+        ring: &RingModel,
+        side: &'static str,
+        held: &[usize],
+    ) -> Result<Result<Periodic, String>, DynamicsError> {
+        let defect = match RingDefect::new(ring, side)? {
+            Ok(defect) => defect,
+            Err(reason) => return Ok(Err(reason)),
+        };
+        let nearly = ring
+            .nearly_periodic()
+            .expect("a defect is one of a periodic ring");
+        let periodicity = &nearly.periodicity;
+        if periodicity.n_sectors() < LEAST_SECTORS {
+            return Ok(Err(format!(
+                "without its defect it has {} equal sectors",
+                periodicity.n_sectors()
+            )));
+        }
+        let whole = Sectors::assemble(ring, &nearly.regular(&ring.mesh), periodicity, side)?;
+        let held = match whole.without(ring, periodicity, held, side)? {
+            Ok(held) => held,
+            Err(reason) => return Ok(Err(reason)),
+        };
+        let bytes = held.table_bytes(periodicity, defect.nodes());
+        if bytes > MOST_TABLE_BYTES {
+            return Ok(Err(format!(
+                "the responses of raceway and defect would take {:.1} GB, more than {:.1} GB",
+                bytes as f64 / 1e9,
+                MOST_TABLE_BYTES as f64 / 1e9
+            )));
+        }
+        Ok(Ok(Periodic {
+            whole,
+            held,
+            defect: Some(defect),
+        }))
+    }
+
+    /// The solver and what it solves, for a log.
+    pub fn note(&self) -> String {
+        match &self.defect {
+            Some(defect) => format!("cyclic ({})", defect.note()),
+            None => format!("cyclic ({} equal sectors)", self.whole.ring.n_sectors()),
+        }
+    }
+}
+
+impl Sectors {
+    fn assemble(
+        ring: &RingModel,
+        mesh: &Mesh,
+        periodicity: &Periodicity,
+        side: &'static str,
+    ) -> Result<Sectors, DynamicsError> {
+        let sector = fem::assemble_sector(mesh, periodicity, &ring.material)
             .map_err(|source| DynamicsError::Fem { side, source })?;
         let couplings = couplings(&sector.couplings);
         let build = || -> Result<Sectors, SolverError> {
             let (n, width) = (periodicity.n_sectors(), periodicity.n_section_nodes());
             let stiffness = CyclicMatrix::new(n, width, &couplings, &sector.stiffness)?;
             let mass = stiffness.with_blocks(&couplings, &sector.mass)?;
-            let directions = fem::azimuth_directions(&ring.mesh);
+            let directions = fem::azimuth_directions(mesh);
             let ring = CyclicRing::new(
                 &stiffness,
                 periodicity.nodes(),
@@ -93,10 +181,10 @@ impl Sectors {
     fn without(
         &self,
         ring: &RingModel,
+        periodicity: &Periodicity,
         held: &[usize],
         side: &'static str,
     ) -> Result<Result<HeldSectors, String>, DynamicsError> {
-        let periodicity = ring.periodicity().expect("a ring of sectors has them");
         let held = match periodicity.section_nodes(held) {
             Ok(held) => held,
             Err(site) => {
@@ -132,6 +220,21 @@ impl Sectors {
     }
 }
 
+impl HeldSectors {
+    /// Bytes of the responses of raceway and the nodes `nodes` of the mesh, at most.
+    fn table_bytes(&self, periodicity: &Periodicity, nodes: &[usize]) -> usize {
+        let mut section: Vec<usize> = nodes
+            .iter()
+            .map(|&n| periodicity.sites()[n].section_node)
+            .collect();
+        section.sort_unstable();
+        section.dedup();
+        let n = 3 * (self.raceway.len() + section.len());
+        // The table, and the spectra that it is made from.
+        2 * size_of::<f64>() * periodicity.n_sectors() * n * n
+    }
+}
+
 /// Number of sectors of a ring that harmonics can solve, or why they cannot.
 pub fn usable(ring: &RingModel) -> Result<usize, String> {
     match ring.periodicity() {
@@ -153,7 +256,7 @@ pub fn stress_operator(
     let (Ok(_), Ok(periodicity)) = (usable(ring), ring.periodicity()) else {
         return Ok(None);
     };
-    let whole = Sectors::assemble(ring, side)?;
+    let whole = Sectors::assemble(ring, &ring.mesh, periodicity, side)?;
     let stress = recovery.sector(&ring.mesh, periodicity);
     let weights = stress.weights.as_flattened().as_flattened();
     Ok(Some(whole.ring.stencil(

@@ -6,8 +6,9 @@
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::cholesky::llt;
 use faer::linalg::lu::partial_pivoting as lu;
+use faer::linalg::matmul::matmul;
 use faer::perm::PermRef;
-use faer::{Mat, MatMut, MatRef, Par};
+use faer::{Accum, Mat, MatMut, MatRef, Par};
 
 use crate::error::SolverError;
 use crate::linear_solver::LinearSolver;
@@ -85,6 +86,35 @@ impl LinearSolver for DenseCholesky {
     fn name(&self) -> &'static str {
         "dense Cholesky"
     }
+}
+
+/// S = D - D (G^-1 + D)^-1 D, row-major `[n][n]`, of symmetric G and D, G and G^-1 + D positive definite. With
+/// G = L L^T it is D - W (1 + L^T W)^-1 W^T, W = D L: no inverse of G. Errors name rows of G. Time 4 n^3.
+pub(crate) fn update(n: usize, g: &[f64], d: &[f64]) -> Result<Vec<f64>, SolverError> {
+    check_dense(n, d)?;
+    let lower = DenseCholesky::factor(n, g)?.factor;
+    let l = Mat::from_fn(n, n, |i, j| if i >= j { lower[(i, j)] } else { 0.0 });
+    let d = MatRef::from_row_major_slice(d, n, n);
+    let (mut w, mut inner) = (Mat::zeros(n, n), Mat::<f64>::identity(n, n));
+    let sum = |c: MatMut<'_, f64>, a: MatRef<'_, f64>, b: MatRef<'_, f64>, by: f64| {
+        matmul(c, Accum::Add, a, b, by, Par::Seq);
+    };
+    sum(w.as_mut(), d, l.as_ref(), 1.0);
+    sum(inner.as_mut(), l.transpose(), w.as_ref(), 1.0);
+    let inner: Vec<f64> = (0..n * n).map(|ij| inner[(ij / n, ij % n)]).collect();
+    let inner = DenseCholesky::factor(n, &inner)?;
+    // Columns of (1 + L^T W)^-1 W^T.
+    let mut solved: Vec<f64> = (0..n * n).map(|ij| w[(ij / n, ij % n)]).collect();
+    inner.solve(&mut solved, n);
+    let mut s = d.to_owned();
+    sum(
+        s.as_mut(),
+        w.as_ref(),
+        MatRef::from_column_major_slice(&solved, n, n),
+        -1.0,
+    );
+    let symmetric = |ij: usize| 0.5 * (s[(ij / n, ij % n)] + s[(ij % n, ij / n)]);
+    Ok((0..n * n).map(symmetric).collect())
 }
 
 /// LU factors, with row exchanges, of a dense matrix that need be neither symmetric nor definite.

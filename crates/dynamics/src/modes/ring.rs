@@ -16,7 +16,7 @@ use super::products::products;
 use crate::error::DynamicsError;
 use crate::model::{Backend, Hold, RingModel};
 use crate::ring::elimination_order;
-use crate::sectors::Sectors;
+use crate::sectors::{Periodic, Sectors};
 use crate::solution::dot;
 use crate::sparse::{SparseLoad, sparse_dot};
 use crate::support::mean_motion;
@@ -100,8 +100,8 @@ impl RingBody {
         };
         let moved: Vec<&Vec<f64>> = moving.iter().map(|&dof| &motions[dof]).collect();
         let coordinates = Coordinates::new(mesh.n_dofs(), &clamped, &moved);
-        let parts = match Sectors::held(ring, side.name(), backend, &clamped)? {
-            Ok((whole, held)) => cyclic_parts(&whole, &held.sectors, &coordinates, shift),
+        let parts = match Periodic::for_modes(ring, side.name(), backend, &clamped)? {
+            Ok(Periodic { whole, held, .. }) => cyclic_parts(&whole, &held.sectors, &coordinates, shift),
             Err(_) => sparse_parts(ring, side, &coordinates, shift)?,
         };
         let Parts {

@@ -84,12 +84,12 @@ impl RingBody {
                         .map(|factor| Factored::Sparse(Box::new(factor))),
                 }
             }
-            (Effective::Cyclic(sectors), _) => {
-                let [border, corner] = self.border([cm, ck]);
+            (Effective::Cyclic(harmonics), _) => {
+                let border = self.border([cm, ck]);
                 let n_free = self.coordinates.free().len();
                 let mounted = self.mount.iter().flatten().map(|&(i, _)| i);
                 let nodes = mounted.filter(|&i| i < n_free).map(|i| i / 3);
-                sectors.factor([cm, ck], &border, &corner, nodes)
+                harmonics.factor([cm, ck], border, nodes)
             }
             (Effective::Sparse(..), _) => {
                 unreachable!("a sparse factor comes with sparse matrices")

@@ -28,6 +28,8 @@ pub struct Coordinates {
     shaft: Vec<usize>,
     /// Node positions relative to the shaft's origin, m.
     arms: Vec<[f64; 3]>,
+    /// Axial position of the shaft's origin, m.
+    origin_z: f64,
 }
 
 impl Coordinates {
@@ -47,6 +49,7 @@ impl Coordinates {
             free,
             shaft,
             arms,
+            origin_z,
         }
     }
 
@@ -86,6 +89,18 @@ impl Coordinates {
     /// Motion of a nodal dof under a rigid motion `q` of the shaft.
     pub fn rigid_motion(&self, dof: usize, q: [f64; 5]) -> f64 {
         (0..5).map(|i| self.lever(dof, i) * q[i]).sum()
+    }
+
+    /// The coordinates that move a nodal dof and by how much, were its node at the position `x` (m): a row of T.
+    pub fn terms(&self, dof: usize, x: [f64; 3]) -> Vec<(usize, f64)> {
+        match self.sources[dof] {
+            Source::Free(i) => vec![(i, 1.0)],
+            Source::Held => {
+                let arm = [x[0], x[1], x[2] - self.origin_z];
+                let term = |(k, &q): (usize, &usize)| (self.free.len() + k, rigid_lever(arm, dof % 3, q));
+                self.shaft.iter().enumerate().map(term).collect()
+            }
+        }
     }
 
     /// Nodal values w = T y, `[n_dofs]`.

@@ -7,14 +7,15 @@
 use std::sync::Arc;
 
 use mesh::Mesh;
-use solver::cyclic::{CyclicBordered, ResponseTable};
+use solver::cyclic::{Change, CyclicBordered, Defect, ResponseTable};
 use solver::{LinearSolver, SectionPart, SolverError, Symbolic};
 
 use super::coordinates::Coordinates;
 use super::matrices::{RingMatrices, SparseMatrices};
+use crate::defect::Changes;
 use crate::error::DynamicsError;
 use crate::model::{Backend, RingModel};
-use crate::sectors::{HeldSectors, Sectors};
+use crate::sectors::{HeldSectors, Periodic};
 use crate::substructures::Substructures;
 
 /// What stays of the matrices of a ring to factor S for any step size.
@@ -22,9 +23,17 @@ pub enum Effective {
     /// Analysis of the sparse matrix, and why the ring is not solved by harmonics.
     Sparse(Box<Symbolic>, String),
     /// Sectors of a periodic ring, without what is held.
-    Cyclic(Box<HeldSectors>),
+    Cyclic(Box<Harmonics>),
     /// The ring cut by angle, which solves itself.
     Sectors(Arc<Substructures>),
+}
+
+/// A periodic ring before S is known.
+pub struct Harmonics {
+    held: HeldSectors,
+    /// What its defect changes.
+    changes: Option<Changes>,
+    note: String,
 }
 
 /// A factored effective matrix.
@@ -41,12 +50,14 @@ pub struct CyclicFactor {
     pub solver: CyclicBordered,
     /// Responses of all raceway nodes under S without its border: contacts need no columns.
     pub table: ResponseTable,
-    /// Nodes that contacts and partner load and measure.
+    /// Nodes that contacts, partner and defect load and measure.
     pub touched: SectionPart,
+    /// The answer of the ring to its defect, which `solver` and `table` are without.
+    pub defect: Option<Defect>,
 }
 
 impl Factored {
-    /// The solver of nodal vectors.
+    /// The solver of nodal vectors; of a ring with a defect, without that.
     pub fn solver(&self) -> &dyn LinearSolver {
         match self {
             Factored::Sparse(solver) => &**solver,
@@ -54,11 +65,22 @@ impl Factored {
         }
     }
 
+    /// The answer of a periodic ring to its defect.
+    pub fn defect(&self) -> Option<&Defect> {
+        match self {
+            Factored::Sparse(_) => None,
+            Factored::Cyclic(factor) => factor.defect.as_ref(),
+        }
+    }
+
     /// Bytes of the factor and of the table.
     pub fn bytes(&self) -> usize {
         match self {
             Factored::Sparse(solver) => solver.factor_bytes(),
-            Factored::Cyclic(factor) => factor.solver.factor_bytes() + factor.table.bytes(),
+            Factored::Cyclic(factor) => {
+                let defect = factor.defect.as_ref().map_or(0, Defect::bytes);
+                factor.solver.factor_bytes() + factor.table.bytes() + defect
+            }
         }
     }
 }
@@ -75,14 +97,21 @@ pub fn prepare(
         let parts = Arc::new(Substructures::new(ring, side, coordinates.free(), sectors)?);
         return Ok((RingMatrices::Cut(parts.clone()), Effective::Sectors(parts)));
     }
-    match Sectors::held(ring, side, backend, &held_nodes(&ring.mesh, coordinates))? {
-        Ok((whole, held)) => {
+    match Periodic::new(ring, side, backend, &held_nodes(&ring.mesh, coordinates))? {
+        Ok(periodic) => {
+            let whole = &periodic.whole;
+            let harmonics = Harmonics {
+                changes: periodic.defect.as_ref().map(|d| d.changes(coordinates)),
+                note: periodic.note(),
+                held: periodic.held,
+            };
             let operator = |matrix| whole.ring.operator(matrix).map(Box::new).map_err(solver_error);
             let matrices = RingMatrices::Sectors {
                 stiffness: operator(&whole.stiffness)?,
                 mass: operator(&whole.mass)?,
+                defect: periodic.defect.map(Box::new),
             };
-            Ok((matrices, Effective::Cyclic(Box::new(held))))
+            Ok((matrices, Effective::Cyclic(Box::new(harmonics))))
         }
         Err(why) => {
             let matrices = SparseMatrices::new(ring, side, coordinates)?;
@@ -110,31 +139,60 @@ impl Effective {
         match self {
             Effective::Sparse(_, why) => format!("sparse ({why})"),
             Effective::Sectors(parts) => format!("sector ({})", parts.note()),
-            Effective::Cyclic(sectors) => {
-                format!("cyclic ({} equal sectors)", sectors.sectors.ring.n_sectors())
-            }
+            Effective::Cyclic(harmonics) => harmonics.note.clone(),
         }
     }
 }
 
-impl HeldSectors {
+impl Harmonics {
     /// Factors c_M M + c_K K with the dense border `border` (column-major `[n_free][m]`) and `corner` (row-major). The
     /// partner touches the free nodes `mounted`.
     pub fn factor(
         &self,
-        [mass, stiffness]: [f64; 2],
-        border: &[f64],
-        corner: &[f64],
+        coefficients: [f64; 2],
+        [mut border, mut corner]: [Vec<f64>; 2],
         mounted: impl IntoIterator<Item = usize>,
     ) -> Result<Factored, SolverError> {
-        let sectors = &self.sectors;
+        let [mass, stiffness] = coefficients;
+        let sectors = &self.held.sectors;
         let effective = sectors.stiffness.combined(stiffness, mass, &sectors.mass)?;
         let factor = sectors.ring.factor(&effective)?;
+        let n = factor.n();
+        let change = self.changes.as_ref().map(|changes| changes.of(coefficients));
+        let mut chosen = self.held.raceway.clone();
+        if let Some(change) = &change {
+            without(change, n, &mut border, &mut corner);
+            let nodes = change.rows.iter().filter(|&&row| row < n).map(|row| row / 3);
+            chosen.extend(sectors.ring.section_nodes(nodes));
+            chosen.sort_unstable();
+            chosen.dedup();
+        }
+        let table = ResponseTable::new(&factor, &chosen);
+        let solver = CyclicBordered::new(factor, &border, corner.len().isqrt(), &corner)?;
+        let defect = change
+            .map(|change| Defect::new(&solver, &table, &change))
+            .transpose()?;
         Ok(Factored::Cyclic(Box::new(CyclicFactor {
-            table: ResponseTable::new(&factor, &self.raceway),
-            touched: sectors.ring.section_part(&self.raceway, mounted),
-            solver: CyclicBordered::new(factor, border, corner.len().isqrt(), corner)?,
+            touched: sectors.ring.section_part(&chosen, mounted),
+            table,
+            solver,
+            defect,
         })))
+    }
+}
+
+/// Takes the part of a defect out of the border of a matrix with n rows before it: what is left is the regular ring's.
+fn without(change: &Change, n: usize, border: &mut [f64], corner: &mut [f64]) {
+    let (size, m) = (change.rows.len(), corner.len().isqrt());
+    for (i, &row) in change.rows.iter().enumerate() {
+        for (j, &column) in change.rows.iter().enumerate() {
+            let value = change.values[size * i + j];
+            match (row.checked_sub(n), column.checked_sub(n)) {
+                (Some(k), Some(l)) => corner[m * k + l] -= value,
+                (None, Some(l)) => border[n * l + row] -= value,
+                _ => {}
+            }
+        }
     }
 }
 

@@ -18,14 +18,18 @@ impl CyclicFactor {
         (harmonic, border)
     }
 
-    /// Values of functionals on the touched nodes and the border.
-    pub fn motions(&self, harmonic: &[f64], border: &[f64], functionals: &[&SparseLoad]) -> Vec<f64> {
+    /// Values of functionals on the touched nodes and the border, and those of the rows of a defect.
+    pub fn motions(&self, harmonic: &[f64], border: &[f64], functionals: &[&SparseLoad]) -> [Vec<f64>; 2] {
         let ring = self.solver.inner().ring();
         let mut x = vec![0.0; self.solver.n()];
         let (free, rows) = x.split_at_mut(ring.n());
         ring.from_harmonic_at(&self.touched, harmonic, free);
         rows.copy_from_slice(border);
-        functionals.iter().map(|g| sparse_dot(g, &x)).collect()
+        let rows = self.defect.iter().flat_map(|defect| defect.rows());
+        [
+            functionals.iter().map(|g| sparse_dot(g, &x)).collect(),
+            rows.map(|&row| x[row]).collect(),
+        ]
     }
 
     /// The predictor, harmonics and border, plus S^-1 of a load on touched nodes and border: coordinates, `[n]`.

@@ -9,6 +9,7 @@ use solver::{CyclicStencil, LinearSolver, SolverError, Symbolic};
 use sprs::CsMat;
 
 use super::coordinates::Coordinates;
+use crate::defect::RingDefect;
 use crate::error::DynamicsError;
 use crate::model::RingModel;
 use crate::ring::elimination_order;
@@ -26,6 +27,8 @@ pub enum RingMatrices {
         stiffness: Box<CyclicStencil>,
         /// M.
         mass: Box<CyclicStencil>,
+        /// What a defect adds.
+        defect: Option<Box<RingDefect>>,
     },
     /// As sums of sectors cut by angle.
     Cut(Arc<Substructures>),
@@ -92,8 +95,15 @@ impl RingMatrices {
         match self {
             RingMatrices::Sparse(matrices) => product(&matrices.stiffness, x),
             RingMatrices::Cut(parts) => coordinates.reduce(&parts.stiffness_product(&coordinates.expand(x))),
-            RingMatrices::Sectors { stiffness, .. } => {
-                coordinates.reduce(&stiffness.apply(&coordinates.expand(x)))
+            RingMatrices::Sectors {
+                stiffness, defect, ..
+            } => {
+                let x = coordinates.expand(x);
+                let mut product = stiffness.apply(&x);
+                if let Some(defect) = defect {
+                    defect.add_stiffness_product(&x, &mut product);
+                }
+                coordinates.reduce(&product)
             }
         }
     }
@@ -108,13 +118,24 @@ impl RingMatrices {
         match self {
             RingMatrices::Sparse(matrices) => node_product(&matrices.node_mass, field),
             RingMatrices::Cut(parts) => parts.mass_product(field),
-            RingMatrices::Sectors { mass, .. } => mass.apply(field),
+            RingMatrices::Sectors { mass, defect, .. } => {
+                let mut product = mass.apply(field);
+                if let Some(defect) = defect {
+                    defect.add_mass_product(field, &mut product);
+                }
+                product
+            }
         }
     }
 
     /// M a + K b of coordinates, `[n]`.
     pub fn sum_of_products(&self, coordinates: &Coordinates, a: &[f64], b: &[f64]) -> Vec<f64> {
-        let RingMatrices::Sectors { stiffness, mass } = self else {
+        let RingMatrices::Sectors {
+            stiffness,
+            mass,
+            defect,
+        } = self
+        else {
             let (mut sum, k) = (
                 self.mass_product(coordinates, a),
                 self.stiffness_product(coordinates, b),
@@ -125,32 +146,47 @@ impl RingMatrices {
         let ring = mass.ring();
         let mut lines = vec![0.0; ring.lines_len()];
         let mut sum = vec![0.0; mass.product_len()];
-        for (operator, x) in [(mass, a), (stiffness, b)] {
-            ring.to_lines(&coordinates.expand(x), &mut lines);
+        let [a, b] = [a, b].map(|x| coordinates.expand(x));
+        for (operator, x) in [(mass, &a), (stiffness, &b)] {
+            ring.to_lines(x, &mut lines);
             operator.add_product(&lines, &mut sum);
         }
         let mut nodal = vec![0.0; coordinates.expanded()];
         ring.add_from_lines(&sum, &mut nodal);
+        if let Some(defect) = defect {
+            defect.add_mass_product(&a, &mut nodal);
+            defect.add_stiffness_product(&b, &mut nodal);
+        }
         coordinates.reduce(&nodal)
     }
 
     /// v M v / 2 and w K w / 2, J.
     pub fn energies(&self, coordinates: &Coordinates, v: &[f64], w: &[f64]) -> [f64; 2] {
-        let RingMatrices::Sectors { stiffness, mass } = self else {
+        let RingMatrices::Sectors {
+            stiffness,
+            mass,
+            defect,
+        } = self
+        else {
             return [
                 0.5 * dot(v, &self.mass_product(coordinates, v)),
                 0.5 * dot(w, &self.stiffness_product(coordinates, w)),
             ];
         };
-        let energy = |operator: &CyclicStencil, x: &[f64]| {
+        let square = |operator: &CyclicStencil, x: &[f64]| {
             let ring = operator.ring();
             let mut lines = vec![0.0; ring.lines_len()];
-            ring.to_lines(&coordinates.expand(x), &mut lines);
+            ring.to_lines(x, &mut lines);
             let mut product = vec![0.0; operator.product_len()];
             operator.add_product(&lines, &mut product);
-            0.5 * operator.lines_dot(&lines, &product)
+            operator.lines_dot(&lines, &product)
         };
-        let (kinetic, strain) = rayon::join(|| energy(mass, v), || energy(stiffness, w));
-        [kinetic, strain]
+        let [v, w] = [v, w].map(|x| coordinates.expand(x));
+        let (mut kinetic, mut strain) = rayon::join(|| square(mass, &v), || square(stiffness, &w));
+        if let Some(defect) = defect {
+            kinetic += defect.mass_square(&v);
+            strain += defect.stiffness_square(&w);
+        }
+        [0.5 * kinetic, 0.5 * strain]
     }
 }

@@ -16,6 +16,7 @@ pub mod balls;
 pub mod body;
 pub mod contacts;
 pub mod coordinates;
+mod defect;
 pub mod effective;
 mod finish;
 pub mod frame;

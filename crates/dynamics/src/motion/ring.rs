@@ -4,14 +4,15 @@
 //! columns, one block solve of 1 + 2 n_balls right-hand sides per step, which reads the factor once. A periodic ring has C in a
 //! table of the responses of its raceway, made once per step size; its predictor stays in harmonic space, where contact
 //! forces are added, so that a step takes two solves but transforms one whole field there and one back. The columns of the
-//! mount are solved once per step size.
+//! mount are solved once per step size. A defect of the ring corrects all of it ([`super::defect`]).
 
 use contact::NodalWeights;
 use solver::LinearSolver;
-use solver::cyclic::ResponseTable;
+use solver::cyclic::{Defect, Patch, ResponseTable};
 use solver::dense::DenseCholesky;
 
 use super::body::RingBody;
+use super::defect::DefectStep;
 use super::effective::Factored;
 use super::integrator::Integrator;
 use crate::error::DynamicsError;
@@ -84,8 +85,15 @@ pub struct RingStep {
 enum Predictor {
     /// Itself, then the increments per unit contact force: column-major `[n][1 + 2 n_contacts]`.
     Columns(Vec<f64>),
-    /// In harmonic space, and the rows of the border.
-    Harmonic(Vec<f64>, Vec<f64>),
+    /// Of the regular ring in harmonic space, the rows of the border, and what a defect makes of it.
+    Harmonic(Vec<f64>, Vec<f64>, Option<DefectStep>),
+}
+
+/// Contacts as the responses of a raceway meet them.
+struct Touch {
+    patches: Vec<Patch>,
+    /// Motion of each contact direction under unit forces of the mount, `[2 n_contacts][n_mount]`.
+    by_mount: Vec<Vec<f64>>,
 }
 
 impl RingStep {
@@ -129,6 +137,11 @@ impl RingFactor {
         self.factor.bytes()
     }
 
+    /// Of a ring with a defect, see [`solver::cyclic::Defect::iterations`].
+    pub fn iterations(&self) -> Option<usize> {
+        self.factor.defect().map(Defect::iterations)
+    }
+
     /// Predictor and columns of a step from `state` under the generalised load `load` and with contacts at `feet`.
     pub fn prepare(
         &self,
@@ -150,9 +163,17 @@ impl RingFactor {
         let (predictor, moved, compliance) = match &self.factor {
             Factored::Cyclic(factor) => {
                 let (harmonic, border) = factor.solve(&side);
-                let moved = factor.motions(&harmonic, &border, &all);
-                let compliance = self.table_compliance(body, &factor.table, feet, &contacts);
-                (Predictor::Harmonic(harmonic, border), moved, compliance)
+                let [mut moved, at] = factor.motions(&harmonic, &border, &all);
+                let touch = self.touch(body, &factor.table, feet, &contacts);
+                let mut compliance = self.table_compliance(&factor.table, &touch, body.mount.len());
+                let step = factor.defect.as_ref().map(|defect| {
+                    let step = DefectStep::new(at, self.answers(&factor.table, &touch, defect.rows(), n));
+                    let more = step.motion(defect);
+                    moved.iter_mut().zip(more).for_each(|(m, d)| *m += d);
+                    step.soften(defect, &mut compliance);
+                    step
+                });
+                (Predictor::Harmonic(harmonic, border, step), moved, compliance)
             }
             Factored::Sparse(solver) => {
                 side.resize(n * (1 + contacts.len()), 0.0);
@@ -173,15 +194,14 @@ impl RingFactor {
         }
     }
 
-    /// Compliance of contacts, then mount, from the responses of the raceway: those of the ring without its border, plus what
-    /// the border adds, V M^-1 V^T, with M the border's compliance and V the motion of the contacts under its unit forces.
-    fn table_compliance(
+    /// What the responses of the raceway need to know of the contacts.
+    fn touch(
         &self,
         body: &RingBody,
         table: &ResponseTable,
         feet: &[NodalWeights],
         contacts: &[SparseLoad],
-    ) -> Vec<f64> {
+    ) -> Touch {
         let patch = |foot: &NodalWeights| {
             let free = |node: &usize| body.coordinates.free_node(*node);
             let nodes: Option<Vec<usize>> = foot.nodes.iter().map(free).collect();
@@ -190,27 +210,60 @@ impl RingFactor {
                 .patch(&nodes, &foot.coefficients)
                 .expect("patches lie on the raceway")
         };
-        let patches: Vec<_> = feet.iter().map(patch).collect();
-        let direct = table.compliances(&patches);
-        let (n, m) = (contacts.len(), body.mount.len());
         let columns: Vec<&[f64]> = self.mount.chunks_exact(body.coordinates.n()).collect();
-        let moved = |i: usize| columns.iter().map(move |y| sparse_dot(&contacts[i], y));
-        let v: Vec<f64> = (0..n).flat_map(moved).collect();
+        let moved = |contact: &SparseLoad| columns.iter().map(|y| sparse_dot(contact, y)).collect();
+        Touch {
+            patches: feet.iter().map(patch).collect(),
+            by_mount: contacts.iter().map(moved).collect(),
+        }
+    }
+
+    /// Compliance of contacts, then mount, from the responses of the raceway: those of the ring without its border, plus what
+    /// the border adds, V M^-1 V^T, with M the border's compliance and V the motion of the contacts under its unit forces.
+    fn table_compliance(&self, table: &ResponseTable, touch: &Touch, m: usize) -> Vec<f64> {
+        let (direct, v) = (table.compliances(&touch.patches), &touch.by_mount);
+        let n = v.len();
         let size = n + m;
         let mut compliance = vec![0.0; size * size];
         for i in 0..size {
             for j in 0..=i {
                 let value = match (i < n, j < n) {
-                    (true, _) => {
-                        direct[n * i + j] + self.by_border(&v[m * i..m * (i + 1)], &v[m * j..m * (j + 1)])
-                    }
-                    (false, true) => v[m * j + i - n],
+                    (true, _) => direct[n * i + j] + self.by_border(&v[i], &v[j]),
+                    (false, true) => v[j][i - n],
                     (false, false) => self.mount_compliance[m * (i - n) + j - n],
                 };
                 (compliance[size * i + j], compliance[size * j + i]) = (value, value);
             }
         }
         compliance
+    }
+
+    /// Motion of contacts, then mount, under unit forces on the `rows` of n coordinates, row-major, without a defect.
+    fn answers(&self, table: &ResponseTable, touch: &Touch, rows: &[usize], n: usize) -> Vec<f64> {
+        let columns: Vec<&[f64]> = self.mount.chunks_exact(n).collect();
+        let Factored::Cyclic(factor) = &self.factor else {
+            unreachable!("only harmonics know defects")
+        };
+        let n_free = factor.solver.inner().n();
+        let free: Vec<usize> = rows.iter().copied().filter(|&row| row < n_free).collect();
+        let direct: Vec<Vec<[f64; 2]>> = touch.patches.iter().map(|p| table.of_patch(&free, p)).collect();
+        let mut answers = Vec::with_capacity(rows.len() * (touch.by_mount.len() + columns.len()));
+        // Rows of the border come last, so the free ones keep their numbers.
+        for (i, &row) in rows.iter().enumerate() {
+            let by_mount: Vec<f64> = columns.iter().map(|column| column[row]).collect();
+            answers.extend(
+                touch
+                    .by_mount
+                    .iter()
+                    .enumerate()
+                    .map(|(k, v)| match row.checked_sub(n_free) {
+                        Some(shaft) => v[shaft],
+                        None => direct[k / 2][i][k % 2] + self.by_border(&by_mount, v),
+                    }),
+            );
+            answers.extend(by_mount);
+        }
+        answers
     }
 
     /// a M^-1 b for two rows of V; zero without a border.
@@ -263,11 +316,16 @@ impl RingFactor {
     pub fn add_load(&self, body: &RingBody, step: &mut RingStep, mut load: Vec<f64>) {
         let all: Vec<&SparseLoad> = step.contacts.iter().chain(&body.mount).collect();
         let moved: Vec<f64> = match (&self.factor, &mut step.predictor) {
-            (Factored::Cyclic(factor), Predictor::Harmonic(harmonic, border)) => {
+            (Factored::Cyclic(factor), Predictor::Harmonic(harmonic, border, correction)) => {
                 let (more, q) = factor.solve(&load);
                 harmonic.iter_mut().zip(&more).for_each(|(p, d)| *p += d);
                 border.iter_mut().zip(&q).for_each(|(p, d)| *p += d);
-                factor.motions(&more, &q, &all)
+                let [mut moved, at] = factor.motions(&more, &q, &all);
+                if let (Some(defect), Some(correction)) = (self.factor.defect(), correction) {
+                    let corrected = correction.add(defect, &at);
+                    moved.iter_mut().zip(corrected).for_each(|(m, d)| *m += d);
+                }
+                moved
             }
             (Factored::Sparse(solver), Predictor::Columns(block)) => {
                 solver.solve(&mut load, 1);
@@ -282,7 +340,7 @@ impl RingFactor {
     /// Increment of the coordinates under forces on contacts (N, `[2 n_contacts]`) and mount (N and N m).
     pub fn increment(&self, body: &RingBody, step: &RingStep, contacts: &[f64], mount: &[f64]) -> Vec<f64> {
         match (&self.factor, &step.predictor) {
-            (Factored::Cyclic(factor), Predictor::Harmonic(harmonic, border)) => {
+            (Factored::Cyclic(factor), Predictor::Harmonic(harmonic, border, correction)) => {
                 let mut load = vec![0.0; body.coordinates.n()];
                 let loads = step
                     .contacts
@@ -291,6 +349,9 @@ impl RingFactor {
                     .chain(body.mount.iter().zip(mount));
                 for (functional, f) in loads {
                     functional.iter().for_each(|&(i, w)| load[i] += f * w);
+                }
+                if let (Some(defect), Some(correction)) = (&factor.defect, correction) {
+                    correction.add_forces(defect, &[contacts, mount].concat(), &mut load);
                 }
                 factor.increment((harmonic, border), load)
             }

@@ -18,6 +18,7 @@ use crate::costs::EffectCosts;
 use crate::error::DynamicsError;
 use crate::inventory::Inventory;
 use crate::model::Model;
+use crate::ring::iterations_note;
 
 /// Share of the accepted error below which the next rung up is tried: two orders of the step, and a margin.
 const RISE: f64 = 1.0 / 16.0;
@@ -111,7 +112,12 @@ impl<'a> Motion<'a> {
 
     /// The linear solver of a flexible ring and why it is that one, for a log.
     pub fn solver_note(&self, side: Side) -> Option<String> {
-        self.rings[side.index()].as_ref().map(RingBody::solver_note)
+        let mut note = self.rings[side.index()].as_ref()?.solver_note();
+        let rung = self.rungs.first().and_then(OnceLock::get)?;
+        if let Some(iterations) = rung[side.index()].as_ref().and_then(RingFactor::iterations) {
+            note.push_str(&iterations_note(iterations));
+        }
+        Some(note)
     }
 
     /// Number of generalised coordinates of a ring; 0 for a rigid one.

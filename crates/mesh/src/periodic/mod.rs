@@ -9,6 +9,7 @@
 //! Cost: n log n for sorting the nodes, then one search per node and element for each candidate that does not fail
 //! earlier; memory of a few indices per node and element.
 
+mod defect;
 mod images;
 mod locator;
 mod reason;
@@ -19,6 +20,7 @@ use crate::mesh::Mesh;
 use images::{element_images, facet_images, node_images};
 use locator::Locator;
 
+pub use defect::{NearlyPeriodic, find_nearly_periodic};
 pub use reason::NotPeriodic;
 
 /// Usual tolerance of [`find_periodicity`], as a share of the ring's largest radius: well above the rounding of

@@ -35,6 +35,7 @@
 
 mod assemble;
 mod border;
+mod defect;
 mod factor;
 mod kernel;
 mod matrix;
@@ -50,6 +51,7 @@ mod stencil;
 mod transform;
 
 pub use border::CyclicBordered;
+pub use defect::{Change, CyclicDefect, Defect, conjugate_gradients};
 pub use factor::{CyclicCholesky, Symmetry};
 pub use matrix::CyclicMatrix;
 pub use pattern::Coupling;

@@ -39,6 +39,14 @@ pub struct Patch {
     weights: Vec<[[f64; 3]; 2]>,
 }
 
+/// A Cartesian unit vector at a chosen node.
+struct Unit {
+    sector: usize,
+    chosen: usize,
+    /// Along (radial, azimuthal, axial).
+    weights: [f64; 3],
+}
+
 impl ResponseTable {
     /// Solves for unit loads at the section nodes `section_nodes`, distinct.
     ///
@@ -142,6 +150,52 @@ impl ResponseTable {
             self.responses[(sector * self.n_dofs + 3 * a + ij / 3) * self.n_dofs + 3 * b + ij % 3]
         };
         std::array::from_fn(entry)
+    }
+
+    /// Displacement of row `row` per force on row `column`, m/N; rows of the caller's Cartesian vectors, of chosen nodes.
+    ///
+    /// # Panics
+    /// When a node is not chosen.
+    pub fn between(&self, row: usize, column: usize) -> f64 {
+        let [to, from] = [row, column].map(|row| self.unit(row));
+        let n = self.ring.n_sectors();
+        let response = self.response((to.sector + n - from.sector) % n, to.chosen, from.chosen);
+        let part = |i: usize| -> f64 { (0..3).map(|j| response[3 * i + j] * from.weights[j]).sum() };
+        (0..3).map(|i| to.weights[i] * part(i)).sum()
+    }
+
+    /// Displacements of the rows `rows` of chosen nodes per force on a patch in its two directions, m/N.
+    ///
+    /// # Panics
+    /// When a node is not chosen.
+    pub fn of_patch(&self, rows: &[usize], patch: &Patch) -> Vec<[f64; 2]> {
+        let of_row = |&row: &usize| {
+            let Unit {
+                sector,
+                chosen,
+                weights,
+            } = self.unit(row);
+            let unit = Patch {
+                sites: vec![[sector, 3 * chosen]],
+                weights: vec![[weights, [0.0; 3]]],
+            };
+            self.compliance(&unit, patch)[0]
+        };
+        rows.par_iter().map(of_row).collect()
+    }
+
+    /// A row as a direction at a chosen node.
+    fn unit(&self, row: usize) -> Unit {
+        let (shared, width) = (&self.ring.shared, self.ring.n_section_nodes());
+        let site = shared.sites[row / 3];
+        let chosen = self.chosen[site % width];
+        assert_ne!(chosen, usize::MAX, "node {} is not in the table", row / 3);
+        let [c, s] = shared.directions[site];
+        Unit {
+            sector: site / width,
+            chosen,
+            weights: [[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]][row % 3],
+        }
     }
 
     /// Bytes of the table.

@@ -16,6 +16,7 @@ use realfft::num_complex::Complex;
 
 use super::phases::LANES;
 use super::ring::CyclicRing;
+use crate::permutation::invert;
 
 /// Section nodes transformed as one task.
 const TASK: usize = 4;
@@ -109,6 +110,22 @@ impl CyclicRing {
                 nodal[3 * node..3 * node + 3].copy_from_slice(&[c * r - s * t, s * r + c * t, z]);
             }
         }
+    }
+
+    /// The section nodes to which the caller's nodes `nodes` belong, ascending.
+    ///
+    /// # Panics
+    /// When a node does not exist.
+    pub fn section_nodes(&self, nodes: impl IntoIterator<Item = usize>) -> Vec<usize> {
+        let shared = &self.shared;
+        let places = invert(&shared.place, shared.place.len()).expect("every section node has a place");
+        let mut section: Vec<usize> = nodes
+            .into_iter()
+            .map(|node| places[shared.sites[node] % self.n_section_nodes()])
+            .collect();
+        section.sort_unstable();
+        section.dedup();
+        section
     }
 
     /// The section nodes to which the caller's nodes `nodes` belong, and the section nodes `section_nodes`.

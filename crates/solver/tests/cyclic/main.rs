@@ -2,6 +2,7 @@
 
 #[path = "../common/mod.rs"]
 mod common;
+mod defect;
 mod hold;
 mod rings;
 mod solve;

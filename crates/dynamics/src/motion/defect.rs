@@ -1,0 +1,74 @@
+//! The defect of a periodic ring during a step: the regular ring answers, and the forces of the defect correct it.
+//!
+//! The rows of the defect are functionals like those of the contacts. With t their values when the regular ring is under all
+//! other loads, the defect acts with f = -S t ([`solver::cyclic::Defect`]). V holds the motion of contacts and mount under unit forces
+//! on these rows, and of the rows under theirs. So contacts and mount see V^T f more motion and the compliance C - V^T S V,
+//! and a step needs no further solve.
+
+use solver::cyclic::Defect;
+
+/// Rows of a defect in a step.
+pub struct DefectStep {
+    /// Values of the rows without the defect and the forces of contacts and mount, t, `[n]`.
+    at: Vec<f64>,
+    /// V, row-major `[n][functionals]`.
+    answers: Vec<f64>,
+}
+
+impl DefectStep {
+    /// The rows at the predictor's values `at`; `answers` is V.
+    pub fn new(at: Vec<f64>, answers: Vec<f64>) -> DefectStep {
+        DefectStep { at, answers }
+    }
+
+    /// Motion of contacts and mount by the defect.
+    pub fn motion(&self, defect: &Defect) -> Vec<f64> {
+        self.moved(&defect.forces(&self.at))
+    }
+
+    /// V^T f.
+    fn moved(&self, forces: &[f64]) -> Vec<f64> {
+        let n = self.answers.len() / forces.len().max(1);
+        let mut moved = vec![0.0; n];
+        for (row, f) in self.answers.chunks_exact(n.max(1)).zip(forces) {
+            moved.iter_mut().zip(row).for_each(|(m, v)| *m += f * v);
+        }
+        moved
+    }
+
+    /// Adds -V^T S V to the compliance of contacts and mount, row-major; exactly symmetric.
+    pub fn soften(&self, defect: &Defect, compliance: &mut [f64]) {
+        let n = compliance.len().isqrt();
+        let mut change = vec![0.0; n * n];
+        for (j, column) in change.chunks_exact_mut(n).enumerate() {
+            let unit: Vec<f64> = self.answers.iter().skip(j).step_by(n).copied().collect();
+            column.copy_from_slice(&self.moved(&defect.forces(&unit)));
+        }
+        for i in 0..n {
+            for j in 0..n {
+                compliance[n * i + j] += 0.5 * (change[n * i + j] + change[n * j + i]);
+            }
+        }
+    }
+
+    /// Adds what more loads move the rows by, and returns the motion of contacts and mount by the forces that this adds.
+    pub fn add(&mut self, defect: &Defect, more: &[f64]) -> Vec<f64> {
+        self.at.iter_mut().zip(more).for_each(|(t, d)| *t += d);
+        self.moved(&defect.forces(more))
+    }
+
+    /// Adds to a load of the regular ring the forces of its defect when contacts and mount act with `forces`.
+    pub fn add_forces(&self, defect: &Defect, forces: &[f64], load: &mut [f64]) {
+        let rows = self.answers.chunks_exact(forces.len().max(1));
+        let total = self.at.iter().zip(rows).map(|(t, row)| {
+            let by_forces: f64 = row.iter().zip(forces).map(|(v, f)| v * f).sum();
+            t + by_forces
+        });
+        let acting = defect.forces(&total.collect::<Vec<f64>>());
+        defect
+            .rows()
+            .iter()
+            .zip(acting)
+            .for_each(|(&row, f)| load[row] += f);
+    }
+}
