@@ -70,6 +70,43 @@ fn motion_has_the_same_bits_on_any_number_of_ranks() {
     }
 }
 
+/// Wrong: harmonics that ranks share would give other results than one process: 200 steps on 1 to 4 ranks, and equilibria on up to 6.
+#[test]
+#[ignore = "needs mpirun and a program built with MPI: scripts/test-mpi"]
+fn harmonics_have_the_same_bits_on_any_number_of_ranks() {
+    let dir = small_motion();
+    let long = [
+        "--set",
+        "solver.backend=cyclic",
+        "--set",
+        "dynamic.duration=4 ms",
+        "--set",
+        "dynamic.output_every=40",
+    ];
+    dir.run("alone", &long);
+    for (ranks, threads) in [(1, "2"), (2, "1"), (3, "2"), (4, "1")] {
+        let out = format!("ranks{ranks}");
+        let run = ["run", "scene.toml", "--out", &out, "--threads", threads];
+        let outcome = on_ranks(&dir, ranks, &[&run[..], &long[..]].concat());
+        done(&outcome);
+        let shares = outcome.stderr.contains(&format!("harmonics on {ranks} ranks"));
+        assert_eq!(shares, ranks > 1, "{}", outcome.stderr);
+        assert_same_run(&dir, "alone", &out);
+    }
+    dir.write("static.toml", SCENE);
+    done(&dir.raceway(&["run", "static.toml", "--out", "alone_static"]));
+    for (ranks, out) in [(2, "two"), (6, "six")] {
+        done(&on_ranks(&dir, ranks, &["run", "static.toml", "--out", out]));
+        for name in ["balls.csv", "shaft.csv", "step_000000.hdf"] {
+            let read = |folder: &str| std::fs::read(dir.path(&format!("{folder}/{name}"))).unwrap();
+            assert!(
+                read("alone_static") == read(out),
+                "{name} of {ranks} ranks differs"
+            );
+        }
+    }
+}
+
 /// Wrong: an equilibrium would depend on the number of ranks; more ranks than sectors included.
 #[test]
 #[ignore = "needs mpirun and a program built with MPI: scripts/test-mpi"]

@@ -145,12 +145,17 @@ pub fn run(
     failure.map_or(Ok(dir), Err)
 }
 
-/// Says when ranks have nothing to share.
+/// Says what ranks do not share.
 pub fn note_unshared(scene: &Scene) {
     let ranks = Communicator::world().size();
-    if ranks > 1 && scene.solver.backend != Backend::Sector {
+    let unshared = match scene.solver.backend {
+        Backend::Sector | Backend::Cyclic => return,
+        Backend::Auto => "rings that are not rotationally periodic",
+        Backend::Sparse => "the whole run",
+    };
+    if ranks > 1 {
         print::note(format_args!(
-            "note: each of the {ranks} ranks computes the whole run; only with solver.backend = \"sector\" do they share it"
+            "note: each of the {ranks} ranks computes {unshared}; with solver.backend = \"sector\" they share any ring"
         ));
     }
 }

@@ -128,6 +128,15 @@ pub enum Backend {
 }
 
 impl Backend {
+    /// The ranks that share a ring: those of the run share the harmonics of a periodic one.
+    pub fn comm(self) -> Communicator {
+        match self {
+            Backend::Sector(sectors) => sectors.comm,
+            Backend::Auto | Backend::Cyclic => Communicator::world(),
+            Backend::Sparse => Communicator::Serial,
+        }
+    }
+
     /// Both of two independent pieces of work on the rings: at the same time, but one after the other where ranks share
     /// a ring, as all ranks must meet in the same order.
     pub fn both<A: Send, B: Send>(
@@ -136,7 +145,7 @@ impl Backend {
         second: impl FnOnce() -> B + Send,
     ) -> (A, B) {
         match self {
-            Backend::Sector(sectors) if sectors.comm.size() > 1 => (first(), second()),
+            _ if self.comm().size() > 1 => (first(), second()),
             _ => rayon::join(first, second),
         }
     }

@@ -90,7 +90,7 @@ impl Periodic {
         held: &[usize],
     ) -> Result<Result<Periodic, String>, DynamicsError> {
         let periodicity = ring.periodicity().expect("the caller knows that it has sectors");
-        let whole = Sectors::assemble(ring, &ring.mesh, periodicity, side)?;
+        let whole = Sectors::assemble(ring, &ring.mesh, periodicity, side)?.shared();
         let held = whole.without(ring, periodicity, held, side)?;
         Ok(held.map(|held| Periodic {
             whole,
@@ -118,7 +118,7 @@ impl Periodic {
                 periodicity.n_sectors()
             )));
         }
-        let whole = Sectors::assemble(ring, &nearly.regular(&ring.mesh), periodicity, side)?;
+        let whole = Sectors::assemble(ring, &nearly.regular(&ring.mesh), periodicity, side)?.shared();
         let held = match whole.without(ring, periodicity, held, side)? {
             Ok(held) => held,
             Err(reason) => return Ok(Err(reason)),
@@ -140,14 +140,26 @@ impl Periodic {
 
     /// The solver and what it solves, for a log.
     pub fn note(&self) -> String {
+        let shared = match Backend::Cyclic.comm().size() {
+            1 => String::new(),
+            ranks => format!(", harmonics on {ranks} ranks"),
+        };
         match &self.defect {
-            Some(defect) => format!("cyclic ({})", defect.note()),
-            None => format!("cyclic ({} equal sectors)", self.whole.ring.n_sectors()),
+            Some(defect) => format!("cyclic ({}{shared})", defect.note()),
+            None => format!("cyclic ({} equal sectors{shared})", self.whole.ring.n_sectors()),
         }
     }
 }
 
 impl Sectors {
+    /// The same with harmonics that the ranks of the run share.
+    fn shared(self) -> Sectors {
+        Sectors {
+            ring: self.ring.shared_by(Backend::Cyclic.comm()),
+            ..self
+        }
+    }
+
     fn assemble(
         ring: &RingModel,
         mesh: &Mesh,

@@ -1,6 +1,7 @@
 //! The factored harmonics of a rotationally periodic ring.
 
 use std::marker::PhantomData;
+use std::ops::Range;
 
 use pulp::Arch;
 use rayon::prelude::*;
@@ -30,7 +31,7 @@ pub struct CyclicCholesky {
     ring: CyclicRing,
     symmetry: Symmetry,
     hold: Hold,
-    /// `[n_groups][n_blocks][3][3][parts][LANES]`.
+    /// Groups of this rank, `[n_groups][n_blocks][3][3][parts][LANES]`.
     values: Vec<f64>,
 }
 
@@ -138,20 +139,20 @@ impl CyclicRing {
     ) -> Result<CyclicCholesky, SolverError> {
         let shared = &self.shared;
         let group_len = 9 * F::PARTS * LANES * shared.profile.n_blocks();
-        let len = self.factor_bytes(symmetry) / size_of::<f64>();
+        let own = self.own_groups();
+        let len = group_len * own.len();
         values.truncate(len);
-        values
-            .try_reserve_exact(len - values.len())
-            .map_err(|_| SolverError::OutOfMemory {
-                n: self.n(),
-                bytes: size_of::<f64>() * len,
-            })?;
+        let reserved = values.try_reserve_exact(len - values.len());
+        self.agree(reserved.map_err(|_| SolverError::OutOfMemory {
+            n: self.n(),
+            bytes: size_of::<f64>() * len,
+        }))?;
         values.resize(len, 0.0);
         let arch = Arch::new();
         let outcomes: Vec<Result<(), SolverError>> = values
             .par_chunks_mut(group_len.max(1))
-            .enumerate()
-            .map(|(group, values)| {
+            .zip(own)
+            .map(|(values, group)| {
                 arch.dispatch(Fill::<F> {
                     shared,
                     matrix,
@@ -172,13 +173,19 @@ impl CyclicRing {
                 self.check_pivots(&ratios)
             })
             .collect();
-        outcomes.into_iter().collect::<Result<(), SolverError>>()?;
+        self.agree(outcomes.into_iter().collect::<Result<(), SolverError>>())?;
         Ok(CyclicCholesky {
             ring: self.clone(),
             symmetry,
             hold,
             values,
         })
+    }
+
+    /// A failure of one rank is one of all.
+    fn agree(&self, result: Result<(), SolverError>) -> Result<(), SolverError> {
+        self.comm
+            .agree(result, |rank, message| SolverError::OnRank { rank, message })
     }
 
     /// Doubles the diagonal entries of the node eliminated last that hold the ring: (azimuthal, axial) in
@@ -254,7 +261,8 @@ impl CyclicCholesky {
         self.symmetry
     }
 
-    /// Replaces right-hand sides in harmonic space, `[harmonic_len()]` each, by the solutions; harmonics in parallel.
+    /// Replaces right-hand sides in harmonic space, `[harmonic_len()]` each, by the solutions; harmonics in parallel. Of a ring that
+    /// ranks share, each solves its own, and one gather per column makes all whole.
     ///
     /// # Panics
     /// When a column has another length.
@@ -269,12 +277,12 @@ impl CyclicCholesky {
         if columns.is_empty() || self.n() == 0 {
             return;
         }
-        let group_len = self.ring.group_len();
-        let n_groups = self.ring.shared.phases.n_groups();
+        let (group_len, own) = (self.ring.group_len(), self.ring.own_groups());
+        let range = group_len * own.start..group_len * own.end;
         let mut groups: Vec<Vec<&mut [f64]>> =
-            (0..n_groups).map(|_| Vec::with_capacity(columns.len())).collect();
-        for column in columns {
-            let parts = column.chunks_exact_mut(group_len);
+            own.clone().map(|_| Vec::with_capacity(columns.len())).collect();
+        for column in columns.iter_mut() {
+            let parts = column[range.clone()].chunks_exact_mut(group_len);
             groups
                 .iter_mut()
                 .zip(parts)
@@ -283,21 +291,39 @@ impl CyclicCholesky {
         groups
             .into_par_iter()
             .enumerate()
-            .for_each(|(group, columns)| match self.symmetry {
-                Symmetry::Mirrored => self.solve_group::<Real>(group, columns),
-                Symmetry::None => self.solve_group::<Hermitian>(group, columns),
+            .for_each(|(place, columns)| match self.symmetry {
+                Symmetry::Mirrored => self.solve_group::<Real>(place, columns),
+                Symmetry::None => self.solve_group::<Hermitian>(place, columns),
             });
-    }
-
-    /// Solves one right-hand side for the first group of harmonics alone.
-    pub(super) fn solve_first_group(&self, low: &mut [f64]) {
-        match self.symmetry {
-            Symmetry::Mirrored => self.solve_group::<Real>(0, vec![low]),
-            Symmetry::None => self.solve_group::<Hermitian>(0, vec![low]),
+        let comm = self.ring.comm;
+        if comm.size() > 1 {
+            let shares = comm.shares(self.ring.shared.phases.n_groups());
+            let lengths: Vec<usize> = shares.iter().map(|share| group_len * share.len()).collect();
+            for column in columns {
+                let whole = comm.all_gather(column[range.clone()].to_vec(), &lengths);
+                column.copy_from_slice(&whole);
+            }
         }
     }
 
-    /// Solves one group, two right-hand sides at a time.
+    /// Solves one right-hand side for the first group of harmonics alone; collective.
+    pub(super) fn solve_first_group(&self, low: &mut [f64]) {
+        let comm = self.ring.comm;
+        let shares = comm.shares(self.ring.shared.phases.n_groups());
+        let mut solved = Vec::new();
+        if shares[comm.rank()].contains(&0) {
+            match self.symmetry {
+                Symmetry::Mirrored => self.solve_group::<Real>(0, vec![low]),
+                Symmetry::None => self.solve_group::<Hermitian>(0, vec![low]),
+            }
+            solved.extend_from_slice(low);
+        }
+        let length = |share: &Range<usize>| if share.contains(&0) { low.len() } else { 0 };
+        let lengths: Vec<usize> = shares.iter().map(length).collect();
+        low.copy_from_slice(&comm.all_gather(solved, &lengths));
+    }
+
+    /// Solves one group, by its place among those of this rank, two right-hand sides at a time.
     fn solve_group<F: Form>(&self, group: usize, columns: Vec<&mut [f64]>) {
         let profile = &self.ring.shared.profile;
         let group_len = 9 * F::PARTS * LANES * profile.n_blocks();

@@ -2,8 +2,10 @@
 //! its section is eliminated.
 
 use std::fmt;
+use std::ops::Range;
 use std::sync::Arc;
 
+use comm::Communicator;
 use realfft::{ComplexToReal, RealFftPlanner, RealToComplex};
 
 use super::matrix::{CyclicMatrix, check_ascending};
@@ -17,6 +19,8 @@ use crate::permutation::invert;
 #[derive(Clone)]
 pub struct CyclicRing {
     pub(crate) shared: Arc<Shared>,
+    /// The ranks that factor and solve its harmonics.
+    pub(super) comm: Communicator,
 }
 
 /// What clones share. Places count section nodes in elimination order.
@@ -95,6 +99,7 @@ impl CyclicRing {
             .collect();
         let mut planner = RealFftPlanner::new();
         Ok(CyclicRing {
+            comm: Communicator::Serial,
             shared: Arc::new(Shared {
                 sites: invert(&nodes, nodes.len())?,
                 directions: nodes.iter().map(|&node| directions[node]).collect(),
@@ -117,6 +122,17 @@ impl CyclicRing {
                 links,
             }),
         })
+    }
+
+    /// The ring whose groups of harmonics are dealt out to the ranks of `comm`, in equal runs: each factors and solves its own. Vectors
+    /// are whole on all ranks, so factors and solves are collective then.
+    pub fn shared_by(self, comm: Communicator) -> CyclicRing {
+        CyclicRing { comm, ..self }
+    }
+
+    /// Groups of harmonics of this rank.
+    pub(super) fn own_groups(&self) -> Range<usize> {
+        self.comm.share(self.shared.phases.n_groups())
     }
 
     /// The ring of the section nodes `keep` (ascending) alone; the others are held. The caller's vectors then hold the
@@ -148,7 +164,7 @@ impl CyclicRing {
             .map(|&node| shared.halves[shared.place[node]] == 1)
             .collect();
         let half_way = shared.may_be_mirrored.then_some(half_way.as_slice());
-        CyclicRing::new(matrix, &nodes, &directions, half_way)
+        Ok(CyclicRing::new(matrix, &nodes, &directions, half_way)?.shared_by(self.comm))
     }
 
     /// Number of sectors N.
