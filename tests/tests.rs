@@ -8,6 +8,7 @@ mod export;
 mod hard;
 mod integration_points;
 mod interruption;
+mod limits;
 mod memory;
 mod modes;
 mod motion;

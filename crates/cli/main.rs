@@ -29,6 +29,7 @@ mod start;
 mod stop;
 mod study;
 mod units;
+mod watch;
 
 use std::path::PathBuf;
 use std::process::ExitCode;

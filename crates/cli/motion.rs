@@ -1,14 +1,15 @@
 //! `raceway run` of a `[dynamic]` scene: static start, then steps in time with histories, step files and the ledger.
 
+mod settings;
+
 use std::collections::BTreeMap;
 use std::path::Path;
 use std::time::Instant;
 
 use anyhow::anyhow;
 use contact::Side;
-use dynamics::motion::balls::Speed;
-use dynamics::motion::contacts::{ContactDamping, ContactScheme};
-use dynamics::motion::{Integrator, Ladder, Motion, MotionSettings, MotionState};
+use dynamics::motion::ledger::LOSSY;
+use dynamics::motion::{Motion, MotionState};
 use dynamics::{DynamicsError, Model, RingMemory, Timing};
 
 use crate::build::build_with_probes;
@@ -24,9 +25,13 @@ use crate::results::shown::Shown;
 use crate::results::snapshot::Snapshot;
 use crate::results::summary::{Findings, Summary};
 use crate::resume::Stored;
-use crate::scene::{self, Dynamic, IntegratorChoice, Scene};
+use crate::scene::{Dynamic, Scene};
 use crate::start::settle;
 use crate::stop::Stop;
+use crate::watch::Watch;
+
+use settings::settings;
+pub use settings::speed;
 
 /// Steps between two lines of progress in a log.
 const PROGRESS_STEPS: u64 = 50;
@@ -67,6 +72,7 @@ pub fn run(
         files,
         state,
         newton: 0,
+        watch: Watch::new(model.geometry.n_balls),
         last_file: None,
         dir,
     };
@@ -100,7 +106,7 @@ pub fn resume(
     progress.stage("factoring the effective matrices");
     let motion = Motion::new(&model, settings(scene, dynamic)).map_err(Failure::solving)?;
     say_solvers(&motion, &progress);
-    let (state, newton) = agree(stored.state(&motion))?;
+    let (state, newton, watch) = agree(stored.state(&motion))?;
     let (first, warnings) = (Snapshot::of_motion(&motion, &state), stored.warnings);
     let files = agree(Files::resume(
         scene,
@@ -119,6 +125,7 @@ pub fn resume(
         last_file: Some(state.step),
         state,
         newton,
+        watch,
         dir: &dir,
     };
     let costs = StartCosts {
@@ -158,6 +165,8 @@ struct March<'a> {
     state: MotionState,
     /// Newton iterations so far.
     newton: u64,
+    /// Contacts beyond their limits so far.
+    watch: Watch,
     /// The last step handed over to be written.
     last_file: Option<u64>,
     dir: &'a Path,
@@ -169,7 +178,7 @@ impl March<'_> {
         mut self,
         mut progress: Progress,
         limits: &Limits,
-        warnings: Vec<String>,
+        mut warnings: Vec<String>,
         costs: StartCosts,
     ) -> Result<(), Failure> {
         let clock = Instant::now();
@@ -190,6 +199,8 @@ impl March<'_> {
             (costs, _) => costs?,
         };
         let (state, motion) = (&self.state, self.motion);
+        warnings.extend(self.watch.warnings(|step| motion.time(step)));
+        warnings.extend(lossy(state));
         let findings = Findings {
             status: ended
                 .as_ref()
@@ -238,6 +249,10 @@ impl March<'_> {
                         return Err(self.rejected(next, failure));
                     }
                     self.state = next;
+                    let found = self.motion.exceeded(&self.state);
+                    for text in self.watch.note(n, self.motion.time(n), &found) {
+                        progress.warn(&text);
+                    }
                 }
                 Err(error) => return Err(self.failed(error)),
             }
@@ -306,10 +321,10 @@ impl March<'_> {
         self.files
             .write_profiles(state.step, time, None, &Shown::Motion { model, motion, state })?;
         let shown = Recorded::new(self.model, self.motion, &self.state, self.scene)?;
-        let newton = self.newton;
+        let (newton, watch) = (self.newton, self.watch.to_numbers());
         self.files.write_fields_later(move |stress| {
             let mut record = shown.record(stress);
-            Stored::add_counts(&mut record, newton);
+            Stored::add_counts(&mut record, newton, watch);
             record
         })?;
         self.last_file = Some(self.state.step);
@@ -325,6 +340,18 @@ impl March<'_> {
         let shown = Shown::Motion { model, motion, state };
         self.files.write_probes(state.step, time, None, &shown)
     }
+}
+
+/// A warning when the integrator took much of the energy.
+fn lossy(state: &MotionState) -> Option<String> {
+    let share = state.ledger.numerical_share();
+    (share > LOSSY).then(|| {
+        format!(
+            "the integrator took {:.0} % of the largest energy of the motion; if that is not wanted, take a smaller step or less of its \
+             damping",
+            100.0 * share
+        )
+    })
 }
 
 /// Stops a run whose energy ledger does not close.
@@ -347,47 +374,4 @@ fn check_ledger(
         dynamic.ledger_tolerance,
         dir.display()
     )))
-}
-
-fn integrator_of(dynamic: &Dynamic) -> Integrator {
-    match dynamic.integrator {
-        IntegratorChoice::AverageAcceleration => Integrator::average_acceleration(),
-        IntegratorChoice::ChungHulbert { rho } => Integrator::chung_hulbert(rho),
-        IntegratorChoice::Hht { alpha } => Integrator::hht(alpha),
-        IntegratorChoice::Newmark { beta, gamma } => Integrator::newmark(beta, gamma),
-    }
-}
-
-fn settings(scene: &Scene, dynamic: &Dynamic) -> MotionSettings {
-    let integrator = integrator_of(dynamic);
-    MotionSettings {
-        dt: dynamic.step,
-        ladder: Ladder {
-            halvings: dynamic.halvings,
-            tolerance: dynamic.adaptive,
-        },
-        integrator,
-        scheme: match dynamic.contact {
-            scene::ContactScheme::DiscreteGradient => ContactScheme::DiscreteGradient,
-            scene::ContactScheme::Pointwise => ContactScheme::Pointwise,
-        },
-        speed: speed(scene),
-        slip: scene.effects.cage_slip.unwrap_or([0.0; 2]),
-        contact_damping: scene.effects.contact_damping.map(|d| ContactDamping {
-            coefficient: d.coefficient,
-            full_approach: d.full_approach,
-        }),
-        rayleigh: scene
-            .effects
-            .rayleigh_damping
-            .map_or([0.0; 2], |d| [d.mass, d.stiffness]),
-    }
-}
-
-/// Speed of the inner ring; at rest when the scene names none.
-pub fn speed(scene: &Scene) -> Speed {
-    match &scene.speed {
-        Some(table) => Speed::table(table.times.clone(), table.values.clone()),
-        None => Speed::constant(0.0),
-    }
 }

@@ -55,6 +55,14 @@ impl Progress {
         }
     }
 
+    /// A warning that stays.
+    pub fn warn(&self, text: &str) {
+        match &self.bar {
+            Some(bar) => bar.println(format!("warning: {text}")),
+            None => print::note(format_args!("warning: {text}")),
+        }
+    }
+
     /// One part is finished.
     pub fn advance(&mut self) {
         self.done += 1;

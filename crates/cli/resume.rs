@@ -24,12 +24,15 @@ use crate::results::state_arrays;
 use crate::results::summary::SUMMARY_FILE;
 use crate::run::note_unshared;
 use crate::scene::{Analysis, Dynamic, MeshFiles, Scene, difference};
+use crate::watch::Watch;
 
 /// Keys and tables of a scene that a resumed run may change: none of them touches the motion.
 const MAY_CHANGE: [&str; 3] = ["dynamic.duration", "dynamic.output_every", "output"];
 
 /// Array of a step file that counts Newton's iterations since the start of the run.
 const NEWTON: &str = "newton_iterations";
+/// Array of a step file that counts contacts beyond their limits since the start of the run: [`Watch::to_numbers`].
+const WATCH: &str = "contacts_beyond_limits";
 
 /// What the command line asks for.
 #[derive(Debug, Args)]
@@ -68,21 +71,27 @@ pub struct Stored {
 
 impl Stored {
     /// Adds what the run counts besides its state.
-    pub fn add_counts(record: &mut StepRecord, newton: u64) {
+    pub fn add_counts(record: &mut StepRecord, newton: u64, watch: Vec<i64>) {
         let newton = i64::try_from(newton).expect("nobody iterates 2^63 times");
         record
             .state
             .insert(NEWTON.to_string(), StateArray::Integer(vec![newton]));
+        record.state.insert(WATCH.to_string(), StateArray::Integer(watch));
     }
 
-    /// The state, and the number of Newton's iterations so far.
-    pub fn state(&self, motion: &Motion<'_>) -> Result<(MotionState, u64), Failure> {
+    /// The state, the number of Newton's iterations so far, and the contacts beyond their limits so far.
+    pub fn state(&self, motion: &Motion<'_>) -> Result<(MotionState, u64, Watch), Failure> {
         let at = || format!("step {} of {}", self.step, self.dir.display());
         let mut arrays = self.arrays.clone();
         let newton = match arrays.remove(NEWTON) {
             Some(StateArray::Integer(count)) if count.len() == 1 => count[0].max(0) as u64,
             _ => return Err(anyhow!("{} has no count of iterations", at()).into()),
         };
+        let watch = match arrays.remove(WATCH) {
+            Some(StateArray::Integer(numbers)) => Watch::from_numbers(motion.n_balls(), &numbers),
+            _ => None,
+        };
+        let watch = watch.ok_or_else(|| anyhow!("{} has no count of contacts beyond their limits", at()))?;
         let state = state_arrays::load(&arrays, &motion.shape()).with_context(at)?;
         let time = motion.time(state.step);
         if state.step != self.step || time.to_bits() != self.time.to_bits() {
@@ -94,7 +103,7 @@ impl Stored {
             )
             .into());
         }
-        Ok((state, newton))
+        Ok((state, newton, watch))
     }
 }
 

@@ -23,8 +23,14 @@ pub struct Course {
     pub open: usize,
     /// Whether the losses to contact and Rayleigh damping never shrank (beyond round-off).
     pub losses_grow: bool,
-    /// Least loss to the integrator at any time, over the largest energy: what it had given back by then.
-    pub least_loss: f64,
+    /// Energy that the integrator has given back at most after it had taken it, J.
+    pub given_back: f64,
+    /// Most that the integrator had taken, J.
+    most_loss: f64,
+    /// Largest departure of a shaft displacement from the start, m or rad.
+    pub excursion: f64,
+    /// Shaft displacement at the start.
+    first: [f64; 5],
     /// Mean shaft displacement of all steps, m and rad.
     pub mean_shaft: [f64; 5],
     /// Mean normal force of every contact, by site, N.
@@ -56,7 +62,10 @@ pub fn march_with(
         peak: 0.0,
         open: 0,
         losses_grow: true,
-        least_loss: 0.0,
+        given_back: 0.0,
+        most_loss: 0.0,
+        excursion: 0.0,
+        first: start.shaft,
         mean_shaft: [0.0; 5],
         mean_forces: vec![0.0; start.forces.len()],
         last: start,
@@ -111,9 +120,11 @@ impl Course {
         let slack = 1e-12 * next.ledger.largest;
         let losses = next.ledger.losses().into_iter().zip(self.last.ledger.losses());
         self.losses_grow &= losses.take(2).all(|(new, old)| new >= old - slack);
-        self.least_loss = self
-            .least_loss
-            .min(next.ledger.numerical_loss / next.ledger.largest);
+        let loss = next.ledger.numerical_loss;
+        self.most_loss = self.most_loss.max(loss);
+        self.given_back = self.given_back.max(self.most_loss - loss);
+        let departures = next.shaft.iter().zip(self.first).map(|(q, q0)| (q - q0).abs());
+        self.excursion = departures.fold(self.excursion, f64::max);
         self.peak = self.peak.max(largest_force(next));
         self.open = self
             .open

@@ -37,6 +37,13 @@ pub fn cases() -> Vec<HardCase> {
             edge_contact,
         ),
         case(
+            "edge_contact_in_motion",
+            Pace::Fast,
+            "a load jump brings the balls to the edge while the bearing moves",
+            "raceway of the inner ring cut at 19.4 deg, axial 10 N to 1.5 kN in 10 us, both rings flexible, dt 5 us, 0.5 ms",
+            edge_in_motion,
+        ),
+        case(
             "patch_fills_the_groove",
             Pace::Fast,
             "patches as wide as the groove and 5 elements long on both sides",
@@ -139,6 +146,32 @@ fn edge_contact(record: &mut Record) {
             record.says(&text, "edge contact on the inner raceway");
         }
         Err(error) => record.says(&error.to_string(), "leaves the inner raceway"),
+    }
+}
+
+fn edge_in_motion(record: &mut Record) {
+    let mut model = cut_raceway(|[_, high]| high < 20.0);
+    super::bearings::set_loads(&mut model, Load::jump(10.0, 1.5e3), Load::dead(0.0));
+    let settings = super::bearings::conserving(5e-6);
+    let start = super::bearings::equilibrium_at(&model, 0.0).unwrap();
+    record.that("no edge contact at the start", start.warnings.is_empty());
+    let motion = dynamics::motion::Motion::new(&model, settings).unwrap();
+    let state = motion.with_accelerations(motion.start(&start)).unwrap();
+    record.that("nor in the first state", motion.exceeded(&state).is_empty());
+    let mut first = None;
+    let course = super::course::march_with(&motion, state, 100, |state| {
+        if let (None, Some(found)) = (first, motion.exceeded(state).first()) {
+            first = Some((state.step, found.side, found.limit));
+        }
+    });
+    record.note(format!("first beyond a limit at {first:?}; {}", course.ending()));
+    record.that(
+        "edge contact is said",
+        matches!(first, Some((step, Side::Inner, dynamics::motion::ContactLimit::Edge)) if step > 1),
+    );
+    record.below("ledger defect", course.defect, super::record::LEDGER);
+    if let Some(error) = &course.error {
+        record.says(error, "leaves the inner raceway");
     }
 }
 

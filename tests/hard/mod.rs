@@ -13,6 +13,7 @@ mod extremes;
 mod invariance;
 mod loads;
 mod meshes;
+mod norm;
 mod numbers;
 mod page;
 mod plot;

@@ -231,14 +231,22 @@ fn mirrors(record: &mut Record, cases: u32) {
 
 fn motions(record: &mut Record, cases: u32) {
     let worst = std::cell::Cell::new(0.0f64);
+    let left = std::cell::Cell::new(0u32);
     hold(record, cases, |random| {
-        let start = solve(&model(
-            &Random {
-                radial: 0.1 * random.radial,
-                ..random
-            },
-            random.direction,
-        ))?;
+        let lighter = Random {
+            radial: 0.1 * random.radial,
+            ..random
+        };
+        let start = match solve(&model(&lighter, random.direction)) {
+            // The few balls of some bearings have no place to press under such loads: refused at rest, as it must be.
+            Err(TestCaseError::Fail(reason))
+                if reason.message().contains("but no groove reaches beyond 90 deg") =>
+            {
+                left.set(left.get() + 1);
+                return Ok(());
+            }
+            start => start?,
+        };
         let jumped = model(&random, random.direction);
         let force = start.balls.iter().map(|b| b.outer.force_n).fold(0.0, f64::max);
         let stiffness = 1.5 * jumped.hertz[1].stiffness.powf(2.0 / 3.0) * force.cbrt();
@@ -249,9 +257,40 @@ fn motions(record: &mut Record, cases: u32) {
         };
         let course = from_equilibrium(&jumped, &start, settings, 200);
         worst.set(worst.get().max(course.defect));
-        prop_assert!(course.error.is_none(), "{:?}", course.error);
+        if let Some(error) = &course.error {
+            // Where balls swing out of what a groove can be, the program must say so; in a bearing that keeps its balls loaded and
+            // bears its load they do not.
+            prop_assert!(error.contains("but no groove reaches beyond 90 deg"), "{error}");
+            prop_assert!(may_leave(&jumped), "{error}");
+            left.set(left.get() + 1);
+        }
         prop_assert!(course.defect < LEDGER && course.is_finite());
         Ok(())
     });
     record.note_defect(worst.get());
+    record.note(format!("{} runs end where a ball leaves its groove", left.get()));
+    record.below(
+        "share of runs that do not come to their end",
+        f64::from(left.get()) / f64::from(cases),
+        0.1,
+    );
+}
+
+/// Whether a ball may leave its groove: somewhere in a turn of the cage the bearing has no equilibrium within its grooves, or one beyond
+/// the static rating of steel, or with contacts steeper than those of angular contact bearings (40 deg at most, and 10 deg more under
+/// load), or with a loose ball, which swings without damping.
+fn may_leave(model: &Model) -> bool {
+    const PLACES: usize = 8;
+    let pitch = std::f64::consts::TAU / model.geometry.n_balls as f64;
+    (0..PLACES).any(|i| {
+        let mut pose = dynamics::Pose::default();
+        pose.now.cage_angle = pitch * i as f64 / PLACES as f64;
+        let Ok(rest) = StaticSolver::new(model).and_then(|mut s| s.solve_at(model, &pose, None)) else {
+            return true;
+        };
+        let mut contacts = rest.balls.iter().flat_map(|b| [&b.inner, &b.outer]);
+        let outside =
+            |c: &dynamics::balls::ContactResult| c.force_n <= 0.0 || c.contact_angle_rad.to_degrees() > 50.0;
+        !rest.warnings.is_empty() || contacts.any(outside)
+    })
 }

@@ -57,6 +57,13 @@ pub fn cases() -> Vec<HardCase> {
             light_gyroscopic,
         ),
         case(
+            "gyroscopic_alone",
+            Pace::Fast,
+            "without the centrifugal force the moment is a third of the contact forces: the angles and it chase each other",
+            "rigid rings, 40 000 rpm, 500 N, gyroscopic moment only, 0 to 400 N radial, at rest",
+            gyroscopic_alone,
+        ),
+        case(
             "million_steps",
             Pace::Slow,
             "drift that a short run does not show",
@@ -78,6 +85,55 @@ pub fn cases() -> Vec<HardCase> {
             steady_flexible,
         ),
     ]
+}
+
+/// Statics must settle, in balance, with loads that are those of its angles, and must say that no friction carries them.
+fn gyroscopic_alone(record: &mut Record) {
+    for radial in [0.0, 100.0, 400.0] {
+        let mut model = rigid(Load::dead(500.0), Load::dead(radial));
+        model.effects.push(Box::new(GyroscopicMoment {
+            speed: Speed::constant(40_000.0 * RPM),
+            slip: [0.0; 2],
+            shares: [0.0, 2.0],
+        }));
+        let rest = match equilibrium_at(&model, 0.0) {
+            Ok(rest) => rest,
+            Err(error) => {
+                record.that(&format!("{radial} N radial has an equilibrium: {error}"), false);
+                continue;
+            }
+        };
+        let contacts = rest
+            .balls
+            .iter()
+            .flat_map(|b| [b.inner.contact_angle_rad, b.outer.contact_angle_rad]);
+        let angles: Vec<f64> = contacts.collect();
+        let now = dynamics::effects::Now {
+            angles: Some(&angles),
+            ..Default::default()
+        };
+        let loads = dynamics::effects::loads(&model, &now).unwrap();
+        let mut worst = 0.0f64;
+        for (b, ball) in rest.balls.iter().enumerate() {
+            let push = |side: usize, c: &dynamics::balls::ContactResult| {
+                let (sin, cos) = c.contact_angle_rad.sin_cos();
+                let sign = [1.0, -1.0][side];
+                let across = loads.contacts[2 * b + side];
+                [
+                    sign * c.force_n * cos - across[0],
+                    sign * c.force_n * sin - across[1],
+                ]
+            };
+            let (inner, outer) = (push(0, &ball.inner), push(1, &ball.outer));
+            worst = (0..2).fold(worst, |w, i| w.max((inner[i] + outer[i]).abs()));
+        }
+        record.below(
+            &format!("ball out of balance at {radial} N radial, N,"),
+            worst,
+            1e-5,
+        );
+        record.says(&rest.warnings.join("; "), "asks for a friction coefficient of");
+    }
 }
 
 /// The turning bearing's settings at constant or changing speed, rpm.

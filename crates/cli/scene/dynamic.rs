@@ -115,6 +115,8 @@ const DEFAULT_HALVINGS: i64 = 4;
 const MAX_HALVINGS: i64 = 16;
 /// Least damped and least accurate of Newmark's unconditionally stable schemes.
 const DEFAULT_BETA: f64 = 0.25;
+/// Bounds such as (1.1)^2 / 4 are typed with their decimals.
+const ROUND_OFF: f64 = 1e-9;
 const DEFAULT_GAMMA: f64 = 0.5;
 
 impl RawDynamic {
@@ -236,13 +238,20 @@ impl RawDynamic {
             problems.require(false, "dynamic.gamma", gamma, rule);
             return IntegratorChoice::Newmark { beta, gamma };
         }
-        let least = 0.5 * gamma;
+        let (least, most) = (0.5 * gamma, 0.25 * (gamma + 0.5) * (gamma + 0.5));
+        if gamma == 0.5 {
+            let rule = "expected gamma / 2 = 0.25 to 1, less is unstable for high frequencies";
+            problems.require((least..=1.0).contains(&beta), "dynamic.beta", beta, rule);
+            return IntegratorChoice::Newmark { beta, gamma };
+        }
         let rule = format!(
-            "expected gamma / 2 = {least} to 1, less is unstable for high frequencies; (gamma + 1/2)^2 / 4 = {} \
-             damps these most",
-            ten_digits(0.25 * (gamma + 0.5) * (gamma + 0.5))
+            "expected gamma / 2 = {} to (gamma + 1/2)^2 / 4 = {}, which damps high frequencies most: less is unstable for these, \
+             more can feed energy into contacts",
+            ten_digits(least),
+            ten_digits(most)
         );
-        problems.require((least..=1.0).contains(&beta), "dynamic.beta", beta, rule);
+        let known = least * (1.0 - ROUND_OFF)..=most * (1.0 + ROUND_OFF);
+        problems.require(known.contains(&beta), "dynamic.beta", beta, rule);
         IntegratorChoice::Newmark { beta, gamma }
     }
 }

@@ -62,9 +62,14 @@ impl PatchShape {
             azimuth,
             angle,
             semi_axes: [along, rolling],
-            truncated: hertz_axes[0] > room,
+            truncated: is_truncated(surface, angle, hertz_axes),
         })
     }
+}
+
+/// Whether a Hertz ellipse of semi-axes `hertz_axes`, m, at a contact angle, rad, reaches beyond the edge of the groove.
+pub fn is_truncated(surface: &RacewaySurface, angle: f64, hertz_axes: [f64; 2]) -> bool {
+    hertz_axes[0] > EDGE_SHARE * surface.rim_distance(angle)
 }
 
 impl Patch {

@@ -12,7 +12,10 @@ use crate::problem::{Displacements, Problem, Site, site_forces};
 
 /// Peak pressure that leaves a permanent indentation of 1e-4 of the ball diameter in bearing steel, Pa: ISO 76, for ball
 /// bearings.
-const STATIC_LIMIT: f64 = 4.2e9;
+pub(crate) const STATIC_LIMIT: f64 = 4.2e9;
+/// Friction coefficient of bearing steel above which a force across a contact cannot be carried: lubricated contacts have 0.05 to 0.1,
+/// dry ones hardly more than 0.15 in rolling (Harris, 4th ed., chapter 14).
+const MOST_FRICTION: f64 = 0.15;
 
 /// A static equilibrium.
 pub struct StaticSolution {
@@ -79,7 +82,10 @@ impl StaticSolution {
         let balls = ball_results(model, problem, &u);
         let load_work = ball_work + dot(&problem.shaft_load, &u.shaft) + ring_load_work;
         StaticSolution {
-            warnings: warnings(&rings.footprints, &forces, &balls),
+            warnings: warnings(&rings.footprints, &forces, &balls)
+                .into_iter()
+                .chain(friction_warning(&forces, &case.loads.contacts))
+                .collect(),
             balls,
             work_defect: load_work + dot(&reaction, &u.shaft) - 2.0 * strain_energy - contact_work,
             shaft_residual: residual,
@@ -193,6 +199,25 @@ fn warnings(footprints: &[Vec<Footprint>; 2], forces: &[[f64; 2]], balls: &[Ball
         ));
     }
     warnings
+}
+
+/// Warns of forces across contacts (the gyroscopic moment's) that friction cannot carry.
+fn friction_warning(forces: &[[f64; 2]], across: &[[f64; 2]]) -> Option<String> {
+    let size = |f: &[f64; 2]| f[0].hypot(f[1]);
+    let needed = forces.iter().zip(across).map(|(n, f)| size(f) / size(n));
+    let (place, most) = needed
+        .enumerate()
+        .filter(|(_, needed)| !needed.is_nan())
+        .fold((0, 0.0), |most, (i, c)| if c > most.1 { (i, c) } else { most });
+    (most > MOST_FRICTION).then(|| {
+        format!(
+            "the gyroscopic moment of ball {} asks for a friction coefficient of {most:.2} on the {} raceway, more than steel has \
+             ({MOST_FRICTION}): the ball would pivot there, which this model does not know; more preload or the centrifugal force of \
+             the balls may be missing",
+            place / 2,
+            Side::BOTH[place % 2].name()
+        )
+    })
 }
 
 fn edge_warnings(footprints: &[Vec<Footprint>; 2], forces: &[[f64; 2]]) -> Vec<String> {

@@ -102,7 +102,7 @@ fn forces_repeat_when_every_ball_stands_where_the_next_one_stood() {
         now: Now {
             time: 0.0,
             cage_angle: 2.0 * PI / 18.0,
-            angles: None,
+            ..Now::default()
         },
         inner_angle: 2.0 * PI / 18.0 * 2.0,
     };
@@ -140,7 +140,7 @@ fn a_turned_bearing_under_turned_loads_is_the_same_bearing() {
             now: Now {
                 time: 0.0,
                 cage_angle: angle,
-                angles: None,
+                ..Now::default()
             },
             inner_angle: angle,
         };

@@ -306,8 +306,12 @@ fn numbers_that_make_an_integrator_unstable_are_refused() {
         ),
         (
             "integrator = \"newmark\"\ngamma = 0.6",
-            "dynamic.beta is 0.25; expected gamma / 2 = 0.3 to 1, less is unstable for high frequencies; \
-             (gamma + 1/2)^2 / 4 = 0.3025 damps these most",
+            "dynamic.beta is 0.25; expected gamma / 2 = 0.3 to (gamma + 1/2)^2 / 4 = 0.3025, which damps high frequencies most: less \
+             is unstable for these, more can feed energy into contacts",
+        ),
+        (
+            "integrator = \"newmark\"\ngamma = 0.6\nbeta = 0.31",
+            "dynamic.beta is 0.31; expected gamma / 2 = 0.3 to (gamma + 1/2)^2 / 4 = 0.3025",
         ),
         (
             "integrator = \"newmark\"\nbeta = 0",

@@ -23,7 +23,7 @@ impl Effect for AxialForce {
     }
 
     fn add_loads(&self, model: &Model, now: &Now, loads: &mut Loads) -> Result<(), DynamicsError> {
-        loads.add_shaft_force(model, [0.0, 0.0, self.value * self.schedule.at(now.time)]);
+        loads.add_shaft_force(model, [0.0, 0.0, self.value * now.factor(&self.schedule)]);
         Ok(())
     }
 }

@@ -64,7 +64,7 @@ impl Effect for Gravity {
     }
 
     fn add_loads(&self, model: &Model, now: &Now, loads: &mut Loads) -> Result<(), DynamicsError> {
-        let factor = self.schedule.at(now.time);
+        let factor = now.factor(&self.schedule);
         let g = self.acceleration.map(|a| factor * a);
         let mass = model.ball_mass();
         for (ball, load) in loads.balls.iter_mut().enumerate() {

@@ -31,8 +31,8 @@
 //! the force helps to push the ball back along -z: the outer contact angle falls further than from the centrifugal force
 //! alone. A reversed speed changes no sign (omega_b and omega_c both reverse). The rings get the opposite forces at
 //! their groove centres and the shaft the couple of moving them there from the inner contacts; the local twist of a
-//! flexible ring by that couple is left out. Whether friction can carry the forces is not asked: compare
-//! lambda M_g / D_w with the friction coefficient times the contact force.
+//! flexible ring by that couple is left out. Friction is not limited, but statics warns where
+//! lambda M_g / D_w is more than 0.15 times the contact force.
 
 use contact::Side;
 

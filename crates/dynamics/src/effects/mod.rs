@@ -23,6 +23,7 @@ use contact::Side;
 use crate::costs::EffectCosts;
 use crate::error::DynamicsError;
 use crate::model::{Model, RingModel};
+use crate::schedule::Schedule;
 
 /// Loads on all bodies at one instant.
 #[derive(Clone, Debug, PartialEq)]
@@ -115,6 +116,8 @@ pub(crate) fn resultant(ring: &RingModel, load: &[f64]) -> [f64; 5] {
 pub struct Now<'a> {
     /// Time, s.
     pub time: f64,
+    /// Loads are means over an interval of so many seconds about the time: that of a step in time; 0 at an instant.
+    pub width: f64,
     /// Angle the cage has turned since the start, rad.
     pub cage_angle: f64,
     /// Contact angles, rad, by site (2 ball + side), `[2 n_balls]`; None: not known yet, the free contact angle stands for
@@ -123,6 +126,11 @@ pub struct Now<'a> {
 }
 
 impl Now<'_> {
+    /// Factor of a scheduled load.
+    pub fn factor(&self, schedule: &Schedule) -> f64 {
+        schedule.mean(self.time, self.width)
+    }
+
     /// Contact angle of a ball on one raceway, rad.
     pub fn contact_angle(&self, model: &Model, ball: usize, side: Side) -> f64 {
         match self.angles {

@@ -24,7 +24,7 @@ impl Effect for Moment {
     }
 
     fn add_loads(&self, _model: &Model, now: &Now, loads: &mut Loads) -> Result<(), DynamicsError> {
-        let factor = self.schedule.at(now.time);
+        let factor = now.factor(&self.schedule);
         loads.shaft[3] += factor * self.value[0];
         loads.shaft[4] += factor * self.value[1];
         Ok(())

@@ -28,7 +28,7 @@ impl Effect for RadialForce {
 
     fn add_loads(&self, model: &Model, now: &Now, loads: &mut Loads) -> Result<(), DynamicsError> {
         let (sin, cos) = self.direction.sin_cos();
-        let value = self.value * self.schedule.at(now.time);
+        let value = self.value * now.factor(&self.schedule);
         loads.add_shaft_force(model, [value * cos, value * sin, 0.0]);
         Ok(())
     }

@@ -117,6 +117,7 @@ impl Rolling {
         Pose {
             now: Now {
                 time,
+                width: 0.0,
                 cage_angle: self.kinematics.cage * inner_angle,
                 angles: None,
             },

@@ -34,7 +34,19 @@ pub struct Ledger {
     pub largest: f64,
 }
 
+/// Share of the largest energy above which a user should know what the integrator took.
+pub const LOSSY: f64 = 0.25;
+
 impl Ledger {
+    /// What the integrator took over the largest energy.
+    pub fn numerical_share(&self) -> f64 {
+        if self.largest > 0.0 {
+            self.numerical_loss / self.largest
+        } else {
+            0.0
+        }
+    }
+
     /// Energy in the model.
     pub fn total(&self) -> f64 {
         self.kinetic.iter().chain(&self.strain).sum::<f64>() + self.hertz

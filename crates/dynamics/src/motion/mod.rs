@@ -23,6 +23,7 @@ pub mod frame;
 mod harmonic;
 pub mod integrator;
 pub mod ledger;
+mod limits;
 pub mod matrices;
 pub mod newton;
 mod place;
@@ -38,6 +39,7 @@ mod substep;
 
 pub use integrator::Integrator;
 pub use ledger::Ledger;
+pub use limits::{ContactLimit, Exceeded};
 pub use run::Motion;
 pub use shape::StateShape;
 pub use start::check_supported;

@@ -120,6 +120,11 @@ impl<'a> Motion<'a> {
         Some(note)
     }
 
+    /// Number of balls.
+    pub fn n_balls(&self) -> usize {
+        self.model.geometry.n_balls
+    }
+
     /// Number of generalised coordinates of a ring; 0 for a rigid one.
     pub fn n_coordinates(&self, side: Side) -> usize {
         self.rings[side.index()].as_ref().map_or(0, |r| r.coordinates.n())

@@ -70,7 +70,7 @@ impl Motion<'_> {
         };
         let mut clock = Lap::new();
         let time = span.at(1.0 - self.settings.integrator.alpha_f);
-        let loads = self.loads_at(state, time)?;
+        let loads = self.loads_at(state, time, span.dt)?;
         report.seconds.loads = clock.lap();
         let placing = self.place(state, time)?;
         report.seconds.patches = clock.lap();
@@ -116,10 +116,11 @@ impl Motion<'_> {
         Ok((next, report))
     }
 
-    /// Loads at a time, those that follow the contact angles with the angles of the start.
-    fn loads_at(&self, state: &MotionState, time: f64) -> Result<Loads, DynamicsError> {
+    /// Mean loads over an interval of `width` seconds about a time, those that follow the contact angles with the angles of the start.
+    fn loads_at(&self, state: &MotionState, time: f64, width: f64) -> Result<Loads, DynamicsError> {
         let now = Now {
             time,
+            width,
             cage_angle: self.cage_angle(time),
             angles: Some(&state.angles),
         };

@@ -1,0 +1,67 @@
+//! Where the contacts of a motion leave what Hertz's theory and bearing steel can do: said, not refused.
+
+use contact::Side;
+use contact::patch::is_truncated;
+
+use super::body::RingBody;
+use super::run::Motion;
+use super::state::MotionState;
+use crate::footprint::loaded;
+use crate::solution::STATIC_LIMIT;
+
+/// What a contact can exceed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ContactLimit {
+    /// The Hertz ellipse reaches beyond the groove of a flexible ring.
+    Edge,
+    /// The peak pressure exceeds the static limit of bearing steel (ISO 76, 4.2 GPa).
+    StaticPressure,
+}
+
+impl ContactLimit {
+    /// All limits.
+    pub const ALL: [ContactLimit; 2] = [ContactLimit::Edge, ContactLimit::StaticPressure];
+}
+
+/// A contact beyond a limit.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Exceeded {
+    /// The limit.
+    pub limit: ContactLimit,
+    /// Ball.
+    pub ball: usize,
+    /// Raceway.
+    pub side: Side,
+    /// Peak pressure, Pa.
+    pub pressure: f64,
+}
+
+impl Motion<'_> {
+    /// Contacts beyond a limit: mean forces of the last step, contact angles at its end.
+    pub fn exceeded(&self, state: &MotionState) -> Vec<Exceeded> {
+        let carries = loaded(&state.forces);
+        let mut found = Vec::new();
+        for (index, force) in state.forces.iter().enumerate().filter(|(i, _)| carries[*i]) {
+            let (ball, side) = (index / 2, Side::BOTH[index % 2]);
+            let (hertz, force) = (&self.model.hertz[side.index()], force[0].hypot(force[1]));
+            let pressure = hertz.peak_pressure(force);
+            let mut add = |limit| {
+                found.push(Exceeded {
+                    limit,
+                    ball,
+                    side,
+                    pressure,
+                })
+            };
+            let axes = hertz.semi_axes(force);
+            let beyond = |body: &RingBody| is_truncated(&body.surface, state.angles[index], axes);
+            if self.rings[side.index()].as_ref().is_some_and(beyond) {
+                add(ContactLimit::Edge);
+            }
+            if pressure > STATIC_LIMIT {
+                add(ContactLimit::StaticPressure);
+            }
+        }
+        found
+    }
+}
