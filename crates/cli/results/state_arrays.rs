@@ -73,7 +73,9 @@ fn exchange(state: &mut MotionState, shape: &StateShape, port: &mut Port<'_>) ->
     port.rows("forces", forces, n_sites)?;
     port.list("angles", angles, n_sites)?;
     port.list("approaches", approaches, n_sites)?;
-    port.rows("places", places, n_sites)?;
+    for (part, places) in places.iter_mut().enumerate() {
+        port.rows(&format!("places_{part}"), places, n_sites)?;
+    }
     exchange_ledger(ledger, port)?;
     for (side, ring) in Side::BOTH.into_iter().zip(rings) {
         if let Some(n) = shape.ring_dofs[side.index()] {
@@ -222,7 +224,7 @@ mod tests {
         };
         let mut pairs = |n: usize| (0..n).map(|_| [number(), number()]).collect::<Vec<_>>();
         let (balls, ball_velocities, ball_accelerations) = (pairs(2), pairs(2), pairs(2));
-        let (trend, forces, places) = (pairs(6), pairs(4), pairs(4));
+        let (trend, forces, places) = (pairs(6), pairs(4), [(); 3].map(|()| pairs(4)));
         let mut list = |n: usize| (0..n).map(|_| number()).collect::<Vec<_>>();
         let ring = RingState {
             w: vec![f64::NAN, -0.0, 1e-300],

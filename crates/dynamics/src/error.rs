@@ -199,6 +199,12 @@ pub enum DynamicsError {
         /// Speed, rad/s.
         speed: f64,
     },
+    /// Patches find no place in a part of a step.
+    #[error("the places of the contact patches do not settle in {rounds} rounds; use a smaller step")]
+    PlacesNotSettled {
+        /// Rounds done.
+        rounds: usize,
+    },
     /// The local error of a part of a step is too large.
     #[error(
         "the local error is {error:.2e} of the largest contact approach, expected {limit:.1e}; \
@@ -252,7 +258,8 @@ impl DynamicsError {
     /// Whether a smaller step in time may do what this one could not.
     pub fn may_pass_with_smaller_step(&self) -> bool {
         use DynamicsError::{
-            ContactSystem, FrameNotSettled, NewtonStalled, NotFinite, PatchTooSmall, StepInaccurate,
+            ContactSystem, FrameNotSettled, NewtonStalled, NotFinite, PatchTooSmall, PlacesNotSettled,
+            StepInaccurate,
         };
         matches!(
             self,
@@ -260,6 +267,7 @@ impl DynamicsError {
                 | ContactSystem { .. }
                 | NotFinite { .. }
                 | FrameNotSettled { .. }
+                | PlacesNotSettled { .. }
                 | PatchTooSmall { .. }
                 | StepInaccurate { .. }
                 | DynamicsError::Contact(ContactError::OffGroove { .. })

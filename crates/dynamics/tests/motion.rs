@@ -261,9 +261,10 @@ fn unsupported_choices_are_refused_by_name() {
     );
 }
 
-/// Wrong: patches that follow every oscillation of a contact angle would feed it. A ball of a bearing at rest is pushed along its
-/// grooves, where only geometry holds it and nothing damps it: its energy stays what it was. (A patch that follows
-/// without play makes it grow, by 40 % within these 5 ms on this mesh, without bound in longer runs.)
+/// Wrong: patches that follow an oscillating contact angle would feed it. A ball of a bearing at rest is pushed along its
+/// grooves, where only geometry holds it and nothing damps it: its energy stays what it was, and what patches take in half a
+/// period they give back in the next. (A patch that is late by half a step makes it grow, by 40 % within these 5 ms on this
+/// mesh, without bound in longer runs.)
 #[test]
 fn moving_patches_do_not_feed_an_oscillating_ball() {
     let case = Case {
@@ -275,18 +276,18 @@ fn moving_patches_do_not_feed_an_oscillating_ball() {
     let mut state = motion.start(&equilibrium(&model));
     state.ball_velocities[4] = [0.0, 1e-3];
     state = motion.with_energies(state);
-    let mut largest = [0.0f64; 5];
+    let (mut largest, mut work) = ([0.0f64; 5], [0.0; 5]);
     for step in 0..500 {
         state = motion.step(&state).unwrap().0;
-        let part = &mut largest[step / 100];
-        *part = part.max(state.ledger.kinetic[2]);
+        let part = step / 100;
+        largest[part] = largest[part].max(state.ledger.kinetic[2]);
+        work[part] += state.ledger.patch_work / 100.0;
     }
-    println!("{largest:.3?} {:?}", state.ledger);
+    println!("largest energy of the balls {largest:?}, mean work of patches {work:?}, by millisecond, J");
     assert!(largest[4] < 1.1 * largest[0], "{largest:?}");
     assert!(
-        state.ledger.patch_work.abs() < 1e-3 * largest[0],
-        "{:?}",
-        state.ledger
+        (work[4] - work[0]).abs() < 0.1 * largest[0],
+        "{work:?} {largest:?}"
     );
 }
 

@@ -3,10 +3,10 @@
 use contact::Side;
 
 use super::newton::SmallSolution;
+use super::part::Moving;
 use super::run::Motion;
 use super::small::{SmallSystem, first_five};
 use super::state::MotionState;
-use super::substep::Moving;
 use crate::solution::dot;
 
 impl Motion<'_> {

@@ -26,6 +26,7 @@ pub mod ledger;
 mod limits;
 pub mod matrices;
 pub mod newton;
+mod part;
 mod place;
 pub mod report;
 pub mod ring;
@@ -36,6 +37,7 @@ pub mod small;
 pub mod start;
 pub mod state;
 mod substep;
+mod touch;
 
 pub use integrator::Integrator;
 pub use ledger::Ledger;

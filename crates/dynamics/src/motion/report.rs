@@ -48,7 +48,7 @@ impl Motion<'_> {
             let index = 2 * ball + side.index();
             let force = state.forces[index][0].hypot(state.forces[index][1]);
             let azimuth = self.ball_azimuth(ball, time) - self.frame_angle(side, time);
-            let [patch_angle, load] = state.places[index];
+            let [patch_angle, load] = state.places[0][index];
             let spacings = self.model.contact.patch_spacings;
             let patch_angle = on_groove(&body.surface, patch_angle, force > 0.0);
             let shape = PatchShape::new(
@@ -97,7 +97,7 @@ impl Motion<'_> {
     ) -> Result<[f64; 2], DynamicsError> {
         let share = 1.0 - self.settings.integrator.alpha_f;
         let time = self.time(from.step) + share * self.settings.dt;
-        let feet = self.place(from, time)?.feet;
+        let feet = self.place(&to.places[0], time)?.feet;
         let i = side.index();
         let (Some(body), Some(old), Some(new)) = (&self.rings[i], &from.rings[i], &to.rings[i]) else {
             return Ok([0.0; 2]);

@@ -8,7 +8,7 @@
 
 use contact::NodalWeights;
 use solver::LinearSolver;
-use solver::cyclic::{Defect, Patch, ResponseTable};
+use solver::cyclic::Defect;
 use solver::dense::DenseCholesky;
 
 use super::body::RingBody;
@@ -20,13 +20,13 @@ use crate::sparse::{SparseLoad, sparse_dot};
 
 /// The factor of one ring at one step size.
 pub struct RingFactor {
-    factor: Factored,
+    pub(super) factor: Factored,
     /// Inverse of the border's compliance where S has one, row-major.
-    border: Option<Vec<f64>>,
+    pub(super) border: Option<Vec<f64>>,
     /// S^-1 times the mount's functionals, column-major `[n][n_mount]`.
-    mount: Vec<f64>,
+    pub(super) mount: Vec<f64>,
     /// The mount's compliance, row-major.
-    mount_compliance: Vec<f64>,
+    pub(super) mount_compliance: Vec<f64>,
     integrator: Integrator,
     dt: f64,
 }
@@ -89,13 +89,6 @@ enum Predictor {
     Harmonic(Vec<f64>, Vec<f64>, Option<DefectStep>),
 }
 
-/// Contacts as the responses of a raceway meet them.
-struct Touch {
-    patches: Vec<Patch>,
-    /// Motion of each contact direction under unit forces of the mount, `[2 n_contacts][n_mount]`.
-    by_mount: Vec<Vec<f64>>,
-}
-
 impl RingStep {
     /// Motion of the groove centres, `[2 n_contacts]`, when the coordinates move by `x`.
     pub fn contact_motion(&self, x: &[f64]) -> Vec<f64> {
@@ -152,10 +145,7 @@ impl RingFactor {
     ) -> RingStep {
         let clock = std::time::Instant::now();
         let n = body.coordinates.n();
-        let contacts: Vec<SparseLoad> = feet
-            .iter()
-            .flat_map(|foot| body.coordinates.reduce_weights(foot))
-            .collect();
+        let contacts = functionals(body, feet);
         let mut side = self.right_side(body, state, load);
         let all: Vec<&SparseLoad> = contacts.iter().chain(&body.mount).collect();
         let start: Vec<f64> = all.iter().map(|g| sparse_dot(g, &state.w)).collect();
@@ -163,17 +153,8 @@ impl RingFactor {
         let (predictor, moved, compliance) = match &self.factor {
             Factored::Cyclic(factor) => {
                 let (harmonic, border) = factor.solve(&side);
-                let [mut moved, at] = factor.motions(&harmonic, &border, &all);
-                let touch = self.touch(body, &factor.table, feet, &contacts);
-                let mut compliance = self.table_compliance(&factor.table, &touch, body.mount.len());
-                let step = factor.defect.as_ref().map(|defect| {
-                    let step = DefectStep::new(at, self.answers(&factor.table, &touch, defect.rows(), n));
-                    let more = step.motion(defect);
-                    moved.iter_mut().zip(more).for_each(|(m, d)| *m += d);
-                    step.soften(defect, &mut compliance);
-                    step
-                });
-                (Predictor::Harmonic(harmonic, border, step), moved, compliance)
+                let (defect, moved, compliance) = self.meet(body, factor, [&harmonic, &border], feet, &all);
+                (Predictor::Harmonic(harmonic, border, defect), moved, compliance)
             }
             Factored::Sparse(solver) => {
                 side.resize(n * (1 + contacts.len()), 0.0);
@@ -194,84 +175,35 @@ impl RingFactor {
         }
     }
 
-    /// What the responses of the raceway need to know of the contacts.
-    fn touch(
+    /// Moves the contacts of a step from `state` to `feet`: products with the table, or one block solve of a sparse factor.
+    pub fn move_contacts(
         &self,
         body: &RingBody,
-        table: &ResponseTable,
+        state: &RingState,
+        step: &mut RingStep,
         feet: &[NodalWeights],
-        contacts: &[SparseLoad],
-    ) -> Touch {
-        let patch = |foot: &NodalWeights| {
-            let free = |node: &usize| body.coordinates.free_node(*node);
-            let nodes: Option<Vec<usize>> = foot.nodes.iter().map(free).collect();
-            let nodes = nodes.expect("no raceway node of a periodic ring is held");
-            table
-                .patch(&nodes, &foot.coefficients)
-                .expect("patches lie on the raceway")
-        };
-        let columns: Vec<&[f64]> = self.mount.chunks_exact(body.coordinates.n()).collect();
-        let moved = |contact: &SparseLoad| columns.iter().map(|y| sparse_dot(contact, y)).collect();
-        Touch {
-            patches: feet.iter().map(patch).collect(),
-            by_mount: contacts.iter().map(moved).collect(),
-        }
-    }
-
-    /// Compliance of contacts, then mount, from the responses of the raceway: those of the ring without its border, plus what
-    /// the border adds, V M^-1 V^T, with M the border's compliance and V the motion of the contacts under its unit forces.
-    fn table_compliance(&self, table: &ResponseTable, touch: &Touch, m: usize) -> Vec<f64> {
-        let (direct, v) = (table.compliances(&touch.patches), &touch.by_mount);
-        let n = v.len();
-        let size = n + m;
-        let mut compliance = vec![0.0; size * size];
-        for i in 0..size {
-            for j in 0..=i {
-                let value = match (i < n, j < n) {
-                    (true, _) => direct[n * i + j] + self.by_border(&v[i], &v[j]),
-                    (false, true) => v[j][i - n],
-                    (false, false) => self.mount_compliance[m * (i - n) + j - n],
-                };
-                (compliance[size * i + j], compliance[size * j + i]) = (value, value);
+    ) {
+        let n = body.coordinates.n();
+        step.contacts = functionals(body, feet);
+        let all: Vec<&SparseLoad> = step.contacts.iter().chain(&body.mount).collect();
+        step.start = all.iter().map(|g| sparse_dot(g, &state.w)).collect();
+        let (moved, compliance) = match (&self.factor, &mut step.predictor) {
+            (Factored::Cyclic(factor), Predictor::Harmonic(harmonic, border, defect)) => {
+                let (met, moved, compliance) = self.meet(body, factor, [harmonic, border], feet, &all);
+                *defect = met;
+                (moved, compliance)
             }
-        }
-        compliance
-    }
-
-    /// Motion of contacts, then mount, under unit forces on the `rows` of n coordinates, row-major, without a defect.
-    fn answers(&self, table: &ResponseTable, touch: &Touch, rows: &[usize], n: usize) -> Vec<f64> {
-        let columns: Vec<&[f64]> = self.mount.chunks_exact(n).collect();
-        let Factored::Cyclic(factor) = &self.factor else {
-            unreachable!("only harmonics know defects")
+            (Factored::Sparse(solver), Predictor::Columns(block)) => {
+                block[n..].fill(0.0);
+                fill(&mut block[n..], &step.contacts, n);
+                solver.solve(&mut block[n..], step.contacts.len());
+                let moved: Vec<f64> = all.iter().map(|g| sparse_dot(g, &block[..n])).collect();
+                (moved, self.column_compliance(&all, &block[n..], n))
+            }
+            _ => unreachable!("a step keeps what its factor made"),
         };
-        let n_free = factor.solver.inner().n();
-        let free: Vec<usize> = rows.iter().copied().filter(|&row| row < n_free).collect();
-        let direct: Vec<Vec<[f64; 2]>> = touch.patches.iter().map(|p| table.of_patch(&free, p)).collect();
-        let mut answers = Vec::with_capacity(rows.len() * (touch.by_mount.len() + columns.len()));
-        // Rows of the border come last, so the free ones keep their numbers.
-        for (i, &row) in rows.iter().enumerate() {
-            let by_mount: Vec<f64> = columns.iter().map(|column| column[row]).collect();
-            answers.extend(
-                touch
-                    .by_mount
-                    .iter()
-                    .enumerate()
-                    .map(|(k, v)| match row.checked_sub(n_free) {
-                        Some(shaft) => v[shaft],
-                        None => direct[k / 2][i][k % 2] + self.by_border(&by_mount, v),
-                    }),
-            );
-            answers.extend(by_mount);
-        }
-        answers
-    }
-
-    /// a M^-1 b for two rows of V; zero without a border.
-    fn by_border(&self, a: &[f64], b: &[f64]) -> f64 {
-        let Some(inverse) = &self.border else { return 0.0 };
-        let m = b.len();
-        let row = |i: usize| (0..m).map(|j| inverse[m * i + j] * b[j]).sum::<f64>();
-        a.iter().enumerate().map(|(i, a)| a * row(i)).sum()
+        step.predicted = step.start.iter().zip(&moved).map(|(s, d)| s + d).collect();
+        step.compliance = compliance;
     }
 
     /// Compliance of contacts, then mount, exactly symmetric, from the columns of the contacts.
@@ -381,6 +313,12 @@ impl RingFactor {
         let w = state.w.iter().zip(dw).map(|(w, d)| w + d).collect();
         RingState { w, v, a }
     }
+}
+
+/// Functionals of contacts at `feet`, two each.
+fn functionals(body: &RingBody, feet: &[NodalWeights]) -> Vec<SparseLoad> {
+    let reduced = feet.iter().flat_map(|foot| body.coordinates.reduce_weights(foot));
+    reduced.collect()
 }
 
 /// S^-1 of sparse loads, column-major `[n][loads]`.

@@ -37,6 +37,7 @@ impl Motion<'_> {
             .balls
             .iter()
             .flat_map(|b| [&b.inner, &b.outer].map(|c| [c.contact_angle_rad, c.force_n]));
+        let places: Vec<[f64; 2]> = places.collect();
         let forces = solution.balls.iter().flat_map(|b| {
             [(Side::Inner, &b.inner), (Side::Outer, &b.outer)].map(|(side, c)| {
                 let (sin, cos) = c.contact_angle_rad.sin_cos();
@@ -59,7 +60,7 @@ impl Motion<'_> {
             shaft_acceleration: [0.0; 5],
             trend: vec![[0.0; 2]; 3 * model.geometry.n_balls],
             forces: forces.collect(),
-            places: places.collect(),
+            places: [(); 3].map(|()| places.clone()),
             angles: angles.collect(),
             approaches: solution
                 .balls
@@ -106,7 +107,7 @@ impl Motion<'_> {
             // Nothing is known of the accelerations.
             trend: vec![[f64::NAN; 2]; 3 * n],
             forces: vec![[0.0; 2]; 2 * n],
-            places: vec![[self.model.geometry.free_contact_angle(), 0.0]; 2 * n],
+            places: [(); 3].map(|()| vec![[self.model.geometry.free_contact_angle(), 0.0]; 2 * n]),
             angles: vec![self.model.geometry.free_contact_angle(); 2 * n],
             approaches: vec![0.0; 2 * n],
             ledger: Ledger::default(),
@@ -181,7 +182,9 @@ impl Motion<'_> {
             state.approaches[index] = at.approach;
             state.angles[index] = (sign * l[1]).atan2(sign * l[0]);
             state.forces[index] = l.map(|x| at.force * x / length);
-            state.places[index] = [state.angles[index], at.force];
+            for places in &mut state.places {
+                places[index] = [state.angles[index], at.force];
+            }
             state.ledger.hertz += at.energy;
         }
     }

@@ -82,8 +82,9 @@ pub struct MotionState {
     pub angles: Vec<f64>,
     /// Hertz approaches at the end of the last step, by site, m; negative is a gap.
     pub approaches: Vec<f64>,
-    /// Groove angle, rad, and load, N, of the patches, by site: they follow angles and forces with play.
-    pub places: Vec<[f64; 2]>,
+    /// Contact angle, rad, and force, N, in the middle of the last three parts of a step, the last first, by site: where their
+    /// patches lay.
+    pub places: [Vec<[f64; 2]>; 3],
     /// Energy ledger.
     pub ledger: Ledger,
 }
@@ -95,6 +96,8 @@ pub struct StepReport {
     pub newton_iterations: usize,
     /// Rounds for the inertia of the turning frame.
     pub frame_rounds: usize,
+    /// Rounds for the places of the patches.
+    pub place_rounds: usize,
     /// Parts in which the step was done.
     pub substeps: usize,
     /// Parts that failed or were too inaccurate and were done again.
@@ -144,6 +147,7 @@ impl StepReport {
     pub fn add(&mut self, other: &StepReport) {
         self.newton_iterations += other.newton_iterations;
         self.frame_rounds += other.frame_rounds;
+        self.place_rounds += other.place_rounds;
         self.substeps += other.substeps;
         self.retries += other.retries;
         self.error = self.error.max(other.error);

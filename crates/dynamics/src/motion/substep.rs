@@ -1,32 +1,23 @@
-//! One part of a step, of one size: loads, patches, predictor and columns, Newton, inertia of the turning frame, new state.
+//! One part of a step, of one size: loads, patches and both rings, then Newton until patches and inertia of the turning frame
+//! are those of the motion found, then the new state.
 
 use std::time::Instant;
 
-use contact::{NodalWeights, Side};
+use contact::Side;
 
-use super::body::RingBody;
-use super::frame::turn_nodal;
 use super::newton::{SmallSolution, check_patches, check_range};
-use super::ring::{RingFactor, RingState, RingStep};
+use super::part::Moving;
+use super::place::Placing;
 use super::run::Motion;
-use super::shaft::ShaftStep;
-use super::small::{Inertia, RingAnswer, SmallSystem};
+use super::small::SmallSystem;
 use super::state::{MotionState, StepReport};
-use crate::compliance;
-use crate::effects::{self, FrameTurn, Loads, Now};
+use crate::effects::Loads;
 use crate::error::DynamicsError;
-use crate::problem::Site;
 
-/// Change of the frame's inertia loads in a round, sum of all, over the largest force, at which they count as settled.
-const FRAME_TOLERANCE: f64 = 1e-9;
-/// The same over the inertia loads themselves, which a body without other forces has alone: what rounding of a transform of
-/// its motion leaves of them.
-const FRAME_ROUND_OFF: f64 = 1e-13;
 /// Rounds before a step counts as failed; each contracts by about speed times step size.
 const MAX_FRAME_ROUNDS: usize = 25;
-
-/// Force scale of a bearing on which nothing acts, N.
-const LEAST_FORCE: f64 = 1e-9;
+/// The same for the places of the patches.
+const MAX_PLACE_ROUNDS: usize = 20;
 
 /// A part of a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -46,16 +37,19 @@ impl Span {
     }
 }
 
-/// A flexible ring during a part.
-pub(super) struct Moving<'m> {
-    pub body: &'m RingBody,
-    pub factor: &'m RingFactor,
-    pub old: &'m RingState,
-    pub step: RingStep,
-    /// Generalised load that is fixed in space, `[n]`.
-    pub load: Vec<f64>,
-    /// Inertia load of the turning frame, `[n]`, when there is one.
-    pub inertia: Option<(FrameTurn, Vec<f64>)>,
+/// A part of a step under way.
+struct Part<'m> {
+    span: Span,
+    loads: Loads,
+    /// Contact angle, rad, and force, N, for which the patches were placed, by site.
+    places: Vec<[f64; 2]>,
+    placing: Placing,
+    moving: [Option<Moving<'m>>; 2],
+    system: SmallSystem,
+    /// Largest force that acts at the start, N.
+    scale: f64,
+    report: StepReport,
+    clock: Lap,
 }
 
 impl Motion<'_> {
@@ -64,270 +58,135 @@ impl Motion<'_> {
         state: &MotionState,
         span: Span,
     ) -> Result<(MotionState, StepReport), DynamicsError> {
+        let mut part = self.begin(state, span)?;
+        let (solution, increments) = loop {
+            let solution = self.solve_in_place(state, &mut part)?;
+            let increments = self.increments(&part.system, &solution, &part.moving);
+            part.report.seconds.update += part.clock.lap();
+            if self.settle_frame(&mut part, &increments)? {
+                break (solution, increments);
+            }
+        };
+        check_patches(&part.system, &solution)?;
+        check_range(self.model, &part.system, &solution)?;
+        let places = part.system.places(&solution);
+        self.check_on_grooves(&places)?;
+        let (mut next, error) = self.finish(state, &part.system, &solution, part.moving, increments);
+        next.places.rotate_right(1);
+        next.places[0] = places;
+        let mut report = part.report;
+        report.error = error;
+        report.seconds.update += part.clock.lap();
+        Ok((next, report))
+    }
+
+    /// Loads, patches where they are expected, and both rings.
+    fn begin<'m>(&'m self, state: &'m MotionState, span: Span) -> Result<Part<'m>, DynamicsError> {
         let mut report = StepReport {
             substeps: 1,
             ..StepReport::default()
         };
         let mut clock = Lap::new();
-        let time = span.at(1.0 - self.settings.integrator.alpha_f);
-        let loads = self.loads_at(state, time, span.dt)?;
+        let places = state.expected_places();
+        let loads = self.loads_at(&places, self.weighted_time(span), span.dt)?;
         report.seconds.loads = clock.lap();
-        let placing = self.place(state, time)?;
+        let placing = self.place(&places, self.weighted_time(span))?;
         report.seconds.patches = clock.lap();
-        let mut moving = self.prepare(state, span, &loads, &placing.feet)?;
+        let moving = self.prepare(state, span, &loads, &placing.feet)?;
         let times = moving.iter().flatten().map(|m| m.step.seconds);
         [report.seconds.right_side, report.seconds.solve] = longest(times);
         clock.lap();
-        let mut system = self.system(state, span, placing.sites, &moving, &loads)?;
-        let scale = self.force_scale(state, &loads);
-        let (solution, increments) = loop {
-            let solution = system.solve(scale, &self.costs)?;
-            report.newton_iterations += solution.iterations;
-            report.seconds.newton += clock.lap();
-            let increments = self.increments(&system, &solution, &moving);
-            report.seconds.update += clock.lap();
-            let settled = loads.frame.is_none()
-                || self.costs.time("frame_rotation", || {
-                    self.renew_inertia(span, &mut moving, &increments, scale)
-                });
-            report.seconds.frame += clock.lap();
-            if settled {
-                break (solution, increments);
-            }
-            report.frame_rounds += 1;
-            if report.frame_rounds > MAX_FRAME_ROUNDS {
-                return Err(DynamicsError::FrameNotSettled {
-                    rounds: MAX_FRAME_ROUNDS,
-                    speed: loads.frame.unwrap_or_default().speed,
-                });
-            }
-            for (answer, ring) in system.rings.iter_mut().zip(&moving) {
-                if let (Some(answer), Some(ring)) = (answer, ring) {
-                    answer.predicted.clone_from(&ring.step.predicted);
-                }
-            }
-        };
-        check_patches(&system, &solution)?;
-        check_range(self.model, &system, &solution)?;
-        let (mut next, error) = self.finish(state, &system, &solution, moving, increments);
-        next.places = placing.places;
-        report.error = error;
-        report.seconds.update += clock.lap();
-        Ok((next, report))
-    }
-
-    /// Mean loads over an interval of `width` seconds about a time, those that follow the contact angles with the angles of the start.
-    fn loads_at(&self, state: &MotionState, time: f64, width: f64) -> Result<Loads, DynamicsError> {
-        let now = Now {
-            time,
-            width,
-            cage_angle: self.cage_angle(time),
-            angles: Some(&state.angles),
-        };
-        effects::timed_loads(self.model, &now, &self.costs)
-    }
-
-    /// Both rings under their known loads.
-    fn prepare<'m>(
-        &'m self,
-        state: &'m MotionState,
-        span: Span,
-        loads: &Loads,
-        feet: &[Vec<NodalWeights>; 2],
-    ) -> Result<[Option<Moving<'m>>; 2], DynamicsError> {
-        let rung = self.rung(span.rung)?;
-        let prepare = |side: Side| {
-            let i = side.index();
-            let body = self.rings[i].as_ref()?;
-            let (factor, old) = (rung[i].as_ref()?, state.rings[i].as_ref()?);
-            let load = self.ring_load(body, side, loads, span);
-            let inertia = loads.frame.filter(|_| side == Side::Inner).map(|turn| {
-                // First guess: the velocity stays.
-                let guess: Vec<f64> = old.v.iter().map(|v| span.dt * v).collect();
-                let [w, v] = old.within(self.settings.integrator, span.dt, &guess);
-                (turn, body.frame_load(turn, &w, &v))
-            });
-            let known = match &inertia {
-                Some((_, f)) => load.iter().zip(f).map(|(a, b)| a + b).collect(),
-                None => load.clone(),
-            };
-            let step = factor.prepare(body, old, &known, &feet[i]);
-            Some(Moving {
-                body,
-                factor,
-                old,
-                step,
-                load,
-                inertia,
-            })
-        };
-        let (inner, outer) = self
-            .model
-            .backend
-            .both(|| prepare(Side::Inner), || prepare(Side::Outer));
-        Ok([inner, outer])
-    }
-
-    /// Generalised body load of a ring. Loads are fixed in space: those of the inner ring are turned into its frame.
-    fn ring_load(&self, body: &RingBody, side: Side, loads: &Loads, span: Span) -> Vec<f64> {
-        let back = -self.frame_angle(side, span.at(1.0 - self.settings.integrator.alpha_f));
-        match &loads.rings[side.index()] {
-            Some(load) => body.coordinates.reduce(&turn_nodal(load, back)),
-            None => vec![0.0; body.coordinates.n()],
-        }
-    }
-
-    fn system(
-        &self,
-        state: &MotionState,
-        span: Span,
-        sites: Vec<Site>,
-        moving: &[Option<Moving<'_>>; 2],
-        loads: &Loads,
-    ) -> Result<SmallSystem, DynamicsError> {
-        let mass = self.model.ball_mass();
-        let balls = (0..self.model.geometry.n_balls).map(|b| {
-            [0, 1].map(|i| Inertia {
-                mass,
-                start: [
-                    state.balls[b][i],
-                    state.ball_velocities[b][i],
-                    state.ball_accelerations[b][i],
-                ],
-                load: loads.balls[b][i],
-                load_slope: if i == 0 { loads.ball_slope } else { 0.0 },
-            })
-        });
-        let answer = |side: Side| {
-            let answer = |m: &Moving<'_>| -> Result<RingAnswer, DynamicsError> {
-                let (n, n_balls) = (m.step.start.len(), self.model.geometry.n_balls);
-                Ok(RingAnswer {
-                    start: m.step.start.clone(),
-                    predicted: m.step.predicted.clone(),
-                    stiffness: compliance::inverse(side, n, n_balls, &m.step.compliance)?,
-                })
-            };
-            moving[side.index()].as_ref().map(answer).transpose()
-        };
-        Ok(SmallSystem {
-            dt: span.dt,
-            integrator: self.settings.integrator,
-            sites,
-            balls: balls.collect(),
-            shaft: self.shaft_step(state, span, loads),
-            rings: [answer(Side::Inner)?, answer(Side::Outer)?],
-            scheme: self.settings.scheme,
-            damping: self.settings.contact_damping,
-            extra: loads.contacts.clone(),
+        let system = self.system(state, span, placing.sites.clone(), &moving, &loads)?;
+        Ok(Part {
+            span,
+            places,
+            placing,
+            system,
+            scale: self.force_scale(state, &loads),
+            loads,
+            moving,
+            report,
+            clock,
         })
     }
 
-    /// Largest force that acts at the start of a part, N: of the contacts, on shaft, balls and rings.
-    fn force_scale(&self, state: &MotionState, loads: &Loads) -> f64 {
-        let arm = self.model.geometry.centre_radius(Side::Inner);
-        let forces = state.forces.iter().chain(&loads.balls).flatten().copied();
-        let moments = loads.shaft[3..].iter().map(|m| m / arm);
-        let rings = Side::BOTH.into_iter().flat_map(|side| {
-            let load = self.model.ring(side).zip(loads.rings[side.index()].as_ref());
-            load.map_or([0.0; 5], |(ring, load)| effects::resultant(ring, load))
-                .into_iter()
-                .take(3)
-        });
-        forces
-            .chain(loads.shaft[..3].iter().copied())
-            .chain(moments)
-            .chain(rings)
-            .fold(LEAST_FORCE, |m, f| m.max(f.abs()))
+    /// Time at which a part is in balance, s.
+    fn weighted_time(&self, span: Span) -> f64 {
+        span.at(1.0 - self.settings.integrator.alpha_f)
     }
 
-    fn shaft_step(&self, state: &MotionState, span: Span, loads: &Loads) -> ShaftStep {
-        let inertia = [
-            self.model.shaft_mass,
-            self.model.shaft_mass,
-            self.model.shaft_mass,
-            0.0,
-            0.0,
-        ];
-        let bodies = [0, 1, 2, 3, 4].map(|i| Inertia {
-            mass: inertia[i],
-            start: [
-                state.shaft[i],
-                state.shaft_velocity[i],
-                state.shaft_acceleration[i],
-            ],
-            load: loads.shaft[i],
-            load_slope: 0.0,
-        });
-        let imposed = [0, 1, 2, 3, 4].map(|i| self.model.prescribed(i, span.at(1.0)));
-        let angle = |share: f64| self.frame_angle(Side::Inner, span.at(share));
-        ShaftStep {
-            bodies,
-            imposed,
-            frame: [angle(1.0 - self.settings.integrator.alpha_f), angle(1.0)],
-        }
-    }
-
-    /// Increments of both rings under the forces of a solution.
-    fn increments(
+    /// Contact forces over patches that lie where these forces put them.
+    fn solve_in_place(
         &self,
-        system: &SmallSystem,
-        solution: &SmallSolution,
-        moving: &[Option<Moving<'_>>; 2],
-    ) -> [Option<Vec<f64>>; 2] {
-        let increment = |side: Side| {
-            let ring = moving[side.index()].as_ref()?;
-            let forces = system.ring_loads(side, solution);
-            Some(
-                ring.factor
-                    .increment(ring.body, &ring.step, &forces, &solution.mounts[side.index()]),
-            )
+        state: &MotionState,
+        part: &mut Part<'_>,
+    ) -> Result<SmallSolution, DynamicsError> {
+        for _ in 0..=MAX_PLACE_ROUNDS {
+            let solution = part.system.solve(part.scale, &self.costs)?;
+            part.report.newton_iterations += solution.iterations;
+            part.report.seconds.newton += part.clock.lap();
+            let met = part.system.places(&solution);
+            if part.placing.holds(&part.places, &met) {
+                return Ok(solution);
+            }
+            part.report.place_rounds += 1;
+            part.placing = self.place(&met, self.weighted_time(part.span))?;
+            part.places = met;
+            part.report.seconds.patches += part.clock.lap();
+            self.move_contacts(part);
+            part.report.seconds.solve += part.clock.lap();
+            let sites = part.placing.sites.clone();
+            part.system = self.system(state, part.span, sites, &part.moving, &part.loads)?;
+        }
+        Err(DynamicsError::PlacesNotSettled {
+            rounds: MAX_PLACE_ROUNDS,
+        })
+    }
+
+    /// Both rings with their contacts where the patches are.
+    fn move_contacts(&self, part: &mut Part<'_>) {
+        let feet = &part.placing.feet;
+        let [inner, outer] = &mut part.moving;
+        let turn = |ring: &mut Option<Moving<'_>>, side: Side| {
+            if let Some(m) = ring {
+                m.factor
+                    .move_contacts(m.body, m.old, &mut m.step, &feet[side.index()]);
+            }
         };
-        let (inner, outer) = self
-            .model
+        self.model
             .backend
-            .both(|| increment(Side::Inner), || increment(Side::Outer));
-        [inner, outer]
+            .both(|| turn(inner, Side::Inner), || turn(outer, Side::Outer));
     }
 
-    /// Inertia loads of the turning frame at the motion found. True when they are what the step used.
-    fn renew_inertia(
+    /// True when the inertia of the turning frame is that of the motion found; else the part goes on with the new one.
+    fn settle_frame(
         &self,
-        span: Span,
-        moving: &mut [Option<Moving<'_>>; 2],
+        part: &mut Part<'_>,
         increments: &[Option<Vec<f64>>; 2],
-        scale: f64,
-    ) -> bool {
-        let (Some(ring), Some(dw)) = (&mut moving[0], &increments[0]) else {
-            return true;
+    ) -> Result<bool, DynamicsError> {
+        let Some(turn) = part.loads.frame else {
+            return Ok(true);
         };
-        let Some((turn, used)) = &mut ring.inertia else {
-            return true;
-        };
-        let [w, v] = ring.old.within(self.settings.integrator, span.dt, dw);
-        let new = ring.body.frame_load(*turn, &w, &v);
-        let change: Vec<f64> = new.iter().zip(used.iter()).map(|(a, b)| a - b).collect();
-        let size = |f: &[f64]| f.iter().map(|c| c.abs()).sum::<f64>();
-        if size(&change) <= (FRAME_TOLERANCE * scale).max(FRAME_ROUND_OFF * size(&new)) {
-            return true;
+        let settled = self.costs.time("frame_rotation", || {
+            self.renew_inertia(part.span, &mut part.moving, increments, part.scale)
+        });
+        part.report.seconds.frame += part.clock.lap();
+        if settled {
+            return Ok(true);
         }
-        *used = new;
-        ring.factor.add_load(ring.body, &mut ring.step, change);
-        false
-    }
-}
-
-impl SmallSystem {
-    /// Forces on a ring's contacts, `[2 n_balls]`, N.
-    pub(super) fn ring_loads(&self, side: Side, solution: &SmallSolution) -> Vec<f64> {
-        let n = self.balls.len();
-        (0..n)
-            .flat_map(|ball| {
-                let site = 2 * ball + side.index();
-                let extra = self.extra.get(site).copied().unwrap_or_default();
-                let force = solution.forces[site].force;
-                [force[0] + extra[0], force[1] + extra[1]]
-            })
-            .collect()
+        part.report.frame_rounds += 1;
+        if part.report.frame_rounds > MAX_FRAME_ROUNDS {
+            return Err(DynamicsError::FrameNotSettled {
+                rounds: MAX_FRAME_ROUNDS,
+                speed: turn.speed,
+            });
+        }
+        for (answer, ring) in part.system.rings.iter_mut().zip(&part.moving) {
+            if let (Some(answer), Some(ring)) = (answer, ring) {
+                answer.predicted.clone_from(&ring.step.predicted);
+            }
+        }
+        Ok(false)
     }
 }
 

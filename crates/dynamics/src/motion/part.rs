@@ -1,0 +1,259 @@
+//! What a part of a step asks of loads, rings and shaft, and the small system they make.
+
+use contact::{NodalWeights, Side};
+
+use super::body::RingBody;
+use super::frame::turn_nodal;
+use super::newton::SmallSolution;
+use super::ring::{RingFactor, RingState, RingStep};
+use super::run::Motion;
+use super::shaft::ShaftStep;
+use super::small::{Inertia, RingAnswer, SmallSystem};
+use super::state::MotionState;
+use super::substep::Span;
+use crate::compliance;
+use crate::effects::{self, FrameTurn, Loads, Now};
+use crate::error::DynamicsError;
+use crate::problem::Site;
+
+/// Change of the frame's inertia loads in a round, sum of all, over the largest force, at which they count as settled.
+const FRAME_TOLERANCE: f64 = 1e-9;
+/// The same over the inertia loads themselves, which a body without other forces has alone: what rounding of a transform of
+/// its motion leaves of them.
+const FRAME_ROUND_OFF: f64 = 1e-13;
+/// Force scale of a bearing on which nothing acts, N.
+const LEAST_FORCE: f64 = 1e-9;
+
+/// A flexible ring during a part.
+pub(super) struct Moving<'m> {
+    pub body: &'m RingBody,
+    pub factor: &'m RingFactor,
+    pub old: &'m RingState,
+    pub step: RingStep,
+    /// Generalised load that is fixed in space, `[n]`.
+    pub load: Vec<f64>,
+    /// Inertia load of the turning frame, `[n]`, when there is one.
+    pub inertia: Option<(FrameTurn, Vec<f64>)>,
+}
+
+impl Motion<'_> {
+    /// Mean loads over an interval of `width` seconds about a time, those that follow the contact angles with the angles expected.
+    pub(super) fn loads_at(
+        &self,
+        places: &[[f64; 2]],
+        time: f64,
+        width: f64,
+    ) -> Result<Loads, DynamicsError> {
+        let angles: Vec<f64> = places.iter().map(|p| p[0]).collect();
+        let now = Now {
+            time,
+            width,
+            cage_angle: self.cage_angle(time),
+            angles: Some(&angles),
+        };
+        effects::timed_loads(self.model, &now, &self.costs)
+    }
+
+    /// Both rings under their known loads.
+    pub(super) fn prepare<'m>(
+        &'m self,
+        state: &'m MotionState,
+        span: Span,
+        loads: &Loads,
+        feet: &[Vec<NodalWeights>; 2],
+    ) -> Result<[Option<Moving<'m>>; 2], DynamicsError> {
+        let rung = self.rung(span.rung)?;
+        let prepare = |side: Side| {
+            let i = side.index();
+            let body = self.rings[i].as_ref()?;
+            let (factor, old) = (rung[i].as_ref()?, state.rings[i].as_ref()?);
+            let load = self.ring_load(body, side, loads, span);
+            let inertia = loads.frame.filter(|_| side == Side::Inner).map(|turn| {
+                // First guess: the velocity stays.
+                let guess: Vec<f64> = old.v.iter().map(|v| span.dt * v).collect();
+                let [w, v] = old.within(self.settings.integrator, span.dt, &guess);
+                (turn, body.frame_load(turn, &w, &v))
+            });
+            let known = match &inertia {
+                Some((_, f)) => load.iter().zip(f).map(|(a, b)| a + b).collect(),
+                None => load.clone(),
+            };
+            let step = factor.prepare(body, old, &known, &feet[i]);
+            Some(Moving {
+                body,
+                factor,
+                old,
+                step,
+                load,
+                inertia,
+            })
+        };
+        let (inner, outer) = self
+            .model
+            .backend
+            .both(|| prepare(Side::Inner), || prepare(Side::Outer));
+        Ok([inner, outer])
+    }
+
+    /// Generalised body load of a ring. Loads are fixed in space: those of the inner ring are turned into its frame.
+    fn ring_load(&self, body: &RingBody, side: Side, loads: &Loads, span: Span) -> Vec<f64> {
+        let back = -self.frame_angle(side, span.at(1.0 - self.settings.integrator.alpha_f));
+        match &loads.rings[side.index()] {
+            Some(load) => body.coordinates.reduce(&turn_nodal(load, back)),
+            None => vec![0.0; body.coordinates.n()],
+        }
+    }
+
+    pub(super) fn system(
+        &self,
+        state: &MotionState,
+        span: Span,
+        sites: Vec<Site>,
+        moving: &[Option<Moving<'_>>; 2],
+        loads: &Loads,
+    ) -> Result<SmallSystem, DynamicsError> {
+        let mass = self.model.ball_mass();
+        let balls = (0..self.model.geometry.n_balls).map(|b| {
+            [0, 1].map(|i| Inertia {
+                mass,
+                start: [
+                    state.balls[b][i],
+                    state.ball_velocities[b][i],
+                    state.ball_accelerations[b][i],
+                ],
+                load: loads.balls[b][i],
+                load_slope: if i == 0 { loads.ball_slope } else { 0.0 },
+            })
+        });
+        let answer = |side: Side| {
+            let answer = |m: &Moving<'_>| -> Result<RingAnswer, DynamicsError> {
+                let (n, n_balls) = (m.step.start.len(), self.model.geometry.n_balls);
+                Ok(RingAnswer {
+                    start: m.step.start.clone(),
+                    predicted: m.step.predicted.clone(),
+                    stiffness: compliance::inverse(side, n, n_balls, &m.step.compliance)?,
+                })
+            };
+            moving[side.index()].as_ref().map(answer).transpose()
+        };
+        Ok(SmallSystem {
+            dt: span.dt,
+            integrator: self.settings.integrator,
+            sites,
+            balls: balls.collect(),
+            shaft: self.shaft_step(state, span, loads),
+            rings: [answer(Side::Inner)?, answer(Side::Outer)?],
+            scheme: self.settings.scheme,
+            damping: self.settings.contact_damping,
+            extra: loads.contacts.clone(),
+        })
+    }
+
+    /// Largest force that acts at the start of a part, N: of the contacts, on shaft, balls and rings.
+    pub(super) fn force_scale(&self, state: &MotionState, loads: &Loads) -> f64 {
+        let arm = self.model.geometry.centre_radius(Side::Inner);
+        let forces = state.forces.iter().chain(&loads.balls).flatten().copied();
+        let moments = loads.shaft[3..].iter().map(|m| m / arm);
+        let rings = Side::BOTH.into_iter().flat_map(|side| {
+            let load = self.model.ring(side).zip(loads.rings[side.index()].as_ref());
+            load.map_or([0.0; 5], |(ring, load)| effects::resultant(ring, load))
+                .into_iter()
+                .take(3)
+        });
+        forces
+            .chain(loads.shaft[..3].iter().copied())
+            .chain(moments)
+            .chain(rings)
+            .fold(LEAST_FORCE, |m, f| m.max(f.abs()))
+    }
+
+    fn shaft_step(&self, state: &MotionState, span: Span, loads: &Loads) -> ShaftStep {
+        let inertia = [
+            self.model.shaft_mass,
+            self.model.shaft_mass,
+            self.model.shaft_mass,
+            0.0,
+            0.0,
+        ];
+        let bodies = [0, 1, 2, 3, 4].map(|i| Inertia {
+            mass: inertia[i],
+            start: [
+                state.shaft[i],
+                state.shaft_velocity[i],
+                state.shaft_acceleration[i],
+            ],
+            load: loads.shaft[i],
+            load_slope: 0.0,
+        });
+        let imposed = [0, 1, 2, 3, 4].map(|i| self.model.prescribed(i, span.at(1.0)));
+        let angle = |share: f64| self.frame_angle(Side::Inner, span.at(share));
+        ShaftStep {
+            bodies,
+            imposed,
+            frame: [angle(1.0 - self.settings.integrator.alpha_f), angle(1.0)],
+        }
+    }
+
+    /// Increments of both rings under the forces of a solution.
+    pub(super) fn increments(
+        &self,
+        system: &SmallSystem,
+        solution: &SmallSolution,
+        moving: &[Option<Moving<'_>>; 2],
+    ) -> [Option<Vec<f64>>; 2] {
+        let increment = |side: Side| {
+            let ring = moving[side.index()].as_ref()?;
+            let forces = system.ring_loads(side, solution);
+            Some(
+                ring.factor
+                    .increment(ring.body, &ring.step, &forces, &solution.mounts[side.index()]),
+            )
+        };
+        let (inner, outer) = self
+            .model
+            .backend
+            .both(|| increment(Side::Inner), || increment(Side::Outer));
+        [inner, outer]
+    }
+
+    /// Inertia loads of the turning frame at the motion found. True when they are what the step used.
+    pub(super) fn renew_inertia(
+        &self,
+        span: Span,
+        moving: &mut [Option<Moving<'_>>; 2],
+        increments: &[Option<Vec<f64>>; 2],
+        scale: f64,
+    ) -> bool {
+        let (Some(ring), Some(dw)) = (&mut moving[0], &increments[0]) else {
+            return true;
+        };
+        let Some((turn, used)) = &mut ring.inertia else {
+            return true;
+        };
+        let [w, v] = ring.old.within(self.settings.integrator, span.dt, dw);
+        let new = ring.body.frame_load(*turn, &w, &v);
+        let change: Vec<f64> = new.iter().zip(used.iter()).map(|(a, b)| a - b).collect();
+        let size = |f: &[f64]| f.iter().map(|c| c.abs()).sum::<f64>();
+        if size(&change) <= (FRAME_TOLERANCE * scale).max(FRAME_ROUND_OFF * size(&new)) {
+            return true;
+        }
+        *used = new;
+        ring.factor.add_load(ring.body, &mut ring.step, change);
+        false
+    }
+}
+
+impl SmallSystem {
+    /// Forces on a ring's contacts, `[2 n_balls]`, N.
+    pub(super) fn ring_loads(&self, side: Side, solution: &SmallSolution) -> Vec<f64> {
+        let n = self.balls.len();
+        (0..n)
+            .flat_map(|ball| {
+                let site = 2 * ball + side.index();
+                let extra = self.extra.get(site).copied().unwrap_or_default();
+                let force = solution.forces[site].force;
+                [force[0] + extra[0], force[1] + extra[1]]
+            })
+            .collect()
+    }
+}
