@@ -95,11 +95,13 @@ fn line(f: &Finished) -> String {
         [] => String::new(),
         _ => format!("**does not hold: {}**; ", failures.join("; ")),
     };
+    // A row is one line, whatever a failure says.
+    let text = format!("{verdict}{}", found.join("; "));
     format!(
-        "| {} | {} | {} | {defect} | {verdict}{} |",
+        "| {} | {} | {} | {defect} | {} |",
         f.case.name,
         f.case.why,
         f.case.settings,
-        found.join("; ").replace('|', "\\|").replace('\n', " ")
+        text.replace('|', "\\|").replace('\n', " ")
     )
 }
