@@ -143,3 +143,30 @@ fn the_price_list_shows_what_an_effect_changes() {
         outcome.stderr
     );
 }
+
+/// Wrong: a user would not see what the near field costs, or what it changes: the stress of a probe below a ball, and no force.
+#[test]
+fn the_price_list_has_the_near_field() {
+    let dir = Dir::with_meshes();
+    let point = "[static]\n[probes.point.below]\nring = \"outer\"\nazimuth = \"0 deg\"\ngroove_angle = \"19.6 deg\"\ndepth = \"0.1 mm\"";
+    dir.write("scene.toml", with_line("[static]", "[static]", point));
+    let only = ["--set", "inner.flexible=false"];
+    let outcome = dir.raceway(&[&["prices", "scene.toml", "--out", "out"], &only[..]].concat());
+    assert_eq!(outcome.code, Some(0), "{}", outcome.stderr);
+    let json: Value = serde_json::from_str(&dir.text("out/study.json")).unwrap();
+    let points = json["points"].as_array().unwrap();
+    let value = |effect: &str, name: &str| {
+        let found = points.iter().find(|p| p["values"]["effects"] == effect);
+        let found = found.unwrap_or_else(|| panic!("{effect}: {json:#}"));
+        assert_eq!(found["status"], "finished", "{found:#}");
+        number(&found["results"][name], "/value")
+    };
+    let stress = "largest von Mises stress at below";
+    let force = "largest outer ball force";
+    let [far, near] = ["as it is", "near field on"].map(|effect| value(effect, stress));
+    assert!(near > 10.0 * far, "{near} and {far} Pa");
+    assert_eq!(value("as it is", force), value("near field on", force));
+    let text = dir.text("out/prices.md");
+    assert!(text.contains("| near field on |"), "{text}");
+    assert!(text.contains("| outer ring rigid |"), "{text}");
+}

@@ -321,6 +321,17 @@ fn wrong_requests_are_refused() {
         assert!(outcome.stderr.contains(text), "{set}: {}", outcome.stderr);
         assert!(!dir.path("refused").exists());
     }
+    dir.write("scene.toml", scene("[modes]\nnumber = 4", near_field()));
+    let outcome = dir.raceway(&["run", "scene.toml", "--out", "refused"]);
+    assert_eq!(outcome.code, Some(2), "{}", outcome.stderr);
+    assert!(
+        outcome
+            .stderr
+            .contains("stress.near_field needs contact forces, and [modes] has none; remove near_field"),
+        "{}",
+        outcome.stderr
+    );
+    assert!(!dir.path("refused").exists());
     let reach = scene("[static]", "[stress]\nnear_field_reach = 3.0\n");
     dir.write("scene.toml", reach);
     let outcome = dir.raceway(&["check", "scene.toml"]);

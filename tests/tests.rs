@@ -25,6 +25,7 @@ mod schedules;
 mod sectors;
 mod statics;
 mod stress;
+mod stress_histories;
 mod study;
 mod study_jobs;
 mod sweeps;

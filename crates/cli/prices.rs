@@ -189,9 +189,11 @@ fn quantities(scene: &Scene) -> Vec<Quantity> {
             Take::Deviation,
         ),
     ];
-    for probe in &scene.probes.nodes {
-        let name = format!("largest von Mises stress at {}", probe.name);
-        let column = format!("{}_von_mises_pa", probe.name);
+    let nodes = scene.probes.nodes.iter().map(|probe| &probe.name);
+    let points = scene.probes.points.iter().map(|probe| &probe.name);
+    for probe in nodes.chain(points) {
+        let name = format!("largest von Mises stress at {probe}");
+        let column = format!("{probe}_von_mises_pa");
         list.push(entry(&name, "Pa", "probes.csv", of_ball(&column), Take::Max));
     }
     list

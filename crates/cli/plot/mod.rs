@@ -8,6 +8,7 @@ mod balls;
 mod energy;
 mod modes;
 mod probes;
+mod profiles;
 pub mod quantity;
 mod raceways;
 mod results;
@@ -95,6 +96,7 @@ pub fn figures(dir: &Path, choice: &Choice) -> Result<Vec<Named>, Failure> {
     figures.extend(balls::figures(&results, choice)?);
     figures.extend(shaft::figures(&results)?);
     figures.extend(probes::figures(&results)?);
+    figures.extend(profiles::figures(&results, choice)?);
     figures.extend(energy::figures(&results)?);
     figures.extend(modes::figures(dir)?);
     figures.extend(surface::figures(&results, choice)?);

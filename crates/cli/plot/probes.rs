@@ -9,7 +9,10 @@ use super::results::Steps;
 use super::{Named, Results};
 
 /// What a column of a probe shows, by the words in its name: the words that end the name of the probe, and the figure.
-const KINDS: [(&str, &str); 6] = [
+const KINDS: [(&str, &str); 9] = [
+    ("_principal_", "principal_stress"),
+    ("_maximum_shear", "principal_stress"),
+    ("_hydrostatic", "principal_stress"),
     ("_stress_", "stress"),
     ("_von_mises", "stress"),
     ("_displacement_", "displacement"),
@@ -36,8 +39,9 @@ pub fn figures(results: &Results) -> anyhow::Result<Vec<Named>> {
     let mut figures = Vec::new();
     for ((probe, kind), columns) in groups {
         let (_, unit) = quantity::split(columns[0]);
-        let title = format!("Probe {probe}: {kind}");
-        let mut figure = Figure::new(title, x_axis.clone(), unit.axis(kind));
+        let what = kind.replace('_', " ");
+        let title = format!("Probe {probe}: {what}");
+        let mut figure = Figure::new(title, x_axis.clone(), unit.axis(what));
         for column in columns {
             let (name, unit) = quantity::split(column);
             let label = name[probe.len() + 1..].replace('_', " ");
@@ -72,6 +76,9 @@ mod tests {
     fn columns_are_grouped_by_probe_and_kind() {
         assert_eq!(kind("p_o2_stress_rr_pa"), Some(("p_o2", "stress")));
         assert_eq!(kind("p_o2_von_mises_pa"), Some(("p_o2", "stress")));
+        assert_eq!(kind("p_principal_2_pa"), Some(("p", "principal_stress")));
+        assert_eq!(kind("p_maximum_shear_pa"), Some(("p", "principal_stress")));
+        assert_eq!(kind("p_hydrostatic_pa"), Some(("p", "principal_stress")));
         assert_eq!(kind("p_o2_displacement_r_m"), Some(("p_o2", "displacement")));
         assert_eq!(kind("ball_1_force_n"), Some(("ball_1", "force")));
         assert_eq!(kind("ball_1_moment_x_n_m"), Some(("ball_1", "moment")));

@@ -1,6 +1,6 @@
 //! Scenes that differ from a given one in a single effect.
 
-use crate::scene::{Analysis, ContactMode, FlexibleRing, Ring, Scene, Support};
+use crate::scene::{Analysis, ContactMode, FlexibleRing, Ring, Scene, StressOutput, Support};
 
 /// Name and `--set` arguments of a variant.
 pub type Variant = (String, Vec<String>);
@@ -19,6 +19,7 @@ pub fn of(scene: &Scene) -> Vec<Variant> {
     for (name, ring) in [("inner", &scene.inner), ("outer", &scene.outer)] {
         variants.extend(ring_variants(scene, name, ring));
     }
+    variants.extend(near_field(scene));
     variants.extend(without_inertia(scene));
     variants
 }
@@ -147,9 +148,19 @@ fn ring_variants(scene: &Scene, name: &str, ring: &Ring) -> Vec<Variant> {
     // Probes of a ring without a mesh are refused.
     let probes = scene.probes.nodes.iter().filter(|p| p.ring.key() == name);
     rigid.extend(probes.map(|p| format!("probes.node.{}=none", p.name)));
+    for (table, lines) in [
+        ("point", &scene.probes.points),
+        ("profile", &scene.probes.profiles),
+    ] {
+        let own = lines.iter().filter(|line| line.ring.key() == name);
+        rigid.extend(own.map(|line| format!("probes.{table}.{}=none", line.name)));
+    }
     let is_other_rigid = [&scene.inner, &scene.outer].iter().any(|r| r.body.is_none());
     if is_other_rigid || scene.contact.mode == ContactMode::Rigid {
         rigid.push("contact.mode=rigid".to_string());
+        if scene.stress.near_field_reach.is_some() {
+            rigid.push("stress=none".to_string());
+        }
     }
     let (held, other) = match support {
         Support::Clamped => ("held in its mean motion", "mean_motion"),
@@ -162,6 +173,24 @@ fn ring_variants(scene: &Scene, name: &str, ring: &Ring) -> Vec<Variant> {
             vec![format!("{name}.support={other}")],
         ),
     ]
+}
+
+/// The near field of contacts, where there is stress to correct.
+fn near_field(scene: &Scene) -> Option<Variant> {
+    if scene.stress.near_field_reach.is_some() {
+        return Some(("near field off".to_string(), vec!["stress=none".to_string()]));
+    }
+    let probes = &scene.probes;
+    let has_stress = scene.output.stress != StressOutput::None
+        || !(probes.nodes.is_empty() && probes.points.is_empty() && probes.profiles.is_empty());
+    let is_flexible = [&scene.inner, &scene.outer].iter().any(|r| r.body.is_some());
+    let is_possible = is_flexible && has_stress && scene.contact.mode == ContactMode::Patch;
+    is_possible.then(|| {
+        (
+            "near field on".to_string(),
+            vec!["stress.near_field=true".to_string()],
+        )
+    })
 }
 
 /// A motion as a series of equilibria, without damping.
@@ -182,4 +211,43 @@ fn without_inertia(scene: &Scene) -> Option<Variant> {
         set.push("effects.rayleigh_damping=none".to_string());
     }
     Some(("inertia off (quasi-static)".to_string(), set))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::MeshFiles;
+
+    const SCENE: &str = include_str!("../../../tests/fixtures/7010c.toml");
+
+    fn scene(set: &[String]) -> Scene {
+        Scene::parse(SCENE, "scene.toml".as_ref(), set, MeshFiles::MayBeMissing).unwrap()
+    }
+
+    /// Wrong: a variant of a scene with near field and probes would be refused, or a scene without stress offered a near field.
+    #[test]
+    fn every_variant_of_a_scene_with_near_field_is_sound() {
+        let point = "probes.point.p={ ring = \"outer\", azimuth = \"0 deg\", groove_angle = \"19 deg\", depth = \"0 mm\" }";
+        let line = "probes.profile.q={ ring = \"outer\", azimuth = \"0 deg\", groove_angle = \"19 deg\", \
+                    depth = [\"0 mm\", \"1 mm\"], points = 3 }";
+        let base = ["stress.near_field=true", "inner.flexible=false", point, line].map(str::to_string);
+        let variants = of(&scene(&base));
+        for (name, set) in &variants {
+            scene(&[&base[..], set].concat());
+            assert_ne!(name, "near field on");
+        }
+        let off = variants.iter().find(|(name, _)| name == "near field off");
+        assert!(
+            scene(&[&base[..], &off.unwrap().1].concat())
+                .stress
+                .near_field_reach
+                .is_none()
+        );
+        let silent = scene(&["output.stress=none".to_string()]);
+        assert!(
+            of(&silent)
+                .iter()
+                .all(|(name, _)| !name.starts_with("near field"))
+        );
+    }
 }

@@ -42,7 +42,7 @@ impl Default for PressureRule {
 }
 
 /// Gauss-Legendre points and weights on -1..1, by Newton on the Legendre polynomial.
-fn gauss_legendre(n: usize) -> Vec<(f64, f64)> {
+pub(crate) fn gauss_legendre(n: usize) -> Vec<(f64, f64)> {
     (0..n)
         .map(|i| {
             let mut x = -(std::f64::consts::PI * (i as f64 + 0.75) / (n as f64 + 0.5)).cos();

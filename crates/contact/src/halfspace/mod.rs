@@ -4,8 +4,10 @@ mod axis;
 mod carlson;
 mod compliance;
 mod confocal;
+mod curvature;
 mod stress;
 
 pub use axis::{Extreme, Subsurface, subsurface};
 pub use compliance::patch_compliance;
+pub use curvature::{CurvedSurface, point_load as curved_point_load};
 pub use stress::EllipticPressure;

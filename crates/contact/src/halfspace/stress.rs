@@ -56,7 +56,7 @@ pub struct EllipticPressure {
     b2: f64,
     /// x and y change places, because the larger semi-axis is along y.
     swapped: bool,
-    poisson_ratio: f64,
+    pub(super) poisson_ratio: f64,
     n_duplications: usize,
 }
 

@@ -1,5 +1,7 @@
 //! Stress of a half-space under a semi-ellipsoidal pressure.
 
+use std::f64::consts::PI;
+
 use contact::halfspace::EllipticPressure;
 
 use crate::quadrature;
@@ -134,7 +136,56 @@ fn a_slender_ellipse_has_the_stress_of_a_line_contact() {
     }
 }
 
-/// Wrong: the surface, where cracks start. Centre and ends of the axes: Johnson (1985), eq. 4.29 and 4.30.
+/// Wrong: the limit itself. McEwen's formula against the sum of Flamant's line loads, sigma_r = -2/(pi r) cos(theta), which only balances a
+/// load on every half circle.
+#[test]
+fn the_line_contact_is_the_sum_of_line_loads() {
+    let slender = unit([1e7, 1.0]);
+    let rule = quadrature::gauss_legendre(400);
+    for y in [-1.5, 0.0, 0.3, 0.9] {
+        for z in [0.2, 0.5, 0.786, 1.5] {
+            let mut sum = [0.0; 3];
+            for &(node, weight) in &rule {
+                // y = sin t: the pressure cos t, its load cos^2 t dt.
+                let t = 0.5 * PI * node;
+                let (from, load) = (y - t.sin(), 0.5 * PI * weight * t.cos() * t.cos());
+                let r2 = from * from + z * z;
+                let stress = -2.0 / PI * load * z / (r2 * r2);
+                sum[0] += stress * from * from;
+                sum[1] += stress * z * z;
+                sum[2] += stress * from * z;
+            }
+            let [yy, zz, yz] = sum;
+            let expected = [NU * (yy + zz), yy, zz, 0.0, yz, 0.0];
+            let what = format!("y {y}, z {z}");
+            assert_same(&what, slender.stress([0.0, y, z]), expected, 1e-6);
+        }
+    }
+}
+
+/// Wrong: the surface, where cracks start: against the sum of point loads, at the centre, at the ends of both axes and between.
+#[test]
+fn the_surface_is_the_sum_of_point_loads() {
+    for axes in [[1.0, 1.0], [1.0, 0.99], [1.0, 0.5], [1.0, 0.12], [0.3, 1.0]] {
+        for place in [
+            [0.0, 0.0],
+            [1.0, 0.0],
+            [0.0, 1.0],
+            [0.5, 0.0],
+            [0.0, -0.6],
+            [0.4, 0.3],
+            [-0.2, 0.7],
+        ] {
+            let [x, y] = [place[0] * axes[0], place[1] * axes[1]];
+            let [xx, yy, zz, xy] = quadrature::surface_stress(axes, NU, [x, y]);
+            let found = unit(axes).stress([x, y, 0.0]);
+            let what = format!("{axes:?} at {place:?}");
+            assert_same(&what, found, [xx, yy, zz, xy, 0.0, 0.0], 1e-8);
+        }
+    }
+}
+
+/// Wrong: the surface again, in closed form. Centre and ends of the axes: Johnson (1985), eq. 4.29 and 4.30.
 #[test]
 fn the_surface_has_its_closed_forms_at_centre_and_ends() {
     for (a, b) in [(1.0, 0.99f64), (1.0, 0.5), (1.0, 0.12), (2.0, 0.1)] {

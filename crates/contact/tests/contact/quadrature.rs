@@ -25,7 +25,44 @@ pub fn stress([a, b]: [f64; 2], nu: f64, x: [f64; 3], [n_radial, n_angular]: [us
     sum.map(|s| 2.0 / 3.0 * PI * a * b * s)
 }
 
-fn point_load([x, y, z]: [f64; 3], nu: f64) -> [f64; 6] {
+/// Stress xx yy zz xy over p0 on the surface inside the ellipse or at an end of an axis, by the same sum. A load at the distance r pulls with
+/// (1 - 2 nu)/(2 pi r^2) along r and pushes as much across. What is left of the loads near the point itself, their pressure p there, is the
+/// mean of `point_load` over all distances, -(1 + 2 nu)/2 p in both directions. Polar coordinates about the point; r = R sin^2 phi takes the
+/// roots of the pressure out; Gauss-Legendre in both, quadrant by quadrant, because at an end of an axis only half of the angles count.
+pub fn surface_stress([a, b]: [f64; 2], nu: f64, [x, y]: [f64; 2]) -> [f64; 4] {
+    let inside = (1.0 - x * x / (a * a) - y * y / (b * b)).max(0.0);
+    let pressure = inside.sqrt();
+    let (rule, mut sums) = (gauss_legendre(120), [0.0; 2]);
+    for quadrant in 0..4 {
+        for &(node, weight) in &rule {
+            let angle = 0.25 * PI * (2.0 * quadrant as f64 + 1.0 + node);
+            let (sin, cos) = angle.sin_cos();
+            // Along the ray the squared pressure is inside - 2 m r - k r^2 = k (R - r)(r + back).
+            let k = cos * cos / (a * a) + sin * sin / (b * b);
+            let m = x * cos / (a * a) + y * sin / (b * b);
+            let root = (m * m + k * inside).sqrt();
+            let (end, back) = ((root - m) / k, (root + m) / k);
+            if end <= 1e-12 * a {
+                continue;
+            }
+            let mut ray = if pressure > 0.0 { pressure * end.ln() } else { 0.0 };
+            for &(node, weight) in &rule {
+                let (sin, cos) = (0.25 * PI * (1.0 + node)).sin_cos();
+                let r = end * sin * sin;
+                let here = (k * (end - r) * (r + back)).max(0.0).sqrt();
+                ray += 0.25 * PI * weight * (here - pressure) * 2.0 * cos / sin;
+            }
+            sums[0] += 0.25 * PI * weight * (2.0 * angle).cos() * ray;
+            sums[1] += 0.25 * PI * weight * (2.0 * angle).sin() * ray;
+        }
+    }
+    let [difference, shear] = sums.map(|s| (1.0 - 2.0 * nu) / (2.0 * PI) * s);
+    let mean = -0.5 * (1.0 + 2.0 * nu) * pressure;
+    [mean + difference, mean - difference, -pressure, shear]
+}
+
+/// Stress xx yy zz xy yz xz over the load of a point load at the origin, times the unit of length squared.
+pub fn point_load([x, y, z]: [f64; 3], nu: f64) -> [f64; 6] {
     let (r2, p) = (x * x + y * y, 1.0 - 2.0 * nu);
     let rho = (r2 + z * z).sqrt();
     let (r3, r5) = (rho.powi(3), rho.powi(5));
@@ -43,7 +80,7 @@ fn point_load([x, y, z]: [f64; 3], nu: f64) -> [f64; 6] {
 }
 
 /// Points and weights on -1..1.
-fn gauss_legendre(n: usize) -> Vec<(f64, f64)> {
+pub fn gauss_legendre(n: usize) -> Vec<(f64, f64)> {
     let rule = |i: usize| {
         let mut x = -(PI * (i as f64 + 0.75) / (n as f64 + 0.5)).cos();
         let mut slope = 0.0;

@@ -106,6 +106,7 @@ pub fn relative(a: f64, b: f64) -> f64 {
     (a - b).abs() / a.abs().max(b.abs())
 }
 
+pub mod graded;
 pub mod rings;
 
 use dynamics::Hold;

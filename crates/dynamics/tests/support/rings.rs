@@ -57,15 +57,22 @@ pub fn ring_model(side: Side, mesh: Mesh, hold: Hold) -> RingModel {
     }
 }
 
+/// Places of the nodes of a section: columns across the groove as shares of its half, rows from the raceway as shares of the depth.
+pub(super) struct Columns {
+    pub shares: Vec<f64>,
+    pub rows: Vec<f64>,
+    pub shoulder_elements: usize,
+}
+
 /// Seat radius, shoulder radius, held group.
-fn measures(side: Side) -> (f64, f64, &'static str) {
+pub(super) fn measures(side: Side) -> (f64, f64, &'static str) {
     match side {
         Side::Inner => (25e-3, 30.2e-3, "bore"),
         Side::Outer => (40e-3, 34.3e-3, "seat"),
     }
 }
 
-fn groove(side: Side) -> Groove {
+pub(super) fn groove(side: Side) -> Groove {
     let geometry = BearingGeometry::reference_7010c();
     Groove {
         side,
@@ -76,27 +83,51 @@ fn groove(side: Side) -> Groove {
 }
 
 fn ring_mesh(groove: Groove, seat: f64, shoulder: f64, group: &str, level: Level) -> Mesh {
+    let columns = Columns {
+        shares: (0..=level.groove)
+            .map(|i| i as f64 / level.groove as f64 * 2.0 - 1.0)
+            .collect(),
+        // Rows get finer towards the raceway.
+        rows: (0..=level.thickness)
+            .map(|j| (j as f64 / level.thickness as f64).powf(1.4))
+            .collect(),
+        shoulder_elements: level.shoulder,
+    };
+    revolved(groove, seat, shoulder, group, &columns, level.sectors, level.kind)
+}
+
+/// A revolved section.
+pub(super) fn revolved(
+    groove: Groove,
+    seat: f64,
+    shoulder: f64,
+    group: &str,
+    places: &Columns,
+    sectors: usize,
+    kind: ElementKind,
+) -> Mesh {
     let half_width = 8e-3;
     let edge = (groove.side.sign() * (shoulder - groove.centre_radius) / groove.groove_radius).acos();
     let groove_z = groove.groove_radius * edge.sin();
+    let n_shoulder = places.shoulder_elements;
     // Raceway side and seat side points, from -z to +z.
     let (mut race, mut back) = (Vec::new(), Vec::new());
-    let columns = 2 * level.shoulder + level.groove;
+    let columns = 2 * n_shoulder + places.shares.len() - 1;
     for i in 0..=columns {
         let (left, right) = (
-            i as f64 / level.shoulder as f64,
-            (columns - i) as f64 / level.shoulder as f64,
+            i as f64 / n_shoulder as f64,
+            (columns - i) as f64 / n_shoulder as f64,
         );
-        if i < level.shoulder {
+        if i < n_shoulder {
             let z = -half_width + left * (half_width - groove_z);
             race.push([shoulder, z]);
             back.push([seat, z]);
-        } else if columns - i < level.shoulder {
+        } else if columns - i < n_shoulder {
             let z = half_width - right * (half_width - groove_z);
             race.push([shoulder, z]);
             back.push([seat, z]);
         } else {
-            let share = (i - level.shoulder) as f64 / level.groove as f64 * 2.0 - 1.0;
+            let share = places.shares[i - n_shoulder];
             let angle = share * edge;
             let sign = groove.side.sign();
             race.push([
@@ -106,15 +137,12 @@ fn ring_mesh(groove: Groove, seat: f64, shoulder: f64, group: &str, level: Level
             back.push([seat, share * groove_z]);
         }
     }
-    let rows = level.thickness;
+    let rows = places.rows.len() - 1;
     let points: Vec<[f64; 2]> = (0..=columns)
         .flat_map(|i| {
             let (a, b) = (race[i], back[i]);
-            (0..=rows).map(move |j| {
-                // Rows get finer towards the raceway.
-                let s = (j as f64 / rows as f64).powf(1.4);
-                [a[0] + s * (b[0] - a[0]), a[1] + s * (b[1] - a[1])]
-            })
+            let along = move |s: &f64| [a[0] + s * (b[0] - a[0]), a[1] + s * (b[1] - a[1])];
+            places.rows.iter().map(along)
         })
         .collect();
     let node = |i: usize, j: usize| i * (rows + 1) + j;
@@ -124,7 +152,7 @@ fn ring_mesh(groove: Groove, seat: f64, shoulder: f64, group: &str, level: Level
             quads.push([node(i, j), node(i + 1, j), node(i + 1, j + 1), node(i, j + 1)]);
         }
     }
-    let on_groove = level.shoulder..level.shoulder + level.groove;
+    let on_groove = n_shoulder..columns - n_shoulder;
     let raceway = on_groove.map(|i| [node(i, 0), node(i + 1, 0)]).collect();
     let held = (0..columns).map(|i| [node(i, rows), node(i + 1, rows)]).collect();
     let groups = BTreeMap::from([("raceway".to_string(), raceway), (group.to_string(), held)]);
@@ -134,14 +162,9 @@ fn ring_mesh(groove: Groove, seat: f64, shoulder: f64, group: &str, level: Level
         centre_z: 0.0,
         radius: groove.groove_radius,
     };
-    revolve(
-        &section,
-        level.sectors,
-        level.kind,
-        &[Snap {
-            group: "raceway".to_string(),
-            arc,
-        }],
-    )
-    .unwrap()
+    let snap = Snap {
+        group: "raceway".to_string(),
+        arc,
+    };
+    revolve(&section, sectors, kind, &[snap]).unwrap()
 }

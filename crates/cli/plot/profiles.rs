@@ -1,0 +1,102 @@
+//! Profiles of stress along a line, at one step.
+
+use std::collections::BTreeMap;
+
+use anyhow::{Context, anyhow};
+use figure::{Axis, Figure, Series};
+
+use super::quantity::{self, DEGREE, MEGAPASCAL, MICROMETRE, Unit, points};
+use super::{Choice, Named, Results};
+
+/// Table of all profiles.
+const FILE: &str = "profiles.csv";
+/// What a line may run along: column, name of the axis and unit.
+const COORDINATES: [(&str, &str, Unit); 3] = [
+    ("groove_angle_rad", "groove angle", DEGREE),
+    ("depth_m", "depth below the raceway", MICROMETRE),
+    ("azimuth_rad", "azimuth on the ring", DEGREE),
+];
+/// Figures of a profile: ending of the name, the axis, and the starts of the columns.
+const FIGURES: [(&str, &str, &[&str]); 2] = [
+    ("stress", "stress", &["stress_", "von_mises"]),
+    (
+        "principal_stress",
+        "principal stress",
+        &["principal_", "maximum_shear", "hydrostatic"],
+    ),
+];
+
+/// Rows of one profile at one step, by the names of the columns.
+type Columns = BTreeMap<String, Vec<f64>>;
+
+/// The figures of `profiles.csv` at the chosen step, else at the last.
+pub fn figures(results: &Results, choice: &Choice) -> anyhow::Result<Vec<Named>> {
+    let path = results.dir.join(FILE);
+    if !path.exists() {
+        return Ok(Vec::new());
+    }
+    let mut reader =
+        csv::Reader::from_path(&path).with_context(|| format!("cannot read {}", path.display()))?;
+    let names: Vec<String> = reader.headers()?.iter().map(str::to_string).collect();
+    let place = |name: &str| {
+        let found = names.iter().position(|n| n == name);
+        found.ok_or_else(|| {
+            anyhow!(
+                "{} has no column {name:?}; it has {}",
+                path.display(),
+                names.join(", ")
+            )
+        })
+    };
+    let (step, profile) = (place("step")?, place("profile")?);
+    let rows: Vec<csv::StringRecord> = reader
+        .records()
+        .collect::<Result<_, _>>()
+        .with_context(|| format!("{} is damaged", path.display()))?;
+    let steps: Vec<u64> = rows.iter().filter_map(|row| row[step].parse().ok()).collect();
+    let Some(shown) = choice
+        .step
+        .filter(|s| steps.contains(s))
+        .or(steps.iter().max().copied())
+    else {
+        return Ok(Vec::new());
+    };
+    let mut profiles: BTreeMap<String, Columns> = BTreeMap::new();
+    for row in rows.iter().filter(|row| row[step].parse() == Ok(shown)) {
+        let columns = profiles.entry(row[profile].to_string()).or_default();
+        for (name, cell) in names.iter().zip(row) {
+            columns
+                .entry(name.clone())
+                .or_default()
+                .push(cell.parse().unwrap_or(f64::NAN));
+        }
+    }
+    let of_profile = |(name, columns): (&String, &Columns)| of_profile(name, columns, &names, shown);
+    Ok(profiles.iter().flat_map(of_profile).collect())
+}
+
+/// Both figures of a profile, columns in the order of the table.
+fn of_profile(profile: &str, columns: &Columns, names: &[String], step: u64) -> Vec<Named> {
+    let (axis, x) = along(columns);
+    let figure = |(ending, what, starts): &(&str, &str, &[&str])| {
+        let title = format!("Profile {profile}, step {step}: {what}");
+        let mut figure = Figure::new(title, axis.clone(), MEGAPASCAL.axis(*what));
+        for name in names.iter().filter(|n| starts.iter().any(|s| n.starts_with(s))) {
+            let (label, unit) = quantity::split(name);
+            let values = points(&x, &unit.of(&columns[name]));
+            figure = figure.series(Series::line(label.replace('_', " "), values));
+        }
+        Named::new(format!("profile_{profile}_{ending}"), figure)
+    };
+    FIGURES.iter().map(figure).collect()
+}
+
+/// The coordinate that the line runs along: the first that is not the same at all its points.
+fn along(columns: &Columns) -> (Axis, Vec<f64>) {
+    let varies = |x: &[f64]| x.iter().any(|v| *v != x[0]);
+    let chosen = COORDINATES
+        .iter()
+        .find(|(column, _, _)| varies(&columns[*column]));
+    let (column, name, unit) = chosen.unwrap_or(&COORDINATES[1]);
+    (unit.axis(*name).tight(), unit.of(&columns[*column]))
+}
