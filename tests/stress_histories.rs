@@ -12,8 +12,8 @@ use crate::util::{Dir, with_line};
 const PITCH: f64 = PI / 9.0;
 /// Speed of the inner ring, rad/s.
 const SPEED: f64 = 60.0 * PI;
-/// 2800 steps of a fifth of the width of an ellipse: 77 ms are a revolution of the balls.
-const STEP: &str = "0.0275 ms";
+/// Half the width of a pulse; 77 ms are a revolution of the balls.
+const STEP: &str = "0.05 ms";
 
 /// Histories of one run: probes `inner` and `outer`, half-way between two balls at the start.
 struct Histories {
@@ -32,7 +32,7 @@ fn run(level: Level, analysis: &str) -> Histories {
     let mut probes = String::new();
     for (ring, angle) in [("inner", 19.6), ("outer", 19.5)] {
         probes += &format!(
-            "[probes.point.{ring}]\nring = \"{ring}\"\nazimuth = \"10 deg\"\ngroove_angle = \"{angle} deg\"\ndepth = \"0.06 mm\"\n"
+            "[probes.point.{ring}]\nring = \"{ring}\"\nazimuth = \"10 deg\"\ngroove_angle = \"{angle} deg\"\ndepth = \"0.1 mm\"\n"
         );
     }
     let tables = format!("{analysis}\n[speed]\ninner = \"1800 rpm\"\n[stress]\nnear_field = true\n{probes}");
@@ -65,7 +65,7 @@ fn crossings(time: &[f64], history: &[f64], level: f64) -> [Vec<f64>; 2] {
     for i in 1..history.len() {
         let [a, b] = [history[i - 1] - level, history[i] - level];
         if (a < 0.0) != (b < 0.0) {
-            found[usize::from(a > 0.0)].push(time[i - 1] + (time[i] - time[i - 1]) * a / (a - b));
+            found[usize::from(a >= 0.0)].push(time[i - 1] + (time[i] - time[i - 1]) * a / (a - b));
         }
     }
     found
@@ -82,7 +82,7 @@ fn gap(a: &[f64], b: &[f64]) -> f64 {
 fn quasi_static(level: Level) -> Histories {
     run(
         level,
-        &format!("[quasi_static]\nduration = \"77 ms\"\nstep = \"{STEP}\"\noutput_every = 2800"),
+        &format!("[quasi_static]\nduration = \"77 ms\"\nstep = \"{STEP}\"\noutput_every = 1540"),
     )
 }
 
@@ -156,11 +156,11 @@ fn histories_of_a_revolution_do_not_depend_on_the_mesh() {
 fn a_motion_has_the_histories_of_its_equilibria() {
     let still = run(
         LEVELS[0],
-        &format!("[quasi_static]\nduration = \"15.4 ms\"\nstep = \"{STEP}\"\noutput_every = 560"),
+        &format!("[quasi_static]\nduration = \"15.4 ms\"\nstep = \"{STEP}\"\noutput_every = 308"),
     );
     let motion = run(
         LEVELS[0],
-        "[dynamic]\nduration = \"15.4 ms\"\nstep = \"0.01375 ms\"\noutput_every = 1120",
+        "[dynamic]\nduration = \"15.4 ms\"\nstep = \"0.025 ms\"\noutput_every = 616",
     );
     for (r, ring) in RINGS.iter().enumerate() {
         for (q, quantity) in QUANTITIES.iter().enumerate() {
