@@ -62,8 +62,8 @@ fn solved(level: Level) -> Between {
         stress(azimuth.collect(), depth)
     };
     let element = 2.0 * PI / level.sectors as f64;
-    let n = (10f64.to_radians() / element * PER_ELEMENT as f64).round() as usize / (2 * PER_ELEMENT)
-        * (2 * PER_ELEMENT);
+    let pairs = (5f64.to_radians() / element).round().max(1.0) as usize;
+    let n = 2 * PER_ELEMENT * pairs;
     let azimuth = (0..n).map(|i| 5f64.to_radians() + element * (i as f64 + 0.5) / PER_ELEMENT as f64);
     Between {
         lines: [line(0.0), line(1.5e-3)].concat(),
