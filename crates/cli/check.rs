@@ -4,7 +4,9 @@ use std::ops::Range;
 use std::path::Path;
 
 use contact::Side;
-use dynamics::{Model, Numbers, Prepared, RingMemory, Substructures, forecast_peak};
+use dynamics::{
+    Model, MotionSizes, Numbers, Prepared, RingMemory, Substructures, forecast_motion_peak, forecast_peak,
+};
 
 use crate::build::build_model;
 use crate::failure::Failure;
@@ -15,6 +17,9 @@ use crate::results::probes::Probes;
 use crate::results::summary::effects_on;
 use crate::rules;
 use crate::scene::{Analysis, Scene};
+
+/// Steps between files up to which files wait for the disk.
+const OFTEN: u64 = 10;
 
 /// Reads and checks the scene and its meshes and prints effects, sizes and forecasts.
 pub fn check(path: &Path, overrides: &[String]) -> Result<(), Failure> {
@@ -67,26 +72,14 @@ pub fn check(path: &Path, overrides: &[String]) -> Result<(), Failure> {
         geometry.free_contact_angle().to_degrees()
     ));
     print_probes(&scene, probes.as_ref());
-    let mut memory = [None, None];
+    let (mut memory, mut motion) = ([None, None], [Some(None), Some(None)]);
     for side in Side::BOTH {
-        memory[side.index()] = print_ring(&model, side)?;
-    }
-    let n_threads = rayon::current_num_threads();
-    print::line(format_args!(
-        "memory   peak about {:.0} MB with {n_threads} threads{}",
-        forecast_peak(memory, n_threads) as f64 / 1e6,
-        match &scene.analysis {
-            Analysis::Dynamic(_) =>
-                " for the static start; the steps hold mass and stiffness too, and are not forecast"
-                    .to_string(),
-            Analysis::Modes(wanted) => format!(
-                " for the static start; the search for modes holds mass, stiffness and {:.0} MB of vectors beside the \
-                 factors",
-                modes::basis_bytes(&model, wanted) as f64 / 1e6
-            ),
-            _ => String::new(),
+        if let Some((of_ring, of_motion)) = print_ring(&model, side)? {
+            memory[side.index()] = Some(of_ring);
+            motion[side.index()] = of_motion.map(Some);
         }
-    ));
+    }
+    print_memory(&scene, &model, memory, motion);
     let forecast = Forecast::new(&scene, &model, 0);
     let free = disk::free_bytes(Path::new(".")).map_or(String::new(), |free| {
         format!("; the disk of this folder has {} free", disk::size(free))
@@ -101,6 +94,43 @@ pub fn check(path: &Path, overrides: &[String]) -> Result<(), Failure> {
         print::line(format_args!("advice   {line}"));
     }
     Ok(())
+}
+
+/// Prints the forecast of the peak. Of a motion `motion` has the sizes of each ring, Some(None) when it is rigid, None when its steps
+/// are not forecast.
+fn print_memory(
+    scene: &Scene,
+    model: &Model,
+    memory: [Option<RingMemory>; 2],
+    motion: [Option<Option<MotionSizes>>; 2],
+) {
+    let n_threads = rayon::current_num_threads();
+    let start = forecast_peak(memory, n_threads);
+    let (peak, note) = match (&scene.analysis, motion) {
+        (Analysis::Dynamic(dynamic), [Some(inner), Some(outer)]) => {
+            let queued = if dynamic.output_every <= OFTEN { 2 } else { 0 };
+            let steps = forecast_motion_peak([inner, outer], queued);
+            let note = format!(" ({:.0} MB for the static start)", start as f64 / 1e6);
+            (steps.max(start), note)
+        }
+        (Analysis::Dynamic(_), _) => {
+            let note = " for the static start; the steps hold mass and stiffness too, and are not forecast";
+            (start, note.to_string())
+        }
+        (Analysis::Modes(wanted), _) => {
+            let note = format!(
+                " for the static start; the search for modes holds mass, stiffness and {:.0} MB of vectors beside the \
+                 factors",
+                modes::basis_bytes(model, wanted) as f64 / 1e6
+            );
+            (start, note)
+        }
+        _ => (start, String::new()),
+    };
+    print::line(format_args!(
+        "memory   peak about {:.0} MB with {n_threads} threads{note}",
+        peak as f64 / 1e6
+    ));
 }
 
 /// Prints where the probes of a scene lie.
@@ -128,8 +158,8 @@ fn print_probes(scene: &Scene, probes: Option<&Probes>) {
     }
 }
 
-/// Prints one ring and returns the forecast of its memory; None for a rigid ring.
-fn print_ring(model: &Model, side: Side) -> Result<Option<RingMemory>, Failure> {
+/// Prints one ring and returns the forecast of its memory, and what its motion holds; None for a rigid ring.
+fn print_ring(model: &Model, side: Side) -> Result<Option<(RingMemory, Option<MotionSizes>)>, Failure> {
     let stiffness = model.hertz[side.index()].stiffness / 10f64.powf(4.5);
     let Some(ring) = model.ring(side) else {
         print::line(format_args!(
@@ -170,7 +200,7 @@ fn print_ring(model: &Model, side: Side) -> Result<Option<RingMemory>, Failure> 
     if let Some(parts) = prepared.parts() {
         print_sectors(parts);
     }
-    Ok(Some(memory))
+    Ok(Some((memory, prepared.motion())))
 }
 
 /// Prints the balance of the sectors, and what a rank holds of them.

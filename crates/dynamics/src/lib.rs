@@ -36,7 +36,7 @@ pub use costs::{EffectCosts, Timing};
 pub use effects::{Effect, Loads};
 pub use error::DynamicsError;
 pub use inventory::Inventory;
-pub use memory::{RingMemory, forecast_peak};
+pub use memory::{MotionSizes, RingMemory, forecast_motion_peak, forecast_peak};
 pub use model::{
     Backend, ContactMode, ContactSettings, Hold, Model, RingModel, Sectors, ShaftDof, Tolerances,
 };

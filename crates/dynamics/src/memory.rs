@@ -21,6 +21,10 @@
 //! block of 8 columns 77 n each (loads, right-hand sides, harmonics), each coupling of its sector 600 (blocks of K, M, stress).
 //! What its results take fits into what the columns left.
 //!
+//! **Motion** of a periodic ring of n nodes, N sectors and r section nodes in its raceway: factor, table of responses 72 N r^2, 900 per
+//! coupling of a sector, 24 n for each functional of the mount, 1340 n for mesh, sites, states and the vectors of a step, 390 n for each of two
+//! step files that wait to be written. The last three numbers are measured: see `tests/memory.rs`.
+//!
 //! The threads need not be in step, and the measured peak is then lower, down to that of one thread.
 
 use mesh::Mesh;
@@ -42,6 +46,15 @@ const SMALL_BYTES: usize = 1_500_000;
 
 /// Blocks and lists of a sector's couplings: stiffness, mass and stress, whole and held, bytes per coupling.
 const COUPLING_BYTES: usize = 600;
+
+/// Mesh, sites, coordinates, states and vectors of a step of a periodic ring in motion, bytes per node, measured.
+const MOTION_BYTES: usize = 1340;
+
+/// A step that waits to be written, bytes per node, measured.
+const QUEUED_BYTES: usize = 390;
+
+/// Blocks and lists of a sector's couplings in motion: whole and held, products and stress, bytes per coupling.
+const MOTION_COUPLING_BYTES: usize = 900;
 
 /// What the search for periodicity holds beside the mesh, bytes per node.
 const SEARCH_BYTES: usize = 250;
@@ -135,6 +148,43 @@ impl RingMemory {
     pub fn making(&self) -> usize {
         self.assembly.max(self.factorisation)
     }
+}
+
+/// What the motion of a periodic ring is made of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct MotionSizes {
+    /// Nodes of the mesh.
+    pub n_nodes: usize,
+    /// Equal sectors.
+    pub n_sectors: usize,
+    /// Couplings of a sector.
+    pub n_couplings: usize,
+    /// Section nodes whose responses are kept.
+    pub n_responses: usize,
+    /// Functionals of the mount.
+    pub n_mount: usize,
+    /// Bytes of the harmonics' factor, and of a defect.
+    pub factor: usize,
+}
+
+impl MotionSizes {
+    /// Bytes of the ring while steps are made and `queued` of them wait to be written: see the module.
+    pub fn bytes(&self, queued: usize) -> usize {
+        self.factor
+            + 72 * self.n_sectors * self.n_responses.pow(2)
+            + MOTION_COUPLING_BYTES * self.n_couplings
+            + (MOTION_BYTES + 24 * self.n_mount + QUEUED_BYTES * queued) * self.n_nodes
+    }
+}
+
+/// Forecast of the largest resident memory of the steps of a motion, bytes; None is a rigid ring.
+pub fn forecast_motion_peak(rings: [Option<MotionSizes>; 2], queued: usize) -> usize {
+    PROGRAM_BYTES
+        + rings
+            .iter()
+            .flatten()
+            .map(|ring| ring.bytes(queued))
+            .sum::<usize>()
 }
 
 /// Forecast of the largest resident memory of a static run, bytes, with `n_threads` threads; inner ring first, None is

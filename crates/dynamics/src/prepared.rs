@@ -9,7 +9,7 @@ use sprs::CsMat;
 
 use crate::defect::{Changes, RingDefect};
 use crate::error::DynamicsError;
-use crate::memory::RingMemory;
+use crate::memory::{MotionSizes, RingMemory};
 use crate::model::{Backend, Hold, Model, RingModel};
 use crate::motion::coordinates::Coordinates;
 use crate::ring::{elimination_order, named};
@@ -45,6 +45,7 @@ struct Harmonics {
     /// Rows that its defect changes.
     changes: Option<Changes>,
     note: String,
+    motion: MotionSizes,
 }
 
 /// A factored ring.
@@ -112,6 +113,7 @@ impl Prepared {
                     matrix: Matrix::Cyclic(Box::new(Harmonics {
                         symmetry,
                         changes: periodic.defect.as_ref().map(|d| changes(mesh, &held, d)),
+                        motion: motion_sizes(side, ring, &periodic, symmetry),
                         note: periodic.note(),
                         held: periodic.held,
                     })),
@@ -157,6 +159,14 @@ impl Prepared {
     /// Whether harmonics solve the ring.
     pub fn is_cyclic(&self) -> bool {
         matches!(self.matrix, Matrix::Cyclic(_))
+    }
+
+    /// What a motion of the ring holds; None of a ring that harmonics do not solve.
+    pub fn motion(&self) -> Option<MotionSizes> {
+        match &self.matrix {
+            Matrix::Cyclic(harmonics) => Some(harmonics.motion),
+            Matrix::Sparse(..) | Matrix::Cut(_) => None,
+        }
     }
 
     /// Bytes of the factor.
@@ -233,6 +243,24 @@ impl Harmonics {
         let factor = CyclicDefect::new(base, &changes.of([0.0, 1.0]))?;
         let iterations = factor.defect().iterations();
         Ok((Box::new(factor), Some(iterations)))
+    }
+}
+
+fn motion_sizes(side: Side, ring: &RingModel, periodic: &Periodic, symmetry: Symmetry) -> MotionSizes {
+    let (whole, held) = (&periodic.whole, &periodic.held);
+    let defect = periodic.defect.as_ref();
+    let touched = defect.map_or(0, |d| d.nodes().len().min(whole.ring.n_section_nodes()));
+    MotionSizes {
+        n_nodes: ring.mesh.n_nodes(),
+        n_sectors: whole.ring.n_sectors(),
+        n_couplings: whole.stiffness.n_couplings(),
+        n_responses: held.raceway.len() + touched,
+        n_mount: match (ring.hold, side) {
+            (Hold::Clamped, Side::Inner) => 5,
+            (Hold::MeanMotion, _) => 6,
+            (Hold::Clamped, Side::Outer) | (Hold::Free, _) => 0,
+        },
+        factor: held.sectors.ring.factor_bytes(symmetry) + defect.map_or(0, RingDefect::bytes),
     }
 }
 
