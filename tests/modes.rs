@@ -115,3 +115,20 @@ fn a_speed_is_refused() {
     );
     assert!(!dir.path("out").exists());
 }
+
+/// Wrong: a scene that asks for sectors would be solved as a whole without a word, on one core of many.
+#[test]
+fn modes_refuse_sectors() {
+    let dir = Dir::with_meshes();
+    dir.write("scene.toml", with_line("[static]", "[static]", MODES));
+    for command in [
+        &["check", "scene.toml"][..],
+        &["run", "scene.toml", "--out", "out"],
+    ] {
+        let outcome = dir.raceway(&[command, &["--set", "solver.backend=sector"]].concat());
+        assert_eq!(outcome.code, Some(2), "{}", outcome.stderr);
+        let text = "solver.backend is \"sector\", but the search for modes has no sectors";
+        assert!(outcome.stderr.contains(text), "{}", outcome.stderr);
+    }
+    assert!(!dir.path("out").exists());
+}

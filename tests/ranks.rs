@@ -2,6 +2,8 @@
 //!
 //! `scripts/test-mpi` builds the program with the feature `mpi`, says where it is in `RACEWAY_MPI`, and runs these.
 
+mod memory;
+
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
@@ -113,14 +115,43 @@ fn harmonics_have_the_same_bits_on_any_number_of_ranks() {
 fn equilibria_have_the_same_bits_on_any_number_of_ranks() {
     let dir = small_motion();
     dir.write("static.toml", SCENE);
-    let run = |out: &'static str| [&["run", "static.toml", "--out", out][..], &SECTOR[..]].concat();
-    done(&dir.raceway(&run("alone")));
-    for (ranks, out) in [(1, "one"), (2, "two"), (3, "three"), (4, "four"), (6, "six")] {
-        done(&on_ranks(&dir, ranks, &run(out)));
-        for name in ["balls.csv", "shaft.csv", "step_000000.hdf", "mesh.hdf"] {
-            let read = |folder: &str| std::fs::read(dir.path(&format!("{folder}/{name}"))).unwrap();
-            assert!(read("alone") == read(out), "{name} of {ranks} ranks differs");
+    // Few sectors have their interface on all ranks, many divide it.
+    for sectors in [5, 17] {
+        let set = format!("solver.sectors={sectors}");
+        let run = [
+            "run",
+            "static.toml",
+            "--set",
+            "solver.backend=sector",
+            "--set",
+            &set,
+            "--out",
+        ];
+        let alone = format!("alone{sectors}");
+        done(&dir.raceway(&[&run[..], &[&alone]].concat()));
+        for ranks in [1, 2, 3, 4, 6] {
+            let out = format!("{sectors}on{ranks}");
+            done(&on_ranks(&dir, ranks, &[&run[..], &[&out]].concat()));
+            for name in ["balls.csv", "shaft.csv", "step_000000.hdf", "mesh.hdf"] {
+                let read = |folder: &str| std::fs::read(dir.path(&format!("{folder}/{name}"))).unwrap();
+                assert!(read(&alone) == read(&out), "{name} of {ranks} ranks differs");
+            }
         }
+    }
+}
+
+/// Wrong: an interface that ranks divide would move a ring by other bits than one process.
+#[test]
+#[ignore = "needs mpirun and a program built with MPI: scripts/test-mpi"]
+fn many_sectors_move_with_the_same_bits_on_any_number_of_ranks() {
+    let dir = small_motion();
+    let many = ["--set", "solver.backend=sector", "--set", "solver.sectors=17"];
+    dir.run("alone", &many);
+    for (ranks, threads) in [(2, "2"), (3, "1"), (4, "1")] {
+        let out = format!("ranks{ranks}");
+        let run = ["run", "scene.toml", "--out", &out, "--threads", threads];
+        done(&on_ranks(&dir, ranks, &[&run[..], &many[..]].concat()));
+        assert_same_run(&dir, "alone", &out);
     }
 }
 

@@ -1,6 +1,5 @@
 //! `raceway check`: builds everything a run needs except factors, and says what the run would be.
 
-use std::ops::Range;
 use std::path::Path;
 
 use contact::Side;
@@ -12,6 +11,7 @@ use crate::build::build_model;
 use crate::failure::Failure;
 use crate::modes;
 use crate::print;
+use crate::rank_table::{self, RingOnRanks};
 use crate::results::disk::{self, Forecast};
 use crate::results::probes::Probes;
 use crate::results::summary::effects_on;
@@ -73,13 +73,16 @@ pub fn check(path: &Path, overrides: &[String]) -> Result<(), Failure> {
     ));
     print_probes(&scene, probes.as_ref());
     let (mut memory, mut motion) = ([None, None], [Some(None), Some(None)]);
+    let mut on_ranks = [None, None];
     for side in Side::BOTH {
-        if let Some((of_ring, of_motion)) = print_ring(&model, side)? {
+        if let Some((of_ring, of_motion, of_ranks)) = print_ring(&model, side)? {
             memory[side.index()] = Some(of_ring);
             motion[side.index()] = of_motion.map(Some);
+            on_ranks[side.index()] = of_ranks;
         }
     }
     print_memory(&scene, &model, memory, motion);
+    rank_table::print(&on_ranks, &scene.analysis);
     let forecast = Forecast::new(&scene, &model, 0);
     let free = disk::free_bytes(Path::new(".")).map_or(String::new(), |free| {
         format!("; the disk of this folder has {} free", disk::size(free))
@@ -158,8 +161,11 @@ fn print_probes(scene: &Scene, probes: Option<&Probes>) {
     }
 }
 
-/// Prints one ring and returns the forecast of its memory, and what its motion holds; None for a rigid ring.
-fn print_ring(model: &Model, side: Side) -> Result<Option<(RingMemory, Option<MotionSizes>)>, Failure> {
+/// Memory of one ring, what its motion holds when that is known, and on ranks when it is in sectors.
+type RingForecast = (RingMemory, Option<MotionSizes>, Option<RingOnRanks>);
+
+/// Prints one ring and returns the forecast of its memory; None for a rigid ring.
+fn print_ring(model: &Model, side: Side) -> Result<Option<RingForecast>, Failure> {
     let stiffness = model.hertz[side.index()].stiffness / 10f64.powf(4.5);
     let Some(ring) = model.ring(side) else {
         print::line(format_args!(
@@ -200,13 +206,14 @@ fn print_ring(model: &Model, side: Side) -> Result<Option<(RingMemory, Option<Mo
     if let Some(parts) = prepared.parts() {
         print_sectors(parts);
     }
-    Ok(Some((memory, prepared.motion())))
+    let on_ranks = prepared.parts().map(|parts| RingOnRanks::new(model, ring, parts));
+    Ok(Some((memory, prepared.motion(), on_ranks)))
 }
 
-/// Prints the balance of the sectors, and what a rank holds of them.
+/// Prints the balance of the sectors.
 fn print_sectors(parts: &Substructures) {
     print::line(format_args!("         {}", parts.note()));
-    let (costs, interface) = (parts.symbolic().costs(), parts.symbolic().interface_bytes());
+    let costs = parts.symbolic().costs();
     let whole: f64 = costs.iter().map(|c| c.flops).sum();
     for (s, cost) in costs.iter().enumerate() {
         print::line(format_args!(
@@ -217,15 +224,4 @@ fn print_sectors(parts: &Substructures) {
             100.0 * cost.flops / whole
         ));
     }
-    let ranks = std::iter::successors(Some(1), |n| Some(2 * n)).take_while(|&n| n <= costs.len());
-    let share = |n: usize| {
-        let bytes = |range: Range<usize>| costs[range].iter().map(|c| c.factor_bytes).sum::<usize>();
-        let largest = comm::shares(costs.len(), n).into_iter().map(bytes).max();
-        format!("{:.1} MB on {n}", (largest.unwrap_or(0) + interface) as f64 / 1e6)
-    };
-    let shares: Vec<String> = ranks.map(share).collect();
-    print::line(format_args!(
-        "         factor per rank, by number of ranks: {}",
-        shares.join(", ")
-    ));
 }

@@ -19,6 +19,7 @@ mod prices;
 mod print;
 mod progress;
 mod quasi_static;
+mod rank_table;
 mod report;
 mod results;
 mod resume;
@@ -46,6 +47,7 @@ use crate::options::{Limits, Part, parse_part};
 use crate::pack::Pack;
 use crate::plot::Plot;
 use crate::report::Report;
+use crate::results::summary::peak_memory;
 use crate::resume::Request;
 
 /// Simulates angular contact ball bearings with fully flexible rings.
@@ -165,6 +167,17 @@ fn require_one_task(command: &Command) -> Result<(), Failure> {
     )))
 }
 
+/// Says what each of several ranks has needed.
+fn say_memory_of_ranks() {
+    let comm = Communicator::world();
+    if comm.size() == 1 {
+        return;
+    }
+    let peaks = comm.all_gather(vec![peak_memory() as f64], &vec![1; comm.size()]);
+    let peaks: Vec<String> = peaks.iter().map(|bytes| format!("{:.0}", bytes / 1e6)).collect();
+    print::line(format_args!("peak memory of the ranks: {} MB", peaks.join(", ")));
+}
+
 fn execute(arguments: Arguments) -> Result<(), Failure> {
     require_one_task(&arguments.command)?;
     if let Some(threads) = arguments.threads {
@@ -191,10 +204,15 @@ fn execute(arguments: Arguments) -> Result<(), Failure> {
             limits,
         } => {
             let dir = run::run(&scene, &overrides, out, &limits, points)?;
+            say_memory_of_ranks();
             print::line(format_args!("results: {}", dir.display()));
             Ok(())
         }
-        Command::Resume(request) => resume::resume(&request),
+        Command::Resume(request) => {
+            resume::resume(&request)?;
+            say_memory_of_ranks();
+            Ok(())
+        }
         Command::Info { path, verify } => {
             info::info(&path, if verify { Depth::Bytes } else { Depth::Structure })
         }

@@ -196,7 +196,7 @@ impl Summary {
             factor_bytes_forecast: sides(|i| costs.forecast[i].map_or(0, |ring| ring.factorisation)),
             peak_memory_forecast_bytes: match &scene.analysis {
                 Analysis::Dynamic(_) => None,
-                _ => Some(forecast_peak(costs.forecast, rayon::current_num_threads())),
+                _ => Some(forecast_peak(costs.forecast, rings_at_once())),
             },
             peak_memory_bytes: peak_memory(),
         }
@@ -316,6 +316,14 @@ fn timing(costs: &Costs, effects: &BTreeMap<&'static str, f64>) -> BTreeMap<Stri
         .chain(own)
         .chain(near_field)
         .collect()
+}
+
+/// Threads that work on different rings: several ranks make one ring after the other.
+fn rings_at_once() -> usize {
+    match Communicator::world().size() {
+        1 => rayon::current_num_threads(),
+        _ => 1,
+    }
 }
 
 /// Largest resident memory of this process, bytes; 0 where the system does not tell.

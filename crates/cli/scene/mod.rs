@@ -307,6 +307,7 @@ impl Source<'_> {
         let modes = ModesContext {
             flexible: [inner.body.is_some(), outer.body.is_some()],
             contact: contact.mode,
+            backend: solver.backend,
         };
         let analysis = raw.analysis(document, (&shaft, modes), &mut problems);
         match (bearing, materials, analysis, problems.into_texts()) {

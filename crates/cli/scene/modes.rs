@@ -6,6 +6,7 @@ use serde::Deserialize;
 
 use super::contact::ContactMode;
 use super::problems::Problems;
+use super::solver::Backend;
 use crate::units::{Quantity, RATE};
 
 /// As typed.
@@ -60,6 +61,8 @@ pub struct ModesContext {
     pub flexible: [bool; 2],
     /// Contact mode of the scene.
     pub contact: ContactMode,
+    /// How its rings are solved.
+    pub backend: Backend,
 }
 
 /// Every mode is a step file.
@@ -82,6 +85,12 @@ impl RawModes {
     /// Checks numbers, and that the bodies have modes; `None` when there are problems.
     pub fn check(&self, context: ModesContext, problems: &mut Problems) -> Option<Modes> {
         let before = problems.len();
+        if context.backend == Backend::Sector {
+            problems.add(
+                "solver.backend is \"sector\", but the search for modes has no sectors; expected \"auto\", \"cyclic\" or \
+                 \"sparse\" with [modes]",
+            );
+        }
         let number = problems.whole(self.number, "modes.number", 1, MAX_NUMBER);
         let bodies = self.bodies.clone().unwrap_or(vec![ModeBody::Bearing]);
         if bodies.is_empty() {

@@ -72,6 +72,29 @@ impl Communicator {
         }
     }
 
+    /// Sends `sent[r]` to each rank r. Returns what the ranks have sent to this one, in rank order; rank r sends `lengths[r]` numbers.
+    ///
+    /// # Panics
+    /// When there is not one message per rank, or that of a single rank to itself has another length than was announced.
+    pub fn exchange(self, sent: Vec<Vec<f64>>, lengths: &[usize]) -> Vec<f64> {
+        assert_eq!(
+            [sent.len(), lengths.len()],
+            [self.size(); 2],
+            "one message per rank"
+        );
+        assert_eq!(
+            sent[self.rank()].len(),
+            lengths[self.rank()],
+            "numbers of rank {} to itself",
+            self.rank()
+        );
+        match self {
+            Communicator::Serial => sent.concat(),
+            #[cfg(feature = "mpi")]
+            Communicator::Mpi => crate::messages::exchange(&sent, lengths),
+        }
+    }
+
     /// The bytes of rank 0, on all ranks; those of the others do not matter.
     pub fn from_root(self, bytes: Vec<u8>) -> Vec<u8> {
         match self {
@@ -119,6 +142,7 @@ mod tests {
     fn collectives_of_one_rank_are_the_identity() {
         let comm = Communicator::Serial;
         assert_eq!(comm.all_gather(vec![1.5, -0.0], &[2]), [1.5, -0.0]);
+        assert_eq!(comm.exchange(vec![vec![2.5, 3.0]], &[2]), [2.5, 3.0]);
         let elsewhere = |_, _| unreachable!("there is no other rank");
         assert_eq!(comm.agree(Err::<(), _>("no memory"), elsewhere), Err("no memory"));
         assert_eq!(comm.agree(Ok::<_, &str>(7), elsewhere), Ok(7));

@@ -1,7 +1,7 @@
 //! The operations by MPI.
 
 use mpi::collective::CommunicatorCollectives;
-use mpi::datatype::PartitionMut;
+use mpi::datatype::{Partition, PartitionMut};
 use mpi::topology::{Communicator, SimpleCommunicator};
 use mpi::traits::Root;
 
@@ -28,18 +28,38 @@ fn count(n: usize) -> i32 {
 pub(crate) fn all_gather(values: &[f64], lengths: &[usize]) -> Vec<f64> {
     let total = lengths.iter().sum();
     count(total);
+    let (counts, starts) = partition(lengths);
+    let mut all = vec![0.0; total];
+    let mut parts = PartitionMut::new(&mut all[..], counts, starts);
+    world().all_gather_varcount_into(values, &mut parts);
+    all
+}
+
+/// `sent[r]` to rank r; returns what comes from all ranks, in rank order.
+pub(crate) fn exchange(sent: &[Vec<f64>], lengths: &[usize]) -> Vec<f64> {
+    let out = sent.concat();
+    let total = lengths.iter().sum();
+    count(out.len().max(total));
+    let (counts, starts) = partition(&sent.iter().map(Vec::len).collect::<Vec<usize>>());
+    let outgoing = Partition::new(&out[..], counts, starts);
+    let (counts, starts) = partition(lengths);
+    let mut all = vec![0.0; total];
+    let mut incoming = PartitionMut::new(&mut all[..], counts, starts);
+    world().all_to_all_varcount_into(&outgoing, &mut incoming);
+    all
+}
+
+/// Numbers of consecutive pieces, and where each starts.
+fn partition(lengths: &[usize]) -> (Vec<i32>, Vec<i32>) {
     let counts: Vec<i32> = lengths.iter().map(|&n| count(n)).collect();
-    let starts: Vec<i32> = counts
+    let starts = counts
         .iter()
         .scan(0, |start, n| {
             *start += n;
             Some(*start - n)
         })
         .collect();
-    let mut all = vec![0.0; total];
-    let mut parts = PartitionMut::new(&mut all[..], counts, starts);
-    world().all_gather_varcount_into(values, &mut parts);
-    all
+    (counts, starts)
 }
 
 /// The bytes of rank 0.

@@ -9,7 +9,7 @@
 //! | assembly | 16 (9 P) + 8 P + 2 e p^2, then 16 (9 P) + 16 E | K with its indices and pattern; then K and its triangle |
 //! | factorisation | 16 E + S + F + W | the triangle, analysis, factor; W = 16 E and more: the permuted copy and fronts |
 //! | kept | S + F + 8 N | analysis, factor, support |
-//! | columns | kept + 3 (8 N 2 b) | loads, right-hand sides and solver's copy of a block of 2 b columns |
+//! | columns | kept + 2 (8 N 2 b) | right-hand sides and solver's copy of a block of 2 b columns |
 //! | results | 240 n + 24 e p + 48 e c | mesh copies and lists of stress recovery and output, stress at the c corners, record |
 //!
 //! Both rings are made at the same time if there are two threads, so their peaks add; one thread makes the inner ring
@@ -18,8 +18,8 @@
 //! rings the forecast is high by as much, a few per cent.
 //!
 //! A periodic ring of n nodes has no matrix: its harmonics' factor takes F bytes, its sites, order and directions 152 n, a
-//! block of 8 columns 77 n each (loads, right-hand sides, harmonics), each coupling of its sector 600 (blocks of K, M, stress).
-//! What its results take fits into what the columns left.
+//! block of 8 columns 77 n each (right-hand sides, harmonics, what the allocator keeps), each coupling of its sector 600 (blocks of K, M, stress).
+//! What its results take fits into what the columns left. For rings in sectors see [`crate::rank_memory`].
 //!
 //! **Motion** of a periodic ring of n nodes, N sectors and r section nodes in its raceway: factor, table of responses 72 N r^2, 900 per
 //! coupling of a sector, 24 n for each functional of the mount, 1340 n for mesh, sites, states and the vectors of a step, 390 n for each of two
@@ -29,8 +29,6 @@
 
 use mesh::Mesh;
 use solver::Symbolic;
-
-use crate::substructures::Substructures;
 
 /// Program, libraries and small buffers, bytes: resident memory of a run with rigid rings, 2-core machine with glibc.
 pub const PROGRAM_BYTES: usize = 22_000_000;
@@ -89,26 +87,7 @@ impl RingMemory {
             assembly: whole + pattern.max(triangle),
             factorisation: triangle + symbolic.bytes() + symbolic.peak_bytes(),
             kept,
-            columns: kept + 3 * 8 * mesh.n_dofs() * 2 * n_balls,
-            results: 240 * mesh.n_nodes()
-                + 24 * mesh.connectivity.len()
-                + 48 * mesh.kind.n_corners() * mesh.n_elements(),
-        }
-    }
-
-    /// The same for a ring in sectors, on this rank: matrices of its sectors, which stay until the factor is made, work space
-    /// of as many sectors as there are threads, and gathered vectors.
-    pub fn of_sectors(mesh: &Mesh, parts: &Substructures, n_balls: usize, n_threads: usize) -> RingMemory {
-        let symbolic = parts.symbolic();
-        let matrices = ENTRY_BYTES * parts.n_entries() * 10 / 9;
-        let factors: usize = symbolic.costs().iter().map(|c| c.factor_bytes).sum();
-        let kept = factors + symbolic.interface_bytes() + 8 * mesh.n_dofs();
-        RingMemory {
-            mesh: 24 * mesh.n_nodes() + 8 * mesh.connectivity.len(),
-            assembly: matrices,
-            factorisation: matrices + symbolic.peak_bytes(n_threads),
-            kept,
-            columns: kept + 4 * 8 * mesh.n_dofs() * 2 * n_balls,
+            columns: kept + 2 * 8 * mesh.n_dofs() * 2 * n_balls,
             results: 240 * mesh.n_nodes()
                 + 24 * mesh.connectivity.len()
                 + 48 * mesh.kind.n_corners() * mesh.n_elements(),

@@ -12,6 +12,7 @@ use crate::error::DynamicsError;
 use crate::memory::{MotionSizes, RingMemory};
 use crate::model::{Backend, Hold, Model, RingModel};
 use crate::motion::coordinates::Coordinates;
+use crate::rank_memory::{RankMemory, Share};
 use crate::ring::{elimination_order, named};
 use crate::sectors::{HeldSectors, Periodic, Sectors};
 use crate::substructures::Substructures;
@@ -85,7 +86,7 @@ impl Prepared {
                 Numbers::Pattern => Substructures::pattern(ring, name, &support.free, sectors)?,
             };
             return Ok(Prepared {
-                memory: RingMemory::of_sectors(mesh, &parts, n_balls, rayon::current_num_threads()),
+                memory: RankMemory::new(mesh, &parts, n_balls, &Share::of(sectors.comm)).phases(),
                 support,
                 matrix: Matrix::Cut(Box::new(parts)),
             });
@@ -175,7 +176,7 @@ impl Prepared {
             Matrix::Sparse(_, symbolic, _) => symbolic.factor_bytes(),
             Matrix::Cut(parts) => {
                 let own: usize = parts.symbolic().costs().iter().map(|c| c.factor_bytes).sum();
-                own + parts.symbolic().interface_bytes()
+                own + parts.symbolic().interface_bytes(parts.symbolic().owned())
             }
             Matrix::Cyclic(h) => h.held.sectors.ring.factor_bytes(h.symmetry),
         }

@@ -8,7 +8,7 @@ use std::time::Instant;
 use contact::quadrature::PressureRule;
 use contact::{FacetSurface, NodalWeights, RacewaySurface, Side};
 use mesh::Mesh;
-use solver::{LinearSolver, SolverError};
+use solver::{LinearSolver, SolverError, SparseVector};
 
 use crate::error::DynamicsError;
 use crate::inventory::Inventory;
@@ -99,17 +99,20 @@ impl RingSolver {
     pub fn compliance(&self, contacts: &[NodalWeights]) -> Vec<f64> {
         let n = 2 * contacts.len();
         let mut compliance = vec![0.0; n * n];
+        let rows = self.rows_of(contacts);
+        let mut field = vec![0.0; self.n_dofs];
         for first in (0..n).step_by(self.block) {
             let numbers = first..n.min(first + self.block);
-            let mut loads = vec![0.0; self.n_dofs * numbers.len()];
-            for (load, j) in loads.chunks_exact_mut(self.n_dofs).zip(numbers.clone()) {
-                let unit = if j % 2 == 0 { [1.0, 0.0] } else { [0.0, 1.0] };
-                contacts[j / 2].add_load(unit, load);
-            }
-            let columns = self.solve(loads, numbers.len());
-            for (column, j) in columns.chunks_exact(self.n_dofs).zip(numbers) {
+            let loads: Vec<SparseVector> = numbers.clone().map(|j| self.unit_load(contacts, j)).collect();
+            let values = self.factor.solve_at(&loads, &rows);
+            for (r, j) in numbers.clone().enumerate() {
+                field.fill(0.0);
+                for (&row, values) in rows.iter().zip(values.chunks_exact(numbers.len())) {
+                    field[self.support.free[row]] = values[r];
+                }
+                self.support.remove_rigid(&mut field);
                 for (i, weights) in contacts.iter().enumerate() {
-                    let motion = weights.measure(column);
+                    let motion = weights.measure(&field);
                     compliance[n * (2 * i) + j] = motion[0];
                     compliance[n * (2 * i + 1) + j] = motion[1];
                 }
@@ -122,6 +125,40 @@ impl RingSolver {
             }
         }
         compliance
+    }
+
+    /// A unit force on contact direction j, balanced, by rows of the factor.
+    fn unit_load(&self, contacts: &[NodalWeights], j: usize) -> SparseVector {
+        let mut load = vec![0.0; self.n_dofs];
+        let unit = if j.is_multiple_of(2) {
+            [1.0, 0.0]
+        } else {
+            [0.0, 1.0]
+        };
+        contacts[j / 2].add_load(unit, &mut load);
+        self.support.balance(&mut load);
+        let entries = self
+            .support
+            .free
+            .iter()
+            .enumerate()
+            .map(|(row, &dof)| (row, load[dof]));
+        entries.filter(|entry| entry.1 != 0.0).collect()
+    }
+
+    /// Rows of the factor that contacts and the mean motion of the held surface measure.
+    fn rows_of(&self, contacts: &[NodalWeights]) -> Vec<usize> {
+        let of_contacts = contacts.iter().flat_map(|weights| &weights.nodes).copied();
+        let mut dofs: Vec<usize> = of_contacts
+            .chain(self.support.measured_nodes())
+            .flat_map(|node| 3 * node..3 * node + 3)
+            .collect();
+        dofs.sort_unstable();
+        dofs.dedup();
+        let rows = dofs
+            .iter()
+            .filter_map(|dof| self.support.free.binary_search(dof).ok());
+        rows.collect()
     }
 
     /// Dofs, and the factor.

@@ -4,7 +4,7 @@ use rayon::prelude::*;
 use sprs::CsMat;
 
 /// A functional or generalised load with few entries: index and value, indices distinct.
-pub type SparseLoad = Vec<(usize, f64)>;
+pub type SparseLoad = solver::SparseVector;
 
 /// Rows per task: below, splitting costs more than it gains.
 const ROWS: usize = 2048;

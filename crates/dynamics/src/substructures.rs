@@ -96,9 +96,9 @@ impl Substructures {
         2 * self.matrices.len()
     }
 
-    /// Stored entries of the stiffness matrices of this rank.
-    pub fn n_entries(&self) -> usize {
-        self.matrices.iter().map(|m| m.stiffness.nnz()).sum()
+    /// Stored entries of the stiffness matrix of each sector of this rank.
+    pub fn entries(&self) -> Vec<usize> {
+        self.matrices.iter().map(|m| m.stiffness.nnz()).collect()
     }
 
     /// K u of nodal vectors, N, `[n_dofs]`. Collective.
@@ -142,7 +142,7 @@ impl Substructures {
             elements.1,
             bytes.0 as f64 / 1e6,
             bytes.1 as f64 / 1e6,
-            self.symbolic.interface_bytes() as f64 / 1e6
+            self.symbolic.interface_bytes(self.owned()) as f64 / 1e6
         )
     }
 

@@ -71,6 +71,13 @@ impl Support {
         }
     }
 
+    /// Nodes whose displacements [`Support::remove_rigid`] looks at.
+    pub fn measured_nodes(&self) -> impl Iterator<Item = usize> + '_ {
+        self.mean
+            .iter()
+            .flat_map(|mean| mean.weights.iter().map(|&(node, _)| node))
+    }
+
     /// Replaces loads by what the ring sees with its partner's reaction: P^T f.
     pub fn balance(&self, load: &mut [f64]) {
         if let Some(mean) = &self.mean {

@@ -1,7 +1,7 @@
 //! One matrix for other programs, and our own solvers on the same matrix: `scripts/peers/measure-solvers` reads both.
 //!
 //!     cargo bench -p raceway-solver --bench peers -- export SIZE DIR
-//!     cargo bench -p raceway-solver --bench peers -- measure SIZE sparse|cyclic
+//!     cargo bench -p raceway-solver --bench peers -- measure SIZE sparse|cyclic|sector
 //!     cargo bench -p raceway-solver --bench peers -- count SIZE
 //!
 //! The matrix is S = K + c M of a free ring, c that of a step of 1e-5 s. `export` writes its lower triangle by columns:
@@ -17,16 +17,23 @@ mod clock;
 mod matrix;
 #[path = "support/ring.rs"]
 mod ring;
+#[path = "support/sectors.rs"]
+mod sectors;
 
+use std::borrow::Cow;
 use std::fs;
 use std::io::{BufWriter, Write};
 use std::path::Path;
 
 use clock::{Time, least};
+use comm::Communicator;
 use matrix::steel;
 use mesh::{Mesh, PERIODIC_TOLERANCE, find_periodicity};
 use ring::ring;
-use solver::{CyclicMatrix, CyclicRing, LinearSolver, Symbolic, angular_dissection, expand, restrict_lower};
+use solver::{
+    CyclicMatrix, CyclicRing, LinearSolver, SectorSymbolic, Symbolic, angular_dissection, expand,
+    restrict_lower,
+};
 
 /// Name, sectors, nodes across and along the section.
 const SIZES: [(&str, usize, [usize; 2]); 5] = [
@@ -168,6 +175,31 @@ fn cyclic(mesh: &Mesh, rhs: &[f64]) -> Costs {
     }
 }
 
+/// The ring in sectors, on as many threads as there are.
+fn sector(mesh: &Mesh, rhs: &[f64]) -> Costs {
+    let (layout, parts) = sectors::cut(mesh);
+    let of = |s: usize| Cow::Borrowed(&parts[s]);
+    let cells = (&mesh.nodes[..], &mesh.connectivity[..], mesh.kind.n_nodes());
+    let (analyse, symbolic) = least(1, || {
+        SectorSymbolic::new(layout.clone(), Communicator::Serial, cells, of).expect("a pattern")
+    });
+    let is_large = mesh.n_dofs() > 300_000;
+    let (factor, solver) = least(if is_large { 1 } else { 3 }, || {
+        symbolic.factor(of).expect("positive definite")
+    });
+    let (one, many, error) = solve(&solver, rhs, if is_large { 5 } else { 12 });
+    let factor_bytes = solver.factor_bytes();
+    Costs {
+        analyse,
+        factor,
+        one,
+        many,
+        factor_bytes,
+        error,
+        harmonic: None,
+    }
+}
+
 /// Sizes of the factors, and operations.
 fn count(mesh: &Mesh) {
     let lower = restrict_lower(&matrix::sparse(mesh), &(0..mesh.n_dofs()).collect::<Vec<_>>());
@@ -211,7 +243,8 @@ fn measure(mesh: &Mesh, name: &str) {
     let costs = match name {
         "sparse" => sparse(mesh, &rhs),
         "cyclic" => cyclic(mesh, &rhs),
-        _ => panic!("no solver {name}; there are sparse, cyclic"),
+        "sector" => sector(mesh, &rhs),
+        _ => panic!("no solver {name}; there are sparse, cyclic, sector"),
     };
     print!(
         "solver {name} dofs {} threads {}",

@@ -12,6 +12,8 @@ mod clock;
 mod matrix;
 #[path = "support/ring.rs"]
 mod ring;
+#[path = "support/sectors.rs"]
+mod sectors;
 
 use std::borrow::Cow;
 use std::hint::black_box;
@@ -22,8 +24,7 @@ use rayon::prelude::*;
 use rayon::{ThreadPool, ThreadPoolBuilder};
 use ring::ring;
 use solver::{
-    LinearSolver, SectorCholesky, SectorLayout, SectorSymbolic, Symbolic, angular_dissection,
-    default_sectors, expand, restrict_lower,
+    LinearSolver, SectorCholesky, SectorSymbolic, Symbolic, angular_dissection, expand, restrict_lower,
 };
 
 /// Name, layers, nodes of a section across and along.
@@ -78,17 +79,12 @@ fn read(array: &[f64], pieces: usize) -> f64 {
 fn report(name: &str, layers: usize, section: [usize; 2]) {
     let mesh = ring(layers, section);
     let n = mesh.n_dofs();
-    let n_sectors = default_sectors(n);
     let pools: Vec<ThreadPool> = [1, 2]
         .map(|n| ThreadPoolBuilder::new().num_threads(n).build().expect("threads"))
         .into();
     let free: Vec<usize> = (0..n).collect();
-    let layout = SectorLayout::new(&mesh.nodes, &mesh.connectivity, 8, &free, n_sectors).expect("sectors");
-    let parts: Vec<_> = layout
-        .sectors()
-        .iter()
-        .map(|s| matrix::sparse(&mesh.part(&s.elements, &s.nodes)))
-        .collect();
+    let (layout, parts) = sectors::cut(&mesh);
+    let n_sectors = layout.sectors().len();
     let of = |s: usize| Cow::Borrowed(&parts[s]);
     let cells = (&mesh.nodes[..], &mesh.connectivity[..], 8);
     let clock = Instant::now();
@@ -126,7 +122,7 @@ fn report(name: &str, layers: usize, section: [usize; 2]) {
     println!(
         "  factor {:.1} MB, of which the interface {:.1}; as a whole {:.1} MB",
         bytes[1],
-        symbolic.interface_bytes() as f64 / 1e6,
+        symbolic.interface_bytes(symbolic.owned()) as f64 / 1e6,
         bytes[0]
     );
     solves(&sparse, &sectors, &pools, n_sectors);

@@ -19,7 +19,7 @@ use crate::symbolic::{Symbolic, stored_side, supernodes};
 /// Smallest accepted pivot relative to its diagonal entry. The last pivots of a body that is free to move are pure
 /// round-off: on spring rings of 96 to 59 400 dof, ten of eleven came out negative and one 7e-15 of its diagonal
 /// (measured). A free steel ring held only by its inertia over a step as long as 0.1 s keeps about 1e-8 (estimate).
-const PIVOT_LIMIT: f64 = 1e-12;
+pub(crate) const PIVOT_LIMIT: f64 = 1e-12;
 
 /// A Cholesky factor; [`LinearSolver::solve`] uses it.
 #[derive(Debug)]

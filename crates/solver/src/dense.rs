@@ -31,19 +31,7 @@ impl DenseCholesky {
     pub fn factor(n: usize, a: &[f64]) -> Result<Self, SolverError> {
         check_dense(n, a)?;
         let mut factor = MatRef::from_row_major_slice(a, n, n).to_owned();
-        let request = llt::factor::cholesky_in_place_scratch::<f64>(n, Par::Seq, Default::default());
-        let mut memory = MemBuffer::new(request);
-        let stack = MemStack::new(&mut memory);
-        llt::factor::cholesky_in_place(
-            factor.as_mut(),
-            Default::default(),
-            Par::Seq,
-            stack,
-            Default::default(),
-        )
-        .map_err(|llt::factor::LltError::NonPositivePivot { index }| {
-            SolverError::NotPositiveDefinite { row: index, n }
-        })?;
+        cholesky_in_place(factor.as_mut())?;
         Ok(DenseCholesky { factor })
     }
 
@@ -59,6 +47,27 @@ impl DenseCholesky {
             }
         }
         inverse
+    }
+}
+
+/// L in place of the lower triangle of a symmetric positive definite matrix. The error names the row at which elimination breaks
+/// down.
+pub(crate) fn cholesky_in_place(mut matrix: MatMut<'_, f64>) -> Result<(), SolverError> {
+    let n = matrix.nrows();
+    let request = llt::factor::cholesky_in_place_scratch::<f64>(n, Par::Seq, Default::default());
+    let mut memory = MemBuffer::new(request);
+    let done = llt::factor::cholesky_in_place(
+        matrix.as_mut(),
+        Default::default(),
+        Par::Seq,
+        MemStack::new(&mut memory),
+        Default::default(),
+    );
+    match done {
+        Ok(_) => Ok(()),
+        Err(llt::factor::LltError::NonPositivePivot { index }) => {
+            Err(SolverError::NotPositiveDefinite { row: index, n })
+        }
     }
 }
 

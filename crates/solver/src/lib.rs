@@ -56,9 +56,12 @@ pub use dissection::angular_dissection;
 pub use eigenproblem::{EigenProblem, Eigenpairs};
 pub use error::SolverError;
 pub use lanczos::{LanczosSettings, Searched, lowest_pairs};
-pub use linear_solver::LinearSolver;
+pub use linear_solver::{LinearSolver, SparseVector};
 pub use permutation::{expand, restrict_order};
 pub use refinement::{Refined, solve_refined};
-pub use sector::{Sector, SectorCholesky, SectorCost, SectorLayout, SectorSymbolic, default_sectors};
+pub use sector::{
+    BorderedColumns, Sector, SectorBordered, SectorCholesky, SectorColumns, SectorCost, SectorLayout,
+    SectorSymbolic, default_sectors,
+};
 pub use submatrix::{restrict, restrict_lower};
 pub use symbolic::Symbolic;

@@ -8,8 +8,9 @@
 use contact::quadrature::PressureRule;
 use contact::{RacewaySurface, Side};
 use mesh::Mesh;
-use solver::Bordered;
+use solver::SectorBordered;
 
+use super::by_sector::SectorFactor;
 use super::coordinates::Coordinates;
 use super::effective::{Effective, Factored, prepare};
 use super::integrator::Integrator;
@@ -78,11 +79,11 @@ impl RingBody {
             (Effective::Sectors(parts), _) => {
                 let inner = parts.factor([cm, ck])?;
                 let [border, corner] = self.border([cm, ck]);
-                match corner.len().isqrt() {
-                    0 => Ok(Factored::Sparse(Box::new(inner))),
-                    m => Bordered::new(inner, &border, m, &corner)
-                        .map(|factor| Factored::Sparse(Box::new(factor))),
-                }
+                let columns = border.chunks_exact(self.coordinates.free().len().max(1));
+                let entries = |(row, &value): (usize, &f64)| (value != 0.0).then_some((row, value));
+                let sparse = columns.map(|column| column.iter().enumerate().filter_map(entries).collect());
+                SectorBordered::new(inner, sparse.collect(), &corner)
+                    .map(|solver| Factored::Sectors(Box::new(SectorFactor::new(solver, &self.mount))))
             }
             (Effective::Cyclic(harmonics), _) => {
                 let border = self.border([cm, ck]);

@@ -10,6 +10,7 @@ use mesh::Mesh;
 use solver::cyclic::{Change, CyclicBordered, Defect, ResponseTable};
 use solver::{LinearSolver, SectionPart, SolverError, Symbolic};
 
+use super::by_sector::SectorFactor;
 use super::coordinates::Coordinates;
 use super::matrices::{RingMatrices, SparseMatrices};
 use crate::defect::Changes;
@@ -38,10 +39,12 @@ pub struct Harmonics {
 
 /// A factored effective matrix.
 pub enum Factored {
-    /// Solves S x = b: one sparse matrix, or sectors.
+    /// Solves S x = b as one sparse matrix.
     Sparse(Box<dyn LinearSolver>),
     /// Harmonics of a periodic ring.
     Cyclic(Box<CyclicFactor>),
+    /// Sectors, whose solutions stay by sector.
+    Sectors(Box<SectorFactor>),
 }
 
 /// Harmonics of a periodic ring under S.
@@ -62,13 +65,14 @@ impl Factored {
         match self {
             Factored::Sparse(solver) => &**solver,
             Factored::Cyclic(factor) => &factor.solver,
+            Factored::Sectors(factor) => &factor.solver,
         }
     }
 
     /// The answer of a periodic ring to its defect.
     pub fn defect(&self) -> Option<&Defect> {
         match self {
-            Factored::Sparse(_) => None,
+            Factored::Sparse(_) | Factored::Sectors(_) => None,
             Factored::Cyclic(factor) => factor.defect.as_ref(),
         }
     }
@@ -81,6 +85,7 @@ impl Factored {
                 let defect = factor.defect.as_ref().map_or(0, Defect::bytes);
                 factor.solver.factor_bytes() + factor.table.bytes() + defect
             }
+            Factored::Sectors(factor) => factor.bytes(),
         }
     }
 }

@@ -14,6 +14,7 @@
 
 pub mod balls;
 pub mod body;
+pub mod by_sector;
 pub mod contacts;
 pub mod coordinates;
 mod defect;
@@ -30,6 +31,7 @@ mod part;
 mod place;
 pub mod report;
 pub mod ring;
+mod ring_state;
 pub mod run;
 pub mod shaft;
 pub mod shape;

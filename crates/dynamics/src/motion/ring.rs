@@ -3,8 +3,9 @@
 //! Contacts and partner act by a compliance C and then by the increment that their forces make. A sparse factor gives both by
 //! columns, one block solve of 1 + 2 n_balls right-hand sides per step, which reads the factor once. A periodic ring has C in a
 //! table of the responses of its raceway, made once per step size; its predictor stays in harmonic space, where contact
-//! forces are added, so that a step takes two solves but transforms one whole field there and one back. The columns of the
-//! mount are solved once per step size. A defect of the ring corrects all of it ([`super::defect`]).
+//! forces are added, so that a step takes two solves but transforms one whole field there and one back. The columns of a ring in
+//! sectors stay by sector ([`super::by_sector`]). The columns of the mount are solved once per step size. A defect of the ring
+//! corrects all of it ([`super::defect`]).
 
 use contact::NodalWeights;
 use solver::LinearSolver;
@@ -12,9 +13,11 @@ use solver::cyclic::Defect;
 use solver::dense::DenseCholesky;
 
 use super::body::RingBody;
+use super::by_sector::{Motions, StepColumns};
 use super::defect::DefectStep;
 use super::effective::Factored;
 use super::integrator::Integrator;
+pub use super::ring_state::RingState;
 use crate::error::DynamicsError;
 use crate::sparse::{SparseLoad, sparse_dot};
 
@@ -23,46 +26,12 @@ pub struct RingFactor {
     pub(super) factor: Factored,
     /// Inverse of the border's compliance where S has one, row-major.
     pub(super) border: Option<Vec<f64>>,
-    /// S^-1 times the mount's functionals, column-major `[n][n_mount]`.
+    /// S^-1 times the mount's functionals, column-major `[n][n_mount]`; none of a ring in sectors, whose factor has them.
     pub(super) mount: Vec<f64>,
     /// The mount's compliance, row-major.
     pub(super) mount_compliance: Vec<f64>,
     integrator: Integrator,
     dt: f64,
-}
-
-/// Displacement, velocity, acceleration of a ring's coordinates, `[n]` each, SI.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct RingState {
-    /// Total displacement in the ring's frame.
-    pub w: Vec<f64>,
-    /// Velocity.
-    pub v: Vec<f64>,
-    /// Acceleration.
-    pub a: Vec<f64>,
-}
-
-impl RingState {
-    /// At rest, without acceleration, at the displacement `w`.
-    pub fn at_rest(w: Vec<f64>) -> RingState {
-        let zero = vec![0.0; w.len()];
-        RingState {
-            w,
-            v: zero.clone(),
-            a: zero,
-        }
-    }
-
-    /// Displacement and velocity at the weighted time of the scheme when the step's increment is `dw`.
-    pub fn within(&self, integrator: Integrator, dt: f64, dw: &[f64]) -> [Vec<f64>; 2] {
-        let s = 1.0 - integrator.alpha_f;
-        let w = self.w.iter().zip(dw).map(|(w, d)| w + s * d).collect();
-        let v = self.v.iter().zip(&self.a).zip(dw).map(|((v0, a0), d)| {
-            let [v1, _] = integrator.update(dt, *d, *v0, *a0);
-            v0 + s * (v1 - v0)
-        });
-        [w, v.collect()]
-    }
 }
 
 /// A ring over one step as contacts and partner see it: g = start, then g1 = predicted + C F, over the two directions
@@ -87,6 +56,8 @@ enum Predictor {
     Columns(Vec<f64>),
     /// Of the regular ring in harmonic space, the rows of the border, and what a defect makes of it.
     Harmonic(Vec<f64>, Vec<f64>, Option<DefectStep>),
+    /// As columns, by sector.
+    Sectors(StepColumns),
 }
 
 impl RingStep {
@@ -101,14 +72,16 @@ impl RingFactor {
     pub fn new(body: &RingBody, integrator: Integrator, dt: f64) -> Result<RingFactor, DynamicsError> {
         let factor = body.factor(integrator, dt)?;
         let n = body.coordinates.n();
-        let mount = columns(factor.solver(), &body.mount, n);
         let m = body.mount.len();
-        let mut mount_compliance = vec![0.0; m * m];
-        for i in 0..m {
-            for j in 0..m {
-                mount_compliance[m * i + j] = sparse_dot(&body.mount[i], &mount[n * j..n * (j + 1)]);
+        let (mount, mount_compliance) = match &factor {
+            Factored::Sectors(factor) => (Vec::new(), factor.mount_compliance(&body.mount)),
+            Factored::Sparse(_) | Factored::Cyclic(_) => {
+                let mount = columns(factor.solver(), &body.mount, n);
+                let entry = |k: usize| sparse_dot(&body.mount[k / m], &mount[n * (k % m)..n * (k % m + 1)]);
+                let compliance = (0..m * m).map(entry).collect();
+                (mount, compliance)
             }
-        }
+        };
         // The border of S is the mount of a clamped bore.
         let border = body.is_bordered().then(|| {
             DenseCholesky::factor(m, &mount_compliance)
@@ -161,8 +134,15 @@ impl RingFactor {
                 fill(&mut side[n..], &contacts, n);
                 solver.solve(&mut side, 1 + contacts.len());
                 let moved: Vec<f64> = all.iter().map(|g| sparse_dot(g, &side[..n])).collect();
-                let compliance = self.column_compliance(&all, &side[n..], n);
+                let compliance = self.column_compliance(all.len(), contacts.len(), |i, j| {
+                    sparse_dot(all[i], &side[n * (1 + j)..n * (2 + j)])
+                });
                 (Predictor::Columns(side), moved, compliance)
+            }
+            Factored::Sectors(factor) => {
+                let (columns, motions) = factor.prepare(&side, &contacts, &all);
+                let compliance = self.motion_compliance(&motions);
+                (Predictor::Sectors(columns), motions.predicted, compliance)
             }
         };
         RingStep {
@@ -198,7 +178,15 @@ impl RingFactor {
                 fill(&mut block[n..], &step.contacts, n);
                 solver.solve(&mut block[n..], step.contacts.len());
                 let moved: Vec<f64> = all.iter().map(|g| sparse_dot(g, &block[..n])).collect();
-                (moved, self.column_compliance(&all, &block[n..], n))
+                let compliance = self.column_compliance(all.len(), step.contacts.len(), |i, j| {
+                    sparse_dot(all[i], &block[n * (1 + j)..n * (2 + j)])
+                });
+                (moved, compliance)
+            }
+            (Factored::Sectors(factor), Predictor::Sectors(columns)) => {
+                let motions = factor.move_contacts(columns, &step.contacts, &all);
+                let compliance = self.motion_compliance(&motions);
+                (motions.predicted, compliance)
             }
             _ => unreachable!("a step keeps what its factor made"),
         };
@@ -206,14 +194,26 @@ impl RingFactor {
         step.compliance = compliance;
     }
 
-    /// Compliance of contacts, then mount, exactly symmetric, from the columns of the contacts.
-    fn column_compliance(&self, all: &[&SparseLoad], columns: &[f64], n: usize) -> Vec<f64> {
-        let (size, contacts) = (all.len(), columns.len() / n);
+    /// The same from what contacts and mount have measured.
+    fn motion_compliance(&self, motions: &Motions) -> Vec<f64> {
+        let size = motions.predicted.len();
+        let contacts = motions.by_contacts.len() / size.max(1);
+        self.column_compliance(size, contacts, |i, j| motions.by_contacts[contacts * i + j])
+    }
+
+    /// Compliance of contacts, then mount, `size` functionals in all, exactly symmetric, from the `motion(i, j)` of functional
+    /// i under a unit force on contact j.
+    fn column_compliance(
+        &self,
+        size: usize,
+        contacts: usize,
+        motion: impl Fn(usize, usize) -> f64,
+    ) -> Vec<f64> {
         let mut compliance = vec![0.0; size * size];
         for i in 0..size {
             for j in 0..=i {
                 let value = if j < contacts {
-                    sparse_dot(all[i], &columns[n * j..n * (j + 1)])
+                    motion(i, j)
                 } else {
                     self.mount_compliance[(size - contacts) * (i - contacts) + j - contacts]
                 };
@@ -264,6 +264,7 @@ impl RingFactor {
                 block.iter_mut().zip(&load).for_each(|(p, d)| *p += d);
                 all.iter().map(|g| sparse_dot(g, &load)).collect()
             }
+            (Factored::Sectors(factor), Predictor::Sectors(columns)) => factor.add_load(columns, &load, &all),
             _ => unreachable!("a step keeps what its factor made"),
         };
         step.predicted.iter_mut().zip(&moved).for_each(|(p, d)| *p += d);
@@ -286,6 +287,9 @@ impl RingFactor {
                     correction.add_forces(defect, &[contacts, mount].concat(), &mut load);
                 }
                 factor.increment((harmonic, border), load)
+            }
+            (Factored::Sectors(factor), Predictor::Sectors(columns)) => {
+                factor.increment(columns, contacts, mount)
             }
             (_, Predictor::Columns(block)) => {
                 let n = body.coordinates.n();

@@ -1,5 +1,7 @@
 //! Which elements, nodes and rows belong to which sector, and the order of the interface. Every rank knows all of it.
 
+use std::ops::Range;
+
 use super::cut::sectors_of_elements;
 use crate::error::SolverError;
 
@@ -31,6 +33,19 @@ pub struct SectorLayout {
     sectors: Vec<Sector>,
     /// Rows of the interface in elimination order.
     interface: Vec<usize>,
+    /// Places in the interface of each cross-section, `[n_sectors]`: that behind sector s is number s.
+    pub(super) sections: Vec<Range<usize>>,
+    /// Of each row, its sector, or n_sectors plus its place in the interface.
+    owners: Vec<u32>,
+}
+
+/// Where a row is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Place {
+    /// Inside a sector.
+    Inside(usize),
+    /// At a place of the interface.
+    Shared(usize),
 }
 
 /// Number of sectors for a ring of `n_dofs` dofs: enough to keep a node's cores busy, few enough that the interface stays
@@ -66,25 +81,43 @@ impl SectorLayout {
         let mut row_of = vec![usize::MAX; COMPONENTS * points.len()];
         free.iter().enumerate().for_each(|(row, &dof)| row_of[dof] = row);
         let of_node = sectors_of_nodes(points.len(), elements, nodes_per_element, &of_element);
-        let interface_nodes = interface_order(&of_node, n_sectors);
-        let dofs = |node: &usize| COMPONENTS * node..COMPONENTS * (node + 1);
-        let interface: Vec<usize> = interface_nodes
-            .iter()
-            .flat_map(dofs)
-            .map(|dof| row_of[dof])
-            .filter(|&row| row != usize::MAX)
-            .collect();
+        let rows = |node: &usize| {
+            let dofs = COMPONENTS * node..COMPONENTS * (node + 1);
+            let rows = dofs.map(|dof| row_of[dof]);
+            rows.filter(|&row| row != usize::MAX).collect::<Vec<usize>>()
+        };
+        let mut interface: Vec<usize> = Vec::new();
+        let mut sections = vec![0..0; n_sectors + 1];
+        for (section, nodes) in interface_order(&of_node, n_sectors) {
+            let first = interface.len();
+            interface.extend(nodes.iter().flat_map(rows));
+            sections[section] = first..interface.len();
+        }
+        // Nodes of more than two sectors are in no cross-section.
+        sections.pop();
         let mut place = vec![usize::MAX; free.len()];
         interface.iter().enumerate().for_each(|(k, &row)| place[row] = k);
         let build = |s: usize| {
             let mine = (0..n_elements).filter(|&e| of_element[e] == s).collect();
             Sector::new(mine, elements, nodes_per_element, &row_of, &place, &of_node)
         };
+        let sectors: Vec<Sector> = (0..n_sectors).map(build).collect();
         Ok(SectorLayout {
+            owners: owners(free.len(), &sectors, &interface),
             n: free.len(),
-            sectors: (0..n_sectors).map(build).collect(),
+            sectors,
             interface,
+            sections,
         })
+    }
+
+    /// Where a row is.
+    pub(super) fn place(&self, row: usize) -> Place {
+        let (owner, n_sectors) = (self.owners[row] as usize, self.sectors.len());
+        match owner.checked_sub(n_sectors) {
+            Some(place) => Place::Shared(place),
+            None => Place::Inside(owner),
+        }
     }
 
     /// Number of rows.
@@ -151,6 +184,12 @@ impl Sector {
         self.rows.len()
     }
 
+    /// Number among its own of a row inside it.
+    pub(super) fn inside(&self, row: usize) -> usize {
+        let found = self.rows[..self.n_interior].binary_search(&row);
+        found.expect("the row is inside this sector")
+    }
+
     /// Number of rows that no other sector shares.
     pub fn n_interior(&self) -> usize {
         self.n_interior
@@ -176,9 +215,9 @@ fn sectors_of_nodes(
     of_node
 }
 
-/// Shared nodes in the order of cyclic reduction of the cross-sections they lie in.
-fn interface_order(of_node: &[Vec<usize>], n_sectors: usize) -> Vec<usize> {
-    // Cross-section s lies behind sector s; nodes of more than two sectors come last.
+/// Cross-sections and their nodes in the order of cyclic reduction; number n_sectors are the nodes of more than two sectors.
+fn interface_order(of_node: &[Vec<usize>], n_sectors: usize) -> Vec<(usize, Vec<usize>)> {
+    // Cross-section s lies behind sector s.
     let mut sections = vec![Vec::new(); n_sectors + 1];
     for (node, touched) in of_node.iter().enumerate() {
         match touched[..] {
@@ -188,13 +227,38 @@ fn interface_order(of_node: &[Vec<usize>], n_sectors: usize) -> Vec<usize> {
             _ => {}
         }
     }
-    let mut order = Vec::with_capacity(n_sectors + 1);
-    let mut stay: Vec<usize> = (0..n_sectors).collect();
+    let mut order: Vec<usize> = reduction(n_sectors).concat();
+    order.push(n_sectors);
+    order
+        .into_iter()
+        .map(|s| (s, std::mem::take(&mut sections[s])))
+        .collect()
+}
+
+/// Cyclic reduction of `n` things round a circle: every second one, then every second one of those that stay, until one is
+/// left. Things of one level are not neighbours.
+pub(super) fn reduction(n: usize) -> Vec<Vec<usize>> {
+    let mut levels = Vec::new();
+    let mut stay: Vec<usize> = (0..n).collect();
     while stay.len() > 2 {
-        order.extend(stay.iter().copied().skip(1).step_by(2));
+        levels.push(stay.iter().copied().skip(1).step_by(2).collect());
         stay = stay.into_iter().step_by(2).collect();
     }
-    order.extend(stay);
-    order.push(n_sectors);
-    order.iter().flat_map(|&s| sections[s].iter().copied()).collect()
+    // Of two, each is both neighbours of the other.
+    levels.extend(stay.into_iter().map(|last| vec![last]));
+    levels
+}
+
+/// Of each row, its sector, or the number of sectors plus its place in the interface.
+fn owners(n: usize, sectors: &[Sector], interface: &[usize]) -> Vec<u32> {
+    let small = |owner: usize| u32::try_from(owner).expect("matrices of 2^32 rows fit into no memory");
+    let mut owners = vec![0; n];
+    for (s, sector) in sectors.iter().enumerate() {
+        let inside = &sector.rows[..sector.n_interior];
+        inside.iter().for_each(|&row| owners[row] = small(s));
+    }
+    for (place, &row) in interface.iter().enumerate() {
+        owners[row] = small(sectors.len() + place);
+    }
+    owners
 }

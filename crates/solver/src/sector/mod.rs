@@ -14,13 +14,18 @@
 //!
 //! **Bits.** The number of sectors belongs to the problem. Threads and ranks decide only where a sector's work is done;
 //! all sums over sectors run in their order. One rank factors the sectors that it owns, keeps their factors, and no
-//! others; all ranks hold the interface.
+//! others; all ranks hold the interface of few sectors, and divide that of many ([`REDUCED_FROM`]).
+//!
+//! **Many right-hand sides**, such as the forces of all contacts, need not leave their sectors: [`SectorColumns`] gives values at a
+//! few rows, and sums.
 //!
 //! **Cost.** Cuts through a ring are the top separators of its dissection anyway, so fill and operations are those of
 //! [`crate::SparseCholesky`] within a few per cent up to 32 sectors. The interface has about 2.3 n_sectors m^2 entries,
 //! m being the rows of a cross-section. A solve reads the factors twice; messages per solve: one gather of 2 m numbers
-//! per sector and right-hand side, and one of the solution.
+//! per sector and right-hand side, and one of the solution; with a divided interface two more per level of the reduction.
 
+mod border;
+mod columns;
 mod cut;
 mod factor;
 mod interface;
@@ -28,7 +33,13 @@ mod kernel;
 mod layout;
 mod panels;
 mod part;
+mod reduced;
+mod reduction;
+mod solve;
 
+pub use border::{BorderedColumns, SectorBordered};
+pub use columns::SectorColumns;
 pub use factor::{SectorCholesky, SectorSymbolic};
+pub use interface::REDUCED_FROM;
 pub use layout::{Sector, SectorLayout, default_sectors};
 pub use part::SectorCost;

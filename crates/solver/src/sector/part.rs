@@ -26,6 +26,12 @@ pub struct SectorCost {
     pub n_rows: usize,
     /// Bytes of its factor with the boundary's part, which is not kept.
     pub factor_bytes: usize,
+    /// Bytes of its analysis, which the factor keeps.
+    pub analysis_bytes: usize,
+    /// Bytes that its factorisation needs beside factor and matrix.
+    pub work_bytes: usize,
+    /// Rows that it shares with others.
+    pub n_boundary: usize,
     /// Operations of its factorisation.
     pub flops: f64,
 }
@@ -34,14 +40,14 @@ pub struct SectorCost {
 #[derive(Debug)]
 pub(super) struct PartSymbolic {
     symbolic: Symbolic,
+    /// Place in the elimination order of each row of the sector, `[n_rows]`.
+    pub(super) places: Vec<u32>,
 }
 
 /// Factor of one sector's interior.
 #[derive(Debug)]
 pub(super) struct Part {
     panels: Panels,
-    /// Row of the sector at each place.
-    pub(super) places: Vec<usize>,
 }
 
 impl PartSymbolic {
@@ -76,7 +82,11 @@ impl PartSymbolic {
         let order: Vec<usize> = interior.chain(sector.n_interior..sector.n_rows()).collect();
         let lower = restrict_lower(matrix, &sector.dofs);
         let symbolic = Symbolic::with_tail(&lower, &order, sector.boundary.len())?;
-        Ok(PartSymbolic { symbolic })
+        let mut places = vec![0; sector.n_rows()];
+        for (place, &row) in symbolic.order().iter().enumerate() {
+            places[row] = u32::try_from(place).expect("matrices of 2^32 rows fit into no memory");
+        }
+        Ok(PartSymbolic { symbolic, places })
     }
 
     pub(super) fn cost(&self, sector: &Sector) -> SectorCost {
@@ -84,13 +94,11 @@ impl PartSymbolic {
             n_elements: sector.elements.len(),
             n_rows: sector.n_rows(),
             factor_bytes: self.symbolic.factor_bytes(),
+            analysis_bytes: self.symbolic.bytes() + size_of::<u32>() * self.places.len(),
+            work_bytes: self.symbolic.peak_bytes() - self.symbolic.factor_bytes(),
+            n_boundary: sector.boundary.len(),
             flops: self.symbolic.flops(),
         }
-    }
-
-    /// Bytes at the peak of the factorisation.
-    pub(super) fn peak_bytes(&self) -> usize {
-        self.symbolic.peak_bytes()
     }
 
     /// Factors the sector's own matrix. Returns the factor and the Schur complement on the boundary, its lower triangle by rows.
@@ -107,7 +115,6 @@ impl PartSymbolic {
         let complement = complement(supernodal, &values, symbolic.order(), sector.n_interior, &shift);
         let part = Part {
             panels: Panels::new(supernodal, values, sector.n_interior),
-            places: symbolic.order().to_vec(),
         };
         Ok((part, complement))
     }

@@ -1,0 +1,158 @@
+//! Forecast of the memory of one rank that shares rings in sectors with others, or of all when it is alone.
+//!
+//! Bytes of one ring with n nodes, N = 3 n dofs, e elements of p nodes; of its sectors owned: E stored entries of K, factors of F bytes with
+//! analyses of A and r rows; b balls. A worker is a thread that factors a sector.
+//!
+//! | part | bytes | what it is |
+//! |---|---|---|
+//! | mesh | 24 n + 8 e p | nodes and connectivity; whole |
+//! | lists | 62 N + 16 e in statics, 102 N + 16 e in motion | layout of the sectors, coordinates, positions; whole |
+//! | vectors | 24 N in statics, 152 N in motion | whole |
+//! | matrices | 16 E (1 + 1/9) | K and the mass between nodes |
+//! | factors | F + A | |
+//! | interface | as the solver says | all of it with few sectors |
+//! | columns | 8 r (2 b + 1) | solutions under all contact forces, and what of them is on interfaces |
+//! | work | 16 E_s + work space of s, per worker | the matrix that is factored, and fronts, of the largest sectors |
+//! | results | 240 n + 24 e p + 48 e c | stress, record and output; rank 0 alone |
+//!
+//! Statics has the matrices of one ring at a time and lets go of them; motion keeps those of both. Alone and with several threads
+//! both rings are made at once.
+
+use std::ops::Range;
+
+use comm::Communicator;
+use mesh::Mesh;
+
+use crate::memory::{PROGRAM_BYTES, RingMemory, forecast_peak};
+use crate::substructures::Substructures;
+
+/// Bytes of one stored entry: value and column index.
+const ENTRY_BYTES: usize = 16;
+/// The message passing library itself, and its buffers per rank of a node, bytes, measured with Open MPI 4.1.
+const MESSAGE_BYTES: [usize; 2] = [6_000_000, 5_000_000];
+
+/// Bytes of one ring on one rank: see the module.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct RankMemory {
+    /// Nodes and connectivity.
+    pub mesh: usize,
+    /// Lists of nodes and rows, in statics and in motion.
+    pub lists: [usize; 2],
+    /// Displacements, velocities, loads, in statics and in motion.
+    pub vectors: [usize; 2],
+    /// Stiffness and mass of the sectors owned.
+    pub matrices: usize,
+    /// Their factors.
+    pub factors: usize,
+    /// Factor of the interface.
+    pub interface: usize,
+    /// Solutions under all contact forces.
+    pub columns: usize,
+    /// Work space of the factorisation.
+    pub work: usize,
+    /// Stress, record and output; rank 0 alone.
+    pub results: usize,
+}
+
+/// One of several ranks.
+#[derive(Clone, Debug)]
+pub struct Share {
+    /// Its number.
+    pub rank: usize,
+    /// How many there are.
+    pub n_ranks: usize,
+    /// Threads of each.
+    pub n_threads: usize,
+}
+
+impl Share {
+    /// That of this process.
+    pub fn of(comm: Communicator) -> Share {
+        Share {
+            rank: comm.rank(),
+            n_ranks: comm.size(),
+            n_threads: rayon::current_num_threads(),
+        }
+    }
+
+    /// Whether both rings are made at the same time.
+    fn makes_both(&self) -> bool {
+        self.n_ranks == 1 && self.n_threads > 1
+    }
+
+    fn owned(&self, n_sectors: usize) -> Range<usize> {
+        comm::shares(n_sectors, self.n_ranks)[self.rank].clone()
+    }
+}
+
+impl RankMemory {
+    /// Forecast for a ring of which this process has at least the sectors of `share`.
+    pub fn new(mesh: &Mesh, parts: &Substructures, n_balls: usize, share: &Share) -> RankMemory {
+        let symbolic = parts.symbolic();
+        let owned = share.owned(symbolic.layout().sectors().len());
+        let first = symbolic.owned().start;
+        let here = owned.start - first..owned.end - first;
+        let (costs, entries) = (&symbolic.costs()[here.clone()], &parts.entries()[here]);
+        let (n_dofs, list) = (mesh.n_dofs(), 8 * mesh.connectivity.len());
+        let rows: usize = costs.iter().map(|c| c.n_rows).sum();
+        let mut work: Vec<usize> = costs
+            .iter()
+            .zip(entries)
+            .map(|(cost, entries)| ENTRY_BYTES * entries + cost.work_bytes)
+            .collect();
+        work.sort_unstable();
+        RankMemory {
+            mesh: 8 * n_dofs + list,
+            lists: [62, 102].map(|bytes| bytes * n_dofs + 16 * mesh.n_elements()),
+            vectors: [24, 152].map(|bytes| bytes * n_dofs),
+            matrices: ENTRY_BYTES * entries.iter().sum::<usize>() * 10 / 9,
+            factors: costs.iter().map(|c| c.factor_bytes + c.analysis_bytes).sum(),
+            interface: symbolic.interface_bytes(owned),
+            columns: 8 * (rows + symbolic.layout().interface().len()) * (2 * n_balls + 1),
+            work: work.iter().rev().take(share.n_threads).sum(),
+            results: if share.rank == 0 {
+                80 * n_dofs + 3 * list + 48 * mesh.kind.n_corners() * mesh.n_elements()
+            } else {
+                0
+            },
+        }
+    }
+
+    /// As the phases of a static run.
+    pub(crate) fn phases(&self) -> RingMemory {
+        let kept = self.kept();
+        RingMemory {
+            mesh: self.mesh,
+            assembly: self.lists[0] + self.matrices,
+            factorisation: kept + self.matrices + self.work,
+            kept,
+            columns: kept + self.columns,
+            results: self.results,
+        }
+    }
+
+    /// What stays from statics: factors and lists.
+    fn kept(&self) -> usize {
+        self.lists[0] + self.vectors[0] + self.factors + self.interface
+    }
+}
+
+/// Forecast of the largest resident memory of one rank in statics and in motion, bytes; inner ring first, None is rigid.
+pub fn forecast_rank_peak(rings: &[Option<RankMemory>; 2], share: &Share) -> [usize; 2] {
+    let messages = match share.n_ranks {
+        1 => 0,
+        n => MESSAGE_BYTES[0] + MESSAGE_BYTES[1] * n,
+    };
+    let at_once = if share.makes_both() { share.n_threads } else { 1 };
+    let statics = messages + forecast_peak(rings.map(|ring| ring.map(|r| r.phases())), at_once);
+    let [a, b] = rings.map(Option::unwrap_or_default);
+    let lasting = |r: RankMemory| r.mesh + r.results;
+    let base = PROGRAM_BYTES + messages + lasting(a) + lasting(b);
+    let held = |r: RankMemory| r.lists[1] + r.vectors[1] + r.factors + r.interface + r.matrices;
+    let more = if share.makes_both() {
+        (a.work + b.work).max(a.columns + b.columns)
+    } else {
+        a.work.max(b.work).max(a.columns + b.columns)
+    };
+    [statics, base + held(a) + held(b) + more]
+}

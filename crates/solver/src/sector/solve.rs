@@ -1,0 +1,189 @@
+//! The solution of a ring in sectors: forwards in all of them, the interface, backwards.
+
+use rayon::prelude::*;
+
+use super::columns::SectorColumns;
+use super::factor::SectorCholesky;
+use super::layout::Place;
+use super::part::Part;
+use crate::linear_solver::{LinearSolver, SparseVector};
+
+/// Right-hand sides: dense ones, column-major `[n][..]`, then sparse ones.
+#[derive(Clone, Copy)]
+struct Loads<'a> {
+    dense: &'a [f64],
+    sparse: &'a [SparseVector],
+    n_dense: usize,
+}
+
+impl Loads<'_> {
+    fn n_rhs(&self) -> usize {
+        self.n_dense + self.sparse.len()
+    }
+}
+
+impl LinearSolver for SectorCholesky {
+    fn n(&self) -> usize {
+        self.shared.layout.n()
+    }
+
+    fn solve(&self, rhs: &mut [f64], n_rhs: usize) {
+        let n = self.n();
+        assert_eq!(rhs.len(), n * n_rhs, "{n_rhs} right-hand sides of {n} rows");
+        if rhs.is_empty() {
+            return;
+        }
+        let columns = self.columns(rhs, &[]);
+        self.collect(rhs, &columns);
+    }
+
+    fn solve_at(&self, loads: &[SparseVector], rows: &[usize]) -> Vec<f64> {
+        self.columns(&[], loads).values_at(rows)
+    }
+
+    /// Bytes of the factors on this rank.
+    fn factor_bytes(&self) -> usize {
+        self.parts.iter().map(Part::bytes).sum::<usize>() + self.interface.as_ref().map_or(0, |i| i.bytes())
+    }
+
+    fn name(&self) -> &'static str {
+        "sector Cholesky"
+    }
+}
+
+impl SectorCholesky {
+    /// Solutions for `dense` right-hand sides, column-major `[n][..]`, and then `sparse` ones, left by sector. Collective.
+    ///
+    /// # Panics
+    /// When `dense.len()` is no multiple of n.
+    pub fn columns(&self, dense: &[f64], sparse: &[SparseVector]) -> SectorColumns {
+        let n = self.n().max(1);
+        assert!(dense.len().is_multiple_of(n), "right-hand sides of {n} rows");
+        let loads = Loads {
+            dense,
+            sparse,
+            n_dense: dense.len() / n,
+        };
+        let n_rhs = loads.n_rhs();
+        if n_rhs == 0 {
+            return SectorColumns {
+                shared: self.shared.clone(),
+                n_columns: 0,
+                local: vec![Vec::new(); self.parts.len()],
+                interface: Vec::new(),
+            };
+        }
+        let mut local = self.forward(loads);
+        let interface = self.solve_interface(loads, &local);
+        let sectors = self.shared.own_sectors();
+        let parts = self.parts.iter().zip(&self.shared.parts).zip(sectors);
+        let pairs: Vec<_> = local.iter_mut().zip(parts).collect();
+        pairs.into_par_iter().for_each(|(x, ((part, symbolic), sector))| {
+            let places = &symbolic.places[sector.n_interior..];
+            for (&place, &at) in places.iter().zip(&sector.boundary) {
+                let (place, at) = (n_rhs * place as usize, n_rhs * at);
+                x[place..place + n_rhs].copy_from_slice(&interface[at..at + n_rhs]);
+            }
+            part.backward(x, n_rhs);
+        });
+        SectorColumns {
+            shared: self.shared.clone(),
+            n_columns: n_rhs,
+            local,
+            interface,
+        }
+    }
+
+    /// y and -F y of the sectors owned, by places, `[n_rows][n_rhs]` each.
+    fn forward(&self, loads: Loads<'_>) -> Vec<Vec<f64>> {
+        let (n, n_rhs) = (self.n(), loads.n_rhs());
+        let first = self.shared.owned().start;
+        let forward = |(i, part): (usize, &Part)| {
+            let sector = &self.shared.layout.sectors()[first + i];
+            let places = &self.shared.parts[i].places;
+            let mut x = vec![0.0; n_rhs * sector.n_rows()];
+            if loads.n_dense > 0 {
+                for (&row, &place) in sector.rows[..sector.n_interior].iter().zip(places) {
+                    let x = &mut x[n_rhs * place as usize..][..loads.n_dense];
+                    x.iter_mut()
+                        .enumerate()
+                        .for_each(|(r, x)| *x = loads.dense[n * r + row]);
+                }
+            }
+            for (r, load) in loads.sparse.iter().enumerate() {
+                for &(row, value) in load {
+                    if self.shared.layout.place(row) == Place::Inside(first + i) {
+                        let place = places[sector.inside(row)] as usize;
+                        x[n_rhs * place + loads.n_dense + r] += value;
+                    }
+                }
+            }
+            part.forward(&mut x, n_rhs);
+            x
+        };
+        self.parts.par_iter().enumerate().map(forward).collect()
+    }
+
+    /// The solution on the interface, `[places][n_rhs]`, on all ranks.
+    fn solve_interface(&self, loads: Loads<'_>, local: &[Vec<f64>]) -> Vec<f64> {
+        let Some(interface) = &self.interface else {
+            return Vec::new();
+        };
+        let (shared, n, n_rhs) = (&self.shared, self.n(), loads.n_rhs());
+        let mut sent = Vec::new();
+        for ((x, part), sector) in local.iter().zip(&shared.parts).zip(shared.own_sectors()) {
+            for &place in &part.places[sector.n_interior..] {
+                sent.extend_from_slice(&x[n_rhs * place as usize..][..n_rhs]);
+            }
+        }
+        let lengths = shared.lengths(|s| n_rhs * s.boundary.len());
+        let all = shared.comm.all_gather(sent, &lengths);
+        let rows = shared.layout.interface();
+        let mut x = vec![0.0; n_rhs * rows.len()];
+        for (x, &row) in x.chunks_exact_mut(n_rhs.max(1)).zip(rows) {
+            let dense = x[..loads.n_dense].iter_mut().enumerate();
+            dense.for_each(|(r, x)| *x = loads.dense[n * r + row]);
+        }
+        for (r, load) in loads.sparse.iter().enumerate() {
+            for &(row, value) in load {
+                if let Place::Shared(place) = shared.layout.place(row) {
+                    x[n_rhs * place + loads.n_dense + r] += value;
+                }
+            }
+        }
+        let mut parts = all.chunks_exact(n_rhs.max(1));
+        for sector in shared.layout.sectors() {
+            for (&place, values) in sector.boundary.iter().zip(parts.by_ref()) {
+                let x = &mut x[n_rhs * place..n_rhs * (place + 1)];
+                x.iter_mut().zip(values).for_each(|(x, value)| *x += value);
+            }
+        }
+        interface.solve(shared.comm, &mut x, n_rhs);
+        x
+    }
+
+    /// Puts the solutions of all sectors and of the interface in place, column-major.
+    fn collect(&self, rhs: &mut [f64], columns: &SectorColumns) {
+        let (shared, n, n_rhs) = (&self.shared, self.n(), columns.n_columns);
+        let mut sent = Vec::new();
+        for ((x, part), sector) in columns.local.iter().zip(&shared.parts).zip(shared.own_sectors()) {
+            for &place in &part.places[..sector.n_interior] {
+                sent.extend_from_slice(&x[n_rhs * place as usize..][..n_rhs]);
+            }
+        }
+        let lengths = shared.lengths(|s| n_rhs * s.n_interior);
+        let all = shared.comm.all_gather(sent, &lengths);
+        let sectors = shared.layout.sectors().iter();
+        let inside = sectors.flat_map(|s| &s.rows[..s.n_interior]);
+        let rows: Vec<usize> = inside.chain(shared.layout.interface()).copied().collect();
+        let column = |(r, column): (usize, &mut [f64])| {
+            let values = all
+                .chunks_exact(n_rhs)
+                .chain(columns.interface.chunks_exact(n_rhs));
+            rows.iter()
+                .zip(values)
+                .for_each(|(&row, values)| column[row] = values[r]);
+        };
+        rhs.par_chunks_exact_mut(n).enumerate().for_each(column);
+    }
+}
