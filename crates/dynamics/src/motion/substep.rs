@@ -138,6 +138,8 @@ impl Motion<'_> {
             let sites = part.placing.sites.clone();
             part.system = self.system(state, part.span, sites, &part.moving, &part.loads)?;
         }
+        // A ball that presses beyond the rim has no place: that is the cause then.
+        self.check_on_grooves(&part.places)?;
         Err(DynamicsError::PlacesNotSettled {
             rounds: MAX_PLACE_ROUNDS,
         })
