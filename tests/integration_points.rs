@@ -3,12 +3,14 @@
 use std::sync::OnceLock;
 
 use checkpoint::{Grid, StepRecord, read_any_step, read_mesh, read_step};
+use contact::near_field::in_axes;
+use contact::{Groove, RingPoint, Side};
 use fem::{Material, StressRecovery, von_mises};
 use mesh::{ElementKind, Mesh};
 
 use crate::util::lockstep::small_motion;
 use crate::util::tables::Table;
-use crate::util::{Dir, Files};
+use crate::util::{Dir, Files, with_line};
 
 /// Points of a hex8 element.
 const POINTS: usize = 8;
@@ -240,4 +242,91 @@ fn packs_and_exports_keep_it() {
         text.contains("Name=\"stress_integration_points\" NumberOfComponents=\"48\" ComponentName0=\"0_XX\"")
     );
     assert!(text.contains("ComponentName47=\"7_XZ\""));
+}
+
+/// Wrong: the near field would be missing at integration points, be that of another place, or be added where no contact is. What it changes
+/// there is what it changes at probes in the same points, which find their stress in another way; far from contacts no bit changes.
+#[test]
+fn the_near_field_is_added_at_integration_points() {
+    let dir = Dir::with_meshes();
+    let settings = "[static]\n[output]\nstress = \"integration_points\"\nprecision = \"f64\"\n";
+    let scene = |tables: &str| with_line("[static]", "[static]", &format!("{settings}{tables}"));
+    // A short reach: with the default one every point of this coarse mesh is near some ball.
+    let near_field = "near_field = true\nnear_field_reach = 1.0\n";
+    dir.write("scene.toml", scene(""));
+    dir.run("off", &[]);
+    dir.write("scene.toml", scene(&format!("[stress]\n{near_field}")));
+    dir.run("on", &[]);
+    let grid = read_mesh(&dir.path("on")).unwrap();
+    let [e, nu, density] = STEEL;
+    let steel = Material::new(e, nu, density).unwrap();
+    let (off, on) = (step(&dir, "off", 0), step(&dir, "on", 0));
+    let balls = Table::read(&dir, "off/balls.csv");
+    let mut probes = String::new();
+    let mut changes = Vec::new();
+    for (body, name, mut groove) in grooves() {
+        let mesh = ring(&grid, body).0;
+        // Rings are symmetric, and shown where they touch: the inner one is shifted along the axis.
+        let z = mesh.nodes.iter().map(|x| x[2]);
+        groove.centre_z =
+            0.5 * (z.clone().fold(f64::INFINITY, f64::min) + z.fold(f64::NEG_INFINITY, f64::max));
+        let places = StressRecovery::new(&mesh, &steel).unwrap().point_positions();
+        let (off, on) = (tensors(&grid, &off, body), tensors(&grid, &on, body));
+        let change = |i: usize| -> [f64; 6] { std::array::from_fn(|c| on[i][c] - off[i][c]) };
+        let size = |s: [f64; 6]| s.iter().fold(0.0, |m: f64, c| m.max(c.abs()));
+        let most = (0..on.len()).max_by(|&i, &j| size(change(i)).total_cmp(&size(change(j))));
+        let point = RingPoint::of(&groove, places[most.unwrap()]);
+        let peak = balls.column(&format!("{name}_peak_pressure_pa"))[0];
+        assert!(
+            size(change(most.unwrap())) > 0.02 * peak,
+            "{name}: {:?}",
+            change(most.unwrap())
+        );
+        let untouched = (0..on.len()).filter(|&i| on[i] == off[i]).count();
+        assert!(
+            untouched > on.len() / 10,
+            "{name}: {untouched} of {} points are far from contacts",
+            on.len()
+        );
+        probes += &format!(
+            "[probes.point.{name}]\nring = \"{name}\"\nazimuth = \"{} rad\"\ngroove_angle = \"{} rad\"\ndepth = \"{} m\"\n",
+            point.azimuth, point.angle, point.depth
+        );
+        changes.push((name, in_axes(change(most.unwrap()), &point.axes(&groove)), peak));
+    }
+    for (out, stress) in [("probes_off", ""), ("probes_on", near_field)] {
+        dir.write("scene.toml", scene(&format!("[stress]\n{stress}{probes}")));
+        dir.run(out, &[]);
+    }
+    let [off, on] = ["probes_off", "probes_on"].map(|out| Table::read(&dir, &format!("{out}/probes.csv")));
+    for (name, change, peak) in changes {
+        for (c, ij) in ["gg", "tt", "dd", "gt", "td", "gd"].iter().enumerate() {
+            let column = format!("{name}_stress_{ij}_pa");
+            let probed = on.column(&column)[0] - off.column(&column)[0];
+            // Places were written as text: some units of 1e-16 of the ring, over an ellipse.
+            assert!(
+                (probed - change[c]).abs() < 1e-9 * peak,
+                "{column}: {probed} and {} Pa",
+                change[c]
+            );
+        }
+    }
+}
+
+/// Bodies, names and grooves of the rings.
+fn grooves() -> [(u8, &'static str, Groove); 2] {
+    let groove = |side, centre_radius, groove_radius| Groove {
+        side,
+        centre_radius,
+        groove_radius,
+        centre_z: 0.0,
+    };
+    [
+        (0, "inner", groove(Side::Inner, 0.5 * 56.01e-3 + 4.65e-3, 4.65e-3)),
+        (
+            1,
+            "outer",
+            groove(Side::Outer, 0.5 * 74.037e-3 - 4.75e-3, 4.75e-3),
+        ),
+    ]
 }
