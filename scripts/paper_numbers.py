@@ -37,8 +37,9 @@ def smooth(values, width):
     return [sum(w) / len(w) for w in windows]
 
 
-def pulses(values):
-    """How often a history falls below the middle of its range: one pulse of pressure each."""
+def pulses(values, width):
+    """How often a history, smoothed over a window, falls below the middle of its range: one pulse of pressure each."""
+    values = smooth(values, width)
     middle = 0.5 * (min(values) + max(values))
     below = [x < middle for x in values]
     return sum(1 for a, b in zip(below, below[1:]) if b and not a)
@@ -76,7 +77,7 @@ def motion(folder):
     for name in ("p_o2", "p_i2"):
         radial = probes[f"{name}_stress_rr_pa"]
         mises = probes[f"{name}_von_mises_pa"]
-        print(f"  {name}: {pulses(radial)} pulses; radial stress {min(radial) / 1e6:.1f} to {max(radial) / 1e6:.1f} MPa, "
+        print(f"  {name}: {pulses(radial, per_passing // 10)} pulses; radial stress {min(radial) / 1e6:.1f} to {max(radial) / 1e6:.1f} MPa, "
               f"von Mises {min(mises) / 1e6:.1f} to {max(mises) / 1e6:.1f} MPa")
     print("Fig. 8, displacements in mm: RMS of the value from the just-touching state, RMS about the mean, mean, half range")
     histories = {
