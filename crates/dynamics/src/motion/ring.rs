@@ -5,7 +5,7 @@
 //! table of the responses of its raceway, made once per step size; its predictor stays in harmonic space, where contact
 //! forces are added, so that a step takes two solves but transforms one whole field there and one back. The columns of a ring in
 //! sectors stay by sector ([`super::by_sector`]). The columns of the mount are solved once per step size. A defect of the ring
-//! corrects all of it ([`super::defect`]).
+//! corrects all of it (`motion::defect`).
 
 use contact::NodalWeights;
 use solver::LinearSolver;

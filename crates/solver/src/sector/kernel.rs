@@ -3,7 +3,8 @@
 //! A panel is column-major `[width][height]`, a lower trapezoid. Both sweeps read each entry once, in the order of
 //! memory, which bounds their speed. How many columns are taken together is a matter of what the processor fetches ahead: one
 //! after the other for short columns forwards, eight side by side else. Measured on panels in memory, one core, in units of the time to
-//! read them (22 November 2026, loaded machine, AVX-512), with four columns always taken together in brackets:
+//! read them (a prototype that split columns a little differently; 22 November 2026, loaded machine, AVX-512), with four columns always
+//! taken together in brackets:
 //!
 //! | width x height | forwards | backwards |
 //! |---|---|---|
