@@ -132,8 +132,10 @@ fn sample(
     patch: PatchShape,
 ) -> Result<Vec<Sample>, ContactError> {
     let groove = &surface.groove;
-    let mut samples = Vec::with_capacity(rule.points.len());
-    for (point, &weight) in rule.points.iter().zip(&rule.weights) {
+    let spacing = surface.spacing(surface.locate(patch.azimuth, patch.angle)?);
+    let spacings = (patch.semi_axes[0] / spacing[0]).max(patch.semi_axes[1] / spacing[1]);
+    let mut samples = Vec::new();
+    for (point, weight) in rule.points(spacings) {
         let angle = patch.angle + patch.semi_axes[0] * point[0] / groove.groove_radius;
         let azimuth = patch.azimuth + patch.semi_axes[1] * point[1] / groove.radius(angle);
         let location = surface.locate(azimuth, angle)?;

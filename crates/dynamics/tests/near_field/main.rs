@@ -2,6 +2,7 @@
 
 mod between;
 mod costs;
+mod loaded;
 mod resolved;
 #[path = "../support/mod.rs"]
 mod support;
@@ -10,15 +11,12 @@ use std::f64::consts::PI;
 use std::sync::Arc;
 
 use contact::near_field::in_axes;
-use contact::patch::PatchShape;
-use contact::quadrature::PressureRule;
-use contact::{LoadedPatch, NearField, Patch, RacewaySurface, RingPoint, Side};
-use dynamics::model::elastic;
-use dynamics::ring::RingSolver;
-use dynamics::{ContactMode, Hold, Model, RingModel};
-use fem::stress::{PointRecovery, von_mises};
+use contact::{LoadedPatch, NearField, RingPoint, Side};
+use dynamics::{ContactMode, Model, RingModel};
+use fem::stress::von_mises;
+use loaded::Ring;
 use support::Case;
-use support::rings::{Level, ring};
+use support::rings::Level;
 
 const FORCE: f64 = 500.0;
 const ANGLE: f64 = 0.34;
@@ -77,24 +75,12 @@ fn points(ring: &RingModel, azimuth: f64, [a, b]: [f64; 2], places: &[[f64; 3]])
 
 /// The contact on a ring of a mesh, the ball `share` of a sector beyond a plane of nodes.
 fn on_mesh(side: Side, level: Level, share: f64, places: &[[f64; 3]]) -> Found {
-    let model = model(side, ring(side, level, Hold::Clamped));
-    let ring = model.ring(side).unwrap();
+    let loaded = Ring::new(side, level);
+    let (ring, hertz) = (loaded.ring(), &loaded.model.hertz[side.index()]);
     let azimuth = share * 2.0 * PI / level.sectors as f64;
-    let hertz = &model.hertz[side.index()];
-    let surface = RacewaySurface::new(&ring.mesh, ring.mesh.group("raceway"), ring.groove);
-    let semi_axes = hertz.semi_axes(FORCE);
-    let shape = PatchShape::new(&surface, azimuth, ANGLE, semi_axes, 2.0).unwrap();
-    let steel = elastic(&ring.material);
-    let patch = Patch::new(&surface, &ring.mesh.nodes, &PressureRule::new(), shape, steel).unwrap();
-    let mut load = vec![0.0; ring.mesh.n_dofs()];
-    let direction = ring.groove.direction(ANGLE);
-    patch.weights.add_load(direction.map(|n| FORCE * n), &mut load);
-    let u = RingSolver::new(&model, side, ring).unwrap().solve(load, 1);
+    let (semi_axes, shape) = (loaded.hertz_axes(), loaded.patch(azimuth));
     let points = points(ring, azimuth, semi_axes, places);
-    let positions: Vec<[f64; 3]> = points.iter().map(|p| p.position(&ring.groove)).collect();
-    let raw = PointRecovery::new(&ring.mesh, &ring.material, &positions)
-        .unwrap()
-        .stress(&u);
+    let raw = loaded.stress(&loaded.displacements(&[shape]), &points);
     let mut full = raw.clone();
     let contact = LoadedPatch {
         azimuth,
@@ -104,6 +90,7 @@ fn on_mesh(side: Side, level: Level, share: f64, places: &[[f64; 3]]) -> Found {
         patch_angle: ANGLE,
         patch_axes: shape.semi_axes,
     };
+    let positions: Vec<[f64; 3]> = points.iter().map(|p| p.position(&ring.groove)).collect();
     NearField::new(ring.groove, NU, 4.0, &positions).add(&[contact], &mut full);
     let scaled = |stress: Vec<[f64; 6]>| {
         let own = stress

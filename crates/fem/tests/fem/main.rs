@@ -11,3 +11,4 @@ mod rings;
 mod sector;
 mod stress;
 mod support;
+mod waves;
