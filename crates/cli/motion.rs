@@ -76,8 +76,8 @@ pub fn run(
         last_file: None,
         dir,
     };
-    let written = march.write_tables().and_then(|()| march.write_fields());
-    agree(written)?;
+    agree(march.write_tables())?;
+    agree(march.write_fields())?;
     let costs = StartCosts {
         read,
         forecast: settled.forecast,
@@ -256,11 +256,10 @@ impl March<'_> {
                 }
                 Err(error) => return Err(self.failed(error)),
             }
-            let mut written = self.write_tables();
+            agree(self.write_tables())?;
             if n == n_steps || n.is_multiple_of(self.dynamic.output_every) {
-                written = written.and_then(|()| self.write_fields());
+                agree(self.write_fields())?;
             }
-            agree(written)?;
             progress.advance();
         }
         Ok(())
@@ -311,16 +310,22 @@ impl March<'_> {
         }
     }
 
-    /// Hands over the state to be written as a step file, unless it was.
+    /// Hands over the state to be written as a step file, unless it was; ranks recover its stress first. To be called by all ranks
+    /// or none: they must have agreed on what was written before.
     fn write_fields(&mut self) -> Result<(), Failure> {
         if self.last_file == Some(self.state.step) {
             return Ok(());
         }
         let (model, motion, state) = (self.model, self.motion, &self.state);
+        let shown = Shown::Motion { model, motion, state };
+        let gathered = self.files.gather_stress(&shown);
+        if !self.files.are_written_here() {
+            self.last_file = Some(state.step);
+            return Ok(());
+        }
         let time = motion.time(state.step);
-        self.files
-            .write_profiles(state.step, time, None, &Shown::Motion { model, motion, state })?;
-        let shown = Recorded::new(self.model, self.motion, &self.state, self.scene)?;
+        self.files.write_profiles(state.step, time, None, &shown)?;
+        let shown = Recorded::new(model, motion, state, gathered, self.scene)?;
         let (newton, watch) = (self.newton, self.watch.to_numbers());
         self.files.write_fields_later(move |stress| {
             let mut record = shown.record(stress);

@@ -118,7 +118,7 @@ impl Series<'_> {
         progress: &mut Progress,
         dir: &Path,
     ) -> Result<(), Failure> {
-        agree(self.write(bearing, 0))?;
+        self.write(bearing, 0)?;
         progress.advance();
         let n_steps = self.settings.n_steps;
         for n in 1..=n_steps {
@@ -129,7 +129,7 @@ impl Series<'_> {
                 Ok(next) => self.last = next,
                 Err(error) => {
                     if !self.has_file(n - 1) {
-                        self.write_fields(bearing, n - 1)?;
+                        agree(self.write_fields(bearing, n - 1))?;
                     }
                     let place = format!(
                         "step {n}, t = {:.6e} s; the last equilibrium is in {}",
@@ -139,7 +139,7 @@ impl Series<'_> {
                     return Err(Failure::solving(error).context(place));
                 }
             }
-            agree(self.write(bearing, n))?;
+            self.write(bearing, n)?;
             progress.advance();
         }
         Ok(())
@@ -150,21 +150,25 @@ impl Series<'_> {
         step == self.settings.n_steps || step.is_multiple_of(self.settings.output_every)
     }
 
-    /// Writes a step and takes note of what it took.
+    /// Writes a step and takes note of what it took. Collective.
     fn write(&mut self, bearing: &QuasiStatic<'_>, step: u64) -> Result<(), Failure> {
         self.iterations[0] = step as usize;
         self.iterations[1] += self.last.rounds;
         self.iterations[2] += self.last.newton_iterations;
         self.note_warnings(bearing.time(step));
-        let time = bearing.time(step);
+        agree(self.write_tables(bearing.time(step), step))?;
+        if self.has_file(step) {
+            agree(self.write_fields(bearing, step))?;
+        }
+        Ok(())
+    }
+
+    /// Appends a line per table.
+    fn write_tables(&mut self, time: f64, step: u64) -> Result<(), Failure> {
         let snapshot = Snapshot::of_equilibrium(&self.last, self.rolling);
         self.files.write_tables(step, time, None, &snapshot)?;
         let shown = shown(self.model, &self.last);
-        self.files.write_probes(step, time, None, &shown)?;
-        if self.has_file(step) {
-            self.write_fields(bearing, step)?;
-        }
-        Ok(())
+        self.files.write_probes(step, time, None, &shown)
     }
 
     /// A long run warns at thousands of instants: the first stands for all.
@@ -179,12 +183,14 @@ impl Series<'_> {
         self.warned += 1;
     }
 
+    /// Writes the fields of a step; ranks recover its stress first.
     fn write_fields(&mut self, bearing: &QuasiStatic<'_>, step: u64) -> Result<(), Failure> {
         let (model, last, scene) = (self.model, &self.last, self.scene);
+        let gathered = self.files.gather_stress(&shown(model, last));
         let at = (step, bearing.time(step));
         self.files.write_profiles(step, at.1, None, &shown(model, last))?;
         self.files
-            .write_fields(|stress| fields::record(&shown(model, last), last, stress, at, scene))
+            .write_fields(|stress| fields::record(&shown(model, last), last, (stress, gathered), at, scene))
     }
 
     fn findings(self, ended: &Result<(), Failure>, effect_seconds: BTreeMap<&'static str, f64>) -> Findings {

@@ -111,11 +111,15 @@ pub fn run(
             placed: &placed,
             solution: &solution,
         };
-        let mut write = || {
+        // All ranks recover stress; then rank 0 writes, and may fail alone.
+        let gathered = files.gather_stress(&shown);
+        let write = || {
             files.write_tables(step, time, *value, &snapshot)?;
             files.write_probes(step, time, *value, &shown)?;
             files.write_profiles(step, time, *value, &shown)?;
-            files.write_fields(|stress| fields::record(&shown, &solution, stress, (step, time), point))
+            files.write_fields(|stress| {
+                fields::record(&shown, &solution, (stress, gathered), (step, time), point)
+            })
         };
         agree(write())?;
         // Later points start from displacements of the contacts only; fields of a long sweep would fill the memory.

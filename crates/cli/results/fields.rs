@@ -8,7 +8,7 @@ use dynamics::balls::{BallResult, ContactResult};
 use dynamics::{Model, StaticSolution};
 use fem::stress::von_mises;
 
-use super::ring_stress::{RingStress, ShownRing, StressFields};
+use super::ring_stress::{Basis, Gathered, RingStress, ShownRing, StressFields};
 use super::shown::{Shown, Turn};
 use crate::failure::Failure;
 use crate::scene::{InnerRingFrame, Scene};
@@ -43,15 +43,15 @@ pub fn bodies(model: &Model) -> Vec<Body> {
     bodies
 }
 
-/// The record of one equilibrium; its step also stands for its time where there is none.
+/// The record of one equilibrium, with the stress that ranks have `gathered`; its step also stands for its time where there is none.
 pub fn record(
     shown: &Shown<'_>,
     solution: &StaticSolution,
-    stress: &RingStress,
+    (stress, gathered): (&RingStress, Gathered),
     (step, time): (u64, f64),
     scene: &Scene,
 ) -> Result<StepRecord, Failure> {
-    let (points, cells) = Places::new(shown, scene)?.fields(stress);
+    let (points, cells) = Places::new(shown, gathered, scene)?.fields(stress);
     Ok(StepRecord {
         step,
         time,
@@ -66,15 +66,15 @@ pub fn record(
 pub struct Places {
     /// Displacement of every point, m.
     displacement: Vec<[f64; 3]>,
-    /// Fields of the flexible rings from which their stress follows.
+    /// What the stress of the flexible rings follows from.
     rings: [Option<ShownRing>; 2],
     /// Forces on the balls, N.
     forces: [Vec<[f64; 3]>; 2],
 }
 
 impl Places {
-    /// Places of rings and balls, the inner ring as it stands in space or in its own frame.
-    pub fn new(shown: &Shown<'_>, scene: &Scene) -> Result<Places, Failure> {
+    /// Places of rings and balls, the inner ring as it stands in space or in its own frame, and the stress that ranks have `gathered`.
+    pub fn new(shown: &Shown<'_>, mut gathered: Gathered, scene: &Scene) -> Result<Places, Failure> {
         let (mut displacement, mut rings) = (Vec::new(), [None, None]);
         for side in Side::BOTH {
             let Some(mut ring) = shown.ring(side) else {
@@ -89,7 +89,10 @@ impl Places {
                 None => Vec::new(),
             };
             rings[side.index()] = Some(ShownRing {
-                field: ring.strained.into_owned(),
+                basis: match gathered[side.index()].take() {
+                    Some(stress) => Basis::Stress(stress),
+                    None => Basis::Displacement(ring.strained.into_owned()),
+                },
                 turn: ring.turn,
                 patches,
             });

@@ -16,7 +16,7 @@ use dynamics::{Model, RingMemory, Timing};
 use super::about::about;
 use super::fields;
 use super::probes::Probes;
-use super::ring_stress::RingStress;
+use super::ring_stress::{Gathered, RingStress};
 use super::shown::Shown;
 use super::snapshot::Snapshot;
 use super::summary::{Costs, SUMMARY_FILE};
@@ -28,22 +28,27 @@ use crate::scene::{self, Analysis, Scene};
 /// Step files that may wait for the disk, besides the one being written.
 const QUEUE: usize = 2;
 
-/// The files of one run. Rank 0 writes for all; on the others there are none, and writing does nothing.
-pub struct Files(Option<Open>);
+/// The files of one run. Rank 0 writes for all; on the others there are none, and writing does nothing. The stress of rings in
+/// sectors is recovered by all ranks.
+pub struct Files {
+    open: Option<Open>,
+    /// Stress of the rings, shared with the thread that writes.
+    ring_stress: Arc<RingStress>,
+    /// Seconds of stress that ranks recover together: that of the sectors of this rank, and putting it together on rank 0.
+    shared_seconds: [f64; 2],
+}
 
 /// The open files of one run.
 struct Open {
     output: BackgroundOutput,
     tables: Tables,
     probes: Option<Probes>,
-    /// Stress of the rings, shared with the thread that writes.
-    ring_stress: Arc<RingStress>,
     stress_seconds: f64,
     output_seconds: f64,
 }
 
 impl Files {
-    /// Creates the folder's files; `first` tells the columns, `warnings` are those of the start.
+    /// Creates the folder's files; `first` tells the columns, `warnings` are those of the start. Collective.
     pub fn create(
         scene: &Scene,
         model: &Model,
@@ -52,18 +57,22 @@ impl Files {
         probes: Option<Probes>,
         warnings: &[String],
     ) -> Result<Files, Failure> {
+        let ring_stress = RingStress::new(model, scene)?;
         if !Communicator::world().is_root() {
-            return Ok(Files(None));
+            return Ok(Files::new(None, ring_stress));
         }
         let clock = Instant::now();
         let mut output = Output::create(dir, &fields::bodies(model), storage(scene))?;
         note_dead_owner(output.lock());
         output.describe(about(scene, dir, warnings)?)?;
         let tables = Tables::create(dir, swept_column(scene), first, &own_columns(probes.as_ref()))?;
-        Files::new(scene, model, output, (tables, probes), clock)
+        Ok(Files::new(
+            Some(Open::new(output, tables, probes, clock)?),
+            ring_stress,
+        ))
     }
 
-    /// Opens the files of a locked folder to go on after its step `last`.
+    /// Opens the files of a locked folder to go on after its step `last`. Collective.
     pub fn resume(
         scene: &Scene,
         model: &Model,
@@ -72,8 +81,9 @@ impl Files {
         probes: Option<Probes>,
         (last, warnings): (u64, &[String]),
     ) -> Result<Files, Failure> {
+        let ring_stress = RingStress::new(model, scene)?;
         let Some(lock) = lock else {
-            return Ok(Files(None));
+            return Ok(Files::new(None, ring_stress));
         };
         let clock = Instant::now();
         let dir = lock.dir().to_path_buf();
@@ -111,26 +121,31 @@ impl Files {
             }
             _ => {}
         }
-        Files::new(scene, model, output, (tables, probes), clock)
+        Ok(Files::new(
+            Some(Open::new(output, tables, probes, clock)?),
+            ring_stress,
+        ))
     }
 
-    fn new(
-        scene: &Scene,
-        model: &Model,
-        output: Output,
-        (tables, probes): (Tables, Option<Probes>),
-        clock: Instant,
-    ) -> Result<Files, Failure> {
-        let companions = tables.companions(output.dir())?;
-        let output_seconds = clock.elapsed().as_secs_f64();
-        Ok(Files(Some(Open {
-            output: BackgroundOutput::start(output, QUEUE, companions),
-            tables,
-            ring_stress: Arc::new(RingStress::new(model, scene)?),
-            probes,
-            stress_seconds: 0.0,
-            output_seconds,
-        })))
+    fn new(open: Option<Open>, ring_stress: RingStress) -> Files {
+        Files {
+            open,
+            ring_stress: Arc::new(ring_stress),
+            shared_seconds: [0.0; 2],
+        }
+    }
+
+    /// Whether this process writes.
+    pub fn are_written_here(&self) -> bool {
+        self.open.is_some()
+    }
+
+    /// Stress of an instant of the rings that several ranks share, for its fields. Collective, and never a failure of one rank: to be
+    /// called before anything of the instant is written.
+    pub fn gather_stress(&mut self, shown: &Shown<'_>) -> Gathered {
+        let (gathered, seconds) = self.ring_stress.gather(shown);
+        (0..2).for_each(|i| self.shared_seconds[i] += seconds[i]);
+        gathered
     }
 
     /// Appends a line to the table of the probes.
@@ -141,7 +156,7 @@ impl Files {
         value: Option<f64>,
         shown: &Shown<'_>,
     ) -> Result<(), Failure> {
-        let Some(open) = &mut self.0 else { return Ok(()) };
+        let Some(open) = &mut self.open else { return Ok(()) };
         let Some(probes) = &open.probes else {
             return Ok(());
         };
@@ -162,7 +177,7 @@ impl Files {
         value: Option<f64>,
         snapshot: &Snapshot,
     ) -> Result<(), Failure> {
-        let Some(open) = &mut self.0 else { return Ok(()) };
+        let Some(open) = &mut self.open else { return Ok(()) };
         let clock = Instant::now();
         open.tables.append(step, time, value, snapshot)?;
         open.output_seconds += clock.elapsed().as_secs_f64();
@@ -177,7 +192,7 @@ impl Files {
         value: Option<f64>,
         shown: &Shown<'_>,
     ) -> Result<(), Failure> {
-        let Some(open) = &mut self.0 else { return Ok(()) };
+        let Some(open) = &mut self.open else { return Ok(()) };
         let Some(probes) = &open.probes else {
             return Ok(());
         };
@@ -194,9 +209,9 @@ impl Files {
         &mut self,
         record: impl FnOnce(&RingStress) -> Result<StepRecord, Failure>,
     ) -> Result<(), Failure> {
-        let Some(open) = &mut self.0 else { return Ok(()) };
+        let Some(open) = &mut self.open else { return Ok(()) };
         let clock = Instant::now();
-        let record = record(&open.ring_stress)?;
+        let record = record(&self.ring_stress)?;
         open.stress_seconds += clock.elapsed().as_secs_f64();
         let clock = Instant::now();
         open.output.write_step(record)?;
@@ -206,7 +221,7 @@ impl Files {
 
     /// Time spent waiting for the disk so far.
     pub fn waited(&self) -> Duration {
-        self.0
+        self.open
             .as_ref()
             .map_or(Duration::ZERO, |open| open.output.waited())
     }
@@ -216,9 +231,9 @@ impl Files {
         &mut self,
         record: impl FnOnce(&RingStress) -> StepRecord + Send + 'static,
     ) -> Result<(), Failure> {
-        let Some(open) = &mut self.0 else { return Ok(()) };
+        let Some(open) = &mut self.open else { return Ok(()) };
         let clock = Instant::now();
-        let ring_stress = open.ring_stress.clone();
+        let ring_stress = self.ring_stress.clone();
         open.output.write_step_made_by(move || record(&ring_stress))?;
         open.output_seconds += clock.elapsed().as_secs_f64();
         Ok(())
@@ -232,7 +247,7 @@ impl Files {
         solver: Timing,
         start: Instant,
     ) -> Result<Costs, Failure> {
-        let Some(open) = self.0 else {
+        let Some(open) = self.open else {
             return Ok(Costs {
                 read,
                 total: start.elapsed().as_secs_f64(),
@@ -243,13 +258,14 @@ impl Files {
         };
         let clock = Instant::now();
         let written = open.output.finish()?;
-        let near_field = open.ring_stress.near_field_time();
+        let near_field = self.ring_stress.near_field_time();
         if let Some(views) = written.output.finish()? {
             warn_of_damage(&views.damaged);
         }
         Ok(Costs {
             read,
-            stress: open.stress_seconds + written.making.as_secs_f64(),
+            stress: open.stress_seconds + written.making.as_secs_f64() + self.shared_seconds[0],
+            gather: (Communicator::world().size() > 1).then_some(self.shared_seconds[1]),
             near_field: near_field.map(|time| time.as_secs_f64()),
             output: open.output_seconds + clock.elapsed().as_secs_f64(),
             disk_wait: written.waited.as_secs_f64(),
@@ -258,6 +274,19 @@ impl Files {
             forecast,
             solver,
             probes: open.probes.map_or(Vec::new(), |p| p.places().cloned().collect()),
+        })
+    }
+}
+
+impl Open {
+    fn new(output: Output, tables: Tables, probes: Option<Probes>, clock: Instant) -> Result<Open, Failure> {
+        let companions = tables.companions(output.dir())?;
+        Ok(Open {
+            output: BackgroundOutput::start(output, QUEUE, companions),
+            tables,
+            probes,
+            stress_seconds: 0.0,
+            output_seconds: clock.elapsed().as_secs_f64(),
         })
     }
 }

@@ -17,7 +17,7 @@ use serde::Serialize;
 
 use super::fields;
 use super::files::storage;
-use super::ring_stress::{RingStress, ShownRing};
+use super::ring_stress::{Basis, RingStress, ShownRing};
 use super::shown::Turn;
 use super::snapshot::Snapshot;
 use super::summary::{ShaftSummary, mode_name, peak_memory, sides, write_summary};
@@ -116,7 +116,7 @@ impl ModeFiles {
             };
             displacement.extend(field.chunks_exact(3).map(|u| [u[0], u[1], u[2]]));
             rings[i] = Some(ShownRing {
-                field,
+                basis: Basis::Displacement(field),
                 turn: Turn::new(0.0),
                 patches: Vec::new(),
             });

@@ -5,7 +5,7 @@ use dynamics::Model;
 use dynamics::motion::{Motion, MotionState};
 
 use super::fields::Places;
-use super::ring_stress::RingStress;
+use super::ring_stress::{Gathered, RingStress};
 use super::shown::Shown;
 use super::state_arrays::{self, Arrays};
 use crate::failure::Failure;
@@ -21,18 +21,19 @@ pub struct Recorded {
 }
 
 impl Recorded {
-    /// Places of rings and balls at one instant, and the state.
+    /// Places of rings and balls at one instant, the stress that ranks have `gathered`, and the state.
     pub fn new(
         model: &Model,
         motion: &Motion<'_>,
         state: &MotionState,
+        gathered: Gathered,
         scene: &Scene,
     ) -> Result<Recorded, Failure> {
         let shown = Shown::Motion { model, motion, state };
         Ok(Recorded {
             step: state.step,
             time: motion.time(state.step),
-            places: Places::new(&shown, scene)?,
+            places: Places::new(&shown, gathered, scene)?,
             state: state_arrays::store(state, &motion.shape()),
             scene: scene.text.clone(),
         })

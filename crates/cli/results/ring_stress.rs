@@ -4,11 +4,13 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 
 use checkpoint::{CellFields, IntegrationPointStress};
+use comm::Communicator;
 use contact::{LoadedPatch, NearField, Side};
-use dynamics::{Model, NodalStress, RingModel};
+use dynamics::{Backend, Model, NodalStress, RingModel, SharedStress, StressPlaces};
+use fem::quadrature::stiffness_rule;
 use fem::stress::{StressRecovery, von_mises};
 
-use super::shown::Turn;
+use super::shown::{Shown, Turn};
 use crate::failure::Failure;
 use crate::scene::{Scene, StressOutput};
 
@@ -32,20 +34,40 @@ pub struct RingStress {
 
 /// Recovery of one ring, and the places of its stress for the near field if that is asked for.
 struct Recovery {
-    elements: StressRecovery,
-    /// What averages at nodes, when the scene asks for it.
-    nodal: Option<NodalStress>,
+    source: Source,
+    points_per_element: usize,
     near_field: Option<NearField>,
 }
 
+/// What recovers the stress of a ring from its displacements.
+enum Source {
+    /// At the integration points of all elements.
+    Elements(Box<StressRecovery>),
+    /// At the nodes.
+    Nodes(NodalStress),
+    /// Either, by sector: ranks share it.
+    Shared(Box<SharedStress>),
+}
+
+/// Stress of the rings that ranks share, Pa, by side, as it was recovered; None of other rings.
+pub type Gathered = [Option<Vec<[f64; 6]>>; 2];
+
 /// A flexible ring at one instant.
 pub struct ShownRing {
-    /// Displacement up to a rigid motion in the ring's own frame, m, `[n_nodes][3]` flat.
-    pub field: Vec<f64>,
-    /// From that frame to space.
+    /// What its stress follows from.
+    pub basis: Basis,
+    /// From the ring's frame to space.
     pub turn: Turn,
     /// Contact forces on it; empty without near field.
     pub patches: Vec<LoadedPatch>,
+}
+
+/// What the stress of a ring follows from, in its own frame.
+pub enum Basis {
+    /// Displacement up to a rigid motion, m, `[n_nodes][3]` flat.
+    Displacement(Vec<f64>),
+    /// The stress that ranks have recovered together, Pa.
+    Stress(Vec<[f64; 6]>),
 }
 
 /// Stress of one instant over points and cells; what the scene does not ask for is absent.
@@ -58,16 +80,11 @@ pub struct StressFields {
 }
 
 impl RingStress {
-    /// Prepares what the scene asks for.
+    /// Prepares what the scene asks for: on rank 0 that of all rings, on others their part of rings that ranks share. Collective.
     pub fn new(model: &Model, scene: &Scene) -> Result<RingStress, Failure> {
         let recovery = |side: Side| match model.ring(side) {
             Some(ring) if scene.output.stress != StressOutput::None => {
-                let mut recovery = Recovery::new(ring, scene.output.stress, scene.stress.near_field_reach)?;
-                if scene.output.stress == StressOutput::Nodal {
-                    let nodal = NodalStress::new(ring, side.name(), model.backend);
-                    recovery.nodal = Some(nodal.map_err(Failure::solving)?);
-                }
-                Ok(Some(recovery))
+                Recovery::new(ring, side.name(), model.backend, scene)
             }
             _ => Ok::<_, Failure>(None),
         };
@@ -79,6 +96,29 @@ impl RingStress {
         })
     }
 
+    /// Stress of the rings that several ranks share, on rank 0, nothing of other rings; seconds of the sectors of this rank, and of
+    /// putting all together. Collective.
+    pub fn gather(&self, shown: &Shown<'_>) -> (Gathered, [f64; 2]) {
+        let (mut gathered, mut seconds) = ([None, None], [0.0; 2]);
+        if Communicator::world().size() == 1 {
+            return (gathered, seconds);
+        }
+        for side in Side::BOTH {
+            let recovery = self.rings[side.index()].as_ref();
+            let (Some(Source::Shared(shared)), Some(ring)) = (recovery.map(|r| &r.source), shown.ring(side))
+            else {
+                continue;
+            };
+            let clock = Instant::now();
+            let own = shared.recover(&ring.strained);
+            let recovered = clock.elapsed().as_secs_f64();
+            gathered[side.index()] = shared.gather(own);
+            seconds[0] += recovered;
+            seconds[1] += clock.elapsed().as_secs_f64() - recovered;
+        }
+        (gathered, seconds)
+    }
+
     /// Time spent on near fields so far; None where no ring has one.
     pub fn near_field_time(&self) -> Option<Duration> {
         let has_one = |ring: &Option<Recovery>| ring.as_ref().is_some_and(|r| r.near_field.is_some());
@@ -86,14 +126,19 @@ impl RingStress {
         (self.rings.iter().any(has_one)).then(|| Duration::from_nanos(nanoseconds))
     }
 
-    /// Adds the near field of a ring's contacts to its stress.
-    fn add_near_field(&self, recovery: &Recovery, ring: &ShownRing, stress: &mut [[f64; 6]]) {
+    /// Stress of a ring with its near field, Pa, in its own frame.
+    fn stress(&self, recovery: &Recovery, ring: &ShownRing) -> Vec<[f64; 6]> {
+        let mut stress = match &ring.basis {
+            Basis::Displacement(field) => recovery.source.stress(field),
+            Basis::Stress(stress) => stress.clone(),
+        };
         if let Some(near_field) = &recovery.near_field {
             let clock = Instant::now();
-            near_field.add(&ring.patches, stress);
+            near_field.add(&ring.patches, &mut stress);
             let spent = clock.elapsed().as_nanos() as u64;
             self.near_field_time.fetch_add(spent, Ordering::Relaxed);
         }
+        stress
     }
 
     /// Stress of one instant, from the fields of the flexible rings.
@@ -123,11 +168,7 @@ impl RingStress {
     fn nodal(&self, rings: &[(&Recovery, &ShownRing)]) -> Vec<[f64; 6]> {
         let mut stress = Vec::new();
         for (recovery, ring) in rings {
-            let mut own = match &recovery.nodal {
-                Some(nodal) => nodal.nodal(&ring.field),
-                None => recovery.elements.nodal(&ring.field),
-            };
-            self.add_near_field(recovery, ring, &mut own);
+            let own = self.stress(recovery, ring);
             stress.extend(own.into_iter().map(|s| ring.turn.tensor(s)));
         }
         stress.resize(stress.len() + self.n_balls, [0.0; 6]);
@@ -135,15 +176,12 @@ impl RingStress {
     }
 
     fn cells(&self, rings: &[(&Recovery, &ShownRing)]) -> CellFields {
-        let points = rings
-            .iter()
-            .map(|(recovery, _)| recovery.elements.points_per_element());
+        let points = rings.iter().map(|(recovery, _)| recovery.points_per_element);
         let points_per_cell = points.max().unwrap_or(0);
         let (mut values, mut largest) = (Vec::new(), Vec::new());
         for (recovery, ring) in rings {
-            let mut stress = recovery.elements.integration_points(&ring.field);
-            self.add_near_field(recovery, ring, &mut stress);
-            for cell in stress.chunks_exact(recovery.elements.points_per_element()) {
+            let stress = self.stress(recovery, ring);
+            for cell in stress.chunks_exact(recovery.points_per_element) {
                 let end = values.len() + 6 * points_per_cell;
                 values.extend(cell.iter().flat_map(|&s| ring.turn.tensor(s)));
                 values.resize(end, 0.0);
@@ -164,22 +202,61 @@ impl RingStress {
 }
 
 impl Recovery {
-    fn new(ring: &RingModel, kind: StressOutput, reach: Option<f64>) -> Result<Recovery, Failure> {
-        let elements = StressRecovery::new(&ring.mesh, &ring.material)?;
-        let near_field = reach.map(|reach| {
-            let poisson_ratio = ring.material.poisson_ratio;
-            match kind {
-                StressOutput::IntegrationPoints => {
-                    NearField::new(ring.groove, poisson_ratio, reach, &elements.point_positions())
-                }
-                _ => NearField::new(ring.groove, poisson_ratio, reach, &ring.mesh.nodes),
+    /// Recovery of a ring; None on a rank that has no part in it.
+    fn new(
+        ring: &RingModel,
+        side: &'static str,
+        backend: Backend,
+        scene: &Scene,
+    ) -> Result<Option<Recovery>, Failure> {
+        let (at_points, is_root) = (
+            scene.output.stress == StressOutput::IntegrationPoints,
+            Communicator::world().is_root(),
+        );
+        let source = match backend {
+            Backend::Sector(sectors) => {
+                let places = if at_points {
+                    StressPlaces::IntegrationPoints
+                } else {
+                    StressPlaces::Nodes
+                };
+                let shared = SharedStress::new(ring, side, sectors, places).map_err(Failure::solving)?;
+                Source::Shared(Box::new(shared))
             }
-        });
-        Ok(Recovery {
-            elements,
-            nodal: None,
+            _ if !is_root => return Ok(None),
+            _ if at_points => Source::Elements(Box::new(StressRecovery::new(&ring.mesh, &ring.material)?)),
+            _ => Source::Nodes(NodalStress::new(ring, side, backend).map_err(Failure::solving)?),
+        };
+        let points = match &source {
+            _ if scene.stress.near_field_reach.is_none() => None,
+            Source::Nodes(_) => Some(ring.mesh.nodes.clone()),
+            Source::Elements(recovery) => Some(recovery.point_positions()),
+            Source::Shared(shared) if at_points => shared.point_positions(),
+            Source::Shared(_) => is_root.then(|| ring.mesh.nodes.clone()),
+        };
+        let near_field =
+            scene.stress.near_field_reach.zip(points).map(|(reach, points)| {
+                NearField::new(ring.groove, ring.material.poisson_ratio, reach, &points)
+            });
+        Ok(Some(Recovery {
+            source,
+            points_per_element: stiffness_rule(ring.mesh.kind).points.len(),
             near_field,
-        })
+        }))
+    }
+}
+
+impl Source {
+    /// Stress from displacements, by this process alone, Pa.
+    fn stress(&self, field: &[f64]) -> Vec<[f64; 6]> {
+        match self {
+            Source::Elements(recovery) => recovery.integration_points(field),
+            Source::Nodes(nodal) => nodal.nodal(field),
+            Source::Shared(shared) => {
+                let gathered = shared.gather(shared.recover(field));
+                gathered.expect("one process has all sectors")
+            }
+        }
     }
 }
 
@@ -211,9 +288,10 @@ mod tests {
         let stress = RingStress {
             kind: StressOutput::IntegrationPoints,
             rings: meshes.each_ref().map(|mesh| {
+                let elements = StressRecovery::new(mesh, &steel).unwrap();
                 Some(Recovery {
-                    elements: StressRecovery::new(mesh, &steel).unwrap(),
-                    nodal: None,
+                    points_per_element: elements.points_per_element(),
+                    source: Source::Elements(Box::new(elements)),
                     near_field: None,
                 })
             }),
@@ -224,7 +302,7 @@ mod tests {
         let quarter = std::f64::consts::FRAC_PI_2;
         let shown = |field: Vec<f64>, angle: f64| {
             Some(ShownRing {
-                field,
+                basis: Basis::Displacement(field),
                 turn: Turn::new(angle),
                 patches: Vec::new(),
             })

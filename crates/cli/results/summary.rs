@@ -98,6 +98,8 @@ pub struct Costs {
     pub read: f64,
     /// Stress recovery.
     pub stress: f64,
+    /// Putting together on rank 0 the stress that ranks recover; None with one process.
+    pub gather: Option<f64>,
     /// Near fields of the step files, a part of `stress`; None where the scene asks for none.
     pub near_field: Option<f64>,
     /// Writing, as far as the run had to wait for it: tables, handing over steps, closing.
@@ -309,12 +311,15 @@ fn timing(costs: &Costs, effects: &BTreeMap<&'static str, f64>) -> BTreeMap<Stri
     let own = effects
         .iter()
         .map(|(name, s)| (format!("{EFFECT_TIMING}{name}"), *s));
-    let near_field = costs.near_field.map(|s| ("near_field".to_string(), s));
+    let some = [("near_field", costs.near_field), ("gather", costs.gather)];
+    let asked = some
+        .into_iter()
+        .filter_map(|(name, s)| Some((name.to_string(), s?)));
     parts
         .map(|(part, s)| (part.to_string(), s))
         .into_iter()
         .chain(own)
-        .chain(near_field)
+        .chain(asked)
         .collect()
 }
 

@@ -95,6 +95,21 @@ impl Communicator {
         }
     }
 
+    /// The `length` numbers of rank `from`, on rank 0; None on all others. `values` of ranks other than `from` do not matter.
+    ///
+    /// # Panics
+    /// When the values of `from` have another length than was announced.
+    pub fn to_root(self, from: usize, values: Vec<f64>, length: usize) -> Option<Vec<f64>> {
+        if self.rank() == from {
+            assert_eq!(values.len(), length, "numbers of rank {from}");
+        }
+        match self {
+            Communicator::Serial => Some(values),
+            #[cfg(feature = "mpi")]
+            Communicator::Mpi => crate::messages::to_root(from, values, length),
+        }
+    }
+
     /// The bytes of rank 0, on all ranks; those of the others do not matter.
     pub fn from_root(self, bytes: Vec<u8>) -> Vec<u8> {
         match self {
@@ -143,6 +158,7 @@ mod tests {
         let comm = Communicator::Serial;
         assert_eq!(comm.all_gather(vec![1.5, -0.0], &[2]), [1.5, -0.0]);
         assert_eq!(comm.exchange(vec![vec![2.5, 3.0]], &[2]), [2.5, 3.0]);
+        assert_eq!(comm.to_root(0, vec![0.5, 7.0], 2), Some(vec![0.5, 7.0]));
         let elsewhere = |_, _| unreachable!("there is no other rank");
         assert_eq!(comm.agree(Err::<(), _>("no memory"), elsewhere), Err("no memory"));
         assert_eq!(comm.agree(Ok::<_, &str>(7), elsewhere), Ok(7));

@@ -3,7 +3,7 @@
 use mpi::collective::CommunicatorCollectives;
 use mpi::datatype::{Partition, PartitionMut};
 use mpi::topology::{Communicator, SimpleCommunicator};
-use mpi::traits::Root;
+use mpi::traits::{Destination, Root, Source};
 
 fn world() -> SimpleCommunicator {
     SimpleCommunicator::world()
@@ -47,6 +47,25 @@ pub(crate) fn exchange(sent: &[Vec<f64>], lengths: &[usize]) -> Vec<f64> {
     let mut incoming = PartitionMut::new(&mut all[..], counts, starts);
     world().all_to_all_varcount_into(&outgoing, &mut incoming);
     all
+}
+
+/// The values of rank `from`, on rank 0.
+pub(crate) fn to_root(from: usize, values: Vec<f64>, length: usize) -> Option<Vec<f64>> {
+    let (world, from) = (world(), count(from));
+    count(length);
+    match (world.rank(), from) {
+        (0, 0) => Some(values),
+        (0, _) => {
+            let mut received = vec![0.0; length];
+            world.process_at_rank(from).receive_into(&mut received[..]);
+            Some(received)
+        }
+        (own, _) if own == from => {
+            world.process_at_rank(0).send(&values[..]);
+            None
+        }
+        _ => None,
+    }
 }
 
 /// Numbers of consecutive pieces, and where each starts.

@@ -2,14 +2,18 @@
 
 mod support;
 
+use std::collections::BTreeMap;
+
 use contact::patch::PatchShape;
 use contact::quadrature::PressureRule;
 use contact::{Patch, RacewaySurface, Side};
 use dynamics::model::elastic;
 use dynamics::ring::RingSolver;
-use dynamics::{ContactMode, Hold, RingModel};
+use dynamics::{ContactMode, Hold, RingModel, Sectors, SharedStress, StressPlaces};
+use fem::StressRecovery;
+use mesh::{ElementKind, Mesh};
 use support::Case;
-use support::rings::{Level, ring};
+use support::rings::{Level, ring, ring_model};
 
 const LEVEL: Level = Level::hex8(54, 6, 1, 2);
 
@@ -196,4 +200,84 @@ fn places_off_the_raceway_are_errors() {
             .unwrap()
             .truncated
     );
+}
+
+/// Wrong: a ring in sectors would show other stress than the ring as a whole: on every kind of element, at nodes and integration points, any
+/// number of sectors, an uneven mesh. At nodes sums of sectors differ by round-off; at integration points every bit is the same.
+#[test]
+fn stress_by_sector_is_that_of_the_whole_ring() {
+    let mut rings = vec![
+        ring(Side::Outer, Level::hex8(24, 4, 1, 1), Hold::Clamped),
+        ring(Side::Inner, Level::hex20(18, 2, 1, 1), Hold::Clamped),
+    ];
+    // Three nodes moved: not periodic.
+    for node in [10, 40, 77] {
+        rings[0].mesh.nodes[node].iter_mut().for_each(|x| *x *= 1.004);
+    }
+    rings.push(tetrahedra(&rings[0]));
+    for ring in rings {
+        let u: Vec<f64> = (0..ring.mesh.n_dofs())
+            .map(|i| 1e-6 * ((i * i) as f64 * 0.37).sin())
+            .collect();
+        let whole = StressRecovery::new(&ring.mesh, &ring.material).unwrap();
+        let (nodal, points) = (whole.nodal(&u), whole.integration_points(&u));
+        let largest = nodal.iter().flatten().fold(0.0f64, |m, s| m.max(s.abs()));
+        for n_sectors in [1, 2, 5, 16] {
+            let sectors = Sectors {
+                n_sectors: Some(n_sectors),
+                ..Sectors::default()
+            };
+            let shared = |places| SharedStress::new(&ring, "outer", sectors, places).unwrap();
+            let stress = |shared: &SharedStress| shared.gather(shared.recover(&u)).unwrap();
+            let by_sector = stress(&shared(StressPlaces::Nodes));
+            assert_eq!(by_sector.len(), nodal.len());
+            for (node, (a, b)) in by_sector.iter().zip(&nodal).enumerate() {
+                for c in 0..6 {
+                    assert!(
+                        (a[c] - b[c]).abs() <= 1e-12 * largest,
+                        "{n_sectors} sectors, node {node}: {a:?}, {b:?}"
+                    );
+                }
+            }
+            let at_points = shared(StressPlaces::IntegrationPoints);
+            assert!(stress(&at_points) == points, "{n_sectors} sectors");
+            assert_eq!(at_points.point_positions().unwrap(), whole.point_positions());
+            assert_eq!(at_points.points_per_element(), whole.points_per_element());
+        }
+    }
+}
+
+/// The ring of hex8 with each element cut into six tet10, the mid-nodes on straight edges.
+fn tetrahedra(ring: &RingModel) -> RingModel {
+    // Around the diagonal from corner 0 to corner 6.
+    const CUTS: [[usize; 4]; 6] = [
+        [0, 1, 2, 6],
+        [0, 2, 3, 6],
+        [0, 3, 7, 6],
+        [0, 7, 4, 6],
+        [0, 4, 5, 6],
+        [0, 5, 1, 6],
+    ];
+    let edges = [[0, 1], [1, 2], [2, 0], [0, 3], [1, 3], [2, 3]];
+    let (mut nodes, mut connectivity) = (ring.mesh.nodes.clone(), Vec::new());
+    let mut middles = BTreeMap::new();
+    for hexahedron in ring.mesh.connectivity.chunks_exact(8) {
+        for corners in CUTS.map(|cut| cut.map(|i| hexahedron[i])) {
+            connectivity.extend(corners);
+            connectivity.extend(edges.map(|edge| {
+                let [a, b] = edge.map(|i| corners[i]);
+                *middles.entry([a.min(b), a.max(b)]).or_insert_with(|| {
+                    nodes.push([0, 1, 2].map(|i| 0.5 * (nodes[a][i] + nodes[b][i])));
+                    nodes.len() - 1
+                })
+            }));
+        }
+    }
+    let mesh = Mesh {
+        kind: ElementKind::Tet10,
+        nodes,
+        connectivity,
+        groups: BTreeMap::new(),
+    };
+    ring_model(Side::Outer, mesh, Hold::Free)
 }

@@ -60,8 +60,8 @@ pub use linear_solver::{LinearSolver, SparseVector};
 pub use permutation::{expand, restrict_order};
 pub use refinement::{Refined, solve_refined};
 pub use sector::{
-    BorderedColumns, Sector, SectorBordered, SectorCholesky, SectorColumns, SectorCost, SectorLayout,
-    SectorSymbolic, default_sectors,
+    BorderedColumns, Sector, SectorBordered, SectorCholesky, SectorColumns, SectorCost, SectorCut,
+    SectorLayout, SectorSymbolic, default_sectors,
 };
 pub use submatrix::{restrict, restrict_lower};
 pub use symbolic::Symbolic;

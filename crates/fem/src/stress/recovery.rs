@@ -44,8 +44,8 @@ pub struct StressRecovery {
     ends: Vec<[usize; 2]>,
     /// Elements around every node.
     elements: ElementsOfNodes,
-    /// One over the volume of the elements around every node, 1/m^3, `[n_nodes]`.
-    inverse_volumes: Vec<f64>,
+    /// Volume of the elements around every node, m^3, `[n_nodes]`.
+    volumes: Vec<f64>,
 }
 
 /// Buffers of nodal recovery, reusable from step to step.
@@ -73,7 +73,6 @@ impl StressRecovery {
                 volumes[node] += volume;
             }
         }
-        let inverse = |&volume: &f64| if volume > 0.0 { 1.0 / volume } else { 0.0 };
         Ok(StressRecovery {
             positions: mesh.nodes.clone(),
             connectivity: mesh.connectivity.clone(),
@@ -81,7 +80,7 @@ impl StressRecovery {
             projection: projection(mesh.kind, &rule),
             ends: ends(mesh.kind),
             elements: ElementsOfNodes::new(mesh),
-            inverse_volumes: volumes.iter().map(inverse).collect(),
+            volumes,
             table,
         })
     }
@@ -152,6 +151,35 @@ impl StressRecovery {
             self.positions.len(),
             "stress must have one entry per node"
         );
+        self.sums_into(u, workspace, stress);
+        for (stress, &volume) in stress.iter_mut().zip(&self.volumes) {
+            let inverse = inverse(volume);
+            *stress = stress.map(|s| s * inverse);
+        }
+    }
+
+    /// Stress of the elements around every node times their volume, summed, N m, `[n_nodes][6]`: divided by
+    /// [`Self::volumes`] it is the stress at the nodes. These sums and volumes of the parts of a mesh may be added.
+    ///
+    /// # Panics
+    /// If `u` has another length than three values per node.
+    pub fn volume_sums(&self, u: &[f64]) -> Vec<[f64; 6]> {
+        assert_eq!(
+            u.len(),
+            3 * self.positions.len(),
+            "displacements must have three values per node"
+        );
+        let mut sums = vec![[0.0; 6]; self.positions.len()];
+        self.sums_into(u, &mut StressWorkspace::default(), &mut sums);
+        sums
+    }
+
+    /// Volume of the elements around every node, m^3, `[n_nodes]`.
+    pub fn volumes(&self) -> &[f64] {
+        &self.volumes
+    }
+
+    fn sums_into(&self, u: &[f64], workspace: &mut StressWorkspace, sums: &mut [[f64; 6]]) {
         let n = self.table.kind.n_corners();
         workspace.corners.resize(n * self.n_elements(), [0.0; 6]);
         workspace
@@ -164,14 +192,11 @@ impl StressRecovery {
                 }
             });
         let corners = &workspace.corners;
-        stress
-            .par_chunks_mut(TASK)
-            .enumerate()
-            .for_each(|(task, stress)| {
-                for (i, stress) in stress.iter_mut().enumerate() {
-                    *stress = self.average(task * TASK + i, corners);
-                }
-            });
+        sums.par_chunks_mut(TASK).enumerate().for_each(|(task, sums)| {
+            for (i, sum) in sums.iter_mut().enumerate() {
+                *sum = self.sum(task * TASK + i, corners);
+            }
+        });
     }
 
     /// Number of elements.
@@ -230,20 +255,21 @@ impl StressRecovery {
         }
     }
 
-    /// Mean over the elements of a node, Pa.
-    fn average(&self, node: usize, corners: &[[f64; 6]]) -> [f64; 6] {
+    /// Sum over the elements of a node, N m.
+    fn sum(&self, node: usize, corners: &[[f64; 6]]) -> [f64; 6] {
         let n = self.table.kind.n_corners();
         let mut sum = [0.0; 6];
         for &(e, a) in self.elements.of(node) {
             let value = self.at_node(a as usize, &corners[n * e as usize..][..n]);
             (0..6).for_each(|c| sum[c] += value[c]);
         }
-        sum.map(|s| s * self.inverse_volumes[node])
+        sum
     }
 
     /// What an element gives to the mean of `node`, its node `a`, Pa, from its corner stresses times its volume.
     pub(super) fn node_share(&self, node: usize, a: usize, corners: &[[f64; 6]]) -> [f64; 6] {
-        self.at_node(a, corners).map(|s| s * self.inverse_volumes[node])
+        let inverse = inverse(self.volumes[node]);
+        self.at_node(a, corners).map(|s| s * inverse)
     }
 
     /// Value at node `a` of an element.
@@ -251,6 +277,11 @@ impl StressRecovery {
         let [first, second] = self.ends[a];
         std::array::from_fn(|c| 0.5 * (corners[first][c] + corners[second][c]))
     }
+}
+
+/// One over a volume; 0 at nodes of no element.
+fn inverse(volume: f64) -> f64 {
+    if volume > 0.0 { 1.0 / volume } else { 0.0 }
 }
 
 /// The corners between which a node lies; a corner lies between itself and itself.

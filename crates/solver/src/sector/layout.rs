@@ -26,6 +26,15 @@ pub struct Sector {
     pub(super) boundary: Vec<usize>,
 }
 
+/// Where a ring is cut into sectors, before its rows are known.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SectorCut {
+    /// Elements of each sector, ascending.
+    pub elements: Vec<Vec<usize>>,
+    /// Nodes of the elements of each sector, ascending.
+    pub nodes: Vec<Vec<usize>>,
+}
+
 /// A ring cut into sectors.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SectorLayout {
@@ -60,16 +69,14 @@ pub fn default_sectors(n_dofs: usize) -> usize {
     }
 }
 
-impl SectorLayout {
-    /// Cuts a ring into `n_sectors`. Arguments as [`crate::angular_dissection`]; `free` are the dofs (3 * node +
-    /// component) that have a row, ascending.
+impl SectorCut {
+    /// Cuts a ring into `n_sectors`. Arguments as [`crate::angular_dissection`].
     pub fn new(
         points: &[[f64; 3]],
         elements: &[usize],
         nodes_per_element: usize,
-        free: &[usize],
         n_sectors: usize,
-    ) -> Result<SectorLayout, SolverError> {
+    ) -> Result<SectorCut, SolverError> {
         let n_elements = elements.len() / nodes_per_element;
         if n_sectors == 0 || n_sectors > n_elements {
             return Err(SolverError::BadSectors {
@@ -78,9 +85,41 @@ impl SectorLayout {
             });
         }
         let of_element = sectors_of_elements(points, elements, nodes_per_element, n_sectors);
-        let mut row_of = vec![usize::MAX; COMPONENTS * points.len()];
+        let mut own = vec![Vec::new(); n_sectors];
+        of_element.iter().enumerate().for_each(|(e, &s)| own[s].push(e));
+        let nodes = |own: &Vec<usize>| {
+            let nodes = |&e: &usize| &elements[nodes_per_element * e..nodes_per_element * (e + 1)];
+            let mut nodes: Vec<usize> = own.iter().flat_map(nodes).copied().collect();
+            nodes.sort_unstable();
+            nodes.dedup();
+            nodes
+        };
+        Ok(SectorCut {
+            nodes: own.iter().map(nodes).collect(),
+            elements: own,
+        })
+    }
+}
+
+impl SectorLayout {
+    /// Cuts a ring into `n_sectors`: [`SectorCut::new`] and [`SectorLayout::of`].
+    pub fn new(
+        points: &[[f64; 3]],
+        elements: &[usize],
+        nodes_per_element: usize,
+        free: &[usize],
+        n_sectors: usize,
+    ) -> Result<SectorLayout, SolverError> {
+        let cut = SectorCut::new(points, elements, nodes_per_element, n_sectors)?;
+        Ok(SectorLayout::of(cut, points.len(), free))
+    }
+
+    /// Rows of a ring of `n_nodes` nodes that was cut; `free` are the dofs (3 * node + component) that have a row, ascending.
+    pub fn of(cut: SectorCut, n_nodes: usize, free: &[usize]) -> SectorLayout {
+        let n_sectors = cut.nodes.len();
+        let mut row_of = vec![usize::MAX; COMPONENTS * n_nodes];
         free.iter().enumerate().for_each(|(row, &dof)| row_of[dof] = row);
-        let of_node = sectors_of_nodes(points.len(), elements, nodes_per_element, &of_element);
+        let of_node = sectors_of_nodes(n_nodes, &cut.nodes);
         let rows = |node: &usize| {
             let dofs = COMPONENTS * node..COMPONENTS * (node + 1);
             let rows = dofs.map(|dof| row_of[dof]);
@@ -97,18 +136,17 @@ impl SectorLayout {
         sections.pop();
         let mut place = vec![usize::MAX; free.len()];
         interface.iter().enumerate().for_each(|(k, &row)| place[row] = k);
-        let build = |s: usize| {
-            let mine = (0..n_elements).filter(|&e| of_element[e] == s).collect();
-            Sector::new(mine, elements, nodes_per_element, &row_of, &place, &of_node)
-        };
-        let sectors: Vec<Sector> = (0..n_sectors).map(build).collect();
-        Ok(SectorLayout {
+        let own = cut.elements.into_iter().zip(cut.nodes);
+        let sectors: Vec<Sector> = own
+            .map(|(elements, nodes)| Sector::new(elements, nodes, &row_of, &place, &of_node))
+            .collect();
+        SectorLayout {
             owners: owners(free.len(), &sectors, &interface),
             n: free.len(),
             sectors,
             interface,
             sections,
-        })
+        }
     }
 
     /// Where a row is.
@@ -139,19 +177,11 @@ impl SectorLayout {
 impl Sector {
     fn new(
         elements: Vec<usize>,
-        connectivity: &[usize],
-        nodes_per_element: usize,
+        nodes: Vec<usize>,
         row_of: &[usize],
         place: &[usize],
         of_node: &[Vec<usize>],
     ) -> Sector {
-        let mut nodes: Vec<usize> = elements
-            .iter()
-            .flat_map(|&e| &connectivity[nodes_per_element * e..nodes_per_element * (e + 1)])
-            .copied()
-            .collect();
-        nodes.sort_unstable();
-        nodes.dedup();
         let (mut interior, mut shared) = (Vec::new(), Vec::new());
         for (local, &node) in nodes.iter().enumerate() {
             for c in 0..COMPONENTS {
@@ -196,21 +226,11 @@ impl Sector {
     }
 }
 
-/// Sectors that touch each node, ascending.
-fn sectors_of_nodes(
-    n_nodes: usize,
-    elements: &[usize],
-    nodes_per_element: usize,
-    of_element: &[usize],
-) -> Vec<Vec<usize>> {
+/// Sectors that touch each node, ascending, from the nodes of each sector.
+fn sectors_of_nodes(n_nodes: usize, nodes: &[Vec<usize>]) -> Vec<Vec<usize>> {
     let mut of_node = vec![Vec::new(); n_nodes];
-    for (nodes, &s) in elements.chunks_exact(nodes_per_element).zip(of_element) {
-        for &node in nodes {
-            let list: &mut Vec<usize> = &mut of_node[node];
-            if let Err(at) = list.binary_search(&s) {
-                list.insert(at, s);
-            }
-        }
+    for (s, nodes) in nodes.iter().enumerate() {
+        nodes.iter().for_each(|&node| of_node[node].push(s));
     }
     of_node
 }

@@ -41,5 +41,5 @@ pub use border::{BorderedColumns, SectorBordered};
 pub use columns::SectorColumns;
 pub use factor::{SectorCholesky, SectorSymbolic};
 pub use interface::REDUCED_FROM;
-pub use layout::{Sector, SectorLayout, default_sectors};
+pub use layout::{Sector, SectorCut, SectorLayout, default_sectors};
 pub use part::SectorCost;

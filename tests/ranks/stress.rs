@@ -1,0 +1,38 @@
+//! Stress that ranks recover together.
+
+use super::{done, on_ranks};
+use crate::sectors::SECTOR;
+use crate::util::SCENE;
+use crate::util::lockstep::{assert_same_run, small_motion};
+
+/// Equilibria in time: loads grow, balls roll. A file every second step.
+const SERIES: &str = "[quasi_static]\nduration = \"0.6 ms\"\nstep = \"0.2 ms\"\noutput_every = 2\n\n[speed]\ninner = \"1800 rpm\"";
+
+/// Wrong: stress, with near field or without, at nodes or at integration points, would depend on the number of ranks, more of them than
+/// sectors included, or a rank would wait for stress of another.
+#[test]
+#[ignore = "needs mpirun and a program built with MPI: scripts/test-mpi"]
+fn stress_has_the_same_bits_on_any_number_of_ranks() {
+    let dir = small_motion();
+    dir.write("series.toml", SCENE.replace("[static]", SERIES));
+    let near = ["--set", "stress.near_field=true"];
+    let points = ["--set", "output.stress=integration_points"];
+    for (k, kind) in [&near[..], &points[..], &[near, points].concat()]
+        .into_iter()
+        .enumerate()
+    {
+        let arguments = [&["run", "series.toml"], &SECTOR[..], kind, &["--out"]].concat();
+        let alone = format!("alone{k}");
+        done(&dir.raceway(&[&arguments[..], &[&alone]].concat()));
+        for ranks in [2, 3, 6] {
+            let out = format!("{k}on{ranks}");
+            done(&on_ranks(&dir, ranks, &[&arguments[..], &[&out]].concat()));
+            assert_same_run(&dir, &alone, &out);
+            let summary = dir.text(&format!("{out}/summary.json"));
+            assert!(
+                summary.contains("\"gather\""),
+                "ranks have recovered stress together: {summary}"
+            );
+        }
+    }
+}
