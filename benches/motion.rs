@@ -196,7 +196,8 @@ impl Writer {
         let kinds = ["w", "v", "a"];
         let arrays = state.rings.iter().flatten().zip(["inner", "outer"]);
         let named = arrays.flat_map(|(ring, name)| {
-            let values = [&ring.w, &ring.v, &ring.a].map(|x| StateArray::Real(x.clone()));
+            let vectors = [ring.displacement(), ring.velocity(), ring.acceleration()];
+            let values = vectors.map(|x| StateArray::Real(x.to_vec()));
             kinds.map(|kind| format!("{name}_{kind}")).into_iter().zip(values)
         });
         StepRecord {

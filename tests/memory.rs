@@ -92,6 +92,9 @@ fn check_forecasts_the_memory_of_motions_of_periodic_rings() {
         assert_eq!(run.code, Some(0), "{}", run.stderr);
         let summary: serde_json::Value = serde_json::from_str(&dir.text("out/summary.json")).unwrap();
         let measured = summary["peak_memory_bytes"].as_f64().unwrap() / 1e6;
+        // The run knows what `check` has said.
+        let own = summary["peak_memory_forecast_bytes"].as_f64().unwrap();
+        assert_eq!(format!("{:.0}", own / 1e6), format!("{forecast:.0}"));
         println!("{n_sectors} sectors, files every {every}: {line}; measured {measured:.0} MB");
         assert!(
             (forecast / measured - 1.0).abs() <= 0.15,

@@ -13,13 +13,11 @@ use crate::modes;
 use crate::print;
 use crate::rank_table::{self, RingOnRanks};
 use crate::results::disk::{self, Forecast};
+use crate::results::memory::queued_steps;
 use crate::results::probes::Probes;
 use crate::results::summary::effects_on;
 use crate::rules;
 use crate::scene::{Analysis, Scene};
-
-/// Steps between files up to which files wait for the disk.
-const OFTEN: u64 = 10;
 
 /// Reads and checks the scene and its meshes and prints effects, sizes and forecasts.
 pub fn check(path: &Path, overrides: &[String]) -> Result<(), Failure> {
@@ -111,8 +109,7 @@ fn print_memory(
     let start = forecast_peak(memory, n_threads);
     let (peak, note) = match (&scene.analysis, motion) {
         (Analysis::Dynamic(dynamic), [Some(inner), Some(outer)]) => {
-            let queued = if dynamic.output_every <= OFTEN { 2 } else { 0 };
-            let steps = forecast_motion_peak([inner, outer], queued);
+            let steps = forecast_motion_peak([inner, outer], queued_steps(dynamic));
             let note = format!(" ({:.0} MB for the static start)", start as f64 / 1e6);
             (steps.max(start), note)
         }

@@ -10,7 +10,7 @@ use anyhow::anyhow;
 use contact::Side;
 use dynamics::motion::ledger::LOSSY;
 use dynamics::motion::{Motion, MotionState};
-use dynamics::{DynamicsError, Model, RingMemory, Timing};
+use dynamics::{DynamicsError, Model, Timing};
 
 use crate::build::build_with_probes;
 use crate::failure::{Failure, agree};
@@ -20,6 +20,7 @@ use crate::progress::Progress;
 use crate::results::console;
 use crate::results::disk::Forecast;
 use crate::results::files::Files;
+use crate::results::memory::Forecasts;
 use crate::results::motion_fields::Recorded;
 use crate::results::shown::Shown;
 use crate::results::snapshot::Snapshot;
@@ -80,7 +81,7 @@ pub fn run(
     agree(march.write_fields())?;
     let costs = StartCosts {
         read,
-        forecast: settled.forecast,
+        forecast: Forecasts::of_motion(settled.forecast, &motion, dynamic),
         timing: settled.timing,
         start,
     };
@@ -130,7 +131,7 @@ pub fn resume(
     };
     let costs = StartCosts {
         read,
-        forecast: [None, None],
+        forecast: Forecasts::of_motion([None, None], &motion, dynamic),
         timing: Timing::default(),
         start,
     };
@@ -149,7 +150,7 @@ fn say_solvers(motion: &Motion<'_>, progress: &Progress) {
 /// What the start of a run cost.
 struct StartCosts {
     read: f64,
-    forecast: [Option<RingMemory>; 2],
+    forecast: Forecasts,
     timing: Timing,
     start: Instant,
 }

@@ -15,6 +15,7 @@ use crate::print;
 use crate::progress::Progress;
 use crate::results::disk::Forecast;
 use crate::results::files::Files;
+use crate::results::memory::Forecasts;
 use crate::results::shown::Shown;
 use crate::results::snapshot::Snapshot;
 use crate::results::summary::{Findings, Summary};
@@ -73,7 +74,7 @@ pub fn run(
     let findings = series.findings(&ended, bearing.solver.costs.seconds());
     let snapshot = findings.last.clone();
     let forecast = Side::BOTH.map(|side| bearing.solver.ring(side).map(|r| r.memory));
-    let costs = agree(files.finish(read, forecast, bearing.solver.timing, start));
+    let costs = agree(files.finish(read, Forecasts::at_rest(forecast), bearing.solver.timing, start));
     // A run that failed says why, not what its failure did to the files.
     let costs = match (costs, &ended) {
         (Err(_), Err(_)) => return ended,

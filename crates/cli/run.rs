@@ -19,6 +19,7 @@ use crate::progress::Progress;
 use crate::quasi_static;
 use crate::results::disk::Forecast;
 use crate::results::files::Files;
+use crate::results::memory::Forecasts;
 use crate::results::shown::Shown;
 use crate::results::snapshot::Snapshot;
 use crate::results::summary::{Findings, Summary};
@@ -137,7 +138,7 @@ pub fn run(
     let forecast = Side::BOTH.map(|side| solver.ring(side).map(|r| r.memory));
     // Points that were solved get their summary, whatever came after them.
     if let Some(files) = results {
-        let costs = agree(files.finish(read, forecast, solver.timing, start))?;
+        let costs = agree(files.finish(read, Forecasts::at_rest(forecast), solver.timing, start))?;
         let mut findings = findings(&scene, &solutions, &failure);
         findings.effect_seconds = solver.costs.seconds();
         let summary = Summary::new(&scene, &model, findings, &costs);

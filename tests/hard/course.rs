@@ -149,7 +149,7 @@ impl Course {
             .rings
             .iter()
             .flatten()
-            .flat_map(|r| r.w.iter().chain(&r.v).chain(&r.a));
+            .flat_map(|r| [r.displacement(), r.velocity(), r.acceleration()].concat());
         let balls = state
             .balls
             .iter()
@@ -157,7 +157,10 @@ impl Course {
             .chain(&state.forces)
             .flatten();
         let shaft = state.shaft.iter().chain(&state.shaft_velocity);
-        rings.chain(balls).chain(shaft).all(|x| x.is_finite())
+        rings
+            .chain(balls.copied())
+            .chain(shaft.copied())
+            .all(f64::is_finite)
     }
 
     /// Shaft displacement over time: `component` 0 is x, 1 is z, um; 2 is the largest force, N.

@@ -115,10 +115,8 @@ impl Rod {
                 .map(|i| if i % 3 == 2 { value } else { 0.0 })
                 .collect()
         };
-        let mut state = RingState::at_rest(vec![0.0; coordinates]);
-        state.v = along(-self.speed);
+        let mut state = RingState::new(vec![0.0; coordinates], along(-self.speed), along(-self.gravity));
         let weight = body.mass_product(&along(-self.gravity));
-        state.a = along(-self.gravity);
         let foot = NodalWeights {
             nodes: vec![0, 1, 2, 3],
             coefficients: vec![[[0.25, 0.0, 0.0], [0.0, 0.0, 0.25]]; 4],
@@ -146,7 +144,7 @@ impl Rod {
             unevenness: None,
         };
         for step in 0..n {
-            let prepared = factor.prepare(&body, &state, &weight, std::slice::from_ref(&foot));
+            let prepared = factor.prepare(&body, &state, Some(&weight), std::slice::from_ref(&foot));
             let inverse = DenseCholesky::factor(2, &prepared.compliance).unwrap().inverse();
             let system = SmallSystem {
                 dt,

@@ -11,10 +11,11 @@ use checkpoint::{
     BackgroundOutput, CheckpointError, Compression, FolderLock, Output, Precision, StepRecord, Storage,
 };
 use comm::Communicator;
-use dynamics::{Model, RingMemory, Timing};
+use dynamics::{Model, Timing};
 
 use super::about::about;
 use super::fields;
+use super::memory::Forecasts;
 use super::probes::Probes;
 use super::ring_stress::{Gathered, RingStress};
 use super::shown::Shown;
@@ -243,7 +244,7 @@ impl Files {
     pub fn finish(
         self,
         read: f64,
-        forecast: [Option<RingMemory>; 2],
+        forecast: Forecasts,
         solver: Timing,
         start: Instant,
     ) -> Result<Costs, Failure> {

@@ -7,6 +7,7 @@ pub mod disk;
 pub mod fields;
 pub mod files;
 pub mod folder;
+pub mod memory;
 pub mod modes;
 pub mod motion_fields;
 pub mod probe_places;

@@ -9,7 +9,7 @@ use anyhow::{anyhow, ensure};
 use checkpoint::StateArray;
 use contact::Side;
 use dynamics::motion::ring::RingState;
-use dynamics::motion::{Ledger, MotionState, StateShape};
+use dynamics::motion::{Ledger, MotionState, RingShape, StateShape};
 
 /// Arrays by name.
 pub type Arrays = BTreeMap<String, StateArray>;
@@ -27,6 +27,9 @@ pub fn store(state: &MotionState, shape: &StateShape) -> Arrays {
 
 /// The state that was stored in `arrays`, bit for bit; fails when an array is missing, unknown or of another length.
 pub fn load(arrays: &Arrays, shape: &StateShape) -> anyhow::Result<MotionState> {
+    for (side, ring) in Side::BOTH.into_iter().zip(shape.rings) {
+        require_kind(arrays, side.name(), ring)?;
+    }
     let mut state = MotionState::default();
     let mut port = Port::In {
         arrays,
@@ -78,18 +81,56 @@ fn exchange(state: &mut MotionState, shape: &StateShape, port: &mut Port<'_>) ->
     }
     exchange_ledger(ledger, port)?;
     for (side, ring) in Side::BOTH.into_iter().zip(rings) {
-        if let Some(n) = shape.ring_dofs[side.index()] {
-            exchange_ring(ring.get_or_insert_default(), side.name(), n, port)?;
+        if let Some(shape) = shape.rings[side.index()] {
+            exchange_ring(ring.get_or_insert_default(), side.name(), shape, port)?;
         }
     }
     Ok(())
 }
 
-fn exchange_ring(ring: &mut RingState, side: &str, n: usize, port: &mut Port<'_>) -> anyhow::Result<()> {
-    let RingState { w, v, a } = ring;
-    port.list(&format!("{side}_w"), w, n)?;
-    port.list(&format!("{side}_v"), v, n)?;
-    port.list(&format!("{side}_a"), a, n)
+/// Kinds of the vectors of a ring and how the names of their arrays end.
+const KINDS: [(&str, &str); 2] = [("coordinates", ""), ("harmonics", "_harmonics")];
+
+fn ending(kind: &str) -> &'static str {
+    let known = KINDS.into_iter().find(|(name, _)| *name == kind);
+    known.expect("vectors are of a known kind").1
+}
+
+fn exchange_ring(
+    ring: &mut RingState,
+    side: &str,
+    shape: RingShape,
+    port: &mut Port<'_>,
+) -> anyhow::Result<()> {
+    let end = ending(shape.kind);
+    let [mut w, mut v, mut a] = std::mem::take(ring).into_parts();
+    for (name, vector) in [("w", &mut w), ("v", &mut v), ("a", &mut a)] {
+        port.list(&format!("{side}_{name}{end}"), vector, shape.length)?;
+    }
+    *ring = RingState::new(w, v, a);
+    Ok(())
+}
+
+/// Refuses the state of a ring that is stored in another form than the run computes with: it could go on, but not to the same bits.
+fn require_kind(arrays: &Arrays, side: &str, ring: Option<RingShape>) -> anyhow::Result<()> {
+    let Some(RingShape { kind, .. }) = ring else {
+        return Ok(());
+    };
+    let name = |kind: &str| format!("{side}_w{}", ending(kind));
+    let other = KINDS
+        .map(|(kind, _)| kind)
+        .into_iter()
+        .find(|other| *other != kind);
+    if let Some(other) = other
+        && !arrays.contains_key(&name(kind))
+        && arrays.contains_key(&name(other))
+    {
+        return Err(anyhow!(
+            "the state of the {side} ring is stored as {other}, expected {kind}: another version of raceway or another linear \
+             solver wrote it, and the run would not go on to the same bits; run the scene anew"
+        ));
+    }
+    Ok(())
 }
 
 fn exchange_ledger(ledger: &mut Ledger, port: &mut Port<'_>) -> anyhow::Result<()> {
@@ -212,7 +253,13 @@ mod tests {
 
     const SHAPE: StateShape = StateShape {
         n_balls: 2,
-        ring_dofs: [Some(3), None],
+        rings: [
+            Some(RingShape {
+                length: 3,
+                kind: "coordinates",
+            }),
+            None,
+        ],
     };
 
     /// A state in which every number is another one, with a NaN and a negative zero.
@@ -226,11 +273,7 @@ mod tests {
         let (balls, ball_velocities, ball_accelerations) = (pairs(2), pairs(2), pairs(2));
         let (trend, forces, places) = (pairs(6), pairs(4), [(); 3].map(|()| pairs(4)));
         let mut list = |n: usize| (0..n).map(|_| number()).collect::<Vec<_>>();
-        let ring = RingState {
-            w: vec![f64::NAN, -0.0, 1e-300],
-            v: list(3),
-            a: list(3),
-        };
+        let ring = RingState::new(vec![f64::NAN, -0.0, 1e-300], list(3), list(3));
         MotionState {
             step: 7,
             rung: 3,
@@ -271,15 +314,11 @@ mod tests {
         // Debug prints the shortest text that is one f64 only, signs of zero and NaN included.
         assert_eq!(format!("{back:?}"), format!("{state:?}"));
         let bits = |s: &MotionState| {
-            s.rings[0]
-                .as_ref()
-                .unwrap()
-                .w
-                .clone()
-                .into_iter()
-                .map(f64::to_bits)
+            let ring = s.rings[0].as_ref().unwrap();
+            let bits = ring.displacement().iter().map(|x| x.to_bits());
+            bits.collect::<Vec<_>>()
         };
-        assert!(bits(&back).eq(bits(&state)));
+        assert_eq!(bits(&back), bits(&state));
     }
 
     /// Wrong: a file of another version or bearing would be taken for a state of this run.
@@ -293,7 +332,7 @@ mod tests {
             "the state array balls has 4 values, expected 6"
         );
         let rigid = StateShape {
-            ring_dofs: [None; 2],
+            rings: [None; 2],
             ..SHAPE
         };
         assert_eq!(
@@ -306,6 +345,13 @@ mod tests {
             let text = refused(&fewer, &SHAPE);
             assert!(text.starts_with(&format!("the state array {name} is ")), "{text}");
         }
+        let mut harmonics = SHAPE;
+        harmonics.rings[0].as_mut().unwrap().kind = "harmonics";
+        let text = refused(&arrays, &harmonics);
+        assert!(
+            text.starts_with("the state of the inner ring is stored as coordinates, expected harmonics: "),
+            "{text}"
+        );
         let mut other = arrays.clone();
         other.insert("angles".to_string(), StateArray::Integer(vec![1]));
         assert_eq!(

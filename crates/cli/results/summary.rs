@@ -7,9 +7,10 @@ use anyhow::Context;
 use comm::Communicator;
 use contact::Side;
 use dynamics::balls::BallResult;
-use dynamics::{Model, RingMemory, Timing, forecast_peak};
+use dynamics::{Model, Timing};
 use serde::Serialize;
 
+use super::memory::Forecasts;
 use super::probe_places::NodePlace;
 use super::snapshot::Snapshot;
 use super::subsurface::{self, ContactSubsurface};
@@ -47,7 +48,7 @@ pub struct Summary {
     probes: Vec<NodePlace>,
     timing_s: BTreeMap<String, f64>,
     factor_bytes_forecast: BTreeMap<&'static str, usize>,
-    /// Absent in motion, whose matrices are not forecast.
+    /// Absent in motions of rings that harmonics do not solve, and in searches for modes: their matrices are not forecast.
     #[serde(skip_serializing_if = "Option::is_none")]
     peak_memory_forecast_bytes: Option<usize>,
     peak_memory_bytes: u64,
@@ -110,8 +111,8 @@ pub struct Costs {
     pub disk: f64,
     /// Whole run.
     pub total: f64,
-    /// Memory forecast for the rings, inner and outer; None is rigid.
-    pub forecast: [Option<RingMemory>; 2],
+    /// Memory forecast.
+    pub forecast: Forecasts,
     /// Parts of the solver.
     pub solver: Timing,
     /// Nodes that were probed.
@@ -195,11 +196,8 @@ impl Summary {
             warnings,
             probes: costs.probes.clone(),
             timing_s: timing(costs, &findings.effect_seconds),
-            factor_bytes_forecast: sides(|i| costs.forecast[i].map_or(0, |ring| ring.factorisation)),
-            peak_memory_forecast_bytes: match &scene.analysis {
-                Analysis::Dynamic(_) => None,
-                _ => Some(forecast_peak(costs.forecast, rings_at_once())),
-            },
+            factor_bytes_forecast: sides(|i| costs.forecast.rings[i].map_or(0, |ring| ring.factorisation)),
+            peak_memory_forecast_bytes: costs.forecast.peak,
             peak_memory_bytes: peak_memory(),
         }
     }
@@ -321,14 +319,6 @@ fn timing(costs: &Costs, effects: &BTreeMap<&'static str, f64>) -> BTreeMap<Stri
         .chain(own)
         .chain(asked)
         .collect()
-}
-
-/// Threads that work on different rings: several ranks make one ring after the other.
-fn rings_at_once() -> usize {
-    match Communicator::world().size() {
-        1 => rayon::current_num_threads(),
-        _ => 1,
-    }
 }
 
 /// Largest resident memory of this process, bytes; 0 where the system does not tell.

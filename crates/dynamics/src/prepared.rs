@@ -114,7 +114,7 @@ impl Prepared {
                     matrix: Matrix::Cyclic(Box::new(Harmonics {
                         symmetry,
                         changes: periodic.defect.as_ref().map(|d| changes(mesh, &held, d)),
-                        motion: motion_sizes(side, ring, &periodic, symmetry),
+                        motion: periodic.motion_sizes(&ring.mesh, n_mount(side, ring.hold)),
                         note: periodic.note(),
                         held: periodic.held,
                     })),
@@ -247,21 +247,12 @@ impl Harmonics {
     }
 }
 
-fn motion_sizes(side: Side, ring: &RingModel, periodic: &Periodic, symmetry: Symmetry) -> MotionSizes {
-    let (whole, held) = (&periodic.whole, &periodic.held);
-    let defect = periodic.defect.as_ref();
-    let touched = defect.map_or(0, |d| d.nodes().len().min(whole.ring.n_section_nodes()));
-    MotionSizes {
-        n_nodes: ring.mesh.n_nodes(),
-        n_sectors: whole.ring.n_sectors(),
-        n_couplings: whole.stiffness.n_couplings(),
-        n_responses: held.raceway.len() + touched,
-        n_mount: match (ring.hold, side) {
-            (Hold::Clamped, Side::Inner) => 5,
-            (Hold::MeanMotion, _) => 6,
-            (Hold::Clamped, Side::Outer) | (Hold::Free, _) => 0,
-        },
-        factor: held.sectors.ring.factor_bytes(symmetry) + defect.map_or(0, RingDefect::bytes),
+/// Functionals of the mount of a ring in motion.
+fn n_mount(side: Side, hold: Hold) -> usize {
+    match (hold, side) {
+        (Hold::Clamped, Side::Inner) => 5,
+        (Hold::MeanMotion, _) => 6,
+        (Hold::Clamped, Side::Outer) | (Hold::Free, _) => 0,
     }
 }
 

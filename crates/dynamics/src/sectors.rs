@@ -9,6 +9,7 @@ use solver::{Coupling, CyclicMatrix, CyclicRing, CyclicStencil, SolverError};
 
 use crate::defect::RingDefect;
 use crate::error::DynamicsError;
+use crate::memory::MotionSizes;
 use crate::model::{Backend, RingModel};
 
 /// Sectors from which on harmonics pay: a few wide ones cost more than the ring as a whole.
@@ -136,6 +137,24 @@ impl Periodic {
             held,
             defect: Some(defect),
         }))
+    }
+
+    /// What a motion of the ring holds whose mount has `n_mount` functionals.
+    pub fn motion_sizes(&self, mesh: &Mesh, n_mount: usize) -> MotionSizes {
+        let (whole, held) = (&self.whole, &self.held);
+        let symmetry = held.sectors.ring.symmetry(&held.sectors.stiffness);
+        let (touched, defect) = self.defect.as_ref().map_or((0, 0), |defect| {
+            let touched = defect.nodes().len().min(whole.ring.n_section_nodes());
+            (touched, defect.bytes())
+        });
+        MotionSizes {
+            n_nodes: mesh.n_nodes(),
+            n_sectors: whole.ring.n_sectors(),
+            n_couplings: whole.stiffness.n_couplings(),
+            n_responses: held.raceway.len() + touched,
+            n_mount,
+            factor: held.sectors.ring.factor_bytes(symmetry) + defect,
+        }
     }
 
     /// The solver and what it solves, for a log.

@@ -8,6 +8,7 @@
 use contact::quadrature::PressureRule;
 use contact::{RacewaySurface, Side};
 use mesh::Mesh;
+use rayon::prelude::*;
 use solver::SectorBordered;
 
 use super::by_sector::SectorFactor;
@@ -16,13 +17,17 @@ use super::effective::{Effective, Factored, prepare};
 use super::integrator::Integrator;
 use super::matrices::RingMatrices;
 use super::ring::RingState;
+use super::space::{Nodes, Space};
 use crate::effects::FrameTurn;
 use crate::error::DynamicsError;
 use crate::inventory::Inventory;
+use crate::memory::MotionSizes;
 use crate::model::{Backend, Hold, RACEWAY_GROUP, RingModel};
-use crate::solution::dot;
 use crate::sparse::SparseLoad;
 use crate::support::mean_motion;
+
+/// Numbers of one task of a sum.
+const TASK: usize = 1 << 14;
 
 /// A ring's matrices, raceway and mount.
 pub struct RingBody {
@@ -42,6 +47,8 @@ pub struct RingBody {
     /// Rayleigh damping: C = damping[0] M + damping[1] K.
     pub(super) damping: [f64; 2],
     effective: Effective,
+    /// Where its vectors live.
+    pub space: Space,
 }
 
 impl RingBody {
@@ -55,16 +62,30 @@ impl RingBody {
         let mesh = &ring.mesh;
         let (coordinates, mount) = hold(mesh, side, ring);
         let (matrices, effective) = prepare(ring, side.name(), backend, &coordinates)?;
+        let positions = mesh.nodes.concat();
+        let nodes = Nodes {
+            coordinates: &coordinates,
+            matrices: &matrices,
+            positions: &positions,
+        };
+        let space = match effective.regular() {
+            Some(free) => Space::harmonic(free, nodes).map_err(|source| DynamicsError::Solver {
+                side: side.name(),
+                source,
+            })?,
+            None => Space::Nodal,
+        };
         Ok(RingBody {
             surface: RacewaySurface::new(mesh, mesh.group(RACEWAY_GROUP), ring.groove),
             rule: PressureRule::new(),
-            positions: mesh.nodes.concat(),
+            positions,
             name: side.name(),
             coordinates,
             mount,
             matrices,
             damping,
             effective,
+            space,
         })
     }
 
@@ -78,7 +99,7 @@ impl RingBody {
                 .map(Factored::Sparse),
             (Effective::Sectors(parts), _) => {
                 let inner = parts.factor([cm, ck])?;
-                let [border, corner] = self.border([cm, ck]);
+                let [border, corner] = self.nodes().border([cm, ck]);
                 let columns = border.chunks_exact(self.coordinates.free().len().max(1));
                 let entries = |(row, &value): (usize, &f64)| (value != 0.0).then_some((row, value));
                 let sparse = columns.map(|column| column.iter().enumerate().filter_map(entries).collect());
@@ -86,7 +107,7 @@ impl RingBody {
                     .map(|solver| Factored::Sectors(Box::new(SectorFactor::new(solver, &self.mount))))
             }
             (Effective::Cyclic(harmonics), _) => {
-                let border = self.border([cm, ck]);
+                let border = self.nodes().border([cm, ck]);
                 let n_free = self.coordinates.free().len();
                 let mounted = self.mount.iter().flatten().map(|&(i, _)| i);
                 let nodes = mounted.filter(|&i| i < n_free).map(|i| i / 3);
@@ -102,20 +123,12 @@ impl RingBody {
         })
     }
 
-    /// Columns of c_M M + c_K K that belong to the shaft dofs: the rows of the free dofs, column-major, and those of the
-    /// shaft, row-major.
-    fn border(&self, [cm, ck]: [f64; 2]) -> [Vec<f64>; 2] {
-        let (n_free, n) = (self.coordinates.free().len(), self.coordinates.n());
-        let (mut border, mut corner) = (Vec::new(), Vec::new());
-        for k in n_free..n {
-            let mut unit = vec![0.0; n];
-            unit[k] = 1.0;
-            let [m, k] = [cm, ck].map(|c| unit.iter().map(|x| c * x).collect::<Vec<f64>>());
-            let column = self.matrices.sum_of_products(&self.coordinates, &m, &k);
-            border.extend_from_slice(&column[..n_free]);
-            corner.extend_from_slice(&column[n_free..]);
+    fn nodes(&self) -> Nodes<'_> {
+        Nodes {
+            coordinates: &self.coordinates,
+            matrices: &self.matrices,
+            positions: &self.positions,
         }
-        [border, corner]
     }
 
     /// Whether S has a border: shaft dofs among the coordinates.
@@ -133,6 +146,15 @@ impl RingBody {
         self.effective.name()
     }
 
+    /// What its motion holds; None of a ring that harmonics do not solve.
+    pub fn sizes(&self) -> Option<MotionSizes> {
+        let sizes = self.effective.sizes()?;
+        Some(MotionSizes {
+            n_mount: self.mount.len(),
+            ..sizes
+        })
+    }
+
     /// Coordinates and matrices; those of the factors are counted by the motion.
     pub fn inventory(&self) -> Inventory {
         Inventory {
@@ -141,24 +163,101 @@ impl RingBody {
         }
     }
 
-    /// M x of coordinates, `[n]`.
+    /// M x, both of the ring's space.
     pub fn mass_product(&self, x: &[f64]) -> Vec<f64> {
-        self.matrices.mass_product(&self.coordinates, x)
+        match &self.space {
+            Space::Nodal => self.matrices.mass_product(&self.coordinates, x),
+            Space::Harmonic(space) => space.mass.product(x),
+        }
     }
 
-    /// K x of coordinates, `[n]`.
+    /// K x, both of the ring's space.
     pub fn stiffness_product(&self, x: &[f64]) -> Vec<f64> {
-        self.matrices.stiffness_product(&self.coordinates, x)
+        match &self.space {
+            Space::Nodal => self.matrices.stiffness_product(&self.coordinates, x),
+            Space::Harmonic(space) => space.stiffness.product(x),
+        }
+    }
+
+    /// M (m[0] v + m[1] a) + K (k[0] v + k[1] a - w).
+    pub(super) fn balance(&self, state: &RingState, m: [f64; 2], k: [f64; 2]) -> Vec<f64> {
+        let (v, a) = (state.velocity(), state.acceleration());
+        if let (Space::Harmonic(_), 0.0, [0.0, 0.0]) = (&self.space, m[1], k) {
+            // Two products that the energies at the end of the step before have needed as well.
+            let made;
+            let [mass, stiffness] = match state.products() {
+                Some(products) => products,
+                None => {
+                    made = self.products(state);
+                    &made
+                }
+            };
+            return combined([m[0], -1.0], mass, stiffness);
+        }
+        let inertial = combined(m, v, a);
+        let mut elastic = combined(k, v, a);
+        elastic
+            .iter_mut()
+            .zip(state.displacement())
+            .for_each(|(c, w)| *c -= w);
+        match &self.space {
+            Space::Nodal => self
+                .matrices
+                .sum_of_products(&self.coordinates, &inertial, &elastic),
+            Space::Harmonic(space) => combined(
+                [1.0; 2],
+                &space.mass.product(&inertial),
+                &space.stiffness.product(&elastic),
+            ),
+        }
+    }
+
+    /// M v and K w.
+    fn products(&self, state: &RingState) -> [Vec<f64>; 2] {
+        let (mass, stiffness) = rayon::join(
+            || self.mass_product(state.velocity()),
+            || self.stiffness_product(state.displacement()),
+        );
+        [mass, stiffness]
+    }
+
+    /// Kinetic and strain energy, J; a state in harmonic space keeps the products they come from for the next step.
+    pub(super) fn measure(&self, state: &mut RingState) -> [f64; 2] {
+        match &self.space {
+            Space::Nodal => self.energies(state),
+            Space::Harmonic(_) => {
+                let products = self.products(state);
+                let energies = self.work(state, &products);
+                state.keep_products(products);
+                energies
+            }
+        }
     }
 
     /// Kinetic and strain energy, J.
     pub fn energies(&self, state: &RingState) -> [f64; 2] {
-        self.matrices.energies(&self.coordinates, &state.v, &state.w)
+        match &self.space {
+            Space::Nodal => self
+                .matrices
+                .energies(&self.coordinates, state.velocity(), state.displacement()),
+            Space::Harmonic(_) => self.work(state, &self.products(state)),
+        }
     }
 
-    /// Generalised inertia load of the turning frame at displacement `w` and velocity `v` of the coordinates.
+    /// v M v / 2 and w K w / 2.
+    fn work(&self, state: &RingState, [mass, stiffness]: &[Vec<f64>; 2]) -> [f64; 2] {
+        [
+            0.5 * self.space.dot(state.velocity(), mass),
+            0.5 * self.space.dot(state.displacement(), stiffness),
+        ]
+    }
+
+    /// Generalised inertia load of the turning frame at displacement `w` and velocity `v`, all of the ring's space.
     pub fn frame_load(&self, turn: FrameTurn, w: &[f64], v: &[f64]) -> Vec<f64> {
         let (speed, acceleration) = (turn.speed, turn.acceleration);
+        if let Space::Harmonic(space) = &self.space {
+            return space.frame_load(turn, self.nodes(), w, v);
+        }
         let (u, v) = (self.coordinates.expand(w), self.coordinates.expand(v));
         let mut field = vec![0.0; u.len()];
         for (i, f) in field.chunks_exact_mut(3).enumerate() {
@@ -170,12 +269,18 @@ impl RingBody {
         self.coordinates.reduce(&self.matrices.nodal_mass_product(&field))
     }
 
+    /// Nodal values, `[n_nodes][3]` flat, of a vector of the ring's space.
+    pub fn nodal(&self, x: &[f64]) -> Vec<f64> {
+        match &self.space {
+            Space::Nodal => self.coordinates.expand(x),
+            Space::Harmonic(_) => self.coordinates.expand(&self.space.coordinates(x)),
+        }
+    }
+
     /// Linear momentum, kg m/s, and moment of momentum about the point z = 0 of the mesh's axis, kg m^2/s, at the
     /// undeformed places of the nodes.
     pub fn momentum(&self, state: &RingState) -> [[f64; 3]; 2] {
-        let p = self
-            .matrices
-            .nodal_mass_product(&self.coordinates.expand(&state.v));
+        let p = self.matrices.nodal_mass_product(&self.nodal(state.velocity()));
         let mut sums = [[0.0; 3]; 2];
         for (x, p) in self.positions.chunks_exact(3).zip(p.chunks_exact(3)) {
             for i in 0..3 {
@@ -189,15 +294,16 @@ impl RingBody {
 
     /// Energy that Rayleigh damping took in a step, J: C v[1-af] times dw.
     pub fn rayleigh_loss(&self, integrator: Integrator, old: &RingState, new: &RingState) -> f64 {
-        let v = weighted(integrator.alpha_f, &old.v, &new.v);
-        let change = difference(&old.w, &new.w);
+        let s = integrator.alpha_f;
+        let v = combined([s, 1.0 - s], old.velocity(), new.velocity());
+        let change = combined([-1.0, 1.0], old.displacement(), new.displacement());
         let [am, ak] = self.damping;
         let mut loss = 0.0;
         if am != 0.0 {
-            loss += am * dot(&change, &self.mass_product(&v));
+            loss += am * self.space.dot(&change, &self.mass_product(&v));
         }
         if ak != 0.0 {
-            loss += ak * dot(&change, &self.stiffness_product(&v));
+            loss += ak * self.space.dot(&change, &self.stiffness_product(&v));
         }
         loss
     }
@@ -208,23 +314,27 @@ impl RingBody {
         if integrator.is_conserving() {
             return 0.0;
         }
-        let change = difference(&old.w, &new.w);
-        let a = weighted(integrator.alpha_m, &old.a, &new.a);
-        let v = weighted(0.5, &old.v, &new.v);
-        let gain = difference(&old.v, &new.v);
+        let change = combined([-1.0, 1.0], old.displacement(), new.displacement());
+        let s = integrator.alpha_m;
+        let a = combined([s, 1.0 - s], old.acceleration(), new.acceleration());
+        let v = combined([0.5; 2], old.velocity(), new.velocity());
+        let gain = combined([-1.0, 1.0], old.velocity(), new.velocity());
+        let dot = |a: &[f64], b: &[f64]| self.space.dot(a, b);
         dot(&change, &self.mass_product(&a)) - dot(&v, &self.mass_product(&gain))
             + (0.5 - integrator.alpha_f) * dot(&change, &self.stiffness_product(&change))
     }
 }
 
-/// s x0 + (1 - s) x1.
-fn weighted(s: f64, x0: &[f64], x1: &[f64]) -> Vec<f64> {
-    x0.iter().zip(x1).map(|(a, b)| s * a + (1.0 - s) * b).collect()
-}
-
-/// x1 - x0.
-fn difference(x0: &[f64], x1: &[f64]) -> Vec<f64> {
-    x0.iter().zip(x1).map(|(a, b)| b - a).collect()
+/// s[0] x + s[1] y.
+fn combined(s: [f64; 2], x: &[f64], y: &[f64]) -> Vec<f64> {
+    let mut sum = vec![0.0; x.len()];
+    sum.par_chunks_mut(TASK)
+        .zip(x.par_chunks(TASK).zip(y.par_chunks(TASK)))
+        .for_each(|(sum, (x, y))| {
+            let terms = sum.iter_mut().zip(x.iter().zip(y));
+            terms.for_each(|(sum, (x, y))| *sum = s[0] * x + s[1] * y);
+        });
+    sum
 }
 
 /// Coordinates and mount of a held ring.

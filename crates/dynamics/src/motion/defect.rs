@@ -57,18 +57,14 @@ impl DefectStep {
         self.moved(&defect.forces(more))
     }
 
-    /// Adds to a load of the regular ring the forces of its defect when contacts and mount act with `forces`.
-    pub fn add_forces(&self, defect: &Defect, forces: &[f64], load: &mut [f64]) {
+    /// Forces of the defect on its rows, index and value, when contacts and mount act with `forces` on the regular ring.
+    pub fn loads(&self, defect: &Defect, forces: &[f64]) -> Vec<(usize, f64)> {
         let rows = self.answers.chunks_exact(forces.len().max(1));
         let total = self.at.iter().zip(rows).map(|(t, row)| {
             let by_forces: f64 = row.iter().zip(forces).map(|(v, f)| v * f).sum();
             t + by_forces
         });
         let acting = defect.forces(&total.collect::<Vec<f64>>());
-        defect
-            .rows()
-            .iter()
-            .zip(acting)
-            .for_each(|(&row, f)| load[row] += f);
+        defect.rows().iter().copied().zip(acting).collect()
     }
 }

@@ -15,8 +15,9 @@ use super::coordinates::Coordinates;
 use super::matrices::{RingMatrices, SparseMatrices};
 use crate::defect::Changes;
 use crate::error::DynamicsError;
+use crate::memory::MotionSizes;
 use crate::model::{Backend, RingModel};
-use crate::sectors::{HeldSectors, Periodic};
+use crate::sectors::{HeldSectors, Periodic, Sectors};
 use crate::substructures::Substructures;
 
 /// What stays of the matrices of a ring to factor S for any step size.
@@ -35,6 +36,8 @@ pub struct Harmonics {
     /// What its defect changes.
     changes: Option<Changes>,
     note: String,
+    /// What its motion holds, but for the mount.
+    sizes: MotionSizes,
 }
 
 /// A factored effective matrix.
@@ -108,6 +111,7 @@ pub fn prepare(
             let harmonics = Harmonics {
                 changes: periodic.defect.as_ref().map(|d| d.changes(coordinates)),
                 note: periodic.note(),
+                sizes: periodic.motion_sizes(&ring.mesh, 0),
                 held: periodic.held,
             };
             let operator = |matrix| whole.ring.operator(matrix).map(Box::new).map_err(solver_error);
@@ -130,6 +134,22 @@ pub fn prepare(
 }
 
 impl Effective {
+    /// The sectors of a periodic ring without a defect, without what is held.
+    pub fn regular(&self) -> Option<&Sectors> {
+        match self {
+            Effective::Cyclic(harmonics) if harmonics.changes.is_none() => Some(&harmonics.held.sectors),
+            _ => None,
+        }
+    }
+
+    /// What the motion of a ring holds that harmonics solve, but for its mount.
+    pub fn sizes(&self) -> Option<MotionSizes> {
+        match self {
+            Effective::Cyclic(harmonics) => Some(harmonics.sizes),
+            Effective::Sparse(..) | Effective::Sectors(_) => None,
+        }
+    }
+
     /// Name of the solver as a scene has it.
     pub fn name(&self) -> &'static str {
         match self {

@@ -2,12 +2,13 @@
 
 use contact::Side;
 
+use super::body::RingBody;
 use super::newton::SmallSolution;
 use super::part::Moving;
+use super::ring::RingState;
 use super::run::Motion;
 use super::small::{SmallSystem, first_five};
 use super::state::MotionState;
-use crate::solution::dot;
 
 impl Motion<'_> {
     /// The state after a part, and its local error over the largest contact approach.
@@ -19,7 +20,7 @@ impl Motion<'_> {
         moving: [Option<Moving<'_>>; 2],
         increments: [Option<Vec<f64>>; 2],
     ) -> (MotionState, f64) {
-        let mut next = state.clone();
+        let mut next = state.without_rings();
         let mut trend = self
             .settings
             .ladder
@@ -59,9 +60,10 @@ impl Motion<'_> {
         let integrator = self.settings.integrator;
         let new = ring.factor.advance(ring.old, dw);
         let ledger = &mut next.ledger;
-        ledger.load_work += dot(&ring.load, dw);
+        let work = |load: &[f64]| ring.body.space.dot(load, dw);
+        ledger.load_work += ring.load.as_deref().map_or(0.0, work);
         if let Some((_, inertia)) = &ring.inertia {
-            ledger.frame_work += dot(inertia, dw);
+            ledger.frame_work += work(inertia);
         }
         if ring.body.damping != [0.0; 2] {
             let loss = || ring.body.rayleigh_loss(integrator, ring.old, &new);
@@ -85,8 +87,9 @@ impl Motion<'_> {
             ledger.frame_work += in_frame - in_space;
         }
         if let Some(trend) = trend {
-            let change = new.v.iter().zip(&ring.old.v).map(|(a, b)| (a - b) / system.dt);
-            let mean = ring.step.contact_motion(&change.collect::<Vec<f64>>());
+            let change = new.velocity().iter().zip(ring.old.velocity());
+            let change: Vec<f64> = change.map(|(a, b)| (a - b) / system.dt).collect();
+            let mean = ring.factor.contact_motion(ring.body, &ring.step, &change);
             let first = system.balls.len() + side.index();
             for (ball, a) in mean.chunks_exact(2).enumerate() {
                 trend[first + 2 * ball] = [a[0], a[1]];
@@ -112,11 +115,15 @@ impl Motion<'_> {
     }
 
     pub(super) fn measure_energies(&self, state: &mut MotionState) {
-        let energies = |i: usize| match (&self.rings[i], &state.rings[i]) {
-            (Some(body), Some(ring)) => body.energies(ring),
+        let energies = |body: &Option<RingBody>, ring: &mut Option<RingState>| match (body, ring) {
+            (Some(body), Some(ring)) => body.measure(ring),
             _ => [0.0; 2],
         };
-        let (inner, outer) = self.model.backend.both(|| energies(0), || energies(1));
+        let ([a, b], [first, second]) = (&self.rings, &mut state.rings);
+        let (inner, outer) = self
+            .model
+            .backend
+            .both(|| energies(a, first), || energies(b, second));
         let kinetic = |mass: f64, v: &f64| 0.5 * mass * v * v;
         let mass = self.model.ball_mass();
         let balls: f64 = state

@@ -1,47 +1,88 @@
 //! Solves of a periodic ring that stay in harmonic space: the predictor of a step, what contacts and partner measure of it,
 //! and the increment under their forces. Only nodes that they touch are transformed in between.
 
-use solver::LinearSolver;
+use rayon::prelude::*;
 
 use super::effective::CyclicFactor;
-use crate::sparse::{SparseLoad, sparse_dot};
+use super::space::Space;
+use crate::sparse::SparseLoad;
+
+/// Numbers of one task of a sum.
+const TASK: usize = 1 << 14;
 
 impl CyclicFactor {
-    /// S^-1 of a generalised load, `[n]`: harmonics of the free nodes, and the rows of the border.
-    pub fn solve(&self, load: &[f64]) -> (Vec<f64>, Vec<f64>) {
-        let ring = self.solver.inner().ring();
-        let (free, border) = load.split_at(ring.n());
-        let mut harmonic = vec![0.0; ring.harmonic_len()];
-        ring.to_harmonic(free, &mut harmonic);
-        let mut border = border.to_vec();
-        self.solver.solve_harmonic(&mut [&mut harmonic], &mut border);
-        (harmonic, border)
+    /// S^-1 of a generalised load in the space of the ring: harmonics of the free nodes, then the rows of the border.
+    pub fn solve(&self, space: &Space, load: Vec<f64>) -> Vec<f64> {
+        let mut x = match space {
+            Space::Harmonic(_) => load,
+            Space::Nodal => {
+                let ring = self.solver.inner().ring();
+                let (free, border) = load.split_at(ring.n());
+                let mut x = vec![0.0; ring.harmonic_len() + border.len()];
+                let (harmonics, rows) = x.split_at_mut(ring.harmonic_len());
+                ring.to_harmonic(free, harmonics);
+                rows.copy_from_slice(border);
+                x
+            }
+        };
+        self.solve_in_place(&mut x);
+        x
     }
 
-    /// Values of functionals on the touched nodes and the border, and those of the rows of a defect.
-    pub fn motions(&self, harmonic: &[f64], border: &[f64], functionals: &[&SparseLoad]) -> [Vec<f64>; 2] {
+    fn solve_in_place(&self, x: &mut [f64]) {
+        let (harmonics, border) = x.split_at_mut(self.solver.inner().ring().harmonic_len());
+        self.solver.solve_harmonic(&mut [harmonics], border);
+    }
+
+    /// Values of functionals on the touched nodes and the border under harmonics and border `x`, and those of the rows of a defect.
+    pub fn motions(&self, x: &[f64], functionals: &[&SparseLoad]) -> [Vec<f64>; 2] {
         let ring = self.solver.inner().ring();
-        let mut x = vec![0.0; self.solver.n()];
-        let (free, rows) = x.split_at_mut(ring.n());
-        ring.from_harmonic_at(&self.touched, harmonic, free);
-        rows.copy_from_slice(border);
+        let (harmonics, border) = x.split_at(ring.harmonic_len());
+        let field = ring.field_at(&self.touched, harmonics);
+        let value = |row: usize| match row.checked_sub(ring.n()) {
+            Some(k) => border[k],
+            None => field.value(row),
+        };
+        let measure = |g: &&SparseLoad| g.iter().map(|&(row, weight)| weight * value(row)).sum();
         let rows = self.defect.iter().flat_map(|defect| defect.rows());
         [
-            functionals.iter().map(|g| sparse_dot(g, &x)).collect(),
-            rows.map(|&row| x[row]).collect(),
+            functionals.iter().map(measure).collect(),
+            rows.map(|&row| value(row)).collect(),
         ]
     }
 
-    /// The predictor, harmonics and border, plus S^-1 of a load on touched nodes and border: coordinates, `[n]`.
-    pub fn increment(&self, predictor: (&[f64], &[f64]), mut load: Vec<f64>) -> Vec<f64> {
+    /// The predictor plus S^-1 of loads on touched nodes and border, index and value: in the space of the ring.
+    pub fn increment(
+        &self,
+        space: &Space,
+        predictor: &[f64],
+        loads: impl Iterator<Item = (usize, f64)>,
+    ) -> Vec<f64> {
         let ring = self.solver.inner().ring();
-        let (free, border) = load.split_at_mut(ring.n());
-        let mut harmonic = vec![0.0; ring.harmonic_len()];
-        ring.to_harmonic_from(&self.touched, free, &mut harmonic);
-        self.solver.solve_harmonic(&mut [&mut harmonic], border);
-        harmonic.iter_mut().zip(predictor.0).for_each(|(d, p)| *d += p);
-        border.iter_mut().zip(predictor.1).for_each(|(d, p)| *d += p);
-        ring.from_harmonic(&harmonic, free);
-        load
+        let mut x = vec![0.0; predictor.len()];
+        let (harmonics, border) = x.split_at_mut(ring.harmonic_len());
+        let mut field = ring.no_loads(&self.touched);
+        for (row, value) in loads {
+            match row.checked_sub(ring.n()) {
+                Some(k) => border[k] += value,
+                None => field.add(row, value),
+            }
+        }
+        field.write_harmonics(harmonics);
+        self.solve_in_place(&mut x);
+        x.par_chunks_mut(TASK)
+            .zip(predictor.par_chunks(TASK))
+            .for_each(|(x, p)| x.iter_mut().zip(p).for_each(|(x, p)| *x += p));
+        match space {
+            Space::Harmonic(_) => x,
+            Space::Nodal => {
+                let (harmonics, border) = x.split_at(ring.harmonic_len());
+                let mut y = vec![0.0; ring.n() + border.len()];
+                let (free, rows) = y.split_at_mut(ring.n());
+                ring.from_harmonic(harmonics, free);
+                rows.copy_from_slice(border);
+                y
+            }
+        }
     }
 }

@@ -30,9 +30,9 @@ pub(super) struct Moving<'m> {
     pub factor: &'m RingFactor,
     pub old: &'m RingState,
     pub step: RingStep,
-    /// Generalised load that is fixed in space, `[n]`.
-    pub load: Vec<f64>,
-    /// Inertia load of the turning frame, `[n]`, when there is one.
+    /// Generalised load that is fixed in space, of the ring's space as all loads here, when there is one.
+    pub load: Option<Vec<f64>>,
+    /// Inertia load of the turning frame, when there is one.
     pub inertia: Option<(FrameTurn, Vec<f64>)>,
 }
 
@@ -70,15 +70,18 @@ impl Motion<'_> {
             let load = self.ring_load(body, side, loads, span);
             let inertia = loads.frame.filter(|_| side == Side::Inner).map(|turn| {
                 // First guess: the velocity stays.
-                let guess: Vec<f64> = old.v.iter().map(|v| span.dt * v).collect();
+                let guess: Vec<f64> = old.velocity().iter().map(|v| span.dt * v).collect();
                 let [w, v] = old.within(self.settings.integrator, span.dt, &guess);
                 (turn, body.frame_load(turn, &w, &v))
             });
-            let known = match &inertia {
-                Some((_, f)) => load.iter().zip(f).map(|(a, b)| a + b).collect(),
-                None => load.clone(),
+            let inertial = inertia.as_ref().map(|(_, f)| f.as_slice());
+            let step = match (&load, inertial) {
+                (Some(load), Some(f)) => {
+                    let known: Vec<f64> = load.iter().zip(f).map(|(a, b)| a + b).collect();
+                    factor.prepare(body, old, Some(&known), &feet[i])
+                }
+                (load, f) => factor.prepare(body, old, load.as_deref().or(f), &feet[i]),
             };
-            let step = factor.prepare(body, old, &known, &feet[i]);
             Some(Moving {
                 body,
                 factor,
@@ -96,12 +99,11 @@ impl Motion<'_> {
     }
 
     /// Generalised body load of a ring. Loads are fixed in space: those of the inner ring are turned into its frame.
-    fn ring_load(&self, body: &RingBody, side: Side, loads: &Loads, span: Span) -> Vec<f64> {
+    fn ring_load(&self, body: &RingBody, side: Side, loads: &Loads, span: Span) -> Option<Vec<f64>> {
         let back = -self.frame_angle(side, span.at(1.0 - self.settings.integrator.alpha_f));
-        match &loads.rings[side.index()] {
-            Some(load) => body.coordinates.reduce(&turn_nodal(load, back)),
-            None => vec![0.0; body.coordinates.n()],
-        }
+        let load = loads.rings[side.index()].as_ref()?;
+        let reduced = body.coordinates.reduce(&turn_nodal(load, back));
+        Some(body.space.of_coordinates(reduced))
     }
 
     pub(super) fn system(
@@ -233,7 +235,7 @@ impl Motion<'_> {
         let [w, v] = ring.old.within(self.settings.integrator, span.dt, dw);
         let new = ring.body.frame_load(*turn, &w, &v);
         let change: Vec<f64> = new.iter().zip(used.iter()).map(|(a, b)| a - b).collect();
-        let size = |f: &[f64]| f.iter().map(|c| c.abs()).sum::<f64>();
+        let size = |f: &[f64]| ring.body.space.size(f);
         if size(&change) <= (FRAME_TOLERANCE * scale).max(FRAME_ROUND_OFF * size(&new)) {
             return true;
         }

@@ -3,6 +3,7 @@
 use contact::patch::PatchShape;
 use contact::{LoadedPatch, Side};
 
+use super::ring::RingState;
 use super::run::Motion;
 use super::state::MotionState;
 use crate::balls::{BallDisplacement, BallResult, ContactResult};
@@ -76,7 +77,15 @@ impl Motion<'_> {
         let motion = self.rings[side.index()].as_ref()?;
         let ring = state.rings[side.index()].as_ref()?;
         let turned = self.frame_angle(side, self.time(state.step));
-        Some((motion.coordinates.expand(&ring.w), turned))
+        Some((motion.nodal(ring.displacement()), turned))
+    }
+
+    /// Displacement, velocity and acceleration of the coordinates of a flexible ring, `[n]`, SI, whatever solves it.
+    pub fn ring_coordinates(&self, state: &MotionState, side: Side) -> Option<[Vec<f64>; 3]> {
+        let body = self.rings[side.index()].as_ref()?;
+        let ring = state.rings[side.index()].as_ref()?;
+        let parts = [ring.displacement(), ring.velocity(), ring.acceleration()];
+        Some(parts.map(|x| body.space.coordinates(x)))
     }
 
     /// Linear momentum, kg m/s, and moment of momentum about the groove's centre on the axis, kg m^2/s, of a flexible ring in
@@ -102,8 +111,8 @@ impl Motion<'_> {
         let (Some(body), Some(old), Some(new)) = (&self.rings[i], &from.rings[i], &to.rings[i]) else {
             return Ok([0.0; 2]);
         };
-        let measure = |w: &[f64]| feet[i][ball].measure(&body.coordinates.expand(w));
-        let (a, b) = (measure(&old.w), measure(&new.w));
+        let measure = |ring: &RingState| feet[i][ball].measure(&body.nodal(ring.displacement()));
+        let (a, b) = (measure(old), measure(new));
         Ok([0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1])])
     }
 }

@@ -2,8 +2,8 @@
 //!
 //! Contacts and partner act by a compliance C and then by the increment that their forces make. A sparse factor gives both by
 //! columns, one block solve of 1 + 2 n_balls right-hand sides per step, which reads the factor once. A periodic ring has C in a
-//! table of the responses of its raceway, made once per step size; its predictor stays in harmonic space, where contact
-//! forces are added, so that a step takes two solves but transforms one whole field there and one back. The columns of a ring in
+//! table of the responses of its raceway, made once per step size, and its vectors stay in harmonic space ([`super::space`]): a step
+//! takes two solves and transforms the raceway alone. The columns of a ring in
 //! sectors stay by sector ([`super::by_sector`]). The columns of the mount are solved once per step size. A defect of the ring
 //! corrects all of it (`motion::defect`).
 
@@ -18,6 +18,7 @@ use super::defect::DefectStep;
 use super::effective::Factored;
 use super::integrator::Integrator;
 pub use super::ring_state::RingState;
+use super::space::Space;
 use crate::error::DynamicsError;
 use crate::sparse::{SparseLoad, sparse_dot};
 
@@ -54,17 +55,10 @@ pub struct RingStep {
 enum Predictor {
     /// Itself, then the increments per unit contact force: column-major `[n][1 + 2 n_contacts]`.
     Columns(Vec<f64>),
-    /// Of the regular ring in harmonic space, the rows of the border, and what a defect makes of it.
-    Harmonic(Vec<f64>, Vec<f64>, Option<DefectStep>),
+    /// Of the regular ring, harmonics and the rows of the border, and what a defect makes of it.
+    Harmonic(Vec<f64>, Option<DefectStep>),
     /// As columns, by sector.
     Sectors(StepColumns),
-}
-
-impl RingStep {
-    /// Motion of the groove centres, `[2 n_contacts]`, when the coordinates move by `x`.
-    pub fn contact_motion(&self, x: &[f64]) -> Vec<f64> {
-        self.contacts.iter().map(|g| sparse_dot(g, x)).collect()
-    }
 }
 
 impl RingFactor {
@@ -108,12 +102,29 @@ impl RingFactor {
         self.factor.defect().map(Defect::iterations)
     }
 
-    /// Predictor and columns of a step from `state` under the generalised load `load` and with contacts at `feet`.
+    /// Motion of the groove centres, `[2 n_contacts]`, in a step when the ring moves by `x`, of its space.
+    pub fn contact_motion(&self, body: &RingBody, step: &RingStep, x: &[f64]) -> Vec<f64> {
+        self.measure(body, &step.contacts.iter().collect::<Vec<_>>(), x)
+    }
+
+    /// Values of functionals on what contacts and partner touch, at `x` of the ring's space.
+    fn measure(&self, body: &RingBody, functionals: &[&SparseLoad], x: &[f64]) -> Vec<f64> {
+        match (&self.factor, &body.space) {
+            (Factored::Cyclic(factor), Space::Harmonic(_)) => {
+                let [values, _] = factor.motions(x, functionals);
+                values
+            }
+            _ => functionals.iter().map(|g| sparse_dot(g, x)).collect(),
+        }
+    }
+
+    /// Predictor and columns of a step from `state` under the generalised load `load`, of the ring's space, and with contacts at
+    /// `feet`.
     pub fn prepare(
         &self,
         body: &RingBody,
         state: &RingState,
-        load: &[f64],
+        load: Option<&[f64]>,
         feet: &[NodalWeights],
     ) -> RingStep {
         let clock = std::time::Instant::now();
@@ -121,13 +132,13 @@ impl RingFactor {
         let contacts = functionals(body, feet);
         let mut side = self.right_side(body, state, load);
         let all: Vec<&SparseLoad> = contacts.iter().chain(&body.mount).collect();
-        let start: Vec<f64> = all.iter().map(|g| sparse_dot(g, &state.w)).collect();
+        let start = self.measure(body, &all, state.displacement());
         let sides = clock.elapsed().as_secs_f64();
         let (predictor, moved, compliance) = match &self.factor {
             Factored::Cyclic(factor) => {
-                let (harmonic, border) = factor.solve(&side);
-                let (defect, moved, compliance) = self.meet(body, factor, [&harmonic, &border], feet, &all);
-                (Predictor::Harmonic(harmonic, border, defect), moved, compliance)
+                let predictor = factor.solve(&body.space, side);
+                let (defect, moved, compliance) = self.meet(body, factor, &predictor, feet, &all);
+                (Predictor::Harmonic(predictor, defect), moved, compliance)
             }
             Factored::Sparse(solver) => {
                 side.resize(n * (1 + contacts.len()), 0.0);
@@ -166,10 +177,10 @@ impl RingFactor {
         let n = body.coordinates.n();
         step.contacts = functionals(body, feet);
         let all: Vec<&SparseLoad> = step.contacts.iter().chain(&body.mount).collect();
-        step.start = all.iter().map(|g| sparse_dot(g, &state.w)).collect();
+        step.start = self.measure(body, &all, state.displacement());
         let (moved, compliance) = match (&self.factor, &mut step.predictor) {
-            (Factored::Cyclic(factor), Predictor::Harmonic(harmonic, border, defect)) => {
-                let (met, moved, compliance) = self.meet(body, factor, [harmonic, border], feet, &all);
+            (Factored::Cyclic(factor), Predictor::Harmonic(predictor, defect)) => {
+                let (met, moved, compliance) = self.meet(body, factor, predictor, feet, &all);
                 *defect = met;
                 (moved, compliance)
             }
@@ -224,35 +235,26 @@ impl RingFactor {
     }
 
     /// f - K w0 + M (history) + C (history), the right-hand side of S dw.
-    fn right_side(&self, body: &RingBody, state: &RingState, load: &[f64]) -> Vec<f64> {
+    fn right_side(&self, body: &RingBody, state: &RingState, load: Option<&[f64]>) -> Vec<f64> {
         let [mass, damping] = self.integrator.history(self.dt);
         let [am, ak] = body.damping;
-        let combine = |c: [f64; 2]| move |(v, a): (&f64, &f64)| c[0] * v + c[1] * a;
-        let c_mass = [mass[0] + am * damping[0], mass[1] + am * damping[1]];
-        let c_stiff = [ak * damping[0], ak * damping[1]];
-        let inertial: Vec<f64> = state.v.iter().zip(&state.a).map(combine(c_mass)).collect();
-        let elastic: Vec<f64> = state
-            .w
-            .iter()
-            .zip(state.v.iter().zip(&state.a).map(combine(c_stiff)))
-            .map(|(w, c)| c - w)
-            .collect();
-        let mut side = body
-            .matrices
-            .sum_of_products(&body.coordinates, &inertial, &elastic);
-        side.iter_mut().zip(load).for_each(|(side, f)| *side += f);
+        let mass = [mass[0] + am * damping[0], mass[1] + am * damping[1]];
+        let stiffness = [ak * damping[0], ak * damping[1]];
+        let mut side = body.balance(state, mass, stiffness);
+        if let Some(load) = load {
+            side.iter_mut().zip(load).for_each(|(side, f)| *side += f);
+        }
         side
     }
 
-    /// Adds a generalised load to the step; one solve.
+    /// Adds a generalised load, of the ring's space, to the step; one solve.
     pub fn add_load(&self, body: &RingBody, step: &mut RingStep, mut load: Vec<f64>) {
         let all: Vec<&SparseLoad> = step.contacts.iter().chain(&body.mount).collect();
         let moved: Vec<f64> = match (&self.factor, &mut step.predictor) {
-            (Factored::Cyclic(factor), Predictor::Harmonic(harmonic, border, correction)) => {
-                let (more, q) = factor.solve(&load);
-                harmonic.iter_mut().zip(&more).for_each(|(p, d)| *p += d);
-                border.iter_mut().zip(&q).for_each(|(p, d)| *p += d);
-                let [mut moved, at] = factor.motions(&more, &q, &all);
+            (Factored::Cyclic(factor), Predictor::Harmonic(predictor, correction)) => {
+                let more = factor.solve(&body.space, load);
+                predictor.iter_mut().zip(&more).for_each(|(p, d)| *p += d);
+                let [mut moved, at] = factor.motions(&more, &all);
                 if let (Some(defect), Some(correction)) = (self.factor.defect(), correction) {
                     let corrected = correction.add(defect, &at);
                     moved.iter_mut().zip(corrected).for_each(|(m, d)| *m += d);
@@ -270,23 +272,22 @@ impl RingFactor {
         step.predicted.iter_mut().zip(&moved).for_each(|(p, d)| *p += d);
     }
 
-    /// Increment of the coordinates under forces on contacts (N, `[2 n_contacts]`) and mount (N and N m).
+    /// Increment, in the ring's space, under forces on contacts (N, `[2 n_contacts]`) and mount (N and N m).
     pub fn increment(&self, body: &RingBody, step: &RingStep, contacts: &[f64], mount: &[f64]) -> Vec<f64> {
         match (&self.factor, &step.predictor) {
-            (Factored::Cyclic(factor), Predictor::Harmonic(harmonic, border, correction)) => {
-                let mut load = vec![0.0; body.coordinates.n()];
-                let loads = step
+            (Factored::Cyclic(factor), Predictor::Harmonic(predictor, correction)) => {
+                let acting = step
                     .contacts
                     .iter()
                     .zip(contacts)
                     .chain(body.mount.iter().zip(mount));
-                for (functional, f) in loads {
-                    functional.iter().for_each(|&(i, w)| load[i] += f * w);
-                }
-                if let (Some(defect), Some(correction)) = (&factor.defect, correction) {
-                    correction.add_forces(defect, &[contacts, mount].concat(), &mut load);
-                }
-                factor.increment((harmonic, border), load)
+                let by_defect = match (&factor.defect, correction) {
+                    (Some(defect), Some(correction)) => correction.loads(defect, &[contacts, mount].concat()),
+                    _ => Vec::new(),
+                };
+                let loads =
+                    acting.flat_map(|(functional, f)| functional.iter().map(move |&(i, w)| (i, f * w)));
+                factor.increment(&body.space, predictor, loads.chain(by_defect))
             }
             (Factored::Sectors(factor), Predictor::Sectors(columns)) => {
                 factor.increment(columns, contacts, mount)
@@ -308,14 +309,7 @@ impl RingFactor {
 
     /// The state at the end of a step with increment `dw`.
     pub fn advance(&self, state: &RingState, dw: &[f64]) -> RingState {
-        let (mut v, mut a) = (Vec::with_capacity(dw.len()), Vec::with_capacity(dw.len()));
-        for ((d, v0), a0) in dw.iter().zip(&state.v).zip(&state.a) {
-            let [v1, a1] = self.integrator.update(self.dt, *d, *v0, *a0);
-            v.push(v1);
-            a.push(a1);
-        }
-        let w = state.w.iter().zip(dw).map(|(w, d)| w + d).collect();
-        RingState { w, v, a }
+        state.advanced(self.integrator, self.dt, dw)
     }
 }
 

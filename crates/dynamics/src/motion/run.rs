@@ -17,6 +17,7 @@ use super::substep::Span;
 use crate::costs::EffectCosts;
 use crate::error::DynamicsError;
 use crate::inventory::Inventory;
+use crate::memory::forecast_motion_peak;
 use crate::model::Model;
 use crate::ring::iterations_note;
 
@@ -96,6 +97,16 @@ impl<'a> Motion<'a> {
         Inventory {
             matrices: bodies.matrices + rungs.flatten().flatten().count(),
             ..bodies
+        }
+    }
+
+    /// Forecast of the largest resident memory of the steps, bytes, while `queued` of them wait to be written; None when harmonics
+    /// do not solve all flexible rings.
+    pub fn memory_forecast(&self, queued: usize) -> Option<usize> {
+        let sizes = |ring: &Option<RingBody>| ring.as_ref().map(RingBody::sizes);
+        match self.rings.each_ref().map(sizes) {
+            [Some(None), _] | [_, Some(None)] => None,
+            [inner, outer] => Some(forecast_motion_peak([inner.flatten(), outer.flatten()], queued)),
         }
     }
 

@@ -1,14 +1,25 @@
 //! Sizes of a motion's state: what a stored state must have for the motion to go on from it.
 
+use super::body::RingBody;
 use super::run::Motion;
+use super::space::Space;
 
 /// Lengths of the arrays of a [`super::MotionState`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct StateShape {
     /// Balls; there are two contact sites per ball.
     pub n_balls: usize,
-    /// Coordinates of the inner and the outer ring; None for a rigid ring.
-    pub ring_dofs: [Option<usize>; 2],
+    /// Vectors of the inner and the outer ring; None for a rigid ring.
+    pub rings: [Option<RingShape>; 2],
+}
+
+/// Vectors of a ring.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct RingShape {
+    /// Length of each.
+    pub length: usize,
+    /// What they are: `coordinates` or `harmonics`.
+    pub kind: &'static str,
 }
 
 impl Motion<'_> {
@@ -16,7 +27,19 @@ impl Motion<'_> {
     pub fn shape(&self) -> StateShape {
         StateShape {
             n_balls: self.model.geometry.n_balls,
-            ring_dofs: [0, 1].map(|i| self.rings[i].as_ref().map(|ring| ring.coordinates.n())),
+            rings: [0, 1].map(|i| self.rings[i].as_ref().map(RingBody::shape)),
+        }
+    }
+}
+
+impl RingBody {
+    fn shape(&self) -> RingShape {
+        RingShape {
+            length: self.space.len(self.coordinates.n()),
+            kind: match self.space {
+                Space::Nodal => "coordinates",
+                Space::Harmonic(_) => "harmonics",
+            },
         }
     }
 }

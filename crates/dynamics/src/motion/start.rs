@@ -133,9 +133,11 @@ impl Motion<'_> {
         };
         let (next, _) = Motion::new(self.model, conserving)?.step(&state)?;
         let mean = |v1: f64, v0: f64| (v1 - v0) / self.settings.dt;
-        for (ring, moved) in state.rings.iter_mut().zip(&next.rings) {
-            if let (Some(ring), Some(moved)) = (ring, moved) {
-                ring.a = moved.v.iter().zip(&ring.v).map(|(a, b)| mean(*a, *b)).collect();
+        for (start, moved) in state.rings.iter_mut().zip(&next.rings) {
+            if let (Some(ring), Some(moved)) = (start.take(), moved) {
+                let velocities = moved.velocity().iter().zip(ring.velocity());
+                let a = velocities.map(|(a, b)| mean(*a, *b)).collect();
+                *start = Some(ring.with_acceleration(a));
             }
         }
         for (b, moved) in next.ball_velocities.iter().enumerate() {
@@ -190,7 +192,7 @@ impl Motion<'_> {
     }
 }
 
-/// Coordinates of a ring: elastic part plus the rigid motion `q`, and in its frame, which turns at `omega`, the velocity of
+/// State of a ring: elastic part plus the rigid motion `q`, and in its frame, which turns at `omega`, the velocity of
 /// that motion, which has `velocity` in space.
 fn ring_at_start(body: &RingBody, elastic: &[f64], q: [f64; 5], velocity: [f64; 5], omega: f64) -> RingState {
     let coordinates = &body.coordinates;
@@ -211,10 +213,11 @@ fn ring_at_start(body: &RingBody, elastic: &[f64], q: [f64; 5], velocity: [f64; 
         .iter()
         .enumerate()
         .for_each(|(i, &dof)| w[i] += elastic[dof]);
-    let mut state = RingState::at_rest(w);
     let turned = [omega * q[1], -omega * q[0], 0.0, omega * q[4], -omega * q[3]];
-    state.v = field([0, 1, 2, 3, 4].map(|i| velocity[i] + turned[i]));
-    state
+    let v = field([0, 1, 2, 3, 4].map(|i| velocity[i] + turned[i]));
+    let [w, v] = [w, v].map(|y| body.space.of_coordinates(y));
+    let a = vec![0.0; w.len()];
+    RingState::new(w, v, a)
 }
 
 /// Refuses what statics knows and motion does not.

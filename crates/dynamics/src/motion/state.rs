@@ -59,7 +59,7 @@ pub struct MotionState {
     pub step: u64,
     /// Rung k of the ladder on which the next step begins.
     pub rung: u64,
-    /// Coordinates of the flexible rings.
+    /// The flexible rings.
     pub rings: [Option<RingState>; 2],
     /// Ball displacements from the just-touching position [radial, axial], m.
     pub balls: Vec<[f64; 2]>,
@@ -87,6 +87,29 @@ pub struct MotionState {
     pub places: [Vec<[f64; 2]>; 3],
     /// Energy ledger.
     pub ledger: Ledger,
+}
+
+impl MotionState {
+    /// A copy of all but the rings, which are most of it.
+    pub(super) fn without_rings(&self) -> MotionState {
+        MotionState {
+            step: self.step,
+            rung: self.rung,
+            rings: [None, None],
+            balls: self.balls.clone(),
+            ball_velocities: self.ball_velocities.clone(),
+            ball_accelerations: self.ball_accelerations.clone(),
+            shaft: self.shaft,
+            shaft_velocity: self.shaft_velocity,
+            shaft_acceleration: self.shaft_acceleration,
+            trend: self.trend.clone(),
+            forces: self.forces.clone(),
+            angles: self.angles.clone(),
+            approaches: self.approaches.clone(),
+            places: self.places.clone(),
+            ledger: self.ledger,
+        }
+    }
 }
 
 /// What happened in a step.

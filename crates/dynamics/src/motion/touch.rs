@@ -18,17 +18,17 @@ struct Touch {
 }
 
 impl RingFactor {
-    /// What a defect makes of the predictor, in harmonic space and on the border's rows; the motion by the predictor of `all`, contacts at
-    /// `feet`, then mount; and their compliance.
+    /// What a defect makes of the predictor, harmonics and border; the motion by the predictor of `all`, contacts at `feet`, then mount;
+    /// and their compliance.
     pub(super) fn meet(
         &self,
         body: &RingBody,
         factor: &CyclicFactor,
-        [harmonic, border]: [&[f64]; 2],
+        predictor: &[f64],
         feet: &[NodalWeights],
         all: &[&SparseLoad],
     ) -> (Option<DefectStep>, Vec<f64>, Vec<f64>) {
-        let [mut moved, at] = factor.motions(harmonic, border, all);
+        let [mut moved, at] = factor.motions(predictor, all);
         let touch = self.touch(body, &factor.table, feet, &all[..2 * feet.len()]);
         let mut compliance = self.table_compliance(&factor.table, &touch, body.mount.len());
         let step = factor.defect.as_ref().map(|defect| {

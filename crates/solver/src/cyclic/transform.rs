@@ -31,7 +31,7 @@ pub(super) type Spectrum = Complex<f64>;
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct SectionPart {
     /// Places in elimination order, ascending.
-    places: Vec<usize>,
+    pub(super) places: Vec<usize>,
 }
 
 impl CyclicRing {
@@ -66,10 +66,17 @@ impl CyclicRing {
             .par_chunks_mut(3 * TASK * n_harmonics)
             .zip(places.par_chunks(TASK))
             .for_each(|(spectra, places)| self.transform_nodes(places, nodal, spectra));
+        self.collect(places, &spectra, harmonic);
+    }
+
+    /// Overwrites the harmonics of the nodes at `places` with their spectra, `[places][3][n_harmonics]`.
+    pub(super) fn collect(&self, places: &[usize], spectra: &[Spectrum], harmonic: &mut [f64]) {
+        assert_eq!(harmonic.len(), self.harmonic_len(), "a vector in harmonic space");
+        let n_harmonics = self.shared.phases.n_harmonics();
         harmonic
             .par_chunks_mut(self.group_len())
             .enumerate()
-            .for_each(|(group, lanes)| collect_group(group, n_harmonics, (places, &spectra), lanes));
+            .for_each(|(group, lanes)| collect_group(group, n_harmonics, (places, spectra), lanes));
     }
 
     /// Nodal vector (Cartesian, `[n]`) of the harmonics `harmonic`, `[harmonic_len()]`.
@@ -152,7 +159,7 @@ impl CyclicRing {
     }
 
     /// Cylindrical components of the nodes at `places`, `[places][3][n_sectors]`.
-    fn restore_places(&self, places: &[usize], harmonic: &[f64]) -> Vec<f64> {
+    pub(super) fn restore_places(&self, places: &[usize], harmonic: &[f64]) -> Vec<f64> {
         assert_eq!(harmonic.len(), self.harmonic_len(), "a vector in harmonic space");
         let n = self.n_sectors();
         let mut components = vec![0.0; 3 * n * places.len()];
@@ -171,11 +178,14 @@ impl CyclicRing {
         assert_eq!(a.len(), self.harmonic_len(), "a vector in harmonic space");
         assert_eq!(b.len(), self.harmonic_len(), "a vector in harmonic space");
         let len = self.group_len().max(1);
-        let groups = a.chunks_exact(len).zip(b.chunks_exact(len));
-        groups
+        // Groups in parallel, their sums in order.
+        let sums: Vec<f64> = a
+            .par_chunks_exact(len)
+            .zip(b.par_chunks_exact(len))
             .enumerate()
             .map(|(group, (a, b))| self.group_dot(group, a, b))
-            .sum()
+            .collect();
+        sums.iter().sum()
     }
 
     /// One group's part of the scalar product, of its part of two vectors.
@@ -203,7 +213,6 @@ impl CyclicRing {
         let (n, width) = (self.n_sectors(), self.n_section_nodes());
         let n_harmonics = shared.phases.n_harmonics();
         let mut lines = vec![0.0; 3 * n];
-        let mut scratch = shared.forward.make_scratch_vec();
         for (spectra, &place) in spectra.chunks_exact_mut(3 * n_harmonics).zip(places) {
             for sector in 0..n {
                 let site = sector * width + place;
@@ -214,26 +223,33 @@ impl CyclicRing {
                 lines[n + sector] = c * y - s * x;
                 lines[2 * n + sector] = z;
             }
-            for (component, (line, spectrum)) in lines
-                .chunks_exact_mut(n)
-                .zip(spectra.chunks_exact_mut(n_harmonics))
-                .enumerate()
-            {
-                shared
-                    .forward
-                    .process_with_scratch(line, spectrum, &mut scratch)
-                    .expect("the lengths are those of the plan");
-                let turn = |(k, value): (usize, &mut Spectrum)| {
-                    let [cos, sin] = shared.phases.of(k, -shared.halves[place]);
-                    let turned = *value * Complex::new(cos, sin);
-                    *value = if component == 1 {
-                        Complex::new(turned.im, -turned.re)
-                    } else {
-                        turned
-                    };
+            self.line_spectra(place, &mut lines, spectra);
+        }
+    }
+
+    /// Spectra of one node's cylindrical components round the ring, `[3][n_sectors]`, which are overwritten.
+    pub(super) fn line_spectra(&self, place: usize, lines: &mut [f64], spectra: &mut [Spectrum]) {
+        let shared = &self.shared;
+        let mut scratch = shared.forward.make_scratch_vec();
+        for (component, (line, spectrum)) in lines
+            .chunks_exact_mut(self.n_sectors())
+            .zip(spectra.chunks_exact_mut(shared.phases.n_harmonics()))
+            .enumerate()
+        {
+            shared
+                .forward
+                .process_with_scratch(line, spectrum, &mut scratch)
+                .expect("the lengths are those of the plan");
+            let turn = |(k, value): (usize, &mut Spectrum)| {
+                let [cos, sin] = shared.phases.of(k, -shared.halves[place]);
+                let turned = *value * Complex::new(cos, sin);
+                *value = if component == 1 {
+                    Complex::new(turned.im, -turned.re)
+                } else {
+                    turned
                 };
-                spectrum.iter_mut().enumerate().for_each(turn);
-            }
+            };
+            spectrum.iter_mut().enumerate().for_each(turn);
         }
     }
 

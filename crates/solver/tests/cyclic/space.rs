@@ -1,6 +1,7 @@
 //! Harmonic space: transforms, products, responses.
 
 use mesh::{ElementKind, revolve};
+use solver::cyclic::HarmonicOperator;
 use solver::{LinearSolver, NodalLoad, ResponseTable};
 
 use crate::common::{self, assert_close};
@@ -162,5 +163,63 @@ fn part_of_a_section_is_transformed_as_in_the_whole() {
             .map(|i| if is_inside(i / 3) { x[i] } else { 7.0 })
             .collect();
         assert_close(&nodal, &expected, 1e-14);
+
+        let rows: Vec<usize> = (0..x.len()).filter(|i| is_inside(i / 3)).collect();
+        let field = ring.ring.field_at(&part, &found);
+        let values: Vec<f64> = rows.iter().map(|&row| field.value(row)).collect();
+        let expected: Vec<f64> = rows.iter().map(|&row| x[row]).collect();
+        assert_close(&values, &expected, 1e-14);
+        let mut loads = ring.ring.no_loads(&part);
+        // In two parts each: the second adds to the first.
+        for &row in rows.iter().chain(&rows) {
+            loads.add(row, 0.5 * x[row]);
+        }
+        let mut whole = vec![0.0; found.len()];
+        ring.ring.to_harmonic(&alone, &mut whole);
+        found.fill(0.0);
+        loads.write_harmonics(&mut found);
+        assert_close(&found, &whole, 1e-13);
+    }
+}
+
+/// Wrong: the state of a moving ring, which stays in harmonic space, would meet another matrix there than the assembled one with the
+/// rows of its shaft; or what turns with a frame would turn the wrong way.
+#[test]
+fn bordered_products_and_turned_fields_are_those_of_nodal_vectors() {
+    for (ring, _) in rings() {
+        let (n, len) = (ring.mesh.n_dofs(), ring.ring.harmonic_len());
+        let x = loads(n + 3);
+        let rigid = |[_, y, z]: [f64; 3]| [[1.0, 0.0, 0.0], [0.0, -z, y], [0.0, 0.0, 1.0]];
+        let nodes = &ring.mesh.nodes;
+        let border: Vec<f64> = (0..3)
+            .flat_map(|k| nodes.iter().flat_map(move |&node| rigid(node)[k]))
+            .collect();
+        let corner = [4.0, 1.0, 0.5, 1.0, 3.0, -0.7, 0.5, -0.7, 2.0];
+        let mut expected = common::product(&ring.assembled(SHIFT), &x[..n]);
+        for (column, q) in border.chunks_exact(n).zip(&x[n..]) {
+            expected.iter_mut().zip(column).for_each(|(y, b)| *y += b * q);
+        }
+        for (row, column) in corner.chunks_exact(3).zip(border.chunks_exact(n)) {
+            let free: f64 = column.iter().zip(&x).map(|(b, x)| b * x).sum();
+            let own: f64 = row.iter().zip(&x[n..]).map(|(d, q)| d * q).sum();
+            expected.push(free + own);
+        }
+        let operator = HarmonicOperator::new(&ring.ring, &ring.shifted(), &border, &corner).unwrap();
+        let mut w = vec![0.0; len + 3];
+        ring.ring.to_harmonic(&x[..n], &mut w[..len]);
+        w[len..].copy_from_slice(&x[n..]);
+        let product = operator.product(&w);
+        let mut found = vec![0.0; n];
+        ring.ring.from_harmonic(&product[..len], &mut found);
+        found.extend_from_slice(&product[len..]);
+        assert_close(&found, &expected, 1e-13);
+
+        let mut turned = w[..len].to_vec();
+        ring.ring.add_turned([0.7, -0.4], &w[..len], &mut turned);
+        let mut found = vec![0.0; n];
+        ring.ring.from_harmonic(&turned, &mut found);
+        let fields = x[..n].chunks_exact(3);
+        let expected = fields.flat_map(|u| [1.7 * u[0] + 0.4 * u[1], 1.7 * u[1] - 0.4 * u[0], u[2]]);
+        assert_close(&found, &expected.collect::<Vec<f64>>(), 1e-13);
     }
 }

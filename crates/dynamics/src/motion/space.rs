@@ -1,0 +1,204 @@
+//! Where the vectors of a ring's state, increments and loads live: as coordinates, or as harmonics of a periodic ring.
+//!
+//! The state of a periodic ring never leaves harmonic space while it moves: matrices act there harmonic by harmonic
+//! ([`solver::cyclic::HarmonicOperator`]), and so does the inertia of a turning frame, which is local in cylindrical components. Nodal
+//! fields are made when results ask for them. Scalar products of nodal vectors are those of Parseval. The dofs of a shaft that
+//! carries the bore stay what they are, behind the harmonics.
+
+use std::sync::OnceLock;
+
+use solver::cyclic::HarmonicOperator;
+use solver::{CyclicRing, SolverError};
+
+use super::coordinates::Coordinates;
+use super::matrices::RingMatrices;
+use crate::effects::FrameTurn;
+use crate::sectors::Sectors;
+use crate::solution::dot;
+
+/// The space of a ring's vectors.
+pub enum Space {
+    /// Coordinates, `[n]`.
+    Nodal,
+    /// Harmonics of the free nodes, then the shaft's dofs, `[harmonic_len + m]`.
+    Harmonic(Box<HarmonicSpace>),
+}
+
+/// Harmonic space and what acts in it.
+pub struct HarmonicSpace {
+    ring: CyclicRing,
+    n_shaft: usize,
+    /// M.
+    pub(super) mass: HarmonicOperator,
+    /// K.
+    pub(super) stiffness: HarmonicOperator,
+    /// Made when a frame turns for the first time.
+    frame: OnceLock<FrameLoads>,
+}
+
+/// Inertia of a turning frame beyond that of the free nodes' motion, as low vectors: M P and M J of fields, with P u = (u_x, u_y, 0)
+/// and J u = (u_y, -u_x, 0).
+struct FrameLoads {
+    /// Of the node positions.
+    position: [Vec<f64>; 2],
+    /// Of the motion of the held nodes with each dof of the shaft.
+    shaft: Vec<[Vec<f64>; 2]>,
+}
+
+/// A ring's matrices between nodes, from which a space takes what the shaft adds.
+#[derive(Clone, Copy)]
+pub(super) struct Nodes<'a> {
+    pub coordinates: &'a Coordinates,
+    pub matrices: &'a RingMatrices,
+    /// m, `[n_nodes][3]` flat.
+    pub positions: &'a [f64],
+}
+
+impl Nodes<'_> {
+    /// Columns of c_M M + c_K K that belong to the shaft dofs: the rows of the free dofs, column-major, and those of the
+    /// shaft, row-major.
+    pub fn border(&self, [cm, ck]: [f64; 2]) -> [Vec<f64>; 2] {
+        let (n_free, n) = (self.coordinates.free().len(), self.coordinates.n());
+        let (mut border, mut corner) = (Vec::new(), Vec::new());
+        for k in n_free..n {
+            let [m, k] = [cm, ck].map(|c| self.unit(k, c));
+            let column = self.matrices.sum_of_products(self.coordinates, &m, &k);
+            border.extend_from_slice(&column[..n_free]);
+            corner.extend_from_slice(&column[n_free..]);
+        }
+        [border, corner]
+    }
+
+    /// Coordinates that are zero but for one.
+    fn unit(&self, index: usize, value: f64) -> Vec<f64> {
+        let mut unit = vec![0.0; self.coordinates.n()];
+        unit[index] = value;
+        unit
+    }
+}
+
+impl Space {
+    /// Harmonic space of the free nodes of a periodic ring.
+    pub(super) fn harmonic(free: &Sectors, nodes: Nodes<'_>) -> Result<Space, SolverError> {
+        let operator = |matrix, coefficients| {
+            let [border, corner] = nodes.border(coefficients);
+            HarmonicOperator::new(&free.ring, matrix, &border, &corner)
+        };
+        Ok(Space::Harmonic(Box::new(HarmonicSpace {
+            n_shaft: nodes.coordinates.shaft().0.len(),
+            mass: operator(&free.mass, [1.0, 0.0])?,
+            stiffness: operator(&free.stiffness, [0.0, 1.0])?,
+            ring: free.ring.clone(),
+            frame: OnceLock::new(),
+        })))
+    }
+
+    /// Length of a vector of a ring of `n` coordinates.
+    pub fn len(&self, n: usize) -> usize {
+        match self {
+            Space::Nodal => n,
+            Space::Harmonic(space) => space.ring.harmonic_len() + space.n_shaft,
+        }
+    }
+
+    /// The vector with the coordinates `y`.
+    pub fn of_coordinates(&self, y: Vec<f64>) -> Vec<f64> {
+        match self {
+            Space::Nodal => y,
+            Space::Harmonic(space) => {
+                let (free, shaft) = y.split_at(space.ring.n());
+                let mut x = vec![0.0; self.len(y.len())];
+                let (harmonics, border) = x.split_at_mut(space.ring.harmonic_len());
+                space.ring.to_harmonic(free, harmonics);
+                border.copy_from_slice(shaft);
+                x
+            }
+        }
+    }
+
+    /// Coordinates of the vector `x`.
+    pub fn coordinates(&self, x: &[f64]) -> Vec<f64> {
+        match self {
+            Space::Nodal => x.to_vec(),
+            Space::Harmonic(space) => {
+                let (harmonics, border) = x.split_at(space.ring.harmonic_len());
+                let mut y = vec![0.0; space.ring.n() + space.n_shaft];
+                let (free, shaft) = y.split_at_mut(space.ring.n());
+                space.ring.from_harmonic(harmonics, free);
+                shaft.copy_from_slice(border);
+                y
+            }
+        }
+    }
+
+    /// Scalar product of the coordinates of two vectors.
+    pub fn dot(&self, a: &[f64], b: &[f64]) -> f64 {
+        match self {
+            Space::Nodal => dot(a, b),
+            Space::Harmonic(space) => {
+                let len = space.ring.harmonic_len();
+                space.ring.harmonic_dot(&a[..len], &b[..len]) + dot(&a[len..], &b[len..])
+            }
+        }
+    }
+
+    /// A bound of the sum of the magnitudes of the coordinates of `x`: the root of the sum of their squares times that of their number.
+    pub fn size(&self, x: &[f64]) -> f64 {
+        let n = match self {
+            Space::Nodal => x.len(),
+            Space::Harmonic(space) => space.ring.n() + space.n_shaft,
+        };
+        (n as f64 * self.dot(x, x)).sqrt()
+    }
+}
+
+impl HarmonicSpace {
+    /// Generalised inertia load of the turning frame at displacement `w` and velocity `v`, see
+    /// [`super::body::RingBody::frame_load`].
+    pub(super) fn frame_load(&self, turn: FrameTurn, nodes: Nodes<'_>, w: &[f64], v: &[f64]) -> Vec<f64> {
+        let (speed, acceleration) = (turn.speed, turn.acceleration);
+        let len = self.ring.harmonic_len();
+        // J u = -e_z x u.
+        let mut field = vec![0.0; w.len()];
+        self.ring
+            .add_turned([speed * speed, -acceleration], &w[..len], &mut field[..len]);
+        self.ring
+            .add_turned([0.0, -2.0 * speed], &v[..len], &mut field[..len]);
+        let mut load = self.mass.product(&field);
+        let known = self.frame.get_or_init(|| self.frame_loads(nodes));
+        let mut add = |[own, turned]: [f64; 2], [p, j]: &[Vec<f64>; 2]| {
+            self.ring.add_low(own, p, &mut load);
+            self.ring.add_low(turned, j, &mut load);
+        };
+        add([speed * speed, acceleration], &known.position);
+        for (k, of_shaft) in known.shaft.iter().enumerate() {
+            let (q, rate) = (w[len + k], v[len + k]);
+            add(
+                [speed * speed * q, acceleration * q + 2.0 * speed * rate],
+                of_shaft,
+            );
+        }
+        load
+    }
+
+    fn frame_loads(&self, nodes: Nodes<'_>) -> FrameLoads {
+        let low = |field: Vec<f64>| {
+            let load = nodes
+                .coordinates
+                .reduce(&nodes.matrices.nodal_mass_product(&field));
+            let (free, shaft) = load.split_at(self.ring.n());
+            self.ring.to_low(free, shaft)
+        };
+        let loads = |u: &[f64]| {
+            let own = u.chunks_exact(3).flat_map(|u| [u[0], u[1], 0.0]);
+            let turned = u.chunks_exact(3).flat_map(|u| [u[1], -u[0], 0.0]);
+            [low(own.collect()), low(turned.collect())]
+        };
+        let n_free = nodes.coordinates.free().len();
+        let of_shaft = |k: usize| loads(&nodes.coordinates.expand(&nodes.unit(n_free + k, 1.0)));
+        FrameLoads {
+            position: loads(nodes.positions),
+            shaft: (0..self.n_shaft).map(of_shaft).collect(),
+        }
+    }
+}

@@ -1,0 +1,132 @@
+//! A periodic ring's matrix with a border, applied in harmonic space, and what else a state in harmonic space needs: no transform.
+//!
+//! Vectors hold the harmonics and then the rows of the border, `[harmonic_len() + m]`. The border is that of [`super::border`]: rigid
+//! motions, which are harmonics 0 and 1, so that it touches the first group alone. *Low* vectors hold that group and the border,
+//! `[low_len() + m]`.
+
+use rayon::prelude::*;
+
+use super::matrix::CyclicMatrix;
+use super::phases::LANES;
+use super::ring::CyclicRing;
+use crate::error::SolverError;
+
+/// `[A B; B^T D]` with a cyclic A.
+#[derive(Clone, Debug)]
+pub struct HarmonicOperator {
+    ring: CyclicRing,
+    matrix: CyclicMatrix,
+    /// B and D, m low vectors.
+    border: Vec<Vec<f64>>,
+}
+
+impl HarmonicOperator {
+    /// Borders `matrix`, of the couplings of `ring`, with B, nodal, column-major `[n][m]`, of which the first group of harmonics counts,
+    /// and D, row-major `[m][m]`.
+    ///
+    /// # Panics
+    /// When the sizes disagree.
+    pub fn new(
+        ring: &CyclicRing,
+        matrix: &CyclicMatrix,
+        border: &[f64],
+        corner: &[f64],
+    ) -> Result<HarmonicOperator, SolverError> {
+        matrix.check_pattern(&ring.shared.pattern)?;
+        let m = corner.len().isqrt();
+        assert_eq!(border.len(), ring.n() * m, "a border of {m} columns");
+        let low = |k: usize| {
+            let column = &border[ring.n() * k..ring.n() * (k + 1)];
+            ring.to_low(column, &corner[m * k..m * (k + 1)])
+        };
+        Ok(HarmonicOperator {
+            border: (0..m).map(low).collect(),
+            ring: ring.clone(),
+            matrix: matrix.clone(),
+        })
+    }
+
+    /// The product with `x`, harmonics in parallel.
+    ///
+    /// # Panics
+    /// When the length is another.
+    pub fn product(&self, x: &[f64]) -> Vec<f64> {
+        let (len, low) = (self.ring.harmonic_len(), self.ring.low_len());
+        assert_eq!(x.len(), len + self.border.len(), "harmonics and border");
+        let mut y = vec![0.0; x.len()];
+        self.ring
+            .apply_harmonic(&self.matrix, &x[..len], &mut y[..len])
+            .expect("the pattern was checked");
+        for (k, column) in self.border.iter().enumerate() {
+            self.ring.add_low(x[len + k], column, &mut y);
+            y[len + k] += self.ring.group_dot(0, &column[..low], &x[..low]);
+        }
+        y
+    }
+
+    /// Bytes of blocks and border.
+    pub fn bytes(&self) -> usize {
+        let border: usize = self.border.iter().map(Vec::capacity).sum();
+        size_of::<f64>() * (9 * self.matrix.n_couplings() + border)
+    }
+}
+
+impl CyclicRing {
+    /// Length of the first group's part of a vector in harmonic space.
+    pub fn low_len(&self) -> usize {
+        self.group_len().min(self.harmonic_len())
+    }
+
+    /// The low vector of the nodal vector `nodal` (Cartesian, `[n]`), which is of harmonics 0 and 1, and of the border's rows `border`.
+    ///
+    /// # Panics
+    /// When the length is another.
+    pub fn to_low(&self, nodal: &[f64], border: &[f64]) -> Vec<f64> {
+        let mut harmonic = vec![0.0; self.harmonic_len()];
+        self.to_harmonic(nodal, &mut harmonic);
+        harmonic.truncate(self.low_len());
+        harmonic.extend_from_slice(border);
+        harmonic
+    }
+
+    /// Adds `factor` times a low vector to harmonics and border.
+    ///
+    /// # Panics
+    /// When `y` is shorter than harmonics and border.
+    pub fn add_low(&self, factor: f64, low: &[f64], y: &mut [f64]) {
+        let (harmonics, border) = low.split_at(self.low_len());
+        let (to, rows) = y.split_at_mut(self.harmonic_len());
+        to.iter_mut().zip(harmonics).for_each(|(y, x)| *y += factor * x);
+        rows.iter_mut().zip(border).for_each(|(y, x)| *y += factor * x);
+    }
+
+    /// Adds `own` times the radial and azimuthal components of the field `x` to `y`, and `turned` times those components turned by a
+    /// right angle about the axis, e_z x u; both in harmonic space, `[harmonic_len()]`.
+    ///
+    /// # Panics
+    /// When a length is another.
+    pub fn add_turned(&self, [own, turned]: [f64; 2], x: &[f64], y: &mut [f64]) {
+        assert_eq!(x.len(), self.harmonic_len(), "a vector in harmonic space");
+        assert_eq!(y.len(), self.harmonic_len(), "a vector in harmonic space");
+        let node_len = 6 * LANES;
+        let task = 64 * node_len;
+        y.par_chunks_mut(task)
+            .zip(x.par_chunks(task))
+            .flat_map_iter(|(y, x)| y.chunks_exact_mut(node_len).zip(x.chunks_exact(node_len)))
+            .for_each(|(y, x)| {
+                for lane in 0..LANES {
+                    let [r, i, s, j] = [0, 1, 2, 3].map(|part| x[part * LANES + lane]);
+                    // The azimuthal component is divided by i, so turning, (-u_t, u_r), is -i times the other one.
+                    let values = [
+                        own * r + turned * j,
+                        own * i - turned * s,
+                        own * s + turned * i,
+                        own * j - turned * r,
+                    ];
+                    for (part, value) in values.into_iter().enumerate() {
+                        y[part * LANES + lane] += value;
+                    }
+                }
+            });
+    }
+}
