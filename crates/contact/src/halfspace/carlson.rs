@@ -31,6 +31,7 @@ fn duplicate(x: [f64; 3]) -> [f64; 3] {
 }
 
 /// [R_D(x, y, z), R_D(x, z, y)] after `n` duplications; x may be zero.
+#[inline(always)]
 pub(super) fn rd_pair(x: &Lanes, y: &Lanes, z: &Lanes, n: usize) -> [Lanes; 2] {
     let (mut x, mut y, mut z) = (*x, *y, *z);
     let mut sums = [[0.0; LANES]; 2];
@@ -56,6 +57,7 @@ pub(super) fn rd_pair(x: &Lanes, y: &Lanes, z: &Lanes, n: usize) -> [Lanes; 2] {
 }
 
 /// R_D(x, y, z) for close arguments: the terms to fifth order of DLMF 19.36.2.
+#[inline(always)]
 fn series(x: f64, y: f64, z: f64) -> f64 {
     let mean = 0.2 * (x + y + 3.0 * z);
     let inverse = 1.0 / mean;

@@ -19,6 +19,7 @@ const MAX_ROUNDS: usize = 60;
 /// l k(l) = z^2. The tangent lies above k, so the roots approach from below, also at the edge of the ellipse, where the root is
 /// double. The start takes the larger of two lower bounds: both terms with a^2, and the second term alone.
 /// A lane that has converged is frozen: its number does not depend on its neighbours.
+#[inline(always)]
 pub(super) fn confocal([x2, y2, z2]: &[Lanes; 3], a2: f64, b2: f64) -> Lanes {
     let mut lambda = [0.0; LANES];
     for i in 0..LANES {
@@ -46,12 +47,14 @@ pub(super) fn confocal([x2, y2, z2]: &[Lanes; 3], a2: f64, b2: f64) -> Lanes {
 }
 
 /// The root for equal semi-axes: r^2/(a^2 + l) + z^2/l = 1.
+#[inline(always)]
 fn oblate(r2: f64, z2: f64, a2: f64) -> f64 {
     // l^2 + (a^2 - r^2 - z^2) l - a^2 z^2 = 0.
     root(1.0, a2 - r2 - z2, a2 * z2)
 }
 
 /// The root >= 0 of s l^2 + q l - p = 0 with s, p >= 0, without cancellation.
+#[inline(always)]
 fn root(s: f64, q: f64, p: f64) -> f64 {
     let size = (q * q + 4.0 * s * p).sqrt();
     if q > 0.0 {

@@ -5,9 +5,10 @@ mod carlson;
 mod compliance;
 mod confocal;
 mod curvature;
+mod rays;
 mod stress;
 
 pub use axis::{Extreme, Subsurface, subsurface};
 pub use compliance::patch_compliance;
-pub use curvature::{CurvedSurface, point_load as curved_point_load};
+pub use curvature::{CurvatureRules, CurvedSurface, point_load as curved_point_load};
 pub use stress::EllipticPressure;

@@ -27,6 +27,8 @@
 
 use std::f64::consts::PI;
 
+use pulp::{Simd, WithSimd};
+
 use super::carlson::{n_duplications, rd_pair};
 use super::confocal::{LANES, Lanes, confocal};
 
@@ -97,131 +99,187 @@ impl EllipticPressure {
     /// If the lengths differ.
     pub fn stresses(&self, points: &[[f64; 3]], stress: &mut [[f64; 6]]) {
         assert_eq!(points.len(), stress.len(), "one stress per point");
-        let scale = 1.0 / self.semi_axes[0].max(self.semi_axes[1]);
-        for (points, stress) in points.chunks(LANES).zip(stress.chunks_mut(LANES)) {
+        pulp::Arch::new().dispatch(Stresses {
+            pressure: self,
+            points,
+            stress,
+        });
+    }
+
+    /// Stress at points in units of the larger semi-axis, which is along x, by components.
+    #[inline(always)]
+    fn lanes(&self, x: &[Lanes; 3]) -> [Lanes; 6] {
+        let (a2, b2) = (self.a2, self.b2);
+        let mut squares = *x;
+        squares.as_flattened_mut().iter_mut().for_each(|x| *x *= *x);
+        let lambda = confocal(&squares, a2, b2);
+        let (mut a2_l, mut b2_l) = (lambda, lambda);
+        for i in 0..LANES {
+            a2_l[i] += a2;
+            b2_l[i] += b2;
+        }
+        let [i_a, i_b] = rd_pair(&lambda, &b2_l, &a2_l, self.n_duplications);
+        let places = Places {
+            x: *x,
+            lambda,
+            semi2: [a2_l, b2_l],
+            c: a2 - b2,
+        };
+        let zeta = places.zeta();
+        let flat = places.surface(&zeta);
+        let factor = 0.5 * self.peak * b2.sqrt();
+        let mut stress = [[0.0; LANES]; 6];
+        for i in 0..LANES {
+            let integrals = [2.0 / 3.0 * i_a[i], 2.0 / 3.0 * i_b[i]];
+            let surface = [flat[0][i], flat[1][i], flat[2][i]];
+            let own = places.stress(i, zeta[i], integrals, surface, self.poisson_ratio);
+            for c in 0..6 {
+                stress[c][i] = factor * own[c];
+            }
+        }
+        stress
+    }
+}
+
+/// [`EllipticPressure::stresses`], to be compiled for the vectors of each kind of processor.
+struct Stresses<'a> {
+    pressure: &'a EllipticPressure,
+    points: &'a [[f64; 3]],
+    stress: &'a mut [[f64; 6]],
+}
+
+impl WithSimd for Stresses<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        let (first, second) = if self.pressure.swapped { (1, 0) } else { (0, 1) };
+        let order = if self.pressure.swapped {
+            [1, 0, 2, 3, 5, 4]
+        } else {
+            [0, 1, 2, 3, 4, 5]
+        };
+        let scale = 1.0 / self.pressure.semi_axes[0].max(self.pressure.semi_axes[1]);
+        for (points, stress) in self.points.chunks(LANES).zip(self.stress.chunks_mut(LANES)) {
             let mut x = [[0.0; LANES]; 3];
             for (i, point) in points.iter().enumerate() {
-                let [first, second] = if self.swapped { [1, 0] } else { [0, 1] };
                 x[0][i] = scale * point[first];
                 x[1][i] = scale * point[second];
                 x[2][i] = scale * point[2].max(0.0);
             }
-            let found = self.lanes(&x);
-            for (stress, found) in stress.iter_mut().zip(found) {
-                *stress = if self.swapped {
-                    let [xx, yy, zz, xy, yz, xz] = found;
-                    [yy, xx, zz, xy, xz, yz]
-                } else {
-                    found
-                };
+            let found = self.pressure.lanes(&x);
+            for (i, stress) in stress.iter_mut().enumerate() {
+                *stress = order.map(|c| found[c][i]);
             }
         }
     }
-
-    /// Stress at points in units of the larger semi-axis, which is along x.
-    fn lanes(&self, x: &[Lanes; 3]) -> [[f64; 6]; LANES] {
-        let (a2, b2) = (self.a2, self.b2);
-        let lambda = confocal(&x.map(|x| x.map(|x| x * x)), a2, b2);
-        let (a2_l, b2_l) = (lambda.map(|l| a2 + l), lambda.map(|l| b2 + l));
-        let [i_a, i_b] = rd_pair(&lambda, &b2_l, &a2_l, self.n_duplications);
-        std::array::from_fn(|i| {
-            let at = Place {
-                x: [x[0][i], x[1][i], x[2][i]],
-                lambda: lambda[i],
-                semi2: [a2_l[i], b2_l[i]],
-                c: a2 - b2,
-            };
-            let factor = 0.5 * self.peak * b2.sqrt();
-            let integrals = [2.0 / 3.0 * i_a[i], 2.0 / 3.0 * i_b[i]];
-            at.stress(integrals, self.poisson_ratio).map(|s| factor * s)
-        })
-    }
 }
 
-/// A point with its confocal ellipsoid, in units of the larger semi-axis.
-struct Place {
-    x: [f64; 3],
-    lambda: f64,
+/// Points with their confocal ellipsoids, in units of the larger semi-axis.
+struct Places {
+    x: [Lanes; 3],
+    lambda: Lanes,
     /// a^2 + l and b^2 + l.
-    semi2: [f64; 2],
+    semi2: [Lanes; 2],
     /// a^2 - b^2.
     c: f64,
 }
 
-impl Place {
-    /// Stress over p0 a b / 2, from [I_a, I_b].
-    fn stress(&self, [i_a, i_b]: [f64; 2], nu: f64) -> [f64; 6] {
-        let [x, y, z] = self.x;
-        let [a2, b2] = self.semi2;
-        // z / sqrt(l), which is the pressure's square root where l and z vanish.
-        let zeta = if self.lambda > 0.0 {
-            z / self.lambda.sqrt()
-        } else {
-            (1.0 - x * x / a2 - y * y / b2).max(0.0).sqrt()
-        };
+impl Places {
+    /// z / sqrt(l), which is the pressure's square root where l and z vanish.
+    #[inline(always)]
+    fn zeta(&self) -> Lanes {
+        let mut zeta = [0.0; LANES];
+        for i in 0..LANES {
+            let [x, y, z] = [self.x[0][i], self.x[1][i], self.x[2][i]];
+            let pressure = (1.0 - x * x / self.semi2[0][i] - y * y / self.semi2[1][i]).max(0.0);
+            let ratio = z / self.lambda[i].sqrt();
+            zeta[i] = if self.lambda[i] > 0.0 {
+                ratio
+            } else {
+                pressure.sqrt()
+            };
+        }
+        zeta
+    }
+
+    /// Stress of lane i over p0 a b / 2, from [I_a, I_b] and the elementary parts.
+    #[inline(always)]
+    fn stress(&self, i: usize, zeta: f64, [i_a, i_b]: [f64; 2], flat: [f64; 3], nu: f64) -> [f64; 6] {
+        let [x, y, z] = [self.x[0][i], self.x[1][i], self.x[2][i]];
+        let (a2, b2, lambda) = (self.semi2[0][i], self.semi2[1][i], self.lambda[i]);
         let s = (a2 * b2).sqrt();
         let (xa, yb) = (x / a2, y / b2);
         // The gradient of l contains 1/H = l/d; all that it multiplies vanishes where d does, on the edge.
-        let d = self.lambda * (xa * xa + yb * yb) + zeta * zeta;
+        let d = lambda * (xa * xa + yb * yb) + zeta * zeta;
         let over = if d > 0.0 { 1.0 / (d * s) } else { 0.0 };
         let (zi_a, zi_b) = (z * i_a, z * i_b);
         let zi_z = 2.0 * zeta / s - zi_a - zi_b;
-        let slope = 2.0 * zeta * self.lambda * over;
-        let shear = 2.0 * zeta * zeta * self.lambda.sqrt() * over;
-        let flat = self.surface(zeta);
+        let slope = 2.0 * zeta * lambda * over;
+        let shear = 2.0 * zeta * zeta * lambda.sqrt() * over;
         let poisson = 1.0 - 2.0 * nu;
-        let xx = -2.0 * nu * zi_z + zi_a - slope * xa * xa - poisson * (flat.xx - zi_a);
-        let yy = -2.0 * nu * zi_z + zi_b - slope * yb * yb - poisson * (flat.yy - zi_b);
+        let xx = -2.0 * nu * zi_z + zi_a - slope * xa * xa - poisson * (flat[0] - zi_a);
+        let yy = -2.0 * nu * zi_z + zi_b - slope * yb * yb - poisson * (flat[1] - zi_b);
         [
             xx,
             yy,
             -2.0 * zeta * zeta * zeta * over,
-            poisson * flat.xy - slope * xa * yb,
+            poisson * flat[2] - slope * xa * yb,
             -shear * yb,
             -shear * xa,
         ]
     }
 
     /// The elementary parts of psi_xx, psi_yy and -psi_xy.
-    fn surface(&self, zeta: f64) -> Surface {
-        let [x, y, _] = self.x;
-        let (x2, y2, c) = (x * x, y * y, self.c);
-        let [w_a, w_b] = self.semi2.map(|s| 1.0 / s);
-        let ratio = (self.semi2[1] * w_a).sqrt();
-        let r_a = zeta * ratio;
-        let v_a = w_a / (1.0 + r_a);
-        let v_b = w_b / (1.0 + zeta / ratio);
-        let e_a = 2.0 * v_a * artanh_over(c.sqrt() * x.abs() * v_a);
-        let e_b = 2.0 * v_b * arctan_over(c.sqrt() * y.abs() * v_b);
-        let b = c + x2 + y2;
-        let (x2_e_aa, e_ab) = if c * w_a > NEARLY_CIRCULAR {
-            ((r_a - 1.0 + 0.5 * b * e_a) / c, (e_b - e_a) / c)
-        } else {
-            let mut sums = [0.0; 2];
-            for (point, weight) in GAUSS {
-                let v = point * v_a;
-                let q = 1.0 - c * x2 * v * v;
-                let p = weight * v_a * 2.0 * v * (2.0 - b * v) / q;
-                sums[0] += p / q;
-                sums[1] += p / ((1.0 - c * v) * (1.0 - c * v) + c * y2 * v * v);
-            }
-            (x2 * sums[0], sums[1])
-        };
-        let xx = e_a - 2.0 * x2_e_aa - y2 * e_ab;
-        // psi is harmonic: psi_xx + psi_yy + phi_z = 0, and the parts with z I cancel.
-        let yy = 2.0 * zeta / (self.semi2[0] * self.semi2[1]).sqrt() - xx;
-        Surface {
-            xx,
-            yy,
-            xy: x * y * e_ab,
+    #[inline(always)]
+    fn surface(&self, zeta: &Lanes) -> [Lanes; 3] {
+        let c = self.c;
+        let (mut ratio, mut v_a, mut v_b) = ([0.0; LANES], [0.0; LANES], [0.0; LANES]);
+        for i in 0..LANES {
+            let [w_a, w_b] = [1.0 / self.semi2[0][i], 1.0 / self.semi2[1][i]];
+            ratio[i] = (self.semi2[1][i] * w_a).sqrt();
+            v_a[i] = w_a / (1.0 + zeta[i] * ratio[i]);
+            v_b[i] = w_b / (1.0 + zeta[i] / ratio[i]);
         }
+        let (mut e_a, mut e_b) = ([0.0; LANES], [0.0; LANES]);
+        for i in 0..LANES {
+            e_a[i] = 2.0 * v_a[i] * artanh_over(c.sqrt() * self.x[0][i].abs() * v_a[i]);
+            e_b[i] = 2.0 * v_b[i] * arctan_over(c.sqrt() * self.x[1][i].abs() * v_b[i]);
+        }
+        let mut flat = [[0.0; LANES]; 3];
+        for i in 0..LANES {
+            let (x2, y2) = (self.x[0][i] * self.x[0][i], self.x[1][i] * self.x[1][i]);
+            let x2_e_aa = (zeta[i] * ratio[i] - 1.0 + 0.5 * (c + x2 + y2) * e_a[i]) / c;
+            let e_ab = (e_b[i] - e_a[i]) / c;
+            flat[0][i] = e_a[i] - 2.0 * x2_e_aa - y2 * e_ab;
+            flat[2][i] = self.x[0][i] * self.x[1][i] * e_ab;
+        }
+        for i in 0..LANES {
+            if c / self.semi2[0][i] <= NEARLY_CIRCULAR {
+                [flat[0][i], flat[2][i]] = self.nearly_circular(i, v_a[i], e_a[i]);
+            }
+        }
+        for i in 0..LANES {
+            // psi is harmonic: psi_xx + psi_yy + phi_z = 0, and the parts with z I cancel.
+            flat[1][i] = 2.0 * zeta[i] / (self.semi2[0][i] * self.semi2[1][i]).sqrt() - flat[0][i];
+        }
+        flat
     }
-}
 
-struct Surface {
-    xx: f64,
-    yy: f64,
-    xy: f64,
+    /// The first and the last of them in lane i, where the closed forms would lose digits.
+    fn nearly_circular(&self, i: usize, v_a: f64, e_a: f64) -> [f64; 2] {
+        let ([x, y], c) = ([self.x[0][i], self.x[1][i]], self.c);
+        let (x2, y2) = (x * x, y * y);
+        let mut sums = [0.0; 2];
+        for (point, weight) in GAUSS {
+            let v = point * v_a;
+            let q = 1.0 - c * x2 * v * v;
+            let p = weight * v_a * 2.0 * v * (2.0 - (c + x2 + y2) * v) / q;
+            sums[0] += p / q;
+            sums[1] += p / ((1.0 - c * v) * (1.0 - c * v) + c * y2 * v * v);
+        }
+        [e_a - 2.0 * x2 * sums[0] - y2 * sums[1], x * y * sums[1]]
+    }
 }
 
 /// artanh(g)/g.
