@@ -4,6 +4,7 @@
 //! Frame: the bearing axis is z, the azimuth is measured from +x towards +y. A vector in the meridian plane
 //! of a ball is `[radial, axial]`.
 
+mod bins;
 pub mod elliptic;
 pub mod error;
 pub mod facets;

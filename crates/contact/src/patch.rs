@@ -86,30 +86,25 @@ impl Patch {
             .iter()
             .fold([0.0; 3], |m, s| axpy(m, s.weight, s.position));
         let mut inertia = [[0.0; 3]; 3];
-        let mut terms: Vec<(usize, f64, [f64; 3])> = Vec::with_capacity(8 * samples.len());
+        let mut touched = Touched::new(surface, &samples);
         for s in &samples {
             let arm = axpy(s.position, -1.0, mean);
             add_inertia(&mut inertia, s.weight, arm);
-            for &(node, value) in &s.shape[..s.n] {
-                let w = s.weight * value;
-                terms.push((node, w, [w * arm[0], w * arm[1], w * arm[2]]));
-            }
+            touched.add(s, arm);
         }
-        // Stable: terms of one node keep the order of the quadrature points.
-        terms.sort_by_key(|t| t.0);
         let (sin, cos) = shape.azimuth.sin_cos();
         let lever = axpy(surface.groove.centre(shape.azimuth), -1.0, mean);
         let directions = [[cos, sin, 0.0], [0.0, 0.0, 1.0]];
         let twists = directions.map(|e| solve3(inertia, cross(lever, e)));
-        let mut weights = NodalWeights::default();
-        for group in terms.chunk_by(|a, b| a.0 == b.0) {
-            let weight: f64 = group.iter().map(|t| t.1).sum();
-            let moment = group.iter().fold([0.0; 3], |m, t| axpy(m, 1.0, t.2));
-            weights.nodes.push(group[0].0);
-            weights
-                .coefficients
-                .push([0, 1].map(|i| axpy(cross(twists[i], moment), weight, directions[i])));
-        }
+        let coefficients = touched
+            .sums
+            .iter()
+            .map(|(weight, moment)| [0, 1].map(|i| axpy(cross(twists[i], *moment), *weight, directions[i])))
+            .collect();
+        let weights = NodalWeights {
+            nodes: touched.nodes,
+            coefficients,
+        };
         Ok(Patch {
             shape,
             weights,
@@ -118,11 +113,59 @@ impl Patch {
     }
 }
 
+/// A quadrature point of the pressure on the mesh.
 struct Sample {
     weight: f64,
     position: [f64; 3],
+    facet: usize,
+    shape: [f64; facet::MAX_FACET_NODES],
+}
+
+/// The nodes that a patch touches and their sums over its quadrature points.
+struct Touched {
+    /// Ascending.
+    nodes: Vec<usize>,
+    /// Ascending, with the number in `nodes` of each of their nodes.
+    facets: Vec<(usize, [usize; facet::MAX_FACET_NODES])>,
     n: usize,
-    shape: [(usize, f64); 8],
+    /// Weight, and weight times arm, by node.
+    sums: Vec<(f64, [f64; 3])>,
+}
+
+impl Touched {
+    fn new(surface: &RacewaySurface, samples: &[Sample]) -> Touched {
+        let mut facets: Vec<usize> = samples.iter().map(|s| s.facet).collect();
+        facets.sort_unstable();
+        facets.dedup();
+        let all = facets.iter().flat_map(|&f| surface.facet_nodes(f));
+        let mut nodes: Vec<usize> = all.copied().collect();
+        nodes.sort_unstable();
+        nodes.dedup();
+        let numbers = |f: usize| {
+            let mut numbers = [0; facet::MAX_FACET_NODES];
+            for (number, node) in numbers.iter_mut().zip(surface.facet_nodes(f)) {
+                *number = nodes.partition_point(|n| n < node);
+            }
+            (f, numbers)
+        };
+        Touched {
+            facets: facets.iter().map(|&f| numbers(f)).collect(),
+            n: surface.kind.n_nodes(),
+            sums: vec![(0.0, [0.0; 3]); nodes.len()],
+            nodes,
+        }
+    }
+
+    fn add(&mut self, sample: &Sample, arm: [f64; 3]) {
+        let found = self.facets.partition_point(|f| f.0 < sample.facet);
+        let numbers = &self.facets[found].1[..self.n];
+        for (&number, value) in numbers.iter().zip(sample.shape) {
+            let w = sample.weight * value;
+            let (weight, moment) = &mut self.sums[number];
+            *weight += w;
+            *moment = axpy(*moment, w, arm);
+        }
+    }
 }
 
 fn sample(
@@ -139,17 +182,14 @@ fn sample(
         let angle = patch.angle + patch.semi_axes[0] * point[0] / groove.groove_radius;
         let azimuth = patch.azimuth + patch.semi_axes[1] * point[1] / groove.radius(angle);
         let location = surface.locate(azimuth, angle)?;
-        let values = facet::shape(surface.kind, location.xi);
-        let facet_nodes = surface.facet_nodes(location.facet);
         let mut s = Sample {
             weight,
             position: [0.0; 3],
-            n: facet_nodes.len(),
-            shape: [(0, 0.0); 8],
+            facet: location.facet,
+            shape: facet::shape(surface.kind, location.xi),
         };
-        for (a, &node) in facet_nodes.iter().enumerate() {
-            s.position = axpy(s.position, values[a], nodes[node]);
-            s.shape[a] = (node, values[a]);
+        for (&node, &value) in surface.facet_nodes(location.facet).iter().zip(&s.shape) {
+            s.position = axpy(s.position, value, nodes[node]);
         }
         samples.push(s);
     }

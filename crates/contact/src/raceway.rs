@@ -10,6 +10,7 @@ use std::f64::consts::PI;
 use fem::facet;
 use mesh::{Facet, FacetKind, Mesh};
 
+use crate::bins::{Bins, grown_box};
 use crate::error::ContactError;
 use crate::geometry::Side;
 
@@ -98,17 +99,11 @@ pub struct RacewaySurface {
     coordinates: Vec<[f64; 2]>,
     /// Node spacing [along the groove, rolling direction] at these nodes, m, same layout.
     spacing: Vec<[f64; 2]>,
+    /// Lowest and highest (azimuth, groove angle) of each facet, grown, as its nodes are unwrapped.
+    boxes: Vec<[[f64; 2]; 2]>,
     /// Lowest and highest groove angle, rad.
     pub angle_range: [f64; 2],
     bins: Bins,
-}
-
-struct Bins {
-    n: [usize; 2],
-    low: f64,
-    width: [f64; 2],
-    start: Vec<usize>,
-    facets: Vec<usize>,
 }
 
 impl RacewaySurface {
@@ -133,13 +128,15 @@ impl RacewaySurface {
             [r[0].min(a), r[1].max(a)]
         });
         let spacing = node_spacing(&nodes, &coordinates, kind, &groove, mesh.n_nodes());
-        let bins = Bins::new(&coordinates, n, angle_range);
+        let boxes: Vec<_> = coordinates.chunks(n).map(grown_box).collect();
+        let bins = Bins::new(&boxes, angle_range);
         RacewaySurface {
             groove,
             kind,
             nodes,
             coordinates,
             spacing,
+            boxes,
             angle_range,
             bins,
         }
@@ -169,6 +166,10 @@ impl RacewaySurface {
         for &f in self.bins.candidates(azimuth, angle) {
             let coordinates = &self.coordinates[n * f..n * (f + 1)];
             let target = [unwrap_near(azimuth, coordinates[0][0]), angle];
+            let [low, high] = self.boxes[f];
+            if (0..2).any(|i| target[i] < low[i] || target[i] > high[i]) {
+                continue;
+            }
             if let Some(xi) = invert(self.kind, coordinates, target) {
                 let outside = outside(self.kind, xi);
                 if best.as_ref().is_none_or(|(o, _)| outside < *o) {
@@ -312,65 +313,5 @@ pub(crate) fn outside(kind: FacetKind, xi: [f64; 2]) -> f64 {
     match kind {
         FacetKind::Tri6 => (-xi[0]).max(-xi[1]).max(xi[0] + xi[1] - 1.0),
         _ => xi[0].abs().max(xi[1].abs()) - 1.0,
-    }
-}
-
-impl Bins {
-    /// Grid of about one facet per bin; a facet is listed in every bin its (slightly grown) box touches.
-    fn new(coordinates: &[[f64; 2]], n: usize, angle_range: [f64; 2]) -> Bins {
-        let n_facets = coordinates.len() / n;
-        let side = ((n_facets as f64).sqrt().ceil() as usize).max(1);
-        // A raceway is long and narrow: many bins round, few across.
-        let count = [(8 * side).max(1), side.div_ceil(8).max(1)];
-        let height = (angle_range[1] - angle_range[0]).max(f64::MIN_POSITIVE);
-        let width = [2.0 * PI / count[0] as f64, height / count[1] as f64];
-        let mut bins = Bins {
-            n: count,
-            low: angle_range[0],
-            width,
-            start: Vec::new(),
-            facets: Vec::new(),
-        };
-        let mut lists: Vec<Vec<usize>> = vec![Vec::new(); count[0] * count[1]];
-        for (f, c) in coordinates.chunks(n).enumerate() {
-            bins.for_each_bin(c, |bin| lists[bin].push(f));
-        }
-        bins.start = std::iter::once(0)
-            .chain(lists.iter().scan(0, |sum, l| {
-                *sum += l.len();
-                Some(*sum)
-            }))
-            .collect();
-        bins.facets = lists.concat();
-        bins
-    }
-
-    fn for_each_bin(&self, c: &[[f64; 2]], mut visit: impl FnMut(usize)) {
-        let mut low = [f64::INFINITY; 2];
-        let mut high = [f64::NEG_INFINITY; 2];
-        for x in c {
-            for i in 0..2 {
-                low[i] = low[i].min(x[i]);
-                high[i] = high[i].max(x[i]);
-            }
-        }
-        let grow = [0.05 * (high[0] - low[0]), 0.05 * (high[1] - low[1])];
-        let first = ((low[0] - grow[0]) / self.width[0]).floor() as i64;
-        let last = (((high[0] + grow[0]) / self.width[0]).floor() as i64).min(first + self.n[0] as i64 - 1);
-        for i in first..=last {
-            for j in self.row(low[1] - grow[1])..=self.row(high[1] + grow[1]) {
-                visit(i.rem_euclid(self.n[0] as i64) as usize * self.n[1] + j);
-            }
-        }
-    }
-
-    fn row(&self, angle: f64) -> usize {
-        (((angle - self.low) / self.width[1]).floor().max(0.0) as usize).min(self.n[1] - 1)
-    }
-
-    fn candidates(&self, azimuth: f64, angle: f64) -> &[usize] {
-        let column = ((azimuth / self.width[0]).floor() as i64).rem_euclid(self.n[0] as i64) as usize;
-        let bin = column * self.n[1] + self.row(angle);
-        &self.facets[self.start[bin]..self.start[bin + 1]]
     }
 }

@@ -7,6 +7,9 @@
 //! Cost: 3 n solves in harmonic space and 9 n^2 inverse FFTs for n chosen nodes. Memory: 9 N n^2 numbers, 5 MB for 10 nodes
 //! and 720 sectors.
 
+use std::ops::Range;
+
+use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
 use realfft::num_complex::Complex;
 
@@ -31,12 +34,44 @@ pub struct ResponseTable {
 }
 
 /// Nodal weights of two directions on chosen nodes, in cylindrical components.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Patch {
-    /// Sector and first dof in the table.
-    sites: Vec<[usize; 2]>,
-    /// Weights of the two directions, `[n][2][3]`.
-    weights: Vec<[[f64; 3]; 2]>,
+    runs: Vec<Run>,
+    /// Weights of the two directions, run by run.
+    weights: [Vec<f64>; 2],
+}
+
+/// Neighbouring dofs of one sector in the table.
+#[derive(Clone, Debug, PartialEq)]
+struct Run {
+    sector: usize,
+    /// First dof in the table.
+    dof: usize,
+    /// Place of their weights in the patch.
+    weights: Range<usize>,
+}
+
+impl Patch {
+    /// Adds the weights of two directions at the node with the table's dofs `dof..dof + 3`.
+    fn push(&mut self, sector: usize, dof: usize, weights: [[f64; 3]; 2]) {
+        let end = self.weights[0].len();
+        match self.runs.last_mut() {
+            Some(run) if run.sector == sector && run.dof + run.weights.len() == dof => run.weights.end += 3,
+            _ => self.runs.push(Run {
+                sector,
+                dof,
+                weights: end..end + 3,
+            }),
+        }
+        for (all, more) in self.weights.iter_mut().zip(weights) {
+            all.extend(more);
+        }
+    }
+
+    /// Dofs and weights of the two directions of a run.
+    fn of(&self, run: &Run) -> [&[f64]; 2] {
+        [0, 1].map(|p| &self.weights[p][run.weights.clone()])
+    }
 }
 
 /// A Cartesian unit vector at a chosen node.
@@ -77,10 +112,7 @@ impl ResponseTable {
     pub fn patch(&self, nodes: &[usize], coefficients: &[[[f64; 3]; 2]]) -> Result<Patch, usize> {
         let shared = &self.ring.shared;
         let width = self.ring.n_section_nodes();
-        let mut patch = Patch {
-            sites: Vec::with_capacity(nodes.len()),
-            weights: Vec::with_capacity(nodes.len()),
-        };
+        let mut sites = Vec::with_capacity(nodes.len());
         for (&node, weights) in nodes.iter().zip(coefficients) {
             let site = *shared.sites.get(node).ok_or(node)?;
             let chosen = self.chosen[site % width];
@@ -88,27 +120,37 @@ impl ResponseTable {
                 return Err(node);
             }
             let [c, s] = shared.directions[site];
-            patch.sites.push([site / width, 3 * chosen]);
-            patch
-                .weights
-                .push(weights.map(|[x, y, z]| [c * x + s * y, c * y - s * x, z]));
+            let weights = weights.map(|[x, y, z]| [c * x + s * y, c * y - s * x, z]);
+            sites.push((site / width, 3 * chosen, weights));
+        }
+        sites.sort_unstable_by_key(|&(sector, dof, _)| (sector, dof));
+        let mut patch = Patch::default();
+        for (sector, dof, weights) in sites {
+            patch.push(sector, dof, weights);
         }
         Ok(patch)
     }
 
     /// Compliance between two patches, m/N, `[direction of a][direction of b]`: what a measures when b is loaded.
     pub fn compliance(&self, a: &Patch, b: &Patch) -> [[f64; 2]; 2] {
+        Arch::new().dispatch(Measure { table: self, a, b })
+    }
+
+    #[inline(always)]
+    fn measured(&self, a: &Patch, b: &Patch) -> [[f64; 2]; 2] {
         let (n, n_dofs) = (self.ring.n_sectors(), self.n_dofs);
         let mut compliance = [[0.0; 2]; 2];
-        for (&[sector_b, dof_b], v) in b.sites.iter().zip(&b.weights) {
-            for (&[sector_a, dof_a], w) in a.sites.iter().zip(&a.weights) {
-                let d = (sector_a + n - sector_b) % n;
-                let start = (d * n_dofs + dof_a) * n_dofs + dof_b;
-                for i in 0..3 {
-                    let row = &self.responses[start + i * n_dofs..][..3];
-                    let u = v.map(|v| row[0] * v[0] + row[1] * v[1] + row[2] * v[2]);
-                    for p in 0..2 {
-                        (0..2).for_each(|q| compliance[p][q] += w[p][i] * u[q]);
+        for loaded in &b.runs {
+            let v = b.of(loaded);
+            for moved in &a.runs {
+                let d = (moved.sector + n - loaded.sector) % n;
+                let start = (d * n_dofs + moved.dof) * n_dofs + loaded.dof;
+                let [w0, w1] = a.of(moved);
+                for (i, w) in w0.iter().zip(w1).enumerate() {
+                    let u = dots(&self.responses[start + i * n_dofs..], v);
+                    for q in 0..2 {
+                        compliance[0][q] += w.0 * u[q];
+                        compliance[1][q] += w.1 * u[q];
                     }
                 }
             }
@@ -118,19 +160,23 @@ impl ResponseTable {
 
     /// Compliance of all patches, m/N, row-major `[2 n][2 n]` over (patch, direction), exactly symmetric.
     pub fn compliances(&self, patches: &[Patch]) -> Vec<f64> {
-        let m = 2 * patches.len();
+        let (n, m) = (patches.len(), 2 * patches.len());
+        // Of evenly spaced patches, pairs that are equally far apart read the same responses: they come together.
+        let apart = |k: usize| -> Vec<[[f64; 2]; 2]> {
+            let pairs = patches[k..].iter().zip(patches);
+            pairs.map(|(a, b)| self.compliance(a, b)).collect()
+        };
+        let blocks: Vec<_> = (0..n).into_par_iter().map(apart).collect();
         let mut all = vec![0.0; m * m];
-        // Half of every row is computed, the other half mirrored: reciprocity.
-        all.par_chunks_mut((2 * m).max(1))
-            .enumerate()
-            .for_each(|(a, rows)| {
-                for b in 0..=a {
-                    let block = self.compliance(&patches[a], &patches[b]);
-                    for p in 0..2 {
-                        rows[p * m + 2 * b..p * m + 2 * b + 2].copy_from_slice(&block[p]);
-                    }
+        for (k, blocks) in blocks.iter().enumerate() {
+            for (b, block) in blocks.iter().enumerate() {
+                let a = b + k;
+                for (p, row) in block.iter().enumerate() {
+                    all[(2 * a + p) * m + 2 * b..][..2].copy_from_slice(row);
                 }
-            });
+            }
+        }
+        // Half of it is computed, the other half mirrored: reciprocity.
         for i in 0..m {
             for j in 0..i {
                 all[m * j + i] = all[m * i + j];
@@ -175,10 +221,8 @@ impl ResponseTable {
                 chosen,
                 weights,
             } = self.unit(row);
-            let unit = Patch {
-                sites: vec![[sector, 3 * chosen]],
-                weights: vec![[weights, [0.0; 3]]],
-            };
+            let mut unit = Patch::default();
+            unit.push(sector, 3 * chosen, [weights, [0.0; 3]]);
             self.compliance(&unit, patch)[0]
         };
         rows.par_iter().map(of_row).collect()
@@ -202,6 +246,42 @@ impl ResponseTable {
     pub fn bytes(&self) -> usize {
         size_of::<f64>() * self.responses.capacity()
     }
+}
+
+/// Compliance between two patches by the processor's widest vectors.
+struct Measure<'a> {
+    table: &'a ResponseTable,
+    a: &'a Patch,
+    b: &'a Patch,
+}
+
+impl WithSimd for Measure<'_> {
+    type Output = [[f64; 2]; 2];
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) -> Self::Output {
+        self.table.measured(self.a, self.b)
+    }
+}
+
+/// Products of a row with two vectors, in four sums each, which the processor's vectors take.
+#[inline(always)]
+fn dots(row: &[f64], [a, b]: [&[f64]; 2]) -> [f64; 2] {
+    let mut sums = [[0.0; 4]; 2];
+    let row = &row[..a.len()];
+    let (rows, rest) = row.as_chunks::<4>();
+    let ((a, a_rest), (b, b_rest)) = (a.as_chunks::<4>(), b.as_chunks::<4>());
+    for ((x, a), b) in rows.iter().zip(a).zip(b) {
+        for i in 0..4 {
+            sums[0][i] += x[i] * a[i];
+            sums[1][i] += x[i] * b[i];
+        }
+    }
+    for (i, x) in rest.iter().enumerate() {
+        sums[0][i] += x * a_rest[i];
+        sums[1][i] += x * b_rest[i];
+    }
+    sums.map(|s| (s[0] + s[1]) + (s[2] + s[3]))
 }
 
 /// Harmonic responses of the chosen dofs to each unit load of the real basis, `[force][displacement][n_harmonics]`.
