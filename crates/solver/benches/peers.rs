@@ -88,25 +88,32 @@ struct Costs {
 }
 
 /// Solves S x = b with a known x, then times one and many right-hand sides.
-fn solve(solver: &dyn LinearSolver, rhs: &[f64], repeats: usize) -> (Time, Time, f64) {
+fn costs(analyse: Time, factor: Time, solver: &dyn LinearSolver, rhs: &[f64], repeats: usize) -> Costs {
     let n = rhs.len();
     let mut x = rhs.to_vec();
     solver.solve(&mut x, 1);
-    let worst = (0..n).map(|i| (x[i] - known(i)).abs()).fold(0.0, f64::max);
+    let error = (0..n).map(|i| (x[i] - known(i)).abs()).fold(0.0, f64::max);
     // The right-hand side anew each time: repeated solutions would run out of the range of numbers.
-    let one = least(repeats, || {
+    let (one, ()) = least(repeats, || {
         x.copy_from_slice(rhs);
         solver.solve(&mut x, 1);
     });
     let mut block = vec![0.0; BLOCK * n];
-    let many = least(repeats.div_ceil(4), || {
+    let (many, ()) = least(repeats.div_ceil(4), || {
         block
             .chunks_exact_mut(n)
             .for_each(|column| column.copy_from_slice(rhs));
         solver.solve(&mut block, BLOCK);
     });
-    let (one, many) = (one.0, many.0);
-    (one, many, worst)
+    Costs {
+        analyse,
+        factor,
+        one,
+        many,
+        factor_bytes: solver.factor_bytes(),
+        error,
+        harmonic: None,
+    }
 }
 
 fn rhs(mesh: &Mesh) -> Vec<f64> {
@@ -126,17 +133,7 @@ fn sparse(mesh: &Mesh, rhs: &[f64]) -> Costs {
     let (factor, solver) = least(if mesh.n_dofs() > 300_000 { 1 } else { 3 }, || {
         symbolic.factor(&lower).expect("positive definite")
     });
-    let (one, many, error) = solve(&solver, rhs, repeats);
-    let factor_bytes = solver.factor_bytes();
-    Costs {
-        analyse,
-        factor,
-        one,
-        many,
-        factor_bytes,
-        error,
-        harmonic: None,
-    }
+    costs(analyse, factor, &solver, rhs, repeats)
 }
 
 /// The matrix of a periodic ring, and the ring that factors it.
@@ -162,16 +159,9 @@ fn cyclic(mesh: &Mesh, rhs: &[f64]) -> Costs {
         solver.solve_harmonic(&mut [&mut w]);
     })
     .0;
-    let (one, many, error) = solve(&solver, rhs, 20);
-    let factor_bytes = solver.factor_bytes();
     Costs {
-        analyse,
-        factor,
-        one,
-        many,
-        factor_bytes,
-        error,
         harmonic: Some(harmonic),
+        ..costs(analyse, factor, &solver, rhs, 20)
     }
 }
 
@@ -187,17 +177,7 @@ fn sector(mesh: &Mesh, rhs: &[f64]) -> Costs {
     let (factor, solver) = least(if is_large { 1 } else { 3 }, || {
         symbolic.factor(of).expect("positive definite")
     });
-    let (one, many, error) = solve(&solver, rhs, if is_large { 5 } else { 12 });
-    let factor_bytes = solver.factor_bytes();
-    Costs {
-        analyse,
-        factor,
-        one,
-        many,
-        factor_bytes,
-        error,
-        harmonic: None,
-    }
+    costs(analyse, factor, &solver, rhs, if is_large { 5 } else { 12 })
 }
 
 /// Sizes of the factors, and operations.

@@ -81,13 +81,8 @@ pub(crate) fn factor_complement(
             return Err(SolverError::NotPositiveDefinite { row: n + i, n: n + m });
         }
     }
-    DenseCholesky::factor(m, complement).map_err(|error| match error {
-        SolverError::NotPositiveDefinite { row, .. } => SolverError::NotPositiveDefinite {
-            row: n + row,
-            n: n + m,
-        },
-        other => other,
-    })
+    let factored = DenseCholesky::factor(m, complement);
+    factored.map_err(|error| error.in_whole(n + m, |row| n + row))
 }
 
 impl<S: LinearSolver> LinearSolver for Bordered<S> {

@@ -21,6 +21,22 @@ use crate::symbolic::{Symbolic, stored_side, supernodes};
 /// (measured). A free steel ring held only by its inertia over a step as long as 0.1 s keeps about 1e-8 (estimate).
 pub(crate) const PIVOT_LIMIT: f64 = 1e-12;
 
+/// Refuses a pivot, given relative to its diagonal entry, that is round-off or not a number.
+pub(crate) fn check_pivot(row: usize, n: usize, relative_pivot: f64) -> Result<(), SolverError> {
+    if relative_pivot.is_nan() {
+        return Err(SolverError::NotPositiveDefinite { row, n });
+    }
+    if relative_pivot < PIVOT_LIMIT {
+        return Err(SolverError::Singular {
+            row,
+            n,
+            relative_pivot,
+            limit: PIVOT_LIMIT,
+        });
+    }
+    Ok(())
+}
+
 /// A Cholesky factor; [`LinearSolver::solve`] uses it.
 #[derive(Debug)]
 pub struct SparseCholesky {
@@ -87,22 +103,13 @@ impl SparseCholesky {
             let row = self.symbolic.order()[place];
             let ratio = root * root / diagonal[row];
             if ratio.is_nan() {
-                return Err(SolverError::NotPositiveDefinite { row, n: self.n() });
+                return check_pivot(row, self.n(), ratio);
             }
             if ratio < worst.0 {
                 worst = (ratio, row);
             }
         }
-        let (relative_pivot, row) = worst;
-        if relative_pivot < PIVOT_LIMIT {
-            return Err(SolverError::Singular {
-                row,
-                n: self.n(),
-                relative_pivot,
-                limit: PIVOT_LIMIT,
-            });
-        }
-        Ok(())
+        check_pivot(worst.1, self.n(), worst.0)
     }
 
     /// Diagonal of L in elimination order, `[n]`.

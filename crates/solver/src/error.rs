@@ -176,4 +176,59 @@ impl SolverError {
             _ => None,
         }
     }
+
+    /// The error of a part as one of the whole matrix of `n` rows, in which row and column k of the part are number `of(k)`.
+    pub(crate) fn in_whole(mut self, n: usize, of: impl Fn(usize) -> usize) -> SolverError {
+        match &mut self {
+            SolverError::NotPositiveDefinite { row, n: rows }
+            | SolverError::Singular { row, n: rows, .. } => {
+                (*row, *rows) = (of(*row), n);
+            }
+            SolverError::NonFinite { row, column, .. } => (*row, *column) = (of(*row), of(*column)),
+            _ => {}
+        }
+        self
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Wrong: a message would blame a row of the part, which is another node of the ring.
+    #[test]
+    fn errors_of_a_part_name_rows_of_the_whole() {
+        let part = [
+            SolverError::NotPositiveDefinite { row: 1, n: 2 },
+            SolverError::Singular {
+                row: 0,
+                n: 2,
+                relative_pivot: 1e-14,
+                limit: 1e-12,
+            },
+            SolverError::NonFinite {
+                row: 1,
+                column: 0,
+                value: f64::INFINITY,
+            },
+            SolverError::EigenNotFinite,
+        ];
+        let whole = part.map(|error| error.in_whole(9, |k| [7, 4][k]));
+        let expected = [
+            SolverError::NotPositiveDefinite { row: 4, n: 9 },
+            SolverError::Singular {
+                row: 7,
+                n: 9,
+                relative_pivot: 1e-14,
+                limit: 1e-12,
+            },
+            SolverError::NonFinite {
+                row: 4,
+                column: 7,
+                value: f64::INFINITY,
+            },
+            SolverError::EigenNotFinite,
+        ];
+        assert_eq!(whole, expected);
+    }
 }

@@ -61,13 +61,8 @@ impl Defect {
         let n = change.rows.len();
         assert_eq!(change.values.len(), n * n, "{n} rows and columns");
         let compliance = compliance(base, table, &change.rows);
-        let reduced = update(n, &compliance, &change.values).map_err(|error| match error {
-            SolverError::NotPositiveDefinite { row, .. } => SolverError::NotPositiveDefinite {
-                row: change.rows[row],
-                n: base.n(),
-            },
-            other => other,
-        })?;
+        let reduced = update(n, &compliance, &change.values)
+            .map_err(|error| error.in_whole(base.n(), |row| change.rows[row]))?;
         // Displacements under forces that alternate, as no rigid motion does.
         let load: Vec<f64> = (0..n).map(|i| [1.0, -0.6, 0.3, -0.8][i % 4]).collect();
         let at = product(&compliance, &load);

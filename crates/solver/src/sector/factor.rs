@@ -96,7 +96,7 @@ impl SectorSymbolic {
         let factor = |(i, part): (usize, &PartSymbolic)| {
             let sector = &shared.layout.sectors()[first + i];
             let factored = part.factor(sector, &matrix(first + i));
-            factored.map_err(|error| in_ring(error, sector, shared.layout.n()))
+            factored.map_err(|error| error.in_whole(shared.layout.n(), |row| sector.rows[row]))
         };
         let parts: Result<Vec<(Part, Vec<f64>)>, SolverError> =
             shared.parts.par_iter().enumerate().map(factor).collect();
@@ -134,31 +134,4 @@ impl Shared {
 /// The result of all ranks: an error on one is an error on all.
 pub(super) fn agree<T>(comm: Communicator, result: Result<T, SolverError>) -> Result<T, SolverError> {
     comm.agree(result, |rank, message| SolverError::OnRank { rank, message })
-}
-
-/// Names the row of the ring in an error about a sector's row.
-fn in_ring(error: SolverError, sector: &Sector, n: usize) -> SolverError {
-    match error {
-        SolverError::NotPositiveDefinite { row, .. } => SolverError::NotPositiveDefinite {
-            row: sector.rows[row],
-            n,
-        },
-        SolverError::Singular {
-            row,
-            relative_pivot,
-            limit,
-            ..
-        } => SolverError::Singular {
-            row: sector.rows[row],
-            n,
-            relative_pivot,
-            limit,
-        },
-        SolverError::NonFinite { row, column, value } => SolverError::NonFinite {
-            row: sector.rows[row],
-            column: sector.rows[column],
-            value,
-        },
-        other => other,
-    }
 }

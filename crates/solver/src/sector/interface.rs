@@ -169,23 +169,7 @@ impl WholeSymbolic {
             }
         }
         let matrix = CsMat::new_csc((n, n), self.starts.clone(), self.rows.clone(), values);
-        self.symbolic.factor(&matrix).map_err(|error| match error {
-            SolverError::NotPositiveDefinite { row, .. } => SolverError::NotPositiveDefinite {
-                row: layout.interface()[row],
-                n: layout.n(),
-            },
-            SolverError::Singular {
-                row,
-                relative_pivot,
-                limit,
-                ..
-            } => SolverError::Singular {
-                row: layout.interface()[row],
-                n: layout.n(),
-                relative_pivot,
-                limit,
-            },
-            other => other,
-        })
+        let factored = self.symbolic.factor(&matrix);
+        factored.map_err(|error| error.in_whole(layout.n(), |row| layout.interface()[row]))
     }
 }

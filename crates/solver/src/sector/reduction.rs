@@ -24,7 +24,7 @@ use rayon::prelude::*;
 use super::factor::agree;
 use super::layout::{SectorLayout, reduction};
 use super::reduced::ReducedFactor;
-use crate::cholesky::PIVOT_LIMIT;
+use crate::cholesky::check_pivot;
 use crate::dense::cholesky_in_place;
 use crate::error::SolverError;
 
@@ -183,7 +183,8 @@ impl Reduction {
                 .zip(&mine)
                 .map(|(column, step)| {
                     let done = eliminate(column, &diagonals[&step.section]);
-                    done.map_err(|error| self.in_ring(error, step, layout))
+                    let places = &layout.interface()[self.sections[step.section].clone()];
+                    done.map_err(|error| error.in_whole(layout.n(), |row| places[row]))
                 })
                 .collect();
             let mut updates = Vec::new();
@@ -270,30 +271,6 @@ impl Reduction {
         }
         updates
     }
-
-    /// Names the row of the ring in an error about a row of a cross-section.
-    fn in_ring(&self, error: SolverError, step: &Step, layout: &SectorLayout) -> SolverError {
-        let place = self.sections[step.section].start;
-        let named = |row: usize| layout.interface()[place + row];
-        match error {
-            SolverError::NotPositiveDefinite { row, .. } => SolverError::NotPositiveDefinite {
-                row: named(row),
-                n: layout.n(),
-            },
-            SolverError::Singular {
-                row,
-                relative_pivot,
-                limit,
-                ..
-            } => SolverError::Singular {
-                row: named(row),
-                n: layout.n(),
-                relative_pivot,
-                limit,
-            },
-            other => other,
-        }
-    }
 }
 
 /// A diagonal block and those below it.
@@ -307,18 +284,7 @@ fn eliminate(
     cholesky_in_place(matrix.as_mut())?;
     for (row, d) in diagonal.iter().enumerate() {
         let relative_pivot = matrix[(row, row)] * matrix[(row, row)] / d;
-        if relative_pivot.is_nan() {
-            let n = matrix.nrows();
-            return Err(SolverError::NotPositiveDefinite { row, n });
-        }
-        if relative_pivot < PIVOT_LIMIT {
-            return Err(SolverError::Singular {
-                row,
-                n: matrix.nrows(),
-                relative_pivot,
-                limit: PIVOT_LIMIT,
-            });
-        }
+        check_pivot(row, matrix.nrows(), relative_pivot)?;
     }
     for w in &mut below {
         solve_lower_triangular_in_place(matrix.as_ref(), w.transpose_mut(), Par::Seq);
