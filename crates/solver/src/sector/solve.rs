@@ -16,6 +16,9 @@ struct Loads<'a> {
     n_dense: usize,
 }
 
+/// Columns that are put in place together.
+const GROUP: usize = 8;
+
 impl Loads<'_> {
     fn n_rhs(&self) -> usize {
         self.n_dense + self.sparse.len()
@@ -78,14 +81,18 @@ impl SectorCholesky {
         let sectors = self.shared.own_sectors();
         let parts = self.parts.iter().zip(&self.shared.parts).zip(sectors);
         let pairs: Vec<_> = local.iter_mut().zip(parts).collect();
-        pairs.into_par_iter().for_each(|(x, ((part, symbolic), sector))| {
-            let places = &symbolic.places[sector.n_interior..];
-            for (&place, &at) in places.iter().zip(&sector.boundary) {
-                let (place, at) = (n_rhs * place as usize, n_rhs * at);
-                x[place..place + n_rhs].copy_from_slice(&interface[at..at + n_rhs]);
-            }
-            part.backward(x, n_rhs);
-        });
+        // The sectors whose factors were read last come first: they may still be in the cache.
+        pairs
+            .into_par_iter()
+            .rev()
+            .for_each(|(x, ((part, symbolic), sector))| {
+                let places = &symbolic.places[sector.n_interior..];
+                for (&place, &at) in places.iter().zip(&sector.boundary) {
+                    let (place, at) = (n_rhs * place as usize, n_rhs * at);
+                    x[place..place + n_rhs].copy_from_slice(&interface[at..at + n_rhs]);
+                }
+                part.backward(x, n_rhs);
+            });
         SectorColumns {
             shared: self.shared.clone(),
             n_columns: n_rhs,
@@ -165,25 +172,37 @@ impl SectorCholesky {
     /// Puts the solutions of all sectors and of the interface in place, column-major.
     fn collect(&self, rhs: &mut [f64], columns: &SectorColumns) {
         let (shared, n, n_rhs) = (&self.shared, self.n(), columns.n_columns);
-        let mut sent = Vec::new();
-        for ((x, part), sector) in columns.local.iter().zip(&shared.parts).zip(shared.own_sectors()) {
-            for &place in &part.places[..sector.n_interior] {
-                sent.extend_from_slice(&x[n_rhs * place as usize..][..n_rhs]);
-            }
-        }
         let lengths = shared.lengths(|s| n_rhs * s.n_interior);
+        let mut sent = vec![0.0; lengths[shared.comm.rank()]];
+        let mut rest = &mut sent[..];
+        let mut pieces = Vec::with_capacity(self.parts.len());
+        for ((x, part), sector) in columns.local.iter().zip(&shared.parts).zip(shared.own_sectors()) {
+            let (piece, others) = rest.split_at_mut(n_rhs * sector.n_interior);
+            pieces.push((piece, x, &part.places));
+            rest = others;
+        }
+        pieces.into_par_iter().for_each(|(piece, x, places)| {
+            for (values, &place) in piece.chunks_exact_mut(n_rhs).zip(places) {
+                values.copy_from_slice(&x[n_rhs * place as usize..][..n_rhs]);
+            }
+        });
         let all = shared.comm.all_gather(sent, &lengths);
-        let sectors = shared.layout.sectors().iter();
-        let inside = sectors.flat_map(|s| &s.rows[..s.n_interior]);
-        let rows: Vec<usize> = inside.chain(shared.layout.interface()).copied().collect();
-        let column = |(r, column): (usize, &mut [f64])| {
-            let values = all
-                .chunks_exact(n_rhs)
-                .chain(columns.interface.chunks_exact(n_rhs));
-            rows.iter()
-                .zip(values)
-                .for_each(|(&row, values)| column[row] = values[r]);
+        // As many columns at a time as a line of the cache has values.
+        let group = |(g, group): (usize, &mut [f64])| {
+            let mut group: Vec<&mut [f64]> = group.chunks_exact_mut(n).collect();
+            let sectors = shared.layout.sectors().iter();
+            let inside = sectors.flat_map(|s| &s.rows[..s.n_interior]);
+            let inside = inside.zip(all.chunks_exact(n_rhs));
+            let interface = shared.layout.interface().iter();
+            let interface = interface.zip(columns.interface.chunks_exact(n_rhs));
+            inside.chain(interface).for_each(|(&row, values)| {
+                let values = &values[GROUP * g..];
+                group
+                    .iter_mut()
+                    .zip(values)
+                    .for_each(|(column, value)| column[row] = *value);
+            });
         };
-        rhs.par_chunks_exact_mut(n).enumerate().for_each(column);
+        rhs.par_chunks_mut(n * GROUP).enumerate().for_each(group);
     }
 }
