@@ -9,6 +9,9 @@ max_stalled=2
 stopped_early=75
 # Exit code of a shell's child that USR1 killed: raceway had not come as far as listening.
 killed_by_usr1=138
+# Seconds that mpirun leaves ranks to finish and save a step when their job is cancelled. Slurm itself kills after KillWait, 30
+# by default, and mpirun takes half as long again to end.
+save_seconds=15
 said_to_stop= ended= signalled=
 
 program() {
@@ -62,7 +65,13 @@ choose_launcher() {
     elif command -v mpirun > /dev/null; then
         # Open MPI would tie a rank and all its threads to one core.
         launcher=(mpirun -n "$ranks")
-        mpirun --version 2> /dev/null | grep -q "Open MPI" && launcher+=(--bind-to none)
+        if mpirun --version 2> /dev/null | grep -q "Open MPI"; then
+            launcher+=(--bind-to none)
+            # A job that is cancelled gets SIGTERM in all its processes; mpirun would kill the ranks a second later, in the
+            # middle of their step. (Names of the setting before and from Open MPI 5 on.)
+            export OMPI_MCA_odls_base_sigkill_timeout=${OMPI_MCA_odls_base_sigkill_timeout:-$save_seconds}
+            export PRTE_MCA_odls_base_sigkill_timeout=${PRTE_MCA_odls_base_sigkill_timeout:-$save_seconds}
+        fi
     else
         launcher=(srun)
     fi
@@ -72,10 +81,13 @@ choose_launcher() {
     }
 }
 
-# Passes a signal on to raceway, or to the launcher, which passes it to the ranks.
+# Passes a signal on to raceway, or to the launcher, which passes it to the ranks. On TERM, mpirun would kill them; on a second one, after
+# that which Slurm sends to all processes of a cancelled job, at once. USR1 stops ranks as well.
 forward() {
     signalled=yes
-    kill -s "$1" "$child" 2> /dev/null
+    local signal="$1"
+    [ ${#launcher[@]} -eq 0 ] || signal=USR1
+    kill -s "$signal" "$child" 2> /dev/null
 }
 
 # Starts a command, hands it USR1 and TERM, and leaves its exit code in code.
@@ -86,8 +98,8 @@ run_with_signals() {
     "$@" &
     child=$!
     # A signal that came before there was a child.
-    [ -z "$said_to_stop" ] || kill -s USR1 "$child"
-    [ -z "$ended" ] || kill -s TERM "$child"
+    [ -z "$said_to_stop" ] || forward USR1
+    [ -z "$ended" ] || forward TERM
     code=0
     wait "$child" || code=$?
     # A trap ends the wait, not the child.

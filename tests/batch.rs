@@ -25,6 +25,11 @@ fn job(body: &str) -> Dir {
 
 /// Starts `slurm/run.sbatch scene.toml out` as link number `link` of a chain.
 fn start(dir: &Dir, link: usize) -> Child {
+    start_with(dir, link, &[])
+}
+
+/// The same with more variables.
+fn start_with(dir: &Dir, link: usize, variables: &[(&str, &str)]) -> Child {
     let root = env!("CARGO_MANIFEST_DIR");
     let mut command = Command::new("bash");
     for (name, _) in
@@ -45,6 +50,7 @@ fn start(dir: &Dir, link: usize) -> Child {
         .env("SLURM_JOB_ID", "7")
         .env("SLURM_CPUS_PER_TASK", "3")
         .env("SLURM_RESTART_COUNT", link.to_string())
+        .envs(variables.iter().copied())
         .stderr(Stdio::piped())
         .spawn()
         .unwrap()
@@ -104,30 +110,46 @@ fn signals_reach_the_run_and_only_usr1_queues_it_again() {
     let waits = "trap 'exit 75' USR1 TERM\ntouch started\nfor i in {1..600}; do sleep 0.05; done";
     for (signal, requeued) in [("USR1", true), ("TERM", false)] {
         let dir = job(waits);
-        let child = start(&dir, 0);
-        let begun = Instant::now();
-        while !dir.path("started").exists() {
-            assert!(
-                begun.elapsed() < Duration::from_secs(20),
-                "the program does not start"
-            );
-            std::thread::sleep(Duration::from_millis(20));
-        }
-        let sent = Command::new("kill")
-            .args(["-s", signal, &child.id().to_string()])
-            .status();
-        assert!(sent.unwrap().success());
-        let (code, stderr) = end(child);
-        assert_eq!(
-            (code, was_requeued(&dir)),
-            (Some(75), requeued),
-            "{signal}: {stderr}"
-        );
-        assert!(
-            begun.elapsed() < Duration::from_secs(25),
-            "{signal} did not arrive"
-        );
+        let found = end_by(signal, &dir, start(&dir, 0));
+        assert_eq!(found, (Some(75), requeued), "{signal}");
     }
+}
+
+/// Wrong: a launcher such as mpirun, which kills its ranks when it is told to end, would lose what they have computed
+/// when a job is cancelled.
+#[test]
+fn a_launcher_is_told_to_stop_its_ranks_not_to_end() {
+    let waits =
+        "trap 'exit 75' USR1\ntrap 'exit 1' TERM\ntouch started\nfor i in {1..600}; do sleep 0.05; done";
+    for (signal, requeued) in [("USR1", true), ("TERM", false)] {
+        let dir = job(waits);
+        let ranks = [("SLURM_NTASKS", "2"), ("RACEWAY_LAUNCHER", "bash")];
+        let found = end_by(signal, &dir, start_with(&dir, 0, &ranks));
+        assert_eq!(found, (Some(75), requeued), "{signal}");
+        assert!(dir.text("out.links").contains(" ranks 2 "));
+    }
+}
+
+/// Sends a signal to the script when its program has started. The script's exit code, and whether it queued the job again.
+fn end_by(signal: &str, dir: &Dir, child: Child) -> (Option<i32>, bool) {
+    let begun = Instant::now();
+    while !dir.path("started").exists() {
+        assert!(
+            begun.elapsed() < Duration::from_secs(20),
+            "the program does not start"
+        );
+        std::thread::sleep(Duration::from_millis(20));
+    }
+    let sent = Command::new("kill")
+        .args(["-s", signal, &child.id().to_string()])
+        .status();
+    assert!(sent.unwrap().success());
+    let (code, _) = end(child);
+    assert!(
+        begun.elapsed() < Duration::from_secs(25),
+        "{signal} did not arrive"
+    );
+    (code, was_requeued(dir))
 }
 
 /// Wrong: a job whose limit leaves no time for a step would be queued for ever.
