@@ -1,8 +1,9 @@
-//! Where a ring is cut into sectors: near equal numbers of elements, through as few nodes as possible.
+//! Where a ring is cut into sectors: near equal shares of the work, through as few nodes as possible.
 //!
-//! Elements are sorted by the azimuth of their centroids; a sector is a run of them. Each cut is sought within a
-//! quarter of a sector around its place for equal runs, so that a layered mesh is cut between layers whatever their
-//! number. Time O(n_elements log n_elements).
+//! Elements are sorted by the azimuth of their centroids; a sector is a run of them. A run of layers with m nodes in a cross-section
+//! has O(m^2) entries of the factor per layer, that is O(m) per element: an element's work is taken as the number of nodes across the ring
+//! where it stands. Where layers are alike these are equal numbers of elements. Each cut is sought within a quarter of a share around
+//! its place for equal work, so that a layered mesh is cut between layers whatever their number. Time O(n_elements log n_elements).
 
 /// Sector of each element, `[n_elements]`, 0 to `n_sectors - 1` round the ring. Other arguments as
 /// [`crate::angular_dissection`]; `n_sectors` is at most the number of elements.
@@ -97,22 +98,34 @@ fn nodes_across(
 /// Ascending positions of the cuts.
 fn cuts(crossing: &[usize], n_sectors: usize) -> Vec<usize> {
     let n = crossing.len();
-    let reach = n / (4 * n_sectors);
-    // Position near `target`, both counted from 0 to n + n, with the fewest nodes across, the nearest of equals.
-    let best = |target: usize| {
-        (target + n - reach..=target + n + reach)
-            .map(|p| p % n)
-            .min_by_key(|&p| {
-                let away = (p + n - target % n) % n;
-                (crossing[p], away.min(n - away), p)
-            })
-            .unwrap_or(target % n)
-    };
-    let first = best(0);
-    let mut cuts: Vec<usize> = (1..n_sectors).map(|k| best(first + k * n / n_sectors)).collect();
-    cuts.push(first);
+    let first = first_cut(crossing, n / (4 * n_sectors));
+    let across = |i: usize| crossing[(first + i) % n];
+    // Work of the elements between the first cut and each position.
+    let mut work = vec![0];
+    for i in 0..n {
+        work.push(work[i] + across(i).max(1));
+    }
+    let reach = work[n] / (4 * n_sectors);
+    let mut found = vec![0];
+    for k in 1..n_sectors {
+        let target = k * work[n] / n_sectors;
+        let near =
+            work.partition_point(|&w| w + reach < target)..work.partition_point(|&w| w <= target + reach);
+        let best = near.min_by_key(|&i| (across(i % n), work[i].abs_diff(target), i));
+        let nearest = work.partition_point(|&w| w < target);
+        // No sector is left without elements.
+        found.push(best.unwrap_or(nearest).clamp(found[k - 1] + 1, n + k - n_sectors));
+    }
+    let mut cuts: Vec<usize> = found.into_iter().map(|i| (first + i) % n).collect();
     cuts.sort_unstable();
     cuts
+}
+
+/// Position within `reach` of the first one, both ways round, with the fewest nodes across, the nearest of equals.
+fn first_cut(crossing: &[usize], reach: usize) -> usize {
+    let n = crossing.len();
+    let near = (n - reach..=n + reach).map(|p| p % n);
+    near.min_by_key(|&p| (crossing[p], p.min(n - p), p)).unwrap_or(0)
 }
 
 #[cfg(test)]

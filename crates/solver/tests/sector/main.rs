@@ -3,6 +3,8 @@
 mod columns;
 #[path = "../common/mod.rs"]
 mod common;
+#[path = "../../benches/support/refined.rs"]
+mod refined;
 mod rings;
 mod solve;
 mod wrong;

@@ -4,6 +4,7 @@ use mesh::ElementKind;
 use solver::{DenseCholesky, LinearSolver, solve_refined};
 
 use crate::common::{Numbers, dense, relative_error};
+use crate::refined::refined;
 use crate::rings::{Held, Problem, irregular, ring};
 
 const KINDS: [ElementKind; 3] = [ElementKind::Hex8, ElementKind::Hex20, ElementKind::Tet10];
@@ -108,15 +109,23 @@ fn a_cut_ring_fills_like_the_whole_one() {
     }
 }
 
-/// Wrong: one sector of a ring that is finer on one side would be most of the work.
+/// Wrong: ranks would wait for the one whose sectors lie where a ring is finer, with more nodes in each cross-section: of equal
+/// numbers of elements, the largest factor would be 1.74 times the mean.
 #[test]
-fn sectors_of_a_refined_ring_have_equal_numbers_of_elements() {
-    let problem = Problem::new(irregular(ring(ElementKind::Tet10, 48)), Held::Clamped);
-    let symbolic = problem.symbolic(6);
-    let costs = symbolic.costs();
+fn sectors_of_a_refined_ring_have_near_equal_work() {
+    let place = [0.02, 0.0, 0.008];
+    let away = |x: [f64; 3]| (0..3).map(|c| (x[c] - place[c]).powi(2)).sum::<f64>().sqrt();
+    let mesh = refined(&ring(ElementKind::Tet10, 96), |x| 0.0015 + 0.3 * away(x));
+    let problem = Problem::new(mesh, Held::Clamped);
+    let costs = problem.symbolic(8).costs();
+    let bytes: Vec<usize> = costs.iter().map(|c| c.factor_bytes).collect();
+    let (most, sum) = (*bytes.iter().max().unwrap(), bytes.iter().sum::<usize>());
+    assert!(8 * 4 * most < 5 * sum, "more than 1.25 times the mean: {bytes:?}");
     let elements: Vec<usize> = costs.iter().map(|c| c.n_elements).collect();
-    let (least, most) = (elements.iter().min().unwrap(), elements.iter().max().unwrap());
-    assert!(10 * most < 13 * least, "{elements:?}");
     assert_eq!(elements.iter().sum::<usize>(), problem.mesh.n_elements());
-    assert!(costs.iter().all(|c| c.flops > 0.0 && c.factor_bytes > 0));
+    assert!(
+        2 * elements.iter().min().unwrap() < *elements.iter().max().unwrap(),
+        "{elements:?}"
+    );
+    assert!(costs.iter().all(|c| c.flops > 0.0));
 }
