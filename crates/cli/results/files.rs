@@ -259,7 +259,9 @@ impl Files {
         };
         let clock = Instant::now();
         let written = open.output.finish()?;
-        let near_field = self.ring_stress.near_field_time();
+        let of_probes = open.probes.as_ref().and_then(Probes::near_field_time);
+        let near_fields = [self.ring_stress.near_field_time(), of_probes];
+        let near_field = near_fields.into_iter().flatten().reduce(|a, b| a + b);
         if let Some(views) = written.output.finish()? {
             warn_of_damage(&views.damaged);
         }

@@ -20,3 +20,4 @@ pub mod stress_points;
 pub mod subsurface;
 pub mod summary;
 pub mod tables;
+pub mod timed_near_field;

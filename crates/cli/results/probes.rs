@@ -1,6 +1,8 @@
 //! Probes: single numbers of a run, a line per step in `probes.csv`. The scene's own documentation says what they are.
 
-use contact::{NearField, Side};
+use std::time::Duration;
+
+use contact::Side;
 use dynamics::Model;
 use dynamics::balls::BallResult;
 use fem::stress::{NodeRecovery, von_mises};
@@ -9,6 +11,7 @@ use super::fields::force_on_ball;
 use super::probe_places::{NodePlace, place};
 use super::shown::{RingField, Shown, Turn};
 use super::stress_points::{self, StressPoints};
+use super::timed_near_field::TimedNearField;
 use crate::build::NodeTags;
 use crate::failure::Failure;
 use crate::scene::{self, Axes, ContactProbe, RingName, Scene};
@@ -19,7 +22,7 @@ pub struct Probes {
     /// Stress of the probed nodes of each ring, in the order of `nodes`; None where nothing is probed.
     recoveries: [Option<NodeRecovery>; 2],
     /// The probed nodes of each ring for the near field, if the scene asks for it.
-    near_fields: [Option<NearField>; 2],
+    near_fields: [Option<TimedNearField>; 2],
     contacts: Vec<ContactProbe>,
     points: Option<StressPoints>,
     profiles: Option<StressPoints>,
@@ -71,8 +74,7 @@ impl Probes {
             let (ring, reach) = (model.ring(side)?, reach?);
             let own = nodes.iter().filter(|probe| probe.side == side);
             let positions: Vec<[f64; 3]> = own.map(|probe| ring.mesh.nodes[probe.place.node]).collect();
-            let poisson_ratio = ring.material.poisson_ratio;
-            (!positions.is_empty()).then(|| NearField::new(ring.groove, poisson_ratio, reach, &positions))
+            (!positions.is_empty()).then(|| TimedNearField::new(ring, reach, &positions))
         };
         let lines = |lines: &[scene::StressLine]| {
             let some = !lines.is_empty();
@@ -91,6 +93,14 @@ impl Probes {
     /// Nodes that are probed and where they lie.
     pub fn places(&self) -> impl Iterator<Item = &NodePlace> {
         self.nodes.iter().map(|probe| &probe.place)
+    }
+
+    /// Time spent on near fields so far; None where no probe has one.
+    pub fn near_field_time(&self) -> Option<Duration> {
+        let lines = [&self.points, &self.profiles].into_iter().flatten();
+        let of_lines = lines.filter_map(StressPoints::near_field_time);
+        let of_nodes = self.near_fields.iter().flatten().map(TimedNearField::spent);
+        of_nodes.chain(of_lines).reduce(|a, b| a + b)
     }
 
     /// Names of the columns of probes, without step and time; None where there are only profiles.

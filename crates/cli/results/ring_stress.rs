@@ -1,16 +1,16 @@
 //! Stress of the rings as step files hold it: averaged at nodes, or at the integration points of the elements.
 
-use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 
 use checkpoint::{CellFields, IntegrationPointStress};
 use comm::Communicator;
-use contact::{LoadedPatch, NearField, Side};
+use contact::{LoadedPatch, Side};
 use dynamics::{Backend, Model, NodalStress, RingModel, SharedStress, StressPlaces};
 use fem::quadrature::stiffness_rule;
 use fem::stress::{StressRecovery, von_mises};
 
 use super::shown::{Shown, Turn};
+use super::timed_near_field::TimedNearField;
 use crate::failure::Failure;
 use crate::scene::{Scene, StressOutput};
 
@@ -28,15 +28,13 @@ pub struct RingStress {
     rings: [Option<Recovery>; 2],
     /// Balls, which have a point and a cell each.
     n_balls: usize,
-    /// Nanoseconds spent on near fields.
-    near_field_time: AtomicU64,
 }
 
 /// Recovery of one ring, and the places of its stress for the near field if that is asked for.
 struct Recovery {
     source: Source,
     points_per_element: usize,
-    near_field: Option<NearField>,
+    near_field: Option<TimedNearField>,
 }
 
 /// What recovers the stress of a ring from its displacements.
@@ -92,7 +90,6 @@ impl RingStress {
             kind: scene.output.stress,
             rings: [recovery(Side::Inner)?, recovery(Side::Outer)?],
             n_balls: model.geometry.n_balls,
-            near_field_time: AtomicU64::new(0),
         })
     }
 
@@ -121,9 +118,8 @@ impl RingStress {
 
     /// Time spent on near fields so far; None where no ring has one.
     pub fn near_field_time(&self) -> Option<Duration> {
-        let has_one = |ring: &Option<Recovery>| ring.as_ref().is_some_and(|r| r.near_field.is_some());
-        let nanoseconds = self.near_field_time.load(Ordering::Relaxed);
-        (self.rings.iter().any(has_one)).then(|| Duration::from_nanos(nanoseconds))
+        let fields = self.rings.iter().flatten().filter_map(|r| r.near_field.as_ref());
+        fields.map(TimedNearField::spent).reduce(|a, b| a + b)
     }
 
     /// Stress of a ring with its near field, Pa, in its own frame.
@@ -133,10 +129,7 @@ impl RingStress {
             Basis::Stress(stress) => stress.clone(),
         };
         if let Some(near_field) = &recovery.near_field {
-            let clock = Instant::now();
             near_field.add(&ring.patches, &mut stress);
-            let spent = clock.elapsed().as_nanos() as u64;
-            self.near_field_time.fetch_add(spent, Ordering::Relaxed);
         }
         stress
     }
@@ -234,10 +227,11 @@ impl Recovery {
             Source::Shared(shared) if at_points => shared.point_positions(),
             Source::Shared(_) => is_root.then(|| ring.mesh.nodes.clone()),
         };
-        let near_field =
-            scene.stress.near_field_reach.zip(points).map(|(reach, points)| {
-                NearField::new(ring.groove, ring.material.poisson_ratio, reach, &points)
-            });
+        let near_field = scene
+            .stress
+            .near_field_reach
+            .zip(points)
+            .map(|(reach, points)| TimedNearField::new(ring, reach, &points));
         Ok(Some(Recovery {
             source,
             points_per_element: stiffness_rule(ring.mesh.kind).points.len(),
@@ -296,7 +290,6 @@ mod tests {
                 })
             }),
             n_balls: 1,
-            near_field_time: AtomicU64::new(0),
         };
         let stretched = |mesh: &Mesh| mesh.nodes.iter().flat_map(|x| [1e-3 * x[0], 0.0, 0.0]).collect();
         let quarter = std::f64::consts::FRAC_PI_2;

@@ -1,14 +1,17 @@
 //! Stress at points given in ring coordinates, for probes and profiles.
 
+use std::time::Duration;
+
 use anyhow::anyhow;
 use contact::near_field::in_axes;
-use contact::{NearField, RingPoint, Side};
+use contact::{RingPoint, Side};
 use dynamics::Model;
 use fem::FemError;
 use fem::stress::{PointRecovery, principal, von_mises};
 
 use super::probes::side_of;
 use super::shown::Shown;
+use super::timed_near_field::TimedNearField;
 use crate::failure::Failure;
 use crate::scene::StressLine;
 
@@ -38,7 +41,7 @@ pub struct StressPoints {
 /// The points of one ring, line after line.
 struct RingPoints {
     recovery: PointRecovery,
-    near_field: Option<NearField>,
+    near_field: Option<TimedNearField>,
     axes: Vec<[[f64; 3]; 3]>,
 }
 
@@ -69,8 +72,7 @@ impl StressPoints {
                 }
                 other => other.into(),
             })?;
-            let near_field = reach
-                .map(|reach| NearField::new(ring.groove, ring.material.poisson_ratio, reach, &positions));
+            let near_field = reach.map(|reach| TimedNearField::new(ring, reach, &positions));
             Ok(Some(RingPoints {
                 recovery,
                 near_field,
@@ -86,6 +88,12 @@ impl StressPoints {
     /// The lines, in the order of their values.
     pub fn lines(&self) -> &[StressLine] {
         &self.lines
+    }
+
+    /// Time spent on near fields so far; None where no point has one.
+    pub fn near_field_time(&self) -> Option<Duration> {
+        let fields = self.rings.iter().flatten().filter_map(|r| r.near_field.as_ref());
+        fields.map(TimedNearField::spent).reduce(|a, b| a + b)
     }
 
     /// Values of [`COLUMNS`] at every point, line after line, Pa.

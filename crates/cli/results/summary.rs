@@ -101,7 +101,7 @@ pub struct Costs {
     pub stress: f64,
     /// Putting together on rank 0 the stress that ranks recover; None with one process.
     pub gather: Option<f64>,
-    /// Near fields of the step files, a part of `stress`; None where the scene asks for none.
+    /// Near fields of step files, probes and profiles, a part of `stress`; None where the scene asks for none.
     pub near_field: Option<f64>,
     /// Writing, as far as the run had to wait for it: tables, handing over steps, closing.
     pub output: f64,
