@@ -13,13 +13,13 @@ pub(super) fn sectors_of_elements(
     nodes_per_element: usize,
     n_sectors: usize,
 ) -> Vec<usize> {
-    let sorted = by_azimuth(points, elements, nodes_per_element);
+    let (sorted, azimuths) = by_azimuth(points, elements, nodes_per_element);
     let mut sector = vec![0; sorted.len()];
     if n_sectors == 1 {
         return sector;
     }
     let crossing = nodes_across(points.len(), elements, nodes_per_element, &sorted);
-    let cuts = cuts(&crossing, n_sectors);
+    let cuts = cuts(&crossing, &work(&crossing, &azimuths), n_sectors);
     // What lies before the first cut belongs to the last sector: the ring is closed.
     let mut current = n_sectors - 1;
     let mut next = 0;
@@ -33,8 +33,8 @@ pub(super) fn sectors_of_elements(
     sector
 }
 
-/// Elements by the azimuth of their centroids.
-fn by_azimuth(points: &[[f64; 3]], elements: &[usize], nodes_per_element: usize) -> Vec<usize> {
+/// Elements by the azimuth of their centroids, and those azimuths, ascending.
+fn by_azimuth(points: &[[f64; 3]], elements: &[usize], nodes_per_element: usize) -> (Vec<usize>, Vec<f64>) {
     let azimuth: Vec<f64> = elements
         .chunks_exact(nodes_per_element)
         .map(|nodes| {
@@ -44,7 +44,33 @@ fn by_azimuth(points: &[[f64; 3]], elements: &[usize], nodes_per_element: usize)
         .collect();
     let mut sorted: Vec<usize> = (0..azimuth.len()).collect();
     sorted.sort_by(|&a, &b| azimuth[a].total_cmp(&azimuth[b]).then(a.cmp(&b)));
-    sorted
+    let azimuths = sorted.iter().map(|&e| azimuth[e]).collect();
+    (sorted, azimuths)
+}
+
+/// Azimuths nearer than this, rad, are the same but for round-off.
+const SAME_AZIMUTH: f64 = 1e-9;
+
+/// Work of each element by position, `[n_elements]`: the number of nodes across the ring in front of all elements of its azimuth, whose
+/// order among themselves is a matter of round-off.
+fn work(crossing: &[usize], azimuths: &[f64]) -> Vec<usize> {
+    let n = crossing.len();
+    let begins = |&p: &usize| {
+        let before = match p {
+            0 => azimuths[n - 1] - std::f64::consts::TAU,
+            p => azimuths[p - 1],
+        };
+        azimuths[p] - before > SAME_AZIMUTH
+    };
+    let first = (0..n).find(begins).unwrap_or(0);
+    let (mut work, mut across) = (vec![0; n], 1);
+    for p in (first..n).chain(0..first) {
+        if begins(&p) {
+            across = crossing[p].max(1);
+        }
+        work[p] = across;
+    }
+    work
 }
 
 /// Number of nodes with elements on both sides of a cut before position p, `[n_elements]`. Round the ring a node's
@@ -96,23 +122,22 @@ fn nodes_across(
 }
 
 /// Ascending positions of the cuts.
-fn cuts(crossing: &[usize], n_sectors: usize) -> Vec<usize> {
+fn cuts(crossing: &[usize], work: &[usize], n_sectors: usize) -> Vec<usize> {
     let n = crossing.len();
     let first = first_cut(crossing, n / (4 * n_sectors));
-    let across = |i: usize| crossing[(first + i) % n];
     // Work of the elements between the first cut and each position.
-    let mut work = vec![0];
+    let mut done = vec![0];
     for i in 0..n {
-        work.push(work[i] + across(i).max(1));
+        done.push(done[i] + work[(first + i) % n]);
     }
-    let reach = work[n] / (4 * n_sectors);
+    let reach = done[n] / (4 * n_sectors);
     let mut found = vec![0];
     for k in 1..n_sectors {
-        let target = k * work[n] / n_sectors;
+        let target = k * done[n] / n_sectors;
         let near =
-            work.partition_point(|&w| w + reach < target)..work.partition_point(|&w| w <= target + reach);
-        let best = near.min_by_key(|&i| (across(i % n), work[i].abs_diff(target), i));
-        let nearest = work.partition_point(|&w| w < target);
+            done.partition_point(|&w| w + reach < target)..done.partition_point(|&w| w <= target + reach);
+        let best = near.min_by_key(|&i| (crossing[(first + i) % n], done[i].abs_diff(target), i));
+        let nearest = done.partition_point(|&w| w < target);
         // No sector is left without elements.
         found.push(best.unwrap_or(nearest).clamp(found[k - 1] + 1, n + k - n_sectors));
     }

@@ -129,3 +129,20 @@ fn sectors_of_a_refined_ring_have_near_equal_work() {
     );
     assert!(costs.iter().all(|c| c.flops > 0.0));
 }
+
+/// Wrong: round-off, which decides the order of elements of one azimuth, would move the cuts of a ring whose layers are alike.
+#[test]
+fn sectors_of_a_ring_of_equal_layers_are_equal() {
+    for (kind, layers, n_sectors) in [
+        (ElementKind::Hex8, 90, 6),
+        (ElementKind::Hex8, 91, 7),
+        (ElementKind::Hex20, 48, 16),
+        (ElementKind::Tet10, 40, 5),
+    ] {
+        let problem = Problem::new(ring(kind, layers), Held::Inertia);
+        let layout = problem.layout(n_sectors);
+        let elements: Vec<usize> = layout.sectors().iter().map(|s| s.elements.len()).collect();
+        let equal = problem.mesh.n_elements() / n_sectors;
+        assert!(elements.iter().all(|&n| n == equal), "{kind:?}: {elements:?}");
+    }
+}
