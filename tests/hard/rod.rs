@@ -175,7 +175,7 @@ impl Rod {
             let solution = system.solve(scale, &costs).unwrap();
             let contact = solution.forces[0];
             let dw = factor.increment(&body, &prepared, &contact.force, &[]);
-            let next = factor.advance(&state, &dw);
+            let next = factor.advance(&body, &state, &dw);
             work += weight.iter().zip(&dw).map(|(f, d)| f * d).sum::<f64>();
             loss += body.numerical_loss(integrator, &state, &next) + contact.numerical_loss;
             for (i, place) in wall.iter_mut().enumerate() {

@@ -8,7 +8,6 @@
 use contact::quadrature::PressureRule;
 use contact::{RacewaySurface, Side};
 use mesh::Mesh;
-use rayon::prelude::*;
 use solver::SectorBordered;
 
 use super::by_sector::SectorFactor;
@@ -18,6 +17,7 @@ use super::integrator::Integrator;
 use super::matrices::RingMatrices;
 use super::ring::RingState;
 use super::space::{Nodes, Space};
+use super::vectors::combined;
 use crate::effects::FrameTurn;
 use crate::error::DynamicsError;
 use crate::inventory::Inventory;
@@ -25,9 +25,6 @@ use crate::memory::MotionSizes;
 use crate::model::{Backend, Hold, RACEWAY_GROUP, RingModel};
 use crate::sparse::SparseLoad;
 use crate::support::mean_motion;
-
-/// Numbers of one task of a sum.
-const TASK: usize = 1 << 14;
 
 /// A ring's matrices, raceway and mount.
 pub struct RingBody {
@@ -182,16 +179,17 @@ impl RingBody {
     /// M (m[0] v + m[1] a) + K (k[0] v + k[1] a - w).
     pub(super) fn balance(&self, state: &RingState, m: [f64; 2], k: [f64; 2]) -> Vec<f64> {
         let (v, a) = (state.velocity(), state.acceleration());
-        if let (Space::Harmonic(_), 0.0, [0.0, 0.0]) = (&self.space, m[1], k) {
+        if let (Space::Harmonic(space), 0.0, [0.0, 0.0]) = (&self.space, m[1], k) {
             // Two products that the energies at the end of the step before have needed as well.
             let made;
-            let [mass, stiffness] = match state.products() {
-                Some(products) => products,
+            let measures = match state.measures() {
+                Some(measures) => measures,
                 None => {
-                    made = self.products(state);
+                    made = space.measures(v, state.displacement());
                     &made
                 }
             };
+            let [mass, stiffness] = &measures.products;
             return combined([m[0], -1.0], mass, stiffness);
         }
         let inertial = combined(m, v, a);
@@ -212,53 +210,41 @@ impl RingBody {
         }
     }
 
-    /// M v and K w.
-    fn products(&self, state: &RingState) -> [Vec<f64>; 2] {
-        let (mass, stiffness) = rayon::join(
-            || self.mass_product(state.velocity()),
-            || self.stiffness_product(state.displacement()),
-        );
-        [mass, stiffness]
-    }
-
-    /// Kinetic and strain energy, J; a state in harmonic space keeps the products they come from for the next step.
-    pub(super) fn measure(&self, state: &mut RingState) -> [f64; 2] {
+    /// The state at the end of a step from `old` with the increment `dw`. One in harmonic space knows its energies.
+    pub(super) fn advanced(&self, integrator: Integrator, dt: f64, old: &RingState, dw: &[f64]) -> RingState {
         match &self.space {
-            Space::Nodal => self.energies(state),
-            Space::Harmonic(_) => {
-                let products = self.products(state);
-                let energies = self.work(state, &products);
-                state.keep_products(products);
-                energies
-            }
+            Space::Nodal => old.advanced(integrator, dt, dw),
+            Space::Harmonic(space) => space.advanced(integrator, dt, old, dw),
         }
     }
 
     /// Kinetic and strain energy, J.
     pub fn energies(&self, state: &RingState) -> [f64; 2] {
-        match &self.space {
-            Space::Nodal => self
-                .matrices
-                .energies(&self.coordinates, state.velocity(), state.displacement()),
-            Space::Harmonic(_) => self.work(state, &self.products(state)),
+        match (&self.space, state.measures()) {
+            (_, Some(known)) => known.energies,
+            (Space::Nodal, None) => {
+                self.matrices
+                    .energies(&self.coordinates, state.velocity(), state.displacement())
+            }
+            (Space::Harmonic(space), None) => space.measures(state.velocity(), state.displacement()).energies,
         }
     }
 
-    /// v M v / 2 and w K w / 2.
-    fn work(&self, state: &RingState, [mass, stiffness]: &[Vec<f64>; 2]) -> [f64; 2] {
-        [
-            0.5 * self.space.dot(state.velocity(), mass),
-            0.5 * self.space.dot(state.displacement(), stiffness),
-        ]
-    }
-
-    /// Generalised inertia load of the turning frame at displacement `w` and velocity `v`, all of the ring's space.
-    pub fn frame_load(&self, turn: FrameTurn, w: &[f64], v: &[f64]) -> Vec<f64> {
+    /// Generalised inertia load of the turning frame at the weighted time of a step from `old` with the increment `dw`, in which the velocity
+    /// stays when there is none.
+    pub fn frame_load(
+        &self,
+        turn: FrameTurn,
+        (integrator, dt): (Integrator, f64),
+        old: &RingState,
+        dw: Option<&[f64]>,
+    ) -> Vec<f64> {
         let (speed, acceleration) = (turn.speed, turn.acceleration);
         if let Space::Harmonic(space) = &self.space {
-            return space.frame_load(turn, self.nodes(), w, v);
+            return space.frame_load(turn, self.nodes(), (integrator, dt), (old, dw));
         }
-        let (u, v) = (self.coordinates.expand(w), self.coordinates.expand(v));
+        let [w, v] = old.within(integrator, dt, dw);
+        let (u, v) = (self.coordinates.expand(&w), self.coordinates.expand(&v));
         let mut field = vec![0.0; u.len()];
         for (i, f) in field.chunks_exact_mut(3).enumerate() {
             let [x, y] = [0, 1].map(|c| self.positions[3 * i + c] + u[3 * i + c]);
@@ -323,18 +309,6 @@ impl RingBody {
         dot(&change, &self.mass_product(&a)) - dot(&v, &self.mass_product(&gain))
             + (0.5 - integrator.alpha_f) * dot(&change, &self.stiffness_product(&change))
     }
-}
-
-/// s[0] x + s[1] y.
-fn combined(s: [f64; 2], x: &[f64], y: &[f64]) -> Vec<f64> {
-    let mut sum = vec![0.0; x.len()];
-    sum.par_chunks_mut(TASK)
-        .zip(x.par_chunks(TASK).zip(y.par_chunks(TASK)))
-        .for_each(|(sum, (x, y))| {
-            let terms = sum.iter_mut().zip(x.iter().zip(y));
-            terms.for_each(|(sum, (x, y))| *sum = s[0] * x + s[1] * y);
-        });
-    sum
 }
 
 /// Coordinates and mount of a held ring.

@@ -2,10 +2,8 @@
 
 use contact::Side;
 
-use super::body::RingBody;
 use super::newton::SmallSolution;
 use super::part::Moving;
-use super::ring::RingState;
 use super::run::Motion;
 use super::small::{SmallSystem, first_five};
 use super::state::MotionState;
@@ -58,7 +56,7 @@ impl Motion<'_> {
         trend: Option<&mut Vec<[f64; 2]>>,
     ) {
         let integrator = self.settings.integrator;
-        let new = ring.factor.advance(ring.old, dw);
+        let new = ring.factor.advance(ring.body, ring.old, dw);
         let ledger = &mut next.ledger;
         let work = |load: &[f64]| ring.body.space.dot(load, dw);
         ledger.load_work += ring.load.as_deref().map_or(0.0, work);
@@ -115,15 +113,11 @@ impl Motion<'_> {
     }
 
     pub(super) fn measure_energies(&self, state: &mut MotionState) {
-        let energies = |body: &Option<RingBody>, ring: &mut Option<RingState>| match (body, ring) {
-            (Some(body), Some(ring)) => body.measure(ring),
+        let energies = |i: usize| match (&self.rings[i], &state.rings[i]) {
+            (Some(body), Some(ring)) => body.energies(ring),
             _ => [0.0; 2],
         };
-        let ([a, b], [first, second]) = (&self.rings, &mut state.rings);
-        let (inner, outer) = self
-            .model
-            .backend
-            .both(|| energies(a, first), || energies(b, second));
+        let (inner, outer) = self.model.backend.both(|| energies(0), || energies(1));
         let kinetic = |mass: f64, v: &f64| 0.5 * mass * v * v;
         let mass = self.model.ball_mass();
         let balls: f64 = state

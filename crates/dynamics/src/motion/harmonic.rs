@@ -1,14 +1,10 @@
 //! Solves of a periodic ring that stay in harmonic space: the predictor of a step, what contacts and partner measure of it,
 //! and the increment under their forces. Only nodes that they touch are transformed in between.
 
-use rayon::prelude::*;
-
 use super::effective::CyclicFactor;
 use super::space::Space;
+use super::vectors::add;
 use crate::sparse::SparseLoad;
-
-/// Numbers of one task of a sum.
-const TASK: usize = 1 << 14;
 
 impl CyclicFactor {
     /// S^-1 of a generalised load in the space of the ring: harmonics of the free nodes, then the rows of the border.
@@ -70,9 +66,7 @@ impl CyclicFactor {
         }
         field.write_harmonics(harmonics);
         self.solve_in_place(&mut x);
-        x.par_chunks_mut(TASK)
-            .zip(predictor.par_chunks(TASK))
-            .for_each(|(x, p)| x.iter_mut().zip(p).for_each(|(x, p)| *x += p));
+        add(&mut x, predictor);
         match space {
             Space::Harmonic(_) => x,
             Space::Nodal => {

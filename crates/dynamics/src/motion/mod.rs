@@ -41,6 +41,7 @@ pub mod start;
 pub mod state;
 mod substep;
 mod touch;
+mod vectors;
 
 pub use integrator::Integrator;
 pub use ledger::Ledger;

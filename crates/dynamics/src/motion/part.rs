@@ -11,12 +11,14 @@ use super::shaft::ShaftStep;
 use super::small::{Inertia, RingAnswer, SmallSystem};
 use super::state::MotionState;
 use super::substep::Span;
+use super::vectors::combined;
 use crate::compliance;
 use crate::effects::{self, FrameTurn, Loads, Now};
 use crate::error::DynamicsError;
 use crate::problem::Site;
 
-/// Change of the frame's inertia loads in a round, sum of all, over the largest force, at which they count as settled.
+/// Change of the frame's inertia loads in a round over the largest force, at which they count as settled: a bound of the sum of all
+/// ([`super::space::Space::size`]), which is a few times that sum where contacts concentrate the change.
 const FRAME_TOLERANCE: f64 = 1e-9;
 /// The same over the inertia loads themselves, which a body without other forces has alone: what rounding of a transform of
 /// its motion leaves of them.
@@ -70,14 +72,13 @@ impl Motion<'_> {
             let load = self.ring_load(body, side, loads, span);
             let inertia = loads.frame.filter(|_| side == Side::Inner).map(|turn| {
                 // First guess: the velocity stays.
-                let guess: Vec<f64> = old.velocity().iter().map(|v| span.dt * v).collect();
-                let [w, v] = old.within(self.settings.integrator, span.dt, &guess);
-                (turn, body.frame_load(turn, &w, &v))
+                let scheme = (self.settings.integrator, span.dt);
+                (turn, body.frame_load(turn, scheme, old, None))
             });
             let inertial = inertia.as_ref().map(|(_, f)| f.as_slice());
             let step = match (&load, inertial) {
                 (Some(load), Some(f)) => {
-                    let known: Vec<f64> = load.iter().zip(f).map(|(a, b)| a + b).collect();
+                    let known = combined([1.0; 2], load, f);
                     factor.prepare(body, old, Some(&known), &feet[i])
                 }
                 (load, f) => factor.prepare(body, old, load.as_deref().or(f), &feet[i]),
@@ -232,9 +233,9 @@ impl Motion<'_> {
         let Some((turn, used)) = &mut ring.inertia else {
             return true;
         };
-        let [w, v] = ring.old.within(self.settings.integrator, span.dt, dw);
-        let new = ring.body.frame_load(*turn, &w, &v);
-        let change: Vec<f64> = new.iter().zip(used.iter()).map(|(a, b)| a - b).collect();
+        let scheme = (self.settings.integrator, span.dt);
+        let new = ring.body.frame_load(*turn, scheme, ring.old, Some(dw));
+        let change = combined([1.0, -1.0], &new, used);
         let size = |f: &[f64]| ring.body.space.size(f);
         if size(&change) <= (FRAME_TOLERANCE * scale).max(FRAME_ROUND_OFF * size(&new)) {
             return true;

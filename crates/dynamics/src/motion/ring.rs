@@ -19,6 +19,7 @@ use super::effective::Factored;
 use super::integrator::Integrator;
 pub use super::ring_state::RingState;
 use super::space::Space;
+use super::vectors::add;
 use crate::error::DynamicsError;
 use crate::sparse::{SparseLoad, sparse_dot};
 
@@ -242,7 +243,7 @@ impl RingFactor {
         let stiffness = [ak * damping[0], ak * damping[1]];
         let mut side = body.balance(state, mass, stiffness);
         if let Some(load) = load {
-            side.iter_mut().zip(load).for_each(|(side, f)| *side += f);
+            add(&mut side, load);
         }
         side
     }
@@ -253,7 +254,7 @@ impl RingFactor {
         let moved: Vec<f64> = match (&self.factor, &mut step.predictor) {
             (Factored::Cyclic(factor), Predictor::Harmonic(predictor, correction)) => {
                 let more = factor.solve(&body.space, load);
-                predictor.iter_mut().zip(&more).for_each(|(p, d)| *p += d);
+                add(predictor, &more);
                 let [mut moved, at] = factor.motions(&more, &all);
                 if let (Some(defect), Some(correction)) = (self.factor.defect(), correction) {
                     let corrected = correction.add(defect, &at);
@@ -308,8 +309,8 @@ impl RingFactor {
     }
 
     /// The state at the end of a step with increment `dw`.
-    pub fn advance(&self, state: &RingState, dw: &[f64]) -> RingState {
-        state.advanced(self.integrator, self.dt, dw)
+    pub fn advance(&self, body: &RingBody, state: &RingState, dw: &[f64]) -> RingState {
+        body.advanced(self.integrator, self.dt, state, dw)
     }
 }
 

@@ -7,11 +7,14 @@
 
 use std::sync::OnceLock;
 
-use solver::cyclic::HarmonicOperator;
+use rayon::prelude::*;
+use solver::cyclic::{HarmonicOperator, add_turned};
 use solver::{CyclicRing, SolverError};
 
 use super::coordinates::Coordinates;
+use super::integrator::Integrator;
 use super::matrices::RingMatrices;
+use super::ring_state::{Measures, RingState};
 use crate::effects::FrameTurn;
 use crate::sectors::Sectors;
 use crate::solution::dot;
@@ -153,18 +156,107 @@ impl Space {
 }
 
 impl HarmonicSpace {
-    /// Generalised inertia load of the turning frame at displacement `w` and velocity `v`, see
-    /// [`super::body::RingBody::frame_load`].
-    pub(super) fn frame_load(&self, turn: FrameTurn, nodes: Nodes<'_>, w: &[f64], v: &[f64]) -> Vec<f64> {
-        let (speed, acceleration) = (turn.speed, turn.acceleration);
+    /// M v and K w, and the energies, J.
+    pub(super) fn measures(&self, v: &[f64], w: &[f64]) -> Measures {
+        let (mass, stiffness) = rayon::join(|| self.mass.product(v), || self.stiffness.product(w));
         let len = self.ring.harmonic_len();
-        // J u = -e_z x u.
-        let mut field = vec![0.0; w.len()];
-        self.ring
-            .add_turned([speed * speed, -acceleration], &w[..len], &mut field[..len]);
-        self.ring
-            .add_turned([0.0, -2.0 * speed], &v[..len], &mut field[..len]);
-        let mut load = self.mass.product(&field);
+        let groups = 0..len.checked_div(self.ring.low_len()).unwrap_or(0);
+        let sums = groups.into_par_iter().map(|group| {
+            let range = self.ring.low_len() * group..self.ring.low_len() * (group + 1);
+            let dot = |a: &[f64], b: &[f64]| self.ring.group_dot(group, &a[range.clone()], &b[range.clone()]);
+            [dot(v, &mass), dot(w, &stiffness)]
+        });
+        let sums: Vec<[f64; 2]> = sums.collect();
+        self.measured([v, w], [mass, stiffness], &sums)
+    }
+
+    /// Measures from the products and each group's part of their scalar products.
+    fn measured(&self, [v, w]: [&[f64]; 2], products: [Vec<f64>; 2], sums: &[[f64; 2]]) -> Measures {
+        let len = self.ring.harmonic_len();
+        let [mut kinetic, mut strain] = [0.0; 2];
+        for [m, k] in sums {
+            kinetic += m;
+            strain += k;
+        }
+        kinetic += dot(&v[len..], &products[0][len..]);
+        strain += dot(&w[len..], &products[1][len..]);
+        Measures {
+            products,
+            energies: [0.5 * kinetic, 0.5 * strain],
+        }
+    }
+
+    /// The state at the end of a step from `old` with the increment `dw`, with its measures: one pass over the groups of harmonics.
+    pub(super) fn advanced(&self, integrator: Integrator, dt: f64, old: &RingState, dw: &[f64]) -> RingState {
+        let (n, len, low) = (dw.len(), self.ring.harmonic_len(), self.ring.low_len());
+        let [mut w, mut v, mut a, mut mass, mut stiffness] = [(); 5].map(|()| vec![0.0; n]);
+        let groups = w[..len]
+            .par_chunks_mut(low)
+            .zip(v[..len].par_chunks_mut(low))
+            .zip(a[..len].par_chunks_mut(low))
+            .zip(
+                mass[..len]
+                    .par_chunks_mut(low)
+                    .zip(stiffness[..len].par_chunks_mut(low)),
+            );
+        let sums = groups.enumerate().map(|(group, (((w, v), a), (m, k)))| {
+            old.advance_part(integrator, dt, dw, low * group, [w, v, a]);
+            self.mass.group_product(group, v, m);
+            self.stiffness.group_product(group, w, k);
+            [self.ring.group_dot(group, v, m), self.ring.group_dot(group, w, k)]
+        });
+        let mut sums: Vec<[f64; 2]> = sums.collect();
+        let shaft = [&mut w[len..], &mut v[len..], &mut a[len..]];
+        old.advance_part(integrator, dt, dw, len, shaft);
+        if self.n_shaft > 0 {
+            self.mass.add_border(&v, &mut mass);
+            self.stiffness.add_border(&w, &mut stiffness);
+            sums[0] =
+                [(&v, &mass), (&w, &stiffness)].map(|(x, y)| self.ring.group_dot(0, &x[..low], &y[..low]));
+        }
+        let measures = self.measured([&v, &w], [mass, stiffness], &sums);
+        let mut new = RingState::new(w, v, a);
+        new.keep(measures);
+        new
+    }
+
+    /// Generalised inertia load of the turning frame, see [`super::body::RingBody::frame_load`]: one pass over the groups of
+    /// harmonics.
+    pub(super) fn frame_load(
+        &self,
+        turn: FrameTurn,
+        nodes: Nodes<'_>,
+        (integrator, dt): (Integrator, f64),
+        (old, dw): (&RingState, Option<&[f64]>),
+    ) -> Vec<f64> {
+        let (speed, acceleration) = (turn.speed, turn.acceleration);
+        let (n, len, low) = (
+            old.displacement().len(),
+            self.ring.harmonic_len(),
+            self.ring.low_len(),
+        );
+        let mut load = vec![0.0; n];
+        let buffers = || ([vec![0.0; low], vec![0.0; low]], vec![0.0; low]);
+        let first = |group: usize, (within, field): &mut ([Vec<f64>; 2], Vec<f64>)| {
+            old.part_within(integrator, dt, dw, low * group, within);
+            // J u = -e_z x u.
+            field.fill(0.0);
+            add_turned([speed * speed, -acceleration], &within[0], field);
+            add_turned([0.0, -2.0 * speed], &within[1], field);
+        };
+        load[..len]
+            .par_chunks_mut(low)
+            .enumerate()
+            .for_each_init(buffers, |buffers, (group, load)| {
+                first(group, buffers);
+                self.mass.group_product(group, &buffers.1, load);
+            });
+        // The rows of the shaft, which move with the first group alone.
+        let mut lowest = buffers();
+        first(0, &mut lowest);
+        self.mass.add_rows(&lowest.1, &mut load);
+        let mut shaft = [vec![0.0; self.n_shaft], vec![0.0; self.n_shaft]];
+        old.part_within(integrator, dt, dw, len, &mut shaft);
         let known = self.frame.get_or_init(|| self.frame_loads(nodes));
         let mut add = |[own, turned]: [f64; 2], [p, j]: &[Vec<f64>; 2]| {
             self.ring.add_low(own, p, &mut load);
@@ -172,7 +264,7 @@ impl HarmonicSpace {
         };
         add([speed * speed, acceleration], &known.position);
         for (k, of_shaft) in known.shaft.iter().enumerate() {
-            let (q, rate) = (w[len + k], v[len + k]);
+            let [q, rate] = [shaft[0][k], shaft[1][k]];
             add(
                 [speed * speed * q, acceleration * q + 2.0 * speed * rate],
                 of_shaft,

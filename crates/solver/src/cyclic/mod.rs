@@ -56,7 +56,7 @@ pub use border::CyclicBordered;
 pub use defect::{Change, CyclicDefect, Defect, conjugate_gradients};
 pub use factor::{CyclicCholesky, Symmetry};
 pub use matrix::CyclicMatrix;
-pub use operator::HarmonicOperator;
+pub use operator::{HarmonicOperator, add_turned};
 pub use part_field::PartField;
 pub use pattern::Coupling;
 pub use response::{Patch, ResponseTable};

@@ -4,8 +4,6 @@
 //! motions, which are harmonics 0 and 1, so that it touches the first group alone. *Low* vectors hold that group and the border,
 //! `[low_len() + m]`.
 
-use rayon::prelude::*;
-
 use super::matrix::CyclicMatrix;
 use super::phases::LANES;
 use super::ring::CyclicRing;
@@ -46,22 +44,60 @@ impl HarmonicOperator {
         })
     }
 
+    /// The ring.
+    pub fn ring(&self) -> &CyclicRing {
+        &self.ring
+    }
+
     /// The product with `x`, harmonics in parallel.
     ///
     /// # Panics
     /// When the length is another.
     pub fn product(&self, x: &[f64]) -> Vec<f64> {
-        let (len, low) = (self.ring.harmonic_len(), self.ring.low_len());
-        assert_eq!(x.len(), len + self.border.len(), "harmonics and border");
+        let len = self.ring.harmonic_len();
         let mut y = vec![0.0; x.len()];
         self.ring
             .apply_harmonic(&self.matrix, &x[..len], &mut y[..len])
             .expect("the pattern was checked");
+        self.add_border(x, &mut y);
+        y
+    }
+
+    /// Overwrites one group's part of a product, `[low_len()]`, without the border: what a pass over the groups does while they are
+    /// in the cache.
+    ///
+    /// # Panics
+    /// When a length is another.
+    pub fn group_product(&self, group: usize, x: &[f64], y: &mut [f64]) {
+        assert_eq!(x.len(), self.ring.low_len(), "one group of harmonics");
+        assert_eq!(y.len(), self.ring.low_len(), "one group of harmonics");
+        self.ring.apply_group(&self.matrix, group, x, y);
+    }
+
+    /// Adds the rows of the border of the product with harmonics of which `low`, `[low_len()]`, are the first group, to the product `y`.
+    ///
+    /// # Panics
+    /// When a length is another.
+    pub fn add_rows(&self, low: &[f64], y: &mut [f64]) {
+        let rows = &mut y[self.ring.harmonic_len()..];
+        assert_eq!(rows.len(), self.border.len(), "rows of the border");
+        for (y, column) in rows.iter_mut().zip(&self.border) {
+            *y += self.ring.group_dot(0, &column[..low.len()], low);
+        }
+    }
+
+    /// Adds to the product `y` of all groups with `x` what the border adds, both with border.
+    ///
+    /// # Panics
+    /// When a length is another.
+    pub fn add_border(&self, x: &[f64], y: &mut [f64]) {
+        let (len, low) = (self.ring.harmonic_len(), self.ring.low_len());
+        assert_eq!(x.len(), len + self.border.len(), "harmonics and border");
+        assert_eq!(y.len(), x.len(), "harmonics and border");
         for (k, column) in self.border.iter().enumerate() {
-            self.ring.add_low(x[len + k], column, &mut y);
+            self.ring.add_low(x[len + k], column, y);
             y[len + k] += self.ring.group_dot(0, &column[..low], &x[..low]);
         }
-        y
     }
 
     /// Bytes of blocks and border.
@@ -99,34 +135,24 @@ impl CyclicRing {
         to.iter_mut().zip(harmonics).for_each(|(y, x)| *y += factor * x);
         rows.iter_mut().zip(border).for_each(|(y, x)| *y += factor * x);
     }
+}
 
-    /// Adds `own` times the radial and azimuthal components of the field `x` to `y`, and `turned` times those components turned by a
-    /// right angle about the axis, e_z x u; both in harmonic space, `[harmonic_len()]`.
-    ///
-    /// # Panics
-    /// When a length is another.
-    pub fn add_turned(&self, [own, turned]: [f64; 2], x: &[f64], y: &mut [f64]) {
-        assert_eq!(x.len(), self.harmonic_len(), "a vector in harmonic space");
-        assert_eq!(y.len(), self.harmonic_len(), "a vector in harmonic space");
-        let node_len = 6 * LANES;
-        let task = 64 * node_len;
-        y.par_chunks_mut(task)
-            .zip(x.par_chunks(task))
-            .flat_map_iter(|(y, x)| y.chunks_exact_mut(node_len).zip(x.chunks_exact(node_len)))
-            .for_each(|(y, x)| {
-                for lane in 0..LANES {
-                    let [r, i, s, j] = [0, 1, 2, 3].map(|part| x[part * LANES + lane]);
-                    // The azimuthal component is divided by i, so turning, (-u_t, u_r), is -i times the other one.
-                    let values = [
-                        own * r + turned * j,
-                        own * i - turned * s,
-                        own * s + turned * i,
-                        own * j - turned * r,
-                    ];
-                    for (part, value) in values.into_iter().enumerate() {
-                        y[part * LANES + lane] += value;
-                    }
-                }
-            });
+/// Adds `own` times the radial and azimuthal components of the field `x` to `y`, and `turned` times those components turned by a right
+/// angle about the axis, e_z x u; both whole nodes of harmonic space, such as a vector or its part of one group.
+///
+/// # Panics
+/// When the lengths disagree.
+pub fn add_turned([own, turned]: [f64; 2], x: &[f64], y: &mut [f64]) {
+    assert_eq!(x.len(), y.len(), "fields on the same nodes");
+    let node_len = 6 * LANES;
+    for (y, x) in y.chunks_exact_mut(node_len).zip(x.chunks_exact(node_len)) {
+        for lane in 0..LANES {
+            let [r, i, s, j] = [0, 1, 2, 3].map(|part| x[part * LANES + lane]);
+            // The azimuthal component is divided by i, so turning, (-u_t, u_r), is -i times the other one.
+            y[lane] += own * r + turned * j;
+            y[LANES + lane] += own * i - turned * s;
+            y[2 * LANES + lane] += own * s + turned * i;
+            y[3 * LANES + lane] += own * j - turned * r;
+        }
     }
 }

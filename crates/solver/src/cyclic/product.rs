@@ -20,20 +20,23 @@ impl CyclicRing {
         if x.is_empty() {
             return Ok(());
         }
-        let (arch, len) = (Arch::new(), self.group_len());
+        let len = self.group_len();
         y.par_chunks_mut(len)
             .zip(x.par_chunks(len))
             .enumerate()
-            .for_each(|(group, (y, x))| {
-                arch.dispatch(Product {
-                    shared: &self.shared,
-                    matrix,
-                    group,
-                    x,
-                    y,
-                });
-            });
+            .for_each(|(group, (y, x))| self.apply_group(matrix, group, x, y));
         Ok(())
+    }
+
+    /// The same for one group's part of the vectors; the pattern of `matrix` is the ring's.
+    pub(super) fn apply_group(&self, matrix: &CyclicMatrix, group: usize, x: &[f64], y: &mut [f64]) {
+        Arch::new().dispatch(Product {
+            shared: &self.shared,
+            matrix,
+            group,
+            x,
+            y,
+        });
     }
 
     /// A x of nodal vectors, `[n]`, through the sectors.

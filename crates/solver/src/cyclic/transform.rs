@@ -188,8 +188,8 @@ impl CyclicRing {
         sums.iter().sum()
     }
 
-    /// One group's part of the scalar product, of its part of two vectors.
-    pub(super) fn group_dot(&self, group: usize, a: &[f64], b: &[f64]) -> f64 {
+    /// One group's part of the scalar product, of its part of two vectors, `[low_len()]` each.
+    pub fn group_dot(&self, group: usize, a: &[f64], b: &[f64]) -> f64 {
         let n = self.n_sectors();
         let mut sums = [0.0; LANES];
         for (a, b) in a.chunks_exact(LANES).zip(b.chunks_exact(LANES)) {

@@ -1,7 +1,7 @@
 //! Harmonic space: transforms, products, responses.
 
 use mesh::{ElementKind, revolve};
-use solver::cyclic::HarmonicOperator;
+use solver::cyclic::{HarmonicOperator, add_turned};
 use solver::{LinearSolver, NodalLoad, ResponseTable};
 
 use crate::common::{self, assert_close};
@@ -215,7 +215,7 @@ fn bordered_products_and_turned_fields_are_those_of_nodal_vectors() {
         assert_close(&found, &expected, 1e-13);
 
         let mut turned = w[..len].to_vec();
-        ring.ring.add_turned([0.7, -0.4], &w[..len], &mut turned);
+        add_turned([0.7, -0.4], &w[..len], &mut turned);
         let mut found = vec![0.0; n];
         ring.ring.from_harmonic(&turned, &mut found);
         let fields = x[..n].chunks_exact(3);
