@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use anyhow::anyhow;
 use comm::Communicator;
 use contact::{BearingGeometry, Groove, HertzContact, Side};
 use dynamics::effects::{
@@ -13,7 +14,7 @@ use dynamics::{
     Backend, ContactMode, ContactSettings, Hold, Model, RingModel, Sectors, ShaftDof, Tolerances,
 };
 use fem::Material;
-use mesh::Torus;
+use mesh::{Mesh, Torus};
 
 use crate::failure::Failure;
 use crate::motion::speed;
@@ -50,7 +51,39 @@ pub fn build_with_probes(
     let (model, tags) = build_model(point)?;
     let probes = Probes::new(scene, &model, &tags)?;
     test(&model)?;
-    Ok((model, probes))
+    Ok((divided(model)?, probes))
+}
+
+/// The model of rings in sectors with the elements that this rank needs; last, because it knows the whole mesh no longer.
+fn divided(mut model: Model) -> Result<Model, Failure> {
+    let Backend::Sector(sectors) = model.backend else {
+        return Ok(model);
+    };
+    for side in Side::BOTH {
+        if let Some(ring) = model.rings[side.index()].take() {
+            let ring = Arc::into_inner(ring).expect("nobody else has a ring of a new model");
+            let divided = ring.divide(side.name(), sectors).map_err(Failure::solving)?;
+            model.rings[side.index()] = Some(Arc::new(divided));
+        }
+    }
+    Ok(model)
+}
+
+/// The whole mesh of a ring that was divided between ranks, from its file, read again.
+pub fn whole_mesh(scene: &Scene, side: Side, ring: &RingModel) -> Result<Mesh, Failure> {
+    let asked = match side {
+        Side::Inner => &scene.inner,
+        Side::Outer => &scene.outer,
+    };
+    let body = asked.body.as_ref().expect("a ring with a mesh has a file of it");
+    let mesh = mesh::read_msh(&body.mesh, body.mesh_unit)?;
+    if mesh.nodes != ring.mesh.nodes || mesh.n_elements() != ring.n_elements() {
+        return Err(Failure::User(anyhow!(
+            "mesh {} is not what it was when the run began; leave meshes alone until a run has written its mesh.hdf, and start again",
+            body.mesh.display()
+        )));
+    }
+    Ok(mesh)
 }
 
 /// How balls and cage roll; None when the scene has no speed.
@@ -215,4 +248,32 @@ fn ring(
         sectors: Default::default(),
     };
     Ok(Some((ring, origin.node_tags)))
+}
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+
+    use super::*;
+
+    /// Wrong: a run whose mesh file is replaced while it starts would show its results on another mesh.
+    #[test]
+    fn a_mesh_that_changes_while_a_run_starts_is_refused() {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("inner.msh");
+        std::fs::copy("meshes/7010c_inner_coarse.msh", &file).unwrap();
+        let set = format!("inner.mesh={}", file.display());
+        let scene = Scene::load(Path::new("scenes/7010c_1800rpm_coarse.toml"), &[set]).unwrap();
+        let (model, _) = build_model(&scene).unwrap();
+        let ring = model.ring(Side::Inner).unwrap();
+        assert!(whole_mesh(&scene, Side::Inner, ring).unwrap() == ring.mesh);
+        std::fs::copy("meshes/7010c_inner.msh", &file).unwrap();
+        let error = whole_mesh(&scene, Side::Inner, ring).unwrap_err();
+        assert_eq!(error.number(), 2);
+        let text = error.text();
+        assert!(
+            text.contains("inner.msh is not what it was when the run began"),
+            "{text}"
+        );
+    }
 }

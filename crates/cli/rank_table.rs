@@ -13,7 +13,7 @@ impl RingOnRanks {
     pub fn new(model: &Model, ring: &RingModel, parts: &Substructures) -> RingOnRanks {
         let n_balls = model.geometry.n_balls;
         let of = |n_ranks: usize| {
-            let memory = |rank| RankMemory::new(&ring.mesh, parts, n_balls, &share(rank, n_ranks));
+            let memory = |rank| RankMemory::new(ring, parts, n_balls, &share(rank, n_ranks));
             (0..n_ranks).map(memory).collect()
         };
         let n_sectors = parts.symbolic().layout().sectors().len();

@@ -68,6 +68,7 @@ fn assert_near(dir: &Dir, scene: &str, more: &[&str]) {
         } else {
             let outcome = on_ranks(dir, ranks, &run);
             done(&outcome);
+            assert_divided(&outcome.stderr);
             measured(&outcome.stdout)
         };
         let expected = forecast(&checked.stdout, ranks);
@@ -82,6 +83,19 @@ fn assert_near(dir: &Dir, scene: &str, more: &[&str]) {
             );
         }
     }
+}
+
+/// Wrong: a rank would keep elements that others compute. Two ranks keep half of them each, and of the rest the 43 % at raceway and bore.
+#[track_caller]
+fn assert_divided(log: &str) {
+    let words: Vec<&str> = log.split_whitespace().collect();
+    let kept: Vec<f64> = words
+        .windows(5)
+        .filter(|w| w[0] == "keeps" && w[2] == "of" && w[4].starts_with("elements"))
+        .map(|w| w[1].parse::<f64>().unwrap() / w[3].parse::<f64>().unwrap())
+        .collect();
+    assert!(kept.len() >= 2, "both rings say what is kept: {log}");
+    assert!(kept.iter().all(|share| *share < 0.73), "{kept:?}");
 }
 
 fn large(dir: Dir) -> Dir {

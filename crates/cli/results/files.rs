@@ -63,7 +63,7 @@ impl Files {
             return Ok(Files::new(None, ring_stress));
         }
         let clock = Instant::now();
-        let mut output = Output::create(dir, &fields::bodies(model), storage(scene))?;
+        let mut output = Output::create(dir, &fields::whole_bodies(scene, model)?, storage(scene))?;
         note_dead_owner(output.lock());
         output.describe(about(scene, dir, warnings)?)?;
         let tables = Tables::create(dir, swept_column(scene), first, &own_columns(probes.as_ref()))?;
@@ -92,7 +92,7 @@ impl Files {
         // The tables tell whether the step can be resumed from; nothing is changed before all is known to fit.
         let columns = own_columns(probes.as_ref());
         let cuts = Tables::cuts(&dir, first, &columns, last)?;
-        let resumed = Output::resume(lock, &fields::bodies(model), storage(scene), last)?;
+        let resumed = Output::resume(lock, &fields::whole_bodies(scene, model)?, storage(scene), last)?;
         let (mut output, damaged, mut superseded) = (resumed.output, resumed.damaged, resumed.superseded);
         output.describe(texts)?;
         if resumed.mesh_restored {

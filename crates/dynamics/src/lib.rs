@@ -8,6 +8,7 @@ mod compliance;
 pub mod costs;
 pub mod defect;
 pub mod displacements;
+pub mod division;
 pub mod effects;
 pub mod equilibrium;
 pub mod error;

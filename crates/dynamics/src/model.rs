@@ -10,12 +10,13 @@ use std::sync::{Arc, OnceLock};
 use comm::Communicator;
 use contact::hertz::Elastic;
 use contact::{BearingGeometry, Groove, HertzContact, Side};
-use fem::Material;
+use fem::{FemError, Material};
 use mesh::{
     Mesh, NearlyPeriodic, NotPeriodic, PERIODIC_TOLERANCE, Periodicity, find_nearly_periodic,
     find_periodicity,
 };
 
+use crate::division::Division;
 use crate::effects::Effect;
 use crate::schedule::Schedule;
 
@@ -49,11 +50,13 @@ pub struct RingModel {
     pub sectors: FoundSectors,
 }
 
-/// What is known of the sectors of a mesh.
+/// What is known of the sectors of a mesh, and what else was asked for.
 #[derive(Default)]
 pub struct FoundSectors {
     equal: OnceLock<Result<Periodicity, NotPeriodic>>,
     nearly: OnceLock<Option<NearlyPeriodic>>,
+    node_masses: OnceLock<Vec<f64>>,
+    pub(crate) division: Option<Division>,
 }
 
 impl RingModel {
@@ -63,6 +66,19 @@ impl RingModel {
             .equal
             .get_or_init(|| find_periodicity(&self.mesh, PERIODIC_TOLERANCE))
             .as_ref()
+    }
+
+    /// Integral of rho N_a over the ring, kg, `[n_nodes]`; they sum to its mass. Found when first asked for, from the whole mesh.
+    pub fn node_masses(&self) -> Result<&[f64], FemError> {
+        if self.sectors.node_masses.get().is_none() {
+            assert!(self.is_whole(), "the masses of nodes are of the whole mesh");
+            let density = self.material.density;
+            let load = fem::body_load(&self.mesh, |_| [density, 0.0, 0.0])?;
+            let masses = load.into_iter().step_by(3).collect();
+            // Another thread may have been first, with the same masses.
+            let _ = self.sectors.node_masses.set(masses);
+        }
+        Ok(self.sectors.node_masses.get().map_or(&[], Vec::as_slice))
     }
 
     /// The mesh as a periodic one with a defect; None when it has no defect, or is not one.

@@ -86,7 +86,7 @@ impl Prepared {
                 Numbers::Pattern => Substructures::pattern(ring, name, &support.free, sectors)?,
             };
             return Ok(Prepared {
-                memory: RankMemory::new(mesh, &parts, n_balls, &Share::of(sectors.comm)).phases(),
+                memory: RankMemory::new(ring, &parts, n_balls, &Share::of(sectors.comm)).phases(),
                 support,
                 matrix: Matrix::Cut(Box::new(parts)),
             });

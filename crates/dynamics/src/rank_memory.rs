@@ -5,8 +5,8 @@
 //!
 //! | part | bytes | what it is |
 //! |---|---|---|
-//! | mesh | 24 n + 8 e p | nodes and connectivity; whole |
-//! | lists | 62 N + 16 e in statics, 102 N + 16 e in motion | layout of the sectors, coordinates, positions; whole |
+//! | mesh | 24 n + 8 e' p | all nodes; of several ranks e' elements: those of the sectors owned and of the surfaces that all keep |
+//! | lists | 59 N + 8 r + 16 e in statics, 79 N + 8 r + 16 e in motion | layout of the sectors, coordinates, positions; whole |
 //! | vectors | 24 N in statics, 152 N in motion | whole |
 //! | matrices | 16 E (1 + 1/9) | K and the mass between nodes |
 //! | factors | F + A | |
@@ -21,9 +21,10 @@
 use std::ops::Range;
 
 use comm::Communicator;
-use mesh::Mesh;
+use solver::SectorLayout;
 
 use crate::memory::{PROGRAM_BYTES, RingMemory, forecast_peak};
+use crate::model::RingModel;
 use crate::substructures::Substructures;
 
 /// Bytes of one stored entry: value and column index.
@@ -87,13 +88,16 @@ impl Share {
 
 impl RankMemory {
     /// Forecast for a ring of which this process has at least the sectors of `share`.
-    pub fn new(mesh: &Mesh, parts: &Substructures, n_balls: usize, share: &Share) -> RankMemory {
+    pub fn new(ring: &RingModel, parts: &Substructures, n_balls: usize, share: &Share) -> RankMemory {
+        let mesh = &ring.mesh;
         let symbolic = parts.symbolic();
         let owned = share.owned(symbolic.layout().sectors().len());
         let first = symbolic.owned().start;
         let here = owned.start - first..owned.end - first;
         let (costs, entries) = (&symbolic.costs()[here.clone()], &parts.entries()[here]);
-        let (n_dofs, list) = (mesh.n_dofs(), 8 * mesh.connectivity.len());
+        let per_element = 8 * mesh.kind.n_nodes();
+        let (n_dofs, n_elements) = (mesh.n_dofs(), ring.n_elements());
+        let own_elements: usize = costs.iter().map(|c| c.n_elements).sum();
         let rows: usize = costs.iter().map(|c| c.n_rows).sum();
         let mut work: Vec<usize> = costs
             .iter()
@@ -102,8 +106,8 @@ impl RankMemory {
             .collect();
         work.sort_unstable();
         RankMemory {
-            mesh: 8 * n_dofs + list,
-            lists: [62, 102].map(|bytes| bytes * n_dofs + 16 * mesh.n_elements()),
+            mesh: 8 * n_dofs + per_element * kept_elements(ring, symbolic.layout(), &owned),
+            lists: [59, 79].map(|bytes| bytes * n_dofs + 8 * rows + 16 * n_elements),
             vectors: [24, 152].map(|bytes| bytes * n_dofs),
             matrices: ENTRY_BYTES * entries.iter().sum::<usize>() * 10 / 9,
             factors: costs.iter().map(|c| c.factor_bytes + c.analysis_bytes).sum(),
@@ -111,7 +115,7 @@ impl RankMemory {
             columns: 8 * (rows + symbolic.layout().interface().len()) * (2 * n_balls + 1),
             work: work.iter().rev().take(share.n_threads).sum(),
             results: if share.rank == 0 {
-                80 * n_dofs + 3 * list + 48 * mesh.kind.n_corners() * mesh.n_elements()
+                80 * n_dofs + 3 * per_element * n_elements + 48 * mesh.kind.n_corners() * own_elements
             } else {
                 0
             },
@@ -135,6 +139,23 @@ impl RankMemory {
     fn kept(&self) -> usize {
         self.lists[0] + self.vectors[0] + self.factors + self.interface
     }
+}
+
+/// Elements that the rank with the sectors `owned` keeps.
+fn kept_elements(ring: &RingModel, layout: &SectorLayout, owned: &Range<usize>) -> usize {
+    if !ring.is_whole() {
+        return ring.mesh.n_elements();
+    }
+    let elements = || layout.sectors().iter().map(|sector| sector.elements.as_slice());
+    let everywhere = ring.kept_everywhere(elements());
+    let of_sector = |(s, elements): (usize, &[usize])| {
+        if owned.contains(&s) {
+            elements.len()
+        } else {
+            everywhere[s]
+        }
+    };
+    elements().enumerate().map(of_sector).sum()
 }
 
 /// Forecast of the largest resident memory of one rank in statics and in motion, bytes; inner ring first, None is rigid.

@@ -10,8 +10,8 @@
 
 use comm::Communicator;
 use fem::StressRecovery;
-use solver::{SectorCut, default_sectors};
 
+use crate::division::SectorLists;
 use crate::error::DynamicsError;
 use crate::model::{RingModel, Sectors};
 
@@ -61,13 +61,12 @@ impl SharedStress {
     pub fn new(
         ring: &RingModel,
         side: &'static str,
-        Sectors { n_sectors, comm }: Sectors,
+        sectors: Sectors,
         places: StressPlaces,
     ) -> Result<SharedStress, DynamicsError> {
-        let mesh = &ring.mesh;
-        let n_sectors = n_sectors.unwrap_or_else(|| default_sectors(mesh.n_dofs()));
-        let cut = SectorCut::new(&mesh.nodes, &mesh.connectivity, mesh.kind.n_nodes(), n_sectors)
-            .map_err(|source| DynamicsError::Solver { side, source })?;
+        let (mesh, comm) = (&ring.mesh, sectors.comm);
+        let cut = ring.sector_cut(side, sectors)?;
+        let n_sectors = cut.nodes.len();
         let part = |s: usize| -> Result<Part, DynamicsError> {
             let (elements, nodes) = (&cut.elements[s], cut.nodes[s].clone());
             let recovery = StressRecovery::new(&mesh.part(elements, &nodes), &ring.material)
@@ -78,9 +77,12 @@ impl SharedStress {
         let elsewhere = |rank, message| DynamicsError::OnRank { rank, message };
         let parts = comm.agree(parts, elsewhere)?;
         let points_per_element = fem::quadrature::stiffness_rule(mesh.kind).points.len();
-        let (per_place, of_sectors, n_places) = match places {
-            StressPlaces::Nodes => (1, cut.nodes, mesh.n_nodes()),
-            StressPlaces::IntegrationPoints => (points_per_element, cut.elements, mesh.n_elements()),
+        let (per_place, n_places, of_sectors) = match places {
+            StressPlaces::Nodes => (1, mesh.n_nodes(), SectorLists::on_root(cut.nodes, comm)),
+            StressPlaces::IntegrationPoints => {
+                let elements = ring.elements_of_sectors(&cut, comm);
+                (points_per_element, ring.n_elements(), elements)
+            }
         };
         let mut stress = SharedStress {
             comm,
@@ -89,8 +91,8 @@ impl SharedStress {
             parts,
             whole: Whole {
                 per_place,
-                lengths: of_sectors.iter().map(|list| per_place * list.len()).collect(),
-                places: if comm.is_root() { of_sectors } else { Vec::new() },
+                lengths: of_sectors.lengths.iter().map(|n| per_place * n).collect(),
+                places: of_sectors.lists,
                 n_places,
                 volumes: Vec::new(),
             },

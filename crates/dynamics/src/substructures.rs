@@ -9,9 +9,10 @@ use std::ops::Range;
 
 use comm::Communicator;
 use rayon::prelude::*;
-use solver::{Sector, SectorCholesky, SectorLayout, SectorSymbolic, default_sectors};
+use solver::{Sector, SectorCholesky, SectorLayout, SectorSymbolic};
 use sprs::CsMat;
 
+use crate::division::sum_of_sectors;
 use crate::error::DynamicsError;
 use crate::model::{RingModel, Sectors};
 use crate::sparse::{node_product, product};
@@ -21,6 +22,8 @@ pub struct Substructures {
     name: &'static str,
     comm: Communicator,
     n_dofs: usize,
+    /// Elements that this rank keeps, and those of the ring.
+    n_elements: [usize; 2],
     symbolic: SectorSymbolic,
     /// Matrices of the sectors that this rank owns.
     matrices: Vec<Matrices>,
@@ -58,16 +61,16 @@ impl Substructures {
         ring: &RingModel,
         name: &'static str,
         free: &[usize],
-        Sectors { n_sectors, comm }: Sectors,
+        shared: Sectors,
         matrices: impl Fn(&Sector) -> Result<Matrices, DynamicsError> + Sync,
     ) -> Result<Substructures, DynamicsError> {
         let mesh = &ring.mesh;
         let solver_error = |source| DynamicsError::Solver { side: name, source };
-        let n_sectors = n_sectors.unwrap_or_else(|| default_sectors(mesh.n_dofs()));
-        let per_element = mesh.kind.n_nodes();
-        let layout = SectorLayout::new(&mesh.nodes, &mesh.connectivity, per_element, free, n_sectors)
-            .map_err(solver_error)?;
+        let (per_element, comm) = (mesh.kind.n_nodes(), shared.comm);
+        let mut layout = SectorLayout::of(ring.sector_cut(name, shared)?, mesh.n_nodes(), free);
+        let n_sectors = layout.sectors().len();
         let owned = comm.share(n_sectors);
+        layout.forget_all_but(owned.clone());
         let made: Result<Vec<Matrices>, DynamicsError> = layout.sectors()[owned.clone()]
             .par_iter()
             .map(&matrices)
@@ -81,6 +84,7 @@ impl Substructures {
             name,
             comm,
             n_dofs: mesh.n_dofs(),
+            n_elements: [mesh.n_elements(), ring.n_elements()],
             symbolic,
             matrices,
         })
@@ -134,7 +138,12 @@ impl Substructures {
         let n = self.symbolic.layout().sectors().len();
         let whose = match self.comm.size() {
             1 => String::new(),
-            ranks => format!(" on {ranks} ranks, of which this one has {}", costs.len()),
+            ranks => format!(
+                " on {ranks} ranks, of which this one has {} and keeps {} of {} elements",
+                costs.len(),
+                self.n_elements[0],
+                self.n_elements[1]
+            ),
         };
         format!(
             "{n} sectors{whose}, {} to {} elements and {:.1} to {:.1} MB of factor each, {:.1} MB of interface",
@@ -163,18 +172,8 @@ impl Substructures {
                 of(matrices, &own)
             })
             .collect();
-        let length = |range: Range<usize>| sectors[range].iter().map(|s| 3 * s.nodes.len()).sum();
-        let shares = self.comm.shares(sectors.len());
-        let lengths: Vec<usize> = shares.into_iter().map(length).collect();
-        let all = self.comm.all_gather(parts.concat(), &lengths);
-        let mut sum = vec![0.0; self.n_dofs];
-        let mut values = all.chunks_exact(3);
-        for sector in sectors {
-            for (&node, value) in sector.nodes.iter().zip(values.by_ref()) {
-                (0..3).for_each(|c| sum[3 * node + c] += value[c]);
-            }
-        }
-        sum
+        let nodes: Vec<&[usize]> = sectors.iter().map(|s| s.nodes.as_slice()).collect();
+        sum_of_sectors(self.comm, &nodes, &parts, self.n_dofs)
     }
 }
 

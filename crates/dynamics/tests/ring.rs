@@ -7,9 +7,10 @@ use std::collections::BTreeMap;
 use contact::patch::PatchShape;
 use contact::quadrature::PressureRule;
 use contact::{Patch, RacewaySurface, Side};
+use dynamics::division::body_load;
 use dynamics::model::elastic;
 use dynamics::ring::RingSolver;
-use dynamics::{ContactMode, Hold, RingModel, Sectors, SharedStress, StressPlaces};
+use dynamics::{Backend, ContactMode, Hold, RingModel, Sectors, SharedStress, StressPlaces};
 use fem::StressRecovery;
 use mesh::{ElementKind, Mesh};
 use support::Case;
@@ -243,6 +244,31 @@ fn stress_by_sector_is_that_of_the_whole_ring() {
             assert!(stress(&at_points) == points, "{n_sectors} sectors");
             assert_eq!(at_points.point_positions().unwrap(), whole.point_positions());
             assert_eq!(at_points.points_per_element(), whole.points_per_element());
+        }
+    }
+}
+
+/// Wrong: sectors would weigh a ring otherwise than the whole does, or a ring that was divided for one process would not be what it was.
+#[test]
+fn loads_by_sector_are_those_of_the_whole_ring() {
+    let sectors = Sectors {
+        n_sectors: Some(5),
+        ..Sectors::default()
+    };
+    let force = |x: [f64; 3]| [3e7 * x[0], 1e5 - 2e7 * x[1], 4e5];
+    for level in [Level::hex8(24, 4, 1, 1), Level::hex20(18, 2, 1, 1)] {
+        let whole = ring(Side::Inner, level, Hold::Clamped);
+        let divided = ring(Side::Inner, level, Hold::Clamped)
+            .divide("inner", sectors)
+            .unwrap();
+        assert!(divided.is_whole() && divided.mesh == whole.mesh);
+        let expected = body_load(&whole, "inner", Backend::Sparse, force).unwrap();
+        let largest = expected.iter().fold(0.0f64, |m, f| m.max(f.abs()));
+        for ring in [&whole, &divided] {
+            let found = body_load(ring, "inner", Backend::Sector(sectors), force).unwrap();
+            for (a, b) in found.iter().zip(&expected) {
+                assert!((a - b).abs() <= 1e-13 * largest, "{a} {b}");
+            }
         }
     }
 }

@@ -71,6 +71,25 @@ impl Mesh {
         nodes
     }
 
+    /// The mesh with some of its elements only, ascending, numbered 0.. in this order: all nodes stay, groups lose the facets of other
+    /// elements.
+    pub fn with_elements(mut self, elements: &[usize]) -> Mesh {
+        let n = self.kind.n_nodes();
+        for (place, &e) in elements.iter().enumerate() {
+            self.connectivity.copy_within(n * e..n * (e + 1), n * place);
+        }
+        self.connectivity.truncate(n * elements.len());
+        self.connectivity.shrink_to_fit();
+        for facets in self.groups.values_mut() {
+            let kept = |facet: &Facet| {
+                let element = elements.binary_search(&facet.element).ok()?;
+                Some(Facet { element, ..*facet })
+            };
+            *facets = facets.iter().filter_map(kept).collect();
+        }
+        self
+    }
+
     /// The mesh of some elements alone, without groups. `nodes` are the nodes of these elements, ascending; the part numbers
     /// them 0.. in this order.
     ///

@@ -15,6 +15,7 @@
 use contact::Side;
 
 use super::{Effect, FrameTurn, Loads, Now};
+use crate::division::body_load;
 use crate::error::DynamicsError;
 use crate::model::Model;
 use crate::motion::balls::Speed;
@@ -39,7 +40,7 @@ impl Effect for FrameRotation {
     }
 }
 
-/// Inertia of the undeformed inner ring in its own frame, N, `[n_nodes][3]` flat: what statics sees of a turning frame.
+/// Inertia of the undeformed inner ring in its own frame, N, `[n_nodes][3]` flat: what statics sees of a turning frame. Collective.
 pub fn static_inertia(model: &Model, loads: &Loads) -> Result<Option<Vec<f64>>, DynamicsError> {
     let (Some(turn), Some(ring)) = (loads.frame, model.ring(Side::Inner)) else {
         return Ok(None);
@@ -48,10 +49,5 @@ pub fn static_inertia(model: &Model, loads: &Loads) -> Result<Option<Vec<f64>>, 
     let (square, rate) = (turn.speed * turn.speed, turn.acceleration);
     let inertia =
         |[x, y, _]: [f64; 3]| [square * x + rate * y, square * y - rate * x, 0.0].map(|f| density * f);
-    fem::loads::body_load(&ring.mesh, inertia)
-        .map(Some)
-        .map_err(|source| DynamicsError::Fem {
-            side: Side::Inner.name(),
-            source,
-        })
+    body_load(ring, Side::Inner.name(), model.backend, inertia).map(Some)
 }

@@ -7,7 +7,7 @@
 //! own mass, which acts at the load point. With a sub-table `schedule` its size changes in time.
 //!
 //! The weight of a ring is its nodal masses, the integrals of rho N_a over the ring, times the acceleration: they are
-//! integrated once, when the effect is made, so an instant costs one pass over the nodes. Memory: 8 bytes per node.
+//! integrated once per ring, so an instant costs one pass over the nodes. Memory: 8 bytes per node.
 
 use std::sync::Arc;
 
@@ -36,8 +36,14 @@ impl Gravity {
         rings: &[Option<Arc<RingModel>>; 2],
     ) -> Result<Gravity, DynamicsError> {
         let masses = |side: Side| {
-            let ring = rings[side.index()].as_ref();
-            ring.map(|ring| node_masses(side, ring)).transpose()
+            let masses = |ring: &Arc<RingModel>| {
+                let masses = ring.node_masses().map(<[f64]>::to_vec);
+                masses.map_err(|source| DynamicsError::Fem {
+                    side: side.name(),
+                    source,
+                })
+            };
+            rings[side.index()].as_ref().map(masses).transpose()
         };
         Ok(Gravity {
             acceleration,
@@ -45,17 +51,6 @@ impl Gravity {
             node_masses: [masses(Side::Inner)?, masses(Side::Outer)?],
         })
     }
-}
-
-/// Integral of rho N_a over the ring, kg, `[n_nodes]`; they sum to its mass.
-fn node_masses(side: Side, ring: &RingModel) -> Result<Vec<f64>, DynamicsError> {
-    let density = ring.material.density;
-    let load =
-        fem::loads::body_load(&ring.mesh, |_| [density, 0.0, 0.0]).map_err(|source| DynamicsError::Fem {
-            side: side.name(),
-            source,
-        })?;
-    Ok(load.into_iter().step_by(3).collect())
 }
 
 impl Effect for Gravity {

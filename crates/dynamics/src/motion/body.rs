@@ -40,7 +40,7 @@ pub struct RingBody {
     pub name: &'static str,
     pub(super) matrices: RingMatrices,
     /// Node positions, m, `[n_nodes][3]` flat.
-    positions: Vec<f64>,
+    pub(super) positions: Vec<f64>,
     /// Rayleigh damping: C = damping[0] M + damping[1] K.
     pub(super) damping: [f64; 2],
     effective: Effective,

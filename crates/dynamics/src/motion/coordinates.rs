@@ -15,18 +15,22 @@ use crate::sparse::SparseLoad;
 enum Source {
     /// A free dof: its index.
     Free(usize),
-    /// A held node: rigid motion with the shaft.
-    Held,
+    /// A held node, its place among them: rigid motion with the shaft.
+    Held(usize),
 }
+
+/// What is added to places of held nodes.
+const HELD: u32 = 1 << 31;
 
 /// Map between nodal dofs and generalised coordinates.
 pub struct Coordinates {
-    sources: Vec<Source>,
+    /// Of each nodal dof its free coordinate, or [`HELD`] plus the place of its node among the held ones.
+    sources: Vec<u32>,
     /// Nodal dof of each free coordinate, ascending.
     free: Vec<usize>,
     /// Shaft dofs (0..5) that are coordinates, after the free ones.
     shaft: Vec<usize>,
-    /// Node positions relative to the shaft's origin, m.
+    /// Positions of the held nodes relative to the shaft's origin, m.
     arms: Vec<[f64; 3]>,
     /// Axial position of the shaft's origin, m.
     origin_z: f64,
@@ -39,11 +43,17 @@ impl Coordinates {
         let mut is_held = vec![false; mesh.n_nodes()];
         held.iter().for_each(|&n| is_held[n] = true);
         let free: Vec<usize> = (0..mesh.n_dofs()).filter(|d| !is_held[d / 3]).collect();
-        let mut sources = vec![Source::Held; mesh.n_dofs()];
-        free.iter()
-            .enumerate()
-            .for_each(|(i, &d)| sources[d] = Source::Free(i));
-        let arms = mesh.nodes.iter().map(|x| [x[0], x[1], x[2] - origin_z]).collect();
+        assert!(
+            mesh.n_dofs() < HELD as usize,
+            "rings of 2^31 dofs fit into no memory"
+        );
+        let mut sources = vec![0; mesh.n_dofs()];
+        free.iter().enumerate().for_each(|(i, &d)| sources[d] = i as u32);
+        let mut arms = Vec::new();
+        for (node, x) in mesh.nodes.iter().enumerate().filter(|(node, _)| is_held[*node]) {
+            sources[3 * node..3 * node + 3].fill(HELD + arms.len() as u32);
+            arms.push([x[0], x[1], x[2] - origin_z]);
+        }
         Coordinates {
             sources,
             free,
@@ -75,27 +85,35 @@ impl Coordinates {
 
     /// Number of a node among the free ones; None when it is held.
     pub fn free_node(&self, node: usize) -> Option<usize> {
-        match self.sources[3 * node] {
+        match self.source(3 * node) {
             Source::Free(i) => Some(i / 3),
-            Source::Held => None,
+            Source::Held(_) => None,
         }
     }
 
-    /// Motion of a held nodal dof per unit of shaft dof `q`.
-    fn lever(&self, dof: usize, q: usize) -> f64 {
-        rigid_lever(self.arms[dof / 3], dof % 3, q)
+    fn source(&self, dof: usize) -> Source {
+        match self.sources[dof].checked_sub(HELD) {
+            Some(place) => Source::Held(place as usize),
+            None => Source::Free(self.sources[dof] as usize),
+        }
     }
 
-    /// Motion of a nodal dof under a rigid motion `q` of the shaft.
-    pub fn rigid_motion(&self, dof: usize, q: [f64; 5]) -> f64 {
-        (0..5).map(|i| self.lever(dof, i) * q[i]).sum()
+    /// Motion of a component of a held node, given by its place, per unit of shaft dof `q`.
+    fn lever(&self, place: usize, component: usize, q: usize) -> f64 {
+        rigid_lever(self.arms[place], component, q)
+    }
+
+    /// Motion of a nodal dof of a node at `x` (m) under a rigid motion `q` of the shaft.
+    pub fn rigid_motion(&self, dof: usize, x: [f64; 3], q: [f64; 5]) -> f64 {
+        let arm = [x[0], x[1], x[2] - self.origin_z];
+        (0..5).map(|i| rigid_lever(arm, dof % 3, i) * q[i]).sum()
     }
 
     /// The coordinates that move a nodal dof and by how much, were its node at the position `x` (m): a row of T.
     pub fn terms(&self, dof: usize, x: [f64; 3]) -> Vec<(usize, f64)> {
-        match self.sources[dof] {
+        match self.source(dof) {
             Source::Free(i) => vec![(i, 1.0)],
-            Source::Held => {
+            Source::Held(_) => {
                 let arm = [x[0], x[1], x[2] - self.origin_z];
                 let term = |(k, &q): (usize, &usize)| (self.free.len() + k, rigid_lever(arm, dof % 3, q));
                 self.shaft.iter().enumerate().map(term).collect()
@@ -106,31 +124,31 @@ impl Coordinates {
     /// Nodal values w = T y, `[n_dofs]`.
     pub fn expand(&self, y: &[f64]) -> Vec<f64> {
         let q = &y[self.free.len()..];
-        let value = |(dof, source): (usize, &Source)| match source {
-            Source::Free(i) => y[*i],
-            Source::Held => self
+        let value = |dof: usize| match self.source(dof) {
+            Source::Free(i) => y[i],
+            Source::Held(place) => self
                 .shaft
                 .iter()
                 .zip(q)
-                .map(|(&s, q)| self.lever(dof, s) * q)
+                .map(|(&s, q)| self.lever(place, dof % 3, s) * q)
                 .sum(),
         };
-        self.sources.iter().enumerate().map(value).collect()
+        (0..self.sources.len()).map(value).collect()
     }
 
     /// Generalised loads T^T f, `[n]`.
     pub fn reduce(&self, load: &[f64]) -> Vec<f64> {
         let mut y = vec![0.0; self.n()];
         let first = self.free.len();
-        for (dof, (source, f)) in self.sources.iter().zip(load).enumerate() {
-            match source {
-                Source::Free(i) => y[*i] = *f,
-                Source::Held if *f != 0.0 => {
+        for (dof, f) in load.iter().enumerate() {
+            match self.source(dof) {
+                Source::Free(i) => y[i] = *f,
+                Source::Held(place) if *f != 0.0 => {
                     for (k, &s) in self.shaft.iter().enumerate() {
-                        y[first + k] += self.lever(dof, s) * f;
+                        y[first + k] += self.lever(place, dof % 3, s) * f;
                     }
                 }
-                Source::Held => {}
+                Source::Held(_) => {}
             }
         }
         y
@@ -143,11 +161,11 @@ impl Coordinates {
             let mut shaft = vec![0.0; self.shaft.len()];
             for (&node, coefficients) in weights.nodes.iter().zip(&weights.coefficients) {
                 for (component, &value) in coefficients[direction].iter().enumerate() {
-                    match self.sources[3 * node + component] {
+                    match self.source(3 * node + component) {
                         Source::Free(i) => load.push((i, value)),
-                        Source::Held => {
+                        Source::Held(place) => {
                             for (sum, &q) in shaft.iter_mut().zip(&self.shaft) {
-                                *sum += self.lever(3 * node + component, q) * value;
+                                *sum += self.lever(place, component, q) * value;
                             }
                         }
                     }
@@ -176,15 +194,15 @@ impl Coordinates {
         for (dof, row) in a.outer_iterator().enumerate() {
             let mut moved = vec![0.0; m];
             for (j, value) in row.iter() {
-                if self.sources[j] == Source::Held {
-                    (0..m).for_each(|k| moved[k] += value * self.lever(j, self.shaft[k]));
+                if let Source::Held(place) = self.source(j) {
+                    (0..m).for_each(|k| moved[k] += value * self.lever(place, j % 3, self.shaft[k]));
                 }
             }
-            match self.sources[dof] {
+            match self.source(dof) {
                 Source::Free(i) => border[m * i..m * (i + 1)].copy_from_slice(&moved),
-                Source::Held => {
+                Source::Held(place) => {
                     for k in 0..m {
-                        let lever = self.lever(dof, self.shaft[k]);
+                        let lever = self.lever(place, dof % 3, self.shaft[k]);
                         (0..m).for_each(|l| corner[m * k + l] += lever * moved[l]);
                     }
                 }

@@ -200,7 +200,9 @@ fn ring_at_start(body: &RingBody, elastic: &[f64], q: [f64; 5], velocity: [f64; 
     let field = |q: [f64; 5]| {
         let mut y = vec![0.0; coordinates.n()];
         for (i, &dof) in coordinates.free().iter().enumerate() {
-            y[i] = coordinates.rigid_motion(dof, q);
+            let node = 3 * (dof / 3);
+            let x = [0, 1, 2].map(|c| body.positions[node + c]);
+            y[i] = coordinates.rigid_motion(dof, x, q);
         }
         dofs.iter()
             .enumerate()

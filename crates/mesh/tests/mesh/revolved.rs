@@ -1,11 +1,11 @@
 //! Revolved rings: volumes, periodicity, groove, orientation, numbering.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::f64::consts::{PI, TAU};
 
 use mesh::{
-    Arc, ElementKind, Mesh, Origin, RingSide, Section, Snap, Torus, check_mesh, check_torus, check_unit,
-    require_groups, revolve,
+    Arc, ElementKind, Facet, Mesh, Origin, RingSide, Section, Snap, Torus, check_mesh, check_torus,
+    check_unit, require_groups, revolve,
 };
 
 use crate::{relative_volume, revolved, ring, section};
@@ -221,4 +221,31 @@ fn impossible_revolves_say_why() {
         error.contains("1.000e-4 m off the circle of radius 4.65e-3 m"),
         "{error}"
     );
+}
+
+/// Wrong: a rank that keeps a part of a mesh would put forces on other nodes, or lose a part of a surface.
+#[test]
+fn a_mesh_with_some_of_its_elements_keeps_its_nodes_and_their_facets() {
+    let whole = revolve(&section(RingSide::Inner), 12, ElementKind::Hex8, &[]).unwrap();
+    let raceway = whole.group("raceway").to_vec();
+    let surface: BTreeSet<usize> = raceway.iter().map(|f| f.element).collect();
+    let kept: Vec<usize> = (0..whole.n_elements())
+        .filter(|e| surface.contains(e) || e % 7 == 3)
+        .collect();
+    assert!(kept.len() < whole.n_elements());
+    let part = whole.clone().with_elements(&kept);
+    assert_eq!(part.nodes, whole.nodes);
+    for (place, &e) in kept.iter().enumerate() {
+        assert_eq!(part.element(place), whole.element(e));
+    }
+    assert_eq!(part.n_elements(), kept.len());
+    let nodes = |mesh: &Mesh, facets: &[Facet]| -> Vec<Vec<usize>> {
+        let nodes = |&facet: &Facet| mesh.facet_nodes(facet).collect();
+        facets.iter().map(nodes).collect()
+    };
+    let whole_nodes = nodes(&whole, &raceway);
+    assert!(nodes(&part, part.group("raceway")) == whole_nodes);
+    assert!(part.group("bore").len() < whole.group("bore").len());
+    let none = whole.with_elements(&[]);
+    assert!(none.group("raceway").is_empty() && none.connectivity.is_empty());
 }

@@ -149,6 +149,15 @@ impl SectorLayout {
         }
     }
 
+    /// Lets go of what only the analysis of sectors needs, but for those in `kept`.
+    pub fn forget_all_but(&mut self, kept: Range<usize>) {
+        for (s, sector) in self.sectors.iter_mut().enumerate() {
+            if !kept.contains(&s) {
+                (sector.dofs, sector.is_shared) = (Vec::new(), Vec::new());
+            }
+        }
+    }
+
     /// Where a row is.
     pub(super) fn place(&self, row: usize) -> Place {
         let (owner, n_sectors) = (self.owners[row] as usize, self.sectors.len());
