@@ -13,7 +13,7 @@
 //! | interface | as the solver says | all of it with few sectors |
 //! | columns | 8 r (2 b + 1) | solutions under all contact forces, and what of them is on interfaces |
 //! | work | 16 E_s + work space of s, per worker | the matrix that is factored, and fronts, of the largest sectors |
-//! | results | 240 n + 24 e p + 48 e c | stress, record and output; rank 0 alone |
+//! | results | rank 0: 240 n + 24 e p + 48 o c; others: 24 r + 24 o p + 48 f c | stress of the o elements owned, f in the largest sector; on rank 0 record and output |
 //!
 //! Statics has the matrices of one ring at a time and lets go of them; motion keeps those of both. Alone and with several threads
 //! both rings are made at once.
@@ -51,7 +51,7 @@ pub struct RankMemory {
     pub columns: usize,
     /// Work space of the factorisation.
     pub work: usize,
-    /// Stress, record and output; rank 0 alone.
+    /// Stress, and on rank 0 record and output.
     pub results: usize,
 }
 
@@ -98,6 +98,8 @@ impl RankMemory {
         let per_element = 8 * mesh.kind.n_nodes();
         let (n_dofs, n_elements) = (mesh.n_dofs(), ring.n_elements());
         let own_elements: usize = costs.iter().map(|c| c.n_elements).sum();
+        let largest = costs.iter().map(|c| c.n_elements).max().unwrap_or(0);
+        let corners = 48 * mesh.kind.n_corners();
         let rows: usize = costs.iter().map(|c| c.n_rows).sum();
         let mut work: Vec<usize> = costs
             .iter()
@@ -115,9 +117,9 @@ impl RankMemory {
             columns: 8 * (rows + symbolic.layout().interface().len()) * (2 * n_balls + 1),
             work: work.iter().rev().take(share.n_threads).sum(),
             results: if share.rank == 0 {
-                80 * n_dofs + 3 * per_element * n_elements + 48 * mesh.kind.n_corners() * own_elements
+                80 * n_dofs + 3 * per_element * n_elements + corners * own_elements
             } else {
-                0
+                24 * rows + 3 * per_element * own_elements + corners * largest
             },
         }
     }
