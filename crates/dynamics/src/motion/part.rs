@@ -17,8 +17,7 @@ use crate::effects::{self, FrameTurn, Loads, Now};
 use crate::error::DynamicsError;
 use crate::problem::Site;
 
-/// Change of the frame's inertia loads in a round over the largest force, at which they count as settled: a bound of the sum of all
-/// ([`super::space::Space::size`]), which is a few times that sum where contacts concentrate the change.
+/// Change of the frame's inertia loads in a round, sum of all, over the largest force, at which they count as settled.
 const FRAME_TOLERANCE: f64 = 1e-9;
 /// The same over the inertia loads themselves, which a body without other forces has alone: what rounding of a transform of
 /// its motion leaves of them.
@@ -236,8 +235,9 @@ impl Motion<'_> {
         let scheme = (self.settings.integrator, span.dt);
         let new = ring.body.frame_load(*turn, scheme, ring.old, Some(dw));
         let change = combined([1.0, -1.0], &new, used);
-        let size = |f: &[f64]| ring.body.space.size(f);
-        if size(&change) <= (FRAME_TOLERANCE * scale).max(FRAME_ROUND_OFF * size(&new)) {
+        let space = &ring.body.space;
+        let limit = (FRAME_TOLERANCE * scale).max(FRAME_ROUND_OFF * space.size(&new));
+        if space.is_within(limit, &change) {
             return true;
         }
         *used = new;

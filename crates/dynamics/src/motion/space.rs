@@ -147,11 +147,26 @@ impl Space {
 
     /// A bound of the sum of the magnitudes of the coordinates of `x`: the root of the sum of their squares times that of their number.
     pub fn size(&self, x: &[f64]) -> f64 {
-        let n = match self {
+        (self.n(x) as f64 * self.dot(x, x)).sqrt()
+    }
+
+    /// Whether the sum of the magnitudes of the coordinates of `x` is at most `limit`. It lies between the root of the sum of their
+    /// squares and [`Space::size`]; only where that does not decide, harmonics are transformed.
+    pub fn is_within(&self, limit: f64, x: &[f64]) -> bool {
+        let least = self.dot(x, x).sqrt();
+        if least > limit {
+            return false;
+        }
+        let sum = || self.coordinates(x).iter().map(|c| c.abs()).sum::<f64>();
+        (self.n(x) as f64).sqrt() * least <= limit || sum() <= limit
+    }
+
+    /// Number of coordinates of the vector `x`.
+    fn n(&self, x: &[f64]) -> usize {
+        match self {
             Space::Nodal => x.len(),
             Space::Harmonic(space) => space.ring.n() + space.n_shaft,
-        };
-        (n as f64 * self.dot(x, x)).sqrt()
+        }
     }
 }
 
