@@ -6,7 +6,8 @@ use std::sync::OnceLock;
 use crate::util::tables::Table;
 use crate::util::{Dir, Files, RIGID, assert_within, with_line};
 
-const SWEEP: &str = "[sweep]\nkey = \"effects.radial_force.value\"\nvalues = [\"0 kN\", \"1 kN\"]";
+const SWEEP: &str = "[sweep]\nkey = \"effects.radial_force.value\"\nvalues = [\"0 kN\", \"1 kN\"]\n\n\
+                     [probes.profile.arc]\nring = \"outer\"\nazimuth = \"0 deg\"\ngroove_angle = [\"-20 deg\", \"45 deg\"]\npoints = 66";
 const MOTION: &str = "[dynamic]\nduration = \"0.2 ms\"\nstep = \"20 us\"\noutput_every = 5\n\n[speed]\ninner = \"1800 rpm\"\n\n\
                       [probes.node.p]\nring = \"outer\"\nazimuth = \"0 deg\"\ngroove_angle = \"15 deg\"\n\n\
                       [probes.contact.c]\nball = 0\nring = \"inner\"\n\n\
@@ -49,6 +50,9 @@ fn every_run_has_the_figures_of_its_kind() {
         "contact_angle_round",
         "peak_pressure",
         "peak_pressure_round",
+        "profile_arc_principal_stress",
+        "profile_arc_stress",
+        "profile_arc_von_mises",
         "raceway_inner",
         "raceway_outer",
         "section_inner",

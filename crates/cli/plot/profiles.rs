@@ -1,4 +1,4 @@
-//! Profiles of stress along a line, at one step.
+//! Profiles of stress along a line: all stresses at one step, and of a sweep von Mises stress at all its points.
 
 use std::collections::BTreeMap;
 
@@ -6,6 +6,7 @@ use anyhow::{Context, anyhow};
 use figure::{Axis, Figure, Series};
 
 use super::quantity::{self, DEGREE, MEGAPASCAL, MICROMETRE, Unit, points};
+use super::results::Steps;
 use super::{Choice, Named, Results};
 
 /// Table of all profiles.
@@ -29,7 +30,7 @@ const FIGURES: [(&str, &str, &[&str]); 2] = [
 /// Rows of one profile at one step, by the names of the columns.
 type Columns = BTreeMap<String, Vec<f64>>;
 
-/// The figures of `profiles.csv` at the chosen step, else at the last.
+/// The figures of `profiles.csv` at the chosen step, else at the last, and then of a sweep over all points.
 pub fn figures(results: &Results, choice: &Choice) -> anyhow::Result<Vec<Named>> {
     let path = results.dir.join(FILE);
     if !path.exists() {
@@ -53,26 +54,43 @@ pub fn figures(results: &Results, choice: &Choice) -> anyhow::Result<Vec<Named>>
         .records()
         .collect::<Result<_, _>>()
         .with_context(|| format!("{} is damaged", path.display()))?;
-    let steps: Vec<u64> = rows.iter().filter_map(|row| row[step].parse().ok()).collect();
-    let Some(shown) = choice
-        .step
-        .filter(|s| steps.contains(s))
-        .or(steps.iter().max().copied())
-    else {
-        return Ok(Vec::new());
-    };
-    let mut profiles: BTreeMap<String, Columns> = BTreeMap::new();
-    for row in rows.iter().filter(|row| row[step].parse() == Ok(shown)) {
-        let columns = profiles.entry(row[profile].to_string()).or_default();
+    let mut profiles: BTreeMap<String, BTreeMap<u64, Columns>> = BTreeMap::new();
+    for row in &rows {
+        let Ok(number) = row[step].parse() else { continue };
+        let steps = profiles.entry(row[profile].to_string()).or_default();
+        let columns = steps.entry(number).or_default();
         for (name, cell) in names.iter().zip(row) {
-            columns
-                .entry(name.clone())
-                .or_default()
-                .push(cell.parse().unwrap_or(f64::NAN));
+            let values = columns.entry(name.clone()).or_default();
+            values.push(cell.parse().unwrap_or(f64::NAN));
         }
     }
-    let of_profile = |(name, columns): (&String, &Columns)| of_profile(name, columns, &names, shown);
-    Ok(profiles.iter().flat_map(of_profile).collect())
+    let mut figures = Vec::new();
+    for (name, steps) in &profiles {
+        let chosen = choice.step.filter(|s| steps.contains_key(s));
+        let Some((shown, columns)) =
+            chosen.map_or_else(|| steps.last_key_value(), |s| steps.get_key_value(&s))
+        else {
+            continue;
+        };
+        figures.extend(of_profile(name, columns, &names, *shown));
+        if let (Steps::Sweep(_), None) = (&results.steps, choice.step) {
+            figures.push(over_sweep(results, name, steps)?);
+        }
+    }
+    Ok(figures)
+}
+
+/// Von Mises stress along a profile, a curve per point of a sweep.
+fn over_sweep(results: &Results, profile: &str, steps: &BTreeMap<u64, Columns>) -> anyhow::Result<Named> {
+    let (axis, _) = along(steps.values().next().expect("a profile has rows"));
+    let stress = MEGAPASCAL.axis("von Mises stress").including(0.0);
+    let mut figure = Figure::new(format!("Profile {profile}: von Mises stress"), axis, stress);
+    for (i, (&step, columns)) in steps.iter().enumerate() {
+        let values = points(&along(columns).1, &MEGAPASCAL.of(&columns["von_mises_pa"]));
+        let part = i as f64 / (steps.len() - 1).max(1) as f64;
+        figure = figure.series(Series::line(results.name_of(step)?, values).shade(part));
+    }
+    Ok(Named::new(format!("profile_{profile}_von_mises"), figure))
 }
 
 /// Both figures of a profile, columns in the order of the table.

@@ -77,6 +77,18 @@ impl Results {
             }
         }
     }
+
+    /// What tells a step from others: the swept value or the time.
+    pub fn name_of(&self, step: u64) -> anyhow::Result<String> {
+        let Some(balls) = &self.balls else {
+            return Ok(format!("step {step}"));
+        };
+        let row = balls.column("step")?.iter().position(|s| *s == step as f64);
+        Ok(match self.against(balls)? {
+            None => "equilibrium".into(),
+            Some((axis, values)) => row.map_or_else(|| format!("step {step}"), |row| axis.value(values[row])),
+        })
+    }
 }
 
 /// The key of a scene without what a reader can tell from its other parts.

@@ -1,6 +1,6 @@
 //! Stress over the section of a raceway: along the arc of the groove at the most loaded ball.
 
-use checkpoint::{StepRecord, all_steps, read_any_step, read_mesh};
+use checkpoint::{all_steps, read_any_step, read_mesh};
 use contact::Groove;
 use figure::{Figure, Series};
 
@@ -27,7 +27,7 @@ pub fn figures(results: &Results, choice: &Choice) -> anyhow::Result<Vec<Named>>
     let grid = read_mesh(&results.dir)?;
     for (i, &step) in steps.iter().enumerate() {
         let record = read_any_step(&results.dir, step)?;
-        let name = name_of(results, balls, &record)?;
+        let name = results.name_of(record.step)?;
         let part = i as f64 / (steps.len() - 1).max(1) as f64;
         for (figure, groove) in figures.iter_mut().zip(raceways::grooves(&record)?) {
             let nodes = raceways::nodes(&grid, &record, &groove);
@@ -65,22 +65,6 @@ fn over_section(groove: &Groove) -> Figure {
         DEGREE.axis("groove angle").tight(),
         MEGAPASCAL.axis("von Mises stress").including(0.0),
     )
-}
-
-/// What tells a step from others.
-fn name_of(results: &Results, balls: &Table, record: &StepRecord) -> anyhow::Result<String> {
-    let row = row_of(balls, record.step)?;
-    Ok(match results.against(balls)? {
-        None => "equilibrium".into(),
-        Some((axis, values)) => {
-            row.map_or_else(|| format!("step {}", record.step), |row| axis.value(values[row]))
-        }
-    })
-}
-
-fn row_of(balls: &Table, step: u64) -> anyhow::Result<Option<usize>> {
-    let steps = balls.column("step")?;
-    Ok(steps.iter().position(|s| *s == step as f64))
 }
 
 /// The ball with the largest force on a raceway in a step, and its azimuth, deg.
