@@ -139,8 +139,7 @@ fn round_each(results: &Results, table: &Table, steps: &Rows, contact: &Contact)
         let name = against
             .as_ref()
             .map_or(String::new(), |(axis, value)| axis.value(value[rows[0]]));
-        let part = step as f64 / (n - 1).max(1) as f64;
-        figure = figure.series(Series::line_and_marks(name, places).shade(part));
+        figure = figure.series(Series::line_and_marks(name, places).shade(step, n));
     }
     Ok(Named::new(format!("{}_round", contact.name), figure))
 }

@@ -87,8 +87,7 @@ fn over_sweep(results: &Results, profile: &str, steps: &BTreeMap<u64, Columns>) 
     let mut figure = Figure::new(format!("Profile {profile}: von Mises stress"), axis, stress);
     for (i, (&step, columns)) in steps.iter().enumerate() {
         let values = points(&along(columns).1, &MEGAPASCAL.of(&columns["von_mises_pa"]));
-        let part = i as f64 / (steps.len() - 1).max(1) as f64;
-        figure = figure.series(Series::line(results.name_of(step)?, values).shade(part));
+        figure = figure.series(Series::line(results.name_of(step)?, values).shade(i, steps.len()));
     }
     Ok(Named::new(format!("profile_{profile}_von_mises"), figure))
 }

@@ -28,7 +28,6 @@ pub fn figures(results: &Results, choice: &Choice) -> anyhow::Result<Vec<Named>>
     for (i, &step) in steps.iter().enumerate() {
         let record = read_any_step(&results.dir, step)?;
         let name = results.name_of(record.step)?;
-        let part = i as f64 / (steps.len() - 1).max(1) as f64;
         for (figure, groove) in figures.iter_mut().zip(raceways::grooves(&record)?) {
             let nodes = raceways::nodes(&grid, &record, &groove);
             let (ball, azimuth) = most_loaded(balls, step, &groove)?;
@@ -46,7 +45,7 @@ pub fn figures(results: &Results, choice: &Choice) -> anyhow::Result<Vec<Named>>
             }
             let label = format!("{name}, ball {ball} at {azimuth:.0} deg");
             let empty = figure.take().unwrap_or_else(|| over_section(&groove));
-            *figure = Some(empty.series(Series::line_and_marks(label, points).shade(part)));
+            *figure = Some(empty.series(Series::line_and_marks(label, points).shade(i, steps.len())));
         }
     }
     let named = figures.into_iter().zip(["inner", "outer"]);

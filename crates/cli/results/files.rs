@@ -44,8 +44,13 @@ struct Open {
     output: BackgroundOutput,
     tables: Tables,
     probes: Option<Probes>,
-    stress_seconds: f64,
-    output_seconds: f64,
+    spent: Spent,
+}
+
+/// Seconds of this thread since the files were opened.
+struct Spent {
+    stress: f64,
+    output: f64,
 }
 
 impl Files {
@@ -161,12 +166,9 @@ impl Files {
         let Some(probes) = &open.probes else {
             return Ok(());
         };
-        let clock = Instant::now();
-        let values = probes.values(shown)?;
-        open.stress_seconds += clock.elapsed().as_secs_f64();
-        let clock = Instant::now();
-        open.tables.append_probes(step, time, value, &values)?;
-        open.output_seconds += clock.elapsed().as_secs_f64();
+        let values = open.spent.on_stress(|| probes.values(shown))?;
+        let append = || open.tables.append_probes(step, time, value, &values);
+        open.spent.on_output(append)?;
         Ok(())
     }
 
@@ -179,9 +181,8 @@ impl Files {
         snapshot: &Snapshot,
     ) -> Result<(), Failure> {
         let Some(open) = &mut self.open else { return Ok(()) };
-        let clock = Instant::now();
-        open.tables.append(step, time, value, snapshot)?;
-        open.output_seconds += clock.elapsed().as_secs_f64();
+        let append = || open.tables.append(step, time, value, snapshot);
+        open.spent.on_output(append)?;
         Ok(())
     }
 
@@ -197,10 +198,9 @@ impl Files {
         let Some(probes) = &open.probes else {
             return Ok(());
         };
-        let clock = Instant::now();
-        let rows = probes.profile_rows(shown)?;
-        open.stress_seconds += clock.elapsed().as_secs_f64();
-        open.tables.append_profiles(step, time, value, rows)?;
+        let rows = open.spent.on_stress(|| probes.profile_rows(shown))?;
+        let append = || open.tables.append_profiles(step, time, value, rows);
+        open.spent.on_output(append)?;
         Ok(())
     }
 
@@ -211,12 +211,20 @@ impl Files {
         record: impl FnOnce(&RingStress) -> Result<StepRecord, Failure>,
     ) -> Result<(), Failure> {
         let Some(open) = &mut self.open else { return Ok(()) };
-        let clock = Instant::now();
-        let record = record(&self.ring_stress)?;
-        open.stress_seconds += clock.elapsed().as_secs_f64();
-        let clock = Instant::now();
-        open.output.write_step(record)?;
-        open.output_seconds += clock.elapsed().as_secs_f64();
+        let record = open.spent.on_stress(|| record(&self.ring_stress))?;
+        open.spent.on_output(|| open.output.write_step(record))?;
+        Ok(())
+    }
+
+    /// As [`Files::write_fields`] for a record that needs nothing but itself: the thread that writes makes it.
+    pub fn write_fields_later(
+        &mut self,
+        record: impl FnOnce(&RingStress) -> StepRecord + Send + 'static,
+    ) -> Result<(), Failure> {
+        let Some(open) = &mut self.open else { return Ok(()) };
+        let ring_stress = self.ring_stress.clone();
+        let hand_over = || open.output.write_step_made_by(move || record(&ring_stress));
+        open.spent.on_output(hand_over)?;
         Ok(())
     }
 
@@ -225,19 +233,6 @@ impl Files {
         self.open
             .as_ref()
             .map_or(Duration::ZERO, |open| open.output.waited())
-    }
-
-    /// The same for a record that needs nothing but itself: the thread that writes makes it.
-    pub fn write_fields_later(
-        &mut self,
-        record: impl FnOnce(&RingStress) -> StepRecord + Send + 'static,
-    ) -> Result<(), Failure> {
-        let Some(open) = &mut self.open else { return Ok(()) };
-        let clock = Instant::now();
-        let ring_stress = self.ring_stress.clone();
-        open.output.write_step_made_by(move || record(&ring_stress))?;
-        open.output_seconds += clock.elapsed().as_secs_f64();
-        Ok(())
     }
 
     /// Waits for the disk, closes the files and says what the run cost.
@@ -267,10 +262,10 @@ impl Files {
         }
         Ok(Costs {
             read,
-            stress: open.stress_seconds + written.making.as_secs_f64() + self.shared_seconds[0],
+            stress: open.spent.stress + written.making.as_secs_f64() + self.shared_seconds[0],
             gather: (Communicator::world().size() > 1).then_some(self.shared_seconds[1]),
             near_field: near_field.map(|time| time.as_secs_f64()),
-            output: open.output_seconds + clock.elapsed().as_secs_f64(),
+            output: open.spent.output + clock.elapsed().as_secs_f64(),
             disk_wait: written.waited.as_secs_f64(),
             disk: written.writing.as_secs_f64(),
             total: start.elapsed().as_secs_f64(),
@@ -288,10 +283,31 @@ impl Open {
             output: BackgroundOutput::start(output, QUEUE, companions),
             tables,
             probes,
-            stress_seconds: 0.0,
-            output_seconds: clock.elapsed().as_secs_f64(),
+            spent: Spent {
+                stress: 0.0,
+                output: clock.elapsed().as_secs_f64(),
+            },
         })
     }
+}
+
+impl Spent {
+    /// What `work` makes; its seconds count as stress.
+    fn on_stress<T>(&mut self, work: impl FnOnce() -> T) -> T {
+        timed(&mut self.stress, work)
+    }
+
+    /// What `work` makes; its seconds count as output.
+    fn on_output<T>(&mut self, work: impl FnOnce() -> T) -> T {
+        timed(&mut self.output, work)
+    }
+}
+
+fn timed<T>(seconds: &mut f64, work: impl FnOnce() -> T) -> T {
+    let clock = Instant::now();
+    let made = work();
+    *seconds += clock.elapsed().as_secs_f64();
+    made
 }
 
 /// Columns of the tables that probes need.

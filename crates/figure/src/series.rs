@@ -78,9 +78,9 @@ impl Series {
         self
     }
 
-    /// A colour by a number from 0 to 1 instead of the next of the palette, for families of curves.
-    pub fn shade(mut self, part: f64) -> Series {
-        self.shade = Some(part);
+    /// The colour of curve `i` of a family of `n`, from the first to the last shade, instead of the next of the palette.
+    pub fn shade(mut self, i: usize, n: usize) -> Series {
+        self.shade = Some(i as f64 / n.saturating_sub(1).max(1) as f64);
         self
     }
 }

@@ -84,7 +84,7 @@ fn awkward() -> Vec<Figure> {
                         format!("radial force {i} kN, {}", &long[..5 * i.min(15)]),
                         wave(50, 0.1 * i as f64),
                     )
-                    .shade(i as f64 / n as f64),
+                    .shade(i, n),
                 )
             },
         )
