@@ -55,7 +55,7 @@ pub struct RingModel {
 pub struct FoundSectors {
     equal: OnceLock<Result<Periodicity, NotPeriodic>>,
     nearly: OnceLock<Option<NearlyPeriodic>>,
-    node_masses: OnceLock<Vec<f64>>,
+    node_masses: OnceLock<Arc<[f64]>>,
     pub(crate) division: Option<Division>,
 }
 
@@ -69,16 +69,16 @@ impl RingModel {
     }
 
     /// Integral of rho N_a over the ring, kg, `[n_nodes]`; they sum to its mass. Found when first asked for, from the whole mesh.
-    pub fn node_masses(&self) -> Result<&[f64], FemError> {
-        if self.sectors.node_masses.get().is_none() {
-            assert!(self.is_whole(), "the masses of nodes are of the whole mesh");
-            let density = self.material.density;
-            let load = fem::body_load(&self.mesh, |_| [density, 0.0, 0.0])?;
-            let masses = load.into_iter().step_by(3).collect();
-            // Another thread may have been first, with the same masses.
-            let _ = self.sectors.node_masses.set(masses);
+    pub fn node_masses(&self) -> Result<Arc<[f64]>, FemError> {
+        if let Some(masses) = self.sectors.node_masses.get() {
+            return Ok(masses.clone());
         }
-        Ok(self.sectors.node_masses.get().map_or(&[], Vec::as_slice))
+        assert!(self.is_whole(), "the masses of nodes are of the whole mesh");
+        let density = self.material.density;
+        let load = fem::body_load(&self.mesh, |_| [density, 0.0, 0.0])?;
+        let masses = load.into_iter().step_by(3).collect();
+        // Another thread may have been first, with the same masses.
+        Ok(self.sectors.node_masses.get_or_init(|| masses).clone())
     }
 
     /// The mesh as a periodic one with a defect; None when it has no defect, or is not one.

@@ -25,7 +25,7 @@ pub struct Gravity {
     /// Its factor over time.
     schedule: Schedule,
     /// Nodal masses of the flexible rings, kg, `[n_nodes]`; None is a rigid ring.
-    node_masses: [Option<Vec<f64>>; 2],
+    node_masses: [Option<Arc<[f64]>>; 2],
 }
 
 impl Gravity {
@@ -37,8 +37,7 @@ impl Gravity {
     ) -> Result<Gravity, DynamicsError> {
         let masses = |side: Side| {
             let masses = |ring: &Arc<RingModel>| {
-                let masses = ring.node_masses().map(<[f64]>::to_vec);
-                masses.map_err(|source| DynamicsError::Fem {
+                ring.node_masses().map_err(|source| DynamicsError::Fem {
                     side: side.name(),
                     source,
                 })

@@ -2,7 +2,7 @@
 //! and the increment under their forces. Only nodes that they touch are transformed in between.
 
 use super::effective::CyclicFactor;
-use super::space::Space;
+use super::space::{Space, from_harmonics, to_harmonics};
 use super::vectors::add;
 use crate::sparse::SparseLoad;
 
@@ -11,15 +11,7 @@ impl CyclicFactor {
     pub fn solve(&self, space: &Space, load: Vec<f64>) -> Vec<f64> {
         let mut x = match space {
             Space::Harmonic(_) => load,
-            Space::Nodal => {
-                let ring = self.solver.inner().ring();
-                let (free, border) = load.split_at(ring.n());
-                let mut x = vec![0.0; ring.harmonic_len() + border.len()];
-                let (harmonics, rows) = x.split_at_mut(ring.harmonic_len());
-                ring.to_harmonic(free, harmonics);
-                rows.copy_from_slice(border);
-                x
-            }
+            Space::Nodal => to_harmonics(self.solver.inner().ring(), &load),
         };
         self.solve_in_place(&mut x);
         x
@@ -69,14 +61,7 @@ impl CyclicFactor {
         add(&mut x, predictor);
         match space {
             Space::Harmonic(_) => x,
-            Space::Nodal => {
-                let (harmonics, border) = x.split_at(ring.harmonic_len());
-                let mut y = vec![0.0; ring.n() + border.len()];
-                let (free, rows) = y.split_at_mut(ring.n());
-                ring.from_harmonic(harmonics, free);
-                rows.copy_from_slice(border);
-                y
-            }
+            Space::Nodal => from_harmonics(ring, &x),
         }
     }
 }

@@ -145,10 +145,7 @@ impl RingFactor {
                 side.resize(n * (1 + contacts.len()), 0.0);
                 fill(&mut side[n..], &contacts, n);
                 solver.solve(&mut side, 1 + contacts.len());
-                let moved: Vec<f64> = all.iter().map(|g| sparse_dot(g, &side[..n])).collect();
-                let compliance = self.column_compliance(all.len(), contacts.len(), |i, j| {
-                    sparse_dot(all[i], &side[n * (1 + j)..n * (2 + j)])
-                });
+                let (moved, compliance) = self.column_motion(&side, n, &all);
                 (Predictor::Columns(side), moved, compliance)
             }
             Factored::Sectors(factor) => {
@@ -159,7 +156,7 @@ impl RingFactor {
         };
         RingStep {
             predictor,
-            predicted: start.iter().zip(&moved).map(|(s, d)| s + d).collect(),
+            predicted: sum(&start, &moved),
             start,
             compliance,
             seconds: [sides, clock.elapsed().as_secs_f64() - sides],
@@ -189,11 +186,7 @@ impl RingFactor {
                 block[n..].fill(0.0);
                 fill(&mut block[n..], &step.contacts, n);
                 solver.solve(&mut block[n..], step.contacts.len());
-                let moved: Vec<f64> = all.iter().map(|g| sparse_dot(g, &block[..n])).collect();
-                let compliance = self.column_compliance(all.len(), step.contacts.len(), |i, j| {
-                    sparse_dot(all[i], &block[n * (1 + j)..n * (2 + j)])
-                });
-                (moved, compliance)
+                self.column_motion(block, n, &all)
             }
             (Factored::Sectors(factor), Predictor::Sectors(columns)) => {
                 let motions = factor.move_contacts(columns, &step.contacts, &all);
@@ -202,11 +195,21 @@ impl RingFactor {
             }
             _ => unreachable!("a step keeps what its factor made"),
         };
-        step.predicted = step.start.iter().zip(&moved).map(|(s, d)| s + d).collect();
+        step.predicted = sum(&step.start, &moved);
         step.compliance = compliance;
     }
 
-    /// The same from what contacts and mount have measured.
+    /// Motion of `all`, contacts, then mount, by the predictor of a block of columns of n coordinates, and their compliance.
+    fn column_motion(&self, block: &[f64], n: usize, all: &[&SparseLoad]) -> (Vec<f64>, Vec<f64>) {
+        let (predictor, columns) = block.split_at(n);
+        let moved = all.iter().map(|g| sparse_dot(g, predictor)).collect();
+        let compliance = self.column_compliance(all.len(), columns.len() / n, |i, j| {
+            sparse_dot(all[i], &columns[n * j..n * (j + 1)])
+        });
+        (moved, compliance)
+    }
+
+    /// Compliance of contacts, then mount, of a ring in sectors, from what they have measured.
     fn motion_compliance(&self, motions: &Motions) -> Vec<f64> {
         let size = motions.predicted.len();
         let contacts = motions.by_contacts.len() / size.max(1);
@@ -318,6 +321,11 @@ impl RingFactor {
 fn functionals(body: &RingBody, feet: &[NodalWeights]) -> Vec<SparseLoad> {
     let reduced = feet.iter().flat_map(|foot| body.coordinates.reduce_weights(foot));
     reduced.collect()
+}
+
+/// Component-wise a + b.
+fn sum(a: &[f64], b: &[f64]) -> Vec<f64> {
+    a.iter().zip(b).map(|(a, b)| a + b).collect()
 }
 
 /// S^-1 of sparse loads, column-major `[n][loads]`.

@@ -108,14 +108,7 @@ impl Space {
     pub fn of_coordinates(&self, y: Vec<f64>) -> Vec<f64> {
         match self {
             Space::Nodal => y,
-            Space::Harmonic(space) => {
-                let (free, shaft) = y.split_at(space.ring.n());
-                let mut x = vec![0.0; self.len(y.len())];
-                let (harmonics, border) = x.split_at_mut(space.ring.harmonic_len());
-                space.ring.to_harmonic(free, harmonics);
-                border.copy_from_slice(shaft);
-                x
-            }
+            Space::Harmonic(space) => to_harmonics(&space.ring, &y),
         }
     }
 
@@ -123,14 +116,7 @@ impl Space {
     pub fn coordinates(&self, x: &[f64]) -> Vec<f64> {
         match self {
             Space::Nodal => x.to_vec(),
-            Space::Harmonic(space) => {
-                let (harmonics, border) = x.split_at(space.ring.harmonic_len());
-                let mut y = vec![0.0; space.ring.n() + space.n_shaft];
-                let (free, shaft) = y.split_at_mut(space.ring.n());
-                space.ring.from_harmonic(harmonics, free);
-                shaft.copy_from_slice(border);
-                y
-            }
+            Space::Harmonic(space) => from_harmonics(&space.ring, x),
         }
     }
 
@@ -168,6 +154,26 @@ impl Space {
             Space::Harmonic(space) => space.ring.n() + space.n_shaft,
         }
     }
+}
+
+/// Harmonics and border of the coordinates `y`.
+pub(super) fn to_harmonics(ring: &CyclicRing, y: &[f64]) -> Vec<f64> {
+    let (free, border) = y.split_at(ring.n());
+    let mut x = vec![0.0; ring.harmonic_len() + border.len()];
+    let (harmonics, rows) = x.split_at_mut(ring.harmonic_len());
+    ring.to_harmonic(free, harmonics);
+    rows.copy_from_slice(border);
+    x
+}
+
+/// Coordinates of the harmonics and border `x`.
+pub(super) fn from_harmonics(ring: &CyclicRing, x: &[f64]) -> Vec<f64> {
+    let (harmonics, border) = x.split_at(ring.harmonic_len());
+    let mut y = vec![0.0; ring.n() + border.len()];
+    let (free, rows) = y.split_at_mut(ring.n());
+    ring.from_harmonic(harmonics, free);
+    rows.copy_from_slice(border);
+    y
 }
 
 impl HarmonicSpace {

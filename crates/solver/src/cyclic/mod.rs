@@ -39,6 +39,7 @@ mod defect;
 mod factor;
 mod kernel;
 mod matrix;
+mod mirrored;
 mod number;
 mod operator;
 mod part_field;

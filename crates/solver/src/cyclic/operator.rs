@@ -4,7 +4,12 @@
 //! motions, which are harmonics 0 and 1, so that it touches the first group alone. *Low* vectors hold that group and the border,
 //! `[low_len() + m]`.
 
+use pulp::Arch;
+use rayon::prelude::*;
+
+use super::factor::Symmetry;
 use super::matrix::CyclicMatrix;
+use super::mirrored::{Mirrored, MirroredProduct};
 use super::phases::LANES;
 use super::ring::CyclicRing;
 use crate::error::SolverError;
@@ -14,6 +19,8 @@ use crate::error::SolverError;
 pub struct HarmonicOperator {
     ring: CyclicRing,
     matrix: CyclicMatrix,
+    /// The matrix when its sections are their own mirror images.
+    mirrored: Option<Mirrored>,
     /// B and D, m low vectors.
     border: Vec<Vec<f64>>,
 }
@@ -40,6 +47,10 @@ impl HarmonicOperator {
         Ok(HarmonicOperator {
             border: (0..m).map(low).collect(),
             ring: ring.clone(),
+            mirrored: match ring.symmetry(matrix) {
+                Symmetry::Mirrored => Some(Mirrored::new(&ring.shared, matrix)),
+                Symmetry::None => None,
+            },
             matrix: matrix.clone(),
         })
     }
@@ -54,11 +65,13 @@ impl HarmonicOperator {
     /// # Panics
     /// When the length is another.
     pub fn product(&self, x: &[f64]) -> Vec<f64> {
-        let len = self.ring.harmonic_len();
+        let (len, low) = (self.ring.harmonic_len(), self.ring.low_len().max(1));
         let mut y = vec![0.0; x.len()];
-        self.ring
-            .apply_harmonic(&self.matrix, &x[..len], &mut y[..len])
-            .expect("the pattern was checked");
+        y[..len]
+            .par_chunks_mut(low)
+            .zip(x[..len].par_chunks(low))
+            .enumerate()
+            .for_each(|(group, (y, x))| self.group_product(group, x, y));
         self.add_border(x, &mut y);
         y
     }
@@ -71,7 +84,16 @@ impl HarmonicOperator {
     pub fn group_product(&self, group: usize, x: &[f64], y: &mut [f64]) {
         assert_eq!(x.len(), self.ring.low_len(), "one group of harmonics");
         assert_eq!(y.len(), self.ring.low_len(), "one group of harmonics");
-        self.ring.apply_group(&self.matrix, group, x, y);
+        match &self.mirrored {
+            Some(matrix) => Arch::new().dispatch(MirroredProduct {
+                shared: &self.ring.shared,
+                matrix,
+                group,
+                x,
+                y,
+            }),
+            None => self.ring.apply_group(&self.matrix, group, x, y),
+        }
     }
 
     /// Adds the rows of the border of the product with harmonics of which `low`, `[low_len()]`, are the first group, to the product `y`.
@@ -103,7 +125,8 @@ impl HarmonicOperator {
     /// Bytes of blocks and border.
     pub fn bytes(&self) -> usize {
         let border: usize = self.border.iter().map(Vec::capacity).sum();
-        size_of::<f64>() * (9 * self.matrix.n_couplings() + border)
+        let mirrored = self.mirrored.as_ref().map_or(0, Mirrored::bytes);
+        size_of::<f64>() * (9 * self.matrix.n_couplings() + border) + mirrored
     }
 }
 
