@@ -103,6 +103,14 @@ impl BearingGeometry {
         }
     }
 
+    /// Principal curvature of a raceway in the rolling direction where a ball touches it at the free contact angle, 1/m;
+    /// positive on the convex inner raceway. By Meusnier's theorem cos a0 over the distance from the axis.
+    pub fn rolling_curvature(&self, side: Side) -> f64 {
+        let cos = self.free_contact_angle().cos();
+        let radius = self.centre_radius(side) + side.sign() * self.groove_radius(side) * cos;
+        -side.sign() * cos / radius
+    }
+
     /// Radius of the circle of groove centres, m.
     pub fn centre_radius(&self, side: Side) -> f64 {
         match side {

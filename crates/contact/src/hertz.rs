@@ -8,7 +8,9 @@
 //! - approach d = 3 Q K(m) / (2 pi a E*), hence Q = K_hertz d^1.5.
 //!
 //! Reference: Johnson, Contact Mechanics (1985), 4.2; Harris, Rolling Bearing Analysis (4th ed.), chapter 6.
-//! Curvatures are taken at the groove bottom, as in the paper (rolling-direction radius d_i/2 or D_e/2).
+//! Curvatures are those of the torus where the ball touches it at the free contact angle a0: across the groove 1/R, in the
+//! rolling direction cos(a0) over the distance from the axis (Harris's 2/D_w gamma / (1 -+ gamma), gamma = D_w cos(a0) / D_m).
+//! They stay those under load; 10 degrees more at the 7010C would be 0.1 % of the stiffness and 0.4 % of the pressure.
 
 use crate::elliptic::complete_elliptic;
 use crate::geometry::{BearingGeometry, Side};
@@ -45,10 +47,7 @@ impl HertzContact {
     pub fn new(geometry: &BearingGeometry, side: Side, ball: Elastic, ring: Elastic) -> HertzContact {
         let ball_curvature = 2.0 / geometry.ball_diameter;
         let across = ball_curvature - 1.0 / geometry.groove_radius(side);
-        let rolling = match side {
-            Side::Inner => ball_curvature + 2.0 / geometry.inner_raceway_diameter,
-            Side::Outer => ball_curvature - 2.0 / geometry.outer_raceway_diameter,
-        };
+        let rolling = ball_curvature + geometry.rolling_curvature(side);
         let modulus = 1.0 / (ball.plane_compliance() + ring.plane_compliance());
         Self::from_curvatures(across, rolling, modulus)
     }
@@ -161,6 +160,35 @@ mod tests {
                 (k / expected - 1.0).abs() < 1e-3,
                 "{side:?}: {k} instead of {expected} N/mm^1.5"
             );
+        }
+    }
+
+    /// Wrong: the contact of an oblique ball would be that at the bottom of the groove, with 2.4 % too much pressure at 40 degrees.
+    /// Harris (4th ed.), eq. 2.28 and 2.30, by gamma: curvature sums of the 218 of his book.
+    #[test]
+    fn curvatures_are_those_at_the_free_contact_angle() {
+        let geometry = BearingGeometry {
+            n_balls: 16,
+            ball_diameter: 22.225e-3,
+            inner_raceway_diameter: 102.793736e-3,
+            outer_raceway_diameter: 147.726264e-3,
+            inner_groove_radius: 11.62812e-3,
+            outer_groove_radius: 11.62812e-3,
+            first_ball_azimuth: 0.0,
+        };
+        let d = geometry.ball_diameter;
+        let gamma = d * geometry.free_contact_angle().cos() / geometry.pitch_diameter();
+        let modulus = 113.7e9;
+        for (side, turn) in [
+            (Side::Inner, gamma / (1.0 - gamma)),
+            (Side::Outer, -gamma / (1.0 + gamma)),
+        ] {
+            let across = 2.0 / d - 1.0 / geometry.groove_radius(side);
+            let expected = HertzContact::from_curvatures(across, 2.0 / d * (1.0 + turn), modulus);
+            let contact = HertzContact::new(&geometry, side, steel(), steel());
+            let ratio = contact.peak_pressure(1.0) / expected.peak_pressure(1.0);
+            let exact = (modulus * 2.0 * steel().plane_compliance()).powf(-2.0 / 3.0);
+            assert!((ratio / exact - 1.0).abs() < 1e-9, "{side:?}: {ratio}");
         }
     }
 
