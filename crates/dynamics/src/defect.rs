@@ -1,98 +1,113 @@
-//! The defect of a ring that is periodic but for some nodes: what its elements add to the matrices of the regular ring.
+//! The defect of a ring that is periodic but for some nodes and elements: what it adds to the matrices of the regular ring.
 //!
 //! K = K_regular + the difference of the defect's elements, assembled twice: with their nodes where they are, and where they would
-//! be in the regular ring. The same for M. Products use the sum; factors follow from those of the regular ring
-//! ([`solver::cyclic::CyclicDefect`]). Cost: 16 n^2 bytes for n rows.
+//! be in the regular ring, which has missing elements as well. The same for M. Products use the sum; factors follow from those of the
+//! regular ring ([`solver::cyclic::CyclicDefect`]). Elements of nodes that are held besides belong to the defect too: their rows are
+//! gone from the true matrix. Cost: 16 n^2 bytes for n rows.
 
-use std::collections::BTreeMap;
-
-use mesh::Mesh;
-use solver::cyclic::Change;
+use mesh::{Mesh, NearlyPeriodic};
 use sprs::CsMat;
 
+use crate::defect_change::Changes;
 use crate::error::DynamicsError;
 use crate::model::RingModel;
 use crate::motion::coordinates::Coordinates;
+use crate::regular::RegularRing;
 use crate::sparse::{node_product, product};
 
-/// Most rows of a defect: beyond, its dense system costs more than harmonics save.
+/// Most rows of a defect, and most that it lacks: beyond, its dense system costs more than harmonics save.
 const MOST_ROWS: usize = 1500;
 
 /// A defect in nodal dofs.
 pub struct RingDefect {
-    /// Nodes of its elements, ascending.
+    /// Nodes of its elements in the regular ring, ascending: those of the true ring, then absent ones.
     nodes: Vec<usize>,
-    /// Where they are, and where they would be, m.
-    positions: [Vec<[f64; 3]>; 2],
-    /// Stiffness of its elements as they are, and as they would be, `[3 n][3 n]`.
-    stiffness: [CsMat<f64>; 2],
-    /// The same of the mass between nodes, `[n][n]`.
-    node_mass: [CsMat<f64>; 2],
-    /// Their differences.
+    /// How many of them the true ring has.
+    n_present: usize,
+    /// Its elements as they are, and as they would be.
+    patches: [Patch; 2],
+    /// Differences of M and K between nodes that are there.
     change: [CsMat<f64>; 2],
     note: String,
     bytes: usize,
 }
 
-/// Changes of the matrices of a ring's coordinates.
-pub struct Changes {
-    rows: Vec<usize>,
-    /// Of M and K, row-major.
-    values: [Vec<f64>; 2],
+/// Elements of the defect.
+pub(crate) struct Patch {
+    /// Positions of the nodes, m.
+    pub positions: Vec<[f64; 3]>,
+    /// `[3 n][3 n]`.
+    pub stiffness: CsMat<f64>,
+    /// Mass between nodes, `[n][n]`.
+    pub node_mass: CsMat<f64>,
 }
 
 impl RingDefect {
-    /// The defect of a ring without equal sectors; the inner error says why it cannot be solved as one.
-    pub fn new(ring: &RingModel, side: &'static str) -> Result<Result<RingDefect, String>, DynamicsError> {
-        let (mesh, Some(nearly)) = (&ring.mesh, ring.nearly_periodic()) else {
-            return Ok(Err("it is not periodic up to a defect either".to_string()));
-        };
-        let elements = nearly.elements(mesh);
-        let mut nodes: Vec<usize> = elements.iter().flat_map(|&e| mesh.element(e)).copied().collect();
+    /// The defect between a ring and its regular one; None when there is none. The inner error says why it cannot be solved as one.
+    pub fn new(
+        ring: &RingModel,
+        nearly: &NearlyPeriodic,
+        regular: &RegularRing,
+        side: &'static str,
+    ) -> Result<Result<Option<RingDefect>, String>, DynamicsError> {
+        let (mesh, n_nodes) = (&ring.mesh, ring.mesh.n_nodes());
+        let missing = mesh.n_elements()..mesh.n_elements() + nearly.n_missing(mesh);
+        let elements = [nearly.elements(mesh), elements_of(mesh, &regular.held_besides)].concat();
+        let mut present = elements.clone();
+        present.sort_unstable();
+        present.dedup();
+        let all: Vec<usize> = present.iter().copied().chain(missing.clone()).collect();
+        let mut nodes: Vec<usize> = all
+            .iter()
+            .flat_map(|&e| regular.mesh.element(e))
+            .copied()
+            .collect();
         nodes.sort_unstable();
         nodes.dedup();
-        if 3 * nodes.len() > MOST_ROWS {
-            return Ok(Err(format!(
-                "it is periodic up to a defect that touches {} dofs, more than {MOST_ROWS}",
-                3 * nodes.len()
-            )));
+        if nodes.is_empty() {
+            return Ok(Ok(None));
         }
-        let regular = nearly.regular(mesh);
-        let parts = [mesh, &regular].map(|mesh| mesh.part(&elements, &nodes));
-        let assemble = |part: &Mesh| {
-            let pattern = fem::Pattern::new(part)?;
-            Ok((
-                fem::assemble_stiffness(part, &ring.material)?,
-                fem::assemble_node_mass(&pattern, part, &ring.material)?,
-            ))
+        let n_present = nodes.partition_point(|&node| node < n_nodes);
+        let n_gone = nodes.len() - n_present + regular.held_besides.len();
+        for (n, what) in [(n_present, "touches"), (n_gone, "lacks")] {
+            if 3 * n > MOST_ROWS {
+                return Ok(Err(format!(
+                    "it is periodic up to a defect that {what} {} dofs, more than {MOST_ROWS}",
+                    3 * n
+                )));
+            }
+        }
+        // Absent nodes belong to no element of the true ring, so their places there mean nothing.
+        let mut placed = regular.mesh.nodes.clone();
+        placed[..n_nodes].copy_from_slice(&mesh.nodes);
+        let patch = |positions: &[[f64; 3]], elements: &[usize]| {
+            let whole = &regular.mesh;
+            let mut part = whole.part(elements, &nodes);
+            part.nodes = nodes.iter().map(|&node| positions[node]).collect();
+            Patch::new(part, ring).map_err(|source| DynamicsError::Fem { side, source })
         };
-        let fem_error = |source| DynamicsError::Fem { side, source };
-        let (k, m) = assemble(&parts[0]).map_err(fem_error)?;
-        let (k_regular, m_regular) = assemble(&parts[1]).map_err(fem_error)?;
-        let first = nearly.moved[0].0;
-        let note = format!(
-            "{} equal sectors but for {} nodes of {} elements in {} of them, the first node {first}, at most {:.1e} m from \
-             their places",
-            nearly.periodicity.n_sectors(),
-            nearly.moved.len(),
-            elements.len(),
-            nearly.n_sectors_moved(),
-            nearly.largest_move
-        );
-        Ok(Ok(RingDefect {
-            change: [&m - &m_regular, &k - &k_regular],
-            stiffness: [k, k_regular],
-            node_mass: [m, m_regular],
-            positions: parts.map(|part| part.nodes),
-            bytes: 6 * size_of::<f64>() * (3 * nodes.len()).pow(2),
+        let patches = [patch(&placed, &present)?, patch(&regular.mesh.nodes, &all)?];
+        let rows: Vec<usize> = (0..n_present).collect();
+        let dofs: Vec<usize> = (0..3 * n_present).collect();
+        let [is, would_be] = &patches;
+        let size = 3 * nodes.len();
+        let bytes = 6 * size_of::<f64>() * size.pow(2);
+        Ok(Ok(Some(RingDefect {
+            change: [
+                solver::restrict(&(&is.node_mass - &would_be.node_mass), &rows),
+                solver::restrict(&(&is.stiffness - &would_be.stiffness), &dofs),
+            ],
+            note: note(mesh, nearly, regular, [3 * n_present, bytes]),
+            patches,
+            bytes,
+            n_present,
             nodes,
-            note,
-        }))
+        })))
     }
 
-    /// Nodes of its elements, ascending.
+    /// Nodes of its elements that are there, ascending.
     pub fn nodes(&self) -> &[usize] {
-        &self.nodes
+        &self.nodes[..self.n_present]
     }
 
     /// Bytes of its dense matrices while the ring is factored.
@@ -129,70 +144,77 @@ impl RingDefect {
 
     fn values(&self, x: &[f64]) -> Vec<f64> {
         let of_node = |&node: &usize| [x[3 * node], x[3 * node + 1], x[3 * node + 2]];
-        self.nodes.iter().flat_map(of_node).collect()
+        self.nodes().iter().flat_map(of_node).collect()
     }
 
     fn add(&self, values: &[f64], sum: &mut [f64]) {
-        for (&node, value) in self.nodes.iter().zip(values.chunks_exact(3)) {
+        for (&node, value) in self.nodes().iter().zip(values.chunks_exact(3)) {
             (0..3).for_each(|i| sum[3 * node + i] += value[i]);
         }
     }
 
-    /// The changes in the coordinates of a ring: T^T A T as it is less what it would be, T taken at the nodes' places.
-    pub fn changes(&self, coordinates: &Coordinates) -> Changes {
-        let terms = self.positions.each_ref().map(|positions| {
-            let of_node =
-                |(&node, &x): (&usize, &[f64; 3])| [0, 1, 2].map(|i| coordinates.terms(3 * node + i, x));
-            let terms: Vec<_> = self.nodes.iter().zip(positions).flat_map(of_node).collect();
-            terms
-        });
-        let mut rows: Vec<usize> = terms[0].iter().flatten().map(|&(row, _)| row).collect();
-        rows.sort_unstable();
-        rows.dedup();
-        let place: BTreeMap<usize, usize> = rows.iter().copied().zip(0..).collect();
-        let n = rows.len();
-        let mut values = [vec![0.0; n * n], vec![0.0; n * n]];
-        for (which, sign) in [(0, 1.0), (1, -1.0)] {
-            let mut add = |of: usize, i: usize, j: usize, value: f64| {
-                for &(row, a) in &terms[which][i] {
-                    for &(column, b) in &terms[which][j] {
-                        values[of][n * place[&row] + place[&column]] += sign * a * b * value;
-                    }
-                }
-            };
-            for (&m, (a, b)) in self.node_mass[which].iter() {
-                (0..3).for_each(|c| add(0, 3 * a + c, 3 * b + c, m));
-            }
-            for (&k, (i, j)) in self.stiffness[which].iter() {
-                add(1, i, j, k);
-            }
-        }
-        values.iter_mut().for_each(|values| symmetrise(n, values));
-        Changes { rows, values }
+    /// What it changes in the matrices of the coordinates of the true and of the regular ring.
+    pub fn changes(&self, coordinates: &Coordinates, regular: &Coordinates) -> Changes {
+        Changes::new(&self.nodes, &self.patches, coordinates, regular)
     }
 }
 
-impl Changes {
-    /// Coordinates whose rows change, ascending.
-    pub fn rows(&self) -> &[usize] {
-        &self.rows
-    }
-
-    /// The change of `mass` M + `stiffness` K.
-    pub fn of(&self, [mass, stiffness]: [f64; 2]) -> Change {
-        let pairs = self.values[0].iter().zip(&self.values[1]);
-        Change {
-            rows: self.rows.clone(),
-            values: pairs.map(|(m, k)| mass * m + stiffness * k).collect(),
+impl Patch {
+    fn new(part: Mesh, ring: &RingModel) -> Result<Patch, fem::FemError> {
+        let n = part.n_nodes();
+        if part.connectivity.is_empty() {
+            return Ok(Patch {
+                positions: part.nodes,
+                stiffness: CsMat::zero((3 * n, 3 * n)),
+                node_mass: CsMat::zero((n, n)),
+            });
         }
+        let pattern = fem::Pattern::new(&part)?;
+        Ok(Patch {
+            stiffness: fem::assemble_stiffness(&part, &ring.material)?,
+            node_mass: fem::assemble_node_mass(&pattern, &part, &ring.material)?,
+            positions: part.nodes,
+        })
     }
 }
 
-fn symmetrise(n: usize, values: &mut [f64]) {
-    for i in 0..n {
-        for j in 0..i {
-            let mean = 0.5 * (values[n * i + j] + values[n * j + i]);
-            (values[n * i + j], values[n * j + i]) = (mean, mean);
-        }
+/// Elements with one of the nodes `nodes` (ascending).
+fn elements_of(mesh: &Mesh, nodes: &[usize]) -> Vec<usize> {
+    let is_named = |node: &usize| nodes.binary_search(node).is_ok();
+    let touches = |&e: &usize| mesh.element(e).iter().any(is_named);
+    (0..mesh.n_elements()).filter(touches).collect()
+}
+
+/// What and where a defect is, how many rows it changes and how many bytes it takes.
+fn note(mesh: &Mesh, nearly: &NearlyPeriodic, regular: &RegularRing, [rows, bytes]: [usize; 2]) -> String {
+    let mut parts = Vec::new();
+    if let Some(&(first, _)) = nearly.moved.first() {
+        parts.push(format!(
+            "{} nodes of {} elements in {} of them, the first node {first}, at most {:.1e} m from their places",
+            nearly.moved.len(),
+            nearly.elements(mesh).len(),
+            nearly.n_sectors_moved(),
+            nearly.largest_move
+        ));
     }
+    if let Some(first) = nearly.missing.iter().find(|&&node| node < mesh.n_nodes()) {
+        parts.push(format!(
+            "{} missing elements in {} of them, the first beside node {first}, with {} absent nodes",
+            nearly.n_missing(mesh),
+            nearly.n_sectors_missing(mesh),
+            nearly.absent.len()
+        ));
+    }
+    if let Some(first) = regular.held_besides.first() {
+        parts.push(format!(
+            "{} nodes that are held there alone, the first node {first}",
+            regular.held_besides.len()
+        ));
+    }
+    format!(
+        "{} equal sectors but for {}; {rows} rows, {:.1} MB",
+        nearly.periodicity.n_sectors(),
+        parts.join(" and "),
+        bytes as f64 / 1e6
+    )
 }

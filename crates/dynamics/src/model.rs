@@ -12,8 +12,8 @@ use contact::hertz::Elastic;
 use contact::{BearingGeometry, Groove, HertzContact, Side};
 use fem::{FemError, Material};
 use mesh::{
-    Mesh, NearlyPeriodic, NotPeriodic, PERIODIC_TOLERANCE, Periodicity, find_nearly_periodic,
-    find_periodicity,
+    Mesh, NearlyPeriodic, NotNearlyPeriodic, NotPeriodic, PERIODIC_TOLERANCE, Periodicity,
+    find_nearly_periodic, find_periodicity,
 };
 
 use crate::division::Division;
@@ -54,7 +54,7 @@ pub struct RingModel {
 #[derive(Default)]
 pub struct FoundSectors {
     equal: OnceLock<Result<Periodicity, NotPeriodic>>,
-    nearly: OnceLock<Option<NearlyPeriodic>>,
+    nearly: OnceLock<Result<NearlyPeriodic, NotNearlyPeriodic>>,
     node_masses: OnceLock<Arc<[f64]>>,
     pub(crate) division: Option<Division>,
 }
@@ -81,13 +81,12 @@ impl RingModel {
         Ok(self.sectors.node_masses.get_or_init(|| masses).clone())
     }
 
-    /// The mesh as a periodic one with a defect; None when it has no defect, or is not one.
-    pub fn nearly_periodic(&self) -> Option<&NearlyPeriodic> {
-        let find = || match self.periodicity() {
-            Ok(_) => None,
-            Err(_) => find_nearly_periodic(&self.mesh, PERIODIC_TOLERANCE),
-        };
-        self.sectors.nearly.get_or_init(find).as_ref()
+    /// The mesh as a periodic one with a defect, or the reason why it is not one.
+    pub fn nearly_periodic(&self) -> Result<&NearlyPeriodic, &NotNearlyPeriodic> {
+        self.sectors
+            .nearly
+            .get_or_init(|| find_nearly_periodic(&self.mesh, PERIODIC_TOLERANCE))
+            .as_ref()
     }
 }
 

@@ -7,14 +7,14 @@ use solver::cyclic::{CyclicBordered, CyclicDefect};
 use solver::{LinearSolver, SolverError, Symbolic, Symmetry};
 use sprs::CsMat;
 
-use crate::defect::{Changes, RingDefect};
+use crate::defect_change::Changes;
 use crate::error::DynamicsError;
 use crate::memory::{MotionSizes, RingMemory};
 use crate::model::{Backend, Hold, Model, RingModel};
 use crate::motion::coordinates::Coordinates;
 use crate::rank_memory::{RankMemory, Share};
 use crate::ring::{elimination_order, named};
-use crate::sectors::{HeldSectors, Periodic, Sectors};
+use crate::sectors::{Defective, HeldSectors, Periodic, Sectors};
 use crate::substructures::Substructures;
 use crate::support::Support;
 
@@ -107,7 +107,7 @@ impl Prepared {
                 );
                 return Ok(Prepared {
                     memory: match &periodic.defect {
-                        Some(defect) => memory.with_defect(mesh, defect.bytes()),
+                        Some(d) => memory.with_defect(mesh, d.defect.bytes()),
                         None => memory,
                     },
                     support: Support::unfixed(mesh, ring.hold, weights),
@@ -241,7 +241,11 @@ impl Harmonics {
             return Ok((Box::new(factor), None));
         };
         let base = CyclicBordered::new(factor, &[], 0, &[])?;
-        let factor = CyclicDefect::new(base, &changes.of([0.0, 1.0]))?;
+        let base = match &self.held.seen {
+            Some(seen) => base.seen_at(seen),
+            None => base,
+        };
+        let factor = CyclicDefect::new(base, &changes.of([0.0, 1.0])?)?;
         let iterations = factor.defect().iterations();
         Ok((Box::new(factor), Some(iterations)))
     }
@@ -257,8 +261,9 @@ fn n_mount(side: Side, hold: Hold) -> usize {
 }
 
 /// What a defect changes in the stiffness of a ring without the nodes `held`.
-fn changes(mesh: &Mesh, held: &[usize], defect: &RingDefect) -> Changes {
-    defect.changes(&Coordinates::new(mesh, held, Vec::new(), 0.0))
+fn changes(mesh: &Mesh, held: &[usize], Defective { defect, regular }: &Defective) -> Changes {
+    let coordinates = Coordinates::new(mesh, held, Vec::new(), 0.0);
+    defect.changes(&coordinates, &coordinates.of_mesh(&regular.mesh, &regular.held))
 }
 
 /// Analysis of the factorisation of a held ring, from its matrix' lower triangle.

@@ -10,7 +10,8 @@ use solver::{Coupling, CyclicMatrix, CyclicRing, CyclicStencil, SolverError};
 use crate::defect::RingDefect;
 use crate::error::DynamicsError;
 use crate::memory::MotionSizes;
-use crate::model::{Backend, RingModel};
+use crate::model::{Backend, RACEWAY_GROUP, RingModel};
+use crate::regular::RegularRing;
 
 /// Sectors from which on harmonics pay: a few wide ones cost more than the ring as a whole.
 const LEAST_SECTORS: usize = 12;
@@ -34,6 +35,8 @@ pub struct HeldSectors {
     pub sectors: Sectors,
     /// Section nodes of the raceway, counted among those that stay.
     pub raceway: Vec<usize>,
+    /// Free nodes that the true ring has, when a defect makes it lack some.
+    pub seen: Option<Vec<usize>>,
 }
 
 /// A ring that harmonics solve.
@@ -43,7 +46,17 @@ pub struct Periodic {
     /// What is left when some nodes are held.
     pub held: HeldSectors,
     /// Its defect, if it has one.
-    pub defect: Option<RingDefect>,
+    pub defect: Option<Defective>,
+    /// What is periodic, for a log.
+    sectors_note: String,
+}
+
+/// A ring with a defect.
+pub struct Defective {
+    /// What the defect adds to the matrices.
+    pub defect: RingDefect,
+    /// The ring without it.
+    pub regular: RegularRing,
 }
 
 impl Periodic {
@@ -59,6 +72,7 @@ impl Periodic {
             Backend::Sparse | Backend::Sector(_) => Err("the scene asks for it".to_string()),
             Backend::Auto | Backend::Cyclic => match usable(ring) {
                 Ok(_) => Periodic::without_defect(ring, side, held)?,
+                Err(reason) if ring.periodicity().is_ok() => Err(reason),
                 Err(reason) => Periodic::with_defect(ring, side, held)?
                     .map_err(|no_defect| format!("{reason}; {no_defect}")),
             },
@@ -92,8 +106,21 @@ impl Periodic {
     ) -> Result<Result<Periodic, String>, DynamicsError> {
         let periodicity = ring.periodicity().expect("the caller knows that it has sectors");
         let whole = Sectors::assemble(ring, &ring.mesh, periodicity, side)?.shared();
-        let held = whole.without(ring, periodicity, held, side)?;
+        let held = match periodicity.section_nodes(held) {
+            Ok(held) => held,
+            Err(site) => {
+                return Ok(Err(format!(
+                    "what holds it is not the same in all sectors: section node {} is not held in sector {}",
+                    site.section_node, site.sector
+                )));
+            }
+        };
+        let Ok(raceway) = periodicity.section_nodes(&ring.mesh.group_nodes(RACEWAY_GROUP)) else {
+            return Ok(Err("its raceway is not the same in all sectors".to_string()));
+        };
+        let held = whole.without(periodicity, [&held, &raceway], side)?;
         Ok(held.map(|held| Periodic {
+            sectors_note: format!("{} equal sectors", periodicity.n_sectors()),
             whole,
             held,
             defect: None,
@@ -105,13 +132,10 @@ impl Periodic {
         side: &'static str,
         held: &[usize],
     ) -> Result<Result<Periodic, String>, DynamicsError> {
-        let defect = match RingDefect::new(ring, side)? {
-            Ok(defect) => defect,
-            Err(reason) => return Ok(Err(reason)),
+        let nearly = match ring.nearly_periodic() {
+            Ok(nearly) => nearly,
+            Err(reason) => return Ok(Err(format!("it is not periodic up to a defect either: {reason}"))),
         };
-        let nearly = ring
-            .nearly_periodic()
-            .expect("a defect is one of a periodic ring");
         let periodicity = &nearly.periodicity;
         if periodicity.n_sectors() < LEAST_SECTORS {
             return Ok(Err(format!(
@@ -119,10 +143,29 @@ impl Periodic {
                 periodicity.n_sectors()
             )));
         }
-        let whole = Sectors::assemble(ring, &nearly.regular(&ring.mesh), periodicity, side)?.shared();
-        let held = match whole.without(ring, periodicity, held, side)? {
+        let regular = match RegularRing::new(ring, nearly, held) {
+            Ok(regular) => regular,
+            Err(reason) => return Ok(Err(reason)),
+        };
+        let defect = match RingDefect::new(ring, nearly, &regular, side)? {
+            Ok(defect) => defect,
+            Err(reason) => return Ok(Err(reason)),
+        };
+        let whole = Sectors::assemble(ring, &regular.mesh, periodicity, side)?.shared();
+        let mut held = match whole.without(periodicity, [&regular.held_section, &regular.raceway], side)? {
             Ok(held) => held,
             Err(reason) => return Ok(Err(reason)),
+        };
+        let Some(defect) = defect else {
+            return Ok(Ok(Periodic {
+                sectors_note: format!(
+                    "{} equal sectors but for groups of facets",
+                    periodicity.n_sectors()
+                ),
+                whole,
+                held,
+                defect: None,
+            }));
         };
         let bytes = held.table_bytes(periodicity, defect.nodes());
         if bytes > MOST_TABLE_BYTES {
@@ -132,18 +175,31 @@ impl Periodic {
                 MOST_TABLE_BYTES as f64 / 1e9
             )));
         }
+        held.seen = Some(regular.seen.clone());
         Ok(Ok(Periodic {
+            sectors_note: defect.note().to_string(),
             whole,
             held,
-            defect: Some(defect),
+            defect: Some(Defective { defect, regular }),
         }))
+    }
+
+    /// The whole ring for nodal vectors of `mesh`, which may lack nodes of the regular one.
+    pub fn whole_ring(&self, mesh: &Mesh) -> CyclicRing {
+        match &self.defect {
+            Some(_) => self
+                .whole
+                .ring
+                .seen_at(&(0..mesh.n_nodes()).collect::<Vec<usize>>()),
+            None => self.whole.ring.clone(),
+        }
     }
 
     /// What a motion of the ring holds whose mount has `n_mount` functionals.
     pub fn motion_sizes(&self, mesh: &Mesh, n_mount: usize) -> MotionSizes {
         let (whole, held) = (&self.whole, &self.held);
         let symmetry = held.sectors.ring.symmetry(&held.sectors.stiffness);
-        let (touched, defect) = self.defect.as_ref().map_or((0, 0), |defect| {
+        let (touched, defect) = self.defect.as_ref().map_or((0, 0), |Defective { defect, .. }| {
             let touched = defect.nodes().len().min(whole.ring.n_section_nodes());
             (touched, defect.bytes())
         });
@@ -163,10 +219,7 @@ impl Periodic {
             1 => String::new(),
             ranks => format!(", harmonics on {ranks} ranks"),
         };
-        match &self.defect {
-            Some(defect) => format!("cyclic ({}{shared})", defect.note()),
-            None => format!("cyclic ({} equal sectors{shared})", self.whole.ring.n_sectors()),
-        }
+        format!("cyclic ({}{shared})", self.sectors_note)
     }
 }
 
@@ -208,32 +261,19 @@ impl Sectors {
         build().map_err(|source| DynamicsError::Solver { side, source })
     }
 
-    /// The ring without the nodes `held` (of the mesh); the inner error says why that is not periodic.
+    /// The ring without the section nodes `held`, whose raceway has the section nodes `raceway`; the inner error says why that cannot be.
     fn without(
         &self,
-        ring: &RingModel,
         periodicity: &Periodicity,
-        held: &[usize],
+        [held, raceway]: [&[usize]; 2],
         side: &'static str,
     ) -> Result<Result<HeldSectors, String>, DynamicsError> {
-        let held = match periodicity.section_nodes(held) {
-            Ok(held) => held,
-            Err(site) => {
-                return Ok(Err(format!(
-                    "what holds it is not the same in all sectors: section node {} is not held in sector {}",
-                    site.section_node, site.sector
-                )));
-            }
-        };
         let keep: Vec<usize> = (0..periodicity.n_section_nodes())
             .filter(|i| held.binary_search(i).is_err())
             .collect();
-        let touched = periodicity.section_nodes(&ring.mesh.group_nodes(crate::model::RACEWAY_GROUP));
-        let places = |nodes: Vec<usize>| nodes.iter().map(|n| keep.binary_search(n).ok()).collect();
-        let Some(raceway): Option<Vec<usize>> = touched.ok().and_then(places) else {
-            return Ok(Err(
-                "its raceway is not the same in all sectors, or touches what is held".to_string(),
-            ));
+        let places = raceway.iter().map(|n| keep.binary_search(n).ok());
+        let Some(raceway): Option<Vec<usize>> = places.collect() else {
+            return Ok(Err("its raceway touches what is held".to_string()));
         };
         let (stiffness, mass) = (self.stiffness.restricted(&keep), self.mass.restricted(&keep));
         let restricted = self
@@ -247,6 +287,7 @@ impl Sectors {
                 mass,
             },
             raceway,
+            seen: None,
         }))
     }
 }

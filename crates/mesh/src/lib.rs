@@ -27,8 +27,8 @@ pub use msh::write::{MshFormat, Overwrite, write_msh};
 pub use msh::{read_msh, read_msh_with_origin};
 pub use origin::Origin;
 pub use periodic::{
-    NearlyPeriodic, NotPeriodic, PERIODIC_TOLERANCE, Periodicity, Site, find_nearly_periodic,
-    find_periodicity,
+    NearlyPeriodic, NotNearlyPeriodic, NotPeriodic, PERIODIC_TOLERANCE, Periodicity, Site,
+    find_nearly_periodic, find_periodicity,
 };
 pub use ring::{RingGeometry, RingSection, RingSide, ring_geo, ring_tet_geo};
 pub use section::{Arc, Section, SectionEdge, Snap, read_section, read_section_with_origin, revolve};

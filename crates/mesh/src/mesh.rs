@@ -90,6 +90,33 @@ impl Mesh {
         self
     }
 
+    /// The mesh without the elements for which `is_lost`, such as those of a keyway; nodes that no other element has and facets of these
+    /// elements go with them. What stays keeps its order; faces that become free belong to no group.
+    pub fn without_elements(self, is_lost: impl Fn(usize) -> bool) -> Mesh {
+        let kept: Vec<usize> = (0..self.n_elements()).filter(|&e| !is_lost(e)).collect();
+        let mut mesh = self.with_elements(&kept);
+        let mut number = vec![usize::MAX; mesh.n_nodes()];
+        mesh.connectivity.iter().for_each(|&node| number[node] = 0);
+        let kept = number.iter_mut().filter(|number| **number == 0);
+        kept.enumerate().for_each(|(place, number)| *number = place);
+        let nodes = mesh.nodes.iter().zip(&number);
+        mesh.nodes = nodes
+            .filter(|(_, n)| **n != usize::MAX)
+            .map(|(x, _)| *x)
+            .collect();
+        mesh.connectivity
+            .iter_mut()
+            .for_each(|node| *node = number[*node]);
+        mesh
+    }
+
+    /// Mean of the nodes of element `e`, m.
+    pub fn element_centre(&self, e: usize) -> [f64; 3] {
+        let nodes = self.element(e);
+        let mean = |i: usize| nodes.iter().map(|&n| self.nodes[n][i]).sum::<f64>() / nodes.len() as f64;
+        [0, 1, 2].map(mean)
+    }
+
     /// The mesh of some elements alone, without groups. `nodes` are the nodes of these elements, ascending; the part numbers
     /// them 0.. in this order.
     ///

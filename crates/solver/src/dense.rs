@@ -7,6 +7,7 @@ use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::cholesky::llt;
 use faer::linalg::lu::partial_pivoting as lu;
 use faer::linalg::matmul::matmul;
+use faer::linalg::triangular_solve::solve_lower_triangular_in_place;
 use faer::perm::PermRef;
 use faer::{Accum, Mat, MatMut, MatRef, Par};
 
@@ -123,6 +124,26 @@ pub(crate) fn update(n: usize, g: &[f64], d: &[f64]) -> Result<Vec<f64>, SolverE
         -1.0,
     );
     let symmetric = |ij: usize| 0.5 * (s[(ij / n, ij % n)] + s[(ij % n, ij / n)]);
+    Ok((0..n * n).map(symmetric).collect())
+}
+
+/// C^T A^-1 C, row-major `[n][n]`, exactly symmetric, of the symmetric positive definite A, row-major `[m][m]`, and C, row-major
+/// `[m][n]`. Time m^2 (m/3 + n) + m n^2.
+pub(crate) fn inverse_form(m: usize, n: usize, a: &[f64], c: &[f64]) -> Result<Vec<f64>, SolverError> {
+    assert_eq!(c.len(), m * n, "{m} rows of {n}");
+    let lower = DenseCholesky::factor(m, a)?.factor;
+    let mut w = MatRef::from_row_major_slice(c, m, n).to_owned();
+    solve_lower_triangular_in_place(lower.as_ref(), w.as_mut(), Par::Seq);
+    let mut form = Mat::<f64>::zeros(n, n);
+    matmul(
+        form.as_mut(),
+        Accum::Replace,
+        w.transpose(),
+        w.as_ref(),
+        1.0,
+        Par::Seq,
+    );
+    let symmetric = |ij: usize| 0.5 * (form[(ij / n, ij % n)] + form[(ij % n, ij / n)]);
     Ok((0..n * n).map(symmetric).collect())
 }
 

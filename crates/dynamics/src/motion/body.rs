@@ -104,7 +104,7 @@ impl RingBody {
                     .map(|solver| Factored::Sectors(Box::new(SectorFactor::new(solver, &self.mount))))
             }
             (Effective::Cyclic(harmonics), _) => {
-                let border = self.nodes().border([cm, ck]);
+                let border = harmonics.border([cm, ck], self.nodes());
                 let n_free = self.coordinates.free().len();
                 let mounted = self.mount.iter().flatten().map(|&(i, _)| i);
                 let nodes = mounted.filter(|&i| i < n_free).map(|i| i / 3);

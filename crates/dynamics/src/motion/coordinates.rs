@@ -63,6 +63,11 @@ impl Coordinates {
         }
     }
 
+    /// Coordinates of another mesh of the ring, whose `held` nodes follow the same shaft dofs.
+    pub fn of_mesh(&self, mesh: &Mesh, held: &[usize]) -> Coordinates {
+        Coordinates::new(mesh, held, self.shaft.clone(), self.origin_z)
+    }
+
     /// Number of coordinates.
     pub fn n(&self) -> usize {
         self.free.len() + self.shaft.len()

@@ -7,17 +7,18 @@
 use std::sync::Arc;
 
 use mesh::Mesh;
-use solver::cyclic::{Change, CyclicBordered, Defect, ResponseTable};
-use solver::{LinearSolver, SectionPart, SolverError, Symbolic};
+use solver::cyclic::{CyclicBordered, Defect, ResponseTable};
+use solver::{CyclicRing, LinearSolver, SectionPart, SolverError, Symbolic};
 
 use super::by_sector::SectorFactor;
 use super::coordinates::Coordinates;
 use super::matrices::{RingMatrices, SparseMatrices};
-use crate::defect::Changes;
+use super::space::Nodes;
+use crate::defect_change::Changes;
 use crate::error::DynamicsError;
 use crate::memory::MotionSizes;
 use crate::model::{Backend, RingModel};
-use crate::sectors::{HeldSectors, Periodic, Sectors};
+use crate::sectors::{Defective, HeldSectors, Periodic, Sectors};
 use crate::substructures::Substructures;
 
 /// What stays of the matrices of a ring to factor S for any step size.
@@ -33,11 +34,19 @@ pub enum Effective {
 /// A periodic ring before S is known.
 pub struct Harmonics {
     held: HeldSectors,
-    /// What its defect changes.
-    changes: Option<Changes>,
+    /// Its defect.
+    defect: Option<Change>,
     note: String,
     /// What its motion holds, but for the mount.
     sizes: MotionSizes,
+}
+
+/// What a defect makes of a periodic ring before S is known.
+struct Change {
+    changes: Changes,
+    /// Of the ring without the defect, whose border is that of low harmonics.
+    coordinates: Coordinates,
+    matrices: RingMatrices,
 }
 
 /// A factored effective matrix.
@@ -108,17 +117,34 @@ pub fn prepare(
     match Periodic::new(ring, side, backend, &held_nodes(&ring.mesh, coordinates))? {
         Ok(periodic) => {
             let whole = &periodic.whole;
-            let harmonics = Harmonics {
-                changes: periodic.defect.as_ref().map(|d| d.changes(coordinates)),
-                note: periodic.note(),
-                sizes: periodic.motion_sizes(&ring.mesh, 0),
-                held: periodic.held,
+            let ring_of_mesh = periodic.whole_ring(&ring.mesh);
+            let matrices = |of: &CyclicRing, defect| -> Result<RingMatrices, DynamicsError> {
+                let operator = |matrix| of.operator(matrix).map(Box::new).map_err(solver_error);
+                Ok(RingMatrices::Sectors {
+                    stiffness: operator(&whole.stiffness)?,
+                    mass: operator(&whole.mass)?,
+                    defect,
+                })
             };
-            let operator = |matrix| whole.ring.operator(matrix).map(Box::new).map_err(solver_error);
-            let matrices = RingMatrices::Sectors {
-                stiffness: operator(&whole.stiffness)?,
-                mass: operator(&whole.mass)?,
-                defect: periodic.defect.map(Box::new),
+            let (note, sizes) = (periodic.note(), periodic.motion_sizes(&ring.mesh, 0));
+            let (change, defect) = match periodic.defect {
+                Some(Defective { defect, regular }) => {
+                    let of_regular = coordinates.of_mesh(&regular.mesh, &regular.held);
+                    let change = Change {
+                        changes: defect.changes(coordinates, &of_regular),
+                        coordinates: of_regular,
+                        matrices: matrices(&whole.ring, None)?,
+                    };
+                    (Some(change), Some(Box::new(defect)))
+                }
+                None => (None, None),
+            };
+            let matrices = matrices(&ring_of_mesh, defect)?;
+            let harmonics = Harmonics {
+                defect: change,
+                note,
+                sizes,
+                held: periodic.held,
             };
             Ok((matrices, Effective::Cyclic(Box::new(harmonics))))
         }
@@ -137,7 +163,7 @@ impl Effective {
     /// The sectors of a periodic ring without a defect, without what is held.
     pub fn regular(&self) -> Option<&Sectors> {
         match self {
-            Effective::Cyclic(harmonics) if harmonics.changes.is_none() => Some(&harmonics.held.sectors),
+            Effective::Cyclic(harmonics) if harmonics.defect.is_none() => Some(&harmonics.held.sectors),
             _ => None,
         }
     }
@@ -170,54 +196,53 @@ impl Effective {
 }
 
 impl Harmonics {
-    /// Factors c_M M + c_K K with the dense border `border` (column-major `[n_free][m]`) and `corner` (row-major). The
+    /// The border of c_M M + c_K K: of a ring without a defect that of the ring itself, `own`.
+    pub(super) fn border(&self, coefficients: [f64; 2], own: Nodes<'_>) -> [Vec<f64>; 2] {
+        let nodes = self.defect.as_ref().map_or(own, |change| Nodes {
+            coordinates: &change.coordinates,
+            matrices: &change.matrices,
+            ..own
+        });
+        nodes.border(coefficients)
+    }
+
+    /// Factors c_M M + c_K K with the dense [`Harmonics::border`] (column-major `[n_free][m]`) and corner (row-major). The
     /// partner touches the free nodes `mounted`.
     pub fn factor(
         &self,
         coefficients: [f64; 2],
-        [mut border, mut corner]: [Vec<f64>; 2],
+        [border, corner]: [Vec<f64>; 2],
         mounted: impl IntoIterator<Item = usize>,
     ) -> Result<Factored, SolverError> {
         let [mass, stiffness] = coefficients;
         let sectors = &self.held.sectors;
         let effective = sectors.stiffness.combined(stiffness, mass, &sectors.mass)?;
         let factor = sectors.ring.factor(&effective)?;
-        let n = factor.n();
-        let change = self.changes.as_ref().map(|changes| changes.of(coefficients));
+        let mut solver = CyclicBordered::new(factor, &border, corner.len().isqrt(), &corner)?;
+        if let Some(seen) = &self.held.seen {
+            solver = solver.seen_at(seen);
+        }
+        let (n, ring) = (solver.inner().n(), solver.inner().ring());
+        let change = self.defect.as_ref().map(|d| d.changes.of(coefficients));
+        let change = change.transpose()?;
         let mut chosen = self.held.raceway.clone();
         if let Some(change) = &change {
-            without(change, n, &mut border, &mut corner);
             let nodes = change.rows.iter().filter(|&&row| row < n).map(|row| row / 3);
-            chosen.extend(sectors.ring.section_nodes(nodes));
+            chosen.extend(ring.section_nodes(nodes));
             chosen.sort_unstable();
             chosen.dedup();
         }
-        let table = ResponseTable::new(&factor, &chosen);
-        let solver = CyclicBordered::new(factor, &border, corner.len().isqrt(), &corner)?;
+        let table = ResponseTable::new(solver.inner(), &chosen);
+        let touched = ring.section_part(&chosen, mounted);
         let defect = change
             .map(|change| Defect::new(&solver, &table, &change))
             .transpose()?;
         Ok(Factored::Cyclic(Box::new(CyclicFactor {
-            touched: sectors.ring.section_part(&chosen, mounted),
+            touched,
             table,
             solver,
             defect,
         })))
-    }
-}
-
-/// Takes the part of a defect out of the border of a matrix with n rows before it: what is left is the regular ring's.
-fn without(change: &Change, n: usize, border: &mut [f64], corner: &mut [f64]) {
-    let (size, m) = (change.rows.len(), corner.len().isqrt());
-    for (i, &row) in change.rows.iter().enumerate() {
-        for (j, &column) in change.rows.iter().enumerate() {
-            let value = change.values[size * i + j];
-            match (row.checked_sub(n), column.checked_sub(n)) {
-                (Some(k), Some(l)) => corner[m * k + l] -= value,
-                (None, Some(l)) => border[n * l + row] -= value,
-                _ => {}
-            }
-        }
     }
 }
 

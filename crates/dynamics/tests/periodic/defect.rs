@@ -125,31 +125,6 @@ fn modes_of_a_notched_ring_refuse_harmonics() {
     assert_near(&auto, &sparse, 1e-12, "frequencies");
 }
 
-/// Wrong: a ring that lacks an element would be solved as if it had it, or the log would not say what differs.
-#[test]
-fn a_ring_that_lacks_an_element_is_one_matrix_and_the_log_says_why() {
-    let mut model = bearing(HEX8, Hold::Clamped, Backend::Auto);
-    let mut mesh = model.ring(Side::Inner).unwrap().mesh.clone();
-    let is_inside = |e: &usize| mesh.groups.values().flatten().all(|facet| facet.element != *e);
-    let lost = (mesh.n_elements() / 2..mesh.n_elements())
-        .find(is_inside)
-        .unwrap();
-    let width = mesh.kind.n_nodes();
-    mesh.connectivity.drain(width * lost..width * (lost + 1));
-    for facet in mesh.groups.values_mut().flatten() {
-        facet.element -= usize::from(facet.element > lost);
-    }
-    model.rings[0] = Some(Arc::new(ring_model(Side::Inner, mesh, Hold::Clamped)));
-    let solver = StaticSolver::new(&model).unwrap();
-    let note = solver.ring(Side::Inner).unwrap().solver_note();
-    for part in [
-        "sparse (with 54 sectors, element ",
-        " turned by one sector meets no element with the same nodes; it is not periodic up to a defect either",
-    ] {
-        assert!(note.contains(part), "{note}");
-    }
-}
-
 /// Wrong: a scene that forces harmonics on a ring without sectors would be solved otherwise, or refused without the place.
 #[test]
 fn statics_refuses_forced_harmonics_with_the_first_difference() {

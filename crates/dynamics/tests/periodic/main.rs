@@ -1,6 +1,7 @@
 //! Rotationally periodic rings, solved from one sector: the same results as with assembled matrices and sparse factors.
 
 mod defect;
+mod missing;
 #[path = "../support/mod.rs"]
 mod support;
 

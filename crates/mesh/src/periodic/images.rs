@@ -7,7 +7,7 @@ use super::reason::NotPeriodic;
 use crate::mesh::{Facet, Mesh};
 
 /// Nodes of an element or facet, ascending, filled up with `usize::MAX`: equal for equal sets of nodes.
-type Key<const N: usize> = [usize; N];
+pub(super) type Key<const N: usize> = [usize; N];
 
 /// The node that each node becomes when turned by a sector, and the largest distance between the two, m.
 pub(super) fn node_images(
@@ -44,10 +44,7 @@ pub(super) fn element_images(
     images: &[usize],
     n_sectors: usize,
 ) -> Result<Vec<usize>, NotPeriodic> {
-    let mut sorted: Vec<(Key<20>, usize)> = (0..mesh.n_elements())
-        .map(|e| (key(mesh.element(e).iter().copied()), e))
-        .collect();
-    sorted.sort_unstable();
+    let sorted = sorted_elements(mesh);
     let image = |element: usize| {
         let turned: Key<20> = key(mesh.element(element).iter().map(|&node| images[node]));
         sorted
@@ -56,6 +53,15 @@ pub(super) fn element_images(
             .map_err(|_| NotPeriodic::Element { n_sectors, element })
     };
     (0..mesh.n_elements()).map(image).collect()
+}
+
+/// The elements by their nodes.
+pub(super) fn sorted_elements(mesh: &Mesh) -> Vec<(Key<20>, usize)> {
+    let mut sorted: Vec<(Key<20>, usize)> = (0..mesh.n_elements())
+        .map(|e| (key(mesh.element(e).iter().copied()), e))
+        .collect();
+    sorted.sort_unstable();
+    sorted
 }
 
 /// Checks that every group of facets becomes itself.
@@ -80,7 +86,8 @@ pub(super) fn facet_images(mesh: &Mesh, images: &[usize], n_sectors: usize) -> R
     Ok(())
 }
 
-fn key<const N: usize>(nodes: impl Iterator<Item = usize>) -> Key<N> {
+/// The key of a set of nodes.
+pub(super) fn key<const N: usize>(nodes: impl Iterator<Item = usize>) -> Key<N> {
     let mut key = [usize::MAX; N];
     key.iter_mut().zip(nodes).for_each(|(place, node)| *place = node);
     key.sort_unstable();

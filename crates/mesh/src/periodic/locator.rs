@@ -49,6 +49,7 @@ fn project(x: &[f64; 3]) -> f64 {
     (0..3).map(|i| DIRECTION[i] * x[i]).sum()
 }
 
-fn distance(a: &[f64; 3], b: &[f64; 3]) -> f64 {
+/// Distance of two points, m.
+pub(super) fn distance(a: &[f64; 3], b: &[f64; 3]) -> f64 {
     (0..3).map(|i| (a[i] - b[i]).powi(2)).sum::<f64>().sqrt()
 }

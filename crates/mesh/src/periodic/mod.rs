@@ -12,7 +12,9 @@
 mod defect;
 mod images;
 mod locator;
+mod missing;
 mod reason;
+mod strays;
 
 use std::f64::consts::TAU;
 
@@ -21,7 +23,7 @@ use images::{element_images, facet_images, node_images};
 use locator::Locator;
 
 pub use defect::{NearlyPeriodic, find_nearly_periodic};
-pub use reason::NotPeriodic;
+pub use reason::{NotNearlyPeriodic, NotPeriodic};
 
 /// Usual tolerance of [`find_periodicity`], as a share of the ring's largest radius: well above the rounding of
 /// coordinates with twelve digits, well below any element.

@@ -1,4 +1,4 @@
-//! Why a mesh is not rotationally periodic.
+//! Why a mesh is not rotationally periodic, and why not even up to a defect.
 
 use thiserror::Error;
 
@@ -66,4 +66,57 @@ pub enum NotPeriodic {
         /// Face of the element.
         face: usize,
     },
+}
+
+/// Why a ring is not periodic up to a defect. Nodes and elements are indices of the mesh, from 0; those beyond its own are of the ring
+/// without a defect.
+#[derive(Clone, Debug, Error, PartialEq)]
+pub enum NotNearlyPeriodic {
+    /// Neighbours on a circle have no usual distance.
+    #[error("its nodes are not at equal angles")]
+    NoPattern,
+    /// Too many nodes stand elsewhere or are absent, or too many elements are missing.
+    #[error("with {n_sectors} sectors, more than {limit} of its nodes or elements differ")]
+    Large {
+        /// Number of sectors tried.
+        n_sectors: usize,
+        /// Most nodes or elements of a defect.
+        limit: usize,
+    },
+    /// There are nodes that belong to no sector.
+    #[error(
+        "with {n_sectors} sectors, {strays} nodes from node {first} on are not where their sectors have nodes, for \
+         {vacancies} places without a node"
+    )]
+    MoreNodes {
+        /// Number of sectors tried.
+        n_sectors: usize,
+        /// Nodes that stand elsewhere.
+        strays: usize,
+        /// The first of them.
+        first: usize,
+        /// Places that lack a node.
+        vacancies: usize,
+    },
+    /// A node has no place of its own in the ring without a defect, or no element.
+    #[error(
+        "with {n_sectors} sectors, node {node} has no place of its own in an element of the ring without a defect"
+    )]
+    Node {
+        /// Number of sectors tried.
+        n_sectors: usize,
+        /// Node index.
+        node: usize,
+    },
+    /// An element that most sectors lack.
+    #[error("with {n_sectors} sectors, most sectors have no element like element {element}")]
+    MoreElements {
+        /// Number of sectors tried.
+        n_sectors: usize,
+        /// Element index.
+        element: usize,
+    },
+    /// The ring without the defect is not periodic.
+    #[error("without its defect it would not be periodic: {0}")]
+    Regular(NotPeriodic),
 }

@@ -1,6 +1,7 @@
 //! The crate as its users see it: files by gmsh, files of our own, revolved rings.
 
 mod files;
+mod nearly_periodic;
 mod periodic;
 mod revolved;
 mod rings;

@@ -1,8 +1,8 @@
 //! Rotational periodicity: the number of sectors, the sites of nodes, and the reasons against.
 
 use mesh::{
-    ElementKind, Mesh, NotPeriodic, PERIODIC_TOLERANCE, Periodicity, RingSide, find_nearly_periodic,
-    find_periodicity, read_msh, revolve,
+    ElementKind, Mesh, NotPeriodic, PERIODIC_TOLERANCE, Periodicity, RingSide, find_periodicity, read_msh,
+    revolve,
 };
 
 use crate::{revolved, section};
@@ -20,7 +20,7 @@ fn shuffled(n: usize, seed: u64) -> Vec<usize> {
 }
 
 /// The same body with nodes and elements in another order.
-fn renumbered(mesh: &Mesh) -> Mesh {
+pub fn renumbered(mesh: &Mesh) -> Mesh {
     let (node_order, element_order) = (shuffled(mesh.n_nodes(), 1), shuffled(mesh.n_elements(), 2));
     let mut new_node = vec![0; mesh.n_nodes()];
     let mut new_element = vec![0; mesh.n_elements()];
@@ -81,7 +81,7 @@ fn tetrahedra(hexes: &Mesh) -> Mesh {
 }
 
 /// A turn by a sector must add one to the sector and keep the section node, for every node.
-fn assert_sites_turn(mesh: &Mesh, found: &Periodicity) {
+pub fn assert_sites_turn(mesh: &Mesh, found: &Periodicity) {
     let (n, width) = (found.n_sectors(), found.n_section_nodes());
     assert_eq!(n * width, mesh.n_nodes());
     let (sin, cos) = (std::f64::consts::TAU / n as f64).sin_cos();
@@ -263,66 +263,4 @@ fn stored_rings_are_periodic_and_a_free_mesh_is_not() {
     let reason = find_periodicity(&stored("7010c_inner_tet10.msh"), PERIODIC_TOLERANCE).unwrap_err();
     let is_node = matches!(reason, NotPeriodic::Node { .. } | NotPeriodic::Alone { .. });
     assert!(is_node, "{reason}");
-}
-
-/// Wrong: a defect would be sought where none is, or it would not be found, or placed in other nodes than those that were moved.
-#[test]
-fn a_few_moved_nodes_are_a_defect() {
-    for (kind, n) in [
-        (ElementKind::Hex8, 37),
-        (ElementKind::Hex20, 24),
-        (ElementKind::Hex8, 24),
-    ] {
-        let ring = renumbered(&revolved(RingSide::Inner, n, kind));
-        assert_eq!(find_nearly_periodic(&ring, PERIODIC_TOLERANCE), None, "no defect");
-        let mut dented = ring.clone();
-        let is_near = |x: &[f64; 3]| (0.4..1.1).contains(&x[1].atan2(x[0])) && x[2] > 1e-3;
-        let dented_nodes: Vec<usize> = (0..ring.n_nodes()).filter(|&i| is_near(&ring.nodes[i])).collect();
-        assert!(dented_nodes.len() > 10);
-        for &node in &dented_nodes {
-            dented.nodes[node][2] += 1e-5 * (2.0 + (node as f64).sin());
-        }
-        let found = find_nearly_periodic(&dented, PERIODIC_TOLERANCE).unwrap();
-        assert_eq!(found.periodicity.n_sectors(), n, "{kind:?}");
-        assert!(found.moved.iter().map(|m| m.0).eq(dented_nodes.iter().copied()));
-        assert!(
-            (1e-5..=3e-5).contains(&found.largest_move),
-            "{}",
-            found.largest_move
-        );
-        for &(node, x) in &found.moved {
-            let error = (0..3)
-                .map(|i| (x[i] - ring.nodes[node][i]).abs())
-                .fold(0.0, f64::max);
-            assert!(error < 1e-15, "{error:e}");
-        }
-        assert_sites_turn(&found.regular(&dented), &found.periodicity);
-        let elements = found.elements(&dented);
-        let touches = |e: &usize| dented.element(*e).iter().any(|n| dented_nodes.contains(n));
-        assert!(
-            elements
-                .iter()
-                .copied()
-                .eq((0..ring.n_elements()).filter(touches))
-        );
-        assert!(found.n_sectors_moved() < n / 4);
-    }
-}
-
-/// Wrong: a ring would be solved as a periodic one with a defect though its elements are others, or hardly any of it is regular.
-#[test]
-fn missing_elements_and_large_defects_are_no_defects() {
-    let ring = revolved(RingSide::Inner, 37, ElementKind::Hex8);
-    let mut cut = ring.clone();
-    cut.connectivity.drain(8 * 70..8 * 71);
-    cut.groups.clear();
-    assert_eq!(find_nearly_periodic(&cut, PERIODIC_TOLERANCE), None);
-    let mut wavy = ring.clone();
-    for (i, x) in wavy.nodes.iter_mut().enumerate().filter(|(_, x)| x[1] > 0.0) {
-        x[2] += 1e-5 * (i as f64).sin();
-    }
-    assert_eq!(find_nearly_periodic(&wavy, PERIODIC_TOLERANCE), None);
-    let mut unmarked = ring;
-    unmarked.groups.get_mut("raceway").unwrap().remove(11);
-    assert_eq!(find_nearly_periodic(&unmarked, PERIODIC_TOLERANCE), None);
 }

@@ -72,6 +72,14 @@ impl CyclicBordered {
         })
     }
 
+    /// The same factor for vectors that hold some of the caller's nodes alone, see [`super::CyclicRing::seen_at`].
+    pub fn seen_at(self, nodes: &[usize]) -> CyclicBordered {
+        CyclicBordered {
+            factor: self.factor.seen_at(nodes),
+            ..self
+        }
+    }
+
     /// The factor inside.
     pub fn inner(&self) -> &CyclicCholesky {
         &self.factor

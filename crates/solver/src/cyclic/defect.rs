@@ -12,13 +12,20 @@
 //! G = L L^T, (G^-1 + D)^-1 = L (1 + L^T D L)^-1 L^T, and the matrix in brackets is positive definite exactly when the true
 //! one is. Solutions are those of the true matrix to round-off.
 //!
+//! **Rows that are gone.** The regular ring may have rows h that the true one lacks: nodes that only missing elements have, or that are
+//! held besides. All that they couple with is in the change, A_hh = -D_hh and A_hr = -D_hr, as the true matrix is zero there. Nothing
+//! loads them, so the regular ring answers at the other rows r as its Schur complement, and the change from that to the true
+//! matrix is D_rr - D_rh D_hh^-1 D_hr ([`Change::condensed`]). Callers never see h ([`super::CyclicRing::seen_at`]).
+//!
 //! Cost: a solve for every component of every section node that the defect touches, 4 n^3 operations, 8 n^2 bytes; then
 //! two solves per right-hand side in place of one for each iteration.
+
+use std::ops::Range;
 
 use super::border::CyclicBordered;
 use super::response::ResponseTable;
 use super::transform::SectionPart;
-use crate::dense::update;
+use crate::dense::{inverse_form, update};
 use crate::error::SolverError;
 use crate::linear_solver::LinearSolver;
 
@@ -49,6 +56,32 @@ pub struct CyclicDefect {
     base: CyclicBordered,
     defect: Defect,
     part: SectionPart,
+}
+
+impl Change {
+    /// The change in the rows `rows` of a ring that lacks more rows of the regular one: D of both, row-major, symmetric, those that it
+    /// lacks last. They must be held by the others.
+    ///
+    /// # Panics
+    /// When there are fewer values than rows.
+    pub fn condensed(rows: Vec<usize>, values: &[f64]) -> Result<Change, SolverError> {
+        let (n, size) = (rows.len(), values.len().isqrt());
+        assert!(
+            size >= n && size * size == values.len(),
+            "{n} rows and those that are gone"
+        );
+        let part = |rows: Range<usize>, columns: Range<usize>, sign: f64| -> Vec<f64> {
+            let row = |i: usize| values[size * i..][columns.clone()].iter().map(move |d| sign * d);
+            rows.flat_map(row).collect()
+        };
+        let mut kept = part(0..n, 0..n, 1.0);
+        if size > n {
+            let (gone, coupling) = (part(n..size, n..size, -1.0), part(n..size, 0..n, 1.0));
+            let more = inverse_form(size - n, n, &gone, &coupling)?;
+            kept.iter_mut().zip(more).for_each(|(d, m)| *d += m);
+        }
+        Ok(Change { rows, values: kept })
+    }
 }
 
 impl Defect {

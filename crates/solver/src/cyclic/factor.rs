@@ -251,6 +251,14 @@ impl CyclicCholesky {
         ring.factor_into(matrix, hold, values)
     }
 
+    /// The same factor for vectors that hold some of the caller's nodes alone, see [`CyclicRing::seen_at`].
+    pub fn seen_at(self, nodes: &[usize]) -> CyclicCholesky {
+        CyclicCholesky {
+            ring: self.ring.seen_at(nodes),
+            ..self
+        }
+    }
+
     /// The ring.
     pub fn ring(&self) -> &CyclicRing {
         &self.ring

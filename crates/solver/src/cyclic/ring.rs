@@ -23,7 +23,11 @@ pub struct CyclicRing {
     pub(super) comm: Communicator,
 }
 
+/// In [`Shared::nodes`] a node that the caller's vectors lack.
+pub(crate) const ABSENT: usize = usize::MAX;
+
 /// What clones share. Places count section nodes in elimination order.
+#[derive(Clone)]
 pub(crate) struct Shared {
     pub(crate) pattern: Arc<CyclicPattern>,
     /// Place of every section node.
@@ -33,7 +37,7 @@ pub(crate) struct Shared {
     pub(crate) halves: Vec<i32>,
     /// Whether the offsets are known, so that the section may be its own mirror image.
     pub(crate) may_be_mirrored: bool,
-    /// The caller's node by sector and place, `[n_sectors][n_section_nodes]`.
+    /// The caller's node by sector and place, or [`ABSENT`], `[n_sectors][n_section_nodes]`.
     pub(crate) nodes: Vec<usize>,
     /// Where each of the caller's nodes is in `nodes`.
     pub(crate) sites: Vec<usize>,
@@ -167,6 +171,37 @@ impl CyclicRing {
         Ok(CyclicRing::new(matrix, &nodes, &directions, half_way)?.shared_by(self.comm))
     }
 
+    /// The same ring for vectors that hold the caller's nodes `nodes` (ascending) alone, in this order. The other nodes are there and
+    /// move, but nothing loads or measures them.
+    ///
+    /// # Panics
+    /// When `nodes` is not ascending or names a node outside.
+    pub fn seen_at(&self, nodes: &[usize]) -> CyclicRing {
+        check_ascending(nodes, self.shared.sites.len());
+        let sites: Vec<usize> = nodes.iter().map(|&node| self.shared.sites[node]).collect();
+        let mut seen = vec![ABSENT; self.shared.nodes.len()];
+        sites
+            .iter()
+            .enumerate()
+            .for_each(|(node, &site)| seen[site] = node);
+        CyclicRing {
+            comm: self.comm,
+            shared: Arc::new(Shared {
+                nodes: seen,
+                sites,
+                ..Shared::clone(&self.shared)
+            }),
+        }
+    }
+
+    /// Cartesian components of a nodal vector at a site, zero of a node that it lacks.
+    pub(crate) fn at_site(&self, nodal: &[f64], site: usize) -> [f64; 3] {
+        match self.shared.nodes[site] {
+            ABSENT => [0.0; 3],
+            node => [0, 1, 2].map(|j| nodal[3 * node + j]),
+        }
+    }
+
     /// Number of sectors N.
     pub fn n_sectors(&self) -> usize {
         self.shared.pattern.n_sectors
@@ -179,7 +214,7 @@ impl CyclicRing {
 
     /// Length of the caller's vectors, three per node.
     pub fn n(&self) -> usize {
-        3 * self.shared.nodes.len()
+        3 * self.shared.sites.len()
     }
 
     /// Length of a vector in harmonic space: groups of four harmonics, the last one filled up with zeros.
@@ -192,9 +227,16 @@ impl CyclicRing {
         6 * LANES * self.n_section_nodes()
     }
 
-    /// The caller's row of component `component` of the node at a place of sector 0.
+    /// The caller's row of component `component` of the node at a place, of the first sector where the caller has it.
     pub(crate) fn row(&self, place: usize, component: usize) -> usize {
-        3 * self.shared.nodes[place] + component
+        let mut images = self
+            .shared
+            .nodes
+            .iter()
+            .skip(place)
+            .step_by(self.n_section_nodes());
+        let node = images.find(|&&node| node != ABSENT);
+        3 * node.copied().unwrap_or_default() + component
     }
 }
 

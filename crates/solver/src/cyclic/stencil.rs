@@ -126,8 +126,8 @@ impl CyclicRing {
                 for sector in 0..n {
                     for (i, node_lines) in lines.chunks_exact_mut(3 * stride).enumerate() {
                         let site = sector * width + TASK * task + i;
-                        let (node, [c, s]) = (shared.nodes[site], shared.directions[site]);
-                        let [x, y, z] = [0, 1, 2].map(|j| nodal[3 * node + j]);
+                        let [c, s] = shared.directions[site];
+                        let [x, y, z] = self.at_site(nodal, site);
                         node_lines[reach + sector] = c * x + s * y;
                         node_lines[stride + reach + sector] = c * y - s * x;
                         node_lines[2 * stride + reach + sector] = z;

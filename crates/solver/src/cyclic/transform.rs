@@ -15,7 +15,7 @@ use realfft::ComplexToReal;
 use realfft::num_complex::Complex;
 
 use super::phases::LANES;
-use super::ring::CyclicRing;
+use super::ring::{ABSENT, CyclicRing};
 use crate::permutation::invert;
 
 /// Section nodes transformed as one task.
@@ -113,6 +113,9 @@ impl CyclicRing {
             for sector in 0..n {
                 let site = sector * width + place;
                 let ([c, s], node) = (shared.directions[site], shared.nodes[site]);
+                if node == ABSENT {
+                    continue;
+                }
                 let [r, t, z] = [0, 1, 2].map(|i| lines[i * n + sector]);
                 nodal[3 * node..3 * node + 3].copy_from_slice(&[c * r - s * t, s * r + c * t, z]);
             }
@@ -216,9 +219,8 @@ impl CyclicRing {
         for (spectra, &place) in spectra.chunks_exact_mut(3 * n_harmonics).zip(places) {
             for sector in 0..n {
                 let site = sector * width + place;
-                let node = shared.nodes[site];
                 let [c, s] = shared.directions[site];
-                let [x, y, z] = [0, 1, 2].map(|j| nodal[3 * node + j]);
+                let [x, y, z] = self.at_site(nodal, site);
                 lines[sector] = c * x + s * y;
                 lines[n + sector] = c * y - s * x;
                 lines[2 * n + sector] = z;

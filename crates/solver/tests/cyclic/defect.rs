@@ -110,3 +110,67 @@ fn a_change_that_leaves_no_positive_definite_matrix_is_refused() {
         matches!(&error, SolverError::NotPositiveDefinite { row, .. } if change.rows.contains(row));
     assert!(is_refused, "{error}");
 }
+
+/// Wrong: elements that are gone with their inner nodes would not be those of the assembled matrix without them, or callers would meet
+/// nodes that they do not have.
+#[test]
+fn a_ring_that_lacks_elements_and_nodes_is_solved_as_its_assembled_matrix() {
+    for (ring, _) in rings() {
+        let lost = patch(&ring.mesh);
+        let mut nodes: Vec<usize> = lost.iter().flat_map(|&e| ring.mesh.element(e)).copied().collect();
+        nodes.sort_unstable();
+        nodes.dedup();
+        let mut is_there = vec![false; ring.mesh.n_nodes()];
+        let kept = (0..ring.mesh.n_elements()).filter(|e| lost.binary_search(e).is_err());
+        kept.flat_map(|e| ring.mesh.element(e))
+            .for_each(|&node| is_there[node] = true);
+        let seen: Vec<usize> = (0..is_there.len()).filter(|&node| is_there[node]).collect();
+        assert!(seen.len() < is_there.len(), "no node is gone");
+        // Rows by the caller's numbers, those that are gone last.
+        nodes.sort_by_key(|&node| !is_there[node]);
+        let part = ring.mesh.part(&lost, &{
+            let mut sorted = nodes.clone();
+            sorted.sort_unstable();
+            sorted
+        });
+        let row = |local: usize| {
+            let x = part.nodes[local / 3];
+            3 * nodes.iter().position(|&node| ring.mesh.nodes[node] == x).unwrap() + local % 3
+        };
+        let (stiffness, pattern) = (
+            fem::assemble_stiffness(&part, &steel()).unwrap(),
+            fem::Pattern::new(&part).unwrap(),
+        );
+        let mass = fem::assemble_node_mass(&pattern, &part, &steel()).unwrap();
+        let size = 3 * nodes.len();
+        let mut values = vec![0.0; size * size];
+        for (&k, (i, j)) in stiffness.iter() {
+            values[size * row(i) + row(j)] -= k;
+        }
+        for (&m, (a, b)) in mass.iter() {
+            (0..3).for_each(|c| values[size * row(3 * a + c) + row(3 * b + c)] -= SHIFT * m);
+        }
+        let mut assembled = ring.assembled(SHIFT);
+        for (i, a) in nodes.iter().enumerate() {
+            for (j, b) in nodes.iter().enumerate() {
+                for cd in 0..9 {
+                    let change = values[size * (3 * i + cd / 3) + 3 * j + cd % 3];
+                    if change != 0.0 {
+                        *assembled.get_mut(3 * a + cd / 3, 3 * b + cd % 3).unwrap() += change;
+                    }
+                }
+            }
+        }
+        let free: Vec<usize> = seen.iter().flat_map(|node| 3 * node..3 * node + 3).collect();
+        let rows = nodes.iter().filter_map(|node| seen.binary_search(node).ok());
+        let rows: Vec<usize> = rows.flat_map(|node| 3 * node..3 * node + 3).collect();
+        let change = Change::condensed(rows, &values).unwrap();
+        let cyclic = CyclicDefect::new(base(&ring).seen_at(&seen), &change).unwrap();
+        assert_eq!(cyclic.n(), free.len());
+        let mut found = loads(free.len());
+        let mut expected = found.clone();
+        cyclic.solve(&mut found, 1);
+        ring.sparse(&assembled, &free).solve(&mut expected, 1);
+        assert_close(&found, &expected, 1e-11);
+    }
+}
