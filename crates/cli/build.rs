@@ -173,6 +173,7 @@ fn effects(scene: &Scene, rings: &[Option<Arc<RingModel>>; 2]) -> Result<Vec<Box
         effects.push(Box::new(BallCentrifugal {
             speed: speed(scene),
             slip,
+            ball_speeds: scene.ball_speeds,
         }));
     }
     if asked.frame_rotation {
@@ -188,6 +189,7 @@ fn effects(scene: &Scene, rings: &[Option<Arc<RingModel>>; 2]) -> Result<Vec<Box
             speed: speed(scene),
             slip,
             shares,
+            ball_speeds: scene.ball_speeds,
         }));
     }
     if let Some(Scheduled { value, schedule }) = asked.moment.clone() {

@@ -26,6 +26,17 @@ pub enum Failure {
     Stopped(anyhow::Error),
 }
 
+/// An error and its causes; a cause that is said already is not said again.
+fn one_line(error: &anyhow::Error) -> String {
+    let mut text = error.to_string();
+    for cause in error.chain().skip(1).map(ToString::to_string) {
+        if !text.ends_with(&cause) {
+            text = format!("{text}: {cause}");
+        }
+    }
+    text
+}
+
 impl Failure {
     /// Exit code of the process.
     pub fn number(&self) -> u8 {
@@ -39,9 +50,7 @@ impl Failure {
     /// The message with its causes, on one line.
     pub fn text(&self) -> String {
         match self {
-            Failure::User(error) | Failure::Numerical(error) | Failure::Stopped(error) => {
-                format!("{error:#}")
-            }
+            Failure::User(error) | Failure::Numerical(error) | Failure::Stopped(error) => one_line(error),
         }
     }
 

@@ -34,7 +34,7 @@ const COMMANDS: [Case; 9] = [
     ),
     (
         &["run", "missing.toml"],
-        "error: cannot read the scene missing.toml: No such file or directory",
+        "error: cannot read the scene missing.toml: No such file or directory (os error 2)\n",
     ),
     (
         &["mesh", "scene.toml"],

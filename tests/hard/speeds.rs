@@ -1,7 +1,7 @@
 //! Speeds: run-up, reversal, a stop dead, light balls at high speed, and a million steps of steady running.
 
 use dynamics::effects::{BallCentrifugal, FrameRotation, GyroscopicMoment};
-use dynamics::motion::balls::Speed;
+use dynamics::motion::balls::{BallSpeeds, Speed};
 use dynamics::motion::{Motion, MotionSettings};
 use dynamics::{Model, StaticSolution};
 
@@ -95,6 +95,7 @@ fn gyroscopic_alone(record: &mut Record) {
             speed: Speed::constant(40_000.0 * RPM),
             slip: [0.0; 2],
             shares: [0.0, 2.0],
+            ball_speeds: BallSpeeds::FreeAngle,
         }));
         let rest = match equilibrium_at(&model, 0.0) {
             Ok(rest) => rest,
@@ -148,6 +149,7 @@ fn add_centrifugal(model: &mut Model, speed: &Speed) {
     model.effects.push(Box::new(BallCentrifugal {
         speed: speed.clone(),
         slip: [0.0; 2],
+        ball_speeds: BallSpeeds::FreeAngle,
     }));
 }
 
@@ -203,6 +205,7 @@ fn run_up_flexible(record: &mut Record) {
         speed: speed.clone(),
         slip: [0.0; 2],
         shares: [0.0, 2.0],
+        ball_speeds: BallSpeeds::FreeAngle,
     }));
     let course = transient(&model, turning(speed, 5e-6), 3e-3);
     record.closed(&course);
@@ -220,6 +223,7 @@ fn light(gyroscopic: bool) -> (Model, StaticSolution, MotionSettings) {
                 speed: speed.clone(),
                 slip: [0.0; 2],
                 shares: [0.0, 2.0],
+                ball_speeds: BallSpeeds::FreeAngle,
             }));
         }
         model

@@ -65,6 +65,7 @@ mod tests;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
+use dynamics::motion::balls::BallSpeeds;
 use serde::Deserialize;
 use toml_edit::DocumentMut;
 
@@ -164,6 +165,8 @@ pub struct Scene {
     pub shaft: Shaft,
     /// Speed of the inner ring; it does not turn when `None`.
     pub speed: Option<SpeedTable>,
+    /// Contact angles that the speeds of balls follow.
+    pub ball_speeds: BallSpeeds,
     /// Loads and other effects.
     pub effects: Effects,
     /// How the equations are solved.
@@ -291,6 +294,7 @@ impl Source<'_> {
             .effects
             .check(raw.effects_context(inner.body.is_some()), &mut problems);
         let speed = raw.speed.as_ref();
+        let ball_speeds = speed.map_or(BallSpeeds::FreeAngle, |s| s.ball_speeds(&effects, &mut problems));
         let speed = speed.and_then(|s| s.check(raw.speed_use(), &mut problems));
         let solver = raw.solver.check(&mut problems);
         let output = raw.output.check(&mut problems);
@@ -323,6 +327,7 @@ impl Source<'_> {
                 outer,
                 shaft,
                 speed,
+                ball_speeds,
                 effects,
                 solver,
                 output,

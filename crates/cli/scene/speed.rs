@@ -6,10 +6,12 @@
 
 use std::fmt;
 
+use dynamics::motion::balls::BallSpeeds;
 use serde::Deserialize;
 use serde::de::value::MapAccessDeserializer;
 use serde::de::{Deserializer, Error, MapAccess, Visitor};
 
+use super::effects::Effects;
 use super::problems::Problems;
 use super::schedule::require_growing;
 use crate::units::{ANGULAR_SPEED, Quantity, TIME, bare_number};
@@ -19,6 +21,15 @@ use crate::units::{ANGULAR_SPEED, Quantity, TIME, bare_number};
 #[serde(deny_unknown_fields, expecting = "the table [speed]")]
 pub struct RawSpeed {
     inner: RawRingSpeed,
+    ball_speeds: Option<RawBallSpeeds>,
+}
+
+/// As typed.
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(rename_all = "snake_case")]
+enum RawBallSpeeds {
+    FreeAngle,
+    OuterControl,
 }
 
 /// As typed: a speed, or a table over time.
@@ -73,6 +84,21 @@ pub struct SpeedTable {
 const MAX_SPEED: f64 = 1e5;
 
 impl RawSpeed {
+    /// Contact angles that the speeds of balls follow, for the effects that need them.
+    pub fn ball_speeds(&self, effects: &Effects, problems: &mut Problems) -> BallSpeeds {
+        let are_used = effects.ball_centrifugal || effects.gyroscopic_moment.is_some();
+        if self.ball_speeds.is_some() && !are_used {
+            problems.add(
+                "speed.ball_speeds does nothing without [effects.ball_centrifugal] or [effects.gyroscopic_moment]; add one, or \
+                 remove it",
+            );
+        }
+        match self.ball_speeds {
+            None | Some(RawBallSpeeds::FreeAngle) => BallSpeeds::FreeAngle,
+            Some(RawBallSpeeds::OuterControl) => BallSpeeds::OuterControl,
+        }
+    }
+
     /// Checks sizes and the order of times; `None` when there are problems.
     pub fn check(&self, speed_use: SpeedUse, problems: &mut Problems) -> Option<SpeedTable> {
         let before = problems.len();

@@ -271,7 +271,11 @@ pub fn check_held(problem: &Problem, u: &Displacements, scales: SearchScales) ->
 
 /// Proximal stiffness, N/m: a trace of the contacts' and more than what a growing ball load takes away.
 fn proximal(problem: &Problem, scales: SearchScales) -> f64 {
-    PROXIMAL * scales.stiffness + 2.0 * problem.ball_slope
+    let slope = problem
+        .ball_slopes
+        .iter()
+        .fold(0.0, |largest, s| f64::max(largest, *s));
+    PROXIMAL * scales.stiffness + 2.0 * slope
 }
 
 fn dense_error(source: SolverError) -> DynamicsError {

@@ -1,6 +1,7 @@
 //! Loads in the contact problem: at rest, and for loads that follow the contact angles, until both rest.
 //!
-//! Loads that do not depend on contact angles are evaluated once. Those that do (the gyroscopic moment) are evaluated
+//! Loads that do not depend on contact angles are evaluated once. Those that do (the gyroscopic moment; with the speeds of outer
+//! raceway control the centrifugal force of the balls too) are evaluated
 //! again at the angles of the equilibrium that they gave, until they do not change: a fixed point, since they are dead
 //! loads to Newton. Each pass shrinks the change by (change of the loads) / (change of the contact forces), below 0.4 for
 //! the gyroscopic moment with the centrifugal force of the balls, even on balls that have left the inner raceway. Where it does not
@@ -84,7 +85,7 @@ impl<'a> LoadCase<'a> {
         start: Displacements,
     ) -> Result<Displacements, DynamicsError> {
         let mut u = self.minimise(start)?;
-        if self.loads.contacts.is_empty() {
+        if !self.loads.follows_angles {
             return Ok(u);
         }
         let tolerance = self.model.tolerances.force;
@@ -93,11 +94,16 @@ impl<'a> LoadCase<'a> {
         for _ in 0..self.model.tolerances.max_rounds {
             let mut next = self.loads_at(costs, &u)?;
             let largest = largest_force(&site_forces(&self.problem, &u));
-            let (change, place) = largest_change(&self.loads.contacts, &next.contacts, largest);
+            let n_contacts = next.contacts.len();
+            let (change, place) = largest_change(&following(&self.loads), &following(&next), largest);
             if change <= tolerance {
                 return Ok(u);
             }
-            worst = place;
+            worst = if place < n_contacts {
+                place
+            } else {
+                2 * (place - n_contacts)
+            };
             history.push(change);
             relaxation.shorten(&self.loads, &mut next);
             self.loads = next;
@@ -123,7 +129,7 @@ impl Problem {
         self.shaft_load = [0, 1, 2, 3, 4].map(|i| loads.shaft[i] + loads.ring_on_shaft[i]);
         self.ball_load.clone_from(&loads.balls);
         self.contact_load.clone_from(&loads.contacts);
-        self.ball_slope = loads.ball_slope;
+        self.ball_slopes.clone_from(&loads.ball_slopes);
         for (site, force) in self.sites.iter().zip(&loads.contacts) {
             for i in 0..2 {
                 self.ball_load[site.ball][i] -= force[i];
@@ -145,7 +151,7 @@ const LEAST_SHARE: f64 = 0.05;
 /// Aitken's share of the change of loads that is taken.
 struct Relaxation {
     share: f64,
-    /// The last whole change of the contact loads.
+    /// The last whole change of the loads that follow the angles.
     change: Vec<[f64; 2]>,
 }
 
@@ -161,8 +167,12 @@ impl Default for Relaxation {
 impl Relaxation {
     /// Takes only a share of the way from the loads `old` to `new`.
     fn shorten(&mut self, old: &Loads, new: &mut Loads) {
-        let pairs = old.contacts.iter().zip(&new.contacts);
-        let change: Vec<[f64; 2]> = pairs.map(|(a, b)| [b[0] - a[0], b[1] - a[1]]).collect();
+        let (from, to) = (following(old), following(new));
+        let change: Vec<[f64; 2]> = from
+            .iter()
+            .zip(&to)
+            .map(|(a, b)| [b[0] - a[0], b[1] - a[1]])
+            .collect();
         let product = |a: &[[f64; 2]], b: &[[f64; 2]]| -> f64 {
             a.iter().zip(b).map(|(a, b)| a[0] * b[0] + a[1] * b[1]).sum()
         };
@@ -181,13 +191,24 @@ impl Relaxation {
             return;
         }
         let between = |old: f64, new: &mut f64| *new = old + self.share * (*new - old);
-        for (old, new) in old.contacts.iter().zip(&mut new.contacts) {
-            (0..2).for_each(|i| between(old[i], &mut new[i]));
-        }
-        for (old, new) in old.shaft.iter().zip(&mut new.shaft) {
-            between(*old, new);
-        }
+        let pairs = |old: &[[f64; 2]], new: &mut [[f64; 2]]| {
+            let new = new.iter_mut().flatten();
+            old.iter()
+                .flatten()
+                .zip(new)
+                .for_each(|(old, new)| between(*old, new));
+        };
+        pairs(&old.contacts, &mut new.contacts);
+        pairs(&old.balls, &mut new.balls);
+        let slopes = old.ball_slopes.iter().zip(&mut new.ball_slopes);
+        let shaft = old.shaft.iter().zip(&mut new.shaft);
+        slopes.chain(shaft).for_each(|(old, new)| between(*old, new));
     }
+}
+
+/// Loads that may follow the contact angles, N: those of the contacts, then of the balls.
+fn following(loads: &Loads) -> Vec<[f64; 2]> {
+    [loads.contacts.as_slice(), &loads.balls].concat()
 }
 
 /// Contact places or loads that do not come to rest; `worst` is the site that changes most.

@@ -46,7 +46,7 @@ impl Pose {
             shaft_load: [0.0; 5],
             ball_load: vec![[0.0; 2]; geometry.n_balls],
             contact_load: Vec::new(),
-            ball_slope: 0.0,
+            ball_slopes: vec![0.0; geometry.n_balls],
             tilt_arm: geometry.centre_radius(Side::Inner),
         }
     }

@@ -68,8 +68,8 @@ pub struct Problem {
     pub ball_load: Vec<[f64; 2]>,
     /// Dead load on the ring at each contact, N, by site, or empty; shaft and ball loads have theirs already.
     pub contact_load: Vec<[f64; 2]>,
-    /// Growth of the radial ball load with the radial displacement, N/m.
-    pub ball_slope: f64,
+    /// Growth of the radial load of each ball with its radial displacement, N/m.
+    pub ball_slopes: Vec<f64>,
     /// Length by which tilts are scaled, m.
     pub tilt_arm: f64,
 }
@@ -246,7 +246,7 @@ impl Problem {
         let first_ball = self.shaft_free.iter().filter(|f| **f).count();
         for ball in 0..self.ball_load.len() {
             let radial = first_ball + 2 * ball;
-            hessian[n * radial + radial] -= self.ball_slope;
+            hessian[n * radial + radial] -= self.ball_slopes[ball];
         }
         for site in &self.sites {
             let state = site.state(u);
@@ -264,8 +264,8 @@ impl Problem {
 
     /// Loads on the balls [radial, axial] at given displacements, N.
     pub fn ball_loads(&self, u: &Displacements) -> Vec<[f64; 2]> {
-        let at = |(f, x): (&[f64; 2], &[f64; 2])| [f[0] + self.ball_slope * x[0], f[1]];
-        self.ball_load.iter().zip(&u.balls).map(at).collect()
+        let loads = self.ball_load.iter().zip(&self.ball_slopes).zip(&u.balls);
+        loads.map(|((f, slope), x)| [f[0] + slope * x[0], f[1]]).collect()
     }
 
     /// Gradient of loads and ring elasticity.

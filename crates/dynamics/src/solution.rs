@@ -48,8 +48,8 @@ pub struct StaticSolution {
     pub warnings: Vec<String>,
     /// All contacts with their laws: ball 0 inner, ball 0 outer, ball 1 inner, ...
     pub sites: Vec<Site>,
-    /// Growth of the radial ball load with the radial displacement, N/m.
-    pub ball_slope: f64,
+    /// Growth of the radial load of each ball with its radial displacement, N/m.
+    pub ball_slopes: Vec<f64>,
     footprints: [Vec<Footprint>; 2],
 }
 
@@ -85,6 +85,12 @@ impl StaticSolution {
             warnings: warnings(&rings.footprints, &forces, &balls)
                 .into_iter()
                 .chain(friction_warning(&forces, &case.loads.contacts))
+                .chain(
+                    model
+                        .effects
+                        .iter()
+                        .filter_map(|e| e.warning(model, &case.pose.now, &balls)),
+                )
                 .collect(),
             balls,
             work_defect: load_work + dot(&reaction, &u.shaft) - 2.0 * strain_energy - contact_work,
@@ -98,7 +104,7 @@ impl StaticSolution {
             displacements: u,
             pose: case.pose,
             sites: problem.sites.clone(),
-            ball_slope: problem.ball_slope,
+            ball_slopes: problem.ball_slopes.clone(),
             elastic: rings.elastic,
             footprints: rings.footprints,
         }

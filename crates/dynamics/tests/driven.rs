@@ -3,7 +3,7 @@
 mod support;
 
 use dynamics::effects::{BallCentrifugal, GyroscopicMoment, Now};
-use dynamics::motion::balls::Speed;
+use dynamics::motion::balls::{BallSpeeds, Speed};
 use dynamics::motion::{Motion, MotionSettings, MotionState};
 use dynamics::{ContactMode, Hold, Model, Pose, Schedule, ShaftDof, StaticSolver};
 use support::rings::Level;
@@ -22,10 +22,14 @@ fn spinning(mut model: Model, shares: [f64; 2]) -> Model {
     model.effects.push(Box::new(BallCentrifugal {
         speed: speed.clone(),
         slip,
+        ball_speeds: BallSpeeds::FreeAngle,
     }));
-    model
-        .effects
-        .push(Box::new(GyroscopicMoment { speed, slip, shares }));
+    model.effects.push(Box::new(GyroscopicMoment {
+        speed,
+        slip,
+        shares,
+        ball_speeds: BallSpeeds::FreeAngle,
+    }));
     model.shaft_mass = 0.5;
     model
 }

@@ -225,6 +225,7 @@ fn rigid_rings_carry_the_centrifugal_force_of_the_balls() {
     let effect = dynamics::effects::BallCentrifugal {
         speed: speed.clone(),
         slip: [0.0; 2],
+        ball_speeds: dynamics::motion::balls::BallSpeeds::FreeAngle,
     };
     model.effects.push(Box::new(effect));
     let solution = equilibrium(&model);

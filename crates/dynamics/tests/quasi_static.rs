@@ -6,7 +6,7 @@ use std::f64::consts::PI;
 
 use contact::Side;
 use dynamics::effects::{AxialForce, BallCentrifugal, Gravity, Now, RadialForce};
-use dynamics::motion::balls::{Rolling, Speed};
+use dynamics::motion::balls::{BallSpeeds, Rolling, Speed};
 use dynamics::motion::{Motion, MotionSettings};
 use dynamics::{ContactMode, Hold, Model, Pose, QuasiStatic, Schedule, StaticSolution, StaticSolver};
 use support::rings::Level;
@@ -168,6 +168,7 @@ fn slow_motion_follows_the_quasi_static_run() {
     model.effects.push(Box::new(BallCentrifugal {
         speed: Speed::constant(SPEED),
         slip: [0.0; 2],
+        ball_speeds: BallSpeeds::FreeAngle,
     }));
     let dt = 2e-5;
     let mut quasi = QuasiStatic::new(&model, rolling(&model), 0.5 * dt).unwrap();

@@ -83,6 +83,24 @@ fn a_motion_needs_only_duration_and_step() {
     assert_eq!(effects.rayleigh_damping, None);
 }
 
+/// If this failed, the speeds of balls would follow other angles than asked for, or be asked for in vain.
+#[test]
+fn ball_speeds_are_for_effects_of_turning_balls() {
+    let asked = |value: &str| replace_line(DYNAMIC, "# ball_speeds", &format!("ball_speeds = \"{value}\""));
+    let of = |text: &str| parse(text, &[]).unwrap_or_else(|e| panic!("{e}")).ball_speeds;
+    assert_eq!(of(DYNAMIC), BallSpeeds::FreeAngle);
+    assert_eq!(of(&asked("free_angle")), BallSpeeds::FreeAngle);
+    assert_eq!(of(&asked("outer_control")), BallSpeeds::OuterControl);
+    let message = message_of(&asked("inner_control"), &[]);
+    let expected = "speed.ball_speeds is \"inner_control\"; did you mean \"outer_control\"? valid values are \"free_angle\"";
+    assert!(message.contains(expected), "{message}");
+    let idle = replace_line(&asked("outer_control"), "[effects.ball_centrifugal]", "");
+    let message = message_of(&idle, &[]);
+    let expected =
+        "speed.ball_speeds does nothing without [effects.ball_centrifugal] or [effects.gyroscopic_moment]";
+    assert!(message.contains(expected), "{message}");
+}
+
 /// If this failed, a motion would be integrated with another scheme or with other numbers than the scene names.
 #[test]
 fn every_integrator_has_its_own_numbers() {

@@ -3,11 +3,17 @@
 //! ```
 //! Centrifugal force of the balls, m omega_c^2 r, omega_c the cage's speed: it presses balls outwards, so the outer contact
 //! angle falls and the inner one rises. The force grows with the ball's radial displacement.
+//!
+//! With `speed.ball_speeds = "outer_control"` each ball has the speed omega_c of its own contact angles (`BallSpeeds`).
 
 use super::{Effect, Loads, Now};
+use crate::balls::BallResult;
 use crate::error::DynamicsError;
 use crate::model::Model;
-use crate::motion::balls::{Kinematics, Speed};
+use crate::motion::balls::{BallSpeeds, Kinematics, Speed};
+
+/// Error of a contact force that is worth a warning.
+const MATTERS: f64 = 0.01;
 
 /// Centrifugal force of the balls.
 pub struct BallCentrifugal {
@@ -15,6 +21,8 @@ pub struct BallCentrifugal {
     pub speed: Speed,
     /// Slip ratios at the inner and outer raceway.
     pub slip: [f64; 2],
+    /// Contact angles that the speeds follow.
+    pub ball_speeds: BallSpeeds,
 }
 
 impl Effect for BallCentrifugal {
@@ -23,11 +31,46 @@ impl Effect for BallCentrifugal {
     }
 
     fn add_loads(&self, model: &Model, now: &Now, loads: &mut Loads) -> Result<(), DynamicsError> {
-        let cage = Kinematics::new(&model.geometry, self.slip).cage * self.speed.at(now.time);
-        let slope = model.ball_mass() * cage * cage;
         let radius = model.geometry.ball_centre()[0];
-        loads.balls.iter_mut().for_each(|f| f[0] += slope * radius);
-        loads.ball_slope += slope;
+        for ball in 0..model.geometry.n_balls {
+            let turning = self.ball_speeds.of_ball(model, now, self.slip, ball);
+            let cage = turning.cage * self.speed.at(now.time);
+            let slope = model.ball_mass() * cage * cage;
+            loads.balls[ball][0] += slope * radius;
+            loads.ball_slopes[ball] += slope;
+        }
+        loads.follows_angles |= self.ball_speeds == BallSpeeds::OuterControl;
         Ok(())
+    }
+
+    fn warning(&self, model: &Model, now: &Now, balls: &[BallResult]) -> Option<String> {
+        if self.ball_speeds == BallSpeeds::OuterControl {
+            return None;
+        }
+        let free = Kinematics::new(&model.geometry, self.slip).cage;
+        let slope = model.ball_mass() * (free * self.speed.at(now.time)).powi(2);
+        let force = slope * model.geometry.ball_centre()[0];
+        // By what share of the force its angles change that of a ball, over its contact force.
+        let error = |ball: &BallResult| {
+            let angles = [ball.inner.contact_angle_rad, ball.outer.contact_angle_rad];
+            let change =
+                (Kinematics::outer_control(&model.geometry, self.slip, angles).cage / free).powi(2) - 1.0;
+            [change, change.abs() * force / ball.outer.force_n]
+        };
+        let loaded = balls.iter().enumerate().filter(|(_, b)| b.inner.force_n > 0.0);
+        let errors = loaded.map(|(i, ball)| (i, error(ball)));
+        let (ball, [change, error]) = errors.max_by(|a, b| a.1[1].total_cmp(&b.1[1]))?;
+        (error > MATTERS).then(|| {
+            let degrees = [balls[ball].inner, balls[ball].outer].map(|c| c.contact_angle_rad.to_degrees());
+            format!(
+                "ball {ball} rolls at contact angles of {:.1} deg inside and {:.1} deg outside, which would change its centrifugal \
+                 force by {:+.1} %, or {:.1} % of its contact force: the cage has the speed of the free contact angle; \
+                 speed.ball_speeds = \"outer_control\" gives each ball that of its own angles",
+                degrees[0],
+                degrees[1],
+                100.0 * change,
+                100.0 * error
+            )
+        })
     }
 }

@@ -15,6 +15,7 @@
 //! raceway control whatever the shares. omega_b and omega_c are those of the kinematic cage (`motion::balls`), with the
 //! free contact angle and the cage slip; only beta follows the present angle a_o of each ball. (7010C, 30 000 rpm, 2 kN:
 //! Harris's speeds at the angles of the solution, 27.2 and 13.4 deg, are 3 % higher, and M_g would be 6 % larger.)
+//! With `speed.ball_speeds = "outer_control"` they are Harris's, of the contact angles of each ball (`BallSpeeds`).
 //!
 //! **Signs**, from first principles, at azimuth 0, with e_r = x, e_z = z, e_psi = y. The inner raceway (turning by + about
 //! z) drags the ball's inner side along +e_psi, so relative to the cage the ball turns with
@@ -39,7 +40,7 @@ use contact::Side;
 use super::{Effect, Loads, Now};
 use crate::error::DynamicsError;
 use crate::model::Model;
-use crate::motion::balls::{Kinematics, Speed};
+use crate::motion::balls::{BallSpeeds, Speed, pitch_angle};
 
 /// Gyroscopic moment of the balls.
 pub struct GyroscopicMoment {
@@ -49,17 +50,17 @@ pub struct GyroscopicMoment {
     pub slip: [f64; 2],
     /// Shares lambda of the inner and the outer raceway; their sum is 2.
     pub shares: [f64; 2],
+    /// Contact angles that the speeds follow.
+    pub ball_speeds: BallSpeeds,
 }
 
 impl GyroscopicMoment {
-    /// Moment M_g of one ball at an outer contact angle (rad) and a time (s), N m, about e_psi.
-    pub fn moment(&self, model: &Model, outer_angle: f64, time: f64) -> f64 {
+    /// Moment M_g of one ball at an instant, N m, about e_psi.
+    pub fn moment(&self, model: &Model, now: &Now, ball: usize) -> f64 {
         let geometry = &model.geometry;
-        let kinematics = Kinematics::new(geometry, self.slip);
-        let speed = self.speed.at(time);
-        let gamma = geometry.ball_diameter / geometry.pitch_diameter();
-        let (sin, cos) = outer_angle.sin_cos();
-        let pitch = sin.atan2(cos + gamma);
+        let kinematics = self.ball_speeds.of_ball(model, now, self.slip, ball);
+        let speed = self.speed.at(now.time);
+        let pitch = pitch_angle(geometry, now.contact_angle(model, ball, Side::Outer));
         let inertia = model.ball_mass() * geometry.ball_diameter.powi(2) / 10.0;
         inertia * (kinematics.ball * speed) * (kinematics.cage * speed) * pitch.sin()
     }
@@ -71,9 +72,9 @@ impl Effect for GyroscopicMoment {
     }
 
     fn add_loads(&self, model: &Model, now: &Now, loads: &mut Loads) -> Result<(), DynamicsError> {
+        loads.follows_angles = true;
         for ball in 0..model.geometry.n_balls {
-            let outer_angle = now.contact_angle(model, ball, Side::Outer);
-            let moment = self.moment(model, outer_angle, now.time);
+            let moment = self.moment(model, now, ball);
             for side in Side::BOTH {
                 let size = self.shares[side.index()] * moment / model.geometry.ball_diameter;
                 let (sin, cos) = now.contact_angle(model, ball, side).sin_cos();

@@ -20,6 +20,7 @@ pub use radial_force::RadialForce;
 
 use contact::Side;
 
+use crate::balls::BallResult;
 use crate::costs::EffectCosts;
 use crate::error::DynamicsError;
 use crate::model::{Model, RingModel};
@@ -34,8 +35,10 @@ pub struct Loads {
     pub ring_on_shaft: [f64; 5],
     /// Force on each ball [radial, axial] at its just-touching position, N.
     pub balls: Vec<[f64; 2]>,
-    /// Growth of the radial ball force with the radial displacement, N/m.
-    pub ball_slope: f64,
+    /// Growth of the radial force on each ball with its radial displacement, N/m.
+    pub ball_slopes: Vec<f64>,
+    /// Whether forces on balls or contacts depend on the contact angles.
+    pub follows_angles: bool,
     /// Body loads on the nodes of a flexible ring, N, `[n_nodes][3]` flat; None: no such load.
     pub rings: [Option<Vec<f64>>; 2],
     /// Force on the ring at each contact [radial, axial] besides the normal one, N, by site (2 ball + side), acting at the
@@ -60,7 +63,8 @@ impl Loads {
         Loads {
             shaft: [0.0; 5],
             ring_on_shaft: [0.0; 5],
-            ball_slope: 0.0,
+            ball_slopes: vec![0.0; model.geometry.n_balls],
+            follows_angles: false,
             balls: vec![[0.0; 2]; model.geometry.n_balls],
             rings: [None, None],
             contacts: Vec::new(),
@@ -147,6 +151,11 @@ pub trait Effect: Send + Sync {
 
     /// Adds its loads at an instant.
     fn add_loads(&self, model: &Model, now: &Now, loads: &mut Loads) -> Result<(), DynamicsError>;
+
+    /// What a reader of an equilibrium should know: where the effect is beyond what it assumes.
+    fn warning(&self, _model: &Model, _now: &Now, _balls: &[BallResult]) -> Option<String> {
+        None
+    }
 }
 
 /// Loads of all effects of the model at an instant.

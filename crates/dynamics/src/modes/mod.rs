@@ -164,7 +164,7 @@ fn check_supported(model: &Model, equilibrium: &StaticSolution) -> Result<(), Dy
         let what = "contact.mode = \"facet\", whose forces have no energy; use \"patch\"";
         return Err(DynamicsError::NotInModes { what });
     }
-    if equilibrium.ball_slope != 0.0 {
+    if equilibrium.ball_slopes.iter().any(|slope| *slope != 0.0) {
         let what = "the centrifugal force of balls: they belong to a bearing that does not turn";
         return Err(DynamicsError::NotInModes { what });
     }

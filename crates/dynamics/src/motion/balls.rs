@@ -4,11 +4,12 @@
 //! eq. 10): omega_c = omega_i / 2 (1 - (D_w / D_m) cos a0), with slip ratios the share of the inner and outer
 //! rolling motion that is lost.
 
-use contact::BearingGeometry;
+use contact::{BearingGeometry, Side};
 
 use super::run::Motion;
 use super::state::MotionState;
 use crate::effects::Now;
+use crate::model::Model;
 use crate::pose::Pose;
 use crate::schedule::piecewise_linear;
 
@@ -89,6 +90,55 @@ impl Kinematics {
         Kinematics {
             cage,
             ball: (1.0 - cage) * inner / ratio,
+        }
+    }
+
+    /// Rolling at the contact angles `[inner, outer]`, rad, about an axis pitched by beta (`pitch_angle`): the surface of the
+    /// ball has cos(a - beta) of its largest speed at a contact (Harris, 4th ed., chapter 8; Jones 1959). Without slip
+    /// omega_c = omega_i (1 - D_w / D_m cos a_i) / (1 + cos(a_i - a_o)).
+    pub fn outer_control(geometry: &BearingGeometry, slip: [f64; 2], angles: [f64; 2]) -> Kinematics {
+        let ratio = geometry.ball_diameter / geometry.pitch_diameter();
+        let pitch = pitch_angle(geometry, angles[1]);
+        let rolling = |side: Side| {
+            let angle = angles[side.index()];
+            let radius = 1.0 + side.sign() * ratio * angle.cos();
+            (1.0 - slip[side.index()]) * radius / (angle - pitch).cos()
+        };
+        let (inner, outer) = (rolling(Side::Inner), rolling(Side::Outer));
+        let cage = inner / (inner + outer);
+        Kinematics {
+            cage,
+            ball: (1.0 - cage) * inner / ratio,
+        }
+    }
+}
+
+/// Pitch angle beta of a ball's axis under outer raceway control, rad: without pivoting on the outer raceway
+/// tan beta = sin a_o / (cos a_o + D_w / D_m) (Harris, 4th ed., chapter 8).
+pub fn pitch_angle(geometry: &BearingGeometry, outer_angle: f64) -> f64 {
+    let (sin, cos) = outer_angle.sin_cos();
+    sin.atan2(cos + geometry.ball_diameter / geometry.pitch_diameter())
+}
+
+/// Contact angles that the speeds of a ball follow, for its centrifugal force and gyroscopic moment.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum BallSpeeds {
+    /// Those of the kinematic cage: the free contact angle.
+    #[default]
+    FreeAngle,
+    /// Outer raceway control: the contact angles that each ball has.
+    OuterControl,
+}
+
+impl BallSpeeds {
+    /// Turning of one ball at an instant, with slip ratios at the inner and outer raceway.
+    pub fn of_ball(self, model: &Model, now: &Now, slip: [f64; 2], ball: usize) -> Kinematics {
+        match self {
+            BallSpeeds::FreeAngle => Kinematics::new(&model.geometry, slip),
+            BallSpeeds::OuterControl => {
+                let angles = Side::BOTH.map(|side| now.contact_angle(model, ball, side));
+                Kinematics::outer_control(&model.geometry, slip, angles)
+            }
         }
     }
 }

@@ -124,7 +124,7 @@ impl Motion<'_> {
                     state.ball_accelerations[b][i],
                 ],
                 load: loads.balls[b][i],
-                load_slope: if i == 0 { loads.ball_slope } else { 0.0 },
+                load_slope: if i == 0 { loads.ball_slopes[b] } else { 0.0 },
             })
         });
         let answer = |side: Side| {

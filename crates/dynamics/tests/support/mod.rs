@@ -107,6 +107,7 @@ pub fn relative(a: f64, b: f64) -> f64 {
 }
 
 pub mod graded;
+pub mod harris;
 pub mod rings;
 
 use dynamics::Hold;
