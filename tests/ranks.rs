@@ -8,6 +8,7 @@ mod stress;
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
+use crate::cuts::cut_motion;
 use crate::sectors::SECTOR;
 use crate::util::lockstep::{assert_same_run, copy, small_motion};
 use crate::util::{Dir, Outcome, SCENE};
@@ -107,6 +108,26 @@ fn harmonics_have_the_same_bits_on_any_number_of_ranks() {
                 "{name} of {ranks} ranks differs"
             );
         }
+    }
+}
+
+/// Wrong: a ring with missing elements would have other bits when ranks share the harmonics of the ring that has them.
+#[test]
+#[ignore = "needs mpirun and a program built with MPI: scripts/test-mpi"]
+fn cut_rings_have_the_same_bits_on_any_number_of_ranks() {
+    let dir = cut_motion();
+    dir.run("alone", &[]);
+    for ranks in [2, 3] {
+        let out = format!("ranks{ranks}");
+        let outcome = on_ranks(&dir, ranks, &["run", "scene.toml", "--out", &out]);
+        done(&outcome);
+        assert!(outcome.stderr.contains(" absent nodes; "), "{}", outcome.stderr);
+        assert!(
+            outcome.stderr.contains(&format!("harmonics on {ranks} ranks")),
+            "{}",
+            outcome.stderr
+        );
+        assert_same_run(&dir, "alone", &out);
     }
 }
 

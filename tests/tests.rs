@@ -3,6 +3,7 @@
 
 mod bad_input;
 mod batch;
+mod cuts;
 mod examples;
 mod export;
 mod hard;

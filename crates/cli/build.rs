@@ -19,7 +19,7 @@ use mesh::{Mesh, Torus};
 use crate::failure::Failure;
 use crate::motion::speed;
 use crate::results::probes::Probes;
-use crate::scene::{self, Scene, Scheduled};
+use crate::scene::{self, FlexibleRing, Scene, Scheduled};
 
 /// Deviation of raceway nodes from the scene's torus that is taken for round-off of a file, over the groove
 /// radius.
@@ -76,7 +76,7 @@ pub fn whole_mesh(scene: &Scene, side: Side, ring: &RingModel) -> Result<Mesh, F
         Side::Outer => &scene.outer,
     };
     let body = asked.body.as_ref().expect("a ring with a mesh has a file of it");
-    let mesh = mesh::read_msh(&body.mesh, body.mesh_unit)?;
+    let (mesh, _) = cut(mesh::read_msh(&body.mesh, body.mesh_unit)?, body)?;
     if mesh.nodes != ring.mesh.nodes || mesh.n_elements() != ring.n_elements() {
         return Err(Failure::User(anyhow!(
             "mesh {} is not what it was when the run began; leave meshes alone until a run has written its mesh.hdf, and start again",
@@ -237,6 +237,8 @@ fn ring(
         &torus,
         TORUS_TOLERANCE * groove.groove_radius,
     )?;
+    let (mesh, nodes) = cut(mesh, body)?;
+    let node_tags = nodes.iter().map(|&node| origin.node_tags[node]).collect();
     let hold = match body.support {
         scene::Support::Clamped => Hold::Clamped,
         scene::Support::MeanMotion => Hold::MeanMotion,
@@ -249,7 +251,36 @@ fn ring(
         groove,
         sectors: Default::default(),
     };
-    Ok(Some((ring, origin.node_tags)))
+    Ok(Some((ring, node_tags)))
+}
+
+/// The mesh of a ring without what the scene cuts out, and the old numbers of its nodes.
+fn cut(mesh: Mesh, body: &FlexibleRing) -> Result<(Mesh, Vec<usize>), Failure> {
+    if body.cuts.is_empty() {
+        let nodes = (0..mesh.n_nodes()).collect();
+        return Ok((mesh, nodes));
+    }
+    let user = |problem: String| Err(Failure::User(anyhow!("mesh {}: {problem}", body.mesh.display())));
+    let mut is_lost = vec![false; mesh.n_elements()];
+    for (cut, number) in body.cuts.iter().zip(1..) {
+        let held: Vec<usize> = (0..is_lost.len())
+            .filter(|&e| cut.holds(mesh.element_centre(e)))
+            .collect();
+        if held.is_empty() {
+            return user(format!(
+                "no element has its centre in the region of cut {number}; expected one at least, check its azimuth, radius and z"
+            ));
+        }
+        held.into_iter().for_each(|e| is_lost[e] = true);
+    }
+    let groups: Vec<String> = mesh.groups.keys().cloned().collect();
+    let (left, nodes) = mesh.without_elements(|e| is_lost[e]);
+    if let Some(group) = groups.iter().find(|name| left.group(name).is_empty()) {
+        return user(format!(
+            "the cuts take all facets of the group \"{group}\"; cut less"
+        ));
+    }
+    Ok((left, nodes))
 }
 
 #[cfg(test)]

@@ -34,6 +34,7 @@
 mod analysis;
 mod bearing;
 mod contact;
+mod cut;
 mod damping;
 mod difference;
 mod dynamic;

@@ -6,6 +6,7 @@ use serde::Deserialize;
 
 use super::bearing::Bearing;
 use super::contact::ContactMode;
+use super::cut::{Cut, RawCut};
 use super::problems::Problems;
 use super::section::{RawSection, Section};
 use crate::units::{KINDS, LENGTH, Quantity, parse_unit};
@@ -20,6 +21,8 @@ pub struct RawRing {
     support: Option<Support>,
     groove_z: Option<Quantity<LENGTH>>,
     section: Option<RawSection>,
+    #[serde(default)]
+    cut: Vec<RawCut>,
 }
 
 /// Which of the two rings.
@@ -82,6 +85,8 @@ pub struct FlexibleRing {
     pub support: Support,
     /// Axial position of the groove's centre plane in the mesh, m.
     pub groove_z: f64,
+    /// Regions whose elements are left out.
+    pub cuts: Vec<Cut>,
 }
 
 /// Whether mesh files have to be there already.
@@ -173,6 +178,10 @@ impl RawRing {
                 .ok()
         });
         let groove_z = self.check_groove_z(key, context.bearing, problems);
+        let cuts = self.cut.iter().zip(1..);
+        let cuts = cuts
+            .map(|(cut, number)| cut.check(ring, number, problems))
+            .collect();
         let typed = self.mesh.as_ref()?;
         let mesh = context.scene.parent().unwrap_or(Path::new("")).join(typed);
         if context.mesh_files == MeshFiles::MustExist && !mesh.is_file() {
@@ -189,6 +198,7 @@ impl RawRing {
             mesh_unit: mesh_unit?,
             support: self.support?,
             groove_z,
+            cuts,
         })
     }
 

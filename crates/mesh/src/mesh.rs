@@ -91,23 +91,21 @@ impl Mesh {
     }
 
     /// The mesh without the elements for which `is_lost`, such as those of a keyway; nodes that no other element has and facets of these
-    /// elements go with them. What stays keeps its order; faces that become free belong to no group.
-    pub fn without_elements(self, is_lost: impl Fn(usize) -> bool) -> Mesh {
+    /// elements go with them. What stays keeps its order; faces that become free belong to no group. Also the old numbers of the nodes.
+    pub fn without_elements(self, is_lost: impl Fn(usize) -> bool) -> (Mesh, Vec<usize>) {
         let kept: Vec<usize> = (0..self.n_elements()).filter(|&e| !is_lost(e)).collect();
         let mut mesh = self.with_elements(&kept);
         let mut number = vec![usize::MAX; mesh.n_nodes()];
         mesh.connectivity.iter().for_each(|&node| number[node] = 0);
-        let kept = number.iter_mut().filter(|number| **number == 0);
-        kept.enumerate().for_each(|(place, number)| *number = place);
-        let nodes = mesh.nodes.iter().zip(&number);
-        mesh.nodes = nodes
-            .filter(|(_, n)| **n != usize::MAX)
-            .map(|(x, _)| *x)
-            .collect();
+        let nodes: Vec<usize> = (0..number.len()).filter(|&node| number[node] == 0).collect();
+        for (place, &node) in nodes.iter().enumerate() {
+            number[node] = place;
+        }
+        mesh.nodes = nodes.iter().map(|&node| mesh.nodes[node]).collect();
         mesh.connectivity
             .iter_mut()
             .for_each(|node| *node = number[*node]);
-        mesh
+        (mesh, nodes)
     }
 
     /// Mean of the nodes of element `e`, m.

@@ -3,7 +3,19 @@
 use super::{Case, EXAMPLE, Scene, assert_messages, message_of, with_line};
 
 /// Values that make no sense.
-const INVALID: [Case; 50] = [
+const INVALID: [Case; 52] = [
+    (
+        "cut",
+        "cut = [{ azimuth = [\"96 deg\", \"84 deg\"] }]",
+        &[
+            "inner.cut 1: azimuth is 96 deg to 84 deg; expected a second azimuth beyond the first, by at most 360 deg",
+        ],
+    ),
+    (
+        "cut",
+        "cut = [{ azimuth = [\"0 deg\", \"9 deg\"], radius = [\"26 mm\", \"25 mm\"] }]",
+        &["inner.cut 1: radius is 26 mm to 25 mm; expected the smaller value first"],
+    ),
     (
         "ball_diameter",
         "ball_diameter = \"-9 mm\"",

@@ -54,6 +54,11 @@ fn the_example_of_the_documentation_reads_as_it_says() {
         (inner.mesh_unit, inner.support, inner.groove_z),
         (1e-3, Support::Clamped, 0.0)
     );
+    let [keyway] = inner.cuts[..] else {
+        panic!("{:?}", inner.cuts);
+    };
+    assert_eq!((keyway.radius, keyway.z), ([25e-3, 26e-3], [-8e-3, 8e-3]));
+    assert!(keyway.holds([0.0, 25.5e-3, 0.0]) && !keyway.holds([25.5e-3, 0.0, 0.0]));
     let section = scene.inner.section.unwrap();
     assert_eq!(
         (section.element, section.sectors, section.grading),

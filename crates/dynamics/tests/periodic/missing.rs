@@ -34,7 +34,7 @@ fn keyway(side: Side, mesh: Mesh) -> Mesh {
         (1.0..1.35).contains(&azimuth) && is_deep
     };
     let lost: Vec<bool> = (0..mesh.n_elements()).map(|e| is_in(&mesh, e)).collect();
-    mesh.without_elements(|e| lost[e])
+    mesh.without_elements(|e| lost[e]).0
 }
 
 /// A spall on the edge of the groove, away from the balls' tracks: facets of the raceway are gone.
@@ -56,7 +56,7 @@ fn spall(side: Side, mesh: Mesh) -> Mesh {
         lost[facet.element] = is_at_edge && (1.0..1.3).contains(&y.atan2(x));
     }
     let n = mesh.group("raceway").len();
-    let spalled = mesh.without_elements(|e| lost[e]);
+    let spalled = mesh.without_elements(|e| lost[e]).0;
     assert!(spalled.group("raceway").len() < n, "no facet is gone");
     spalled
 }
@@ -194,7 +194,7 @@ fn a_ball_over_missing_facets_stops_with_the_place() {
                 y.atan2(x).abs() < 0.1 && mesh.group("raceway").iter().any(|f| f.element == e)
             })
             .collect();
-        mesh.without_elements(|e| is_lost[e])
+        mesh.without_elements(|e| is_lost[e]).0
     };
     let texts = [Backend::Cyclic, Backend::Sparse].map(|backend| {
         let model = with_meshes(HEX8, Hold::Clamped, backend, pitted);
@@ -251,7 +251,7 @@ fn what_is_no_defect_is_one_matrix_and_the_log_says_why() {
             z > 0.0 && (0.0..3.0).contains(&y.atan2(x))
         };
         let lost: Vec<bool> = (0..mesh.n_elements()).map(is_in).collect();
-        mesh.without_elements(|e| lost[e])
+        mesh.without_elements(|e| lost[e]).0
     };
     // Four tenths of the ring, in the middle of its section.
     let uneven = |side: Side, mut mesh: Mesh| {
