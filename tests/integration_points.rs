@@ -68,7 +68,7 @@ fn ring(grid: &Grid, body: u8) -> (Mesh, usize) {
     let (first, last) = (*used.iter().min().unwrap(), *used.iter().max().unwrap());
     let mesh = Mesh {
         kind: ElementKind::Hex8,
-        nodes: grid.points[first..=last].to_vec(),
+        nodes: grid.points[first..=last].to_vec().into(),
         connectivity: used.iter().map(|node| node - first).collect(),
         groups: Default::default(),
     };

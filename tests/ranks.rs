@@ -3,6 +3,7 @@
 //! `scripts/test-mpi` builds the program with the feature `mpi`, says where it is in `RACEWAY_MPI`, and runs these.
 
 mod memory;
+mod parts;
 mod stress;
 
 use std::process::{Command, Stdio};
@@ -315,7 +316,8 @@ fn different(dir: &Dir, first: &[&str], others: &[&str]) -> (Outcome, Duration) 
     (Outcome::of(command.output().unwrap()), begin.elapsed())
 }
 
-/// Wrong: a rank that cannot read its mesh would leave the others waiting, or end them without its reason.
+/// Wrong: a mesh that rank 0 cannot read, which it alone does, would leave the others waiting, or end them without its reason; ranks would
+/// compute with one mesh what their scenes ask of another.
 #[test]
 #[ignore = "needs mpirun and a program built with MPI: scripts/test-mpi"]
 fn a_bad_mesh_on_one_rank_ends_all_with_its_message() {
@@ -328,10 +330,12 @@ fn a_bad_mesh_on_one_rank_ends_all_with_its_message() {
     ]
     .concat();
     let bad = [&run[..], &["--set", "inner.mesh=bad.msh"]].concat();
-    for (first, others) in [(&run, &bad), (&bad, &run)] {
+    for (first, others) in [(&run, &bad), (&bad, &run), (&bad, &bad)] {
         let (outcome, time) = different(&dir, first, others);
         assert_eq!(outcome.code, Some(2), "{}", outcome.stderr);
         assert!(outcome.stderr.contains("bad.msh"), "{}", outcome.stderr);
+        let differ = outcome.stderr.contains("is not that of rank 0: inner.mesh from");
+        assert_eq!(differ, first != others, "{}", outcome.stderr);
         assert!(time < SECONDS, "{time:?}");
     }
     assert!(

@@ -18,7 +18,6 @@ use mesh::{Mesh, Torus};
 
 use crate::failure::Failure;
 use crate::motion::speed;
-use crate::results::probes::Probes;
 use crate::scene::{self, FlexibleRing, Scene, Scheduled};
 
 /// Deviation of raceway nodes from the scene's torus that is taken for round-off of a file, over the groove
@@ -40,50 +39,6 @@ pub fn build_model(scene: &Scene) -> Result<(Model, NodeTags), Failure> {
     let (outer, outer_tags) = rings.1?.unzip();
     let model = model_with_rings(scene, [inner.map(Arc::new), outer.map(Arc::new)])?;
     Ok((model, [inner_tags, outer_tags]))
-}
-
-/// The model of a scene (a point of `scene` when that is a sweep), and its probes, if a last test passes.
-pub fn build_with_probes(
-    point: &Scene,
-    scene: &Scene,
-    test: impl FnOnce(&Model) -> Result<(), Failure>,
-) -> Result<(Model, Option<Probes>), Failure> {
-    let (model, tags) = build_model(point)?;
-    let probes = Probes::new(scene, &model, &tags)?;
-    test(&model)?;
-    Ok((divided(model)?, probes))
-}
-
-/// The model of rings in sectors with the elements that this rank needs; last, because it knows the whole mesh no longer.
-fn divided(mut model: Model) -> Result<Model, Failure> {
-    let Backend::Sector(sectors) = model.backend else {
-        return Ok(model);
-    };
-    for side in Side::BOTH {
-        if let Some(ring) = model.rings[side.index()].take() {
-            let ring = Arc::into_inner(ring).expect("nobody else has a ring of a new model");
-            let divided = ring.divide(side.name(), sectors).map_err(Failure::solving)?;
-            model.rings[side.index()] = Some(Arc::new(divided));
-        }
-    }
-    Ok(model)
-}
-
-/// The whole mesh of a ring that was divided between ranks, from its file, read again.
-pub fn whole_mesh(scene: &Scene, side: Side, ring: &RingModel) -> Result<Mesh, Failure> {
-    let asked = match side {
-        Side::Inner => &scene.inner,
-        Side::Outer => &scene.outer,
-    };
-    let body = asked.body.as_ref().expect("a ring with a mesh has a file of it");
-    let (mesh, _) = cut(mesh::read_msh(&body.mesh, body.mesh_unit)?, body)?;
-    if mesh.nodes != ring.mesh.nodes || mesh.n_elements() != ring.n_elements() {
-        return Err(Failure::User(anyhow!(
-            "mesh {} is not what it was when the run began; leave meshes alone until a run has written its mesh.hdf, and start again",
-            body.mesh.display()
-        )));
-    }
-    Ok(mesh)
 }
 
 /// How balls and cage roll; None when the scene has no speed.
@@ -159,7 +114,7 @@ pub fn geometry(scene: &Scene) -> BearingGeometry {
     }
 }
 
-fn material(m: &scene::Material) -> Result<Material, Failure> {
+pub fn material(m: &scene::Material) -> Result<Material, Failure> {
     Ok(Material::new(m.young_modulus, m.poisson_ratio, m.density)?)
 }
 
@@ -211,20 +166,12 @@ fn ring(
     geometry: &BearingGeometry,
     side: Side,
 ) -> Result<Option<(RingModel, Vec<u64>)>, Failure> {
-    let (ring, held_group, diameter) = match side {
-        Side::Inner => (&scene.inner, "bore", scene.bearing.inner_raceway_diameter),
-        Side::Outer => (&scene.outer, "seat", scene.bearing.outside_diameter),
-    };
+    let (ring, held_group, diameter) = of_side(scene, side);
     let Some(body) = &ring.body else { return Ok(None) };
     let (mesh, origin) = mesh::read_msh_with_origin(&body.mesh, body.mesh_unit)?;
     mesh::check_unit(&mesh, &origin, diameter)?;
     mesh::require_groups(&mesh, &body.mesh, &[RACEWAY_GROUP, held_group])?;
-    let groove = Groove {
-        side,
-        centre_radius: geometry.centre_radius(side),
-        groove_radius: geometry.groove_radius(side),
-        centre_z: body.groove_z,
-    };
+    let groove = groove(geometry, side, body.groove_z);
     let torus = Torus {
         centre_radius: groove.centre_radius,
         groove_radius: groove.groove_radius,
@@ -239,19 +186,8 @@ fn ring(
     )?;
     let (mesh, nodes) = cut(mesh, body)?;
     let node_tags = nodes.iter().map(|&node| origin.node_tags[node]).collect();
-    let hold = match body.support {
-        scene::Support::Clamped => Hold::Clamped,
-        scene::Support::MeanMotion => Hold::MeanMotion,
-    };
-    let ring = RingModel {
-        mesh,
-        material: material(&scene.materials.rings)?,
-        hold,
-        held_group,
-        groove,
-        sectors: Default::default(),
-    };
-    Ok(Some((ring, node_tags)))
+    let steel = material(&scene.materials.rings)?;
+    Ok(ring_of(scene, side, steel, mesh).map(|ring| (ring, node_tags)))
 }
 
 /// The mesh of a ring without what the scene cuts out, and the old numbers of its nodes.
@@ -283,30 +219,35 @@ fn cut(mesh: Mesh, body: &FlexibleRing) -> Result<(Mesh, Vec<usize>), Failure> {
     Ok((left, nodes))
 }
 
-#[cfg(test)]
-mod tests {
-    use std::path::Path;
+/// The ring of one side with a mesh that was checked; None for a rigid ring.
+pub fn ring_of(scene: &Scene, side: Side, material: Material, mesh: Mesh) -> Option<RingModel> {
+    let body = of_side(scene, side).0.body.as_ref()?;
+    Some(RingModel {
+        mesh,
+        material,
+        hold: match body.support {
+            scene::Support::Clamped => Hold::Clamped,
+            scene::Support::MeanMotion => Hold::MeanMotion,
+        },
+        held_group: of_side(scene, side).1,
+        groove: groove(&geometry(scene), side, body.groove_z),
+        sectors: Default::default(),
+    })
+}
 
-    use super::*;
+/// The ring of one side in the scene, the facet group that is held, and the diameter by which the unit of its mesh is checked, m.
+fn of_side(scene: &Scene, side: Side) -> (&scene::Ring, &'static str, f64) {
+    match side {
+        Side::Inner => (&scene.inner, "bore", scene.bearing.inner_raceway_diameter),
+        Side::Outer => (&scene.outer, "seat", scene.bearing.outside_diameter),
+    }
+}
 
-    /// Wrong: a run whose mesh file is replaced while it starts would show its results on another mesh.
-    #[test]
-    fn a_mesh_that_changes_while_a_run_starts_is_refused() {
-        let folder = tempfile::tempdir().unwrap();
-        let file = folder.path().join("inner.msh");
-        std::fs::copy("meshes/7010c_inner_coarse.msh", &file).unwrap();
-        let set = format!("inner.mesh={}", file.display());
-        let scene = Scene::load(Path::new("scenes/7010c_1800rpm_coarse.toml"), &[set]).unwrap();
-        let (model, _) = build_model(&scene).unwrap();
-        let ring = model.ring(Side::Inner).unwrap();
-        assert!(whole_mesh(&scene, Side::Inner, ring).unwrap() == ring.mesh);
-        std::fs::copy("meshes/7010c_inner.msh", &file).unwrap();
-        let error = whole_mesh(&scene, Side::Inner, ring).unwrap_err();
-        assert_eq!(error.number(), 2);
-        let text = error.text();
-        assert!(
-            text.contains("inner.msh is not what it was when the run began"),
-            "{text}"
-        );
+fn groove(geometry: &BearingGeometry, side: Side, centre_z: f64) -> Groove {
+    Groove {
+        side,
+        centre_radius: geometry.centre_radius(side),
+        groove_radius: geometry.groove_radius(side),
+        centre_z,
     }
 }

@@ -29,6 +29,7 @@ mod scene;
 mod start;
 mod stop;
 mod study;
+mod survey;
 mod units;
 mod watch;
 

@@ -12,7 +12,6 @@ use dynamics::motion::ledger::LOSSY;
 use dynamics::motion::{Motion, MotionState};
 use dynamics::{DynamicsError, Model, Timing};
 
-use crate::build::build_with_probes;
 use crate::failure::{Failure, agree};
 use crate::options::Limits;
 use crate::print;
@@ -29,6 +28,7 @@ use crate::resume::Stored;
 use crate::scene::{Dynamic, Scene};
 use crate::start::settle;
 use crate::stop::Stop;
+use crate::survey::build_surveyed;
 use crate::watch::Watch;
 
 use settings::settings;
@@ -47,7 +47,7 @@ pub fn run(
 ) -> Result<(), Failure> {
     let progress = Progress::new(dynamic.n_steps);
     progress.stage("reading meshes");
-    let (model, probes) = agree(build_with_probes(scene, scene, |model| {
+    let (model, survey) = agree(build_surveyed(scene, scene, dir, |model| {
         Forecast::new(scene, model, 0).require_space(dir, limits.ignore_disk_space)
     }))?;
     let read = start.elapsed().as_secs_f64();
@@ -62,7 +62,7 @@ pub fn run(
         &model,
         dir,
         &first,
-        probes,
+        survey,
         &settled.warnings(),
     ))?;
     let mut march = March {
@@ -100,7 +100,7 @@ pub fn resume(
     let mut progress = Progress::new(dynamic.n_steps);
     progress.start_at(stored.step);
     progress.stage("reading meshes");
-    let (model, probes) = agree(build_with_probes(scene, scene, |model| {
+    let (model, survey) = agree(build_surveyed(scene, scene, &dir, |model| {
         Forecast::new(scene, model, stored.step).require_space(&dir, limits.ignore_disk_space)
     }))?;
     let read = start.elapsed().as_secs_f64();
@@ -114,7 +114,7 @@ pub fn resume(
         &model,
         stored.lock,
         &first,
-        probes,
+        survey,
         (state.step, &warnings),
     ))?;
     let march = March {

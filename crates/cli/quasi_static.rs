@@ -8,7 +8,7 @@ use contact::Side;
 use dynamics::motion::balls::{Rolling, Speed};
 use dynamics::{Model, QuasiStatic, StaticSolution};
 
-use crate::build::{build_with_probes, rolling};
+use crate::build::rolling;
 use crate::failure::{Failure, agree};
 use crate::options::Limits;
 use crate::print;
@@ -21,6 +21,7 @@ use crate::results::snapshot::Snapshot;
 use crate::results::summary::{Findings, Summary};
 use crate::results::{console, fields};
 use crate::scene::{self, Scene};
+use crate::survey::build_surveyed;
 
 /// Steps between two lines of progress in a log.
 const PROGRESS_STEPS: u64 = 50;
@@ -35,7 +36,7 @@ pub fn run(
 ) -> Result<(), Failure> {
     let mut progress = Progress::new(1 + settings.n_steps);
     progress.stage("reading meshes");
-    let (model, probes) = agree(build_with_probes(scene, scene, |model| {
+    let (model, survey) = agree(build_surveyed(scene, scene, dir, |model| {
         Forecast::new(scene, model, 0).require_space(dir, limits.ignore_disk_space)
     }))?;
     let read = start.elapsed().as_secs_f64();
@@ -52,7 +53,7 @@ pub fn run(
         &model,
         dir,
         &Snapshot::of_equilibrium(&first, rolling.as_ref()),
-        probes,
+        survey,
         &first.warnings,
     );
     let mut files = agree(files)?;

@@ -9,7 +9,7 @@ use comm::Communicator;
 use contact::Side;
 use dynamics::{DynamicsError, StaticSolution, StaticSolver};
 
-use crate::build::{build_with_probes, model_with_rings, rolling};
+use crate::build::{model_with_rings, rolling};
 use crate::failure::{Failure, agree};
 use crate::modes;
 use crate::motion;
@@ -25,6 +25,7 @@ use crate::results::snapshot::Snapshot;
 use crate::results::summary::{Findings, Summary};
 use crate::results::{console, fields, folder};
 use crate::scene::{Analysis, Backend, Scene};
+use crate::survey::build_surveyed;
 
 /// One load case of a run: the swept value (None for a static scene) and its scene.
 type Point = (Option<f64>, Scene);
@@ -69,7 +70,7 @@ pub fn run(
     let (first, points) = (chosen.start, &all[chosen]);
     let mut progress = Progress::new(points.len() as u64);
     progress.stage("reading meshes");
-    let (mut model, mut probes) = agree(build_with_probes(&points[0].1, &scene, |model| {
+    let (mut model, mut survey) = agree(build_surveyed(&points[0].1, &scene, &dir, |model| {
         Forecast::new(&scene, model, 0).require_space(&dir, limits.ignore_disk_space)
     }))?;
     let placed = model.geometry;
@@ -100,7 +101,7 @@ pub fn run(
         let files = match &mut results {
             Some(files) => files,
             empty => {
-                let files = Files::create(&scene, &model, &dir, &snapshot, probes.take(), &[]);
+                let files = Files::create(&scene, &model, &dir, &snapshot, std::mem::take(&mut survey), &[]);
                 empty.insert(agree(files)?)
             }
         };

@@ -21,7 +21,7 @@ fn rebuilt(change: impl FnOnce(&mut Mesh)) -> Vec<u8> {
 fn two_parts(mesh: &mut Mesh) {
     let (n, e) = (mesh.n_nodes(), mesh.n_elements());
     mesh.nodes
-        .extend(mesh.nodes.clone().iter().map(|x| [x[0], x[1], x[2] + 0.05]));
+        .extend(mesh.nodes.to_vec().iter().map(|x| [x[0], x[1], x[2] + 0.05]));
     mesh.connectivity
         .extend(mesh.connectivity.clone().iter().map(|i| i + n));
     for facets in mesh.groups.values_mut() {

@@ -77,7 +77,7 @@ fn ring(bounds: impl Fn(f64) -> (f64, f64)) -> Mesh {
     let mut node_of = BTreeMap::new();
     let mut mesh = Mesh {
         kind: ElementKind::Hex20,
-        nodes: Vec::new(),
+        nodes: Default::default(),
         connectivity: Vec::new(),
         groups: BTreeMap::new(),
     };

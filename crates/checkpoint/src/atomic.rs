@@ -6,8 +6,9 @@
 //! with a flush after each step; of 85 killed while writing like this, none did.)
 
 use std::fs::{self, File};
-use std::io::Write;
+use std::io::{Seek, Write};
 use std::path::{Path, PathBuf};
+use std::time::{SystemTime, UNIX_EPOCH};
 
 use crate::error::CheckpointError;
 use crate::seal::{Extent, append_seal, extents};
@@ -43,6 +44,39 @@ pub(crate) fn write_hdf(
     let written = create_hdf(&tmp, format, fill)
         .map_err(CheckpointError::hdf("write", &path))
         .and_then(|extents| append_seal(&tmp, extents).map_err(CheckpointError::io("write", &path)));
+    publish(written, dir, &tmp, &path)?;
+    sync_dir(dir)
+}
+
+/// Writes an HDF5 file in `dir` as [`write_hdf`] does, but without a name: it is gone when it is closed, however the process ends.
+pub(crate) fn write_unnamed_hdf(
+    dir: &Path,
+    name: &str,
+    format: Format,
+    fill: impl FnOnce(&hdf5::File) -> hdf5::Result<Vec<String>>,
+) -> Result<File, CheckpointError> {
+    let now = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
+    let own = format!("{name}.{}.{}", std::process::id(), now.as_nanos());
+    let tmp = temporary(dir, &own);
+    let written = create_hdf(&tmp, format, fill)
+        .map_err(CheckpointError::hdf("write", &tmp))
+        .and_then(|extents| append_seal(&tmp, extents).map_err(CheckpointError::io("write", &tmp)))
+        .and_then(|()| File::open(&tmp).map_err(CheckpointError::io("open", &tmp)));
+    // A failure to remove it leaves a hidden file, no wrong result.
+    let _ = fs::remove_file(&tmp);
+    written
+}
+
+/// Writes all of the file `content` into `dir` under `name`.
+pub(crate) fn write_copy(dir: &Path, name: &str, mut content: &File) -> Result<(), CheckpointError> {
+    let (tmp, path) = (temporary(dir, name), dir.join(name));
+    let mut copy = || {
+        content.rewind()?;
+        let mut file = File::create(&tmp)?;
+        std::io::copy(&mut content, &mut file)?;
+        file.sync_all()
+    };
+    let written = copy().map_err(CheckpointError::io("write", &path));
     publish(written, dir, &tmp, &path)?;
     sync_dir(dir)
 }

@@ -55,7 +55,7 @@ pub use folder::{committed_steps, new_superseded_folder, newest_step, step_file_
 pub use grid::Grid;
 pub use index::{Views, rebuild_index};
 pub use lock::FolderLock;
-pub use mesh_file::read_mesh;
+pub use mesh_file::{MeshFile, read_mesh};
 pub use output::{Output, Resumed};
 pub use pack::{all_steps, pack_steps, packs, read_any_step, unpack_steps};
 pub use record::{PointFields, StateArray, StepRecord};

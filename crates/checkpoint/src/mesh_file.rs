@@ -1,8 +1,10 @@
 //! The file `mesh.hdf`: all bodies as one VTKHDF unstructured grid, to which every step links.
 
+use std::fs::File;
 use std::path::Path;
 
 use crate::atomic::{self, Format};
+use crate::body::Body;
 use crate::dataset::{CheckedFile, create_group, create_vtkhdf, write_array, write_text};
 use crate::error::CheckpointError;
 use crate::grid::Grid;
@@ -15,50 +17,103 @@ pub(crate) const MESH_FILE: &str = "mesh.hdf";
 /// Fingerprint of the mesh, in `mesh.hdf` and in every step.
 pub(crate) const MESH_HASH: &str = "/restart/mesh_hash";
 
-/// Writes `mesh.hdf`. It is small beside the steps, so it is never compressed.
-pub(crate) fn write_mesh(dir: &Path, grid: &Grid) -> Result<(), CheckpointError> {
-    atomic::write_hdf(dir, MESH_FILE, Format::Earliest, |file| {
-        create_vtkhdf(file, [1, 0])?;
-        let plain = Compression::None;
-        let (n_points, n_cells) = (grid.points.len(), grid.types.len());
-        let sizes = [
-            ("NumberOfPoints", n_points),
-            ("NumberOfCells", n_cells),
-            ("NumberOfConnectivityIds", grid.connectivity.len()),
-        ];
-        for (name, size) in sizes {
-            write_array(file, &format!("/VTKHDF/{name}"), &[1], &[size as i64], plain)?;
+/// The content of `mesh.hdf`, before there is a folder for it.
+#[derive(Debug)]
+pub struct MeshFile {
+    pub(crate) n_points: usize,
+    pub(crate) n_cells: usize,
+    pub(crate) hash: String,
+    content: Content,
+}
+
+/// Where the content is.
+#[derive(Debug)]
+enum Content {
+    Memory(Grid),
+    Disk(File),
+}
+
+impl MeshFile {
+    /// That of some bodies.
+    pub fn new(bodies: &[Body]) -> Result<MeshFile, CheckpointError> {
+        let grid = Grid::join(bodies)?;
+        Ok(MeshFile {
+            n_points: grid.points.len(),
+            n_cells: grid.types.len(),
+            hash: grid.fingerprint(),
+            content: Content::Memory(grid),
+        })
+    }
+
+    /// The same on the disk of the folder `dir`, which need not exist yet, instead of in memory. No other process sees the file, and
+    /// nothing is left of it when this one ends.
+    pub fn spooled(self, dir: &Path) -> Result<MeshFile, CheckpointError> {
+        let Content::Memory(grid) = &self.content else {
+            return Ok(self);
+        };
+        let absolute = std::path::absolute(dir).map_err(CheckpointError::io("find folder", dir))?;
+        let above = absolute.ancestors().find(|path| path.is_dir()).unwrap_or(dir);
+        let fill = |file: &hdf5::File| fill(file, grid);
+        let file = atomic::write_unnamed_hdf(above, MESH_FILE, Format::Earliest, fill)?;
+        Ok(MeshFile {
+            content: Content::Disk(file),
+            ..self
+        })
+    }
+
+    /// Writes `mesh.hdf`. It is small beside the steps, so it is never compressed.
+    pub(crate) fn write(&self, dir: &Path) -> Result<(), CheckpointError> {
+        match &self.content {
+            Content::Memory(grid) => {
+                atomic::write_hdf(dir, MESH_FILE, Format::Earliest, |file| fill(file, grid))
+            }
+            Content::Disk(file) => atomic::write_copy(dir, MESH_FILE, file),
         }
-        write_array(
-            file,
-            "/VTKHDF/Points",
-            &[n_points, 3],
-            grid.points.as_flattened(),
-            plain,
-        )?;
-        write_array(
-            file,
-            "/VTKHDF/Connectivity",
-            &[grid.connectivity.len()],
-            &grid.connectivity,
-            plain,
-        )?;
-        write_array(
-            file,
-            "/VTKHDF/Offsets",
-            &[grid.offsets.len()],
-            &grid.offsets,
-            plain,
-        )?;
-        write_array(file, "/VTKHDF/Types", &[n_cells], &grid.types, plain)?;
-        write_array(file, "/VTKHDF/CellData/body", &[n_cells], &grid.body, plain)?;
-        write_array(file, "/VTKHDF/CellData/radius", &[n_cells], &grid.radius, plain)?;
-        create_group(file, "restart")?;
-        write_text(file, MESH_HASH, &grid.fingerprint())?;
-        Ok(["Points", "Connectivity", "Offsets", "Types"]
-            .map(|name| format!("/VTKHDF/{name}"))
-            .to_vec())
-    })
+    }
+}
+
+/// Fills the file, and says which data sets a message about damage shall name.
+fn fill(file: &hdf5::File, grid: &Grid) -> hdf5::Result<Vec<String>> {
+    create_vtkhdf(file, [1, 0])?;
+    let plain = Compression::None;
+    let (n_points, n_cells) = (grid.points.len(), grid.types.len());
+    let sizes = [
+        ("NumberOfPoints", n_points),
+        ("NumberOfCells", n_cells),
+        ("NumberOfConnectivityIds", grid.connectivity.len()),
+    ];
+    for (name, size) in sizes {
+        write_array(file, &format!("/VTKHDF/{name}"), &[1], &[size as i64], plain)?;
+    }
+    write_array(
+        file,
+        "/VTKHDF/Points",
+        &[n_points, 3],
+        grid.points.as_flattened(),
+        plain,
+    )?;
+    write_array(
+        file,
+        "/VTKHDF/Connectivity",
+        &[grid.connectivity.len()],
+        &grid.connectivity,
+        plain,
+    )?;
+    write_array(
+        file,
+        "/VTKHDF/Offsets",
+        &[grid.offsets.len()],
+        &grid.offsets,
+        plain,
+    )?;
+    write_array(file, "/VTKHDF/Types", &[n_cells], &grid.types, plain)?;
+    write_array(file, "/VTKHDF/CellData/body", &[n_cells], &grid.body, plain)?;
+    write_array(file, "/VTKHDF/CellData/radius", &[n_cells], &grid.radius, plain)?;
+    create_group(file, "restart")?;
+    write_text(file, MESH_HASH, &grid.fingerprint())?;
+    Ok(["Points", "Connectivity", "Offsets", "Types"]
+        .map(|name| format!("/VTKHDF/{name}"))
+        .to_vec())
 }
 
 /// Reads `mesh.hdf` of the folder `dir`, every byte verified.
@@ -85,11 +140,11 @@ pub fn read_mesh(dir: &Path) -> Result<Grid, CheckpointError> {
     })
 }
 
-/// Fails unless `mesh.hdf` in `dir` holds this grid.
-pub(crate) fn require_same_mesh(dir: &Path, grid: &Grid) -> Result<(), CheckpointError> {
+/// Fails unless `mesh.hdf` in `dir` holds this mesh.
+pub(crate) fn require_same_mesh(dir: &Path, mesh: &MeshFile) -> Result<(), CheckpointError> {
     let path = dir.join(MESH_FILE);
     verify_seal(&path)?;
-    let (expected, found) = (grid.fingerprint(), CheckedFile::open(&path)?.text(MESH_HASH)?);
+    let (expected, found) = (mesh.hash.clone(), CheckedFile::open(&path)?.text(MESH_HASH)?);
     if expected == found {
         return Ok(());
     }

@@ -14,10 +14,9 @@ use crate::folder::{
     committed_steps, move_aside, remove_if_present, remove_leftovers, require_no_results, sound_steps,
     step_file_name,
 };
-use crate::grid::Grid;
 use crate::index::{INDEX_FILE, Views, rebuild_index};
 use crate::lock::FolderLock;
-use crate::mesh_file::{MESH_FILE, require_same_mesh, write_mesh};
+use crate::mesh_file::{MESH_FILE, MeshFile, require_same_mesh};
 use crate::record::{StepRecord, require_texts};
 use crate::series::write_series;
 use crate::step::{Origin, read_about, write_step_file};
@@ -50,12 +49,12 @@ pub struct Resumed {
 }
 
 /// Writes `mesh.hdf` again when it is missing and the step to resume from is of this mesh.
-fn restore_mesh(dir: &Path, grid: &Grid, step: u64) -> Result<bool, CheckpointError> {
+fn restore_mesh(dir: &Path, mesh: &MeshFile, step: u64) -> Result<bool, CheckpointError> {
     if dir.join(MESH_FILE).exists() {
         return Ok(false);
     }
     let path = dir.join(step_file_name(step));
-    let (expected, found) = (grid.fingerprint(), read_about(&path)?["mesh_hash"].clone());
+    let (expected, found) = (mesh.hash.clone(), read_about(&path)?["mesh_hash"].clone());
     if expected != found {
         return Err(CheckpointError::MeshMismatch {
             path,
@@ -63,7 +62,7 @@ fn restore_mesh(dir: &Path, grid: &Grid, step: u64) -> Result<bool, CheckpointEr
             found,
         });
     }
-    write_mesh(dir, grid)?;
+    mesh.write(dir)?;
     Ok(true)
 }
 
@@ -71,13 +70,17 @@ impl Output {
     /// Creates the folder `dir` (and its parents), locks it and writes the mesh. A folder that already holds results
     /// is refused; other files in it do not matter.
     pub fn create(dir: &Path, bodies: &[Body], storage: Storage) -> Result<Output, CheckpointError> {
-        let grid = Grid::join(bodies)?;
+        Output::create_of(dir, &MeshFile::new(bodies)?, storage)
+    }
+
+    /// The same of a mesh file that was prepared.
+    pub fn create_of(dir: &Path, mesh: &MeshFile, storage: Storage) -> Result<Output, CheckpointError> {
         fs::create_dir_all(dir).map_err(CheckpointError::io("create folder", dir))?;
         let lock = FolderLock::acquire(dir)?;
         require_no_results(dir)?;
         remove_leftovers(dir)?;
-        write_mesh(dir, &grid)?;
-        Ok(Output::new(lock, &grid, storage, Vec::new()))
+        mesh.write(dir)?;
+        Ok(Output::new(lock, mesh, storage, Vec::new()))
     }
 
     /// Opens the locked folder of an earlier run of the same bodies to continue after its committed step `last`. Later
@@ -89,7 +92,16 @@ impl Output {
         storage: Storage,
         last: u64,
     ) -> Result<Resumed, CheckpointError> {
-        let grid = Grid::join(bodies)?;
+        Output::resume_of(lock, &MeshFile::new(bodies)?, storage, last)
+    }
+
+    /// The same of a mesh file that was prepared.
+    pub fn resume_of(
+        lock: FolderLock,
+        mesh: &MeshFile,
+        storage: Storage,
+        last: u64,
+    ) -> Result<Resumed, CheckpointError> {
         let dir = lock.dir().to_path_buf();
         let mut steps = committed_steps(&dir)?;
         let (Some(&first), Some(&newest)) = (steps.first(), steps.last()) else {
@@ -103,8 +115,8 @@ impl Output {
                 last: newest,
             });
         }
-        let mesh_restored = restore_mesh(&dir, &grid, last)?;
-        require_same_mesh(&dir, &grid)?;
+        let mesh_restored = restore_mesh(&dir, mesh, last)?;
+        require_same_mesh(&dir, mesh)?;
         let later = steps.split_off(steps.partition_point(|&step| step <= last));
         let (steps, mut damaged) = sound_steps(&dir, &steps);
         if steps.last().is_none_or(|&(step, _)| step != last) {
@@ -116,20 +128,20 @@ impl Output {
         remove_if_present(&dir.join(INDEX_FILE))?;
         let superseded = move_aside(&dir, &later)?;
         Ok(Resumed {
-            output: Output::new(lock, &grid, storage, steps),
+            output: Output::new(lock, mesh, storage, steps),
             superseded,
             damaged,
             mesh_restored,
         })
     }
 
-    fn new(lock: FolderLock, grid: &Grid, storage: Storage, steps: Vec<(u64, f64)>) -> Output {
+    fn new(lock: FolderLock, mesh: &MeshFile, storage: Storage, steps: Vec<(u64, f64)>) -> Output {
         Output {
             lock,
             storage,
-            n_points: grid.points.len(),
-            n_cells: grid.types.len(),
-            mesh_hash: grid.fingerprint(),
+            n_points: mesh.n_points,
+            n_cells: mesh.n_cells,
+            mesh_hash: mesh.hash.clone(),
             about: BTreeMap::new(),
             steps,
         }

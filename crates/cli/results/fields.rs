@@ -1,6 +1,5 @@
 //! Fields of one step for ParaView: rings with displacement and stress, balls as points with their forces.
 
-use std::borrow::Cow;
 use std::collections::BTreeMap;
 
 use checkpoint::{Body, CellFields, PointFields, StateArray, StepRecord};
@@ -8,36 +7,20 @@ use contact::{BearingGeometry, Side};
 use dynamics::balls::{BallResult, ContactResult};
 use dynamics::{Model, StaticSolution};
 use fem::stress::von_mises;
-use mesh::Mesh;
 
 use super::ring_stress::{Basis, Gathered, RingStress, ShownRing, StressFields};
 use super::shown::{Shown, Turn};
-use crate::build::whole_mesh;
 use crate::failure::Failure;
 use crate::scene::{InnerRingFrame, Scene};
 
-/// The bodies of a result, in the order of its points: flexible rings, then the balls.
+/// The bodies of a result, in the order of its points: flexible rings, whose meshes must be whole, then the balls.
 pub fn bodies(model: &Model) -> Vec<Body> {
-    let meshes = Side::BOTH.map(|side| model.ring(side).map(|ring| Cow::Borrowed(&ring.mesh)));
-    with_meshes(model, meshes)
-}
-
-/// The same where ranks may have divided the meshes, which are then read again.
-pub fn whole_bodies(scene: &Scene, model: &Model) -> Result<Vec<Body>, Failure> {
-    let mesh = |side: Side| match model.ring(side) {
-        Some(ring) if !ring.is_whole() => whole_mesh(scene, side, ring).map(|mesh| Some(Cow::Owned(mesh))),
-        ring => Ok(ring.map(|ring| Cow::Borrowed(&ring.mesh))),
-    };
-    Ok(with_meshes(model, [mesh(Side::Inner)?, mesh(Side::Outer)?]))
-}
-
-fn with_meshes(model: &Model, meshes: [Option<Cow<'_, Mesh>>; 2]) -> Vec<Body> {
     let mut bodies = Vec::new();
-    for (side, mesh) in Side::BOTH.into_iter().zip(meshes) {
-        if let Some(mesh) = mesh {
+    for side in Side::BOTH {
+        if let Some(ring) = model.ring(side) {
             let shift = [0.0, 0.0, model.ring_shift(side)];
             let name = format!("{} ring", side.name());
-            bodies.push(Body::from_mesh(&name, side as u8, &mesh, shift));
+            bodies.push(Body::from_mesh(&name, side as u8, &ring.mesh, shift));
         }
     }
     let centre = model.geometry.ball_centre();
@@ -93,6 +76,9 @@ impl Places {
             let Some(mut ring) = shown.ring(side) else {
                 continue;
             };
+            if let Some(places) = gathered.places[side.index()].take() {
+                ring.places = places;
+            }
             if side == Side::Inner && scene.output.inner_ring == InnerRingFrame::OwnFrame {
                 ring.turn = Turn::new(0.0);
             }
@@ -102,7 +88,7 @@ impl Places {
                 None => Vec::new(),
             };
             rings[side.index()] = Some(ShownRing {
-                basis: match gathered[side.index()].take() {
+                basis: match gathered.stress[side.index()].take() {
                     Some(stress) => Basis::Stress(stress),
                     None => Basis::Displacement(ring.strained.into_owned()),
                 },

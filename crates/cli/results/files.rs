@@ -8,7 +8,8 @@ use std::time::{Duration, Instant};
 
 use anyhow::anyhow;
 use checkpoint::{
-    BackgroundOutput, CheckpointError, Compression, FolderLock, Output, Precision, StepRecord, Storage,
+    BackgroundOutput, CheckpointError, Compression, FolderLock, MeshFile, Output, Precision, StepRecord,
+    Storage,
 };
 use comm::Communicator;
 use dynamics::{Model, Timing};
@@ -25,6 +26,7 @@ use super::tables::{OwnColumns, Tables};
 use crate::failure::Failure;
 use crate::print;
 use crate::scene::{self, Analysis, Scene};
+use crate::survey::Survey;
 
 /// Step files that may wait for the disk, besides the one being written.
 const QUEUE: usize = 2;
@@ -60,7 +62,7 @@ impl Files {
         model: &Model,
         dir: &Path,
         first: &Snapshot,
-        probes: Option<Probes>,
+        survey: Survey,
         warnings: &[String],
     ) -> Result<Files, Failure> {
         let ring_stress = RingStress::new(model, scene)?;
@@ -68,7 +70,10 @@ impl Files {
             return Ok(Files::new(None, ring_stress));
         }
         let clock = Instant::now();
-        let mut output = Output::create(dir, &fields::whole_bodies(scene, model)?, storage(scene))?;
+        let Survey { probes, mesh } = survey;
+        let mesh = mesh.map_or_else(|| MeshFile::new(&fields::bodies(model)), Ok)?;
+        let mut output = Output::create_of(dir, &mesh, storage(scene))?;
+        drop(mesh);
         note_dead_owner(output.lock());
         output.describe(about(scene, dir, warnings)?)?;
         let tables = Tables::create(dir, swept_column(scene), first, &own_columns(probes.as_ref()))?;
@@ -84,7 +89,7 @@ impl Files {
         model: &Model,
         lock: Option<FolderLock>,
         first: &Snapshot,
-        probes: Option<Probes>,
+        survey: Survey,
         (last, warnings): (u64, &[String]),
     ) -> Result<Files, Failure> {
         let ring_stress = RingStress::new(model, scene)?;
@@ -95,9 +100,12 @@ impl Files {
         let dir = lock.dir().to_path_buf();
         let texts = about(scene, &dir, warnings)?;
         // The tables tell whether the step can be resumed from; nothing is changed before all is known to fit.
+        let Survey { probes, mesh } = survey;
         let columns = own_columns(probes.as_ref());
         let cuts = Tables::cuts(&dir, first, &columns, last)?;
-        let resumed = Output::resume(lock, &fields::whole_bodies(scene, model)?, storage(scene), last)?;
+        let mesh = mesh.map_or_else(|| MeshFile::new(&fields::bodies(model)), Ok)?;
+        let resumed = Output::resume_of(lock, &mesh, storage(scene), last)?;
+        drop(mesh);
         let (mut output, damaged, mut superseded) = (resumed.output, resumed.damaged, resumed.superseded);
         output.describe(texts)?;
         if resumed.mesh_restored {

@@ -90,6 +90,12 @@ impl Probes {
         }))
     }
 
+    /// Nodes of a ring that are probed.
+    pub fn nodes(&self, side: Side) -> Vec<usize> {
+        let own = self.nodes.iter().filter(|probe| probe.side == side);
+        own.map(|probe| probe.place.node).collect()
+    }
+
     /// Nodes that are probed and where they lie.
     pub fn places(&self) -> impl Iterator<Item = &NodePlace> {
         self.nodes.iter().map(|probe| &probe.place)

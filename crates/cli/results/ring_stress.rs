@@ -8,6 +8,7 @@ use contact::{LoadedPatch, Side};
 use dynamics::{Backend, Model, NodalStress, RingModel, SharedStress, StressPlaces};
 use fem::quadrature::stiffness_rule;
 use fem::stress::{StressRecovery, von_mises};
+use mesh::NodePositions;
 
 use super::shown::{Shown, Turn};
 use super::timed_near_field::TimedNearField;
@@ -47,8 +48,14 @@ enum Source {
     Shared(Box<SharedStress>),
 }
 
-/// Stress of the rings that ranks share, Pa, by side, as it was recovered; None of other rings.
-pub type Gathered = [Option<Vec<[f64; 6]>>; 2];
+/// What rank 0 has gathered of the rings that ranks share, by side; None of other rings.
+#[derive(Default)]
+pub struct Gathered {
+    /// Stress, Pa, as it was recovered.
+    pub stress: [Option<Vec<[f64; 6]>>; 2],
+    /// Where all nodes are, of rings that have moved as a whole.
+    pub places: [Option<NodePositions>; 2],
+}
 
 /// A flexible ring at one instant.
 pub struct ShownRing {
@@ -93,23 +100,33 @@ impl RingStress {
         })
     }
 
-    /// Stress of the rings that several ranks share, on rank 0, nothing of other rings; seconds of the sectors of this rank, and of
+    /// Stress of the rings that several ranks share, and what else their fields take, on rank 0; seconds of the sectors of this rank, and of
     /// putting all together. Collective.
     pub fn gather(&self, shown: &Shown<'_>) -> (Gathered, [f64; 2]) {
-        let (mut gathered, mut seconds) = ([None, None], [0.0; 2]);
-        if Communicator::world().size() == 1 {
+        let (mut gathered, mut seconds) = (Gathered::default(), [0.0; 2]);
+        let model = shown.model();
+        if !matches!(model.backend, Backend::Sector(sectors) if sectors.comm.size() > 1) {
             return (gathered, seconds);
         }
         for side in Side::BOTH {
-            let recovery = self.rings[side.index()].as_ref();
-            let (Some(Source::Shared(shared)), Some(ring)) = (recovery.map(|r| &r.source), shown.ring(side))
-            else {
+            let (Some(ring), Some(field)) = (model.ring(side), shown.ring(side)) else {
                 continue;
             };
             let clock = Instant::now();
-            let own = shared.recover(&ring.strained);
+            if field.needs_places() {
+                let places = ring.places(side.name(), model.backend);
+                let places = places.expect("a ring that is divided has sectors");
+                gathered.places[side.index()] = places.to_root();
+            }
+            seconds[1] += clock.elapsed().as_secs_f64();
+            let recovery = self.rings[side.index()].as_ref();
+            let Some(Source::Shared(shared)) = recovery.map(|r| &r.source) else {
+                continue;
+            };
+            let clock = Instant::now();
+            let own = shared.recover(&field.strained);
             let recovered = clock.elapsed().as_secs_f64();
-            gathered[side.index()] = shared.gather(own);
+            gathered.stress[side.index()] = shared.gather(own);
             seconds[0] += recovered;
             seconds[1] += clock.elapsed().as_secs_f64() - recovered;
         }
@@ -222,10 +239,13 @@ impl Recovery {
         };
         let points = match &source {
             _ if scene.stress.near_field_reach.is_none() => None,
-            Source::Nodes(_) => Some(ring.mesh.nodes.clone()),
+            Source::Nodes(_) => Some(ring.mesh.nodes.to_vec()),
             Source::Elements(recovery) => Some(recovery.point_positions()),
             Source::Shared(shared) if at_points => shared.point_positions(),
-            Source::Shared(_) => is_root.then(|| ring.mesh.nodes.clone()),
+            Source::Shared(_) => {
+                let places = ring.places(side, backend).map_err(Failure::solving)?;
+                places.to_root().map(|places| places.to_vec())
+            }
         };
         let near_field = scene
             .stress
@@ -266,7 +286,7 @@ mod tests {
     fn element(kind: ElementKind) -> Mesh {
         Mesh {
             kind,
-            nodes: reference_nodes(kind).to_vec(),
+            nodes: reference_nodes(kind).to_vec().into(),
             connectivity: (0..kind.n_nodes()).collect(),
             groups: Default::default(),
         }

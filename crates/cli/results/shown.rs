@@ -9,7 +9,8 @@ use contact::{BearingGeometry, LoadedPatch, Side};
 use dynamics::balls::BallResult;
 use dynamics::motion::frame::turn;
 use dynamics::motion::{Motion, MotionState};
-use dynamics::{DynamicsError, Model, RingModel, StaticSolution};
+use dynamics::{DynamicsError, Model, StaticSolution};
+use mesh::NodePositions;
 
 /// Bearing, kinematics and state of one instant.
 #[derive(Clone, Copy)]
@@ -37,7 +38,10 @@ pub enum Shown<'a> {
 
 /// A flexible ring at one instant.
 pub struct RingField<'a> {
-    ring: &'a RingModel,
+    /// Axial position of the groove centres in the mesh, m.
+    centre_z: f64,
+    /// Where its nodes are in the mesh; of a ring that ranks share at first those that this rank keeps.
+    pub places: NodePositions,
     /// Displacement up to a rigid motion, in the ring's frame, m, `[n_nodes][3]` flat.
     pub strained: Cow<'a, [f64]>,
     /// That rigid motion: shaft dofs in the ring's frame, m and rad; None when it is contained or zero.
@@ -95,7 +99,8 @@ impl<'a> Shown<'a> {
                     turn(q, -angle)
                 });
                 Some(RingField {
-                    ring,
+                    centre_z: ring.groove.centre_z,
+                    places: ring.mesh.nodes.clone(),
                     strained: Cow::Borrowed(strained),
                     rigid,
                     turn: Turn::new(angle),
@@ -104,7 +109,8 @@ impl<'a> Shown<'a> {
             Shown::Motion { motion, state, .. } => {
                 let (field, angle) = motion.ring_displacement(state, side)?;
                 Some(RingField {
-                    ring,
+                    centre_z: ring.groove.centre_z,
+                    places: ring.mesh.nodes.clone(),
                     strained: Cow::Owned(field),
                     rigid: None,
                     turn: Turn::new(angle),
@@ -120,8 +126,8 @@ impl RingField<'_> {
         let u = &self.strained[3 * node..3 * node + 3];
         let mut u = [u[0], u[1], u[2]];
         if let Some([x, y, z, tilt_x, tilt_y]) = self.rigid {
-            let [node_x, node_y, node_z] = self.ring.mesh.nodes[node];
-            let arm = node_z - self.ring.groove.centre_z;
+            let [node_x, node_y, node_z] = self.places[node];
+            let arm = node_z - self.centre_z;
             u[0] += x + tilt_y * arm;
             u[1] += y - tilt_x * arm;
             u[2] += z + tilt_x * node_y - tilt_y * node_x;
@@ -131,15 +137,27 @@ impl RingField<'_> {
 
     /// Displacement of a node in space from its place in the mesh, turning included, m.
     pub fn shown_displacement(&self, node: usize) -> [f64; 3] {
-        let place = self.ring.mesh.nodes[node];
-        let (turned, u) = (self.turn.vector(place), self.turn.vector(self.displacement(node)));
+        let u = self.turn.vector(self.displacement(node));
         // Without turning this is the displacement itself, to the last bit.
-        [0, 1, 2].map(|i| u[i] + (turned[i] - place[i]))
+        let moved = match self.turn.is_none() {
+            true => [0.0; 3],
+            false => {
+                let place = self.places[node];
+                let turned = self.turn.vector(place);
+                [0, 1, 2].map(|i| turned[i] - place[i])
+            }
+        };
+        [0, 1, 2].map(|i| u[i] + moved[i])
     }
 
     /// Displacements of all nodes in space, m.
     pub fn shown_displacements(&self) -> impl Iterator<Item = [f64; 3]> + '_ {
-        (0..self.ring.mesh.n_nodes()).map(|node| self.shown_displacement(node))
+        (0..self.places.len()).map(|node| self.shown_displacement(node))
+    }
+
+    /// Whether displacements as they are shown depend on where the nodes are.
+    pub fn needs_places(&self) -> bool {
+        self.rigid.is_some() || !self.turn.is_none()
     }
 }
 
@@ -155,6 +173,11 @@ impl Turn {
     pub fn new(angle: f64) -> Turn {
         let (sin, cos) = angle.sin_cos();
         Turn { sin, cos }
+    }
+
+    /// Whether it turns nothing.
+    fn is_none(&self) -> bool {
+        (self.sin, self.cos) == (0.0, 1.0)
     }
 
     /// A vector, turned.

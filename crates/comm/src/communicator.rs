@@ -119,6 +119,19 @@ impl Communicator {
         }
     }
 
+    /// The bytes that rank 0 makes for this rank; only there, `of` is called, for one rank after the other, so that one message is in
+    /// memory at a time. Its own is empty: what it would send itself, it has.
+    pub fn deal(self, of: impl FnMut(usize) -> Vec<u8>) -> Vec<u8> {
+        match self {
+            Communicator::Serial => {
+                drop(of);
+                Vec::new()
+            }
+            #[cfg(feature = "mpi")]
+            Communicator::Mpi => crate::messages::deal(of),
+        }
+    }
+
     /// The result, if every rank has one. Otherwise an error on all: a rank's own, or what `elsewhere` makes of the lowest
     /// failed rank and its message. To be called before a collective, so that no rank waits for one that has given up.
     pub fn agree<T, E: std::fmt::Display>(
@@ -159,6 +172,10 @@ mod tests {
         assert_eq!(comm.all_gather(vec![1.5, -0.0], &[2]), [1.5, -0.0]);
         assert_eq!(comm.exchange(vec![vec![2.5, 3.0]], &[2]), [2.5, 3.0]);
         assert_eq!(comm.to_root(0, vec![0.5, 7.0], 2), Some(vec![0.5, 7.0]));
+        assert!(
+            comm.deal(|rank| unreachable!("rank {rank} has what it has"))
+                .is_empty()
+        );
         let elsewhere = |_, _| unreachable!("there is no other rank");
         assert_eq!(comm.agree(Err::<(), _>("no memory"), elsewhere), Err("no memory"));
         assert_eq!(comm.agree(Ok::<_, &str>(7), elsewhere), Ok(7));

@@ -92,6 +92,29 @@ pub(crate) fn from_root(mut bytes: Vec<u8>) -> Vec<u8> {
     bytes
 }
 
+/// What MPI takes in one message, bytes.
+const MOST_BYTES: usize = 1 << 30;
+
+/// The bytes of rank 0 for this rank, none for itself.
+pub(crate) fn deal(mut of: impl FnMut(usize) -> Vec<u8>) -> Vec<u8> {
+    let world = world();
+    if rank() == 0 {
+        for to in 1..size() {
+            let (bytes, to) = (of(to), world.process_at_rank(count(to)));
+            to.send(&(bytes.len() as u64));
+            bytes.chunks(MOST_BYTES).for_each(|piece| to.send(piece));
+        }
+        return Vec::new();
+    }
+    let root = world.process_at_rank(0);
+    let (length, _) = root.receive::<u64>();
+    let mut bytes = vec![0; usize::try_from(length).expect("a length in memory")];
+    for piece in bytes.chunks_mut(MOST_BYTES) {
+        root.receive_into(piece);
+    }
+    bytes
+}
+
 /// The lowest rank with a message and that message, on all ranks.
 pub(crate) fn first_failure(message: Option<String>) -> Option<(usize, String)> {
     let bytes = message.map(String::into_bytes);

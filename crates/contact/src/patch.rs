@@ -16,6 +16,7 @@ use crate::raceway::RacewaySurface;
 use crate::vector::cross;
 use crate::weights::NodalWeights;
 use fem::facet;
+use mesh::NodePositions;
 
 /// Share of the way to the groove's edge that a patch may fill.
 const EDGE_SHARE: f64 = 0.98;
@@ -76,7 +77,7 @@ impl Patch {
     /// Weights of the patch on `surface`; `nodes` are the mesh's coordinates, m, `elastic` the ring's constants.
     pub fn new(
         surface: &RacewaySurface,
-        nodes: &[[f64; 3]],
+        nodes: &NodePositions,
         rule: &PressureRule,
         shape: PatchShape,
         elastic: Elastic,
@@ -170,7 +171,7 @@ impl Touched {
 
 fn sample(
     surface: &RacewaySurface,
-    nodes: &[[f64; 3]],
+    nodes: &NodePositions,
     rule: &PressureRule,
     patch: PatchShape,
 ) -> Result<Vec<Sample>, ContactError> {

@@ -78,7 +78,7 @@ impl RingDefect {
             }
         }
         // Absent nodes belong to no element of the true ring, so their places there mean nothing.
-        let mut placed = regular.mesh.nodes.clone();
+        let mut placed = regular.mesh.nodes.to_vec();
         placed[..n_nodes].copy_from_slice(&mesh.nodes);
         let patch = |positions: &[[f64; 3]], elements: &[usize]| {
             let whole = &regular.mesh;
@@ -164,7 +164,7 @@ impl Patch {
         let n = part.n_nodes();
         if part.connectivity.is_empty() {
             return Ok(Patch {
-                positions: part.nodes,
+                positions: part.nodes.to_vec(),
                 stiffness: CsMat::zero((3 * n, 3 * n)),
                 node_mass: CsMat::zero((n, n)),
             });
@@ -173,7 +173,7 @@ impl Patch {
         Ok(Patch {
             stiffness: fem::assemble_stiffness(&part, &ring.material)?,
             node_mass: fem::assemble_node_mass(&pattern, &part, &ring.material)?,
-            positions: part.nodes,
+            positions: part.nodes.to_vec(),
         })
     }
 }

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use contact::facets::FacetContact;
 use contact::patch::PatchShape;
 use contact::{ContactError, FacetSurface, Groove, NodalWeights, Patch, RacewaySurface, Side, Unevenness};
+use mesh::NodePositions;
 use rayon::prelude::*;
 
 use crate::error::DynamicsError;
@@ -192,7 +193,7 @@ fn place_facet(
 /// The facets of one ring as the ball of one site sees them.
 struct FacetSearch<'a> {
     facets: &'a FacetSurface,
-    nodes: &'a [[f64; 3]],
+    nodes: &'a NodePositions,
     groove: Groove,
     /// Distance from groove centre to a touching ball's centre, and ball radius, m.
     touching: f64,

@@ -67,7 +67,7 @@ impl<'a> LoadCase<'a> {
         };
         let loads = effects::timed_loads(self.model, &now, costs)?;
         let inertia = effects::static_inertia(self.model, &loads)?;
-        Ok(self.pose.in_frames(self.model, loads, inertia))
+        self.pose.in_frames(self.model, loads, inertia)
     }
 
     /// Newton on the problem as it is.

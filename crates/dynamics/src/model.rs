@@ -15,6 +15,7 @@ use mesh::{
     Mesh, NearlyPeriodic, NotNearlyPeriodic, NotPeriodic, PERIODIC_TOLERANCE, Periodicity,
     find_nearly_periodic, find_periodicity,
 };
+use serde::{Deserialize, Serialize};
 
 use crate::division::Division;
 use crate::effects::Effect;
@@ -55,8 +56,19 @@ pub struct RingModel {
 pub struct FoundSectors {
     equal: OnceLock<Result<Periodicity, NotPeriodic>>,
     nearly: OnceLock<Result<NearlyPeriodic, NotNearlyPeriodic>>,
-    node_masses: OnceLock<Arc<[f64]>>,
+    node_masses: OnceLock<Arc<NodeMasses>>,
     pub(crate) division: Option<Division>,
+}
+
+/// Masses of the nodes of a ring, the integrals of rho N_a over it.
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+pub struct NodeMasses {
+    /// Of each node, kg, `[n_nodes]`; they sum to the mass of the ring.
+    pub masses: Vec<f64>,
+    /// Their sum, kg.
+    pub total: f64,
+    /// Sum of mass times position, kg m.
+    pub moment: [f64; 3],
 }
 
 impl RingModel {
@@ -68,17 +80,36 @@ impl RingModel {
             .as_ref()
     }
 
-    /// Integral of rho N_a over the ring, kg, `[n_nodes]`; they sum to its mass. Found when first asked for, from the whole mesh.
-    pub fn node_masses(&self) -> Result<Arc<[f64]>, FemError> {
-        if let Some(masses) = self.sectors.node_masses.get() {
-            return Ok(masses.clone());
+    /// Masses of the nodes, found when first asked for, from the whole mesh.
+    pub fn node_masses(&self) -> Result<Arc<NodeMasses>, FemError> {
+        if self.sectors.node_masses.get().is_none() {
+            assert!(self.is_whole(), "the masses of nodes are of the whole mesh");
+            let density = self.material.density;
+            let load = fem::body_load(&self.mesh, |_| [density, 0.0, 0.0])?;
+            let masses: Vec<f64> = load.into_iter().step_by(3).collect();
+            let mut moment = [0.0; 3];
+            for (x, m) in self.mesh.nodes.iter().zip(&masses) {
+                (0..3).for_each(|i| moment[i] += m * x[i]);
+            }
+            // Another thread may have been first, with the same masses.
+            let _ = self.sectors.node_masses.set(Arc::new(NodeMasses {
+                total: masses.iter().sum(),
+                moment,
+                masses,
+            }));
         }
-        assert!(self.is_whole(), "the masses of nodes are of the whole mesh");
-        let density = self.material.density;
-        let load = fem::body_load(&self.mesh, |_| [density, 0.0, 0.0])?;
-        let masses = load.into_iter().step_by(3).collect();
-        // Another thread may have been first, with the same masses.
-        Ok(self.sectors.node_masses.get_or_init(|| masses).clone())
+        Ok(self.known_node_masses().cloned().unwrap_or_default())
+    }
+
+    /// The same if they were asked for before.
+    pub(crate) fn known_node_masses(&self) -> Option<&Arc<NodeMasses>> {
+        self.sectors.node_masses.get()
+    }
+
+    /// Tells the masses of the nodes to a ring that has not been asked for them.
+    pub(crate) fn set_node_masses(&self, masses: NodeMasses) {
+        let known = self.sectors.node_masses.set(Arc::new(masses));
+        known.expect("a new ring has not been asked");
     }
 
     /// The mesh as a periodic one with a defect, or the reason why it is not one.

@@ -7,6 +7,7 @@
 use contact::Side;
 
 use crate::effects::{Loads, Now, resultant};
+use crate::error::DynamicsError;
 use crate::model::{Model, ShaftDof};
 use crate::motion::frame::{turn, turn_nodal};
 use crate::problem::{Problem, Site};
@@ -52,10 +53,15 @@ impl Pose {
     }
 
     /// Loads of which those on the nodes of a flexible inner ring are given in its own frame, and the shaft carries
-    /// their resultant where the turned nodes stand. `inertia` is a load in that frame, N, `[n_nodes][3]` flat.
-    pub(crate) fn in_frames(&self, model: &Model, mut loads: Loads, inertia: Option<Vec<f64>>) -> Loads {
+    /// their resultant where the turned nodes stand. `inertia` is a load in that frame, N, `[n_nodes][3]` flat. Collective.
+    pub(crate) fn in_frames(
+        &self,
+        model: &Model,
+        mut loads: Loads,
+        inertia: Option<Vec<f64>>,
+    ) -> Result<Loads, DynamicsError> {
         let Some(ring) = model.ring(Side::Inner) else {
-            return loads;
+            return Ok(loads);
         };
         let in_space = loads.rings[Side::Inner.index()].take();
         let turned = in_space.map(|load| turn_nodal(&load, -self.inner_angle));
@@ -64,9 +70,11 @@ impl Pose {
             (load, inertia) => load.or(inertia),
         };
         if let Some(load) = &load {
-            loads.ring_on_shaft = turn(resultant(ring, load), self.inner_angle);
+            let places = ring.places(Side::Inner.name(), model.backend)?;
+            let resultant = resultant(&places, ring.groove.centre_z, load);
+            loads.ring_on_shaft = turn(resultant, self.inner_angle);
         }
         loads.rings[Side::Inner.index()] = load;
-        loads
+        Ok(loads)
     }
 }

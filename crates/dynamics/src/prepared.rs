@@ -78,9 +78,10 @@ impl Prepared {
     ) -> Result<Prepared, DynamicsError> {
         let (mesh, name) = (&ring.mesh, side.name());
         let n_balls = model.geometry.n_balls;
+        let places = ring.places(name, model.backend)?;
         let weights = fem::surface::facet_node_weights(mesh, mesh.group(ring.held_group));
         if let Backend::Sector(sectors) = model.backend {
-            let support = Support::new(mesh, ring.hold, weights);
+            let support = Support::new(mesh, ring.hold, weights, places);
             let parts = match numbers {
                 Numbers::Assembled => Substructures::new(ring, name, &support.free, sectors)?,
                 Numbers::Pattern => Substructures::pattern(ring, name, &support.free, sectors)?,
@@ -110,7 +111,7 @@ impl Prepared {
                         Some(d) => memory.with_defect(mesh, d.defect.bytes()),
                         None => memory,
                     },
-                    support: Support::unfixed(mesh, ring.hold, weights),
+                    support: Support::unfixed(mesh, ring.hold, weights, places),
                     matrix: Matrix::Cyclic(Box::new(Harmonics {
                         symmetry,
                         changes: periodic.defect.as_ref().map(|d| changes(mesh, &held, d)),
@@ -122,7 +123,7 @@ impl Prepared {
             }
             Err(why) => why,
         };
-        let support = Support::new(mesh, ring.hold, weights);
+        let support = Support::new(mesh, ring.hold, weights, places);
         // Only the lower triangle outlives the assembly: the whole matrix takes half as much as a hex8 ring's factor.
         let full = match numbers {
             Numbers::Assembled => fem::assemble_stiffness(mesh, &ring.material),

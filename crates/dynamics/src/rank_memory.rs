@@ -1,19 +1,21 @@
 //! Forecast of the memory of one rank that shares rings in sectors with others, or of all when it is alone.
 //!
-//! Bytes of one ring with n nodes, N = 3 n dofs, e elements of p nodes; of its sectors owned: E stored entries of K, factors of F bytes with
-//! analyses of A and r rows; b balls. A worker is a thread that factors a sector.
+//! Bytes of one ring with n nodes, N = 3 n dofs, e elements of p nodes, s nodes in the lists of all sectors (n, and those they share again); of
+//! its sectors owned: o elements, k nodes, E stored entries of K, factors of F bytes with analyses of A and r rows; b balls. A worker is a thread
+//! that factors a sector.
 //!
 //! | part | bytes | what it is |
 //! |---|---|---|
-//! | mesh | 24 n + 8 e' p | all nodes; of several ranks e' elements: those of the sectors owned and of the surfaces that all keep |
-//! | lists | 59 N + 8 r + 16 e in statics, 79 N + 8 r + 16 e in motion | layout of the sectors, coordinates, positions; whole |
+//! | mesh | 28 n' + 8 e' p | n' nodes and e' elements: those of the sectors owned and of the surfaces that all keep; alone 24 n + 8 e p |
+//! | lists | 4 s + 12 N + 8 r + 8 k + 16 o in statics, 4 N more in motion | nodes of all sectors, owners of rows, free dofs, rows of own sectors |
 //! | vectors | 24 N in statics, 152 N in motion | whole |
 //! | matrices | 16 E (1 + 1/9) | K and the mass between nodes |
 //! | factors | F + A | |
 //! | interface | as the solver says | all of it with few sectors |
 //! | columns | 8 r (2 b + 1) | solutions under all contact forces, and what of them is on interfaces |
 //! | work | 16 E_s + work space of s, per worker | the matrix that is factored, and fronts, of the largest sectors |
-//! | results | rank 0: 240 n + 24 e p + 48 o c; others: 24 r + 24 o p + 48 f c | stress of the o elements owned, f in the largest sector; on rank 0 record and output |
+//! | results | rank 0: 240 n + 8 e + 24 o p + 48 o c; others: 24 r + 24 o p + 48 f c | stress of the elements owned, f in the largest sector; on rank 0 record and output; alone 24 e p |
+//! | reading | 3 (24 n + 8 e p) + 18 e | on rank 0 of several, both rings at once, before anything else: the meshes, and `mesh.hdf` as it is written |
 //!
 //! Statics has the matrices of one ring at a time and lets go of them; motion keeps those of both. Alone and with several threads
 //! both rings are made at once.
@@ -35,6 +37,8 @@ const MESSAGE_BYTES: [usize; 2] = [6_000_000, 5_000_000];
 /// Bytes of one ring on one rank: see the module.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct RankMemory {
+    /// Whole meshes while they are read.
+    pub reading: usize,
     /// Nodes and connectivity.
     pub mesh: usize,
     /// Lists of nodes and rows, in statics and in motion.
@@ -101,6 +105,14 @@ impl RankMemory {
         let largest = costs.iter().map(|c| c.n_elements).max().unwrap_or(0);
         let corners = 48 * mesh.kind.n_corners();
         let rows: usize = costs.iter().map(|c| c.n_rows).sum();
+        let listed: usize = symbolic.layout().nodes().iter().map(Vec::len).sum();
+        let own_nodes: usize = symbolic.layout().nodes()[owned.clone()]
+            .iter()
+            .map(Vec::len)
+            .sum();
+        let whole_mesh = 8 * n_dofs + per_element * n_elements;
+        let (is_alone, is_root) = (share.n_ranks == 1, share.rank == 0);
+        let own = 3 * per_element * own_elements;
         let mut work: Vec<usize> = costs
             .iter()
             .zip(entries)
@@ -108,18 +120,30 @@ impl RankMemory {
             .collect();
         work.sort_unstable();
         RankMemory {
-            mesh: 8 * n_dofs + per_element * kept_elements(ring, symbolic.layout(), &owned),
-            lists: [59, 79].map(|bytes| bytes * n_dofs + 8 * rows + 16 * n_elements),
+            reading: if is_root && !is_alone {
+                3 * whole_mesh + 18 * n_elements
+            } else {
+                0
+            },
+            mesh: match is_alone {
+                true => whole_mesh,
+                false => {
+                    28 * kept_nodes(ring, symbolic.layout(), &owned)
+                        + per_element * kept_elements(ring, symbolic.layout(), &owned)
+                }
+            },
+            lists: [12, 16]
+                .map(|bytes| bytes * n_dofs + 4 * listed + 8 * rows + 8 * own_nodes + 16 * own_elements),
             vectors: [24, 152].map(|bytes| bytes * n_dofs),
             matrices: ENTRY_BYTES * entries.iter().sum::<usize>() * 10 / 9,
             factors: costs.iter().map(|c| c.factor_bytes + c.analysis_bytes).sum(),
             interface: symbolic.interface_bytes(owned),
             columns: 8 * (rows + symbolic.layout().interface().len()) * (2 * n_balls + 1),
             work: work.iter().rev().take(share.n_threads).sum(),
-            results: if share.rank == 0 {
-                80 * n_dofs + 3 * per_element * n_elements + corners * own_elements
-            } else {
-                24 * rows + 3 * per_element * own_elements + corners * largest
+            results: match (is_root, is_alone) {
+                (true, true) => 80 * n_dofs + own + corners * own_elements,
+                (true, false) => 80 * n_dofs + 8 * n_elements + own + corners * own_elements,
+                _ => 24 * rows + own + corners * largest,
             },
         }
     }
@@ -141,6 +165,17 @@ impl RankMemory {
     fn kept(&self) -> usize {
         self.lists[0] + self.vectors[0] + self.factors + self.interface
     }
+}
+
+/// Nodes whose positions the rank with the sectors `owned` keeps.
+fn kept_nodes(ring: &RingModel, layout: &SectorLayout, owned: &Range<usize>) -> usize {
+    let mut is_kept = vec![false; ring.mesh.n_nodes()];
+    let own = layout.nodes()[owned.clone()].iter().flatten();
+    own.for_each(|&node| is_kept[node as usize] = true);
+    ring.surface_nodes()
+        .into_iter()
+        .for_each(|node| is_kept[node] = true);
+    is_kept.into_iter().filter(|&kept| kept).count()
 }
 
 /// Elements that the rank with the sectors `owned` keeps.
@@ -177,5 +212,6 @@ pub fn forecast_rank_peak(rings: &[Option<RankMemory>; 2], share: &Share) -> [us
     } else {
         a.work.max(b.work).max(a.columns + b.columns)
     };
-    [statics, base + held(a) + held(b) + more]
+    let reading = PROGRAM_BYTES + messages + a.reading + b.reading;
+    [statics, base + held(a) + held(b) + more].map(|peak| peak.max(reading))
 }

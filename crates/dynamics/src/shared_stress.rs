@@ -11,7 +11,7 @@
 use comm::Communicator;
 use fem::StressRecovery;
 
-use crate::division::SectorLists;
+use crate::division::{SectorLists, wide};
 use crate::error::DynamicsError;
 use crate::model::{RingModel, Sectors};
 
@@ -47,7 +47,7 @@ struct Whole {
     /// Values of each place of a sector: 1 per node, or the points of an element.
     per_place: usize,
     /// Nodes or elements of each sector; on other ranks than 0 empty.
-    places: Vec<Vec<usize>>,
+    places: Vec<Vec<u32>>,
     /// Number of values of each sector.
     lengths: Vec<usize>,
     /// Nodes or elements of the ring.
@@ -68,7 +68,7 @@ impl SharedStress {
         let cut = ring.sector_cut(side, sectors)?;
         let n_sectors = cut.nodes.len();
         let part = |s: usize| -> Result<Part, DynamicsError> {
-            let (elements, nodes) = (&cut.elements[s], cut.nodes[s].clone());
+            let (elements, nodes) = (&cut.elements[s], wide(&cut.nodes[s]));
             let recovery = StressRecovery::new(&mesh.part(elements, &nodes), &ring.material)
                 .map_err(|source| DynamicsError::Fem { side, source })?;
             Ok(Part { nodes, recovery })
@@ -78,7 +78,7 @@ impl SharedStress {
         let parts = comm.agree(parts, elsewhere)?;
         let points_per_element = fem::quadrature::stiffness_rule(mesh.kind).points.len();
         let (per_place, n_places, of_sectors) = match places {
-            StressPlaces::Nodes => (1, mesh.n_nodes(), SectorLists::on_root(cut.nodes, comm)),
+            StressPlaces::Nodes => (1, mesh.n_nodes(), SectorLists::nodes(&cut, comm)),
             StressPlaces::IntegrationPoints => {
                 let elements = ring.elements_of_sectors(&cut, comm);
                 (points_per_element, ring.n_elements(), elements)
@@ -168,6 +168,7 @@ impl SharedStress {
                 };
                 let values = values.as_chunks::<W>().0.chunks_exact(whole.per_place);
                 for (&place, values) in whole.places[s].iter().zip(values) {
+                    let place = place as usize;
                     let sum = &mut sum[whole.per_place * place..whole.per_place * (place + 1)];
                     for (sum, value) in sum.iter_mut().zip(values) {
                         (0..W).for_each(|c| sum[c] += value[c]);

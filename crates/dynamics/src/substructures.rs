@@ -22,8 +22,9 @@ pub struct Substructures {
     name: &'static str,
     comm: Communicator,
     n_dofs: usize,
-    /// Elements that this rank keeps, and those of the ring.
+    /// Elements, and positions of nodes, that this rank keeps, and those of the ring.
     n_elements: [usize; 2],
+    n_nodes: [usize; 2],
     symbolic: SectorSymbolic,
     /// Matrices of the sectors that this rank owns.
     matrices: Vec<Matrices>,
@@ -67,17 +68,21 @@ impl Substructures {
         let mesh = &ring.mesh;
         let solver_error = |source| DynamicsError::Solver { side: name, source };
         let (per_element, comm) = (mesh.kind.n_nodes(), shared.comm);
-        let mut layout = SectorLayout::of(ring.sector_cut(name, shared)?, mesh.n_nodes(), free);
-        let n_sectors = layout.sectors().len();
-        let owned = comm.share(n_sectors);
-        layout.forget_all_but(owned.clone());
+        let cut = ring.sector_cut(name, shared)?;
+        let owned = comm.share(cut.nodes.len());
+        let layout = SectorLayout::of(cut, mesh.n_nodes(), free, owned.clone());
         let made: Result<Vec<Matrices>, DynamicsError> = layout.sectors()[owned.clone()]
             .par_iter()
             .map(&matrices)
             .collect();
         let elsewhere = |rank, message| DynamicsError::OnRank { rank, message };
         let matrices = comm.agree(made, elsewhere)?;
-        let cells = (&mesh.nodes[..], &mesh.connectivity[..], per_element);
+        let place = |node: usize| mesh.nodes[node];
+        let cells = (
+            &place as &(dyn Fn(usize) -> [f64; 3] + Sync),
+            &mesh.connectivity[..],
+            per_element,
+        );
         let of = |s: usize| Cow::Borrowed(&matrices[s - owned.start].stiffness);
         let symbolic = SectorSymbolic::new(layout, comm, cells, of).map_err(solver_error)?;
         Ok(Substructures {
@@ -85,6 +90,7 @@ impl Substructures {
             comm,
             n_dofs: mesh.n_dofs(),
             n_elements: [mesh.n_elements(), ring.n_elements()],
+            n_nodes: [mesh.nodes.n_kept(), mesh.n_nodes()],
             symbolic,
             matrices,
         })
@@ -139,10 +145,12 @@ impl Substructures {
         let whose = match self.comm.size() {
             1 => String::new(),
             ranks => format!(
-                " on {ranks} ranks, of which this one has {} and keeps {} of {} elements",
+                " on {ranks} ranks, of which this one has {} and keeps {} of {} elements and {} of {} nodes",
                 costs.len(),
                 self.n_elements[0],
-                self.n_elements[1]
+                self.n_elements[1],
+                self.n_nodes[0],
+                self.n_nodes[1]
             ),
         };
         format!(
@@ -172,8 +180,7 @@ impl Substructures {
                 of(matrices, &own)
             })
             .collect();
-        let nodes: Vec<&[usize]> = sectors.iter().map(|s| s.nodes.as_slice()).collect();
-        sum_of_sectors(self.comm, &nodes, &parts, self.n_dofs)
+        sum_of_sectors(self.comm, self.symbolic.layout().nodes(), &parts, self.n_dofs)
     }
 }
 

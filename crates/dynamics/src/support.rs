@@ -9,6 +9,7 @@
 use mesh::Mesh;
 use solver::dense::DenseCholesky;
 
+use crate::division::NodePlaces;
 use crate::model::Hold;
 
 /// A hold, ready to apply.
@@ -24,8 +25,8 @@ struct MeanMotion {
     centre: [f64; 3],
     /// Its radius of gyration, m: the unit of the arms.
     size: f64,
-    /// Node positions relative to the surface's reference point over `size`, `[n_nodes][3]`.
-    arms: Vec<[f64; 3]>,
+    /// Where the nodes are.
+    places: NodePlaces,
     /// Held nodes and their area weights.
     weights: Vec<(usize, f64)>,
     /// (R^T W R)^-1, row-major 6 x 6.
@@ -34,7 +35,7 @@ struct MeanMotion {
 
 impl Support {
     /// Hold of the surface with nodal area weights `weights` (node, m^2).
-    pub fn new(mesh: &Mesh, hold: Hold, weights: Vec<(usize, f64)>) -> Support {
+    pub fn new(mesh: &Mesh, hold: Hold, weights: Vec<(usize, f64)>, places: NodePlaces) -> Support {
         match hold {
             Hold::Clamped => {
                 let mut held = vec![false; mesh.n_nodes()];
@@ -49,7 +50,7 @@ impl Support {
                 mean: None,
             },
             Hold::MeanMotion => {
-                let mean = MeanMotion::new(mesh, weights);
+                let mean = MeanMotion::new(places, weights);
                 let fixed = mean.determinate_dofs();
                 let free = (0..mesh.n_dofs()).filter(|d| !fixed.contains(d)).collect();
                 Support {
@@ -61,12 +62,12 @@ impl Support {
     }
 
     /// The same for a factor that needs no dofs fixed in a mean motion: all stay, and loads must be balanced.
-    pub fn unfixed(mesh: &Mesh, hold: Hold, weights: Vec<(usize, f64)>) -> Support {
+    pub fn unfixed(mesh: &Mesh, hold: Hold, weights: Vec<(usize, f64)>, places: NodePlaces) -> Support {
         match hold {
-            Hold::Clamped | Hold::Free => Support::new(mesh, hold, weights),
+            Hold::Clamped | Hold::Free => Support::new(mesh, hold, weights, places),
             Hold::MeanMotion => Support {
                 free: (0..mesh.n_dofs()).collect(),
-                mean: Some(MeanMotion::new(mesh, weights)),
+                mean: Some(MeanMotion::new(places, weights)),
             },
         }
     }
@@ -78,17 +79,31 @@ impl Support {
             .flat_map(|mean| mean.weights.iter().map(|&(node, _)| node))
     }
 
-    /// Replaces loads by what the ring sees with its partner's reaction: P^T f.
+    /// Replaces loads by what the ring sees with its partner's reaction: P^T f. Collective.
     pub fn balance(&self, load: &mut [f64]) {
         if let Some(mean) = &self.mean {
             mean.balance(load);
         }
     }
 
-    /// Removes the partner's rigid motion from a displacement: P u.
+    /// The same of a load on some `nodes` that every rank keeps, zero elsewhere.
+    pub fn balance_at(&self, nodes: &[usize], load: &mut [f64]) {
+        if let Some(mean) = &self.mean {
+            mean.balance_at(nodes, load);
+        }
+    }
+
+    /// Removes the partner's rigid motion from a displacement: P u. Collective.
     pub fn remove_rigid(&self, displacement: &mut [f64]) {
         if let Some(mean) = &self.mean {
             mean.remove_rigid(displacement);
+        }
+    }
+
+    /// The same at some `nodes` that every rank keeps.
+    pub fn remove_rigid_at(&self, nodes: &[usize], displacement: &mut [f64]) {
+        if let Some(mean) = &self.mean {
+            mean.remove_rigid_at(nodes, displacement);
         }
     }
 }
@@ -96,12 +111,12 @@ impl Support {
 /// The mean rigid motion of a surface as six functionals of the nodal dofs, (dof, value): translations x, y, z of the
 /// axis point `z = origin_z` in m per m, rotations about x, y, z in rad per m; area-weighted least squares.
 pub fn mean_motion(mesh: &Mesh, weights: Vec<(usize, f64)>, origin_z: f64) -> [Vec<(usize, f64)>; 6] {
-    let mean = MeanMotion::new(mesh, weights);
+    let mean = MeanMotion::new(NodePlaces::whole(mesh.nodes.clone()), weights);
     let (centre, size) = (mean.centre, mean.size);
     let mut rows: [Vec<(usize, f64)>; 6] = Default::default();
     for &(node, w) in &mean.weights {
         for c in 0..3 {
-            let motion = mean.apply_inverse(rigid_row(mean.arms[node], c).map(|r| w * r));
+            let motion = mean.apply_inverse(rigid_row(mean.arm(node), c).map(|r| w * r));
             let turn = [motion[3] / size, motion[4] / size, motion[5] / size];
             // From the surface's reference point to the origin: t + phi x (origin - centre).
             let arm = [-centre[0], -centre[1], origin_z - centre[2]];
@@ -129,27 +144,23 @@ fn rigid_row(arm: [f64; 3], component: usize) -> [f64; 6] {
 }
 
 impl MeanMotion {
-    fn new(mesh: &Mesh, weights: Vec<(usize, f64)>) -> MeanMotion {
+    fn new(places: NodePlaces, weights: Vec<(usize, f64)>) -> MeanMotion {
+        let positions = places.positions();
         let total: f64 = weights.iter().map(|w| w.1).sum();
         let mut centre = [0.0; 3];
         for &(node, w) in &weights {
-            (0..3).for_each(|i| centre[i] += w / total * mesh.nodes[node][i]);
+            (0..3).for_each(|i| centre[i] += w / total * positions[node][i]);
         }
         let square = |x: [f64; 3]| (0..3).map(|i| (x[i] - centre[i]).powi(2)).sum::<f64>();
         let size = weights
             .iter()
-            .map(|&(node, w)| w / total * square(mesh.nodes[node]))
+            .map(|&(node, w)| w / total * square(positions[node]))
             .sum::<f64>()
             .sqrt();
-        let arms: Vec<[f64; 3]> = mesh
-            .nodes
-            .iter()
-            .map(|x| [0, 1, 2].map(|i| (x[i] - centre[i]) / size))
-            .collect();
         let mut gram = vec![0.0; 36];
         for &(node, w) in &weights {
             for component in 0..3 {
-                let row = rigid_row(arms[node], component);
+                let row = rigid_row(arm_of(positions[node], centre, size), component);
                 for i in 0..6 {
                     (0..6).for_each(|j| gram[6 * i + j] += w * row[i] * row[j]);
                 }
@@ -161,7 +172,7 @@ impl MeanMotion {
         MeanMotion {
             centre,
             size,
-            arms,
+            places,
             weights,
             inverse,
         }
@@ -173,7 +184,7 @@ impl MeanMotion {
             .weights
             .iter()
             .flat_map(|&(node, _)| (0..3).map(move |c| (3 * node + c, c)))
-            .map(|(dof, c)| (dof, rigid_row(self.arms[dof / 3], c)))
+            .map(|(dof, c)| (dof, rigid_row(self.arm(dof / 3), c)))
             .collect();
         let mut chosen = Vec::new();
         for _ in 0..6 {
@@ -197,16 +208,40 @@ impl MeanMotion {
         chosen
     }
 
+    /// Position relative to the surface's reference point over its size.
+    fn arm(&self, node: usize) -> [f64; 3] {
+        arm_of(self.places.positions()[node], self.centre, self.size)
+    }
+
     /// f -= C^T R^T f, C = (R^T W R)^-1 R^T W on the held nodes.
     fn balance(&self, load: &mut [f64]) {
+        let resultant = self.places.sum(|node, x| {
+            let mut sum = [0.0; 6];
+            accumulate(
+                &mut sum,
+                arm_of(x, self.centre, self.size),
+                &load[3 * node..3 * node + 3],
+                1.0,
+            );
+            sum
+        });
+        self.react(resultant, load);
+    }
+
+    fn balance_at(&self, nodes: &[usize], load: &mut [f64]) {
         let mut resultant = [0.0; 6];
-        for (arm, f) in self.arms.iter().zip(load.chunks_exact(3)) {
-            accumulate(&mut resultant, *arm, f, 1.0);
+        for &node in nodes {
+            accumulate(&mut resultant, self.arm(node), &load[3 * node..3 * node + 3], 1.0);
         }
+        self.react(resultant, load);
+    }
+
+    /// Takes the partner's reaction to loads R^T f off the held nodes.
+    fn react(&self, resultant: [f64; 6], load: &mut [f64]) {
         let multipliers = self.apply_inverse(resultant);
         for &(node, w) in &self.weights {
             for c in 0..3 {
-                let row = rigid_row(self.arms[node], c);
+                let row = rigid_row(self.arm(node), c);
                 load[3 * node + c] -= w * (0..6).map(|i| row[i] * multipliers[i]).sum::<f64>();
             }
         }
@@ -214,27 +249,50 @@ impl MeanMotion {
 
     /// u -= R C u.
     fn remove_rigid(&self, displacement: &mut [f64]) {
+        let motion = self.motion(displacement);
+        let rigid = self.places.field(|x| self.rigid(x, motion));
+        displacement.iter_mut().zip(rigid).for_each(|(u, r)| *u -= r);
+    }
+
+    fn remove_rigid_at(&self, nodes: &[usize], displacement: &mut [f64]) {
+        let motion = self.motion(displacement);
+        for &node in nodes {
+            let rigid = self.rigid(self.places.positions()[node], motion);
+            let u = displacement[3 * node..3 * node + 3].iter_mut();
+            u.zip(rigid).for_each(|(u, r)| *u -= r);
+        }
+    }
+
+    /// R q at a position.
+    fn rigid(&self, x: [f64; 3], motion: [f64; 6]) -> [f64; 3] {
+        let arm = arm_of(x, self.centre, self.size);
+        [0, 1, 2].map(|c| {
+            let row = rigid_row(arm, c);
+            (0..6).map(|i| row[i] * motion[i]).sum()
+        })
+    }
+
+    /// q = C u.
+    fn motion(&self, displacement: &[f64]) -> [f64; 6] {
         let mut moment = [0.0; 6];
         for &(node, w) in &self.weights {
             accumulate(
                 &mut moment,
-                self.arms[node],
+                self.arm(node),
                 &displacement[3 * node..3 * node + 3],
                 w,
             );
         }
-        let motion = self.apply_inverse(moment);
-        for (arm, u) in self.arms.iter().zip(displacement.chunks_exact_mut(3)) {
-            for c in 0..3 {
-                let row = rigid_row(*arm, c);
-                u[c] -= (0..6).map(|i| row[i] * motion[i]).sum::<f64>();
-            }
-        }
+        self.apply_inverse(moment)
     }
 
     fn apply_inverse(&self, v: [f64; 6]) -> [f64; 6] {
         [0, 1, 2, 3, 4, 5].map(|i| (0..6).map(|j| self.inverse[6 * i + j] * v[j]).sum())
     }
+}
+
+fn arm_of(x: [f64; 3], centre: [f64; 3], size: f64) -> [f64; 3] {
+    [0, 1, 2].map(|i| (x[i] - centre[i]) / size)
 }
 
 /// sum += w R_node^T v.

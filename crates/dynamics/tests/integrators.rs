@@ -31,8 +31,8 @@ impl Effect for NodalStep {
         "nodal_step"
     }
 
-    fn add_loads(&self, model: &Model, _: &Now, loads: &mut Loads) -> Result<(), DynamicsError> {
-        loads.add_ring_load(model, Side::Outer, self.0.clone());
+    fn add_loads(&self, _: &Model, _: &Now, loads: &mut Loads) -> Result<(), DynamicsError> {
+        loads.add_ring_load(Side::Outer, self.0.clone(), [0.0; 5]);
         Ok(())
     }
 }

@@ -273,6 +273,70 @@ fn loads_by_sector_are_those_of_the_whole_ring() {
     }
 }
 
+/// Wrong: a rank would hold the whole mesh, or not have what it needs of its sectors and of the surfaces that contacts and partner touch.
+#[test]
+fn a_rank_keeps_its_part_of_the_mesh_and_knows_no_other() {
+    let sectors = Sectors {
+        n_sectors: Some(8),
+        ..Sectors::default()
+    };
+    for level in [Level::hex8(48, 6, 2, 3), Level::hex20(24, 4, 1, 2)] {
+        let whole = || ring(Side::Outer, level, Hold::MeanMotion);
+        let (ring, backend) = (whole(), Backend::Sector(sectors));
+        let cut = ring.sector_cut("outer", sectors).unwrap();
+        for rank in 0..4 {
+            let probed = ring.mesh.n_nodes() / 2 + 7;
+            let part = whole().kept_by(&cut, [rank, 4], &[probed]);
+            assert!(!part.is_whole());
+            assert_eq!(
+                (part.mesh.n_dofs(), part.n_elements()),
+                (ring.mesh.n_dofs(), ring.mesh.n_elements())
+            );
+            let [n_nodes, n_kept] = [ring.mesh.n_nodes(), part.mesh.nodes.n_kept()];
+            let surface = ring.surface_nodes().len();
+            assert!(
+                n_kept < n_nodes && n_kept < n_nodes / 3 + surface,
+                "{n_kept} of {n_nodes}, {surface}"
+            );
+            assert!(part.mesh.n_elements() < ring.mesh.n_elements());
+            assert!(part.mesh.nodes.kept().all(|(node, x)| x == ring.mesh.nodes[node]));
+            assert_eq!(part.mesh.nodes[probed], ring.mesh.nodes[probed]);
+            // Own sectors are what they are in the whole ring.
+            let own = part.sector_cut("outer", sectors).unwrap();
+            for s in 2 * rank..2 * rank + 2 {
+                let nodes: Vec<usize> = cut.nodes[s].iter().map(|&node| node as usize).collect();
+                assert!(
+                    part.mesh.part(&own.elements[s], &nodes) == ring.mesh.part(&cut.elements[s], &nodes),
+                    "rank {rank}, sector {s}"
+                );
+            }
+            let other = (2 * rank + 4) % 8;
+            assert!(own.elements[other].is_empty() && own.nodes == cut.nodes);
+            // The surfaces are where they were.
+            for group in ["raceway", "seat"] {
+                assert_eq!(part.mesh.group_nodes(group), ring.mesh.group_nodes(group));
+                let weights = |ring: &RingModel| fem::facet_node_weights(&ring.mesh, ring.mesh.group(group));
+                assert!(weights(&part) == weights(&ring), "{group}");
+            }
+            let missing = cut.nodes[other].iter().map(|&node| node as usize);
+            let is_kept = |node: usize| part.mesh.nodes.kept().any(|(kept, _)| kept == node);
+            let missing = missing.into_iter().find(|&node| !is_kept(node)).unwrap();
+            let asked = std::panic::catch_unwind(|| part.mesh.nodes[missing]);
+            assert!(asked.is_err(), "rank {rank} knows node {missing}");
+            let all = std::panic::catch_unwind(|| part.mesh.nodes.to_vec());
+            assert!(all.is_err(), "rank {rank} knows all nodes");
+        }
+        // Fields and sums over a ring in sectors are those over the whole.
+        let places = ring.places("outer", backend).unwrap();
+        let plain = ring.places("outer", Backend::Sparse).unwrap();
+        let square = |x: [f64; 3]| x.map(|x| x * x);
+        assert!(places.field(square) == plain.field(square));
+        let [a, b] = [places, plain].map(|places| places.sum(|node, x| [node as f64, square(x)[1]]));
+        assert_eq!(a[0], b[0]);
+        assert!((a[1] - b[1]).abs() <= 1e-13 * b[1], "{a:?}, {b:?}");
+    }
+}
+
 /// The ring of hex8 with each element cut into six tet10, the mid-nodes on straight edges.
 fn tetrahedra(ring: &RingModel) -> RingModel {
     // Around the diagonal from corner 0 to corner 6.
@@ -285,7 +349,7 @@ fn tetrahedra(ring: &RingModel) -> RingModel {
         [0, 5, 1, 6],
     ];
     let edges = [[0, 1], [1, 2], [2, 0], [0, 3], [1, 3], [2, 3]];
-    let (mut nodes, mut connectivity) = (ring.mesh.nodes.clone(), Vec::new());
+    let (mut nodes, mut connectivity) = (ring.mesh.nodes.to_vec(), Vec::new());
     let mut middles = BTreeMap::new();
     for hexahedron in ring.mesh.connectivity.chunks_exact(8) {
         for corners in CUTS.map(|cut| cut.map(|i| hexahedron[i])) {
@@ -301,7 +365,7 @@ fn tetrahedra(ring: &RingModel) -> RingModel {
     }
     let mesh = Mesh {
         kind: ElementKind::Tet10,
-        nodes,
+        nodes: nodes.into(),
         connectivity,
         groups: BTreeMap::new(),
     };

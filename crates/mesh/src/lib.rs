@@ -14,6 +14,7 @@ pub mod mesh;
 pub mod msh;
 pub mod origin;
 pub mod periodic;
+pub mod positions;
 pub mod ring;
 pub mod section;
 
@@ -30,5 +31,6 @@ pub use periodic::{
     NearlyPeriodic, NotNearlyPeriodic, NotPeriodic, PERIODIC_TOLERANCE, Periodicity, Site,
     find_nearly_periodic, find_periodicity,
 };
+pub use positions::NodePositions;
 pub use ring::{RingGeometry, RingSection, RingSide, ring_geo, ring_tet_geo};
 pub use section::{Arc, Section, SectionEdge, Snap, read_section, read_section_with_origin, revolve};

@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use crate::element::ElementKind;
+use crate::positions::NodePositions;
 
 /// One face of one element.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -19,7 +20,7 @@ pub struct Mesh {
     /// Kind of every element.
     pub kind: ElementKind,
     /// Node coordinates, m, `[n_nodes][3]`.
-    pub nodes: Vec<[f64; 3]>,
+    pub nodes: NodePositions,
     /// Node indices of the elements, `[n_elements][kind.n_nodes()]`, flat.
     pub connectivity: Vec<usize>,
     /// Boundary facets by physical name (`raceway`, `seat`, `bore`, ...).

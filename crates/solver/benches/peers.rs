@@ -31,7 +31,7 @@ use matrix::steel;
 use mesh::{Mesh, PERIODIC_TOLERANCE, find_periodicity};
 use ring::ring;
 use solver::{
-    CyclicMatrix, CyclicRing, LinearSolver, SectorSymbolic, Symbolic, angular_dissection, expand,
+    CyclicMatrix, CyclicRing, LinearSolver, Points, SectorSymbolic, Symbolic, angular_dissection, expand,
     restrict_lower,
 };
 
@@ -169,7 +169,12 @@ fn cyclic(mesh: &Mesh, rhs: &[f64]) -> Costs {
 fn sector(mesh: &Mesh, rhs: &[f64]) -> Costs {
     let (layout, parts) = sectors::cut(mesh);
     let of = |s: usize| Cow::Borrowed(&parts[s]);
-    let cells = (&mesh.nodes[..], &mesh.connectivity[..], mesh.kind.n_nodes());
+    let points = |node: usize| mesh.nodes[node];
+    let cells = (
+        &points as &Points<'_>,
+        &mesh.connectivity[..],
+        mesh.kind.n_nodes(),
+    );
     let (analyse, symbolic) = least(1, || {
         SectorSymbolic::new(layout.clone(), Communicator::Serial, cells, of).expect("a pattern")
     });

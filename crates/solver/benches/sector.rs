@@ -26,7 +26,8 @@ use rayon::prelude::*;
 use rayon::{ThreadPool, ThreadPoolBuilder};
 use ring::ring;
 use solver::{
-    LinearSolver, SectorCholesky, SectorSymbolic, Symbolic, angular_dissection, expand, restrict_lower,
+    LinearSolver, Points, SectorCholesky, SectorSymbolic, Symbolic, angular_dissection, expand,
+    restrict_lower,
 };
 
 /// Name, layers, nodes of a section across and along.
@@ -88,7 +89,8 @@ fn report(name: &str, layers: usize, section: [usize; 2]) {
     let (layout, parts) = sectors::cut(&mesh);
     let n_sectors = layout.sectors().len();
     let of = |s: usize| Cow::Borrowed(&parts[s]);
-    let cells = (&mesh.nodes[..], &mesh.connectivity[..], 8);
+    let points = |node: usize| mesh.nodes[node];
+    let cells = (&points as &Points<'_>, &mesh.connectivity[..], 8);
     let clock = Instant::now();
     let symbolic = SectorSymbolic::new(layout, Communicator::Serial, cells, of).expect("a pattern");
     let analysis = clock.elapsed().as_secs_f64();

@@ -60,7 +60,7 @@ pub use linear_solver::{LinearSolver, SparseVector};
 pub use permutation::{expand, restrict_order};
 pub use refinement::{Refined, solve_refined};
 pub use sector::{
-    BorderedColumns, Sector, SectorBordered, SectorCholesky, SectorColumns, SectorCost, SectorCut,
+    BorderedColumns, Points, Sector, SectorBordered, SectorCholesky, SectorColumns, SectorCost, SectorCut,
     SectorLayout, SectorSymbolic, default_sectors,
 };
 pub use submatrix::{restrict, restrict_lower};

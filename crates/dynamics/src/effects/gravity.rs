@@ -15,7 +15,7 @@ use contact::Side;
 
 use super::{Effect, Loads, Now};
 use crate::error::DynamicsError;
-use crate::model::{Model, RingModel};
+use crate::model::{Model, NodeMasses, RingModel};
 use crate::schedule::Schedule;
 
 /// Uniform gravity.
@@ -24,8 +24,8 @@ pub struct Gravity {
     acceleration: [f64; 3],
     /// Its factor over time.
     schedule: Schedule,
-    /// Nodal masses of the flexible rings, kg, `[n_nodes]`; None is a rigid ring.
-    node_masses: [Option<Arc<[f64]>>; 2],
+    /// Nodal masses of the flexible rings; None is a rigid ring.
+    node_masses: [Option<Arc<NodeMasses>>; 2],
 }
 
 impl Gravity {
@@ -68,10 +68,21 @@ impl Effect for Gravity {
         }
         loads.add_shaft_force(model, g.map(|a| model.shaft_mass * a));
         for side in Side::BOTH {
-            if let Some(masses) = &self.node_masses[side.index()] {
-                let weights = masses.iter().flat_map(|m| g.map(|a| m * a));
-                loads.add_ring_load(model, side, weights.collect());
-            }
+            let (Some(ring), Some(of_ring)) = (model.ring(side), &self.node_masses[side.index()]) else {
+                continue;
+            };
+            let NodeMasses {
+                masses,
+                total,
+                moment,
+            } = &**of_ring;
+            let weights = masses.iter().flat_map(|m| g.map(|a| m * a));
+            // Moment of all weights about the shaft's origin: that of the mass moment.
+            let [x, y, z] = [moment[0], moment[1], moment[2] - total * ring.groove.centre_z];
+            let about_x = y * g[2] - z * g[1];
+            let about_y = z * g[0] - x * g[2];
+            let resultant = [total * g[0], total * g[1], total * g[2], about_x, about_y];
+            loads.add_ring_load(side, weights.collect(), resultant);
         }
         Ok(())
     }

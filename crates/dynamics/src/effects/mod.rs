@@ -22,8 +22,9 @@ use contact::Side;
 
 use crate::balls::BallResult;
 use crate::costs::EffectCosts;
+use crate::division::NodePlaces;
 use crate::error::DynamicsError;
-use crate::model::{Model, RingModel};
+use crate::model::Model;
 use crate::schedule::Schedule;
 
 /// Loads on all bodies at one instant.
@@ -89,12 +90,12 @@ impl Loads {
         (sum[0], sum[1]) = (sum[0] + force[0], sum[1] + force[1]);
     }
 
-    /// Adds nodal body loads (N) to a flexible ring; the shaft carries those of the inner ring.
-    pub fn add_ring_load(&mut self, model: &Model, side: Side, load: Vec<f64>) {
-        let Some(ring) = model.ring(side) else { return };
+    /// Adds nodal body loads (N) to a flexible ring; the shaft carries the `resultant` of those of the inner ring: force x, y, z, N, and
+    /// moment about x and y, N m, about the shaft's origin.
+    pub fn add_ring_load(&mut self, side: Side, load: Vec<f64>, resultant: [f64; 5]) {
         if side == Side::Inner {
-            let sum = resultant(ring, &load);
-            self.ring_on_shaft.iter_mut().zip(sum).for_each(|(s, f)| *s += f);
+            let sum = self.ring_on_shaft.iter_mut().zip(resultant);
+            sum.for_each(|(s, f)| *s += f);
         }
         match &mut self.rings[side.index()] {
             Some(sum) => sum.iter_mut().zip(&load).for_each(|(s, l)| *s += l),
@@ -103,16 +104,19 @@ impl Loads {
     }
 }
 
-/// Force x, y, z, N, and moment about x and y, N m, of nodal loads on the inner ring (N, `[n_nodes][3]` flat), about the
-/// shaft's origin in its mesh.
-pub(crate) fn resultant(ring: &RingModel, load: &[f64]) -> [f64; 5] {
-    let (mut sum, z0) = ([0.0; 5], ring.groove.centre_z);
-    for (x, f) in ring.mesh.nodes.iter().zip(load.chunks_exact(3)) {
-        (0..3).for_each(|i| sum[i] += f[i]);
-        sum[3] += x[1] * f[2] - (x[2] - z0) * f[1];
-        sum[4] += (x[2] - z0) * f[0] - x[0] * f[2];
-    }
-    sum
+/// Force x, y, z, N, and moment about x and y, N m, of nodal loads on a ring (N, `[n_nodes][3]` flat), about the point `origin_z` of its
+/// axis. Collective.
+pub(crate) fn resultant(places: &NodePlaces, origin_z: f64, load: &[f64]) -> [f64; 5] {
+    places.sum(|node, [x, y, z]| {
+        let [f, arm] = [&load[3 * node..3 * node + 3], &[x, y, z - origin_z]];
+        [
+            f[0],
+            f[1],
+            f[2],
+            arm[1] * f[2] - arm[2] * f[1],
+            arm[2] * f[0] - arm[0] * f[2],
+        ]
+    })
 }
 
 /// An instant of a motion; the default is the start.

@@ -18,6 +18,7 @@ use super::matrices::RingMatrices;
 use super::ring::RingState;
 use super::space::{Nodes, Space};
 use super::vectors::combined;
+use crate::division::NodePlaces;
 use crate::effects::FrameTurn;
 use crate::error::DynamicsError;
 use crate::inventory::Inventory;
@@ -39,8 +40,8 @@ pub struct RingBody {
     /// `inner` or `outer`.
     pub name: &'static str,
     pub(super) matrices: RingMatrices,
-    /// Node positions, m, `[n_nodes][3]` flat.
-    pub(super) positions: Vec<f64>,
+    /// Where the nodes are.
+    pub(super) places: NodePlaces,
     /// Rayleigh damping: C = damping[0] M + damping[1] K.
     pub(super) damping: [f64; 2],
     effective: Effective,
@@ -59,11 +60,11 @@ impl RingBody {
         let mesh = &ring.mesh;
         let (coordinates, mount) = hold(mesh, side, ring);
         let (matrices, effective) = prepare(ring, side.name(), backend, &coordinates)?;
-        let positions = mesh.nodes.concat();
+        let places = ring.places(side.name(), backend)?;
         let nodes = Nodes {
             coordinates: &coordinates,
             matrices: &matrices,
-            positions: &positions,
+            positions: places.positions(),
         };
         let space = match effective.regular() {
             Some(free) => Space::harmonic(free, nodes).map_err(|source| DynamicsError::Solver {
@@ -75,7 +76,7 @@ impl RingBody {
         Ok(RingBody {
             surface: RacewaySurface::new(mesh, mesh.group(RACEWAY_GROUP), ring.groove),
             rule: PressureRule::new(),
-            positions,
+            places,
             name: side.name(),
             coordinates,
             mount,
@@ -124,7 +125,7 @@ impl RingBody {
         Nodes {
             coordinates: &self.coordinates,
             matrices: &self.matrices,
-            positions: &self.positions,
+            positions: self.places.positions(),
         }
     }
 
@@ -246,9 +247,11 @@ impl RingBody {
         let [w, v] = old.within(integrator, dt, dw);
         let (u, v) = (self.coordinates.expand(&w), self.coordinates.expand(&v));
         let mut field = vec![0.0; u.len()];
-        for (i, f) in field.chunks_exact_mut(3).enumerate() {
-            let [x, y] = [0, 1].map(|c| self.positions[3 * i + c] + u[3 * i + c]);
+        // Of a ring that ranks share, the product takes the field at the nodes of own sectors only.
+        for (i, place) in self.places.positions().kept() {
+            let [x, y] = [0, 1].map(|c| place[c] + u[3 * i + c]);
             let (vx, vy) = (v[3 * i], v[3 * i + 1]);
+            let f = &mut field[3 * i..3 * i + 3];
             f[0] = speed * speed * x + 2.0 * speed * vy + acceleration * y;
             f[1] = speed * speed * y - 2.0 * speed * vx - acceleration * x;
         }
@@ -267,15 +270,15 @@ impl RingBody {
     /// undeformed places of the nodes.
     pub fn momentum(&self, state: &RingState) -> [[f64; 3]; 2] {
         let p = self.matrices.nodal_mass_product(&self.nodal(state.velocity()));
-        let mut sums = [[0.0; 3]; 2];
-        for (x, p) in self.positions.chunks_exact(3).zip(p.chunks_exact(3)) {
-            for i in 0..3 {
+        let sums = self.places.sum(|node, x| {
+            let p = &p[3 * node..3 * node + 3];
+            let moment = [0, 1, 2].map(|i| {
                 let (j, k) = ((i + 1) % 3, (i + 2) % 3);
-                sums[0][i] += p[i];
-                sums[1][i] += x[j] * p[k] - x[k] * p[j];
-            }
-        }
-        sums
+                x[j] * p[k] - x[k] * p[j]
+            });
+            [p[0], p[1], p[2], moment[0], moment[1], moment[2]]
+        });
+        [[sums[0], sums[1], sums[2]], [sums[3], sums[4], sums[5]]]
     }
 
     /// Energy that Rayleigh damping took in a step, J: C v[1-af] times dw.

@@ -50,7 +50,8 @@ impl Coordinates {
         let mut sources = vec![0; mesh.n_dofs()];
         free.iter().enumerate().for_each(|(i, &d)| sources[d] = i as u32);
         let mut arms = Vec::new();
-        for (node, x) in mesh.nodes.iter().enumerate().filter(|(node, _)| is_held[*node]) {
+        for node in (0..mesh.n_nodes()).filter(|&node| is_held[node]) {
+            let x = mesh.nodes[node];
             sources[3 * node..3 * node + 3].fill(HELD + arms.len() as u32);
             arms.push([x[0], x[1], x[2] - origin_z]);
         }
@@ -108,10 +109,10 @@ impl Coordinates {
         rigid_lever(self.arms[place], component, q)
     }
 
-    /// Motion of a nodal dof of a node at `x` (m) under a rigid motion `q` of the shaft.
-    pub fn rigid_motion(&self, dof: usize, x: [f64; 3], q: [f64; 5]) -> f64 {
+    /// Motion of a component of a node at `x` (m) under a rigid motion `q` of the shaft.
+    pub fn rigid_motion(&self, component: usize, x: [f64; 3], q: [f64; 5]) -> f64 {
         let arm = [x[0], x[1], x[2] - self.origin_z];
-        (0..5).map(|i| rigid_lever(arm, dof % 3, i) * q[i]).sum()
+        (0..5).map(|i| rigid_lever(arm, component, i) * q[i]).sum()
     }
 
     /// The coordinates that move a nodal dof and by how much, were its node at the position `x` (m): a row of T.

@@ -157,10 +157,9 @@ impl Motion<'_> {
         let forces = state.forces.iter().chain(&loads.balls).flatten().copied();
         let moments = loads.shaft[3..].iter().map(|m| m / arm);
         let rings = Side::BOTH.into_iter().flat_map(|side| {
-            let load = self.model.ring(side).zip(loads.rings[side.index()].as_ref());
-            load.map_or([0.0; 5], |(ring, load)| effects::resultant(ring, load))
-                .into_iter()
-                .take(3)
+            let load = loads.rings[side.index()].as_deref().unwrap_or_default();
+            let add = |sum: [f64; 3], f: &[f64; 3]| [0, 1, 2].map(|i| sum[i] + f[i]);
+            load.as_chunks().0.iter().fold([0.0; 3], add)
         });
         forces
             .chain(loads.shaft[..3].iter().copied())

@@ -7,6 +7,7 @@
 
 use std::sync::OnceLock;
 
+use mesh::NodePositions;
 use rayon::prelude::*;
 use solver::cyclic::{HarmonicOperator, add_turned};
 use solver::{CyclicRing, SolverError};
@@ -54,7 +55,7 @@ pub(super) struct Nodes<'a> {
     pub coordinates: &'a Coordinates,
     pub matrices: &'a RingMatrices,
     /// m, `[n_nodes][3]` flat.
-    pub positions: &'a [f64],
+    pub positions: &'a NodePositions,
 }
 
 impl Nodes<'_> {
@@ -310,7 +311,7 @@ impl HarmonicSpace {
         let n_free = nodes.coordinates.free().len();
         let of_shaft = |k: usize| loads(&nodes.coordinates.expand(&nodes.unit(n_free + k, 1.0)));
         FrameLoads {
-            position: loads(nodes.positions),
+            position: loads(nodes.positions.as_flattened()),
             shaft: (0..self.n_shaft).map(of_shaft).collect(),
         }
     }

@@ -199,10 +199,11 @@ fn ring_at_start(body: &RingBody, elastic: &[f64], q: [f64; 5], velocity: [f64; 
     let (dofs, first) = coordinates.shaft();
     let field = |q: [f64; 5]| {
         let mut y = vec![0.0; coordinates.n()];
-        for (i, &dof) in coordinates.free().iter().enumerate() {
-            let node = 3 * (dof / 3);
-            let x = [0, 1, 2].map(|c| body.positions[node + c]);
-            y[i] = coordinates.rigid_motion(dof, x, q);
+        let rigid = body
+            .places
+            .field(|x| [0, 1, 2].map(|component| coordinates.rigid_motion(component, x, q)));
+        for (y, &dof) in y.iter_mut().zip(coordinates.free()) {
+            *y = rigid[dof];
         }
         dofs.iter()
             .enumerate()

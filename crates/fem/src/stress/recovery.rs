@@ -74,7 +74,7 @@ impl StressRecovery {
             }
         }
         Ok(StressRecovery {
-            positions: mesh.nodes.clone(),
+            positions: mesh.nodes.to_vec(),
             connectivity: mesh.connectivity.clone(),
             lame: [material.lame_lambda(), material.shear_modulus()],
             projection: projection(mesh.kind, &rule),

@@ -93,11 +93,11 @@ impl NearlyPeriodic {
 
 /// The mesh with moved nodes at their places, absent nodes and missing elements.
 fn regular(mesh: &Mesh, moved: &[(usize, [f64; 3])], absent: &[[f64; 3]], missing: &[usize]) -> Mesh {
-    let mut nodes = [&mesh.nodes[..], absent].concat();
+    let mut nodes = [&*mesh.nodes, absent].concat();
     moved.iter().for_each(|&(node, x)| nodes[node] = x);
     Mesh {
         kind: mesh.kind,
-        nodes,
+        nodes: nodes.into(),
         connectivity: [&mesh.connectivity[..], missing].concat(),
         groups: BTreeMap::new(),
     }

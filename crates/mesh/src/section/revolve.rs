@@ -72,7 +72,7 @@ pub fn revolve(
     let raised = raise(section, snaps)?;
     let mesh = Mesh {
         kind,
-        nodes: turned_nodes(&raised, n_sectors, kind),
+        nodes: turned_nodes(&raised, n_sectors, kind).into(),
         connectivity: turned_elements(section, &raised, n_sectors, kind),
         groups: turned_groups(section, n_sectors),
     };

@@ -147,7 +147,7 @@ fn mshio_reads_the_same_nodes_and_elements() {
             .iter()
             .flat_map(|b| b.nodes.iter().map(|n| [n.x, n.y, n.z]))
             .collect();
-        assert_eq!(ours.nodes, nodes, "{name}");
+        assert_eq!(ours.nodes.to_vec(), nodes, "{name}");
         let blocks = &theirs.data.elements.as_ref().unwrap().element_blocks;
         let volumes = blocks.iter().filter(|b| b.entity_dim == 3);
         let elements: Vec<Vec<u64>> = volumes

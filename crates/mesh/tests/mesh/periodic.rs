@@ -203,7 +203,7 @@ fn the_first_difference_is_named() {
     );
 
     let mut alone = ring.clone();
-    alone.nodes[..width].iter_mut().for_each(|x| x[2] += 1e-6);
+    alone.nodes.iter_mut().take(width).for_each(|x| x[2] += 1e-6);
     assert!(matches!(
         reason(&alone),
         NotPeriodic::Node { .. } | NotPeriodic::Alone { .. }

@@ -60,7 +60,7 @@ fn mshio_reads_what_we_write() {
             .iter()
             .flat_map(|b| b.nodes.iter().map(|n| [n.x, n.y, n.z]))
             .collect();
-        assert_eq!(nodes, mesh.nodes, "{format:?}");
+        assert_eq!(nodes, mesh.nodes.to_vec(), "{format:?}");
         let elements = theirs.data.elements.unwrap();
         let n_facets: usize = mesh.groups.values().map(Vec::len).sum();
         assert_eq!(

@@ -8,7 +8,7 @@ use mesh::{ElementKind, Mesh};
 /// tetrahedra in, quadratic ones out, with new numbers and without groups.
 pub fn refined(mesh: &Mesh, size: impl Fn([f64; 3]) -> f64) -> Mesh {
     assert_eq!(mesh.kind, ElementKind::Tet10, "only tetrahedra are divided");
-    let mut points = mesh.nodes.clone();
+    let mut points = mesh.nodes.to_vec();
     let corners = |nodes: &[usize]| [nodes[0], nodes[1], nodes[2], nodes[3]];
     let mut tets: Vec<[usize; 4]> = mesh.connectivity.chunks_exact(10).map(corners).collect();
     loop {
@@ -82,7 +82,7 @@ fn quadratic(points: &[[f64; 3]], tets: &[[usize; 4]]) -> Mesh {
     }
     Mesh {
         kind: ElementKind::Tet10,
-        nodes,
+        nodes: nodes.into(),
         connectivity,
         groups: BTreeMap::new(),
     }

@@ -98,15 +98,12 @@ impl SectorColumns {
         let lengths = shared.lengths(|s| s.n_interior);
         let all = shared.comm.all_gather(parts.concat(), &lengths);
         let mut sum = vec![0.0; shared.layout.n()];
-        let rows = shared
-            .layout
-            .sectors()
-            .iter()
-            .flat_map(|s| &s.rows[..s.n_interior]);
-        rows.zip(all).for_each(|(&row, value)| sum[row] = value);
-        for (place, &row) in shared.layout.interface().iter().enumerate() {
-            sum[row] = combine(terms, place, |columns| &columns.interface);
-        }
+        shared.layout.each_row(|row, place| {
+            sum[row] = match place {
+                Place::Inside(place) => all[place],
+                Place::Shared(place) => combine(terms, place, |columns| &columns.interface),
+            };
+        });
         sum
     }
 

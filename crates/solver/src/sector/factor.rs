@@ -13,6 +13,9 @@ use super::layout::{Sector, SectorLayout};
 use super::part::{Part, PartSymbolic, SectorCost};
 use crate::error::SolverError;
 
+/// Positions of the nodes of a ring, by their numbers.
+pub type Points<'p> = dyn Fn(usize) -> [f64; 3] + Sync + 'p;
+
 /// Analysis of a ring in sectors: of those that this rank owns, and of the interface.
 #[derive(Clone, Debug)]
 pub struct SectorSymbolic {
@@ -38,12 +41,12 @@ pub struct SectorCholesky {
 }
 
 impl SectorSymbolic {
-    /// Analyses a ring. `points`, `elements` and `nodes_per_element` are those of the layout; `matrix(s)` has the pattern of the
+    /// Analyses a ring. `points`, `elements` and `nodes_per_element` are those of the layout, at least of the sectors of this rank; `matrix(s)` has the pattern of the
     /// own matrix of sector s, all dofs of its nodes, and is asked for the sectors of this rank only. Collective.
     pub fn new<'m>(
         layout: SectorLayout,
         comm: Communicator,
-        (points, elements, nodes_per_element): (&[[f64; 3]], &[usize], usize),
+        (points, elements, nodes_per_element): (&Points<'_>, &[usize], usize),
         matrix: impl Fn(usize) -> Cow<'m, CsMat<f64>> + Sync,
     ) -> Result<SectorSymbolic, SolverError> {
         let analyse = |s: usize| {
@@ -96,7 +99,7 @@ impl SectorSymbolic {
         let factor = |(i, part): (usize, &PartSymbolic)| {
             let sector = &shared.layout.sectors()[first + i];
             let factored = part.factor(sector, &matrix(first + i));
-            factored.map_err(|error| error.in_whole(shared.layout.n(), |row| sector.rows[row]))
+            factored.map_err(|error| error.in_whole(shared.layout.n(), |row| sector.rows[row] as usize))
         };
         let parts: Result<Vec<(Part, Vec<f64>)>, SolverError> =
             shared.parts.par_iter().enumerate().map(factor).collect();

@@ -1,6 +1,10 @@
-//! Which elements, nodes and rows belong to which sector, and the order of the interface. Every rank knows all of it.
+//! Which elements, nodes and rows belong to which sector, and the order of the interface.
+//!
+//! Every rank knows the nodes of all sectors, 4 bytes each, the owner of each row, 4 bytes, and the interface; rows and elements of its own
+//! sectors only.
 
 use std::ops::Range;
+use std::sync::Arc;
 
 use super::cut::sectors_of_elements;
 use crate::error::SolverError;
@@ -11,16 +15,16 @@ pub(super) const COMPONENTS: usize = 3;
 /// One sector.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sector {
-    /// Its elements, ascending.
+    /// Its elements, ascending; as nodes, their marks, rows and dofs only of sectors that this rank owns.
     pub elements: Vec<usize>,
     /// Nodes of its elements, ascending; a sector's own matrices number them 0.. in this order.
     pub nodes: Vec<usize>,
     /// Whether other sectors share the node, `[nodes.len()]`.
     pub(super) is_shared: Vec<bool>,
     /// Its rows: interior ones, ascending, then those of the boundary in the order of the interface.
-    pub(super) rows: Vec<usize>,
+    pub(super) rows: Vec<u32>,
     /// Dof of each of its rows among those of its nodes, 3 * node + component.
-    pub(super) dofs: Vec<usize>,
+    pub(super) dofs: Vec<u32>,
     pub(super) n_interior: usize,
     /// Place in the interface of each row of the boundary, ascending.
     pub(super) boundary: Vec<usize>,
@@ -32,13 +36,15 @@ pub struct SectorCut {
     /// Elements of each sector, ascending.
     pub elements: Vec<Vec<usize>>,
     /// Nodes of the elements of each sector, ascending.
-    pub nodes: Vec<Vec<usize>>,
+    pub nodes: Arc<Vec<Vec<u32>>>,
 }
 
 /// A ring cut into sectors.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SectorLayout {
     n: usize,
+    /// Nodes of all sectors.
+    nodes: Arc<Vec<Vec<u32>>>,
     sectors: Vec<Sector>,
     /// Rows of the interface in elimination order.
     interface: Vec<usize>,
@@ -51,7 +57,7 @@ pub struct SectorLayout {
 /// Where a row is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Place {
-    /// Inside a sector.
+    /// Inside: in which sector, or at which place of the inner rows of all sectors, one after the other.
     Inside(usize),
     /// At a place of the interface.
     Shared(usize),
@@ -89,13 +95,13 @@ impl SectorCut {
         of_element.iter().enumerate().for_each(|(e, &s)| own[s].push(e));
         let nodes = |own: &Vec<usize>| {
             let nodes = |&e: &usize| &elements[nodes_per_element * e..nodes_per_element * (e + 1)];
-            let mut nodes: Vec<usize> = own.iter().flat_map(nodes).copied().collect();
+            let mut nodes: Vec<u32> = own.iter().flat_map(nodes).map(|&node| small(node)).collect();
             nodes.sort_unstable();
             nodes.dedup();
             nodes
         };
         Ok(SectorCut {
-            nodes: own.iter().map(nodes).collect(),
+            nodes: Arc::new(own.iter().map(nodes).collect()),
             elements: own,
         })
     }
@@ -111,49 +117,82 @@ impl SectorLayout {
         n_sectors: usize,
     ) -> Result<SectorLayout, SolverError> {
         let cut = SectorCut::new(points, elements, nodes_per_element, n_sectors)?;
-        Ok(SectorLayout::of(cut, points.len(), free))
+        Ok(SectorLayout::of(cut, points.len(), free, 0..n_sectors))
     }
 
-    /// Rows of a ring of `n_nodes` nodes that was cut; `free` are the dofs (3 * node + component) that have a row, ascending.
-    pub fn of(cut: SectorCut, n_nodes: usize, free: &[usize]) -> SectorLayout {
+    /// Rows of a ring of `n_nodes` nodes that was cut; `free` are the dofs (3 * node + component) that have a row, ascending, `kept` the
+    /// sectors whose rows are listed.
+    ///
+    /// # Panics
+    /// When a node is in no sector.
+    pub fn of(cut: SectorCut, n_nodes: usize, free: &[usize], kept: Range<usize>) -> SectorLayout {
         let n_sectors = cut.nodes.len();
-        let mut row_of = vec![usize::MAX; COMPONENTS * n_nodes];
-        free.iter().enumerate().for_each(|(row, &dof)| row_of[dof] = row);
-        let of_node = sectors_of_nodes(n_nodes, &cut.nodes);
-        let rows = |node: &usize| {
-            let dofs = COMPONENTS * node..COMPONENTS * (node + 1);
-            let rows = dofs.map(|dof| row_of[dof]);
-            rows.filter(|&row| row != usize::MAX).collect::<Vec<usize>>()
+        let mut row_of = vec![NONE; COMPONENTS * n_nodes];
+        let rows = free.iter().enumerate();
+        rows.for_each(|(row, &dof)| row_of[dof] = small(row));
+        let touched = sectors_of_nodes(n_nodes, &cut.nodes);
+        let rows = |&node: &u32| {
+            let dofs = COMPONENTS * node as usize..COMPONENTS * (node as usize + 1);
+            let rows = dofs.map(|dof| row_of[dof]).filter(|&row| row != NONE);
+            rows.map(|row| row as usize).collect::<Vec<usize>>()
         };
         let mut interface: Vec<usize> = Vec::new();
         let mut sections = vec![0..0; n_sectors + 1];
-        for (section, nodes) in interface_order(&of_node, n_sectors) {
+        for (section, nodes) in interface_order(&touched, n_sectors) {
             let first = interface.len();
             interface.extend(nodes.iter().flat_map(rows));
             sections[section] = first..interface.len();
         }
         // Nodes of more than two sectors are in no cross-section.
         sections.pop();
-        let mut place = vec![usize::MAX; free.len()];
-        interface.iter().enumerate().for_each(|(k, &row)| place[row] = k);
-        let own = cut.elements.into_iter().zip(cut.nodes);
-        let sectors: Vec<Sector> = own
-            .map(|(elements, nodes)| Sector::new(elements, nodes, &row_of, &place, &of_node))
-            .collect();
+        let mut owners: Vec<u32> = free.iter().map(|&dof| touched[dof / COMPONENTS][0]).collect();
+        assert!(
+            owners.iter().all(|&owner| owner != NONE),
+            "every node has a sector"
+        );
+        let places = interface.iter().enumerate();
+        places.for_each(|(place, &row)| owners[row] = small(n_sectors + place));
+        let whole = Whole {
+            n_sectors,
+            row_of: &row_of,
+            owners: &owners,
+            touched: &touched,
+        };
+        let own = cut.elements.into_iter().zip(cut.nodes.iter()).enumerate();
+        let sectors = own.map(|(s, (elements, nodes))| match kept.contains(&s) {
+            true => Sector::new(elements, nodes, whole),
+            false => Sector::elsewhere(nodes, whole),
+        });
         SectorLayout {
-            owners: owners(free.len(), &sectors, &interface),
             n: free.len(),
-            sectors,
+            sectors: sectors.collect(),
+            nodes: cut.nodes,
             interface,
             sections,
+            owners,
         }
     }
 
-    /// Lets go of what only the analysis of sectors needs, but for those in `kept`.
-    pub fn forget_all_but(&mut self, kept: Range<usize>) {
-        for (s, sector) in self.sectors.iter_mut().enumerate() {
-            if !kept.contains(&s) {
-                (sector.dofs, sector.is_shared) = (Vec::new(), Vec::new());
+    /// Nodes of all sectors, ascending.
+    pub fn nodes(&self) -> &[Vec<u32>] {
+        &self.nodes
+    }
+
+    /// Goes through all rows, ascending, with their places in the interface or among the inner rows of all sectors, one after the other.
+    pub(super) fn each_row(&self, mut put: impl FnMut(usize, Place)) {
+        let mut next: Vec<usize> = Vec::with_capacity(self.sectors.len());
+        let mut first = 0;
+        for sector in &self.sectors {
+            next.push(first);
+            first += sector.n_interior;
+        }
+        for row in 0..self.n {
+            match self.place(row) {
+                Place::Inside(s) => {
+                    put(row, Place::Inside(next[s]));
+                    next[s] += 1;
+                }
+                shared => put(row, shared),
             }
         }
     }
@@ -183,49 +222,89 @@ impl SectorLayout {
     }
 }
 
+/// What a sector is cut out of.
+#[derive(Clone, Copy)]
+struct Whole<'w> {
+    n_sectors: usize,
+    /// Row of each dof, or [`NONE`].
+    row_of: &'w [u32],
+    /// As in the layout.
+    owners: &'w [u32],
+    /// First and last sector of each node.
+    touched: &'w [[u32; 2]],
+}
+
 impl Sector {
-    fn new(
-        elements: Vec<usize>,
-        nodes: Vec<usize>,
-        row_of: &[usize],
-        place: &[usize],
-        of_node: &[Vec<usize>],
-    ) -> Sector {
+    fn new(elements: Vec<usize>, nodes: &[u32], whole: Whole<'_>) -> Sector {
         let (mut interior, mut shared) = (Vec::new(), Vec::new());
         for (local, &node) in nodes.iter().enumerate() {
             for c in 0..COMPONENTS {
-                let row = row_of[COMPONENTS * node + c];
-                let dof = COMPONENTS * local + c;
-                if row == usize::MAX {
+                let row = whole.row_of[COMPONENTS * node as usize + c];
+                if row == NONE {
                     continue;
                 }
-                match place[row] {
-                    usize::MAX => interior.push((row, dof)),
-                    k => shared.push((k, row, dof)),
+                let dof = small(COMPONENTS * local + c);
+                match whole.place(row) {
+                    None => interior.push((row, dof)),
+                    Some(k) => shared.push((k, row, dof)),
                 }
             }
         }
         shared.sort_unstable();
         let all = || interior.iter().copied().chain(shared.iter().map(|s| (s.1, s.2)));
         Sector {
-            is_shared: nodes.iter().map(|&node| of_node[node].len() > 1).collect(),
+            is_shared: nodes
+                .iter()
+                .map(|&node| whole.touched[node as usize][1] != NONE)
+                .collect(),
             rows: all().map(|r| r.0).collect(),
             dofs: all().map(|r| r.1).collect(),
             n_interior: interior.len(),
             boundary: shared.iter().map(|s| s.0).collect(),
             elements,
-            nodes,
+            nodes: nodes.iter().map(|&node| node as usize).collect(),
         }
+    }
+
+    /// What is known of a sector that another rank owns.
+    fn elsewhere(nodes: &[u32], whole: Whole<'_>) -> Sector {
+        let dofs = nodes.iter().flat_map(|&node| {
+            let first = COMPONENTS * node as usize;
+            &whole.row_of[first..first + COMPONENTS]
+        });
+        let rows = dofs.filter(|&&row| row != NONE);
+        let (mut n_interior, mut boundary) = (0, Vec::new());
+        for &row in rows {
+            match whole.place(row) {
+                None => n_interior += 1,
+                Some(k) => boundary.push(k),
+            }
+        }
+        boundary.sort_unstable();
+        Sector {
+            is_shared: Vec::new(),
+            rows: Vec::new(),
+            dofs: Vec::new(),
+            n_interior,
+            boundary,
+            elements: Vec::new(),
+            nodes: Vec::new(),
+        }
+    }
+
+    /// Dofs of its matrix that have rows, in their order.
+    pub(super) fn kept_dofs(&self) -> Vec<usize> {
+        self.dofs.iter().map(|&dof| dof as usize).collect()
     }
 
     /// Number of rows, boundary included.
     pub fn n_rows(&self) -> usize {
-        self.rows.len()
+        self.n_interior + self.boundary.len()
     }
 
     /// Number among its own of a row inside it.
     pub(super) fn inside(&self, row: usize) -> usize {
-        let found = self.rows[..self.n_interior].binary_search(&row);
+        let found = self.rows[..self.n_interior].binary_search(&small(row));
         found.expect("the row is inside this sector")
     }
 
@@ -235,26 +314,53 @@ impl Sector {
     }
 }
 
-/// Sectors that touch each node, ascending, from the nodes of each sector.
-fn sectors_of_nodes(n_nodes: usize, nodes: &[Vec<usize>]) -> Vec<Vec<usize>> {
-    let mut of_node = vec![Vec::new(); n_nodes];
+impl Whole<'_> {
+    /// Place of a row in the interface, if it is there.
+    fn place(&self, row: u32) -> Option<usize> {
+        (self.owners[row as usize] as usize).checked_sub(self.n_sectors)
+    }
+}
+
+/// No sector, or no row.
+const NONE: u32 = u32::MAX;
+/// More than one sector besides the first.
+const SEVERAL: u32 = u32::MAX - 1;
+
+fn small(number: usize) -> u32 {
+    let small = u32::try_from(number).ok();
+    small
+        .filter(|&n| n < SEVERAL)
+        .expect("matrices of 2^32 rows fit into no memory")
+}
+
+/// First sector that touches each node, and the other one, [`NONE`] or [`SEVERAL`], from the nodes of each sector.
+fn sectors_of_nodes(n_nodes: usize, nodes: &[Vec<u32>]) -> Vec<[u32; 2]> {
+    let mut of_node = vec![[NONE; 2]; n_nodes];
     for (s, nodes) in nodes.iter().enumerate() {
-        nodes.iter().for_each(|&node| of_node[node].push(s));
+        for &node in nodes {
+            let [first, other] = &mut of_node[node as usize];
+            match (*first, *other) {
+                (NONE, _) => *first = small(s),
+                (_, NONE) => *other = small(s),
+                _ => *other = SEVERAL,
+            }
+        }
     }
     of_node
 }
 
 /// Cross-sections and their nodes in the order of cyclic reduction; number n_sectors are the nodes of more than two sectors.
-fn interface_order(of_node: &[Vec<usize>], n_sectors: usize) -> Vec<(usize, Vec<usize>)> {
+fn interface_order(of_node: &[[u32; 2]], n_sectors: usize) -> Vec<(usize, Vec<u32>)> {
     // Cross-section s lies behind sector s.
     let mut sections = vec![Vec::new(); n_sectors + 1];
-    for (node, touched) in of_node.iter().enumerate() {
-        match touched[..] {
-            [a, b] if b == a + 1 => sections[a].push(node),
-            [0, b] if b == n_sectors - 1 => sections[b].push(node),
-            [_, _, ..] => sections[n_sectors].push(node),
-            _ => {}
-        }
+    for (node, &[a, b]) in of_node.iter().enumerate() {
+        let section = match b {
+            NONE => continue,
+            b if b == a + 1 => a as usize,
+            b if a == 0 && b as usize == n_sectors - 1 => b as usize,
+            _ => n_sectors,
+        };
+        sections[section].push(small(node));
     }
     let mut order: Vec<usize> = reduction(n_sectors).concat();
     order.push(n_sectors);
@@ -276,18 +382,4 @@ pub(super) fn reduction(n: usize) -> Vec<Vec<usize>> {
     // Of two, each is both neighbours of the other.
     levels.extend(stay.into_iter().map(|last| vec![last]));
     levels
-}
-
-/// Of each row, its sector, or the number of sectors plus its place in the interface.
-fn owners(n: usize, sectors: &[Sector], interface: &[usize]) -> Vec<u32> {
-    let small = |owner: usize| u32::try_from(owner).expect("matrices of 2^32 rows fit into no memory");
-    let mut owners = vec![0; n];
-    for (s, sector) in sectors.iter().enumerate() {
-        let inside = &sector.rows[..sector.n_interior];
-        inside.iter().for_each(|&row| owners[row] = small(s));
-    }
-    for (place, &row) in interface.iter().enumerate() {
-        owners[row] = small(sectors.len() + place);
-    }
-    owners
 }

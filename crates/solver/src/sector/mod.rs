@@ -39,7 +39,7 @@ mod solve;
 
 pub use border::{BorderedColumns, SectorBordered};
 pub use columns::SectorColumns;
-pub use factor::{SectorCholesky, SectorSymbolic};
+pub use factor::{Points, SectorCholesky, SectorSymbolic};
 pub use interface::REDUCED_FROM;
 pub use layout::{Sector, SectorCut, SectorLayout, default_sectors};
 pub use part::SectorCost;

@@ -10,6 +10,7 @@ use faer::sparse::linalg::cholesky::supernodal::SymbolicSupernodalCholesky;
 use faer::{Accum, Mat, Par};
 use sprs::CsMat;
 
+use super::factor::Points;
 use super::layout::{COMPONENTS, Sector};
 use super::panels::Panels;
 use crate::dissection::dissection_within;
@@ -54,12 +55,12 @@ impl PartSymbolic {
     /// Analyses the sector of a ring with the given nodes and elements; `matrix` has the pattern of its own matrix.
     pub(super) fn new(
         sector: &Sector,
-        points: &[[f64; 3]],
+        points: &Points<'_>,
         elements: &[usize],
         nodes_per_element: usize,
         matrix: &CsMat<f64>,
     ) -> Result<PartSymbolic, SolverError> {
-        let own_points: Vec<[f64; 3]> = sector.nodes.iter().map(|&n| points[n]).collect();
+        let own_points: Vec<[f64; 3]> = sector.nodes.iter().map(|&n| points(n)).collect();
         let local = |node: &usize| {
             let found = sector.nodes.binary_search(node);
             found.expect("a sector has the nodes of its elements")
@@ -76,11 +77,11 @@ impl PartSymbolic {
             .dofs
             .iter()
             .enumerate()
-            .for_each(|(row, &dof)| row_of[dof] = row);
+            .for_each(|(row, &dof)| row_of[dof as usize] = row);
         let dofs = nodes.iter().flat_map(|&n| COMPONENTS * n..COMPONENTS * (n + 1));
         let interior = dofs.map(|dof| row_of[dof]).filter(|&row| row != usize::MAX);
         let order: Vec<usize> = interior.chain(sector.n_interior..sector.n_rows()).collect();
-        let lower = restrict_lower(matrix, &sector.dofs);
+        let lower = restrict_lower(matrix, &sector.kept_dofs());
         let symbolic = Symbolic::with_tail(&lower, &order, sector.boundary.len())?;
         let mut places = vec![0; sector.n_rows()];
         for (place, &row) in symbolic.order().iter().enumerate() {
@@ -107,7 +108,7 @@ impl PartSymbolic {
         sector: &Sector,
         matrix: &CsMat<f64>,
     ) -> Result<(Part, Vec<f64>), SolverError> {
-        let mut lower = restrict_lower(matrix, &sector.dofs);
+        let mut lower = restrict_lower(matrix, &sector.kept_dofs());
         let shift = double_diagonal(&mut lower, sector.n_interior);
         let (symbolic, values) = self.symbolic.factor(&lower)?.into_parts();
         drop(lower);

@@ -114,7 +114,7 @@ impl SectorCholesky {
                     let x = &mut x[n_rhs * place as usize..][..loads.n_dense];
                     x.iter_mut()
                         .enumerate()
-                        .for_each(|(r, x)| *x = loads.dense[n * r + row]);
+                        .for_each(|(r, x)| *x = loads.dense[n * r + row as usize]);
                 }
             }
             for (r, load) in loads.sparse.iter().enumerate() {
@@ -190,13 +190,12 @@ impl SectorCholesky {
         // As many columns at a time as a line of the cache has values.
         let group = |(g, group): (usize, &mut [f64])| {
             let mut group: Vec<&mut [f64]> = group.chunks_exact_mut(n).collect();
-            let sectors = shared.layout.sectors().iter();
-            let inside = sectors.flat_map(|s| &s.rows[..s.n_interior]);
-            let inside = inside.zip(all.chunks_exact(n_rhs));
-            let interface = shared.layout.interface().iter();
-            let interface = interface.zip(columns.interface.chunks_exact(n_rhs));
-            inside.chain(interface).for_each(|(&row, values)| {
-                let values = &values[GROUP * g..];
+            shared.layout.each_row(|row, place| {
+                let (values, place) = match place {
+                    Place::Inside(place) => (&all, place),
+                    Place::Shared(place) => (&columns.interface, place),
+                };
+                let values = &values[n_rhs * place + GROUP * g..n_rhs * (place + 1)];
                 group
                     .iter_mut()
                     .zip(values)

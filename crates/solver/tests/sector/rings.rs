@@ -7,8 +7,8 @@ use comm::Communicator;
 use fem::Material;
 use mesh::{ElementKind, Mesh, Section, revolve};
 use solver::{
-    SectorCholesky, SectorLayout, SectorSymbolic, SolverError, SparseCholesky, Symbolic, angular_dissection,
-    expand, restrict, restrict_order,
+    Points, SectorCholesky, SectorLayout, SectorSymbolic, SolverError, SparseCholesky, Symbolic,
+    angular_dissection, expand, restrict, restrict_order,
 };
 use sprs::CsMat;
 
@@ -62,7 +62,7 @@ fn tets(hexes: &Mesh) -> Mesh {
     }
     Mesh {
         kind: ElementKind::Tet10,
-        nodes,
+        nodes: nodes.into(),
         connectivity,
         groups: BTreeMap::new(),
     }
@@ -180,7 +180,12 @@ impl Problem {
     pub fn symbolic(&self, n_sectors: usize) -> SectorSymbolic {
         let layout = self.layout(n_sectors);
         let mesh = &self.mesh;
-        let cells = (&mesh.nodes[..], &mesh.connectivity[..], mesh.kind.n_nodes());
+        let points = |node: usize| mesh.nodes[node];
+        let cells = (
+            &points as &Points<'_>,
+            &mesh.connectivity[..],
+            mesh.kind.n_nodes(),
+        );
         let parts = layout.clone();
         SectorSymbolic::new(layout, Communicator::Serial, cells, |s| {
             Cow::Owned(self.part(&parts, s))

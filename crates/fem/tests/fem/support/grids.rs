@@ -63,7 +63,7 @@ pub fn mapped_grid(
     let mut nodes: BTreeMap<[usize; 3], usize> = BTreeMap::new();
     let mut mesh = Mesh {
         kind,
-        nodes: Vec::new(),
+        nodes: Default::default(),
         connectivity: Vec::new(),
         groups: BTreeMap::new(),
     };

@@ -1,0 +1,126 @@
+//! What only whole meshes tell, found before ranks divide them, and the model that is left.
+//!
+//! Alone, this process reads both meshes and keeps them. Where ranks share rings in sectors, rank 0 alone reads and checks them, finds the
+//! probes, writes the content of `mesh.hdf` to the disk and sends each rank its part; then it lets go of the whole.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use anyhow::anyhow;
+use checkpoint::MeshFile;
+use comm::Communicator;
+use contact::Side;
+use dynamics::{Backend, Model, RingModel, Sectors};
+
+use crate::build::{build_model, material, model_with_rings, ring_of};
+use crate::failure::{Failure, agree};
+use crate::results::fields;
+use crate::results::probes::Probes;
+use crate::scene::{self, Scene, difference};
+
+/// What only whole meshes tell of a run.
+#[derive(Default)]
+pub struct Survey {
+    /// The probes of the scene, if it has some; where ranks share rings, on rank 0 only.
+    pub probes: Option<Probes>,
+    /// The content of `mesh.hdf` where the model will not have all of it, on rank 0.
+    pub mesh: Option<MeshFile>,
+}
+
+/// The model of a scene (a point of `scene` when that is a sweep) with results in `dir`, and its survey, if a last test of the whole passes.
+/// Collective where ranks share rings in sectors.
+pub fn build_surveyed(
+    point: &Scene,
+    scene: &Scene,
+    dir: &Path,
+    test: impl FnOnce(&Model) -> Result<(), Failure>,
+) -> Result<(Model, Survey), Failure> {
+    let comm = Communicator::world();
+    if comm.size() > 1 && point.solver.backend == scene::Backend::Sector {
+        return build_shared(point, scene, dir, test);
+    }
+    let (mut model, probes) = whole(point, scene, test)?;
+    if let Backend::Sector(sectors) = model.backend {
+        for side in Side::BOTH {
+            let divided = take(&mut model, side).map(|ring| ring.divide(side.name(), sectors));
+            model.rings[side.index()] = divided.transpose().map_err(Failure::solving)?.map(Arc::new);
+        }
+    }
+    Ok((model, Survey { probes, mesh: None }))
+}
+
+/// Model and probes of whole meshes.
+fn whole(
+    point: &Scene,
+    scene: &Scene,
+    test: impl FnOnce(&Model) -> Result<(), Failure>,
+) -> Result<(Model, Option<Probes>), Failure> {
+    let (model, tags) = build_model(point)?;
+    let probes = Probes::new(scene, &model, &tags)?;
+    test(&model)?;
+    Ok((model, probes))
+}
+
+fn take(model: &mut Model, side: Side) -> Option<RingModel> {
+    let ring = model.rings[side.index()].take()?;
+    Some(Arc::into_inner(ring).expect("nobody else has a ring of a new model"))
+}
+
+/// The same where rank 0 reads for all.
+fn build_shared(
+    point: &Scene,
+    scene: &Scene,
+    dir: &Path,
+    test: impl FnOnce(&Model) -> Result<(), Failure>,
+) -> Result<(Model, Survey), Failure> {
+    let comm = Communicator::world();
+    agree(require_same_scene(scene, comm))?;
+    let survey = || {
+        let (model, probes) = whole(point, scene, test)?;
+        let mesh = MeshFile::new(&fields::bodies(&model))?.spooled(dir)?;
+        let mesh = Some(mesh);
+        Ok((model, Survey { probes, mesh }))
+    };
+    let read: Result<Option<(Model, Survey)>, Failure> = match comm.is_root() {
+        true => survey().map(Some),
+        false => Ok(None),
+    };
+    let (mut model, survey) = agree(read)?.unzip();
+    let steel = material(&point.materials.rings)?;
+    let sectors = Sectors {
+        n_sectors: point.solver.sectors,
+        comm,
+    };
+    let mut rings = [None, None];
+    for (side, body) in [(Side::Inner, &point.inner.body), (Side::Outer, &point.outer.body)] {
+        if body.is_none() {
+            continue;
+        }
+        let known = survey.as_ref().and_then(|survey: &Survey| survey.probes.as_ref());
+        let more = known.map_or(Vec::new(), |probes| probes.nodes(side));
+        let whole = model.as_mut().and_then(|model| take(model, side));
+        let dealt = RingModel::deal(whole, side.name(), sectors, &more, |mesh| {
+            ring_of(point, side, steel, mesh).expect("a ring with a mesh file is flexible")
+        });
+        rings[side.index()] = Some(Arc::new(dealt.map_err(Failure::solving)?));
+    }
+    let model = match model {
+        Some(model) => Model { rings, ..model },
+        None => model_with_rings(point, rings)?,
+    };
+    Ok((model, survey.unwrap_or_default()))
+}
+
+/// Fails unless this rank has the scene of rank 0, whose meshes it gets.
+fn require_same_scene(scene: &Scene, comm: Communicator) -> Result<(), Failure> {
+    let text = comm.from_root(scene.text.clone().into_bytes());
+    let text = String::from_utf8_lossy(&text);
+    let differences = difference(&text, &scene.text)?;
+    match differences.first() {
+        None => Ok(()),
+        Some(first) => Err(Failure::User(anyhow!(
+            "the scene of rank {} is not that of rank 0: {first}; all ranks must be started with one scene",
+            comm.rank()
+        ))),
+    }
+}
