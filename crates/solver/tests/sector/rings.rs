@@ -62,7 +62,7 @@ fn tets(hexes: &Mesh) -> Mesh {
     }
     Mesh {
         kind: ElementKind::Tet10,
-        nodes: nodes.into(),
+        nodes,
         connectivity,
         groups: BTreeMap::new(),
     }
