@@ -2,8 +2,8 @@
 //!
 //! K = K_regular + the difference of the defect's elements, assembled twice: with their nodes where they are, and where they would
 //! be in the regular ring, which has missing elements as well. The same for M. Products use the sum; factors follow from those of the
-//! regular ring ([`solver::cyclic::CyclicDefect`]). Elements of nodes that are held besides belong to the defect too: their rows are
-//! gone from the true matrix. Cost: 16 n^2 bytes for n rows.
+//! regular ring ([`solver::cyclic::CyclicDefect`]). Elements of nodes that are held besides, or are free alone, belong to the defect too: their
+//! rows are gone from the true matrix, or new in it. Cost: 16 n^2 bytes for n rows.
 
 use mesh::{Mesh, NearlyPeriodic};
 use sprs::CsMat;
@@ -52,7 +52,9 @@ impl RingDefect {
     ) -> Result<Result<Option<RingDefect>, String>, DynamicsError> {
         let (mesh, n_nodes) = (&ring.mesh, ring.mesh.n_nodes());
         let missing = mesh.n_elements()..mesh.n_elements() + nearly.n_missing(mesh);
-        let elements = [nearly.elements(mesh), elements_of(mesh, &regular.held_besides)].concat();
+        let mut otherwise_held = [&regular.held_besides[..], &regular.loose].concat();
+        otherwise_held.sort_unstable();
+        let elements = [nearly.elements(mesh), elements_of(mesh, &otherwise_held)].concat();
         let mut present = elements.clone();
         present.sort_unstable();
         present.dedup();
@@ -209,6 +211,12 @@ fn note(mesh: &Mesh, nearly: &NearlyPeriodic, regular: &RegularRing, [rows, byte
         parts.push(format!(
             "{} nodes that are held there alone, the first node {first}",
             regular.held_besides.len()
+        ));
+    }
+    if let Some(first) = regular.loose.first() {
+        parts.push(format!(
+            "{} nodes that are free there alone, the first node {first}",
+            regular.loose.len()
         ));
     }
     format!(

@@ -1,8 +1,8 @@
 //! What a defect changes in the matrices of a ring's coordinates.
 //!
 //! T^T A T of the defect's elements as they are less what it would be in the regular ring, each with the T of its own coordinates, taken
-//! at the nodes' own places. Coordinates that only the regular ring has (absent nodes, and nodes that are held besides) come last and
-//! are condensed ([`solver::cyclic::Change::condensed`]), for each step size by itself: the condensed change of c_M M + c_K K is not
+//! at the nodes' own places. Coordinates that only the true ring has (nodes that are free alone) and those that only the regular ring has
+//! (absent nodes, and nodes that are held besides) come last and are condensed ([`solver::cyclic::Change::condensed`]), for each step size by itself: the condensed change of c_M M + c_K K is not
 //! the sum of those of M and K.
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -17,15 +17,19 @@ use crate::motion::coordinates::Coordinates;
 pub struct Changes {
     /// Coordinates of the true ring, ascending.
     rows: Vec<usize>,
-    /// Of M and K, row-major; coordinates that the true ring lacks last.
+    /// Coordinates that the regular ring lacks, ascending.
+    loose: Vec<usize>,
+    /// Of M and K, row-major: rows, loose ones, and coordinates that the true ring lacks.
     values: [Vec<f64>; 2],
 }
 
 /// A coordinate of one of the two rings.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum Row {
-    /// Of the true ring.
+    /// Of the true ring, in a dof that both rings have.
     True(usize),
+    /// Of the true ring, in a dof that is held in the regular one.
+    Loose(usize),
     /// Of a dof that only the regular ring has.
     Gone(usize),
 }
@@ -42,7 +46,7 @@ impl Changes {
         regular: &Coordinates,
     ) -> Changes {
         let terms = [
-            true_terms(nodes, &patches[0].positions, coordinates),
+            true_terms(nodes, &patches[0].positions, coordinates, regular),
             regular_terms(nodes, &patches[1].positions, coordinates, regular),
         ];
         let all: BTreeSet<Row> = terms.iter().flatten().flatten().map(|&(row, _)| row).collect();
@@ -65,32 +69,42 @@ impl Changes {
             }
         }
         values.iter_mut().for_each(|values| symmetrise(n, values));
-        let of_true = |row: &Row| match row {
-            Row::True(row) => Some(*row),
-            Row::Gone(_) => None,
-        };
-        Changes {
-            rows: place.keys().filter_map(of_true).collect(),
-            values,
+        let (mut rows, mut loose) = (Vec::new(), Vec::new());
+        for row in place.keys() {
+            match row {
+                Row::True(row) => rows.push(*row),
+                Row::Loose(row) => loose.push(*row),
+                Row::Gone(_) => {}
+            }
         }
+        Changes { rows, loose, values }
     }
 
     /// The change of `mass` M + `stiffness` K.
     pub fn of(&self, [mass, stiffness]: [f64; 2]) -> Result<Change, SolverError> {
         let pairs = self.values[0].iter().zip(&self.values[1]);
         let values: Vec<f64> = pairs.map(|(m, k)| mass * m + stiffness * k).collect();
-        Change::condensed(self.rows.clone(), &values)
+        Change::condensed(self.rows.clone(), self.loose.clone(), &values)
     }
 }
 
 /// Terms of the dofs of `nodes` in the true ring's coordinates; absent nodes have none.
-fn true_terms(nodes: &[usize], positions: &[[f64; 3]], coordinates: &Coordinates) -> Terms {
+fn true_terms(
+    nodes: &[usize],
+    positions: &[[f64; 3]],
+    coordinates: &Coordinates,
+    regular: &Coordinates,
+) -> Terms {
+    let row = |i: usize| match coordinates.free().get(i) {
+        Some(dof) if regular.free_node(dof / 3).is_none() => Row::Loose(i),
+        _ => Row::True(i),
+    };
     let terms = |dof: usize, x: [f64; 3]| {
         let terms = match dof < coordinates.expanded() {
             true => coordinates.terms(dof, x),
             false => Vec::new(),
         };
-        terms.into_iter().map(|(i, a)| (Row::True(i), a)).collect()
+        terms.into_iter().map(|(i, a)| (row(i), a)).collect()
     };
     let of_node = |(&node, &x): (&usize, &[f64; 3])| [0, 1, 2].map(|c| terms(3 * node + c, x));
     nodes.iter().zip(positions).flat_map(of_node).collect()

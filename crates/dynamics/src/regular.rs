@@ -1,8 +1,8 @@
 //! The ring without its defect: the regular ring, what holds it, and which of its nodes the true ring has.
 //!
 //! A section node is held in the regular ring when it is held in most sectors. Nodes that are held besides are like absent ones:
-//! the regular ring has rows there that the true one lacks. A node that is free where most of its images are held would be a row that
-//! the regular ring lacks: such a ring is not solved by harmonics.
+//! the regular ring has rows there that the true one lacks. Nodes that are free where most of their images are held are *loose*: rows
+//! that the regular ring lacks.
 
 use std::collections::BTreeSet;
 
@@ -20,10 +20,12 @@ pub struct RegularRing {
     pub held: Vec<usize>,
     /// Nodes of the true ring that are held besides, ascending.
     pub held_besides: Vec<usize>,
+    /// Nodes of the true ring that are free though most of their images are held, ascending.
+    pub loose: Vec<usize>,
     /// Section nodes of the raceway, ascending.
     pub raceway: Vec<usize>,
-    /// Free nodes of the true ring among those of the regular one, ascending.
-    pub seen: Vec<usize>,
+    /// Each free node of the true ring among those of the regular one, ascending; None for loose ones.
+    pub seen: Vec<Option<usize>>,
 }
 
 impl RegularRing {
@@ -39,20 +41,19 @@ impl RegularRing {
         }
         let is_section_held: Vec<bool> = held_in.iter().map(|n| 2 * n > periodicity.n_sectors()).collect();
         let is_regular = |node: usize| is_section_held[sites[node].section_node];
-        if let Some(node) = (0..n_nodes).find(|&node| is_regular(node) && !is_held[node]) {
-            return Err(format!(
-                "what holds it is not the same in all sectors: node {node} is free where most sectors are held"
-            ));
-        }
         let raceway = ring.mesh.group_nodes(RACEWAY_GROUP);
         if let Some(node) = raceway.iter().find(|&&node| is_held[node]) {
             return Err(format!("its raceway touches what is held, at node {node}"));
         }
         let raceway: BTreeSet<usize> = raceway.iter().map(|&node| sites[node].section_node).collect();
-        let free = (0..sites.len()).filter(|&node| !is_regular(node));
-        let seen = free
-            .enumerate()
-            .filter(|&(_, node)| node < n_nodes && !is_held[node]);
+        let mut n_free = 0;
+        let mut seen = Vec::with_capacity(n_nodes);
+        for node in 0..n_nodes {
+            if !is_held[node] {
+                seen.push((!is_regular(node)).then_some(n_free));
+            }
+            n_free += usize::from(!is_regular(node));
+        }
         Ok(RegularRing {
             mesh: nearly.regular(&ring.mesh),
             held_section: (0..is_section_held.len())
@@ -61,7 +62,10 @@ impl RegularRing {
             held: (0..sites.len()).filter(|&node| is_regular(node)).collect(),
             held_besides: held.iter().copied().filter(|&node| !is_regular(node)).collect(),
             raceway: raceway.into_iter().collect(),
-            seen: seen.map(|(place, _)| place).collect(),
+            loose: (0..n_nodes)
+                .filter(|&node| is_regular(node) && !is_held[node])
+                .collect(),
+            seen,
         })
     }
 }

@@ -35,8 +35,8 @@ pub struct HeldSectors {
     pub sectors: Sectors,
     /// Section nodes of the raceway, counted among those that stay.
     pub raceway: Vec<usize>,
-    /// Free nodes that the true ring has, when a defect makes it lack some.
-    pub seen: Option<Vec<usize>>,
+    /// Where the true ring's free nodes are among those of the regular one, when there is a defect.
+    pub seen: Option<Vec<Option<usize>>>,
 }
 
 /// A ring that harmonics solve.
@@ -190,7 +190,7 @@ impl Periodic {
             Some(_) => self
                 .whole
                 .ring
-                .seen_at(&(0..mesh.n_nodes()).collect::<Vec<usize>>()),
+                .seen_at(&(0..mesh.n_nodes()).map(Some).collect::<Vec<_>>()),
             None => self.whole.ring.clone(),
         }
     }

@@ -1,17 +1,25 @@
 //! Solves of a periodic ring that stay in harmonic space: the predictor of a step, what contacts and partner measure of it,
 //! and the increment under their forces. Only nodes that they touch are transformed in between.
 
+use solver::cyclic::Loose;
+
 use super::effective::CyclicFactor;
 use super::space::{Space, from_harmonics, to_harmonics};
 use super::vectors::add;
 use crate::sparse::SparseLoad;
 
 impl CyclicFactor {
-    /// S^-1 of a generalised load in the space of the ring: harmonics of the free nodes, then the rows of the border.
-    pub fn solve(&self, space: &Space, load: Vec<f64>) -> Vec<f64> {
+    /// S^-1 of a generalised load in the space of the ring: harmonics of the free nodes, then the rows of the border, and what
+    /// [`solver::cyclic::Loose::take`] says of rows that the regular ring lacks.
+    pub fn solve(&self, space: &Space, mut load: Vec<f64>) -> Vec<f64> {
         let mut x = match space {
             Space::Harmonic(_) => load,
-            Space::Nodal => to_harmonics(self.solver.inner().ring(), &load),
+            Space::Nodal => {
+                let alone = self.loose().map(|loose| loose.take(&mut load));
+                let mut x = to_harmonics(self.solver.inner().ring(), &load);
+                x.extend(alone.into_iter().flatten());
+                x
+            }
         };
         self.solve_in_place(&mut x);
         x
@@ -19,7 +27,14 @@ impl CyclicFactor {
 
     fn solve_in_place(&self, x: &mut [f64]) {
         let (harmonics, border) = x.split_at_mut(self.solver.inner().ring().harmonic_len());
-        self.solver.solve_harmonic(&mut [harmonics], border);
+        let n_border = border.len() - self.loose().map_or(0, Loose::len);
+        self.solver
+            .solve_harmonic(&mut [harmonics], &mut border[..n_border]);
+    }
+
+    /// Rows that the regular ring lacks.
+    fn loose(&self) -> Option<&Loose> {
+        self.defect.as_ref()?.loose()
     }
 
     /// Values of functionals on the touched nodes and the border under harmonics and border `x`, and those of the rows of a defect.
@@ -61,7 +76,15 @@ impl CyclicFactor {
         add(&mut x, predictor);
         match space {
             Space::Harmonic(_) => x,
-            Space::Nodal => from_harmonics(ring, &x),
+            Space::Nodal => match self.loose() {
+                None => from_harmonics(ring, &x),
+                Some(loose) => {
+                    let (x, alone) = x.split_at(x.len() - loose.len());
+                    let mut y = from_harmonics(ring, x);
+                    loose.put(alone, &mut y);
+                    y
+                }
+            },
         }
     }
 }

@@ -73,7 +73,7 @@ impl CyclicBordered {
     }
 
     /// The same factor for vectors that hold some of the caller's nodes alone, see [`super::CyclicRing::seen_at`].
-    pub fn seen_at(self, nodes: &[usize]) -> CyclicBordered {
+    pub fn seen_at(self, nodes: &[Option<usize>]) -> CyclicBordered {
         CyclicBordered {
             factor: self.factor.seen_at(nodes),
             ..self

@@ -15,7 +15,8 @@
 //! **Rows that are gone.** The regular ring may have rows h that the true one lacks: nodes that only missing elements have, or that are
 //! held besides. All that they couple with is in the change, A_hh = -D_hh and A_hr = -D_hr, as the true matrix is zero there. Nothing
 //! loads them, so the regular ring answers at the other rows r as its Schur complement, and the change from that to the true
-//! matrix is D_rr - D_rh D_hh^-1 D_hr ([`Change::condensed`]). Callers never see h ([`super::CyclicRing::seen_at`]).
+//! matrix is D_rr - D_rh D_hh^-1 D_hr ([`Change::condensed`]). Callers never see h ([`super::CyclicRing::seen_at`]). Rows
+//! that the true ring has and the regular one lacks are eliminated ([`super::Loose`]).
 //!
 //! Cost: a solve for every component of every section node that the defect touches, 4 n^3 operations, 8 n^2 bytes; then
 //! two solves per right-hand side in place of one for each iteration.
@@ -23,6 +24,7 @@
 use std::ops::Range;
 
 use super::border::CyclicBordered;
+use super::loose::Loose;
 use super::response::ResponseTable;
 use super::transform::SectionPart;
 use crate::dense::{inverse_form, update};
@@ -33,12 +35,14 @@ use crate::linear_solver::LinearSolver;
 const TOLERANCE: f64 = 1e-10;
 
 /// The change of a matrix in a few rows.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub struct Change {
     /// Its rows, the caller's, those of a border last; distinct, `[n]`.
     pub rows: Vec<usize>,
     /// D, symmetric, row-major `[n][n]`.
     pub values: Vec<f64>,
+    /// Rows that the regular ring lacks.
+    pub loose: Option<Loose>,
 }
 
 /// The answer of a ring to the change of its matrix.
@@ -48,6 +52,7 @@ pub struct Defect {
     /// S, row-major.
     reduced: Vec<f64>,
     iterations: usize,
+    loose: Option<Loose>,
 }
 
 /// Factor of a periodic ring with a defect.
@@ -59,28 +64,41 @@ pub struct CyclicDefect {
 }
 
 impl Change {
-    /// The change in the rows `rows` of a ring that lacks more rows of the regular one: D of both, row-major, symmetric, those that it
-    /// lacks last. They must be held by the others.
+    /// The change in the rows `rows` of a ring that has the rows `loose` more than the regular one, and lacks others: D of all,
+    /// row-major, symmetric, in this order. Both must be held by `rows`.
     ///
     /// # Panics
     /// When there are fewer values than rows.
-    pub fn condensed(rows: Vec<usize>, values: &[f64]) -> Result<Change, SolverError> {
+    pub fn condensed(rows: Vec<usize>, loose: Vec<usize>, values: &[f64]) -> Result<Change, SolverError> {
         let (n, size) = (rows.len(), values.len().isqrt());
+        let known = n + loose.len();
         assert!(
-            size >= n && size * size == values.len(),
-            "{n} rows and those that are gone"
+            size >= known && size * size == values.len(),
+            "{known} rows and those that are gone"
         );
         let part = |rows: Range<usize>, columns: Range<usize>, sign: f64| -> Vec<f64> {
             let row = |i: usize| values[size * i..][columns.clone()].iter().map(move |d| sign * d);
             rows.flat_map(row).collect()
         };
         let mut kept = part(0..n, 0..n, 1.0);
-        if size > n {
-            let (gone, coupling) = (part(n..size, n..size, -1.0), part(n..size, 0..n, 1.0));
-            let more = inverse_form(size - n, n, &gone, &coupling)?;
-            kept.iter_mut().zip(more).for_each(|(d, m)| *d += m);
+        // Rows of the true ring and rows of the regular one, of which there is the negative matrix.
+        for (range, sign) in [(n..known, 1.0), (known..size, -1.0)] {
+            if !range.is_empty() {
+                let (own, coupling) = (
+                    part(range.clone(), range.clone(), sign),
+                    part(range.clone(), 0..n, 1.0),
+                );
+                let more = inverse_form(range.len(), n, &own, &coupling)?;
+                kept.iter_mut().zip(more).for_each(|(d, m)| *d -= sign * m);
+            }
         }
-        Ok(Change { rows, values: kept })
+        let own = part(n..known, n..known, 1.0);
+        let with_loose = || Loose::new(loose, rows.clone(), &own, part(n..known, 0..n, 1.0));
+        Ok(Change {
+            loose: (known > n).then(with_loose).transpose()?,
+            rows,
+            values: kept,
+        })
     }
 }
 
@@ -104,6 +122,7 @@ impl Defect {
             rows: change.rows.clone(),
             reduced,
             iterations,
+            loose: change.loose.clone(),
         })
     }
 
@@ -116,6 +135,11 @@ impl Defect {
     /// much the defect disturbs the ring.
     pub fn iterations(&self) -> usize {
         self.iterations
+    }
+
+    /// Rows that the regular ring lacks: to be eliminated before it is solved.
+    pub fn loose(&self) -> Option<&Loose> {
+        self.loose.as_ref()
     }
 
     /// Forces of the defect on its rows, f = -S x, from the displacements there without it.
@@ -167,6 +191,8 @@ impl LinearSolver for CyclicDefect {
         let mut harmonic = vec![0.0; ring.harmonic_len()];
         let (mut more, mut sparse) = (harmonic.clone(), vec![0.0; n]);
         for column in rhs.chunks_exact_mut(n.max(1)) {
+            let loose = self.defect.loose.as_ref();
+            let alone = loose.map(|loose| (loose, loose.take(column)));
             let (nodal, border) = column.split_at_mut(ring.n());
             ring.to_harmonic(nodal, &mut harmonic);
             self.base.solve_harmonic(&mut [&mut harmonic], border);
@@ -183,6 +209,9 @@ impl LinearSolver for CyclicDefect {
             harmonic.iter_mut().zip(&more).for_each(|(x, d)| *x += d);
             border.iter_mut().zip(&*border_loads).for_each(|(x, d)| *x += d);
             ring.from_harmonic(&harmonic, nodal);
+            if let Some((loose, alone)) = alone {
+                loose.put(&alone, column);
+            }
         }
     }
 

@@ -252,7 +252,7 @@ impl CyclicCholesky {
     }
 
     /// The same factor for vectors that hold some of the caller's nodes alone, see [`CyclicRing::seen_at`].
-    pub fn seen_at(self, nodes: &[usize]) -> CyclicCholesky {
+    pub fn seen_at(self, nodes: &[Option<usize>]) -> CyclicCholesky {
         CyclicCholesky {
             ring: self.ring.seen_at(nodes),
             ..self

@@ -23,7 +23,7 @@ pub struct CyclicRing {
     pub(super) comm: Communicator,
 }
 
-/// In [`Shared::nodes`] a node that the caller's vectors lack.
+/// In [`Shared::nodes`] a node that the caller's vectors lack, in [`Shared::sites`] one that the ring lacks.
 pub(crate) const ABSENT: usize = usize::MAX;
 
 /// What clones share. Places count section nodes in elimination order.
@@ -39,7 +39,7 @@ pub(crate) struct Shared {
     pub(crate) may_be_mirrored: bool,
     /// The caller's node by sector and place, or [`ABSENT`], `[n_sectors][n_section_nodes]`.
     pub(crate) nodes: Vec<usize>,
-    /// Where each of the caller's nodes is in `nodes`.
+    /// Where each of the caller's nodes is in `nodes`, or [`ABSENT`].
     pub(crate) sites: Vec<usize>,
     /// (cos, sin) of its azimuth, in the layout of `nodes`.
     pub(crate) directions: Vec<[f64; 2]>,
@@ -172,18 +172,18 @@ impl CyclicRing {
     }
 
     /// The same ring for vectors that hold the caller's nodes `nodes` (ascending) alone, in this order. The other nodes are there and
-    /// move, but nothing loads or measures them.
+    /// move, but nothing loads or measures them. `None` is a node that the ring lacks: it bears no load and does not move.
     ///
     /// # Panics
     /// When `nodes` is not ascending or names a node outside.
-    pub fn seen_at(&self, nodes: &[usize]) -> CyclicRing {
-        check_ascending(nodes, self.shared.sites.len());
-        let sites: Vec<usize> = nodes.iter().map(|&node| self.shared.sites[node]).collect();
+    pub fn seen_at(&self, nodes: &[Option<usize>]) -> CyclicRing {
+        let there: Vec<usize> = nodes.iter().flatten().copied().collect();
+        check_ascending(&there, self.shared.sites.len());
+        let site = |node: &Option<usize>| node.map_or(ABSENT, |node| self.shared.sites[node]);
+        let sites: Vec<usize> = nodes.iter().map(site).collect();
         let mut seen = vec![ABSENT; self.shared.nodes.len()];
-        sites
-            .iter()
-            .enumerate()
-            .for_each(|(node, &site)| seen[site] = node);
+        let of_ring = sites.iter().enumerate().filter(|(_, site)| **site != ABSENT);
+        of_ring.for_each(|(node, &site)| seen[site] = node);
         CyclicRing {
             comm: self.comm,
             shared: Arc::new(Shared {

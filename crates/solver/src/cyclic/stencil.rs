@@ -15,7 +15,7 @@ use rayon::prelude::*;
 
 use super::matrix::CyclicMatrix;
 use super::pattern::Coupling;
-use super::ring::CyclicRing;
+use super::ring::{ABSENT, CyclicRing};
 use crate::error::SolverError;
 
 /// Sectors of one pass with three rows: 9 sums and a displacement in three vectors of AVX2 fill its registers.
@@ -172,7 +172,8 @@ impl CyclicRing {
             .enumerate()
             .for_each(|(task, nodal)| {
                 let sites = &shared.sites[NODES * task..];
-                for (u, &site) in nodal.chunks_exact_mut(per_node).zip(sites) {
+                let there = nodal.chunks_exact_mut(per_node).zip(sites);
+                for (u, &site) in there.filter(|(_, site)| **site != ABSENT) {
                     let (sector, place) = (site / width, site % width);
                     let first = R * place * stride + self.reach() + sector;
                     let values = std::array::from_fn(|i| lines[first + i * stride]);

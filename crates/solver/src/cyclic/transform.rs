@@ -94,6 +94,10 @@ impl CyclicRing {
             .for_each(|(task, nodal)| {
                 let sites = &shared.sites[NODAL_TASK * task..];
                 for (u, &site) in nodal.chunks_exact_mut(3).zip(sites) {
+                    if site == ABSENT {
+                        u.fill(0.0);
+                        continue;
+                    }
                     let ([c, s], sector, place) = (shared.directions[site], site / width, site % width);
                     let [r, t, z] = [0, 1, 2].map(|i| components[(3 * place + i) * n + sector]);
                     u.copy_from_slice(&[c * r - s * t, s * r + c * t, z]);
