@@ -9,7 +9,7 @@ use dynamics::effects::{
     AxialForce, BallCentrifugal, Effect, FrameRotation, Gravity, GyroscopicMoment, Moment, RadialForce,
 };
 use dynamics::model::{RACEWAY_GROUP, elastic};
-use dynamics::motion::balls::Rolling;
+use dynamics::motion::balls::{BallSpeeds, Rolling};
 use dynamics::{
     Backend, ContactMode, ContactSettings, Hold, Model, RingModel, Sectors, ShaftDof, Tolerances,
 };
@@ -46,6 +46,13 @@ pub fn rolling(scene: &Scene) -> Option<Rolling> {
     let slip = scene.effects.cage_slip.unwrap_or([0.0; 2]);
     let speed = scene.speed.as_ref().map(|_| speed(scene));
     speed.map(|speed| Rolling::new(&geometry(scene), speed, slip))
+}
+
+fn ball_speeds(scene: &Scene) -> BallSpeeds {
+    match scene.ball_speeds {
+        scene::BallSpeeds::FreeAngle => BallSpeeds::FreeAngle,
+        scene::BallSpeeds::OuterControl => BallSpeeds::OuterControl,
+    }
 }
 
 /// The model of a scene with rings that were read before: the points of a sweep share them.
@@ -128,7 +135,7 @@ fn effects(scene: &Scene, rings: &[Option<Arc<RingModel>>; 2]) -> Result<Vec<Box
         effects.push(Box::new(BallCentrifugal {
             speed: speed(scene),
             slip,
-            ball_speeds: scene.ball_speeds,
+            ball_speeds: ball_speeds(scene),
         }));
     }
     if asked.frame_rotation {
@@ -144,7 +151,7 @@ fn effects(scene: &Scene, rings: &[Option<Arc<RingModel>>; 2]) -> Result<Vec<Box
             speed: speed(scene),
             slip,
             shares,
-            ball_speeds: scene.ball_speeds,
+            ball_speeds: ball_speeds(scene),
         }));
     }
     if let Some(Scheduled { value, schedule }) = asked.moment.clone() {

@@ -66,7 +66,6 @@ mod tests;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
-use dynamics::motion::balls::BallSpeeds;
 use serde::Deserialize;
 use toml_edit::DocumentMut;
 
@@ -87,7 +86,7 @@ pub use self::schedule::Scheduled;
 pub use self::section::{Section, SectionElement};
 pub use self::shaft::{Motion, Shaft};
 pub use self::solver::{Backend, Solver};
-pub use self::speed::SpeedTable;
+pub use self::speed::{BallSpeeds, SpeedTable};
 pub use self::start::Start;
 pub use self::stress::Stress;
 pub use self::stress_probes::StressLine;
@@ -295,7 +294,7 @@ impl Source<'_> {
             .effects
             .check(raw.effects_context(inner.body.is_some()), &mut problems);
         let speed = raw.speed.as_ref();
-        let ball_speeds = speed.map_or(BallSpeeds::FreeAngle, |s| s.ball_speeds(&effects, &mut problems));
+        let ball_speeds = speed.map_or(BallSpeeds::default(), |s| s.ball_speeds(&effects, &mut problems));
         let speed = speed.and_then(|s| s.check(raw.speed_use(), &mut problems));
         let solver = raw.solver.check(&mut problems);
         let output = raw.output.check(&mut problems);

@@ -6,7 +6,6 @@
 
 use std::fmt;
 
-use dynamics::motion::balls::BallSpeeds;
 use serde::Deserialize;
 use serde::de::value::MapAccessDeserializer;
 use serde::de::{Deserializer, Error, MapAccess, Visitor};
@@ -21,14 +20,17 @@ use crate::units::{ANGULAR_SPEED, Quantity, TIME, bare_number};
 #[serde(deny_unknown_fields, expecting = "the table [speed]")]
 pub struct RawSpeed {
     inner: RawRingSpeed,
-    ball_speeds: Option<RawBallSpeeds>,
+    ball_speeds: Option<BallSpeeds>,
 }
 
-/// As typed.
-#[derive(Clone, Copy, Debug, Deserialize)]
+/// Contact angles that the speeds of balls follow.
+#[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Eq)]
 #[serde(rename_all = "snake_case")]
-enum RawBallSpeeds {
+pub enum BallSpeeds {
+    /// The free contact angle.
+    #[default]
     FreeAngle,
+    /// Those that each ball has, under outer raceway control.
     OuterControl,
 }
 
@@ -93,10 +95,7 @@ impl RawSpeed {
                  remove it",
             );
         }
-        match self.ball_speeds {
-            None | Some(RawBallSpeeds::FreeAngle) => BallSpeeds::FreeAngle,
-            Some(RawBallSpeeds::OuterControl) => BallSpeeds::OuterControl,
-        }
+        self.ball_speeds.unwrap_or_default()
     }
 
     /// Checks sizes and the order of times; `None` when there are problems.
