@@ -40,9 +40,15 @@ impl DefectStep {
     pub fn soften(&self, defect: &Defect, compliance: &mut [f64]) {
         let n = compliance.len().isqrt();
         let mut change = vec![0.0; n * n];
-        for (j, column) in change.chunks_exact_mut(n).enumerate() {
-            let unit: Vec<f64> = self.answers.iter().skip(j).step_by(n).copied().collect();
-            column.copy_from_slice(&self.moved(&defect.forces(&unit)));
+        let forces = defect.forces_of_all(&self.answers, n);
+        for (v, f) in self
+            .answers
+            .chunks_exact(n.max(1))
+            .zip(forces.chunks_exact(n.max(1)))
+        {
+            for (row, v) in change.chunks_exact_mut(n.max(1)).zip(v) {
+                row.iter_mut().zip(f).for_each(|(c, f)| *c += v * f);
+            }
         }
         for i in 0..n {
             for j in 0..n {

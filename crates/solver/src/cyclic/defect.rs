@@ -149,6 +149,18 @@ impl Defect {
         forces
     }
 
+    /// The same of several displacements, row-major `[n][width]` both: each entry of S is read once.
+    pub fn forces_of_all(&self, at: &[f64], width: usize) -> Vec<f64> {
+        let mut forces = vec![0.0; at.len()];
+        let rows = self.reduced.chunks_exact(self.rows.len().max(1));
+        for (row, forces) in rows.zip(forces.chunks_exact_mut(width.max(1))) {
+            for (s, at) in row.iter().zip(at.chunks_exact(width.max(1))) {
+                forces.iter_mut().zip(at).for_each(|(f, x)| *f -= s * x);
+            }
+        }
+        forces
+    }
+
     /// Bytes of S.
     pub fn bytes(&self) -> usize {
         size_of::<f64>() * self.reduced.capacity()
