@@ -121,7 +121,7 @@ impl RingBody {
         })
     }
 
-    fn nodes(&self) -> Nodes<'_> {
+    pub(super) fn nodes(&self) -> Nodes<'_> {
         Nodes {
             coordinates: &self.coordinates,
             matrices: &self.matrices,
@@ -177,62 +177,31 @@ impl RingBody {
         }
     }
 
-    /// M (m[0] v + m[1] a) + K (k[0] v + k[1] a - w).
+    /// M (m[0] v + m[1] a) + K (k[0] v + k[1] a - w) of coordinates; in harmonic space a part of [`super::pass::Pass`].
     pub(super) fn balance(&self, state: &RingState, m: [f64; 2], k: [f64; 2]) -> Vec<f64> {
         let (v, a) = (state.velocity(), state.acceleration());
-        if let (Space::Harmonic(space), 0.0, [0.0, 0.0]) = (&self.space, m[1], k) {
-            // Two products that the energies at the end of the step before have needed as well.
-            let made;
-            let measures = match state.measures() {
-                Some(measures) => measures,
-                None => {
-                    made = space.measures(v, state.displacement());
-                    &made
-                }
-            };
-            let [mass, stiffness] = &measures.products;
-            return combined([m[0], -1.0], mass, stiffness);
-        }
         let inertial = combined(m, v, a);
         let mut elastic = combined(k, v, a);
-        elastic
-            .iter_mut()
-            .zip(state.displacement())
-            .for_each(|(c, w)| *c -= w);
-        match &self.space {
-            Space::Nodal => self
-                .matrices
-                .sum_of_products(&self.coordinates, &inertial, &elastic),
-            Space::Harmonic(space) => combined(
-                [1.0; 2],
-                &space.mass.product(&inertial),
-                &space.stiffness.product(&elastic),
-            ),
-        }
-    }
-
-    /// The state at the end of a step from `old` with the increment `dw`. One in harmonic space knows its energies.
-    pub(super) fn advanced(&self, integrator: Integrator, dt: f64, old: &RingState, dw: &[f64]) -> RingState {
-        match &self.space {
-            Space::Nodal => old.advanced(integrator, dt, dw),
-            Space::Harmonic(space) => space.advanced(integrator, dt, old, dw),
-        }
+        let terms = elastic.iter_mut().zip(state.displacement());
+        terms.for_each(|(c, w)| *c -= w);
+        self.matrices
+            .sum_of_products(&self.coordinates, &inertial, &elastic)
     }
 
     /// Kinetic and strain energy, J.
     pub fn energies(&self, state: &RingState) -> [f64; 2] {
-        match (&self.space, state.measures()) {
-            (_, Some(known)) => known.energies,
+        match (&self.space, state.energies()) {
+            (_, Some(known)) => known,
             (Space::Nodal, None) => {
                 self.matrices
                     .energies(&self.coordinates, state.velocity(), state.displacement())
             }
-            (Space::Harmonic(space), None) => space.measures(state.velocity(), state.displacement()).energies,
+            (Space::Harmonic(space), None) => space.energies(state.velocity(), state.displacement()),
         }
     }
 
-    /// Generalised inertia load of the turning frame at the weighted time of a step from `old` with the increment `dw`, in which the velocity
-    /// stays when there is none.
+    /// Generalised inertia load of the turning frame, of coordinates, at the weighted time of a step from `old` with the increment `dw`, in
+    /// which the velocity stays when there is none; in harmonic space a part of [`super::pass::Pass`].
     pub fn frame_load(
         &self,
         turn: FrameTurn,
@@ -241,9 +210,6 @@ impl RingBody {
         dw: Option<&[f64]>,
     ) -> Vec<f64> {
         let (speed, acceleration) = (turn.speed, turn.acceleration);
-        if let Space::Harmonic(space) = &self.space {
-            return space.frame_load(turn, self.nodes(), (integrator, dt), (old, dw));
-        }
         let [w, v] = old.within(integrator, dt, dw);
         let (u, v) = (self.coordinates.expand(&w), self.coordinates.expand(&v));
         let mut field = vec![0.0; u.len()];

@@ -2,6 +2,7 @@
 
 use contact::Side;
 
+use super::close::RingEnd;
 use super::newton::SmallSolution;
 use super::part::Moving;
 use super::run::Motion;
@@ -16,7 +17,7 @@ impl Motion<'_> {
         system: &SmallSystem,
         solution: &SmallSolution,
         moving: [Option<Moving<'_>>; 2],
-        increments: [Option<Vec<f64>>; 2],
+        ends: [Option<RingEnd>; 2],
     ) -> (MotionState, f64) {
         let mut next = state.without_rings();
         let mut trend = self
@@ -24,9 +25,9 @@ impl Motion<'_> {
             .ladder
             .tolerance
             .map(|_| vec![[0.0; 2]; 3 * system.balls.len()]);
-        for ((side, ring), dw) in Side::BOTH.into_iter().zip(moving).zip(increments) {
-            if let (Some(ring), Some(dw)) = (ring, dw) {
-                self.finish_ring(&mut next, side, (system, solution), &ring, &dw, trend.as_mut());
+        for ((side, ring), end) in Side::BOTH.into_iter().zip(moving).zip(ends) {
+            if let (Some(ring), Some(end)) = (ring, end) {
+                self.finish_ring(&mut next, side, (system, solution), &ring, end, trend.as_mut());
             }
         }
         self.finish_shaft(&mut next, system, solution);
@@ -52,17 +53,13 @@ impl Motion<'_> {
         side: Side,
         (system, solution): (&SmallSystem, &SmallSolution),
         ring: &Moving<'_>,
-        dw: &[f64],
+        RingEnd { state: new, works }: RingEnd,
         trend: Option<&mut Vec<[f64; 2]>>,
     ) {
         let integrator = self.settings.integrator;
-        let new = ring.factor.advance(ring.body, ring.old, dw);
         let ledger = &mut next.ledger;
-        let work = |load: &[f64]| ring.body.space.dot(load, dw);
-        ledger.load_work += ring.load.as_deref().map_or(0.0, work);
-        if let Some((_, inertia)) = &ring.inertia {
-            ledger.frame_work += work(inertia);
-        }
+        ledger.load_work += works[0];
+        ledger.frame_work += works[1];
         if ring.body.damping != [0.0; 2] {
             let loss = || ring.body.rayleigh_loss(integrator, ring.old, &new);
             ledger.rayleigh_loss += self.costs.time("rayleigh_damping", loss);

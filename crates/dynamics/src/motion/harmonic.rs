@@ -1,7 +1,8 @@
 //! Solves of a periodic ring that stay in harmonic space: the predictor of a step, what contacts and partner measure of it,
 //! and the increment under their forces. Only nodes that they touch are transformed in between.
 
-use solver::cyclic::Loose;
+use solver::LinearSolver;
+use solver::cyclic::{Loose, PartHarmonics};
 
 use super::effective::CyclicFactor;
 use super::space::{Space, from_harmonics, to_harmonics};
@@ -25,7 +26,8 @@ impl CyclicFactor {
         x
     }
 
-    fn solve_in_place(&self, x: &mut [f64]) {
+    /// The same in place, harmonics and border.
+    pub(super) fn solve_in_place(&self, x: &mut [f64]) {
         let (harmonics, border) = x.split_at_mut(self.solver.inner().ring().harmonic_len());
         let n_border = border.len() - self.loose().map_or(0, Loose::len);
         self.solver
@@ -54,6 +56,22 @@ impl CyclicFactor {
         ]
     }
 
+    /// Loads on touched nodes and border, index and value: harmonics of the nodes, and the rows of the border and of those that the
+    /// regular ring lacks.
+    pub fn forces(&self, loads: impl Iterator<Item = (usize, f64)>) -> (PartHarmonics<'_>, Vec<f64>) {
+        let ring = self.solver.inner().ring();
+        let n_loose = self.loose().map_or(0, Loose::len);
+        let mut border = vec![0.0; self.solver.n() - ring.n() + n_loose];
+        let mut field = ring.no_loads(&self.touched);
+        for (row, value) in loads {
+            match row.checked_sub(ring.n()) {
+                Some(k) => border[k] += value,
+                None => field.add(row, value),
+            }
+        }
+        (field.into_harmonics(), border)
+    }
+
     /// The predictor plus S^-1 of loads on touched nodes and border, index and value: in the space of the ring.
     pub fn increment(
         &self,
@@ -62,16 +80,11 @@ impl CyclicFactor {
         loads: impl Iterator<Item = (usize, f64)>,
     ) -> Vec<f64> {
         let ring = self.solver.inner().ring();
+        let (forces, rows) = self.forces(loads);
         let mut x = vec![0.0; predictor.len()];
         let (harmonics, border) = x.split_at_mut(ring.harmonic_len());
-        let mut field = ring.no_loads(&self.touched);
-        for (row, value) in loads {
-            match row.checked_sub(ring.n()) {
-                Some(k) => border[k] += value,
-                None => field.add(row, value),
-            }
-        }
-        field.write_harmonics(harmonics);
+        forces.write(harmonics);
+        border.copy_from_slice(&rows);
         self.solve_in_place(&mut x);
         add(&mut x, predictor);
         match space {

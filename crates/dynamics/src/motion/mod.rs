@@ -10,11 +10,14 @@
 //! dw = predictor + S^-1 W F; v, a; energies; ledger
 //! ```
 //!
-//! With a periodic ring the last line is one solve more, and each round for the inertia of the turning frame another.
+//! A periodic ring solves twice in a step, for the contact forces and for the known loads of the step that follows: in one pass over its
+//! harmonics ([`pass`]). Each round for the inertia of the turning frame is a pass as well.
 
+mod ahead;
 pub mod balls;
 pub mod body;
 pub mod by_sector;
+mod close;
 pub mod contacts;
 pub mod coordinates;
 mod defect;
@@ -22,12 +25,14 @@ pub mod effective;
 mod finish;
 pub mod frame;
 mod harmonic;
+mod harmonic_step;
 pub mod integrator;
 pub mod ledger;
 mod limits;
 pub mod matrices;
 pub mod newton;
 mod part;
+mod pass;
 mod place;
 pub mod report;
 pub mod ring;

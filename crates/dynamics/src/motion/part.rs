@@ -1,7 +1,10 @@
 //! What a part of a step asks of loads, rings and shaft, and the small system they make.
 
+use std::sync::Arc;
+
 use contact::{NodalWeights, Side};
 
+use super::ahead::{Foreseen, Known};
 use super::body::RingBody;
 use super::frame::turn_nodal;
 use super::newton::SmallSolution;
@@ -17,11 +20,6 @@ use crate::effects::{self, FrameTurn, Loads, Now};
 use crate::error::DynamicsError;
 use crate::problem::Site;
 
-/// Change of the frame's inertia loads in a round, sum of all, over the largest force, at which they count as settled.
-const FRAME_TOLERANCE: f64 = 1e-9;
-/// The same over the inertia loads themselves, which a body without other forces has alone: what rounding of a transform of
-/// its motion leaves of them.
-const FRAME_ROUND_OFF: f64 = 1e-13;
 /// Force scale of a bearing on which nothing acts, N.
 const LEAST_FORCE: f64 = 1e-9;
 
@@ -31,10 +29,19 @@ pub(super) struct Moving<'m> {
     pub factor: &'m RingFactor,
     pub old: &'m RingState,
     pub step: RingStep,
-    /// Generalised load that is fixed in space, of the ring's space as all loads here, when there is one.
-    pub load: Option<Vec<f64>>,
-    /// Inertia load of the turning frame, when there is one.
-    pub inertia: Option<(FrameTurn, Vec<f64>)>,
+    /// Loads, and first guess of the inertia of the turning frame.
+    pub known: Arc<Known>,
+    /// Inertia load of the turning frame that acts, when there is one.
+    pub inertia: Option<(FrameTurn, Arc<Vec<f64>>)>,
+    /// Increment of a ring whose state is not in harmonic space, once it is found.
+    pub increment: Option<Vec<f64>>,
+}
+
+impl Moving<'_> {
+    /// Increment under forces on contacts (N, `[2 n_contacts]`) and mount (N and N m).
+    pub fn increment_under(&self, contacts: &[f64], mount: &[f64]) -> Vec<f64> {
+        self.factor.increment(self.body, &self.step, contacts, mount)
+    }
 }
 
 impl Motion<'_> {
@@ -59,36 +66,32 @@ impl Motion<'_> {
     pub(super) fn prepare<'m>(
         &'m self,
         state: &'m MotionState,
-        span: Span,
-        loads: &Loads,
+        foreseen: &Arc<Foreseen>,
         feet: &[Vec<NodalWeights>; 2],
     ) -> Result<[Option<Moving<'m>>; 2], DynamicsError> {
-        let rung = self.rung(span.rung)?;
+        let rung = self.rung(foreseen.span.rung)?;
         let prepare = |side: Side| {
             let i = side.index();
             let body = self.rings[i].as_ref()?;
             let (factor, old) = (rung[i].as_ref()?, state.rings[i].as_ref()?);
-            let load = self.ring_load(body, side, loads, span);
-            let inertia = loads.frame.filter(|_| side == Side::Inner).map(|turn| {
-                // First guess: the velocity stays.
-                let scheme = (self.settings.integrator, span.dt);
-                (turn, body.frame_load(turn, scheme, old, None))
-            });
-            let inertial = inertia.as_ref().map(|(_, f)| f.as_slice());
-            let step = match (&load, inertial) {
-                (Some(load), Some(f)) => {
-                    let known = combined([1.0; 2], load, f);
-                    factor.prepare(body, old, Some(&known), &feet[i])
+            let known = self.known(side, (body, factor), old, foreseen);
+            let inertia = known.inertia.as_ref().map(|(_, f)| f.as_slice());
+            let step = match (&known.solved, known.load.as_deref(), inertia) {
+                (Some(solved), ..) => factor.prepare_solved(body, old, solved.clone(), &feet[i]),
+                (None, Some(load), Some(f)) => {
+                    let both = combined([1.0; 2], load, f);
+                    factor.prepare(body, old, Some(&both), &feet[i])
                 }
-                (load, f) => factor.prepare(body, old, load.as_deref().or(f), &feet[i]),
+                (None, load, f) => factor.prepare(body, old, load.or(f), &feet[i]),
             };
             Some(Moving {
                 body,
                 factor,
                 old,
                 step,
-                load,
-                inertia,
+                inertia: known.inertia.clone(),
+                increment: None,
+                known,
             })
         };
         let (inner, outer) = self
@@ -99,7 +102,13 @@ impl Motion<'_> {
     }
 
     /// Generalised body load of a ring. Loads are fixed in space: those of the inner ring are turned into its frame.
-    fn ring_load(&self, body: &RingBody, side: Side, loads: &Loads, span: Span) -> Option<Vec<f64>> {
+    pub(super) fn ring_load(
+        &self,
+        body: &RingBody,
+        side: Side,
+        loads: &Loads,
+        span: Span,
+    ) -> Option<Vec<f64>> {
         let back = -self.frame_angle(side, span.at(1.0 - self.settings.integrator.alpha_f));
         let load = loads.rings[side.index()].as_ref()?;
         let reduced = body.coordinates.reduce(&turn_nodal(load, back));
@@ -193,55 +202,6 @@ impl Motion<'_> {
             imposed,
             frame: [angle(1.0 - self.settings.integrator.alpha_f), angle(1.0)],
         }
-    }
-
-    /// Increments of both rings under the forces of a solution.
-    pub(super) fn increments(
-        &self,
-        system: &SmallSystem,
-        solution: &SmallSolution,
-        moving: &[Option<Moving<'_>>; 2],
-    ) -> [Option<Vec<f64>>; 2] {
-        let increment = |side: Side| {
-            let ring = moving[side.index()].as_ref()?;
-            let forces = system.ring_loads(side, solution);
-            Some(
-                ring.factor
-                    .increment(ring.body, &ring.step, &forces, &solution.mounts[side.index()]),
-            )
-        };
-        let (inner, outer) = self
-            .model
-            .backend
-            .both(|| increment(Side::Inner), || increment(Side::Outer));
-        [inner, outer]
-    }
-
-    /// Inertia loads of the turning frame at the motion found. True when they are what the step used.
-    pub(super) fn renew_inertia(
-        &self,
-        span: Span,
-        moving: &mut [Option<Moving<'_>>; 2],
-        increments: &[Option<Vec<f64>>; 2],
-        scale: f64,
-    ) -> bool {
-        let (Some(ring), Some(dw)) = (&mut moving[0], &increments[0]) else {
-            return true;
-        };
-        let Some((turn, used)) = &mut ring.inertia else {
-            return true;
-        };
-        let scheme = (self.settings.integrator, span.dt);
-        let new = ring.body.frame_load(*turn, scheme, ring.old, Some(dw));
-        let change = combined([1.0, -1.0], &new, used);
-        let space = &ring.body.space;
-        let limit = (FRAME_TOLERANCE * scale).max(FRAME_ROUND_OFF * space.size(&new));
-        if space.is_within(limit, &change) {
-            return true;
-        }
-        *used = new;
-        ring.factor.add_load(ring.body, &mut ring.step, change);
-        false
     }
 }
 

@@ -65,17 +65,19 @@ const EXPECTED: [f64; 3] = [2.5, -2.0, 0.5];
 impl MotionState {
     /// Where the contacts of the next part are expected: contact angle, rad, and force, N, by site.
     pub(super) fn expected_places(&self) -> Vec<[f64; 2]> {
-        let sum = |site: usize, i: usize| {
-            let terms = EXPECTED
-                .iter()
-                .zip(&self.places)
-                .map(|(c, part)| c * part[site][i]);
-            terms.sum::<f64>()
-        };
-        (0..self.places[0].len())
-            .map(|site| [sum(site, 0), sum(site, 1).max(0.0)])
-            .collect()
+        expected(self.places.each_ref().map(Vec::as_slice))
     }
+}
+
+/// The same after parts in which they lay at `places`, the last first.
+pub(super) fn expected(places: [&[[f64; 2]]; 3]) -> Vec<[f64; 2]> {
+    let sum = |site: usize, i: usize| {
+        let terms = EXPECTED.iter().zip(&places).map(|(c, part)| c * part[site][i]);
+        terms.sum::<f64>()
+    };
+    (0..places[0].len())
+        .map(|site| [sum(site, 0), sum(site, 1).max(0.0)])
+        .collect()
 }
 
 impl SmallSystem {

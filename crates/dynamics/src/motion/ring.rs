@@ -2,10 +2,13 @@
 //!
 //! Contacts and partner act by a compliance C and then by the increment that their forces make. A sparse factor gives both by
 //! columns, one block solve of 1 + 2 n_balls right-hand sides per step, which reads the factor once. A periodic ring has C in a
-//! table of the responses of its raceway, made once per step size, and its vectors stay in harmonic space ([`super::space`]): a step
-//! takes two solves and transforms the raceway alone. The columns of a ring in
+//! table of the responses of its raceway, made once per step size, and its vectors stay in harmonic space ([`super::space`]): the pass that
+//! ends a step solves for the predictor of the next ([`super::pass`]), and the raceway alone is transformed. The columns of a ring in
 //! sectors stay by sector ([`super::by_sector`]). The columns of the mount are solved once per step size. A defect of the ring
 //! corrects all of it (`motion::defect`).
+
+use std::sync::Arc;
+use std::time::Instant;
 
 use contact::NodalWeights;
 use solver::LinearSolver;
@@ -17,6 +20,7 @@ use super::by_sector::{Motions, StepColumns};
 use super::defect::DefectStep;
 use super::effective::Factored;
 use super::integrator::Integrator;
+use super::pass::{Acting, Coming, Increment};
 pub use super::ring_state::RingState;
 use super::space::Space;
 use super::vectors::add;
@@ -32,16 +36,16 @@ pub struct RingFactor {
     pub(super) mount: Vec<f64>,
     /// The mount's compliance, row-major.
     pub(super) mount_compliance: Vec<f64>,
-    integrator: Integrator,
-    dt: f64,
+    pub(super) integrator: Integrator,
+    pub(super) dt: f64,
 }
 
 /// A ring over one step as contacts and partner see it: g = start, then g1 = predicted + C F, over the two directions
 /// of every contact and the functionals of the mount.
 pub struct RingStep {
-    predictor: Predictor,
+    pub(super) predictor: Predictor,
     /// Functionals of the contacts.
-    contacts: Vec<SparseLoad>,
+    pub(super) contacts: Vec<SparseLoad>,
     /// g at the start of the step, m and rad.
     pub start: Vec<f64>,
     /// g at its end without forces.
@@ -53,11 +57,11 @@ pub struct RingStep {
 }
 
 /// The increment without forces of contacts and partner.
-enum Predictor {
+pub(super) enum Predictor {
     /// Itself, then the increments per unit contact force: column-major `[n][1 + 2 n_contacts]`.
     Columns(Vec<f64>),
     /// Of the regular ring, harmonics and the rows of the border, and what a defect makes of it.
-    Harmonic(Vec<f64>, Option<DefectStep>),
+    Harmonic(Arc<Vec<f64>>, Option<DefectStep>),
     /// As columns, by sector.
     Sectors(StepColumns),
 }
@@ -109,7 +113,7 @@ impl RingFactor {
     }
 
     /// Values of functionals on what contacts and partner touch, at `x` of the ring's space.
-    fn measure(&self, body: &RingBody, functionals: &[&SparseLoad], x: &[f64]) -> Vec<f64> {
+    pub(super) fn measure(&self, body: &RingBody, functionals: &[&SparseLoad], x: &[f64]) -> Vec<f64> {
         match (&self.factor, &body.space) {
             (Factored::Cyclic(factor), Space::Harmonic(_)) => {
                 let [values, _] = factor.motions(x, functionals);
@@ -128,7 +132,11 @@ impl RingFactor {
         load: Option<&[f64]>,
         feet: &[NodalWeights],
     ) -> RingStep {
-        let clock = std::time::Instant::now();
+        let clock = Instant::now();
+        if let Some(pass) = self.pass(body) {
+            let predicted = pass.predict(state, Coming { load, turn: None });
+            return self.prepare_solved(body, state, Arc::new(predicted.solved), feet);
+        }
         let n = body.coordinates.n();
         let contacts = functionals(body, feet);
         let mut side = self.right_side(body, state, load);
@@ -139,7 +147,11 @@ impl RingFactor {
             Factored::Cyclic(factor) => {
                 let predictor = factor.solve(&body.space, side);
                 let (defect, moved, compliance) = self.meet(body, factor, &predictor, feet, &all);
-                (Predictor::Harmonic(predictor, defect), moved, compliance)
+                (
+                    Predictor::Harmonic(Arc::new(predictor), defect),
+                    moved,
+                    compliance,
+                )
             }
             Factored::Sparse(solver) => {
                 side.resize(n * (1 + contacts.len()), 0.0);
@@ -238,12 +250,19 @@ impl RingFactor {
         compliance
     }
 
-    /// f - K w0 + M (history) + C (history), the right-hand side of S dw.
-    fn right_side(&self, body: &RingBody, state: &RingState, load: Option<&[f64]>) -> Vec<f64> {
+    /// Factors of v and a under M, and under K, on the right-hand side.
+    pub(super) fn history(&self, body: &RingBody) -> [[f64; 2]; 2] {
         let [mass, damping] = self.integrator.history(self.dt);
         let [am, ak] = body.damping;
-        let mass = [mass[0] + am * damping[0], mass[1] + am * damping[1]];
-        let stiffness = [ak * damping[0], ak * damping[1]];
+        [
+            [mass[0] + am * damping[0], mass[1] + am * damping[1]],
+            [ak * damping[0], ak * damping[1]],
+        ]
+    }
+
+    /// f - K w0 + M (history) + C (history), the right-hand side of S dw, of coordinates.
+    fn right_side(&self, body: &RingBody, state: &RingState, load: Option<&[f64]>) -> Vec<f64> {
+        let [mass, stiffness] = self.history(body);
         let mut side = body.balance(state, mass, stiffness);
         if let Some(load) = load {
             add(&mut side, load);
@@ -257,7 +276,7 @@ impl RingFactor {
         let moved: Vec<f64> = match (&self.factor, &mut step.predictor) {
             (Factored::Cyclic(factor), Predictor::Harmonic(predictor, correction)) => {
                 let more = factor.solve(&body.space, load);
-                add(predictor, &more);
+                add(Arc::make_mut(predictor).as_mut_slice(), &more);
                 let [mut moved, at] = factor.motions(&more, &all);
                 if let (Some(defect), Some(correction)) = (self.factor.defect(), correction) {
                     let corrected = correction.add(defect, &at);
@@ -280,18 +299,12 @@ impl RingFactor {
     pub fn increment(&self, body: &RingBody, step: &RingStep, contacts: &[f64], mount: &[f64]) -> Vec<f64> {
         match (&self.factor, &step.predictor) {
             (Factored::Cyclic(factor), Predictor::Harmonic(predictor, correction)) => {
-                let acting = step
-                    .contacts
-                    .iter()
-                    .zip(contacts)
-                    .chain(body.mount.iter().zip(mount));
                 let by_defect = match (&factor.defect, correction) {
                     (Some(defect), Some(correction)) => correction.loads(defect, &[contacts, mount].concat()),
                     _ => Vec::new(),
                 };
-                let loads =
-                    acting.flat_map(|(functional, f)| functional.iter().map(move |&(i, w)| (i, f * w)));
-                factor.increment(&body.space, predictor, loads.chain(by_defect))
+                let loads = acting(body, step, contacts, mount).chain(by_defect);
+                factor.increment(&body.space, predictor, loads)
             }
             (Factored::Sectors(factor), Predictor::Sectors(columns)) => {
                 factor.increment(columns, contacts, mount)
@@ -313,18 +326,36 @@ impl RingFactor {
 
     /// The state at the end of a step with increment `dw`.
     pub fn advance(&self, body: &RingBody, state: &RingState, dw: &[f64]) -> RingState {
-        body.advanced(self.integrator, self.dt, state, dw)
+        match self.pass(body) {
+            Some(pass) => {
+                let increment = Increment::Found(dw.to_vec());
+                pass.end(state, increment, Acting::default(), None).state
+            }
+            None => state.advanced(self.integrator, self.dt, dw),
+        }
     }
 }
 
+/// Generalised loads of forces on contacts and mount, index and value.
+pub(super) fn acting<'a>(
+    body: &'a RingBody,
+    step: &'a RingStep,
+    contacts: &'a [f64],
+    mount: &'a [f64],
+) -> impl Iterator<Item = (usize, f64)> + 'a {
+    let contacts = step.contacts.iter().zip(contacts);
+    let all = contacts.chain(body.mount.iter().zip(mount));
+    all.flat_map(|(functional, f)| functional.iter().map(move |&(i, w)| (i, f * w)))
+}
+
 /// Functionals of contacts at `feet`, two each.
-fn functionals(body: &RingBody, feet: &[NodalWeights]) -> Vec<SparseLoad> {
+pub(super) fn functionals(body: &RingBody, feet: &[NodalWeights]) -> Vec<SparseLoad> {
     let reduced = feet.iter().flat_map(|foot| body.coordinates.reduce_weights(foot));
     reduced.collect()
 }
 
 /// Component-wise a + b.
-fn sum(a: &[f64], b: &[f64]) -> Vec<f64> {
+pub(super) fn sum(a: &[f64], b: &[f64]) -> Vec<f64> {
     a.iter().zip(b).map(|(a, b)| a + b).collect()
 }
 

@@ -1,7 +1,10 @@
 //! The part of the state that belongs to one ring.
 
+use std::sync::Arc;
+
 use rayon::prelude::*;
 
+use super::ahead::Known;
 use super::integrator::Integrator;
 use super::vectors::TASK;
 
@@ -14,17 +17,10 @@ pub struct RingState {
     v: Vec<f64>,
     /// Acceleration.
     a: Vec<f64>,
-    /// What follows from the state, once it is known; no part of it.
-    measures: Option<Measures>,
-}
-
-/// What follows from displacement and velocity of a ring.
-#[derive(Clone, Debug)]
-pub(super) struct Measures {
-    /// M v and K w.
-    pub products: [Vec<f64>; 2],
-    /// v M v / 2 and w K w / 2, J.
-    pub energies: [f64; 2],
+    /// Kinetic and strain energy, J, once they are known; no part of the state.
+    energies: Option<[f64; 2]>,
+    /// What the step from here begins with, where the step before has found it; no part of the state.
+    known: Option<Arc<Known>>,
 }
 
 impl PartialEq for RingState {
@@ -40,7 +36,8 @@ impl RingState {
             w,
             v,
             a,
-            measures: None,
+            energies: None,
+            known: None,
         }
     }
 
@@ -75,77 +72,78 @@ impl RingState {
         [self.w, self.v, self.a]
     }
 
-    /// What [`RingState::keep`] was given.
-    pub(super) fn measures(&self) -> Option<&Measures> {
-        self.measures.as_ref()
+    /// The numbers from `first` on, `len` of each: displacement, velocity, acceleration.
+    pub(super) fn part(&self, first: usize, len: usize) -> [&[f64]; 3] {
+        [&self.w, &self.v, &self.a].map(|x| &x[first..first + len])
     }
 
-    /// Keeps what follows from the state for the step that follows.
-    pub(super) fn keep(&mut self, measures: Measures) {
-        self.measures = Some(measures);
+    /// Kinetic and strain energy, J, where they are known.
+    pub(super) fn energies(&self) -> Option<[f64; 2]> {
+        self.energies
+    }
+
+    /// Keeps the energies.
+    pub(super) fn keep(&mut self, energies: [f64; 2]) {
+        self.energies = Some(energies);
+    }
+
+    /// What [`RingState::foresee`] was given.
+    pub(super) fn known(&self) -> Option<&Arc<Known>> {
+        self.known.as_ref()
+    }
+
+    /// Keeps what the step from here begins with.
+    pub(super) fn foresee(&mut self, known: Arc<Known>) {
+        self.known = Some(known);
     }
 
     /// Displacement and velocity at the weighted time of the scheme when the step's increment is `dw`, or the velocity stays.
     pub fn within(&self, integrator: Integrator, dt: f64, dw: Option<&[f64]>) -> [Vec<f64>; 2] {
         let mut within = [vec![0.0; self.w.len()], vec![0.0; self.w.len()]];
-        self.part_within(integrator, dt, dw, 0, &mut within);
+        let to = within.each_mut().map(Vec::as_mut_slice);
+        within_part(integrator, dt, dw, self.part(0, self.w.len()), to);
         within
-    }
-
-    /// The same of the numbers from `first` on, as many as `within` has.
-    pub(super) fn part_within(
-        &self,
-        integrator: Integrator,
-        dt: f64,
-        dw: Option<&[f64]>,
-        first: usize,
-        [w, v]: &mut [Vec<f64>; 2],
-    ) {
-        let s = 1.0 - integrator.alpha_f;
-        let range = first..first + w.len();
-        let (w0, v0, a0) = (
-            &self.w[range.clone()],
-            &self.v[range.clone()],
-            &self.a[range.clone()],
-        );
-        let dw = dw.map(|dw| &dw[range]);
-        for i in 0..w.len() {
-            let d = dw.map_or(dt * v0[i], |dw| dw[i]);
-            let [v1, _] = integrator.update(dt, d, v0[i], a0[i]);
-            w[i] = w0[i] + s * d;
-            v[i] = v0[i] + s * (v1 - v0[i]);
-        }
     }
 
     /// The state at the end of a step with the increment `dw`.
     pub fn advanced(&self, integrator: Integrator, dt: f64, dw: &[f64]) -> RingState {
         let [mut w, mut v, mut a] = [(); 3].map(|()| vec![0.0; dw.len()]);
         let new = w.par_chunks_mut(TASK).zip(v.par_chunks_mut(TASK));
-        let new = new.zip(a.par_chunks_mut(TASK));
-        new.enumerate().for_each(|(task, ((w, v), a))| {
-            self.advance_part(integrator, dt, dw, TASK * task, [w, v, a]);
+        let new = new.zip(a.par_chunks_mut(TASK)).zip(dw.par_chunks(TASK));
+        new.enumerate().for_each(|(task, (((w, v), a), dw))| {
+            advance_part(integrator, dt, dw, self.part(TASK * task, dw.len()), [w, v, a]);
         });
         RingState::new(w, v, a)
     }
+}
 
-    /// The same of the numbers from `first` on, as many as `w` has: new displacement, velocity, acceleration.
-    pub(super) fn advance_part(
-        &self,
-        integrator: Integrator,
-        dt: f64,
-        dw: &[f64],
-        first: usize,
-        [w, v, a]: [&mut [f64]; 3],
-    ) {
-        let range = first..first + w.len();
-        let (w0, v0, a0) = (
-            &self.w[range.clone()],
-            &self.v[range.clone()],
-            &self.a[range.clone()],
-        );
-        for (i, &d) in dw[range].iter().enumerate() {
-            [v[i], a[i]] = integrator.update(dt, d, v0[i], a0[i]);
-            w[i] = w0[i] + d;
-        }
+/// Displacement and velocity at the weighted time of a step from `[w0, v0, a0]` with the increment `dw`, or at which the velocity stays.
+pub(super) fn within_part(
+    integrator: Integrator,
+    dt: f64,
+    dw: Option<&[f64]>,
+    [w0, v0, a0]: [&[f64]; 3],
+    [w, v]: [&mut [f64]; 2],
+) {
+    let s = 1.0 - integrator.alpha_f;
+    for i in 0..w.len() {
+        let d = dw.map_or(dt * v0[i], |dw| dw[i]);
+        let [v1, _] = integrator.update(dt, d, v0[i], a0[i]);
+        w[i] = w0[i] + s * d;
+        v[i] = v0[i] + s * (v1 - v0[i]);
+    }
+}
+
+/// Displacement, velocity and acceleration at the end of a step from `[w0, v0, a0]` with the increment `dw`.
+pub(super) fn advance_part(
+    integrator: Integrator,
+    dt: f64,
+    dw: &[f64],
+    [w0, v0, a0]: [&[f64]; 3],
+    [w, v, a]: [&mut [f64]; 3],
+) {
+    for (i, &d) in dw.iter().enumerate() {
+        [v[i], a[i]] = integrator.update(dt, d, v0[i], a0[i]);
+        w[i] = w0[i] + d;
     }
 }

@@ -4,7 +4,7 @@
 //! loads that are fixed in space are turned into it. Contacts of a step are placed at the azimuths of its weighted time. Factors of
 //! a rung are made when it is first used, and kept.
 
-use std::sync::OnceLock;
+use std::sync::{Arc, OnceLock};
 
 use contact::Side;
 
@@ -33,6 +33,8 @@ pub struct Motion<'a> {
     pub(super) settings: MotionSettings,
     pub(super) kinematics: Kinematics,
     pub(super) rings: [Option<RingBody>; 2],
+    /// Tells this motion from others.
+    pub(super) token: Arc<()>,
     rungs: Vec<OnceLock<Rung>>,
     /// Seconds so far, by effect.
     pub costs: EffectCosts,
@@ -56,6 +58,7 @@ impl<'a> Motion<'a> {
             kinematics,
             rings: [inner?, outer?],
             settings,
+            token: Arc::new(()),
             rungs,
             costs: EffectCosts::new(model),
         };
@@ -180,14 +183,17 @@ impl<'a> Motion<'a> {
         };
         let (mut at, mut next, mut report) = (0, None, StepReport::default());
         while at < n {
-            let span = Span {
-                start: self.time(state.step) + self.settings.dt * (at as f64 / n as f64),
-                dt: self.step_size(rung),
-                rung,
+            let span = self.span(state.step, at, rung);
+            let after = at + (n >> rung);
+            // The part that follows if all goes on as it is.
+            let upcoming = match ladder.tolerance {
+                _ if after < n => Some(self.span(state.step, after, rung)),
+                Some(_) => Some(self.span(state.step + 1, 0, rung)),
+                None => (rung == 0).then(|| self.span(state.step + 1, 0, 0)),
             };
-            match self.try_part(next.as_ref().unwrap_or(state), span) {
+            match self.try_part(next.as_ref().unwrap_or(state), span, upcoming) {
                 Ok((part, done)) => {
-                    at += n >> rung;
+                    at = after;
                     report.add(&done);
                     next = Some(part);
                     let coarser = ladder.tolerance.is_some_and(|limit| done.error < RISE * limit);
@@ -215,9 +221,24 @@ impl<'a> Motion<'a> {
         Ok((next, report))
     }
 
+    /// The part of a step that begins `at` smallest parts from its start.
+    fn span(&self, step: u64, at: u64, rung: u32) -> Span {
+        let n = 1u64 << self.settings.ladder.halvings;
+        Span {
+            start: self.time(step) + self.settings.dt * (at as f64 / n as f64),
+            dt: self.step_size(rung),
+            rung,
+        }
+    }
+
     /// One part; too large a local error is an error.
-    fn try_part(&self, state: &MotionState, span: Span) -> Result<(MotionState, StepReport), DynamicsError> {
-        let (next, report) = self.substep(state, span)?;
+    fn try_part(
+        &self,
+        state: &MotionState,
+        span: Span,
+        upcoming: Option<Span>,
+    ) -> Result<(MotionState, StepReport), DynamicsError> {
+        let (next, report) = self.substep(state, span, upcoming)?;
         match self.settings.ladder.tolerance {
             Some(limit) if report.error > limit => Err(DynamicsError::StepInaccurate {
                 error: report.error,

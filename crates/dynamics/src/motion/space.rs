@@ -8,14 +8,11 @@
 use std::sync::OnceLock;
 
 use mesh::NodePositions;
-use rayon::prelude::*;
 use solver::cyclic::{HarmonicOperator, add_turned};
 use solver::{CyclicRing, SolverError};
 
 use super::coordinates::Coordinates;
-use super::integrator::Integrator;
 use super::matrices::RingMatrices;
-use super::ring_state::{Measures, RingState};
 use crate::effects::FrameTurn;
 use crate::sectors::Sectors;
 use crate::solution::dot;
@@ -30,8 +27,9 @@ pub enum Space {
 
 /// Harmonic space and what acts in it.
 pub struct HarmonicSpace {
-    ring: CyclicRing,
-    n_shaft: usize,
+    pub(super) ring: CyclicRing,
+    /// Rows of the border: dofs of the shaft.
+    pub(super) n_shaft: usize,
     /// M.
     pub(super) mass: HarmonicOperator,
     /// K.
@@ -42,7 +40,7 @@ pub struct HarmonicSpace {
 
 /// Inertia of a turning frame beyond that of the free nodes' motion, as low vectors: M P and M J of fields, with P u = (u_x, u_y, 0)
 /// and J u = (u_y, -u_x, 0).
-struct FrameLoads {
+pub(super) struct FrameLoads {
     /// Of the node positions.
     position: [Vec<f64>; 2],
     /// Of the motion of the held nodes with each dof of the shaft.
@@ -131,30 +129,6 @@ impl Space {
             }
         }
     }
-
-    /// A bound of the sum of the magnitudes of the coordinates of `x`: the root of the sum of their squares times that of their number.
-    pub fn size(&self, x: &[f64]) -> f64 {
-        (self.n(x) as f64 * self.dot(x, x)).sqrt()
-    }
-
-    /// Whether the sum of the magnitudes of the coordinates of `x` is at most `limit`. It lies between the root of the sum of their
-    /// squares and [`Space::size`]; only where that does not decide, harmonics are transformed.
-    pub fn is_within(&self, limit: f64, x: &[f64]) -> bool {
-        let least = self.dot(x, x).sqrt();
-        if least > limit {
-            return false;
-        }
-        let sum = || self.coordinates(x).iter().map(|c| c.abs()).sum::<f64>();
-        (self.n(x) as f64).sqrt() * least <= limit || sum() <= limit
-    }
-
-    /// Number of coordinates of the vector `x`.
-    fn n(&self, x: &[f64]) -> usize {
-        match self {
-            Space::Nodal => x.len(),
-            Space::Harmonic(space) => space.ring.n() + space.n_shaft,
-        }
-    }
 }
 
 /// Harmonics and border of the coordinates `y`.
@@ -178,121 +152,62 @@ pub(super) fn from_harmonics(ring: &CyclicRing, x: &[f64]) -> Vec<f64> {
 }
 
 impl HarmonicSpace {
-    /// M v and K w, and the energies, J.
-    pub(super) fn measures(&self, v: &[f64], w: &[f64]) -> Measures {
-        let (mass, stiffness) = rayon::join(|| self.mass.product(v), || self.stiffness.product(w));
-        let len = self.ring.harmonic_len();
-        let groups = 0..len.checked_div(self.ring.low_len()).unwrap_or(0);
-        let sums = groups.into_par_iter().map(|group| {
-            let range = self.ring.low_len() * group..self.ring.low_len() * (group + 1);
-            let dot = |a: &[f64], b: &[f64]| self.ring.group_dot(group, &a[range.clone()], &b[range.clone()]);
-            [dot(v, &mass), dot(w, &stiffness)]
-        });
-        let sums: Vec<[f64; 2]> = sums.collect();
-        self.measured([v, w], [mass, stiffness], &sums)
+    /// Length of one group's part of a vector, of the first with the rows of the border.
+    pub(super) fn part_len(&self, group: usize) -> usize {
+        self.ring.low_len() + if group == 0 { self.n_shaft } else { 0 }
     }
 
-    /// Measures from the products and each group's part of their scalar products.
-    fn measured(&self, [v, w]: [&[f64]; 2], products: [Vec<f64>; 2], sums: &[[f64; 2]]) -> Measures {
-        let len = self.ring.harmonic_len();
-        let [mut kinetic, mut strain] = [0.0; 2];
-        for [m, k] in sums {
-            kinetic += m;
-            strain += k;
-        }
-        kinetic += dot(&v[len..], &products[0][len..]);
-        strain += dot(&w[len..], &products[1][len..]);
-        Measures {
-            products,
-            energies: [0.5 * kinetic, 0.5 * strain],
-        }
+    /// One group's share of the scalar product of two vectors, of its parts of them.
+    pub(super) fn part_dot(&self, group: usize, a: &[f64], b: &[f64]) -> f64 {
+        let low = self.ring.low_len();
+        self.ring.group_dot(group, &a[..low], &b[..low]) + dot(&a[low..], &b[low..])
     }
 
-    /// The state at the end of a step from `old` with the increment `dw`, with its measures: one pass over the groups of harmonics.
-    pub(super) fn advanced(&self, integrator: Integrator, dt: f64, old: &RingState, dw: &[f64]) -> RingState {
-        let (n, len, low) = (dw.len(), self.ring.harmonic_len(), self.ring.low_len());
-        let [mut w, mut v, mut a, mut mass, mut stiffness] = [(); 5].map(|()| vec![0.0; n]);
-        let groups = w[..len]
-            .par_chunks_mut(low)
-            .zip(v[..len].par_chunks_mut(low))
-            .zip(a[..len].par_chunks_mut(low))
-            .zip(
-                mass[..len]
-                    .par_chunks_mut(low)
-                    .zip(stiffness[..len].par_chunks_mut(low)),
-            );
-        let sums = groups.enumerate().map(|(group, (((w, v), a), (m, k)))| {
-            old.advance_part(integrator, dt, dw, low * group, [w, v, a]);
-            self.mass.group_product(group, v, m);
-            self.stiffness.group_product(group, w, k);
-            [self.ring.group_dot(group, v, m), self.ring.group_dot(group, w, k)]
-        });
-        let mut sums: Vec<[f64; 2]> = sums.collect();
-        let shaft = [&mut w[len..], &mut v[len..], &mut a[len..]];
-        old.advance_part(integrator, dt, dw, len, shaft);
-        if self.n_shaft > 0 {
-            self.mass.add_border(&v, &mut mass);
-            self.stiffness.add_border(&w, &mut stiffness);
-            sums[0] =
-                [(&v, &mass), (&w, &stiffness)].map(|(x, y)| self.ring.group_dot(0, &x[..low], &y[..low]));
-        }
-        let measures = self.measured([&v, &w], [mass, stiffness], &sums);
-        let mut new = RingState::new(w, v, a);
-        new.keep(measures);
-        new
+    /// v M v / 2 and w K w / 2, J.
+    pub(super) fn energies(&self, v: &[f64], w: &[f64]) -> [f64; 2] {
+        [(&self.mass, v), (&self.stiffness, w)].map(|(operator, x)| {
+            let (product, len) = (operator.product(x), self.ring.harmonic_len());
+            let harmonics = self.ring.harmonic_dot(&x[..len], &product[..len]);
+            0.5 * (harmonics + dot(&x[len..], &product[len..]))
+        })
     }
 
-    /// Generalised inertia load of the turning frame, see [`super::body::RingBody::frame_load`]: one pass over the groups of
-    /// harmonics.
-    pub(super) fn frame_load(
+    /// What the inertia of a turning frame needs; made when first asked for.
+    pub(super) fn frame(&self, nodes: Nodes<'_>) -> &FrameLoads {
+        self.frame.get_or_init(|| self.frame_loads(nodes))
+    }
+
+    /// One group of the generalised inertia load of the turning frame, see [`super::body::RingBody::frame_load`], at the displacement w and
+    /// the velocity v of the group; `field` is overwritten.
+    pub(super) fn frame_part(
         &self,
-        turn: FrameTurn,
-        nodes: Nodes<'_>,
-        (integrator, dt): (Integrator, f64),
-        (old, dw): (&RingState, Option<&[f64]>),
-    ) -> Vec<f64> {
-        let (speed, acceleration) = (turn.speed, turn.acceleration);
-        let (n, len, low) = (
-            old.displacement().len(),
-            self.ring.harmonic_len(),
-            self.ring.low_len(),
-        );
-        let mut load = vec![0.0; n];
-        let buffers = || ([vec![0.0; low], vec![0.0; low]], vec![0.0; low]);
-        let first = |group: usize, (within, field): &mut ([Vec<f64>; 2], Vec<f64>)| {
-            old.part_within(integrator, dt, dw, low * group, within);
-            // J u = -e_z x u.
-            field.fill(0.0);
-            add_turned([speed * speed, -acceleration], &within[0], field);
-            add_turned([0.0, -2.0 * speed], &within[1], field);
-        };
-        load[..len]
-            .par_chunks_mut(low)
-            .enumerate()
-            .for_each_init(buffers, |buffers, (group, load)| {
-                first(group, buffers);
-                self.mass.group_product(group, &buffers.1, load);
-            });
-        // The rows of the shaft, which move with the first group alone.
-        let mut lowest = buffers();
-        first(0, &mut lowest);
-        self.mass.add_rows(&lowest.1, &mut load);
-        let mut shaft = [vec![0.0; self.n_shaft], vec![0.0; self.n_shaft]];
-        old.part_within(integrator, dt, dw, len, &mut shaft);
-        let known = self.frame.get_or_init(|| self.frame_loads(nodes));
+        (turn, known): (FrameTurn, &FrameLoads),
+        group: usize,
+        [w, v]: [&[f64]; 2],
+        field: &mut [f64],
+        load: &mut [f64],
+    ) {
+        let (speed, acceleration, low) = (turn.speed, turn.acceleration, self.ring.low_len());
+        field.fill(0.0);
+        // J u = -e_z x u.
+        add_turned([speed * speed, -acceleration], &w[..low], &mut field[..low]);
+        add_turned([0.0, -2.0 * speed], &v[..low], &mut field[..low]);
+        self.mass.group_product(group, field, load);
+        if group > 0 {
+            return;
+        }
         let mut add = |[own, turned]: [f64; 2], [p, j]: &[Vec<f64>; 2]| {
-            self.ring.add_low(own, p, &mut load);
-            self.ring.add_low(turned, j, &mut load);
+            let terms = load.iter_mut().zip(p.iter().zip(j));
+            terms.for_each(|(load, (p, j))| *load += own * p + turned * j);
         };
         add([speed * speed, acceleration], &known.position);
         for (k, of_shaft) in known.shaft.iter().enumerate() {
-            let [q, rate] = [shaft[0][k], shaft[1][k]];
+            let [q, rate] = [w[low + k], v[low + k]];
             add(
                 [speed * speed * q, acceleration * q + 2.0 * speed * rate],
                 of_shaft,
             );
         }
-        load
     }
 
     fn frame_loads(&self, nodes: Nodes<'_>) -> FrameLoads {

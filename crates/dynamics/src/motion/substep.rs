@@ -1,22 +1,22 @@
 //! One part of a step, of one size: loads, patches and both rings, then Newton until patches and inertia of the turning frame
 //! are those of the motion found, then the new state.
 
+use std::sync::Arc;
 use std::time::Instant;
 
 use contact::Side;
 
+use super::ahead::Foreseen;
+use super::close::Settling;
 use super::newton::{SmallSolution, check_patches, check_range};
 use super::part::Moving;
 use super::place::Placing;
 use super::run::Motion;
 use super::small::SmallSystem;
 use super::state::{MotionState, StepReport};
-use crate::effects::Loads;
 use crate::error::DynamicsError;
 
-/// Rounds before a step counts as failed; each contracts by about speed times step size.
-const MAX_FRAME_ROUNDS: usize = 25;
-/// The same for the places of the patches.
+/// Rounds for the places of the patches before a step counts as failed.
 const MAX_PLACE_ROUNDS: usize = 20;
 
 /// A part of a step.
@@ -38,40 +38,44 @@ impl Span {
 }
 
 /// A part of a step under way.
-struct Part<'m> {
-    span: Span,
-    loads: Loads,
+pub(super) struct Part<'m> {
+    pub span: Span,
+    pub foreseen: Arc<Foreseen>,
     /// Contact angle, rad, and force, N, for which the patches were placed, by site.
     places: Vec<[f64; 2]>,
     placing: Placing,
-    moving: [Option<Moving<'m>>; 2],
-    system: SmallSystem,
+    pub moving: [Option<Moving<'m>>; 2],
+    pub system: SmallSystem,
     /// Largest force that acts at the start, N.
-    scale: f64,
-    report: StepReport,
-    clock: Lap,
+    pub scale: f64,
+    /// The inertia of the turning frame.
+    pub settling: Settling,
+    /// Sum of the squares of its last change, N^2.
+    pub last_change: Option<f64>,
+    pub report: StepReport,
+    pub clock: Lap,
 }
 
 impl Motion<'_> {
+    /// One part of a step; looks ahead to the part `upcoming`.
     pub(super) fn substep(
         &self,
         state: &MotionState,
         span: Span,
+        upcoming: Option<Span>,
     ) -> Result<(MotionState, StepReport), DynamicsError> {
         let mut part = self.begin(state, span)?;
-        let (solution, increments) = loop {
+        let (solution, ends) = loop {
             let solution = self.solve_in_place(state, &mut part)?;
-            let increments = self.increments(&part.system, &solution, &part.moving);
-            part.report.seconds.update += part.clock.lap();
-            if self.settle_frame(&mut part, &increments)? {
-                break (solution, increments);
+            if let Some(ends) = self.close(state, &mut part, &solution, upcoming)? {
+                break (solution, ends);
             }
         };
         check_patches(&part.system, &solution)?;
         check_range(self.model, &part.system, &solution)?;
         let places = part.system.places(&solution);
         self.check_on_grooves(&places)?;
-        let (mut next, error) = self.finish(state, &part.system, &solution, part.moving, increments);
+        let (mut next, error) = self.finish(state, &part.system, &solution, part.moving, ends);
         next.places.rotate_right(1);
         next.places[0] = places;
         let mut report = part.report;
@@ -87,31 +91,37 @@ impl Motion<'_> {
             ..StepReport::default()
         };
         let mut clock = Lap::new();
-        let places = state.expected_places();
-        let loads = self.loads_at(&places, self.weighted_time(span), span.dt)?;
+        let foreseen = self.foreseen(state, span)?;
         report.seconds.loads = clock.lap();
+        let places = foreseen.places.clone();
         let placing = self.place(&places, self.weighted_time(span))?;
         report.seconds.patches = clock.lap();
-        let moving = self.prepare(state, span, &loads, &placing.feet)?;
+        let moving = self.prepare(state, &foreseen, &placing.feet)?;
         let times = moving.iter().flatten().map(|m| m.step.seconds);
-        [report.seconds.right_side, report.seconds.solve] = longest(times);
-        clock.lap();
-        let system = self.system(state, span, placing.sites.clone(), &moving, &loads)?;
-        Ok(Part {
+        report.seconds.right_side = times.map(|[sides, _]| sides).fold(0.0, f64::max);
+        report.seconds.solve = clock.lap() - report.seconds.right_side;
+        let system = self.system(state, span, placing.sites.clone(), &moving, &foreseen.loads)?;
+        let mut part = Part {
             span,
             places,
             placing,
             system,
-            scale: self.force_scale(state, &loads),
-            loads,
+            scale: self.force_scale(state, &foreseen.loads),
+            settling: Settling::Settled,
+            last_change: None,
+            foreseen,
             moving,
             report,
             clock,
-        })
+        };
+        if part.foreseen.loads.frame.is_some() {
+            part.settling = Settling::Open(self.contraction(&part));
+        }
+        Ok(part)
     }
 
     /// Time at which a part is in balance, s.
-    fn weighted_time(&self, span: Span) -> f64 {
+    pub(super) fn weighted_time(&self, span: Span) -> f64 {
         span.at(1.0 - self.settings.integrator.alpha_f)
     }
 
@@ -136,7 +146,7 @@ impl Motion<'_> {
             self.move_contacts(part);
             part.report.seconds.solve += part.clock.lap();
             let sites = part.placing.sites.clone();
-            part.system = self.system(state, part.span, sites, &part.moving, &part.loads)?;
+            part.system = self.system(state, part.span, sites, &part.moving, &part.foreseen.loads)?;
         }
         // A ball that presses beyond the rim has no place: that is the cause then.
         self.check_on_grooves(&part.places)?;
@@ -159,46 +169,10 @@ impl Motion<'_> {
             .backend
             .both(|| turn(inner, Side::Inner), || turn(outer, Side::Outer));
     }
-
-    /// True when the inertia of the turning frame is that of the motion found; else the part goes on with the new one.
-    fn settle_frame(
-        &self,
-        part: &mut Part<'_>,
-        increments: &[Option<Vec<f64>>; 2],
-    ) -> Result<bool, DynamicsError> {
-        let Some(turn) = part.loads.frame else {
-            return Ok(true);
-        };
-        let settled = self.costs.time("frame_rotation", || {
-            self.renew_inertia(part.span, &mut part.moving, increments, part.scale)
-        });
-        part.report.seconds.frame += part.clock.lap();
-        if settled {
-            return Ok(true);
-        }
-        part.report.frame_rounds += 1;
-        if part.report.frame_rounds > MAX_FRAME_ROUNDS {
-            return Err(DynamicsError::FrameNotSettled {
-                rounds: MAX_FRAME_ROUNDS,
-                speed: turn.speed,
-            });
-        }
-        for (answer, ring) in part.system.rings.iter_mut().zip(&part.moving) {
-            if let (Some(answer), Some(ring)) = (answer, ring) {
-                answer.predicted.clone_from(&ring.step.predicted);
-            }
-        }
-        Ok(false)
-    }
-}
-
-/// Component-wise largest.
-fn longest(times: impl Iterator<Item = [f64; 2]>) -> [f64; 2] {
-    times.fold([0.0; 2], |m, t| [m[0].max(t[0]), m[1].max(t[1])])
 }
 
 /// A stop watch.
-struct Lap(Instant);
+pub(super) struct Lap(Instant);
 
 impl Lap {
     fn new() -> Lap {
@@ -206,7 +180,7 @@ impl Lap {
     }
 
     /// Seconds since the last lap.
-    fn lap(&mut self) -> f64 {
+    pub(super) fn lap(&mut self) -> f64 {
         let now = Instant::now();
         let seconds = (now - self.0).as_secs_f64();
         self.0 = now;

@@ -1,5 +1,6 @@
 //! Rotationally periodic rings, solved from one sector: the same results as with assembled matrices and sparse factors.
 
+mod ahead;
 mod defect;
 mod missing;
 #[path = "../support/mod.rs"]

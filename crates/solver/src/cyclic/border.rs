@@ -93,24 +93,51 @@ impl CyclicBordered {
     pub fn solve_harmonic(&self, columns: &mut [&mut [f64]], border: &mut [f64]) {
         let m = self.schur.n();
         assert_eq!(border.len(), m * columns.len(), "{m} rows of border per column");
-        let (ring, group_len) = (self.factor.ring(), self.factor.ring().group_len());
-        if m > 0 && group_len > 0 {
-            for (w, q) in columns.iter().zip(border.chunks_exact_mut(m)) {
-                for (q, z) in q.iter_mut().zip(self.columns.chunks_exact(group_len)) {
-                    *q -= ring.group_dot(0, z, &w[..group_len]);
-                }
-            }
-        }
-        if m > 0 {
-            self.schur.solve(border, columns.len());
+        let low = self.factor.ring().low_len();
+        for (w, q) in columns.iter().zip(border.chunks_exact_mut(m.max(1))) {
+            self.reduce_border(&w[..low], q);
         }
         self.factor.solve_harmonic(columns);
-        if m > 0 && group_len > 0 {
-            for (w, q) in columns.iter_mut().zip(border.chunks_exact(m)) {
-                for (q, z) in q.iter().zip(self.columns.chunks_exact(group_len)) {
-                    w.iter_mut().zip(z).for_each(|(w, z)| *w -= q * z);
-                }
-            }
+        for (w, q) in columns.iter_mut().zip(border.chunks_exact(m.max(1))) {
+            self.follow_border(q, &mut w[..low]);
+        }
+    }
+
+    /// Replaces one group's part of a right-hand side, `[low_len()]`, and in the first group the rows of the border, by the solution,
+    /// for passes over the groups while they are in the cache: the bits of [`CyclicBordered::solve_harmonic`].
+    ///
+    /// # Panics
+    /// When a length is another, or ranks share the solves.
+    pub fn solve_group(&self, group: usize, low: &mut [f64], border: &mut [f64]) {
+        assert!(!self.is_shared(), "solves that ranks share are of all groups");
+        let m = if group == 0 { self.schur.n() } else { 0 };
+        assert_eq!(border.len(), m, "the border goes with the first group");
+        if m > 0 {
+            self.reduce_border(low, border);
+        }
+        self.factor.solve_one(group, low);
+        if m > 0 {
+            self.follow_border(border, low);
+        }
+    }
+
+    /// Whether ranks share the solves, which are collective then.
+    pub fn is_shared(&self) -> bool {
+        self.factor.ring().comm.size() > 1
+    }
+
+    /// The rows q of the border of a solution, from those of the right-hand side and its first group.
+    fn reduce_border(&self, low: &[f64], q: &mut [f64]) {
+        for (q, z) in q.iter_mut().zip(self.columns.chunks_exact(low.len().max(1))) {
+            *q -= self.factor.ring().group_dot(0, z, low);
+        }
+        self.schur.solve(q, 1);
+    }
+
+    /// What the rows q of the border do to the first group of a solution.
+    fn follow_border(&self, q: &[f64], low: &mut [f64]) {
+        for (q, z) in q.iter().zip(self.columns.chunks_exact(low.len().max(1))) {
+            low.iter_mut().zip(z).for_each(|(w, z)| *w -= q * z);
         }
     }
 }

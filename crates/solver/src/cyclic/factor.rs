@@ -320,15 +320,20 @@ impl CyclicCholesky {
         let shares = comm.shares(self.ring.shared.phases.n_groups());
         let mut solved = Vec::new();
         if shares[comm.rank()].contains(&0) {
-            match self.symmetry {
-                Symmetry::Mirrored => self.solve_group::<Real>(0, vec![low]),
-                Symmetry::None => self.solve_group::<Hermitian>(0, vec![low]),
-            }
+            self.solve_one(0, low);
             solved.extend_from_slice(low);
         }
         let length = |share: &Range<usize>| if share.contains(&0) { low.len() } else { 0 };
         let lengths: Vec<usize> = shares.iter().map(length).collect();
         low.copy_from_slice(&comm.all_gather(solved, &lengths));
+    }
+
+    /// Solves one right-hand side for one group, by its place among those of this rank.
+    pub(super) fn solve_one(&self, place: usize, column: &mut [f64]) {
+        match self.symmetry {
+            Symmetry::Mirrored => self.solve_group::<Real>(place, vec![column]),
+            Symmetry::None => self.solve_group::<Hermitian>(place, vec![column]),
+        }
     }
 
     /// Solves one group, by its place among those of this rank, two right-hand sides at a time.

@@ -60,7 +60,7 @@ pub use factor::{CyclicCholesky, Symmetry};
 pub use loose::Loose;
 pub use matrix::CyclicMatrix;
 pub use operator::{HarmonicOperator, add_turned};
-pub use part_field::PartField;
+pub use part_field::{PartField, PartHarmonics};
 pub use pattern::Coupling;
 pub use response::{Patch, ResponseTable};
 pub use ring::CyclicRing;

@@ -10,7 +10,7 @@ use rayon::prelude::*;
 use super::factor::Symmetry;
 use super::matrix::CyclicMatrix;
 use super::mirrored::{Mirrored, MirroredProduct};
-use super::phases::LANES;
+use super::phases::{LANES, Lanes};
 use super::ring::CyclicRing;
 use crate::error::SolverError;
 
@@ -65,25 +65,44 @@ impl HarmonicOperator {
     /// # Panics
     /// When the length is another.
     pub fn product(&self, x: &[f64]) -> Vec<f64> {
-        let (len, low) = (self.ring.harmonic_len(), self.ring.low_len().max(1));
+        let (len, low) = (self.ring.harmonic_len(), self.ring.low_len());
+        assert_eq!(x.len(), len + self.border.len(), "harmonics and border");
         let mut y = vec![0.0; x.len()];
-        y[..len]
-            .par_chunks_mut(low)
-            .zip(x[..len].par_chunks(low))
+        y[low..len]
+            .par_chunks_mut(low.max(1))
+            .zip(x[low..len].par_chunks(low.max(1)))
             .enumerate()
-            .for_each(|(group, (y, x))| self.group_product(group, x, y));
-        self.add_border(x, &mut y);
+            .for_each(|(place, (y, x))| self.group_product(place + 1, x, y));
+        let first = [&x[..low], &x[len..]].concat();
+        let mut product = vec![0.0; first.len()];
+        self.group_product(0, &first, &mut product);
+        y[..low].copy_from_slice(&product[..low]);
+        y[len..].copy_from_slice(&product[low..]);
         y
     }
 
-    /// Overwrites one group's part of a product, `[low_len()]`, without the border: what a pass over the groups does while they are
-    /// in the cache.
+    /// Overwrites one group's part of a product, `[low_len()]`, of the first group with the border, a low vector: what a pass over the
+    /// groups does while they are in the cache.
     ///
     /// # Panics
     /// When a length is another.
     pub fn group_product(&self, group: usize, x: &[f64], y: &mut [f64]) {
-        assert_eq!(x.len(), self.ring.low_len(), "one group of harmonics");
-        assert_eq!(y.len(), self.ring.low_len(), "one group of harmonics");
+        let low = self.ring.low_len();
+        let m = if group == 0 { self.border.len() } else { 0 };
+        assert_eq!(x.len(), low + m, "one group of harmonics");
+        assert_eq!(y.len(), low + m, "one group of harmonics");
+        let ((x, q), (y, rows)) = (x.split_at(low), y.split_at_mut(low));
+        self.harmonics_product(group, x, y);
+        rows.fill(0.0);
+        for (k, (q, column)) in q.iter().zip(&self.border).enumerate() {
+            let (harmonics, corner) = column.split_at(low);
+            y.iter_mut().zip(harmonics).for_each(|(y, b)| *y += q * b);
+            rows.iter_mut().zip(corner).for_each(|(y, d)| *y += q * d);
+            rows[k] += self.ring.group_dot(0, harmonics, x);
+        }
+    }
+
+    fn harmonics_product(&self, group: usize, x: &[f64], y: &mut [f64]) {
         match &self.mirrored {
             Some(matrix) => Arch::new().dispatch(MirroredProduct {
                 shared: &self.ring.shared,
@@ -93,32 +112,6 @@ impl HarmonicOperator {
                 y,
             }),
             None => self.ring.apply_group(&self.matrix, group, x, y),
-        }
-    }
-
-    /// Adds the rows of the border of the product with harmonics of which `low`, `[low_len()]`, are the first group, to the product `y`.
-    ///
-    /// # Panics
-    /// When a length is another.
-    pub fn add_rows(&self, low: &[f64], y: &mut [f64]) {
-        let rows = &mut y[self.ring.harmonic_len()..];
-        assert_eq!(rows.len(), self.border.len(), "rows of the border");
-        for (y, column) in rows.iter_mut().zip(&self.border) {
-            *y += self.ring.group_dot(0, &column[..low.len()], low);
-        }
-    }
-
-    /// Adds to the product `y` of all groups with `x` what the border adds, both with border.
-    ///
-    /// # Panics
-    /// When a length is another.
-    pub fn add_border(&self, x: &[f64], y: &mut [f64]) {
-        let (len, low) = (self.ring.harmonic_len(), self.ring.low_len());
-        assert_eq!(x.len(), len + self.border.len(), "harmonics and border");
-        assert_eq!(y.len(), x.len(), "harmonics and border");
-        for (k, column) in self.border.iter().enumerate() {
-            self.ring.add_low(x[len + k], column, y);
-            y[len + k] += self.ring.group_dot(0, &column[..low], &x[..low]);
         }
     }
 
@@ -148,15 +141,29 @@ impl CyclicRing {
         harmonic
     }
 
-    /// Adds `factor` times a low vector to harmonics and border.
-    ///
-    /// # Panics
-    /// When `y` is shorter than harmonics and border.
-    pub fn add_low(&self, factor: f64, low: &[f64], y: &mut [f64]) {
-        let (harmonics, border) = low.split_at(self.low_len());
-        let (to, rows) = y.split_at_mut(self.harmonic_len());
-        to.iter_mut().zip(harmonics).for_each(|(y, x)| *y += factor * x);
-        rows.iter_mut().zip(border).for_each(|(y, x)| *y += factor * x);
+    /// What one group's part of a field, `[low_len()]`, adds to the sums of squares over the sectors at each section node, in the plane
+    /// and along the axis, in elimination order.
+    pub fn line_squares(&self, group: usize, part: &[f64]) -> Vec<[f64; 2]> {
+        let n = self.n_sectors();
+        let weights: Lanes = std::array::from_fn(|lane| {
+            let k = group * LANES + lane;
+            let once = k == 0 || 2 * k == n;
+            (if once { 1.0 } else { 2.0 }) / n as f64
+        });
+        let square = |numbers: &[f64]| -> f64 {
+            let lanes = numbers.chunks_exact(LANES);
+            lanes
+                .map(|x| {
+                    (0..LANES)
+                        .map(|lane| weights[lane] * x[lane] * x[lane])
+                        .sum::<f64>()
+                })
+                .sum()
+        };
+        let nodes = part.chunks_exact(6 * LANES);
+        nodes
+            .map(|node| [square(&node[..4 * LANES]), square(&node[4 * LANES..])])
+            .collect()
     }
 }
 

@@ -5,7 +5,7 @@
 use rayon::prelude::*;
 
 use super::ring::CyclicRing;
-use super::transform::{SectionPart, Spectrum};
+use super::transform::{SectionPart, Spectrum, collect_group};
 
 /// A field on the nodes of a part of the section, in cylindrical components.
 pub struct PartField<'a> {
@@ -13,6 +13,14 @@ pub struct PartField<'a> {
     part: &'a SectionPart,
     /// `[places][3][n_sectors]`.
     components: Vec<f64>,
+}
+
+/// Harmonics of a field that is zero but on the nodes of a part of the section.
+pub struct PartHarmonics<'a> {
+    ring: &'a CyclicRing,
+    part: &'a SectionPart,
+    /// `[places][3][n_harmonics]`.
+    spectra: Vec<Spectrum>,
 }
 
 impl CyclicRing {
@@ -38,7 +46,7 @@ impl CyclicRing {
     }
 }
 
-impl PartField<'_> {
+impl<'a> PartField<'a> {
     /// Where a node's radial component is, and its direction (cos, sin); other components follow at a distance of N.
     fn site(&self, node: usize) -> (usize, [f64; 2]) {
         let shared = &self.ring.shared;
@@ -85,18 +93,42 @@ impl PartField<'_> {
     ///
     /// # Panics
     /// When the length is another.
-    pub fn write_harmonics(mut self, harmonic: &mut [f64]) {
+    pub fn write_harmonics(self, harmonic: &mut [f64]) {
+        self.into_harmonics().write(harmonic);
+    }
+
+    /// The field's harmonics.
+    pub fn into_harmonics(mut self) -> PartHarmonics<'a> {
         let (ring, places) = (self.ring, &self.part.places);
         let (n, n_harmonics) = (ring.n_sectors(), ring.shared.phases.n_harmonics());
         let mut spectra = vec![Spectrum::default(); 3 * places.len() * n_harmonics];
-        if spectra.is_empty() {
-            return;
-        }
         self.components
-            .par_chunks_mut(3 * n)
+            .par_chunks_mut((3 * n).max(1))
             .zip(spectra.par_chunks_mut(3 * n_harmonics))
             .zip(places)
             .for_each(|((lines, spectra), &place)| ring.line_spectra(place, lines, spectra));
-        ring.collect(places, &spectra, harmonic);
+        PartHarmonics {
+            ring,
+            part: self.part,
+            spectra,
+        }
+    }
+}
+
+impl PartHarmonics<'_> {
+    /// Writes them into `harmonic`, `[harmonic_len()]`; those of other nodes keep their values.
+    ///
+    /// # Panics
+    /// When the length is another.
+    pub fn write(&self, harmonic: &mut [f64]) {
+        if !self.spectra.is_empty() {
+            self.ring.collect(&self.part.places, &self.spectra, harmonic);
+        }
+    }
+
+    /// Writes those of one group into its part of a vector, `[low_len()]`; those of other nodes keep their values.
+    pub fn write_group(&self, group: usize, part: &mut [f64]) {
+        let n_harmonics = self.ring.shared.phases.n_harmonics();
+        collect_group(group, n_harmonics, (&self.part.places, &self.spectra), part);
     }
 }

@@ -302,7 +302,7 @@ pub(super) fn restore_line(
 
 /// Writes the harmonics of the nodes at `places` into a group's part of a vector, `[n_section_nodes][3][2][LANES]`, from
 /// their spectra.
-fn collect_group(
+pub(super) fn collect_group(
     group: usize,
     n_harmonics: usize,
     (places, spectra): (&[usize], &[Spectrum]),

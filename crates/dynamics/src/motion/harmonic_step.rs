@@ -1,0 +1,94 @@
+//! What a ring in harmonic space does in a step around its pass over the harmonics ([`super::pass`]): its contacts meet the predictor, and
+//! their forces make the increment.
+
+use std::sync::Arc;
+use std::time::Instant;
+
+use contact::NodalWeights;
+
+use super::body::RingBody;
+use super::effective::Factored;
+use super::pass::{Increment, Pass};
+use super::ring::{Predictor, RingFactor, RingStep, acting, functionals, sum};
+use super::ring_state::RingState;
+use super::space::Space;
+use crate::sparse::SparseLoad;
+
+impl RingFactor {
+    /// The step of a ring in harmonic space whose predictor is known, with contacts at `feet`.
+    pub(super) fn prepare_solved(
+        &self,
+        body: &RingBody,
+        state: &RingState,
+        predictor: Arc<Vec<f64>>,
+        feet: &[NodalWeights],
+    ) -> RingStep {
+        let clock = Instant::now();
+        let Factored::Cyclic(factor) = &self.factor else {
+            unreachable!("harmonics are solved by their factor")
+        };
+        let contacts = functionals(body, feet);
+        let all: Vec<&SparseLoad> = contacts.iter().chain(&body.mount).collect();
+        let start = self.measure(body, &all, state.displacement());
+        let (defect, moved, compliance) = self.meet(body, factor, &predictor, feet, &all);
+        RingStep {
+            predicted: sum(&start, &moved),
+            predictor: Predictor::Harmonic(predictor, defect),
+            start,
+            compliance,
+            seconds: [0.0, clock.elapsed().as_secs_f64()],
+            contacts,
+        }
+    }
+
+    /// What a pass over the harmonics of a ring needs; None of a ring whose state is not in harmonic space.
+    pub(super) fn pass<'a>(&'a self, body: &'a RingBody) -> Option<Pass<'a>> {
+        match (&self.factor, &body.space) {
+            (Factored::Cyclic(factor), Space::Harmonic(space)) => Some(Pass {
+                space,
+                nodes: body.nodes(),
+                factor,
+                integrator: self.integrator,
+                dt: self.dt,
+                history: self.history(body),
+            }),
+            _ => None,
+        }
+    }
+
+    /// Another predictor of a step in harmonic space, without a defect.
+    pub(super) fn replace_predictor(&self, body: &RingBody, step: &mut RingStep, predictor: Vec<f64>) {
+        let all: Vec<&SparseLoad> = step.contacts.iter().chain(&body.mount).collect();
+        step.predicted = sum(&step.start, &self.measure(body, &all, &predictor));
+        step.predictor = Predictor::Harmonic(Arc::new(predictor), None);
+    }
+
+    /// The increment of a ring in harmonic space under these forces, before it is solved for.
+    pub(super) fn forces<'a>(
+        &'a self,
+        body: &RingBody,
+        step: &'a RingStep,
+        contacts: &[f64],
+        mount: &[f64],
+    ) -> Increment<'a> {
+        let Factored::Cyclic(factor) = &self.factor else {
+            unreachable!("harmonics are solved by their factor")
+        };
+        let (loads, border) = factor.forces(acting(body, step, contacts, mount));
+        Increment::Forces {
+            loads,
+            border,
+            predictor: step.harmonics(),
+        }
+    }
+}
+
+impl RingStep {
+    /// The predictor in harmonic space.
+    pub(super) fn harmonics(&self) -> &[f64] {
+        match &self.predictor {
+            Predictor::Harmonic(predictor, _) => predictor,
+            Predictor::Columns(_) | Predictor::Sectors(_) => unreachable!("a step of harmonics"),
+        }
+    }
+}
