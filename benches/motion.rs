@@ -1,10 +1,9 @@
 //! A step in time of a bearing of 2 x 57 k dof, part by part, with stress and step file, each beside its floor.
 //!
 //! The bearing rolls at 1800 rpm under 2 kN and 1 kN with two threads. Steps with and without `frame_rotation` take turns,
-//! so that other work on the machine meets both. Floors: a solve reads the factor of each ring
-//! once from memory, a group of harmonics after the other; the update is the second solve, reads predictor and state, and writes the increment, the state and
-//! two products; stress reads displacements and writes six components per node; a step file
-//! is written and synced. Bandwidth of memory and disk are measured in the same run. Run with
+//! so that other work on the machine meets both. Floors: the pass that ends a step (`update`) reads the factor of each ring once from memory, a
+//! group of harmonics after the other, reads predictor and state and writes both anew; stress reads displacements and writes six
+//! components per node; a step file is written and synced. Bandwidth of memory and disk are measured in the same run. Run with
 //! `cargo bench -p raceway --bench motion`.
 //!
 //!     cargo bench -p raceway --bench motion -- [57k] [159k] [410k] [1M] [paper]
@@ -44,8 +43,8 @@ const SIZES: [(&str, Level); 4] = [
     ("410k", Level::hex8(720, 12, 3, 9)),
     ("1M", Level::hex8(1080, 17, 4, 11)),
 ];
-/// Vectors that an update reads or writes at least: predictor and increment, three of the state before and after, two products.
-const UPDATED: usize = 10;
+/// Vectors that a pass reads or writes at least: the predictor and three of the state, before and after.
+const UPDATED: usize = 8;
 /// Steps of a hundredth of a ball's revolution of 77 ms.
 const HUNDREDTH: usize = 77;
 /// Step size, s, and speed, rad/s (1800 rpm).
@@ -311,7 +310,7 @@ fn measure(name: &str, level: Level) -> (f64, f64) {
     (plain.laps.least("step")[0], 3.0 * nodes[0] as f64)
 }
 
-/// Solve, stress and file beside the bytes that they cannot do without.
+/// Pass, stress and file beside the bytes that they cannot do without.
 fn print_floors(
     rolling: &Rolling<'_>,
     writer: &Writer,
@@ -322,8 +321,6 @@ fn print_floors(
     println!("\nleast times against floors");
     let factor = rolling.motion.factor_bytes();
     let memory = read_bandwidth(factor);
-    let solve = rolling.laps.least("  solve")[1];
-    print_floor("solve", solve, factor as f64, memory);
     let update = rolling.laps.least("  update")[1];
     let coordinates: usize = Side::BOTH
         .map(|side| rolling.motion.n_coordinates(side))

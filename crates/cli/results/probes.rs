@@ -162,7 +162,10 @@ impl Probes {
     pub fn values(&self, shown: &Shown<'_>) -> Result<Vec<f64>, Failure> {
         let mut rings = [None, None];
         for side in Side::BOTH {
-            if let (Some(recovery), Some(ring)) = (&self.recoveries[side.index()], shown.ring(side)) {
+            let Some(recovery) = &self.recoveries[side.index()] else {
+                continue;
+            };
+            if let Some(ring) = shown.ring_at(side, recovery.nodes()) {
                 let mut stress = recovery.stress(&ring.strained);
                 if let Some(near_field) = &self.near_fields[side.index()] {
                     near_field.add(&shown.patches(side).map_err(Failure::solving)?, &mut stress);

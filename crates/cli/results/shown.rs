@@ -84,6 +84,22 @@ impl<'a> Shown<'a> {
 
     /// A ring; None when it is rigid, or its field was not kept.
     pub fn ring(&self, side: Side) -> Option<RingField<'a>> {
+        self.ring_moved(side, |motion, state| motion.ring_displacement(state, side))
+    }
+
+    /// The same with a field of which only the chosen nodes may be asked for: all that is transformed of a ring in motion.
+    pub fn ring_at(&self, side: Side, nodes: &[usize]) -> Option<RingField<'a>> {
+        self.ring_moved(side, |motion, state| {
+            motion.ring_displacement_at(state, side, nodes)
+        })
+    }
+
+    /// A ring; in motion with the displacements (m, `[n_nodes][3]` flat) and the angle that `moved` finds.
+    fn ring_moved(
+        &self,
+        side: Side,
+        moved: impl FnOnce(&Motion<'_>, &MotionState) -> Option<(Vec<f64>, f64)>,
+    ) -> Option<RingField<'a>> {
         let ring = self.model().ring(side)?;
         match self {
             Shown::Equilibrium {
@@ -107,7 +123,7 @@ impl<'a> Shown<'a> {
                 })
             }
             Shown::Motion { motion, state, .. } => {
-                let (field, angle) = motion.ring_displacement(state, side)?;
+                let (field, angle) = moved(motion, state)?;
                 Some(RingField {
                     centre_z: ring.groove.centre_z,
                     places: ring.mesh.nodes.clone(),

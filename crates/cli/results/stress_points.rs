@@ -115,7 +115,7 @@ impl StressPoints {
 
 impl RingPoints {
     fn values(&self, shown: &Shown<'_>, side: Side) -> Result<Vec<[f64; 12]>, Failure> {
-        let Some(ring) = shown.ring(side) else {
+        let Some(ring) = shown.ring_at(side, self.recovery.nodes()) else {
             unreachable!("a ring with points has a field while it is shown")
         };
         let mut stress = self.recovery.stress(&ring.strained);

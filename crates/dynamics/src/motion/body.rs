@@ -27,6 +27,9 @@ use crate::model::{Backend, Hold, RACEWAY_GROUP, RingModel};
 use crate::sparse::SparseLoad;
 use crate::support::mean_motion;
 
+/// Nodes of a field that are transformed in the time in which the harmonics of one node are summed, measured with 720 sectors.
+const NODE_COST: usize = 100;
+
 /// A ring's matrices, raceway and mount.
 pub struct RingBody {
     /// Coordinates of the ring.
@@ -230,6 +233,32 @@ impl RingBody {
             Space::Nodal => self.coordinates.expand(x),
             Space::Harmonic(_) => self.coordinates.expand(&self.space.coordinates(x)),
         }
+    }
+
+    /// The same at the chosen nodes; others may be NaN. Of a few nodes harmonics are summed for each of them, not transformed.
+    pub fn nodal_at(&self, x: &[f64], nodes: &[usize]) -> Vec<f64> {
+        let Space::Harmonic(space) = &self.space else {
+            return self.nodal(x);
+        };
+        if NODE_COST * nodes.len() > self.coordinates.expanded() / 3 {
+            return self.nodal(x);
+        }
+        let (harmonics, q) = x.split_at(space.ring.harmonic_len());
+        let numbers: Vec<Option<usize>> = nodes
+            .iter()
+            .map(|&node| self.coordinates.free_node(node))
+            .collect();
+        let free: Vec<usize> = numbers.iter().flatten().copied().collect();
+        let mut found = space.ring.displacements(&free, harmonics).into_iter();
+        let mut field = vec![f64::NAN; self.coordinates.expanded()];
+        for (&node, number) in nodes.iter().zip(&numbers) {
+            let u = match number {
+                Some(_) => found.next().expect("one displacement per free node"),
+                None => self.coordinates.held_displacement(node, q),
+            };
+            field[3 * node..3 * node + 3].copy_from_slice(&u);
+        }
+        field
     }
 
     /// Linear momentum, kg m/s, and moment of momentum about the point z = 0 of the mesh's axis, kg m^2/s, at the

@@ -142,6 +142,20 @@ impl Coordinates {
         (0..self.sources.len()).map(value).collect()
     }
 
+    /// Displacement of a held node when the shaft dofs among the coordinates are `q`.
+    ///
+    /// # Panics
+    /// When the node is free.
+    pub fn held_displacement(&self, node: usize, q: &[f64]) -> [f64; 3] {
+        let Source::Held(place) = self.source(3 * node) else {
+            panic!("node {node} is free")
+        };
+        [0, 1, 2].map(|component| {
+            let terms = self.shaft.iter().zip(q);
+            terms.map(|(&s, q)| self.lever(place, component, s) * q).sum()
+        })
+    }
+
     /// Generalised loads T^T f, `[n]`.
     pub fn reduce(&self, load: &[f64]) -> Vec<f64> {
         let mut y = vec![0.0; self.n()];

@@ -80,6 +80,19 @@ impl Motion<'_> {
         Some((motion.nodal(ring.displacement()), turned))
     }
 
+    /// The same at the chosen nodes; others may be NaN. Of a periodic ring only these are transformed.
+    pub fn ring_displacement_at(
+        &self,
+        state: &MotionState,
+        side: Side,
+        nodes: &[usize],
+    ) -> Option<(Vec<f64>, f64)> {
+        let motion = self.rings[side.index()].as_ref()?;
+        let ring = state.rings[side.index()].as_ref()?;
+        let turned = self.frame_angle(side, self.time(state.step));
+        Some((motion.nodal_at(ring.displacement(), nodes), turned))
+    }
+
     /// Displacement, velocity and acceleration of the coordinates of a flexible ring, `[n]`, SI, whatever solves it.
     pub fn ring_coordinates(&self, state: &MotionState, side: Side) -> Option<[Vec<f64>; 3]> {
         let body = self.rings[side.index()].as_ref()?;

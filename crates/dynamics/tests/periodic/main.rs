@@ -264,3 +264,34 @@ fn one_two_and_four_threads_give_the_same_bits() {
         assert_eq!(one.1, other.1, "{threads} threads");
     }
 }
+
+/// Wrong: probes of a moving ring would show other nodes' motion, or the bore would not follow the shaft. Free and held nodes, against the
+/// transform of the whole field.
+#[test]
+fn chosen_nodes_move_as_in_the_whole_field() {
+    let model = bearing(HEX8, Hold::Clamped, Backend::Auto);
+    let motion = Motion::new(&model, MotionSettings::conserving(5e-6, Speed::constant(SPEED))).unwrap();
+    let mut state = motion.start(&statics(&model, "cyclic"));
+    state = motion.step(&state).unwrap().0;
+    for side in Side::BOTH {
+        let ring = model.ring(side).unwrap();
+        let mesh = &ring.mesh;
+        let nodes = [
+            mesh.group_nodes("raceway")[7],
+            mesh.group_nodes(ring.held_group)[5],
+            3,
+            mesh.n_nodes() - 1,
+        ];
+        let (whole, angle) = motion.ring_displacement(&state, side).unwrap();
+        let (found, same) = motion.ring_displacement_at(&state, side, &nodes).unwrap();
+        assert!(angle == same && found.len() == whole.len());
+        assert!(
+            found.iter().any(|u| u.is_nan()),
+            "the whole field was transformed"
+        );
+        for node in nodes {
+            let of = |field: &[f64]| field[3 * node..3 * node + 3].to_vec();
+            assert_near(&of(&found), &of(&whole), 1e-12, "a node");
+        }
+    }
+}

@@ -49,6 +49,11 @@ impl NodeRecovery {
         })
     }
 
+    /// Nodes whose displacements a recovery reads, ascending.
+    pub fn nodes(&self) -> &[usize] {
+        &self.gathered
+    }
+
     /// Number of elements that a recovery looks at.
     pub fn n_elements(&self) -> usize {
         self.recovery.n_elements()

@@ -63,6 +63,11 @@ impl PointRecovery {
         })
     }
 
+    /// Nodes whose displacements a recovery reads, ascending.
+    pub fn nodes(&self) -> &[usize] {
+        self.nodes.nodes()
+    }
+
     /// Stress at the points, Pa, `[n][6]`, from displacements of all nodes of the mesh, m, `[3 n_nodes]`.
     pub fn stress(&self, u: &[f64]) -> Vec<[f64; 6]> {
         let nodal = self.nodes.stress(u);
