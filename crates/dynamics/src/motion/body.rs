@@ -27,9 +27,6 @@ use crate::model::{Backend, Hold, RACEWAY_GROUP, RingModel};
 use crate::sparse::SparseLoad;
 use crate::support::mean_motion;
 
-/// Nodes of a field that are transformed in the time in which the harmonics of one node are summed, measured with 720 sectors.
-const NODE_COST: usize = 100;
-
 /// A ring's matrices, raceway and mount.
 pub struct RingBody {
     /// Coordinates of the ring.
@@ -235,25 +232,19 @@ impl RingBody {
         }
     }
 
-    /// The same at the chosen nodes; others may be NaN. Of a few nodes harmonics are summed for each of them, not transformed.
+    /// The same at the chosen nodes, to the bit; others may be NaN. Of harmonics only the section nodes of these are transformed.
     pub fn nodal_at(&self, x: &[f64], nodes: &[usize]) -> Vec<f64> {
         let Space::Harmonic(space) = &self.space else {
             return self.nodal(x);
         };
-        if NODE_COST * nodes.len() > self.coordinates.expanded() / 3 {
-            return self.nodal(x);
-        }
         let (harmonics, q) = x.split_at(space.ring.harmonic_len());
-        let numbers: Vec<Option<usize>> = nodes
-            .iter()
-            .map(|&node| self.coordinates.free_node(node))
-            .collect();
-        let free: Vec<usize> = numbers.iter().flatten().copied().collect();
-        let mut found = space.ring.displacements(&free, harmonics).into_iter();
+        let free = nodes.iter().filter_map(|&node| self.coordinates.free_node(node));
+        let part = space.ring.section_part(&[], free);
+        let found = space.ring.field_at(&part, harmonics);
         let mut field = vec![f64::NAN; self.coordinates.expanded()];
-        for (&node, number) in nodes.iter().zip(&numbers) {
-            let u = match number {
-                Some(_) => found.next().expect("one displacement per free node"),
+        for &node in nodes {
+            let u = match self.coordinates.free_node(node) {
+                Some(number) => [0, 1, 2].map(|i| found.value(3 * number + i)),
                 None => self.coordinates.held_displacement(node, q),
             };
             field[3 * node..3 * node + 3].copy_from_slice(&u);

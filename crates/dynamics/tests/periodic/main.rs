@@ -265,8 +265,8 @@ fn one_two_and_four_threads_give_the_same_bits() {
     }
 }
 
-/// Wrong: probes of a moving ring would show other nodes' motion, or the bore would not follow the shaft. Free and held nodes, against the
-/// transform of the whole field.
+/// Wrong: probes of a moving ring would show other nodes' motion, or the bore would not follow the shaft. Free and held nodes, to the
+/// bits of the transform of the whole field.
 #[test]
 fn chosen_nodes_move_as_in_the_whole_field() {
     let model = bearing(HEX8, Hold::Clamped, Backend::Auto);
