@@ -5,9 +5,9 @@ use std::time::{Duration, Instant};
 use checkpoint::{CellFields, IntegrationPointStress};
 use comm::Communicator;
 use contact::{LoadedPatch, Side};
-use dynamics::{Backend, Model, NodalStress, RingModel, SharedStress, StressPlaces};
+use dynamics::{Backend, Model, NodalStress, PointStress, RingModel, SharedStress, StressPlaces};
 use fem::quadrature::stiffness_rule;
-use fem::stress::{StressRecovery, von_mises};
+use fem::stress::von_mises;
 use mesh::NodePositions;
 
 use super::shown::{Shown, Turn};
@@ -40,8 +40,8 @@ struct Recovery {
 
 /// What recovers the stress of a ring from its displacements.
 enum Source {
-    /// At the integration points of all elements.
-    Elements(Box<StressRecovery>),
+    /// At the integration points.
+    Points(Box<PointStress>),
     /// At the nodes.
     Nodes(NodalStress),
     /// Either, by sector: ranks share it.
@@ -234,13 +234,15 @@ impl Recovery {
                 Source::Shared(Box::new(shared))
             }
             _ if !is_root => return Ok(None),
-            _ if at_points => Source::Elements(Box::new(StressRecovery::new(&ring.mesh, &ring.material)?)),
+            _ if at_points => Source::Points(Box::new(
+                PointStress::new(ring, side, backend).map_err(Failure::solving)?,
+            )),
             _ => Source::Nodes(NodalStress::new(ring, side, backend).map_err(Failure::solving)?),
         };
         let points = match &source {
             _ if scene.stress.near_field_reach.is_none() => None,
             Source::Nodes(_) => Some(ring.mesh.nodes.to_vec()),
-            Source::Elements(recovery) => Some(recovery.point_positions()),
+            Source::Points(stress) => Some(stress.point_positions()),
             Source::Shared(shared) if at_points => shared.point_positions(),
             Source::Shared(_) => {
                 let places = ring.places(side, backend).map_err(Failure::solving)?;
@@ -264,7 +266,7 @@ impl Source {
     /// Stress from displacements, by this process alone, Pa.
     fn stress(&self, field: &[f64]) -> Vec<[f64; 6]> {
         match self {
-            Source::Elements(recovery) => recovery.integration_points(field),
+            Source::Points(stress) => stress.at_points(field),
             Source::Nodes(nodal) => nodal.nodal(field),
             Source::Shared(shared) => {
                 let gathered = shared.gather(shared.recover(field));
@@ -276,8 +278,8 @@ impl Source {
 
 #[cfg(test)]
 mod tests {
-    use fem::Material;
     use fem::element::reference_nodes;
+    use fem::{Material, StressRecovery};
     use mesh::{ElementKind, Mesh};
 
     use super::*;
@@ -305,7 +307,7 @@ mod tests {
                 let elements = StressRecovery::new(mesh, &steel).unwrap();
                 Some(Recovery {
                     points_per_element: elements.points_per_element(),
-                    source: Source::Elements(Box::new(elements)),
+                    source: Source::Points(Box::new(PointStress::of_elements(elements))),
                     near_field: None,
                 })
             }),

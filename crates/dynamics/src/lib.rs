@@ -21,6 +21,7 @@ pub mod model;
 pub mod modes;
 pub mod motion;
 pub mod nodal_stress;
+pub mod point_stress;
 pub mod pose;
 pub mod prepared;
 pub mod problem;
@@ -47,6 +48,7 @@ pub use model::{
 };
 pub use modes::{Mode, ModeSet, ModesSettings, RingSupport};
 pub use nodal_stress::NodalStress;
+pub use point_stress::PointStress;
 pub use pose::Pose;
 pub use prepared::{Numbers, Prepared};
 pub use quasi_static::QuasiStatic;

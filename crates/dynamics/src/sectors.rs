@@ -4,6 +4,7 @@
 //! ([`solver::CyclicStencil`]), and the harmonics are factored from them.
 
 use fem::SectorCoupling;
+use fem::stress::PointTerm;
 use mesh::{Mesh, Periodicity};
 use solver::{Coupling, CyclicMatrix, CyclicRing, CyclicStencil, SolverError};
 
@@ -11,6 +12,7 @@ use crate::defect::RingDefect;
 use crate::error::DynamicsError;
 use crate::memory::MotionSizes;
 use crate::model::{Backend, RACEWAY_GROUP, RingModel};
+use crate::point_stress::SectorOperator;
 use crate::regular::RegularRing;
 
 /// Sectors from which on harmonics pay: a few wide ones cost more than the ring as a whole.
@@ -336,6 +338,35 @@ pub fn stress_operator(
         &couplings(&stress.couplings),
         weights,
     )))
+}
+
+/// The operator of the stress at the integration points, Pa, of a ring that harmonics can solve and whose elements are alike; None of any
+/// other.
+pub(crate) fn point_operator(
+    ring: &RingModel,
+    recovery: &fem::StressRecovery,
+    side: &'static str,
+) -> Result<Option<SectorOperator>, DynamicsError> {
+    let (Ok(_), Ok(periodicity)) = (usable(ring), ring.periodicity()) else {
+        return Ok(None);
+    };
+    let Some(stress) = recovery.sector_points(&ring.mesh, periodicity) else {
+        return Ok(None);
+    };
+    let whole = Sectors::assemble(ring, &ring.mesh, periodicity, side)?;
+    let coupling = |t: &PointTerm| Coupling {
+        row: t.point,
+        column: t.column,
+        shift: t.shift,
+    };
+    let couplings: Vec<Coupling> = stress.terms.iter().map(coupling).collect();
+    let n_points = stress.points_per_element;
+    let classes = (n_points * periodicity.elements().len(), n_points);
+    let weights = stress.weights.as_flattened().as_flattened();
+    Ok(Some(SectorOperator {
+        operator: whole.ring.point_stencil(classes, &couplings, weights),
+        elements: stress.elements,
+    }))
 }
 
 /// Couplings as the solver has them.

@@ -14,7 +14,8 @@ use dynamics::modes::{bearing_modes, ring_modes};
 use dynamics::motion::balls::Speed;
 use dynamics::motion::{Motion, MotionSettings, MotionState};
 use dynamics::{
-    Backend, ContactMode, Hold, Model, ModesSettings, NodalStress, RingSupport, StaticSolution, StaticSolver,
+    Backend, ContactMode, Hold, Model, ModesSettings, NodalStress, PointStress, RingSupport, StaticSolution,
+    StaticSolver,
 };
 use support::Case;
 use support::rings::{Level, ring_model};
@@ -102,7 +103,7 @@ fn statics_of_sectors_is_that_of_assembled_rings() {
     }
 }
 
-/// Wrong: stress by the weights of one sector would not be that of the elements, in a loaded bearing.
+/// Wrong: stress by the weights of one sector would not be that of the elements, at nodes or at integration points, in a loaded bearing.
 #[test]
 fn stress_of_sectors_is_that_of_the_elements() {
     for level in [HEX8, HEX20] {
@@ -116,6 +117,16 @@ fn stress_of_sectors_is_that_of_the_elements() {
             let u = solution.elastic[side.index()].as_ref().unwrap();
             let [found, expected] = [fast.nodal(u), slow.nodal(u)];
             assert_near(found.as_flattened(), expected.as_flattened(), 1e-12, "stress");
+            let [fast, slow] = [Backend::Auto, Backend::Sparse]
+                .map(|backend| PointStress::new(ring, side.name(), backend).unwrap());
+            assert!(fast.operator_bytes().is_some() && slow.operator_bytes().is_none());
+            let [found, expected] = [fast.at_points(u), slow.at_points(u)];
+            assert_near(
+                found.as_flattened(),
+                expected.as_flattened(),
+                1e-12,
+                "stress at points",
+            );
         }
     }
 }

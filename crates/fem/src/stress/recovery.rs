@@ -221,7 +221,7 @@ impl StressRecovery {
     }
 
     /// Stress at the stress points of an element whose nodes are at and move by `state`, Pa, and its volume, m^3.
-    fn state_stress(&self, state: &NodeState) -> ([[f64; 6]; MAX_POINTS], f64) {
+    pub(super) fn state_stress(&self, state: &NodeState) -> ([[f64; 6]; MAX_POINTS], f64) {
         let mut values = [[0.0; 6]; MAX_POINTS];
         let volume = strains(&self.table, state, self.lame, &mut values);
         for value in &mut values[..self.table.n_points()] {

@@ -69,7 +69,7 @@ impl StressRecovery {
 }
 
 /// Components rr tt zz rt tz rz of a tensor xx yy zz xy yz xz at the azimuth of the direction (cos, sin).
-fn cylindrical([xx, yy, zz, xy, yz, xz]: [f64; 6], [c, s]: [f64; 2]) -> [f64; 6] {
+pub(super) fn cylindrical([xx, yy, zz, xy, yz, xz]: [f64; 6], [c, s]: [f64; 2]) -> [f64; 6] {
     let twice = 2.0 * c * s * xy;
     [
         c * c * xx + s * s * yy + twice,

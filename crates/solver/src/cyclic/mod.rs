@@ -65,5 +65,5 @@ pub use pattern::Coupling;
 pub use response::{Patch, ResponseTable};
 pub use ring::CyclicRing;
 pub use sites::NodalLoad;
-pub use stencil::CyclicStencil;
+pub use stencil::{CyclicStencil, PointStencil};
 pub use transform::SectionPart;

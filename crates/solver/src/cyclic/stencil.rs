@@ -18,6 +18,9 @@ use super::pattern::Coupling;
 use super::ring::{ABSENT, CyclicRing};
 use crate::error::SolverError;
 
+mod points;
+pub use points::PointStencil;
+
 /// Sectors of one pass with three rows: 9 sums and a displacement in three vectors of AVX2 fill its registers.
 const WIDE: usize = 12;
 /// Sectors of one pass with six rows.
@@ -56,6 +59,18 @@ impl CyclicRing {
     /// # Panics
     /// When the lengths disagree, rows are neither 3 nor 6, or a coupling reaches too far.
     pub fn stencil(&self, rows: usize, couplings: &[Coupling], blocks: &[f64]) -> CyclicStencil {
+        let places = (self.n_section_nodes(), |node: usize| self.shared.place[node]);
+        self.stencil_of_rows(rows, places, couplings, blocks)
+    }
+
+    /// The same for rows that may belong to others than section nodes: their number, and the place of each.
+    fn stencil_of_rows(
+        &self,
+        rows: usize,
+        (n_places, place_of_row): (usize, impl Fn(usize) -> usize),
+        couplings: &[Coupling],
+        blocks: &[f64],
+    ) -> CyclicStencil {
         assert!(rows == 3 || rows == 6, "an operator has 3 or 6 rows per node");
         assert_eq!(
             blocks.len(),
@@ -63,14 +78,13 @@ impl CyclicRing {
             "{rows} x 3 numbers per coupling"
         );
         let reach = self.reach() as u32;
-        let place = |node: usize| self.shared.place[node];
         let mut sorted: Vec<(usize, usize, i32, usize)> = couplings
             .iter()
             .enumerate()
-            .map(|(i, c)| (place(c.row), place(c.column), c.shift, i))
+            .map(|(i, c)| (place_of_row(c.row), self.shared.place[c.column], c.shift, i))
             .collect();
         sorted.sort_unstable();
-        let mut starts = vec![0; self.n_section_nodes() + 1];
+        let mut starts = vec![0; n_places + 1];
         let mut stencil = CyclicStencil {
             ring: self.clone(),
             rows,
@@ -206,7 +220,7 @@ impl CyclicStencil {
 
     /// Length of a product in lines.
     pub fn product_len(&self) -> usize {
-        self.rows * self.ring.n_section_nodes() * self.ring.stride()
+        self.rows * (self.starts.len() - 1) * self.ring.stride()
     }
 
     /// Adds the product with `lines`, displacements in lines, to `product`, `[product_len()]`. What follows the last
