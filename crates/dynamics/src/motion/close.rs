@@ -77,12 +77,12 @@ impl Motion<'_> {
             Some(self.end_ring(side, ring, (part, solution), next.as_ref()))
         };
         let (inner, outer) = self.model.backend.both(|| end(Side::Inner), || end(Side::Outer));
-        if let Some((new, change)) = inner.as_ref().and_then(|inner| inner.renewed.as_ref()) {
-            if !self.is_settled(part, new, change) {
-                self.replace_inertia(part, new)?;
-                part.report.seconds.update += part.clock.lap();
-                return Ok(None);
-            }
+        if let Some((new, change)) = inner.as_ref().and_then(|inner| inner.renewed.as_ref())
+            && !self.is_settled(part, new, change)
+        {
+            self.replace_inertia(part, new)?;
+            part.report.seconds.update += part.clock.lap();
+            return Ok(None);
         }
         part.report.seconds.update += part.clock.lap();
         Ok(Some([inner, outer].map(|ring| ring.map(|ring| ring.end))))
@@ -237,12 +237,12 @@ impl Motion<'_> {
 
     /// Goes on with another inertia: one solve.
     fn replace_inertia(&self, part: &mut Part<'_>, new: &[f64]) -> Result<(), DynamicsError> {
-        if let Some(ring) = &mut part.moving[0] {
-            if let Some((_, used)) = &mut ring.inertia {
-                let change = combined([1.0, -1.0], new, used);
-                ring.factor.add_load(ring.body, &mut ring.step, change);
-                *used = Arc::new(new.to_vec());
-            }
+        if let Some(ring) = &mut part.moving[0]
+            && let Some((_, used)) = &mut ring.inertia
+        {
+            let change = combined([1.0, -1.0], new, used);
+            ring.factor.add_load(ring.body, &mut ring.step, change);
+            *used = Arc::new(new.to_vec());
         }
         part.settling = Settling::Open(self.contraction(part));
         self.count_round(part)
