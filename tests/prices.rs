@@ -17,22 +17,53 @@ fn turning(speed: &str) -> Dir {
     Dir::with_scene(&with_line("[static]", "[static]", &dynamic))
 }
 
-fn check(dir: &Dir, set: &[&str]) -> String {
+/// Lines of `raceway check` that begin with a word.
+fn checked(dir: &Dir, set: &[&str], word: &str) -> String {
     let set: Vec<&str> = set.iter().flat_map(|s| ["--set", s]).collect();
     let outcome = dir.raceway(&[&["check", "scene.toml"], &RIGID[..], &set[..]].concat());
     assert_eq!(outcome.code, Some(0), "{}", outcome.stderr);
-    let advice: Vec<&str> = outcome
-        .stdout
-        .lines()
-        .filter(|l| l.starts_with("advice"))
-        .collect();
-    advice.join("\n")
+    let lines = outcome.stdout.lines().filter(|l| l.starts_with(word));
+    lines.collect::<Vec<&str>>().join("\n")
+}
+
+fn check(dir: &Dir, set: &[&str]) -> String {
+    checked(dir, set, "advice")
 }
 
 /// Centrifugal force of a ball, N, at its undeformed radius.
 fn centrifugal(rpm: f64) -> f64 {
     let cage = CAGE * rpm * std::f64::consts::PI / 30.0;
     BALL_MASS * 0.032_48 * cage * cage
+}
+
+/// Wrong: a spectrum would be searched for ball passing frequencies that the bearing does not have.
+#[test]
+fn the_check_says_how_cage_and_balls_roll() {
+    let line = checked(&turning("-1800 rpm"), &[], "rolling");
+    let gamma = 9.0 / 65.0235 * 15f64.to_radians().cos();
+    let before = |unit: &str| {
+        let head = line.split(unit).next().unwrap();
+        let number = head.rsplit(' ').next().unwrap();
+        number.parse::<f64>().unwrap_or_else(|_| panic!("{unit}: {line}"))
+    };
+    assert_close("inner ring", before(" rpm inside"), -1800.0, 1e-12);
+    assert_close("cage", before(" rpm, balls"), -900.0 * (1.0 - gamma), 2e-4);
+    let spin = 1800.0 * 65.0235 / 18.0 * (1.0 - gamma * gamma);
+    assert_close("balls", before(" rpm about"), spin, 2e-4);
+    assert_close(
+        "inside",
+        before(" per second inside"),
+        270.0 * (1.0 + gamma),
+        2e-4,
+    );
+    assert_close(
+        "outside",
+        before(" per second outside"),
+        270.0 * (1.0 - gamma),
+        2e-4,
+    );
+    let at_rest = Dir::with_scene(&with_line("[static]", "[static]", "[static]"));
+    assert_eq!(checked(&at_rest, &[], "rolling"), "");
 }
 
 /// Wrong: a user of a fast bearing would not learn that an effect is missing, or by how much.

@@ -1,8 +1,10 @@
 //! `raceway check`: builds everything a run needs except factors, and says what the run would be.
 
+use std::f64::consts::PI;
 use std::path::Path;
 
-use contact::Side;
+use contact::{BearingGeometry, Side};
+use dynamics::motion::balls::Kinematics;
 use dynamics::{
     Model, MotionSizes, Numbers, Prepared, RingMemory, Substructures, forecast_motion_peak, forecast_peak,
 };
@@ -69,6 +71,7 @@ pub fn check(path: &Path, overrides: &[String]) -> Result<(), Failure> {
         1e3 * geometry.groove_distance(),
         geometry.free_contact_angle().to_degrees()
     ));
+    print_rolling(&scene, geometry);
     print_probes(&scene, probes.as_ref());
     let (mut memory, mut motion) = ([None, None], [Some(None), Some(None)]);
     let mut on_ranks = [None, None];
@@ -95,6 +98,29 @@ pub fn check(path: &Path, overrides: &[String]) -> Result<(), Failure> {
         print::line(format_args!("advice   {line}"));
     }
     Ok(())
+}
+
+/// Prints how cage and balls roll at the largest speed of the scene, and how often balls pass a point of each raceway (Harris, 4th
+/// ed., chapter 8): n |omega_c| / (2 pi) on the outer ring, n |omega_i - omega_c| / (2 pi) on the inner one. A point of a
+/// ball meets each raceway once per turn about its own axis.
+fn print_rolling(scene: &Scene, geometry: &BearingGeometry) {
+    let speeds = scene.speed.iter().flat_map(|speed| &speed.values);
+    let Some(&inner) = speeds.max_by(|a, b| a.abs().total_cmp(&b.abs())) else {
+        return;
+    };
+    let turning = Kinematics::new(geometry, scene.effects.cage_slip.unwrap_or([0.0; 2]));
+    let rpm = |speed: f64| speed * 30.0 / PI;
+    let hertz = |speed: f64| speed.abs() / (2.0 * PI);
+    let n = geometry.n_balls as f64;
+    print::line(format_args!(
+        "rolling  at {:.2} rpm inside: cage {:.2} rpm, balls {:.2} rpm about their axes; passing balls {:.3} \
+         per second inside, {:.3} per second outside",
+        rpm(inner),
+        rpm(turning.cage * inner),
+        rpm(turning.ball * inner.abs()),
+        n * hertz((1.0 - turning.cage) * inner),
+        n * hertz(turning.cage * inner),
+    ));
 }
 
 /// Prints the forecast of the peak. Of a motion `motion` has the sizes of each ring, Some(None) when it is rigid, None when its steps
