@@ -201,7 +201,7 @@ impl RingBody {
     }
 
     /// Generalised inertia load of the turning frame, of coordinates, at the weighted time of a step from `old` with the increment `dw`, in
-    /// which the velocity stays when there is none; in harmonic space a part of [`super::pass::Pass`].
+    /// which the velocity stays when there is none; in harmonic space a part of `pass::Pass`.
     pub fn frame_load(
         &self,
         turn: FrameTurn,

@@ -206,7 +206,7 @@ impl Harmonics {
         nodes.border(coefficients)
     }
 
-    /// Factors c_M M + c_K K with the dense [`Harmonics::border`] (column-major `[n_free][m]`) and corner (row-major). The
+    /// Factors c_M M + c_K K with the dense `Harmonics::border` (column-major `[n_free][m]`) and corner (row-major). The
     /// partner touches the free nodes `mounted`.
     pub fn factor(
         &self,

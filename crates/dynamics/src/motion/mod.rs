@@ -11,7 +11,7 @@
 //! ```
 //!
 //! A periodic ring solves twice in a step, for the contact forces and for the known loads of the step that follows: in one pass over its
-//! harmonics ([`pass`]). Each round for the inertia of the turning frame is a pass as well.
+//! harmonics (`pass`). Each round for the inertia of the turning frame is a pass as well.
 
 mod ahead;
 pub mod balls;

@@ -3,7 +3,7 @@
 //! Contacts and partner act by a compliance C and then by the increment that their forces make. A sparse factor gives both by
 //! columns, one block solve of 1 + 2 n_balls right-hand sides per step, which reads the factor once. A periodic ring has C in a
 //! table of the responses of its raceway, made once per step size, and its vectors stay in harmonic space ([`super::space`]): the pass that
-//! ends a step solves for the predictor of the next ([`super::pass`]), and the raceway alone is transformed. The columns of a ring in
+//! ends a step solves for the predictor of the next (`pass`), and the raceway alone is transformed. The columns of a ring in
 //! sectors stay by sector ([`super::by_sector`]). The columns of the mount are solved once per step size. A defect of the ring
 //! corrects all of it (`motion::defect`).
 
