@@ -4,7 +4,6 @@
 //! ([`solver::CyclicStencil`]), and the harmonics are factored from them.
 
 use fem::SectorCoupling;
-use fem::stress::PointTerm;
 use mesh::{Mesh, Periodicity};
 use solver::{Coupling, CyclicMatrix, CyclicRing, CyclicStencil, SolverError};
 
@@ -354,17 +353,13 @@ pub(crate) fn point_operator(
         return Ok(None);
     };
     let whole = Sectors::assemble(ring, &ring.mesh, periodicity, side)?;
-    let coupling = |t: &PointTerm| Coupling {
-        row: t.point,
-        column: t.column,
-        shift: t.shift,
-    };
-    let couplings: Vec<Coupling> = stress.terms.iter().map(coupling).collect();
     let n_points = stress.points_per_element;
     let classes = (n_points * periodicity.elements().len(), n_points);
     let weights = stress.weights.as_flattened().as_flattened();
     Ok(Some(SectorOperator {
-        operator: whole.ring.point_stencil(classes, &couplings, weights),
+        operator: whole
+            .ring
+            .point_stencil(classes, &couplings(&stress.couplings), weights),
         elements: stress.elements,
     }))
 }

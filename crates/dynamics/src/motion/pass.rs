@@ -11,7 +11,6 @@
 //! ([`Pass::predict`]: at the start, after a change of the step size, after a step file) comes from the same functions and has the
 //! same bits. Solves of a ring that ranks share are collective, so that there the parts of a pass follow each other for the whole ring.
 
-use rayon::prelude::*;
 use solver::cyclic::PartHarmonics;
 
 use super::effective::CyclicFactor;
@@ -102,14 +101,9 @@ pub(super) struct Turned {
 /// Vectors of one group, with the border in the first.
 struct Buffers([Vec<f64>; 9]);
 
-/// One group's part of the vectors that a pass writes, without the border.
-#[derive(Default)]
-struct Written<'a> {
-    state: [&'a mut [f64]; 3],
-    renewed: &'a mut [f64],
-    inertia: &'a mut [f64],
-    solved: &'a mut [f64],
-}
+/// The vectors that a pass writes, or one group's parts of them without the border: w, v, a, the renewed inertia, the guess of the next,
+/// the solution. Those that are not wanted are empty.
+type Written<'a> = [&'a mut [f64]; 6];
 
 /// What a group adds to the sums, and the rows of the border from the first.
 #[derive(Default)]
@@ -120,7 +114,7 @@ struct Found {
     /// Squares of a change by section node, in the plane and along the axis, and magnitudes of the rows of its border.
     lines: Vec<[f64; 2]>,
     rows: f64,
-    /// Of w, v, a, the renewed inertia, the guess of the next, the solution.
+    /// Of the vectors of [`Written`].
     border: [Vec<f64>; 6],
 }
 
@@ -142,45 +136,42 @@ impl Pass<'_> {
         let mut renewed = vector(turning.map(|_| ()));
         let mut inertia = vector(coming.and_then(|c| c.1).map(|_| ()));
         let mut solved = vector(coming.map(|_| ()));
-        let mut outs: Vec<Written<'_>> = (0..self.n_groups()).map(|_| Written::default()).collect();
-        self.hand_out(&mut w, &mut outs, |out, part| out.state[0] = part);
-        self.hand_out(&mut v, &mut outs, |out, part| out.state[1] = part);
-        self.hand_out(&mut a, &mut outs, |out, part| out.state[2] = part);
-        self.hand_out(&mut renewed, &mut outs, |out, part| out.renewed = part);
-        self.hand_out(&mut inertia, &mut outs, |out, part| out.inertia = part);
-        self.hand_out(&mut solved, &mut outs, |out, part| out.solved = part);
-        let group = |buffers: &mut Buffers, (group, out): (usize, Written<'_>)| {
-            let [dw, w, v, a, product, side, within_w, within_v, field] = buffers.of(self.part_len(group));
-            let mut found = Found::default();
-            self.increment_part(group, &increment, dw);
-            let work = |load: Option<&[f64]>| load.map_or(0.0, |load| self.dot_with(group, load, dw));
-            found.works = [work(acting.load), work(acting.inertia)];
-            if let (Some(turning), Some(used)) = (turning, acting.inertia) {
-                self.within(group, old, dw, [&mut *within_w, &mut *within_v]);
-                self.space
-                    .frame_part(turning, group, [&*within_w, &*within_v], field, side);
-                self.keep(side, out.renewed, &mut found.border[3]);
-                self.compare(group, side, used, &mut found);
-            }
-            self.advance(group, old, dw, [&mut *w, &mut *v, &mut *a]);
-            let state = out.state.into_iter().zip([&*w, &*v, &*a]).zip(&mut found.border);
-            state.for_each(|((out, x), border)| self.keep(x, out, border));
-            found.energies = self.balance(group, [&*w, &*v, &*a], [&mut *product, &mut *side, &mut *field]);
-            if let Some(coming) = coming {
-                let rest = [side, within_w, within_v, field, product];
-                let outs = ([out.inertia, out.solved], &mut found.border);
-                self.predict_part(group, coming, [&*w, &*v, &*a], rest, outs);
-            }
-            found
-        };
-        let found: Vec<Found> = outs
-            .into_par_iter()
-            .enumerate()
-            .map_init(|| self.buffers(), group)
-            .collect();
-        self.write_border(
-            &found,
-            [&mut w, &mut v, &mut a, &mut renewed, &mut inertia, &mut solved],
+        let vectors = [
+            &mut w[..],
+            &mut v,
+            &mut a,
+            &mut renewed,
+            &mut inertia,
+            &mut solved,
+        ];
+        let found = self.over_groups(
+            vectors,
+            |group, buffers, [state @ .., renewed, inertia, solved]| {
+                let [dw, w, v, a, product, side, within_w, within_v, field] = buffers;
+                let mut found = Found::default();
+                self.increment_part(group, &increment, dw);
+                let work = |load: Option<&[f64]>| load.map_or(0.0, |load| self.dot_with(group, load, dw));
+                found.works = [work(acting.load), work(acting.inertia)];
+                if let (Some(turning), Some(used)) = (turning, acting.inertia) {
+                    self.within(group, old, dw, [&mut *within_w, &mut *within_v]);
+                    self.space
+                        .frame_part(turning, group, [&*within_w, &*within_v], field, side);
+                    self.keep(side, renewed, &mut found.border[3]);
+                    self.compare(group, side, used, &mut found);
+                }
+                self.advance(group, old, dw, [&mut *w, &mut *v, &mut *a]);
+                let state: [_; 3] = state;
+                let state = state.into_iter().zip([&*w, &*v, &*a]).zip(&mut found.border);
+                state.for_each(|((out, x), border)| self.keep(x, out, border));
+                found.energies =
+                    self.balance(group, [&*w, &*v, &*a], [&mut *product, &mut *side, &mut *field]);
+                if let Some(coming) = coming {
+                    let rest = [side, within_w, within_v, field, product];
+                    let outs = ([inertia, solved], &mut found.border);
+                    self.predict_part(group, coming, [&*w, &*v, &*a], rest, outs);
+                }
+                found
+            },
         );
         if coming.is_some() {
             self.solve_if_shared(&mut solved);
@@ -200,11 +191,9 @@ impl Pass<'_> {
         let coming = (coming.load, self.turning(coming.turn));
         let n = state.displacement().len();
         let (mut inertia, mut solved) = (vec![0.0; coming.1.map_or(0, |_| n)], vec![0.0; n]);
-        let mut outs: Vec<Written<'_>> = (0..self.n_groups()).map(|_| Written::default()).collect();
-        self.hand_out(&mut inertia, &mut outs, |out, part| out.inertia = part);
-        self.hand_out(&mut solved, &mut outs, |out, part| out.solved = part);
-        let group = |buffers: &mut Buffers, (group, out): (usize, Written<'_>)| {
-            let [_, w, v, a, product, side, within_w, within_v, field] = buffers.of(self.part_len(group));
+        let vectors = [&mut [][..], &mut [], &mut [], &mut [], &mut inertia, &mut solved];
+        self.over_groups(vectors, |group, buffers, [.., inertia, solved]| {
+            let [_, w, v, a, product, side, within_w, within_v, field] = buffers;
             let mut found = Found::default();
             for (first, range) in self.pieces(group) {
                 let from = first..first + range.len();
@@ -214,19 +203,10 @@ impl Pass<'_> {
             }
             self.balance(group, [&*w, &*v, &*a], [&mut *product, &mut *side, &mut *field]);
             let rest = [side, within_w, within_v, field, product];
-            let outs = ([out.inertia, out.solved], &mut found.border);
+            let outs = ([inertia, solved], &mut found.border);
             self.predict_part(group, coming, [&*w, &*v, &*a], rest, outs);
             found
-        };
-        let found: Vec<Found> = outs
-            .into_par_iter()
-            .enumerate()
-            .map_init(|| self.buffers(), group)
-            .collect();
-        self.write_border(
-            &found,
-            [&mut [], &mut [], &mut [], &mut [], &mut inertia, &mut solved],
-        );
+        });
         self.solve_if_shared(&mut solved);
         Predicted { solved, inertia }
     }
@@ -243,34 +223,23 @@ impl Pass<'_> {
         let turning = (turn, self.space.frame(self.nodes));
         let n = old.displacement().len();
         let [mut inertia, mut solved] = [(); 2].map(|()| vec![0.0; n]);
-        let mut outs: Vec<Written<'_>> = (0..self.n_groups()).map(|_| Written::default()).collect();
-        self.hand_out(&mut inertia, &mut outs, |out, part| out.renewed = part);
-        self.hand_out(&mut solved, &mut outs, |out, part| out.solved = part);
-        let group = |buffers: &mut Buffers, (group, out): (usize, Written<'_>)| {
-            let [dw, .., side, within_w, within_v, field] = buffers.of(self.part_len(group));
+        let vectors = [&mut [][..], &mut [], &mut [], &mut inertia, &mut [], &mut solved];
+        let found = self.over_groups(vectors, |group, buffers, [.., renewed, _, solved]| {
+            let [dw, .., side, within_w, within_v, field] = buffers;
             let mut found = Found::default();
             self.increment_part(group, &increment, dw);
             self.within(group, old, dw, [&mut *within_w, &mut *within_v]);
             self.space
                 .frame_part(turning, group, [&*within_w, &*within_v], field, side);
-            self.keep(side, out.renewed, &mut found.border[3]);
+            self.keep(side, renewed, &mut found.border[3]);
             self.compare(group, side, used, &mut found);
             self.solve_part(group, side);
             if !self.factor.solver.is_shared() {
                 self.add_part(group, predictor, side);
             }
-            self.keep(side, out.solved, &mut found.border[5]);
+            self.keep(side, solved, &mut found.border[5]);
             found
-        };
-        let found: Vec<Found> = outs
-            .into_par_iter()
-            .enumerate()
-            .map_init(|| self.buffers(), group)
-            .collect();
-        self.write_border(
-            &found,
-            [&mut [], &mut [], &mut [], &mut inertia, &mut [], &mut solved],
-        );
+        });
         if self.factor.solver.is_shared() {
             self.factor.solve_in_place(&mut solved);
             super::vectors::add(&mut solved, predictor);

@@ -16,7 +16,7 @@ pub use nodes::NodeRecovery;
 pub use points::{MeshPoint, PointRecovery};
 pub use recovery::{StressRecovery, StressWorkspace};
 pub use sector::SectorStress;
-pub use sector_points::{PointTerm, SectorPoints};
+pub use sector_points::SectorPoints;
 
 /// Small strain with engineering shear from a displacement gradient, `gradient[i][j] = du_i/dx_j`.
 pub fn strain(gradient: [[f64; 3]; 3]) -> [f64; 6] {

@@ -41,30 +41,40 @@ impl StressRecovery {
         let mut weights = vec![[[0.0; 3]; 6]; couplings.len()];
         for &e in periodicity.elements() {
             let nodes = mesh.element(e);
-            let mut state: NodeState = [[0.0; 6]; MAX_NODES];
-            for (state, &node) in state.iter_mut().zip(nodes) {
-                state[..3].copy_from_slice(&mesh.nodes[node]);
-            }
-            for (b, &node_b) in nodes.iter().enumerate() {
-                let [c, s] = directions[node_b];
-                for (j, unit) in [[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]]
-                    .into_iter()
-                    .enumerate()
-                {
-                    state[b][3..].copy_from_slice(&unit);
-                    let corners = self.weighted_corners(&state);
-                    for (a, &node_a) in nodes.iter().enumerate() {
-                        let share = self.node_share(node_a, a, &corners);
-                        let there = &mut weights[places[&coupling(periodicity, node_a, node_b)]];
-                        for (row, value) in there.iter_mut().zip(cylindrical(share, directions[node_a])) {
-                            row[j] += value;
-                        }
+            for_each_unit(mesh, nodes, &directions, |[b, j], state| {
+                let corners = self.weighted_corners(state);
+                for (a, &node_a) in nodes.iter().enumerate() {
+                    let share = self.node_share(node_a, a, &corners);
+                    let there = &mut weights[places[&coupling(periodicity, node_a, nodes[b])]];
+                    for (row, value) in there.iter_mut().zip(cylindrical(share, directions[node_a])) {
+                        row[j] += value;
                     }
                 }
-                state[b][3..].fill(0.0);
-            }
+            });
         }
         SectorStress { couplings, weights }
+    }
+}
+
+/// Gives the state of an element with the nodes `nodes` of which node b alone moves, by one along its component j, for all `[b, j]`.
+pub(super) fn for_each_unit(
+    mesh: &Mesh,
+    nodes: &[usize],
+    directions: &[[f64; 2]],
+    mut give: impl FnMut([usize; 2], &NodeState),
+) {
+    let mut state: NodeState = [[0.0; 6]; MAX_NODES];
+    for (state, &node) in state.iter_mut().zip(nodes) {
+        state[..3].copy_from_slice(&mesh.nodes[node]);
+    }
+    for (b, &node) in nodes.iter().enumerate() {
+        let [c, s] = directions[node];
+        let units = [[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]];
+        for (j, unit) in units.into_iter().enumerate() {
+            state[b][3..].copy_from_slice(&unit);
+            give([b, j], &state);
+        }
+        state[b][3..].fill(0.0);
     }
 }
 

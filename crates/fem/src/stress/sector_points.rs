@@ -11,35 +11,23 @@ use std::collections::BTreeMap;
 
 use mesh::{Mesh, Periodicity};
 
-use super::kernel::NodeState;
 use super::recovery::StressRecovery;
-use super::sector::cylindrical;
-use crate::element::MAX_NODES;
-use crate::sector::{azimuth_directions, coupling};
+use super::sector::{cylindrical, for_each_unit};
+use crate::sector::{SectorCoupling, azimuth_directions, coupling};
 
 /// Stress at the points of one element of every class.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SectorPoints {
-    /// What each displacement gives to each point, class by class, point by point.
-    pub terms: Vec<PointTerm>,
+    /// Couplings of points with the nodes of their element, class by class, point by point: the row is the class of the element times the
+    /// points of an element, plus the point, and the shift that from the first node of the element.
+    pub couplings: Vec<SectorCoupling>,
     /// Stress in the order rr tt zz rt tz rz, at the first node of the element, per displacement along (radial, azimuthal, axial),
-    /// Pa/m, `[n_terms][6][3]`.
+    /// Pa/m, `[n_couplings][6][3]`.
     pub weights: Vec<[[f64; 3]; 6]>,
     /// Class and first node of every element of the mesh, `[n_elements]`.
     pub elements: Vec<[usize; 2]>,
     /// Points of an element.
     pub points_per_element: usize,
-}
-
-/// A section node that acts on a point.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct PointTerm {
-    /// Class of the element times the points of an element, plus the point.
-    pub point: usize,
-    /// Section node that moves.
-    pub column: usize,
-    /// Sectors to it from the first node of the element.
-    pub shift: i32,
 }
 
 impl StressRecovery {
@@ -55,25 +43,21 @@ impl StressRecovery {
         let elements = classes(mesh, periodicity)?;
         let n_points = self.points_per_element();
         let directions = azimuth_directions(mesh);
-        let (mut terms, mut weights) = (Vec::new(), Vec::new());
+        let (mut couplings, mut weights) = (Vec::new(), Vec::new());
         for (class, &e) in periodicity.elements().iter().enumerate() {
             let nodes = mesh.element(e);
-            let first = terms.len();
+            let first = couplings.len();
             for point in 0..n_points {
-                terms.extend(nodes.iter().map(|&node| {
-                    let there = coupling(periodicity, nodes[0], node);
-                    PointTerm {
-                        point: n_points * class + point,
-                        column: there.column,
-                        shift: there.shift,
-                    }
+                couplings.extend(nodes.iter().map(|&node| SectorCoupling {
+                    row: n_points * class + point,
+                    ..coupling(periodicity, nodes[0], node)
                 }));
             }
-            weights.resize(terms.len(), [[0.0; 3]; 6]);
+            weights.resize(couplings.len(), [[0.0; 3]; 6]);
             self.add_element(mesh, e, &directions, &mut weights[first..]);
         }
         Some(SectorPoints {
-            terms,
+            couplings,
             weights,
             elements,
             points_per_element: n_points,
@@ -83,26 +67,16 @@ impl StressRecovery {
     /// Writes the weights of one element, `[points][nodes]`.
     fn add_element(&self, mesh: &Mesh, e: usize, directions: &[[f64; 2]], weights: &mut [[[f64; 3]; 6]]) {
         let nodes = mesh.element(e);
-        let mut state: NodeState = [[0.0; 6]; MAX_NODES];
-        for (state, &node) in state.iter_mut().zip(nodes) {
-            state[..3].copy_from_slice(&mesh.nodes[node]);
-        }
-        for (b, &node) in nodes.iter().enumerate() {
-            let [c, s] = directions[node];
-            let units = [[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]];
-            for (j, unit) in units.into_iter().enumerate() {
-                state[b][3..].copy_from_slice(&unit);
-                let (points, _) = self.state_stress(&state);
-                for (weights, stress) in weights.chunks_exact_mut(nodes.len()).zip(points) {
-                    let stress = cylindrical(stress, directions[nodes[0]]);
-                    weights[b]
-                        .iter_mut()
-                        .zip(stress)
-                        .for_each(|(row, value)| row[j] = value);
-                }
+        for_each_unit(mesh, nodes, directions, |[b, j], state| {
+            let (points, _) = self.state_stress(state);
+            for (weights, stress) in weights.chunks_exact_mut(nodes.len()).zip(points) {
+                let stress = cylindrical(stress, directions[nodes[0]]);
+                weights[b]
+                    .iter_mut()
+                    .zip(stress)
+                    .for_each(|(row, value)| row[j] = value);
             }
-            state[b][3..].fill(0.0);
-        }
+        });
     }
 }
 

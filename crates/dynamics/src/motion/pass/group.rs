@@ -2,6 +2,8 @@
 
 use std::ops::Range;
 
+use rayon::prelude::*;
+
 use super::{Buffers, Change, Found, FrameLoads, FrameTurn, Increment, Pass, RingState, Written};
 use super::{advance_part, total, within_part};
 use crate::solution::dot;
@@ -21,17 +23,17 @@ impl<'a> Pass<'a> {
         turn.map(|turn| (turn, self.space.frame(self.nodes)))
     }
 
-    pub(super) fn buffers(&self) -> Buffers {
+    fn buffers(&self) -> Buffers {
         let len = self.space.ring.low_len() + self.space.n_shaft;
         Buffers([(); 9].map(|()| vec![0.0; len]))
     }
 
-    pub(super) fn n_groups(&self) -> usize {
+    fn n_groups(&self) -> usize {
         let ring = &self.space.ring;
         ring.harmonic_len().checked_div(ring.low_len()).unwrap_or(0)
     }
 
-    pub(super) fn part_len(&self, group: usize) -> usize {
+    fn part_len(&self, group: usize) -> usize {
         self.space.part_len(group)
     }
 
@@ -42,17 +44,35 @@ impl<'a> Pass<'a> {
         [(low * group, 0..low)].into_iter().chain(border)
     }
 
-    /// Gives each group its part of a vector that is to be written; an empty one is not wanted.
-    pub(super) fn hand_out<'o>(
+    /// Does `work` for each group, given by its number, with buffers for its vectors and with its parts of the vectors that are written,
+    /// and completes these by the rows of the border, which the first group has found.
+    pub(super) fn over_groups(
         &self,
-        vector: &'o mut [f64],
-        outs: &mut [Written<'o>],
-        set: impl Fn(&mut Written<'o>, &'o mut [f64]),
-    ) {
+        mut vectors: Written<'_>,
+        work: impl Fn(usize, [&mut [f64]; 9], Written<'_>) -> Found + Sync,
+    ) -> Vec<Found> {
         let low = self.space.ring.low_len().max(1);
-        outs.iter_mut()
-            .zip(vector.chunks_exact_mut(low))
-            .for_each(|(out, part)| set(out, part));
+        let mut outs: Vec<Written<'_>> = (0..self.n_groups()).map(|_| Written::default()).collect();
+        for (which, vector) in vectors.iter_mut().enumerate() {
+            let parts = outs.iter_mut().zip(vector.chunks_exact_mut(low));
+            parts.for_each(|(out, part)| out[which] = part);
+        }
+        let found: Vec<Found> = outs
+            .into_par_iter()
+            .enumerate()
+            .map_init(
+                || self.buffers(),
+                |buffers, (group, out)| work(group, buffers.of(self.part_len(group)), out),
+            )
+            .collect();
+        if let Some(first) = found.first() {
+            for (vector, rows) in vectors.into_iter().zip(&first.border) {
+                if !vector.is_empty() {
+                    vector[self.space.ring.harmonic_len()..].copy_from_slice(rows);
+                }
+            }
+        }
+        found
     }
 
     /// Writes a group's part where it is wanted.
@@ -61,16 +81,6 @@ impl<'a> Pass<'a> {
             let (harmonics, rows) = part.split_at(out.len());
             out.copy_from_slice(harmonics);
             *border = rows.to_vec();
-        }
-    }
-
-    /// Writes the rows of the border, which the first group has found.
-    pub(super) fn write_border(&self, found: &[Found], vectors: [&mut [f64]; 6]) {
-        let Some(first) = found.first() else { return };
-        for (vector, rows) in vectors.into_iter().zip(&first.border) {
-            if !vector.is_empty() {
-                vector[self.space.ring.harmonic_len()..].copy_from_slice(rows);
-            }
         }
     }
 
