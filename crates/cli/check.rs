@@ -10,6 +10,7 @@ use dynamics::{
 };
 
 use crate::build::build_model;
+use crate::doubts::doubts;
 use crate::failure::Failure;
 use crate::modes;
 use crate::print;
@@ -94,7 +95,10 @@ pub fn check(path: &Path, overrides: &[String]) -> Result<(), Failure> {
         forecast.n_files,
         disk::size(forecast.total)
     ));
-    for line in rules::advice(&scene, &model) {
+    for line in doubts(&scene, &model)
+        .iter()
+        .chain(&rules::advice(&scene, &model))
+    {
         print::line(format_args!("advice   {line}"));
     }
     Ok(())

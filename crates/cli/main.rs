@@ -6,6 +6,7 @@
 mod build;
 mod check;
 mod cycles;
+mod doubts;
 mod export;
 mod failure;
 mod info;

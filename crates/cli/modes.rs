@@ -11,6 +11,7 @@ use dynamics::{ModeSet, Model, ModesSettings, RingSupport, StaticSolution, Stati
 use solver::Searched;
 
 use crate::build::build_model;
+use crate::doubts::say_doubts;
 use crate::failure::Failure;
 use crate::options::Limits;
 use crate::progress::Progress;
@@ -40,6 +41,7 @@ pub fn run(
     let mut progress = Progress::new(wanted.bodies.len() as u64);
     progress.stage("reading meshes");
     let (model, _) = build_model(scene)?;
+    say_doubts(scene, &model);
     Forecast::new(scene, &model, 0).require_space(dir, limits.ignore_disk_space)?;
     let equilibrium = if wanted.bodies.contains(&ModeBody::Bearing) {
         progress.stage("equilibrium");

@@ -13,6 +13,7 @@ use contact::Side;
 use dynamics::{Backend, Model, RingModel, Sectors};
 
 use crate::build::{build_model, material, model_with_rings, ring_of};
+use crate::doubts::say_doubts;
 use crate::failure::{Failure, agree};
 use crate::results::fields;
 use crate::results::probes::Probes;
@@ -56,6 +57,7 @@ fn whole(
     test: impl FnOnce(&Model) -> Result<(), Failure>,
 ) -> Result<(Model, Option<Probes>), Failure> {
     let (model, tags) = build_model(point)?;
+    say_doubts(point, &model);
     let probes = Probes::new(scene, &model, &tags)?;
     test(&model)?;
     Ok((model, probes))

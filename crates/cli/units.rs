@@ -121,6 +121,11 @@ impl<const KIND: usize> Quantity<KIND> {
         }
     }
 
+    /// A quantity computed by the program, for messages: ten digits, without the round-off of its computation.
+    pub fn about(si: f64) -> Self {
+        Self::from_si(ten_digits(si))
+    }
+
     /// Value, SI unit of the kind.
     pub fn si(&self) -> f64 {
         self.si
@@ -190,6 +195,11 @@ impl<'de, const KIND: usize> Deserialize<'de> for Quantity<KIND> {
 
         deserializer.deserialize_any(QuantityVisitor)
     }
+}
+
+/// Rounded to ten digits, for messages and to hide round-off.
+pub fn ten_digits(value: f64) -> f64 {
+    format!("{value:.9e}").parse().unwrap_or(value)
 }
 
 /// The message for a number that has no unit because it is not even a string.

@@ -343,7 +343,11 @@ fn the_mesh_of_another_bearing_is_refused() {
         ),
         (
             "inner.groove_z=1 mm",
-            &["error: inner.msh: node ", "at z = 1.000000e-3 m"],
+            &[
+                "error: inner.msh: node ",
+                "at z = 1.000000e-3 m",
+                "the groove fits with its centre at z = 0 mm: state that as groove_z",
+            ],
         ),
         (
             "inner.mesh=outer.msh",
@@ -353,6 +357,64 @@ fn the_mesh_of_another_bearing_is_refused() {
     for (change, parts) in cases {
         assert_refused(change, &dir, &[], &run(&["--set", change]), parts);
     }
+}
+
+/// If this failed, a drawing about another axis would be refused without a word about the axis.
+#[test]
+fn a_mesh_about_another_axis_is_named() {
+    let dir = tiny();
+    let mut mesh = rings::ring(RingSide::Inner, TINY);
+    mesh.nodes
+        .iter_mut()
+        .for_each(|[x, y, z]| (*x, *y, *z) = (*z, *x, *y));
+    dir.write("inner.msh", rings::file(&mesh, 1e-3, MshFormat::Ascii));
+    let part = "the groove fits about the x axis: turn the mesh so that the bearing's axis is z";
+    assert_refused("about x", &dir, &[], &run(&[]), &[part]);
+}
+
+/// If this failed, a scene could say one bearing, or a unit a thousand times too small, and solve another without a word.
+#[test]
+fn slips_that_a_run_can_do_with_are_warned_of() {
+    let dir = tiny();
+    let slips = [
+        (
+            "bearing.bore_diameter=48 mm",
+            "mesh inner.msh has a bore with a mean diameter of 50 mm, but bearing.bore_diameter is 48 mm",
+        ),
+        (
+            "bearing.outside_diameter=82 mm",
+            "mesh outer.msh has a seat with a mean diameter of 80 mm, but bearing.outside_diameter is 82 mm",
+        ),
+        (
+            "bearing.width=20 mm",
+            "mesh inner.msh has a width of 16 mm, but bearing.width is 20 mm",
+        ),
+        (
+            "materials.rings.young_modulus=207 MPa",
+            "materials.rings.young_modulus is 207 MPa; rings and balls have",
+        ),
+        (
+            "materials.balls.density=7.8 kg/m3",
+            "materials.balls.density is 7.8 kg/m3; rings and balls have",
+        ),
+    ];
+    let sound = dir.raceway(&["check", "scene.toml"]).stdout;
+    for (slip, part) in slips {
+        let outcome = dir.raceway(&["check", "scene.toml", "--set", slip]);
+        assert_eq!(outcome.code, Some(0), "{}", outcome.stderr);
+        assert!(
+            outcome.stdout.contains(&format!("advice   {part}")),
+            "{slip}: {}",
+            outcome.stdout
+        );
+        assert!(!sound.contains(part), "{sound}");
+    }
+    let outcome = dir.raceway(&["run", "scene.toml", "--out", "out", "--set", slips[0].0]);
+    assert!(
+        outcome.stderr.contains(&format!("warning: {}", slips[0].1)),
+        "{}",
+        outcome.stderr
+    );
 }
 
 /// If this failed, the outer ring would be less well checked than the inner.

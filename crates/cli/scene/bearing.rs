@@ -160,7 +160,7 @@ impl RawBearing {
         ];
         for (key, groove) in grooves {
             let usual = "0.515 to 0.53 of the ball diameter is usual";
-            let ball = Quantity::<LENGTH>::from_si(ball_radius);
+            let ball = Quantity::<LENGTH>::about(ball_radius);
             let rule = format!("it must be more than the ball radius {ball}, {usual}");
             problems.require(groove.si() > ball_radius, key, groove, rule);
             let conformity = groove.si() / self.ball_diameter.si();
@@ -179,7 +179,7 @@ impl RawBearing {
             problems.add(format!(
                 "bearing.balls is {}; the balls overlap on the pitch circle of {}, at most {fit} of {} fit",
                 bearing.balls,
-                Quantity::<LENGTH>::from_si(pitch),
+                Quantity::<LENGTH>::about(pitch),
                 self.ball_diameter,
             ));
         }

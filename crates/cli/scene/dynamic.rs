@@ -9,8 +9,8 @@ use serde::Deserialize;
 use super::problems::Problems;
 use super::shaft::Shaft;
 use super::start::{RawStart, Start};
-use super::steps::{output_every, ten_digits, whole_steps};
-use crate::units::{Quantity, TIME};
+use super::steps::{output_every, whole_steps};
+use crate::units::{Quantity, TIME, ten_digits};
 
 /// As typed.
 #[derive(Debug, Deserialize)]

@@ -143,8 +143,8 @@ impl RawSection {
                 diameter,
                 format!(
                     "a shoulder must lie between the bottom and the centre of the groove, {} to {}",
-                    Quantity::<LENGTH>::from_si(rounded(low)),
-                    Quantity::<LENGTH>::from_si(rounded(high)),
+                    Quantity::<LENGTH>::about(low),
+                    Quantity::<LENGTH>::about(high),
                 ),
             );
         }
@@ -162,16 +162,11 @@ pub fn check_gap(inner: &Section, outer: &Section, problems: &mut Problems) {
         problems.require(
             *a < b,
             &format!("inner.section.shoulder_diameters[{i}]"),
-            Quantity::<LENGTH>::from_si(*a),
+            Quantity::<LENGTH>::about(*a),
             format!(
                 "it must be less than outer.section.shoulder_diameters[{i}], which is {}, or the rings touch",
-                Quantity::<LENGTH>::from_si(b)
+                Quantity::<LENGTH>::about(b)
             ),
         );
     }
-}
-
-/// To a nanometre, for messages.
-fn rounded(length: f64) -> f64 {
-    (length * 1e9).round() / 1e9
 }

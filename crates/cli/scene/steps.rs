@@ -1,7 +1,7 @@
 //! Equal steps in time: what `[dynamic]` and `[quasi_static]` have in common.
 
 use super::problems::Problems;
-use crate::units::{Quantity, TIME};
+use crate::units::{Quantity, TIME, ten_digits};
 
 /// Duration over step may differ from a whole number by this part: their round-off is a million times less.
 const WHOLE_TOLERANCE: f64 = 1e-9;
@@ -37,7 +37,7 @@ pub fn whole_steps(
         "{table}.duration is {duration}; that is {} steps of {step}, expected a whole number; the nearest duration that \
          fits is {}",
         ten_digits(ratio),
-        Quantity::<TIME>::from_si(ten_digits(whole * step.si()))
+        Quantity::<TIME>::about(whole * step.si())
     ));
     None
 }
@@ -46,9 +46,4 @@ pub fn whole_steps(
 pub fn output_every(table: &str, typed: Option<i64>, problems: &mut Problems) -> u64 {
     let key = format!("{table}.output_every");
     problems.whole(typed.unwrap_or(1), &key, 1, MAX_STEPS as i64) as u64
-}
-
-/// Rounded to ten digits, for messages and to hide round-off.
-pub fn ten_digits(value: f64) -> f64 {
-    format!("{value:.9e}").parse().unwrap_or(value)
 }

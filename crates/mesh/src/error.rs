@@ -5,6 +5,8 @@ use std::path::PathBuf;
 
 use thiserror::Error;
 
+use crate::check::Torus;
+
 /// Where in a file something is wrong.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Place {
@@ -270,25 +272,23 @@ pub enum MeshError {
     /// The raceway of the mesh is not the raceway of the bearing.
     #[error(
         "{path}: node {node} of group \"{group}\" is {deviation:.3e} m off the groove torus (centre circle radius \
-         {centre_radius:.6e} m at z = {centre_z:.6e} m, groove radius {groove_radius:.6e} m), more than {tolerance:.1e} m \
-         ({count} of {total} nodes are); expected a mesh of this bearing's groove; compare the raceway diameter, groove \
-         radius and axial position with the .geo"
+         {:.6e} m at z = {:.6e} m, groove radius {:.6e} m), more than {tolerance:.1e} m \
+         ({count} of {total} nodes are); expected a mesh of this bearing's groove; {advice}",
+        torus.centre_radius, torus.centre_z, torus.groove_radius
     )]
     OffTorus {
+        /// What to look at, or what would make it fit.
+        advice: Box<str>,
         /// The file.
         path: PathBuf,
         /// Group checked.
-        group: String,
+        group: Box<str>,
         /// Tag of the worst node.
         node: u64,
         /// Its signed distance from the torus surface, positive outside the tube, m.
         deviation: f64,
-        /// Groove-centre circle radius, m.
-        centre_radius: f64,
-        /// Groove radius, m.
-        groove_radius: f64,
-        /// Groove-centre plane, m.
-        centre_z: f64,
+        /// The groove.
+        torus: Torus,
         /// Tolerance, m.
         tolerance: f64,
         /// Nodes beyond it.

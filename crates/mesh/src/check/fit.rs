@@ -44,18 +44,55 @@ pub fn check_torus(
     if count == 0 {
         return Ok(());
     }
+    let points: Vec<[f64; 3]> = nodes.iter().map(|&n| mesh.nodes[n]).collect();
     Err(MeshError::OffTorus {
+        advice: remedy(&points, torus, tolerance),
         path: origin.path.clone(),
-        group: group.to_string(),
+        group: group.into(),
         node: origin.node_tags[worst.0],
         deviation: worst.1,
-        centre_radius: torus.centre_radius,
-        groove_radius: torus.groove_radius,
-        centre_z: torus.centre_z,
+        torus: *torus,
         tolerance,
         count,
         total: nodes.len(),
     })
+}
+
+/// A change of the axes.
+type Turn = fn([f64; 3]) -> [f64; 3];
+
+/// What would make the mesh fit, if it is a matter of its place alone.
+fn remedy(points: &[[f64; 3]], torus: &Torus, tolerance: f64) -> Box<str> {
+    let fits = |of: Turn, torus: &Torus| points.iter().all(|&x| torus.distance(of(x)).abs() <= tolerance);
+    let axes: [(&str, Turn); 2] = [("x", |[x, y, z]| [y, z, x]), ("y", |[x, y, z]| [z, x, y])];
+    for (axis, turned) in axes {
+        // The groove's plane may lie elsewhere on that axis.
+        let moved = centred(points.iter().map(|&x| turned(x)[2]), torus);
+        if fits(turned, &moved) {
+            return format!(
+                "the groove fits about the {axis} axis: turn the mesh so that the bearing's axis is z"
+            )
+            .into();
+        }
+    }
+    let moved = centred(points.iter().map(|x| x[2]), torus);
+    if fits(|x| x, &moved) {
+        // In micrometres and back, so that zero has no sign.
+        let centre = (moved.centre_z * 1e9).round() / 1e6 + 0.0;
+        return format!("the groove fits with its centre at z = {centre} mm: state that as groove_z").into();
+    }
+    "compare the raceway diameter, groove radius and axial position with the .geo".into()
+}
+
+/// The groove with its centre in the middle of what nodes reach along the axis.
+fn centred(along: impl Iterator<Item = f64>, torus: &Torus) -> Torus {
+    let (low, high) = along.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), z| {
+        (low.min(z), high.max(z))
+    });
+    Torus {
+        centre_z: 0.5 * (low + high),
+        ..*torus
+    }
 }
 
 /// Units a drawing may be in, m.

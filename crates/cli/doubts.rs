@@ -1,0 +1,89 @@
+//! What a run can do with but is most likely a slip: a material like no other, a mesh of other main dimensions than the scene's.
+//!
+//! Results never depend on `bearing.bore_diameter`, `outside_diameter` and `width` where there is a mesh, so that a mesh of another size is
+//! no error: a groove that does not fit is one. But the scene then says something else than what is solved.
+
+use std::ops::RangeInclusive;
+
+use contact::Side;
+use dynamics::{Model, RingModel};
+
+use crate::print;
+use crate::scene::{Material, Scene};
+use crate::units::{DENSITY, LENGTH, Quantity, STRESS};
+
+/// Young's modulus of what rings and balls are made of, Pa: from soft plastics to diamond.
+const MODULI: RangeInclusive<f64> = 4e8..=1.3e12;
+/// Their density, kg/m3: from foamed plastics to tungsten.
+const DENSITIES: RangeInclusive<f64> = 500.0..=25_000.0;
+/// Relative difference of a diameter, and of a width, from which a mesh is said to have another.
+const OTHER_DIAMETER: f64 = 2e-3;
+const OTHER_WIDTH: f64 = 2e-2;
+
+/// Warns of what is most likely a slip in the scene.
+pub fn say_doubts(scene: &Scene, model: &Model) {
+    for doubt in doubts(scene, model) {
+        print::note(format_args!("warning: {doubt}"));
+    }
+}
+
+/// A sentence for each slip; `model` has whole meshes.
+pub fn doubts(scene: &Scene, model: &Model) -> Vec<String> {
+    let materials = &scene.materials;
+    let mut lines = Vec::new();
+    doubt_material("materials.rings", &materials.rings, &mut lines);
+    doubt_material("materials.balls", &materials.balls, &mut lines);
+    for (side, body) in Side::BOTH.into_iter().zip([&scene.inner.body, &scene.outer.body]) {
+        if let (Some(ring), Some(body)) = (&model.rings[side.index()], body) {
+            let path = body.mesh.display().to_string();
+            doubt_size(scene, side, ring, &path, &mut lines);
+        }
+    }
+    lines
+}
+
+fn doubt_material(table: &str, material: &Material, lines: &mut Vec<String>) {
+    if !MODULI.contains(&material.young_modulus) {
+        lines.push(format!(
+            "{table}.young_modulus is {}; rings and balls have 0.4 GPa (plastics) to 1300 GPa (diamond), steel 207 GPa: check its unit",
+            Quantity::<STRESS>::about(material.young_modulus)
+        ));
+    }
+    if !DENSITIES.contains(&material.density) {
+        lines.push(format!(
+            "{table}.density is {}; rings and balls have 500 kg/m3 (plastics) to 25000 kg/m3 (heavy metals), steel 7800 kg/m3: check its unit",
+            Quantity::<DENSITY>::about(material.density)
+        ));
+    }
+}
+
+/// Compares the held surface and the width of a mesh with the scene.
+fn doubt_size(scene: &Scene, side: Side, ring: &RingModel, path: &str, lines: &mut Vec<String>) {
+    let (key, stated) = match side {
+        Side::Inner => ("bearing.bore_diameter", scene.bearing.bore_diameter),
+        Side::Outer => ("bearing.outside_diameter", scene.bearing.outside_diameter),
+    };
+    let (mesh, group) = (&ring.mesh, ring.held_group);
+    let mut say = |what: &str, key: &str, found: f64, stated: f64| {
+        let [found, stated] = [found, stated].map(Quantity::<LENGTH>::about);
+        lines.push(format!(
+            "mesh {path} has {what} of {found}, but {key} is {stated}; what is solved is the mesh"
+        ));
+    };
+    let nodes = mesh.group_nodes(group);
+    let radii = nodes.iter().map(|&n| mesh.nodes[n][0].hypot(mesh.nodes[n][1]));
+    let diameter = 2.0 * radii.sum::<f64>() / nodes.len().max(1) as f64;
+    if (diameter / stated - 1.0).abs() > OTHER_DIAMETER {
+        say(&format!("a {group} with a mean diameter"), key, diameter, stated);
+    }
+    let (low, high) = mesh
+        .nodes
+        .iter()
+        .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| {
+            (low.min(x[2]), high.max(x[2]))
+        });
+    let width = scene.bearing.width;
+    if ((high - low) / width - 1.0).abs() > OTHER_WIDTH {
+        say("a width", "bearing.width", high - low, width);
+    }
+}
