@@ -2,6 +2,7 @@
 //! and not one file made, changed or removed.
 
 mod command_line;
+mod fit;
 mod meshes;
 mod scenes;
 mod text;
