@@ -128,7 +128,7 @@ impl RingModel {
         let positions = self.mesh.nodes.clone();
         Ok(match backend {
             Backend::Sector(sectors) => {
-                NodePlaces::shared(positions, self.sector_cut(side, sectors)?.nodes, sectors.comm)
+                NodePlaces::shared(positions, &self.sector_cut(side, sectors)?.nodes, sectors.comm)
             }
             Backend::Auto | Backend::Cyclic | Backend::Sparse => NodePlaces::whole(positions),
         })

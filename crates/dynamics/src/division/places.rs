@@ -19,8 +19,8 @@ pub struct NodePlaces {
 #[derive(Clone, Debug)]
 struct Shares {
     comm: Communicator,
-    /// Nodes of each sector, ascending.
-    nodes: Arc<Vec<Vec<u32>>>,
+    /// The nodes that belong to each sector, ascending.
+    own: Arc<Vec<Vec<u32>>>,
 }
 
 impl NodePlaces {
@@ -33,10 +33,11 @@ impl NodePlaces {
     }
 
     /// A ring in sectors with the given `nodes`, ascending, of which each rank keeps at least those of its own.
-    pub fn shared(positions: NodePositions, nodes: Arc<Vec<Vec<u32>>>, comm: Communicator) -> NodePlaces {
+    pub fn shared(positions: NodePositions, nodes: &[Vec<u32>], comm: Communicator) -> NodePlaces {
+        let own = Arc::new(own_nodes(positions.len(), nodes));
         NodePlaces {
             positions,
-            shares: Some(Shares { comm, nodes }),
+            shares: Some(Shares { comm, own }),
         }
     }
 
@@ -47,10 +48,9 @@ impl NodePlaces {
 
     /// Values of a function of the position at all nodes, `[n_nodes][3]` flat. Collective.
     pub fn field(&self, f: impl Fn([f64; 3]) -> [f64; 3]) -> Vec<f64> {
-        let Some(Shares { comm, nodes }) = self.divided() else {
+        let Some(Shares { comm, own }) = self.divided() else {
             return self.positions.iter().flat_map(|&x| f(x)).collect();
         };
-        let own = self.own_nodes(nodes);
         let at = |node: &u32| f(self.positions[*node as usize]);
         let mine: Vec<f64> = own[comm.share(own.len())].iter().flatten().flat_map(at).collect();
         let length = |share: std::ops::Range<usize>| own[share].iter().map(|nodes| 3 * nodes.len()).sum();
@@ -69,11 +69,10 @@ impl NodePlaces {
             (0..W).for_each(|i| sum[i] += value[i]);
             sum
         };
-        let Some(Shares { comm, nodes }) = &self.shares else {
+        let Some(Shares { comm, own }) = &self.shares else {
             let values = self.positions.iter().enumerate().map(|(node, &x)| f(node, x));
             return values.fold([0.0; W], add);
         };
-        let own = self.own_nodes(nodes);
         let of_sector = |nodes: &Vec<u32>| {
             let values = nodes
                 .iter()
@@ -89,10 +88,9 @@ impl NodePlaces {
 
     /// The positions of all nodes, on rank 0, None on the others. Collective.
     pub fn to_root(&self) -> Option<NodePositions> {
-        let Some(Shares { comm, nodes }) = self.divided() else {
+        let Some(Shares { comm, own }) = self.divided() else {
             return Some(self.positions.clone());
         };
-        let own = self.own_nodes(nodes);
         let n_nodes = if comm.is_root() { self.positions.len() } else { 0 };
         let mut all = vec![[0.0; 3]; n_nodes];
         for (rank, share) in comm.shares(own.len()).into_iter().enumerate() {
@@ -115,15 +113,15 @@ impl NodePlaces {
     fn divided(&self) -> Option<&Shares> {
         self.shares.as_ref().filter(|shares| shares.comm.size() > 1)
     }
+}
 
-    /// The nodes that belong to each sector, ascending.
-    fn own_nodes(&self, nodes: &[Vec<u32>]) -> Vec<Vec<u32>> {
-        let mut is_owned = vec![false; self.positions.len()];
-        let first = |nodes: &Vec<u32>| {
-            let own = nodes.iter().copied();
-            own.filter(|&node| !std::mem::replace(&mut is_owned[node as usize], true))
-                .collect()
-        };
-        nodes.iter().map(first).collect()
-    }
+/// The nodes that belong to each sector, of the nodes of each, ascending.
+fn own_nodes(n_nodes: usize, nodes: &[Vec<u32>]) -> Vec<Vec<u32>> {
+    let mut is_owned = vec![false; n_nodes];
+    let first = |nodes: &Vec<u32>| {
+        let own = nodes.iter().copied();
+        own.filter(|&node| !std::mem::replace(&mut is_owned[node as usize], true))
+            .collect()
+    };
+    nodes.iter().map(first).collect()
 }
