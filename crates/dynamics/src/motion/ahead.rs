@@ -10,6 +10,7 @@ use contact::Side;
 
 use super::body::RingBody;
 use super::pass::{Coming, Predicted};
+use super::pool::PooledVector;
 use super::ring::RingFactor;
 use super::ring_state::RingState;
 use super::run::Motion;
@@ -38,9 +39,9 @@ pub(super) struct Known {
     /// Generalised load that is fixed in space, of the ring's space as all loads here, when there is one.
     pub load: Option<Vec<f64>>,
     /// First guess of the inertia load of the turning frame, when there is one.
-    pub inertia: Option<(FrameTurn, Arc<Vec<f64>>)>,
+    pub inertia: Option<(FrameTurn, Arc<PooledVector>)>,
     /// Of a ring in harmonic space, S^-1 of its right-hand side.
-    pub solved: Option<Arc<Vec<f64>>>,
+    pub solved: Option<Arc<PooledVector>>,
 }
 
 impl Known {
@@ -115,7 +116,8 @@ impl Motion<'_> {
             None => {
                 // First guess: the velocity stays.
                 let scheme = (self.settings.integrator, foreseen.span.dt);
-                let inertia = turn.map(|turn| (turn, Arc::new(body.frame_load(turn, scheme, old, None))));
+                let guess = |turn| Arc::new(body.frame_load(turn, scheme, old, None).into());
+                let inertia = turn.map(|turn| (turn, guess(turn)));
                 Known {
                     foreseen: foreseen.clone(),
                     load,

@@ -13,6 +13,7 @@ use super::newton::SmallSolution;
 use super::part::Moving;
 use super::pass::{Acting, Change, Coming, Turned};
 use super::place::expected;
+use super::pool::PooledVector;
 use super::ring_state::RingState;
 use super::run::Motion;
 use super::space::Space;
@@ -50,7 +51,7 @@ pub(super) struct RingEnd {
 /// The end of a ring, and what of the inertia of its frame is to be checked.
 struct Candidate {
     end: RingEnd,
-    renewed: Option<(Vec<f64>, Change)>,
+    renewed: Option<(PooledVector, Change)>,
 }
 
 impl Motion<'_> {
@@ -113,7 +114,7 @@ impl Motion<'_> {
         let forces = part.system.ring_loads(side, solution);
         let mount = &solution.mounts[side.index()];
         let load = ring.known.load.as_deref();
-        let inertia = ring.inertia.as_ref().map(|(_, f)| f.as_slice());
+        let inertia = ring.inertia.as_ref().map(|(_, f)| &f[..]);
         let Some(pass) = ring.factor.pass(ring.body) else {
             let made;
             let dw = match &ring.increment {
@@ -242,7 +243,7 @@ impl Motion<'_> {
         {
             let change = combined([1.0, -1.0], new, used);
             ring.factor.add_load(ring.body, &mut ring.step, change);
-            *used = Arc::new(new.to_vec());
+            *used = Arc::new(new.to_vec().into());
         }
         part.settling = Settling::Open(self.contraction(part));
         self.count_round(part)

@@ -1,6 +1,7 @@
 //! What a ring in harmonic space does in a step around its pass over the harmonics ([`super::pass`]): its contacts meet the predictor, and
 //! their forces make the increment.
 
+use std::borrow::Cow;
 use std::sync::Arc;
 use std::time::Instant;
 
@@ -9,6 +10,7 @@ use contact::NodalWeights;
 use super::body::RingBody;
 use super::effective::Factored;
 use super::pass::{Increment, Pass};
+use super::pool::PooledVector;
 use super::ring::{Predictor, RingFactor, RingStep, acting, functionals, sum};
 use super::ring_state::RingState;
 use super::space::Space;
@@ -20,7 +22,7 @@ impl RingFactor {
         &self,
         body: &RingBody,
         state: &RingState,
-        predictor: Arc<Vec<f64>>,
+        predictor: Arc<PooledVector>,
         feet: &[NodalWeights],
     ) -> RingStep {
         let clock = Instant::now();
@@ -57,7 +59,7 @@ impl RingFactor {
     }
 
     /// Another predictor of a step in harmonic space, without a defect.
-    pub(super) fn replace_predictor(&self, body: &RingBody, step: &mut RingStep, predictor: Vec<f64>) {
+    pub(super) fn replace_predictor(&self, body: &RingBody, step: &mut RingStep, predictor: PooledVector) {
         let all: Vec<&SparseLoad> = step.contacts.iter().chain(&body.mount).collect();
         step.predicted = sum(&step.start, &self.measure(body, &all, &predictor));
         step.predictor = Predictor::Harmonic(Arc::new(predictor), None);
@@ -74,11 +76,10 @@ impl RingFactor {
         let Factored::Cyclic(factor) = &self.factor else {
             unreachable!("harmonics are solved by their factor")
         };
-        let (loads, border) = factor.forces(acting(body, step, contacts, mount));
-        Increment::Forces {
-            loads,
-            border,
-            predictor: step.harmonics(),
+        let forces = factor.forces(acting(body, step, contacts, mount));
+        Increment {
+            forces: Some(forces),
+            rest: Cow::Borrowed(step.harmonics()),
         }
     }
 }

@@ -34,6 +34,7 @@ pub mod newton;
 mod part;
 mod pass;
 mod place;
+pub mod pool;
 pub mod report;
 pub mod ring;
 mod ring_state;

@@ -8,6 +8,7 @@ use super::ahead::{Foreseen, Known};
 use super::body::RingBody;
 use super::frame::turn_nodal;
 use super::newton::SmallSolution;
+use super::pool::PooledVector;
 use super::ring::{RingFactor, RingState, RingStep};
 use super::run::Motion;
 use super::shaft::ShaftStep;
@@ -32,7 +33,7 @@ pub(super) struct Moving<'m> {
     /// Loads, and first guess of the inertia of the turning frame.
     pub known: Arc<Known>,
     /// Inertia load of the turning frame that acts, when there is one.
-    pub inertia: Option<(FrameTurn, Arc<Vec<f64>>)>,
+    pub inertia: Option<(FrameTurn, Arc<PooledVector>)>,
     /// Increment of a ring whose state is not in harmonic space, once it is found.
     pub increment: Option<Vec<f64>>,
 }
@@ -75,7 +76,7 @@ impl Motion<'_> {
             let body = self.rings[i].as_ref()?;
             let (factor, old) = (rung[i].as_ref()?, state.rings[i].as_ref()?);
             let known = self.known(side, (body, factor), old, foreseen);
-            let inertia = known.inertia.as_ref().map(|(_, f)| f.as_slice());
+            let inertia = known.inertia.as_ref().map(|(_, f)| &f[..]);
             let step = match (&known.solved, known.load.as_deref(), inertia) {
                 (Some(solved), ..) => factor.prepare_solved(body, old, solved.clone(), &feet[i]),
                 (None, Some(load), Some(f)) => {

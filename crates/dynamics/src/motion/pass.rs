@@ -7,17 +7,23 @@
 //! w, v, a at the end; M v, K w, energies; work of the loads
 //! predictor of the next step = S^-1 (its known loads - K w + M (history))
 //! ```
-//! The rows of the border go with the first group. Sums over the groups are taken in their order. A predictor that is found on its own
+//! The rows of the border go with the first group ([`parts`]). Sums over the groups are taken in their order. A predictor that is found on its own
 //! ([`Pass::predict`]: at the start, after a change of the step size, after a step file) comes from the same functions and has the
 //! same bits. Solves of a ring that ranks share are collective, so that there the parts of a pass follow each other for the whole ring.
+
+use std::borrow::Cow;
 
 use solver::cyclic::PartHarmonics;
 
 use super::effective::CyclicFactor;
 use super::integrator::Integrator;
-use super::ring_state::{RingState, advance_part, within_part};
-use super::space::{FrameLoads, HarmonicSpace, Nodes};
+use super::pool::PooledVector;
+use super::ring_state::{RingState, advance_part};
+use super::space::{HarmonicSpace, Nodes};
+use super::vectors;
 use crate::effects::FrameTurn;
+use group::add;
+use parts::Parts;
 
 /// A ring and its scheme.
 #[derive(Clone, Copy)]
@@ -31,16 +37,12 @@ pub(super) struct Pass<'a> {
     pub history: [[f64; 2]; 2],
 }
 
-/// The increment of a step.
-pub(super) enum Increment<'a> {
-    /// The predictor plus S^-1 of loads on touched nodes and border.
-    Forces {
-        loads: PartHarmonics<'a>,
-        border: Vec<f64>,
-        predictor: &'a [f64],
-    },
-    /// Itself, harmonics and border.
-    Found(Vec<f64>),
+/// The increment of a step, S^-1 (forces) + rest.
+pub(super) struct Increment<'a> {
+    /// Loads on touched nodes, and on the border.
+    pub forces: Option<(PartHarmonics<'a>, Vec<f64>)>,
+    /// The predictor, or all of the increment, harmonics and border.
+    pub rest: Cow<'a, [f64]>,
 }
 
 /// What acts in a step besides contacts and partner, in the ring's space.
@@ -63,9 +65,9 @@ pub(super) struct Coming<'a> {
 /// The answer of a ring to known loads.
 pub(super) struct Predicted {
     /// S^-1 of the right-hand side.
-    pub solved: Vec<f64>,
+    pub solved: PooledVector,
     /// First guess of the inertia of the turning frame; empty without one.
-    pub inertia: Vec<f64>,
+    pub inertia: PooledVector,
 }
 
 /// The end of a step.
@@ -74,7 +76,7 @@ pub(super) struct Ended {
     /// Work of the load and of the inertia of the frame, J.
     pub works: [f64; 2],
     /// Inertia that fits the increment, and its difference from that which acted.
-    pub renewed: (Vec<f64>, Change),
+    pub renewed: (PooledVector, Change),
     pub next: Option<Predicted>,
 }
 
@@ -92,20 +94,13 @@ pub(super) struct Change {
 /// The increment of a step as the inertia of the turning frame meets it.
 pub(super) struct Turned {
     /// Inertia that fits it.
-    pub inertia: Vec<f64>,
+    pub inertia: PooledVector,
     pub change: Change,
     /// The predictor under the new inertia.
-    pub predictor: Vec<f64>,
+    pub predictor: PooledVector,
 }
 
-/// Vectors of one group, with the border in the first.
-struct Buffers([Vec<f64>; 9]);
-
-/// The vectors that a pass writes, or one group's parts of them without the border: w, v, a, the renewed inertia, the guess of the next,
-/// the solution. Those that are not wanted are empty.
-type Written<'a> = [&'a mut [f64]; 6];
-
-/// What a group adds to the sums, and the rows of the border from the first.
+/// What a group adds to the sums.
 #[derive(Default)]
 struct Found {
     energies: [f64; 2],
@@ -114,8 +109,6 @@ struct Found {
     /// Squares of a change by section node, in the plane and along the axis, and magnitudes of the rows of its border.
     lines: Vec<[f64; 2]>,
     rows: f64,
-    /// Of the vectors of [`Written`].
-    border: [Vec<f64>; 6],
 }
 
 impl Pass<'_> {
@@ -127,48 +120,35 @@ impl Pass<'_> {
         acting: Acting<'_>,
         coming: Option<Coming<'_>>,
     ) -> Ended {
+        let (space, pool) = (self.space, &self.space.pool);
         let increment = self.whole_if_shared(increment);
+        let increment = (increment.forces, space.parts(&increment.rest));
         let turning = self.turning(acting.turn);
-        let coming = coming.map(|c| (c.load, self.turning(c.turn)));
-        let n = old.displacement().len();
-        let vector = |wanted: Option<()>| vec![0.0; wanted.map_or(0, |()| n)];
-        let [mut w, mut v, mut a] = [(); 3].map(|()| vec![0.0; n]);
-        let mut renewed = vector(turning.map(|_| ()));
-        let mut inertia = vector(coming.and_then(|c| c.1).map(|_| ()));
-        let mut solved = vector(coming.map(|_| ()));
-        let vectors = [
-            &mut w[..],
-            &mut v,
-            &mut a,
-            &mut renewed,
-            &mut inertia,
-            &mut solved,
-        ];
-        let found = self.over_groups(
+        let [load, inertia] = [acting.load, acting.inertia].map(|x| x.map(|x| space.parts(x)));
+        let coming = coming.map(|coming| self.by_groups(coming));
+        let start = old.vectors().map(|x| space.parts(x));
+        let [mut w, mut v, mut a] = [(); 3].map(|()| pool.take());
+        let mut renewed = pool.take_if(turning);
+        let mut guess = pool.take_if(coming.as_ref().and_then(|coming| coming.1));
+        let mut solved = pool.take_if(coming.as_ref());
+        let vectors = [&mut w, &mut v, &mut a, &mut renewed, &mut guess, &mut solved].map(|x| &mut x[..]);
+        let found = space.over_groups(
             vectors,
-            |group, buffers, [state @ .., renewed, inertia, solved]| {
-                let [dw, w, v, a, product, side, within_w, within_v, field] = buffers;
+            |group, [dw, mv, kw, field], [w, v, a, renewed, guess, solved]| {
+                let start = start.each_ref().map(|x| x.of(group));
                 let mut found = Found::default();
                 self.increment_part(group, &increment, dw);
-                let work = |load: Option<&[f64]>| load.map_or(0.0, |load| self.dot_with(group, load, dw));
-                found.works = [work(acting.load), work(acting.inertia)];
-                if let (Some(turning), Some(used)) = (turning, acting.inertia) {
-                    self.within(group, old, dw, [&mut *within_w, &mut *within_v]);
-                    self.space
-                        .frame_part(turning, group, [&*within_w, &*within_v], field, side);
-                    self.keep(side, renewed, &mut found.border[3]);
-                    self.compare(group, side, used, &mut found);
+                let dot = |load: &Parts<'_>| space.part_dot(group, load.of(group), dw);
+                found.works = [&load, &inertia].map(|load| load.as_ref().map_or(0.0, dot));
+                if let (Some(turning), Some(used)) = (turning, &inertia) {
+                    let buffers = [&mut *mv, &mut *kw, &mut *field];
+                    self.frame_part(turning, group, (start, Some(dw)), buffers, renewed);
+                    self.compare(group, [renewed, used.of(group)], field, &mut found);
                 }
-                self.advance(group, old, dw, [&mut *w, &mut *v, &mut *a]);
-                let state: [_; 3] = state;
-                let state = state.into_iter().zip([&*w, &*v, &*a]).zip(&mut found.border);
-                state.for_each(|((out, x), border)| self.keep(x, out, border));
-                found.energies =
-                    self.balance(group, [&*w, &*v, &*a], [&mut *product, &mut *side, &mut *field]);
-                if let Some(coming) = coming {
-                    let rest = [side, within_w, within_v, field, product];
-                    let outs = ([inertia, solved], &mut found.border);
-                    self.predict_part(group, coming, [&*w, &*v, &*a], rest, outs);
+                advance_part(self.integrator, self.dt, dw, start, [&mut *w, &mut *v, &mut *a]);
+                found.energies = self.products(group, [w, v], [&mut *mv, &mut *kw]);
+                if let Some(coming) = &coming {
+                    self.predict_part(group, coming, [w, v, a], [mv, kw, field], [guess, solved]);
                 }
                 found
             },
@@ -182,30 +162,24 @@ impl Pass<'_> {
             state,
             works: total(&found, |f| f.works),
             renewed: (renewed, self.change(&found)),
-            next: coming.map(|_| Predicted { solved, inertia }),
+            next: coming.map(|_| Predicted {
+                solved,
+                inertia: guess,
+            }),
         }
     }
 
     /// The answer of a ring in the state `state` to the known loads of a step from there.
     pub fn predict(&self, state: &RingState, coming: Coming<'_>) -> Predicted {
-        let coming = (coming.load, self.turning(coming.turn));
-        let n = state.displacement().len();
-        let (mut inertia, mut solved) = (vec![0.0; coming.1.map_or(0, |_| n)], vec![0.0; n]);
-        let vectors = [&mut [][..], &mut [], &mut [], &mut [], &mut inertia, &mut solved];
-        self.over_groups(vectors, |group, buffers, [.., inertia, solved]| {
-            let [_, w, v, a, product, side, within_w, within_v, field] = buffers;
-            let mut found = Found::default();
-            for (first, range) in self.pieces(group) {
-                let from = first..first + range.len();
-                w[range.clone()].copy_from_slice(&state.displacement()[from.clone()]);
-                v[range.clone()].copy_from_slice(&state.velocity()[from.clone()]);
-                a[range].copy_from_slice(&state.acceleration()[from]);
-            }
-            self.balance(group, [&*w, &*v, &*a], [&mut *product, &mut *side, &mut *field]);
-            let rest = [side, within_w, within_v, field, product];
-            let outs = ([inertia, solved], &mut found.border);
-            self.predict_part(group, coming, [&*w, &*v, &*a], rest, outs);
-            found
+        let (space, pool) = (self.space, &self.space.pool);
+        let coming = self.by_groups(coming);
+        let state = state.vectors().map(|x| space.parts(x));
+        let (mut inertia, mut solved) = (pool.take_if(coming.1), pool.take());
+        let vectors = [&mut inertia, &mut solved].map(|x| &mut x[..]);
+        space.over_groups(vectors, |group, [mv, kw, field], outs| {
+            let [w, v, a] = state.each_ref().map(|x| x.of(group));
+            self.products(group, [w, v], [&mut *mv, &mut *kw]);
+            self.predict_part(group, &coming, [w, v, a], [mv, kw, field], outs);
         });
         self.solve_if_shared(&mut solved);
         Predicted { solved, inertia }
@@ -219,30 +193,29 @@ impl Pass<'_> {
         (turn, used): (FrameTurn, &[f64]),
         predictor: &[f64],
     ) -> Turned {
+        let (space, pool) = (self.space, &self.space.pool);
         let increment = self.whole_if_shared(increment);
-        let turning = (turn, self.space.frame(self.nodes));
-        let n = old.displacement().len();
-        let [mut inertia, mut solved] = [(); 2].map(|()| vec![0.0; n]);
-        let vectors = [&mut [][..], &mut [], &mut [], &mut inertia, &mut [], &mut solved];
-        let found = self.over_groups(vectors, |group, buffers, [.., renewed, _, solved]| {
-            let [dw, .., side, within_w, within_v, field] = buffers;
+        let increment = (increment.forces, space.parts(&increment.rest));
+        let turning = (turn, space.frame(self.nodes));
+        let [used, before] = [used, predictor].map(|x| space.parts(x));
+        let start = old.vectors().map(|x| space.parts(x));
+        let [mut inertia, mut solved] = [(); 2].map(|()| pool.take());
+        let vectors = [&mut inertia, &mut solved].map(|x| &mut x[..]);
+        let found = space.over_groups(vectors, |group, [dw, w, v, field], [renewed, solved]| {
+            let start = start.each_ref().map(|x| x.of(group));
             let mut found = Found::default();
             self.increment_part(group, &increment, dw);
-            self.within(group, old, dw, [&mut *within_w, &mut *within_v]);
-            self.space
-                .frame_part(turning, group, [&*within_w, &*within_v], field, side);
-            self.keep(side, renewed, &mut found.border[3]);
-            self.compare(group, side, used, &mut found);
-            self.solve_part(group, side);
+            self.frame_part(turning, group, (start, Some(dw)), [w, v, &mut *field], renewed);
+            self.compare(group, [renewed, used.of(group)], solved, &mut found);
             if !self.factor.solver.is_shared() {
-                self.add_part(group, predictor, side);
+                self.solve_part(group, solved);
+                add(solved, before.of(group));
             }
-            self.keep(side, solved, &mut found.border[5]);
             found
         });
         if self.factor.solver.is_shared() {
             self.factor.solve_in_place(&mut solved);
-            super::vectors::add(&mut solved, predictor);
+            vectors::add(&mut solved, predictor);
         }
         Turned {
             inertia,
@@ -261,3 +234,4 @@ fn total(found: &[Found], of: impl Fn(&Found) -> [f64; 2]) -> [f64; 2] {
 }
 
 mod group;
+mod parts;

@@ -7,6 +7,7 @@
 //! sectors stay by sector ([`super::by_sector`]). The columns of the mount are solved once per step size. A defect of the ring
 //! corrects all of it (`motion::defect`).
 
+use std::borrow::Cow;
 use std::sync::Arc;
 use std::time::Instant;
 
@@ -21,6 +22,7 @@ use super::defect::DefectStep;
 use super::effective::Factored;
 use super::integrator::Integrator;
 use super::pass::{Acting, Coming, Increment};
+use super::pool::PooledVector;
 pub use super::ring_state::RingState;
 use super::space::Space;
 use super::vectors::add;
@@ -61,7 +63,7 @@ pub(super) enum Predictor {
     /// Itself, then the increments per unit contact force: column-major `[n][1 + 2 n_contacts]`.
     Columns(Vec<f64>),
     /// Of the regular ring, harmonics and the rows of the border, and what a defect makes of it.
-    Harmonic(Arc<Vec<f64>>, Option<DefectStep>),
+    Harmonic(Arc<PooledVector>, Option<DefectStep>),
     /// As columns, by sector.
     Sectors(StepColumns),
 }
@@ -148,7 +150,7 @@ impl RingFactor {
                 let predictor = factor.solve(&body.space, side);
                 let (defect, moved, compliance) = self.meet(body, factor, &predictor, feet, &all);
                 (
-                    Predictor::Harmonic(Arc::new(predictor), defect),
+                    Predictor::Harmonic(Arc::new(predictor.into()), defect),
                     moved,
                     compliance,
                 )
@@ -276,7 +278,8 @@ impl RingFactor {
         let moved: Vec<f64> = match (&self.factor, &mut step.predictor) {
             (Factored::Cyclic(factor), Predictor::Harmonic(predictor, correction)) => {
                 let more = factor.solve(&body.space, load);
-                add(Arc::make_mut(predictor).as_mut_slice(), &more);
+                let whole: &mut PooledVector = Arc::make_mut(predictor);
+                add(whole, &more);
                 let [mut moved, at] = factor.motions(&more, &all);
                 if let (Some(defect), Some(correction)) = (self.factor.defect(), correction) {
                     let corrected = correction.add(defect, &at);
@@ -328,7 +331,10 @@ impl RingFactor {
     pub fn advance(&self, body: &RingBody, state: &RingState, dw: &[f64]) -> RingState {
         match self.pass(body) {
             Some(pass) => {
-                let increment = Increment::Found(dw.to_vec());
+                let increment = Increment {
+                    forces: None,
+                    rest: Cow::Borrowed(dw),
+                };
                 pass.end(state, increment, Acting::default(), None).state
             }
             None => state.advanced(self.integrator, self.dt, dw),

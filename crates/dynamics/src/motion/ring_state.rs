@@ -6,17 +6,18 @@ use rayon::prelude::*;
 
 use super::ahead::Known;
 use super::integrator::Integrator;
+use super::pool::PooledVector;
 use super::vectors::TASK;
 
 /// Displacement, velocity, acceleration of a ring in the space of its body ([`super::space`]), SI, of one length.
 #[derive(Clone, Debug, Default)]
 pub struct RingState {
     /// Total displacement in the ring's frame.
-    w: Vec<f64>,
+    w: PooledVector,
     /// Velocity.
-    v: Vec<f64>,
+    v: PooledVector,
     /// Acceleration.
-    a: Vec<f64>,
+    a: PooledVector,
     /// Kinetic and strain energy, J, once they are known; no part of the state.
     energies: Option<[f64; 2]>,
     /// What the step from here begins with, where the step before has found it; no part of the state.
@@ -31,7 +32,8 @@ impl PartialEq for RingState {
 
 impl RingState {
     /// A state.
-    pub fn new(w: Vec<f64>, v: Vec<f64>, a: Vec<f64>) -> RingState {
+    pub fn new<V: Into<PooledVector>>(w: V, v: V, a: V) -> RingState {
+        let [w, v, a] = [w, v, a].map(V::into);
         RingState {
             w,
             v,
@@ -64,17 +66,25 @@ impl RingState {
 
     /// The same with another acceleration.
     pub fn with_acceleration(self, a: Vec<f64>) -> RingState {
-        RingState { a, ..self }
+        RingState {
+            a: PooledVector::from(a),
+            ..self
+        }
     }
 
     /// Displacement, velocity, acceleration.
     pub fn into_parts(self) -> [Vec<f64>; 3] {
-        [self.w, self.v, self.a]
+        [self.w, self.v, self.a].map(PooledVector::into_vec)
+    }
+
+    /// The same, borrowed.
+    pub(super) fn vectors(&self) -> [&[f64]; 3] {
+        [&self.w, &self.v, &self.a]
     }
 
     /// The numbers from `first` on, `len` of each: displacement, velocity, acceleration.
     pub(super) fn part(&self, first: usize, len: usize) -> [&[f64]; 3] {
-        [&self.w, &self.v, &self.a].map(|x| &x[first..first + len])
+        self.vectors().map(|x| &x[first..first + len])
     }
 
     /// Kinetic and strain energy, J, where they are known.

@@ -13,6 +13,7 @@ use solver::{CyclicRing, SolverError};
 
 use super::coordinates::Coordinates;
 use super::matrices::RingMatrices;
+use super::pool::VectorPool;
 use crate::effects::FrameTurn;
 use crate::sectors::Sectors;
 use crate::solution::dot;
@@ -34,6 +35,8 @@ pub struct HarmonicSpace {
     pub(super) mass: HarmonicOperator,
     /// K.
     pub(super) stiffness: HarmonicOperator,
+    /// Vectors of the space that are free.
+    pub(super) pool: VectorPool,
     /// Made when a frame turns for the first time.
     frame: OnceLock<FrameLoads>,
 }
@@ -86,8 +89,10 @@ impl Space {
             let [border, corner] = nodes.border(coefficients);
             HarmonicOperator::new(&free.ring, matrix, &border, &corner)
         };
+        let n_shaft = nodes.coordinates.shaft().0.len();
         Ok(Space::Harmonic(Box::new(HarmonicSpace {
-            n_shaft: nodes.coordinates.shaft().0.len(),
+            pool: VectorPool::new(free.ring.harmonic_len() + n_shaft),
+            n_shaft,
             mass: operator(&free.mass, [1.0, 0.0])?,
             stiffness: operator(&free.stiffness, [0.0, 1.0])?,
             ring: free.ring.clone(),
