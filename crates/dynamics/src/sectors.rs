@@ -5,6 +5,7 @@
 
 use fem::SectorCoupling;
 use mesh::{Mesh, Periodicity};
+use solver::cyclic::RowResponses;
 use solver::{Coupling, CyclicMatrix, CyclicRing, CyclicStencil, SolverError};
 
 use crate::defect::RingDefect;
@@ -200,13 +201,15 @@ impl Periodic {
     pub fn motion_sizes(&self, mesh: &Mesh, n_mount: usize) -> MotionSizes {
         let (whole, held) = (&self.whole, &self.held);
         let symmetry = held.sectors.ring.symmetry(&held.sectors.stiffness);
+        let n_sectors = whole.ring.n_sectors();
         let (touched, defect) = self.defect.as_ref().map_or((0, 0), |Defective { defect, .. }| {
-            let touched = defect.nodes().len().min(whole.ring.n_section_nodes());
-            (touched, defect.bytes())
+            let touched = whole.ring.section_nodes(defect.nodes().iter().copied()).len();
+            let coupling = RowResponses::bytes_of(n_sectors, held.raceway.len(), touched);
+            (touched, defect.bytes() + coupling)
         });
         MotionSizes {
             n_nodes: mesh.n_nodes(),
-            n_sectors: whole.ring.n_sectors(),
+            n_sectors,
             n_couplings: whole.stiffness.n_couplings(),
             n_responses: held.raceway.len() + touched,
             n_mount,

@@ -147,6 +147,39 @@ pub(crate) fn inverse_form(m: usize, n: usize, a: &[f64], c: &[f64]) -> Result<V
     Ok((0..n * n).map(symmetric).collect())
 }
 
+/// A X, row-major `[n][width]` as X, of a symmetric A, row-major `[n][n]`.
+pub(crate) fn symmetric_product(a: &[f64], x: &[f64], width: usize) -> Vec<f64> {
+    let n = x.len() / width.max(1);
+    assert_eq!(a.len(), n * n, "{n} rows of {width}");
+    let mut product = vec![0.0; x.len()];
+    // Row-major matrices are the columns of their transposes.
+    matmul(
+        MatMut::from_column_major_slice_mut(&mut product, width, n),
+        Accum::Replace,
+        MatRef::from_column_major_slice(x, width, n),
+        MatRef::from_column_major_slice(a, n, n),
+        1.0,
+        Par::Seq,
+    );
+    product
+}
+
+/// X^T A X, row-major `[width][width]`, exactly symmetric, of a symmetric A, row-major `[n][n]`, and X, row-major `[n][width]`.
+pub(crate) fn symmetric_form(a: &[f64], x: &[f64], width: usize) -> Vec<f64> {
+    let (n, product) = (x.len() / width.max(1), symmetric_product(a, x, width));
+    let mut form = Mat::<f64>::zeros(width, width);
+    matmul(
+        form.as_mut(),
+        Accum::Replace,
+        MatRef::from_column_major_slice(x, width, n),
+        MatRef::from_row_major_slice(&product, n, width),
+        1.0,
+        Par::Seq,
+    );
+    let symmetric = |ij: usize| 0.5 * (form[(ij / width, ij % width)] + form[(ij % width, ij / width)]);
+    (0..width * width).map(symmetric).collect()
+}
+
 /// LU factors, with row exchanges, of a dense matrix that need be neither symmetric nor definite.
 ///
 /// Rows are scaled by powers of two first, so that rows in newton and rows in metre are exchanged on equal terms.

@@ -5,7 +5,22 @@
 //! on these rows, and of the rows under theirs. So contacts and mount see V^T f more motion and the compliance C - V^T S V,
 //! and a step needs no further solve.
 
-use solver::cyclic::Defect;
+use solver::cyclic::{Defect, RowResponses};
+
+/// What a defect makes of a factored ring.
+pub struct DefectFactor {
+    /// The answer of the ring to it.
+    pub answer: Defect,
+    /// Displacements of its free rows under loads on the raceway, without it.
+    pub responses: RowResponses,
+}
+
+impl DefectFactor {
+    /// Bytes of both.
+    pub fn bytes(&self) -> usize {
+        self.answer.bytes() + self.responses.bytes()
+    }
+}
 
 /// Rows of a defect in a step.
 pub struct DefectStep {
@@ -38,23 +53,8 @@ impl DefectStep {
 
     /// Adds -V^T S V to the compliance of contacts and mount, row-major; exactly symmetric.
     pub fn soften(&self, defect: &Defect, compliance: &mut [f64]) {
-        let n = compliance.len().isqrt();
-        let mut change = vec![0.0; n * n];
-        let forces = defect.forces_of_all(&self.answers, n);
-        for (v, f) in self
-            .answers
-            .chunks_exact(n.max(1))
-            .zip(forces.chunks_exact(n.max(1)))
-        {
-            for (row, v) in change.chunks_exact_mut(n.max(1)).zip(v) {
-                row.iter_mut().zip(f).for_each(|(c, f)| *c += v * f);
-            }
-        }
-        for i in 0..n {
-            for j in 0..n {
-                compliance[n * i + j] += 0.5 * (change[n * i + j] + change[n * j + i]);
-            }
-        }
+        let change = defect.form(&self.answers, compliance.len().isqrt());
+        compliance.iter_mut().zip(change).for_each(|(c, d)| *c -= d);
     }
 
     /// Adds what more loads move the rows by, and returns the motion of contacts and mount by the forces that this adds.

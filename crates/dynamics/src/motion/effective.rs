@@ -7,11 +7,12 @@
 use std::sync::Arc;
 
 use mesh::Mesh;
-use solver::cyclic::{CyclicBordered, Defect, ResponseTable};
+use solver::cyclic::{CyclicBordered, Defect, ResponseTable, RowResponses};
 use solver::{CyclicRing, LinearSolver, SectionPart, SolverError, Symbolic};
 
 use super::by_sector::SectorFactor;
 use super::coordinates::Coordinates;
+use super::defect::DefectFactor;
 use super::matrices::{RingMatrices, SparseMatrices};
 use super::space::Nodes;
 use crate::defect_change::Changes;
@@ -67,8 +68,8 @@ pub struct CyclicFactor {
     pub table: ResponseTable,
     /// Nodes that contacts, partner and defect load and measure.
     pub touched: SectionPart,
-    /// The answer of the ring to its defect, which `solver` and `table` are without.
-    pub defect: Option<Defect>,
+    /// The ring's defect, which `solver` and `table` are without.
+    pub defect: Option<DefectFactor>,
 }
 
 impl Factored {
@@ -85,7 +86,7 @@ impl Factored {
     pub fn defect(&self) -> Option<&Defect> {
         match self {
             Factored::Sparse(_) | Factored::Sectors(_) => None,
-            Factored::Cyclic(factor) => factor.defect.as_ref(),
+            Factored::Cyclic(factor) => factor.defect.as_ref().map(|defect| &defect.answer),
         }
     }
 
@@ -94,7 +95,7 @@ impl Factored {
         match self {
             Factored::Sparse(solver) => solver.factor_bytes(),
             Factored::Cyclic(factor) => {
-                let defect = factor.defect.as_ref().map_or(0, Defect::bytes);
+                let defect = factor.defect.as_ref().map_or(0, DefectFactor::bytes);
                 factor.solver.factor_bytes() + factor.table.bytes() + defect
             }
             Factored::Sectors(factor) => factor.bytes(),
@@ -225,18 +226,28 @@ impl Harmonics {
         let (n, ring) = (solver.inner().n(), solver.inner().ring());
         let change = self.defect.as_ref().map(|d| d.changes.of(coefficients));
         let change = change.transpose()?;
-        let mut chosen = self.held.raceway.clone();
+        // Section nodes of the raceway, then others of the defect.
+        let raceway = &self.held.raceway;
+        let mut chosen = raceway.clone();
         if let Some(change) = &change {
             let nodes = change.rows.iter().filter(|&&row| row < n).map(|row| row / 3);
-            chosen.extend(ring.section_nodes(nodes));
-            chosen.sort_unstable();
-            chosen.dedup();
+            let of_defect = ring.section_nodes(nodes).into_iter();
+            chosen.extend(of_defect.filter(|node| !raceway.contains(node)));
         }
-        let table = ResponseTable::new(solver.inner(), &chosen);
+        let all = ResponseTable::new(solver.inner(), &chosen);
         let touched = ring.section_part(&chosen, mounted);
-        let defect = change
-            .map(|change| Defect::new(&solver, &table, &change))
-            .transpose()?;
+        let answer = |change: solver::cyclic::Change| -> Result<DefectFactor, SolverError> {
+            let free: Vec<usize> = change.rows.iter().copied().filter(|&row| row < n).collect();
+            Ok(DefectFactor {
+                answer: Defect::new(&solver, &all, &change)?,
+                responses: RowResponses::new(&all, raceway.len(), &free),
+            })
+        };
+        let defect = change.map(answer).transpose()?;
+        let table = match &defect {
+            Some(_) => all.first(raceway.len()),
+            None => all,
+        };
         Ok(Factored::Cyclic(Box::new(CyclicFactor {
             touched,
             table,

@@ -36,7 +36,7 @@ impl CyclicFactor {
 
     /// Rows that the regular ring lacks.
     fn loose(&self) -> Option<&Loose> {
-        self.defect.as_ref()?.loose()
+        self.defect.as_ref()?.answer.loose()
     }
 
     /// Values of functionals on the touched nodes and the border under harmonics and border `x`, and those of the rows of a defect.
@@ -49,7 +49,7 @@ impl CyclicFactor {
             None => field.value(row),
         };
         let measure = |g: &&SparseLoad| g.iter().map(|&(row, weight)| weight * value(row)).sum();
-        let rows = self.defect.iter().flat_map(|defect| defect.rows());
+        let rows = self.defect.iter().flat_map(|defect| defect.answer.rows());
         [
             functionals.iter().map(measure).collect(),
             rows.map(|&row| value(row)).collect(),

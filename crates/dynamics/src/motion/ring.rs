@@ -303,7 +303,9 @@ impl RingFactor {
         match (&self.factor, &step.predictor) {
             (Factored::Cyclic(factor), Predictor::Harmonic(predictor, correction)) => {
                 let by_defect = match (&factor.defect, correction) {
-                    (Some(defect), Some(correction)) => correction.loads(defect, &[contacts, mount].concat()),
+                    (Some(defect), Some(correction)) => {
+                        correction.loads(&defect.answer, &[contacts, mount].concat())
+                    }
                     _ => Vec::new(),
                 };
                 let loads = acting(body, step, contacts, mount).chain(by_defect);

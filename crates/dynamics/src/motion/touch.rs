@@ -5,7 +5,7 @@ use solver::LinearSolver;
 use solver::cyclic::{Patch, ResponseTable};
 
 use super::body::RingBody;
-use super::defect::DefectStep;
+use super::defect::{DefectFactor, DefectStep};
 use super::effective::CyclicFactor;
 use super::ring::RingFactor;
 use crate::sparse::{SparseLoad, sparse_dot};
@@ -15,6 +15,8 @@ struct Touch {
     patches: Vec<Patch>,
     /// Motion of each contact direction under unit forces of the mount, `[2 n_contacts][n_mount]`.
     by_mount: Vec<Vec<f64>>,
+    /// M^-1 times these, with M the border's compliance; empty without a border.
+    by_border: Vec<Vec<f64>>,
 }
 
 impl RingFactor {
@@ -32,11 +34,12 @@ impl RingFactor {
         let touch = self.touch(body, &factor.table, feet, &all[..2 * feet.len()]);
         let mut compliance = self.table_compliance(&factor.table, &touch, body.mount.len());
         let step = factor.defect.as_ref().map(|defect| {
-            let answers = self.answers(factor, &touch, defect.rows(), body.coordinates.n());
+            let n_free = factor.solver.inner().n();
+            let answers = self.answers(defect, &touch, n_free, body.coordinates.n());
             let step = DefectStep::new(at, answers);
-            let more = step.motion(defect);
+            let more = step.motion(&defect.answer);
             moved.iter_mut().zip(more).for_each(|(m, d)| *m += d);
-            step.soften(defect, &mut compliance);
+            step.soften(&defect.answer, &mut compliance);
             step
         });
         (step, moved, compliance)
@@ -60,9 +63,11 @@ impl RingFactor {
         };
         let columns: Vec<&[f64]> = self.mount.chunks_exact(body.coordinates.n()).collect();
         let moved = |contact: &&SparseLoad| columns.iter().map(|y| sparse_dot(contact, y)).collect();
+        let by_mount: Vec<Vec<f64>> = contacts.iter().map(moved).collect();
         Touch {
             patches: feet.iter().map(patch).collect(),
-            by_mount: contacts.iter().map(moved).collect(),
+            by_border: by_mount.iter().map(|v| self.times_border(v)).collect(),
+            by_mount,
         }
     }
 
@@ -76,7 +81,7 @@ impl RingFactor {
         for i in 0..size {
             for j in 0..=i {
                 let value = match (i < n, j < n) {
-                    (true, _) => direct[n * i + j] + self.by_border(&v[i], &v[j]),
+                    (true, _) => direct[n * i + j] + dot(&v[i], &touch.by_border[j]),
                     (false, true) => v[j][i - n],
                     (false, false) => self.mount_compliance[m * (i - n) + j - n],
                 };
@@ -86,36 +91,39 @@ impl RingFactor {
         compliance
     }
 
-    /// Motion of contacts, then mount, under unit forces on the `rows` of n coordinates, row-major, without a defect.
-    fn answers(&self, factor: &CyclicFactor, touch: &Touch, rows: &[usize], n: usize) -> Vec<f64> {
+    /// Motion of contacts, then mount, under unit forces on the rows of a defect, row-major, without the defect; of n coordinates n_free are
+    /// free.
+    fn answers(&self, defect: &DefectFactor, touch: &Touch, n_free: usize, n: usize) -> Vec<f64> {
+        let (rows, contacts) = (defect.answer.rows(), touch.by_mount.len());
         let columns: Vec<&[f64]> = self.mount.chunks_exact(n).collect();
-        let (table, n_free) = (&factor.table, factor.solver.inner().n());
-        let free: Vec<usize> = rows.iter().copied().filter(|&row| row < n_free).collect();
-        let direct: Vec<Vec<[f64; 2]>> = touch.patches.iter().map(|p| table.of_patch(&free, p)).collect();
-        let mut answers = Vec::with_capacity(rows.len() * (touch.by_mount.len() + columns.len()));
+        let direct = defect.responses.of_patches(&touch.patches);
+        let mut answers = Vec::with_capacity(rows.len() * (contacts + columns.len()));
         // Rows of the border come last, so the free ones keep their numbers.
         for (i, &row) in rows.iter().enumerate() {
             let by_mount: Vec<f64> = columns.iter().map(|column| column[row]).collect();
-            answers.extend(
-                touch
-                    .by_mount
-                    .iter()
-                    .enumerate()
-                    .map(|(k, v)| match row.checked_sub(n_free) {
-                        Some(shaft) => v[shaft],
-                        None => direct[k / 2][i][k % 2] + self.by_border(&by_mount, v),
-                    }),
-            );
+            match row.checked_sub(n_free) {
+                Some(shaft) => answers.extend(touch.by_mount.iter().map(|v| v[shaft])),
+                None => {
+                    let both = direct[contacts * i..][..contacts].iter().zip(&touch.by_border);
+                    answers.extend(both.map(|(direct, border)| direct + dot(&by_mount, border)));
+                }
+            }
             answers.extend(by_mount);
         }
         answers
     }
 
-    /// a M^-1 b for two rows of V; zero without a border.
-    fn by_border(&self, a: &[f64], b: &[f64]) -> f64 {
-        let Some(inverse) = &self.border else { return 0.0 };
-        let m = b.len();
-        let row = |i: usize| (0..m).map(|j| inverse[m * i + j] * b[j]).sum::<f64>();
-        a.iter().enumerate().map(|(i, a)| a * row(i)).sum()
+    /// M^-1 b for a row of V; empty without a border.
+    fn times_border(&self, b: &[f64]) -> Vec<f64> {
+        let inverse = self.border.as_deref().unwrap_or_default();
+        inverse
+            .chunks_exact(b.len().max(1))
+            .map(|row| dot(row, b))
+            .collect()
     }
+}
+
+/// The sum of the products of as many numbers as both have.
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }

@@ -27,7 +27,7 @@ use super::border::CyclicBordered;
 use super::loose::Loose;
 use super::response::ResponseTable;
 use super::transform::SectionPart;
-use crate::dense::{inverse_form, update};
+use crate::dense::{inverse_form, symmetric_form, symmetric_product, update};
 use crate::error::SolverError;
 use crate::linear_solver::LinearSolver;
 
@@ -144,21 +144,14 @@ impl Defect {
 
     /// Forces of the defect on its rows, f = -S x, from the displacements there without it.
     pub fn forces(&self, at: &[f64]) -> Vec<f64> {
-        let mut forces = product(&self.reduced, at);
+        let mut forces = symmetric_product(&self.reduced, at, 1);
         forces.iter_mut().for_each(|f| *f = -*f);
         forces
     }
 
-    /// The same of several displacements, row-major `[n][width]` both: each entry of S is read once.
-    pub fn forces_of_all(&self, at: &[f64], width: usize) -> Vec<f64> {
-        let mut forces = vec![0.0; at.len()];
-        let rows = self.reduced.chunks_exact(self.rows.len().max(1));
-        for (row, forces) in rows.zip(forces.chunks_exact_mut(width.max(1))) {
-            for (s, at) in row.iter().zip(at.chunks_exact(width.max(1))) {
-                forces.iter_mut().zip(at).for_each(|(f, x)| *f -= s * x);
-            }
-        }
-        forces
+    /// V^T S V, row-major `[width][width]`, exactly symmetric, of displacements V, row-major `[n][width]`.
+    pub fn form(&self, at: &[f64], width: usize) -> Vec<f64> {
+        symmetric_form(&self.reduced, at, width)
     }
 
     /// Bytes of S.

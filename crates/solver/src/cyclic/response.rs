@@ -43,10 +43,10 @@ pub struct Patch {
 
 /// Neighbouring dofs of one sector in the table.
 #[derive(Clone, Debug, PartialEq)]
-struct Run {
-    sector: usize,
+pub(super) struct Run {
+    pub(super) sector: usize,
     /// First dof in the table.
-    dof: usize,
+    pub(super) dof: usize,
     /// Place of their weights in the patch.
     weights: Range<usize>,
 }
@@ -68,18 +68,24 @@ impl Patch {
         }
     }
 
+    /// Its runs.
+    pub(super) fn runs(&self) -> &[Run] {
+        &self.runs
+    }
+
     /// Dofs and weights of the two directions of a run.
-    fn of(&self, run: &Run) -> [&[f64]; 2] {
+    #[inline(always)]
+    pub(super) fn of(&self, run: &Run) -> [&[f64]; 2] {
         [0, 1].map(|p| &self.weights[p][run.weights.clone()])
     }
 }
 
 /// A Cartesian unit vector at a chosen node.
-struct Unit {
-    sector: usize,
-    chosen: usize,
+pub(super) struct Unit {
+    pub(super) sector: usize,
+    pub(super) chosen: usize,
     /// Along (radial, azimuthal, axial).
-    weights: [f64; 3],
+    pub(super) weights: [f64; 3],
 }
 
 impl ResponseTable {
@@ -210,26 +216,36 @@ impl ResponseTable {
         (0..3).map(|i| to.weights[i] * part(i)).sum()
     }
 
-    /// Displacements of the rows `rows` of chosen nodes per force on a patch in its two directions, m/N.
+    /// The table of the first `n_chosen` section nodes that were chosen.
     ///
     /// # Panics
-    /// When a node is not chosen.
-    pub fn of_patch(&self, rows: &[usize], patch: &Patch) -> Vec<[f64; 2]> {
-        let of_row = |&row: &usize| {
-            let Unit {
-                sector,
-                chosen,
-                weights,
-            } = self.unit(row);
-            let mut unit = Patch::default();
-            unit.push(sector, 3 * chosen, [weights, [0.0; 3]]);
-            self.compliance(&unit, patch)[0]
-        };
-        rows.par_iter().map(of_row).collect()
+    /// When there are fewer.
+    pub fn first(&self, n_chosen: usize) -> ResponseTable {
+        let n_dofs = 3 * n_chosen;
+        assert!(n_dofs <= self.n_dofs, "{n_chosen} section nodes of the table");
+        let keep = |&i: &usize| if i < n_chosen { i } else { usize::MAX };
+        let sectors = self.responses.chunks_exact((self.n_dofs * self.n_dofs).max(1));
+        let rows = sectors.flat_map(|sector| sector.chunks_exact(self.n_dofs).take(n_dofs));
+        ResponseTable {
+            chosen: self.chosen.iter().map(keep).collect(),
+            n_dofs,
+            responses: rows.flat_map(|row| &row[..n_dofs]).copied().collect(),
+            ring: self.ring.clone(),
+        }
+    }
+
+    /// Sectors of the ring.
+    pub(super) fn n_sectors(&self) -> usize {
+        self.ring.n_sectors()
+    }
+
+    /// Displacement of a dof of the table in sector `sector` per force on the dofs of sector 0, m/N.
+    pub(super) fn row(&self, sector: usize, dof: usize) -> &[f64] {
+        &self.responses[(sector * self.n_dofs + dof) * self.n_dofs..][..self.n_dofs]
     }
 
     /// A row as a direction at a chosen node.
-    fn unit(&self, row: usize) -> Unit {
+    pub(super) fn unit(&self, row: usize) -> Unit {
         let (shared, width) = (&self.ring.shared, self.ring.n_section_nodes());
         let site = shared.sites[row / 3];
         let chosen = self.chosen[site % width];

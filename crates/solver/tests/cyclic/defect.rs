@@ -2,7 +2,7 @@
 
 use fem::Material;
 use mesh::Mesh;
-use solver::cyclic::{Change, CyclicDefect, conjugate_gradients};
+use solver::cyclic::{Change, CyclicDefect, RowResponses, conjugate_gradients};
 use solver::{CyclicBordered, LinearSolver, ResponseTable, SolverError};
 
 use crate::common::assert_close;
@@ -177,5 +177,52 @@ fn a_ring_that_lacks_elements_and_nodes_is_solved_as_its_assembled_matrix() {
         cyclic.solve(&mut found, 1);
         ring.sparse(&assembled, &free).solve(&mut expected, 1);
         assert_close(&found, &expected, 1e-11);
+    }
+}
+
+/// Wrong: rows of a defect would not move under loads on patches as solves for these loads say, or the small table of the raceway would not
+/// be part of the large one.
+#[test]
+fn rows_of_a_defect_move_under_patches_as_solves_say() {
+    for (ring, _) in rings() {
+        let factor = ring.ring.factor(&ring.shifted()).unwrap();
+        let (raceway, others) = ([4, 1, 7], [11, 0, 5]);
+        let table = ResponseTable::new(&factor, &[raceway, others].concat());
+        let first = table.first(raceway.len());
+        let (n, width) = (ring.periodicity.n_sectors(), ring.periodicity.n_section_nodes());
+        let node = |sector: usize, i: usize| ring.periodicity.nodes()[(sector % n) * width + i];
+        // Single components of nodes in three sectors, of the raceway as well.
+        let rows: Vec<usize> = [
+            (2, 0, 1),
+            (1, 11, 0),
+            (2, 5, 2),
+            (1, 4, 1),
+            (n - 1, 0, 0),
+            (2, 11, 1),
+        ]
+        .map(|(sector, i, component)| 3 * node(sector, i) + component)
+        .to_vec();
+        let responses = RowResponses::new(&table, raceway.len(), &rows);
+        let (values, mut patches, mut expected) = (loads(200), Vec::new(), vec![0.0; 6 * rows.len()]);
+        for (p, sector) in [0, 1, n - 1].into_iter().enumerate() {
+            let nodes = [0, 1, 2, 3].map(|i| node(sector + i / 2, raceway[(p + i) % 3]));
+            let value = |i: usize, q: usize, c: usize| values[24 * p + 6 * i + 3 * q + c];
+            let weights = [0, 1, 2, 3].map(|i| [0, 1].map(|q| [0, 1, 2].map(|c| value(i, q, c))));
+            patches.push(first.patch(&nodes, &weights).unwrap());
+            for q in 0..2 {
+                let mut u = vec![0.0; ring.mesh.n_dofs()];
+                for (node, w) in nodes.iter().zip(&weights) {
+                    (0..3).for_each(|c| u[3 * node + c] += w[q][c]);
+                }
+                factor.solve(&mut u, 1);
+                for (i, &row) in rows.iter().enumerate() {
+                    expected[6 * i + 2 * p + q] = u[row];
+                }
+            }
+        }
+        assert_close(&responses.of_patches(&patches), &expected, 1e-12);
+        assert_eq!(responses.bytes(), RowResponses::bytes_of(n, 3, 4));
+        let small = ResponseTable::new(&factor, &raceway);
+        assert_eq!(first.compliances(&patches), small.compliances(&patches));
     }
 }
