@@ -16,6 +16,7 @@ use dynamics::motion::contacts::ContactScheme;
 use dynamics::motion::ring::{RingFactor, RingState};
 use dynamics::motion::shaft::ShaftStep;
 use dynamics::motion::small::{Inertia, RingAnswer, SmallSystem};
+use dynamics::motion::space::Frame;
 use dynamics::problem::Site;
 use dynamics::{Backend, EffectCosts, Hold, RingModel};
 use fem::Material;
@@ -107,7 +108,14 @@ impl Rod {
     }
 
     pub fn fly(&self, integrator: Integrator, scheme: ContactScheme, dt: f64, n: usize) -> Flight {
-        let body = RingBody::new(Side::Outer, &self.model(), [0.0; 2], Backend::Sparse).unwrap();
+        let body = RingBody::new(
+            Side::Outer,
+            &self.model(),
+            [0.0; 2],
+            Backend::Sparse,
+            Frame::Still,
+        )
+        .unwrap();
         let factor = RingFactor::new(&body, integrator, dt).unwrap();
         let coordinates = body.coordinates.n();
         let along = |value: f64| -> Vec<f64> {

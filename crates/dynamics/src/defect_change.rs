@@ -19,6 +19,8 @@ pub struct Changes {
     rows: Vec<usize>,
     /// Coordinates that the regular ring lacks, ascending.
     loose: Vec<usize>,
+    /// Coordinates of the regular ring that the true one lacks, ascending.
+    gone: Vec<usize>,
     /// Of M and K, row-major: rows, loose ones, and coordinates that the true ring lacks.
     values: [Vec<f64>; 2],
 }
@@ -69,15 +71,43 @@ impl Changes {
             }
         }
         values.iter_mut().for_each(|values| symmetrise(n, values));
-        let (mut rows, mut loose) = (Vec::new(), Vec::new());
+        let (mut rows, mut loose, mut gone) = (Vec::new(), Vec::new(), Vec::new());
         for row in place.keys() {
             match row {
                 Row::True(row) => rows.push(*row),
                 Row::Loose(row) => loose.push(*row),
-                Row::Gone(_) => {}
+                Row::Gone(dof) => {
+                    let node = regular.free_node(dof / 3);
+                    gone.push(3 * node.expect("it is free in the regular ring") + dof % 3);
+                }
             }
         }
-        Changes { rows, loose, values }
+        Changes {
+            rows,
+            loose,
+            gone,
+            values,
+        }
+    }
+
+    /// Coordinates of the true ring, ascending.
+    pub(crate) fn rows(&self) -> &[usize] {
+        &self.rows
+    }
+
+    /// Coordinates that the regular ring lacks, ascending.
+    pub(crate) fn loose(&self) -> &[usize] {
+        &self.loose
+    }
+
+    /// Coordinates of the regular ring that the true one lacks, ascending.
+    pub(crate) fn gone(&self) -> &[usize] {
+        &self.gone
+    }
+
+    /// Changes of M and K, row-major, symmetric: rows, loose ones, those that are gone.
+    pub(crate) fn values(&self) -> [&[f64]; 2] {
+        [&self.values[0], &self.values[1]]
     }
 
     /// The change of `mass` M + `stiffness` K.

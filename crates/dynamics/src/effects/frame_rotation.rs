@@ -31,6 +31,10 @@ impl Effect for FrameRotation {
         "frame_rotation"
     }
 
+    fn turns_frame(&self) -> bool {
+        true
+    }
+
     fn add_loads(&self, _: &Model, now: &Now, loads: &mut Loads) -> Result<(), DynamicsError> {
         loads.frame = Some(FrameTurn {
             speed: self.speed.at(now.time),

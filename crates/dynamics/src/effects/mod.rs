@@ -156,6 +156,11 @@ pub trait Effect: Send + Sync {
     /// Adds its loads at an instant.
     fn add_loads(&self, model: &Model, now: &Now, loads: &mut Loads) -> Result<(), DynamicsError>;
 
+    /// Whether it is the inertia of the inner ring's turning frame.
+    fn turns_frame(&self) -> bool {
+        false
+    }
+
     /// What a reader of an equilibrium should know: where the effect is beyond what it assumes.
     fn warning(&self, _model: &Model, _now: &Now, _balls: &[BallResult]) -> Option<String> {
         None

@@ -16,7 +16,8 @@ use super::effective::{Effective, Factored, prepare};
 use super::integrator::Integrator;
 use super::matrices::RingMatrices;
 use super::ring::RingState;
-use super::space::{Nodes, Space};
+use super::space::{Frame, Nodes, Space};
+use super::space_defect::Matrix;
 use super::vectors::combined;
 use crate::division::NodePlaces;
 use crate::effects::FrameTurn;
@@ -24,6 +25,7 @@ use crate::error::DynamicsError;
 use crate::inventory::Inventory;
 use crate::memory::MotionSizes;
 use crate::model::{Backend, Hold, RACEWAY_GROUP, RingModel};
+use crate::solution::dot;
 use crate::sparse::SparseLoad;
 use crate::support::mean_motion;
 
@@ -56,6 +58,7 @@ impl RingBody {
         ring: &RingModel,
         damping: [f64; 2],
         backend: Backend,
+        frame: Frame,
     ) -> Result<RingBody, DynamicsError> {
         let mesh = &ring.mesh;
         let (coordinates, mount) = hold(mesh, side, ring);
@@ -66,13 +69,12 @@ impl RingBody {
             matrices: &matrices,
             positions: places.positions(),
         };
-        let space = match effective.regular() {
-            Some(free) => Space::harmonic(free, nodes).map_err(|source| DynamicsError::Solver {
+        let space = effective
+            .space(nodes, frame)
+            .map_err(|source| DynamicsError::Solver {
                 side: side.name(),
                 source,
-            })?,
-            None => Space::Nodal,
-        };
+            })?;
         Ok(RingBody {
             surface: RacewaySurface::new(mesh, mesh.group(RACEWAY_GROUP), ring.groove),
             rule: PressureRule::new(),
@@ -89,8 +91,7 @@ impl RingBody {
 
     /// The effective matrix S of a step of `dt` seconds, factored.
     pub fn factor(&self, integrator: Integrator, dt: f64) -> Result<Factored, DynamicsError> {
-        let [m, c, k] = integrator.effective(dt);
-        let (cm, ck) = (m + c * self.damping[0], k + c * self.damping[1]);
+        let [cm, ck] = self.effective_coefficients(integrator, dt);
         let factored = match (&self.effective, &self.matrices) {
             (Effective::Sparse(symbolic, _), RingMatrices::Sparse(matrices)) => matrices
                 .factor(symbolic, &self.coordinates, [cm, ck])
@@ -119,6 +120,12 @@ impl RingBody {
             side: self.name,
             source,
         })
+    }
+
+    /// Factors of M and K in the effective matrix of a step of `dt` seconds.
+    pub(super) fn effective_coefficients(&self, integrator: Integrator, dt: f64) -> [f64; 2] {
+        let [m, c, k] = integrator.effective(dt);
+        [m + c * self.damping[0], k + c * self.damping[1]]
     }
 
     pub(super) fn nodes(&self) -> Nodes<'_> {
@@ -161,19 +168,18 @@ impl RingBody {
         }
     }
 
-    /// M x, both of the ring's space.
+    /// M x of coordinates.
     pub fn mass_product(&self, x: &[f64]) -> Vec<f64> {
-        match &self.space {
-            Space::Nodal => self.matrices.mass_product(&self.coordinates, x),
-            Space::Harmonic(space) => space.mass.product(x),
-        }
+        self.matrices.mass_product(&self.coordinates, x)
     }
 
-    /// K x, both of the ring's space.
-    pub fn stiffness_product(&self, x: &[f64]) -> Vec<f64> {
-        match &self.space {
-            Space::Nodal => self.matrices.stiffness_product(&self.coordinates, x),
-            Space::Harmonic(space) => space.stiffness.product(x),
+    /// a M b or a K b of vectors of the ring's space.
+    fn form(&self, matrix: Matrix, a: &[f64], b: &[f64]) -> f64 {
+        let (matrices, coordinates) = (&self.matrices, &self.coordinates);
+        match (&self.space, matrix) {
+            (Space::Nodal, Matrix::Mass) => dot(a, &self.mass_product(b)),
+            (Space::Nodal, Matrix::Stiffness) => dot(a, &matrices.stiffness_product(coordinates, b)),
+            (Space::Harmonic(space), _) => space.form(matrix, a, b),
         }
     }
 
@@ -196,7 +202,7 @@ impl RingBody {
                 self.matrices
                     .energies(&self.coordinates, state.velocity(), state.displacement())
             }
-            (Space::Harmonic(space), None) => space.energies(state.velocity(), state.displacement()),
+            (Space::Harmonic(space), None) => space.energies(state),
         }
     }
 
@@ -275,10 +281,10 @@ impl RingBody {
         let [am, ak] = self.damping;
         let mut loss = 0.0;
         if am != 0.0 {
-            loss += am * self.space.dot(&change, &self.mass_product(&v));
+            loss += am * self.form(Matrix::Mass, &change, &v);
         }
         if ak != 0.0 {
-            loss += ak * self.space.dot(&change, &self.stiffness_product(&v));
+            loss += ak * self.form(Matrix::Stiffness, &change, &v);
         }
         loss
     }
@@ -294,9 +300,8 @@ impl RingBody {
         let a = combined([s, 1.0 - s], old.acceleration(), new.acceleration());
         let v = combined([0.5; 2], old.velocity(), new.velocity());
         let gain = combined([-1.0, 1.0], old.velocity(), new.velocity());
-        let dot = |a: &[f64], b: &[f64]| self.space.dot(a, b);
-        dot(&change, &self.mass_product(&a)) - dot(&v, &self.mass_product(&gain))
-            + (0.5 - integrator.alpha_f) * dot(&change, &self.stiffness_product(&change))
+        self.form(Matrix::Mass, &change, &a) - self.form(Matrix::Mass, &v, &gain)
+            + (0.5 - integrator.alpha_f) * self.form(Matrix::Stiffness, &change, &change)
     }
 }
 

@@ -26,6 +26,8 @@ impl DefectFactor {
 pub struct DefectStep {
     /// Values of the rows without the defect and the forces of contacts and mount, t, `[n]`.
     at: Vec<f64>,
+    /// Known forces on the rows besides -S t, [`super::space_defect`]; empty when there are none.
+    known: Vec<f64>,
     /// V, row-major `[n][functionals]`.
     answers: Vec<f64>,
 }
@@ -33,12 +35,32 @@ pub struct DefectStep {
 impl DefectStep {
     /// The rows at the predictor's values `at`; `answers` is V.
     pub fn new(at: Vec<f64>, answers: Vec<f64>) -> DefectStep {
-        DefectStep { at, answers }
+        DefectStep {
+            at,
+            answers,
+            known: Vec::new(),
+        }
+    }
+
+    /// The rows at the values by the known forces `known` on them.
+    pub fn under(defect: &Defect, known: Vec<f64>, answers: Vec<f64>) -> DefectStep {
+        DefectStep {
+            at: defect.moved(&known),
+            answers,
+            known,
+        }
+    }
+
+    /// Forces on the rows at the displacements `at`.
+    fn acting(&self, defect: &Defect, at: &[f64]) -> Vec<f64> {
+        let mut forces = defect.forces(at);
+        forces.iter_mut().zip(&self.known).for_each(|(f, q)| *f += q);
+        forces
     }
 
     /// Motion of contacts and mount by the defect.
     pub fn motion(&self, defect: &Defect) -> Vec<f64> {
-        self.moved(&defect.forces(&self.at))
+        self.moved(&self.acting(defect, &self.at))
     }
 
     /// V^T f.
@@ -70,7 +92,7 @@ impl DefectStep {
             let by_forces: f64 = row.iter().zip(forces).map(|(v, f)| v * f).sum();
             t + by_forces
         });
-        let acting = defect.forces(&total.collect::<Vec<f64>>());
+        let acting = self.acting(defect, &total.collect::<Vec<f64>>());
         defect.rows().iter().copied().zip(acting).collect()
     }
 }

@@ -14,12 +14,13 @@ use super::by_sector::SectorFactor;
 use super::coordinates::Coordinates;
 use super::defect::DefectFactor;
 use super::matrices::{RingMatrices, SparseMatrices};
-use super::space::Nodes;
+use super::space::{Frame, Nodes, Space};
+use super::space_defect::SpaceDefect;
 use crate::defect_change::Changes;
 use crate::error::DynamicsError;
 use crate::memory::MotionSizes;
 use crate::model::{Backend, RingModel};
-use crate::sectors::{Defective, HeldSectors, Periodic, Sectors};
+use crate::sectors::{Defective, HeldSectors, Periodic};
 use crate::substructures::Substructures;
 
 /// What stays of the matrices of a ring to factor S for any step size.
@@ -50,6 +51,17 @@ struct Change {
     matrices: RingMatrices,
 }
 
+impl Change {
+    /// Nodes of the regular ring.
+    fn nodes<'a>(&'a self, own: Nodes<'a>) -> Nodes<'a> {
+        Nodes {
+            coordinates: &self.coordinates,
+            matrices: &self.matrices,
+            ..own
+        }
+    }
+}
+
 /// A factored effective matrix.
 pub enum Factored {
     /// Solves S x = b as one sparse matrix.
@@ -66,7 +78,9 @@ pub struct CyclicFactor {
     pub solver: CyclicBordered,
     /// Responses of all raceway nodes under S without its border: contacts need no columns.
     pub table: ResponseTable,
-    /// Nodes that contacts, partner and defect load and measure.
+    /// Nodes that contacts and partner load and measure.
+    pub met: SectionPart,
+    /// The same and those that the defect loads.
     pub touched: SectionPart,
     /// The ring's defect, which `solver` and `table` are without.
     pub defect: Option<DefectFactor>,
@@ -161,11 +175,18 @@ pub fn prepare(
 }
 
 impl Effective {
-    /// The sectors of a periodic ring without a defect, without what is held.
-    pub fn regular(&self) -> Option<&Sectors> {
-        match self {
-            Effective::Cyclic(harmonics) if harmonics.defect.is_none() => Some(&harmonics.held.sectors),
-            _ => None,
+    /// The space of the ring's vectors; `own` are its nodes.
+    pub(super) fn space(&self, own: Nodes<'_>, frame: Frame) -> Result<Space, SolverError> {
+        let Effective::Cyclic(harmonics) = self else {
+            return Ok(Space::Nodal);
+        };
+        let held = &harmonics.held;
+        let Some(change) = &harmonics.defect else {
+            return Space::harmonic(held, own, None);
+        };
+        match (frame, SpaceDefect::new(&change.changes, held)) {
+            (Frame::Still, Some(defect)) => Space::harmonic(held, change.nodes(own), Some(defect)),
+            _ => Ok(Space::Nodal),
         }
     }
 
@@ -199,11 +220,7 @@ impl Effective {
 impl Harmonics {
     /// The border of c_M M + c_K K: of a ring without a defect that of the ring itself, `own`.
     pub(super) fn border(&self, coefficients: [f64; 2], own: Nodes<'_>) -> [Vec<f64>; 2] {
-        let nodes = self.defect.as_ref().map_or(own, |change| Nodes {
-            coordinates: &change.coordinates,
-            matrices: &change.matrices,
-            ..own
-        });
+        let nodes = self.defect.as_ref().map_or(own, |change| change.nodes(own));
         nodes.border(coefficients)
     }
 
@@ -235,7 +252,9 @@ impl Harmonics {
             chosen.extend(of_defect.filter(|node| !raceway.contains(node)));
         }
         let all = ResponseTable::new(solver.inner(), &chosen);
-        let touched = ring.section_part(&chosen, mounted);
+        let mounted: Vec<usize> = mounted.into_iter().collect();
+        let [met, touched] =
+            [raceway, &chosen].map(|nodes| ring.section_part(nodes, mounted.iter().copied()));
         let answer = |change: solver::cyclic::Change| -> Result<DefectFactor, SolverError> {
             let free: Vec<usize> = change.rows.iter().copied().filter(|&row| row < n).collect();
             Ok(DefectFactor {
@@ -249,6 +268,7 @@ impl Harmonics {
             None => all,
         };
         Ok(Factored::Cyclic(Box::new(CyclicFactor {
+            met,
             touched,
             table,
             solver,

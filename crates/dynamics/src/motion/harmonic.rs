@@ -1,9 +1,10 @@
 //! Solves of a periodic ring that stay in harmonic space: the predictor of a step, what contacts and partner measure of it,
 //! and the increment under their forces. Only nodes that they touch are transformed in between.
 
-use solver::LinearSolver;
-use solver::cyclic::{Loose, PartHarmonics};
+use solver::cyclic::{Defect, Loose, PartHarmonics};
+use solver::{LinearSolver, SectionPart};
 
+use super::defect::DefectStep;
 use super::effective::CyclicFactor;
 use super::space::{Space, from_harmonics, to_harmonics};
 use super::vectors::add;
@@ -39,21 +40,43 @@ impl CyclicFactor {
         self.defect.as_ref()?.answer.loose()
     }
 
-    /// Values of functionals on the touched nodes and the border under harmonics and border `x`, and those of the rows of a defect.
-    pub fn motions(&self, x: &[f64], functionals: &[&SparseLoad]) -> [Vec<f64>; 2] {
+    /// Values of functionals on raceway, mount and border under harmonics and border `x`.
+    pub fn measure(&self, x: &[f64], functionals: &[&SparseLoad]) -> Vec<f64> {
+        self.at(&self.met, x, |value| {
+            let measure = |g: &&SparseLoad| g.iter().map(|&(row, weight)| weight * value(row)).sum();
+            functionals.iter().map(measure).collect()
+        })
+    }
+
+    /// Values of the rows of a defect under harmonics and border `x`.
+    pub fn at_rows(&self, defect: &Defect, x: &[f64]) -> Vec<f64> {
+        self.at(&self.touched, x, |value| {
+            defect.rows().iter().map(|&row| value(row)).collect()
+        })
+    }
+
+    /// What `read` makes of the values of the rows of a part and of the border.
+    fn at(
+        &self,
+        part: &SectionPart,
+        x: &[f64],
+        read: impl Fn(&dyn Fn(usize) -> f64) -> Vec<f64>,
+    ) -> Vec<f64> {
         let ring = self.solver.inner().ring();
         let (harmonics, border) = x.split_at(ring.harmonic_len());
-        let field = ring.field_at(&self.touched, harmonics);
-        let value = |row: usize| match row.checked_sub(ring.n()) {
+        let field = ring.field_at(part, harmonics);
+        read(&|row: usize| match row.checked_sub(ring.n()) {
             Some(k) => border[k],
             None => field.value(row),
-        };
-        let measure = |g: &&SparseLoad| g.iter().map(|&(row, weight)| weight * value(row)).sum();
-        let rows = self.defect.iter().flat_map(|defect| defect.answer.rows());
-        [
-            functionals.iter().map(measure).collect(),
-            rows.map(|&row| value(row)).collect(),
-        ]
+        })
+    }
+
+    /// Forces of a defect on its rows, index and value, in a step with these forces on contacts and mount.
+    pub fn by_defect(&self, step: Option<&DefectStep>, contacts: &[f64], mount: &[f64]) -> Vec<(usize, f64)> {
+        match (&self.defect, step) {
+            (Some(defect), Some(step)) => step.loads(&defect.answer, &[contacts, mount].concat()),
+            _ => Vec::new(),
+        }
     }
 
     /// Loads on touched nodes and border, index and value: harmonics of the nodes, and the rows of the border and of those that the

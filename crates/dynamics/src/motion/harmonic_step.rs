@@ -6,14 +6,17 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use contact::NodalWeights;
+use solver::cyclic::Defect;
 
 use super::body::RingBody;
-use super::effective::Factored;
+use super::defect::DefectStep;
+use super::effective::{CyclicFactor, Factored};
 use super::pass::{Increment, Pass};
 use super::pool::PooledVector;
 use super::ring::{Predictor, RingFactor, RingStep, acting, functionals, sum};
 use super::ring_state::RingState;
 use super::space::Space;
+use super::space_defect::Terms;
 use crate::sparse::SparseLoad;
 
 impl RingFactor {
@@ -32,7 +35,7 @@ impl RingFactor {
         let contacts = functionals(body, feet);
         let all: Vec<&SparseLoad> = contacts.iter().chain(&body.mount).collect();
         let start = self.measure(body, &all, state.displacement());
-        let (defect, moved, compliance) = self.meet(body, factor, &predictor, feet, &all);
+        let (defect, moved, compliance) = self.meet((body, state), factor, &predictor, feet, &all);
         RingStep {
             predicted: sum(&start, &moved),
             predictor: Predictor::Harmonic(predictor, defect),
@@ -58,6 +61,29 @@ impl RingFactor {
         }
     }
 
+    /// Rows of a defect in a step from `state` with the regular ring's predictor `predictor`; `answers` is V.
+    pub(super) fn defect_step(
+        &self,
+        (body, state): (&RingBody, &RingState),
+        (factor, defect): (&CyclicFactor, &Defect),
+        predictor: &[f64],
+        answers: Vec<f64>,
+    ) -> DefectStep {
+        let Space::Harmonic(space) = &body.space else {
+            return DefectStep::new(factor.at_rows(defect, predictor), answers);
+        };
+        let of_space = space.defect.as_ref().expect("it has the defect of its ring");
+        let terms = Terms {
+            history: self.history(body),
+            effective: body.effective_coefficients(self.integrator, self.dt),
+        };
+        let known = match state.row_values() {
+            Some(values) => of_space.known(terms, values, predictor),
+            None => of_space.known(terms, &of_space.of_state(state), predictor),
+        };
+        DefectStep::under(defect, known, answers)
+    }
+
     /// Another predictor of a step in harmonic space, without a defect.
     pub(super) fn replace_predictor(&self, body: &RingBody, step: &mut RingStep, predictor: PooledVector) {
         let all: Vec<&SparseLoad> = step.contacts.iter().chain(&body.mount).collect();
@@ -76,7 +102,11 @@ impl RingFactor {
         let Factored::Cyclic(factor) = &self.factor else {
             unreachable!("harmonics are solved by their factor")
         };
-        let forces = factor.forces(acting(body, step, contacts, mount));
+        let Predictor::Harmonic(_, correction) = &step.predictor else {
+            unreachable!("a step of harmonics")
+        };
+        let by_defect = factor.by_defect(correction.as_ref(), contacts, mount);
+        let forces = factor.forces(acting(body, step, contacts, mount).chain(by_defect));
         Increment {
             forces: Some(forces),
             rest: Cow::Borrowed(step.harmonics()),

@@ -43,6 +43,7 @@ pub mod shaft;
 pub mod shape;
 pub mod small;
 pub mod space;
+pub mod space_defect;
 pub mod start;
 pub mod state;
 mod substep;

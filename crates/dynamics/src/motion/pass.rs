@@ -158,6 +158,9 @@ impl Pass<'_> {
         }
         let mut state = RingState::new(w, v, a);
         state.keep(total(&found, |f| f.energies).map(|twice| 0.5 * twice));
+        if let Some(defect) = &space.defect {
+            defect.complete(&mut state);
+        }
         Ended {
             state,
             works: total(&found, |f| f.works),

@@ -117,10 +117,7 @@ impl RingFactor {
     /// Values of functionals on what contacts and partner touch, at `x` of the ring's space.
     pub(super) fn measure(&self, body: &RingBody, functionals: &[&SparseLoad], x: &[f64]) -> Vec<f64> {
         match (&self.factor, &body.space) {
-            (Factored::Cyclic(factor), Space::Harmonic(_)) => {
-                let [values, _] = factor.motions(x, functionals);
-                values
-            }
+            (Factored::Cyclic(factor), Space::Harmonic(_)) => factor.measure(x, functionals),
             _ => functionals.iter().map(|g| sparse_dot(g, x)).collect(),
         }
     }
@@ -148,7 +145,7 @@ impl RingFactor {
         let (predictor, moved, compliance) = match &self.factor {
             Factored::Cyclic(factor) => {
                 let predictor = factor.solve(&body.space, side);
-                let (defect, moved, compliance) = self.meet(body, factor, &predictor, feet, &all);
+                let (defect, moved, compliance) = self.meet((body, state), factor, &predictor, feet, &all);
                 (
                     Predictor::Harmonic(Arc::new(predictor.into()), defect),
                     moved,
@@ -192,7 +189,7 @@ impl RingFactor {
         step.start = self.measure(body, &all, state.displacement());
         let (moved, compliance) = match (&self.factor, &mut step.predictor) {
             (Factored::Cyclic(factor), Predictor::Harmonic(predictor, defect)) => {
-                let (met, moved, compliance) = self.meet(body, factor, predictor, feet, &all);
+                let (met, moved, compliance) = self.meet((body, state), factor, predictor, feet, &all);
                 *defect = met;
                 (moved, compliance)
             }
@@ -280,9 +277,9 @@ impl RingFactor {
                 let more = factor.solve(&body.space, load);
                 let whole: &mut PooledVector = Arc::make_mut(predictor);
                 add(whole, &more);
-                let [mut moved, at] = factor.motions(&more, &all);
+                let mut moved = factor.measure(&more, &all);
                 if let (Some(defect), Some(correction)) = (self.factor.defect(), correction) {
-                    let corrected = correction.add(defect, &at);
+                    let corrected = correction.add(defect, &factor.at_rows(defect, &more));
                     moved.iter_mut().zip(corrected).for_each(|(m, d)| *m += d);
                 }
                 moved
@@ -302,12 +299,7 @@ impl RingFactor {
     pub fn increment(&self, body: &RingBody, step: &RingStep, contacts: &[f64], mount: &[f64]) -> Vec<f64> {
         match (&self.factor, &step.predictor) {
             (Factored::Cyclic(factor), Predictor::Harmonic(predictor, correction)) => {
-                let by_defect = match (&factor.defect, correction) {
-                    (Some(defect), Some(correction)) => {
-                        correction.loads(&defect.answer, &[contacts, mount].concat())
-                    }
-                    _ => Vec::new(),
-                };
+                let by_defect = factor.by_defect(correction.as_ref(), contacts, mount);
                 let loads = acting(body, step, contacts, mount).chain(by_defect);
                 factor.increment(&body.space, predictor, loads)
             }

@@ -7,6 +7,7 @@ use rayon::prelude::*;
 use super::ahead::Known;
 use super::integrator::Integrator;
 use super::pool::PooledVector;
+use super::space_defect::RowValues;
 use super::vectors::TASK;
 
 /// Displacement, velocity, acceleration of a ring in the space of its body ([`super::space`]), SI, of one length.
@@ -22,6 +23,8 @@ pub struct RingState {
     energies: Option<[f64; 2]>,
     /// What the step from here begins with, where the step before has found it; no part of the state.
     known: Option<Arc<Known>>,
+    /// Values on the rows of a defect, once they are found; no part of the state.
+    row_values: Option<Arc<RowValues>>,
 }
 
 impl PartialEq for RingState {
@@ -40,6 +43,7 @@ impl RingState {
             a,
             energies: None,
             known: None,
+            row_values: None,
         }
     }
 
@@ -68,6 +72,7 @@ impl RingState {
     pub fn with_acceleration(self, a: Vec<f64>) -> RingState {
         RingState {
             a: PooledVector::from(a),
+            row_values: None,
             ..self
         }
     }
@@ -95,6 +100,16 @@ impl RingState {
     /// Keeps the energies.
     pub(super) fn keep(&mut self, energies: [f64; 2]) {
         self.energies = Some(energies);
+    }
+
+    /// Values on the rows of a defect, where they are known.
+    pub(super) fn row_values(&self) -> Option<&RowValues> {
+        self.row_values.as_deref()
+    }
+
+    /// Keeps the values on the rows of a defect.
+    pub(super) fn keep_rows(&mut self, values: RowValues) {
+        self.row_values = Some(Arc::new(values));
     }
 
     /// What [`RingState::foresee`] was given.

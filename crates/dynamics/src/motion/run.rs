@@ -11,6 +11,7 @@ use contact::Side;
 use super::balls::Kinematics;
 use super::body::RingBody;
 use super::ring::RingFactor;
+use super::space::Frame;
 use super::start::check_supported;
 use super::state::{MotionSettings, MotionState, StepReport};
 use super::substep::Span;
@@ -44,10 +45,15 @@ impl<'a> Motion<'a> {
     /// Assembles both rings and factors them for the full step.
     pub fn new(model: &'a Model, settings: MotionSettings) -> Result<Motion<'a>, DynamicsError> {
         check_supported(model)?;
+        let turns = model.effects.iter().any(|effect| effect.turns_frame());
+        let frame = |side: Side| match side {
+            Side::Inner if turns => Frame::Turning,
+            _ => Frame::Still,
+        };
         let build = |side: Side| {
             model
                 .ring(side)
-                .map(|ring| RingBody::new(side, ring, settings.rayleigh, model.backend))
+                .map(|ring| RingBody::new(side, ring, settings.rayleigh, model.backend, frame(side)))
                 .transpose()
         };
         let (inner, outer) = model.backend.both(|| build(Side::Inner), || build(Side::Outer));

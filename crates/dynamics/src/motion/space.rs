@@ -14,8 +14,10 @@ use solver::{CyclicRing, SolverError};
 use super::coordinates::Coordinates;
 use super::matrices::RingMatrices;
 use super::pool::VectorPool;
+use super::ring_state::RingState;
+use super::space_defect::{Matrix, SpaceDefect};
 use crate::effects::FrameTurn;
-use crate::sectors::Sectors;
+use crate::sectors::HeldSectors;
 use crate::solution::dot;
 
 /// The space of a ring's vectors.
@@ -24,6 +26,15 @@ pub enum Space {
     Nodal,
     /// Harmonics of the free nodes, then the shaft's dofs, `[harmonic_len + m]`.
     Harmonic(Box<HarmonicSpace>),
+}
+
+/// Whether the inertia of a ring's turning frame acts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Frame {
+    /// It does not.
+    Still,
+    /// It does. The vectors of a ring with a defect are coordinates then.
+    Turning,
 }
 
 /// Harmonic space and what acts in it.
@@ -35,6 +46,8 @@ pub struct HarmonicSpace {
     pub(super) mass: HarmonicOperator,
     /// K.
     pub(super) stiffness: HarmonicOperator,
+    /// A defect, of whose regular ring the matrices are.
+    pub(super) defect: Option<SpaceDefect>,
     /// Vectors of the space that are free.
     pub(super) pool: VectorPool,
     /// Made when a frame turns for the first time.
@@ -83,8 +96,13 @@ impl Nodes<'_> {
 }
 
 impl Space {
-    /// Harmonic space of the free nodes of a periodic ring.
-    pub(super) fn harmonic(free: &Sectors, nodes: Nodes<'_>) -> Result<Space, SolverError> {
+    /// Harmonic space of the free nodes of a periodic ring. With a defect `nodes` are those of its regular ring.
+    pub(super) fn harmonic(
+        held: &HeldSectors,
+        nodes: Nodes<'_>,
+        defect: Option<SpaceDefect>,
+    ) -> Result<Space, SolverError> {
+        let free = &held.sectors;
         let operator = |matrix, coefficients| {
             let [border, corner] = nodes.border(coefficients);
             HarmonicOperator::new(&free.ring, matrix, &border, &corner)
@@ -95,7 +113,11 @@ impl Space {
             n_shaft,
             mass: operator(&free.mass, [1.0, 0.0])?,
             stiffness: operator(&free.stiffness, [0.0, 1.0])?,
-            ring: free.ring.clone(),
+            ring: match &held.seen {
+                Some(seen) => free.ring.seen_at(seen),
+                None => free.ring.clone(),
+            },
+            defect,
             frame: OnceLock::new(),
         })))
     }
@@ -114,6 +136,17 @@ impl Space {
             Space::Nodal => y,
             Space::Harmonic(space) => to_harmonics(&space.ring, &y),
         }
+    }
+
+    /// The same of a state of the ring: rows that only a regular ring has move as its statics has them.
+    pub fn of_state(&self, y: Vec<f64>) -> Vec<f64> {
+        let mut x = self.of_coordinates(y);
+        if let Space::Harmonic(space) = self
+            && let Some(defect) = &space.defect
+        {
+            defect.fill(&mut x);
+        }
+        x
     }
 
     /// Coordinates of the vector `x`.
@@ -168,13 +201,36 @@ impl HarmonicSpace {
         self.ring.group_dot(group, &a[..low], &b[..low]) + dot(&a[low..], &b[low..])
     }
 
-    /// v M v / 2 and w K w / 2, J.
-    pub(super) fn energies(&self, v: &[f64], w: &[f64]) -> [f64; 2] {
-        [(&self.mass, v), (&self.stiffness, w)].map(|(operator, x)| {
+    /// Kinetic and strain energy, J.
+    pub(super) fn energies(&self, state: &RingState) -> [f64; 2] {
+        let [w, v, _] = state.vectors();
+        let regular = [(&self.mass, v), (&self.stiffness, w)].map(|(operator, x)| {
             let (product, len) = (operator.product(x), self.ring.harmonic_len());
             let harmonics = self.ring.harmonic_dot(&x[..len], &product[..len]);
             0.5 * (harmonics + dot(&x[len..], &product[len..]))
-        })
+        });
+        match &self.defect {
+            None => regular,
+            Some(defect) => {
+                let more = defect.energies(&defect.of_state(state));
+                [regular[0] + more[0], regular[1] + more[1]]
+            }
+        }
+    }
+
+    /// a M b or a K b.
+    pub(super) fn form(&self, matrix: Matrix, a: &[f64], b: &[f64]) -> f64 {
+        let operator = match matrix {
+            Matrix::Mass => &self.mass,
+            Matrix::Stiffness => &self.stiffness,
+        };
+        let (product, len) = (operator.product(b), self.ring.harmonic_len());
+        let regular = self.ring.harmonic_dot(&a[..len], &product[..len]) + dot(&a[len..], &product[len..]);
+        let of_defect = |defect: &SpaceDefect| {
+            let [a, b] = [a, b].map(|x| defect.values(x));
+            defect.form(matrix, &a, &b)
+        };
+        regular + self.defect.as_ref().map_or(0.0, of_defect)
     }
 
     /// What the inertia of a turning frame needs; made when first asked for.

@@ -218,7 +218,7 @@ fn ring_at_start(body: &RingBody, elastic: &[f64], q: [f64; 5], velocity: [f64; 
         .for_each(|(i, &dof)| w[i] += elastic[dof]);
     let turned = [omega * q[1], -omega * q[0], 0.0, omega * q[4], -omega * q[3]];
     let v = field([0, 1, 2, 3, 4].map(|i| velocity[i] + turned[i]));
-    let [w, v] = [w, v].map(|y| body.space.of_coordinates(y));
+    let [w, v] = [w, v].map(|y| body.space.of_state(y));
     let a = vec![0.0; w.len()];
     RingState::new(w, v, a)
 }

@@ -7,7 +7,7 @@ use solver::cyclic::{Patch, ResponseTable};
 use super::body::RingBody;
 use super::defect::{DefectFactor, DefectStep};
 use super::effective::CyclicFactor;
-use super::ring::RingFactor;
+use super::ring::{RingFactor, RingState};
 use crate::sparse::{SparseLoad, sparse_dot};
 
 /// Contacts as the responses of a raceway meet them.
@@ -24,19 +24,19 @@ impl RingFactor {
     /// and their compliance.
     pub(super) fn meet(
         &self,
-        body: &RingBody,
+        (body, state): (&RingBody, &RingState),
         factor: &CyclicFactor,
         predictor: &[f64],
         feet: &[NodalWeights],
         all: &[&SparseLoad],
     ) -> (Option<DefectStep>, Vec<f64>, Vec<f64>) {
-        let [mut moved, at] = factor.motions(predictor, all);
+        let mut moved = factor.measure(predictor, all);
         let touch = self.touch(body, &factor.table, feet, &all[..2 * feet.len()]);
         let mut compliance = self.table_compliance(&factor.table, &touch, body.mount.len());
         let step = factor.defect.as_ref().map(|defect| {
             let n_free = factor.solver.inner().n();
             let answers = self.answers(defect, &touch, n_free, body.coordinates.n());
-            let step = DefectStep::new(at, answers);
+            let step = self.defect_step((body, state), (factor, &defect.answer), predictor, answers);
             let more = step.motion(&defect.answer);
             moved.iter_mut().zip(more).for_each(|(m, d)| *m += d);
             step.soften(&defect.answer, &mut compliance);

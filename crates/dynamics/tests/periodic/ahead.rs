@@ -8,7 +8,7 @@ use dynamics::motion::{Integrator, Ladder};
 use super::*;
 
 /// The state as a step file holds it: without what the step before has found of the next.
-fn alone(state: &MotionState) -> MotionState {
+pub(super) fn alone(state: &MotionState) -> MotionState {
     let mut alone = state.clone();
     for ring in alone.rings.iter_mut().flatten() {
         *ring = RingState::new(

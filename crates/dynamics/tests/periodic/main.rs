@@ -182,13 +182,24 @@ fn motion(build: impl Fn() -> Model, steps: usize) -> End {
     model.effects.push(Box::new(FrameRotation {
         speed: Speed::constant(SPEED),
     }));
+    motion_of(&model, &build(), steps)
+}
+
+/// The same without the inertia of the turning frame.
+fn motion_without_frame(build: impl Fn() -> Model, steps: usize) -> End {
+    let model = build();
+    motion_of(&model, &model, steps)
+}
+
+/// Steps of a model from the equilibrium of another.
+fn motion_of(model: &Model, at_rest: &Model, steps: usize) -> End {
     let name = match model.backend {
         Backend::Sparse => "sparse",
         Backend::Sector(_) => "sector",
         Backend::Auto | Backend::Cyclic => "cyclic",
     };
-    let start = statics(&build(), name);
-    let motion = Motion::new(&model, MotionSettings::conserving(1e-5, Speed::constant(SPEED))).unwrap();
+    let start = statics(at_rest, name);
+    let motion = Motion::new(model, MotionSettings::conserving(1e-5, Speed::constant(SPEED))).unwrap();
     let mut state = motion.start(&start);
     for _ in 0..steps {
         state = motion.step(&state).unwrap().0;

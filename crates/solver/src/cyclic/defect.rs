@@ -18,7 +18,7 @@
 //! matrix is D_rr - D_rh D_hh^-1 D_hr ([`Change::condensed`]). Callers never see h ([`super::CyclicRing::seen_at`]). Rows
 //! that the true ring has and the regular one lacks are eliminated ([`super::Loose`]).
 //!
-//! Cost: a solve for every component of every section node that the defect touches, 4 n^3 operations, 8 n^2 bytes; then
+//! Cost: a solve for every component of every section node that the defect touches, 4 n^3 operations, 16 n^2 bytes; then
 //! two solves per right-hand side in place of one for each iteration.
 
 use std::ops::Range;
@@ -51,6 +51,8 @@ pub struct Defect {
     rows: Vec<usize>,
     /// S, row-major.
     reduced: Vec<f64>,
+    /// G, row-major.
+    compliance: Vec<f64>,
     iterations: usize,
     loose: Option<Loose>,
 }
@@ -121,6 +123,7 @@ impl Defect {
         Ok(Defect {
             rows: change.rows.clone(),
             reduced,
+            compliance,
             iterations,
             loose: change.loose.clone(),
         })
@@ -149,14 +152,19 @@ impl Defect {
         forces
     }
 
+    /// G f: displacements of the rows under the forces `forces` on them, without the defect.
+    pub fn moved(&self, forces: &[f64]) -> Vec<f64> {
+        symmetric_product(&self.compliance, forces, 1)
+    }
+
     /// V^T S V, row-major `[width][width]`, exactly symmetric, of displacements V, row-major `[n][width]`.
     pub fn form(&self, at: &[f64], width: usize) -> Vec<f64> {
         symmetric_form(&self.reduced, at, width)
     }
 
-    /// Bytes of S.
+    /// Bytes of S and G.
     pub fn bytes(&self) -> usize {
-        size_of::<f64>() * self.reduced.capacity()
+        size_of::<f64>() * (self.reduced.capacity() + self.compliance.capacity())
     }
 }
 
