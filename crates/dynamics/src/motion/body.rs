@@ -136,6 +136,11 @@ impl RingBody {
         }
     }
 
+    /// The nodes whose matrices act on the vectors of harmonic space.
+    pub(super) fn regular_nodes(&self) -> Nodes<'_> {
+        self.effective.regular_nodes(self.nodes())
+    }
+
     /// Whether S has a border: shaft dofs among the coordinates.
     pub fn is_bordered(&self) -> bool {
         !self.coordinates.shaft().0.is_empty()

@@ -9,6 +9,7 @@ use std::sync::Arc;
 use contact::Side;
 
 use super::ahead::{Foreseen, Known, frame_turn};
+use super::harmonic_step::StepStart;
 use super::newton::SmallSolution;
 use super::part::Moving;
 use super::pass::{Acting, Change, Coming, Turned};
@@ -81,7 +82,8 @@ impl Motion<'_> {
         if let Some((new, change)) = inner.as_ref().and_then(|inner| inner.renewed.as_ref())
             && !self.is_settled(part, new, change)
         {
-            self.replace_inertia(part, new)?;
+            let ended = inner.as_ref().map(|inner| &inner.end.state);
+            self.replace_inertia(part, new, ended)?;
             part.report.seconds.update += part.clock.lap();
             return Ok(None);
         }
@@ -147,6 +149,7 @@ impl Motion<'_> {
         let increment = ring.factor.forces(ring.body, &ring.step, &forces, mount);
         let ended = pass.end(ring.old, increment, acting, coming);
         let mut new = ended.state;
+        let of_rows = ring.factor.frame_work(ring.body, &ring.step, [ring.old, &new]);
         if let (Some(next), Some(predicted)) = (next, ended.next) {
             new.foresee(Arc::new(Known::of_pass(
                 next.clone(),
@@ -158,7 +161,7 @@ impl Motion<'_> {
         Candidate {
             end: RingEnd {
                 state: new,
-                works: ended.works,
+                works: [ended.works[0], ended.works[1] + of_rows],
             },
             renewed: checked.map(|_| ended.renewed),
         }
@@ -200,7 +203,7 @@ impl Motion<'_> {
                 }
                 return Ok(());
             }
-            return self.replace_inertia(part, &new);
+            return self.replace_inertia(part, &new, None);
         };
         let predictor = ring.step.harmonics();
         let increment = ring.factor.forces(ring.body, &ring.step, &forces, mount);
@@ -226,23 +229,44 @@ impl Motion<'_> {
         } else {
             Settling::Open(ratio)
         };
-        if let Some(ring) = &mut part.moving[0] {
+        if let Some(ring) = &mut part.moving[0]
+            && let Some((turn, used)) = &mut ring.inertia
+        {
+            let from = StepStart {
+                state: ring.old,
+                turn: Some(*turn),
+                moved: turned.rows,
+            };
+            let predictor = Arc::new(turned.predictor);
             ring.factor
-                .replace_predictor(ring.body, &mut ring.step, turned.predictor);
-            if let Some((_, used)) = &mut ring.inertia {
-                *used = Arc::new(turned.inertia);
-            }
+                .replace_predictor(ring.body, &mut ring.step, predictor, from);
+            *used = Arc::new(turned.inertia);
         }
         self.count_round(part)
     }
 
     /// Goes on with another inertia: one solve.
-    fn replace_inertia(&self, part: &mut Part<'_>, new: &[f64]) -> Result<(), DynamicsError> {
+    fn replace_inertia(
+        &self,
+        part: &mut Part<'_>,
+        new: &[f64],
+        ended: Option<&RingState>,
+    ) -> Result<(), DynamicsError> {
         if let Some(ring) = &mut part.moving[0]
-            && let Some((_, used)) = &mut ring.inertia
+            && let Some((turn, used)) = &mut ring.inertia
         {
             let change = combined([1.0, -1.0], new, used);
             ring.factor.add_load(ring.body, &mut ring.step, change);
+            if let Some(moved) = ended.and_then(|new| ring.factor.moved_rows(ring.body, [ring.old, new])) {
+                let from = StepStart {
+                    state: ring.old,
+                    turn: Some(*turn),
+                    moved: Some(moved),
+                };
+                let predictor = ring.step.shared_harmonics();
+                ring.factor
+                    .replace_predictor(ring.body, &mut ring.step, predictor, from);
+            }
             *used = Arc::new(new.to_vec().into());
         }
         part.settling = Settling::Open(self.contraction(part));

@@ -28,6 +28,8 @@ pub struct DefectStep {
     at: Vec<f64>,
     /// Known forces on the rows besides -S t, [`super::space_defect`]; empty when there are none.
     known: Vec<f64>,
+    /// Inertia of the turning frame on the rows of [`super::space_defect`]; empty when there is none.
+    inertia: Vec<f64>,
     /// V, row-major `[n][functionals]`.
     answers: Vec<f64>,
 }
@@ -39,16 +41,33 @@ impl DefectStep {
             at,
             answers,
             known: Vec::new(),
+            inertia: Vec::new(),
         }
     }
 
-    /// The rows at the values by the known forces `known` on them.
-    pub fn under(defect: &Defect, known: Vec<f64>, answers: Vec<f64>) -> DefectStep {
+    /// The rows at the values by the known forces `known` on them, of which `inertia` is a part.
+    pub fn under(defect: &Defect, known: Vec<f64>, inertia: Vec<f64>, answers: Vec<f64>) -> DefectStep {
         DefectStep {
             at: defect.moved(&known),
             answers,
             known,
+            inertia,
         }
+    }
+
+    /// The same rows with other contacts, which `answers` is V of.
+    pub fn met_by(self, answers: Vec<f64>) -> DefectStep {
+        DefectStep { answers, ..self }
+    }
+
+    /// V.
+    pub fn into_answers(self) -> Vec<f64> {
+        self.answers
+    }
+
+    /// Inertia of the turning frame on the rows, the true ring's less the regular one's.
+    pub fn inertia(&self) -> &[f64] {
+        &self.inertia
     }
 
     /// Forces on the rows at the displacements `at`.

@@ -6,7 +6,7 @@
 
 use std::sync::Arc;
 
-use mesh::Mesh;
+use mesh::{Mesh, NodePositions};
 use solver::cyclic::{CyclicBordered, Defect, ResponseTable, RowResponses};
 use solver::{CyclicRing, LinearSolver, SectionPart, SolverError, Symbolic};
 
@@ -49,15 +49,16 @@ struct Change {
     /// Of the ring without the defect, whose border is that of low harmonics.
     coordinates: Coordinates,
     matrices: RingMatrices,
+    positions: NodePositions,
 }
 
 impl Change {
     /// Nodes of the regular ring.
-    fn nodes<'a>(&'a self, own: Nodes<'a>) -> Nodes<'a> {
+    fn nodes(&self) -> Nodes<'_> {
         Nodes {
             coordinates: &self.coordinates,
             matrices: &self.matrices,
-            ..own
+            positions: &self.positions,
         }
     }
 }
@@ -149,6 +150,7 @@ pub fn prepare(
                         changes: defect.changes(coordinates, &of_regular),
                         coordinates: of_regular,
                         matrices: matrices(&whole.ring, None)?,
+                        positions: regular.mesh.nodes.clone(),
                     };
                     (Some(change), Some(Box::new(defect)))
                 }
@@ -184,9 +186,21 @@ impl Effective {
         let Some(change) = &harmonics.defect else {
             return Space::harmonic(held, own, None);
         };
-        match (frame, SpaceDefect::new(&change.changes, held)) {
-            (Frame::Still, Some(defect)) => Space::harmonic(held, change.nodes(own), Some(defect)),
-            _ => Ok(Space::Nodal),
+        let Some(mut defect) = SpaceDefect::new(&change.changes, held) else {
+            return Ok(Space::Nodal);
+        };
+        let regular = change.nodes();
+        if frame == Frame::Turning {
+            defect = defect.turning(own, regular, change.changes.rows());
+        }
+        Space::harmonic(held, regular, Some(defect))
+    }
+
+    /// Nodes of the regular ring of a ring with a defect; of any other its own.
+    pub(super) fn regular_nodes<'a>(&'a self, own: Nodes<'a>) -> Nodes<'a> {
+        match self {
+            Effective::Cyclic(harmonics) => harmonics.defect.as_ref().map_or(own, Change::nodes),
+            Effective::Sparse(..) | Effective::Sectors(_) => own,
         }
     }
 
@@ -220,7 +234,7 @@ impl Effective {
 impl Harmonics {
     /// The border of c_M M + c_K K: of a ring without a defect that of the ring itself, `own`.
     pub(super) fn border(&self, coefficients: [f64; 2], own: Nodes<'_>) -> [Vec<f64>; 2] {
-        let nodes = self.defect.as_ref().map_or(own, |change| change.nodes(own));
+        let nodes = self.defect.as_ref().map_or(own, Change::nodes);
         nodes.border(coefficients)
     }
 

@@ -14,17 +14,49 @@ use super::effective::{CyclicFactor, Factored};
 use super::pass::{Increment, Pass};
 use super::pool::PooledVector;
 use super::ring::{Predictor, RingFactor, RingStep, acting, functionals, sum};
-use super::ring_state::RingState;
+use super::ring_state::{RingState, within_part};
 use super::space::Space;
-use super::space_defect::Terms;
+use super::space_defect::{RowValues, Terms};
+use super::vectors::{add, combined};
+use crate::effects::FrameTurn;
+use crate::solution::dot;
 use crate::sparse::SparseLoad;
+
+/// What a step of a ring starts from.
+#[derive(Clone)]
+pub(super) struct StepStart<'a> {
+    pub state: &'a RingState,
+    /// Turning of its frame, when the inertia acts.
+    pub turn: Option<FrameTurn>,
+    /// Motion of the rows of a defect that the inertia is to fit; None: the velocity stays.
+    pub moved: Option<Vec<f64>>,
+}
+
+/// Where the rows of a defect come from when contacts meet a predictor.
+pub(super) enum Rows<'a> {
+    /// They are found.
+    Found(StepStart<'a>),
+    /// They stay, as the predictor does.
+    Of(Option<DefectStep>),
+}
+
+impl<'a> StepStart<'a> {
+    /// With the first guess of the inertia.
+    pub fn first(state: &'a RingState, turn: Option<FrameTurn>) -> StepStart<'a> {
+        StepStart {
+            state,
+            turn,
+            moved: None,
+        }
+    }
+}
 
 impl RingFactor {
     /// The step of a ring in harmonic space whose predictor is known, with contacts at `feet`.
     pub(super) fn prepare_solved(
         &self,
         body: &RingBody,
-        state: &RingState,
+        (state, turn): (&RingState, Option<FrameTurn>),
         predictor: Arc<PooledVector>,
         feet: &[NodalWeights],
     ) -> RingStep {
@@ -35,7 +67,13 @@ impl RingFactor {
         let contacts = functionals(body, feet);
         let all: Vec<&SparseLoad> = contacts.iter().chain(&body.mount).collect();
         let start = self.measure(body, &all, state.displacement());
-        let (defect, moved, compliance) = self.meet((body, state), factor, &predictor, feet, &all);
+        let (defect, moved, compliance) = self.meet(
+            (body, Rows::Found(StepStart::first(state, turn))),
+            factor,
+            &predictor,
+            feet,
+            &all,
+        );
         RingStep {
             predicted: sum(&start, &moved),
             predictor: Predictor::Harmonic(predictor, defect),
@@ -51,7 +89,7 @@ impl RingFactor {
         match (&self.factor, &body.space) {
             (Factored::Cyclic(factor), Space::Harmonic(space)) => Some(Pass {
                 space,
-                nodes: body.nodes(),
+                nodes: body.regular_nodes(),
                 factor,
                 integrator: self.integrator,
                 dt: self.dt,
@@ -61,10 +99,10 @@ impl RingFactor {
         }
     }
 
-    /// Rows of a defect in a step from `state` with the regular ring's predictor `predictor`; `answers` is V.
+    /// Rows of a defect in a step with the regular ring's predictor `predictor`; `answers` is V.
     pub(super) fn defect_step(
         &self,
-        (body, state): (&RingBody, &RingState),
+        (body, from): (&RingBody, StepStart<'_>),
         (factor, defect): (&CyclicFactor, &Defect),
         predictor: &[f64],
         answers: Vec<f64>,
@@ -77,18 +115,78 @@ impl RingFactor {
             history: self.history(body),
             effective: body.effective_coefficients(self.integrator, self.dt),
         };
-        let known = match state.row_values() {
-            Some(values) => of_space.known(terms, values, predictor),
-            None => of_space.known(terms, &of_space.of_state(state), predictor),
+        let found;
+        let values = match from.state.row_values() {
+            Some(values) => values,
+            None => {
+                found = of_space.of_state(from.state);
+                &found
+            }
         };
-        DefectStep::under(defect, known, answers)
+        let mut known = of_space.known(terms, values, predictor);
+        let inertia = from.turn.map_or(Vec::new(), |turn| {
+            let RowValues(start) = values;
+            let start = start.each_ref().map(Vec::as_slice);
+            let [mut w, mut v] = [(); 2].map(|()| vec![0.0; start[0].len()]);
+            let dw = from.moved.as_deref();
+            within_part(self.integrator, self.dt, dw, start, [&mut w, &mut v]);
+            of_space.inertia(turn, [&w, &v])
+        });
+        // Of the inertia there are rows of the regular ring as well.
+        known.iter_mut().zip(&inertia).for_each(|(q, f)| *q += f);
+        DefectStep::under(defect, known, inertia, answers)
     }
 
-    /// Another predictor of a step in harmonic space, without a defect.
-    pub(super) fn replace_predictor(&self, body: &RingBody, step: &mut RingStep, predictor: PooledVector) {
+    /// Another predictor of a step in harmonic space.
+    pub(super) fn replace_predictor(
+        &self,
+        body: &RingBody,
+        step: &mut RingStep,
+        predictor: Arc<PooledVector>,
+        from: StepStart<'_>,
+    ) {
+        let Factored::Cyclic(factor) = &self.factor else {
+            unreachable!("harmonics are solved by their factor")
+        };
         let all: Vec<&SparseLoad> = step.contacts.iter().chain(&body.mount).collect();
         step.predicted = sum(&step.start, &self.measure(body, &all, &predictor));
-        step.predictor = Predictor::Harmonic(Arc::new(predictor), None);
+        let Predictor::Harmonic(_, correction) = &mut step.predictor else {
+            unreachable!("a step of harmonics")
+        };
+        let correction = correction
+            .take()
+            .zip(factor.defect.as_ref())
+            .map(|(old, defect)| {
+                let defect = &defect.answer;
+                let new = self.defect_step((body, from), (factor, defect), &predictor, old.into_answers());
+                add(&mut step.predicted, &new.motion(defect));
+                new
+            });
+        step.predictor = Predictor::Harmonic(predictor, correction);
+    }
+
+    /// Motion of the rows of a defect between two states of harmonic space; None without a defect.
+    pub(super) fn moved_rows(&self, body: &RingBody, states: [&RingState; 2]) -> Option<Vec<f64>> {
+        let Space::Harmonic(space) = &body.space else {
+            return None;
+        };
+        let defect = space.defect.as_ref()?;
+        let [old, new] = states.map(|state| match state.row_values() {
+            Some(RowValues([w, ..])) => w.clone(),
+            None => defect.values(state.displacement()),
+        });
+        Some(combined([1.0, -1.0], &new, &old))
+    }
+
+    /// Work of the inertia of the turning frame on the rows of a defect between two states, J, beyond that of the regular ring's.
+    pub(super) fn frame_work(&self, body: &RingBody, step: &RingStep, states: [&RingState; 2]) -> f64 {
+        match &step.predictor {
+            Predictor::Harmonic(_, Some(correction)) if !correction.inertia().is_empty() => {
+                let moved = self.moved_rows(body, states).unwrap_or_default();
+                dot(correction.inertia(), &moved)
+            }
+            _ => 0.0,
+        }
     }
 
     /// The increment of a ring in harmonic space under these forces, before it is solved for.
@@ -115,6 +213,14 @@ impl RingFactor {
 }
 
 impl RingStep {
+    /// The predictor in harmonic space, shared.
+    pub(super) fn shared_harmonics(&self) -> Arc<PooledVector> {
+        match &self.predictor {
+            Predictor::Harmonic(predictor, _) => predictor.clone(),
+            Predictor::Columns(_) | Predictor::Sectors(_) => unreachable!("a step of harmonics"),
+        }
+    }
+
     /// The predictor in harmonic space.
     pub(super) fn harmonics(&self) -> &[f64] {
         match &self.predictor {

@@ -78,7 +78,10 @@ impl Motion<'_> {
             let known = self.known(side, (body, factor), old, foreseen);
             let inertia = known.inertia.as_ref().map(|(_, f)| &f[..]);
             let step = match (&known.solved, known.load.as_deref(), inertia) {
-                (Some(solved), ..) => factor.prepare_solved(body, old, solved.clone(), &feet[i]),
+                (Some(solved), ..) => {
+                    let turn = known.inertia.as_ref().map(|(turn, _)| *turn);
+                    factor.prepare_solved(body, (old, turn), solved.clone(), &feet[i])
+                }
                 (None, Some(load), Some(f)) => {
                     let both = combined([1.0; 2], load, f);
                     factor.prepare(body, old, Some(&both), &feet[i])

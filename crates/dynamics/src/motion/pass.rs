@@ -98,6 +98,8 @@ pub(super) struct Turned {
     pub change: Change,
     /// The predictor under the new inertia.
     pub predictor: PooledVector,
+    /// The increment on the rows of a defect.
+    pub rows: Option<Vec<f64>>,
 }
 
 /// What a group adds to the sums.
@@ -203,11 +205,15 @@ impl Pass<'_> {
         let [used, before] = [used, predictor].map(|x| space.parts(x));
         let start = old.vectors().map(|x| space.parts(x));
         let [mut inertia, mut solved] = [(); 2].map(|()| pool.take());
-        let vectors = [&mut inertia, &mut solved].map(|x| &mut x[..]);
-        let found = space.over_groups(vectors, |group, [dw, w, v, field], [renewed, solved]| {
+        let mut whole = pool.take_if(space.defect.as_ref());
+        let vectors = [&mut inertia, &mut solved, &mut whole].map(|x| &mut x[..]);
+        let found = space.over_groups(vectors, |group, [dw, w, v, field], [renewed, solved, whole]| {
             let start = start.each_ref().map(|x| x.of(group));
             let mut found = Found::default();
             self.increment_part(group, &increment, dw);
+            if !whole.is_empty() {
+                whole.copy_from_slice(dw);
+            }
             self.frame_part(turning, group, (start, Some(dw)), [w, v, &mut *field], renewed);
             self.compare(group, [renewed, used.of(group)], solved, &mut found);
             if !self.factor.solver.is_shared() {
@@ -224,6 +230,7 @@ impl Pass<'_> {
             inertia,
             change: self.change(&found),
             predictor: solved,
+            rows: space.defect.as_ref().map(|defect| defect.values(&whole)),
         }
     }
 }

@@ -20,6 +20,7 @@ use super::body::RingBody;
 use super::by_sector::{Motions, StepColumns};
 use super::defect::DefectStep;
 use super::effective::Factored;
+use super::harmonic_step::{Rows, StepStart};
 use super::integrator::Integrator;
 use super::pass::{Acting, Coming, Increment};
 use super::pool::PooledVector;
@@ -134,7 +135,7 @@ impl RingFactor {
         let clock = Instant::now();
         if let Some(pass) = self.pass(body) {
             let predicted = pass.predict(state, Coming { load, turn: None });
-            return self.prepare_solved(body, state, Arc::new(predicted.solved), feet);
+            return self.prepare_solved(body, (state, None), Arc::new(predicted.solved), feet);
         }
         let n = body.coordinates.n();
         let contacts = functionals(body, feet);
@@ -145,7 +146,13 @@ impl RingFactor {
         let (predictor, moved, compliance) = match &self.factor {
             Factored::Cyclic(factor) => {
                 let predictor = factor.solve(&body.space, side);
-                let (defect, moved, compliance) = self.meet((body, state), factor, &predictor, feet, &all);
+                let (defect, moved, compliance) = self.meet(
+                    (body, Rows::Found(StepStart::first(state, None))),
+                    factor,
+                    &predictor,
+                    feet,
+                    &all,
+                );
                 (
                     Predictor::Harmonic(Arc::new(predictor.into()), defect),
                     moved,
@@ -189,7 +196,8 @@ impl RingFactor {
         step.start = self.measure(body, &all, state.displacement());
         let (moved, compliance) = match (&self.factor, &mut step.predictor) {
             (Factored::Cyclic(factor), Predictor::Harmonic(predictor, defect)) => {
-                let (met, moved, compliance) = self.meet((body, state), factor, predictor, feet, &all);
+                let (met, moved, compliance) =
+                    self.meet((body, Rows::Of(defect.take())), factor, predictor, feet, &all);
                 *defect = met;
                 (moved, compliance)
             }

@@ -33,7 +33,7 @@ pub enum Space {
 pub enum Frame {
     /// It does not.
     Still,
-    /// It does. The vectors of a ring with a defect are coordinates then.
+    /// It does.
     Turning,
 }
 
@@ -85,6 +85,24 @@ impl Nodes<'_> {
             corner.extend_from_slice(&column[n_free..]);
         }
         [border, corner]
+    }
+
+    /// Generalised loads M P x and M J x of the node positions x, with P u = (u_x, u_y, 0) and J u = (u_y, -u_x, 0).
+    pub fn inertia_of_positions(&self) -> [Vec<f64>; 2] {
+        self.inertia_of(self.positions.as_flattened())
+    }
+
+    /// The same of the motion of the held nodes with a dof of the shaft.
+    pub fn inertia_of_shaft(&self, k: usize) -> [Vec<f64>; 2] {
+        let n_free = self.coordinates.free().len();
+        self.inertia_of(&self.coordinates.expand(&self.unit(n_free + k, 1.0)))
+    }
+
+    fn inertia_of(&self, u: &[f64]) -> [Vec<f64>; 2] {
+        let load = |field: Vec<f64>| self.coordinates.reduce(&self.matrices.nodal_mass_product(&field));
+        let own = u.chunks_exact(3).flat_map(|u| [u[0], u[1], 0.0]);
+        let turned = u.chunks_exact(3).flat_map(|u| [u[1], -u[0], 0.0]);
+        [load(own.collect()), load(turned.collect())]
     }
 
     /// Coordinates that are zero but for one.
@@ -272,23 +290,16 @@ impl HarmonicSpace {
     }
 
     fn frame_loads(&self, nodes: Nodes<'_>) -> FrameLoads {
-        let low = |field: Vec<f64>| {
-            let load = nodes
-                .coordinates
-                .reduce(&nodes.matrices.nodal_mass_product(&field));
-            let (free, shaft) = load.split_at(self.ring.n());
-            self.ring.to_low(free, shaft)
+        let ring = self.defect.as_ref().map_or(&self.ring, SpaceDefect::regular);
+        let low = |load: Vec<f64>| {
+            let (free, shaft) = load.split_at(ring.n());
+            ring.to_low(free, shaft)
         };
-        let loads = |u: &[f64]| {
-            let own = u.chunks_exact(3).flat_map(|u| [u[0], u[1], 0.0]);
-            let turned = u.chunks_exact(3).flat_map(|u| [u[1], -u[0], 0.0]);
-            [low(own.collect()), low(turned.collect())]
-        };
-        let n_free = nodes.coordinates.free().len();
-        let of_shaft = |k: usize| loads(&nodes.coordinates.expand(&nodes.unit(n_free + k, 1.0)));
         FrameLoads {
-            position: loads(nodes.positions.as_flattened()),
-            shaft: (0..self.n_shaft).map(of_shaft).collect(),
+            position: nodes.inertia_of_positions().map(low),
+            shaft: (0..self.n_shaft)
+                .map(|k| nodes.inertia_of_shaft(k).map(low))
+                .collect(),
         }
     }
 }

@@ -20,8 +20,10 @@ use solver::{CyclicRing, DenseCholesky, LinearSolver, NodalLoad};
 use sprs::CsMat;
 
 use super::ring_state::RingState;
+use super::space::Nodes;
 use super::vectors::add;
 use crate::defect_change::Changes;
+use crate::effects::FrameTurn;
 use crate::sectors::HeldSectors;
 use crate::solution::dot;
 use crate::sparse::product;
@@ -40,6 +42,17 @@ pub struct SpaceDefect {
     change: [CsMat<f64>; 2],
     /// K of the rows that the true ring lacks.
     lacking: Option<DenseCholesky>,
+    /// What the inertia of a turning frame has on the rows beyond that of the regular ring; none when the frame stays.
+    frame: Option<FrameRows>,
+}
+
+/// Inertia of a turning frame on the rows that does not come from the rows' own motion, the true ring's less the regular one's, for P u = (u_x,
+/// u_y, 0) and J u = (u_y, -u_x, 0).
+struct FrameRows {
+    /// Of the node positions.
+    position: [Vec<f64>; 2],
+    /// Of the motion of the held nodes with each dof of the shaft.
+    shaft: Vec<[Vec<f64>; 2]>,
 }
 
 /// Where a row is in a vector of the space.
@@ -73,7 +86,7 @@ pub(super) struct RowValues(pub [Vec<f64>; 3]);
 impl SpaceDefect {
     /// The defect that changes the matrices of the regular ring `held` by `changes`. None when the true ring has rows that the regular
     /// one lacks, or when a piece that is missing hangs on a hinge in the regular ring.
-    pub fn new(changes: &Changes, held: &HeldSectors) -> Option<SpaceDefect> {
+    pub(super) fn new(changes: &Changes, held: &HeldSectors) -> Option<SpaceDefect> {
         let (regular, seen) = (held.sectors.ring.clone(), held.seen.as_ref()?);
         let n_free = 3 * seen.len();
         if !changes.loose().is_empty() {
@@ -106,7 +119,73 @@ impl SpaceDefect {
             places,
             n_rows,
             lacking,
+            frame: None,
         })
+    }
+
+    /// The same in a turning frame; `own` are the nodes of the true ring, `regular` those of the regular one.
+    pub(super) fn turning(self, own: Nodes<'_>, regular: Nodes<'_>, true_rows: &[usize]) -> SpaceDefect {
+        let n_free = regular.coordinates.free().len();
+        let on_rows = |[own, regular]: [Vec<f64>; 2]| -> Vec<f64> {
+            let place = |(i, place): (usize, &Place)| {
+                let of_regular = match place {
+                    Place::Free(row) => regular[*row],
+                    Place::Shaft(k) => regular[n_free + k],
+                };
+                true_rows.get(i).map_or(0.0, |&row| own[row]) - of_regular
+            };
+            self.places.iter().enumerate().map(place).collect()
+        };
+        let both = |[own, regular]: [[Vec<f64>; 2]; 2]| {
+            let ([p, j], [regular_p, regular_j]) = (own, regular);
+            [on_rows([p, regular_p]), on_rows([j, regular_j])]
+        };
+        let nodes = [own, regular];
+        let frame = FrameRows {
+            position: both(nodes.map(|nodes| nodes.inertia_of_positions())),
+            shaft: (0..own.coordinates.shaft().0.len())
+                .map(|k| both(nodes.map(|nodes| nodes.inertia_of_shaft(k))))
+                .collect(),
+        };
+        SpaceDefect {
+            frame: Some(frame),
+            ..self
+        }
+    }
+
+    /// The ring with all rows of the regular one.
+    pub(super) fn regular(&self) -> &CyclicRing {
+        &self.regular
+    }
+
+    /// Inertia of the turning frame on the rows, the true ring's less the regular one's, at displacement and velocity `w` and `v` of the rows.
+    pub(super) fn inertia(&self, turn: FrameTurn, [w, v]: [&[f64]; 2]) -> Vec<f64> {
+        let (speed, acceleration) = (turn.speed, turn.acceleration);
+        let square = speed * speed;
+        let turned = |(i, place): (usize, &Place)| match place {
+            Place::Free(row) if row % 3 == 0 => {
+                square * w[i] + acceleration * w[i + 1] + 2.0 * speed * v[i + 1]
+            }
+            Place::Free(row) if row % 3 == 1 => {
+                square * w[i] - acceleration * w[i - 1] - 2.0 * speed * v[i - 1]
+            }
+            Place::Free(_) | Place::Shaft(_) => 0.0,
+        };
+        let field: Vec<f64> = self.places.iter().enumerate().map(turned).collect();
+        let mut inertia = product(&self.change[0], &field);
+        let Some(frame) = &self.frame else { return inertia };
+        let mut more = |[own, turned]: [f64; 2], [p, j]: &[Vec<f64>; 2]| {
+            let terms = inertia.iter_mut().zip(p.iter().zip(j));
+            terms.for_each(|(sum, (p, j))| *sum += own * p + turned * j);
+        };
+        more([square, acceleration], &frame.position);
+        for (i, place) in self.places.iter().enumerate() {
+            if let Place::Shaft(k) = place {
+                let factors = [square * w[i], acceleration * w[i] + 2.0 * speed * v[i]];
+                more(factors, &frame.shaft[*k]);
+            }
+        }
+        inertia
     }
 
     /// The values on the rows of a vector of the space, `[n]`: rows of the true ring, then those that it lacks.

@@ -7,7 +7,8 @@ use solver::cyclic::{Patch, ResponseTable};
 use super::body::RingBody;
 use super::defect::{DefectFactor, DefectStep};
 use super::effective::CyclicFactor;
-use super::ring::{RingFactor, RingState};
+use super::harmonic_step::Rows;
+use super::ring::RingFactor;
 use crate::sparse::{SparseLoad, sparse_dot};
 
 /// Contacts as the responses of a raceway meet them.
@@ -24,7 +25,7 @@ impl RingFactor {
     /// and their compliance.
     pub(super) fn meet(
         &self,
-        (body, state): (&RingBody, &RingState),
+        (body, rows): (&RingBody, Rows<'_>),
         factor: &CyclicFactor,
         predictor: &[f64],
         feet: &[NodalWeights],
@@ -36,7 +37,13 @@ impl RingFactor {
         let step = factor.defect.as_ref().map(|defect| {
             let n_free = factor.solver.inner().n();
             let answers = self.answers(defect, &touch, n_free, body.coordinates.n());
-            let step = self.defect_step((body, state), (factor, &defect.answer), predictor, answers);
+            let step = match rows {
+                Rows::Of(Some(old)) => old.met_by(answers),
+                Rows::Of(None) => unreachable!("a ring keeps its defect"),
+                Rows::Found(from) => {
+                    self.defect_step((body, from), (factor, &defect.answer), predictor, answers)
+                }
+            };
             let more = step.motion(&defect.answer);
             moved.iter_mut().zip(more).for_each(|(m, d)| *m += d);
             step.soften(&defect.answer, &mut compliance);

@@ -90,11 +90,9 @@ fn thirty_steps_of_notched_rings_agree_with_sparse_factors() {
     let backends = [Backend::Cyclic, Backend::Sparse];
     let [found, expected] = backends.map(|backend| motion(|| notched(HEX8, Hold::Clamped, backend), 30));
     assert_same_motion(&found, &expected, 1e-10);
-    for hold in [Hold::Clamped, Hold::MeanMotion] {
-        let [found, expected] =
-            backends.map(|backend| motion_without_frame(|| notched(HEX8, hold, backend), 30));
-        assert_same_motion(&found, &expected, 1e-10);
-    }
+    let [found, expected] =
+        backends.map(|backend| motion_without_frame(|| notched(HEX8, Hold::MeanMotion, backend), 30));
+    assert_same_motion(&found, &expected, 1e-10);
 }
 
 /// Wrong: natural modes of a ring with a notch would be those of the ring without.

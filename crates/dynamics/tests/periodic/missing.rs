@@ -12,8 +12,7 @@ use mesh::{Facet, Mesh};
 use crate::ahead::alone;
 use crate::support::rings::{Level, ring_model};
 use crate::{
-    End, HEX8, SPEED, assert_near, assert_same_motion, bearing, motion, motion_of, motion_without_frame,
-    statics,
+    End, HEX8, SPEED, assert_near, assert_same_motion, bearing, motion, motion_without_frame, statics,
 };
 
 const HEX20: Level = Level::hex20(36, 4, 1, 2);
@@ -167,19 +166,16 @@ fn statics_of_rings_with_missing_elements_is_that_of_assembled_rings() {
 fn thirty_steps_of_rings_with_missing_elements_agree_with_sparse_factors() {
     type Change = fn(Side, Mesh) -> Mesh;
     let backends = [Backend::Cyclic, Backend::Sparse];
-    for change in [loosened as Change, spall] {
-        let [found, expected] =
-            backends.map(|backend| motion(|| with_meshes(HEX8, Hold::Clamped, backend, change), 30));
-        assert_same_motion(&found, &expected, 1e-10);
-    }
-    let cases: [(Hold, Change); 3] = [
+    let cases: [(Hold, Change); 5] = [
+        (Hold::Clamped, loosened),
         (Hold::Clamped, keyway),
         (Hold::MeanMotion, keyway),
+        (Hold::Clamped, spall),
         (Hold::Clamped, clawed),
     ];
     for (hold, change) in cases {
         let [found, expected] =
-            backends.map(|backend| motion_without_frame(|| with_meshes(HEX8, hold, backend, change), 30));
+            backends.map(|backend| motion(|| with_meshes(HEX8, hold, backend, change), 30));
         assert_same_motion(&found, &expected, 1e-10);
     }
     let [found, expected] = backends
@@ -187,43 +183,53 @@ fn thirty_steps_of_rings_with_missing_elements_agree_with_sparse_factors() {
     assert_same_motion(&found, &expected, 1e-10);
 }
 
-/// Wrong: the piece of the regular ring that fills a keyway would act on the ring, swing up over many steps, or a ring whose vectors are
-/// harmonics would move otherwise than as coordinates, which a frame that does not turn calls for.
+/// Wrong: the piece of the regular ring that fills a keyway would act on the ring, or swing up over many steps.
 #[test]
-fn a_hundred_and_fifty_steps_as_harmonics_are_those_as_coordinates() {
-    let model = || with_meshes(HEX8, Hold::Clamped, Backend::Auto, keyway);
-    let harmonics = motion_without_frame(model, 150);
-    let mut framed = model();
-    framed.effects.push(Box::new(FrameRotation {
-        speed: Speed::constant(0.0),
-    }));
-    let coordinates = motion_of(&framed, &model(), 150);
-    assert_same_motion(&harmonics, &coordinates, 1e-10);
+fn sixty_steps_of_rings_with_a_keyway_keep_their_energy_and_agree_with_sparse_factors() {
+    let [found, expected] = [Backend::Cyclic, Backend::Sparse]
+        .map(|backend| motion_without_frame(|| with_meshes(HEX8, Hold::Clamped, backend, keyway), 60));
+    assert_same_motion(&found, &expected, 1e-10);
     let length = |end: &End| end.state.rings[0].as_ref().unwrap().displacement().len();
-    assert_ne!(length(&harmonics), length(&coordinates), "both are coordinates");
-    println!("energy {:.1e}", harmonics.state.ledger.relative_defect());
-    assert!(harmonics.state.ledger.relative_defect().abs() < 1e-10);
+    assert!(
+        length(&found) > length(&expected),
+        "the state is not of harmonics"
+    );
+    println!("energy {:.1e}", found.state.ledger.relative_defect());
+    assert!(found.state.ledger.relative_defect().abs() < 1e-10);
 }
 
 /// Wrong: a resumed run of rings with a keyway would not go on as the run that was never stopped, or its bits would depend on the number of
 /// threads: with loads on the ring, losses and a history of accelerations, clamped and in mean motion.
 #[test]
 fn a_step_of_rings_with_a_keyway_has_the_same_bits_from_its_state_alone() {
-    for hold in [Hold::Clamped, Hold::MeanMotion] {
+    // The last case takes several rounds for the inertia of the frame.
+    for (hold, dt, speed) in [
+        (Hold::Clamped, 1e-5, Speed::constant(SPEED)),
+        (Hold::MeanMotion, 1e-5, Speed::constant(SPEED)),
+        (
+            Hold::Clamped,
+            4e-5,
+            Speed::table(vec![0.0, 1e-3], vec![5.0 * SPEED, 20.0 * SPEED]),
+        ),
+    ] {
         let mut model = with_meshes(HEX8, hold, Backend::Auto, keyway);
+        model
+            .effects
+            .push(Box::new(FrameRotation { speed: speed.clone() }));
         let gravity = Gravity::new([0.0, -9.81, 0.0], Schedule::Constant, &model.rings).unwrap();
         model.effects.push(Box::new(gravity));
         let settings = MotionSettings {
             integrator: Integrator::chung_hulbert(0.8),
             rayleigh: [300.0, 2e-8],
-            ..MotionSettings::conserving(1e-5, Speed::constant(SPEED))
+            ..MotionSettings::conserving(dt, speed)
         };
         let start = statics(&model, "cyclic");
         let motion = Motion::new(&model, settings).unwrap();
         let mut state = motion.start(&start);
         for threads in [1, 2, 4] {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
-            let (next, _) = pool.unwrap().install(|| motion.step(&state)).unwrap();
+            let (next, report) = pool.unwrap().install(|| motion.step(&state)).unwrap();
+            println!("{hold:?}: {} rounds", report.frame_rounds);
             let (expected, _) = motion.step(&alone(&state)).unwrap();
             assert!(next == expected, "{hold:?}, step {}", next.step);
             state = next;
