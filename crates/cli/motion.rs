@@ -1,6 +1,7 @@
 //! `raceway run` of a `[dynamic]` scene: static start, then steps in time with histories, step files and the ledger.
 
 mod settings;
+mod spent;
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -33,6 +34,7 @@ use crate::watch::Watch;
 
 use settings::settings;
 pub use settings::speed;
+use spent::Spent;
 
 /// Steps between two lines of progress in a log.
 const PROGRESS_STEPS: u64 = 50;
@@ -53,7 +55,7 @@ pub fn run(
     let read = start.elapsed().as_secs_f64();
     let settled = settle(&model, dynamic, &progress)?;
     progress.stage("factoring the effective matrices");
-    let motion = Motion::new(&model, settings(scene, dynamic)).map_err(Failure::solving)?;
+    let (motion, factor) = factored(&model, scene, dynamic)?;
     say_solvers(&motion, &progress);
     let state = settled.first_state(&motion, dynamic)?;
     let first = Snapshot::of_motion(&motion, &state);
@@ -73,6 +75,7 @@ pub fn run(
         files,
         state,
         newton: 0,
+        spent: Spent::default(),
         watch: Watch::new(model.geometry.n_balls),
         last_file: None,
         dir,
@@ -82,7 +85,10 @@ pub fn run(
     let costs = StartCosts {
         read,
         forecast: Forecasts::of_motion(settled.forecast, &motion, dynamic),
-        timing: settled.timing,
+        timing: Timing {
+            factor: settled.timing.factor + factor,
+            ..settled.timing
+        },
         start,
     };
     march.finish_run(progress, limits, settled.warnings(), costs)
@@ -105,7 +111,7 @@ pub fn resume(
     }))?;
     let read = start.elapsed().as_secs_f64();
     progress.stage("factoring the effective matrices");
-    let motion = Motion::new(&model, settings(scene, dynamic)).map_err(Failure::solving)?;
+    let (motion, factor) = factored(&model, scene, dynamic)?;
     say_solvers(&motion, &progress);
     let (state, newton, watch) = agree(stored.state(&motion))?;
     let (first, warnings) = (Snapshot::of_motion(&motion, &state), stored.warnings);
@@ -126,16 +132,27 @@ pub fn resume(
         last_file: Some(state.step),
         state,
         newton,
+        spent: Spent::default(),
         watch,
         dir: &dir,
     };
     let costs = StartCosts {
         read,
         forecast: Forecasts::of_motion([None, None], &motion, dynamic),
-        timing: Timing::default(),
+        timing: Timing {
+            factor,
+            ..Timing::default()
+        },
         start,
     };
     march.finish_run(progress, limits, warnings, costs)
+}
+
+/// The model ready to move, and the seconds that its matrices and factors took.
+fn factored<'a>(model: &'a Model, scene: &Scene, dynamic: &Dynamic) -> Result<(Motion<'a>, f64), Failure> {
+    let clock = Instant::now();
+    let motion = Motion::new(model, settings(scene, dynamic)).map_err(Failure::solving)?;
+    Ok((motion, clock.elapsed().as_secs_f64()))
 }
 
 /// Says how each ring is solved.
@@ -166,6 +183,8 @@ struct March<'a> {
     state: MotionState,
     /// Newton iterations so far.
     newton: u64,
+    /// Seconds in the steps so far.
+    spent: Spent,
     /// Contacts beyond their limits so far.
     watch: Watch,
     /// The last step handed over to be written.
@@ -188,10 +207,7 @@ impl March<'_> {
         let ended = self.steps(&mut progress, &mut stop);
         progress.finish();
         let seconds = clock.elapsed().as_secs_f64();
-        let spent = Timing {
-            newton: costs.timing.newton + seconds,
-            ..costs.timing
-        };
+        let spent = self.spent.with(costs.timing);
         let finished = self.files.finish(costs.read, costs.forecast, spent, costs.start);
         let costs = agree(finished);
         // A run that failed says why, not what its failure did to the files; one that stopped must have its step.
@@ -246,6 +262,7 @@ impl March<'_> {
             match self.motion.step(&self.state) {
                 Ok((next, report)) => {
                     self.newton += report.newton_iterations as u64;
+                    self.spent.add(report.seconds);
                     if let Err(failure) = check_ledger(self.dynamic, self.motion, &next, self.dir) {
                         return Err(self.rejected(next, failure));
                     }

@@ -13,7 +13,8 @@
 use fem::facet;
 use mesh::{Facet, FacetKind, Mesh};
 
-use crate::raceway::{Groove, outside};
+use crate::facet_map::outside;
+use crate::raceway::Groove;
 use crate::vector::{cross, dot};
 
 /// Reference coordinate beyond which Newton on a facet is given up.

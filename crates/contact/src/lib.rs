@@ -7,13 +7,16 @@
 mod bins;
 pub mod elliptic;
 pub mod error;
+mod facet_map;
 pub mod facets;
 pub mod geometry;
 pub mod halfspace;
 pub mod hertz;
 pub mod law;
 pub mod near_field;
+mod neighbours;
 pub mod patch;
+mod pressure;
 pub mod quadrature;
 pub mod raceway;
 pub mod unevenness;

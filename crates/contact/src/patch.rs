@@ -11,11 +11,11 @@
 use crate::error::ContactError;
 use crate::halfspace::patch_compliance;
 use crate::hertz::Elastic;
+use crate::pressure::NodeSums;
 use crate::quadrature::PressureRule;
 use crate::raceway::RacewaySurface;
 use crate::vector::cross;
 use crate::weights::NodalWeights;
-use fem::facet;
 use mesh::NodePositions;
 
 /// Share of the way to the groove's edge that a patch may fill.
@@ -82,28 +82,18 @@ impl Patch {
         shape: PatchShape,
         elastic: Elastic,
     ) -> Result<Patch, ContactError> {
-        let samples = sample(surface, nodes, rule, shape)?;
-        let mean = samples
-            .iter()
-            .fold([0.0; 3], |m, s| axpy(m, s.weight, s.position));
-        let mut inertia = [[0.0; 3]; 3];
-        let mut touched = Touched::new(surface, &samples);
-        for s in &samples {
-            let arm = axpy(s.position, -1.0, mean);
-            add_inertia(&mut inertia, s.weight, arm);
-            touched.add(s, arm);
-        }
+        let sums = NodeSums::new(surface, nodes, rule, shape)?;
+        let inertia = sums.inertia();
         let (sin, cos) = shape.azimuth.sin_cos();
-        let lever = axpy(surface.groove.centre(shape.azimuth), -1.0, mean);
+        let lever = axpy(surface.groove.centre(shape.azimuth), -1.0, sums.mean);
         let directions = [[cos, sin, 0.0], [0.0, 0.0, 1.0]];
         let twists = directions.map(|e| solve3(inertia, cross(lever, e)));
-        let coefficients = touched
-            .sums
-            .iter()
+        let nodal = sums.weights.iter().zip(&sums.moments);
+        let coefficients = nodal
             .map(|(weight, moment)| [0, 1].map(|i| axpy(cross(twists[i], *moment), *weight, directions[i])))
             .collect();
         let weights = NodalWeights {
-            nodes: touched.nodes,
+            nodes: sums.nodes,
             coefficients,
         };
         Ok(Patch {
@@ -114,103 +104,9 @@ impl Patch {
     }
 }
 
-/// A quadrature point of the pressure on the mesh.
-struct Sample {
-    weight: f64,
-    position: [f64; 3],
-    facet: usize,
-    shape: [f64; facet::MAX_FACET_NODES],
-}
-
-/// The nodes that a patch touches and their sums over its quadrature points.
-struct Touched {
-    /// Ascending.
-    nodes: Vec<usize>,
-    /// Ascending, with the number in `nodes` of each of their nodes.
-    facets: Vec<(usize, [usize; facet::MAX_FACET_NODES])>,
-    n: usize,
-    /// Weight, and weight times arm, by node.
-    sums: Vec<(f64, [f64; 3])>,
-}
-
-impl Touched {
-    fn new(surface: &RacewaySurface, samples: &[Sample]) -> Touched {
-        let mut facets: Vec<usize> = samples.iter().map(|s| s.facet).collect();
-        facets.sort_unstable();
-        facets.dedup();
-        let all = facets.iter().flat_map(|&f| surface.facet_nodes(f));
-        let mut nodes: Vec<usize> = all.copied().collect();
-        nodes.sort_unstable();
-        nodes.dedup();
-        let numbers = |f: usize| {
-            let mut numbers = [0; facet::MAX_FACET_NODES];
-            for (number, node) in numbers.iter_mut().zip(surface.facet_nodes(f)) {
-                *number = nodes.partition_point(|n| n < node);
-            }
-            (f, numbers)
-        };
-        Touched {
-            facets: facets.iter().map(|&f| numbers(f)).collect(),
-            n: surface.kind.n_nodes(),
-            sums: vec![(0.0, [0.0; 3]); nodes.len()],
-            nodes,
-        }
-    }
-
-    fn add(&mut self, sample: &Sample, arm: [f64; 3]) {
-        let found = self.facets.partition_point(|f| f.0 < sample.facet);
-        let numbers = &self.facets[found].1[..self.n];
-        for (&number, value) in numbers.iter().zip(sample.shape) {
-            let w = sample.weight * value;
-            let (weight, moment) = &mut self.sums[number];
-            *weight += w;
-            *moment = axpy(*moment, w, arm);
-        }
-    }
-}
-
-fn sample(
-    surface: &RacewaySurface,
-    nodes: &NodePositions,
-    rule: &PressureRule,
-    patch: PatchShape,
-) -> Result<Vec<Sample>, ContactError> {
-    let groove = &surface.groove;
-    let spacing = surface.spacing(surface.locate(patch.azimuth, patch.angle)?);
-    let spacings = (patch.semi_axes[0] / spacing[0]).max(patch.semi_axes[1] / spacing[1]);
-    let mut samples = Vec::new();
-    for (point, weight) in rule.points(spacings) {
-        let angle = patch.angle + patch.semi_axes[0] * point[0] / groove.groove_radius;
-        let azimuth = patch.azimuth + patch.semi_axes[1] * point[1] / groove.radius(angle);
-        let location = surface.locate(azimuth, angle)?;
-        let mut s = Sample {
-            weight,
-            position: [0.0; 3],
-            facet: location.facet,
-            shape: facet::shape(surface.kind, location.xi),
-        };
-        for (&node, &value) in surface.facet_nodes(location.facet).iter().zip(&s.shape) {
-            s.position = axpy(s.position, value, nodes[node]);
-        }
-        samples.push(s);
-    }
-    Ok(samples)
-}
-
 /// a + s b.
 fn axpy(a: [f64; 3], s: f64, b: [f64; 3]) -> [f64; 3] {
     [a[0] + s * b[0], a[1] + s * b[1], a[2] + s * b[2]]
-}
-
-/// Adds w (|r|^2 I - r r^T).
-fn add_inertia(inertia: &mut [[f64; 3]; 3], weight: f64, arm: [f64; 3]) {
-    let square: f64 = arm.iter().map(|x| x * x).sum();
-    for i in 0..3 {
-        for j in 0..3 {
-            let diagonal = if i == j { square } else { 0.0 };
-            inertia[i][j] += weight * (diagonal - arm[i] * arm[j]);
-        }
-    }
 }
 
 /// Solves a 3x3 system by Cramer's rule; the patch's inertia is well conditioned because it spans an area.

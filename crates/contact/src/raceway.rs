@@ -12,11 +12,12 @@ use mesh::{Facet, FacetKind, Mesh};
 
 use crate::bins::{Bins, grown_box};
 use crate::error::ContactError;
+use crate::facet_map::{Affine, invert, outside};
 use crate::geometry::Side;
+use crate::neighbours::Neighbours;
 
-/// Newton's step, in reference coordinates, after which a point is found: the error left is about its square. Azimuths are
-/// rounded to 1e-14 of a facet, so that smaller steps may never come.
-const CONVERGED: f64 = 1e-9;
+/// Edges crossed on the way to a point before it is searched in the bins.
+const MOST_EDGES: usize = 6;
 
 /// How far outside a facet, in reference coordinates, a point may lie and still be taken (curved edges).
 const OUTSIDE_TOLERANCE: f64 = 0.02;
@@ -101,6 +102,9 @@ pub struct RacewaySurface {
     spacing: Vec<[f64; 2]>,
     /// Lowest and highest (azimuth, groove angle) of each facet, grown, as its nodes are unwrapped.
     boxes: Vec<[[f64; 2]; 2]>,
+    /// Inverse of the map of each facet, where it is affine.
+    maps: Vec<Option<Affine>>,
+    neighbours: Neighbours,
     /// Lowest and highest groove angle, rad.
     pub angle_range: [f64; 2],
     bins: Bins,
@@ -130,6 +134,8 @@ impl RacewaySurface {
         let spacing = node_spacing(&nodes, &coordinates, kind, &groove, mesh.n_nodes());
         let boxes: Vec<_> = coordinates.chunks(n).map(grown_box).collect();
         let bins = Bins::new(&boxes, angle_range);
+        let maps = coordinates.chunks(n).map(|c| Affine::new(kind, c)).collect();
+        let neighbours = Neighbours::new(kind, &nodes);
         RacewaySurface {
             groove,
             kind,
@@ -137,6 +143,8 @@ impl RacewaySurface {
             coordinates,
             spacing,
             boxes,
+            maps,
+            neighbours,
             angle_range,
             bins,
         }
@@ -161,23 +169,17 @@ impl RacewaySurface {
 
     /// Facet and reference coordinates at an azimuth and groove angle, rad.
     pub fn locate(&self, azimuth: f64, angle: f64) -> Result<Location, ContactError> {
-        let n = self.kind.n_nodes();
         let mut best: Option<(f64, Location)> = None;
-        for &f in self.bins.candidates(azimuth, angle) {
-            let coordinates = &self.coordinates[n * f..n * (f + 1)];
-            let target = [unwrap_near(azimuth, coordinates[0][0]), angle];
-            let [low, high] = self.boxes[f];
-            if (0..2).any(|i| target[i] < low[i] || target[i] > high[i]) {
+        for &facet in self.bins.candidates(azimuth, angle) {
+            let Some(xi) = self.reference(facet, azimuth, angle) else {
                 continue;
+            };
+            let outside = outside(self.kind, xi);
+            if best.as_ref().is_none_or(|(o, _)| outside < *o) {
+                best = Some((outside, Location { facet, xi }));
             }
-            if let Some(xi) = invert(self.kind, coordinates, target) {
-                let outside = outside(self.kind, xi);
-                if best.as_ref().is_none_or(|(o, _)| outside < *o) {
-                    best = Some((outside, Location { facet: f, xi }));
-                }
-                if outside <= 0.0 {
-                    break;
-                }
+            if outside <= 0.0 {
+                break;
             }
         }
         match best {
@@ -188,6 +190,40 @@ impl RacewaySurface {
                 angle_deg: angle.to_degrees(),
             }),
         }
+    }
+
+    /// The same, looked for from the facet `near` on across the edges of facets.
+    pub fn locate_near(&self, near: usize, azimuth: f64, angle: f64) -> Result<Location, ContactError> {
+        let mut facet = near;
+        for _ in 0..MOST_EDGES {
+            let Some(xi) = self.reference(facet, azimuth, angle) else {
+                break;
+            };
+            if outside(self.kind, xi) <= 0.0 {
+                return Ok(Location { facet, xi });
+            }
+            match self.neighbours.across(facet, xi) {
+                Some(next) => facet = next,
+                None => break,
+            }
+        }
+        self.locate(azimuth, angle)
+    }
+
+    /// Reference coordinates in a facet; None far from it.
+    #[inline]
+    fn reference(&self, facet: usize, azimuth: f64, angle: f64) -> Option<[f64; 2]> {
+        if let Some(map) = &self.maps[facet] {
+            return Some(map.reference([azimuth, angle]));
+        }
+        let n = self.kind.n_nodes();
+        let coordinates = &self.coordinates[n * facet..n * (facet + 1)];
+        let target = [unwrap_near(azimuth, coordinates[0][0]), angle];
+        let [low, high] = self.boxes[facet];
+        if (0..2).any(|i| target[i] < low[i] || target[i] > high[i]) {
+            return None;
+        }
+        invert(self.kind, coordinates, target)
     }
 
     /// Node spacing [along the groove, rolling direction] at a point, m: continuous over the raceway.
@@ -232,6 +268,9 @@ fn coordinates_first(coordinates: &[[f64; 2]], first: usize) -> f64 {
 
 /// The angle equal to `angle` modulo a turn that lies within half a turn of `reference`.
 pub fn unwrap_near(angle: f64, reference: f64) -> f64 {
+    if (angle - reference).abs() < PI {
+        return angle;
+    }
     angle - 2.0 * PI * ((angle - reference) / (2.0 * PI)).round()
 }
 
@@ -269,49 +308,4 @@ fn node_spacing(
         .iter()
         .map(|&i| [sums[i][0] / sums[i][2], sums[i][1] / sums[i][2]])
         .collect()
-}
-
-/// Reference coordinates of a target in the (azimuth, angle) plane by Newton; None when it does not converge.
-fn invert(kind: FacetKind, coordinates: &[[f64; 2]], target: [f64; 2]) -> Option<[f64; 2]> {
-    let mut xi = if kind == FacetKind::Tri6 {
-        [1.0 / 3.0; 2]
-    } else {
-        [0.0; 2]
-    };
-    // A facet's map is nearly affine; 20 rounds are far beyond what a usable facet needs.
-    for _ in 0..20 {
-        let (shape, gradients) = (facet::shape(kind, xi), facet::gradients(kind, xi));
-        let (mut residual, mut j) = (target, [[0.0; 2]; 2]);
-        for (a, c) in coordinates.iter().enumerate() {
-            for i in 0..2 {
-                residual[i] -= shape[a] * c[i];
-                j[i][0] += gradients[a][0] * c[i];
-                j[i][1] += gradients[a][1] * c[i];
-            }
-        }
-        let det = j[0][0] * j[1][1] - j[0][1] * j[1][0];
-        if det == 0.0 || !det.is_finite() {
-            return None;
-        }
-        let step = [
-            (residual[0] * j[1][1] - residual[1] * j[0][1]) / det,
-            (residual[1] * j[0][0] - residual[0] * j[1][0]) / det,
-        ];
-        xi = [xi[0] + step[0], xi[1] + step[1]];
-        if step[0].abs().max(step[1].abs()) < CONVERGED {
-            return Some(xi);
-        }
-        if xi[0].abs().max(xi[1].abs()) > 10.0 {
-            return None;
-        }
-    }
-    Some(xi)
-}
-
-/// Largest distance outside the reference facet, negative or zero inside.
-pub(crate) fn outside(kind: FacetKind, xi: [f64; 2]) -> f64 {
-    match kind {
-        FacetKind::Tri6 => (-xi[0]).max(-xi[1]).max(xi[0] + xi[1] - 1.0),
-        _ => xi[0].abs().max(xi[1].abs()) - 1.0,
-    }
 }

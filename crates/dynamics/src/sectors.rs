@@ -120,6 +120,7 @@ impl Periodic {
         let Ok(raceway) = periodicity.section_nodes(&ring.mesh.group_nodes(RACEWAY_GROUP)) else {
             return Ok(Err("its raceway is not the same in all sectors".to_string()));
         };
+        let raceway = along_groove(raceway, &ring.mesh, periodicity);
         let held = whole.without(periodicity, [&held, &raceway], side)?;
         Ok(held.map(|held| Periodic {
             sectors_note: format!("{} equal sectors", periodicity.n_sectors()),
@@ -154,7 +155,8 @@ impl Periodic {
             Err(reason) => return Ok(Err(reason)),
         };
         let whole = Sectors::assemble(ring, &regular.mesh, periodicity, side)?.shared();
-        let mut held = match whole.without(periodicity, [&regular.held_section, &regular.raceway], side)? {
+        let raceway = along_groove(regular.raceway.clone(), &regular.mesh, periodicity);
+        let mut held = match whole.without(periodicity, [&regular.held_section, &raceway], side)? {
             Ok(held) => held,
             Err(reason) => return Ok(Err(reason)),
         };
@@ -309,6 +311,18 @@ impl HeldSectors {
         // The table, and the spectra that it is made from.
         2 * size_of::<f64>() * periodicity.n_sectors() * n * n
     }
+}
+
+/// Section nodes of a raceway, those in the plane of the section first, along the groove: so that a patch is on neighbours in the
+/// table of responses.
+fn along_groove(mut raceway: Vec<usize>, mesh: &Mesh, periodicity: &Periodicity) -> Vec<usize> {
+    let half_way = |node: usize| periodicity.half_way().is_some_and(|half_way| half_way[node]);
+    let z = |node: usize| mesh.nodes[periodicity.nodes()[node]][2];
+    raceway.sort_by(|&a, &b| {
+        let planes = half_way(a).cmp(&half_way(b));
+        planes.then(z(a).total_cmp(&z(b)))
+    });
+    raceway
 }
 
 /// Number of sectors of a ring that harmonics can solve, or why they cannot.

@@ -1,8 +1,8 @@
 //! Solves of a periodic ring that stay in harmonic space: the predictor of a step, what contacts and partner measure of it,
 //! and the increment under their forces. Only nodes that they touch are transformed in between.
 
+use solver::LinearSolver;
 use solver::cyclic::{Defect, Loose, PartHarmonics};
-use solver::{LinearSolver, SectionPart};
 
 use super::defect::DefectStep;
 use super::effective::CyclicFactor;
@@ -42,33 +42,30 @@ impl CyclicFactor {
 
     /// Values of functionals on raceway, mount and border under harmonics and border `x`.
     pub fn measure(&self, x: &[f64], functionals: &[&SparseLoad]) -> Vec<f64> {
-        self.at(&self.met, x, |value| {
-            let measure = |g: &&SparseLoad| g.iter().map(|&(row, weight)| weight * value(row)).sum();
-            functionals.iter().map(measure).collect()
-        })
+        let ring = self.solver.inner().ring();
+        let (harmonics, border) = x.split_at(ring.harmonic_len());
+        let rows = functionals.iter().flat_map(|g| g.iter().map(|&(row, _)| row));
+        let nodes = rows.filter(|&row| row < ring.n()).map(|row| row / 3);
+        let field = ring.field_at_nodes(&self.met, nodes, harmonics);
+        let measure = |g: &&SparseLoad| {
+            let by_border = |&(row, weight): &(usize, f64)| Some(weight * border[row.checked_sub(ring.n())?]);
+            let free = g.iter().copied().filter(|&(row, _)| row < ring.n());
+            field.measure(free) + g.iter().filter_map(by_border).sum::<f64>()
+        };
+        functionals.iter().map(measure).collect()
     }
 
     /// Values of the rows of a defect under harmonics and border `x`.
     pub fn at_rows(&self, defect: &Defect, x: &[f64]) -> Vec<f64> {
-        self.at(&self.touched, x, |value| {
-            defect.rows().iter().map(|&row| value(row)).collect()
-        })
-    }
-
-    /// What `read` makes of the values of the rows of a part and of the border.
-    fn at(
-        &self,
-        part: &SectionPart,
-        x: &[f64],
-        read: impl Fn(&dyn Fn(usize) -> f64) -> Vec<f64>,
-    ) -> Vec<f64> {
         let ring = self.solver.inner().ring();
         let (harmonics, border) = x.split_at(ring.harmonic_len());
-        let field = ring.field_at(part, harmonics);
-        read(&|row: usize| match row.checked_sub(ring.n()) {
+        let free = defect.rows().iter().filter(|&&row| row < ring.n());
+        let field = ring.field_at_nodes(&self.touched, free.map(|row| row / 3), harmonics);
+        let value = |&row: &usize| match row.checked_sub(ring.n()) {
             Some(k) => border[k],
             None => field.value(row),
-        })
+        };
+        defect.rows().iter().map(value).collect()
     }
 
     /// Forces of a defect on its rows, index and value, in a step with these forces on contacts and mount.

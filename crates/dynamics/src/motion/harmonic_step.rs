@@ -79,7 +79,7 @@ impl RingFactor {
             predictor: Predictor::Harmonic(predictor, defect),
             start,
             compliance,
-            seconds: [0.0, clock.elapsed().as_secs_f64()],
+            seconds: [0.0, 0.0, clock.elapsed().as_secs_f64()],
             contacts,
         }
     }

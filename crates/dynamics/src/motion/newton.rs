@@ -66,11 +66,14 @@ impl SmallSystem {
     /// Solves the step. Fails with the residual history and the place of the largest residual.
     pub fn solve(&self, scale: f64, costs: &EffectCosts) -> Result<SmallSolution, DynamicsError> {
         let (n, mut x) = (self.n(), self.guess());
+        let linear = self.linear_slope();
+        let mut jacobian = linear.clone();
         let (mut history, mut best, mut stalled, mut worst) = (Vec::new(), f64::INFINITY, 0, 0);
         for iteration in 0..MAX_ITERATIONS {
             let forces = self.forces(&x, costs);
-            let mut jacobian = vec![0.0; n * n];
-            let residual = self.residual(&x, &forces, Some(&mut jacobian));
+            let residual = self.residual(&x, &forces);
+            jacobian.copy_from_slice(&linear);
+            self.add_contact_slopes(&forces, &mut jacobian);
             let (place, now) = largest(&residual);
             worst = place;
             if !now.is_finite() {
@@ -136,7 +139,7 @@ impl SmallSystem {
         let mut share = 1.0;
         loop {
             let trial: Vec<f64> = x.iter().zip(step).map(|(x, s)| x + share * s).collect();
-            let after = self.residual(&trial, &self.forces(&trial, costs), None);
+            let after = self.residual(&trial, &self.forces(&trial, costs));
             if size(&after) <= size(residual) || share < 1e-3 {
                 return trial;
             }

@@ -55,8 +55,8 @@ pub struct RingStep {
     pub predicted: Vec<f64>,
     /// Compliance over the step, row-major, SI.
     pub compliance: Vec<f64>,
-    /// Wall time of the predictor's right-hand side and of the block solve, s.
-    pub seconds: [f64; 2],
+    /// Wall time of the predictor's right-hand side, of the block solve, and of what the table of responses says of the contacts, s.
+    pub seconds: [f64; 3],
 }
 
 /// The increment without forces of contacts and partner.
@@ -143,9 +143,11 @@ impl RingFactor {
         let all: Vec<&SparseLoad> = contacts.iter().chain(&body.mount).collect();
         let start = self.measure(body, &all, state.displacement());
         let sides = clock.elapsed().as_secs_f64();
+        let mut solved = None;
         let (predictor, moved, compliance) = match &self.factor {
             Factored::Cyclic(factor) => {
                 let predictor = factor.solve(&body.space, side);
+                solved = Some(clock.elapsed().as_secs_f64());
                 let (defect, moved, compliance) = self.meet(
                     (body, Rows::Found(StepStart::first(state, None))),
                     factor,
@@ -172,14 +174,21 @@ impl RingFactor {
                 (Predictor::Sectors(columns), motions.predicted, compliance)
             }
         };
+        let all = clock.elapsed().as_secs_f64();
+        let solved = solved.unwrap_or(all);
         RingStep {
             predictor,
             predicted: sum(&start, &moved),
             start,
             compliance,
-            seconds: [sides, clock.elapsed().as_secs_f64() - sides],
+            seconds: [sides, solved - sides, all - solved],
             contacts,
         }
+    }
+
+    /// Whether contacts are moved by the table of responses, without a solve.
+    pub fn has_table(&self) -> bool {
+        matches!(self.factor, Factored::Cyclic(_))
     }
 
     /// Moves the contacts of a step from `state` to `feet`: products with the table, or one block solve of a sparse factor.

@@ -210,49 +210,61 @@ impl SmallSystem {
         slope.iter().chain(&[0.0]).take(n_mount).copied().collect()
     }
 
-    /// Residual, and the Jacobian, row-major, when asked for.
-    pub(super) fn residual(
-        &self,
-        x: &[f64],
-        forces: &[MeanForce],
-        mut jacobian: Option<&mut [f64]>,
-    ) -> Vec<f64> {
-        let n = self.n();
-        let mut residual = vec![0.0; n];
+    /// Shaft dofs and balls, in the order of their unknowns.
+    fn bodies(&self) -> impl Iterator<Item = &Inertia> {
         let shaft = self.shaft.free().into_iter().map(|dof| &self.shaft.bodies[dof]);
-        for (i, body) in shaft.chain(self.balls.iter().flatten()).enumerate() {
-            let [force, slope] = body.residual(self.integrator, x[i], self.dt);
-            residual[i] = force;
-            if let Some(j) = &mut jacobian {
-                j[n * i + i] += slope;
-            }
+        shaft.chain(self.balls.iter().flatten())
+    }
+
+    /// Residual at `x` with the forces of the contacts there.
+    pub(super) fn residual(&self, x: &[f64], forces: &[MeanForce]) -> Vec<f64> {
+        let mut residual = vec![0.0; self.n()];
+        for (i, body) in self.bodies().enumerate() {
+            residual[i] = body.residual(self.integrator, x[i], self.dt)[0];
         }
         for side in Side::BOTH {
             if let Some(ring) = &self.rings[side.index()] {
                 self.add_ring(side, ring, x, &mut residual);
-                if let Some(j) = &mut jacobian {
-                    self.add_ring_slope(side, ring, j);
-                }
             }
         }
         for (index, (site, force)) in self.sites.iter().zip(forces).enumerate() {
-            let local = self.local(site);
             let extra = self.extra.get(index).copied().unwrap_or_default();
-            for (a, row_a) in &local {
+            for (a, row) in self.local(site) {
                 // An additional force on the ring acts on the ball with the opposite sign, as the contact's.
-                residual[*a] +=
-                    row_a[0] * (force.force[0] + extra[0]) + row_a[1] * (force.force[1] + extra[1]);
-                if let Some(j) = &mut jacobian {
-                    for (b, row_b) in &local {
-                        let t = &force.tangent;
-                        j[n * a + b] += (0..2)
-                            .map(|i| row_a[i] * (t[i][0] * row_b[0] + t[i][1] * row_b[1]))
-                            .sum::<f64>();
-                    }
-                }
+                residual[a] += row[0] * (force.force[0] + extra[0]) + row[1] * (force.force[1] + extra[1]);
             }
         }
         residual
+    }
+
+    /// What bodies and rings put into the Jacobian, row-major: the same for all unknowns.
+    pub(super) fn linear_slope(&self) -> Vec<f64> {
+        let n = self.n();
+        let mut jacobian = vec![0.0; n * n];
+        for (i, body) in self.bodies().enumerate() {
+            jacobian[n * i + i] += body.residual(self.integrator, body.start[0], self.dt)[1];
+        }
+        for side in Side::BOTH {
+            if let Some(ring) = &self.rings[side.index()] {
+                self.add_ring_slope(side, ring, &mut jacobian);
+            }
+        }
+        jacobian
+    }
+
+    /// Adds what the contacts put into it.
+    pub(super) fn add_contact_slopes(&self, forces: &[MeanForce], jacobian: &mut [f64]) {
+        let n = self.n();
+        for (site, force) in self.sites.iter().zip(forces) {
+            let (local, t) = (self.local(site), &force.tangent);
+            for (a, row_a) in &local {
+                for (b, row_b) in &local {
+                    jacobian[n * a + b] += (0..2)
+                        .map(|i| row_a[i] * (t[i][0] * row_b[0] + t[i][1] * row_b[1]))
+                        .sum::<f64>();
+                }
+            }
+        }
     }
 
     /// Forces a ring asks for: on its groove unknowns, and from the shaft.

@@ -142,6 +142,8 @@ pub struct StepSeconds {
     pub right_side: f64,
     /// Predictor and columns: the block solve.
     pub solve: f64,
+    /// Motion of the raceways of periodic rings by the predictor, and compliance of their contacts by the table of responses.
+    pub raceways: f64,
     /// Newton on contacts, balls and shaft.
     pub newton: f64,
     /// Inertia of the turning frame: products and solves.
@@ -152,12 +154,13 @@ pub struct StepSeconds {
 
 impl StepSeconds {
     /// Names and times of all parts.
-    pub fn parts(&self) -> [(&'static str, f64); 7] {
+    pub fn parts(&self) -> [(&'static str, f64); 8] {
         [
             ("loads", self.loads),
             ("patches", self.patches),
             ("right_side", self.right_side),
             ("solve", self.solve),
+            ("raceways", self.raceways),
             ("newton", self.newton),
             ("frame", self.frame),
             ("update", self.update),
@@ -178,6 +181,7 @@ impl StepReport {
         to.loads += from.loads;
         to.patches += from.patches;
         to.right_side += from.right_side;
+        to.raceways += from.raceways;
         to.solve += from.solve;
         to.newton += from.newton;
         to.frame += from.frame;

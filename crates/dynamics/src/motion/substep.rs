@@ -97,9 +97,13 @@ impl Motion<'_> {
         let placing = self.place(&places, self.weighted_time(span))?;
         report.seconds.patches = clock.lap();
         let moving = self.prepare(state, &foreseen, &placing.feet)?;
-        let times = moving.iter().flatten().map(|m| m.step.seconds);
-        report.seconds.right_side = times.map(|[sides, _]| sides).fold(0.0, f64::max);
-        report.seconds.solve = clock.lap() - report.seconds.right_side;
+        let longest = |part: usize| {
+            let rings = moving.iter().flatten();
+            rings.map(|m| m.step.seconds[part]).fold(0.0, f64::max)
+        };
+        report.seconds.right_side = longest(0);
+        report.seconds.raceways = longest(2);
+        report.seconds.solve = clock.lap() - longest(0) - longest(2);
         let system = self.system(state, span, placing.sites.clone(), &moving, &foreseen.loads)?;
         let mut part = Part {
             span,
@@ -144,7 +148,13 @@ impl Motion<'_> {
             part.places = met;
             part.report.seconds.patches += part.clock.lap();
             self.move_contacts(part);
-            part.report.seconds.solve += part.clock.lap();
+            let tables = part.moving.iter().flatten().all(|m| m.factor.has_table());
+            let (seconds, lap) = (&mut part.report.seconds, part.clock.lap());
+            *(if tables {
+                &mut seconds.raceways
+            } else {
+                &mut seconds.solve
+            }) += lap;
             let sites = part.placing.sites.clone();
             part.system = self.system(state, part.span, sites, &part.moving, &part.foreseen.loads)?;
         }

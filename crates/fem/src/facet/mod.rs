@@ -13,6 +13,7 @@ use mesh::FacetKind;
 pub const MAX_FACET_NODES: usize = 8;
 
 /// Values of the shape functions at a reference point, `[MAX_FACET_NODES]`.
+#[inline]
 pub fn shape(kind: FacetKind, xi: [f64; 2]) -> [f64; MAX_FACET_NODES] {
     match kind {
         FacetKind::Quad4 => quad4::shape(xi),
@@ -22,6 +23,7 @@ pub fn shape(kind: FacetKind, xi: [f64; 2]) -> [f64; MAX_FACET_NODES] {
 }
 
 /// Derivatives of the shape functions with respect to the reference coordinates, `[MAX_FACET_NODES][2]`.
+#[inline]
 pub fn gradients(kind: FacetKind, xi: [f64; 2]) -> [[f64; 2]; MAX_FACET_NODES] {
     match kind {
         FacetKind::Quad4 => quad4::gradients(xi),

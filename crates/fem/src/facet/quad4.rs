@@ -3,6 +3,7 @@
 use super::{MAX_FACET_NODES, quad8};
 
 /// Values of the shape functions, first 4 of `[MAX_FACET_NODES]`.
+#[inline]
 pub(super) fn shape(xi: [f64; 2]) -> [f64; MAX_FACET_NODES] {
     let mut n = [0.0; MAX_FACET_NODES];
     for (a, corner) in quad8::NODES[..4].iter().enumerate() {
@@ -12,6 +13,7 @@ pub(super) fn shape(xi: [f64; 2]) -> [f64; MAX_FACET_NODES] {
 }
 
 /// Reference gradients of the shape functions, first 4 of `[MAX_FACET_NODES][2]`.
+#[inline]
 pub(super) fn gradients(xi: [f64; 2]) -> [[f64; 2]; MAX_FACET_NODES] {
     let mut dn = [[0.0; 2]; MAX_FACET_NODES];
     for (a, corner) in quad8::NODES[..4].iter().enumerate() {

@@ -7,13 +7,12 @@
 //! Cost: 3 n solves in harmonic space and 9 n^2 inverse FFTs for n chosen nodes. Memory: 9 N n^2 numbers, 5 MB for 10 nodes
 //! and 720 sectors.
 
-use std::ops::Range;
-
-use pulp::{Arch, Simd, WithSimd};
+use pulp::Arch;
 use rayon::prelude::*;
 use realfft::num_complex::Complex;
 
 use super::factor::CyclicCholesky;
+use super::patch::{BEYOND, Compliance, Patch};
 use super::phases::LANES;
 use super::ring::CyclicRing;
 use super::transform::{Spectrum, restore_line};
@@ -29,55 +28,8 @@ pub struct ResponseTable {
     chosen: Vec<usize>,
     /// Three per chosen node.
     n_dofs: usize,
-    /// `[n_sectors][n_dofs][n_dofs]`: sector, displacement, force; m/N.
+    /// `[n_sectors][n_dofs][n_dofs]` and [`BEYOND`] zeros: sector, displacement, force; m/N.
     responses: Vec<f64>,
-}
-
-/// Nodal weights of two directions on chosen nodes, in cylindrical components.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Patch {
-    runs: Vec<Run>,
-    /// Weights of the two directions, run by run.
-    weights: [Vec<f64>; 2],
-}
-
-/// Neighbouring dofs of one sector in the table.
-#[derive(Clone, Debug, PartialEq)]
-pub(super) struct Run {
-    pub(super) sector: usize,
-    /// First dof in the table.
-    pub(super) dof: usize,
-    /// Place of their weights in the patch.
-    weights: Range<usize>,
-}
-
-impl Patch {
-    /// Adds the weights of two directions at the node with the table's dofs `dof..dof + 3`.
-    fn push(&mut self, sector: usize, dof: usize, weights: [[f64; 3]; 2]) {
-        let end = self.weights[0].len();
-        match self.runs.last_mut() {
-            Some(run) if run.sector == sector && run.dof + run.weights.len() == dof => run.weights.end += 3,
-            _ => self.runs.push(Run {
-                sector,
-                dof,
-                weights: end..end + 3,
-            }),
-        }
-        for (all, more) in self.weights.iter_mut().zip(weights) {
-            all.extend(more);
-        }
-    }
-
-    /// Its runs.
-    pub(super) fn runs(&self) -> &[Run] {
-        &self.runs
-    }
-
-    /// Dofs and weights of the two directions of a run.
-    #[inline(always)]
-    pub(super) fn of(&self, run: &Run) -> [&[f64]; 2] {
-        [0, 1].map(|p| &self.weights[p][run.weights.clone()])
-    }
 }
 
 /// A Cartesian unit vector at a chosen node.
@@ -139,29 +91,13 @@ impl ResponseTable {
 
     /// Compliance between two patches, m/N, `[direction of a][direction of b]`: what a measures when b is loaded.
     pub fn compliance(&self, a: &Patch, b: &Patch) -> [[f64; 2]; 2] {
-        Arch::new().dispatch(Measure { table: self, a, b })
-    }
-
-    #[inline(always)]
-    fn measured(&self, a: &Patch, b: &Patch) -> [[f64; 2]; 2] {
-        let (n, n_dofs) = (self.ring.n_sectors(), self.n_dofs);
-        let mut compliance = [[0.0; 2]; 2];
-        for loaded in &b.runs {
-            let v = b.of(loaded);
-            for moved in &a.runs {
-                let d = (moved.sector + n - loaded.sector) % n;
-                let start = (d * n_dofs + moved.dof) * n_dofs + loaded.dof;
-                let [w0, w1] = a.of(moved);
-                for (i, w) in w0.iter().zip(w1).enumerate() {
-                    let u = dots(&self.responses[start + i * n_dofs..], v);
-                    for q in 0..2 {
-                        compliance[0][q] += w.0 * u[q];
-                        compliance[1][q] += w.1 * u[q];
-                    }
-                }
-            }
-        }
-        compliance
+        Arch::new().dispatch(Compliance {
+            n_sectors: self.ring.n_sectors(),
+            n_dofs: self.n_dofs,
+            responses: &self.responses,
+            a,
+            b,
+        })
     }
 
     /// Compliance of all patches, m/N, row-major `[2 n][2 n]` over (patch, direction), exactly symmetric.
@@ -226,10 +162,15 @@ impl ResponseTable {
         let keep = |&i: &usize| if i < n_chosen { i } else { usize::MAX };
         let sectors = self.responses.chunks_exact((self.n_dofs * self.n_dofs).max(1));
         let rows = sectors.flat_map(|sector| sector.chunks_exact(self.n_dofs).take(n_dofs));
+        let rows = rows.map(|row| &row[..n_dofs]);
         ResponseTable {
             chosen: self.chosen.iter().map(keep).collect(),
             n_dofs,
-            responses: rows.flat_map(|row| &row[..n_dofs]).copied().collect(),
+            responses: rows
+                .chain([[0.0; BEYOND].as_slice()])
+                .flatten()
+                .copied()
+                .collect(),
             ring: self.ring.clone(),
         }
     }
@@ -264,42 +205,6 @@ impl ResponseTable {
     }
 }
 
-/// Compliance between two patches by the processor's widest vectors.
-struct Measure<'a> {
-    table: &'a ResponseTable,
-    a: &'a Patch,
-    b: &'a Patch,
-}
-
-impl WithSimd for Measure<'_> {
-    type Output = [[f64; 2]; 2];
-
-    #[inline(always)]
-    fn with_simd<S: Simd>(self, _: S) -> Self::Output {
-        self.table.measured(self.a, self.b)
-    }
-}
-
-/// Products of a row with two vectors, in four sums each, which the processor's vectors take.
-#[inline(always)]
-fn dots(row: &[f64], [a, b]: [&[f64]; 2]) -> [f64; 2] {
-    let mut sums = [[0.0; 4]; 2];
-    let row = &row[..a.len()];
-    let (rows, rest) = row.as_chunks::<4>();
-    let ((a, a_rest), (b, b_rest)) = (a.as_chunks::<4>(), b.as_chunks::<4>());
-    for ((x, a), b) in rows.iter().zip(a).zip(b) {
-        for i in 0..4 {
-            sums[0][i] += x[i] * a[i];
-            sums[1][i] += x[i] * b[i];
-        }
-    }
-    for (i, x) in rest.iter().enumerate() {
-        sums[0][i] += x * a_rest[i];
-        sums[1][i] += x * b_rest[i];
-    }
-    sums.map(|s| (s[0] + s[1]) + (s[2] + s[3]))
-}
-
 /// Harmonic responses of the chosen dofs to each unit load of the real basis, `[force][displacement][n_harmonics]`.
 fn spectra(factor: &CyclicCholesky, places: &[usize]) -> Vec<Spectrum> {
     let ring = factor.ring();
@@ -331,7 +236,7 @@ fn spectra(factor: &CyclicCholesky, places: &[usize]) -> Vec<Spectrum> {
 }
 
 /// Inverse transforms of the spectra, with the phases of the nodes' azimuths and of the azimuthal components,
-/// `[n_sectors][displacement][force]`.
+/// `[n_sectors][displacement][force]`, then [`BEYOND`] zeros.
 fn transform(ring: &CyclicRing, places: &[usize], spectra: &[Spectrum]) -> Vec<f64> {
     let shared = &ring.shared;
     let (n, n_harmonics, n_dofs) = (ring.n_sectors(), shared.phases.n_harmonics(), 3 * places.len());
@@ -359,8 +264,8 @@ fn transform(ring: &CyclicRing, places: &[usize], spectra: &[Spectrum]) -> Vec<f
                 restore_line(&shared.inverse, &mut spectrum, line, &mut scratch);
             }
         });
-    let mut responses = vec![0.0; lines.len()];
-    responses
+    let mut responses = vec![0.0; lines.len() + BEYOND];
+    responses[..lines.len()]
         .par_chunks_mut((n_dofs * n_dofs).max(1))
         .enumerate()
         .for_each(|(sector, table)| {

@@ -8,7 +8,8 @@
 use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
 
-use super::response::{Patch, ResponseTable};
+use super::patch::Patch;
+use super::response::ResponseTable;
 
 /// Components summed at a time.
 const BLOCK: usize = 16;

@@ -32,7 +32,12 @@ pub(super) type Spectrum = Complex<f64>;
 pub struct SectionPart {
     /// Places in elimination order, ascending.
     pub(super) places: Vec<usize>,
+    /// Of each place of the section its number among these, [`ELSEWHERE`] of others.
+    pub(super) numbers: Vec<u32>,
 }
+
+/// Number of a place that is not of the part.
+pub(super) const ELSEWHERE: u32 = u32::MAX;
 
 impl CyclicRing {
     /// Harmonics of the nodal vector `nodal` (Cartesian, `[n]`) into `harmonic`, `[harmonic_len()]`.
@@ -162,7 +167,11 @@ impl CyclicRing {
             .collect();
         places.sort_unstable();
         places.dedup();
-        SectionPart { places }
+        let mut numbers = vec![ELSEWHERE; self.n_section_nodes()];
+        for (i, &place) in places.iter().enumerate() {
+            numbers[place] = i as u32;
+        }
+        SectionPart { places, numbers }
     }
 
     /// Cylindrical components of the nodes at `places`, `[places][3][n_sectors]`.
@@ -247,8 +256,14 @@ impl CyclicRing {
                 .process_with_scratch(line, spectrum, &mut scratch)
                 .expect("the lengths are those of the plan");
             let turn = |(k, value): (usize, &mut Spectrum)| {
-                let [cos, sin] = shared.phases.of(k, -shared.halves[place]);
-                let turned = *value * Complex::new(cos, sin);
+                // Nodes in the plane of the sector need no turn.
+                let turned = match shared.halves[place] {
+                    0 => *value,
+                    halves => {
+                        let [cos, sin] = shared.phases.of(k, -halves);
+                        *value * Complex::new(cos, sin)
+                    }
+                };
                 *value = if component == 1 {
                     Complex::new(turned.im, -turned.re)
                 } else {
@@ -275,8 +290,15 @@ impl CyclicRing {
                 } else {
                     w
                 };
-                let [cos, sin] = shared.phases.of(k, shared.halves[place]);
-                *value = w * Complex::new(cos, sin) / n as f64;
+                // Nodes in the plane of the sector need no turn.
+                let turned = match shared.halves[place] {
+                    0 => w,
+                    halves => {
+                        let [cos, sin] = shared.phases.of(k, halves);
+                        w * Complex::new(cos, sin)
+                    }
+                };
+                *value = turned / n as f64;
             }
             restore_line(&shared.inverse, &mut spectrum, line, &mut scratch);
         }

@@ -57,7 +57,8 @@ fn the_table_gives_the_compliances_of_solves() {
         let chosen = [4, 1, 7, 11];
         let table = ResponseTable::new(&factor, &chosen);
         let (n, width) = (ring.periodicity.n_sectors(), ring.periodicity.n_section_nodes());
-        assert_eq!(table.bytes(), 8 * n * 12 * 12);
+        // The last row is read as if it were longer.
+        assert_eq!(table.bytes(), 8 * (n * 12 * 12 + 7));
         let node = |sector: usize, i: usize| ring.periodicity.nodes()[(sector % n) * width + chosen[i]];
         let values = loads(200);
         let patches: Vec<Weights> = [0, 1, n / 2, n - 1]
@@ -101,6 +102,53 @@ fn the_table_gives_the_compliances_of_solves() {
             .find(|&node| !chosen.contains(&ring.periodicity.sites()[node].section_node))
             .unwrap();
         assert_eq!(table.patch(&[other], &[[[0.0; 3]; 2]]), Err(other));
+    }
+}
+
+/// Wrong: a patch on so many neighbouring nodes that their responses do not fit into the registers would meet some of them twice or not
+/// at all.
+#[test]
+fn compliances_of_large_patches_are_sums_over_the_table() {
+    for (ring, _) in rings() {
+        let factor = ring.ring.factor(&ring.shifted()).unwrap();
+        let (n, width) = (ring.periodicity.n_sectors(), ring.periodicity.n_section_nodes());
+        let chosen: Vec<usize> = (0..width).collect();
+        let table = ResponseTable::new(&factor, &chosen);
+        let values = loads(24 * width);
+        // Weights of node i of a sector along (radial, azimuthal, axial).
+        let weight = |sector: usize, i: usize, direction: usize| {
+            let first = 12 * (i + width * (sector % 2)) + 3 * direction;
+            [0, 1, 2].map(|c| values[first + c])
+        };
+        let patch = |first: usize| {
+            let sites = (first..first + 2).flat_map(|s| (0..width).map(move |i| (s % n, i)));
+            let (nodes, weights): (Vec<_>, Vec<_>) = sites
+                .map(|(sector, i)| {
+                    let node = ring.periodicity.nodes()[sector * width + i];
+                    let x = ring.mesh.nodes[node];
+                    let (c, s) = (x[0] / x[0].hypot(x[1]), x[1] / x[0].hypot(x[1]));
+                    let weights = [0, 1].map(|d| {
+                        let [r, t, z] = weight(sector, i, d);
+                        [c * r - s * t, s * r + c * t, z]
+                    });
+                    (node, weights)
+                })
+                .unzip();
+            table.patch(&nodes, &weights).unwrap()
+        };
+        let [a, b] = [0, n / 2];
+        let found = table.compliance(&patch(a), &patch(b));
+        let mut expected = [0.0; 4];
+        for (k, sum) in expected.iter_mut().enumerate() {
+            for (s, t) in [(a, b), (a, b + 1), (a + 1, b), (a + 1, b + 1)] {
+                for ij in 0..width * width {
+                    let (w, v) = (weight(s % n, ij / width, k / 2), weight(t % n, ij % width, k % 2));
+                    let g = table.response((s + n - t % n) % n, ij / width, ij % width);
+                    *sum += (0..9).map(|e| w[e / 3] * g[e] * v[e % 3]).sum::<f64>();
+                }
+            }
+        }
+        assert_close(found.as_flattened(), &expected, 1e-11);
     }
 }
 
