@@ -8,8 +8,9 @@ use std::ops::Range;
 
 use pulp::{Simd, WithSimd};
 
-/// Most vectors of a row that are read together: two sums of each fit into the registers, 16 with AVX2.
-const WIDEST: usize = 6;
+/// Most vectors of a row that are read together. With two sums of each, the weights and the row they fit into the 16 registers of
+/// AVX2, and eight sums at a time hide how long an addition takes; narrower windows sum several rows apart.
+const WIDEST: usize = 4;
 /// Numbers in the longest vector.
 const LONGEST: usize = 8;
 /// Numbers that may be read beyond a run of a row; they meet no weight.
@@ -75,9 +76,10 @@ pub(super) struct Compliance<'a> {
 }
 
 impl Compliance<'_> {
-    /// What the force of `b` on V vectors of dofs from `first` on of a sector moves, with the weights `v` of two directions.
+    /// What the force of `b` on V vectors of dofs from `first` on of a sector moves, with the weights `v` of two directions. U rows
+    /// are summed apart.
     #[inline(always)]
-    fn window<S: Simd, const V: usize>(
+    fn window<S: Simd, const V: usize, const U: usize>(
         &self,
         simd: S,
         sector: usize,
@@ -85,27 +87,46 @@ impl Compliance<'_> {
         v: [&[f64]; 2],
     ) -> [[f64; 2]; 2] {
         let (n, n_dofs) = (self.n_sectors, self.n_dofs);
-        let mut z = [[simd.splat_f64s(0.0); V]; 2];
+        let mut z = [[[simd.splat_f64s(0.0); V]; 2]; U];
         for moved in &self.a.runs {
             let apart = (moved.sector + n - sector) % n;
             let rows = &self.responses[(apart * n_dofs + moved.dof) * n_dofs + first..];
             let [w0, w1] = self.a.of(moved);
-            for (i, (&w0, &w1)) in w0.iter().zip(w1).enumerate() {
-                let row = S::as_simd_f64s(&rows[i * n_dofs..][..V * S::F64_LANES]).0;
-                let (w0, w1) = (simd.splat_f64s(w0), simd.splat_f64s(w1));
-                for k in 0..V {
-                    z[0][k] = simd.mul_add_e_f64s(w0, row[k], z[0][k]);
-                    z[1][k] = simd.mul_add_e_f64s(w1, row[k], z[1][k]);
+            let row = |i: usize| &rows[i * n_dofs..];
+            let ((w0, rest0), (w1, rest1)) = (w0.as_chunks::<U>(), w1.as_chunks::<U>());
+            let n_chunks = w0.len();
+            for (i, (w0, w1)) in w0.iter().zip(w1).enumerate() {
+                for (u, z) in z.iter_mut().enumerate() {
+                    add_row(simd, row(U * i + u), [w0[u], w1[u]], z);
                 }
             }
+            for (i, (&w0, &w1)) in rest0.iter().zip(rest1).enumerate() {
+                add_row(simd, row(U * n_chunks + i), [w0, w1], &mut z[0]);
+            }
         }
-        z.map(|z| {
-            let mut sums = [0.0; WIDEST * LONGEST];
-            S::as_mut_simd_f64s(&mut sums[..V * S::F64_LANES])
-                .0
-                .copy_from_slice(&z);
-            v.map(|v| v.iter().zip(&sums).map(|(v, z)| v * z).sum())
-        })
+        let mut compliance = [[0.0; 2]; 2];
+        for z in z {
+            for (z, compliance) in z.iter().zip(&mut compliance) {
+                let mut sums = [0.0; WIDEST * LONGEST];
+                S::as_mut_simd_f64s(&mut sums[..V * S::F64_LANES])
+                    .0
+                    .copy_from_slice(z);
+                let along = v.map(|v| v.iter().zip(&sums).map(|(v, z)| v * z).sum::<f64>());
+                (0..2).for_each(|q| compliance[q] += along[q]);
+            }
+        }
+        compliance
+    }
+}
+
+/// Adds the first V vectors of a row of responses times both weights.
+#[inline(always)]
+fn add_row<S: Simd, const V: usize>(simd: S, row: &[f64], weights: [f64; 2], z: &mut [[S::f64s; V]; 2]) {
+    let row = S::as_simd_f64s(&row[..V * S::F64_LANES]).0;
+    let [w0, w1] = weights.map(|w| simd.splat_f64s(w));
+    for k in 0..V {
+        z[0][k] = simd.mul_add_e_f64s(w0, row[k], z[0][k]);
+        z[1][k] = simd.mul_add_e_f64s(w1, row[k], z[1][k]);
     }
 }
 
@@ -121,12 +142,10 @@ impl WithSimd for Compliance<'_> {
             for (k, v) in v0.chunks(width).zip(v1.chunks(width)).enumerate() {
                 let (sector, first, v) = (loaded.sector, loaded.dof + k * width, [v.0, v.1]);
                 let part = match v[0].len().div_ceil(S::F64_LANES) {
-                    1 => self.window::<S, 1>(simd, sector, first, v),
-                    2 => self.window::<S, 2>(simd, sector, first, v),
-                    3 => self.window::<S, 3>(simd, sector, first, v),
-                    4 => self.window::<S, 4>(simd, sector, first, v),
-                    5 => self.window::<S, 5>(simd, sector, first, v),
-                    _ => self.window::<S, 6>(simd, sector, first, v),
+                    1 => self.window::<S, 1, 4>(simd, sector, first, v),
+                    2 => self.window::<S, 2, 2>(simd, sector, first, v),
+                    3 => self.window::<S, 3, 1>(simd, sector, first, v),
+                    _ => self.window::<S, 4, 1>(simd, sector, first, v),
                 };
                 for (sums, part) in compliance.as_flattened_mut().iter_mut().zip(part.as_flattened()) {
                     *sums += part;
