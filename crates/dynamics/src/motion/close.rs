@@ -2,7 +2,7 @@
 //!
 //! The inertia of the frame depends on the motion that it changes. A trial finds the one that fits the increment, and the predictor under
 //! it, until the change is small ([`Settling`]); when the next is expected to be, it is checked by the pass that ends the step. Rounds
-//! contract by about speed times step size, so that one trial and the end are the rule.
+//! contract by about speed times step size, so that one or two trials and the end are the rule.
 
 use std::sync::Arc;
 
@@ -17,7 +17,6 @@ use super::place::expected;
 use super::pool::PooledVector;
 use super::ring_state::RingState;
 use super::run::Motion;
-use super::space::Space;
 use super::state::MotionState;
 use super::substep::{Part, Span};
 use super::vectors::combined;
@@ -25,7 +24,7 @@ use crate::error::DynamicsError;
 
 /// Rounds before a step counts as failed; each contracts by about speed times step size.
 const MAX_FRAME_ROUNDS: usize = 25;
-/// Change of the frame's inertia loads in a round, sum of all, over the largest force, at which they count as settled.
+/// Change of the frame's inertia loads in a round, the most that all can add up to, over the largest force, at which they count as settled.
 const FRAME_TOLERANCE: f64 = 1e-9;
 /// The same over the inertia loads themselves, which a body without other forces has alone: what rounding of a transform of
 /// its motion leaves of them.
@@ -80,7 +79,7 @@ impl Motion<'_> {
         };
         let (inner, outer) = self.model.backend.both(|| end(Side::Inner), || end(Side::Outer));
         if let Some((new, change)) = inner.as_ref().and_then(|inner| inner.renewed.as_ref())
-            && !self.is_settled(part, new, change)
+            && !self.is_settled(part, change)
         {
             let ended = inner.as_ref().map(|inner| &inner.end.state);
             self.replace_inertia(part, new, ended)?;
@@ -191,12 +190,8 @@ impl Motion<'_> {
             let change = combined([1.0, -1.0], &new, used);
             let space = &ring.body.space;
             let [square, new_square] = [&change, &new].map(|x| space.dot(x, x));
-            let change = Change {
-                square,
-                bound: (new.len() as f64 * square).sqrt(),
-                new_square,
-            };
-            if self.is_settled(part, &new, &change) {
+            let change = Change { square, new_square };
+            if self.is_settled(part, &change) {
                 part.settling = Settling::Settled;
                 if let Some(ring) = &mut part.moving[0] {
                     ring.increment = Some(dw);
@@ -208,7 +203,7 @@ impl Motion<'_> {
         let predictor = ring.step.harmonics();
         let increment = ring.factor.forces(ring.body, &ring.step, &forces, mount);
         let turned = pass.turn(ring.old, increment, (*turn, used), predictor);
-        if self.is_settled(part, &turned.inertia, &turned.change) {
+        if self.is_settled(part, &turned.change) {
             part.settling = Settling::Settled;
             return Ok(());
         }
@@ -224,7 +219,7 @@ impl Motion<'_> {
         };
         part.last_change = Some(change.square);
         let limit = self.frame_limit(part, &change);
-        part.settling = if change.bound * ratio <= limit {
+        part.settling = if self.most(part, change.square) * ratio <= limit {
             Settling::Expected
         } else {
             Settling::Open(ratio)
@@ -296,30 +291,19 @@ impl Motion<'_> {
         speed.abs() * part.span.dt
     }
 
-    /// Change of the frame's inertia at which it counts as settled, sum of the magnitudes, N.
+    /// Change of the frame's inertia at which it counts as settled, N.
     fn frame_limit(&self, part: &Part<'_>, change: &Change) -> f64 {
-        let n = part.moving[0]
-            .as_ref()
-            .map_or(0, |ring| ring.body.coordinates.n());
-        (FRAME_TOLERANCE * part.scale).max(FRAME_ROUND_OFF * (n as f64 * change.new_square).sqrt())
+        (FRAME_TOLERANCE * part.scale).max(FRAME_ROUND_OFF * self.most(part, change.new_square))
     }
 
-    /// Whether the inertia `new` differs little enough from the one that acts. The sum of the magnitudes of the change lies between the
-    /// root of the sum of their squares and its bound; only where that does not decide, harmonics are transformed.
-    fn is_settled(&self, part: &Part<'_>, new: &[f64], change: &Change) -> bool {
-        let Some(ring) = &part.moving[0] else { return true };
-        let Some((_, used)) = &ring.inertia else {
-            return true;
-        };
-        let limit = self.frame_limit(part, change);
-        let sum = || {
-            let change = combined([1.0, -1.0], new, used);
-            let sum = |x: &[f64]| x.iter().map(|c| c.abs()).sum::<f64>();
-            match &ring.body.space {
-                Space::Nodal => sum(&change),
-                Space::Harmonic(_) => sum(&ring.body.space.coordinates(&change)),
-            }
-        };
-        change.square.sqrt() <= limit && (change.bound <= limit || sum() <= limit)
+    /// Whether the inertia differs little enough from the one that acts.
+    fn is_settled(&self, part: &Part<'_>, change: &Change) -> bool {
+        self.most(part, change.square) <= self.frame_limit(part, change)
+    }
+
+    /// Most that the magnitudes of a load with this sum of squares add up to.
+    fn most(&self, part: &Part<'_>, square: f64) -> f64 {
+        let ring = part.moving[0].as_ref();
+        (ring.map_or(0, |ring| ring.body.coordinates.n()) as f64 * square).sqrt()
     }
 }

@@ -121,7 +121,9 @@ impl Integrator {
 
     /// Velocity and acceleration at the end of a step with displacement increment `dw`.
     pub fn update(&self, dt: f64, dw: f64, v0: f64, a0: f64) -> [f64; 2] {
-        let a1 = (dw - dt * v0) / (self.beta * dt * dt) - self.old[0] / self.beta * a0;
+        // Of many numbers the quotients are found once.
+        let (rate, share) = (1.0 / (self.beta * dt * dt), self.old[0] / self.beta);
+        let a1 = (dw - dt * v0) * rate - share * a0;
         [v0 + dt * (self.old[1] * a0 + self.gamma * a1), a1]
     }
 }

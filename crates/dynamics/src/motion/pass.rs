@@ -85,8 +85,6 @@ pub(super) struct Ended {
 pub(super) struct Change {
     /// Sum of the squares of its coordinates.
     pub square: f64,
-    /// Not less than the sum of their magnitudes.
-    pub bound: f64,
     /// Sum of the squares of the coordinates of the new load.
     pub new_square: f64,
 }
@@ -107,10 +105,8 @@ pub(super) struct Turned {
 struct Found {
     energies: [f64; 2],
     works: [f64; 2],
+    /// Squares of a change and of the new load.
     squares: [f64; 2],
-    /// Squares of a change by section node, in the plane and along the axis, and magnitudes of the rows of its border.
-    lines: Vec<[f64; 2]>,
-    rows: f64,
 }
 
 impl Pass<'_> {
@@ -123,8 +119,8 @@ impl Pass<'_> {
         coming: Option<Coming<'_>>,
     ) -> Ended {
         let (space, pool) = (self.space, &self.space.pool);
-        let increment = self.whole_if_shared(increment);
-        let increment = (increment.forces, space.parts(&increment.rest));
+        let Increment { forces, rest } = self.whole_if_shared(increment);
+        let rest = space.parts(&rest);
         let turning = self.turning(acting.turn);
         let [load, inertia] = [acting.load, acting.inertia].map(|x| x.map(|x| space.parts(x)));
         let coming = coming.map(|coming| self.by_groups(coming));
@@ -139,15 +135,16 @@ impl Pass<'_> {
             |group, [dw, mv, kw, field], [w, v, a, renewed, guess, solved]| {
                 let start = start.each_ref().map(|x| x.of(group));
                 let mut found = Found::default();
-                self.increment_part(group, &increment, dw);
+                self.answer_part(group, &forces, dw);
+                add(dw, rest.of(group));
+                let end = [&mut *w, &mut *v, &mut *a];
+                advance_part(self.integrator, self.dt, dw, start, end);
                 let dot = |load: &Parts<'_>| space.part_dot(group, load.of(group), dw);
                 found.works = [&load, &inertia].map(|load| load.as_ref().map_or(0.0, dot));
                 if let (Some(turning), Some(used)) = (turning, &inertia) {
-                    let buffers = [&mut *mv, &mut *kw, &mut *field];
-                    self.frame_part(turning, group, (start, Some(dw)), buffers, renewed);
-                    self.compare(group, [renewed, used.of(group)], field, &mut found);
+                    self.frame_part(turning, group, (start, Some(dw)), field, renewed);
+                    found.squares = self.compare(group, [renewed, used.of(group)], field);
                 }
-                advance_part(self.integrator, self.dt, dw, start, [&mut *w, &mut *v, &mut *a]);
                 found.energies = self.products(group, [w, v], [&mut *mv, &mut *kw]);
                 if let Some(coming) = &coming {
                     self.predict_part(group, coming, [w, v, a], [mv, kw, field], [guess, solved]);
@@ -166,7 +163,7 @@ impl Pass<'_> {
         Ended {
             state,
             works: total(&found, |f| f.works),
-            renewed: (renewed, self.change(&found)),
+            renewed: (renewed, change(&found)),
             next: coming.map(|_| Predicted {
                 solved,
                 inertia: guess,
@@ -199,23 +196,24 @@ impl Pass<'_> {
         predictor: &[f64],
     ) -> Turned {
         let (space, pool) = (self.space, &self.space.pool);
-        let increment = self.whole_if_shared(increment);
-        let increment = (increment.forces, space.parts(&increment.rest));
+        let Increment { forces, rest } = self.whole_if_shared(increment);
+        let rest = space.parts(&rest);
         let turning = (turn, space.frame(self.nodes));
         let [used, before] = [used, predictor].map(|x| space.parts(x));
         let start = old.vectors().map(|x| space.parts(x));
         let [mut inertia, mut solved] = [(); 2].map(|()| pool.take());
         let mut whole = pool.take_if(space.defect.as_ref());
         let vectors = [&mut inertia, &mut solved, &mut whole].map(|x| &mut x[..]);
-        let found = space.over_groups(vectors, |group, [dw, w, v, field], [renewed, solved, whole]| {
+        let found = space.over_groups(vectors, |group, [dw, field], [renewed, solved, whole]| {
             let start = start.each_ref().map(|x| x.of(group));
             let mut found = Found::default();
-            self.increment_part(group, &increment, dw);
+            self.answer_part(group, &forces, dw);
+            add(dw, rest.of(group));
             if !whole.is_empty() {
                 whole.copy_from_slice(dw);
             }
-            self.frame_part(turning, group, (start, Some(dw)), [w, v, &mut *field], renewed);
-            self.compare(group, [renewed, used.of(group)], solved, &mut found);
+            self.frame_part(turning, group, (start, Some(dw)), field, renewed);
+            found.squares = self.compare(group, [renewed, used.of(group)], solved);
             if !self.factor.solver.is_shared() {
                 self.solve_part(group, solved);
                 add(solved, before.of(group));
@@ -228,11 +226,17 @@ impl Pass<'_> {
         }
         Turned {
             inertia,
-            change: self.change(&found),
+            change: change(&found),
             predictor: solved,
             rows: space.defect.as_ref().map(|defect| defect.values(&whole)),
         }
     }
+}
+
+/// The change that all groups make.
+fn change(found: &[Found]) -> Change {
+    let [square, new_square] = total(found, |f| f.squares);
+    Change { square, new_square }
 }
 
 /// Sums over the groups, in their order.

@@ -147,15 +147,17 @@ pub(super) fn within_part(
     integrator: Integrator,
     dt: f64,
     dw: Option<&[f64]>,
-    [w0, v0, a0]: [&[f64]; 3],
-    [w, v]: [&mut [f64]; 2],
+    start: [&[f64]; 3],
+    to: [&mut [f64]; 2],
 ) {
     let s = 1.0 - integrator.alpha_f;
-    for i in 0..w.len() {
-        let d = dw.map_or(dt * v0[i], |dw| dw[i]);
-        let [v1, _] = integrator.update(dt, d, v0[i], a0[i]);
-        w[i] = w0[i] + s * d;
-        v[i] = v0[i] + s * (v1 - v0[i]);
+    let at = |d: f64, [w0, v0, a0]: [f64; 3]| {
+        let [v1, _] = integrator.update(dt, d, v0, a0);
+        [w0 + s * d, v0 + s * (v1 - v0)]
+    };
+    match dw {
+        Some(dw) => each(dw, start, to, at),
+        None => each(start[1], start, to, |v0, start| at(dt * v0, start)),
     }
 }
 
@@ -164,11 +166,43 @@ pub(super) fn advance_part(
     integrator: Integrator,
     dt: f64,
     dw: &[f64],
-    [w0, v0, a0]: [&[f64]; 3],
-    [w, v, a]: [&mut [f64]; 3],
+    start: [&[f64]; 3],
+    to: [&mut [f64]; 3],
 ) {
-    for (i, &d) in dw.iter().enumerate() {
-        [v[i], a[i]] = integrator.update(dt, d, v0[i], a0[i]);
-        w[i] = w0[i] + d;
+    each(dw, start, to, |d, [w0, v0, a0]| {
+        let [v, a] = integrator.update(dt, d, v0, a0);
+        [w0 + d, v, a]
+    });
+}
+
+/// Numbers that are read before any is written, so that the processor's vectors take them.
+const TOGETHER: usize = 8;
+
+/// The results `of` each number of x and of the start.
+#[inline(always)]
+fn each<const R: usize>(
+    x: &[f64],
+    start: [&[f64]; 3],
+    mut to: [&mut [f64]; R],
+    of: impl Fn(f64, [f64; 3]) -> [f64; R],
+) {
+    let end = x.len() - x.len() % TOGETHER;
+    for first in (0..end).step_by(TOGETHER) {
+        let range = first..first + TOGETHER;
+        let x: &[f64; TOGETHER] = x[range.clone()].try_into().expect("as many numbers");
+        let start: [&[f64; TOGETHER]; 3] =
+            start.map(|s| s[range.clone()].try_into().expect("as many numbers"));
+        let mut results = [[0.0; TOGETHER]; R];
+        for i in 0..TOGETHER {
+            let found = of(x[i], [start[0][i], start[1][i], start[2][i]]);
+            (0..R).for_each(|r| results[r][i] = found[r]);
+        }
+        for (to, results) in to.iter_mut().zip(&results) {
+            to[range.clone()].copy_from_slice(results);
+        }
+    }
+    for i in end..x.len() {
+        let found = of(x[i], start.map(|s| s[i]));
+        (0..R).for_each(|r| to[r][i] = found[r]);
     }
 }

@@ -8,7 +8,7 @@
 use std::sync::OnceLock;
 
 use mesh::NodePositions;
-use solver::cyclic::{HarmonicOperator, add_turned};
+use solver::cyclic::{HarmonicOperator, NODE_LEN, turned};
 use solver::{CyclicRing, SolverError};
 
 use super::coordinates::Coordinates;
@@ -256,21 +256,27 @@ impl HarmonicSpace {
         self.frame.get_or_init(|| self.frame_loads(nodes))
     }
 
-    /// One group of the generalised inertia load of the turning frame, see [`super::body::RingBody::frame_load`], at the displacement w and
-    /// the velocity v of the group; `field` is overwritten.
+    /// One group of the generalised inertia load of the turning frame, see [`super::body::RingBody::frame_load`]. `motion` gives
+    /// displacement and velocity of the numbers of the group from the first one on; `field` is overwritten.
     pub(super) fn frame_part(
         &self,
         (turn, known): (FrameTurn, &FrameLoads),
         group: usize,
-        [w, v]: [&[f64]; 2],
+        motion: impl Fn(usize, [&mut [f64]; 2]),
         field: &mut [f64],
         load: &mut [f64],
     ) {
         let (speed, acceleration, low) = (turn.speed, turn.acceleration, self.ring.low_len());
-        field.fill(0.0);
-        // J u = -e_z x u.
-        add_turned([speed * speed, -acceleration], &w[..low], &mut field[..low]);
-        add_turned([0.0, -2.0 * speed], &v[..low], &mut field[..low]);
+        let (harmonics, rows) = field.split_at_mut(low);
+        for (node, field) in harmonics.as_chunks_mut().0.iter_mut().enumerate() {
+            let [mut w, mut v] = [[0.0; NODE_LEN]; 2];
+            motion(NODE_LEN * node, [&mut w, &mut v]);
+            // J u = -e_z x u.
+            let own = w.map(|w| speed * speed * w);
+            let across = std::array::from_fn(|i| -acceleration * w[i] - 2.0 * speed * v[i]);
+            *field = turned(&own, &across);
+        }
+        rows.fill(0.0);
         self.mass.group_product(group, field, load);
         if group > 0 {
             return;
@@ -280,8 +286,9 @@ impl HarmonicSpace {
             terms.for_each(|(load, (p, j))| *load += own * p + turned * j);
         };
         add([speed * speed, acceleration], &known.position);
-        for (k, of_shaft) in known.shaft.iter().enumerate() {
-            let [q, rate] = [w[low + k], v[low + k]];
+        let [mut q, mut rate] = [(); 2].map(|()| vec![0.0; self.n_shaft]);
+        motion(low, [&mut q, &mut rate]);
+        for ((q, rate), of_shaft) in q.into_iter().zip(rate).zip(&known.shaft) {
             add(
                 [speed * speed * q, acceleration * q + 2.0 * speed * rate],
                 of_shaft,

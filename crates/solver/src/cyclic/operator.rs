@@ -10,7 +10,7 @@ use rayon::prelude::*;
 use super::factor::Symmetry;
 use super::matrix::CyclicMatrix;
 use super::mirrored::{Mirrored, MirroredProduct};
-use super::phases::{LANES, Lanes};
+use super::phases::{LANES, NODE_LEN};
 use super::ring::CyclicRing;
 use crate::error::SolverError;
 
@@ -140,49 +140,19 @@ impl CyclicRing {
         harmonic.extend_from_slice(border);
         harmonic
     }
-
-    /// What one group's part of a field, `[low_len()]`, adds to the sums of squares over the sectors at each section node, in the plane
-    /// and along the axis, in elimination order.
-    pub fn line_squares(&self, group: usize, part: &[f64]) -> Vec<[f64; 2]> {
-        let n = self.n_sectors();
-        let weights: Lanes = std::array::from_fn(|lane| {
-            let k = group * LANES + lane;
-            let once = k == 0 || 2 * k == n;
-            (if once { 1.0 } else { 2.0 }) / n as f64
-        });
-        let square = |numbers: &[f64]| -> f64 {
-            let lanes = numbers.chunks_exact(LANES);
-            lanes
-                .map(|x| {
-                    (0..LANES)
-                        .map(|lane| weights[lane] * x[lane] * x[lane])
-                        .sum::<f64>()
-                })
-                .sum()
-        };
-        let nodes = part.chunks_exact(6 * LANES);
-        nodes
-            .map(|node| [square(&node[..4 * LANES]), square(&node[4 * LANES..])])
-            .collect()
-    }
 }
 
-/// Adds `own` times the radial and azimuthal components of the field `x` to `y`, and `turned` times those components turned by a right
-/// angle about the axis, e_z x u; both whole nodes of harmonic space, such as a vector or its part of one group.
-///
-/// # Panics
-/// When the lengths disagree.
-pub fn add_turned([own, turned]: [f64; 2], x: &[f64], y: &mut [f64]) {
-    assert_eq!(x.len(), y.len(), "fields on the same nodes");
-    let node_len = 6 * LANES;
-    for (y, x) in y.chunks_exact_mut(node_len).zip(x.chunks_exact(node_len)) {
-        for lane in 0..LANES {
-            let [r, i, s, j] = [0, 1, 2, 3].map(|part| x[part * LANES + lane]);
-            // The azimuthal component is divided by i, so turning, (-u_t, u_r), is -i times the other one.
-            y[lane] += own * r + turned * j;
-            y[LANES + lane] += own * i - turned * s;
-            y[2 * LANES + lane] += own * s + turned * i;
-            y[3 * LANES + lane] += own * j - turned * r;
-        }
+/// The field at a section node in harmonic space with the radial and azimuthal components of x, and those of z turned by a right angle
+/// about the axis, e_z x z.
+pub fn turned(x: &[f64; NODE_LEN], z: &[f64; NODE_LEN]) -> [f64; NODE_LEN] {
+    let mut y = [0.0; NODE_LEN];
+    for lane in 0..LANES {
+        let [r, i, s, j] = [0, 1, 2, 3].map(|part| part * LANES + lane);
+        // The azimuthal component is divided by i, so turning, (-u_t, u_r), is -i times the other one.
+        y[r] = x[r] + z[j];
+        y[i] = x[i] - z[s];
+        y[s] = x[s] + z[i];
+        y[j] = x[j] - z[r];
     }
+    y
 }

@@ -6,6 +6,9 @@ use std::f64::consts::PI;
 /// solve on rings of 150 k and 410 k dof (AMD EPYC 9004, November 2026): the factor of a group then leaves the L2 cache.
 pub(crate) const LANES: usize = 4;
 
+/// Numbers of one section node in a group's part of a vector: real and imaginary parts of three components, `[3][2][LANES]`.
+pub const NODE_LEN: usize = 6 * LANES;
+
 /// One number per harmonic of a group.
 pub(crate) type Lanes = [f64; LANES];
 
@@ -41,8 +44,10 @@ impl Phases {
 
     /// (cos, sin) for harmonic `k`.
     pub(crate) fn of(&self, k: usize, q: i32) -> [f64; 2] {
-        let period = 2 * self.n_sectors as i64;
-        self.table[(k as i64 * i64::from(q)).rem_euclid(period) as usize]
+        let (place, period) = (k as i64 * i64::from(q), 2 * self.n_sectors as i64);
+        // Most are in the first period, and a division takes longer than the rest.
+        let inside = (0..period).contains(&place);
+        self.table[if inside { place } else { place.rem_euclid(period) } as usize]
     }
 
     /// Cosines and sines of a group; lanes beyond the last harmonic repeat it.

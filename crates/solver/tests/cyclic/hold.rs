@@ -159,8 +159,7 @@ fn a_border_beyond_the_lowest_harmonics_is_refused() {
     );
 }
 
-/// Wrong: a pass over the groups of harmonics would not find the solution that a solve of all finds, to the bit; or the bound of a sum of
-/// magnitudes, from the squares of each node's harmonics, would be too small.
+/// Wrong: a pass over the groups of harmonics would not find the solution that a solve of all finds, to the bit.
 #[test]
 fn one_group_after_the_other_is_solved_as_all_together() {
     for (ring, _) in rings() {
@@ -174,27 +173,12 @@ fn one_group_after_the_other_is_solved_as_all_together() {
         ring.ring.to_harmonic(&load, &mut harmonic);
         let (mut parts, mut row) = (harmonic.clone(), [0.7]);
         let low = ring.ring.low_len();
-        let mut lines = vec![[0.0; 2]; ring.ring.n_section_nodes()];
         for (group, part) in parts.chunks_exact_mut(low).enumerate() {
-            for (sum, square) in lines.iter_mut().zip(ring.ring.line_squares(group, part)) {
-                (0..2).for_each(|i| sum[i] += square[i]);
-            }
             let border = if group == 0 { &mut row[..] } else { &mut [] };
             whole.solve_group(group, part, border);
         }
         let mut expected_row = [0.7];
         whole.solve_harmonic(&mut [&mut harmonic], &mut expected_row);
         assert!(parts == harmonic && row == expected_row);
-
-        let squares: f64 = load.iter().map(|f| f * f).sum();
-        let found: f64 = lines.iter().flatten().sum();
-        assert!((found / squares - 1.0).abs() < 1e-12, "{found:e} of {squares:e}");
-        let sectors = ring.ring.n_sectors() as f64;
-        let bound: f64 = lines
-            .iter()
-            .map(|[p, a]| (2.0 * sectors * p).sqrt() + (sectors * a).sqrt())
-            .sum();
-        let sum: f64 = load.iter().map(|f| f.abs()).sum();
-        assert!(sum <= bound && bound < 3.0 * sum, "{sum:e} of {bound:e}");
     }
 }

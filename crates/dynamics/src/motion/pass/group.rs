@@ -5,7 +5,7 @@ use solver::cyclic::PartHarmonics;
 use super::super::ring_state::within_part;
 use super::super::space::FrameLoads;
 use super::super::vectors;
-use super::{Change, Coming, Cow, Found, FrameTurn, Increment, Parts, Pass, total};
+use super::{Coming, Cow, FrameTurn, Increment, Parts, Pass};
 
 /// A turning frame and what its inertia needs of the ring.
 pub(super) type Turning<'a> = (FrameTurn, &'a FrameLoads);
@@ -59,10 +59,11 @@ impl<'a> Pass<'a> {
         }
     }
 
-    pub(super) fn increment_part(
+    /// S^-1 of forces.
+    pub(super) fn answer_part(
         &self,
         group: usize,
-        (forces, rest): &(Option<(PartHarmonics<'_>, Vec<f64>)>, Parts<'_>),
+        forces: &Option<(PartHarmonics<'_>, Vec<f64>)>,
         dw: &mut [f64],
     ) {
         dw.fill(0.0);
@@ -72,7 +73,6 @@ impl<'a> Pass<'a> {
             rows.copy_from_slice(&border[..rows.len()]);
             self.solve_part(group, dw);
         }
-        add(dw, rest.of(group));
     }
 
     /// Inertia of the turning frame at the weighted time of a step from `[w, v, a]` with an increment, or at which the velocity stays.
@@ -81,11 +81,15 @@ impl<'a> Pass<'a> {
         turning: Turning<'_>,
         group: usize,
         (start, dw): ([&[f64]; 3], Option<&[f64]>),
-        [w, v, field]: [&mut [f64]; 3],
+        field: &mut [f64],
         load: &mut [f64],
     ) {
-        within_part(self.integrator, self.dt, dw, start, [&mut *w, &mut *v]);
-        self.space.frame_part(turning, group, [&*w, &*v], field, load);
+        let motion = |first: usize, to: [&mut [f64]; 2]| {
+            let range = first..first + to[0].len();
+            let start = start.map(|x| &x[range.clone()]);
+            within_part(self.integrator, self.dt, dw.map(|dw| &dw[range]), start, to);
+        };
+        self.space.frame_part(turning, group, motion, field, load);
     }
 
     /// M v and K w into `mv` and `kw`; twice the energies.
@@ -124,47 +128,16 @@ impl<'a> Pass<'a> {
         }
         if let Some(turning) = turning {
             // First guess: the velocity stays.
-            self.frame_part(*turning, group, ([w, v, a], None), [mv, kw, field], guess);
+            self.frame_part(*turning, group, ([w, v, a], None), field, guess);
             add(solved, guess);
         }
         self.solve_part(group, solved);
     }
 
-    /// The difference of a new load from the one used; adds both to the sums.
-    pub(super) fn compare(
-        &self,
-        group: usize,
-        [new, used]: [&[f64]; 2],
-        difference: &mut [f64],
-        found: &mut Found,
-    ) {
+    /// The difference of a new load from the one used; the squares of both.
+    pub(super) fn compare(&self, group: usize, [new, used]: [&[f64]; 2], difference: &mut [f64]) -> [f64; 2] {
         combine([1.0, -1.0], [new, used], difference);
-        found.squares = [&*difference, new].map(|x| self.space.part_dot(group, x, x));
-        let (harmonics, rows) = difference.split_at(self.space.ring.low_len());
-        found.lines = self.space.ring.line_squares(group, harmonics);
-        found.rows = rows.iter().map(|x| x.abs()).sum();
-    }
-
-    /// The change that all groups make.
-    pub(super) fn change(&self, found: &[Found]) -> Change {
-        let [square, new_square] = total(found, |f| f.squares);
-        let mut lines = vec![[0.0; 2]; self.space.ring.n_section_nodes()];
-        for group in found {
-            for (sum, part) in lines.iter_mut().zip(&group.lines) {
-                (0..2).for_each(|i| sum[i] += part[i]);
-            }
-        }
-        // Of n numbers with the sum of squares s the sum of magnitudes is at most the root of n s. In the plane it holds for the
-        // lengths of n vectors, whose components have at most root 2 times their length.
-        let n = self.space.ring.n_sectors() as f64;
-        let bound = lines
-            .iter()
-            .map(|[plane, axial]| (2.0 * n * plane).sqrt() + (n * axial).sqrt());
-        Change {
-            square,
-            bound: bound.sum::<f64>() + found.first().map_or(0.0, |first| first.rows),
-            new_square,
-        }
+        [&*difference, new].map(|x| self.space.part_dot(group, x, x))
     }
 }
 
