@@ -88,8 +88,12 @@ fn exchange(state: &mut MotionState, shape: &StateShape, port: &mut Port<'_>) ->
     Ok(())
 }
 
-/// Kinds of the vectors of a ring and how the names of their arrays end.
-const KINDS: [(&str, &str); 2] = [("coordinates", ""), ("harmonics", "_harmonics")];
+/// Kinds of the vectors of a ring and how the names of their arrays end; the last one is of earlier versions.
+const KINDS: [(&str, &str); 3] = [
+    ("coordinates", ""),
+    ("harmonics", "_harmonics_2"),
+    ("harmonics in another order", "_harmonics"),
+];
 
 fn ending(kind: &str) -> &'static str {
     let known = KINDS.into_iter().find(|(name, _)| *name == kind);
@@ -117,13 +121,9 @@ fn require_kind(arrays: &Arrays, side: &str, ring: Option<RingShape>) -> anyhow:
         return Ok(());
     };
     let name = |kind: &str| format!("{side}_w{}", ending(kind));
-    let other = KINDS
-        .map(|(kind, _)| kind)
-        .into_iter()
-        .find(|other| *other != kind);
-    if let Some(other) = other
-        && !arrays.contains_key(&name(kind))
-        && arrays.contains_key(&name(other))
+    let mut others = KINDS.map(|(kind, _)| kind).into_iter();
+    if !arrays.contains_key(&name(kind))
+        && let Some(other) = others.find(|other| arrays.contains_key(&name(other)))
     {
         return Err(anyhow!(
             "the state of the {side} ring is stored as {other}, expected {kind}: another version of raceway or another linear \
@@ -350,6 +350,14 @@ mod tests {
         let text = refused(&arrays, &harmonics);
         assert!(
             text.starts_with("the state of the inner ring is stored as coordinates, expected harmonics: "),
+            "{text}"
+        );
+        let mut earlier = arrays.clone();
+        let w = earlier.remove("inner_w").unwrap();
+        earlier.insert("inner_w_harmonics".to_string(), w);
+        let text = refused(&earlier, &harmonics);
+        assert!(
+            text.contains("stored as harmonics in another order, expected harmonics"),
             "{text}"
         );
         let mut other = arrays.clone();

@@ -99,6 +99,7 @@ impl Prepared {
         let why = match Periodic::new(ring, name, model.backend, &held)? {
             Ok(periodic) => {
                 let sectors = &periodic.held.sectors;
+                let moving = periodic.in_motion(ring, name)?;
                 let symmetry = sectors.ring.symmetry(&sectors.stiffness);
                 let memory = RingMemory::cyclic(
                     mesh,
@@ -115,7 +116,7 @@ impl Prepared {
                     matrix: Matrix::Cyclic(Box::new(Harmonics {
                         symmetry,
                         changes: periodic.defect.as_ref().map(|d| changes(mesh, &held, d)),
-                        motion: periodic.motion_sizes(&ring.mesh, n_mount(side, ring.hold)),
+                        motion: periodic.motion_sizes(mesh, &moving, n_mount(side, ring.hold)),
                         note: periodic.note(),
                         held: periodic.held,
                     })),

@@ -11,7 +11,7 @@ use solver::{Coupling, CyclicMatrix, CyclicRing, CyclicStencil, SolverError};
 use crate::defect::RingDefect;
 use crate::error::DynamicsError;
 use crate::memory::MotionSizes;
-use crate::model::{Backend, RACEWAY_GROUP, RingModel};
+use crate::model::{Backend, Hold, RACEWAY_GROUP, RingModel};
 use crate::point_stress::SectorOperator;
 use crate::regular::RegularRing;
 
@@ -199,10 +199,29 @@ impl Periodic {
         }
     }
 
-    /// What a motion of the ring holds whose mount has `n_mount` functionals.
-    pub fn motion_sizes(&self, mesh: &Mesh, n_mount: usize) -> MotionSizes {
+    /// The ring without its held nodes as it moves: its order ends with the nodes that contacts and mount touch, so that a step takes one
+    /// solve. Rings with a defect, whose rows are loaded as well, keep the order of rings at rest.
+    pub fn in_motion(&self, ring: &RingModel, side: &'static str) -> Result<CyclicRing, DynamicsError> {
+        let free = &self.held.sectors.ring;
+        if self.defect.is_some() {
+            return Ok(free.clone());
+        }
+        let mounted = match ring.hold {
+            Hold::MeanMotion => ring.mesh.group_nodes(ring.held_group),
+            Hold::Clamped | Hold::Free => Vec::new(),
+        };
+        let mut touched = free.section_nodes(mounted);
+        touched.extend(&self.held.raceway);
+        touched.sort_unstable();
+        touched.dedup();
+        free.ending_with(&touched)
+            .map_err(|source| DynamicsError::Solver { side, source })
+    }
+
+    /// What a motion of the ring holds as which `moving` moves and whose mount has `n_mount` functionals.
+    pub fn motion_sizes(&self, mesh: &Mesh, moving: &CyclicRing, n_mount: usize) -> MotionSizes {
         let (whole, held) = (&self.whole, &self.held);
-        let symmetry = held.sectors.ring.symmetry(&held.sectors.stiffness);
+        let symmetry = moving.symmetry(&held.sectors.stiffness);
         let n_sectors = whole.ring.n_sectors();
         let (touched, defect) = self.defect.as_ref().map_or((0, 0), |Defective { defect, .. }| {
             let touched = whole.ring.section_nodes(defect.nodes().iter().copied()).len();
@@ -215,7 +234,7 @@ impl Periodic {
             n_couplings: whole.stiffness.n_couplings(),
             n_responses: held.raceway.len() + touched,
             n_mount,
-            factor: held.sectors.ring.factor_bytes(symmetry) + defect,
+            factor: moving.factor_bytes(symmetry) + defect,
         }
     }
 

@@ -131,7 +131,8 @@ pub fn prepare(
         return Ok((RingMatrices::Cut(parts.clone()), Effective::Sectors(parts)));
     }
     match Periodic::new(ring, side, backend, &held_nodes(&ring.mesh, coordinates))? {
-        Ok(periodic) => {
+        Ok(mut periodic) => {
+            periodic.held.sectors.ring = periodic.in_motion(ring, side)?;
             let whole = &periodic.whole;
             let ring_of_mesh = periodic.whole_ring(&ring.mesh);
             let matrices = |of: &CyclicRing, defect| -> Result<RingMatrices, DynamicsError> {
@@ -142,7 +143,8 @@ pub fn prepare(
                     defect,
                 })
             };
-            let (note, sizes) = (periodic.note(), periodic.motion_sizes(&ring.mesh, 0));
+            let sizes = periodic.motion_sizes(&ring.mesh, &periodic.held.sectors.ring, 0);
+            let note = periodic.note();
             let (change, defect) = match periodic.defect {
                 Some(Defective { defect, regular }) => {
                     let of_regular = coordinates.of_mesh(&regular.mesh, &regular.held);

@@ -1,5 +1,8 @@
 //! Solves of a periodic ring that stay in harmonic space: the predictor of a step, what contacts and partner measure of it,
 //! and the increment under their forces. Only nodes that they touch are transformed in between.
+//!
+//! The predictor is the first half of a solve ([`solver::CyclicRing::ending_with`]), which has the motion of the touched nodes; forces on
+//! these come in, and the second half makes the increment. Of a ring with a defect the first half is all.
 
 use solver::LinearSolver;
 use solver::cyclic::{Defect, Loose, PartHarmonics};
@@ -11,9 +14,9 @@ use super::vectors::add;
 use crate::sparse::SparseLoad;
 
 impl CyclicFactor {
-    /// S^-1 of a generalised load in the space of the ring: harmonics of the free nodes, then the rows of the border, and what
+    /// The first half of S^-1 of a generalised load in the space of the ring: harmonics of the free nodes, then the rows of the border, and what
     /// [`solver::cyclic::Loose::take`] says of rows that the regular ring lacks.
-    pub fn solve(&self, space: &Space, mut load: Vec<f64>) -> Vec<f64> {
+    pub fn begin(&self, space: &Space, mut load: Vec<f64>) -> Vec<f64> {
         let mut x = match space {
             Space::Harmonic(_) => load,
             Space::Nodal => {
@@ -23,16 +26,29 @@ impl CyclicFactor {
                 x
             }
         };
-        self.solve_in_place(&mut x);
+        self.begin_in_place(&mut x);
         x
     }
 
     /// The same in place, harmonics and border.
-    pub(super) fn solve_in_place(&self, x: &mut [f64]) {
+    pub(super) fn begin_in_place(&self, x: &mut [f64]) {
+        let (harmonics, border) = self.split(x);
+        self.solver.begin_harmonic(harmonics, border);
+    }
+
+    /// The increment under the loads `x` on touched nodes and border beyond the predictor, in their place.
+    pub(super) fn finish_in_place(&self, x: &mut [f64], predictor: &[f64]) {
+        let (harmonics, border) = self.split(x);
+        self.solver.begin_trailing_harmonic(harmonics, border);
+        add(x, predictor);
+        self.solver.finish_harmonic(self.split(x).0);
+    }
+
+    /// Harmonics and border of a vector.
+    fn split<'x>(&self, x: &'x mut [f64]) -> (&'x mut [f64], &'x mut [f64]) {
         let (harmonics, border) = x.split_at_mut(self.solver.inner().ring().harmonic_len());
         let n_border = border.len() - self.loose().map_or(0, Loose::len);
-        self.solver
-            .solve_harmonic(&mut [harmonics], &mut border[..n_border]);
+        (harmonics, &mut border[..n_border])
     }
 
     /// Rows that the regular ring lacks.
@@ -92,7 +108,8 @@ impl CyclicFactor {
         (field.into_harmonics(), border)
     }
 
-    /// The predictor plus S^-1 of loads on touched nodes and border, index and value: in the space of the ring.
+    /// S^-1 of what the predictor is the first half of, and of loads on touched nodes and border, index and value: in the space of the
+    /// ring.
     pub fn increment(
         &self,
         space: &Space,
@@ -105,8 +122,7 @@ impl CyclicFactor {
         let (harmonics, border) = x.split_at_mut(ring.harmonic_len());
         forces.write(harmonics);
         border.copy_from_slice(&rows);
-        self.solve_in_place(&mut x);
-        add(&mut x, predictor);
+        self.finish_in_place(&mut x, predictor);
         match space {
             Space::Harmonic(_) => x,
             Space::Nodal => match self.loose() {

@@ -10,8 +10,8 @@
 //! dw = predictor + S^-1 W F; v, a; energies; ledger
 //! ```
 //!
-//! A periodic ring solves twice in a step, for the contact forces and for the known loads of the step that follows: in one pass over its
-//! harmonics (`pass`). Each round for the inertia of the turning frame is a pass as well.
+//! A periodic ring solves once in a step: one pass over its harmonics (`pass`) ends the solve of a step with the contact forces and begins that
+//! of the known loads of the step that follows. Each round for the inertia of the turning frame is a pass as well.
 
 mod ahead;
 pub mod balls;

@@ -1,12 +1,14 @@
-//! One pass over the harmonics of a periodic ring: the end of a step, and the solve that the next one begins with.
+//! One pass over the harmonics of a periodic ring: the end of a step, and the half of a solve that the next one begins with.
 //!
 //! Between the contact forces of a step and the motion of the raceway under the known loads of the next, no harmonic meets another.
 //! So one group of harmonics after the other goes all the way while it is in the cache, and its factor is read from memory once:
 //! ```text
-//! dw = predictor + S^-1 (forces of contacts and partner)
+//! dw = second half of S^-1 of predictor + first half of (forces of contacts and partner)
 //! w, v, a at the end; M v, K w, energies; work of the loads
-//! predictor of the next step = S^-1 (its known loads - K w + M (history))
+//! predictor of the next step = first half of S^-1 (its known loads - K w + M (history))
 //! ```
+//! The first half is a forward sweep, after which raceway and mount have moved as they do under these loads alone; forces on them take a
+//! solve of their own block, and the second half is a backward sweep ([`solver::cyclic`]). So a step takes one solve of a ring.
 //! The rows of the border go with the first group ([`parts`]). Sums over the groups are taken in their order. A predictor that is found on its own
 //! ([`Pass::predict`]: at the start, after a change of the step size, after a step file) comes from the same functions and has the
 //! same bits. Solves of a ring that ranks share are collective, so that there the parts of a pass follow each other for the whole ring.
@@ -37,11 +39,12 @@ pub(super) struct Pass<'a> {
     pub history: [[f64; 2]; 2],
 }
 
-/// The increment of a step, S^-1 (forces) + rest.
+/// The increment of a step.
 pub(super) struct Increment<'a> {
     /// Loads on touched nodes, and on the border.
     pub forces: Option<(PartHarmonics<'a>, Vec<f64>)>,
-    /// The predictor, or all of the increment, harmonics and border.
+    /// With forces the predictor, of which and of the forces the increment is the second half; else all of the increment. Harmonics and
+    /// border.
     pub rest: Cow<'a, [f64]>,
 }
 
@@ -64,7 +67,7 @@ pub(super) struct Coming<'a> {
 
 /// The answer of a ring to known loads.
 pub(super) struct Predicted {
-    /// S^-1 of the right-hand side.
+    /// The first half of S^-1 of the right-hand side: the motion of touched nodes and border.
     pub solved: PooledVector,
     /// First guess of the inertia of the turning frame; empty without one.
     pub inertia: PooledVector,
@@ -137,6 +140,7 @@ impl Pass<'_> {
                 let mut found = Found::default();
                 self.answer_part(group, &forces, dw);
                 add(dw, rest.of(group));
+                self.finish_part(group, &forces, dw);
                 let end = [&mut *w, &mut *v, &mut *a];
                 advance_part(self.integrator, self.dt, dw, start, end);
                 let dot = |load: &Parts<'_>| space.part_dot(group, load.of(group), dw);
@@ -153,7 +157,7 @@ impl Pass<'_> {
             },
         );
         if coming.is_some() {
-            self.solve_if_shared(&mut solved);
+            self.begin_if_shared(&mut solved);
         }
         let mut state = RingState::new(w, v, a);
         state.keep(total(&found, |f| f.energies).map(|twice| 0.5 * twice));
@@ -183,7 +187,7 @@ impl Pass<'_> {
             self.products(group, [w, v], [&mut *mv, &mut *kw]);
             self.predict_part(group, &coming, [w, v, a], [mv, kw, field], outs);
         });
-        self.solve_if_shared(&mut solved);
+        self.begin_if_shared(&mut solved);
         Predicted { solved, inertia }
     }
 
@@ -209,19 +213,20 @@ impl Pass<'_> {
             let mut found = Found::default();
             self.answer_part(group, &forces, dw);
             add(dw, rest.of(group));
+            self.finish_part(group, &forces, dw);
             if !whole.is_empty() {
                 whole.copy_from_slice(dw);
             }
             self.frame_part(turning, group, (start, Some(dw)), field, renewed);
             found.squares = self.compare(group, [renewed, used.of(group)], solved);
             if !self.factor.solver.is_shared() {
-                self.solve_part(group, solved);
+                self.begin_part(group, solved);
                 add(solved, before.of(group));
             }
             found
         });
         if self.factor.solver.is_shared() {
-            self.factor.solve_in_place(&mut solved);
+            self.factor.begin_in_place(&mut solved);
             vectors::add(&mut solved, predictor);
         }
         Turned {

@@ -63,7 +63,7 @@ pub struct RingStep {
 pub(super) enum Predictor {
     /// Itself, then the increments per unit contact force: column-major `[n][1 + 2 n_contacts]`.
     Columns(Vec<f64>),
-    /// Of the regular ring, harmonics and the rows of the border, and what a defect makes of it.
+    /// Of the regular ring, the first half of its solve, harmonics and the rows of the border, and what a defect makes of it.
     Harmonic(Arc<PooledVector>, Option<DefectStep>),
     /// As columns, by sector.
     Sectors(StepColumns),
@@ -146,7 +146,7 @@ impl RingFactor {
         let mut solved = None;
         let (predictor, moved, compliance) = match &self.factor {
             Factored::Cyclic(factor) => {
-                let predictor = factor.solve(&body.space, side);
+                let predictor = factor.begin(&body.space, side);
                 solved = Some(clock.elapsed().as_secs_f64());
                 let (defect, moved, compliance) = self.meet(
                     (body, Rows::Found(StepStart::first(state, None))),
@@ -291,7 +291,7 @@ impl RingFactor {
         let all: Vec<&SparseLoad> = step.contacts.iter().chain(&body.mount).collect();
         let moved: Vec<f64> = match (&self.factor, &mut step.predictor) {
             (Factored::Cyclic(factor), Predictor::Harmonic(predictor, correction)) => {
-                let more = factor.solve(&body.space, load);
+                let more = factor.begin(&body.space, load);
                 let whole: &mut PooledVector = Arc::make_mut(predictor);
                 add(whole, &more);
                 let mut moved = factor.measure(&more, &all);

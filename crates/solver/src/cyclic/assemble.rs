@@ -9,7 +9,7 @@ use super::number::{Complex, Form};
 use super::phases::LANES;
 use super::ring::{Link, Shared};
 
-/// Writes the lower triangle of a group's matrices, `A_k = sum of D^H C exp(i pi k q / N) D`, into the profile.
+/// Writes the lower triangle of a group's matrices, `A_k = sum of D^H C exp(i pi k q / N) D`, into the factor's blocks.
 pub(super) struct Fill<'a, F: Form> {
     pub(super) shared: &'a Shared,
     pub(super) matrix: &'a CyclicMatrix,
@@ -48,8 +48,10 @@ impl<F: Form> WithSimd for Fill<'_, F> {
         let len = 9 * F::PARTS * vectors;
         self.values.fill(0.0);
         let values = S::as_mut_simd_f64s(self.values).0;
-        for link in self.shared.links.iter().filter(|link| link.row >= link.column) {
-            let place = self.shared.profile.place(link.row, link.column);
+        for (link, &place) in self.shared.links.iter().zip(&self.shared.link_blocks) {
+            if link.row < link.column {
+                continue;
+            }
             let there = &mut values[place * len..][..len];
             let block = &self.matrix.blocks[link.block];
             let step = &phases[2 * vectors * link.step..][..2 * vectors];

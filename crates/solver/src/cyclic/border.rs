@@ -91,13 +91,23 @@ impl CyclicBordered {
     /// # Panics
     /// When the lengths are others.
     pub fn solve_harmonic(&self, columns: &mut [&mut [f64]], border: &mut [f64]) {
+        self.with_border(columns, border, |columns| self.factor.solve_harmonic(columns));
+    }
+
+    /// The border before and after the solves `solve` of the harmonics, the first group in full.
+    pub(super) fn with_border(
+        &self,
+        columns: &mut [&mut [f64]],
+        border: &mut [f64],
+        solve: impl FnOnce(&mut [&mut [f64]]),
+    ) {
         let m = self.schur.n();
         assert_eq!(border.len(), m * columns.len(), "{m} rows of border per column");
         let low = self.factor.ring().low_len();
         for (w, q) in columns.iter().zip(border.chunks_exact_mut(m.max(1))) {
             self.reduce_border(&w[..low], q);
         }
-        self.factor.solve_harmonic(columns);
+        solve(columns);
         for (w, q) in columns.iter_mut().zip(border.chunks_exact(m.max(1))) {
             self.follow_border(q, &mut w[..low]);
         }

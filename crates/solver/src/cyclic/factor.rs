@@ -7,11 +7,12 @@ use pulp::Arch;
 use rayon::prelude::*;
 
 use super::assemble::Fill;
-use super::kernel::{Factorise, Solve};
+use super::kernel::Factorise;
 use super::matrix::CyclicMatrix;
 use super::number::{Form, Hermitian, Real};
 use super::phases::LANES;
 use super::ring::{CyclicRing, Link};
+use super::sweep::Sweeps;
 use crate::error::SolverError;
 use crate::linear_solver::LinearSolver;
 
@@ -32,7 +33,7 @@ pub struct CyclicCholesky {
     symmetry: Symmetry,
     hold: Hold,
     /// Groups of this rank, `[n_groups][n_blocks][3][3][parts][LANES]`.
-    values: Vec<f64>,
+    pub(super) values: Vec<f64>,
 }
 
 /// What the harmonics are.
@@ -94,7 +95,7 @@ impl CyclicRing {
 
     /// Bytes of a factor's values, known before anything is factored: to compare with [`crate::Symbolic::factor_bytes`].
     pub fn factor_bytes(&self, symmetry: Symmetry) -> usize {
-        let group = 9 * symmetry.parts() * LANES * self.shared.profile.n_blocks();
+        let group = 9 * symmetry.parts() * LANES * self.shared.rows.n_blocks();
         size_of::<f64>() * group * self.shared.phases.n_groups()
     }
 
@@ -102,7 +103,7 @@ impl CyclicRing {
     /// [`crate::Symbolic::flops`]: few wide sectors can cost more than the ring as a whole.
     pub fn flops(&self, symmetry: Symmetry) -> f64 {
         let per_product = (54 * symmetry.parts() * symmetry.parts()) as f64;
-        per_product * self.shared.profile.n_products() as f64 * self.shared.phases.n_harmonics() as f64
+        per_product * self.shared.rows.n_products() as f64 * self.shared.phases.n_harmonics() as f64
     }
 
     /// What the harmonics of a matrix are: the section is its own mirror image when the block at the angle of a
@@ -138,7 +139,7 @@ impl CyclicRing {
         mut values: Vec<f64>,
     ) -> Result<CyclicCholesky, SolverError> {
         let shared = &self.shared;
-        let group_len = 9 * F::PARTS * LANES * shared.profile.n_blocks();
+        let group_len = 9 * F::PARTS * LANES * shared.rows.n_blocks();
         let own = self.own_groups();
         let len = group_len * own.len();
         values.truncate(len);
@@ -165,7 +166,7 @@ impl CyclicRing {
                 }
                 let mut ratios = vec![0.0; 3 * LANES * self.n_section_nodes()];
                 arch.dispatch(Factorise::<F> {
-                    profile: &shared.profile,
+                    rows: &shared.rows,
                     values,
                     ratios: &mut ratios,
                     form: PhantomData,
@@ -191,11 +192,11 @@ impl CyclicRing {
     /// Doubles the diagonal entries of the node eliminated last that hold the ring: (azimuthal, axial) in
     /// harmonic 0, (radial, axial) in harmonic 1.
     fn add_springs<F: Form>(&self, values: &mut [f64]) {
-        let profile = &self.shared.profile;
-        let Some(last) = profile.n().checked_sub(1) else {
+        let rows = &self.shared.rows;
+        let Some(last) = rows.n().checked_sub(1) else {
             return;
         };
-        let block = &mut values[profile.place(last, last) * 9 * F::PARTS * LANES..];
+        let block = &mut values[rows.place(last, last) * 9 * F::PARTS * LANES..];
         for (harmonic, component) in [(0, 1), (0, 2), (1, 0), (1, 2)] {
             block[4 * component * F::PARTS * LANES + harmonic] *= 2.0;
         }
@@ -275,6 +276,15 @@ impl CyclicCholesky {
     /// # Panics
     /// When a column has another length.
     pub fn solve_harmonic(&self, columns: &mut [&mut [f64]]) {
+        self.sweep_harmonic(columns, |_| Sweeps::Whole);
+    }
+
+    /// The sweeps `of_group` in each group; of a ring that ranks share collective as a solve.
+    pub(super) fn sweep_harmonic(
+        &self,
+        columns: &mut [&mut [f64]],
+        of_group: impl Fn(usize) -> Sweeps + Sync,
+    ) {
         for column in columns.iter() {
             assert_eq!(
                 column.len(),
@@ -299,10 +309,7 @@ impl CyclicCholesky {
         groups
             .into_par_iter()
             .enumerate()
-            .for_each(|(place, columns)| match self.symmetry {
-                Symmetry::Mirrored => self.solve_group::<Real>(place, columns),
-                Symmetry::None => self.solve_group::<Hermitian>(place, columns),
-            });
+            .for_each(|(place, columns)| self.sweep(place, columns, of_group(own.start + place)));
         let comm = self.ring.comm;
         if comm.size() > 1 {
             let shares = comm.shares(self.ring.shared.phases.n_groups());
@@ -326,39 +333,6 @@ impl CyclicCholesky {
         let length = |share: &Range<usize>| if share.contains(&0) { low.len() } else { 0 };
         let lengths: Vec<usize> = shares.iter().map(length).collect();
         low.copy_from_slice(&comm.all_gather(solved, &lengths));
-    }
-
-    /// Solves one right-hand side for one group, by its place among those of this rank.
-    pub(super) fn solve_one(&self, place: usize, column: &mut [f64]) {
-        match self.symmetry {
-            Symmetry::Mirrored => self.solve_group::<Real>(place, vec![column]),
-            Symmetry::None => self.solve_group::<Hermitian>(place, vec![column]),
-        }
-    }
-
-    /// Solves one group, by its place among those of this rank, two right-hand sides at a time.
-    fn solve_group<F: Form>(&self, group: usize, columns: Vec<&mut [f64]>) {
-        let profile = &self.ring.shared.profile;
-        let group_len = 9 * F::PARTS * LANES * profile.n_blocks();
-        let values = &self.values[group * group_len..(group + 1) * group_len];
-        let (arch, form) = (Arch::new(), PhantomData);
-        let mut columns = columns.into_iter();
-        while let Some(first) = columns.next() {
-            match columns.next() {
-                Some(second) => arch.dispatch(Solve::<F, 2> {
-                    profile,
-                    values,
-                    columns: [first, second],
-                    form,
-                }),
-                None => arch.dispatch(Solve::<F, 1> {
-                    profile,
-                    values,
-                    columns: [first],
-                    form,
-                }),
-            }
-        }
     }
 }
 

@@ -17,6 +17,9 @@
 //! harmonic space: solve, product, scalar product, loads and displacements of single nodes are there; output needs a
 //! transform.
 //!
+//! **Order.** Section nodes are eliminated in the order, of several, whose factor has the fewest blocks (`order`). It can end with chosen nodes
+//! ([`CyclicRing::ending_with`]): a solve then comes in two halves, between which loads on these nodes come in (`halves`).
+//!
 //! **Bits.** The work on one group is sequential and groups write to places of their own, so results are the same
 //! for any number of threads. They do depend on the processor's vector instructions (fused multiply-add).
 //!
@@ -37,23 +40,28 @@ mod assemble;
 mod border;
 mod defect;
 mod factor;
+mod factor_rows;
+mod halves;
 mod kernel;
+mod least_fill;
 mod loose;
 mod matrix;
 mod mirrored;
 mod number;
 mod operator;
+mod order;
 mod part_field;
 mod patch;
 mod pattern;
 mod phases;
 mod product;
-mod profile;
 mod response;
 mod ring;
 mod row_responses;
 mod sites;
+mod sloan;
 mod stencil;
+mod sweep;
 mod transform;
 
 pub use border::CyclicBordered;

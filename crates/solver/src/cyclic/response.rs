@@ -4,7 +4,8 @@
 //! of sector 0. The compliance between two patches of nodal weights w and v is then
 //! `sum over p, q of w_p^T G_{s_p - s_q} v_q`: small products in place of solves.
 //!
-//! Cost: 3 n solves in harmonic space and 9 n^2 inverse FFTs for n chosen nodes. Memory: 9 N n^2 numbers, 5 MB for 10 nodes
+//! Cost: 3 n solves in harmonic space, of that part of the factor which begins with the first chosen node, and 9 n^2 inverse FFTs for
+//! n chosen nodes. Memory: 9 N n^2 numbers, 5 MB for 10 nodes
 //! and 720 sectors.
 
 use pulp::Arch;
@@ -15,6 +16,7 @@ use super::factor::CyclicCholesky;
 use super::patch::{BEYOND, Compliance, Patch};
 use super::phases::LANES;
 use super::ring::CyclicRing;
+use super::sweep::Sweeps;
 use super::transform::{Spectrum, restore_line};
 
 /// Unit loads solved for at a time.
@@ -213,6 +215,8 @@ fn spectra(factor: &CyclicCholesky, places: &[usize]) -> Vec<Spectrum> {
     let index = |k: usize, dof: usize| {
         (k / LANES) * group_len + 2 * LANES * (3 * places[dof / 3] + dof % 3) + k % LANES
     };
+    // Only what follows the first of them in the order is needed.
+    let first_place = places.iter().copied().min().unwrap_or(0);
     let mut spectra = Vec::with_capacity(n_dofs * n_dofs * n_harmonics);
     let mut columns = vec![0.0; len * COLUMNS.min(n_dofs)];
     for first in (0..n_dofs).step_by(COLUMNS) {
@@ -222,7 +226,8 @@ fn spectra(factor: &CyclicCholesky, places: &[usize]) -> Vec<Spectrum> {
         for (column, force) in used.chunks_exact_mut(len).zip(forces) {
             (0..n_harmonics).for_each(|k| column[index(k, force)] = 1.0);
         }
-        factor.solve_harmonic(&mut used.chunks_exact_mut(len).collect::<Vec<_>>());
+        let mut used_columns: Vec<&mut [f64]> = used.chunks_exact_mut(len).collect();
+        factor.sweep_harmonic(&mut used_columns, |_| Sweeps::Trailing(first_place));
         for column in used.chunks_exact(len) {
             for dof in 0..n_dofs {
                 spectra.extend((0..n_harmonics).map(|k| {

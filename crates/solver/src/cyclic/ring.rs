@@ -8,10 +8,11 @@ use std::sync::Arc;
 use comm::Communicator;
 use realfft::{ComplexToReal, RealFftPlanner, RealToComplex};
 
+use super::factor_rows::FactorRows;
 use super::matrix::{CyclicMatrix, check_ascending};
+use super::order::ordered;
 use super::pattern::CyclicPattern;
 use super::phases::{LANES, Phases};
-use super::profile::{Profile, ordered};
 use crate::error::SolverError;
 use crate::permutation::invert;
 
@@ -32,7 +33,10 @@ pub(crate) struct Shared {
     pub(crate) pattern: Arc<CyclicPattern>,
     /// Place of every section node.
     pub(crate) place: Vec<usize>,
-    pub(crate) profile: Profile,
+    /// Blocks of the factor.
+    pub(crate) rows: FactorRows,
+    /// First place of the nodes that trail, see [`CyclicRing::ending_with`].
+    pub(crate) trailing: usize,
     /// Half sectors from the first plane to the node, 0 or 1, by place.
     pub(crate) halves: Vec<i32>,
     /// Whether the offsets are known, so that the section may be its own mirror image.
@@ -50,6 +54,8 @@ pub(crate) struct Shared {
     pub(crate) steps: Vec<i32>,
     /// Couplings by (row, step), which the products run over.
     pub(crate) links: Vec<Link>,
+    /// Block of the factor of each link, `usize::MAX` of those above the diagonal.
+    pub(crate) link_blocks: Vec<usize>,
     pub(crate) forward: Arc<dyn RealToComplex<f64>>,
     pub(crate) inverse: Arc<dyn ComplexToReal<f64>>,
 }
@@ -81,12 +87,22 @@ impl CyclicRing {
         directions: &[[f64; 2]],
         half_way: Option<&[bool]>,
     ) -> Result<CyclicRing, SolverError> {
-        let pattern = matrix.pattern.clone();
+        CyclicRing::arranged(matrix.pattern.clone(), nodes, directions, half_way, &[])
+    }
+
+    /// The same with the section nodes `last` at the end of the order, when there are any.
+    fn arranged(
+        pattern: Arc<CyclicPattern>,
+        nodes: &[usize],
+        directions: &[[f64; 2]],
+        half_way: Option<&[bool]>,
+        last: &[usize],
+    ) -> Result<CyclicRing, SolverError> {
         let (n_sectors, width) = (pattern.n_sectors, pattern.n_section_nodes);
         assert_eq!(nodes.len(), n_sectors * width, "one node per site");
         assert_eq!(directions.len(), nodes.len(), "one direction per node");
         invert(nodes, nodes.len())?;
-        let (order, profile) = ordered(&pattern.neighbours());
+        let (order, rows) = ordered(&pattern.neighbours(), last);
         let halves: Vec<i32> = match half_way {
             None => vec![0; width],
             Some(half_way) => {
@@ -97,6 +113,10 @@ impl CyclicRing {
         let mut place = vec![0; width];
         order.iter().enumerate().for_each(|(k, &node)| place[node] = k);
         let (steps, links) = links(&pattern, &place, &halves);
+        let block = |link: &Link| match link.row < link.column {
+            true => usize::MAX,
+            false => rows.place(link.row, link.column),
+        };
         let nodes: Vec<usize> = nodes
             .chunks_exact(width.max(1))
             .flat_map(|sector| order.iter().map(|&node| sector[node]))
@@ -117,15 +137,49 @@ impl CyclicRing {
                 forward: planner.plan_fft_forward(n_sectors),
                 inverse: planner.plan_fft_inverse(n_sectors),
                 may_be_mirrored: half_way.is_some(),
+                trailing: if last.is_empty() { 0 } else { width - last.len() },
+                link_blocks: links.iter().map(block).collect(),
                 pattern,
                 place,
-                profile,
+                rows,
                 halves,
                 nodes,
                 steps,
                 links,
             }),
         })
+    }
+
+    /// The same ring in an order that ends with the section nodes `last` (distinct): loads on them can then be added to a solve between its
+    /// forward and its backward sweep ([`super::CyclicBordered::begin_group`]). Vectors in harmonic space have another order. None: as
+    /// [`CyclicRing::new`] makes it. Not for a ring [`CyclicRing::seen_at`] some of its nodes.
+    ///
+    /// # Panics
+    /// When a section node does not exist or comes twice, or a node of the ring is not seen.
+    pub fn ending_with(&self, last: &[usize]) -> Result<CyclicRing, SolverError> {
+        let (shared, width) = (&self.shared, self.n_section_nodes());
+        assert!(!self.shared.nodes.contains(&ABSENT), "all nodes are seen");
+        let mut sorted = last.to_vec();
+        sorted.sort_unstable();
+        check_ascending(&sorted, width);
+        let sectors = shared.nodes.chunks_exact(width.max(1));
+        let nodes: Vec<usize> = sectors
+            .flat_map(|sector| shared.place.iter().map(|&place| sector[place]))
+            .collect();
+        let directions: Vec<[f64; 2]> = shared.sites.iter().map(|&site| shared.directions[site]).collect();
+        let half_way: Vec<bool> = shared
+            .place
+            .iter()
+            .map(|&place| shared.halves[place] == 1)
+            .collect();
+        let half_way = shared.may_be_mirrored.then_some(half_way.as_slice());
+        let ring = CyclicRing::arranged(shared.pattern.clone(), &nodes, &directions, half_way, last)?;
+        Ok(ring.shared_by(self.comm))
+    }
+
+    /// First place of the nodes that trail in the order of a group: the first group is solved in full.
+    pub(super) fn trailing(&self, group: usize) -> usize {
+        if group == 0 { 0 } else { self.shared.trailing }
     }
 
     /// The ring whose groups of harmonics are dealt out to the ranks of `comm`, in equal runs: each factors and solves its own. Vectors

@@ -3,6 +3,7 @@
 #[path = "../common/mod.rs"]
 mod common;
 mod defect;
+mod halves;
 mod hold;
 mod rings;
 mod solve;

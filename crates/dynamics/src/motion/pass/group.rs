@@ -4,7 +4,6 @@ use solver::cyclic::PartHarmonics;
 
 use super::super::ring_state::within_part;
 use super::super::space::FrameLoads;
-use super::super::vectors;
 use super::{Coming, Cow, FrameTurn, Increment, Parts, Pass};
 
 /// A turning frame and what its inertia needs of the ring.
@@ -34,8 +33,7 @@ impl<'a> Pass<'a> {
                 let (harmonics, rows) = dw.split_at_mut(self.space.ring.harmonic_len());
                 loads.write(harmonics);
                 rows.copy_from_slice(&border);
-                self.factor.solve_in_place(&mut dw);
-                vectors::add(&mut dw, &increment.rest);
+                self.factor.finish_in_place(&mut dw, &increment.rest);
                 Increment {
                     forces: None,
                     rest: Cow::Owned(dw),
@@ -45,21 +43,22 @@ impl<'a> Pass<'a> {
         }
     }
 
-    pub(super) fn solve_if_shared(&self, side: &mut [f64]) {
+    /// The first half of S^-1 of a ring that ranks share.
+    pub(super) fn begin_if_shared(&self, side: &mut [f64]) {
         if self.factor.solver.is_shared() {
-            self.factor.solve_in_place(side);
+            self.factor.begin_in_place(side);
         }
     }
 
-    /// S^-1 of one group, but of a ring that ranks share.
-    pub(super) fn solve_part(&self, group: usize, part: &mut [f64]) {
+    /// The first half of S^-1 of one group, but of a ring that ranks share.
+    pub(super) fn begin_part(&self, group: usize, part: &mut [f64]) {
         if !self.factor.solver.is_shared() {
             let (harmonics, border) = part.split_at_mut(self.space.ring.low_len());
-            self.factor.solver.solve_group(group, harmonics, border);
+            self.factor.solver.begin_group(group, harmonics, border);
         }
     }
 
-    /// S^-1 of forces.
+    /// The first half of S^-1 of forces.
     pub(super) fn answer_part(
         &self,
         group: usize,
@@ -67,11 +66,24 @@ impl<'a> Pass<'a> {
         dw: &mut [f64],
     ) {
         dw.fill(0.0);
+        let (harmonics, rows) = dw.split_at_mut(self.space.ring.low_len());
         if let Some((loads, border)) = forces {
-            let (harmonics, rows) = dw.split_at_mut(self.space.ring.low_len());
             loads.write_group(group, harmonics);
             rows.copy_from_slice(&border[..rows.len()]);
-            self.solve_part(group, dw);
+            self.factor.solver.begin_trailing_group(group, harmonics, rows);
+        }
+    }
+
+    /// The increment, of the first half of forces and predictor.
+    pub(super) fn finish_part(
+        &self,
+        group: usize,
+        forces: &Option<(PartHarmonics<'_>, Vec<f64>)>,
+        dw: &mut [f64],
+    ) {
+        if forces.is_some() {
+            let low = self.space.ring.low_len();
+            self.factor.solver.finish_group(group, &mut dw[..low]);
         }
     }
 
@@ -100,7 +112,7 @@ impl<'a> Pass<'a> {
         [space.part_dot(group, v, mv), space.part_dot(group, w, kw)]
     }
 
-    /// S^-1 of the known loads of the next step, M (m0 v + m1 a) + K (k0 v + k1 a - w) + load + inertia, into `solved`; `mv` and `kw`
+    /// The first half of S^-1 of the known loads of the next step, M (m0 v + m1 a) + K (k0 v + k1 a - w) + load + inertia, into `solved`; `mv` and `kw`
     /// are the products of [`Pass::products`], and are overwritten.
     pub(super) fn predict_part(
         &self,
@@ -131,7 +143,7 @@ impl<'a> Pass<'a> {
             self.frame_part(*turning, group, ([w, v, a], None), field, guess);
             add(solved, guess);
         }
-        self.solve_part(group, solved);
+        self.begin_part(group, solved);
     }
 
     /// The difference of a new load from the one used; the squares of both.

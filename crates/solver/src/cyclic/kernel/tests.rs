@@ -1,7 +1,8 @@
 //! The kernels on plain numbers and in vector registers.
 
 use super::super::number::{Hermitian, Real};
-use super::super::profile::ordered;
+use super::super::order::ordered;
+use super::super::sweep::{Solve, Sweeps};
 use super::*;
 
 /// Numbers between -1 and 1 by a fixed rule.
@@ -15,12 +16,12 @@ fn numbers(n: usize) -> Vec<f64> {
 /// Solution of one system by the processor's registers or, with `simd`, by plain numbers.
 fn solution<F: Form>(simd: Option<pulp::Scalar>) -> Vec<f64> {
     let neighbours = vec![vec![1, 3], vec![0, 2], vec![1, 3, 4], vec![0, 2], vec![2]];
-    let (_, profile) = ordered(&neighbours);
-    let n = profile.n();
+    let (_, rows) = ordered(&neighbours, &[]);
+    let n = rows.n();
     let len = 9 * F::PARTS * LANES;
-    let mut values = numbers(len * profile.n_blocks());
+    let mut values = numbers(len * rows.n_blocks());
     for i in 0..n {
-        let diagonal = &mut values[profile.place(i, i) * len..][..len];
+        let diagonal = &mut values[rows.place(i, i) * len..][..len];
         for component in 0..3 {
             let entry = &mut diagonal[4 * component * F::PARTS * LANES..][..F::PARTS * LANES];
             entry[..LANES].iter_mut().for_each(|x| *x += 40.0);
@@ -30,7 +31,7 @@ fn solution<F: Form>(simd: Option<pulp::Scalar>) -> Vec<f64> {
     let mut ratios = vec![0.0; 3 * LANES * n];
     let mut x = numbers(6 * LANES * n);
     let factorise = Factorise::<F> {
-        profile: &profile,
+        rows: &rows,
         values: &mut values,
         ratios: &mut ratios,
         form: PhantomData,
@@ -41,9 +42,10 @@ fn solution<F: Form>(simd: Option<pulp::Scalar>) -> Vec<f64> {
     }
     assert!(ratios.iter().all(|&ratio| ratio > 0.5 && ratio <= 1.0));
     let solve = Solve::<F, 1> {
-        profile: &profile,
+        rows: &rows,
         values: &values,
         columns: [&mut x],
+        sweeps: Sweeps::Whole,
         form: PhantomData,
     };
     match simd {
