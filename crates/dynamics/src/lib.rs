@@ -30,6 +30,7 @@ pub mod rank_memory;
 pub mod regular;
 pub mod ring;
 pub mod schedule;
+mod sector_stress;
 pub mod sectors;
 pub mod shared_stress;
 pub mod solution;

@@ -8,7 +8,7 @@ use solver::CyclicStencil;
 
 use crate::error::DynamicsError;
 use crate::model::{Backend, RingModel};
-use crate::sectors::stress_operator;
+use crate::sector_stress::stress_operator;
 
 /// What the stress at the nodes of a ring takes.
 pub enum NodalStress {

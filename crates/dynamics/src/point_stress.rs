@@ -7,7 +7,7 @@ use solver::cyclic::PointStencil;
 
 use crate::error::DynamicsError;
 use crate::model::{Backend, RingModel};
-use crate::sectors::point_operator;
+use crate::sector_stress::point_operator;
 
 /// What the stress at the integration points of a ring takes.
 pub struct PointStress {

@@ -6,13 +6,12 @@
 use fem::SectorCoupling;
 use mesh::{Mesh, Periodicity};
 use solver::cyclic::RowResponses;
-use solver::{Coupling, CyclicMatrix, CyclicRing, CyclicStencil, SolverError};
+use solver::{Coupling, CyclicMatrix, CyclicRing, SolverError};
 
 use crate::defect::RingDefect;
 use crate::error::DynamicsError;
 use crate::memory::MotionSizes;
 use crate::model::{Backend, Hold, RACEWAY_GROUP, RingModel};
-use crate::point_stress::SectorOperator;
 use crate::regular::RegularRing;
 
 /// Sectors from which on harmonics pay: a few wide ones cost more than the ring as a whole.
@@ -257,7 +256,7 @@ impl Sectors {
         }
     }
 
-    fn assemble(
+    pub(crate) fn assemble(
         ring: &RingModel,
         mesh: &Mesh,
         periodicity: &Periodicity,
@@ -356,52 +355,8 @@ pub fn usable(ring: &RingModel) -> Result<usize, String> {
     }
 }
 
-/// The operator of the stress at the nodes, Pa, of a ring that harmonics can solve; None of any other.
-pub fn stress_operator(
-    ring: &RingModel,
-    recovery: &fem::StressRecovery,
-    side: &'static str,
-) -> Result<Option<CyclicStencil>, DynamicsError> {
-    let (Ok(_), Ok(periodicity)) = (usable(ring), ring.periodicity()) else {
-        return Ok(None);
-    };
-    let whole = Sectors::assemble(ring, &ring.mesh, periodicity, side)?;
-    let stress = recovery.sector(&ring.mesh, periodicity);
-    let weights = stress.weights.as_flattened().as_flattened();
-    Ok(Some(whole.ring.stencil(
-        6,
-        &couplings(&stress.couplings),
-        weights,
-    )))
-}
-
-/// The operator of the stress at the integration points, Pa, of a ring that harmonics can solve and whose elements are alike; None of any
-/// other.
-pub(crate) fn point_operator(
-    ring: &RingModel,
-    recovery: &fem::StressRecovery,
-    side: &'static str,
-) -> Result<Option<SectorOperator>, DynamicsError> {
-    let (Ok(_), Ok(periodicity)) = (usable(ring), ring.periodicity()) else {
-        return Ok(None);
-    };
-    let Some(stress) = recovery.sector_points(&ring.mesh, periodicity) else {
-        return Ok(None);
-    };
-    let whole = Sectors::assemble(ring, &ring.mesh, periodicity, side)?;
-    let n_points = stress.points_per_element;
-    let classes = (n_points * periodicity.elements().len(), n_points);
-    let weights = stress.weights.as_flattened().as_flattened();
-    Ok(Some(SectorOperator {
-        operator: whole
-            .ring
-            .point_stencil(classes, &couplings(&stress.couplings), weights),
-        elements: stress.elements,
-    }))
-}
-
 /// Couplings as the solver has them.
-fn couplings(couplings: &[SectorCoupling]) -> Vec<Coupling> {
+pub(crate) fn couplings(couplings: &[SectorCoupling]) -> Vec<Coupling> {
     let coupling = |c: &SectorCoupling| Coupling {
         row: c.row,
         column: c.column,
