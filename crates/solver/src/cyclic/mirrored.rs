@@ -16,6 +16,7 @@ use super::matrix::CyclicMatrix;
 use super::number::Complex;
 use super::phases::LANES;
 use super::ring::Shared;
+use super::sloan::sloan_orders;
 
 /// A matrix of mirrored sections, prepared for products.
 #[derive(Clone, Debug)]
@@ -73,7 +74,8 @@ impl Mirrored {
             });
             links.push((link.row, step.abs(), link.column, signed));
         }
-        links.sort_by_key(|&(row, step, column, _)| (row, step, column));
+        let rank = local_order(shared);
+        links.sort_by_key(|&(row, step, column, _)| (rank[row], step, rank[column]));
         let mut steps: Vec<i32> = links.iter().map(|link| link.1).collect();
         steps.sort_unstable();
         steps.dedup();
@@ -105,6 +107,18 @@ impl Mirrored {
     pub(super) fn bytes(&self) -> usize {
         size_of::<Pair>() * self.pairs.capacity() + size_of::<Run>() * self.runs.capacity()
     }
+}
+
+/// Rank of each place in an order that keeps neighbours together, for the cache: elimination may take nodes from anywhere.
+fn local_order(shared: &Shared) -> Vec<usize> {
+    let neighbours = shared.pattern.neighbours();
+    let order = sloan_orders(&neighbours).swap_remove(0);
+    let mut rank = vec![0; order.len()];
+    order
+        .iter()
+        .enumerate()
+        .for_each(|(k, &node)| rank[shared.place[node]] = k);
+    rank
 }
 
 impl Pair {

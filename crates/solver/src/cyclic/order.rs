@@ -1,9 +1,10 @@
 //! Elimination order of a section's nodes: of several, the one whose factor has the fewest blocks.
 //!
-//! Every solve reads each block twice, so blocks count, not the operations of the factorisation. Orders tried are those of least
-//! fill ([`super::least_fill`]) and Sloan's ([`super::sloan`]), which is the only one of very large sections. On a grid of n by m
-//! nodes, m < n, the least fill has 0.9 to 1.0 times the blocks of counting across the shorter side. A line of nodes along the longer side
-//! that is to come last costs 6 % more blocks of 19 by 9 nodes and 45 % of 21 by 4.
+//! Every solve reads each block twice, so blocks count, not the operations of the factorisation. Orders are Sloan's ([`super::sloan`]),
+//! in which neighbours stand together: products and stress at the nodes run through the nodes in that order, and orders of least fill
+//! would make them 1.3 to 1.9 times as slow for 0 to 7 % fewer blocks. Where nodes are to come last, in motion, orders of least
+//! fill ([`super::least_fill`]) are tried as well: a line of nodes along the longer side then costs 6 % more blocks of 19 by 9 nodes and
+//! 45 % of 21 by 4.
 
 use super::factor_rows::{FactorRows, Memory};
 use super::least_fill::least_fill;
@@ -30,7 +31,10 @@ pub(crate) fn ordered(neighbours: &[Vec<usize>], last: &[usize]) -> (Vec<usize>,
         early.extend(late);
         early
     });
-    let tries = if neighbours.len() <= MOST_NODES { TRIES } else { 0 };
+    let tries = match memory {
+        Memory::Backward if neighbours.len() <= MOST_NODES => TRIES,
+        _ => 0,
+    };
     let of_fill = (0..tries).map(|seed| least_fill(neighbours, last, seed));
     let all = of_sloan.chain(of_fill).map(|order| {
         let rows = FactorRows::new(neighbours, &order, memory);
@@ -59,7 +63,7 @@ mod tests {
 
     /// Wrong: the factor would take more memory and time than counting across the shorter side does.
     #[test]
-    fn the_order_is_at_least_as_good_as_counting_across_the_shorter_side() {
+    fn the_order_is_nearly_as_good_as_counting_across_the_shorter_side() {
         for (n, m) in [(19, 10), (12, 5), (10, 4), (26, 12)] {
             let rows: Vec<usize> = (0..n * m).collect();
             let by_hand = FactorRows::new(&grid(n, m), &rows, Memory::Forward);
@@ -69,7 +73,7 @@ mod tests {
             sorted.sort_unstable();
             assert_eq!(sorted, rows, "a permutation");
             let ratio = found.n_blocks() as f64 / by_hand.n_blocks() as f64;
-            assert!(ratio <= 1.0, "{n} x {m}: {ratio}");
+            assert!(ratio < 1.15, "{n} x {m}: {ratio}");
         }
     }
 
@@ -84,12 +88,10 @@ mod tests {
             let mut end = order[n * m - last.len()..].to_vec();
             end.sort_unstable();
             assert_eq!(end, last);
-            let free = ordered(&neighbours, &[]).1.n_blocks();
             let by_hand =
                 FactorRows::new(&neighbours, &(0..n * m).collect::<Vec<_>>(), Memory::Forward).n_blocks();
             let ratio = rows.n_blocks() as f64 / by_hand as f64;
             assert!(ratio < most, "{n} x {m}: {ratio}");
-            assert!(free <= by_hand, "{free} {by_hand}");
         }
     }
 
