@@ -258,7 +258,7 @@ impl Motion<'_> {
                     turn: Some(*turn),
                     moved: Some(moved),
                 };
-                let predictor = ring.step.shared_harmonics();
+                let predictor = ring.step.harmonics().clone();
                 ring.factor
                     .replace_predictor(ring.body, &mut ring.step, predictor, from);
             }

@@ -36,12 +36,17 @@ impl CyclicFactor {
         self.solver.begin_harmonic(harmonics, border);
     }
 
-    /// The increment under the loads `x` on touched nodes and border beyond the predictor, in their place.
-    pub(super) fn finish_in_place(&self, x: &mut [f64], predictor: &[f64]) {
-        let (harmonics, border) = self.split(x);
+    /// The increment under loads on touched nodes and border beyond the predictor, in harmonic space.
+    pub(super) fn finish(&self, (loads, rows): (PartHarmonics<'_>, Vec<f64>), predictor: &[f64]) -> Vec<f64> {
+        let mut x = vec![0.0; predictor.len()];
+        let (harmonics, behind) = x.split_at_mut(self.solver.inner().ring().harmonic_len());
+        loads.write(harmonics);
+        behind.copy_from_slice(&rows);
+        let (harmonics, border) = self.split(&mut x);
         self.solver.begin_trailing_harmonic(harmonics, border);
-        add(x, predictor);
-        self.solver.finish_harmonic(self.split(x).0);
+        add(&mut x, predictor);
+        self.solver.finish_harmonic(self.split(&mut x).0);
+        x
     }
 
     /// Harmonics and border of a vector.
@@ -117,12 +122,7 @@ impl CyclicFactor {
         loads: impl Iterator<Item = (usize, f64)>,
     ) -> Vec<f64> {
         let ring = self.solver.inner().ring();
-        let (forces, rows) = self.forces(loads);
-        let mut x = vec![0.0; predictor.len()];
-        let (harmonics, border) = x.split_at_mut(ring.harmonic_len());
-        forces.write(harmonics);
-        border.copy_from_slice(&rows);
-        self.finish_in_place(&mut x, predictor);
+        let x = self.finish(self.forces(loads), predictor);
         match space {
             Space::Harmonic(_) => x,
             Space::Nodal => match self.loose() {

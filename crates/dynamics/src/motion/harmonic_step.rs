@@ -61,9 +61,7 @@ impl RingFactor {
         feet: &[NodalWeights],
     ) -> RingStep {
         let clock = Instant::now();
-        let Factored::Cyclic(factor) = &self.factor else {
-            unreachable!("harmonics are solved by their factor")
-        };
+        let factor = self.harmonics();
         let contacts = functionals(body, feet);
         let all: Vec<&SparseLoad> = contacts.iter().chain(&body.mount).collect();
         let start = self.measure(body, &all, state.displacement());
@@ -81,6 +79,16 @@ impl RingFactor {
             compliance,
             seconds: [0.0, 0.0, clock.elapsed().as_secs_f64()],
             contacts,
+        }
+    }
+
+    /// The factor of a ring whose steps are in harmonic space.
+    fn harmonics(&self) -> &CyclicFactor {
+        match &self.factor {
+            Factored::Cyclic(factor) => factor,
+            Factored::Sparse(_) | Factored::Sectors(_) => {
+                unreachable!("harmonics are solved by their factor")
+            }
         }
     }
 
@@ -145,9 +153,7 @@ impl RingFactor {
         predictor: Arc<PooledVector>,
         from: StepStart<'_>,
     ) {
-        let Factored::Cyclic(factor) = &self.factor else {
-            unreachable!("harmonics are solved by their factor")
-        };
+        let factor = self.harmonics();
         let all: Vec<&SparseLoad> = step.contacts.iter().chain(&body.mount).collect();
         step.predicted = sum(&step.start, &self.measure(body, &all, &predictor));
         let Predictor::Harmonic(_, correction) = &mut step.predictor else {
@@ -197,9 +203,7 @@ impl RingFactor {
         contacts: &[f64],
         mount: &[f64],
     ) -> Increment<'a> {
-        let Factored::Cyclic(factor) = &self.factor else {
-            unreachable!("harmonics are solved by their factor")
-        };
+        let factor = self.harmonics();
         let Predictor::Harmonic(_, correction) = &step.predictor else {
             unreachable!("a step of harmonics")
         };
@@ -213,16 +217,8 @@ impl RingFactor {
 }
 
 impl RingStep {
-    /// The predictor in harmonic space, shared.
-    pub(super) fn shared_harmonics(&self) -> Arc<PooledVector> {
-        match &self.predictor {
-            Predictor::Harmonic(predictor, _) => predictor.clone(),
-            Predictor::Columns(_) | Predictor::Sectors(_) => unreachable!("a step of harmonics"),
-        }
-    }
-
     /// The predictor in harmonic space.
-    pub(super) fn harmonics(&self) -> &[f64] {
+    pub(super) fn harmonics(&self) -> &Arc<PooledVector> {
         match &self.predictor {
             Predictor::Harmonic(predictor, _) => predictor,
             Predictor::Columns(_) | Predictor::Sectors(_) => unreachable!("a step of harmonics"),

@@ -24,7 +24,6 @@ use super::ring_state::{RingState, advance_part};
 use super::space::{HarmonicSpace, Nodes};
 use super::vectors;
 use crate::effects::FrameTurn;
-use group::add;
 use parts::Parts;
 
 /// A ring and its scheme.
@@ -138,9 +137,7 @@ impl Pass<'_> {
             |group, [dw, mv, kw, field], [w, v, a, renewed, guess, solved]| {
                 let start = start.each_ref().map(|x| x.of(group));
                 let mut found = Found::default();
-                self.answer_part(group, &forces, dw);
-                add(dw, rest.of(group));
-                self.finish_part(group, &forces, dw);
+                self.increment_part(group, &forces, rest.of(group), dw);
                 let end = [&mut *w, &mut *v, &mut *a];
                 advance_part(self.integrator, self.dt, dw, start, end);
                 let dot = |load: &Parts<'_>| space.part_dot(group, load.of(group), dw);
@@ -211,9 +208,7 @@ impl Pass<'_> {
         let found = space.over_groups(vectors, |group, [dw, field], [renewed, solved, whole]| {
             let start = start.each_ref().map(|x| x.of(group));
             let mut found = Found::default();
-            self.answer_part(group, &forces, dw);
-            add(dw, rest.of(group));
-            self.finish_part(group, &forces, dw);
+            self.increment_part(group, &forces, rest.of(group), dw);
             if !whole.is_empty() {
                 whole.copy_from_slice(dw);
             }
@@ -221,7 +216,7 @@ impl Pass<'_> {
             found.squares = self.compare(group, [renewed, used.of(group)], solved);
             if !self.factor.solver.is_shared() {
                 self.begin_part(group, solved);
-                add(solved, before.of(group));
+                vectors::add_part(solved, before.of(group));
             }
             found
         });

@@ -20,7 +20,7 @@ use super::body::RingBody;
 use super::by_sector::{Motions, StepColumns};
 use super::defect::DefectStep;
 use super::effective::Factored;
-use super::harmonic_step::{Rows, StepStart};
+use super::harmonic_step::Rows;
 use super::integrator::Integrator;
 use super::pass::{Acting, Coming, Increment};
 use super::pool::PooledVector;
@@ -133,9 +133,19 @@ impl RingFactor {
         feet: &[NodalWeights],
     ) -> RingStep {
         let clock = Instant::now();
-        if let Some(pass) = self.pass(body) {
-            let predicted = pass.predict(state, Coming { load, turn: None });
-            return self.prepare_solved(body, (state, None), Arc::new(predicted.solved), feet);
+        if let Factored::Cyclic(factor) = &self.factor {
+            let (predictor, sides) = match self.pass(body) {
+                Some(pass) => (pass.predict(state, Coming { load, turn: None }).solved, 0.0),
+                None => {
+                    let side = self.right_side(body, state, load);
+                    let sides = clock.elapsed().as_secs_f64();
+                    (factor.begin(&body.space, side).into(), sides)
+                }
+            };
+            let solve = clock.elapsed().as_secs_f64() - sides;
+            let mut step = self.prepare_solved(body, (state, None), Arc::new(predictor), feet);
+            (step.seconds[0], step.seconds[1]) = (sides, solve);
+            return step;
         }
         let n = body.coordinates.n();
         let contacts = functionals(body, feet);
@@ -143,24 +153,8 @@ impl RingFactor {
         let all: Vec<&SparseLoad> = contacts.iter().chain(&body.mount).collect();
         let start = self.measure(body, &all, state.displacement());
         let sides = clock.elapsed().as_secs_f64();
-        let mut solved = None;
         let (predictor, moved, compliance) = match &self.factor {
-            Factored::Cyclic(factor) => {
-                let predictor = factor.begin(&body.space, side);
-                solved = Some(clock.elapsed().as_secs_f64());
-                let (defect, moved, compliance) = self.meet(
-                    (body, Rows::Found(StepStart::first(state, None))),
-                    factor,
-                    &predictor,
-                    feet,
-                    &all,
-                );
-                (
-                    Predictor::Harmonic(Arc::new(predictor.into()), defect),
-                    moved,
-                    compliance,
-                )
-            }
+            Factored::Cyclic(_) => unreachable!("prepared above"),
             Factored::Sparse(solver) => {
                 side.resize(n * (1 + contacts.len()), 0.0);
                 fill(&mut side[n..], &contacts, n);
@@ -175,13 +169,12 @@ impl RingFactor {
             }
         };
         let all = clock.elapsed().as_secs_f64();
-        let solved = solved.unwrap_or(all);
         RingStep {
             predictor,
             predicted: sum(&start, &moved),
             start,
             compliance,
-            seconds: [sides, solved - sides, all - solved],
+            seconds: [sides, all - sides, 0.0],
             contacts,
         }
     }

@@ -9,6 +9,7 @@ use super::defect::{DefectFactor, DefectStep};
 use super::effective::CyclicFactor;
 use super::harmonic_step::Rows;
 use super::ring::RingFactor;
+use crate::solution::dot;
 use crate::sparse::{SparseLoad, sparse_dot};
 
 /// Contacts as the responses of a raceway meet them.
@@ -128,9 +129,4 @@ impl RingFactor {
             .map(|row| dot(row, b))
             .collect()
     }
-}
-
-/// The sum of the products of as many numbers as both have.
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }

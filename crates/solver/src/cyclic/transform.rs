@@ -256,14 +256,7 @@ impl CyclicRing {
                 .process_with_scratch(line, spectrum, &mut scratch)
                 .expect("the lengths are those of the plan");
             let turn = |(k, value): (usize, &mut Spectrum)| {
-                // Nodes in the plane of the sector need no turn.
-                let turned = match shared.halves[place] {
-                    0 => *value,
-                    halves => {
-                        let [cos, sin] = shared.phases.of(k, -halves);
-                        *value * Complex::new(cos, sin)
-                    }
-                };
+                let turned = self.shifted(*value, k, -shared.halves[place]);
                 *value = if component == 1 {
                     Complex::new(turned.im, -turned.re)
                 } else {
@@ -272,6 +265,16 @@ impl CyclicRing {
             };
             spectrum.iter_mut().enumerate().for_each(turn);
         }
+    }
+
+    /// The amplitude of harmonic k where the angle begins `halves` half sectors further on.
+    fn shifted(&self, amplitude: Spectrum, k: usize, halves: i32) -> Spectrum {
+        // Nodes in the plane of the sector need no turn.
+        if halves == 0 {
+            return amplitude;
+        }
+        let [cos, sin] = self.shared.phases.of(k, halves);
+        amplitude * Complex::new(cos, sin)
     }
 
     /// Cylindrical components of the nodes at `places`, `[places][3][n_sectors]`.
@@ -290,15 +293,7 @@ impl CyclicRing {
                 } else {
                     w
                 };
-                // Nodes in the plane of the sector need no turn.
-                let turned = match shared.halves[place] {
-                    0 => w,
-                    halves => {
-                        let [cos, sin] = shared.phases.of(k, halves);
-                        w * Complex::new(cos, sin)
-                    }
-                };
-                *value = turned / n as f64;
+                *value = self.shifted(w, k, shared.halves[place]) / n as f64;
             }
             restore_line(&shared.inverse, &mut spectrum, line, &mut scratch);
         }

@@ -4,6 +4,7 @@ use solver::cyclic::PartHarmonics;
 
 use super::super::ring_state::within_part;
 use super::super::space::FrameLoads;
+use super::super::vectors::{add_part, combine_part};
 use super::{Coming, Cow, FrameTurn, Increment, Parts, Pass};
 
 /// A turning frame and what its inertia needs of the ring.
@@ -29,11 +30,7 @@ impl<'a> Pass<'a> {
     pub(super) fn whole_if_shared<'i>(&self, increment: Increment<'i>) -> Increment<'i> {
         match increment.forces {
             Some((loads, border)) if self.factor.solver.is_shared() => {
-                let mut dw = vec![0.0; increment.rest.len()];
-                let (harmonics, rows) = dw.split_at_mut(self.space.ring.harmonic_len());
-                loads.write(harmonics);
-                rows.copy_from_slice(&border);
-                self.factor.finish_in_place(&mut dw, &increment.rest);
+                let dw = self.factor.finish((loads, border), &increment.rest);
                 Increment {
                     forces: None,
                     rest: Cow::Owned(dw),
@@ -58,33 +55,26 @@ impl<'a> Pass<'a> {
         }
     }
 
-    /// The first half of S^-1 of forces.
-    pub(super) fn answer_part(
+    /// The increment: the second half of S^-1 of the first half of forces and of the predictor `rest`; without forces `rest` itself.
+    pub(super) fn increment_part(
         &self,
         group: usize,
         forces: &Option<(PartHarmonics<'_>, Vec<f64>)>,
+        rest: &[f64],
         dw: &mut [f64],
     ) {
+        let Some((loads, border)) = forces else {
+            dw.copy_from_slice(rest);
+            return;
+        };
         dw.fill(0.0);
         let (harmonics, rows) = dw.split_at_mut(self.space.ring.low_len());
-        if let Some((loads, border)) = forces {
-            loads.write_group(group, harmonics);
-            rows.copy_from_slice(&border[..rows.len()]);
-            self.factor.solver.begin_trailing_group(group, harmonics, rows);
-        }
-    }
-
-    /// The increment, of the first half of forces and predictor.
-    pub(super) fn finish_part(
-        &self,
-        group: usize,
-        forces: &Option<(PartHarmonics<'_>, Vec<f64>)>,
-        dw: &mut [f64],
-    ) {
-        if forces.is_some() {
-            let low = self.space.ring.low_len();
-            self.factor.solver.finish_group(group, &mut dw[..low]);
-        }
+        loads.write_group(group, harmonics);
+        rows.copy_from_slice(&border[..rows.len()]);
+        self.factor.solver.begin_trailing_group(group, harmonics, rows);
+        add_part(dw, rest);
+        let low = self.space.ring.low_len();
+        self.factor.solver.finish_group(group, &mut dw[..low]);
     }
 
     /// Inertia of the turning frame at the weighted time of a step from `[w, v, a]` with an increment, or at which the velocity stays.
@@ -125,41 +115,30 @@ impl<'a> Pass<'a> {
         let ([m, k], space) = (self.history, self.space);
         let mut of_mass = m[0];
         if m[1] != 0.0 {
-            combine(m, [v, a], field);
+            combine_part(m, [v, a], field);
             space.mass.group_product(group, field, mv);
             of_mass = 1.0;
         }
-        combine([of_mass, -1.0], [mv, kw], solved);
+        combine_part([of_mass, -1.0], [mv, kw], solved);
         if k != [0.0; 2] {
-            combine(k, [v, a], field);
+            combine_part(k, [v, a], field);
             space.stiffness.group_product(group, field, kw);
-            add(solved, kw);
+            add_part(solved, kw);
         }
         if let Some(load) = load {
-            add(solved, load.of(group));
+            add_part(solved, load.of(group));
         }
         if let Some(turning) = turning {
             // First guess: the velocity stays.
             self.frame_part(*turning, group, ([w, v, a], None), field, guess);
-            add(solved, guess);
+            add_part(solved, guess);
         }
         self.begin_part(group, solved);
     }
 
     /// The difference of a new load from the one used; the squares of both.
     pub(super) fn compare(&self, group: usize, [new, used]: [&[f64]; 2], difference: &mut [f64]) -> [f64; 2] {
-        combine([1.0, -1.0], [new, used], difference);
+        combine_part([1.0, -1.0], [new, used], difference);
         [&*difference, new].map(|x| self.space.part_dot(group, x, x))
     }
-}
-
-/// Adds x to the sum.
-pub(super) fn add(sum: &mut [f64], x: &[f64]) {
-    sum.iter_mut().zip(x).for_each(|(sum, x)| *sum += x);
-}
-
-/// s[0] x + s[1] y.
-fn combine(s: [f64; 2], [x, y]: [&[f64]; 2], sum: &mut [f64]) {
-    let terms = sum.iter_mut().zip(x.iter().zip(y));
-    terms.for_each(|(sum, (x, y))| *sum = s[0] * x + s[1] * y);
 }
