@@ -64,8 +64,8 @@ def compare(setting, case):
     verdict = rules.judge(case, differences, results)
     if case.threads:
         fail_on(verdict, other_threads(setting, case, command))
-    if case.resume is not None:
-        resumed(setting, case, verdict)
+    for step in case.resume:
+        resumed(setting, case, step, verdict)
     return verdict
 
 
@@ -94,20 +94,22 @@ def other_threads(setting, case, command):
     return renamed(f"threads {threads}", found)
 
 
-def resumed(setting, case, verdict):
+def resumed(setting, case, step, verdict):
     """The new version goes on from a step of the old one: to the same bits, or it refuses by name."""
     old, new = setting.pair(case.name)
     target = new / "resumed"
+    shutil.rmtree(target, ignore_errors=True)
     shutil.copytree(old / "out", target)
     (target / "summary.json").unlink()
-    command = [setting.new, "resume", "resumed", "--step", case.resume, "--threads", setting.threads]
+    command = [setting.new, "resume", "resumed", "--step", step, "--threads", setting.threads]
     done = start(command, new)
     message = (done.stderr.strip().splitlines() or ["no message"])[-1]
     if done.returncode == 2 and message.startswith("error:"):
-        verdict.notes.append(f"step {case.resume} of the old version is refused: {message}")
+        verdict.notes.append(f"step {step} of the old version is refused: {message}")
         return
     if done.returncode != 0:
-        fail_on(verdict, [Difference("resume", text=f"exit code {done.returncode}: {message}")])
+        fail_on(verdict, [Difference(f"resumed at step {step}", text=f"exit code {done.returncode}: {message}")])
         return
     shutil.rmtree(target / "superseded_1", ignore_errors=True)
-    fail_on(verdict, renamed(f"resumed at step {case.resume}", outputs.compare_folders(old / "out", target)))
+    fail_on(verdict, renamed(f"resumed at step {step}", outputs.compare_folders(old / "out", target)))
+    shutil.rmtree(target)

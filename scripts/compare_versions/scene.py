@@ -37,8 +37,8 @@ class Case:
     meshes: str = "small"
     # Replacements in the text of the base, as pairs.
     edits: tuple = ()
-    # Step whose file the new version goes on from.
-    resume: int | None = None
+    # Steps whose files the new version goes on from.
+    resume: tuple = ()
     # Whether the new version also runs with the other number of threads.
     threads: bool = False
     # Exit code that both must have.
