@@ -45,7 +45,7 @@ def attempt(job, setting, name):
     """The verdict; a program that hangs or results that cannot be read are no result."""
     try:
         return job(setting)
-    except (OSError, ValueError, KeyError, StopIteration, subprocess.TimeoutExpired) as error:
+    except (OSError, ValueError, LookupError, StopIteration, subprocess.TimeoutExpired) as error:
         return rules.Verdict(name, rules.MISSING, f"{type(error).__name__}: {error}")
 
 
