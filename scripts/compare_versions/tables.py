@@ -2,6 +2,7 @@
 
 import csv
 import json
+import re
 
 import numpy as np
 
@@ -18,6 +19,10 @@ LEFT_OUT = {
 }
 # Columns of a study that say the same.
 COST_COLUMNS = ("wall", "cpu", "peak_memory", "bytes_written")
+# Name of a probe, one of its quantities, and the unit.
+COMPONENT = re.compile(
+    r"(.*?)_?(stress|von_mises|principal|maximum_shear|hydrostatic|displacement|force|moment).*_(pa|m|n|n_m)$"
+)
 
 
 def read_table(path):
@@ -36,13 +41,13 @@ def reals(texts):
 
 
 def group(table, column):
-    """Columns whose values have one magnitude: energies, and components of one vector."""
+    """Columns whose values have one magnitude: energies, reactions, components of one vector or tensor."""
     if column.endswith("_j"):
         return "energy"
     if table.startswith("shaft"):
-        return column.rsplit("_", 1)[-1]
-    for axis in ("_x_", "_y_", "_z_"):
-        column = column.replace(axis, "_")
+        return "reaction" if column.startswith("reaction") else column.rsplit("_", 1)[-1]
+    if table.startswith(("probes", "profiles")) and (found := COMPONENT.match(column)):
+        return found[1], found[3]
     return column
 
 
@@ -89,8 +94,12 @@ def leaves(value, path=()):
 
 
 def family(path):
-    """Leaves of one name, whatever their place in a list; energies are one family."""
-    return ("energy_j",) if path[0] == "energy_j" else tuple(k for k in path if isinstance(k, str))
+    """Leaves of one name, whatever their place in a list; energies are one family, and reactions."""
+    if path[0] == "energy_j":
+        return path[:1]
+    names = tuple(k for k in path if isinstance(k, str))
+    is_reaction = names[-1].startswith("reaction")
+    return (*names[:-1], "reaction") if is_reaction else names
 
 
 def summary_of(path):
