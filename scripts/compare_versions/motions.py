@@ -94,6 +94,8 @@ RINGS = [
     motion("sparse_mean", dynamic() + FRAME, "solver.backend=sparse", edits=MEAN),
     motion("sparse_keyway", dynamic() + FRAME + KEYWAY, "solver.backend=sparse"),
     motion("sectors", None, "solver.backend=sector", "solver.sectors=5", resume=(10,), threads=True),
+    # From 16 sectors on their cross-sections are eliminated by cyclic reduction.
+    motion("many_sectors", dynamic() + FRAME, "solver.backend=sector", "solver.sectors=18", threads=True),
     motion("sectors_mean", dynamic() + FRAME + DAMPING, "solver.backend=sector", "solver.sectors=5", edits=MEAN),
 ]
 COURSES = [

@@ -20,6 +20,7 @@ REST = [
     Case("static_moved_nodes", STATIC, meshes="moved_nodes"),
     Case("static_sparse", STATIC, settings=(SPARSE,)),
     Case("static_sectors", STATIC, settings=("solver.backend=sector", "solver.sectors=5"), threads=True),
+    Case("static_many_sectors", STATIC, settings=("solver.backend=sector", "solver.sectors=18")),
     Case("static_tet10", STATIC, meshes="tet10"),
     Case("static_hex20", STATIC, meshes="fine"),
     Case("static_outer_rigid", STATIC, settings=("outer.flexible=false",)),
