@@ -10,6 +10,7 @@
 use std::collections::BTreeMap;
 
 use contact::{ContactLaw, Groove, NodalWeights, Side};
+use dense::DenseCholesky;
 use dynamics::motion::Integrator;
 use dynamics::motion::body::RingBody;
 use dynamics::motion::contacts::ContactScheme;
@@ -21,7 +22,6 @@ use dynamics::problem::Site;
 use dynamics::{Backend, EffectCosts, Hold, RingModel};
 use fem::Material;
 use mesh::{ElementKind, Facet, Mesh};
-use solver::dense::DenseCholesky;
 
 /// Dimensions and numbers of a bar and its flight.
 #[derive(Clone, Copy)]

@@ -1,7 +1,7 @@
 //! The inverse of the compliance of a ring's contacts, or the error that says why there is none.
 
 use contact::Side;
-use solver::dense::DenseCholesky;
+use dense::DenseCholesky;
 
 use crate::error::DynamicsError;
 

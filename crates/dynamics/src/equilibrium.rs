@@ -7,8 +7,7 @@
 //! 5 unknowns per iteration.
 
 use contact::{BearingGeometry, Side};
-use solver::dense::{DenseCholesky, DenseLu};
-use solver::{LinearSolver, SolverError};
+use dense::{DenseCholesky, DenseError, DenseLu};
 
 use crate::error::DynamicsError;
 use crate::footprint::loaded;
@@ -278,7 +277,7 @@ fn proximal(problem: &Problem, scales: SearchScales) -> f64 {
     PROXIMAL * scales.stiffness + 2.0 * slope
 }
 
-fn dense_error(source: SolverError) -> DynamicsError {
+fn dense_error(source: DenseError) -> DynamicsError {
     DynamicsError::ContactSystem { source }
 }
 

@@ -1,6 +1,7 @@
 //! Errors of the algorithms.
 
 use contact::ContactError;
+use dense::DenseError;
 use fem::FemError;
 use solver::SolverError;
 
@@ -62,7 +63,7 @@ pub enum DynamicsError {
     )]
     ContactSystem {
         /// Cause.
-        source: SolverError,
+        source: DenseError,
     },
     /// Finite elements failed.
     #[error("{side} ring: {source}")]

@@ -6,8 +6,8 @@
 //! P^T f, P = 1 - R C. Six dofs chosen on the surface then hold the matrix without reaction, and P removes the
 //! rigid motion left: u = P K_fixed^-1 P^T f, exact and symmetric (the RBE3 of structural codes).
 
+use dense::DenseCholesky;
 use mesh::Mesh;
-use solver::dense::DenseCholesky;
 
 use crate::division::NodePlaces;
 use crate::model::Hold;

@@ -6,7 +6,8 @@
 //! For rigid partners: when held nodes follow m dofs q, w = R q, then B = A_fh R and D = R^T A_hh R, free and held rows
 //! being f and h. Cost: m solves once, then 4 n m operations per right-hand side beside the solve; memory n m numbers.
 
-use crate::dense::DenseCholesky;
+use dense::DenseCholesky;
+
 use crate::error::SolverError;
 use crate::linear_solver::LinearSolver;
 
@@ -82,7 +83,7 @@ pub(crate) fn factor_complement(
         }
     }
     let factored = DenseCholesky::factor(m, complement);
-    factored.map_err(|error| error.in_whole(n + m, |row| n + row))
+    factored.map_err(|error| SolverError::from(error).in_whole(n + m, |row| n + row))
 }
 
 impl<S: LinearSolver> LinearSolver for Bordered<S> {

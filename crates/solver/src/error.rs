@@ -1,5 +1,6 @@
 //! What can go wrong when a matrix is analysed or factored.
 
+use dense::DenseError;
 use thiserror::Error;
 
 /// Failures of this crate. Rows and columns are in the caller's numbering.
@@ -164,6 +165,32 @@ pub enum SolverError {
     /// An eigenvalue became infinite or not a number.
     #[error("an eigenvalue is not finite; check coordinates, material and masses")]
     EigenNotFinite,
+}
+
+impl From<DenseError> for SolverError {
+    fn from(error: DenseError) -> SolverError {
+        match error {
+            DenseError::NonFinite { row, column, value } => SolverError::NonFinite { row, column, value },
+            DenseError::NotPositiveDefinite { row, n } => SolverError::NotPositiveDefinite { row, n },
+            DenseError::Singular {
+                row,
+                n,
+                relative_pivot,
+                limit,
+            } => SolverError::Singular {
+                row,
+                n,
+                relative_pivot,
+                limit,
+            },
+            DenseError::EigenNotConverged { n } => SolverError::EigenNotConverged {
+                wanted: n,
+                converged: 0,
+                steps: 0,
+            },
+            DenseError::EigenNotFinite => SolverError::EigenNotFinite,
+        }
+    }
 }
 
 impl SolverError {

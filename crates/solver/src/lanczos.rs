@@ -27,7 +27,9 @@
 
 pub(crate) mod basis;
 
-use crate::dense_eigen::{dense_lowest, symmetric_eigen};
+use dense::symmetric_eigen;
+
+use crate::dense_lowest::dense_lowest;
 use crate::eigenproblem::{EigenProblem, Eigenpairs};
 use crate::error::SolverError;
 use basis::{Basis, Block};

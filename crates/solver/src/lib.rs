@@ -1,7 +1,7 @@
 //! Solves S x = b for a fixed symmetric positive definite S: factor once, many right-hand sides.
 //!
 //! The crate knows matrices, not meshes; the only geometry it sees are the points and element cliques from which
-//! [`angular_dissection`] makes an elimination order. It is the only crate that names faer.
+//! [`angular_dissection`] makes an elimination order. Dense matrices are those of the crate `dense`.
 //!
 //! A ring is solved in five lines:
 //! ```
@@ -27,7 +27,6 @@
 //! own place, and sum in a fixed order. So the bits of a result cannot depend on the number of threads.
 
 pub mod cyclic;
-pub mod dense;
 pub mod dissection;
 pub mod eigenproblem;
 pub mod lanczos;
@@ -35,7 +34,7 @@ pub mod sector;
 
 pub mod bordered;
 mod cholesky;
-mod dense_eigen;
+mod dense_lowest;
 mod elimination_tree;
 mod error;
 mod linear_solver;
@@ -50,8 +49,7 @@ pub use cyclic::{
     Coupling, CyclicBordered, CyclicCholesky, CyclicMatrix, CyclicRing, CyclicStencil, NodalLoad, Patch,
     ResponseTable, SectionPart, Symmetry,
 };
-pub use dense::{DenseCholesky, DenseLu};
-pub use dense_eigen::{dense_lowest, symmetric_eigen};
+pub use dense_lowest::dense_lowest;
 pub use dissection::angular_dissection;
 pub use eigenproblem::{EigenProblem, Eigenpairs};
 pub use error::SolverError;

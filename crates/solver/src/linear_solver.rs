@@ -1,5 +1,7 @@
 //! The interface of everything that holds a factorisation.
 
+use dense::DenseCholesky;
+
 /// A right-hand side or functional with few entries: row and value, rows distinct.
 pub type SparseVector = Vec<(usize, f64)>;
 
@@ -38,4 +40,22 @@ pub trait LinearSolver: Send + Sync {
 
     /// Name for logs.
     fn name(&self) -> &'static str;
+}
+
+impl LinearSolver for DenseCholesky {
+    fn n(&self) -> usize {
+        self.n()
+    }
+
+    fn solve(&self, rhs: &mut [f64], n_rhs: usize) {
+        self.solve(rhs, n_rhs);
+    }
+
+    fn factor_bytes(&self) -> usize {
+        size_of::<f64>() * self.n() * self.n()
+    }
+
+    fn name(&self) -> &'static str {
+        "dense Cholesky"
+    }
 }

@@ -2,8 +2,10 @@
 
 mod common;
 
+use dense::DenseCholesky;
+use solver::{Bordered, LinearSolver, SolverError, SparseCholesky, Symbolic};
+
 use common::{Ring, assert_close, dense};
-use solver::{Bordered, DenseCholesky, LinearSolver, SolverError, SparseCholesky, Symbolic};
 
 /// A sparse factor and its matrix.
 fn factored() -> (SparseCholesky, Vec<f64>) {

@@ -6,8 +6,8 @@
 //! constraints c^T w = 0, where c takes the area-weighted least-squares rigid motion of the surface.
 
 use contact::Side;
+use dense::DenseCholesky;
 use mesh::Mesh;
-use solver::dense::DenseCholesky;
 use solver::{CyclicMatrix, CyclicStencil, LinearSolver, SolverError, Symbolic};
 use sprs::CsMat;
 
@@ -315,7 +315,7 @@ fn cyclic_parts(
     coordinates: &Coordinates,
     shift: f64,
 ) -> Result<Parts, SolverError> {
-    let bordered = |of_whole: &CyclicMatrix, of_held: &CyclicMatrix| {
+    let bordered = |of_whole: &CyclicMatrix, of_held: &CyclicMatrix| -> Result<Bordered, SolverError> {
         let operator = whole.ring.operator(of_whole)?;
         let block = Block::Sectors(Box::new(held.ring.operator(of_held)?));
         Ok(Bordered::new(block, |x| operator.apply(x), coordinates))

@@ -15,8 +15,8 @@
 //! No tangent or mass is inverted, so unloaded contacts and dofs without mass are nothing special. X costs one block solve per
 //! ring; after that the operator costs one solve per ring and vector.
 
+use dense::DenseLu;
 use solver::EigenProblem;
-use solver::dense::DenseLu;
 
 use super::columns::{Column, Contact, Role, columns, reactions};
 use super::ring::RingBody;
@@ -88,7 +88,7 @@ impl System {
         let n = system.columns.len() + system.small_mass.len();
         if n > 0 {
             let dense = DenseLu::factor(n, &system.matrix());
-            system.dense = Some(dense.map_err(|source| DynamicsError::Modes { source })?);
+            system.dense = Some(dense.map_err(|error| DynamicsError::Modes { source: error.into() })?);
         }
         Ok(system)
     }

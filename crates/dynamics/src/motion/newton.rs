@@ -1,11 +1,10 @@
 //! Newton on the small system of a step, with residual line search and dense LU.
 
 use contact::Side;
-use solver::dense::DenseLu;
+use dense::DenseLu;
 
 use super::contacts::MeanForce;
 use super::small::SmallSystem;
-
 use crate::costs::EffectCosts;
 use crate::equilibrium::MAX_TILT;
 use crate::error::DynamicsError;

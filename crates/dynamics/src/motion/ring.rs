@@ -12,9 +12,9 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use contact::NodalWeights;
+use dense::DenseCholesky;
 use solver::LinearSolver;
 use solver::cyclic::Defect;
-use solver::dense::DenseCholesky;
 
 use super::body::RingBody;
 use super::by_sector::{Motions, StepColumns};

@@ -15,8 +15,9 @@
 //! Energies and other quadratic forms are those of the regular ring plus the form of D, which takes the rows g out again. At the start g
 //! is at rest in the regular ring's statics. Cost: a transform of the defect's section nodes per vector, three products of n^2.
 
+use dense::DenseCholesky;
 use solver::cyclic::SectionPart;
-use solver::{CyclicRing, DenseCholesky, LinearSolver, NodalLoad};
+use solver::{CyclicRing, NodalLoad};
 use sprs::CsMat;
 
 use super::ring_state::RingState;

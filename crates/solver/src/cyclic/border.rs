@@ -4,9 +4,10 @@
 //! them, are zero beyond the first group of harmonics, and the border costs next to nothing: the block elimination of
 //! [`crate::bordered`], in harmonic space.
 
+use dense::DenseCholesky;
+
 use super::factor::CyclicCholesky;
 use crate::bordered::factor_complement;
-use crate::dense::DenseCholesky;
 use crate::error::SolverError;
 use crate::linear_solver::LinearSolver;
 

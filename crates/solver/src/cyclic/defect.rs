@@ -23,11 +23,12 @@
 
 use std::ops::Range;
 
+use dense::{inverse_form, symmetric_form, symmetric_product, update};
+
 use super::border::CyclicBordered;
 use super::loose::Loose;
 use super::response::ResponseTable;
 use super::transform::SectionPart;
-use crate::dense::{inverse_form, symmetric_form, symmetric_product, update};
 use crate::error::SolverError;
 use crate::linear_solver::LinearSolver;
 
@@ -115,7 +116,7 @@ impl Defect {
         assert_eq!(change.values.len(), n * n, "{n} rows and columns");
         let compliance = compliance(base, table, &change.rows);
         let reduced = update(n, &compliance, &change.values)
-            .map_err(|error| error.in_whole(base.n(), |row| change.rows[row]))?;
+            .map_err(|error| SolverError::from(error).in_whole(base.n(), |row| change.rows[row]))?;
         // Displacements under forces that alternate, as no rigid motion does.
         let load: Vec<f64> = (0..n).map(|i| [1.0, -0.6, 0.3, -0.8][i % 4]).collect();
         let at = product(&compliance, &load);
@@ -281,7 +282,7 @@ impl BorderColumns {
         let corner: Vec<f64> = (0..m * m)
             .map(|kl| columns[n * (kl / m) + n_free + kl % m])
             .collect();
-        let inverse = crate::dense::DenseCholesky::factor(m, &corner)
+        let inverse = dense::DenseCholesky::factor(m, &corner)
             .expect("the compliance of a positive definite matrix' border is positive definite")
             .inverse();
         BorderColumns { columns, inverse, n }

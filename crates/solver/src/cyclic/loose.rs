@@ -4,9 +4,9 @@
 //! f_t - A_tb A_bb^-1 f_b, its change has -A_tb A_bb^-1 A_bt more, and x_b = A_bb^-1 (f_b - A_bt x_t) follows. Cost: m^2 + 2 m n for m
 //! rows and n neighbours.
 
-use crate::dense::DenseCholesky;
+use dense::DenseCholesky;
+
 use crate::error::SolverError;
-use crate::linear_solver::LinearSolver;
 
 /// Rows beyond those of the regular ring.
 #[derive(Clone, Debug)]

@@ -3,10 +3,11 @@
 //! The block elimination of [`crate::bordered`], with Z = A^-1 B left by sector and B sparse:
 //! `y = C^-1 (g - B^T A^-1 f)`, `x = A^-1 f - Z y`. All functions are collective.
 
+use dense::DenseCholesky;
+
 use super::columns::SectorColumns;
 use super::factor::SectorCholesky;
 use crate::bordered::factor_complement;
-use crate::dense::DenseCholesky;
 use crate::error::SolverError;
 use crate::linear_solver::{LinearSolver, SparseVector};
 

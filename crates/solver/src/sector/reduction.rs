@@ -16,6 +16,7 @@ use std::collections::BTreeMap;
 use std::ops::Range;
 
 use comm::Communicator;
+use dense::cholesky_in_place;
 use faer::linalg::matmul::matmul;
 use faer::linalg::triangular_solve::solve_lower_triangular_in_place;
 use faer::{Accum, Mat, Par};
@@ -25,7 +26,6 @@ use super::factor::agree;
 use super::layout::{SectorLayout, reduction};
 use super::reduced::ReducedFactor;
 use crate::cholesky::check_pivot;
-use crate::dense::cholesky_in_place;
 use crate::error::SolverError;
 
 /// Elimination of one cross-section.

@@ -1,7 +1,8 @@
 //! Rings held by others than whole rings of nodes: by nothing, or by a rigid partner.
 
+use dense::DenseCholesky;
 use mesh::Mesh;
-use solver::{Bordered, CyclicBordered, DenseCholesky, LinearSolver, SolverError};
+use solver::{Bordered, CyclicBordered, LinearSolver, SolverError};
 
 use crate::common::{self, assert_close};
 use crate::rings::{Ring, SHIFT, loads, rings};

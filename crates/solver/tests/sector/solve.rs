@@ -1,7 +1,8 @@
 //! The solution does not depend on the cut, and its bits not on the threads.
 
+use dense::DenseCholesky;
 use mesh::ElementKind;
-use solver::{DenseCholesky, LinearSolver, solve_refined};
+use solver::{LinearSolver, solve_refined};
 
 use crate::common::{Numbers, dense, relative_error};
 use crate::refined::refined;

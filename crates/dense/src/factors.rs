@@ -1,18 +1,12 @@
-//! Dense factorisations for the small systems of a step: contacts, balls, shaft; up to a few hundred rows.
-//!
-//! Sequential and deterministic. Matrices are row-major, `a[n * i + j]`; right-hand sides are column-major
-//! `[n][n_rhs]`, as in [`LinearSolver`]. Time n^3/3 (Cholesky) or 2 n^3/3 (LU), memory n^2.
+//! Cholesky and LU factors. Time n^3/3 (Cholesky) or 2 n^3/3 (LU), memory n^2.
 
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::cholesky::llt;
 use faer::linalg::lu::partial_pivoting as lu;
-use faer::linalg::matmul::matmul;
-use faer::linalg::triangular_solve::solve_lower_triangular_in_place;
 use faer::perm::PermRef;
-use faer::{Accum, Mat, MatMut, MatRef, Par};
+use faer::{Mat, MatMut, MatRef, Par};
 
-use crate::error::SolverError;
-use crate::linear_solver::LinearSolver;
+use crate::error::DenseError;
 
 /// Smallest accepted pivot relative to the largest entry of its column in the row-scaled matrix, per row.
 const PIVOT_LIMIT_PER_ROW: f64 = f64::EPSILON;
@@ -29,7 +23,7 @@ impl DenseCholesky {
     ///
     /// # Panics
     /// When `a.len() != n * n`.
-    pub fn factor(n: usize, a: &[f64]) -> Result<Self, SolverError> {
+    pub fn factor(n: usize, a: &[f64]) -> Result<Self, DenseError> {
         check_dense(n, a)?;
         let mut factor = MatRef::from_row_major_slice(a, n, n).to_owned();
         cholesky_in_place(factor.as_mut())?;
@@ -49,11 +43,37 @@ impl DenseCholesky {
         }
         inverse
     }
+
+    /// Number of rows.
+    pub fn n(&self) -> usize {
+        self.factor.nrows()
+    }
+
+    /// Replaces right-hand sides, column-major `[n][n_rhs]`, by solutions.
+    ///
+    /// # Panics
+    /// When `rhs.len() != n * n_rhs`.
+    pub fn solve(&self, rhs: &mut [f64], n_rhs: usize) {
+        let n = self.n();
+        assert_eq!(rhs.len(), n * n_rhs, "{n_rhs} right-hand sides of {n} rows");
+        let mut memory = MemBuffer::new(llt::solve::solve_in_place_scratch::<f64>(n, n_rhs, Par::Seq));
+        llt::solve::solve_in_place(
+            self.factor.as_ref(),
+            MatMut::from_column_major_slice_mut(rhs, n, n_rhs),
+            Par::Seq,
+            MemStack::new(&mut memory),
+        );
+    }
+
+    /// L in the lower triangle; what stands above is no part of it.
+    pub(crate) fn into_lower(self) -> Mat<f64> {
+        self.factor
+    }
 }
 
 /// L in place of the lower triangle of a symmetric positive definite matrix. The error names the row at which elimination breaks
 /// down.
-pub(crate) fn cholesky_in_place(mut matrix: MatMut<'_, f64>) -> Result<(), SolverError> {
+pub fn cholesky_in_place(mut matrix: MatMut<'_, f64>) -> Result<(), DenseError> {
     let n = matrix.nrows();
     let request = llt::factor::cholesky_in_place_scratch::<f64>(n, Par::Seq, Default::default());
     let mut memory = MemBuffer::new(request);
@@ -67,117 +87,9 @@ pub(crate) fn cholesky_in_place(mut matrix: MatMut<'_, f64>) -> Result<(), Solve
     match done {
         Ok(_) => Ok(()),
         Err(llt::factor::LltError::NonPositivePivot { index }) => {
-            Err(SolverError::NotPositiveDefinite { row: index, n })
+            Err(DenseError::NotPositiveDefinite { row: index, n })
         }
     }
-}
-
-impl LinearSolver for DenseCholesky {
-    fn n(&self) -> usize {
-        self.factor.nrows()
-    }
-
-    fn solve(&self, rhs: &mut [f64], n_rhs: usize) {
-        let n = self.n();
-        assert_eq!(rhs.len(), n * n_rhs, "{n_rhs} right-hand sides of {n} rows");
-        let mut memory = MemBuffer::new(llt::solve::solve_in_place_scratch::<f64>(n, n_rhs, Par::Seq));
-        llt::solve::solve_in_place(
-            self.factor.as_ref(),
-            MatMut::from_column_major_slice_mut(rhs, n, n_rhs),
-            Par::Seq,
-            MemStack::new(&mut memory),
-        );
-    }
-
-    fn factor_bytes(&self) -> usize {
-        size_of::<f64>() * self.n() * self.n()
-    }
-
-    fn name(&self) -> &'static str {
-        "dense Cholesky"
-    }
-}
-
-/// S = D - D (G^-1 + D)^-1 D, row-major `[n][n]`, of symmetric G and D, G and G^-1 + D positive definite. With
-/// G = L L^T it is D - W (1 + L^T W)^-1 W^T, W = D L: no inverse of G. Errors name rows of G. Time 4 n^3.
-pub(crate) fn update(n: usize, g: &[f64], d: &[f64]) -> Result<Vec<f64>, SolverError> {
-    check_dense(n, d)?;
-    let lower = DenseCholesky::factor(n, g)?.factor;
-    let l = Mat::from_fn(n, n, |i, j| if i >= j { lower[(i, j)] } else { 0.0 });
-    let d = MatRef::from_row_major_slice(d, n, n);
-    let (mut w, mut inner) = (Mat::zeros(n, n), Mat::<f64>::identity(n, n));
-    let sum = |c: MatMut<'_, f64>, a: MatRef<'_, f64>, b: MatRef<'_, f64>, by: f64| {
-        matmul(c, Accum::Add, a, b, by, Par::Seq);
-    };
-    sum(w.as_mut(), d, l.as_ref(), 1.0);
-    sum(inner.as_mut(), l.transpose(), w.as_ref(), 1.0);
-    let inner: Vec<f64> = (0..n * n).map(|ij| inner[(ij / n, ij % n)]).collect();
-    let inner = DenseCholesky::factor(n, &inner)?;
-    // Columns of (1 + L^T W)^-1 W^T.
-    let mut solved: Vec<f64> = (0..n * n).map(|ij| w[(ij / n, ij % n)]).collect();
-    inner.solve(&mut solved, n);
-    let mut s = d.to_owned();
-    sum(
-        s.as_mut(),
-        w.as_ref(),
-        MatRef::from_column_major_slice(&solved, n, n),
-        -1.0,
-    );
-    let symmetric = |ij: usize| 0.5 * (s[(ij / n, ij % n)] + s[(ij % n, ij / n)]);
-    Ok((0..n * n).map(symmetric).collect())
-}
-
-/// C^T A^-1 C, row-major `[n][n]`, exactly symmetric, of the symmetric positive definite A, row-major `[m][m]`, and C, row-major
-/// `[m][n]`. Time m^2 (m/3 + n) + m n^2.
-pub(crate) fn inverse_form(m: usize, n: usize, a: &[f64], c: &[f64]) -> Result<Vec<f64>, SolverError> {
-    assert_eq!(c.len(), m * n, "{m} rows of {n}");
-    let lower = DenseCholesky::factor(m, a)?.factor;
-    let mut w = MatRef::from_row_major_slice(c, m, n).to_owned();
-    solve_lower_triangular_in_place(lower.as_ref(), w.as_mut(), Par::Seq);
-    let mut form = Mat::<f64>::zeros(n, n);
-    matmul(
-        form.as_mut(),
-        Accum::Replace,
-        w.transpose(),
-        w.as_ref(),
-        1.0,
-        Par::Seq,
-    );
-    let symmetric = |ij: usize| 0.5 * (form[(ij / n, ij % n)] + form[(ij % n, ij / n)]);
-    Ok((0..n * n).map(symmetric).collect())
-}
-
-/// A X, row-major `[n][width]` as X, of a symmetric A, row-major `[n][n]`.
-pub(crate) fn symmetric_product(a: &[f64], x: &[f64], width: usize) -> Vec<f64> {
-    let n = x.len() / width.max(1);
-    assert_eq!(a.len(), n * n, "{n} rows of {width}");
-    let mut product = vec![0.0; x.len()];
-    // Row-major matrices are the columns of their transposes.
-    matmul(
-        MatMut::from_column_major_slice_mut(&mut product, width, n),
-        Accum::Replace,
-        MatRef::from_column_major_slice(x, width, n),
-        MatRef::from_column_major_slice(a, n, n),
-        1.0,
-        Par::Seq,
-    );
-    product
-}
-
-/// X^T A X, row-major `[width][width]`, exactly symmetric, of a symmetric A, row-major `[n][n]`, and X, row-major `[n][width]`.
-pub(crate) fn symmetric_form(a: &[f64], x: &[f64], width: usize) -> Vec<f64> {
-    let (n, product) = (x.len() / width.max(1), symmetric_product(a, x, width));
-    let mut form = Mat::<f64>::zeros(width, width);
-    matmul(
-        form.as_mut(),
-        Accum::Replace,
-        MatRef::from_column_major_slice(x, width, n),
-        MatRef::from_row_major_slice(&product, n, width),
-        1.0,
-        Par::Seq,
-    );
-    let symmetric = |ij: usize| 0.5 * (form[(ij / width, ij % width)] + form[(ij % width, ij / width)]);
-    (0..width * width).map(symmetric).collect()
 }
 
 /// LU factors, with row exchanges, of a dense matrix that need be neither symmetric nor definite.
@@ -197,7 +109,7 @@ impl DenseLu {
     ///
     /// # Panics
     /// When `a.len() != n * n`.
-    pub fn factor(n: usize, a: &[f64]) -> Result<Self, SolverError> {
+    pub fn factor(n: usize, a: &[f64]) -> Result<Self, DenseError> {
         check_dense(n, a)?;
         let row_scale: Vec<f64> = (0..n)
             .map(|i| power_of_two_scale(&a[n * i..n * (i + 1)]))
@@ -223,7 +135,7 @@ impl DenseLu {
             let relative_pivot = factor[(column, column)].abs() / largest[column];
             // Written so that NaN, which 0/0 of an empty column gives, is refused as well.
             if relative_pivot.is_nan() || relative_pivot <= limit {
-                return Err(SolverError::Singular {
+                return Err(DenseError::Singular {
                     row: column,
                     n,
                     relative_pivot,
@@ -301,10 +213,10 @@ fn identity(n: usize) -> Vec<f64> {
 }
 
 /// Checks size and entries of a row-major matrix.
-fn check_dense(n: usize, a: &[f64]) -> Result<(), SolverError> {
+pub(crate) fn check_dense(n: usize, a: &[f64]) -> Result<(), DenseError> {
     assert_eq!(a.len(), n * n, "a dense matrix of {n} rows");
     match a.iter().position(|value| !value.is_finite()) {
-        Some(k) => Err(SolverError::NonFinite {
+        Some(k) => Err(DenseError::NonFinite {
             row: k / n,
             column: k % n,
             value: a[k],
