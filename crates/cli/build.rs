@@ -14,11 +14,12 @@ use dynamics::{
     Backend, ContactMode, ContactSettings, Hold, Model, RingModel, Sectors, ShaftDof, Tolerances,
 };
 use fem::Material;
+use input::Scheduled;
 use mesh::{Mesh, Torus};
 
 use crate::failure::Failure;
 use crate::motion::speed;
-use crate::scene::{self, FlexibleRing, Scene, Scheduled};
+use crate::scene::{self, FlexibleRing, Scene};
 
 /// Deviation of raceway nodes from the scene's torus that is taken for round-off of a file, over the groove
 /// radius.

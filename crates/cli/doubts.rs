@@ -7,10 +7,10 @@ use std::ops::RangeInclusive;
 
 use contact::Side;
 use dynamics::{Model, RingModel};
+use input::{DENSITY, LENGTH, Quantity, STRESS};
 
 use crate::print;
 use crate::scene::{Material, Scene};
-use crate::units::{DENSITY, LENGTH, Quantity, STRESS};
 
 /// Young's modulus of what rings and balls are made of, Pa: from soft plastics to diamond.
 const MODULI: RangeInclusive<f64> = 4e8..=1.3e12;

@@ -31,7 +31,6 @@ mod start;
 mod stop;
 mod study;
 mod survey;
-mod units;
 mod watch;
 
 use std::path::PathBuf;

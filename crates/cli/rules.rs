@@ -278,7 +278,7 @@ fn damping(case: &Case<'_>, lines: &mut Vec<String>) {
 
 /// Whether loads, imposed motions or the speed change in time.
 fn changes_in_time(scene: &Scene) -> bool {
-    let steady = dynamics::Schedule::Constant;
+    let steady = input::Schedule::Constant;
     let e = &scene.effects;
     e.axial_force.as_ref().is_some_and(|f| f.schedule != steady)
         || e.radial_force.as_ref().is_some_and(|f| f.schedule != steady)

@@ -6,12 +6,11 @@
 #[path = "../../crates/cli"]
 mod cli {
     pub mod scene;
-    pub mod units;
 }
 
 use std::path::Path;
 
-use cli::{scene, units};
+use cli::scene;
 use libfuzzer_sys::fuzz_target;
 use scene::{MeshFiles, Scene};
 

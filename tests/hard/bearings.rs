@@ -3,7 +3,8 @@
 use dynamics::effects::{AxialForce, Effect, Moment, RadialForce};
 use dynamics::motion::balls::Speed;
 use dynamics::motion::{Motion, MotionSettings};
-use dynamics::{ContactMode, Hold, Model, Schedule, StaticSolution, StaticSolver};
+use dynamics::{ContactMode, Hold, Model, StaticSolution, StaticSolver};
+use input::Schedule;
 
 use super::course::{Course, from_equilibrium};
 use super::support::Case;

@@ -150,14 +150,14 @@ fn turned_load(record: &mut Record) {
         model.effects.push(Box::new(dynamics::effects::RadialForce {
             value: 1e3,
             direction: pitches * pitch,
-            schedule: dynamics::Schedule::Constant,
+            schedule: input::Schedule::Constant,
         }));
         let start = equilibrium_at(&model, 0.0).unwrap();
         model.effects.pop();
         model.effects.push(Box::new(dynamics::effects::RadialForce {
             value: 4e3,
             direction: pitches * pitch,
-            schedule: dynamics::Schedule::Constant,
+            schedule: input::Schedule::Constant,
         }));
         let course = from_equilibrium(&model, &start, conserving(5e-6), 100);
         let moved: Vec<f64> = course.last.forces.iter().map(|f| f[0].hypot(f[1])).collect();
@@ -187,7 +187,7 @@ fn mirrored_motion(record: &mut Record) {
         model.effects.push(Box::new(dynamics::effects::RadialForce {
             value: 2e3,
             direction: sign * 0.3,
-            schedule: dynamics::Schedule::Ramp {
+            schedule: input::Schedule::Ramp {
                 from: 0.0,
                 to: 1.0,
                 start: 0.0,

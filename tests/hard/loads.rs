@@ -2,7 +2,8 @@
 
 use dynamics::motion::contacts::ContactDamping;
 use dynamics::motion::{Integrator, Motion, MotionSettings};
-use dynamics::{Model, Schedule, ShaftDof};
+use dynamics::{Model, ShaftDof};
+use input::Schedule;
 
 use super::bearings::{
     Load, add_moment, conserving, equilibrium_at, flexible, largest_ball_force, released, rigid, transient,

@@ -126,7 +126,7 @@ fn model(random: &Random, direction: f64) -> Model {
     model.effects.push(Box::new(dynamics::effects::RadialForce {
         value: random.radial,
         direction,
-        schedule: dynamics::Schedule::Constant,
+        schedule: input::Schedule::Constant,
     }));
     model.shaft_mass = 20.0 * model.ball_mass() * random.geometry.n_balls as f64;
     model

@@ -10,7 +10,8 @@
 use dynamics::motion::contacts::ContactScheme;
 use dynamics::motion::ledger::LOSSY;
 use dynamics::motion::{Integrator, MotionSettings};
-use dynamics::{Model, Schedule, ShaftDof};
+use dynamics::{Model, ShaftDof};
+use input::Schedule;
 
 use super::bearings::{Load, RPM, conserving, equilibrium_at, flexible, rigid, transient};
 use super::course::Course;

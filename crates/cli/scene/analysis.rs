@@ -1,12 +1,12 @@
 //! Which analysis a scene asks for, and what that means for its other tables.
 
+use input::Clock;
+use input::Problems;
 use toml_edit::DocumentMut;
 
 use super::RawScene;
 use super::effects::EffectsContext;
 use super::modes::ModesContext;
-use super::problems::Problems;
-use super::schedule::Clock;
 use super::shaft::Shaft;
 use super::speed::SpeedUse;
 use super::sweep::{Analysis, RawStatic};

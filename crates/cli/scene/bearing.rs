@@ -11,10 +11,9 @@
 
 use std::f64::consts::PI;
 
+use input::Problems;
+use input::{ANGLE, LENGTH, Quantity};
 use serde::Deserialize;
-
-use super::problems::Problems;
-use crate::units::{ANGLE, LENGTH, Quantity};
 
 /// As typed.
 #[derive(Debug, Deserialize)]

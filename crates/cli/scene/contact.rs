@@ -1,11 +1,11 @@
 //! `[contact]`: how balls and raceways push on each other.
 
+use input::Problems;
+use input::{HERTZ_STIFFNESS, Quantity};
 use serde::Deserialize;
 
 use super::bearing::Bearing;
 use super::materials::{Material, Materials};
-use super::problems::Problems;
-use crate::units::{HERTZ_STIFFNESS, Quantity};
 
 /// As typed.
 #[derive(Debug, Deserialize)]

@@ -1,9 +1,8 @@
 //! `[effects.contact_damping]` and `[effects.rayleigh_damping]`: losses of energy in motion.
 
+use input::Problems;
+use input::{DAMPING, LENGTH, Quantity, RATE, TIME};
 use serde::Deserialize;
-
-use super::problems::Problems;
-use crate::units::{DAMPING, LENGTH, Quantity, RATE, TIME};
 
 /// As typed.
 #[derive(Debug, Deserialize)]

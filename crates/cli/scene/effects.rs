@@ -1,13 +1,13 @@
 //! `[effects.*]`: one optional table per effect; an effect without its table costs nothing.
 
-use dynamics::Schedule;
+use input::Problems;
+use input::Schedule;
+use input::{ACCELERATION, ANGLE, FORCE, MOMENT, Quantity};
+use input::{Clock, RawSchedule, Scheduled, check_schedule};
 use serde::Deserialize;
 
 use super::damping::{ContactDamping, RawContactDamping, RawRayleighDamping, RayleighDamping};
 use super::gyroscopic::RawGyroscopicMoment;
-use super::problems::Problems;
-use super::schedule::{self, Clock, RawSchedule, Scheduled};
-use crate::units::{ACCELERATION, ANGLE, FORCE, MOMENT, Quantity};
 
 /// As typed.
 #[derive(Debug, Default, Deserialize)]
@@ -223,7 +223,7 @@ fn require_load<const KIND: usize>(
 
 impl RawAxialForce {
     fn check(&self, clock: Clock, problems: &mut Problems) -> Scheduled<f64> {
-        let schedule = schedule::check(self.schedule.as_ref(), "effects.axial_force", clock, problems);
+        let schedule = check_schedule(self.schedule.as_ref(), "effects.axial_force", clock, problems);
         require_load(&self.value, &schedule, "effects.axial_force.value", problems);
         Scheduled {
             value: self.value.si(),
@@ -234,7 +234,7 @@ impl RawAxialForce {
 
 impl RawRadialForce {
     fn check(&self, clock: Clock, problems: &mut Problems) -> Scheduled<RadialForce> {
-        let schedule = schedule::check(self.schedule.as_ref(), "effects.radial_force", clock, problems);
+        let schedule = check_schedule(self.schedule.as_ref(), "effects.radial_force", clock, problems);
         require_load(&self.value, &schedule, "effects.radial_force.value", problems);
         let value = RadialForce {
             value: self.value.si(),
@@ -246,7 +246,7 @@ impl RawRadialForce {
 
 impl RawMoment {
     fn check(&self, clock: Clock, problems: &mut Problems) -> Scheduled<[f64; 2]> {
-        let schedule = schedule::check(self.schedule.as_ref(), "effects.moment", clock, problems);
+        let schedule = check_schedule(self.schedule.as_ref(), "effects.moment", clock, problems);
         require_load(&self.x, &schedule, "effects.moment.x", problems);
         require_load(&self.y, &schedule, "effects.moment.y", problems);
         Scheduled {
@@ -287,7 +287,7 @@ impl RawGravity {
         );
         Scheduled {
             value: self.direction.map(|d| g * d / length),
-            schedule: schedule::check(self.schedule.as_ref(), "effects.gravity", clock, problems),
+            schedule: check_schedule(self.schedule.as_ref(), "effects.gravity", clock, problems),
         }
     }
 }

@@ -1,8 +1,7 @@
 //! `[effects.gyroscopic_moment]`: which raceway carries the gyroscopic moment of the balls.
 
+use input::Problems;
 use serde::Deserialize;
-
-use super::problems::Problems;
 
 /// As typed.
 #[derive(Debug, Deserialize)]

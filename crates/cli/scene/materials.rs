@@ -1,9 +1,8 @@
 //! `[materials.rings]` and `[materials.balls]`: linear elastic, isotropic.
 
+use input::Problems;
+use input::{DENSITY, Quantity, STRESS};
 use serde::Deserialize;
-
-use super::problems::Problems;
-use crate::units::{DENSITY, Quantity, STRESS};
 
 /// As typed.
 #[derive(Debug, Deserialize)]

@@ -1,6 +1,6 @@
 //! Scene files: the bearing, its meshes, its loads and what is computed, as TOML.
 //!
-//! Every quantity is a string with its unit, see [`crate::units`]. Every table is checked against the list of
+//! Every quantity is a string with its unit, see [`input::units`]. Every table is checked against the list of
 //! its keys. An effect is a table `[effects.*]`: without the table there is no effect. Exactly one of
 //! `[static]`, `[sweep]`, `[quasi_static]`, `[dynamic]` and `[modes]` says what is computed. Axis z is axial, + is the direction of preload; azimuth
 //! runs from +x to +y; displacements count from the state where all balls just touch both raceways.
@@ -47,10 +47,8 @@ mod materials;
 mod modes;
 mod output;
 mod probes;
-mod problems;
 mod quasi_static;
 mod ring;
-mod schedule;
 mod section;
 mod shaft;
 mod solver;
@@ -82,7 +80,6 @@ pub use self::output::{InnerRingFrame, Output, Precision, StressOutput};
 pub use self::probes::{Axes, ContactProbe, NodeProbe, Probes, SectionPoint};
 pub use self::quasi_static::QuasiStatic;
 pub use self::ring::{FlexibleRing, MeshFiles, Ring, RingName, Support};
-pub use self::schedule::Scheduled;
 pub use self::section::{Section, SectionElement};
 pub use self::shaft::{Motion, Shaft};
 pub use self::solver::{Backend, Solver};
@@ -100,7 +97,6 @@ use self::materials::RawMaterials;
 use self::modes::{ModesContext, RawModes};
 use self::output::RawOutput;
 use self::probes::{ProbesContext, RawProbes};
-use self::problems::Problems;
 use self::quasi_static::RawQuasiStatic;
 use self::ring::{RawRing, RingContext};
 use self::shaft::RawShaft;
@@ -108,6 +104,7 @@ use self::solver::RawSolver;
 use self::speed::RawSpeed;
 use self::stress::{RawStress, StressContext};
 use self::sweep::{RawStatic, RawSweep};
+use input::Problems;
 
 /// As typed.
 #[derive(Debug, Deserialize)]

@@ -2,12 +2,12 @@
 //!
 //! Undamped and without rotation: there are no gyroscopic effects, so `[speed]` is refused.
 
+use input::Problems;
+use input::{Quantity, RATE};
 use serde::Deserialize;
 
 use super::contact::ContactMode;
-use super::problems::Problems;
 use super::solver::Backend;
-use crate::units::{Quantity, RATE};
 
 /// As typed.
 #[derive(Debug, Deserialize)]

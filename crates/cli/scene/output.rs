@@ -1,8 +1,7 @@
 //! `[output]`: what is written, and how exactly.
 
+use input::Problems;
 use serde::Deserialize;
-
-use super::problems::Problems;
 
 /// As typed.
 #[derive(Debug, Default, Deserialize)]

@@ -30,13 +30,13 @@
 
 use std::collections::BTreeMap;
 
+use input::Problems;
+use input::{ANGLE, LENGTH, Quantity};
 use serde::Deserialize;
 
 use super::bearing::Bearing;
-use super::problems::Problems;
 use super::ring::RingName;
 use super::stress_probes::{RawPointProbe, RawProfile, StressLine};
-use crate::units::{ANGLE, LENGTH, Quantity};
 
 /// As typed.
 #[derive(Debug, Default, Deserialize)]

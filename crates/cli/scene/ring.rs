@@ -2,14 +2,14 @@
 
 use std::path::{Path, PathBuf};
 
+use input::Problems;
+use input::{KINDS, LENGTH, Quantity, parse_unit};
 use serde::Deserialize;
 
 use super::bearing::Bearing;
 use super::contact::ContactMode;
 use super::cut::{Cut, RawCut};
-use super::problems::Problems;
 use super::section::{RawSection, Section};
-use crate::units::{KINDS, LENGTH, Quantity, parse_unit};
 
 /// As typed.
 #[derive(Debug, Default, Deserialize)]

@@ -1,11 +1,11 @@
 //! `[inner.section]` and `[outer.section]`: the meshes that `raceway mesh` builds.
 
+use input::Problems;
+use input::{LENGTH, Quantity};
 use serde::Deserialize;
 
 use super::bearing::Bearing;
-use super::problems::Problems;
 use super::ring::RingName;
-use crate::units::{LENGTH, Quantity};
 
 /// As typed.
 #[derive(Debug, Deserialize)]

@@ -21,15 +21,15 @@
 
 use std::fmt;
 
-use dynamics::Schedule;
+use input::Problems;
+use input::Schedule;
+use input::{ANGLE, LENGTH, MASS, Quantity, bare_number};
+use input::{Clock, RawSchedule, check_schedule};
 use serde::Deserialize;
 use serde::de::value::MapAccessDeserializer;
 use serde::de::{Deserializer, Error, MapAccess, Visitor};
 
 use super::bearing::Bearing;
-use super::problems::Problems;
-use super::schedule::{self, Clock, RawSchedule};
-use crate::units::{ANGLE, LENGTH, MASS, Quantity, bare_number};
 
 /// As typed.
 #[derive(Debug, Deserialize)]
@@ -155,7 +155,7 @@ impl<const KIND: usize> RawMotion<KIND> {
 
     fn schedule(&self, key: &str, clock: Clock, problems: &mut Problems) -> Schedule {
         match self {
-            RawMotion::Prescribed(p) => schedule::check(p.schedule.as_deref(), key, clock, problems),
+            RawMotion::Prescribed(p) => check_schedule(p.schedule.as_deref(), key, clock, problems),
             _ => Schedule::Constant,
         }
     }

@@ -1,8 +1,7 @@
 //! `[solver]`: how the equations are solved.
 
+use input::Problems;
 use serde::Deserialize;
-
-use super::problems::Problems;
 
 /// As typed.
 #[derive(Debug, Default, Deserialize)]

@@ -6,14 +6,14 @@
 
 use std::fmt;
 
+use input::Problems;
+use input::require_growing;
+use input::{ANGULAR_SPEED, Quantity, TIME, bare_number};
 use serde::Deserialize;
 use serde::de::value::MapAccessDeserializer;
 use serde::de::{Deserializer, Error, MapAccess, Visitor};
 
 use super::effects::Effects;
-use super::problems::Problems;
-use super::schedule::require_growing;
-use crate::units::{ANGULAR_SPEED, Quantity, TIME, bare_number};
 
 /// As typed.
 #[derive(Debug, Deserialize)]

@@ -1,10 +1,10 @@
 //! `[dynamic.start]`: the state at t = 0. Without the table it is static equilibrium under the loads and the speed of t = 0.
 
+use input::Problems;
+use input::{ANGLE, ANGULAR_SPEED, LENGTH, Quantity, SPEED};
 use serde::Deserialize;
 
-use super::problems::Problems;
 use super::shaft::{Motion, Shaft};
-use crate::units::{ANGLE, ANGULAR_SPEED, LENGTH, Quantity, SPEED};
 
 /// As typed.
 #[derive(Debug, Deserialize)]

@@ -6,10 +6,10 @@
 //! How stress is computed, wherever it is written: step files, probes, profiles. [`contact::near_field`] says what the near field is. Without
 //! it there is no cost, and stress within about two patches of a contact is that of a force spread over elements.
 
+use input::Problems;
 use serde::Deserialize;
 
 use super::contact::ContactMode;
-use super::problems::Problems;
 
 /// As typed.
 #[derive(Debug, Default, Deserialize)]

@@ -18,11 +18,11 @@
 
 use std::f64::consts::FRAC_PI_2;
 
+use input::Problems;
+use input::{ANGLE, LENGTH, Quantity};
 use serde::Deserialize;
 
-use super::problems::Problems;
 use super::ring::RingName;
-use crate::units::{ANGLE, LENGTH, Quantity};
 
 /// As typed.
 #[derive(Debug, Deserialize)]

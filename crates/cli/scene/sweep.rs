@@ -5,6 +5,8 @@
 
 use std::fmt;
 
+use input::Problems;
+use input::{AnyQuantity, Dimension, kind_of_dimension};
 use serde::Deserialize;
 use serde::de::{Deserializer, Error, Visitor};
 use toml_edit::{DocumentMut, Value};
@@ -12,9 +14,7 @@ use toml_edit::{DocumentMut, Value};
 use super::dynamic::Dynamic;
 use super::edit;
 use super::modes::Modes;
-use super::problems::Problems;
 use super::quasi_static::QuasiStatic;
-use crate::units::{AnyQuantity, Dimension, kind_of_dimension};
 
 /// As typed: the table has no keys.
 #[derive(Debug, Deserialize)]

@@ -11,6 +11,7 @@ use comm::Communicator;
 use contact::hertz::Elastic;
 use contact::{BearingGeometry, Groove, HertzContact, Side};
 use fem::{FemError, Material};
+use input::Schedule;
 use mesh::{
     Mesh, NearlyPeriodic, NotNearlyPeriodic, NotPeriodic, PERIODIC_TOLERANCE, Periodicity,
     find_nearly_periodic, find_periodicity,
@@ -19,7 +20,6 @@ use serde::{Deserialize, Serialize};
 
 use crate::division::Division;
 use crate::effects::Effect;
-use crate::schedule::Schedule;
 
 /// Name of the facet group on which balls run.
 pub const RACEWAY_GROUP: &str = "raceway";

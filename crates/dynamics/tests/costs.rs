@@ -7,7 +7,9 @@ use dynamics::effects::{self, AxialForce, Effect, Gravity, Now};
 use dynamics::motion::balls::Speed;
 use dynamics::motion::contacts::ContactDamping;
 use dynamics::motion::{Motion, MotionSettings};
-use dynamics::{ContactMode, EffectCosts, Hold, Inventory, Model, Schedule, StaticSolver};
+use dynamics::{ContactMode, EffectCosts, Hold, Inventory, Model, StaticSolver};
+use input::Schedule;
+
 use support::Case;
 use support::rings::Level;
 

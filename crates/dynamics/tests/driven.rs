@@ -5,7 +5,9 @@ mod support;
 use dynamics::effects::{BallCentrifugal, GyroscopicMoment, Now};
 use dynamics::motion::balls::{BallSpeeds, Speed};
 use dynamics::motion::{Motion, MotionSettings, MotionState};
-use dynamics::{ContactMode, Hold, Model, Pose, Schedule, ShaftDof, StaticSolver};
+use dynamics::{ContactMode, Hold, Model, Pose, ShaftDof, StaticSolver};
+use input::Schedule;
+
 use support::rings::Level;
 use support::{Case, equilibrium};
 

@@ -8,7 +8,9 @@ use contact::Side;
 use dynamics::effects::{AxialForce, BallCentrifugal, Gravity, Now, RadialForce};
 use dynamics::motion::balls::{BallSpeeds, Rolling, Speed};
 use dynamics::motion::{Motion, MotionSettings};
-use dynamics::{ContactMode, Hold, Model, Pose, QuasiStatic, Schedule, StaticSolution, StaticSolver};
+use dynamics::{ContactMode, Hold, Model, Pose, QuasiStatic, StaticSolution, StaticSolver};
+use input::Schedule;
+
 use support::rings::Level;
 use support::{Case, relative};
 

@@ -4,7 +4,9 @@ mod support;
 
 use contact::{BearingGeometry, Side};
 use dynamics::effects::Gravity;
-use dynamics::{DynamicsError, Schedule, ShaftDof, StaticSolver};
+use dynamics::{DynamicsError, ShaftDof, StaticSolver};
+use input::Schedule;
+
 use support::{Case, equilibrium, relative};
 
 /// Wrong: the thrust equilibrium. Harris (4th ed.), eq. 7.30-7.33: F = Z K A^1.5 sin a (cos a0/cos a - 1)^1.5, with

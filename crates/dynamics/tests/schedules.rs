@@ -3,7 +3,9 @@
 mod support;
 
 use dynamics::effects::{AxialForce, Effect, Gravity, Moment, Now, RadialForce};
-use dynamics::{Model, Pose, Schedule, ShaftDof, StaticSolution, StaticSolver};
+use dynamics::{Model, Pose, ShaftDof, StaticSolution, StaticSolver};
+use input::Schedule;
+
 use support::Case;
 
 /// A bearing under all scheduled loads and a driven tilt; `at` makes the schedule of each from its number.

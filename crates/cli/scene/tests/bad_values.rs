@@ -342,7 +342,7 @@ fn a_shaft_free_along_its_axis_may_be_pushed_either_way() {
     let scene = super::parse(&with_line("value = \"2 kN\"", "value = \"-2 kN\""), &[]).unwrap();
     assert_eq!(
         scene.effects.axial_force,
-        Some(crate::scene::Scheduled::constant(-2000.0))
+        Some(input::Scheduled::constant(-2000.0))
     );
 }
 

@@ -1,5 +1,7 @@
 //! Scenes that must be read, and what they say.
 
+use input::Scheduled;
+
 use super::*;
 use crate::scene::effects::RadialForce;
 

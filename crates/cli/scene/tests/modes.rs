@@ -48,7 +48,7 @@ fn the_delivered_scene_is_valid() {
     assert_eq!((modes.number, modes.bodies.len()), (14, 3));
     assert_eq!(
         (scene.effects.axial_force, scene.shaft.mass),
-        (Some(crate::scene::Scheduled::constant(2e3)), 2.0)
+        (Some(input::Scheduled::constant(2e3)), 2.0)
     );
 }
 

@@ -1,5 +1,7 @@
 //! Tests of `--set path=value`.
 
+use input::Scheduled;
+
 use super::*;
 
 /// If this failed, `--set` would change another key, or not what is solved.

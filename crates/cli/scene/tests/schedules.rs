@@ -1,6 +1,6 @@
 //! Loads and shaft motions that change in time, speed ramps, the gyroscopic moment: what reads, and what is refused.
 
-use dynamics::Schedule;
+use input::{Schedule, Scheduled};
 
 use super::*;
 

@@ -4,10 +4,11 @@
 //! ```
 //! An axial force on the shaft. On the axis, so it has no moment. With a sub-table `schedule` it changes in time.
 
+use input::Schedule;
+
 use super::{Effect, Loads, Now};
 use crate::error::DynamicsError;
 use crate::model::Model;
-use crate::schedule::Schedule;
 
 /// Axial force on the shaft.
 pub struct AxialForce {

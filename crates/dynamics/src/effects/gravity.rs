@@ -12,11 +12,11 @@
 use std::sync::Arc;
 
 use contact::Side;
+use input::Schedule;
 
 use super::{Effect, Loads, Now};
 use crate::error::DynamicsError;
 use crate::model::{Model, NodeMasses, RingModel};
-use crate::schedule::Schedule;
 
 /// Uniform gravity.
 pub struct Gravity {

@@ -19,13 +19,13 @@ pub use moment::Moment;
 pub use radial_force::RadialForce;
 
 use contact::Side;
+use input::Schedule;
 
 use crate::balls::BallResult;
 use crate::costs::EffectCosts;
 use crate::division::NodePlaces;
 use crate::error::DynamicsError;
 use crate::model::Model;
-use crate::schedule::Schedule;
 
 /// Loads on all bodies at one instant.
 #[derive(Clone, Debug, PartialEq)]

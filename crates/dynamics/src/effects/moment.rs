@@ -5,10 +5,11 @@
 //! ```
 //! A tilting moment on the shaft; right-hand rule about +x and +y. With a sub-table `schedule` it changes in time.
 
+use input::Schedule;
+
 use super::{Effect, Loads, Now};
 use crate::error::DynamicsError;
 use crate::model::Model;
-use crate::schedule::Schedule;
 
 /// Tilting moment on the shaft.
 pub struct Moment {

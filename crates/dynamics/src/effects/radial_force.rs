@@ -6,10 +6,11 @@
 //! A radial force on the shaft at the scene's load point; off the groove plane it also tilts. With a sub-table
 //! `schedule` it changes in time.
 
+use input::Schedule;
+
 use super::{Effect, Loads, Now};
 use crate::error::DynamicsError;
 use crate::model::Model;
-use crate::schedule::Schedule;
 
 /// Radial force on the shaft.
 pub struct RadialForce {

@@ -5,13 +5,13 @@
 //! rolling motion that is lost.
 
 use contact::{BearingGeometry, Side};
+use input::schedule::piecewise_linear;
 
 use super::run::Motion;
 use super::state::MotionState;
 use crate::effects::Now;
 use crate::model::Model;
 use crate::pose::Pose;
-use crate::schedule::piecewise_linear;
 
 /// Inner ring speed as a piecewise linear function of time.
 #[derive(Clone, Debug, PartialEq)]

@@ -1,9 +1,9 @@
 //! A step of periodic rings begins with what the pass that ended the step before has found.
 
-use dynamics::Schedule;
 use dynamics::effects::Gravity;
 use dynamics::motion::ring::RingState;
 use dynamics::motion::{Integrator, Ladder};
+use input::Schedule;
 
 use super::*;
 

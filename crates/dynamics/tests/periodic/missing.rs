@@ -6,7 +6,8 @@ use contact::Side;
 use dynamics::effects::{FrameRotation, Gravity};
 use dynamics::motion::balls::Speed;
 use dynamics::motion::{Integrator, Motion, MotionSettings};
-use dynamics::{Backend, Hold, Model, Schedule, StaticSolver};
+use dynamics::{Backend, Hold, Model, StaticSolver};
+use input::Schedule;
 use mesh::{Facet, Mesh};
 
 use crate::ahead::alone;

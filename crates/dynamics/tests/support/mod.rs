@@ -4,10 +4,9 @@
 
 use contact::{BearingGeometry, HertzContact, Side};
 use dynamics::effects::{AxialForce, Effect, Moment, RadialForce};
-use dynamics::{
-    ContactMode, ContactSettings, Model, Schedule, ShaftDof, StaticSolution, StaticSolver, Tolerances,
-};
+use dynamics::{ContactMode, ContactSettings, Model, ShaftDof, StaticSolution, StaticSolver, Tolerances};
 use fem::Material;
+use input::Schedule;
 
 /// A load case of the 7010C.
 #[derive(Clone, Copy, Debug)]

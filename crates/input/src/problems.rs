@@ -1,4 +1,4 @@
-//! Collects everything that is wrong with a scene, so that one run of the program reports it all.
+//! Collects everything that is wrong with an input, so that one run of the program reports it all.
 
 use std::fmt::Display;
 

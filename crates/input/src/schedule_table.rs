@@ -6,13 +6,13 @@
 //! duration = "2 ms"
 //! ```
 //!
-//! Exactly one of `ramp`, `step`, `impact`, `harmonic` and `table`; what each does is in `dynamics::schedule`. Without a
+//! Exactly one of `ramp`, `step`, `impact`, `harmonic` and `table`; what each does is in [`crate::schedule`]. Without a
 //! schedule the value is constant. A scene at rest has no time and so no schedules.
 
-use dynamics::Schedule;
 use serde::Deserialize;
 
-use super::problems::Problems;
+use crate::problems::Problems;
+use crate::schedule::Schedule;
 use crate::units::{ANGLE, Quantity, RATE, TIME};
 
 /// As typed.
@@ -97,7 +97,6 @@ pub struct Scheduled<T> {
 
 impl<T> Scheduled<T> {
     /// A value that stays.
-    #[cfg(test)]
     pub fn constant(value: T) -> Scheduled<T> {
         Scheduled {
             value,
@@ -107,7 +106,12 @@ impl<T> Scheduled<T> {
 }
 
 /// Checks the schedule of the table `owner` such as `effects.radial_force`; without one the value is constant.
-pub fn check(raw: Option<&RawSchedule>, owner: &str, clock: Clock, problems: &mut Problems) -> Schedule {
+pub fn check_schedule(
+    raw: Option<&RawSchedule>,
+    owner: &str,
+    clock: Clock,
+    problems: &mut Problems,
+) -> Schedule {
     let Some(raw) = raw else {
         return Schedule::Constant;
     };

@@ -200,7 +200,7 @@ fn sinc(x: f64) -> f64 {
 }
 
 /// Value and rate at `t` of the function that is linear between growing `times` and constant outside.
-pub(crate) fn piecewise_linear(times: &[f64], values: &[f64], t: f64) -> [f64; 2] {
+pub fn piecewise_linear(times: &[f64], values: &[f64], t: f64) -> [f64; 2] {
     let i = times.partition_point(|x| *x <= t);
     if i == 0 {
         return [values[0], 0.0];

@@ -1,0 +1,26 @@
+//! What input consists of, whatever it is for: quantities with units, schedules, lists of problems.
+//!
+//! The crate knows serde, but no file format. Its types read themselves from any.
+//! ```
+//! use input::{FORCE, Problems, Quantity};
+//! let force: Quantity<FORCE> = "2 kN".parse()?;
+//! assert_eq!(force.si(), 2000.0);
+//! let mut problems = Problems::default();
+//! problems.require_positive(&force, "axial_force", "a force");
+//! assert!(problems.into_texts().is_empty());
+//! # Ok::<(), input::UnitError>(())
+//! ```
+
+mod problems;
+pub mod schedule;
+mod schedule_table;
+pub mod units;
+
+pub use problems::Problems;
+pub use schedule::Schedule;
+pub use schedule_table::{Clock, RawSchedule, Scheduled, check_schedule, require_growing};
+pub use units::{
+    ACCELERATION, ANGLE, ANGULAR_SPEED, AnyQuantity, DAMPING, DENSITY, Dimension, FORCE, HERTZ_STIFFNESS,
+    KINDS, Kind, LENGTH, MASS, MOMENT, Quantity, RATE, SPEED, STRESS, TIME, UnitError, bare_number,
+    kind_of_dimension, parse_unit, ten_digits,
+};
