@@ -3,24 +3,24 @@
 use std::f64::consts::PI;
 use std::path::Path;
 
+use comm::print;
 use contact::{BearingGeometry, Side};
 use dynamics::motion::balls::Kinematics;
 use dynamics::{
     Model, MotionSizes, Numbers, Prepared, RingMemory, Substructures, forecast_motion_peak, forecast_peak,
 };
+use scene::build_model;
+use scene::doubts;
+use scene::{Analysis, Scene};
 
-use crate::build::build_model;
-use crate::doubts::doubts;
 use crate::failure::Failure;
 use crate::modes;
-use crate::print;
 use crate::rank_table::{self, RingOnRanks};
 use crate::results::disk::{self, Forecast};
 use crate::results::memory::queued_steps;
 use crate::results::probes::Probes;
 use crate::results::summary::effects_on;
 use crate::rules;
-use crate::scene::{Analysis, Scene};
 
 /// Reads and checks the scene and its meshes and prints effects, sizes and forecasts.
 pub fn check(path: &Path, overrides: &[String]) -> Result<(), Failure> {

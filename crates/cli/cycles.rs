@@ -6,10 +6,10 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, anyhow};
 use clap::Args;
+use comm::print;
 
 use self::rainflow::{rainflow, turning_points};
 use crate::failure::Failure;
-use crate::print;
 
 /// Tables that are written into the folder.
 const RANGES: &str = "stress_ranges.csv";

@@ -6,9 +6,9 @@ use anyhow::{Context, anyhow};
 use checkpoint::{
     FileDescription, committed_steps, describe, read_mesh, read_step, read_step_time, step_file_name,
 };
+use comm::print;
 
 use crate::failure::Failure;
-use crate::print;
 use crate::results::disk::size;
 use crate::results::summary::SUMMARY_FILE;
 
@@ -156,10 +156,7 @@ fn file(path: &Path) -> Result<(), Failure> {
 
 /// Texts about the run, and the title of its scene.
 fn about(found: &FileDescription) {
-    let title = found.scene.as_deref().and_then(|scene| {
-        let table = scene.parse::<toml::Table>().ok()?;
-        Some(table.get("title")?.as_str()?.to_string())
-    });
+    let title = found.scene.as_deref().and_then(scene::title);
     if let Some(title) = title {
         line("title", &title);
     }

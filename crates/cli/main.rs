@@ -3,21 +3,17 @@
 //! Exit codes: 0 finished, 2 wrong input, 3 no solution found, 75 stopped early with a step to resume
 //! from.
 
-mod build;
 mod check;
 mod cycles;
-mod doubts;
 mod export;
 mod failure;
 mod info;
-mod meshing;
 mod modes;
 mod motion;
 mod options;
 mod pack;
 mod plot;
 mod prices;
-mod print;
 mod progress;
 mod quasi_static;
 mod rank_table;
@@ -26,7 +22,6 @@ mod results;
 mod resume;
 mod rules;
 mod run;
-mod scene;
 mod start;
 mod stop;
 mod study;
@@ -37,7 +32,7 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
-use comm::{Communicator, End, Environment};
+use comm::{Communicator, End, Environment, print};
 use mesh::Overwrite;
 
 use crate::cycles::Cycles;
@@ -236,7 +231,7 @@ fn execute(arguments: Arguments) -> Result<(), Failure> {
             } else {
                 Overwrite::Refuse
             };
-            meshing::build_meshes(&scene, &overrides, overwrite)
+            Ok(scene::build_meshes(&scene, &overrides, overwrite)?)
         }
     }
 }

@@ -8,17 +8,17 @@ use comm::Communicator;
 use contact::Side;
 use dynamics::modes::{basis_sizes, bearing_modes, ring_modes};
 use dynamics::{ModeSet, Model, ModesSettings, RingSupport, StaticSolution, StaticSolver};
+use scene::build_model;
+use scene::say_doubts;
+use scene::{ModeBody, ModeSupport, Modes, Scene};
 use solver::Searched;
 
-use crate::build::build_model;
-use crate::doubts::say_doubts;
 use crate::failure::Failure;
 use crate::options::Limits;
 use crate::progress::Progress;
 use crate::results::disk::Forecast;
 use crate::results::modes::{ModeFiles, ModesSummary, print_modes};
 use crate::results::snapshot::Snapshot;
-use crate::scene::{ModeBody, ModeSupport, Modes, Scene};
 
 /// Blocks of the search between two lines of progress in a log.
 const PROGRESS_STEPS: usize = 10;

@@ -1,6 +1,5 @@
 //! `raceway run` of a `[dynamic]` scene: static start, then steps in time with histories, step files and the ledger.
 
-mod settings;
 mod spent;
 
 use std::collections::BTreeMap;
@@ -8,14 +7,16 @@ use std::path::Path;
 use std::time::Instant;
 
 use anyhow::anyhow;
+use comm::print;
 use contact::Side;
 use dynamics::motion::ledger::LOSSY;
 use dynamics::motion::{Motion, MotionState};
 use dynamics::{DynamicsError, Model, Timing};
+use scene::settings;
+use scene::{Dynamic, Scene};
 
 use crate::failure::{Failure, agree};
 use crate::options::Limits;
-use crate::print;
 use crate::progress::Progress;
 use crate::results::console;
 use crate::results::disk::Forecast;
@@ -26,14 +27,10 @@ use crate::results::shown::Shown;
 use crate::results::snapshot::Snapshot;
 use crate::results::summary::{Findings, Summary};
 use crate::resume::Stored;
-use crate::scene::{Dynamic, Scene};
 use crate::start::settle;
 use crate::stop::Stop;
 use crate::survey::build_surveyed;
 use crate::watch::Watch;
-
-use settings::settings;
-pub use settings::speed;
 use spent::Spent;
 
 /// Steps between two lines of progress in a log.

@@ -5,9 +5,9 @@ use std::path::PathBuf;
 use anyhow::anyhow;
 use checkpoint::{FolderLock, pack_steps, packs, unpack_steps};
 use clap::Args;
+use comm::print;
 
 use crate::failure::Failure;
-use crate::print;
 use crate::results::files::note_dead_owner;
 
 /// What the command line asks for.

@@ -10,10 +10,10 @@ use std::path::PathBuf;
 
 use anyhow::{Context, bail};
 use clap::Args;
+use comm::print;
+use scene::{MeshFiles, Scene};
 
 use crate::failure::Failure;
-use crate::print;
-use crate::scene::{MeshFiles, Scene};
 use crate::study::{self, Axis, AxisValue, CostKind, Meshes, Plan, Quantity, Report, Source, Take};
 
 mod variants;

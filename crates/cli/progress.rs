@@ -4,9 +4,8 @@ use std::io::IsTerminal;
 use std::time::{Duration, Instant};
 
 use comm::Communicator;
+use comm::print;
 use indicatif::{ProgressBar, ProgressStyle};
-
-use crate::print;
 
 /// Shows what a run is doing and how far it is.
 pub struct Progress {

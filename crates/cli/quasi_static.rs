@@ -4,14 +4,15 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use std::time::Instant;
 
+use comm::print;
 use contact::Side;
 use dynamics::motion::balls::{Rolling, Speed};
 use dynamics::{Model, QuasiStatic, StaticSolution};
+use scene::Scene;
+use scene::rolling;
 
-use crate::build::rolling;
 use crate::failure::{Failure, agree};
 use crate::options::Limits;
-use crate::print;
 use crate::progress::Progress;
 use crate::results::disk::Forecast;
 use crate::results::files::Files;
@@ -20,7 +21,6 @@ use crate::results::shown::Shown;
 use crate::results::snapshot::Snapshot;
 use crate::results::summary::{Findings, Summary};
 use crate::results::{console, fields};
-use crate::scene::{self, Scene};
 use crate::survey::build_surveyed;
 
 /// Steps between two lines of progress in a log.

@@ -1,9 +1,8 @@
 //! Forecast of the memory of each rank of a run in sectors, by the number of ranks, for `raceway check`.
 
+use comm::print;
 use dynamics::{Model, RankMemory, RingModel, Share, Substructures, forecast_rank_peak};
-
-use crate::print;
-use crate::scene::Analysis;
+use scene::Analysis;
 
 /// What the ranks hold of one ring, for every number of ranks shown.
 pub struct RingOnRanks(Vec<Vec<RankMemory>>);

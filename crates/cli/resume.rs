@@ -12,18 +12,18 @@ use anyhow::{Context, anyhow};
 use checkpoint::{FolderLock, StateArray, StepRecord, newest_step, read_about, read_step, step_file_name};
 use clap::Args;
 use comm::Communicator;
+use comm::print;
 use dynamics::motion::{Motion, MotionState};
+use scene::{Analysis, Dynamic, MeshFiles, Scene, difference};
 
 use crate::failure::{Failure, agree};
 use crate::motion;
 use crate::options::Limits;
-use crate::print;
 use crate::results::about::{OVERRIDES, SCENE_FILE, WARNINGS, require_same_meshes};
 use crate::results::files::note_dead_owner;
 use crate::results::state_arrays;
 use crate::results::summary::SUMMARY_FILE;
 use crate::run::note_unshared;
-use crate::scene::{Analysis, Dynamic, MeshFiles, Scene, difference};
 use crate::watch::Watch;
 
 /// Keys and tables of a scene that a resumed run may change: none of them touches the motion.

@@ -25,8 +25,7 @@
 use contact::Side;
 use dynamics::Model;
 use dynamics::motion::balls::Kinematics;
-
-use crate::scene::{Analysis, Scene, Support};
+use scene::{Analysis, Scene, Support};
 
 /// Ratio from which an effect that is off is pointed out.
 const MATTERS: f64 = 1e-2;

@@ -6,15 +6,16 @@ use std::time::Instant;
 
 use anyhow::anyhow;
 use comm::Communicator;
+use comm::print;
 use contact::Side;
 use dynamics::{DynamicsError, StaticSolution, StaticSolver};
+use scene::{Analysis, Backend, Scene};
+use scene::{model_with_rings, rolling};
 
-use crate::build::{model_with_rings, rolling};
 use crate::failure::{Failure, agree};
 use crate::modes;
 use crate::motion;
 use crate::options::{Limits, Part};
-use crate::print;
 use crate::progress::Progress;
 use crate::quasi_static;
 use crate::results::disk::Forecast;
@@ -24,7 +25,6 @@ use crate::results::shown::Shown;
 use crate::results::snapshot::Snapshot;
 use crate::results::summary::{Findings, Summary};
 use crate::results::{console, fields, folder};
-use crate::scene::{Analysis, Backend, Scene};
 use crate::survey::build_surveyed;
 
 /// One load case of a run: the swept value (None for a static scene) and its scene.

@@ -3,10 +3,10 @@
 use contact::Side;
 use dynamics::motion::{Motion, MotionState};
 use dynamics::{Model, RingMemory, StaticSolution, StaticSolver, Timing};
+use scene::{Dynamic, Start};
 
 use crate::failure::Failure;
 use crate::progress::Progress;
-use crate::scene::{Dynamic, Start};
 
 /// The static start, when there is one, and its costs.
 #[derive(Default)]

@@ -11,13 +11,13 @@ use checkpoint::MeshFile;
 use comm::Communicator;
 use contact::Side;
 use dynamics::{Backend, Model, RingModel, Sectors};
+use scene::say_doubts;
+use scene::{Scene, difference};
+use scene::{build_model, material, model_with_rings, ring_of};
 
-use crate::build::{build_model, material, model_with_rings, ring_of};
-use crate::doubts::say_doubts;
 use crate::failure::{Failure, agree};
 use crate::results::fields;
 use crate::results::probes::Probes;
-use crate::scene::{self, Scene, difference};
 
 /// What only whole meshes tell of a run.
 #[derive(Default)]

@@ -3,16 +3,13 @@
 #![no_main]
 #![allow(dead_code, unused_imports)]
 
-#[path = "../../crates/cli"]
-mod cli {
-    pub mod scene;
-}
+#[path = "../../crates/scene/src/tables/mod.rs"]
+mod tables;
 
 use std::path::Path;
 
-use cli::scene;
 use libfuzzer_sys::fuzz_target;
-use scene::{MeshFiles, Scene};
+use tables::{MeshFiles, Scene};
 
 fuzz_target!(|data: &str| {
     let (text, overrides) = data.split_once('\0').unwrap_or((data, ""));

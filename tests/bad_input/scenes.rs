@@ -1,4 +1,4 @@
-//! Scenes that must be refused by the whole program. The scene format has its own, finer tests in `crates/cli/scene`.
+//! Scenes that must be refused by the whole program. The scene format has its own, finer tests in `crates/scene`.
 
 use super::{assert_refused, run};
 use crate::util::{Dir, SCENE, with_line};

@@ -10,9 +10,9 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, anyhow};
 use checkpoint::{Grid, StepRecord, all_steps, read_any_step, read_mesh};
 use clap::{Args, ValueEnum};
+use comm::print;
 
 use crate::failure::Failure;
-use crate::print;
 
 /// What the command line asks for.
 #[derive(Debug, Args)]

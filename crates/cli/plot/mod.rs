@@ -21,10 +21,10 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, anyhow};
 use clap::Args;
+use comm::print;
 use figure::Figure;
 
 use crate::failure::Failure;
-use crate::print;
 
 pub use quantity::Unit;
 pub use results::{Results, Steps};

@@ -8,9 +8,8 @@ use std::path::Path;
 
 use checkpoint::{Grid, StepRecord};
 use contact::{BearingGeometry, Groove, Side};
-
-use crate::build::geometry;
-use crate::scene::{MeshFiles, Scene};
+use scene::geometry;
+use scene::{MeshFiles, Scene};
 
 /// How far a node may lie off the torus, in groove radii: meshes are exact to rounding in their files.
 const ON_TORUS: f64 = 1e-4;

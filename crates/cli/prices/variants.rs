@@ -1,6 +1,6 @@
 //! Scenes that differ from a given one in a single effect.
 
-use crate::scene::{Analysis, ContactMode, FlexibleRing, Ring, Scene, StressOutput, Support};
+use scene::{Analysis, ContactMode, FlexibleRing, Ring, Scene, StressOutput, Support};
 
 /// Name and `--set` arguments of a variant.
 pub type Variant = (String, Vec<String>);
@@ -216,7 +216,7 @@ fn without_inertia(scene: &Scene) -> Option<Variant> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::MeshFiles;
+    use scene::MeshFiles;
 
     const SCENE: &str = include_str!("../../../tests/fixtures/7010c.toml");
 

@@ -9,10 +9,10 @@ use std::path::PathBuf;
 
 use anyhow::Context;
 use clap::Args;
+use comm::print;
 
 use crate::failure::Failure;
 use crate::plot::{self, Choice, Results};
-use crate::print;
 
 /// What the command line asks for.
 #[derive(Debug, Args)]

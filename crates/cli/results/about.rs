@@ -6,8 +6,7 @@ use std::path::{Component, Path, PathBuf};
 
 use anyhow::{Context, anyhow};
 use contact::Side;
-
-use crate::scene::{FlexibleRing, Scene, StressOutput};
+use scene::{FlexibleRing, Scene, StressOutput};
 
 /// Scene file, relative to the result folder.
 pub const SCENE_FILE: &str = "scene_file";

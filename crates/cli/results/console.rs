@@ -1,9 +1,9 @@
 //! The short table at the end of a run.
 
+use comm::print;
 use dynamics::StaticSolution;
 
 use super::snapshot::Snapshot;
-use crate::print;
 
 /// Prints the balls and the shaft at one instant.
 pub fn print_snapshot(snapshot: &Snapshot) {

@@ -4,14 +4,14 @@ use std::path::Path;
 
 use anyhow::anyhow;
 use checkpoint::Body;
+use comm::print;
 use contact::Side;
 use dynamics::{Hold, Model, RingModel};
 use fem::quadrature::stiffness_rule;
+use scene::{Analysis, Precision, Scene, StressOutput};
 
 use super::fields;
 use crate::failure::Failure;
-use crate::print;
-use crate::scene::{Analysis, Precision, Scene, StressOutput};
 
 /// Bytes of one point: displacement and two force vectors.
 const POINT_BYTES: u64 = 9 * 8;

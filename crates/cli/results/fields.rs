@@ -7,11 +7,11 @@ use contact::{BearingGeometry, Side};
 use dynamics::balls::{BallResult, ContactResult};
 use dynamics::{Model, StaticSolution};
 use fem::stress::von_mises;
+use scene::{InnerRingFrame, Scene};
 
 use super::ring_stress::{Basis, Gathered, RingStress, ShownRing, StressFields};
 use super::shown::{Shown, Turn};
 use crate::failure::Failure;
-use crate::scene::{InnerRingFrame, Scene};
 
 /// The bodies of a result, in the order of its points: flexible rings, whose meshes must be whole, then the balls.
 pub fn bodies(model: &Model) -> Vec<Body> {

@@ -12,7 +12,9 @@ use checkpoint::{
     Storage,
 };
 use comm::Communicator;
+use comm::print;
 use dynamics::{Model, Timing};
+use scene::{Analysis, Scene};
 
 use super::about::about;
 use super::fields;
@@ -24,8 +26,6 @@ use super::snapshot::Snapshot;
 use super::summary::{Costs, SUMMARY_FILE};
 use super::tables::{OwnColumns, Tables};
 use crate::failure::Failure;
-use crate::print;
-use crate::scene::{self, Analysis, Scene};
 use crate::survey::Survey;
 
 /// Step files that may wait for the disk, besides the one being written.

@@ -3,8 +3,7 @@
 use comm::Communicator;
 use dynamics::motion::Motion;
 use dynamics::{RingMemory, forecast_peak};
-
-use crate::scene::Dynamic;
+use scene::Dynamic;
 
 /// Steps between files up to which files wait for the disk.
 const OFTEN: u64 = 10;

@@ -10,9 +10,11 @@ use std::time::Instant;
 
 use anyhow::Context;
 use checkpoint::{CellFields, Output, PointFields, StateArray, StepRecord};
+use comm::print;
 use contact::Side;
 use dynamics::balls::BallResult;
 use dynamics::{Mode, ModeSet, Model};
+use scene::{ModeBody, Scene};
 use serde::Serialize;
 
 use super::fields;
@@ -22,8 +24,6 @@ use super::shown::Turn;
 use super::snapshot::Snapshot;
 use super::summary::{ShaftSummary, mode_name, peak_memory, sides, write_summary};
 use crate::failure::Failure;
-use crate::print;
-use crate::scene::{ModeBody, Scene};
 
 /// Largest displacement of a shape in a step file, m.
 const AMPLITUDE: f64 = 1e-3;

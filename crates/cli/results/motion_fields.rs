@@ -3,13 +3,13 @@
 use checkpoint::StepRecord;
 use dynamics::Model;
 use dynamics::motion::{Motion, MotionState};
+use scene::Scene;
 
 use super::fields::Places;
 use super::ring_stress::{Gathered, RingStress};
 use super::shown::Shown;
 use super::state_arrays::{self, Arrays};
 use crate::failure::Failure;
-use crate::scene::Scene;
 
 /// One instant as it is stored, but for the stress: that is recovered when the record is made.
 pub struct Recorded {

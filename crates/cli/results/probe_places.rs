@@ -4,10 +4,10 @@ use anyhow::anyhow;
 use dynamics::RingModel;
 use dynamics::model::RACEWAY_GROUP;
 use mesh::Mesh;
+use scene::{NodeProbe, SectionPoint};
 use serde::Serialize;
 
 use crate::failure::Failure;
-use crate::scene::{NodeProbe, SectionPoint};
 
 /// A probed node, as `summary.json` reports it.
 #[derive(Clone, Debug, PartialEq, Serialize)]

@@ -6,15 +6,15 @@ use contact::Side;
 use dynamics::Model;
 use dynamics::balls::BallResult;
 use fem::stress::{NodeRecovery, von_mises};
+use scene::NodeTags;
+use scene::{Axes, ContactProbe, RingName, Scene};
 
 use super::fields::force_on_ball;
 use super::probe_places::{NodePlace, place};
 use super::shown::{RingField, Shown, Turn};
 use super::stress_points::{self, StressPoints};
 use super::timed_near_field::TimedNearField;
-use crate::build::NodeTags;
 use crate::failure::Failure;
-use crate::scene::{self, Axes, ContactProbe, RingName, Scene};
 
 /// The probes of a run, placed on its meshes.
 pub struct Probes {

@@ -9,11 +9,11 @@ use dynamics::{Backend, Model, NodalStress, PointStress, RingModel, SharedStress
 use fem::quadrature::stiffness_rule;
 use fem::stress::von_mises;
 use mesh::NodePositions;
+use scene::{Scene, StressOutput};
 
 use super::shown::{Shown, Turn};
 use super::timed_near_field::TimedNearField;
 use crate::failure::Failure;
-use crate::scene::{Scene, StressOutput};
 
 /// Order of points and components, as every step file states it. Points beyond those of a cell's kind are zero.
 pub const LAYOUT: &str = "stress in Pa, tension positive; a row per cell: points one after the other, each with the \

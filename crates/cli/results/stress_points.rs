@@ -8,12 +8,12 @@ use contact::{RingPoint, Side};
 use dynamics::Model;
 use fem::FemError;
 use fem::stress::{PointRecovery, principal, von_mises};
+use scene::StressLine;
 
 use super::probes::side_of;
 use super::shown::Shown;
 use super::timed_near_field::TimedNearField;
 use crate::failure::Failure;
-use crate::scene::StressLine;
 
 /// Names of the columns of one point: components in the directions g (along the groove), t (rolling direction) and d (depth).
 pub const COLUMNS: [&str; 12] = [

@@ -7,9 +7,8 @@ use contact::Side;
 use contact::halfspace::{Extreme, subsurface};
 use dynamics::Model;
 use dynamics::balls::BallResult;
+use scene::Materials;
 use serde::Serialize;
-
-use crate::scene::Materials;
 
 /// The contacts of one side.
 #[derive(Debug, Serialize)]

@@ -5,17 +5,17 @@ use std::path::Path;
 
 use anyhow::Context;
 use comm::Communicator;
+use comm::print;
 use contact::Side;
 use dynamics::balls::BallResult;
 use dynamics::{Model, Timing};
+use scene::{Analysis, Scene};
 use serde::Serialize;
 
 use super::memory::Forecasts;
 use super::probe_places::NodePlace;
 use super::snapshot::Snapshot;
 use super::subsurface::{self, ContactSubsurface};
-use crate::print;
-use crate::scene::{Analysis, Scene};
 
 /// Start of the keys of `timing_s` that are effects.
 const EFFECT_TIMING: &str = "effect_";

@@ -4,11 +4,11 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{anyhow, bail};
 use clap::Args;
+use comm::print;
 
 use super::format::CostKind;
 use super::report::{PointReport, Report, ResultReport};
 use crate::failure::Failure;
-use crate::print;
 
 /// What is asked.
 #[derive(Debug, Args)]

@@ -36,7 +36,7 @@ pub use self::plan::{Axis, AxisValue, Plan, Point, Quantity, Source, grid};
 pub use self::record::write_whole;
 pub use self::report::{PointReport, Report};
 use crate::failure::Failure;
-use crate::print;
+use comm::print;
 
 /// What is asked.
 #[derive(Debug, Args)]

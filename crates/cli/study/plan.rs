@@ -3,11 +3,11 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-use anyhow::{Context, anyhow, bail};
+use anyhow::{Context, bail};
+use scene::{MeshFiles, Scene};
 
 use super::check;
 use super::format::{Cell, CostKind, Meshes, RawStudy, Take};
-use crate::scene::{MeshFiles, Scene, locate};
 
 /// Most points of a study: more is a slip.
 const MAX_POINTS: usize = 10_000;
@@ -138,17 +138,7 @@ impl Plan {
     pub fn load(path: &Path) -> anyhow::Result<Plan> {
         let text =
             std::fs::read_to_string(path).with_context(|| format!("cannot read study {}", path.display()))?;
-        let raw: RawStudy = toml::from_str(&text).map_err(|e| {
-            let at = locate(&text, e.span(), e.message());
-            anyhow!(
-                "{}:{}:{}: {}\n{}",
-                path.display(),
-                at.line,
-                at.column,
-                at.message,
-                at.excerpt
-            )
-        })?;
+        let raw: RawStudy = scene::read_tables(&text, path)?;
         check::check(raw, path)
     }
 

@@ -14,6 +14,8 @@ use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
 
 use anyhow::{Context, anyhow};
+use comm::print;
+use scene::{MeshFiles, Scene};
 use signal_hook::consts::{SIGINT, SIGTERM};
 use wait4::Wait4;
 
@@ -22,9 +24,6 @@ use super::machine;
 use super::plan::{Plan, Point, arguments};
 use super::record::{self, Cost, LOG, RUN, Record};
 use crate::failure::Failure;
-use crate::meshing;
-use crate::print;
-use crate::scene::{MeshFiles, Scene};
 use crate::stop::Stop;
 
 /// Exit code of a run that was asked to stop.
@@ -127,7 +126,7 @@ fn build_meshes(plan: &Plan, set: &[String], out: &Path) -> Result<(), Failure> 
     let lock = File::create(&path).with_context(|| format!("cannot write {}", path.display()))?;
     lock.lock()
         .with_context(|| format!("cannot lock {}", path.display()))?;
-    meshing::build_missing(&scene)
+    Ok(scene::build_missing(&scene)?)
 }
 
 /// Runs the program once: the cost, or why there are no results. Results of repeats are not kept: they are the same.

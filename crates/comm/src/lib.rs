@@ -15,6 +15,7 @@ mod error;
 mod launch;
 #[cfg(feature = "mpi")]
 mod messages;
+pub mod print;
 
 pub use communicator::{Communicator, shares};
 pub use environment::{End, Environment, PATIENCE};

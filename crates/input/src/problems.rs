@@ -14,6 +14,11 @@ impl Problems {
         self.0.len()
     }
 
+    /// Whether nothing is wrong so far.
+    pub fn is_empty(&self) -> bool {
+        self.0.is_empty()
+    }
+
     /// The texts, in order of discovery.
     pub fn into_texts(self) -> Vec<String> {
         self.0

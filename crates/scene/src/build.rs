@@ -2,7 +2,6 @@
 
 use std::sync::Arc;
 
-use anyhow::anyhow;
 use comm::Communicator;
 use contact::{BearingGeometry, Groove, HertzContact, Side};
 use dynamics::effects::{
@@ -17,9 +16,9 @@ use fem::Material;
 use input::Scheduled;
 use mesh::{Mesh, Torus};
 
-use crate::failure::Failure;
-use crate::motion::speed;
-use crate::scene::{self, FlexibleRing, Scene};
+use crate::error::BuildError;
+use crate::settings::speed;
+use crate::tables::{self, FlexibleRing, Scene};
 
 /// Deviation of raceway nodes from the scene's torus that is taken for round-off of a file, over the groove
 /// radius.
@@ -29,7 +28,7 @@ const TORUS_TOLERANCE: f64 = 2e-4;
 pub type NodeTags = [Option<Vec<u64>>; 2];
 
 /// The model of a scene, and the numbers of its nodes in the mesh files. Reads both meshes.
-pub fn build_model(scene: &Scene) -> Result<(Model, NodeTags), Failure> {
+pub fn build_model(scene: &Scene) -> Result<(Model, NodeTags), BuildError> {
     let geometry = geometry(scene);
     geometry.validate()?;
     let rings = rayon::join(
@@ -51,13 +50,13 @@ pub fn rolling(scene: &Scene) -> Option<Rolling> {
 
 fn ball_speeds(scene: &Scene) -> BallSpeeds {
     match scene.ball_speeds {
-        scene::BallSpeeds::FreeAngle => BallSpeeds::FreeAngle,
-        scene::BallSpeeds::OuterControl => BallSpeeds::OuterControl,
+        tables::BallSpeeds::FreeAngle => BallSpeeds::FreeAngle,
+        tables::BallSpeeds::OuterControl => BallSpeeds::OuterControl,
     }
 }
 
 /// The model of a scene with rings that were read before: the points of a sweep share them.
-pub fn model_with_rings(scene: &Scene, rings: [Option<Arc<RingModel>>; 2]) -> Result<Model, Failure> {
+pub fn model_with_rings(scene: &Scene, rings: [Option<Arc<RingModel>>; 2]) -> Result<Model, BuildError> {
     let geometry = geometry(scene);
     let (ring_steel, ball_steel) = (
         material(&scene.materials.rings)?,
@@ -71,9 +70,9 @@ pub fn model_with_rings(scene: &Scene, rings: [Option<Arc<RingModel>>; 2]) -> Re
     let effects = effects(scene, &rings)?;
     let shaft = &scene.shaft;
     let dofs = [shaft.x, shaft.y, shaft.z, shaft.tilt_x, shaft.tilt_y].map(|motion| match motion {
-        scene::Motion::Free => ShaftDof::Free,
-        scene::Motion::Locked => ShaftDof::Prescribed(0.0),
-        scene::Motion::Prescribed(value) => ShaftDof::Prescribed(value),
+        tables::Motion::Free => ShaftDof::Free,
+        tables::Motion::Locked => ShaftDof::Prescribed(0.0),
+        tables::Motion::Prescribed(value) => ShaftDof::Prescribed(value),
     });
     Ok(Model {
         geometry,
@@ -86,18 +85,18 @@ pub fn model_with_rings(scene: &Scene, rings: [Option<Arc<RingModel>>; 2]) -> Re
         load_point: shaft.load_point,
         contact: ContactSettings {
             mode: match scene.contact.mode {
-                scene::ContactMode::Patch => ContactMode::Patch,
-                scene::ContactMode::Facet => ContactMode::Facet,
-                scene::ContactMode::Rigid => ContactMode::Rigid,
+                tables::ContactMode::Patch => ContactMode::Patch,
+                tables::ContactMode::Facet => ContactMode::Facet,
+                tables::ContactMode::Rigid => ContactMode::Rigid,
             },
             patch_spacings: scene.contact.patch_elements,
         },
         effects,
         backend: match scene.solver.backend {
-            scene::Backend::Auto => Backend::Auto,
-            scene::Backend::Cyclic => Backend::Cyclic,
-            scene::Backend::Sparse => Backend::Sparse,
-            scene::Backend::Sector => Backend::Sector(Sectors {
+            tables::Backend::Auto => Backend::Auto,
+            tables::Backend::Cyclic => Backend::Cyclic,
+            tables::Backend::Sparse => Backend::Sparse,
+            tables::Backend::Sector => Backend::Sector(Sectors {
                 n_sectors: scene.solver.sectors,
                 comm: Communicator::world(),
             }),
@@ -109,6 +108,7 @@ pub fn model_with_rings(scene: &Scene, rings: [Option<Arc<RingModel>>; 2]) -> Re
     })
 }
 
+/// Dimensions of the bearing, for the contacts.
 pub fn geometry(scene: &Scene) -> BearingGeometry {
     let b = &scene.bearing;
     BearingGeometry {
@@ -122,11 +122,12 @@ pub fn geometry(scene: &Scene) -> BearingGeometry {
     }
 }
 
-pub fn material(m: &scene::Material) -> Result<Material, Failure> {
+/// A material, checked.
+pub fn material(m: &tables::Material) -> Result<Material, BuildError> {
     Ok(Material::new(m.young_modulus, m.poisson_ratio, m.density)?)
 }
 
-fn effects(scene: &Scene, rings: &[Option<Arc<RingModel>>; 2]) -> Result<Vec<Box<dyn Effect>>, Failure> {
+fn effects(scene: &Scene, rings: &[Option<Arc<RingModel>>; 2]) -> Result<Vec<Box<dyn Effect>>, BuildError> {
     let mut effects: Vec<Box<dyn Effect>> = Vec::new();
     let (asked, slip) = (&scene.effects, scene.effects.cage_slip.unwrap_or([0.0; 2]));
     if let Some(Scheduled { value, schedule }) = asked.axial_force.clone() {
@@ -143,9 +144,7 @@ fn effects(scene: &Scene, rings: &[Option<Arc<RingModel>>; 2]) -> Result<Vec<Box
         effects.push(Box::new(FrameRotation { speed: speed(scene) }));
     }
     if let Some(Scheduled { value, schedule }) = asked.gravity.clone() {
-        effects.push(Box::new(
-            Gravity::new(value, schedule, rings).map_err(Failure::solving)?,
-        ));
+        effects.push(Box::new(Gravity::new(value, schedule, rings)?));
     }
     if let Some(shares) = asked.gyroscopic_moment {
         effects.push(Box::new(GyroscopicMoment {
@@ -173,7 +172,7 @@ fn ring(
     scene: &Scene,
     geometry: &BearingGeometry,
     side: Side,
-) -> Result<Option<(RingModel, Vec<u64>)>, Failure> {
+) -> Result<Option<(RingModel, Vec<u64>)>, BuildError> {
     let (ring, held_group, diameter) = of_side(scene, side);
     let Some(body) = &ring.body else { return Ok(None) };
     let (mesh, origin) = mesh::read_msh_with_origin(&body.mesh, body.mesh_unit)?;
@@ -199,12 +198,17 @@ fn ring(
 }
 
 /// The mesh of a ring without what the scene cuts out, and the old numbers of its nodes.
-fn cut(mesh: Mesh, body: &FlexibleRing) -> Result<(Mesh, Vec<usize>), Failure> {
+fn cut(mesh: Mesh, body: &FlexibleRing) -> Result<(Mesh, Vec<usize>), BuildError> {
     if body.cuts.is_empty() {
         let nodes = (0..mesh.n_nodes()).collect();
         return Ok((mesh, nodes));
     }
-    let user = |problem: String| Err(Failure::User(anyhow!("mesh {}: {problem}", body.mesh.display())));
+    let user = |problem: String| {
+        Err(BuildError::Cut {
+            path: body.mesh.clone(),
+            problem,
+        })
+    };
     let mut is_lost = vec![false; mesh.n_elements()];
     for (cut, number) in body.cuts.iter().zip(1..) {
         let held: Vec<usize> = (0..is_lost.len())
@@ -234,8 +238,8 @@ pub fn ring_of(scene: &Scene, side: Side, material: Material, mesh: Mesh) -> Opt
         mesh,
         material,
         hold: match body.support {
-            scene::Support::Clamped => Hold::Clamped,
-            scene::Support::MeanMotion => Hold::MeanMotion,
+            tables::Support::Clamped => Hold::Clamped,
+            tables::Support::MeanMotion => Hold::MeanMotion,
         },
         held_group: of_side(scene, side).1,
         groove: groove(&geometry(scene), side, body.groove_z),
@@ -244,7 +248,7 @@ pub fn ring_of(scene: &Scene, side: Side, material: Material, mesh: Mesh) -> Opt
 }
 
 /// The ring of one side in the scene, the facet group that is held, and the diameter by which the unit of its mesh is checked, m.
-fn of_side(scene: &Scene, side: Side) -> (&scene::Ring, &'static str, f64) {
+fn of_side(scene: &Scene, side: Side) -> (&tables::Ring, &'static str, f64) {
     match side {
         Side::Inner => (&scene.inner, "bore", scene.bearing.inner_raceway_diameter),
         Side::Outer => (&scene.outer, "seat", scene.bearing.outside_diameter),

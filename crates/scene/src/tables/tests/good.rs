@@ -3,7 +3,7 @@
 use input::Scheduled;
 
 use super::*;
-use crate::scene::effects::RadialForce;
+use crate::tables::effects::RadialForce;
 
 /// If this failed, the documentation would show a scene that the program refuses or reads as something else.
 #[test]
@@ -152,7 +152,7 @@ fn zero_clearance_is_accepted() {
 /// says.
 #[test]
 fn the_delivered_scenes_are_valid() {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes");
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes");
     let expected = [
         ("7010c_preload", 2e3, None, 0, Motion::Locked),
         ("7010c_radial_tilt_free", 2e3, Some(1e3), 0, Motion::Free),
@@ -188,7 +188,7 @@ fn the_delivered_scenes_are_valid() {
 /// If this failed, a motion delivered with the program would not run, or not solve what its name says.
 #[test]
 fn the_delivered_motions_are_valid() {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes");
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes");
     let expected = [
         ("7010c_1800rpm", 7700, 1e-5, 180),
         ("7010c_1800rpm_coarse", 500, 2e-5, 90),

@@ -1,7 +1,7 @@
 //! Scenes of motion in time, and what they say.
 
 use super::*;
-use crate::scene::damping::{ContactDamping, RayleighDamping};
+use crate::tables::damping::{ContactDamping, RayleighDamping};
 
 fn dynamic_of(text: &str) -> Dynamic {
     match parse(text, &[]).unwrap_or_else(|e| panic!("{e}")).analysis {

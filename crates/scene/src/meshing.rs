@@ -5,18 +5,17 @@
 
 use std::path::{Path, PathBuf};
 
-use anyhow::{Context, anyhow};
+use comm::print;
 use mesh::{ElementKind, Mesh, MshFormat, Overwrite, RingSection, RingSide};
 
-use crate::failure::Failure;
-use crate::print;
-use crate::scene::{FlexibleRing, MeshFiles, Ring, Scene, Section, SectionElement};
+use crate::error::BuildError;
+use crate::tables::{FlexibleRing, MeshFiles, Ring, Scene, Section, SectionElement};
 
 /// Length unit of the files that Gmsh reads and writes, m.
 const GMSH_UNIT: f64 = 1e-3;
 
 /// Builds the meshes of a scene; `overwrite` replaces existing files.
-pub fn build_meshes(path: &Path, overrides: &[String], overwrite: Overwrite) -> Result<(), Failure> {
+pub fn build_meshes(path: &Path, overrides: &[String], overwrite: Overwrite) -> Result<(), BuildError> {
     let scene = Scene::load_with(path, overrides, MeshFiles::MayBeMissing)?;
     let rings = [(RingSide::Inner, &scene.inner), (RingSide::Outer, &scene.outer)];
     let jobs: Vec<_> = rings
@@ -24,17 +23,15 @@ pub fn build_meshes(path: &Path, overrides: &[String], overwrite: Overwrite) -> 
         .filter_map(|(side, ring)| Some((side, job(ring)?)))
         .collect();
     if jobs.is_empty() {
-        return Err(Failure::User(anyhow!(
-            "{} describes no mesh to build: expected [inner.section] or [outer.section] of a flexible ring",
-            path.display()
-        )));
+        return Err(BuildError::NoSection {
+            path: path.to_path_buf(),
+        });
     }
     for (_, (body, _)) in &jobs {
         if overwrite == Overwrite::Refuse && body.mesh.exists() {
-            return Err(Failure::User(anyhow!(
-                "{} exists already; give --force to replace it, or another mesh name in the scene",
-                body.mesh.display()
-            )));
+            return Err(BuildError::Exists {
+                path: body.mesh.clone(),
+            });
         }
     }
     for (side, (body, section)) in jobs {
@@ -44,7 +41,7 @@ pub fn build_meshes(path: &Path, overrides: &[String], overwrite: Overwrite) -> 
 }
 
 /// Builds those meshes of a scene that it describes and that do not exist.
-pub fn build_missing(scene: &Scene) -> Result<(), Failure> {
+pub fn build_missing(scene: &Scene) -> Result<(), BuildError> {
     for (side, ring) in [(RingSide::Inner, &scene.inner), (RingSide::Outer, &scene.outer)] {
         if let Some((body, section)) = job(ring)
             && !body.mesh.exists()
@@ -61,7 +58,7 @@ fn build_file(
     body: &FlexibleRing,
     section: &Section,
     overwrite: Overwrite,
-) -> Result<(), Failure> {
+) -> Result<(), BuildError> {
     let mesh = build_ring(scene, side, body, section)?;
     mesh::write_msh(&body.mesh, &mesh, body.mesh_unit, MshFormat::Binary, overwrite)?;
     print::line(format_args!(
@@ -84,10 +81,10 @@ fn build_ring(
     side: RingSide,
     body: &FlexibleRing,
     section: &Section,
-) -> Result<Mesh, Failure> {
+) -> Result<Mesh, BuildError> {
     let measures = measures(scene, side, section);
     if let Some(folder) = body.mesh.parent() {
-        std::fs::create_dir_all(folder).with_context(|| format!("cannot create {}", folder.display()))?;
+        std::fs::create_dir_all(folder).map_err(file_error("create", folder))?;
     }
     let geo = beside(&body.mesh, "geo");
     let mut mesh = match section.element {
@@ -97,7 +94,7 @@ fn build_ring(
             let msh = beside(&body.mesh, "gmsh.msh");
             mesh::mesh_tets_with_gmsh(&geo, &msh)?;
             let mesh = mesh::read_msh(&msh, GMSH_UNIT)?;
-            std::fs::remove_file(&msh).with_context(|| format!("cannot remove {}", msh.display()))?;
+            std::fs::remove_file(&msh).map_err(file_error("remove", &msh))?;
             mesh
         }
         SectionElement::Hex8 => revolved(&measures, &geo, body, section, ElementKind::Hex8)?,
@@ -113,7 +110,7 @@ fn revolved(
     body: &FlexibleRing,
     section: &Section,
     kind: ElementKind,
-) -> Result<Mesh, Failure> {
+) -> Result<Mesh, BuildError> {
     write_text(geo, &mesh::ring_geo(measures)?)?;
     let msh = beside(&body.mesh, "section.msh");
     mesh::mesh_section_with_gmsh(geo, &msh)?;
@@ -156,6 +153,15 @@ fn beside(mesh: &Path, ending: &str) -> PathBuf {
     mesh.with_extension(ending)
 }
 
-fn write_text(path: &Path, text: &str) -> Result<(), Failure> {
-    Ok(std::fs::write(path, text).with_context(|| format!("cannot write {}", path.display()))?)
+fn write_text(path: &Path, text: &str) -> Result<(), BuildError> {
+    std::fs::write(path, text).map_err(file_error("write", path))
+}
+
+fn file_error(action: &'static str, path: &Path) -> impl Fn(std::io::Error) -> BuildError {
+    let path = path.to_path_buf();
+    move |source| BuildError::File {
+        action,
+        path: path.clone(),
+        source,
+    }
 }

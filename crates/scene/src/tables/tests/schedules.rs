@@ -350,7 +350,7 @@ fn a_scene_at_rest_has_no_schedules() {
 /// If this failed, a transient delivered with the program would not run, or not solve what its name says.
 #[test]
 fn the_delivered_transients_are_valid() {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes");
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes");
     let load = |name: &str| {
         let path = folder.join(format!("{name}.toml"));
         let scene = Scene::load_with(&path, &[], MeshFiles::MayBeMissing).unwrap_or_else(|e| panic!("{e}"));

@@ -40,7 +40,7 @@ fn the_example_of_the_documentation_reads_as_it_says() {
 /// If this failed, a scene would be delivered that does not run, or not what its name says.
 #[test]
 fn the_delivered_scene_is_valid() {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/7010c_modes.toml");
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes/7010c_modes.toml");
     let scene = Scene::load_with(&path, &[], MeshFiles::MayBeMissing).unwrap_or_else(|e| panic!("{e}"));
     let Analysis::Modes(modes) = &scene.analysis else {
         panic!("{:?}", scene.analysis);

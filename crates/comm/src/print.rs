@@ -4,7 +4,7 @@
 use std::fmt::Arguments;
 use std::io::Write;
 
-use comm::Communicator;
+use crate::communicator::Communicator;
 
 /// A line of the result, to standard output; rank 0 speaks for all.
 pub fn line(text: Arguments<'_>) {

@@ -1,7 +1,7 @@
 //! Scenes with probes: what they say, and those that cannot be.
 
 use super::*;
-use crate::scene::probes::{Axes, ContactProbe, NodeProbe, SectionPoint};
+use crate::tables::probes::{Axes, ContactProbe, NodeProbe, SectionPoint};
 
 /// The example of an equilibrium with more tables.
 fn with_probe(tables: &str) -> String {

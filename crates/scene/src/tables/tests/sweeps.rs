@@ -1,7 +1,7 @@
 //! Tests of sweeps and their points.
 
 use super::*;
-use crate::scene::sweep::Sweep;
+use crate::tables::sweep::Sweep;
 
 fn sweep_of(scene: &Scene) -> &Sweep {
     match &scene.analysis {

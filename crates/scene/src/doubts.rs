@@ -5,12 +5,12 @@
 
 use std::ops::RangeInclusive;
 
+use comm::print;
 use contact::Side;
 use dynamics::{Model, RingModel};
 use input::{DENSITY, LENGTH, Quantity, STRESS};
 
-use crate::print;
-use crate::scene::{Material, Scene};
+use crate::tables::{Material, Scene};
 
 /// Young's modulus of what rings and balls are made of, Pa: from soft plastics to diamond.
 const MODULI: RangeInclusive<f64> = 4e8..=1.3e12;

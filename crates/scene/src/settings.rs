@@ -4,7 +4,7 @@ use dynamics::motion::balls::Speed;
 use dynamics::motion::contacts::{ContactDamping, ContactScheme};
 use dynamics::motion::{Integrator, Ladder, MotionSettings};
 
-use crate::scene::{self, Dynamic, IntegratorChoice, Scene};
+use crate::tables::{self, Dynamic, IntegratorChoice, Scene};
 
 fn integrator_of(dynamic: &Dynamic) -> Integrator {
     match dynamic.integrator {
@@ -26,8 +26,8 @@ pub fn settings(scene: &Scene, dynamic: &Dynamic) -> MotionSettings {
         },
         integrator,
         scheme: match dynamic.contact {
-            scene::ContactScheme::DiscreteGradient => ContactScheme::DiscreteGradient,
-            scene::ContactScheme::Pointwise => ContactScheme::Pointwise,
+            tables::ContactScheme::DiscreteGradient => ContactScheme::DiscreteGradient,
+            tables::ContactScheme::Pointwise => ContactScheme::Pointwise,
         },
         speed: speed(scene),
         slip: scene.effects.cage_slip.unwrap_or([0.0; 2]),

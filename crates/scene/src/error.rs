@@ -1,0 +1,67 @@
+//! Why a scene has no model or no meshes.
+
+use std::path::PathBuf;
+
+use contact::ContactError;
+use dynamics::DynamicsError;
+use fem::FemError;
+use mesh::MeshError;
+use thiserror::Error;
+
+use crate::tables::SceneError;
+
+/// Failures of building what a scene describes. All of them are those of its user.
+#[derive(Debug, Error)]
+pub enum BuildError {
+    /// The scene cannot be read.
+    #[error(transparent)]
+    Scene(#[from] SceneError),
+    /// A mesh cannot be read, made or written, or does not fit.
+    #[error(transparent)]
+    Mesh(#[from] MeshError),
+    /// The bearing cannot be.
+    #[error(transparent)]
+    Contact(#[from] ContactError),
+    /// A material cannot be.
+    #[error(transparent)]
+    Fem(#[from] FemError),
+    /// An effect cannot be constructed.
+    #[error(transparent)]
+    Dynamics(#[from] DynamicsError),
+    /// The cuts of a ring do not fit its mesh.
+    #[error("mesh {}: {problem}", path.display())]
+    Cut {
+        /// The mesh file.
+        path: PathBuf,
+        /// What is wrong, and what was expected.
+        problem: String,
+    },
+    /// The scene has no table of a mesh.
+    #[error(
+        "{} describes no mesh to build: expected [inner.section] or [outer.section] of a flexible ring",
+        path.display()
+    )]
+    NoSection {
+        /// The scene file.
+        path: PathBuf,
+    },
+    /// A mesh file would be overwritten.
+    #[error(
+        "{} exists already; give --force to replace it, or another mesh name in the scene",
+        path.display()
+    )]
+    Exists {
+        /// The mesh file.
+        path: PathBuf,
+    },
+    /// A file or folder cannot be made or removed.
+    #[error("cannot {action} {}: {source}", path.display())]
+    File {
+        /// What was tried: create, write or remove.
+        action: &'static str,
+        /// The file or folder.
+        path: PathBuf,
+        /// The reason of the system.
+        source: std::io::Error,
+    },
+}

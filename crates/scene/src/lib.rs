@@ -1,0 +1,20 @@
+//! Scenes: what a scene file says, checked, and the model and the meshes made from it.
+//!
+//! [`Scene`] reads and checks a file, whose format is on the page [`tables`]. [`build_model`] reads its meshes and constructs the
+//! model; [`build_meshes`] makes meshes that it describes. It is the only crate that names TOML.
+
+mod build;
+mod doubts;
+mod error;
+mod meshing;
+mod settings;
+pub mod tables;
+mod toml_text;
+
+pub use build::{NodeTags, build_model, geometry, material, model_with_rings, ring_of, rolling};
+pub use doubts::{doubts, say_doubts};
+pub use error::BuildError;
+pub use meshing::{build_meshes, build_missing};
+pub use settings::{settings, speed};
+pub use tables::*;
+pub use toml_text::{read_tables, title};
