@@ -9,17 +9,17 @@ use dynamics::motion::balls::Kinematics;
 use dynamics::{
     Model, MotionSizes, Numbers, Prepared, RingMemory, Substructures, forecast_motion_peak, forecast_peak,
 };
+use results::disk::{self, Forecast};
+use results::failure::Failure;
+use results::memory::queued_steps;
+use results::probes::Probes;
+use results::summary::effects_on;
 use scene::build_model;
 use scene::doubts;
 use scene::{Analysis, Scene};
 
-use crate::failure::Failure;
 use crate::modes;
 use crate::rank_table::{self, RingOnRanks};
-use crate::results::disk::{self, Forecast};
-use crate::results::memory::queued_steps;
-use crate::results::probes::Probes;
-use crate::results::summary::effects_on;
 use crate::rules;
 
 /// Reads and checks the scene and its meshes and prints effects, sizes and forecasts.

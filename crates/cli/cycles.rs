@@ -7,9 +7,9 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, anyhow};
 use clap::Args;
 use comm::print;
+use results::failure::Failure;
 
 use self::rainflow::{rainflow, turning_points};
-use crate::failure::Failure;
 
 /// Tables that are written into the folder.
 const RANGES: &str = "stress_ranges.csv";

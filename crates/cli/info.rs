@@ -7,10 +7,9 @@ use checkpoint::{
     FileDescription, committed_steps, describe, read_mesh, read_step, read_step_time, step_file_name,
 };
 use comm::print;
-
-use crate::failure::Failure;
-use crate::results::disk::size;
-use crate::results::summary::SUMMARY_FILE;
+use results::disk::size;
+use results::failure::Failure;
+use results::summary::SUMMARY_FILE;
 
 /// How closely the steps of a folder are looked at.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

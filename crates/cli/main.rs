@@ -6,7 +6,6 @@
 mod check;
 mod cycles;
 mod export;
-mod failure;
 mod info;
 mod modes;
 mod motion;
@@ -18,14 +17,12 @@ mod progress;
 mod quasi_static;
 mod rank_table;
 mod report;
-mod results;
 mod resume;
 mod rules;
 mod run;
 mod start;
 mod stop;
 mod study;
-mod survey;
 mod watch;
 
 use std::path::PathBuf;
@@ -34,16 +31,16 @@ use std::process::ExitCode;
 use clap::{Parser, Subcommand};
 use comm::{Communicator, End, Environment, print};
 use mesh::Overwrite;
+use results::failure::Failure;
+use results::summary::peak_memory;
 
 use crate::cycles::Cycles;
 use crate::export::Export;
-use crate::failure::Failure;
 use crate::info::Depth;
 use crate::options::{Limits, Part, parse_part};
 use crate::pack::Pack;
 use crate::plot::Plot;
 use crate::report::Report;
-use crate::results::summary::peak_memory;
 use crate::resume::Request;
 
 /// Simulates angular contact ball bearings with fully flexible rings.

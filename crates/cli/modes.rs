@@ -8,17 +8,17 @@ use comm::Communicator;
 use contact::Side;
 use dynamics::modes::{basis_sizes, bearing_modes, ring_modes};
 use dynamics::{ModeSet, Model, ModesSettings, RingSupport, StaticSolution, StaticSolver};
+use results::disk::Forecast;
+use results::failure::Failure;
+use results::modes::{ModeFiles, ModesSummary, print_modes};
+use results::snapshot::Snapshot;
 use scene::build_model;
 use scene::say_doubts;
 use scene::{ModeBody, ModeSupport, Modes, Scene};
 use solver::Searched;
 
-use crate::failure::Failure;
 use crate::options::Limits;
 use crate::progress::Progress;
-use crate::results::disk::Forecast;
-use crate::results::modes::{ModeFiles, ModesSummary, print_modes};
-use crate::results::snapshot::Snapshot;
 
 /// Blocks of the search between two lines of progress in a log.
 const PROGRESS_STEPS: usize = 10;

@@ -5,9 +5,9 @@ use std::time::Duration;
 
 use anyhow::anyhow;
 use clap::Args;
+use results::failure::Failure;
 use scene::{Analysis, Scene};
 
-use crate::failure::Failure;
 use crate::stop::parse_wall_time;
 
 /// Limits of a run.

@@ -6,9 +6,8 @@ use anyhow::anyhow;
 use checkpoint::{FolderLock, pack_steps, packs, unpack_steps};
 use clap::Args;
 use comm::print;
-
-use crate::failure::Failure;
-use crate::results::files::note_dead_owner;
+use results::failure::Failure;
+use results::files::note_dead_owner;
 
 /// What the command line asks for.
 #[derive(Debug, Args)]

@@ -11,9 +11,9 @@ use std::path::PathBuf;
 use anyhow::{Context, bail};
 use clap::Args;
 use comm::print;
+use results::failure::Failure;
 use scene::{MeshFiles, Scene};
 
-use crate::failure::Failure;
 use crate::study::{self, Axis, AxisValue, CostKind, Meshes, Plan, Quantity, Report, Source, Take};
 
 mod variants;

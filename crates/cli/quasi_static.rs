@@ -8,20 +8,20 @@ use comm::print;
 use contact::Side;
 use dynamics::motion::balls::{Rolling, Speed};
 use dynamics::{Model, QuasiStatic, StaticSolution};
+use results::disk::Forecast;
+use results::failure::{Failure, agree};
+use results::files::Files;
+use results::memory::Forecasts;
+use results::shown::Shown;
+use results::snapshot::Snapshot;
+use results::summary::{Findings, Summary};
+use results::survey::build_surveyed;
+use results::{console, fields};
 use scene::Scene;
 use scene::rolling;
 
-use crate::failure::{Failure, agree};
 use crate::options::Limits;
 use crate::progress::Progress;
-use crate::results::disk::Forecast;
-use crate::results::files::Files;
-use crate::results::memory::Forecasts;
-use crate::results::shown::Shown;
-use crate::results::snapshot::Snapshot;
-use crate::results::summary::{Findings, Summary};
-use crate::results::{console, fields};
-use crate::survey::build_surveyed;
 
 /// Steps between two lines of progress in a log.
 const PROGRESS_STEPS: u64 = 50;

@@ -14,15 +14,15 @@ use clap::Args;
 use comm::Communicator;
 use comm::print;
 use dynamics::motion::{Motion, MotionState};
+use results::about::{OVERRIDES, SCENE_FILE, WARNINGS, require_same_meshes};
+use results::failure::{Failure, agree};
+use results::files::note_dead_owner;
+use results::state_arrays;
+use results::summary::SUMMARY_FILE;
 use scene::{Analysis, Dynamic, MeshFiles, Scene, difference};
 
-use crate::failure::{Failure, agree};
 use crate::motion;
 use crate::options::Limits;
-use crate::results::about::{OVERRIDES, SCENE_FILE, WARNINGS, require_same_meshes};
-use crate::results::files::note_dead_owner;
-use crate::results::state_arrays;
-use crate::results::summary::SUMMARY_FILE;
 use crate::run::note_unshared;
 use crate::watch::Watch;
 

@@ -9,23 +9,23 @@ use comm::Communicator;
 use comm::print;
 use contact::Side;
 use dynamics::{DynamicsError, StaticSolution, StaticSolver};
+use results::disk::Forecast;
+use results::failure::{Failure, agree};
+use results::files::Files;
+use results::memory::Forecasts;
+use results::shown::Shown;
+use results::snapshot::Snapshot;
+use results::summary::{Findings, Summary};
+use results::survey::build_surveyed;
+use results::{console, fields, folder};
 use scene::{Analysis, Backend, Scene};
 use scene::{model_with_rings, rolling};
 
-use crate::failure::{Failure, agree};
 use crate::modes;
 use crate::motion;
 use crate::options::{Limits, Part};
 use crate::progress::Progress;
 use crate::quasi_static;
-use crate::results::disk::Forecast;
-use crate::results::files::Files;
-use crate::results::memory::Forecasts;
-use crate::results::shown::Shown;
-use crate::results::snapshot::Snapshot;
-use crate::results::summary::{Findings, Summary};
-use crate::results::{console, fields, folder};
-use crate::survey::build_surveyed;
 
 /// One load case of a run: the swept value (None for a static scene) and its scene.
 type Point = (Option<f64>, Scene);

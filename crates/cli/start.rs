@@ -3,9 +3,9 @@
 use contact::Side;
 use dynamics::motion::{Motion, MotionState};
 use dynamics::{Model, RingMemory, StaticSolution, StaticSolver, Timing};
+use results::failure::Failure;
 use scene::{Dynamic, Start};
 
-use crate::failure::Failure;
 use crate::progress::Progress;
 
 /// The static start, when there is one, and its costs.

@@ -11,8 +11,7 @@ use anyhow::{Context, anyhow};
 use checkpoint::{Grid, StepRecord, all_steps, read_any_step, read_mesh};
 use clap::{Args, ValueEnum};
 use comm::print;
-
-use crate::failure::Failure;
+use results::failure::Failure;
 
 /// What the command line asks for.
 #[derive(Debug, Args)]

@@ -3,7 +3,7 @@
 use figure::{Axis, Figure, Series};
 
 use super::quantity::{DEGREE, GIGAPASCAL, MICROMETRE, NEWTON, Unit, azimuth_axis, points};
-use super::results::Steps;
+use super::run::Steps;
 use super::table::Table;
 use super::{Choice, Named, Results};
 

@@ -3,7 +3,7 @@
 use figure::{Axis, Figure, Series};
 
 use super::quantity::{MILLIJOULE, MILLISECOND, points};
-use super::results::Steps;
+use super::run::Steps;
 use super::table::Table;
 use super::{Named, Results};
 

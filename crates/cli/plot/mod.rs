@@ -11,7 +11,7 @@ mod probes;
 mod profiles;
 pub mod quantity;
 mod raceways;
-mod results;
+mod run;
 mod section;
 mod shaft;
 mod surface;
@@ -23,11 +23,10 @@ use anyhow::{Context, anyhow};
 use clap::Args;
 use comm::print;
 use figure::Figure;
-
-use crate::failure::Failure;
+use results::failure::Failure;
 
 pub use quantity::Unit;
-pub use results::{Results, Steps};
+pub use run::{Results, Steps};
 pub use table::Table;
 
 /// What the command line asks for.

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use figure::{Figure, Series};
 
 use super::quantity::{self, points};
-use super::results::Steps;
+use super::run::Steps;
 use super::{Named, Results};
 
 /// What a column of a probe shows, by the words in its name: the words that end the name of the probe, and the figure.

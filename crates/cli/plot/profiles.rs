@@ -6,7 +6,7 @@ use anyhow::{Context, anyhow};
 use figure::{Axis, Figure, Series};
 
 use super::quantity::{self, DEGREE, MEGAPASCAL, MICROMETRE, Unit, points};
-use super::results::Steps;
+use super::run::Steps;
 use super::{Choice, Named, Results};
 
 /// Table of all profiles.

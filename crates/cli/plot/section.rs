@@ -6,7 +6,7 @@ use figure::{Figure, Series};
 
 use super::quantity::{DEGREE, MEGAPASCAL};
 use super::raceways;
-use super::results::Steps;
+use super::run::Steps;
 use super::table::Table;
 use super::{Choice, Named, Results};
 

@@ -3,7 +3,7 @@
 use figure::{Figure, Series};
 
 use super::quantity::{MICROMETRE, MILLIRADIAN, Unit, points};
-use super::results::Steps;
+use super::run::Steps;
 use super::{Named, Results};
 
 /// The figures of `shaft.csv`; none for a single step.

@@ -10,8 +10,8 @@ use std::path::PathBuf;
 use anyhow::Context;
 use clap::Args;
 use comm::print;
+use results::failure::Failure;
 
-use crate::failure::Failure;
 use crate::plot::{self, Choice, Results};
 
 /// What the command line asks for.

@@ -4,10 +4,9 @@ use std::path::Path;
 
 use anyhow::{Context, anyhow};
 use checkpoint::{all_steps, read_any_step};
+use results::failure::Failure;
+use results::summary::SUMMARY_FILE;
 use serde_json::Value;
-
-use crate::failure::Failure;
-use crate::results::summary::SUMMARY_FILE;
 
 /// The run.
 pub struct Source {

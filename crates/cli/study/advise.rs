@@ -5,10 +5,10 @@ use std::path::{Path, PathBuf};
 use anyhow::{anyhow, bail};
 use clap::Args;
 use comm::print;
+use results::failure::Failure;
 
 use super::format::CostKind;
 use super::report::{PointReport, Report, ResultReport};
-use crate::failure::Failure;
 
 /// What is asked.
 #[derive(Debug, Args)]

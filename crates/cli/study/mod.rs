@@ -35,8 +35,8 @@ pub use self::format::{Cell, CostKind, Meshes, Take};
 pub use self::plan::{Axis, AxisValue, Plan, Point, Quantity, Source, grid};
 pub use self::record::write_whole;
 pub use self::report::{PointReport, Report};
-use crate::failure::Failure;
 use comm::print;
+use results::failure::Failure;
 
 /// What is asked.
 #[derive(Debug, Args)]

@@ -4,11 +4,11 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use anyhow::{Context, bail};
+use results::summary::SUMMARY_FILE;
 use serde_json::Value;
 
 use super::format::{Cell, Take};
 use super::plan::Source;
-use crate::results::summary::SUMMARY_FILE;
 
 /// Numbers in a table that differ by less than this, relatively, are the same: azimuths and times are sums.
 const SAME: f64 = 1e-9;

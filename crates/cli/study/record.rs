@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, bail};
+use results::about::SOURCE_COMMIT;
 use serde::{Deserialize, Serialize};
 
 use super::plan::{Plan, Point};
@@ -57,7 +58,7 @@ pub fn folder(out: &Path, index: usize) -> PathBuf {
 
 /// Version and commit of this program.
 pub fn program() -> String {
-    format!("{} {}", env!("CARGO_PKG_VERSION"), env!("RACEWAY_COMMIT"))
+    format!("{} {}", env!("CARGO_PKG_VERSION"), SOURCE_COMMIT)
 }
 
 /// The record of a point; `None` when it was not run, or not to an end. A record of another scene or of other settings is an

@@ -15,6 +15,7 @@ use std::time::Instant;
 
 use anyhow::{Context, anyhow};
 use comm::print;
+use results::failure::Failure;
 use scene::{MeshFiles, Scene};
 use signal_hook::consts::{SIGINT, SIGTERM};
 use wait4::Wait4;
@@ -23,7 +24,6 @@ use super::format::Meshes;
 use super::machine;
 use super::plan::{Plan, Point, arguments};
 use super::record::{self, Cost, LOG, RUN, Record};
-use crate::failure::Failure;
 use crate::stop::Stop;
 
 /// Exit code of a run that was asked to stop.

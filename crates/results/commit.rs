@@ -9,7 +9,7 @@ fn main() {
         if changed { commit + "+" } else { commit }
     });
     println!("cargo::rustc-env=RACEWAY_COMMIT={commit}");
-    println!("cargo::rerun-if-changed=crates");
+    println!("cargo::rerun-if-changed=..");
     if let Some(log) = git(&["rev-parse", "--git-path", "logs/HEAD"]) {
         println!("cargo::rerun-if-changed={log}");
     }

@@ -3,10 +3,10 @@
 use std::path::{Path, PathBuf};
 
 use anyhow::anyhow;
+use figure::Axis;
 
 use super::quantity::{self, MILLISECOND};
 use super::table::Table;
-use figure::Axis;
 
 /// Tables of a run and what its steps are.
 pub struct Results {

@@ -19,6 +19,9 @@ pub const STRESS: &str = "stress";
 /// Warnings of the start of the run, one per line.
 pub const WARNINGS: &str = "warnings";
 
+/// Commit of the source of this program, as [`COMMIT`] says it.
+pub const SOURCE_COMMIT: &str = env!("RACEWAY_COMMIT");
+
 /// The texts of a run that writes into `dir`.
 pub fn about(scene: &Scene, dir: &Path, warnings: &[String]) -> anyhow::Result<BTreeMap<String, String>> {
     let absolute = |path: &Path| {
@@ -29,7 +32,7 @@ pub fn about(scene: &Scene, dir: &Path, warnings: &[String]) -> anyhow::Result<B
         (SCENE_FILE.to_string(), file.to_string_lossy().into_owned()),
         (OVERRIDES.to_string(), scene.overrides.join("\n")),
         (WARNINGS.to_string(), warnings.join("\n")),
-        (COMMIT.to_string(), env!("RACEWAY_COMMIT").to_string()),
+        (COMMIT.to_string(), SOURCE_COMMIT.to_string()),
         (STRESS.to_string(), stress_text(scene)),
     ]);
     for side in Side::BOTH {

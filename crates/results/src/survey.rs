@@ -16,8 +16,8 @@ use scene::{Scene, difference};
 use scene::{build_model, material, model_with_rings, ring_of};
 
 use crate::failure::{Failure, agree};
-use crate::results::fields;
-use crate::results::probes::Probes;
+use crate::fields;
+use crate::probes::Probes;
 
 /// What only whole meshes tell of a run.
 #[derive(Default)]

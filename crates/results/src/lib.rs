@@ -1,0 +1,28 @@
+//! What a run leaves behind: `summary.json`, tables, VTKHDF files, a table on the screen, and how it ended.
+//!
+//! [`files::Files`] writes a run step by step from a [`snapshot::Snapshot`] of each. [`survey`] finds what only whole meshes
+//! tell, before ranks divide them. A command that does not end well is a [`failure::Failure`].
+
+pub mod about;
+pub mod console;
+mod cut;
+pub mod disk;
+pub mod failure;
+pub mod fields;
+pub mod files;
+pub mod folder;
+pub mod memory;
+pub mod modes;
+pub mod motion_fields;
+mod probe_places;
+pub mod probes;
+mod ring_stress;
+pub mod shown;
+pub mod snapshot;
+pub mod state_arrays;
+mod stress_points;
+mod subsurface;
+pub mod summary;
+pub mod survey;
+mod tables;
+mod timed_near_field;
