@@ -11,18 +11,13 @@ mod modes;
 mod motion;
 mod options;
 mod pack;
-mod plot;
-mod prices;
 mod progress;
 mod quasi_static;
 mod rank_table;
-mod report;
 mod resume;
 mod rules;
 mod run;
 mod start;
-mod stop;
-mod study;
 mod watch;
 
 use std::path::PathBuf;
@@ -31,6 +26,8 @@ use std::process::ExitCode;
 use clap::{Parser, Subcommand};
 use comm::{Communicator, End, Environment, print};
 use mesh::Overwrite;
+use plot::Plot;
+use report::Report;
 use results::failure::Failure;
 use results::summary::peak_memory;
 
@@ -39,8 +36,6 @@ use crate::export::Export;
 use crate::info::Depth;
 use crate::options::{Limits, Part, parse_part};
 use crate::pack::Pack;
-use crate::plot::Plot;
-use crate::report::Report;
 use crate::resume::Request;
 
 /// Simulates angular contact ball bearings with fully flexible rings.
@@ -105,7 +100,7 @@ enum Command {
     /// Says which settings of a study reach an error at the lowest cost.
     Advise(study::Question),
     /// Turns every effect of a scene off or on and tables what that changes and costs.
-    Prices(prices::Request),
+    Prices(study::prices::Request),
     /// Builds the ring meshes that a scene describes; needs Gmsh.
     Mesh {
         /// Scene file.
@@ -213,7 +208,7 @@ fn execute(arguments: Arguments) -> Result<(), Failure> {
         Command::Cycles(request) => cycles::cycles(&request),
         Command::Export(request) => export::export(&request),
         Command::Study(request) => study::study(&request),
-        Command::Prices(request) => prices::prices(&request),
+        Command::Prices(request) => study::prices::prices(&request),
         Command::Advise(question) => study::advise(&question),
         Command::Plot(request) => plot::plot(&request),
         Command::Report(request) => report::report(&request),

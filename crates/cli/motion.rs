@@ -20,6 +20,7 @@ use results::memory::Forecasts;
 use results::motion_fields::Recorded;
 use results::shown::Shown;
 use results::snapshot::Snapshot;
+use results::stop::Stop;
 use results::summary::{Findings, Summary};
 use results::survey::build_surveyed;
 use scene::settings;
@@ -29,7 +30,6 @@ use crate::options::Limits;
 use crate::progress::Progress;
 use crate::resume::Stored;
 use crate::start::settle;
-use crate::stop::Stop;
 use crate::watch::Watch;
 use spent::Spent;
 

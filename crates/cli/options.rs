@@ -6,9 +6,8 @@ use std::time::Duration;
 use anyhow::anyhow;
 use clap::Args;
 use results::failure::Failure;
+use results::stop::parse_wall_time;
 use scene::{Analysis, Scene};
-
-use crate::stop::parse_wall_time;
 
 /// Limits of a run.
 #[derive(Clone, Debug, Default, Args)]

@@ -20,6 +20,7 @@ mod ring_stress;
 pub mod shown;
 pub mod snapshot;
 pub mod state_arrays;
+pub mod stop;
 mod stress_points;
 mod subsurface;
 pub mod summary;

@@ -110,7 +110,9 @@ pub struct RawQuantity {
 #[derive(Clone, Debug, Deserialize)]
 #[serde(untagged, expecting = "a number or a text")]
 pub enum Cell {
+    /// A number.
     Number(f64),
+    /// A word.
     Text(String),
 }
 

@@ -16,6 +16,7 @@ use std::time::Instant;
 use anyhow::{Context, anyhow};
 use comm::print;
 use results::failure::Failure;
+use results::stop::Stop;
 use scene::{MeshFiles, Scene};
 use signal_hook::consts::{SIGINT, SIGTERM};
 use wait4::Wait4;
@@ -24,7 +25,6 @@ use super::format::Meshes;
 use super::machine;
 use super::plan::{Plan, Point, arguments};
 use super::record::{self, Cost, LOG, RUN, Record};
-use crate::stop::Stop;
 
 /// Exit code of a run that was asked to stop.
 const STOPPED: i32 = 75;

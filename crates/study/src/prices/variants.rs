@@ -218,7 +218,7 @@ mod tests {
     use super::*;
     use scene::MeshFiles;
 
-    const SCENE: &str = include_str!("../../../tests/fixtures/7010c.toml");
+    const SCENE: &str = include_str!("../../../../tests/fixtures/7010c.toml");
 
     fn scene(set: &[String]) -> Scene {
         Scene::parse(SCENE, "scene.toml".as_ref(), set, MeshFiles::MayBeMissing).unwrap()

@@ -18,6 +18,7 @@ mod machine;
 mod markdown;
 mod plan;
 mod plots;
+pub mod prices;
 mod read;
 mod record;
 mod report;
@@ -29,14 +30,14 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, anyhow};
 use clap::Args;
+use comm::print;
+use results::failure::Failure;
 
 pub use self::advise::{Question, advise};
 pub use self::format::{Cell, CostKind, Meshes, Take};
 pub use self::plan::{Axis, AxisValue, Plan, Point, Quantity, Source, grid};
 pub use self::record::write_whole;
 pub use self::report::{PointReport, Report};
-use comm::print;
-use results::failure::Failure;
 
 /// What is asked.
 #[derive(Debug, Args)]

@@ -10,9 +10,8 @@ use std::path::PathBuf;
 use anyhow::Context;
 use clap::Args;
 use comm::print;
+use plot::{Choice, Results};
 use results::failure::Failure;
-
-use crate::plot::{self, Choice, Results};
 
 /// What the command line asks for.
 #[derive(Debug, Args)]

@@ -1,6 +1,6 @@
 //! `raceway prices SCENE`: every effect of a scene turned off or on, what that changes, and what it costs.
 //!
-//! A study (see [`crate::study`]) over the values of `--vary` and over the variants of the scene: as it is, and one effect
+//! A study (see [`crate`]) over the values of `--vary` and over the variants of the scene: as it is, and one effect
 //! different at a time. The table gives changes against the scene as it is: one effect at a time says nothing about two
 //! together.
 
@@ -14,7 +14,7 @@ use comm::print;
 use results::failure::Failure;
 use scene::{MeshFiles, Scene};
 
-use crate::study::{self, Axis, AxisValue, CostKind, Meshes, Plan, Quantity, Report, Source, Take};
+use crate::{Axis, AxisValue, CostKind, Meshes, Plan, Quantity, Report, Source, Take};
 
 mod variants;
 
@@ -51,10 +51,10 @@ pub fn prices(request: &Request) -> Result<(), Failure> {
         let stem = request.scene.file_stem().unwrap_or("scene".as_ref());
         PathBuf::from("results").join(format!("{}-prices", stem.to_string_lossy()))
     });
-    let report = study::run_all(&plan, &out, request.jobs)?;
+    let report = crate::run_all(&plan, &out, request.jobs)?;
     let text = table(&report);
     print::line(format_args!("{text}"));
-    study::write_whole(&out.join(FILE), &text)?;
+    crate::write_whole(&out.join(FILE), &text)?;
     print::line(format_args!("results: {}", out.display()));
     Ok(())
 }
@@ -92,7 +92,7 @@ fn plan(request: &Request) -> anyhow::Result<Plan> {
             })
             .collect(),
     });
-    let points = study::grid(&request.overrides, &axes, |_| false)?;
+    let points = crate::grid(&request.overrides, &axes, |_| false)?;
     Ok(Plan {
         path: request.scene.clone(),
         title: format!(
@@ -138,7 +138,7 @@ fn varied(index: usize, text: &str) -> anyhow::Result<Axis> {
 /// What a table shows.
 fn quantities(scene: &Scene) -> Vec<Quantity> {
     let of_ball = |column: &str| (column.to_string(), BTreeMap::new());
-    let first = BTreeMap::from([("ball".to_string(), study::Cell::Number(0.0))]);
+    let first = BTreeMap::from([("ball".to_string(), crate::Cell::Number(0.0))]);
     let entry = |name: &str, unit: &str, file: &str, (column, rows), take| Quantity {
         name: name.to_string(),
         unit: unit.to_string(),
@@ -216,7 +216,7 @@ fn write_table(report: &Report, s: &mut String) -> std::fmt::Result {
          against it with one effect different. Processor time is that of the whole run.\n",
         report.date, report.machine, report.scene
     )?;
-    let mut groups: Vec<(Vec<String>, Vec<&study::PointReport>)> = Vec::new();
+    let mut groups: Vec<(Vec<String>, Vec<&crate::PointReport>)> = Vec::new();
     for point in &report.points {
         let key: Vec<String> = varied.iter().map(|a| point.values[&a.name].clone()).collect();
         match groups.last_mut() {
@@ -257,11 +257,11 @@ fn write_table(report: &Report, s: &mut String) -> std::fmt::Result {
     Ok(())
 }
 
-fn row(report: &Report, base: &study::PointReport, point: &study::PointReport) -> Vec<String> {
+fn row(report: &Report, base: &crate::PointReport, point: &crate::PointReport) -> Vec<String> {
     let is_base = point.values[EFFECTS] == BASE;
     let mut cells = vec![point.values[EFFECTS].clone()];
     for q in &report.quantities {
-        let value = |p: &study::PointReport| p.results.get(&q.name).map(|r| r.value);
+        let value = |p: &crate::PointReport| p.results.get(&q.name).map(|r| r.value);
         cells.push(match (value(point), value(base)) {
             (Some(value), _) if is_base => format!("{value:.4e}"),
             (Some(value), Some(base)) => change(value, base),
