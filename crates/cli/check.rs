@@ -14,9 +14,7 @@ use results::failure::Failure;
 use results::memory::queued_steps;
 use results::probes::Probes;
 use results::summary::effects_on;
-use scene::build_model;
-use scene::doubts;
-use scene::{Analysis, Scene};
+use scene::{Analysis, Scene, build_model, doubts};
 
 use crate::modes;
 use crate::rank_table::{self, RingOnRanks};

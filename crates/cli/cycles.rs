@@ -1,15 +1,12 @@
 //! `raceway cycles`: amplitude, mean and rain-flow cycles of every stress in `probes.csv`: what fatigue work starts from.
 
-mod rainflow;
-
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, anyhow};
 use clap::Args;
 use comm::print;
 use results::failure::Failure;
-
-use self::rainflow::{rainflow, turning_points};
+use results::rainflow::{rainflow, turning_points};
 
 /// Tables that are written into the folder.
 const RANGES: &str = "stress_ranges.csv";

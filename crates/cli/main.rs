@@ -18,7 +18,6 @@ mod resume;
 mod rules;
 mod run;
 mod start;
-mod watch;
 
 use std::path::PathBuf;
 use std::process::ExitCode;

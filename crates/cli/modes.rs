@@ -12,9 +12,7 @@ use results::disk::Forecast;
 use results::failure::Failure;
 use results::modes::{ModeFiles, ModesSummary, print_modes};
 use results::snapshot::Snapshot;
-use scene::build_model;
-use scene::say_doubts;
-use scene::{ModeBody, ModeSupport, Modes, Scene};
+use scene::{ModeBody, ModeSupport, Modes, Scene, build_model, say_doubts};
 use solver::Searched;
 
 use crate::options::Limits;

@@ -23,14 +23,13 @@ use results::snapshot::Snapshot;
 use results::stop::Stop;
 use results::summary::{Findings, Summary};
 use results::survey::build_surveyed;
-use scene::settings;
-use scene::{Dynamic, Scene};
+use results::watch::Watch;
+use scene::{Dynamic, Scene, settings};
 
 use crate::options::Limits;
 use crate::progress::Progress;
 use crate::resume::Stored;
 use crate::start::settle;
-use crate::watch::Watch;
 use spent::Spent;
 
 /// Steps between two lines of progress in a log.

@@ -3,8 +3,7 @@
 use std::io::IsTerminal;
 use std::time::{Duration, Instant};
 
-use comm::Communicator;
-use comm::print;
+use comm::{Communicator, print};
 use indicatif::{ProgressBar, ProgressStyle};
 
 /// Shows what a run is doing and how far it is.

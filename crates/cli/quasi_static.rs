@@ -17,8 +17,7 @@ use results::snapshot::Snapshot;
 use results::summary::{Findings, Summary};
 use results::survey::build_surveyed;
 use results::{console, fields};
-use scene::Scene;
-use scene::rolling;
+use scene::{Scene, rolling};
 
 use crate::options::Limits;
 use crate::progress::Progress;

@@ -11,20 +11,19 @@ use std::time::Instant;
 use anyhow::{Context, anyhow};
 use checkpoint::{FolderLock, StateArray, StepRecord, newest_step, read_about, read_step, step_file_name};
 use clap::Args;
-use comm::Communicator;
-use comm::print;
+use comm::{Communicator, print};
 use dynamics::motion::{Motion, MotionState};
 use results::about::{OVERRIDES, SCENE_FILE, WARNINGS, require_same_meshes};
 use results::failure::{Failure, agree};
 use results::files::note_dead_owner;
 use results::state_arrays;
 use results::summary::SUMMARY_FILE;
+use results::watch::Watch;
 use scene::{Analysis, Dynamic, MeshFiles, Scene, difference};
 
 use crate::motion;
 use crate::options::Limits;
 use crate::run::note_unshared;
-use crate::watch::Watch;
 
 /// Keys and tables of a scene that a resumed run may change: none of them touches the motion.
 const MAY_CHANGE: [&str; 3] = ["dynamic.duration", "dynamic.output_every", "output"];

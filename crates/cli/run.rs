@@ -5,8 +5,7 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use anyhow::anyhow;
-use comm::Communicator;
-use comm::print;
+use comm::{Communicator, print};
 use contact::Side;
 use dynamics::{DynamicsError, StaticSolution, StaticSolver};
 use results::disk::Forecast;
@@ -18,8 +17,7 @@ use results::snapshot::Snapshot;
 use results::summary::{Findings, Summary};
 use results::survey::build_surveyed;
 use results::{console, fields, folder};
-use scene::{Analysis, Backend, Scene};
-use scene::{model_with_rings, rolling};
+use scene::{Analysis, Backend, Scene, model_with_rings, rolling};
 
 use crate::modes;
 use crate::motion;

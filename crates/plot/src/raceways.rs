@@ -8,8 +8,7 @@ use std::path::Path;
 
 use checkpoint::{Grid, StepRecord};
 use contact::{BearingGeometry, Groove, Side};
-use scene::geometry;
-use scene::{MeshFiles, Scene};
+use scene::{MeshFiles, Scene, geometry};
 
 /// How far a node may lie off the torus, in groove radii: meshes are exact to rounding in their files.
 const ON_TORUS: f64 = 1e-4;

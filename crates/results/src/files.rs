@@ -11,8 +11,7 @@ use checkpoint::{
     BackgroundOutput, CheckpointError, Compression, FolderLock, MeshFile, Output, Precision, StepRecord,
     Storage,
 };
-use comm::Communicator;
-use comm::print;
+use comm::{Communicator, print};
 use dynamics::{Model, Timing};
 use scene::{Analysis, Scene};
 

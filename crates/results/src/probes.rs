@@ -6,8 +6,7 @@ use contact::Side;
 use dynamics::Model;
 use dynamics::balls::BallResult;
 use fem::stress::{NodeRecovery, von_mises};
-use scene::NodeTags;
-use scene::{Axes, ContactProbe, RingName, Scene};
+use scene::{Axes, ContactProbe, NodeTags, RingName, Scene};
 
 use super::fields::force_on_ball;
 use super::probe_places::{NodePlace, place};

@@ -4,8 +4,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use anyhow::Context;
-use comm::Communicator;
-use comm::print;
+use comm::{Communicator, print};
 use contact::Side;
 use dynamics::balls::BallResult;
 use dynamics::{Model, Timing};

@@ -11,9 +11,7 @@ use checkpoint::MeshFile;
 use comm::Communicator;
 use contact::Side;
 use dynamics::{Backend, Model, RingModel, Sectors};
-use scene::say_doubts;
-use scene::{Scene, difference};
-use scene::{build_model, material, model_with_rings, ring_of};
+use scene::{Scene, build_model, difference, material, model_with_rings, ring_of, say_doubts};
 
 use crate::failure::{Failure, agree};
 use crate::fields;

@@ -1,7 +1,6 @@
 //! Which analysis a scene asks for, and what that means for its other tables.
 
-use input::Clock;
-use input::Problems;
+use input::{Clock, Problems};
 use toml_edit::DocumentMut;
 
 use super::RawScene;

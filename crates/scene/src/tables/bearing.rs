@@ -11,8 +11,7 @@
 
 use std::f64::consts::PI;
 
-use input::Problems;
-use input::{ANGLE, LENGTH, Quantity};
+use input::{ANGLE, LENGTH, Problems, Quantity};
 use serde::Deserialize;
 
 /// As typed.

@@ -1,7 +1,6 @@
 //! `[contact]`: how balls and raceways push on each other.
 
-use input::Problems;
-use input::{HERTZ_STIFFNESS, Quantity};
+use input::{HERTZ_STIFFNESS, Problems, Quantity};
 use serde::Deserialize;
 
 use super::bearing::Bearing;

@@ -1,7 +1,6 @@
 //! `[effects.contact_damping]` and `[effects.rayleigh_damping]`: losses of energy in motion.
 
-use input::Problems;
-use input::{DAMPING, LENGTH, Quantity, RATE, TIME};
+use input::{DAMPING, LENGTH, Problems, Quantity, RATE, TIME};
 use serde::Deserialize;
 
 /// As typed.

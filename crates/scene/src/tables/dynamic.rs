@@ -4,8 +4,7 @@
 //! step. References: Chung and Hulbert, J. Appl. Mech. 60 (1993) 371, doi:10.1115/1.2900803; Hilbert, Hughes
 //! and Taylor, Earthq. Eng. Struct. Dyn. 5 (1977) 283, doi:10.1002/eqe.4290050306 (`alpha` here is minus theirs).
 
-use input::Problems;
-use input::{Quantity, TIME, ten_digits};
+use input::{Problems, Quantity, TIME, ten_digits};
 use serde::Deserialize;
 
 use super::shaft::Shaft;

@@ -1,9 +1,9 @@
 //! `[effects.*]`: one optional table per effect; an effect without its table costs nothing.
 
-use input::Problems;
-use input::Schedule;
-use input::{ACCELERATION, ANGLE, FORCE, MOMENT, Quantity};
-use input::{Clock, RawSchedule, Scheduled, check_schedule};
+use input::{
+    ACCELERATION, ANGLE, Clock, FORCE, MOMENT, Problems, Quantity, RawSchedule, Schedule, Scheduled,
+    check_schedule,
+};
 use serde::Deserialize;
 
 use super::damping::{ContactDamping, RawContactDamping, RawRayleighDamping, RayleighDamping};

@@ -1,7 +1,6 @@
 //! `[materials.rings]` and `[materials.balls]`: linear elastic, isotropic.
 
-use input::Problems;
-use input::{DENSITY, Quantity, STRESS};
+use input::{DENSITY, Problems, Quantity, STRESS};
 use serde::Deserialize;
 
 /// As typed.

@@ -2,8 +2,7 @@
 //!
 //! Undamped and without rotation: there are no gyroscopic effects, so `[speed]` is refused.
 
-use input::Problems;
-use input::{Quantity, RATE};
+use input::{Problems, Quantity, RATE};
 use serde::Deserialize;
 
 use super::contact::ContactMode;

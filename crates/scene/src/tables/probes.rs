@@ -30,8 +30,7 @@
 
 use std::collections::BTreeMap;
 
-use input::Problems;
-use input::{ANGLE, LENGTH, Quantity};
+use input::{ANGLE, LENGTH, Problems, Quantity};
 use serde::Deserialize;
 
 use super::bearing::Bearing;

@@ -8,8 +8,7 @@
 //! time, and every instant is in equilibrium. Times are 0, step, 2 step, ... duration; fields are written every
 //! `output_every`-th (default 1) and at the end.
 
-use input::Problems;
-use input::{Quantity, TIME};
+use input::{Problems, Quantity, TIME};
 use serde::Deserialize;
 
 use super::steps::{output_every, whole_steps};

@@ -2,8 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use input::Problems;
-use input::{KINDS, LENGTH, Quantity, parse_unit};
+use input::{KINDS, LENGTH, Problems, Quantity, parse_unit};
 use serde::Deserialize;
 
 use super::bearing::Bearing;

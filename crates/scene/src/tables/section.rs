@@ -1,7 +1,6 @@
 //! `[inner.section]` and `[outer.section]`: the meshes that `raceway mesh` builds.
 
-use input::Problems;
-use input::{LENGTH, Quantity};
+use input::{LENGTH, Problems, Quantity};
 use serde::Deserialize;
 
 use super::bearing::Bearing;

@@ -21,10 +21,9 @@
 
 use std::fmt;
 
-use input::Problems;
-use input::Schedule;
-use input::{ANGLE, LENGTH, MASS, Quantity, bare_number};
-use input::{Clock, RawSchedule, check_schedule};
+use input::{
+    ANGLE, Clock, LENGTH, MASS, Problems, Quantity, RawSchedule, Schedule, bare_number, check_schedule,
+};
 use serde::Deserialize;
 use serde::de::value::MapAccessDeserializer;
 use serde::de::{Deserializer, Error, MapAccess, Visitor};

@@ -6,9 +6,7 @@
 
 use std::fmt;
 
-use input::Problems;
-use input::require_growing;
-use input::{ANGULAR_SPEED, Quantity, TIME, bare_number};
+use input::{ANGULAR_SPEED, Problems, Quantity, TIME, bare_number, require_growing};
 use serde::Deserialize;
 use serde::de::value::MapAccessDeserializer;
 use serde::de::{Deserializer, Error, MapAccess, Visitor};

@@ -1,7 +1,6 @@
 //! `[dynamic.start]`: the state at t = 0. Without the table it is static equilibrium under the loads and the speed of t = 0.
 
-use input::Problems;
-use input::{ANGLE, ANGULAR_SPEED, LENGTH, Quantity, SPEED};
+use input::{ANGLE, ANGULAR_SPEED, LENGTH, Problems, Quantity, SPEED};
 use serde::Deserialize;
 
 use super::shaft::{Motion, Shaft};

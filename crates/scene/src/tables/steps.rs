@@ -1,7 +1,6 @@
 //! Equal steps in time: what `[dynamic]` and `[quasi_static]` have in common.
 
-use input::Problems;
-use input::{Quantity, TIME, ten_digits};
+use input::{Problems, Quantity, TIME, ten_digits};
 
 /// Duration over step may differ from a whole number by this part: their round-off is a million times less.
 const WHOLE_TOLERANCE: f64 = 1e-9;

@@ -18,8 +18,7 @@
 
 use std::f64::consts::FRAC_PI_2;
 
-use input::Problems;
-use input::{ANGLE, LENGTH, Quantity};
+use input::{ANGLE, LENGTH, Problems, Quantity};
 use serde::Deserialize;
 
 use super::ring::RingName;

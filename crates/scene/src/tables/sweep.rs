@@ -5,8 +5,7 @@
 
 use std::fmt;
 
-use input::Problems;
-use input::{AnyQuantity, Dimension, kind_of_dimension};
+use input::{AnyQuantity, Dimension, Problems, kind_of_dimension};
 use serde::Deserialize;
 use serde::de::{Deserializer, Error, Visitor};
 use toml_edit::{DocumentMut, Value};

@@ -1,9 +1,5 @@
 //! `raceway export`: steps as files for other tools, VTU for those that read VTK's XML formats, CSV for all others.
 
-mod csv;
-mod integration_points;
-mod vtu;
-
 use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
 
@@ -11,6 +7,7 @@ use anyhow::{Context, anyhow};
 use checkpoint::{Grid, StepRecord, all_steps, read_any_step, read_mesh};
 use clap::{Args, ValueEnum};
 use comm::print;
+use results::export::{csv, integration_points, vtu};
 use results::failure::Failure;
 
 /// What the command line asks for.
