@@ -1,6 +1,6 @@
 //! Everything that is written while a run goes on: tables, step files, and the seconds it takes.
 //!
-//! Step files are written by a thread of their own; the run only waits when it is [`QUEUE`] steps ahead of the disk.
+//! Step files are written by a thread of their own; the run only waits when it is `QUEUE` steps ahead of the disk.
 
 use std::path::Path;
 use std::sync::Arc;

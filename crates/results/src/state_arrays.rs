@@ -1,6 +1,6 @@
 //! The state of a motion as named arrays, in both directions: what step files hold and what a run resumes from.
 //!
-//! One function, [`exchange`], names every field of the state once; a [`Port`] carries the fields out or in. The
+//! One function, `exchange`, names every field of the state once; a `Port` carries the fields out or in. The
 //! state is taken apart without `..`, so a field that is added to it does not compile until it has its line there.
 
 use std::collections::{BTreeMap, BTreeSet};
