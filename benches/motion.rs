@@ -26,8 +26,8 @@ use checkpoint::{Body, CellFields, Output, PointFields, StateArray, StepRecord, 
 use clock::{Laps, least_wall};
 use contact::Side;
 use dynamics::effects::FrameRotation;
-use dynamics::motion::balls::Speed;
-use dynamics::motion::{Motion, MotionSettings, MotionState, StepReport};
+use dynamics::kinematics::Speed;
+use dynamics::motion::{Motion, MotionSettings, MotionState, StepCache, StepReport};
 use dynamics::{Backend, ContactMode, Hold, Model, NodalStress, StaticSolver};
 use fem::stress::von_mises;
 use rayon::prelude::*;
@@ -73,6 +73,7 @@ fn settings() -> MotionSettings {
 struct Rolling<'a> {
     motion: Motion<'a>,
     state: MotionState,
+    cache: StepCache,
     laps: Laps,
     report: StepReport,
     n_steps: usize,
@@ -85,11 +86,16 @@ impl<'a> Rolling<'a> {
             .expect("the bearing has an equilibrium");
         let motion = Motion::new(model, settings()).expect("the rings can be factored");
         let state = motion.start(&start);
+        let mut cache = StepCache::default();
         // The first step touches memory for the first time.
-        let state = motion.step(&state).expect("a step from equilibrium").0;
+        let state = motion
+            .step(&state, &mut cache)
+            .expect("a step from equilibrium")
+            .0;
         Rolling {
             motion,
             state,
+            cache,
             laps: Laps::default(),
             report: StepReport::default(),
             n_steps: 0,
@@ -99,7 +105,7 @@ impl<'a> Rolling<'a> {
     fn step(&mut self) {
         let (next, report) = self
             .laps
-            .time("step", || self.motion.step(&self.state))
+            .time("step", || self.motion.step(&self.state, &mut self.cache))
             .expect("slow rolling");
         for (part, seconds) in report.seconds.parts() {
             self.laps.add_wall(&format!("  {part}"), seconds);

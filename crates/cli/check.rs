@@ -5,7 +5,8 @@ use std::path::Path;
 
 use comm::print;
 use contact::{BearingGeometry, Side};
-use dynamics::motion::balls::Kinematics;
+use dynamics::kinematics::Kinematics;
+use dynamics::statics::settings;
 use dynamics::{
     Model, MotionSizes, Numbers, Prepared, RingMemory, Substructures, forecast_motion_peak, forecast_peak,
 };
@@ -200,7 +201,7 @@ fn print_ring(model: &Model, side: Side) -> Result<Option<RingForecast>, Failure
         return Ok(None);
     };
     let mesh = &ring.mesh;
-    let prepared = Prepared::new(model, side, ring, Numbers::Pattern).map_err(Failure::solving)?;
+    let prepared = Prepared::new(ring, settings(model, side), Numbers::Pattern).map_err(Failure::solving)?;
     let memory = prepared.memory;
     print::line(format_args!(
         "{}    {} {}, {} nodes, {} dofs; Hertz stiffness {stiffness:.4e} N/mm^1.5; factor {:.1} MB, {:.2e} flops, \

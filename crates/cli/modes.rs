@@ -6,6 +6,7 @@ use std::time::Instant;
 use anyhow::anyhow;
 use comm::Communicator;
 use contact::Side;
+use dense::Searched;
 use dynamics::modes::{basis_sizes, bearing_modes, ring_modes};
 use dynamics::{ModeSet, Model, ModesSettings, RingSupport, StaticSolution, StaticSolver};
 use results::disk::Forecast;
@@ -13,7 +14,6 @@ use results::failure::Failure;
 use results::modes::{ModeFiles, ModesSummary, print_modes};
 use results::snapshot::Snapshot;
 use scene::{ModeBody, ModeSupport, Modes, Scene, build_model, say_doubts};
-use solver::Searched;
 
 use crate::options::Limits;
 use crate::progress::Progress;

@@ -10,7 +10,7 @@ use anyhow::anyhow;
 use comm::print;
 use contact::Side;
 use dynamics::motion::ledger::LOSSY;
-use dynamics::motion::{Motion, MotionState};
+use dynamics::motion::{Motion, MotionState, StepCache};
 use dynamics::{DynamicsError, Model, Timing};
 use results::console;
 use results::disk::Forecast;
@@ -70,6 +70,7 @@ pub fn run(
         motion: &motion,
         files,
         state,
+        cache: StepCache::default(),
         newton: 0,
         spent: Spent::default(),
         watch: Watch::new(model.geometry.n_balls),
@@ -127,6 +128,7 @@ pub fn resume(
         files,
         last_file: Some(state.step),
         state,
+        cache: StepCache::default(),
         newton,
         spent: Spent::default(),
         watch,
@@ -177,6 +179,7 @@ struct March<'a> {
     files: Files,
     /// The last good state.
     state: MotionState,
+    cache: StepCache,
     /// Newton iterations so far.
     newton: u64,
     /// Seconds in the steps so far.
@@ -255,7 +258,7 @@ impl March<'_> {
                     self.files.waited().as_secs_f64()
                 ));
             }
-            match self.motion.step(&self.state) {
+            match self.motion.step(&self.state, &mut self.cache) {
                 Ok((next, report)) => {
                     self.newton += report.newton_iterations as u64;
                     self.spent.add(report.seconds);

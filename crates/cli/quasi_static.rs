@@ -6,7 +6,7 @@ use std::time::Instant;
 
 use comm::print;
 use contact::Side;
-use dynamics::motion::balls::{Rolling, Speed};
+use dynamics::kinematics::{Rolling, Speed};
 use dynamics::{Model, QuasiStatic, StaticSolution};
 use results::disk::Forecast;
 use results::failure::{Failure, agree};
@@ -73,7 +73,7 @@ pub fn run(
     progress.finish();
     let findings = series.findings(&ended, bearing.solver.costs.seconds());
     let snapshot = findings.last.clone();
-    let forecast = Side::BOTH.map(|side| bearing.solver.ring(side).map(|r| r.memory));
+    let forecast = Side::BOTH.map(|side| bearing.solver.ring(side).map(|r| r.solver.memory));
     let costs = agree(files.finish(read, Forecasts::at_rest(forecast), bearing.solver.timing, start));
     // A run that failed says why, not what its failure did to the files.
     let costs = match (costs, &ended) {

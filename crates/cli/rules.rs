@@ -24,7 +24,7 @@
 
 use contact::Side;
 use dynamics::Model;
-use dynamics::motion::balls::Kinematics;
+use dynamics::kinematics::Kinematics;
 use scene::{Analysis, Scene, Support};
 
 /// Ratio from which an effect that is off is pointed out.

@@ -77,7 +77,7 @@ pub fn run(
     let mut solver = StaticSolver::new(&model).map_err(Failure::solving)?;
     for side in Side::BOTH {
         if let Some(ring) = solver.ring(side) {
-            progress.stage(&format!("{} ring: {}", side.name(), ring.solver_note()));
+            progress.stage(&format!("{} ring: {}", side.name(), ring.solver.solver_note()));
         }
     }
     let mut solutions: Vec<Solved> = Vec::new();
@@ -134,7 +134,7 @@ pub fn run(
         progress.advance();
     }
     progress.finish();
-    let forecast = Side::BOTH.map(|side| solver.ring(side).map(|r| r.memory));
+    let forecast = Side::BOTH.map(|side| solver.ring(side).map(|r| r.solver.memory));
     // Points that were solved get their summary, whatever came after them.
     if let Some(files) = results {
         let costs = agree(files.finish(read, Forecasts::at_rest(forecast), solver.timing, start))?;

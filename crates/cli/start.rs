@@ -29,7 +29,7 @@ pub fn settle(model: &Model, dynamic: &Dynamic, progress: &Progress) -> Result<S
     let equilibrium = statics.solve(model, None).map_err(Failure::solving)?;
     Ok(Settled {
         equilibrium: Some(equilibrium),
-        forecast: Side::BOTH.map(|side| statics.ring(side).map(|r| r.memory)),
+        forecast: Side::BOTH.map(|side| statics.ring(side).map(|r| r.solver.memory)),
         timing: statics.timing,
     })
 }

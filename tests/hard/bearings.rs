@@ -1,7 +1,7 @@
 //! Bearings and loads of the cases: a 7010C with rigid rings, or flexible ones of 2 052 dofs each.
 
 use dynamics::effects::{AxialForce, Effect, Moment, RadialForce};
-use dynamics::motion::balls::Speed;
+use dynamics::kinematics::Speed;
 use dynamics::motion::{Motion, MotionSettings};
 use dynamics::{ContactMode, Hold, Model, StaticSolution, StaticSolver};
 use input::Schedule;

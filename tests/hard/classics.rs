@@ -7,7 +7,7 @@
 use contact::Side;
 use dynamics::effects::{Effect, Loads, Now};
 use dynamics::motion::contacts::ContactScheme;
-use dynamics::motion::{Integrator, Motion, MotionSettings, MotionState};
+use dynamics::motion::{Integrator, Motion, MotionSettings, MotionState, StepCache};
 use dynamics::{DynamicsError, Model, ShaftDof};
 
 use super::bearings::conserving;
@@ -370,8 +370,9 @@ fn orders(record: &mut Record, stiffer: f64) {
             // The accelerations of the start, exactly.
             state.ball_accelerations = vec![equation.acceleration(start); 2];
             let mut state = motion.with_energies(state);
+            let mut cache = StepCache::default();
             for _ in 0..n {
-                state = motion.step(&state).unwrap().0;
+                state = motion.step(&state, &mut cache).unwrap().0;
             }
             let x = state.balls[0];
             (x[0] - exact[0]).hypot(x[1] - exact[1])

@@ -1,6 +1,6 @@
 //! A motion that is run step by step and watched.
 
-use dynamics::motion::{Motion, MotionSettings, MotionState};
+use dynamics::motion::{Motion, MotionSettings, MotionState, StepCache};
 use dynamics::{Model, StaticSolution};
 
 use super::plot::Curve;
@@ -73,8 +73,9 @@ pub fn march_with(
         samples: Vec::new(),
     };
     let mut done = 0.0;
+    let mut cache = StepCache::default();
     for step in 0..n {
-        let (next, report) = match motion.step(&course.last) {
+        let (next, report) = match motion.step(&course.last, &mut cache) {
             Ok(next) => next,
             Err(error) => {
                 course.error = Some(error.to_string());

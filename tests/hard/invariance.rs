@@ -1,8 +1,8 @@
 //! What must not change an answer: units, where the mesh begins, numbers of balls, directions, threads.
 
 use contact::Side;
+use dynamics::kinematics::Speed;
 use dynamics::motion::MotionSettings;
-use dynamics::motion::balls::Speed;
 use dynamics::{Hold, Model, StaticSolution};
 
 use super::bearings::{Load, RPM, SMALL, conserving, equilibrium_at, flexible, rigid, set_loads};

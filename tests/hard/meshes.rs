@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use contact::Side;
-use dynamics::motion::balls::Speed;
+use dynamics::kinematics::Speed;
 use dynamics::motion::{Motion, MotionSettings};
 use dynamics::{ContactMode, DynamicsError, Hold, Model, RingModel, StaticSolution, StaticSolver};
 

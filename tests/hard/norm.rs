@@ -1,6 +1,6 @@
 //! The norm in which a dissipating integrator loses energy, of a bearing with rigid rings.
 //!
-//! `dynamics::motion::integrator` derives it: E + dt^2 M [(x - e^2) a^2 / 2 + e v c / dt + e^2 c a + x e c^2 / (2 d)], with c the part of
+//! `ring::integrator` derives it: E + dt^2 M [(x - e^2) a^2 / 2 + e v c / dt + e^2 c a + x e c^2 / (2 d)], with c the part of
 //! the acceleration that the forces at the instant do not explain. For linear bodies it falls at every step; contacts add the
 //! difference between the mean of the forces at both ends of a step and the discrete gradient.
 

@@ -1,7 +1,7 @@
 //! Late times, denormals, decades of load, tolerances that cannot be.
 
 use dynamics::StaticSolver;
-use dynamics::motion::balls::Speed;
+use dynamics::kinematics::Speed;
 use dynamics::motion::{Motion, MotionSettings};
 
 use super::bearings::{Load, RPM, conserving, equilibrium_at, rigid, set_loads};

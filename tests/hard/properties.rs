@@ -1,8 +1,8 @@
 //! Random bearings, loads and speeds within bounds: equilibrium, symmetry, ledger.
 
 use contact::{BearingGeometry, HertzContact, Side};
+use dynamics::kinematics::Speed;
 use dynamics::motion::MotionSettings;
-use dynamics::motion::balls::Speed;
 use dynamics::{Model, StaticSolution, StaticSolver};
 use proptest::prelude::*;
 use proptest::test_runner::{Config, RngAlgorithm, TestCaseError, TestRng, TestRunner};

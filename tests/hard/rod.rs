@@ -1,5 +1,5 @@
-//! An elastic bar on a rigid wall, by the code of a ring: `RingBody` on a mesh that happens to be a straight bar, its predictor
-//! and compliance (`RingFactor`), the discrete gradient of the contact and the small Newton (`SmallSystem`).
+//! An elastic bar on a rigid wall, by the code of a ring: `ring::elastic_body` of a mesh that happens to be a straight bar, its
+//! predictor and compliance (`ring::ElasticStep`), the discrete gradient of the contact and the small Newton (`SmallSystem`).
 //!
 //! The bar lies along z, one element thick, Poisson's ratio 0: its waves are those of a rod. Its end face is the "groove centre"
 //! of one contact; the "ball" is the wall (1e9 masses of the bar) or a free body. Closed form: the end stops at impact, a
@@ -8,20 +8,19 @@
 //! rho = 1 kg/m3, 5 m from the wall, 10 m/s); ANSYS Verification Manual, VM85 (a rod in inches and pounds).
 
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 use contact::{ContactLaw, Groove, NodalWeights, Side};
 use dense::DenseCholesky;
 use dynamics::motion::Integrator;
-use dynamics::motion::body::RingBody;
 use dynamics::motion::contacts::ContactScheme;
-use dynamics::motion::ring::{RingFactor, RingState};
 use dynamics::motion::shaft::ShaftStep;
 use dynamics::motion::small::{Inertia, RingAnswer, SmallSystem};
-use dynamics::motion::space::Frame;
 use dynamics::problem::Site;
 use dynamics::{Backend, EffectCosts, Hold, RingModel};
 use fem::Material;
 use mesh::{ElementKind, Facet, Mesh};
+use ring::{BodySettings, End, Frame, KnownLoad, Partner, PortForces, RingState, StepScheme, elastic_body};
 
 /// Dimensions and numbers of a bar and its flight.
 #[derive(Clone, Copy)]
@@ -108,23 +107,24 @@ impl Rod {
     }
 
     pub fn fly(&self, integrator: Integrator, scheme: ContactScheme, dt: f64, n: usize) -> Flight {
-        let body = RingBody::new(
-            Side::Outer,
-            &self.model(),
-            [0.0; 2],
-            Backend::Sparse,
-            Frame::Still,
-        )
-        .unwrap();
-        let factor = RingFactor::new(&body, integrator, dt).unwrap();
-        let coordinates = body.coordinates.n();
+        let settings = BodySettings {
+            partner: Partner::Housing,
+            damping: [0.0; 2],
+            backend: Backend::Sparse,
+            frame: Frame::Still,
+        };
+        let body = elastic_body("outer", &self.model(), settings).unwrap();
+        let factor = body.clone().step_factor(StepScheme { integrator, dt }).unwrap();
+        let coordinates = body.n();
         let along = |value: f64| -> Vec<f64> {
             (0..coordinates)
                 .map(|i| if i % 3 == 2 { value } else { 0.0 })
                 .collect()
         };
         let mut state = RingState::new(vec![0.0; coordinates], along(-self.speed), along(-self.gravity));
-        let weight = body.mass_product(&along(-self.gravity));
+        let weight = body
+            .matrices()
+            .mass_product(&body.held().coordinates, &along(-self.gravity));
         let foot = NodalWeights {
             nodes: vec![0, 1, 2, 3],
             coefficients: vec![[[0.25, 0.0, 0.0], [0.0, 0.0, 0.25]]; 4],
@@ -152,8 +152,14 @@ impl Rod {
             unevenness: None,
         };
         for step in 0..n {
-            let prepared = factor.prepare(&body, &state, Some(&weight), std::slice::from_ref(&foot));
-            let inverse = DenseCholesky::factor(2, &prepared.compliance).unwrap().inverse();
+            let load = KnownLoad {
+                load: Some(weight.clone()),
+                turn: None,
+            };
+            let known = Arc::new(factor.predict(&state, load));
+            let mut moving = factor.begin(&state, known, std::slice::from_ref(&foot));
+            let answer = moving.answer().clone();
+            let inverse = DenseCholesky::factor(2, &answer.compliance).unwrap().inverse();
             let system = SmallSystem {
                 dt,
                 integrator,
@@ -171,8 +177,8 @@ impl Rod {
                 rings: [
                     None,
                     Some(RingAnswer {
-                        start: prepared.start.clone(),
-                        predicted: prepared.predicted.clone(),
+                        start: answer.start,
+                        predicted: answer.predicted,
                         stiffness: inverse,
                     }),
                 ],
@@ -182,9 +188,16 @@ impl Rod {
             };
             let solution = system.solve(scale, &costs).unwrap();
             let contact = solution.forces[0];
-            let dw = factor.increment(&body, &prepared, &contact.force, &[]);
-            let next = factor.advance(&body, &state, &dw);
-            work += weight.iter().zip(&dw).map(|(f, d)| f * d).sum::<f64>();
+            let forces = PortForces {
+                contacts: &contact.force,
+                mount: &[],
+            };
+            let End::Done(ended) = moving.end(forces, scale, None) else {
+                panic!("no frame turns");
+            };
+            drop(moving);
+            let next = ended.state;
+            work += ended.works.load;
             loss += body.numerical_loss(integrator, &state, &next) + contact.numerical_loss;
             for (i, place) in wall.iter_mut().enumerate() {
                 let inertia = system.balls[0][i];

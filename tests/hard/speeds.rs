@@ -1,7 +1,7 @@
 //! Speeds: run-up, reversal, a stop dead, light balls at high speed, and a million steps of steady running.
 
 use dynamics::effects::{BallCentrifugal, FrameRotation, GyroscopicMoment};
-use dynamics::motion::balls::{BallSpeeds, Speed};
+use dynamics::kinematics::{BallSpeeds, Speed};
 use dynamics::motion::{Motion, MotionSettings};
 use dynamics::{Model, StaticSolution};
 

@@ -52,6 +52,19 @@ pub enum DenseError {
         /// Number of rows.
         n: usize,
     },
+    /// Lanczos gave up.
+    #[error(
+        "{converged} of {wanted} eigenpairs have converged after {steps} blocks; ask for fewer, or move the shift \
+         towards their frequencies"
+    )]
+    SearchNotConverged {
+        /// Pairs asked for.
+        wanted: usize,
+        /// Pairs that have converged.
+        converged: usize,
+        /// Blocks tried.
+        steps: usize,
+    },
     /// A matrix whose eigenvalues are wanted has an entry that is infinite or not a number.
     #[error("an eigenvalue is not finite; check coordinates, material and masses")]
     EigenNotFinite,

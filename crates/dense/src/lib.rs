@@ -1,4 +1,5 @@
-//! Dense matrices of up to a few hundred rows: Cholesky and LU factors, symmetric eigenpairs.
+//! Dense matrices of up to a few hundred rows: Cholesky and LU factors, symmetric eigenpairs. And the lowest eigenpairs of matrices
+//! that only act ([`eigen`]).
 //!
 //! Sequential and deterministic: the same matrix gives the same bits. Matrices are row-major, `a[n * i + j]`; right-hand
 //! sides are column-major, `[n][n_rhs]`.
@@ -10,12 +11,14 @@
 //! # Ok::<(), dense::DenseError>(())
 //! ```
 
-mod eigen;
+pub mod eigen;
 mod error;
 mod factors;
 mod forms;
 
-pub use eigen::symmetric_eigen;
+pub use eigen::{
+    EigenProblem, Eigenpairs, LanczosSettings, Searched, dense_lowest, lanczos, lowest_pairs, symmetric_eigen,
+};
 pub use error::DenseError;
 pub use factors::{DenseCholesky, DenseLu, cholesky_in_place};
 pub use forms::{inverse_form, symmetric_form, symmetric_product, update};

@@ -2,61 +2,14 @@
 
 use contact::ContactError;
 use dense::DenseError;
-use fem::FemError;
-use solver::SolverError;
+use ring::RingError;
 
 /// Why a bearing could not be solved.
 #[derive(Debug, thiserror::Error)]
 pub enum DynamicsError {
-    /// A ring's matrix is not positive definite.
-    #[error(
-        "the {side} ring is not held: its stiffness matrix is singular at node {node}; \
-         check that the facet group \"{group}\" covers a surface and that the mesh is one connected part"
-    )]
-    NotHeld {
-        /// `inner` or `outer`.
-        side: &'static str,
-        /// Node index in the mesh, from 0.
-        node: usize,
-        /// Held group.
-        group: &'static str,
-    },
-    /// A ring that the cyclic solver was asked for is not rotationally periodic.
-    #[error(
-        "the {side} ring is not rotationally periodic, so solver.backend = \"cyclic\" cannot be: {reason}; use \"auto\" or \
-         \"sparse\""
-    )]
-    NotPeriodic {
-        /// `inner` or `outer`.
-        side: &'static str,
-        /// The first difference.
-        reason: String,
-    },
-    /// Harmonics do not give the modes of a ring with a defect.
-    #[error(
-        "the {side} ring is rotationally periodic only up to a defect, whose natural modes solver.backend = \"cyclic\" does \
-         not find; use \"auto\" or \"sparse\""
-    )]
-    ModesOfDefect {
-        /// `inner` or `outer`.
-        side: &'static str,
-    },
-    /// Another rank has failed.
-    #[error("on rank {rank}: {message}")]
-    OnRank {
-        /// The rank.
-        rank: usize,
-        /// Its error.
-        message: String,
-    },
-    /// The linear solver failed otherwise.
-    #[error("{side} ring: {source}")]
-    Solver {
-        /// `inner` or `outer`.
-        side: &'static str,
-        /// Cause.
-        source: SolverError,
-    },
+    /// A ring could not be made or solved.
+    #[error(transparent)]
+    Ring(#[from] RingError),
     /// The small contact system is singular.
     #[error(
         "the contact system of balls and shaft has no solution: {source}; check the loads and the shaft's free directions"
@@ -64,14 +17,6 @@ pub enum DynamicsError {
     ContactSystem {
         /// Cause.
         source: DenseError,
-    },
-    /// Finite elements failed.
-    #[error("{side} ring: {source}")]
-    Fem {
-        /// `inner` or `outer`.
-        side: &'static str,
-        /// Cause.
-        source: FemError,
     },
     /// A contact is outside its theory.
     #[error(transparent)]
@@ -245,7 +190,7 @@ pub enum DynamicsError {
     #[error("natural modes: {source}")]
     Modes {
         /// Cause.
-        source: SolverError,
+        source: DenseError,
     },
     /// A number became NaN or infinite.
     #[error("{what} is not finite; check the loads and material of the scene")]
@@ -256,6 +201,17 @@ pub enum DynamicsError {
 }
 
 impl DynamicsError {
+    /// Whether the cause is in what a user gave, not in its solution: something unheld, a choice that cannot be, a mesh with a hole.
+    pub fn is_of_input(&self) -> bool {
+        match self {
+            DynamicsError::Ring(error) => error.is_of_input(),
+            DynamicsError::Unheld { .. }
+            | DynamicsError::NotInMotion { .. }
+            | DynamicsError::Contact(ContactError::Hole { .. }) => true,
+            _ => false,
+        }
+    }
+
     /// Whether a smaller step in time may do what this one could not.
     pub fn may_pass_with_smaller_step(&self) -> bool {
         use DynamicsError::{

@@ -9,9 +9,10 @@ use mesh::NodePositions;
 use rayon::prelude::*;
 
 use crate::error::DynamicsError;
-use crate::model::{ContactMode, Model, RingModel, elastic};
+use crate::model::{ContactMode, Model, elastic};
 use crate::problem::{Displacements, Problem, Site};
-use crate::ring::RingSolver;
+use crate::raceway::Raceway;
+use ring::RingModel;
 
 /// Groove angle kept from the rim by a contact that is not on the groove, as a share of the groove.
 const RIM_SHARE: f64 = 0.05;
@@ -39,7 +40,7 @@ pub struct Footprint {
 pub fn place(
     model: &Model,
     side: Side,
-    solver: &RingSolver,
+    raceway: &Raceway,
     problem: &mut Problem,
     u: &Displacements,
     forces: &[[f64; 2]],
@@ -52,8 +53,8 @@ pub fn place(
         let index = 2 * ball + side.index();
         let site = &mut problem.sites[index];
         feet.push(match model.contact.mode {
-            ContactMode::Facet => place_facet(model, ring, solver, site, u, forces[index])?,
-            _ => place_patch(model, ring, solver, site, u, forces[index], loaded[index])?,
+            ContactMode::Facet => place_facet(model, ring, raceway, site, u, forces[index])?,
+            _ => place_patch(model, ring, raceway, site, u, forces[index], loaded[index])?,
         });
     }
     Ok(feet)
@@ -62,21 +63,21 @@ pub fn place(
 fn place_patch(
     model: &Model,
     ring: &RingModel,
-    solver: &RingSolver,
+    raceway: &Raceway,
     site: &mut Site,
     u: &Displacements,
     force: [f64; 2],
     loaded: bool,
 ) -> Result<Footprint, DynamicsError> {
     let load = force[0].hypot(force[1]);
-    let angle = on_groove(&solver.surface, site.contact_angle(&site.state(u)), loaded);
+    let angle = on_groove(&raceway.surface, site.contact_angle(&site.state(u)), loaded);
     let hertz = model.hertz[site.side.index()].semi_axes(load);
     let spacings = model.contact.patch_spacings;
-    let shape = PatchShape::new(&solver.surface, site.ring_azimuth, angle, hertz, spacings)?;
+    let shape = PatchShape::new(&raceway.surface, site.ring_azimuth, angle, hertz, spacings)?;
     let patch = Patch::new(
-        &solver.surface,
+        &raceway.surface,
         &ring.mesh.nodes,
-        &solver.rule,
+        &raceway.rule,
         shape,
         elastic(&ring.material),
     )?;
@@ -169,24 +170,24 @@ pub fn require_on_groove(surface: &RacewaySurface, ball: usize, angle: f64) -> R
 fn place_facet(
     model: &Model,
     ring: &RingModel,
-    solver: &RingSolver,
+    raceway: &Raceway,
     site: &mut Site,
     u: &Displacements,
     force: [f64; 2],
 ) -> Result<Footprint, DynamicsError> {
-    let search = FacetSearch::new(model, ring, solver, site);
+    let search = FacetSearch::new(model, ring, raceway, site);
     if site.unevenness.is_none() {
-        site.unevenness = Some(Arc::new(search.unevenness(solver.surface.angle_range)?));
+        site.unevenness = Some(Arc::new(search.unevenness(raceway.surface.angle_range)?));
     }
     let angle = site.contact_angle(&site.state(u));
     // The rim itself is left out: a foot point beyond it is on no facet.
-    let contact = search.foot(on_groove(&solver.surface, angle, false))?;
+    let contact = search.foot(on_groove(&raceway.surface, angle, false))?;
     let hertz = model.hertz[site.side.index()].semi_axes(force[0].hypot(force[1]));
     let weights = NodalWeights::interpolation(contact.nodes, &contact.weights, site.ring_azimuth);
     Ok(Footprint {
         weights,
         semi_axes: None,
-        truncated: hertz[0] > solver.surface.rim_distance(angle),
+        truncated: hertz[0] > raceway.surface.rim_distance(angle),
     })
 }
 
@@ -204,9 +205,9 @@ struct FacetSearch<'a> {
 }
 
 impl<'a> FacetSearch<'a> {
-    fn new(model: &Model, ring: &'a RingModel, solver: &'a RingSolver, site: &Site) -> FacetSearch<'a> {
+    fn new(model: &Model, ring: &'a RingModel, raceway: &'a Raceway, site: &Site) -> FacetSearch<'a> {
         FacetSearch {
-            facets: solver
+            facets: raceway
                 .facets
                 .as_ref()
                 .expect("facet mode builds the facet search of every flexible ring"),

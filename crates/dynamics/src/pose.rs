@@ -8,8 +8,8 @@ use contact::Side;
 
 use crate::effects::{Loads, Now, resultant};
 use crate::error::DynamicsError;
+use crate::frame::{turn, turn_nodal};
 use crate::model::{Model, ShaftDof};
-use crate::motion::frame::{turn, turn_nodal};
 use crate::problem::{Problem, Site};
 
 /// Time and angles of an instant; the default is a bearing that has not turned, at time 0.

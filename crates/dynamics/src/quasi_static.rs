@@ -8,8 +8,8 @@
 //! only, so that of the first instant serves until rounds settle slowly.
 
 use crate::error::DynamicsError;
+use crate::kinematics::Rolling;
 use crate::model::Model;
-use crate::motion::balls::Rolling;
 use crate::pose::Pose;
 use crate::solution::StaticSolution;
 use crate::statics::StaticSolver;

@@ -23,13 +23,17 @@ use crate::effects::Loads;
 use crate::equilibrium::{SearchScales, check_held, minimise, round_off};
 use crate::error::DynamicsError;
 use crate::footprint::{Footprint, check_in_grooves, check_on_groove, place};
-use crate::inventory::Inventory;
 use crate::loading::{LoadCase, largest_change, largest_force, not_settled};
-use crate::model::{Backend, ContactMode, Model};
+use crate::model::{ContactMode, Model};
+use crate::motion::run::partner;
 use crate::pose::Pose;
 use crate::problem::{Displacements, Problem, RingResponse, site_forces};
-use crate::ring::RingSolver;
+use crate::raceway::Raceway;
 use crate::solution::{RingFields, StaticSolution};
+use ring::Inventory;
+use ring::prepared::StaticSettings;
+use ring::statics::RingSolver;
+use ring::{Backend, RingModel};
 
 /// Contraction of a round above which the columns are renewed.
 const SLOW_CONTRACTION: f64 = 0.2;
@@ -39,9 +43,17 @@ const FACET_TOLERANCE: f64 = 1e-6;
 /// Stages in which the facets' offsets are brought in.
 const FACET_STAGES: usize = 8;
 
+/// A factored flexible ring and its raceway.
+pub struct StaticRing {
+    /// The ring.
+    pub solver: RingSolver,
+    /// Where contacts find it.
+    pub raceway: Raceway,
+}
+
 /// Factored rings of a model, ready for any number of load cases.
 pub struct StaticSolver {
-    rings: [Option<RingSolver>; 2],
+    rings: [Option<StaticRing>; 2],
     columns: [Option<Vec<f64>>; 2],
     /// Seconds so far.
     pub timing: Timing,
@@ -49,21 +61,41 @@ pub struct StaticSolver {
     pub costs: EffectCosts,
 }
 
+/// What the ring on `side` is made with.
+pub fn settings(model: &Model, side: Side) -> StaticSettings {
+    StaticSettings {
+        name: side.name(),
+        partner: partner(side),
+        backend: model.backend,
+        n_contacts: model.geometry.n_balls,
+    }
+}
+
+impl StaticRing {
+    /// Assembles and factors the stiffness of the ring on `side`.
+    pub fn new(model: &Model, side: Side, ring: &RingModel) -> Result<StaticRing, DynamicsError> {
+        let start = Instant::now();
+        let mut solver = RingSolver::new(ring, settings(model, side))?;
+        let made = start.elapsed().as_secs_f64();
+        let raceway = Raceway::new(ring, model.contact.mode);
+        solver.seconds[1] += start.elapsed().as_secs_f64() - made;
+        Ok(StaticRing { solver, raceway })
+    }
+}
+
 impl StaticSolver {
     /// Factors both rings, on two threads if there are two.
     pub fn new(model: &Model) -> Result<StaticSolver, DynamicsError> {
         let build = |side: Side| {
-            model
-                .ring(side)
-                .map(|ring| RingSolver::new(model, side, ring))
-                .transpose()
+            let ring = model.ring(side);
+            ring.map(|ring| StaticRing::new(model, side, ring)).transpose()
         };
         let (inner, outer) = model.backend.both(|| build(Side::Inner), || build(Side::Outer));
         let rings = [inner?, outer?];
         let mut timing = Timing::default();
         for ring in rings.iter().flatten() {
-            timing.assemble += ring.seconds[0];
-            timing.factor += ring.seconds[1];
+            timing.assemble += ring.solver.seconds[0];
+            timing.factor += ring.solver.seconds[1];
         }
         Ok(StaticSolver {
             rings,
@@ -73,15 +105,15 @@ impl StaticSolver {
         })
     }
 
-    /// The ring solver of one side.
-    pub fn ring(&self, side: Side) -> Option<&RingSolver> {
+    /// The ring of one side.
+    pub fn ring(&self, side: Side) -> Option<&StaticRing> {
         self.rings[side.index()].as_ref()
     }
 
     /// What both rings hold.
     pub fn inventory(&self) -> Inventory {
         let rings = self.rings.iter().flatten();
-        rings.fold(Inventory::default(), |sum, ring| sum + ring.inventory())
+        rings.fold(Inventory::default(), |sum, ring| sum + ring.solver.inventory())
     }
 
     /// Equilibrium under the model's loads, from zero displacement or from an earlier solution. The model must have the
@@ -145,7 +177,7 @@ impl StaticSolver {
             let mut feet = [Vec::new(), Vec::new()];
             for side in Side::BOTH {
                 if let Some(ring) = &self.rings[side.index()] {
-                    feet[side.index()] = place(model, side, ring, &mut case.problem, &u, &forces)?;
+                    feet[side.index()] = place(model, side, &ring.raceway, &mut case.problem, &u, &forces)?;
                 }
             }
             self.timing.patches += clock.elapsed().as_secs_f64();
@@ -190,7 +222,7 @@ impl StaticSolver {
         forces: &[[f64; 2]],
     ) -> Result<(), DynamicsError> {
         let mut rings = self.rings.iter().flatten();
-        rings.try_for_each(|ring| check_on_groove(&ring.surface, problem, u, forces))?;
+        rings.try_for_each(|ring| check_on_groove(&ring.raceway.surface, problem, u, forces))?;
         check_in_grooves(problem, u, forces)
     }
 
@@ -213,7 +245,7 @@ impl StaticSolver {
             }
             let weights: Vec<_> = feet[i].iter().map(|f| f.weights.clone()).collect();
             let n = 2 * weights.len();
-            let columns = ring.compliance(&weights);
+            let columns = ring.solver.compliance(&weights);
             Some(compliance::inverse(side, n, n / 2, &columns))
         };
         let (inner, outer) = backend.both(|| renewed(Side::Inner), || renewed(Side::Outer));
@@ -239,11 +271,11 @@ impl StaticSolver {
             let ring = self.rings[side.index()].as_ref()?;
             let mut load = loads.rings[side.index()]
                 .clone()
-                .unwrap_or_else(|| vec![0.0; ring.n_dofs()]);
+                .unwrap_or_else(|| vec![0.0; ring.solver.n_dofs()]);
             for (ball, foot) in feet[side.index()].iter().enumerate() {
                 foot.weights.add_load(forces[2 * ball + side.index()], &mut load);
             }
-            Some(ring.solve(load, 1))
+            Some(ring.solver.solve(load, 1))
         };
         let (inner, outer) = backend.both(|| field(Side::Inner), || field(Side::Outer));
         self.timing.solve += clock.elapsed().as_secs_f64();

@@ -4,9 +4,9 @@ mod support;
 
 use contact::Side;
 use dynamics::effects::{self, AxialForce, Effect, Gravity, Now};
-use dynamics::motion::balls::Speed;
+use dynamics::kinematics::Speed;
 use dynamics::motion::contacts::ContactDamping;
-use dynamics::motion::{Motion, MotionSettings};
+use dynamics::motion::{Motion, MotionSettings, StepCache};
 use dynamics::{ContactMode, EffectCosts, Hold, Inventory, Model, StaticSolver};
 use input::Schedule;
 
@@ -142,7 +142,9 @@ fn dampings_are_charged_in_a_motion() {
     let lines = |settings| {
         let motion = Motion::new(&model, settings).unwrap();
         let solution = StaticSolver::new(&model).unwrap().solve(&model, None).unwrap();
-        motion.step(&motion.start(&solution)).unwrap();
+        motion
+            .step(&motion.start(&solution), &mut StepCache::default())
+            .unwrap();
         motion.costs.seconds()
     };
     assert!(lines(settings()).keys().eq(&["axial_force"]));

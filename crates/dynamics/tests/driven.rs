@@ -3,8 +3,8 @@
 mod support;
 
 use dynamics::effects::{BallCentrifugal, GyroscopicMoment, Now};
-use dynamics::motion::balls::{BallSpeeds, Speed};
-use dynamics::motion::{Motion, MotionSettings, MotionState};
+use dynamics::kinematics::{BallSpeeds, Speed};
+use dynamics::motion::{Motion, MotionSettings, MotionState, StepCache};
 use dynamics::{ContactMode, Hold, Model, Pose, ShaftDof, StaticSolver};
 use input::Schedule;
 
@@ -39,8 +39,9 @@ fn spinning(mut model: Model, shares: [f64; 2]) -> Model {
 fn run(model: &Model, settings: MotionSettings, n: usize) -> Vec<MotionState> {
     let motion = Motion::new(model, settings).unwrap();
     let mut states = vec![motion.start(&equilibrium(model))];
+    let mut cache = StepCache::default();
     for _ in 0..n {
-        let next = motion.step(states.last().unwrap()).unwrap().0;
+        let next = motion.step(states.last().unwrap(), &mut cache).unwrap().0;
         states.push(next);
     }
     states

@@ -4,8 +4,8 @@ mod support;
 
 use contact::Side;
 use dynamics::effects::FrameRotation;
-use dynamics::motion::balls::Speed;
-use dynamics::motion::{Integrator, Motion, MotionSettings, MotionState};
+use dynamics::kinematics::Speed;
+use dynamics::motion::{Integrator, Motion, MotionSettings, MotionState, StepCache};
 use dynamics::{Backend, ContactMode, Hold, Model, Sectors, ShaftDof, StaticSolution};
 use support::rings::{self, Level};
 use support::{Case, equilibrium};
@@ -19,8 +19,9 @@ fn settings(dt: f64) -> MotionSettings {
 fn run(model: &Model, start: &StaticSolution, settings: MotionSettings, n: usize) -> Vec<MotionState> {
     let motion = Motion::new(model, settings).unwrap();
     let mut states = vec![motion.start(start)];
+    let mut cache = StepCache::default();
     for _ in 0..n {
-        let next = motion.step(states.last().unwrap()).unwrap().0;
+        let next = motion.step(states.last().unwrap(), &mut cache).unwrap().0;
         states.push(next);
     }
     states
@@ -70,8 +71,9 @@ fn free_flight(speed: Speed, dt: f64, n: usize, v: f64) -> [f64; 2] {
     let back = model.geometry.ball_centre()[1] - model.geometry.groove_centre(Side::Inner)[1];
     let mut state = motion.rest([0.0, 0.0, back, 0.0, 0.0], [v, 0.0, 0.0, 0.0, 0.0]);
     assert!(state.approaches.iter().step_by(2).all(|d| *d < -20e-6));
+    let mut cache = StepCache::default();
     for _ in 0..n {
-        state = motion.step(&state).unwrap().0;
+        state = motion.step(&state, &mut cache).unwrap().0;
         assert!(state.forces.iter().step_by(2).all(|f| *f == [0.0; 2]));
     }
     let (u, angle) = motion.ring_displacement(&state, Side::Inner).unwrap();

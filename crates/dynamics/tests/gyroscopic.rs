@@ -4,7 +4,7 @@ mod support;
 
 use contact::Side;
 use dynamics::effects::{self, BallCentrifugal, GyroscopicMoment, Now};
-use dynamics::motion::balls::{BallSpeeds, Kinematics, Speed};
+use dynamics::kinematics::{BallSpeeds, Kinematics, Speed};
 use dynamics::{ContactMode, Hold, Model, Pose, StaticSolution, StaticSolver};
 use support::harris::solve_harris;
 use support::rings::Level;
@@ -158,7 +158,7 @@ fn outer_control_at_equal_angles_is_plain_rolling() {
         );
         assert!(relative(control.cage, plain.cage) < 1e-14, "{slip:?}");
         // The axis is not quite parallel to the contacts' line, so the ball turns a little faster.
-        let tilt = free - dynamics::motion::balls::pitch_angle(g, free);
+        let tilt = free - dynamics::kinematics::pitch_angle(g, free);
         assert!(
             relative(control.ball * tilt.cos(), plain.ball) < 1e-14,
             "{slip:?}"

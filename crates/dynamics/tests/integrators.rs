@@ -7,9 +7,9 @@ use std::sync::Arc;
 
 use contact::Side;
 use dynamics::effects::{Effect, Loads, Now};
+use dynamics::kinematics::Speed;
 use dynamics::modes::ring_modes;
-use dynamics::motion::balls::Speed;
-use dynamics::motion::{Integrator, Motion, MotionSettings, MotionState};
+use dynamics::motion::{Integrator, Motion, MotionSettings, MotionState, StepCache};
 use dynamics::{
     ContactMode, DynamicsError, Hold, Mode, Model, ModesSettings, RingModel, RingSupport, ShaftDof,
 };
@@ -63,8 +63,9 @@ fn response(model: &Model, integrator: Integrator, dt: f64, n: usize) -> Vec<Vec
     let mut state = motion.rest([0.0, 0.0, back, 0.0, 0.0], [0.0; 5]);
     state.balls = vec![[-50e-6, 0.0]; 2];
     state = motion.with_accelerations(state).unwrap();
-    let step = |state: &mut MotionState| {
-        *state = motion.step(state).unwrap().0;
+    let mut cache = StepCache::default();
+    let mut step = |state: &mut MotionState| {
+        *state = motion.step(state, &mut cache).unwrap().0;
         assert!(state.forces.iter().all(|f| *f == [0.0; 2]), "a contact closed");
         motion.ring_displacement(state, Side::Outer).unwrap().0
     };

@@ -3,8 +3,8 @@
 mod support;
 
 use contact::Side;
-use dynamics::motion::balls::Speed;
-use dynamics::motion::{Ladder, Motion, MotionSettings, MotionState};
+use dynamics::kinematics::Speed;
+use dynamics::motion::{Ladder, Motion, MotionSettings, MotionState, StepCache};
 use dynamics::{ContactMode, DynamicsError, Hold, Model, ShaftDof, StaticSolution};
 use support::rings::Level;
 use support::{Case, equilibrium};
@@ -41,8 +41,9 @@ fn radial_step(flexible: bool) -> (Model, StaticSolution) {
 
 fn march(motion: &Motion<'_>, start: &StaticSolution, n: usize) -> (MotionState, usize, usize) {
     let (mut state, mut parts, mut retries) = (motion.start(start), 0, 0);
+    let mut cache = StepCache::default();
     for _ in 0..n {
-        let (next, report) = motion.step(&state).unwrap();
+        let (next, report) = motion.step(&state, &mut cache).unwrap();
         (state, parts, retries) = (next, parts + report.substeps, retries + report.retries);
     }
     (state, parts, retries)
@@ -117,7 +118,10 @@ fn the_floor_of_the_ladder_is_an_error_that_says_so() {
         tolerance: Some(1e-9),
     };
     let motion = Motion::new(&model, settings(2e-5, ladder)).unwrap();
-    let error = motion.step(&motion.start(&start)).err().unwrap();
+    let error = motion
+        .step(&motion.start(&start), &mut StepCache::default())
+        .err()
+        .unwrap();
     assert!(
         matches!(error, DynamicsError::StepFailed { halvings: 2, .. }),
         "{error:?}"
@@ -146,8 +150,9 @@ fn undeformed_bodies_start_under_load_with_adaptive_steps() {
     let motion = Motion::new(&model, settings(1e-5, ladder)).unwrap();
     let mut state = motion.rest([0.0; 5], [0.0; 5]);
     assert_eq!((state.shaft[0], state.shaft_velocity[0]), (1e-6, 0.0));
+    let mut cache = StepCache::default();
     for _ in 0..20 {
-        state = motion.step(&state).unwrap().0;
+        state = motion.step(&state, &mut cache).unwrap().0;
     }
     assert!(
         state.shaft[2] > 1e-6 && state.ledger.relative_defect().abs() < 1e-9,

@@ -3,8 +3,8 @@
 mod support;
 
 use contact::Side;
-use dynamics::motion::balls::Speed;
-use dynamics::motion::{Motion, MotionSettings, MotionState};
+use dynamics::kinematics::Speed;
+use dynamics::motion::{Motion, MotionSettings, MotionState, StepCache};
 use dynamics::{ContactMode, Hold, Model, ShaftDof};
 use support::Case;
 use support::rings::Level;
@@ -78,8 +78,9 @@ fn free_balls_in_a_free_ring_keep_their_momentum() {
     let scale = model.ball_mass() * 0.5;
     let lever = model.geometry.ball_centre()[0] * scale;
     let (mut hardest, mut worst, mut drift) = (0.0f64, [0.0f64; 3], [0.0; 3]);
+    let mut cache = StepCache::default();
     for _ in 0..25 {
-        let next = motion.step(&state).unwrap().0;
+        let next = motion.step(&state, &mut cache).unwrap().0;
         for ball in 0..2 {
             let force = next.forces[2 * ball + 1];
             hardest = hardest.max(force[0].hypot(force[1]));

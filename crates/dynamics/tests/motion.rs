@@ -2,9 +2,9 @@
 
 mod support;
 
-use dynamics::motion::balls::Speed;
+use dynamics::kinematics::Speed;
 use dynamics::motion::contacts::{ContactDamping, ContactScheme};
-use dynamics::motion::{Motion, MotionSettings, MotionState};
+use dynamics::motion::{Motion, MotionSettings, MotionState, StepCache};
 use dynamics::{ContactMode, Hold, Model, StaticSolution};
 use support::rings::Level;
 use support::{Case, equilibrium};
@@ -36,8 +36,9 @@ fn radial_step(radial: f64) -> (Model, StaticSolution) {
 fn run(model: &Model, start: &StaticSolution, settings: MotionSettings, n: usize) -> Vec<MotionState> {
     let motion = Motion::new(model, settings).unwrap();
     let mut states = vec![motion.start(start)];
+    let mut cache = StepCache::default();
     for _ in 0..n {
-        let next = motion.step(states.last().unwrap()).unwrap().0;
+        let next = motion.step(states.last().unwrap(), &mut cache).unwrap().0;
         states.push(next);
     }
     states
@@ -115,8 +116,9 @@ fn slow_rolling_follows_the_static_forces() {
     .unwrap();
     let mut state = motion.start(&solution);
     let mut worst = 0.0f64;
+    let mut cache = StepCache::default();
     for step in 1..=300u64 {
-        state = motion.step(&state).unwrap().0;
+        state = motion.step(&state, &mut cache).unwrap().0;
         if step.is_multiple_of(60) {
             let phase = motion.ball_azimuth(0, motion.time(step) - 0.5e-5);
             let mut turned = reloaded(&model, &Case { phase, ..case });
@@ -148,9 +150,12 @@ fn pointwise_contact_gains_energy_and_the_ledger_tells() {
     .unwrap();
     let mut state = motion.start(&solution);
     let mut largest = 0.0f64;
+    let mut cache = StepCache::default();
     for _ in 0..150 {
         // In the end balls are thrown out of the groove, which is an error of its own.
-        let Ok((next, _)) = motion.step(&state) else { break };
+        let Ok((next, _)) = motion.step(&state, &mut cache) else {
+            break;
+        };
         state = next;
         largest = largest.max(state.ledger.relative_defect());
     }
@@ -225,14 +230,14 @@ fn rigid_rings_carry_the_centrifugal_force_of_the_balls() {
     let effect = dynamics::effects::BallCentrifugal {
         speed: speed.clone(),
         slip: [0.0; 2],
-        ball_speeds: dynamics::motion::balls::BallSpeeds::FreeAngle,
+        ball_speeds: dynamics::kinematics::BallSpeeds::FreeAngle,
     };
     model.effects.push(Box::new(effect));
     let solution = equilibrium(&model);
     let b = &solution.balls[0];
     let radial =
         b.outer.force_n * b.outer.contact_angle_rad.cos() - b.inner.force_n * b.inner.contact_angle_rad.cos();
-    let kinematics = dynamics::motion::balls::Kinematics::new(&model.geometry, [0.0; 2]);
+    let kinematics = dynamics::kinematics::Kinematics::new(&model.geometry, [0.0; 2]);
     let cage = kinematics.cage * 3000.0;
     let radius = model.geometry.ball_centre()[0] + b.displacement_m.radial;
     let expected = model.ball_mass() * cage * cage * radius;
@@ -278,8 +283,9 @@ fn moving_patches_do_not_feed_an_oscillating_ball() {
     state.ball_velocities[4] = [0.0, 1e-3];
     state = motion.with_energies(state);
     let (mut largest, mut work) = ([0.0f64; 5], [0.0; 5]);
+    let mut cache = StepCache::default();
     for step in 0..500 {
-        state = motion.step(&state).unwrap().0;
+        state = motion.step(&state, &mut cache).unwrap().0;
         let part = step / 100;
         largest[part] = largest[part].max(state.ledger.kinetic[2]);
         work[part] += state.ledger.patch_work / 100.0;
@@ -296,8 +302,9 @@ fn moving_patches_do_not_feed_an_oscillating_ball() {
 fn failure(model: &Model, state: MotionState, settings: MotionSettings) -> String {
     let motion = Motion::new(model, settings).unwrap();
     let mut state = state;
+    let mut cache = StepCache::default();
     for _ in 0..100_000 {
-        match motion.step(&state) {
+        match motion.step(&state, &mut cache) {
             Ok((next, _)) => state = next,
             Err(error) => return error.to_string(),
         }

@@ -4,8 +4,8 @@ mod support;
 
 use contact::Side;
 use dynamics::effects::{Effect, Loads, Now};
-use dynamics::motion::balls::Speed;
-use dynamics::motion::{Motion, MotionSettings};
+use dynamics::kinematics::Speed;
+use dynamics::motion::{Motion, MotionSettings, StepCache};
 use dynamics::{DynamicsError, Model};
 use ode_solvers::rk4::Rk4;
 use ode_solvers::{DVector, System};
@@ -126,8 +126,9 @@ fn rigid_rings_follow_an_independent_ode_solution() {
         let settings = MotionSettings::conserving(PERIOD / steps as f64, Speed::constant(0.0));
         let motion = Motion::new(&model, settings).unwrap();
         let mut state = motion.start(&start);
+        let mut cache = StepCache::default();
         for _ in 0..steps {
-            state = motion.step(&state).unwrap().0;
+            state = motion.step(&state, &mut cache).unwrap().0;
         }
         let shaft = (0..3)
             .map(|i| (state.shaft[i] - exact[i]).abs())

@@ -6,8 +6,8 @@ use std::f64::consts::PI;
 
 use contact::Side;
 use dynamics::effects::{AxialForce, BallCentrifugal, Gravity, Now, RadialForce};
-use dynamics::motion::balls::{BallSpeeds, Rolling, Speed};
-use dynamics::motion::{Motion, MotionSettings};
+use dynamics::kinematics::{BallSpeeds, Rolling, Speed};
+use dynamics::motion::{Motion, MotionSettings, StepCache};
 use dynamics::{ContactMode, Hold, Model, Pose, QuasiStatic, StaticSolution, StaticSolver};
 use input::Schedule;
 
@@ -179,8 +179,9 @@ fn slow_motion_follows_the_quasi_static_run() {
     let motion = Motion::new(&model, settings).unwrap();
     let mut state = motion.start(&start);
     let (mut earlier, mut worst) = (start, 0.0f64);
+    let mut cache = StepCache::default();
     for step in 1..=150u64 {
-        state = motion.step(&state).unwrap().0;
+        state = motion.step(&state, &mut cache).unwrap().0;
         if !step.is_multiple_of(30) {
             continue;
         }

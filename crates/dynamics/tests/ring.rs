@@ -7,12 +7,12 @@ use std::collections::BTreeMap;
 use contact::patch::PatchShape;
 use contact::quadrature::PressureRule;
 use contact::{Patch, RacewaySurface, Side};
-use dynamics::division::body_load;
 use dynamics::model::elastic;
-use dynamics::ring::RingSolver;
+use dynamics::statics::StaticRing;
 use dynamics::{Backend, ContactMode, Hold, RingModel, Sectors, SharedStress, StressPlaces};
 use fem::StressRecovery;
 use mesh::{ElementKind, Mesh};
+use ring::division::body_load;
 use support::Case;
 use support::rings::{Level, ring, ring_model};
 
@@ -105,7 +105,7 @@ fn patch_loads_have_the_resultant_of_the_contact_force() {
 fn a_mean_motion_hold_holds_the_mean_motion_only() {
     let model = Case::axial(0.0).flexible(ContactMode::Patch, LEVEL, Hold::MeanMotion);
     let ring = model.ring(Side::Inner).unwrap();
-    let solver = RingSolver::new(&model, Side::Inner, ring).unwrap();
+    let solver = StaticRing::new(&model, Side::Inner, ring).unwrap().solver;
     let mut load = vec![0.0; ring.mesh.n_dofs()];
     patch(ring, 0.4, 0.3)
         .weights
@@ -149,7 +149,7 @@ fn a_clamped_bore_does_not_move_and_is_stiffer() {
     for hold in [Hold::Clamped, Hold::MeanMotion] {
         let model = Case::axial(0.0).flexible(ContactMode::Patch, LEVEL, hold);
         let ring = model.ring(Side::Inner).unwrap();
-        let solver = RingSolver::new(&model, Side::Inner, ring).unwrap();
+        let solver = StaticRing::new(&model, Side::Inner, ring).unwrap().solver;
         let foot = patch(ring, 0.4, 0.3).weights;
         let mut load = vec![0.0; ring.mesh.n_dofs()];
         foot.add_load([1.0, 0.0], &mut load);

@@ -7,9 +7,9 @@ use std::sync::LazyLock;
 
 use contact::Side;
 use dynamics::balls::BallResult;
-use dynamics::motion::balls::{Rolling, Speed};
+use dynamics::kinematics::{Rolling, Speed};
 use dynamics::motion::contacts::ContactDamping;
-use dynamics::motion::{Motion, MotionSettings, MotionState};
+use dynamics::motion::{Motion, MotionSettings, MotionState, StepCache};
 use dynamics::{ContactMode, Hold, Model, QuasiStatic};
 use support::Case;
 use support::rings::Level;
@@ -72,8 +72,9 @@ impl Run {
         };
         let motion = Motion::new(&self.model, settings).unwrap();
         let mut state = motion.start(&start);
+        let mut cache = StepCache::default();
         for _ in 0..n {
-            state = motion.step(&state).unwrap().0;
+            state = motion.step(&state, &mut cache).unwrap().0;
             let radial = |i: usize| elastic_radial(&self.model, &motion, &state, Side::BOTH[i], nodes[i]);
             let size = |f: &[f64; 2]| f[0].hypot(f[1]);
             self.seen.push(Seen {
@@ -295,8 +296,9 @@ fn rolling_without_friction_needs_no_drive() {
     let mut state = motion.start(&support::equilibrium(&model));
     let mut drive = Vec::new();
     for _ in 0..3 {
+        let mut cache = StepCache::default();
         for _ in 0..PITCH_STEPS {
-            state = motion.step(&state).unwrap().0;
+            state = motion.step(&state, &mut cache).unwrap().0;
         }
         drive.push(state.ledger.frame_work / state.ledger.total());
     }

@@ -4,9 +4,7 @@ use std::fmt;
 
 use anyhow::anyhow;
 use comm::Communicator;
-use contact::ContactError;
 use dynamics::DynamicsError;
-use solver::SolverError;
 
 /// Exit code of a user error: bad input, missing files, results that would be overwritten.
 const USER: u8 = 2;
@@ -72,20 +70,9 @@ impl Failure {
 
     /// A failure of the solver: numerical unless the scene leaves something unheld or asks for what cannot be, or a
     /// mesh has a hole.
-    pub fn solving(error: DynamicsError) -> Failure {
-        let user = matches!(
-            error,
-            DynamicsError::NotHeld { .. }
-                | DynamicsError::Unheld { .. }
-                | DynamicsError::Fem { .. }
-                | DynamicsError::NotInMotion { .. }
-                | DynamicsError::Contact(ContactError::Hole { .. })
-                | DynamicsError::Solver {
-                    source: SolverError::BadSectors { .. },
-                    ..
-                }
-        );
-        if user {
+    pub fn solving(error: impl Into<DynamicsError>) -> Failure {
+        let error = error.into();
+        if error.is_of_input() {
             Failure::User(error.into())
         } else {
             Failure::Numerical(error.into())

@@ -1,8 +1,8 @@
 //! Where node probes lie: the mesh node nearest to the point of the scene.
 
 use anyhow::anyhow;
+use dynamics::RACEWAY_GROUP;
 use dynamics::RingModel;
-use dynamics::model::RACEWAY_GROUP;
 use mesh::Mesh;
 use scene::{NodeProbe, SectionPoint};
 use serde::Serialize;

@@ -7,7 +7,7 @@ use std::borrow::Cow;
 
 use contact::{BearingGeometry, LoadedPatch, Side};
 use dynamics::balls::BallResult;
-use dynamics::motion::frame::turn;
+use dynamics::frame::turn;
 use dynamics::motion::{Motion, MotionState};
 use dynamics::{DynamicsError, Model, StaticSolution};
 use mesh::NodePositions;

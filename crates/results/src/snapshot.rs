@@ -2,7 +2,7 @@
 
 use dynamics::StaticSolution;
 use dynamics::balls::BallResult;
-use dynamics::motion::balls::Rolling;
+use dynamics::kinematics::Rolling;
 use dynamics::motion::{Ledger, Motion, MotionState};
 
 /// Key numbers of one instant.

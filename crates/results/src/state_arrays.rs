@@ -8,7 +8,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use anyhow::{anyhow, ensure};
 use checkpoint::StateArray;
 use contact::Side;
-use dynamics::motion::ring::RingState;
+use dynamics::motion::RingState;
 use dynamics::motion::{Ledger, MotionState, RingShape, StateShape};
 
 /// Arrays by name.

@@ -4,11 +4,12 @@ use std::sync::Arc;
 
 use comm::Communicator;
 use contact::{BearingGeometry, Groove, HertzContact, Side};
+use dynamics::RACEWAY_GROUP;
 use dynamics::effects::{
     AxialForce, BallCentrifugal, Effect, FrameRotation, Gravity, GyroscopicMoment, Moment, RadialForce,
 };
-use dynamics::model::{RACEWAY_GROUP, elastic};
-use dynamics::motion::balls::{BallSpeeds, Rolling};
+use dynamics::kinematics::{BallSpeeds, Rolling};
+use dynamics::model::elastic;
 use dynamics::{
     Backend, ContactMode, ContactSettings, Hold, Model, RingModel, Sectors, ShaftDof, Tolerances,
 };

@@ -1,6 +1,6 @@
 //! What a scene says about a motion, as the solver wants it.
 
-use dynamics::motion::balls::Speed;
+use dynamics::kinematics::Speed;
 use dynamics::motion::contacts::{ContactDamping, ContactScheme};
 use dynamics::motion::{Integrator, Ladder, MotionSettings};
 

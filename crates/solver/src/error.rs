@@ -149,22 +149,9 @@ pub enum SolverError {
         /// Bytes asked for.
         bytes: usize,
     },
-    /// Lanczos gave up.
-    #[error(
-        "{converged} of {wanted} eigenpairs have converged after {steps} blocks; ask for fewer, or move the shift \
-         towards their frequencies"
-    )]
-    EigenNotConverged {
-        /// Pairs asked for.
-        wanted: usize,
-        /// Pairs that have converged.
-        converged: usize,
-        /// Blocks tried.
-        steps: usize,
-    },
-    /// An eigenvalue became infinite or not a number.
-    #[error("an eigenvalue is not finite; check coordinates, material and masses")]
-    EigenNotFinite,
+    /// A dense matrix failed otherwise.
+    #[error(transparent)]
+    Dense(DenseError),
 }
 
 impl From<DenseError> for SolverError {
@@ -183,12 +170,7 @@ impl From<DenseError> for SolverError {
                 relative_pivot,
                 limit,
             },
-            DenseError::EigenNotConverged { n } => SolverError::EigenNotConverged {
-                wanted: n,
-                converged: 0,
-                steps: 0,
-            },
-            DenseError::EigenNotFinite => SolverError::EigenNotFinite,
+            other => SolverError::Dense(other),
         }
     }
 }
@@ -238,7 +220,7 @@ mod tests {
                 column: 0,
                 value: f64::INFINITY,
             },
-            SolverError::EigenNotFinite,
+            SolverError::Dense(DenseError::EigenNotFinite),
         ];
         let whole = part.map(|error| error.in_whole(9, |k| [7, 4][k]));
         let expected = [
@@ -254,7 +236,7 @@ mod tests {
                 column: 7,
                 value: f64::INFINITY,
             },
-            SolverError::EigenNotFinite,
+            SolverError::Dense(DenseError::EigenNotFinite),
         ];
         assert_eq!(whole, expected);
     }

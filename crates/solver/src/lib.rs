@@ -28,13 +28,10 @@
 
 pub mod cyclic;
 pub mod dissection;
-pub mod eigenproblem;
-pub mod lanczos;
 pub mod sector;
 
 pub mod bordered;
 mod cholesky;
-mod dense_lowest;
 mod elimination_tree;
 mod error;
 mod linear_solver;
@@ -49,11 +46,8 @@ pub use cyclic::{
     Coupling, CyclicBordered, CyclicCholesky, CyclicMatrix, CyclicRing, CyclicStencil, NodalLoad, Patch,
     ResponseTable, SectionPart, Symmetry,
 };
-pub use dense_lowest::dense_lowest;
 pub use dissection::angular_dissection;
-pub use eigenproblem::{EigenProblem, Eigenpairs};
 pub use error::SolverError;
-pub use lanczos::{LanczosSettings, Searched, lowest_pairs};
 pub use linear_solver::{LinearSolver, SparseVector};
 pub use permutation::{expand, restrict_order};
 pub use refinement::{Refined, solve_refined};

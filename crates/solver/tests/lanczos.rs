@@ -5,11 +5,8 @@ mod common;
 use std::f64::consts::PI;
 
 use common::{Numbers, product};
-use solver::lanczos::lanczos;
-use solver::{
-    EigenProblem, Eigenpairs, LanczosSettings, LinearSolver, SolverError, SparseCholesky, Symbolic,
-    dense_lowest, lowest_pairs,
-};
+use dense::{DenseError, EigenProblem, Eigenpairs, LanczosSettings, dense_lowest, lanczos, lowest_pairs};
+use solver::{LinearSolver, SparseCholesky, Symbolic};
 use sprs::{CsMat, TriMat};
 
 /// Sparse matrices with a factor of K + s M.
@@ -221,7 +218,7 @@ fn a_search_that_ends_early_says_so() {
         ..LanczosSettings::new(10, 2)
     };
     let error = lowest_pairs(&problem, settings, &mut |_| ()).unwrap_err();
-    let SolverError::EigenNotConverged {
+    let DenseError::SearchNotConverged {
         wanted: 10, steps: 3, ..
     } = error
     else {

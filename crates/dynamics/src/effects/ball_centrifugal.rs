@@ -9,8 +9,8 @@
 use super::{Effect, Loads, Now};
 use crate::balls::BallResult;
 use crate::error::DynamicsError;
+use crate::kinematics::{BallSpeeds, Kinematics, Speed};
 use crate::model::Model;
-use crate::motion::balls::{BallSpeeds, Kinematics, Speed};
 
 /// Error of a contact force that is worth a warning.
 const MATTERS: f64 = 0.01;

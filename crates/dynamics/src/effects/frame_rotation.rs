@@ -15,10 +15,10 @@
 use contact::Side;
 
 use super::{Effect, FrameTurn, Loads, Now};
-use crate::division::body_load;
 use crate::error::DynamicsError;
+use crate::kinematics::Speed;
 use crate::model::Model;
-use crate::motion::balls::Speed;
+use ring::division::body_load;
 
 /// Inertia of the inner ring's turning frame.
 pub struct FrameRotation {
@@ -53,5 +53,6 @@ pub fn static_inertia(model: &Model, loads: &Loads) -> Result<Option<Vec<f64>>, 
     let (square, rate) = (turn.speed * turn.speed, turn.acceleration);
     let inertia =
         |[x, y, _]: [f64; 3]| [square * x + rate * y, square * y - rate * x, 0.0].map(|f| density * f);
-    body_load(ring, Side::Inner.name(), model.backend, inertia).map(Some)
+    let load = body_load(ring, Side::Inner.name(), model.backend, inertia)?;
+    Ok(Some(load))
 }

@@ -16,7 +16,8 @@ use input::Schedule;
 
 use super::{Effect, Loads, Now};
 use crate::error::DynamicsError;
-use crate::model::{Model, NodeMasses, RingModel};
+use crate::model::Model;
+use ring::{NodeMasses, RingError, RingModel};
 
 /// Uniform gravity.
 pub struct Gravity {
@@ -37,10 +38,9 @@ impl Gravity {
     ) -> Result<Gravity, DynamicsError> {
         let masses = |side: Side| {
             let masses = |ring: &Arc<RingModel>| {
-                ring.node_masses().map_err(|source| DynamicsError::Fem {
-                    side: side.name(),
-                    source,
-                })
+                let side = side.name();
+                ring.node_masses()
+                    .map_err(|source| RingError::Fem { side, source })
             };
             rings[side.index()].as_ref().map(masses).transpose()
         };

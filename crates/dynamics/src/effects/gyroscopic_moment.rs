@@ -12,7 +12,7 @@
 //! ```
 //!
 //! Harris, Rolling Bearing Analysis, 4th ed., chapter 5; Jones, ASME J. Basic Eng. 81 (1959) 1. The axis is that of outer
-//! raceway control whatever the shares. omega_b and omega_c are those of the kinematic cage (`motion::balls`), with the
+//! raceway control whatever the shares. omega_b and omega_c are those of the kinematic cage (`kinematics`), with the
 //! free contact angle and the cage slip; only beta follows the present angle a_o of each ball. (7010C, 30 000 rpm, 2 kN:
 //! Harris's speeds at the angles of the solution, 27.2 and 13.4 deg, are 3 % higher, and M_g would be 6 % larger.)
 //! With `speed.ball_speeds = "outer_control"` they are Harris's, of the contact angles of each ball (`BallSpeeds`).
@@ -39,8 +39,8 @@ use contact::Side;
 
 use super::{Effect, Loads, Now};
 use crate::error::DynamicsError;
+use crate::kinematics::{BallSpeeds, Speed, pitch_angle};
 use crate::model::Model;
-use crate::motion::balls::{BallSpeeds, Speed, pitch_angle};
 
 /// Gyroscopic moment of the balls.
 pub struct GyroscopicMoment {

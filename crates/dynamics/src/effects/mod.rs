@@ -20,12 +20,13 @@ pub use radial_force::RadialForce;
 
 use contact::Side;
 use input::Schedule;
+pub use ring::FrameTurn;
 
 use crate::balls::BallResult;
 use crate::costs::EffectCosts;
-use crate::division::NodePlaces;
 use crate::error::DynamicsError;
 use crate::model::Model;
+use ring::division::NodePlaces;
 
 /// Loads on all bodies at one instant.
 #[derive(Clone, Debug, PartialEq)]
@@ -47,15 +48,6 @@ pub struct Loads {
     pub contacts: Vec<[f64; 2]>,
     /// Turning of the inner ring's frame, when its inertia is called for.
     pub frame: Option<FrameTurn>,
-}
-
-/// How the frame of the inner ring turns.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct FrameTurn {
-    /// Speed, rad/s.
-    pub speed: f64,
-    /// Angular acceleration, rad/s^2.
-    pub acceleration: f64,
 }
 
 impl Loads {

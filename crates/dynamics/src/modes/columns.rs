@@ -1,8 +1,8 @@
 //! The functionals through which contacts, carried masses and constraints act on rings and small dofs.
 
-use super::ring::RingBody;
-use crate::solution::dot;
-use crate::sparse::SparseLoad;
+use ring::modes::RingBody;
+use ring::sparse::SparseLoad;
+use ring::vectors::dot;
 
 /// A contact: its tangent and what moves it.
 pub struct Contact {

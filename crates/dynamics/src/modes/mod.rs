@@ -19,28 +19,26 @@
 //!   shaft about z is held. A rigid inner ring has the mass of the shaft and no other; dofs of the shaft without mass
 //!   follow quasi-statically.
 //!
-//! Pairs come from block Lanczos about the negative shift lambda = -s ([`solver::lanczos`]): K + s M is positive definite even
+//! Pairs come from block Lanczos about the negative shift lambda = -s ([`dense::eigen`]): K + s M is positive definite even
 //! for a free ring, so the rings' own sparse Cholesky factors serve, and contacts and constraints are a small dense system
 //! on top of them. Each ring is factored once, whatever the number of modes.
 
 mod columns;
-mod coordinates;
-mod products;
-mod ring;
 mod shape;
 mod system;
 
 use std::time::Instant;
 
 use contact::Side;
-use solver::{LanczosSettings, Searched, lowest_pairs};
+use dense::{LanczosSettings, Searched, lowest_pairs};
 
 use crate::error::DynamicsError;
-use crate::model::{Backend, ContactMode, Model, RingModel, ShaftDof};
+use crate::model::{ContactMode, Model, ShaftDof};
 use crate::problem::site_hessian;
 use crate::solution::StaticSolution;
 use columns::Contact;
-use ring::{Partner, RingBody};
+use ring::modes::{Partner, RingBody};
+use ring::{Backend, RingModel};
 use system::System;
 
 pub use shape::{Mode, Shape};
@@ -218,10 +216,10 @@ fn search(
     let built = start.elapsed().as_secs_f64();
     let lanczos = LanczosSettings::new(settings.number, block);
     let pairs = lowest_pairs(system, lanczos, progress).map_err(|source| DynamicsError::Modes { source })?;
-    let n = solver::EigenProblem::n(system);
+    let n = dense::EigenProblem::n(system);
     let modes = pairs.vectors.chunks_exact(n).enumerate().map(|(i, x)| {
         let [value, bound] = [pairs.values[i], pairs.bounds[i]];
-        let is_rigid = value <= RIGID * solver::EigenProblem::shift(system);
+        let is_rigid = value <= RIGID * dense::EigenProblem::shift(system);
         Mode::new(system, x, [value, bound], pairs.residuals[i], is_rigid)
     });
     Ok(ModeSet {

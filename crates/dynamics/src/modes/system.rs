@@ -15,14 +15,13 @@
 //! No tangent or mass is inverted, so unloaded contacts and dofs without mass are nothing special. X costs one block solve per
 //! ring; after that the operator costs one solve per ring and vector.
 
-use dense::DenseLu;
-use solver::EigenProblem;
+use dense::{DenseLu, EigenProblem};
 
 use super::columns::{Column, Contact, Role, columns, reactions};
-use super::ring::RingBody;
 use crate::error::DynamicsError;
-use crate::solution::dot;
-use crate::sparse::sparse_dot;
+use ring::modes::RingBody;
+use ring::sparse::sparse_dot;
+use ring::vectors::dot;
 
 /// The bearing's own dofs among the small ones.
 #[derive(Default)]
@@ -88,7 +87,7 @@ impl System {
         let n = system.columns.len() + system.small_mass.len();
         if n > 0 {
             let dense = DenseLu::factor(n, &system.matrix());
-            system.dense = Some(dense.map_err(|error| DynamicsError::Modes { source: error.into() })?);
+            system.dense = Some(dense.map_err(|source| DynamicsError::Modes { source })?);
         }
         Ok(system)
     }

@@ -1,11 +1,11 @@
 //! The new state of a part of a step, its energies and its ledger.
 
 use contact::Side;
+use ring::{ElasticStep, Ended, RingState, Works};
 
-use super::close::RingEnd;
 use super::newton::SmallSolution;
-use super::part::Moving;
-use super::run::Motion;
+use super::part::RingSteps;
+use super::run::{Motion, MovingRing};
 use super::small::{SmallSystem, first_five};
 use super::state::MotionState;
 
@@ -16,8 +16,8 @@ impl Motion<'_> {
         state: &MotionState,
         system: &SmallSystem,
         solution: &SmallSolution,
-        moving: [Option<Moving<'_>>; 2],
-        ends: [Option<RingEnd>; 2],
+        rings: RingSteps<'_>,
+        ends: [Option<Ended>; 2],
     ) -> (MotionState, f64) {
         let mut next = state.without_rings();
         let mut trend = self
@@ -25,15 +25,28 @@ impl Motion<'_> {
             .ladder
             .tolerance
             .map(|_| vec![[0.0; 2]; 3 * system.balls.len()]);
-        for ((side, ring), end) in Side::BOTH.into_iter().zip(moving).zip(ends) {
-            if let (Some(ring), Some(end)) = (ring, end) {
-                self.finish_ring(&mut next, side, (system, solution), &ring, end, trend.as_mut());
+        let energies = ends
+            .each_ref()
+            .map(|end| end.as_ref().map_or([0.0; 2], |end| end.energies));
+        for ((side, step), end) in Side::BOTH.into_iter().zip(rings).zip(ends) {
+            let i = side.index();
+            if let (Some(step), Some(end), Some(old)) = (step, end, &state.rings[i]) {
+                let works = (end.works, &*step);
+                self.finish_ring(&mut next, side, (system, solution), works, [old, &end.state]);
+                if let Some(trend) = &mut trend {
+                    let mean = mean_acceleration(&*step, [old, &end.state], system.dt);
+                    let first = system.balls.len() + i;
+                    for (ball, a) in mean.chunks_exact(2).enumerate() {
+                        trend[first + 2 * ball] = [a[0], a[1]];
+                    }
+                }
+                next.rings[i] = Some(end.state);
             }
         }
         self.finish_shaft(&mut next, system, solution);
         finish_balls(&mut next, system, solution);
         finish_contacts(&mut next, system, solution);
-        self.measure_energies(&mut next);
+        self.note_energies(&mut next, energies);
         next.ledger.note_scale();
         let Some(mut trend) = trend else {
             return (next, 0.0);
@@ -46,31 +59,33 @@ impl Motion<'_> {
         (next, error)
     }
 
-    /// State and works of one ring.
+    /// Works and losses of one ring between two states.
     fn finish_ring(
         &self,
         next: &mut MotionState,
         side: Side,
         (system, solution): (&SmallSystem, &SmallSolution),
-        ring: &Moving<'_>,
-        RingEnd { state: new, works }: RingEnd,
-        trend: Option<&mut Vec<[f64; 2]>>,
+        (works, step): (Works, &dyn ElasticStep),
+        [old, new]: [&RingState; 2],
     ) {
+        let Some(MovingRing { body, .. }) = &self.rings[side.index()] else {
+            return;
+        };
         let integrator = self.settings.integrator;
         let ledger = &mut next.ledger;
-        ledger.load_work += works[0];
-        ledger.frame_work += works[1];
-        if ring.body.damping != [0.0; 2] {
-            let loss = || ring.body.rayleigh_loss(integrator, ring.old, &new);
+        ledger.load_work += works.load;
+        ledger.frame_work += works.frame;
+        if body.held().damping != [0.0; 2] {
+            let loss = || body.rayleigh_loss(integrator, old, new);
             ledger.rayleigh_loss += self.costs.time("rayleigh_damping", loss);
         }
-        ledger.numerical_loss += ring.body.numerical_loss(integrator, ring.old, &new);
+        ledger.numerical_loss += body.numerical_loss(integrator, old, new);
         if side == Side::Inner {
             // What the shaft gives in space and what the ring gets in its frame differ by the work of the turning.
             let mount = &solution.mounts[0];
             let n = 2 * system.balls.len();
             let (start, end) = (
-                &ring.step.start[n..],
+                &step.answer().start[n..],
                 system.shaft.in_frame(system.shaft_end(&solution.unknowns)),
             );
             let in_frame: f64 = (0..mount.len().min(5))
@@ -81,16 +96,6 @@ impl Motion<'_> {
             let in_space: f64 = (0..5).map(|i| force[i] * (to[i] - from[i])).sum();
             ledger.frame_work += in_frame - in_space;
         }
-        if let Some(trend) = trend {
-            let change = new.velocity().iter().zip(ring.old.velocity());
-            let change: Vec<f64> = change.map(|(a, b)| (a - b) / system.dt).collect();
-            let mean = ring.factor.contact_motion(ring.body, &ring.step, &change);
-            let first = system.balls.len() + side.index();
-            for (ball, a) in mean.chunks_exact(2).enumerate() {
-                trend[first + 2 * ball] = [a[0], a[1]];
-            }
-        }
-        next.rings[side.index()] = Some(new);
     }
 
     fn finish_shaft(&self, next: &mut MotionState, system: &SmallSystem, solution: &SmallSolution) {
@@ -109,12 +114,18 @@ impl Motion<'_> {
         }
     }
 
+    /// Energies of a state whose rings have those found anew.
     pub(super) fn measure_energies(&self, state: &mut MotionState) {
         let energies = |i: usize| match (&self.rings[i], &state.rings[i]) {
-            (Some(body), Some(ring)) => body.energies(ring),
+            (Some(moving), Some(ring)) => moving.body.energies(ring),
             _ => [0.0; 2],
         };
         let (inner, outer) = self.model.backend.both(|| energies(0), || energies(1));
+        self.note_energies(state, [inner, outer]);
+    }
+
+    /// Kinetic and strain energies of a state, of which those of the rings are known.
+    fn note_energies(&self, state: &mut MotionState, [inner, outer]: [[f64; 2]; 2]) {
         let kinetic = |mass: f64, v: &f64| 0.5 * mass * v * v;
         let mass = self.model.ball_mass();
         let balls: f64 = state
@@ -130,6 +141,13 @@ impl Motion<'_> {
         state.ledger.kinetic = [inner[0] + shaft, outer[0], balls];
         state.ledger.strain = [inner[1], outer[1]];
     }
+}
+
+/// Mean acceleration of the groove centres of a ring in a part, `[2 n_balls]`, m/s^2.
+fn mean_acceleration(step: &dyn ElasticStep, [old, new]: [&RingState; 2], dt: f64) -> Vec<f64> {
+    let change = new.velocity().iter().zip(old.velocity());
+    let change: Vec<f64> = change.map(|(a, b)| (a - b) / dt).collect();
+    step.at_contacts(&change)
 }
 
 /// Local error of the last part over the largest contact approach: dt^2/12 times the change of the mean accelerations, the

@@ -3,8 +3,7 @@
 use contact::Side;
 use contact::patch::is_truncated;
 
-use super::body::RingBody;
-use super::run::Motion;
+use super::run::{Motion, MovingRing};
 use super::state::MotionState;
 use crate::footprint::loaded;
 use crate::solution::STATIC_LIMIT;
@@ -54,7 +53,8 @@ impl Motion<'_> {
                 })
             };
             let axes = hertz.semi_axes(force);
-            let beyond = |body: &RingBody| is_truncated(&body.surface, state.angles[index], axes);
+            let beyond =
+                |moving: &MovingRing| is_truncated(&moving.raceway.surface, state.angles[index], axes);
             if self.rings[side.index()].as_ref().is_some_and(beyond) {
                 add(ContactLimit::Edge);
             }

@@ -10,49 +10,31 @@
 //! dw = predictor + S^-1 W F; v, a; energies; ledger
 //! ```
 //!
-//! A periodic ring solves once in a step: one pass over its harmonics (`pass`) ends the solve of a step with the contact forces and begins that
+//! A periodic ring solves once in a step: one pass over its harmonics (in [`ring`]) ends the solve of a step with the contact forces and begins that
 //! of the known loads of the step that follows. Each round for the inertia of the turning frame is a pass as well.
 
-mod ahead;
-pub mod balls;
-pub mod body;
-pub mod by_sector;
+mod cache;
 mod close;
 pub mod contacts;
-pub mod coordinates;
-mod defect;
-pub mod effective;
 mod finish;
-pub mod frame;
-mod harmonic;
-mod harmonic_step;
-pub mod integrator;
 pub mod ledger;
 mod limits;
-pub mod matrices;
 pub mod newton;
 mod part;
-mod pass;
 mod place;
-pub mod pool;
 pub mod report;
-pub mod ring;
-mod ring_state;
 pub mod run;
 pub mod shaft;
 pub mod shape;
 pub mod small;
-pub mod space;
-pub mod space_defect;
 pub mod start;
 pub mod state;
 mod substep;
-mod touch;
-mod vectors;
 
-pub use integrator::Integrator;
+pub use cache::StepCache;
 pub use ledger::Ledger;
 pub use limits::{ContactLimit, Exceeded};
+pub use ring::{Integrator, RingState};
 pub use run::Motion;
 pub use shape::{RingShape, StateShape};
 pub use start::check_supported;

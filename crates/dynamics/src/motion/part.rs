@@ -1,47 +1,40 @@
 //! What a part of a step asks of loads, rings and shaft, and the small system they make.
 
-use std::sync::Arc;
-
 use contact::{NodalWeights, Side};
+use ring::{ElasticStep, PortForces};
 
-use super::ahead::{Foreseen, Known};
-use super::body::RingBody;
-use super::frame::turn_nodal;
+use super::cache::Ahead;
 use super::newton::SmallSolution;
-use super::pool::PooledVector;
-use super::ring::{RingFactor, RingState, RingStep};
 use super::run::Motion;
 use super::shaft::ShaftStep;
 use super::small::{Inertia, RingAnswer, SmallSystem};
 use super::state::MotionState;
 use super::substep::Span;
-use super::vectors::combined;
 use crate::compliance;
-use crate::effects::{self, FrameTurn, Loads, Now};
+use crate::effects::{self, Loads, Now};
 use crate::error::DynamicsError;
 use crate::problem::Site;
 
 /// Force scale of a bearing on which nothing acts, N.
 const LEAST_FORCE: f64 = 1e-9;
 
-/// A flexible ring during a part.
-pub(super) struct Moving<'m> {
-    pub body: &'m RingBody,
-    pub factor: &'m RingFactor,
-    pub old: &'m RingState,
-    pub step: RingStep,
-    /// Loads, and first guess of the inertia of the turning frame.
-    pub known: Arc<Known>,
-    /// Inertia load of the turning frame that acts, when there is one.
-    pub inertia: Option<(FrameTurn, Arc<PooledVector>)>,
-    /// Increment of a ring whose state is not in harmonic space, once it is found.
-    pub increment: Option<Vec<f64>>,
+/// The steps of the flexible rings during a part.
+pub(super) type RingSteps<'m> = [Option<Box<dyn ElasticStep + 'm>>; 2];
+
+/// Forces on a ring.
+pub(super) struct RingForces {
+    /// On its contacts, `[2 n_balls]`, N.
+    contacts: Vec<f64>,
+    /// On its mount, N and N m.
+    mount: Vec<f64>,
 }
 
-impl Moving<'_> {
-    /// Increment under forces on contacts (N, `[2 n_contacts]`) and mount (N and N m).
-    pub fn increment_under(&self, contacts: &[f64], mount: &[f64]) -> Vec<f64> {
-        self.factor.increment(self.body, &self.step, contacts, mount)
+impl RingForces {
+    pub fn at_ports(&self) -> PortForces<'_> {
+        PortForces {
+            contacts: &self.contacts,
+            mount: &self.mount,
+        }
     }
 }
 
@@ -63,60 +56,27 @@ impl Motion<'_> {
         effects::timed_loads(self.model, &now, &self.costs)
     }
 
-    /// Both rings under their known loads.
-    pub(super) fn prepare<'m>(
+    /// Both rings under their known loads, with contacts at `feet`.
+    pub(super) fn begin_rings<'m>(
         &'m self,
         state: &'m MotionState,
-        foreseen: &Arc<Foreseen>,
+        ahead: Ahead,
         feet: &[Vec<NodalWeights>; 2],
-    ) -> Result<[Option<Moving<'m>>; 2], DynamicsError> {
-        let rung = self.rung(foreseen.span.rung)?;
-        let prepare = |side: Side| {
+    ) -> Result<RingSteps<'m>, DynamicsError> {
+        let rung = self.rung(ahead.loads.span.rung)?;
+        let begin = |side: Side| {
             let i = side.index();
-            let body = self.rings[i].as_ref()?;
             let (factor, old) = (rung[i].as_ref()?, state.rings[i].as_ref()?);
-            let known = self.known(side, (body, factor), old, foreseen);
-            let inertia = known.inertia.as_ref().map(|(_, f)| &f[..]);
-            let step = match (&known.solved, known.load.as_deref(), inertia) {
-                (Some(solved), ..) => {
-                    let turn = known.inertia.as_ref().map(|(turn, _)| *turn);
-                    factor.prepare_solved(body, (old, turn), solved.clone(), &feet[i])
-                }
-                (None, Some(load), Some(f)) => {
-                    let both = combined([1.0; 2], load, f);
-                    factor.prepare(body, old, Some(&both), &feet[i])
-                }
-                (None, load, f) => factor.prepare(body, old, load.or(f), &feet[i]),
-            };
-            Some(Moving {
-                body,
-                factor,
-                old,
-                step,
-                inertia: known.inertia.clone(),
-                increment: None,
-                known,
-            })
+            let known = ahead.rings[i].clone();
+            let known =
+                known.unwrap_or_else(|| factor.predict(old, self.known_load(side, &ahead.loads)).into());
+            Some(factor.begin(old, known, &feet[i]))
         };
         let (inner, outer) = self
             .model
             .backend
-            .both(|| prepare(Side::Inner), || prepare(Side::Outer));
+            .both(|| begin(Side::Inner), || begin(Side::Outer));
         Ok([inner, outer])
-    }
-
-    /// Generalised body load of a ring. Loads are fixed in space: those of the inner ring are turned into its frame.
-    pub(super) fn ring_load(
-        &self,
-        body: &RingBody,
-        side: Side,
-        loads: &Loads,
-        span: Span,
-    ) -> Option<Vec<f64>> {
-        let back = -self.frame_angle(side, span.at(1.0 - self.settings.integrator.alpha_f));
-        let load = loads.rings[side.index()].as_ref()?;
-        let reduced = body.coordinates.reduce(&turn_nodal(load, back));
-        Some(body.space.of_coordinates(reduced))
     }
 
     pub(super) fn system(
@@ -124,7 +84,7 @@ impl Motion<'_> {
         state: &MotionState,
         span: Span,
         sites: Vec<Site>,
-        moving: &[Option<Moving<'_>>; 2],
+        rings: &RingSteps<'_>,
         loads: &Loads,
     ) -> Result<SmallSystem, DynamicsError> {
         let mass = self.model.ball_mass();
@@ -140,16 +100,17 @@ impl Motion<'_> {
                 load_slope: if i == 0 { loads.ball_slopes[b] } else { 0.0 },
             })
         });
-        let answer = |side: Side| {
-            let answer = |m: &Moving<'_>| -> Result<RingAnswer, DynamicsError> {
-                let (n, n_balls) = (m.step.start.len(), self.model.geometry.n_balls);
-                Ok(RingAnswer {
-                    start: m.step.start.clone(),
-                    predicted: m.step.predicted.clone(),
-                    stiffness: compliance::inverse(side, n, n_balls, &m.step.compliance)?,
-                })
+        let answer = |side: Side| -> Result<Option<RingAnswer>, DynamicsError> {
+            let Some(step) = &rings[side.index()] else {
+                return Ok(None);
             };
-            moving[side.index()].as_ref().map(answer).transpose()
+            let (answer, n_balls) = (step.answer(), self.model.geometry.n_balls);
+            let n = answer.start.len();
+            Ok(Some(RingAnswer {
+                start: answer.start.clone(),
+                predicted: answer.predicted.clone(),
+                stiffness: compliance::inverse(side, n, n_balls, &answer.compliance)?,
+            }))
         };
         Ok(SmallSystem {
             dt: span.dt,
@@ -210,6 +171,14 @@ impl Motion<'_> {
 }
 
 impl SmallSystem {
+    /// Forces at the ports of a ring.
+    pub(super) fn forces_at_ports(&self, side: Side, solution: &SmallSolution) -> RingForces {
+        RingForces {
+            contacts: self.ring_loads(side, solution),
+            mount: solution.mounts[side.index()].clone(),
+        }
+    }
+
     /// Forces on a ring's contacts, `[2 n_balls]`, N.
     pub(super) fn ring_loads(&self, side: Side, solution: &SmallSolution) -> Vec<f64> {
         let n = self.balls.len();

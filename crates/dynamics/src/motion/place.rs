@@ -128,7 +128,7 @@ impl Motion<'_> {
         let (ball, side) = (index / 2, Side::BOTH[index % 2]);
         let azimuth = self.ball_azimuth(ball, time);
         let mut site = Site::new(model, ball, side, azimuth);
-        let (Some(ring), Some(body)) = (model.ring(side), &self.rings[side.index()]) else {
+        let (Some(ring), Some(moving)) = (model.ring(side), &self.rings[side.index()]) else {
             return Ok(Placed {
                 site,
                 weights: None,
@@ -136,16 +136,16 @@ impl Motion<'_> {
             });
         };
         let shape = PatchShape::new(
-            &body.surface,
+            &moving.raceway.surface,
             azimuth - self.frame_angle(side, time),
-            on_groove(&body.surface, angle, loaded),
+            on_groove(&moving.raceway.surface, angle, loaded),
             model.hertz[side.index()].semi_axes(force),
             model.contact.patch_spacings,
         )?;
         let patch = Patch::new(
-            &body.surface,
+            &moving.raceway.surface,
             &ring.mesh.nodes,
-            &body.rule,
+            &moving.raceway.rule,
             shape,
             elastic(&ring.material),
         )?;
@@ -161,8 +161,8 @@ impl Motion<'_> {
     pub(super) fn check_on_grooves(&self, met: &[[f64; 2]]) -> Result<(), DynamicsError> {
         let forces: Vec<[f64; 2]> = met.iter().map(|p| [p[1], 0.0]).collect();
         for (index, (place, loaded)) in met.iter().zip(loaded(&forces)).enumerate() {
-            if let (Some(body), true) = (&self.rings[index % 2], loaded) {
-                require_on_groove(&body.surface, index / 2, place[0])?;
+            if let (Some(moving), true) = (&self.rings[index % 2], loaded) {
+                require_on_groove(&moving.raceway.surface, index / 2, place[0])?;
             }
         }
         Ok(())

@@ -3,12 +3,12 @@
 use contact::patch::PatchShape;
 use contact::{LoadedPatch, Side};
 
-use super::ring::RingState;
 use super::run::Motion;
 use super::state::MotionState;
 use crate::balls::{BallDisplacement, BallResult, ContactResult};
 use crate::error::DynamicsError;
 use crate::footprint::on_groove;
+use ring::RingState;
 
 impl Motion<'_> {
     /// Results of every ball: mean forces of the last step, angles and approaches at its end.
@@ -41,7 +41,7 @@ impl Motion<'_> {
     /// Contact forces on a flexible ring at the end of the last step, and the patches over which they are spread, by ball, with
     /// azimuths in the ring's frame; empty for a rigid ring. Forces are means over the step.
     pub fn patches(&self, state: &MotionState, side: Side) -> Result<Vec<LoadedPatch>, DynamicsError> {
-        let Some(body) = &self.rings[side.index()] else {
+        let Some(moving) = &self.rings[side.index()] else {
             return Ok(Vec::new());
         };
         let (time, hertz) = (self.time(state.step), &self.model.hertz[side.index()]);
@@ -51,9 +51,9 @@ impl Motion<'_> {
             let azimuth = self.ball_azimuth(ball, time) - self.frame_angle(side, time);
             let [patch_angle, load] = state.places[0][index];
             let spacings = self.model.contact.patch_spacings;
-            let patch_angle = on_groove(&body.surface, patch_angle, force > 0.0);
+            let patch_angle = on_groove(&moving.raceway.surface, patch_angle, force > 0.0);
             let shape = PatchShape::new(
-                &body.surface,
+                &moving.raceway.surface,
                 azimuth,
                 patch_angle,
                 hertz.semi_axes(load),
@@ -74,10 +74,10 @@ impl Motion<'_> {
     /// Total nodal displacement of a flexible ring in its own frame, m, `[n_nodes][3]` flat, and the angle by which
     /// that frame is turned in space, rad.
     pub fn ring_displacement(&self, state: &MotionState, side: Side) -> Option<(Vec<f64>, f64)> {
-        let motion = self.rings[side.index()].as_ref()?;
+        let moving = self.rings[side.index()].as_ref()?;
         let ring = state.rings[side.index()].as_ref()?;
         let turned = self.frame_angle(side, self.time(state.step));
-        Some((motion.nodal(ring.displacement()), turned))
+        Some((moving.body.nodal(ring.displacement()), turned))
     }
 
     /// The same at the chosen nodes; others may be NaN. Of a periodic ring only these are transformed.
@@ -87,25 +87,25 @@ impl Motion<'_> {
         side: Side,
         nodes: &[usize],
     ) -> Option<(Vec<f64>, f64)> {
-        let motion = self.rings[side.index()].as_ref()?;
+        let moving = self.rings[side.index()].as_ref()?;
         let ring = state.rings[side.index()].as_ref()?;
         let turned = self.frame_angle(side, self.time(state.step));
-        Some((motion.nodal_at(ring.displacement(), nodes), turned))
+        Some((moving.body.nodal_at(ring.displacement(), nodes), turned))
     }
 
     /// Displacement, velocity and acceleration of the coordinates of a flexible ring, `[n]`, SI, whatever solves it.
     pub fn ring_coordinates(&self, state: &MotionState, side: Side) -> Option<[Vec<f64>; 3]> {
-        let body = self.rings[side.index()].as_ref()?;
+        let moving = self.rings[side.index()].as_ref()?;
         let ring = state.rings[side.index()].as_ref()?;
         let parts = [ring.displacement(), ring.velocity(), ring.acceleration()];
-        Some(parts.map(|x| body.space.coordinates(x)))
+        Some(parts.map(|x| moving.body.coordinates(x)))
     }
 
     /// Linear momentum, kg m/s, and moment of momentum about the groove's centre on the axis, kg m^2/s, of a flexible ring in
     /// its own frame, with its nodes at their undeformed places.
     pub fn ring_momentum(&self, state: &MotionState, side: Side) -> Option<[[f64; 3]; 2]> {
-        let body = self.rings[side.index()].as_ref()?;
-        Some(body.momentum(state.rings[side.index()].as_ref()?))
+        let moving = self.rings[side.index()].as_ref()?;
+        Some(moving.body.momentum(state.rings[side.index()].as_ref()?))
     }
 
     /// Mean motion [radial, axial] of the groove centre under a ball over a step of one part, m, measured by the patch of
@@ -121,11 +121,17 @@ impl Motion<'_> {
         let time = self.time(from.step) + share * self.settings.dt;
         let feet = self.place(&to.places[0], time)?.feet;
         let i = side.index();
-        let (Some(body), Some(old), Some(new)) = (&self.rings[i], &from.rings[i], &to.rings[i]) else {
+        let (Some(moving), Some(old), Some(new)) = (&self.rings[i], &from.rings[i], &to.rings[i]) else {
             return Ok([0.0; 2]);
         };
-        let measure = |ring: &RingState| feet[i][ball].measure(&body.nodal(ring.displacement()));
+        let measure = |ring: &RingState| feet[i][ball].measure(&moving.body.nodal(ring.displacement()));
         let (a, b) = (measure(old), measure(new));
         Ok([0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1])])
+    }
+
+    /// Speed of every ball's rotation about its own axis relative to the cage, rad/s; None when the bearing never turns.
+    pub fn spin(&self, state: &MotionState) -> Option<f64> {
+        let speed = &self.settings.speed;
+        (!speed.is_zero()).then(|| self.kinematics.ball * speed.at(self.time(state.step)))
     }
 }

@@ -8,32 +8,40 @@ use std::sync::{Arc, OnceLock};
 
 use contact::Side;
 
-use super::balls::Kinematics;
-use super::body::RingBody;
-use super::ring::RingFactor;
-use super::space::Frame;
+use crate::kinematics::Kinematics;
+use ring::memory::forecast_motion_peak;
+use ring::statics::iterations_note;
+use ring::{BodySettings, ElasticBody, Frame, Inventory, Partner, StepFactor, StepScheme, elastic_body};
+
+use super::cache::StepCache;
 use super::start::check_supported;
 use super::state::{MotionSettings, MotionState, StepReport};
 use super::substep::Span;
 use crate::costs::EffectCosts;
 use crate::error::DynamicsError;
-use crate::inventory::Inventory;
-use crate::memory::forecast_motion_peak;
 use crate::model::Model;
-use crate::ring::iterations_note;
+use crate::raceway::Raceway;
 
 /// Share of the accepted error below which the next rung up is tried: two orders of the step, and a margin.
 const RISE: f64 = 1.0 / 16.0;
 
 /// Factors of both rings at one step size.
-pub(super) type Rung = [Option<RingFactor>; 2];
+pub(super) type Rung = [Option<Box<dyn StepFactor>>; 2];
+
+/// A flexible ring and its raceway.
+pub struct MovingRing {
+    /// The elastic body.
+    pub body: Arc<dyn ElasticBody>,
+    /// Where contacts find it.
+    pub raceway: Raceway,
+}
 
 /// A model ready to move.
 pub struct Motion<'a> {
     pub(super) model: &'a Model,
     pub(super) settings: MotionSettings,
     pub(super) kinematics: Kinematics,
-    pub(super) rings: [Option<RingBody>; 2],
+    pub(super) rings: [Option<MovingRing>; 2],
     /// Tells this motion from others.
     pub(super) token: Arc<()>,
     rungs: Vec<OnceLock<Rung>>,
@@ -51,10 +59,19 @@ impl<'a> Motion<'a> {
             _ => Frame::Still,
         };
         let build = |side: Side| {
-            model
-                .ring(side)
-                .map(|ring| RingBody::new(side, ring, settings.rayleigh, model.backend, frame(side)))
-                .transpose()
+            let moving = |ring| -> Result<MovingRing, DynamicsError> {
+                let settings = BodySettings {
+                    partner: partner(side),
+                    damping: settings.rayleigh,
+                    backend: model.backend,
+                    frame: frame(side),
+                };
+                Ok(MovingRing {
+                    body: elastic_body(side.name(), ring, settings)?,
+                    raceway: Raceway::new(ring, model.contact.mode),
+                })
+            };
+            model.ring(side).map(moving).transpose()
         };
         let (inner, outer) = model.backend.both(|| build(Side::Inner), || build(Side::Outer));
         let kinematics = Kinematics::new(&model.geometry, settings.slip);
@@ -79,10 +96,13 @@ impl<'a> Motion<'a> {
             return Ok(rung);
         }
         let dt = self.step_size(k);
-        let build = |body: &Option<RingBody>| {
-            body.as_ref()
-                .map(|b| RingFactor::new(b, self.settings.integrator, dt))
-                .transpose()
+        let scheme = StepScheme {
+            integrator: self.settings.integrator,
+            dt,
+        };
+        let build = |ring: &Option<MovingRing>| {
+            let factor = |ring: &MovingRing| ring.body.clone().step_factor(scheme);
+            ring.as_ref().map(factor).transpose()
         };
         let (inner, outer) = self
             .model
@@ -101,7 +121,7 @@ impl<'a> Motion<'a> {
     /// What both rings hold: coordinates, matrices, and the factors of the rungs in use.
     pub fn inventory(&self) -> Inventory {
         let rings = self.rings.iter().flatten();
-        let bodies = rings.fold(Inventory::default(), |sum, ring| sum + ring.inventory());
+        let bodies = rings.fold(Inventory::default(), |sum, ring| sum + ring.body.inventory());
         let rungs = self.rungs.iter().filter_map(OnceLock::get);
         Inventory {
             matrices: bodies.matrices + rungs.flatten().flatten().count(),
@@ -112,7 +132,7 @@ impl<'a> Motion<'a> {
     /// Forecast of the largest resident memory of the steps, bytes, while `queued` of them wait to be written; None when harmonics
     /// do not solve all flexible rings.
     pub fn memory_forecast(&self, queued: usize) -> Option<usize> {
-        let sizes = |ring: &Option<RingBody>| ring.as_ref().map(RingBody::sizes);
+        let sizes = |ring: &Option<MovingRing>| ring.as_ref().map(|ring| ring.body.sizes());
         match self.rings.each_ref().map(sizes) {
             [Some(None), _] | [_, Some(None)] => None,
             [inner, outer] => Some(forecast_motion_peak([inner.flatten(), outer.flatten()], queued)),
@@ -122,19 +142,21 @@ impl<'a> Motion<'a> {
     /// Bytes of all factors.
     pub fn factor_bytes(&self) -> usize {
         let rungs = self.rungs.iter().filter_map(OnceLock::get);
-        rungs.flatten().flatten().map(RingFactor::bytes).sum()
+        rungs.flatten().flatten().map(|factor| factor.bytes()).sum()
     }
 
     /// Linear solver of a flexible ring: `cyclic` or `sparse`.
     pub fn solver_name(&self, side: Side) -> Option<&'static str> {
-        self.rings[side.index()].as_ref().map(RingBody::solver_name)
+        self.rings[side.index()]
+            .as_ref()
+            .map(|ring| ring.body.solver_name())
     }
 
     /// The linear solver of a flexible ring and why it is that one, for a log.
     pub fn solver_note(&self, side: Side) -> Option<String> {
-        let mut note = self.rings[side.index()].as_ref()?.solver_note();
+        let mut note = self.rings[side.index()].as_ref()?.body.solver_note();
         let rung = self.rungs.first().and_then(OnceLock::get)?;
-        if let Some(iterations) = rung[side.index()].as_ref().and_then(RingFactor::iterations) {
+        if let Some(iterations) = rung[side.index()].as_ref().and_then(|f| f.iterations()) {
             note.push_str(&iterations_note(iterations));
         }
         Some(note)
@@ -147,7 +169,7 @@ impl<'a> Motion<'a> {
 
     /// Number of generalised coordinates of a ring; 0 for a rigid one.
     pub fn n_coordinates(&self, side: Side) -> usize {
-        self.rings[side.index()].as_ref().map_or(0, |r| r.coordinates.n())
+        self.rings[side.index()].as_ref().map_or(0, |ring| ring.body.n())
     }
 
     /// Step size of a rung, s.
@@ -178,8 +200,13 @@ impl<'a> Motion<'a> {
         self.kinematics.cage * self.settings.speed.angle(time)
     }
 
-    /// One step of the full size, in parts where a part fails or is too inaccurate.
-    pub fn step(&self, state: &MotionState) -> Result<(MotionState, StepReport), DynamicsError> {
+    /// One step of the full size, in parts where a part fails or is too inaccurate. `cache` has what the step before has found of it, and
+    /// then what this one finds of the next; no bit of the result depends on it.
+    pub fn step(
+        &self,
+        state: &MotionState,
+        cache: &mut StepCache,
+    ) -> Result<(MotionState, StepReport), DynamicsError> {
         let ladder = self.settings.ladder;
         // Places within the step are counted in integers, in units of the smallest part.
         let n = 1u64 << ladder.halvings;
@@ -197,7 +224,7 @@ impl<'a> Motion<'a> {
                 Some(_) => Some(self.span(state.step + 1, 0, rung)),
                 None => (rung == 0).then(|| self.span(state.step + 1, 0, 0)),
             };
-            match self.try_part(next.as_ref().unwrap_or(state), span, upcoming) {
+            match self.try_part(next.as_ref().unwrap_or(state), span, upcoming, cache) {
                 Ok((part, done)) => {
                     at = after;
                     report.add(&done);
@@ -243,14 +270,26 @@ impl<'a> Motion<'a> {
         state: &MotionState,
         span: Span,
         upcoming: Option<Span>,
+        cache: &mut StepCache,
     ) -> Result<(MotionState, StepReport), DynamicsError> {
-        let (next, report) = self.substep(state, span, upcoming)?;
+        let (next, report, ahead) = self.substep(state, span, upcoming, cache)?;
         match self.settings.ladder.tolerance {
             Some(limit) if report.error > limit => Err(DynamicsError::StepInaccurate {
                 error: report.error,
                 limit,
             }),
-            _ => Ok((next, report)),
+            _ => {
+                cache.ahead = ahead;
+                Ok((next, report))
+            }
         }
+    }
+}
+
+/// What holds a ring.
+pub(crate) fn partner(side: Side) -> Partner {
+    match side {
+        Side::Inner => Partner::Shaft,
+        Side::Outer => Partner::Housing,
     }
 }

@@ -1,7 +1,7 @@
 //! The shaft over one step: five dofs in space, each free or imposed, with its own mass.
 
-use super::frame::turn;
 use super::small::Inertia;
+use crate::frame::turn;
 
 /// The shaft over one step.
 #[derive(Clone, Debug, PartialEq)]

@@ -1,8 +1,8 @@
 //! Sizes of a motion's state: what a stored state must have for the motion to go on from it.
 
-use super::body::RingBody;
+pub use ring::RingShape;
+
 use super::run::Motion;
-use super::space::Space;
 
 /// Lengths of the arrays of a [`super::MotionState`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -13,33 +13,12 @@ pub struct StateShape {
     pub rings: [Option<RingShape>; 2],
 }
 
-/// Vectors of a ring.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct RingShape {
-    /// Length of each.
-    pub length: usize,
-    /// What they are: `coordinates` or `harmonics`.
-    pub kind: &'static str,
-}
-
 impl Motion<'_> {
     /// Sizes of the states of this motion.
     pub fn shape(&self) -> StateShape {
         StateShape {
             n_balls: self.model.geometry.n_balls,
-            rings: [0, 1].map(|i| self.rings[i].as_ref().map(RingBody::shape)),
-        }
-    }
-}
-
-impl RingBody {
-    fn shape(&self) -> RingShape {
-        RingShape {
-            length: self.space.len(self.coordinates.n()),
-            kind: match self.space {
-                Space::Nodal => "coordinates",
-                Space::Harmonic(_) => "harmonics",
-            },
+            rings: [0, 1].map(|i| self.rings[i].as_ref().map(|ring| ring.body.shape())),
         }
     }
 }

@@ -7,10 +7,10 @@
 use contact::Side;
 
 use super::contacts::{ContactDamping, ContactScheme, MeanForce, mean_force, viscous};
-use super::integrator::Integrator;
 use super::shaft::ShaftStep;
 use crate::costs::EffectCosts;
 use crate::problem::Site;
+use ring::Integrator;
 
 /// A point mass or rigid body dof over one step, by the rings' integrator.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

@@ -2,11 +2,11 @@
 
 use contact::Side;
 
-use super::body::RingBody;
+use ring::{ElasticBody, Integrator, RingState};
+
+use super::cache::StepCache;
 use super::contacts::ContactScheme;
-use super::integrator::Integrator;
 use super::ledger::Ledger;
-use super::ring::RingState;
 use super::run::Motion;
 use super::state::{Ladder, MotionSettings, MotionState};
 use crate::error::DynamicsError;
@@ -23,10 +23,10 @@ impl Motion<'_> {
         // A driven shaft moves already.
         let velocity = [0, 1, 2, 3, 4].map(|dof| model.prescribed_rate(dof, 0.0).unwrap_or(0.0));
         let ring = |side: Side| {
-            let body = self.rings[side.index()].as_ref()?;
+            let moving = self.rings[side.index()].as_ref()?;
             let elastic = solution.elastic[side.index()].as_ref()?;
             Some(ring_at_start(
-                body,
+                &*moving.body,
                 elastic,
                 if side == Side::Inner { q } else { [0.0; 5] },
                 if side == Side::Inner { velocity } else { [0.0; 5] },
@@ -86,8 +86,8 @@ impl Motion<'_> {
         }
         let omega = self.settings.speed.at(0.0);
         let ring = |side: Side| {
-            let body = self.rings[side.index()].as_ref()?;
-            let none = vec![0.0; body.coordinates.expanded()];
+            let body = &*self.rings[side.index()].as_ref()?.body;
+            let none = vec![0.0; body.held().coordinates.expanded()];
             let (q, v) = match side {
                 Side::Inner => (q, velocity),
                 Side::Outer => ([0.0; 5], [0.0; 5]),
@@ -131,7 +131,7 @@ impl Motion<'_> {
             },
             ..self.settings.clone()
         };
-        let (next, _) = Motion::new(self.model, conserving)?.step(&state)?;
+        let (next, _) = Motion::new(self.model, conserving)?.step(&state, &mut StepCache::default())?;
         let mean = |v1: f64, v0: f64| (v1 - v0) / self.settings.dt;
         for (start, moved) in state.rings.iter_mut().zip(&next.rings) {
             if let (Some(ring), Some(moved)) = (start.take(), moved) {
@@ -194,33 +194,15 @@ impl Motion<'_> {
 
 /// State of a ring: elastic part plus the rigid motion `q`, and in its frame, which turns at `omega`, the velocity of
 /// that motion, which has `velocity` in space.
-fn ring_at_start(body: &RingBody, elastic: &[f64], q: [f64; 5], velocity: [f64; 5], omega: f64) -> RingState {
-    let coordinates = &body.coordinates;
-    let (dofs, first) = coordinates.shaft();
-    let field = |q: [f64; 5]| {
-        let mut y = vec![0.0; coordinates.n()];
-        let rigid = body
-            .places
-            .field(|x| [0, 1, 2].map(|component| coordinates.rigid_motion(component, x, q)));
-        for (y, &dof) in y.iter_mut().zip(coordinates.free()) {
-            *y = rigid[dof];
-        }
-        dofs.iter()
-            .enumerate()
-            .for_each(|(k, &dof)| y[first + k] = q[dof]);
-        y
-    };
-    let mut w = field(q);
-    coordinates
-        .free()
-        .iter()
-        .enumerate()
-        .for_each(|(i, &dof)| w[i] += elastic[dof]);
+fn ring_at_start(
+    body: &dyn ElasticBody,
+    elastic: &[f64],
+    q: [f64; 5],
+    velocity: [f64; 5],
+    omega: f64,
+) -> RingState {
     let turned = [omega * q[1], -omega * q[0], 0.0, omega * q[4], -omega * q[3]];
-    let v = field([0, 1, 2, 3, 4].map(|i| velocity[i] + turned[i]));
-    let [w, v] = [w, v].map(|y| body.space.of_state(y));
-    let a = vec![0.0; w.len()];
-    RingState::new(w, v, a)
+    body.rigid_state(elastic, q, [0, 1, 2, 3, 4].map(|i| velocity[i] + turned[i]))
 }
 
 /// Refuses what statics knows and motion does not.

@@ -1,10 +1,10 @@
 //! Choices of a motion, all that evolves in it, and what a step reports.
 
-use super::balls::Speed;
 use super::contacts::{ContactDamping, ContactScheme};
-use super::integrator::Integrator;
 use super::ledger::Ledger;
-use super::ring::RingState;
+use crate::kinematics::Speed;
+use ring::Integrator;
+use ring::RingState;
 
 /// Choices of a motion.
 #[derive(Clone, Debug, PartialEq)]

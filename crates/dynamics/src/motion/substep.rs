@@ -5,11 +5,12 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use contact::Side;
+use ring::ElasticStep;
+use ring::step::AnswerSeconds;
 
-use super::ahead::Foreseen;
-use super::close::Settling;
+use super::cache::{Ahead, ExpectedLoads, StepCache};
 use super::newton::{SmallSolution, check_patches, check_range};
-use super::part::Moving;
+use super::part::RingSteps;
 use super::place::Placing;
 use super::run::Motion;
 use super::small::SmallSystem;
@@ -40,18 +41,14 @@ impl Span {
 /// A part of a step under way.
 pub(super) struct Part<'m> {
     pub span: Span,
-    pub foreseen: Arc<Foreseen>,
+    pub expected: Arc<ExpectedLoads>,
     /// Contact angle, rad, and force, N, for which the patches were placed, by site.
     places: Vec<[f64; 2]>,
     placing: Placing,
-    pub moving: [Option<Moving<'m>>; 2],
+    pub rings: RingSteps<'m>,
     pub system: SmallSystem,
     /// Largest force that acts at the start, N.
     pub scale: f64,
-    /// The inertia of the turning frame.
-    pub settling: Settling,
-    /// Sum of the squares of its last change, N^2.
-    pub last_change: Option<f64>,
     pub report: StepReport,
     pub clock: Lap,
 }
@@ -63,8 +60,9 @@ impl Motion<'_> {
         state: &MotionState,
         span: Span,
         upcoming: Option<Span>,
-    ) -> Result<(MotionState, StepReport), DynamicsError> {
-        let mut part = self.begin(state, span)?;
+        cache: &StepCache,
+    ) -> Result<(MotionState, StepReport, Option<Ahead>), DynamicsError> {
+        let mut part = self.begin(state, span, cache)?;
         let (solution, ends) = loop {
             let solution = self.solve_in_place(state, &mut part)?;
             if let Some(ends) = self.close(state, &mut part, &solution, upcoming)? {
@@ -75,53 +73,53 @@ impl Motion<'_> {
         check_range(self.model, &part.system, &solution)?;
         let places = part.system.places(&solution);
         self.check_on_grooves(&places)?;
-        let (mut next, error) = self.finish(state, &part.system, &solution, part.moving, ends);
+        let (mut next, error) = self.finish(state, &part.system, &solution, part.rings, ends.rings);
         next.places.rotate_right(1);
         next.places[0] = places;
         let mut report = part.report;
         report.error = error;
         report.seconds.update += part.clock.lap();
-        Ok((next, report))
+        Ok((next, report, ends.ahead))
     }
 
     /// Loads, patches where they are expected, and both rings.
-    fn begin<'m>(&'m self, state: &'m MotionState, span: Span) -> Result<Part<'m>, DynamicsError> {
+    fn begin<'m>(
+        &'m self,
+        state: &'m MotionState,
+        span: Span,
+        cache: &StepCache,
+    ) -> Result<Part<'m>, DynamicsError> {
         let mut report = StepReport {
             substeps: 1,
             ..StepReport::default()
         };
         let mut clock = Lap::new();
-        let foreseen = self.foreseen(state, span)?;
+        let ahead = self.ahead(state, span, cache)?;
+        let expected = ahead.loads.clone();
         report.seconds.loads = clock.lap();
-        let places = foreseen.places.clone();
+        let places = expected.places.clone();
         let placing = self.place(&places, self.weighted_time(span))?;
         report.seconds.patches = clock.lap();
-        let moving = self.prepare(state, &foreseen, &placing.feet)?;
-        let longest = |part: usize| {
-            let rings = moving.iter().flatten();
-            rings.map(|m| m.step.seconds[part]).fold(0.0, f64::max)
+        let rings = self.begin_rings(state, ahead, &placing.feet)?;
+        let longest = |of: fn(AnswerSeconds) -> f64| {
+            let rings = rings.iter().flatten();
+            rings.map(|step| of(step.seconds())).fold(0.0, f64::max)
         };
-        report.seconds.right_side = longest(0);
-        report.seconds.raceways = longest(2);
-        report.seconds.solve = clock.lap() - longest(0) - longest(2);
-        let system = self.system(state, span, placing.sites.clone(), &moving, &foreseen.loads)?;
-        let mut part = Part {
+        report.seconds.right_side = longest(|s| s.right_side);
+        report.seconds.raceways = longest(|s| s.table);
+        report.seconds.solve = clock.lap() - report.seconds.right_side - report.seconds.raceways;
+        let system = self.system(state, span, placing.sites.clone(), &rings, &expected.loads)?;
+        Ok(Part {
             span,
             places,
             placing,
             system,
-            scale: self.force_scale(state, &foreseen.loads),
-            settling: Settling::Settled,
-            last_change: None,
-            foreseen,
-            moving,
+            scale: self.force_scale(state, &expected.loads),
+            expected,
+            rings,
             report,
             clock,
-        };
-        if part.foreseen.loads.frame.is_some() {
-            part.settling = Settling::Open(self.contraction(&part));
-        }
-        Ok(part)
+        })
     }
 
     /// Time at which a part is in balance, s.
@@ -148,15 +146,8 @@ impl Motion<'_> {
             part.places = met;
             part.report.seconds.patches += part.clock.lap();
             self.move_contacts(part);
-            let tables = part.moving.iter().flatten().all(|m| m.factor.has_table());
-            let (seconds, lap) = (&mut part.report.seconds, part.clock.lap());
-            *(if tables {
-                &mut seconds.raceways
-            } else {
-                &mut seconds.solve
-            }) += lap;
             let sites = part.placing.sites.clone();
-            part.system = self.system(state, part.span, sites, &part.moving, &part.foreseen.loads)?;
+            part.system = self.system(state, part.span, sites, &part.rings, &part.expected.loads)?;
         }
         // A ball that presses beyond the rim has no place: that is the cause then.
         self.check_on_grooves(&part.places)?;
@@ -168,16 +159,17 @@ impl Motion<'_> {
     /// Both rings with their contacts where the patches are.
     fn move_contacts(&self, part: &mut Part<'_>) {
         let feet = &part.placing.feet;
-        let [inner, outer] = &mut part.moving;
-        let turn = |ring: &mut Option<Moving<'_>>, side: Side| {
-            if let Some(m) = ring {
-                m.factor
-                    .move_contacts(m.body, m.old, &mut m.step, &feet[side.index()]);
-            }
+        let [inner, outer] = &mut part.rings;
+        let move_ring = |step: &mut Option<Box<dyn ElasticStep + '_>>, side: Side| {
+            step.as_mut().map(|step| step.move_contacts(&feet[side.index()]))
         };
-        self.model
+        let (inner, outer) = self
+            .model
             .backend
-            .both(|| turn(inner, Side::Inner), || turn(outer, Side::Outer));
+            .both(|| move_ring(inner, Side::Inner), || move_ring(outer, Side::Outer));
+        let table = [inner, outer].into_iter().flatten().map(|s| s.table);
+        part.report.seconds.raceways += table.clone().fold(0.0, f64::max);
+        part.report.seconds.solve += part.clock.lap() - table.fold(0.0, f64::max);
     }
 }
 

@@ -4,7 +4,7 @@ use contact::patch::PatchShape;
 use contact::quadrature::PressureRule;
 use contact::{Patch, RacewaySurface, RingPoint, Side};
 use dynamics::model::elastic;
-use dynamics::ring::RingSolver;
+use dynamics::statics::StaticRing;
 use dynamics::{Hold, Model, RingModel};
 use fem::stress::PointRecovery;
 
@@ -55,8 +55,9 @@ impl Ring {
             let patch = Patch::new(&surface, &ring.mesh.nodes, &rule, shape, steel).unwrap();
             patch.weights.add_load(direction.map(|n| FORCE * n), &mut load);
         }
-        RingSolver::new(&self.model, self.side, ring)
+        StaticRing::new(&self.model, self.side, ring)
             .unwrap()
+            .solver
             .solve(load, 1)
     }
 

@@ -2,7 +2,7 @@
 
 use contact::near_field::in_axes;
 use contact::{Groove, RingPoint, Side};
-use dynamics::ring::RingSolver;
+use dynamics::statics::StaticRing;
 use dynamics::{Hold, RingModel};
 use fem::facet;
 use fem::quadrature::{hexahedron, quadrilateral};
@@ -63,7 +63,7 @@ fn resolved(side: Side) -> Resolved {
     println!("{side:?}: resolved by {} dofs", ring.mesh.n_dofs());
     let mut load = vec![0.0; ring.mesh.n_dofs()];
     add_pressure(&ring.mesh, &groove, [a, b], hertz.peak_pressure(FORCE), &mut load);
-    let u = RingSolver::new(&model, side, ring).unwrap().solve(load, 1);
+    let u = StaticRing::new(&model, side, ring).unwrap().solver.solve(load, 1);
     around(ring, [a, b], hertz.peak_pressure(FORCE), &u)
 }
 

@@ -1,7 +1,7 @@
 //! A step of periodic rings begins with what the pass that ended the step before has found.
 
 use dynamics::effects::Gravity;
-use dynamics::motion::ring::RingState;
+use dynamics::motion::RingState;
 use dynamics::motion::{Integrator, Ladder};
 use input::Schedule;
 
@@ -60,9 +60,10 @@ fn a_step_from_its_state_alone_has_the_same_bits() {
         let motion = Motion::new(&model, settings).unwrap();
         let mut state = motion.start(&start);
         let mut parts = 0;
+        let mut cache = StepCache::default();
         for _ in 0..6 {
-            let (next, report) = motion.step(&state).unwrap();
-            let (expected, _) = motion.step(&alone(&state)).unwrap();
+            let (next, report) = motion.step(&state, &mut cache).unwrap();
+            let (expected, _) = motion.step(&alone(&state), &mut StepCache::default()).unwrap();
             assert!(next == expected, "{hold:?}, step {}", next.step);
             parts += report.substeps;
             state = next;

@@ -65,7 +65,7 @@ fn statics_of_notched_rings_is_that_of_assembled_rings() {
 fn the_log_says_where_the_notch_is_and_what_it_costs() {
     let model = notched(HEX8, Hold::Clamped, Backend::Auto);
     let solver = StaticSolver::new(&model).unwrap();
-    let note = solver.ring(Side::Inner).unwrap().solver_note();
+    let note = solver.ring(Side::Inner).unwrap().solver.solver_note();
     println!("{note}");
     for part in [
         "cyclic (54 equal sectors but for ",

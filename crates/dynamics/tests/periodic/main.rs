@@ -10,9 +10,9 @@ use std::sync::Arc;
 
 use contact::Side;
 use dynamics::effects::FrameRotation;
+use dynamics::kinematics::Speed;
 use dynamics::modes::{bearing_modes, ring_modes};
-use dynamics::motion::balls::Speed;
-use dynamics::motion::{Motion, MotionSettings, MotionState};
+use dynamics::motion::{Motion, MotionSettings, MotionState, StepCache};
 use dynamics::{
     Backend, ContactMode, Hold, Model, ModesSettings, NodalStress, PointStress, RingSupport, StaticSolution,
     StaticSolver,
@@ -66,7 +66,7 @@ fn assert_near(found: &[f64], expected: &[f64], tolerance: f64, what: &str) {
 fn statics(model: &Model, name: &str) -> StaticSolution {
     let mut solver = StaticSolver::new(model).unwrap();
     for side in Side::BOTH {
-        let note = solver.ring(side).unwrap().solver_note();
+        let note = solver.ring(side).unwrap().solver.solver_note();
         assert!(note.starts_with(name), "{note}");
     }
     solver.solve(model, None).unwrap()
@@ -201,8 +201,9 @@ fn motion_of(model: &Model, at_rest: &Model, steps: usize) -> End {
     let start = statics(at_rest, name);
     let motion = Motion::new(model, MotionSettings::conserving(1e-5, Speed::constant(SPEED))).unwrap();
     let mut state = motion.start(&start);
+    let mut cache = StepCache::default();
     for _ in 0..steps {
-        state = motion.step(&state).unwrap().0;
+        state = motion.step(&state, &mut cache).unwrap().0;
     }
     assert!(state.ledger.relative_defect().abs() < 1e-8, "{:?}", state.ledger);
     let rings = Side::BOTH.map(|side| motion.ring_coordinates(&state, side).unwrap());
@@ -294,7 +295,7 @@ fn chosen_nodes_move_as_in_the_whole_field() {
     let model = bearing(HEX8, Hold::Clamped, Backend::Auto);
     let motion = Motion::new(&model, MotionSettings::conserving(5e-6, Speed::constant(SPEED))).unwrap();
     let mut state = motion.start(&statics(&model, "cyclic"));
-    state = motion.step(&state).unwrap().0;
+    state = motion.step(&state, &mut StepCache::default()).unwrap().0;
     for side in Side::BOTH {
         let ring = model.ring(side).unwrap();
         let mesh = &ring.mesh;

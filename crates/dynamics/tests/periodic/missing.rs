@@ -1,10 +1,11 @@
 //! Rings that are periodic but for missing elements, such as a keyway, or nodes held besides: the results of sparse factors.
 
+use dynamics::motion::StepCache;
 use std::sync::Arc;
 
 use contact::Side;
 use dynamics::effects::{FrameRotation, Gravity};
-use dynamics::motion::balls::Speed;
+use dynamics::kinematics::Speed;
 use dynamics::motion::{Integrator, Motion, MotionSettings};
 use dynamics::{Backend, Hold, Model, StaticSolver};
 use input::Schedule;
@@ -227,11 +228,12 @@ fn a_step_of_rings_with_a_keyway_has_the_same_bits_from_its_state_alone() {
         let start = statics(&model, "cyclic");
         let motion = Motion::new(&model, settings).unwrap();
         let mut state = motion.start(&start);
+        let mut cache = StepCache::default();
         for threads in [1, 2, 4] {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
-            let (next, report) = pool.unwrap().install(|| motion.step(&state)).unwrap();
+            let (next, report) = pool.unwrap().install(|| motion.step(&state, &mut cache)).unwrap();
             println!("{hold:?}: {} rounds", report.frame_rounds);
-            let (expected, _) = motion.step(&alone(&state)).unwrap();
+            let (expected, _) = motion.step(&alone(&state), &mut StepCache::default()).unwrap();
             assert!(next == expected, "{hold:?}, step {}", next.step);
             state = next;
         }
@@ -246,7 +248,7 @@ fn the_log_says_which_elements_are_missing() {
     let notes = |change: fn(Side, Mesh) -> Mesh| {
         let model = with_meshes(HEX8, Hold::Clamped, Backend::Auto, change);
         let solver = StaticSolver::new(&model).unwrap();
-        solver.ring(Side::Inner).unwrap().solver_note().to_string()
+        solver.ring(Side::Inner).unwrap().solver.solver_note().to_string()
     };
     let note = notes(keyway);
     println!("{note}");
@@ -315,7 +317,7 @@ fn a_facet_that_a_group_lacks_changes_no_solver() {
     };
     let model = with_meshes(HEX8, Hold::MeanMotion, Backend::Auto, unmarked);
     let solver = StaticSolver::new(&model).unwrap();
-    let note = solver.ring(Side::Inner).unwrap().solver_note();
+    let note = solver.ring(Side::Inner).unwrap().solver.solver_note();
     assert!(
         note.starts_with("cyclic (54 equal sectors but for groups of facets"),
         "{note}"
@@ -361,7 +363,7 @@ fn what_is_no_defect_is_one_matrix_and_the_log_says_why() {
     for (change, reason) in cases {
         let model = with_meshes(HEX8, Hold::Clamped, Backend::Auto, &change);
         let solver = StaticSolver::new(&model).unwrap();
-        let note = solver.ring(Side::Inner).unwrap().solver_note();
+        let note = solver.ring(Side::Inner).unwrap().solver.solver_note();
         assert!(note.starts_with("sparse (") && note.contains(reason), "{note}");
         let forced = with_meshes(HEX8, Hold::Clamped, Backend::Cyclic, &change);
         let text = StaticSolver::new(&forced).err().unwrap().to_string();

@@ -1,7 +1,7 @@
 //! Harris's equations of a fast bearing under thrust, solved without the program.
 
 use dynamics::Model;
-use dynamics::motion::balls::BallSpeeds;
+use dynamics::kinematics::BallSpeeds;
 
 /// Harris's high-speed equations for one ball of a row under thrust, rigid rings: residuals over (ball radial, ball axial,
 /// shaft axial), and [Q_i, Q_o, a_i, a_o]. Nothing of the program but the numbers of the bearing; friction acts in the

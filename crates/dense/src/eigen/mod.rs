@@ -1,0 +1,12 @@
+//! Eigenpairs: all of a dense symmetric matrix, or the lowest of K x = lambda M x, whose K and M only act.
+
+mod basis;
+mod lanczos;
+mod problem;
+mod symmetric;
+mod whole;
+
+pub use lanczos::{LanczosSettings, Searched, lanczos, lowest_pairs};
+pub use problem::{EigenProblem, Eigenpairs};
+pub use symmetric::symmetric_eigen;
+pub use whole::dense_lowest;

@@ -1,0 +1,103 @@
+//! What a step begins with that does not wait for its contacts, as the step before has found it.
+//!
+//! It is no part of the state. It is used only by the [`Motion`] that made it, if the step has the expected time and size, the contacts
+//! are expected where they were, and the rings are in the states from which it was found. Otherwise, and after the reading of a step
+//! file, it is found anew, to the same bits.
+
+use std::sync::Arc;
+
+use contact::Side;
+use ring::{FrameTurn, Known, KnownLoad};
+
+use super::run::Motion;
+use super::state::MotionState;
+use super::substep::Span;
+use crate::effects::Loads;
+use crate::error::DynamicsError;
+use crate::frame::turn_nodal;
+
+/// What the next step may begin with; empty at first.
+#[derive(Debug, Default)]
+pub struct StepCache {
+    pub(super) ahead: Option<Ahead>,
+}
+
+/// Loads of a part of a step, and what both rings have found of them.
+#[derive(Debug)]
+pub(super) struct Ahead {
+    pub loads: Arc<ExpectedLoads>,
+    pub rings: [Option<Arc<Known>>; 2],
+}
+
+/// Loads of a part of a step with its contacts where they are expected.
+#[derive(Debug)]
+pub(super) struct ExpectedLoads {
+    /// The motion that evaluated them.
+    motion: Arc<()>,
+    /// The part.
+    pub span: Span,
+    /// Contact angle, rad, and force, N, with which they were evaluated, by site.
+    pub places: Vec<[f64; 2]>,
+    pub loads: Loads,
+}
+
+impl Motion<'_> {
+    /// Loads of a part of a step with contacts expected at `places`.
+    pub(super) fn expected_loads(
+        &self,
+        places: Vec<[f64; 2]>,
+        span: Span,
+    ) -> Result<Arc<ExpectedLoads>, DynamicsError> {
+        let loads = self.loads_at(&places, self.weighted_time(span), span.dt)?;
+        Ok(Arc::new(ExpectedLoads {
+            motion: self.token.clone(),
+            span,
+            places,
+            loads,
+        }))
+    }
+
+    /// What is known of a part of a step from `state`, as the step before has found it, or anew.
+    pub(super) fn ahead(
+        &self,
+        state: &MotionState,
+        span: Span,
+        cache: &StepCache,
+    ) -> Result<Ahead, DynamicsError> {
+        let places = state.expected_places();
+        let fits = |ahead: &&Ahead| {
+            let loads = &ahead.loads;
+            Arc::ptr_eq(&loads.motion, &self.token) && loads.span == span && loads.places == places
+        };
+        let of_state =
+            |i: usize, known: &Arc<Known>| state.rings[i].as_ref().is_some_and(|ring| known.is_of(ring));
+        match cache.ahead.as_ref().filter(fits) {
+            Some(ahead) => Ok(Ahead {
+                loads: ahead.loads.clone(),
+                rings: [0, 1].map(|i| ahead.rings[i].clone().filter(|known| of_state(i, known))),
+            }),
+            None => Ok(Ahead {
+                loads: self.expected_loads(places, span)?,
+                rings: [None, None],
+            }),
+        }
+    }
+
+    /// What acts on a ring in a part of a step and does not wait for its contacts. Loads are fixed in space: those of the inner ring are
+    /// turned into its frame.
+    pub(super) fn known_load(&self, side: Side, expected: &ExpectedLoads) -> KnownLoad {
+        let loads = &expected.loads;
+        let back = -self.frame_angle(side, self.weighted_time(expected.span));
+        let moving = self.rings[side.index()].as_ref();
+        let load = moving.zip(loads.rings[side.index()].as_ref());
+        KnownLoad {
+            load: load.map(|(moving, load)| moving.body.load(&turn_nodal(load, back))),
+            turn: frame_turn(side, loads),
+        }
+    }
+}
+
+/// Turning of a ring's frame, when its inertia is called for.
+fn frame_turn(side: Side, loads: &Loads) -> Option<FrameTurn> {
+    loads.frame.filter(|_| side == Side::Inner)
+}

@@ -1,0 +1,327 @@
+//! One elastic ring as a moving body: its coordinates, matrices and mount; energies, losses, inertia of its frame.
+//!
+//! **Mount.** The ring's partner (shaft or housing) meets it in a few *functionals* of the coordinates, the rigid motion of
+//! its bore or seat: for a clamped bore the five shaft dofs that carry it, which are coordinates; for a mean-motion
+//! hold the six rows B of the area-weighted rigid motion, w stays free. Forces of the partner act through the same
+//! functionals. A clamped seat has none: its nodes are held.
+//!
+//! **Vectors.** Displacements, velocities, loads of a body are vectors of its own kind: coordinates, or harmonics of a periodic
+//! ring. Only the body knows which.
+
+use std::sync::Arc;
+
+use mesh::Mesh;
+
+use crate::coordinates::Coordinates;
+use crate::division::NodePlaces;
+use crate::error::RingError;
+use crate::harmonic;
+use crate::integrator::Integrator;
+use crate::inventory::Inventory;
+use crate::matrices::{Matrix, NodalMatrices, Nodes};
+use crate::memory::MotionSizes;
+use crate::model::{Backend, Hold, RingModel};
+use crate::nodal::{SectorBody, SparseBody};
+use crate::sparse::SparseLoad;
+use crate::state::RingState;
+use crate::step::{FrameTurn, StepFactor, StepScheme};
+use crate::support::mean_motion;
+use crate::vectors::combined;
+
+/// What moves the held surface of a clamped ring.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Partner {
+    /// A shaft: its five dofs are coordinates of the ring.
+    Shaft,
+    /// A housing at rest.
+    Housing,
+}
+
+/// Whether the inertia of a ring's turning frame acts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Frame {
+    /// It does not.
+    Still,
+    /// It does.
+    Turning,
+}
+
+/// What a body is made with.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BodySettings {
+    /// What holds it.
+    pub partner: Partner,
+    /// Rayleigh damping: C = damping[0] M + damping[1] K.
+    pub damping: [f64; 2],
+    /// Linear solver.
+    pub backend: Backend,
+    /// Its frame.
+    pub frame: Frame,
+}
+
+/// A ring as it is held and damped.
+pub struct HeldRing {
+    /// `inner` or `outer`.
+    pub name: &'static str,
+    /// Coordinates of the ring.
+    pub coordinates: Coordinates,
+    /// Functionals of the mount: translations, tilts, and for a mean-motion hold the rotation about z.
+    pub mount: Vec<SparseLoad>,
+    /// Where the nodes are.
+    pub places: NodePlaces,
+    /// Rayleigh damping: C = damping[0] M + damping[1] K.
+    pub damping: [f64; 2],
+}
+
+/// Vectors of a body.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct RingShape {
+    /// Length of each.
+    pub length: usize,
+    /// What they are: `coordinates` or `harmonics`.
+    pub kind: &'static str,
+}
+
+/// An elastic ring with its linear solver.
+pub trait ElasticBody: Send + Sync {
+    /// How it is held.
+    fn held(&self) -> &HeldRing;
+
+    /// Its matrices in coordinates.
+    fn matrices(&self) -> &dyn NodalMatrices;
+
+    /// Name of the linear solver, as a scene has it.
+    fn solver_name(&self) -> &'static str;
+
+    /// The linear solver and why it is that one, for a log.
+    fn solver_note(&self) -> String;
+
+    /// What its motion holds; None of a ring that harmonics do not solve.
+    fn sizes(&self) -> Option<MotionSizes>;
+
+    /// What its vectors are.
+    fn shape(&self) -> RingShape;
+
+    /// The vector with the coordinates `y`.
+    fn of_coordinates(&self, y: Vec<f64>) -> Vec<f64>;
+
+    /// The same of a state of the ring: rows that only a regular ring has move as its statics has them.
+    fn state_of_coordinates(&self, y: Vec<f64>) -> Vec<f64>;
+
+    /// Coordinates of a vector.
+    fn coordinates(&self, x: &[f64]) -> Vec<f64>;
+
+    /// Nodal values, `[n_nodes][3]` flat, of a vector.
+    fn nodal(&self, x: &[f64]) -> Vec<f64> {
+        self.held().coordinates.expand(&self.coordinates(x))
+    }
+
+    /// The same at the chosen nodes, to the bit; others may be NaN.
+    fn nodal_at(&self, x: &[f64], nodes: &[usize]) -> Vec<f64>;
+
+    /// a M b or a K b.
+    fn form(&self, matrix: Matrix, a: &[f64], b: &[f64]) -> f64;
+
+    /// Kinetic and strain energy, J.
+    fn energies(&self, state: &RingState) -> [f64; 2];
+
+    /// The effective matrix of a scheme, factored. Collective.
+    fn step_factor(self: Arc<Self>, scheme: StepScheme) -> Result<Box<dyn StepFactor>, RingError>;
+}
+
+/// Assembles a ring and prepares its factorisation with the linear solver that fits it. Collective.
+pub fn elastic_body(
+    name: &'static str,
+    ring: &RingModel,
+    settings: BodySettings,
+) -> Result<Arc<dyn ElasticBody>, RingError> {
+    let (coordinates, mount) = hold(&ring.mesh, settings.partner, ring);
+    let held = HeldRing {
+        name,
+        coordinates,
+        mount,
+        places: ring.places(name, settings.backend)?,
+        damping: settings.damping,
+    };
+    if let Backend::Sector(sectors) = settings.backend {
+        return Ok(Arc::new(SectorBody::new(ring, held, sectors)?));
+    }
+    let held_nodes = held.coordinates.held_nodes();
+    match harmonic::Periodic::new(ring, name, settings.backend, &held_nodes)? {
+        Ok(periodic) => harmonic::body(ring, held, periodic, settings.frame),
+        Err(why) => Ok(Arc::new(SparseBody::new(ring, held, why)?)),
+    }
+}
+
+impl HeldRing {
+    /// Factors of M and K in the effective matrix of a step.
+    pub(crate) fn effective(&self, StepScheme { integrator, dt }: StepScheme) -> [f64; 2] {
+        let [m, c, k] = integrator.effective(dt);
+        [m + c * self.damping[0], k + c * self.damping[1]]
+    }
+
+    /// Factors of v and a under M, and under K, on the right-hand side.
+    pub(crate) fn history(&self, StepScheme { integrator, dt }: StepScheme) -> [[f64; 2]; 2] {
+        let [mass, damping] = integrator.history(dt);
+        let [am, ak] = self.damping;
+        [
+            [mass[0] + am * damping[0], mass[1] + am * damping[1]],
+            [ak * damping[0], ak * damping[1]],
+        ]
+    }
+
+    /// What harmonics take of the matrices.
+    pub(crate) fn nodes<'a>(&'a self, matrices: &'a dyn NodalMatrices) -> Nodes<'a> {
+        Nodes {
+            coordinates: &self.coordinates,
+            matrices,
+            positions: self.places.positions(),
+        }
+    }
+
+    /// Whether S has a border: shaft dofs among the coordinates.
+    pub(crate) fn is_bordered(&self) -> bool {
+        !self.coordinates.shaft().0.is_empty()
+    }
+}
+
+impl dyn ElasticBody + '_ {
+    /// Number of generalised coordinates.
+    pub fn n(&self) -> usize {
+        self.held().coordinates.n()
+    }
+
+    /// The vector of a nodal load, `[n_nodes][3]` flat.
+    pub fn load(&self, nodal: &[f64]) -> Vec<f64> {
+        self.of_coordinates(self.held().coordinates.reduce(nodal))
+    }
+
+    /// Coordinates and matrices; those of the factors are counted by the motion.
+    pub fn inventory(&self) -> Inventory {
+        Inventory {
+            dofs: self.n(),
+            matrices: self.matrices().n_matrices(),
+        }
+    }
+
+    /// Linear momentum, kg m/s, and moment of momentum about the point z = 0 of the mesh's axis, kg m^2/s, at the
+    /// undeformed places of the nodes.
+    pub fn momentum(&self, state: &RingState) -> [[f64; 3]; 2] {
+        let p = self.matrices().nodal_mass_product(&self.nodal(state.velocity()));
+        let sums = self.held().places.sum(|node, x| {
+            let p = &p[3 * node..3 * node + 3];
+            let moment = [0, 1, 2].map(|i| {
+                let (j, k) = ((i + 1) % 3, (i + 2) % 3);
+                x[j] * p[k] - x[k] * p[j]
+            });
+            [p[0], p[1], p[2], moment[0], moment[1], moment[2]]
+        });
+        [[sums[0], sums[1], sums[2]], [sums[3], sums[4], sums[5]]]
+    }
+
+    /// Energy that Rayleigh damping took in a step, J: C v[1-af] times dw.
+    pub fn rayleigh_loss(&self, integrator: Integrator, old: &RingState, new: &RingState) -> f64 {
+        let s = integrator.alpha_f;
+        let v = combined([s, 1.0 - s], old.velocity(), new.velocity());
+        let change = combined([-1.0, 1.0], old.displacement(), new.displacement());
+        let [am, ak] = self.held().damping;
+        let mut loss = 0.0;
+        if am != 0.0 {
+            loss += am * self.form(Matrix::Mass, &change, &v);
+        }
+        if ak != 0.0 {
+            loss += ak * self.form(Matrix::Stiffness, &change, &v);
+        }
+        loss
+    }
+
+    /// Energy that the integrator took in a step, J. The balance of the step, M a[1-am] + C v[1-af] + K w[1-af] = f, times dw, is
+    /// the work of f; the numerical dissipation is what of it is neither stored nor lost in C.
+    pub fn numerical_loss(&self, integrator: Integrator, old: &RingState, new: &RingState) -> f64 {
+        if integrator.is_conserving() {
+            return 0.0;
+        }
+        let change = combined([-1.0, 1.0], old.displacement(), new.displacement());
+        let s = integrator.alpha_m;
+        let a = combined([s, 1.0 - s], old.acceleration(), new.acceleration());
+        let v = combined([0.5; 2], old.velocity(), new.velocity());
+        let gain = combined([-1.0, 1.0], old.velocity(), new.velocity());
+        self.form(Matrix::Mass, &change, &a) - self.form(Matrix::Mass, &v, &gain)
+            + (0.5 - integrator.alpha_f) * self.form(Matrix::Stiffness, &change, &change)
+    }
+
+    /// State of a ring: elastic nodal displacements `[n_dofs]` plus the rigid motion `q`, with the velocity of another rigid motion `rate`,
+    /// both in its own frame.
+    pub fn rigid_state(&self, elastic: &[f64], q: [f64; 5], rate: [f64; 5]) -> RingState {
+        let held = self.held();
+        let coordinates = &held.coordinates;
+        let (dofs, first) = coordinates.shaft();
+        let field = |q: [f64; 5]| {
+            let mut y = vec![0.0; coordinates.n()];
+            let rigid = held
+                .places
+                .field(|x| [0, 1, 2].map(|component| coordinates.rigid_motion(component, x, q)));
+            for (y, &dof) in y.iter_mut().zip(coordinates.free()) {
+                *y = rigid[dof];
+            }
+            dofs.iter()
+                .enumerate()
+                .for_each(|(k, &dof)| y[first + k] = q[dof]);
+            y
+        };
+        let mut w = field(q);
+        coordinates
+            .free()
+            .iter()
+            .enumerate()
+            .for_each(|(i, &dof)| w[i] += elastic[dof]);
+        let v = field(rate);
+        let [w, v] = [w, v].map(|y| self.state_of_coordinates(y));
+        let a = vec![0.0; w.len()];
+        RingState::new(w, v, a)
+    }
+}
+
+/// Generalised inertia load of a turning frame, of coordinates, at displacement and velocity `w` and `v`.
+pub(crate) fn frame_load(
+    held: &HeldRing,
+    matrices: &dyn NodalMatrices,
+    turn: FrameTurn,
+    [w, v]: [Vec<f64>; 2],
+) -> Vec<f64> {
+    let (speed, acceleration) = (turn.speed, turn.acceleration);
+    let (u, v) = (held.coordinates.expand(&w), held.coordinates.expand(&v));
+    let mut field = vec![0.0; u.len()];
+    // Of a ring that ranks share, the product takes the field at the nodes of own sectors only.
+    for (i, place) in held.places.positions().kept() {
+        let [x, y] = [0, 1].map(|c| place[c] + u[3 * i + c]);
+        let (vx, vy) = (v[3 * i], v[3 * i + 1]);
+        let f = &mut field[3 * i..3 * i + 3];
+        f[0] = speed * speed * x + 2.0 * speed * vy + acceleration * y;
+        f[1] = speed * speed * y - 2.0 * speed * vx - acceleration * x;
+    }
+    held.coordinates.reduce(&matrices.nodal_mass_product(&field))
+}
+
+/// Coordinates and mount of a held ring.
+fn hold(mesh: &Mesh, partner: Partner, ring: &RingModel) -> (Coordinates, Vec<SparseLoad>) {
+    let origin = ring.groove.centre_z;
+    match (ring.hold, partner) {
+        (Hold::Clamped, Partner::Shaft) => {
+            let held = mesh.group_nodes(ring.held_group);
+            let coordinates = Coordinates::new(mesh, &held, vec![0, 1, 2, 3, 4], origin);
+            let first = coordinates.free().len();
+            (coordinates, (0..5).map(|k| vec![(first + k, 1.0)]).collect())
+        }
+        (Hold::Clamped, Partner::Housing) => {
+            let held = mesh.group_nodes(ring.held_group);
+            (Coordinates::new(mesh, &held, Vec::new(), origin), Vec::new())
+        }
+        (Hold::MeanMotion, _) => {
+            let weights = fem::facet_node_weights(mesh, mesh.group(ring.held_group));
+            let rows = mean_motion(mesh, weights, origin);
+            (Coordinates::new(mesh, &[], Vec::new(), origin), rows.to_vec())
+        }
+        (Hold::Free, _) => (Coordinates::new(mesh, &[], Vec::new(), origin), Vec::new()),
+    }
+}

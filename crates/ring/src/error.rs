@@ -1,0 +1,81 @@
+//! Errors of one ring.
+
+use fem::FemError;
+use solver::SolverError;
+
+/// Why a ring could not be made or solved.
+#[derive(Debug, thiserror::Error)]
+pub enum RingError {
+    /// A ring's matrix is not positive definite.
+    #[error(
+        "the {side} ring is not held: its stiffness matrix is singular at node {node}; \
+         check that the facet group \"{group}\" covers a surface and that the mesh is one connected part"
+    )]
+    NotHeld {
+        /// `inner` or `outer`.
+        side: &'static str,
+        /// Node index in the mesh, from 0.
+        node: usize,
+        /// Held group.
+        group: &'static str,
+    },
+    /// A ring that the cyclic solver was asked for is not rotationally periodic.
+    #[error(
+        "the {side} ring is not rotationally periodic, so solver.backend = \"cyclic\" cannot be: {reason}; use \"auto\" or \
+         \"sparse\""
+    )]
+    NotPeriodic {
+        /// `inner` or `outer`.
+        side: &'static str,
+        /// The first difference.
+        reason: String,
+    },
+    /// Harmonics do not give the modes of a ring with a defect.
+    #[error(
+        "the {side} ring is rotationally periodic only up to a defect, whose natural modes solver.backend = \"cyclic\" does \
+         not find; use \"auto\" or \"sparse\""
+    )]
+    ModesOfDefect {
+        /// `inner` or `outer`.
+        side: &'static str,
+    },
+    /// Another rank has failed.
+    #[error("on rank {rank}: {message}")]
+    OnRank {
+        /// The rank.
+        rank: usize,
+        /// Its error.
+        message: String,
+    },
+    /// The linear solver failed otherwise.
+    #[error("{side} ring: {source}")]
+    Solver {
+        /// `inner` or `outer`.
+        side: &'static str,
+        /// Cause.
+        source: SolverError,
+    },
+    /// Finite elements failed.
+    #[error("{side} ring: {source}")]
+    Fem {
+        /// `inner` or `outer`.
+        side: &'static str,
+        /// Cause.
+        source: FemError,
+    },
+}
+
+impl RingError {
+    /// Whether the cause is in what a user gave, not in its solution: a surface that holds nothing, an element, too many sectors.
+    pub fn is_of_input(&self) -> bool {
+        matches!(
+            self,
+            RingError::NotHeld { .. }
+                | RingError::Fem { .. }
+                | RingError::Solver {
+                    source: SolverError::BadSectors { .. },
+                    ..
+                }
+        )
+    }
+}

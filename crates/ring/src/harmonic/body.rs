@@ -1,0 +1,107 @@
+//! A periodic ring whose vectors are harmonics of its free nodes, then the dofs of the shaft that carries its bore.
+
+use std::sync::Arc;
+
+use super::harmonics::Harmonics;
+use super::space::{HarmonicSpace, from_harmonics, to_harmonics};
+use super::step::HarmonicFactor;
+use crate::body::{ElasticBody, HeldRing, RingShape};
+use crate::error::RingError;
+use crate::matrices::{Matrix, NodalMatrices, Nodes, Stencils};
+use crate::memory::MotionSizes;
+use crate::state::RingState;
+use crate::step::{StepFactor, StepScheme};
+
+/// A ring in harmonic space.
+pub(crate) struct HarmonicBody {
+    pub held: HeldRing,
+    /// Matrices in nodal coordinates.
+    pub stencils: Stencils,
+    pub harmonics: Harmonics,
+    pub space: HarmonicSpace,
+}
+
+impl HarmonicBody {
+    /// The nodes whose matrices act on its vectors.
+    pub(super) fn nodes(&self) -> Nodes<'_> {
+        self.harmonics.regular_nodes(self.held.nodes(&self.stencils))
+    }
+}
+
+impl ElasticBody for HarmonicBody {
+    fn held(&self) -> &HeldRing {
+        &self.held
+    }
+
+    fn matrices(&self) -> &dyn NodalMatrices {
+        &self.stencils
+    }
+
+    fn solver_name(&self) -> &'static str {
+        "cyclic"
+    }
+
+    fn solver_note(&self) -> String {
+        self.harmonics.note.clone()
+    }
+
+    fn sizes(&self) -> Option<MotionSizes> {
+        Some(self.harmonics.sizes(&self.held))
+    }
+
+    fn shape(&self) -> RingShape {
+        RingShape {
+            length: self.space.len(),
+            kind: "harmonics",
+        }
+    }
+
+    fn of_coordinates(&self, y: Vec<f64>) -> Vec<f64> {
+        to_harmonics(&self.space.ring, &y)
+    }
+
+    fn state_of_coordinates(&self, y: Vec<f64>) -> Vec<f64> {
+        let mut x = self.of_coordinates(y);
+        if let Some(defect) = &self.space.defect {
+            defect.fill(&mut x);
+        }
+        x
+    }
+
+    fn coordinates(&self, x: &[f64]) -> Vec<f64> {
+        from_harmonics(&self.space.ring, x)
+    }
+
+    /// Only the section nodes of the chosen ones are transformed.
+    fn nodal_at(&self, x: &[f64], nodes: &[usize]) -> Vec<f64> {
+        let (ring, coordinates) = (&self.space.ring, &self.held.coordinates);
+        let (harmonics, q) = x.split_at(ring.harmonic_len());
+        let free = nodes.iter().filter_map(|&node| coordinates.free_node(node));
+        let part = ring.section_part(&[], free);
+        let found = ring.field_at(&part, harmonics);
+        let mut field = vec![f64::NAN; coordinates.expanded()];
+        for &node in nodes {
+            let u = match coordinates.free_node(node) {
+                Some(number) => [0, 1, 2].map(|i| found.value(3 * number + i)),
+                None => coordinates.held_displacement(node, q),
+            };
+            field[3 * node..3 * node + 3].copy_from_slice(&u);
+        }
+        field
+    }
+
+    fn form(&self, matrix: Matrix, a: &[f64], b: &[f64]) -> f64 {
+        self.space.form(matrix, a, b)
+    }
+
+    fn energies(&self, state: &RingState) -> [f64; 2] {
+        self.space.energies(state)
+    }
+
+    fn step_factor(self: Arc<Self>, scheme: StepScheme) -> Result<Box<dyn StepFactor>, RingError> {
+        let factor = self
+            .harmonics
+            .factor(&self.held, &self.stencils, self.held.effective(scheme))?;
+        Ok(Box::new(HarmonicFactor::new(self, factor, scheme)))
+    }
+}

@@ -1,0 +1,195 @@
+//! A periodic ring before its step size is known, and its factors: S = c_M M + c_K K harmonic by harmonic.
+//!
+//! Of 65 k dofs, a periodic ring factors 300 times and solves 40 times faster than one sparse matrix ([`solver::cyclic`]). The clamped
+//! bore that follows the shaft is a border.
+
+use mesh::NodePositions;
+use solver::cyclic::{CyclicBordered, Defect, ResponseTable, RowResponses};
+use solver::{CyclicRing, LinearSolver, SolverError};
+
+use super::defect_change::Changes;
+use super::defect_step::DefectFactor;
+use super::factor::{CyclicFactor, Responses};
+use super::periodic::{Defective, HeldSectors, Periodic};
+use crate::body::HeldRing;
+use crate::coordinates::Coordinates;
+use crate::error::RingError;
+use crate::matrices::{NodalMatrices, Nodes, Stencils};
+use crate::memory::MotionSizes;
+use crate::model::RingModel;
+use crate::nodal::MountColumns;
+use dense::DenseCholesky;
+
+/// A periodic ring before S is known.
+pub(crate) struct Harmonics {
+    pub held: HeldSectors,
+    /// Its defect.
+    pub defect: Option<Change>,
+    pub note: String,
+    /// What its motion holds, but for the mount.
+    sizes: MotionSizes,
+}
+
+/// What a defect makes of a periodic ring before S is known.
+pub(crate) struct Change {
+    pub changes: Changes,
+    /// Of the ring without the defect, whose border is that of low harmonics.
+    coordinates: Coordinates,
+    stencils: Stencils,
+    positions: NodePositions,
+}
+
+impl Change {
+    /// Nodes of the regular ring.
+    pub fn nodes(&self) -> Nodes<'_> {
+        Nodes {
+            coordinates: &self.coordinates,
+            matrices: &self.stencils,
+            positions: &self.positions,
+        }
+    }
+}
+
+impl Harmonics {
+    /// A periodic ring that moves as it is held, and its matrices in nodal coordinates.
+    pub fn new(
+        ring: &RingModel,
+        held: &HeldRing,
+        mut periodic: Periodic,
+    ) -> Result<(Harmonics, Stencils), RingError> {
+        let side = held.name;
+        periodic.held.sectors.ring = periodic.in_motion(ring, side)?;
+        let whole = &periodic.whole;
+        let ring_of_mesh = periodic.whole_ring(&ring.mesh);
+        let stencils = |of: &CyclicRing, defect| -> Result<Stencils, RingError> {
+            let operator = |matrix| {
+                of.operator(matrix)
+                    .map(Box::new)
+                    .map_err(|source| RingError::Solver { side, source })
+            };
+            Ok(Stencils {
+                stiffness: operator(&whole.stiffness)?,
+                mass: operator(&whole.mass)?,
+                defect,
+            })
+        };
+        let sizes = periodic.motion_sizes(&ring.mesh, &periodic.held.sectors.ring, 0);
+        let note = periodic.note();
+        let (change, defect) = match periodic.defect {
+            Some(Defective { defect, regular }) => {
+                let of_regular = held.coordinates.of_mesh(&regular.mesh, &regular.held);
+                let change = Change {
+                    changes: defect.changes(&held.coordinates, &of_regular),
+                    coordinates: of_regular,
+                    stencils: stencils(&whole.ring, None)?,
+                    positions: regular.mesh.nodes.clone(),
+                };
+                (Some(change), Some(Box::new(defect)))
+            }
+            None => (None, None),
+        };
+        let stencils = stencils(&ring_of_mesh, defect)?;
+        let harmonics = Harmonics {
+            defect: change,
+            note,
+            sizes,
+            held: periodic.held,
+        };
+        Ok((harmonics, stencils))
+    }
+
+    /// What the motion of the ring holds.
+    pub fn sizes(&self, held: &HeldRing) -> MotionSizes {
+        MotionSizes {
+            n_mount: held.mount.len(),
+            ..self.sizes
+        }
+    }
+
+    /// The nodes whose matrices act on vectors of harmonics: those of the regular ring where there is a defect, else `own`.
+    pub fn regular_nodes<'a>(&'a self, own: Nodes<'a>) -> Nodes<'a> {
+        self.defect.as_ref().map_or(own, Change::nodes)
+    }
+
+    /// Factors c_M M + c_K K.
+    pub fn factor(
+        &self,
+        held: &HeldRing,
+        matrices: &dyn NodalMatrices,
+        coefficients: [f64; 2],
+    ) -> Result<CyclicFactor, RingError> {
+        let border = self.regular_nodes(held.nodes(matrices)).border(coefficients);
+        let n_free = held.coordinates.free().len();
+        let mounted = held.mount.iter().flatten().map(|&(i, _)| i);
+        let nodes: Vec<usize> = mounted.filter(|&i| i < n_free).map(|i| i / 3).collect();
+        let factor = self.factor_bordered(coefficients, border, &nodes);
+        let (solver, responses) = factor.map_err(|source| RingError::Solver {
+            side: held.name,
+            source,
+        })?;
+        let mount = MountColumns::new(&solver, &held.mount, held.coordinates.n());
+        // The border of S is the mount of a clamped bore.
+        let border_inverse = held.is_bordered().then(|| {
+            DenseCholesky::factor(held.mount.len(), &mount.compliance)
+                .expect("the shaft's compliance is positive definite")
+                .inverse()
+        });
+        Ok(CyclicFactor {
+            solver,
+            responses,
+            mount,
+            border_inverse,
+        })
+    }
+
+    /// Factors c_M M + c_K K with the dense border (column-major `[n_free][m]`) and corner (row-major). The partner touches the free
+    /// nodes `mounted`.
+    fn factor_bordered(
+        &self,
+        coefficients: [f64; 2],
+        [border, corner]: [Vec<f64>; 2],
+        mounted: &[usize],
+    ) -> Result<(CyclicBordered, Responses), SolverError> {
+        let [mass, stiffness] = coefficients;
+        let sectors = &self.held.sectors;
+        let effective = sectors.stiffness.combined(stiffness, mass, &sectors.mass)?;
+        let factor = sectors.ring.factor(&effective)?;
+        let mut solver = CyclicBordered::new(factor, &border, corner.len().isqrt(), &corner)?;
+        if let Some(seen) = &self.held.seen {
+            solver = solver.seen_at(seen);
+        }
+        let (n, ring) = (solver.inner().n(), solver.inner().ring());
+        let change = self.defect.as_ref().map(|d| d.changes.of(coefficients));
+        let change = change.transpose()?;
+        // Section nodes of the raceway, then others of the defect.
+        let raceway = &self.held.raceway;
+        let mut chosen = raceway.clone();
+        if let Some(change) = &change {
+            let nodes = change.rows.iter().filter(|&&row| row < n).map(|row| row / 3);
+            let of_defect = ring.section_nodes(nodes).into_iter();
+            chosen.extend(of_defect.filter(|node| !raceway.contains(node)));
+        }
+        let all = ResponseTable::new(solver.inner(), &chosen);
+        let [met, touched] =
+            [raceway, &chosen].map(|nodes| ring.section_part(nodes, mounted.iter().copied()));
+        let answer = |change: solver::cyclic::Change| -> Result<DefectFactor, SolverError> {
+            let free: Vec<usize> = change.rows.iter().copied().filter(|&row| row < n).collect();
+            Ok(DefectFactor {
+                answer: Defect::new(&solver, &all, &change)?,
+                responses: RowResponses::new(&all, raceway.len(), &free),
+            })
+        };
+        let defect = change.map(answer).transpose()?;
+        let table = match &defect {
+            Some(_) => all.first(raceway.len()),
+            None => all,
+        };
+        let responses = Responses {
+            met,
+            touched,
+            table,
+            defect,
+        };
+        Ok((solver, responses))
+    }
+}

@@ -1,0 +1,42 @@
+//! One elastic ring: its matrices, how it is held, and its linear solvers behind one border.
+//!
+//! A ring is made once ([`elastic_body`]) and factored for a scheme of steps; a step meets the world at its ports, the contacts and the
+//! mount ([`step`]). Whether one sparse factor, sectors or harmonics solve it is nobody's business outside.
+//! This crate does no input or output and knows no balls.
+
+pub mod body;
+pub mod coordinates;
+pub mod division;
+pub mod error;
+mod harmonic;
+pub mod integrator;
+pub mod inventory;
+mod matrices;
+pub mod memory;
+pub mod model;
+pub mod modes;
+mod nodal;
+pub mod pool;
+pub mod prepared;
+pub mod rank_memory;
+mod settling;
+pub mod sparse;
+pub mod state;
+pub mod statics;
+pub mod step;
+pub mod stress;
+pub mod substructures;
+pub mod support;
+pub mod vectors;
+
+pub use body::{BodySettings, ElasticBody, Frame, HeldRing, Partner, RingShape, elastic_body};
+pub use error::RingError;
+pub use integrator::Integrator;
+pub use inventory::Inventory;
+pub use model::{Backend, Hold, NodeMasses, RACEWAY_GROUP, RingModel, Sectors};
+pub use solver::SolverError;
+pub use state::RingState;
+pub use step::{
+    ElasticStep, End, Ended, FrameTurn, Known, KnownLoad, PortAnswer, PortForces, Settling, StepFactor,
+    StepScheme, Works,
+};

@@ -1,0 +1,255 @@
+//! Stiffness and mass of a ring in its coordinates: of a periodic ring through one sector, of one in sectors as their sum, of any
+//! other as sparse matrices.
+//!
+//! Coordinates y and nodal values w = T y: K acts as T^T K T. Cost of a product: of a periodic ring 9 multiplications and
+//! additions per coupling of nodes with weights in the cache; else one reading of the matrix from memory.
+
+use mesh::NodePositions;
+use solver::CyclicStencil;
+use solver::{LinearSolver, SolverError, Symbolic};
+use sprs::CsMat;
+
+use crate::coordinates::Coordinates;
+use crate::error::RingError;
+use crate::harmonic::defect::RingDefect;
+use crate::model::RingModel;
+use crate::sparse::{elimination_order, kronecker, node_product, product};
+use crate::substructures::Substructures;
+use crate::vectors::dot;
+
+/// K and M of one ring.
+pub trait NodalMatrices: Send + Sync {
+    /// Number of matrices: K and M, whole, of one sector, or of each sector on this rank.
+    fn n_matrices(&self) -> usize;
+
+    /// K x of coordinates, `[n]`.
+    fn stiffness_product(&self, coordinates: &Coordinates, x: &[f64]) -> Vec<f64>;
+
+    /// M of a nodal field, `[n_nodes][3]` flat.
+    fn nodal_mass_product(&self, field: &[f64]) -> Vec<f64>;
+
+    /// M x of coordinates, `[n]`.
+    fn mass_product(&self, coordinates: &Coordinates, x: &[f64]) -> Vec<f64> {
+        coordinates.reduce(&self.nodal_mass_product(&coordinates.expand(x)))
+    }
+
+    /// M a + K b of coordinates, `[n]`.
+    fn sum_of_products(&self, coordinates: &Coordinates, a: &[f64], b: &[f64]) -> Vec<f64> {
+        let mut sum = self.mass_product(coordinates, a);
+        let k = self.stiffness_product(coordinates, b);
+        sum.iter_mut().zip(&k).for_each(|(m, k)| *m += k);
+        sum
+    }
+
+    /// v M v / 2 and w K w / 2, J.
+    fn energies(&self, coordinates: &Coordinates, v: &[f64], w: &[f64]) -> [f64; 2] {
+        [
+            0.5 * dot(v, &self.mass_product(coordinates, v)),
+            0.5 * dot(w, &self.stiffness_product(coordinates, w)),
+        ]
+    }
+}
+
+/// Which of the two matrices.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Matrix {
+    /// M.
+    Mass,
+    /// K.
+    Stiffness,
+}
+
+/// Matrices of a ring that is not periodic, one each.
+pub struct SparseMatrices {
+    /// K of the coordinates.
+    stiffness: CsMat<f64>,
+    /// Mass between nodes.
+    node_mass: CsMat<f64>,
+}
+
+/// Matrices of a periodic ring: blocks of one sector of the whole ring.
+pub struct Stencils {
+    /// K.
+    pub stiffness: Box<CyclicStencil>,
+    /// M.
+    pub mass: Box<CyclicStencil>,
+    /// What a defect adds.
+    pub defect: Option<Box<RingDefect>>,
+}
+
+impl SparseMatrices {
+    /// Assembles the ring.
+    pub fn new(
+        ring: &RingModel,
+        side: &'static str,
+        coordinates: &Coordinates,
+    ) -> Result<SparseMatrices, RingError> {
+        let fem_error = |source| RingError::Fem { side, source };
+        let mesh = &ring.mesh;
+        let stiffness = fem::assemble_stiffness(mesh, &ring.material).map_err(fem_error)?;
+        let pattern = fem::Pattern::new(mesh).map_err(fem_error)?;
+        Ok(SparseMatrices {
+            stiffness: coordinates.reduce_matrix(&stiffness),
+            node_mass: fem::assemble_node_mass(&pattern, mesh, &ring.material).map_err(fem_error)?,
+        })
+    }
+
+    /// Analysis of c_M M + c_K K.
+    pub fn analyse(&self, ring: &RingModel, coordinates: &Coordinates) -> Result<Symbolic, SolverError> {
+        let mut order = elimination_order(&ring.mesh, coordinates.free());
+        order.extend(coordinates.free().len()..coordinates.n());
+        let mass = coordinates.reduce_matrix(&kronecker(&self.node_mass));
+        Symbolic::new(&(&mass + &self.stiffness), &order)
+    }
+
+    /// Factor of c_M M + c_K K.
+    pub fn factor(
+        &self,
+        symbolic: &Symbolic,
+        coordinates: &Coordinates,
+        [c_mass, c_stiffness]: [f64; 2],
+    ) -> Result<Box<dyn LinearSolver>, SolverError> {
+        let mass = coordinates.reduce_matrix(&kronecker(&self.node_mass));
+        let effective = &mass.map(|x| c_mass * x) + &self.stiffness.map(|x| c_stiffness * x);
+        drop(mass);
+        Ok(Box::new(symbolic.factor(&effective)?))
+    }
+}
+
+impl NodalMatrices for SparseMatrices {
+    fn n_matrices(&self) -> usize {
+        2
+    }
+
+    fn stiffness_product(&self, _: &Coordinates, x: &[f64]) -> Vec<f64> {
+        product(&self.stiffness, x)
+    }
+
+    fn nodal_mass_product(&self, field: &[f64]) -> Vec<f64> {
+        node_product(&self.node_mass, field)
+    }
+}
+
+impl NodalMatrices for Substructures {
+    fn n_matrices(&self) -> usize {
+        2 * self.n_own()
+    }
+
+    fn stiffness_product(&self, coordinates: &Coordinates, x: &[f64]) -> Vec<f64> {
+        coordinates.reduce(&self.nodal_stiffness_product(&coordinates.expand(x)))
+    }
+
+    fn nodal_mass_product(&self, field: &[f64]) -> Vec<f64> {
+        self.nodal_mass_products(field)
+    }
+}
+
+impl NodalMatrices for Stencils {
+    fn n_matrices(&self) -> usize {
+        2
+    }
+
+    fn stiffness_product(&self, coordinates: &Coordinates, x: &[f64]) -> Vec<f64> {
+        let x = coordinates.expand(x);
+        let mut product = self.stiffness.apply(&x);
+        if let Some(defect) = &self.defect {
+            defect.add_stiffness_product(&x, &mut product);
+        }
+        coordinates.reduce(&product)
+    }
+
+    fn nodal_mass_product(&self, field: &[f64]) -> Vec<f64> {
+        let mut product = self.mass.apply(field);
+        if let Some(defect) = &self.defect {
+            defect.add_mass_product(field, &mut product);
+        }
+        product
+    }
+
+    fn sum_of_products(&self, coordinates: &Coordinates, a: &[f64], b: &[f64]) -> Vec<f64> {
+        let ring = self.mass.ring();
+        let mut lines = vec![0.0; ring.lines_len()];
+        let mut sum = vec![0.0; self.mass.product_len()];
+        let [a, b] = [a, b].map(|x| coordinates.expand(x));
+        for (operator, x) in [(&self.mass, &a), (&self.stiffness, &b)] {
+            ring.to_lines(x, &mut lines);
+            operator.add_product(&lines, &mut sum);
+        }
+        let mut nodal = vec![0.0; coordinates.expanded()];
+        ring.add_from_lines(&sum, &mut nodal);
+        if let Some(defect) = &self.defect {
+            defect.add_mass_product(&a, &mut nodal);
+            defect.add_stiffness_product(&b, &mut nodal);
+        }
+        coordinates.reduce(&nodal)
+    }
+
+    fn energies(&self, coordinates: &Coordinates, v: &[f64], w: &[f64]) -> [f64; 2] {
+        let square = |operator: &CyclicStencil, x: &[f64]| {
+            let ring = operator.ring();
+            let mut lines = vec![0.0; ring.lines_len()];
+            ring.to_lines(x, &mut lines);
+            let mut product = vec![0.0; operator.product_len()];
+            operator.add_product(&lines, &mut product);
+            operator.lines_dot(&lines, &product)
+        };
+        let [v, w] = [v, w].map(|x| coordinates.expand(x));
+        let (mut kinetic, mut strain) =
+            rayon::join(|| square(&self.mass, &v), || square(&self.stiffness, &w));
+        if let Some(defect) = &self.defect {
+            kinetic += defect.mass_square(&v);
+            strain += defect.stiffness_square(&w);
+        }
+        [0.5 * kinetic, 0.5 * strain]
+    }
+}
+
+/// A ring's matrices between nodes, from which harmonics take what the dofs of its partner add.
+#[derive(Clone, Copy)]
+pub(crate) struct Nodes<'a> {
+    pub coordinates: &'a Coordinates,
+    pub matrices: &'a dyn NodalMatrices,
+    /// m, `[n_nodes][3]` flat.
+    pub positions: &'a NodePositions,
+}
+
+impl Nodes<'_> {
+    /// Columns of c_M M + c_K K that belong to the shaft dofs: the rows of the free dofs, column-major, and those of the
+    /// shaft, row-major.
+    pub fn border(&self, [cm, ck]: [f64; 2]) -> [Vec<f64>; 2] {
+        let (n_free, n) = (self.coordinates.free().len(), self.coordinates.n());
+        let (mut border, mut corner) = (Vec::new(), Vec::new());
+        for k in n_free..n {
+            let [m, k] = [cm, ck].map(|c| self.unit(k, c));
+            let column = self.matrices.sum_of_products(self.coordinates, &m, &k);
+            border.extend_from_slice(&column[..n_free]);
+            corner.extend_from_slice(&column[n_free..]);
+        }
+        [border, corner]
+    }
+
+    /// Generalised loads M P x and M J x of the node positions x, with P u = (u_x, u_y, 0) and J u = (u_y, -u_x, 0).
+    pub fn inertia_of_positions(&self) -> [Vec<f64>; 2] {
+        self.inertia_of(self.positions.as_flattened())
+    }
+
+    /// The same of the motion of the held nodes with a dof of the shaft.
+    pub fn inertia_of_shaft(&self, k: usize) -> [Vec<f64>; 2] {
+        let n_free = self.coordinates.free().len();
+        self.inertia_of(&self.coordinates.expand(&self.unit(n_free + k, 1.0)))
+    }
+
+    fn inertia_of(&self, u: &[f64]) -> [Vec<f64>; 2] {
+        let load = |field: Vec<f64>| self.coordinates.reduce(&self.matrices.nodal_mass_product(&field));
+        let own = u.chunks_exact(3).flat_map(|u| [u[0], u[1], 0.0]);
+        let turned = u.chunks_exact(3).flat_map(|u| [u[1], -u[0], 0.0]);
+        [load(own.collect()), load(turned.collect())]
+    }
+
+    /// Coordinates that are zero but for one.
+    fn unit(&self, index: usize, value: f64) -> Vec<f64> {
+        let mut unit = vec![0.0; self.coordinates.n()];
+        unit[index] = value;
+        unit
+    }
+}

@@ -1,0 +1,208 @@
+//! A step of a ring whose vectors are coordinates.
+
+use std::sync::Arc;
+use std::time::Instant;
+
+use contact::NodalWeights;
+
+use super::{Columns, NodalBody, NodalSolver, Ports, measure};
+use crate::body::{ElasticBody, frame_load};
+use crate::pool::PooledVector;
+use crate::settling::{Change, FrameRounds};
+use crate::state::RingState;
+use crate::step::{
+    AnswerSeconds, ElasticStep, End, Ended, FrameTurn, Known, KnownLoad, PortAnswer, PortForces, Settling,
+    StepFactor, StepScheme, Works,
+};
+use crate::vectors::{add, combined, dot, sum};
+
+/// The factor of one ring at one step size.
+pub(super) struct NodalFactor<S: NodalSolver> {
+    body: Arc<NodalBody<S>>,
+    columns: S::Columns,
+    scheme: StepScheme,
+}
+
+/// A step under way.
+struct NodalStep<'a, S: NodalSolver> {
+    factor: &'a NodalFactor<S>,
+    old: &'a RingState,
+    known: Arc<Known>,
+    ports: Ports,
+    predictor: <S::Columns as Columns>::Predictor,
+    answer: PortAnswer,
+    seconds: AnswerSeconds,
+    /// Inertia of the turning frame that acts.
+    inertia: Option<(FrameTurn, Arc<PooledVector>)>,
+    rounds: FrameRounds,
+    /// The increment, once the inertia fits it.
+    increment: Option<Vec<f64>>,
+}
+
+impl<S: NodalSolver> NodalFactor<S> {
+    pub fn new(body: Arc<NodalBody<S>>, columns: S::Columns, scheme: StepScheme) -> NodalFactor<S> {
+        NodalFactor {
+            body,
+            columns,
+            scheme,
+        }
+    }
+
+    /// f - K w0 + M (history) + C (history), the right-hand side of S dw.
+    fn right_side(&self, state: &RingState, load: Option<&[f64]>) -> Vec<f64> {
+        let held = &self.body.held;
+        let [m, k] = held.history(self.scheme);
+        let (v, a) = (state.velocity(), state.acceleration());
+        let inertial = combined(m, v, a);
+        let mut elastic = combined(k, v, a);
+        let terms = elastic.iter_mut().zip(state.displacement());
+        terms.for_each(|(c, w)| *c -= w);
+        let matrices = self.body.solver.matrices();
+        let mut side = matrices.sum_of_products(&held.coordinates, &inertial, &elastic);
+        if let Some(load) = load {
+            add(&mut side, load);
+        }
+        side
+    }
+
+    /// Inertia of the turning frame at the weighted time of a step with an increment, or in which the velocity stays.
+    fn frame_load(&self, turn: FrameTurn, old: &RingState, dw: Option<&[f64]>) -> Vec<f64> {
+        let within = old.within(self.scheme, dw);
+        frame_load(&self.body.held, self.body.solver.matrices(), turn, within)
+    }
+}
+
+impl<S: NodalSolver> StepFactor for NodalFactor<S> {
+    fn bytes(&self) -> usize {
+        self.columns.bytes()
+    }
+
+    fn iterations(&self) -> Option<usize> {
+        self.columns.iterations()
+    }
+
+    fn predict(&self, from: &RingState, load: KnownLoad) -> Known {
+        let guess = |turn| Arc::new(self.frame_load(turn, from, None).into());
+        Known {
+            of: from.stamp().clone(),
+            inertia: load.turn.map(guess),
+            load,
+            solved: None,
+            rows: None,
+        }
+    }
+
+    fn begin<'a>(
+        &'a self,
+        from: &'a RingState,
+        known: Arc<Known>,
+        contacts: &[NodalWeights],
+    ) -> Box<dyn ElasticStep + 'a> {
+        let clock = Instant::now();
+        let held = &self.body.held;
+        let ports = Ports::new(held, contacts);
+        let load = match (known.load.load.as_deref(), known.inertia.as_deref()) {
+            (Some(load), Some(f)) => Some(combined([1.0; 2], load, f)),
+            (load, f) => load.or(f.map(|f| &**f)).map(<[f64]>::to_vec),
+        };
+        let side = self.right_side(from, load.as_deref());
+        let start = measure(&ports.all(held), from.displacement());
+        let right_side = clock.elapsed().as_secs_f64();
+        let (predictor, moved) = self.columns.begin(held, side, &ports);
+        let turn = known.load.turn;
+        Box::new(NodalStep {
+            factor: self,
+            old: from,
+            answer: PortAnswer {
+                predicted: sum(&start, &moved.predicted),
+                start,
+                compliance: moved.compliance,
+            },
+            seconds: AnswerSeconds {
+                right_side,
+                solve: clock.elapsed().as_secs_f64() - right_side,
+                table: 0.0,
+            },
+            inertia: turn.zip(known.inertia.clone()),
+            rounds: FrameRounds::new(turn, self.scheme.dt, held.coordinates.n()),
+            increment: None,
+            predictor,
+            ports,
+            known,
+        })
+    }
+}
+
+impl<S: NodalSolver> NodalStep<'_, S> {
+    fn increment(&self, forces: PortForces<'_>) -> Vec<f64> {
+        let (columns, held) = (&self.factor.columns, &self.factor.body.held);
+        columns.increment(held, &self.predictor, &self.ports, forces)
+    }
+}
+
+impl<S: NodalSolver> ElasticStep for NodalStep<'_, S> {
+    fn answer(&self) -> &PortAnswer {
+        &self.answer
+    }
+
+    fn seconds(&self) -> AnswerSeconds {
+        self.seconds
+    }
+
+    fn move_contacts(&mut self, contacts: &[NodalWeights]) -> AnswerSeconds {
+        let clock = Instant::now();
+        let held = &self.factor.body.held;
+        self.ports = Ports::new(held, contacts);
+        let start = measure(&self.ports.all(held), self.old.displacement());
+        let moved = self
+            .factor
+            .columns
+            .move_contacts(held, &mut self.predictor, &self.ports);
+        self.answer = PortAnswer {
+            predicted: sum(&start, &moved.predicted),
+            start,
+            compliance: moved.compliance,
+        };
+        AnswerSeconds::of_contacts(S::Columns::BY_TABLE, clock.elapsed().as_secs_f64())
+    }
+
+    fn at_contacts(&self, x: &[f64]) -> Vec<f64> {
+        measure(&self.ports.contacts.iter().collect::<Vec<_>>(), x)
+    }
+
+    fn settle(&mut self, forces: PortForces<'_>, scale: f64) -> Settling {
+        let Some((turn, used)) = &self.inertia else {
+            return Settling::Settled;
+        };
+        let dw = self.increment(forces);
+        let new = self.factor.frame_load(*turn, self.old, Some(&dw));
+        let change = combined([1.0, -1.0], &new, used);
+        let [square, new_square] = [&change, &new].map(|x| dot(x, x));
+        if self.rounds.is_settled(&Change { square, new_square }, scale) {
+            self.increment = Some(dw);
+            return Settling::Settled;
+        }
+        let (columns, held) = (&self.factor.columns, &self.factor.body.held);
+        let moved = columns.add_load(held, &mut self.predictor, change, &self.ports);
+        let answers = self.answer.predicted.iter_mut().zip(&moved);
+        answers.for_each(|(p, d)| *p += d);
+        self.inertia = Some((*turn, Arc::new(new.into())));
+        Settling::Again
+    }
+
+    fn end(&mut self, forces: PortForces<'_>, _: f64, next: Option<KnownLoad>) -> End {
+        let dw = self.increment.take().unwrap_or_else(|| self.increment(forces));
+        let work = |load: &[f64]| dot(load, &dw);
+        let works = Works {
+            load: self.known.load.load.as_deref().map_or(0.0, work),
+            frame: self.inertia.as_ref().map_or(0.0, |(_, f)| work(f)),
+        };
+        let state = self.old.advanced(self.factor.scheme, &dw);
+        End::Done(Box::new(Ended {
+            energies: self.factor.body.energies(&state),
+            next: next.map(|load| self.factor.predict(&state, load)),
+            state,
+            works,
+        }))
+    }
+}

@@ -1,0 +1,199 @@
+//! The border between an elastic ring and whoever moves it: one implicit step in time.
+//!
+//! A factor belongs to one scheme and step size, S = c_M M + c_C C + c_K K. A step of it meets the world at its *ports*: two directions
+//! of every contact, then the functionals of the mount. At these the ring answers
+//! ```text
+//! g(end) = predicted + compliance F
+//! ```
+//! and nothing else of it is seen until the forces F are known. The steps of a run follow each other:
+//! ```text
+//! predict     S^-1 of what is known before the contacts          (the end of the step before does it, where it can)
+//! begin       start, predicted and compliance at the ports
+//! move_contacts   the same with contacts elsewhere; the predictor stays
+//! settle      inertia of a turning frame that fits the motion; Again: the ports answer anew
+//! end         the new state under the forces; Again as above
+//! ```
+//! Every method of a ring that ranks share is collective, so ranks call them in the same order.
+
+use std::sync::Arc;
+
+use contact::NodalWeights;
+
+use crate::harmonic::space_defect::RowValues;
+use crate::integrator::Integrator;
+use crate::pool::PooledVector;
+use crate::state::{RingState, Stamp};
+
+/// Turning of a ring's frame about z.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FrameTurn {
+    /// Speed, rad/s.
+    pub speed: f64,
+    /// Acceleration, rad/s^2.
+    pub acceleration: f64,
+}
+
+/// A scheme and its step size.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StepScheme {
+    /// The scheme.
+    pub integrator: Integrator,
+    /// Step size, s.
+    pub dt: f64,
+}
+
+/// What acts on a ring in a step and does not wait for its contacts.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct KnownLoad {
+    /// Generalised load, a vector of the body.
+    pub load: Option<Vec<f64>>,
+    /// Turning of its frame, where its inertia acts.
+    pub turn: Option<FrameTurn>,
+}
+
+/// A [`KnownLoad`] and what was found of it ahead of the step: half a solve, a first guess of the inertia of the frame. No part of the
+/// state: found anew it has the same bits.
+#[derive(Debug)]
+pub struct Known {
+    pub(crate) of: Stamp,
+    pub(crate) load: KnownLoad,
+    /// First guess of the inertia of the frame: the velocity stays.
+    pub(crate) inertia: Option<Arc<PooledVector>>,
+    /// Of a ring in harmonic space, the first half of S^-1 of its right-hand side.
+    pub(crate) solved: Option<Arc<PooledVector>>,
+    /// Values of the state on the rows of a defect.
+    pub(crate) rows: Option<Arc<RowValues>>,
+}
+
+impl Known {
+    /// Whether it was found from this state.
+    pub fn is_of(&self, state: &RingState) -> bool {
+        self.of == *state.stamp()
+    }
+}
+
+/// Forces at the ports.
+#[derive(Clone, Copy, Debug)]
+pub struct PortForces<'a> {
+    /// On the two directions of every contact, N, `[2 n_contacts]`.
+    pub contacts: &'a [f64],
+    /// On the functionals of the mount, N and N m.
+    pub mount: &'a [f64],
+}
+
+/// A ring over one step as its ports see it, contacts, then mount.
+#[derive(Clone, Debug, Default)]
+pub struct PortAnswer {
+    /// Values at the start of the step, m and rad.
+    pub start: Vec<f64>,
+    /// Values at its end without forces.
+    pub predicted: Vec<f64>,
+    /// Growth of the values at the end with the forces, row-major, SI.
+    pub compliance: Vec<f64>,
+}
+
+/// Wall time of the answer at the ports, s.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct AnswerSeconds {
+    /// Right-hand side of the predictor.
+    pub right_side: f64,
+    /// Block solve.
+    pub solve: f64,
+    /// What a table of responses says of the contacts.
+    pub table: f64,
+}
+
+/// Whether a round leaves the answer at the ports as it was.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Settling {
+    /// It does.
+    Settled,
+    /// It does not: the forces are to be found again.
+    Again,
+}
+
+/// How a step ends.
+pub enum End {
+    /// With this state.
+    Done(Box<Ended>),
+    /// Not yet: the inertia of the frame has changed, and the forces are to be found again.
+    Again,
+}
+
+/// The end of a step.
+pub struct Ended {
+    /// The state at its end.
+    pub state: RingState,
+    /// Work of the loads in the step.
+    pub works: Works,
+    /// Kinetic and strain energy at its end, J.
+    pub energies: [f64; 2],
+    /// What the next step begins with, where it was asked for.
+    pub next: Option<Known>,
+}
+
+/// Works in a step, J.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Works {
+    /// Of the known load.
+    pub load: f64,
+    /// Of the inertia of the turning frame.
+    pub frame: f64,
+}
+
+/// A factored effective matrix: steps of one scheme and size.
+pub trait StepFactor: Send + Sync {
+    /// Bytes of the factor and of what belongs to it.
+    fn bytes(&self) -> usize;
+
+    /// Of a ring with a defect, see [`solver::cyclic::Defect::iterations`].
+    fn iterations(&self) -> Option<usize>;
+
+    /// What is found of a known load before the contacts, from a state.
+    fn predict(&self, from: &RingState, load: KnownLoad) -> Known;
+
+    /// A step from a state, with what was found of its known load, and contacts at these places.
+    fn begin<'a>(
+        &'a self,
+        from: &'a RingState,
+        known: Arc<Known>,
+        contacts: &[NodalWeights],
+    ) -> Box<dyn ElasticStep + 'a>;
+}
+
+/// A step of a ring under way.
+pub trait ElasticStep: Send {
+    /// What its ports see.
+    fn answer(&self) -> &PortAnswer;
+
+    /// Wall time of the answer that [`StepFactor::begin`] gave.
+    fn seconds(&self) -> AnswerSeconds;
+
+    /// Moves the contacts to other places; says of what kind the work was.
+    fn move_contacts(&mut self, contacts: &[NodalWeights]) -> AnswerSeconds;
+
+    /// Values of a vector of the body at the contacts, `[2 n_contacts]`.
+    fn at_contacts(&self, x: &[f64]) -> Vec<f64>;
+
+    /// One round for the inertia of the turning frame under these forces; `scale` is the largest force of the whole bearing, N.
+    fn settle(&mut self, forces: PortForces<'_>, scale: f64) -> Settling;
+
+    /// Ends the step under these forces. With `next`, looks ahead to a step of the same size under these known loads.
+    fn end(&mut self, forces: PortForces<'_>, scale: f64, next: Option<KnownLoad>) -> End;
+}
+
+impl AnswerSeconds {
+    /// Time to move contacts, by a table or by solves.
+    pub(crate) fn of_contacts(by_table: bool, seconds: f64) -> AnswerSeconds {
+        match by_table {
+            true => AnswerSeconds {
+                table: seconds,
+                ..AnswerSeconds::default()
+            },
+            false => AnswerSeconds {
+                solve: seconds,
+                ..AnswerSeconds::default()
+            },
+        }
+    }
+}
