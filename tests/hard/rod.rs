@@ -108,7 +108,7 @@ impl Rod {
 
     pub fn fly(&self, integrator: Integrator, scheme: ContactScheme, dt: f64, n: usize) -> Flight {
         let settings = BodySettings {
-            partner: Partner::Housing,
+            partner: Partner::AT_REST,
             damping: [0.0; 2],
             backend: Backend::Sparse,
             frame: Frame::Still,

@@ -10,8 +10,6 @@
 
 use std::sync::Arc;
 
-use mesh::Mesh;
-
 use crate::coordinates::Coordinates;
 use crate::division::NodePlaces;
 use crate::error::RingError;
@@ -28,13 +26,43 @@ use crate::step::{FrameTurn, StepFactor, StepScheme};
 use crate::support::mean_motion;
 use crate::vectors::combined;
 
-/// What moves the held surface of a clamped ring.
+/// The rigid body that holds a ring: shaft or housing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Partner {
-    /// A shaft: its five dofs are coordinates of the ring.
-    Shaft,
-    /// A housing at rest.
-    Housing,
+pub struct Partner {
+    /// Which of its dofs x, y, z, tilt x, tilt y move: coordinates of a clamped ring.
+    pub moves: [bool; 5],
+}
+
+impl Partner {
+    /// A shaft, which may move in all of them.
+    pub const SHAFT: Partner = Partner { moves: [true; 5] };
+    /// A housing that does not move.
+    pub const AT_REST: Partner = Partner { moves: [false; 5] };
+
+    /// Dofs that move, ascending.
+    pub fn moving(&self) -> Vec<usize> {
+        (0..5).filter(|&dof| self.moves[dof]).collect()
+    }
+}
+
+/// How a ring is held.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Held {
+    /// How its surface follows.
+    pub hold: Hold,
+    /// What it follows.
+    pub partner: Partner,
+}
+
+impl Held {
+    /// Number of functionals of the mount.
+    pub(crate) fn n_mount(&self) -> usize {
+        match self.hold {
+            Hold::Clamped => self.partner.moving().len(),
+            Hold::MeanMotion => 6,
+            Hold::Free => 0,
+        }
+    }
 }
 
 /// Whether the inertia of a ring's turning frame acts.
@@ -135,13 +163,13 @@ pub fn elastic_body(
     ring: &RingModel,
     settings: BodySettings,
 ) -> Result<Arc<dyn ElasticBody>, RingError> {
-    let (coordinates, mount) = hold(&ring.mesh, settings.partner, ring);
+    let how = Held {
+        hold: ring.hold,
+        partner: settings.partner,
+    };
     let held = HeldRing {
-        name,
-        coordinates,
-        mount,
-        places: ring.places(name, settings.backend)?,
         damping: settings.damping,
+        ..HeldRing::new(name, ring, how, settings.backend)?
     };
     if let Backend::Sector(sectors) = settings.backend {
         return Ok(Arc::new(SectorBody::new(ring, held, sectors)?));
@@ -154,6 +182,23 @@ pub fn elastic_body(
 }
 
 impl HeldRing {
+    /// A ring that is held in this way, without damping.
+    pub(crate) fn new(
+        name: &'static str,
+        ring: &RingModel,
+        how: Held,
+        backend: Backend,
+    ) -> Result<HeldRing, RingError> {
+        let (coordinates, mount) = hold(ring, how);
+        Ok(HeldRing {
+            name,
+            coordinates,
+            mount,
+            places: ring.places(name, backend)?,
+            damping: [0.0; 2],
+        })
+    }
+
     /// Factors of M and K in the effective matrix of a step.
     pub(crate) fn effective(&self, StepScheme { integrator, dt }: StepScheme) -> [f64; 2] {
         let [m, c, k] = integrator.effective(dt);
@@ -304,24 +349,23 @@ pub(crate) fn frame_load(
 }
 
 /// Coordinates and mount of a held ring.
-fn hold(mesh: &Mesh, partner: Partner, ring: &RingModel) -> (Coordinates, Vec<SparseLoad>) {
-    let origin = ring.groove.centre_z;
-    match (ring.hold, partner) {
-        (Hold::Clamped, Partner::Shaft) => {
+fn hold(ring: &RingModel, Held { hold, partner }: Held) -> (Coordinates, Vec<SparseLoad>) {
+    let (mesh, origin) = (&ring.mesh, ring.groove.centre_z);
+    match hold {
+        Hold::Clamped => {
             let held = mesh.group_nodes(ring.held_group);
-            let coordinates = Coordinates::new(mesh, &held, vec![0, 1, 2, 3, 4], origin);
+            let moving = partner.moving();
+            let n_mount = moving.len();
+            let coordinates = Coordinates::new(mesh, &held, moving, origin);
             let first = coordinates.free().len();
-            (coordinates, (0..5).map(|k| vec![(first + k, 1.0)]).collect())
+            let mount = (0..n_mount).map(|k| vec![(first + k, 1.0)]);
+            (coordinates, mount.collect())
         }
-        (Hold::Clamped, Partner::Housing) => {
-            let held = mesh.group_nodes(ring.held_group);
-            (Coordinates::new(mesh, &held, Vec::new(), origin), Vec::new())
-        }
-        (Hold::MeanMotion, _) => {
+        Hold::MeanMotion => {
             let weights = fem::facet_node_weights(mesh, mesh.group(ring.held_group));
             let rows = mean_motion(mesh, weights, origin);
             (Coordinates::new(mesh, &[], Vec::new(), origin), rows.to_vec())
         }
-        (Hold::Free, _) => (Coordinates::new(mesh, &[], Vec::new(), origin), Vec::new()),
+        Hold::Free => (Coordinates::new(mesh, &[], Vec::new(), origin), Vec::new()),
     }
 }

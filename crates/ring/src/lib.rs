@@ -14,7 +14,6 @@ pub mod inventory;
 mod matrices;
 pub mod memory;
 pub mod model;
-pub mod modes;
 mod nodal;
 pub mod pool;
 pub mod prepared;
@@ -28,8 +27,9 @@ pub mod stress;
 pub mod substructures;
 pub mod support;
 pub mod vectors;
+pub mod vibration;
 
-pub use body::{BodySettings, ElasticBody, Frame, HeldRing, Partner, RingShape, elastic_body};
+pub use body::{BodySettings, ElasticBody, Frame, Held, HeldRing, Partner, RingShape, elastic_body};
 pub use error::RingError;
 pub use integrator::Integrator;
 pub use inventory::Inventory;
@@ -40,3 +40,4 @@ pub use step::{
     ElasticStep, End, Ended, FrameTurn, Known, KnownLoad, PortAnswer, PortForces, Settling, StepFactor,
     StepScheme, Works,
 };
+pub use vibration::VibratingRing;

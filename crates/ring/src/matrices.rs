@@ -13,7 +13,7 @@ use crate::coordinates::Coordinates;
 use crate::error::RingError;
 use crate::harmonic::defect::RingDefect;
 use crate::model::RingModel;
-use crate::sparse::{elimination_order, kronecker, node_product, product};
+use crate::sparse::{elimination_order, kronecker, node_product, product, products};
 use crate::substructures::Substructures;
 use crate::vectors::dot;
 
@@ -24,6 +24,14 @@ pub trait NodalMatrices: Send + Sync {
 
     /// K x of coordinates, `[n]`.
     fn stiffness_product(&self, coordinates: &Coordinates, x: &[f64]) -> Vec<f64>;
+
+    /// The same of a block of vectors, column-major `[n][n_vectors]`.
+    fn stiffness_products(&self, coordinates: &Coordinates, x: &[f64], n_vectors: usize) -> Vec<f64> {
+        let columns = x.chunks_exact((x.len() / n_vectors.max(1)).max(1));
+        columns
+            .flat_map(|x| self.stiffness_product(coordinates, x))
+            .collect()
+    }
 
     /// M of a nodal field, `[n_nodes][3]` flat.
     fn nodal_mass_product(&self, field: &[f64]) -> Vec<f64>;
@@ -123,6 +131,10 @@ impl NodalMatrices for SparseMatrices {
 
     fn stiffness_product(&self, _: &Coordinates, x: &[f64]) -> Vec<f64> {
         product(&self.stiffness, x)
+    }
+
+    fn stiffness_products(&self, _: &Coordinates, x: &[f64], n_vectors: usize) -> Vec<f64> {
+        products(&self.stiffness, x, n_vectors)
     }
 
     fn nodal_mass_product(&self, field: &[f64]) -> Vec<f64> {

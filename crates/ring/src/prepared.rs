@@ -6,7 +6,7 @@ use solver::cyclic::{CyclicBordered, CyclicDefect};
 use solver::{LinearSolver, SolverError, Symbolic, Symmetry};
 use sprs::CsMat;
 
-use crate::body::Partner;
+use crate::body::{Held, Partner};
 use crate::coordinates::Coordinates;
 use crate::error::RingError;
 use crate::harmonic::defect_change::Changes;
@@ -133,7 +133,7 @@ impl Prepared {
                     matrix: Matrix::Cyclic(Box::new(Harmonics {
                         symmetry,
                         changes: periodic.defect.as_ref().map(|d| changes(mesh, &held, d)),
-                        motion: periodic.motion_sizes(mesh, &moving, n_mount(partner, ring.hold)),
+                        motion: periodic.motion_sizes(mesh, &moving, Held { hold: ring.hold, partner }.n_mount()),
                         note: periodic.note(),
                         held: periodic.held,
                     })),
@@ -267,15 +267,6 @@ impl Harmonics {
         let factor = CyclicDefect::new(base, &changes.of([0.0, 1.0])?)?;
         let iterations = factor.defect().iterations();
         Ok((Box::new(factor), Some(iterations)))
-    }
-}
-
-/// Functionals of the mount of a ring in motion.
-fn n_mount(partner: Partner, hold: Hold) -> usize {
-    match (hold, partner) {
-        (Hold::Clamped, Partner::Shaft) => 5,
-        (Hold::MeanMotion, _) => 6,
-        (Hold::Clamped, Partner::Housing) | (Hold::Free, _) => 0,
     }
 }
 

@@ -1,6 +1,6 @@
 //! The functionals through which contacts, carried masses and constraints act on rings and small dofs.
 
-use ring::modes::RingBody;
+use ring::VibratingRing;
 use ring::sparse::SparseLoad;
 use ring::vectors::dot;
 
@@ -36,7 +36,7 @@ pub struct Column {
 }
 
 /// The columns of contacts, two each and in pairs, then of carried masses and constraints.
-pub fn columns(rings: &[Option<RingBody>; 2], contacts: &[Contact]) -> Vec<Column> {
+pub fn columns(rings: &[Option<VibratingRing>; 2], contacts: &[Contact]) -> Vec<Column> {
     let mut columns = Vec::new();
     for (c, contact) in contacts.iter().enumerate() {
         for direction in 0..2 {
@@ -71,7 +71,7 @@ pub fn columns(rings: &[Option<RingBody>; 2], contacts: &[Contact]) -> Vec<Colum
 }
 
 /// Orthonormal directions of the constraint forces of a ring, by Gram-Schmidt.
-pub fn reactions(rings: &[Option<RingBody>; 2], columns: &[Column], i: usize) -> Vec<Vec<f64>> {
+pub fn reactions(rings: &[Option<VibratingRing>; 2], columns: &[Column], i: usize) -> Vec<Vec<f64>> {
     let mut directions: Vec<Vec<f64>> = Vec::new();
     let Some(ring) = &rings[i] else {
         return directions;

@@ -37,8 +37,7 @@ use crate::model::{ContactMode, Model, ShaftDof};
 use crate::problem::site_hessian;
 use crate::solution::StaticSolution;
 use columns::Contact;
-use ring::modes::{Partner, RingBody};
-use ring::{Backend, RingModel};
+use ring::{Backend, Partner, RingModel, VibratingRing};
 use system::System;
 
 pub use shape::{Mode, Shape};
@@ -99,9 +98,9 @@ pub fn ring_modes(
     let shift = shift(settings, speed / ring.groove.centre_radius);
     let partner = match support {
         RingSupport::Free => None,
-        RingSupport::AsHeld => Some(Partner::at_rest()),
+        RingSupport::AsHeld => Some((Partner::AT_REST, 0.0)),
     };
-    let body = RingBody::new(side, ring, partner, shift, settings.backend)?;
+    let body = VibratingRing::new(side.name(), ring, partner, shift, settings.backend)?;
     let mut rings = [None, None];
     rings[side.index()] = Some(body);
     let system = System::new(rings, Vec::new(), Vec::new(), shift)?;
@@ -121,13 +120,16 @@ pub fn bearing_modes(
     let speed = (steel.young_modulus / steel.density).sqrt();
     let shift = shift(settings, speed / model.geometry.centre_radius(Side::Inner));
     let free: Vec<usize> = (0..5).filter(|&i| model.shaft[i] == ShaftDof::Free).collect();
+    let shaft = Partner {
+        moves: model.shaft.map(|dof| dof == ShaftDof::Free),
+    };
     let build = |side: Side| {
         let partner = match side {
-            Side::Inner => Partner::new(free.clone(), model.shaft_mass),
-            Side::Outer => Partner::at_rest(),
+            Side::Inner => (shaft, model.shaft_mass),
+            Side::Outer => (Partner::AT_REST, 0.0),
         };
         let ring = model.ring(side);
-        ring.map(|ring| RingBody::new(side, ring, Some(partner), shift, settings.backend))
+        ring.map(|ring| VibratingRing::new(side.name(), ring, Some(partner), shift, settings.backend))
             .transpose()
     };
     let (inner, outer) = rayon::join(|| build(Side::Inner), || build(Side::Outer));
@@ -180,14 +182,14 @@ fn shift(settings: ModesSettings, wave_rate: f64) -> f64 {
 /// Tangents of all contacts and what they connect.
 fn contacts(
     equilibrium: &StaticSolution,
-    rings: &[Option<RingBody>; 2],
+    rings: &[Option<VibratingRing>; 2],
     shaft: &[(usize, usize)],
 ) -> Vec<Contact> {
     let of_site = |site: &crate::problem::Site| {
         let i = site.side.index();
         let weights = rings[i].as_ref().map(|ring| {
             let foot = &equilibrium.footprints(site.side)[site.ball];
-            ring.coordinates.reduce_weights(&foot.weights)
+            ring.held().coordinates.reduce_weights(&foot.weights)
         });
         let small = [0, 1].map(|direction| {
             let mut row = vec![(2 * site.ball + direction, 1.0)];

@@ -83,7 +83,7 @@ impl Shape {
         Shape {
             rings: [0, 1].map(|i| {
                 let ring = system.rings[i].as_ref()?;
-                Some(ring.coordinates.expand(system.part(x, i)))
+                Some(ring.held().coordinates.expand(system.part(x, i)))
             }),
             balls: (0..n_balls).map(|b| [small[2 * b], small[2 * b + 1]]).collect(),
             shaft,

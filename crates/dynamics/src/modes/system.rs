@@ -19,7 +19,7 @@ use dense::{DenseLu, EigenProblem};
 
 use super::columns::{Column, Contact, Role, columns, reactions};
 use crate::error::DynamicsError;
-use ring::modes::RingBody;
+use ring::VibratingRing;
 use ring::sparse::sparse_dot;
 use ring::vectors::dot;
 
@@ -36,7 +36,7 @@ pub(super) struct BearingDofs {
 
 /// The eigenproblem of rings, balls and shaft.
 pub struct System {
-    pub(super) rings: [Option<RingBody>; 2],
+    pub(super) rings: [Option<VibratingRing>; 2],
     /// Masses of the small dofs, kg.
     small_mass: Vec<f64>,
     contacts: Vec<Contact>,
@@ -62,7 +62,7 @@ struct Answer {
 impl System {
     /// A system of rings, small dofs of given masses and contacts.
     pub fn new(
-        rings: [Option<RingBody>; 2],
+        rings: [Option<VibratingRing>; 2],
         small_mass: Vec<f64>,
         contacts: Vec<Contact>,
         shift: f64,
@@ -103,7 +103,7 @@ impl System {
 
     /// First unknowns of the rings, of the small dofs, and their number.
     pub(super) fn starts(&self) -> [usize; 4] {
-        let [inner, outer] = [0, 1].map(|i| self.rings[i].as_ref().map_or(0, RingBody::n));
+        let [inner, outer] = [0, 1].map(|i| self.rings[i].as_ref().map_or(0, VibratingRing::n));
         [0, inner, inner + outer, inner + outer + self.small_mass.len()]
     }
 
@@ -119,13 +119,7 @@ impl System {
         for (i, ring) in self.rings.iter().enumerate() {
             if let Some(ring) = ring {
                 let y = self.part(y, i);
-                let motion = ring.partner_motion(y);
-                let clamped = ring.moving.iter().filter(|dof| **dof < 3);
-                let carried = clamped
-                    .map(|&dof| ring.partner_mass * motion[dof].powi(2))
-                    .sum::<f64>();
-                parts[i] = dot(y, &ring.mass(y, 1)) - carried;
-                parts[3] += carried;
+                parts[i] = dot(y, &ring.mass(y, 1));
                 for (load, mass) in &ring.lumps {
                     parts[3] += mass * sparse_dot(load, y).powi(2);
                 }
@@ -248,7 +242,7 @@ impl System {
     fn ring_products(
         &self,
         x: &[f64],
-        product: impl Fn(&RingBody, Vec<f64>) -> Vec<f64> + Sync,
+        product: impl Fn(&VibratingRing, Vec<f64>) -> Vec<f64> + Sync,
         small: impl Fn(usize) -> f64,
     ) -> Vec<f64> {
         let starts = self.starts();

@@ -289,7 +289,7 @@ impl<'a> Motion<'a> {
 /// What holds a ring.
 pub(crate) fn partner(side: Side) -> Partner {
     match side {
-        Side::Inner => Partner::Shaft,
-        Side::Outer => Partner::Housing,
+        Side::Inner => Partner::SHAFT,
+        Side::Outer => Partner::AT_REST,
     }
 }

@@ -118,12 +118,12 @@ impl Harmonics {
         matrices: &dyn NodalMatrices,
         coefficients: [f64; 2],
     ) -> Result<CyclicFactor, RingError> {
-        let border = self.regular_nodes(held.nodes(matrices)).border(coefficients);
-        let n_free = held.coordinates.free().len();
-        let mounted = held.mount.iter().flatten().map(|&(i, _)| i);
-        let nodes: Vec<usize> = mounted.filter(|&i| i < n_free).map(|i| i / 3).collect();
-        let factor = self.factor_bordered(coefficients, border, &nodes);
-        let (solver, responses) = factor.map_err(|source| RingError::Solver {
+        let factored = || -> Result<(CyclicBordered, Responses), SolverError> {
+            let solver = self.bordered(held, matrices, coefficients)?;
+            let responses = self.responses(held, &solver, coefficients)?;
+            Ok((solver, responses))
+        };
+        let (solver, responses) = factored().map_err(|source| RingError::Solver {
             side: held.name,
             source,
         })?;
@@ -142,22 +142,32 @@ impl Harmonics {
         })
     }
 
-    /// Factors c_M M + c_K K with the dense border (column-major `[n_free][m]`) and corner (row-major). The partner touches the free
-    /// nodes `mounted`.
-    fn factor_bordered(
+    /// The factor of c_M M + c_K K with the dofs of the partner as a border, without a defect.
+    pub fn bordered(
         &self,
+        held: &HeldRing,
+        matrices: &dyn NodalMatrices,
         coefficients: [f64; 2],
-        [border, corner]: [Vec<f64>; 2],
-        mounted: &[usize],
-    ) -> Result<(CyclicBordered, Responses), SolverError> {
+    ) -> Result<CyclicBordered, SolverError> {
+        let [border, corner] = self.regular_nodes(held.nodes(matrices)).border(coefficients);
         let [mass, stiffness] = coefficients;
         let sectors = &self.held.sectors;
         let effective = sectors.stiffness.combined(stiffness, mass, &sectors.mass)?;
         let factor = sectors.ring.factor(&effective)?;
-        let mut solver = CyclicBordered::new(factor, &border, corner.len().isqrt(), &corner)?;
-        if let Some(seen) = &self.held.seen {
-            solver = solver.seen_at(seen);
-        }
+        let solver = CyclicBordered::new(factor, &border, corner.len().isqrt(), &corner)?;
+        Ok(match &self.held.seen {
+            Some(seen) => solver.seen_at(seen),
+            None => solver,
+        })
+    }
+
+    /// What contacts, partner and defect need of a factor.
+    fn responses(
+        &self,
+        held: &HeldRing,
+        solver: &CyclicBordered,
+        coefficients: [f64; 2],
+    ) -> Result<Responses, SolverError> {
         let (n, ring) = (solver.inner().n(), solver.inner().ring());
         let change = self.defect.as_ref().map(|d| d.changes.of(coefficients));
         let change = change.transpose()?;
@@ -170,12 +180,15 @@ impl Harmonics {
             chosen.extend(of_defect.filter(|node| !raceway.contains(node)));
         }
         let all = ResponseTable::new(solver.inner(), &chosen);
+        let n_free = held.coordinates.free().len();
+        let mounted = held.mount.iter().flatten().map(|&(i, _)| i);
+        let mounted: Vec<usize> = mounted.filter(|&i| i < n_free).map(|i| i / 3).collect();
         let [met, touched] =
             [raceway, &chosen].map(|nodes| ring.section_part(nodes, mounted.iter().copied()));
         let answer = |change: solver::cyclic::Change| -> Result<DefectFactor, SolverError> {
             let free: Vec<usize> = change.rows.iter().copied().filter(|&row| row < n).collect();
             Ok(DefectFactor {
-                answer: Defect::new(&solver, &all, &change)?,
+                answer: Defect::new(solver, &all, &change)?,
                 responses: RowResponses::new(&all, raceway.len(), &free),
             })
         };
@@ -184,12 +197,11 @@ impl Harmonics {
             Some(_) => all.first(raceway.len()),
             None => all,
         };
-        let responses = Responses {
+        Ok(Responses {
             met,
             touched,
             table,
             defect,
-        };
-        Ok((solver, responses))
+        })
     }
 }

@@ -26,7 +26,7 @@ use crate::error::RingError;
 use crate::model::RingModel;
 use crate::nodal::NodalBody;
 use body::HarmonicBody;
-use harmonics::Harmonics;
+pub(crate) use harmonics::Harmonics;
 use loose::LooseSolver;
 pub use periodic::Periodic;
 use space::HarmonicSpace;
