@@ -202,7 +202,8 @@ fn print_ring(model: &Model, side: Side) -> Result<Option<RingForecast>, Failure
     };
     let mesh = &ring.mesh;
     let prepared = Prepared::new(ring, settings(model, side), Numbers::Pattern).map_err(Failure::solving)?;
-    let memory = prepared.memory;
+    let prepared = prepared.stiffness;
+    let memory = prepared.memory();
     print::line(format_args!(
         "{}    {} {}, {} nodes, {} dofs; Hertz stiffness {stiffness:.4e} N/mm^1.5; factor {:.1} MB, {:.2e} flops, \
          peak {:.1} MB",
@@ -224,7 +225,7 @@ fn print_ring(model: &Model, side: Side) -> Result<Option<RingForecast>, Failure
                 periodicity.deviation(),
                 prepared.note()
             ),
-            Err(_) if prepared.is_cyclic() =>
+            Err(_) if prepared.solver_name() == "cyclic" =>
                 format!("rotationally periodic up to a defect; solver {}", prepared.note()),
             Err(reason) => format!("not rotationally periodic: {reason}"),
         }

@@ -36,7 +36,7 @@ pub use statics::StaticSolver;
 
 // A model and its results are made of rings.
 pub use ring::memory::{MotionSizes, RingMemory, forecast_motion_peak, forecast_peak};
-pub use ring::prepared::{Numbers, Prepared};
+pub use ring::statics::{Numbers, Prepared};
 pub use ring::rank_memory::{RankMemory, Share, forecast_rank_peak};
 pub use ring::stress::{NodalStress, PointStress, SharedStress, StressPlaces};
 pub use ring::substructures::Substructures;

@@ -31,8 +31,7 @@ use crate::problem::{Displacements, Problem, RingResponse, site_forces};
 use crate::raceway::Raceway;
 use crate::solution::{RingFields, StaticSolution};
 use ring::Inventory;
-use ring::prepared::StaticSettings;
-use ring::statics::RingSolver;
+use ring::statics::{RingSolver, StaticSettings};
 use ring::{Backend, RingModel};
 
 /// Contraction of a round above which the columns are renewed.

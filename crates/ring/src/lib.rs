@@ -16,7 +16,6 @@ pub mod memory;
 pub mod model;
 mod nodal;
 pub mod pool;
-pub mod prepared;
 pub mod rank_memory;
 mod settling;
 pub mod sparse;

@@ -3,6 +3,11 @@
 //! A periodic ring is factored harmonic by harmonic from one sector, any other as one sparse matrix. Cost: one factorisation;
 //! then one solve per right-hand side. Displacements are elastic, relative to the rigid partner (see [`crate::support`]).
 
+mod harmonic;
+mod prepared;
+mod sector;
+mod sparse;
+
 use std::time::Instant;
 
 use contact::NodalWeights;
@@ -12,8 +17,12 @@ use crate::error::RingError;
 use crate::inventory::Inventory;
 use crate::memory::RingMemory;
 use crate::model::RingModel;
-use crate::prepared::{FactoredRing, Numbers, Prepared, StaticSettings};
 use crate::support::Support;
+pub use prepared::{HeldStiffness, Numbers, Prepared, StaticSettings};
+
+/// A factor of the free dofs of a ring, and of a ring with a defect the iterations it stands for, see
+/// [`solver::cyclic::Defect::iterations`].
+pub type Factored = Result<(Box<dyn LinearSolver>, Option<usize>), RingError>;
 
 /// Factored stiffness of one ring.
 pub struct RingSolver {
@@ -36,13 +45,10 @@ impl RingSolver {
         let start = Instant::now();
         let prepared = Prepared::new(ring, settings, Numbers::Assembled)?;
         let assembled = start.elapsed().as_secs_f64();
-        let (memory, mut note) = (prepared.memory, prepared.note());
-        let block = prepared.block(settings.n_contacts);
-        let FactoredRing {
-            support,
-            solver: factor,
-            iterations,
-        } = prepared.factor(settings.name, ring)?;
+        let Prepared { support, stiffness } = prepared;
+        let (memory, mut note) = (stiffness.memory(), stiffness.note());
+        let block = stiffness.block(settings.n_contacts);
+        let (factor, iterations) = stiffness.factor(settings.name, ring, &support)?;
         if let Some(iterations) = iterations {
             note.push_str(&iterations_note(iterations));
         }
