@@ -36,8 +36,8 @@ pub use statics::StaticSolver;
 
 // A model and its results are made of rings.
 pub use ring::memory::{MotionSizes, RingMemory, forecast_motion_peak, forecast_peak};
-pub use ring::statics::{Numbers, Prepared};
 pub use ring::rank_memory::{RankMemory, Share, forecast_rank_peak};
+pub use ring::statics::{Numbers, Prepared};
 pub use ring::stress::{NodalStress, PointStress, SharedStress, StressPlaces};
 pub use ring::substructures::Substructures;
 pub use ring::{Backend, Hold, Inventory, NodeMasses, RACEWAY_GROUP, RingError, RingModel, Sectors};

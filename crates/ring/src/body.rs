@@ -13,16 +13,15 @@ use std::sync::Arc;
 use crate::coordinates::Coordinates;
 use crate::division::NodePlaces;
 use crate::error::RingError;
-use crate::harmonic;
 use crate::integrator::Integrator;
+use crate::integrator::StepScheme;
 use crate::inventory::Inventory;
 use crate::matrices::{Matrix, NodalMatrices, Nodes};
 use crate::memory::MotionSizes;
 use crate::model::{Backend, Hold, RingModel};
-use crate::nodal::{SectorBody, SparseBody};
 use crate::sparse::SparseLoad;
 use crate::state::RingState;
-use crate::step::{FrameTurn, StepFactor, StepScheme};
+use crate::step::{FrameTurn, StepFactor};
 use crate::support::mean_motion;
 use crate::vectors::combined;
 
@@ -72,19 +71,6 @@ pub enum Frame {
     Still,
     /// It does.
     Turning,
-}
-
-/// What a body is made with.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct BodySettings {
-    /// What holds it.
-    pub partner: Partner,
-    /// Rayleigh damping: C = damping[0] M + damping[1] K.
-    pub damping: [f64; 2],
-    /// Linear solver.
-    pub backend: Backend,
-    /// Its frame.
-    pub frame: Frame,
 }
 
 /// A ring as it is held and damped.
@@ -155,30 +141,6 @@ pub trait ElasticBody: Send + Sync {
 
     /// The effective matrix of a scheme, factored. Collective.
     fn step_factor(self: Arc<Self>, scheme: StepScheme) -> Result<Box<dyn StepFactor>, RingError>;
-}
-
-/// Assembles a ring and prepares its factorisation with the linear solver that fits it. Collective.
-pub fn elastic_body(
-    name: &'static str,
-    ring: &RingModel,
-    settings: BodySettings,
-) -> Result<Arc<dyn ElasticBody>, RingError> {
-    let how = Held {
-        hold: ring.hold,
-        partner: settings.partner,
-    };
-    let held = HeldRing {
-        damping: settings.damping,
-        ..HeldRing::new(name, ring, how, settings.backend)?
-    };
-    if let Backend::Sector(sectors) = settings.backend {
-        return Ok(Arc::new(SectorBody::new(ring, held, sectors)?));
-    }
-    let held_nodes = held.coordinates.held_nodes();
-    match harmonic::Periodic::new(ring, name, settings.backend, &held_nodes)? {
-        Ok(periodic) => harmonic::body(ring, held, periodic, settings.frame),
-        Err(why) => Ok(Arc::new(SparseBody::new(ring, held, why)?)),
-    }
 }
 
 impl HeldRing {

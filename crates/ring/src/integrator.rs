@@ -39,6 +39,15 @@ pub struct Integrator {
     pub old: [f64; 2],
 }
 
+/// A scheme and its step size.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StepScheme {
+    /// The scheme.
+    pub integrator: Integrator,
+    /// Step size, s.
+    pub dt: f64,
+}
+
 impl Integrator {
     /// Average acceleration in its energy-conserving (midpoint) form: Chung-Hulbert with rho = 1.
     pub fn average_acceleration() -> Integrator {

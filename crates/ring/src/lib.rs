@@ -11,9 +11,11 @@ pub mod error;
 mod harmonic;
 pub mod integrator;
 pub mod inventory;
+mod make;
 mod matrices;
 pub mod memory;
 pub mod model;
+mod mount;
 mod nodal;
 pub mod pool;
 pub mod rank_memory;
@@ -28,15 +30,15 @@ pub mod support;
 pub mod vectors;
 pub mod vibration;
 
-pub use body::{BodySettings, ElasticBody, Frame, Held, HeldRing, Partner, RingShape, elastic_body};
+pub use body::{ElasticBody, Frame, Held, HeldRing, Partner, RingShape};
 pub use error::RingError;
-pub use integrator::Integrator;
+pub use integrator::{Integrator, StepScheme};
 pub use inventory::Inventory;
+pub use make::{BodySettings, elastic_body};
 pub use model::{Backend, Hold, NodeMasses, RACEWAY_GROUP, RingModel, Sectors};
 pub use solver::SolverError;
 pub use state::RingState;
 pub use step::{
-    ElasticStep, End, Ended, FrameTurn, Known, KnownLoad, PortAnswer, PortForces, Settling, StepFactor,
-    StepScheme, Works,
+    ElasticStep, End, Ended, FrameTurn, Known, KnownLoad, PortAnswer, PortForces, Settling, StepFactor, Works,
 };
 pub use vibration::VibratingRing;

@@ -11,7 +11,7 @@ use mesh::{
 };
 use serde::{Deserialize, Serialize};
 
-use crate::division::Division;
+use crate::division::known::Division;
 
 /// Name of the facet group on which balls run.
 pub const RACEWAY_GROUP: &str = "raceway";

@@ -111,3 +111,10 @@ pub(crate) fn elimination_order(mesh: &Mesh, free: &[usize]) -> Vec<usize> {
     let nodes = solver::angular_dissection(&mesh.nodes, &mesh.connectivity, mesh.kind.n_nodes());
     solver::restrict_order(&solver::expand(&nodes, 3), free)
 }
+
+/// Writes sparse loads into zeroed columns.
+pub(crate) fn fill(columns: &mut [f64], loads: &[SparseLoad], n: usize) {
+    for (column, load) in columns.chunks_exact_mut(n).zip(loads) {
+        load.iter().for_each(|&(i, value)| column[i] = value);
+    }
+}

@@ -4,8 +4,8 @@ use std::sync::Arc;
 
 use rayon::prelude::*;
 
+use crate::integrator::StepScheme;
 use crate::pool::PooledVector;
-use crate::step::StepScheme;
 use crate::vectors::TASK;
 
 /// Tells a state from others: what was found from a state belongs to it as long as the stamps are the same. A copy of a state, which
@@ -118,6 +118,10 @@ impl RingState {
         RingState::new(w, v, a)
     }
 }
+
+/// Values of displacement, velocity and acceleration on the rows of a defect.
+#[derive(Clone, Debug)]
+pub(crate) struct RowValues(pub [Vec<f64>; 3]);
 
 /// Displacement and velocity at the weighted time of a step from `[w0, v0, a0]` with the increment `dw`, or at which the velocity stays.
 pub(crate) fn within_part(

@@ -19,10 +19,8 @@ use std::sync::Arc;
 
 use contact::NodalWeights;
 
-use crate::harmonic::space_defect::RowValues;
-use crate::integrator::Integrator;
 use crate::pool::PooledVector;
-use crate::state::{RingState, Stamp};
+use crate::state::{RingState, RowValues, Stamp};
 
 /// Turning of a ring's frame about z.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -31,15 +29,6 @@ pub struct FrameTurn {
     pub speed: f64,
     /// Acceleration, rad/s^2.
     pub acceleration: f64,
-}
-
-/// A scheme and its step size.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct StepScheme {
-    /// The scheme.
-    pub integrator: Integrator,
-    /// Step size, s.
-    pub dt: f64,
 }
 
 /// What acts on a ring in a step and does not wait for its contacts.

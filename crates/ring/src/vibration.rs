@@ -6,9 +6,10 @@
 
 use solver::LinearSolver;
 
-use crate::body::{HeldRing, Partner, Held};
+use crate::body::{Held, HeldRing, Partner};
 use crate::error::RingError;
-use crate::harmonic::{Harmonics, Periodic};
+use crate::harmonic::harmonics::Harmonics;
+use crate::harmonic::periodic::Periodic;
 use crate::matrices::{NodalMatrices, SparseMatrices};
 use crate::model::{Backend, Hold, RingModel};
 use crate::sparse::{SparseLoad, sparse_dot};
@@ -45,7 +46,9 @@ impl VibratingRing {
             match Periodic::for_modes(ring, name, backend, &held.coordinates.held_nodes())? {
                 Ok(periodic) => {
                     let (harmonics, stencils) = Harmonics::new(ring, &held, periodic)?;
-                    let factor = harmonics.bordered(&held, &stencils, coefficients).map_err(error)?;
+                    let factor = harmonics
+                        .bordered(&held, &stencils, coefficients)
+                        .map_err(error)?;
                     (Box::new(stencils), Box::new(factor))
                 }
                 Err(_) => {
@@ -67,11 +70,16 @@ impl VibratingRing {
             }
         };
         let constraints = match hold {
-            Hold::MeanMotion => (0..6).filter(|&dof| dof == 5 || !of.moves[dof]).filter_map(of_mount).collect(),
+            Hold::MeanMotion => (0..6)
+                .filter(|&dof| dof == 5 || !of.moves[dof])
+                .filter_map(of_mount)
+                .collect(),
             Hold::Clamped | Hold::Free => Vec::new(),
         };
         let carries = |dof: &usize| mass > 0.0 && of.moves[*dof];
-        let lumps = (0..3).filter(carries).filter_map(|dof| Some((motions[dof].clone()?, mass)));
+        let lumps = (0..3)
+            .filter(carries)
+            .filter_map(|dof| Some((motions[dof].clone()?, mass)));
         Ok(VibratingRing {
             lumps: lumps.collect(),
             constraints,

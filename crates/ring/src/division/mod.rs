@@ -5,6 +5,7 @@
 //! them; then it keeps its own only. What is a field or an integral over the ring is made by sector ([`NodePlaces`]). Cost: one message per
 //! rank, 12 bytes per element node and 28 per node of its part.
 
+pub mod known;
 mod part;
 mod places;
 
@@ -16,19 +17,9 @@ use solver::{SectorCut, default_sectors};
 
 use crate::error::RingError;
 use crate::model::{Backend, RingModel, Sectors};
+use known::Division;
 use part::RingPart;
 pub use places::NodePlaces;
-
-/// What a rank knows of a mesh that is divided.
-#[derive(Debug)]
-pub struct Division {
-    /// Nodes of all sectors, and elements of those that this rank owns by their numbers in the mesh it keeps.
-    cut: SectorCut,
-    /// Number of elements of each sector.
-    lengths: Vec<usize>,
-    /// Elements of each sector by their numbers in the ring, on rank 0; empty on others.
-    elements: Vec<Vec<u32>>,
-}
 
 /// Nodes or elements of all sectors by their numbers in the ring.
 pub struct SectorLists {

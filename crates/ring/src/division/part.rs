@@ -7,7 +7,7 @@ use mesh::{ElementKind, Facet, Mesh, NodePositions};
 use serde::{Deserialize, Serialize};
 use solver::SectorCut;
 
-use super::Division;
+use super::known::Division;
 use crate::model::{NodeMasses, RACEWAY_GROUP, RingModel};
 
 /// Part of a mesh, with node numbers of the ring and its own element numbers.

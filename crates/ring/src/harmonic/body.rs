@@ -2,31 +2,16 @@
 
 use std::sync::Arc;
 
-use super::harmonics::Harmonics;
-use super::space::{HarmonicSpace, from_harmonics, to_harmonics};
+use super::harmonics::HarmonicBody;
+use super::space::{from_harmonics, to_harmonics};
 use super::step::HarmonicFactor;
 use crate::body::{ElasticBody, HeldRing, RingShape};
 use crate::error::RingError;
-use crate::matrices::{Matrix, NodalMatrices, Nodes, Stencils};
+use crate::integrator::StepScheme;
+use crate::matrices::{Matrix, NodalMatrices};
 use crate::memory::MotionSizes;
 use crate::state::RingState;
-use crate::step::{StepFactor, StepScheme};
-
-/// A ring in harmonic space.
-pub(crate) struct HarmonicBody {
-    pub held: HeldRing,
-    /// Matrices in nodal coordinates.
-    pub stencils: Stencils,
-    pub harmonics: Harmonics,
-    pub space: HarmonicSpace,
-}
-
-impl HarmonicBody {
-    /// The nodes whose matrices act on its vectors.
-    pub(super) fn nodes(&self) -> Nodes<'_> {
-        self.harmonics.regular_nodes(self.held.nodes(&self.stencils))
-    }
-}
+use crate::step::StepFactor;
 
 impl ElasticBody for HarmonicBody {
     fn held(&self) -> &HeldRing {

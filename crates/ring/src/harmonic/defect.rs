@@ -10,7 +10,7 @@ use sprs::CsMat;
 
 use crate::coordinates::Coordinates;
 use crate::error::RingError;
-use crate::harmonic::defect_change::Changes;
+use crate::harmonic::defect_change::{Changes, Patch};
 use crate::harmonic::regular::RegularRing;
 use crate::model::RingModel;
 use crate::sparse::{node_product, product};
@@ -30,16 +30,6 @@ pub struct RingDefect {
     change: [CsMat<f64>; 2],
     note: String,
     bytes: usize,
-}
-
-/// Elements of the defect.
-pub(crate) struct Patch {
-    /// Positions of the nodes, m.
-    pub positions: Vec<[f64; 3]>,
-    /// `[3 n][3 n]`.
-    pub stiffness: CsMat<f64>,
-    /// Mass between nodes, `[n][n]`.
-    pub node_mass: CsMat<f64>,
 }
 
 impl RingDefect {
@@ -158,25 +148,6 @@ impl RingDefect {
     /// What it changes in the matrices of the coordinates of the true and of the regular ring.
     pub fn changes(&self, coordinates: &Coordinates, regular: &Coordinates) -> Changes {
         Changes::new(&self.nodes, &self.patches, coordinates, regular)
-    }
-}
-
-impl Patch {
-    fn new(part: Mesh, ring: &RingModel) -> Result<Patch, fem::FemError> {
-        let n = part.n_nodes();
-        if part.connectivity.is_empty() {
-            return Ok(Patch {
-                positions: part.nodes.to_vec(),
-                stiffness: CsMat::zero((3 * n, 3 * n)),
-                node_mass: CsMat::zero((n, n)),
-            });
-        }
-        let pattern = fem::Pattern::new(&part)?;
-        Ok(Patch {
-            stiffness: fem::assemble_stiffness(&part, &ring.material)?,
-            node_mass: fem::assemble_node_mass(&pattern, &part, &ring.material)?,
-            positions: part.nodes.to_vec(),
-        })
     }
 }
 

@@ -7,11 +7,23 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use mesh::Mesh;
 use solver::SolverError;
 use solver::cyclic::Change;
+use sprs::CsMat;
 
 use crate::coordinates::Coordinates;
-use crate::harmonic::defect::Patch;
+use crate::model::RingModel;
+
+/// Elements of the defect.
+pub(crate) struct Patch {
+    /// Positions of the nodes, m.
+    pub positions: Vec<[f64; 3]>,
+    /// `[3 n][3 n]`.
+    pub stiffness: CsMat<f64>,
+    /// Mass between nodes, `[n][n]`.
+    pub node_mass: CsMat<f64>,
+}
 
 /// Changes of the matrices of a ring's coordinates.
 pub struct Changes {
@@ -115,6 +127,25 @@ impl Changes {
         let pairs = self.values[0].iter().zip(&self.values[1]);
         let values: Vec<f64> = pairs.map(|(m, k)| mass * m + stiffness * k).collect();
         Change::condensed(self.rows.clone(), self.loose.clone(), &values)
+    }
+}
+
+impl Patch {
+    pub fn new(part: Mesh, ring: &RingModel) -> Result<Patch, fem::FemError> {
+        let n = part.n_nodes();
+        if part.connectivity.is_empty() {
+            return Ok(Patch {
+                positions: part.nodes.to_vec(),
+                stiffness: CsMat::zero((3 * n, 3 * n)),
+                node_mass: CsMat::zero((n, n)),
+            });
+        }
+        let pattern = fem::Pattern::new(&part)?;
+        Ok(Patch {
+            stiffness: fem::assemble_stiffness(&part, &ring.material)?,
+            node_mass: fem::assemble_node_mass(&pattern, &part, &ring.material)?,
+            positions: part.nodes.to_vec(),
+        })
     }
 }
 

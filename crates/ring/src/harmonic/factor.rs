@@ -8,7 +8,7 @@ use solver::cyclic::{CyclicBordered, Defect, Loose, PartHarmonics, ResponseTable
 use solver::{LinearSolver, SectionPart};
 
 use super::defect_step::{DefectFactor, DefectStep};
-use crate::nodal::MountColumns;
+use crate::mount::MountColumns;
 use crate::sparse::SparseLoad;
 use crate::step::PortForces;
 use crate::vectors::add;

@@ -11,13 +11,14 @@ use super::defect_change::Changes;
 use super::defect_step::DefectFactor;
 use super::factor::{CyclicFactor, Responses};
 use super::periodic::{Defective, HeldSectors, Periodic};
+use super::space::HarmonicSpace;
 use crate::body::HeldRing;
 use crate::coordinates::Coordinates;
 use crate::error::RingError;
 use crate::matrices::{NodalMatrices, Nodes, Stencils};
 use crate::memory::MotionSizes;
 use crate::model::RingModel;
-use crate::nodal::MountColumns;
+use crate::mount::MountColumns;
 use dense::DenseCholesky;
 
 /// A periodic ring before S is known.
@@ -28,6 +29,22 @@ pub(crate) struct Harmonics {
     pub note: String,
     /// What its motion holds, but for the mount.
     sizes: MotionSizes,
+}
+
+/// A ring in harmonic space.
+pub(crate) struct HarmonicBody {
+    pub held: HeldRing,
+    /// Matrices in nodal coordinates.
+    pub stencils: Stencils,
+    pub harmonics: Harmonics,
+    pub space: HarmonicSpace,
+}
+
+impl HarmonicBody {
+    /// The nodes whose matrices act on its vectors.
+    pub(super) fn nodes(&self) -> Nodes<'_> {
+        self.harmonics.regular_nodes(self.held.nodes(&self.stencils))
+    }
 }
 
 /// What a defect makes of a periodic ring before S is known.

@@ -11,7 +11,7 @@ use crate::body::HeldRing;
 use crate::error::RingError;
 use crate::matrices::{NodalMatrices, Stencils};
 use crate::memory::MotionSizes;
-use crate::nodal::{Columns, Moved, NodalSolver, Ports};
+use crate::nodal::columns::{Columns, Moved, NodalSolver, Ports};
 use crate::step::PortForces;
 use crate::vectors::add;
 

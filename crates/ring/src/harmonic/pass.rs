@@ -19,12 +19,12 @@ use solver::cyclic::PartHarmonics;
 
 use super::factor::CyclicFactor;
 use super::space::HarmonicSpace;
-use super::space_defect::RowValues;
+use crate::integrator::StepScheme;
 use crate::matrices::Nodes;
 use crate::pool::PooledVector;
 use crate::settling::Change;
-use crate::state::{RingState, advance_part};
-use crate::step::{FrameTurn, KnownLoad, StepScheme};
+use crate::state::{RingState, RowValues, advance_part};
+use crate::step::{FrameTurn, KnownLoad};
 use crate::vectors;
 use parts::Parts;
 

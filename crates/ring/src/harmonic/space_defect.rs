@@ -24,7 +24,7 @@ use super::defect_change::Changes;
 use super::periodic::HeldSectors;
 use crate::matrices::{Matrix, Nodes};
 use crate::sparse::product;
-use crate::state::RingState;
+use crate::state::{RingState, RowValues};
 use crate::step::FrameTurn;
 use crate::vectors::{add, dot};
 
@@ -71,10 +71,6 @@ pub(super) struct Terms {
     /// Of M and K in the effective matrix.
     pub effective: [f64; 2],
 }
-
-/// Values of displacement, velocity and acceleration on the rows of a defect.
-#[derive(Clone, Debug)]
-pub(crate) struct RowValues(pub [Vec<f64>; 3]);
 
 impl SpaceDefect {
     /// The defect that changes the matrices of the regular ring `held` by `changes`. None when the true ring has rows that the regular

@@ -7,19 +7,20 @@ use std::time::Instant;
 
 use contact::NodalWeights;
 
-use super::body::HarmonicBody;
 use super::defect_step::{DefectFactor, DefectStep};
 use super::factor::CyclicFactor;
+use super::harmonics::HarmonicBody;
 use super::pass::{Acting, Increment, Pass, Turned};
-use super::space_defect::{RowValues, SpaceDefect, Terms};
+use super::space_defect::{SpaceDefect, Terms};
 use super::touch::Meeting;
-use crate::nodal::{Moved, Ports};
+use crate::integrator::StepScheme;
+use crate::nodal::columns::{Moved, Ports};
 use crate::pool::PooledVector;
 use crate::settling::FrameRounds;
-use crate::state::{RingState, within_part};
+use crate::state::{RingState, RowValues, within_part};
 use crate::step::{
     AnswerSeconds, ElasticStep, End, Ended, FrameTurn, Known, KnownLoad, PortAnswer, PortForces, Settling,
-    StepFactor, StepScheme, Works,
+    StepFactor, Works,
 };
 use crate::vectors::{add, combined, dot, sum};
 

@@ -7,7 +7,7 @@ use solver::cyclic::Patch;
 use super::defect_step::{DefectFactor, DefectStep};
 use super::factor::CyclicFactor;
 use crate::body::HeldRing;
-use crate::nodal::{Moved, Ports};
+use crate::nodal::columns::{Moved, Ports};
 use crate::sparse::{SparseLoad, sparse_dot};
 use crate::vectors::dot;
 

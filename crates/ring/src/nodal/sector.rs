@@ -4,8 +4,8 @@ use std::sync::Arc;
 
 use solver::SectorBordered;
 
+use super::columns::{Columns, Moved, NodalBody, NodalSolver, Ports, column_compliance};
 use super::sector_columns::{Motions, SectorFactor, StepColumns};
-use super::{Columns, Moved, NodalBody, NodalSolver, Ports, column_compliance};
 use crate::body::HeldRing;
 use crate::error::RingError;
 use crate::matrices::NodalMatrices;

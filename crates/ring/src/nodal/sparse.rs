@@ -2,12 +2,13 @@
 
 use solver::{LinearSolver, Symbolic};
 
-use super::{Columns, Moved, NodalBody, NodalSolver, Ports, column_compliance, measure};
+use super::columns::{Columns, Moved, NodalBody, NodalSolver, Ports, column_compliance, measure};
 use crate::body::HeldRing;
 use crate::error::RingError;
 use crate::matrices::{NodalMatrices, SparseMatrices};
 use crate::model::RingModel;
-use crate::sparse::{SparseLoad, sparse_dot};
+use crate::mount::MountColumns;
+use crate::sparse::{fill, sparse_dot};
 use crate::step::PortForces;
 
 /// A ring with one sparse factor.
@@ -24,14 +25,6 @@ pub struct SparseSolver {
 pub struct SparseColumns {
     factor: Box<dyn LinearSolver>,
     mount: MountColumns,
-}
-
-/// S^-1 times the functionals of the mount.
-pub(crate) struct MountColumns {
-    /// Column-major `[n][n_mount]`.
-    pub columns: Vec<f64>,
-    /// Their values at the functionals, row-major.
-    pub compliance: Vec<f64>,
 }
 
 impl SparseBody {
@@ -52,21 +45,6 @@ impl SparseBody {
             },
             held,
         })
-    }
-}
-
-impl MountColumns {
-    /// Those of a factor of n rows.
-    pub fn new(factor: &dyn LinearSolver, mount: &[SparseLoad], n: usize) -> MountColumns {
-        let m = mount.len();
-        let mut columns = vec![0.0; n * m];
-        fill(&mut columns, mount, n);
-        factor.solve(&mut columns, m);
-        let entry = |k: usize| sparse_dot(&mount[k / m], &columns[n * (k % m)..n * (k % m + 1)]);
-        MountColumns {
-            compliance: (0..m * m).map(entry).collect(),
-            columns,
-        }
     }
 }
 
@@ -159,12 +137,5 @@ impl Columns for SparseColumns {
             }
         }
         dw
-    }
-}
-
-/// Writes sparse loads into zeroed columns.
-fn fill(columns: &mut [f64], loads: &[SparseLoad], n: usize) {
-    for (column, load) in columns.chunks_exact_mut(n).zip(loads) {
-        load.iter().for_each(|&(i, value)| column[i] = value);
     }
 }

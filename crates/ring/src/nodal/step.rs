@@ -5,14 +5,15 @@ use std::time::Instant;
 
 use contact::NodalWeights;
 
-use super::{Columns, NodalBody, NodalSolver, Ports, measure};
+use super::columns::{Columns, NodalBody, NodalSolver, Ports, measure};
 use crate::body::{ElasticBody, frame_load};
+use crate::integrator::StepScheme;
 use crate::pool::PooledVector;
 use crate::settling::{Change, FrameRounds};
 use crate::state::RingState;
 use crate::step::{
     AnswerSeconds, ElasticStep, End, Ended, FrameTurn, Known, KnownLoad, PortAnswer, PortForces, Settling,
-    StepFactor, StepScheme, Works,
+    StepFactor, Works,
 };
 use crate::vectors::{add, combined, dot, sum};
 

@@ -1,17 +1,15 @@
 //! Stiffness of a periodic ring: one sector.
 
+use ::solver::cyclic::{CyclicBordered, CyclicDefect};
+use ::solver::{LinearSolver, SolverError, Symmetry};
 use mesh::Mesh;
-use solver::cyclic::{CyclicBordered, CyclicDefect};
-use solver::{LinearSolver, SolverError, Symmetry};
 
-use super::prepared::HeldStiffness;
-use super::{Factored, named};
+use super::stiffness::{Factored, HeldStiffness, named};
 use crate::body::Held;
 use crate::coordinates::Coordinates;
 use crate::error::RingError;
-use crate::harmonic::Periodic;
 use crate::harmonic::defect_change::Changes;
-use crate::harmonic::periodic::{Defective, HeldSectors};
+use crate::harmonic::periodic::{Defective, HeldSectors, Periodic};
 use crate::memory::{MotionSizes, RingMemory};
 use crate::model::{Hold, RingModel};
 use crate::support::Support;

@@ -1,9 +1,8 @@
 //! Stiffness of a ring in sectors cut by angle.
 
-use solver::LinearSolver;
+use ::solver::LinearSolver;
 
-use super::prepared::{HeldStiffness, Numbers};
-use super::{Factored, named};
+use super::stiffness::{Factored, HeldStiffness, Numbers, named};
 use crate::error::RingError;
 use crate::memory::RingMemory;
 use crate::model::{RingModel, Sectors};

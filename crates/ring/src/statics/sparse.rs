@@ -1,10 +1,9 @@
 //! Stiffness of a ring with one sparse factor.
 
-use solver::{LinearSolver, Symbolic};
+use ::solver::{LinearSolver, Symbolic};
 use sprs::CsMat;
 
-use super::prepared::{HeldStiffness, Numbers};
-use super::{Factored, named};
+use super::stiffness::{Factored, HeldStiffness, Numbers, named};
 use crate::error::RingError;
 use crate::memory::RingMemory;
 use crate::model::RingModel;

@@ -3,9 +3,8 @@
 //! Both are the same to round-off. The second needs the nodes of all elements of a class in the same order, as in a revolved mesh.
 
 use fem::StressRecovery;
-use solver::cyclic::PointStencil;
 
-use super::sector::point_operator;
+use super::sector::{SectorOperator, point_operator};
 use crate::error::RingError;
 use crate::model::{Backend, RingModel};
 
@@ -13,13 +12,6 @@ use crate::model::{Backend, RingModel};
 pub struct PointStress {
     recovery: StressRecovery,
     sectors: Option<SectorOperator>,
-}
-
-/// Weights of one sector.
-pub(crate) struct SectorOperator {
-    pub operator: PointStencil,
-    /// Class and first node of every element.
-    pub elements: Vec<[usize; 2]>,
 }
 
 impl PointStress {

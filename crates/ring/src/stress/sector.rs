@@ -2,12 +2,19 @@
 
 use fem::StressRecovery;
 use mesh::Periodicity;
+use solver::cyclic::PointStencil;
 use solver::{CyclicRing, CyclicStencil};
 
-use super::point::SectorOperator;
 use crate::error::RingError;
 use crate::harmonic::periodic::{Sectors, couplings, usable};
 use crate::model::RingModel;
+
+/// Weights of one sector.
+pub(crate) struct SectorOperator {
+    pub operator: PointStencil,
+    /// Class and first node of every element.
+    pub elements: Vec<[usize; 2]>,
+}
 
 /// The operator of the stress at the nodes, Pa, of a ring that harmonics can solve; None of any other.
 pub(crate) fn stress_operator(

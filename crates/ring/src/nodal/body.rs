@@ -1,0 +1,81 @@
+//! A ring whose vectors are coordinates, whatever solves it.
+
+use std::sync::Arc;
+
+use super::columns::{NodalBody, NodalSolver};
+use super::step::NodalFactor;
+use crate::body::{ElasticBody, HeldRing, RingShape};
+use crate::error::RingError;
+use crate::integrator::StepScheme;
+use crate::matrices::{Matrix, NodalMatrices};
+use crate::memory::MotionSizes;
+use crate::state::RingState;
+use crate::step::StepFactor;
+use crate::vectors::dot;
+
+impl<S: NodalSolver> ElasticBody for NodalBody<S> {
+    fn held(&self) -> &HeldRing {
+        &self.held
+    }
+
+    fn matrices(&self) -> &dyn NodalMatrices {
+        self.solver.matrices()
+    }
+
+    fn solver_name(&self) -> &'static str {
+        self.solver.name()
+    }
+
+    fn solver_note(&self) -> String {
+        self.solver.note()
+    }
+
+    fn sizes(&self) -> Option<MotionSizes> {
+        self.solver.sizes(&self.held)
+    }
+
+    fn shape(&self) -> RingShape {
+        RingShape {
+            length: self.held.coordinates.n(),
+            kind: "coordinates",
+        }
+    }
+
+    fn of_coordinates(&self, y: Vec<f64>) -> Vec<f64> {
+        y
+    }
+
+    fn state_of_coordinates(&self, y: Vec<f64>) -> Vec<f64> {
+        y
+    }
+
+    fn coordinates(&self, x: &[f64]) -> Vec<f64> {
+        x.to_vec()
+    }
+
+    fn nodal(&self, x: &[f64]) -> Vec<f64> {
+        self.held.coordinates.expand(x)
+    }
+
+    fn nodal_at(&self, x: &[f64], _: &[usize]) -> Vec<f64> {
+        self.nodal(x)
+    }
+
+    fn form(&self, matrix: Matrix, a: &[f64], b: &[f64]) -> f64 {
+        let (matrices, coordinates) = (self.solver.matrices(), &self.held.coordinates);
+        match matrix {
+            Matrix::Mass => dot(a, &matrices.mass_product(coordinates, b)),
+            Matrix::Stiffness => dot(a, &matrices.stiffness_product(coordinates, b)),
+        }
+    }
+
+    fn energies(&self, state: &RingState) -> [f64; 2] {
+        let matrices = self.solver.matrices();
+        matrices.energies(&self.held.coordinates, state.velocity(), state.displacement())
+    }
+
+    fn step_factor(self: Arc<Self>, scheme: StepScheme) -> Result<Box<dyn StepFactor>, RingError> {
+        let columns = self.solver.factor(&self.held, self.held.effective(scheme))?;
+        Ok(Box::new(NodalFactor::new(self, columns, scheme)))
+    }
+}

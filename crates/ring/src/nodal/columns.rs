@@ -1,0 +1,150 @@
+//! What the steps of a ring in coordinates ask of its linear solver: a predictor and columns of the contacts.
+
+use contact::NodalWeights;
+
+use crate::body::HeldRing;
+use crate::error::RingError;
+use crate::matrices::NodalMatrices;
+use crate::memory::MotionSizes;
+use crate::sparse::{SparseLoad, sparse_dot};
+use crate::step::PortForces;
+
+/// A ring and what solves it.
+pub struct NodalBody<S> {
+    pub(crate) held: HeldRing,
+    pub(crate) solver: S,
+}
+
+/// The linear solver of a ring before its step size is known.
+pub(crate) trait NodalSolver: Send + Sync + 'static {
+    /// What it makes for one step size.
+    type Columns: Columns;
+
+    fn matrices(&self) -> &dyn NodalMatrices;
+    fn name(&self) -> &'static str;
+    fn note(&self) -> String;
+
+    /// What a motion holds, where that is known.
+    fn sizes(&self, _: &HeldRing) -> Option<MotionSizes> {
+        None
+    }
+
+    /// The factor of c_M M + c_K K.
+    fn factor(&self, held: &HeldRing, coefficients: [f64; 2]) -> Result<Self::Columns, RingError>;
+}
+
+/// A factored effective matrix: its answers at the ports of a step.
+pub(crate) trait Columns: Send + Sync {
+    /// The increment without forces, and what unit forces add.
+    type Predictor: Send;
+
+    /// Whether contacts move without a solve.
+    const BY_TABLE: bool;
+
+    fn bytes(&self) -> usize;
+
+    /// Of a ring with a defect, see [`solver::cyclic::Defect::iterations`].
+    fn iterations(&self) -> Option<usize> {
+        None
+    }
+
+    /// The predictor under a right-hand side, `[n]`, and what ports see of it.
+    fn begin(&self, held: &HeldRing, side: Vec<f64>, ports: &Ports) -> (Self::Predictor, Moved);
+
+    /// What the ports see when the contacts lie elsewhere.
+    fn move_contacts(&self, held: &HeldRing, predictor: &mut Self::Predictor, ports: &Ports) -> Moved;
+
+    /// Adds a load, `[n]`, to the predictor; one solve. What the ports see more of it.
+    fn add_load(
+        &self,
+        held: &HeldRing,
+        predictor: &mut Self::Predictor,
+        load: Vec<f64>,
+        ports: &Ports,
+    ) -> Vec<f64>;
+
+    /// The increment under forces at the ports, `[n]`.
+    fn increment(
+        &self,
+        held: &HeldRing,
+        predictor: &Self::Predictor,
+        ports: &Ports,
+        forces: PortForces<'_>,
+    ) -> Vec<f64>;
+}
+
+/// What the ports of a step are.
+pub(crate) struct Ports {
+    /// Places of the contacts.
+    pub places: Vec<NodalWeights>,
+    /// Functionals of the contacts, two each.
+    pub contacts: Vec<SparseLoad>,
+}
+
+/// What the ports see.
+pub(crate) struct Moved {
+    /// Motion without forces.
+    pub predicted: Vec<f64>,
+    /// Compliance, row-major.
+    pub compliance: Vec<f64>,
+}
+
+impl Ports {
+    pub fn new(held: &HeldRing, places: &[NodalWeights]) -> Ports {
+        Ports {
+            contacts: held.coordinates.of_contacts(places),
+            places: places.to_vec(),
+        }
+    }
+
+    /// Functionals of contacts, then mount.
+    pub fn all<'a>(&'a self, held: &'a HeldRing) -> Vec<&'a SparseLoad> {
+        self.contacts.iter().chain(&held.mount).collect()
+    }
+
+    /// Generalised loads of forces at the ports, index and value.
+    pub fn loads<'a>(
+        &'a self,
+        held: &'a HeldRing,
+        forces: PortForces<'a>,
+    ) -> impl Iterator<Item = (usize, f64)> + 'a {
+        acting(&self.contacts, &held.mount, forces)
+    }
+}
+
+/// Generalised loads of forces on contacts and mount, index and value.
+pub(crate) fn acting<'a>(
+    contacts: &'a [SparseLoad],
+    mount: &'a [SparseLoad],
+    forces: PortForces<'a>,
+) -> impl Iterator<Item = (usize, f64)> + 'a {
+    let contacts = contacts.iter().zip(forces.contacts);
+    let all = contacts.chain(mount.iter().zip(forces.mount));
+    all.flat_map(|(functional, f)| functional.iter().map(move |&(i, w)| (i, f * w)))
+}
+
+/// Compliance of `size` ports, of which the first `contacts` are those of contacts, exactly symmetric, from the `motion(i, j)` of port i
+/// under a unit force on contact j and the mount's own compliance.
+pub(super) fn column_compliance(
+    [size, contacts]: [usize; 2],
+    mount: &[f64],
+    motion: impl Fn(usize, usize) -> f64,
+) -> Vec<f64> {
+    let mut compliance = vec![0.0; size * size];
+    for i in 0..size {
+        for j in 0..=i {
+            let value = if j < contacts {
+                motion(i, j)
+            } else {
+                mount[(size - contacts) * (i - contacts) + j - contacts]
+            };
+            (compliance[size * i + j], compliance[size * j + i]) = (value, value);
+        }
+    }
+    compliance
+}
+
+/// Values of functionals of coordinates.
+pub(super) fn measure(functionals: &[&SparseLoad], x: &[f64]) -> Vec<f64> {
+    functionals.iter().map(|g| sparse_dot(g, x)).collect()
+}
