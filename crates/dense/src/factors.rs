@@ -71,8 +71,8 @@ impl DenseCholesky {
     }
 }
 
-/// L in place of the lower triangle of a symmetric positive definite matrix. The error names the row at which elimination breaks
-/// down.
+/// L in place of the lower triangle of a symmetric positive definite matrix. The error names the row at which
+/// elimination breaks down.
 pub fn cholesky_in_place(mut matrix: MatMut<'_, f64>) -> Result<(), DenseError> {
     let n = matrix.nrows();
     let request = llt::factor::cholesky_in_place_scratch::<f64>(n, Par::Seq, Default::default());

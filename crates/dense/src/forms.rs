@@ -36,8 +36,8 @@ pub fn update(n: usize, g: &[f64], d: &[f64]) -> Result<Vec<f64>, DenseError> {
     Ok((0..n * n).map(symmetric).collect())
 }
 
-/// C^T A^-1 C, row-major `[n][n]`, exactly symmetric, of the symmetric positive definite A, row-major `[m][m]`, and C, row-major
-/// `[m][n]`. Time m^2 (m/3 + n) + m n^2.
+/// C^T A^-1 C, row-major `[n][n]`, exactly symmetric, of the symmetric positive definite A, row-major `[m][m]`, and
+/// C, row-major `[m][n]`. Time m^2 (m/3 + n) + m n^2.
 pub fn inverse_form(m: usize, n: usize, a: &[f64], c: &[f64]) -> Result<Vec<f64>, DenseError> {
     assert_eq!(c.len(), m * n, "{m} rows of {n}");
     let lower = DenseCholesky::factor(m, a)?.into_lower();
@@ -73,7 +73,8 @@ pub fn symmetric_product(a: &[f64], x: &[f64], width: usize) -> Vec<f64> {
     product
 }
 
-/// X^T A X, row-major `[width][width]`, exactly symmetric, of a symmetric A, row-major `[n][n]`, and X, row-major `[n][width]`.
+/// X^T A X, row-major `[width][width]`, exactly symmetric, of a symmetric A, row-major `[n][n]`, and X, row-major
+/// `[n][width]`.
 pub fn symmetric_form(a: &[f64], x: &[f64], width: usize) -> Vec<f64> {
     let (n, product) = (x.len() / width.max(1), symmetric_product(a, x, width));
     let mut form = Mat::<f64>::zeros(width, width);

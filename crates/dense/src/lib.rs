@@ -1,8 +1,8 @@
-//! Dense matrices of up to a few hundred rows: Cholesky and LU factors, symmetric eigenpairs. And the lowest eigenpairs of matrices
-//! that only act ([`eigen`]).
+//! Dense matrices of up to a few hundred rows: Cholesky and LU factors, symmetric eigenpairs. And the lowest
+//! eigenpairs of matrices that only act ([`eigen`]).
 //!
-//! Sequential and deterministic: the same matrix gives the same bits. Matrices are row-major, `a[n * i + j]`; right-hand
-//! sides are column-major, `[n][n_rhs]`.
+//! Sequential and deterministic: the same matrix gives the same bits. Matrices are row-major, `a[n * i + j]`;
+//! right-hand sides are column-major, `[n][n_rhs]`.
 //! ```
 //! use dense::DenseCholesky;
 //! let mut x = vec![6.0, 7.0];

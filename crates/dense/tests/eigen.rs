@@ -29,8 +29,8 @@ fn symmetric_matrices_have_their_eigenpairs() {
     assert_eq!(symmetric_eigen(n, &a), Err(DenseError::EigenNotFinite));
 }
 
-/// Wrong: small entries would cost digits: the thresholds by which the library divides large matrices are absolute. A power of two times the matrix
-/// has that times the values and the same vectors, bit for bit.
+/// Wrong: small entries would cost digits: the thresholds by which the library divides large matrices are absolute. A
+/// power of two times the matrix has that times the values and the same vectors, bit for bit.
 #[test]
 fn the_eigenvectors_of_a_matrix_do_not_depend_on_its_unit() {
     let (n, mut numbers) = (200, Numbers::new(9));

@@ -1,12 +1,12 @@
 //! One elastic ring as a moving body: its coordinates, matrices and mount; energies, losses, inertia of its frame.
 //!
-//! **Mount.** The ring's partner (shaft or housing) meets it in a few *functionals* of the coordinates, the rigid motion of
-//! its bore or seat: for a clamped bore the five shaft dofs that carry it, which are coordinates; for a mean-motion
-//! hold the six rows B of the area-weighted rigid motion, w stays free. Forces of the partner act through the same
-//! functionals. A clamped seat has none: its nodes are held.
+//! **Mount.** The ring's partner (shaft or housing) meets it in a few *functionals* of the coordinates, the rigid
+//! motion of its bore or seat: for a clamped bore the five shaft dofs that carry it, which are coordinates; for a
+//! mean-motion hold the six rows B of the area-weighted rigid motion, w stays free. Forces of the partner act through
+//! the same functionals. A clamped seat has none: its nodes are held.
 //!
-//! **Vectors.** Displacements, velocities, loads of a body are vectors of its own kind: coordinates, or harmonics of a periodic
-//! ring. Only the body knows which.
+//! **Vectors.** Displacements, velocities, loads of a body are vectors of its own kind: coordinates, or harmonics of
+//! a periodic ring. Only the body knows which.
 
 use std::sync::Arc;
 
@@ -242,8 +242,8 @@ impl dyn ElasticBody + '_ {
         loss
     }
 
-    /// Energy that the integrator took in a step, J. The balance of the step, M a[1-am] + C v[1-af] + K w[1-af] = f, times dw, is
-    /// the work of f; the numerical dissipation is what of it is neither stored nor lost in C.
+    /// Energy that the integrator took in a step, J. The balance of the step, M a[1-am] + C v[1-af] + K w[1-af] = f,
+    /// times dw, is the work of f; the numerical dissipation is what of it is neither stored nor lost in C.
     pub fn numerical_loss(&self, integrator: Integrator, old: &RingState, new: &RingState) -> f64 {
         if integrator.is_conserving() {
             return 0.0;
@@ -257,8 +257,8 @@ impl dyn ElasticBody + '_ {
             + (0.5 - integrator.alpha_f) * self.form(Matrix::Stiffness, &change, &change)
     }
 
-    /// State of a ring: elastic nodal displacements `[n_dofs]` plus the rigid motion `q`, with the velocity of another rigid motion `rate`,
-    /// both in its own frame.
+    /// State of a ring: elastic nodal displacements `[n_dofs]` plus the rigid motion `q`, with the velocity of
+    /// another rigid motion `rate`, both in its own frame.
     pub fn rigid_state(&self, elastic: &[f64], q: [f64; 5], rate: [f64; 5]) -> RingState {
         let held = self.held();
         let coordinates = &held.coordinates;

@@ -1,8 +1,8 @@
 //! Generalised coordinates of a moving ring: its free nodal dofs, then the shaft dofs that carry its bore.
 //!
-//! All displacements are total, in the ring's own (co-rotating) frame. A clamped bore moves with the shaft: w = R q at its
-//! nodes; held shaft dofs and a clamped seat do not move. y = (w_free, q_free), w = T y, loads T^T f, matrices T^T A T:
-//! symmetric positive definite, with the few dense rows of the shaft last in the elimination order.
+//! All displacements are total, in the ring's own (co-rotating) frame. A clamped bore moves with the shaft: w = R q
+//! at its nodes; held shaft dofs and a clamped seat do not move. y = (w_free, q_free), w = T y, loads T^T f, matrices
+//! T^T A T: symmetric positive definite, with the few dense rows of the shaft last in the elimination order.
 
 use contact::NodalWeights;
 use mesh::Mesh;

@@ -66,7 +66,8 @@ pub enum RingError {
 }
 
 impl RingError {
-    /// Whether the cause is in what a user gave, not in its solution: a surface that holds nothing, an element, too many sectors.
+    /// Whether the cause is in what a user gave, not in its solution: a surface that holds nothing, an element, too
+    /// many sectors.
     pub fn is_of_input(&self) -> bool {
         matches!(
             self,

@@ -2,27 +2,31 @@
 //! doi:10.1115/1.2900803).
 //!
 //! Balance: M a[1-am] + C v[1-af] + K w[1-af] = f, where x[1-s] = (1-s) x1 + s x0; Newmark: w1 = w0 + dt v0 + dt^2
-//! ((1/2-beta) a0 + beta a1), v1 = v0 + dt ((1-gamma) a0 + gamma a1). Contact forces are means
-//! over the step, moved to the weighted time ([`super::contacts`]). With am = af = 1/2, beta = 1/4, gamma = 1/2 this is the midpoint rule, which conserves the energy of a linear body exactly.
+//! ((1/2-beta) a0 + beta a1), v1 = v0 + dt ((1-gamma) a0 + gamma a1). Contact forces are means over the step, moved
+//! to the weighted time ([`super::contacts`]). With am = af = 1/2, beta = 1/4, gamma = 1/2 this is the midpoint rule,
+//! which conserves the energy of a linear body exactly.
 //!
-//! **What the schemes lose.** Newmark with gamma = 1/2 + d > 1/2 is taken in the equivalent form ([`Integrator::newmark`])
+//! **What the schemes lose.** Newmark with gamma = 1/2 + d > 1/2 is taken in the equivalent form
+//! ([`Integrator::newmark`])
 //!
 //! ```text
 //! w1 - w0 = dt (v_mean + k (v1 - v0)),   M (v1 - v0)/dt + K w_mean + e K (w1 - w0) + F + e (F1 - F0) = f
 //! k + e = d,   k e = beta - gamma / 2
 //! ```
 //!
-//! which takes k |v1 - v0|^2 of M, e |w1 - w0|^2 of K and e (F1 - F0) (l1 - l0) of the contacts in a step: never less than nothing,
-//! whatever opens and closes, as long as k and e are not negative, gamma / 2 <= beta <= (gamma + 1/2)^2 / 4. The second-order schemes
-//! remember an acceleration, so the energy itself may rise for a while. With d = af - am, e = 1/2 - af and c = a + M^-1 (K w - f) the
-//! part of a that is not the acceleration of the forces, a linear body loses in the norm
+//! which takes k |v1 - v0|^2 of M, e |w1 - w0|^2 of K and e (F1 - F0) (l1 - l0) of the contacts in a step: never less
+//! than nothing, whatever opens and closes, as long as k and e are not negative, gamma / 2 <= beta <= (gamma + 1/2)^2
+//! / 4. The second-order schemes remember an acceleration, so the energy itself may rise for a while. With d = af -
+//! am, e = 1/2 - af and c = a + M^-1 (K w - f) the part of a that is not the acceleration of the forces, a linear
+//! body loses in the norm
 //!
 //! ```text
 //! E + dt^2 M [ (x - e^2) a^2 / 2 + e v c / dt + e^2 c a + x e c^2 / (2 d) ],   x = (e + d/2)^2
 //! ```
 //!
-//! exactly dt^2 (x / d) |c_mean|^2 of M in a step (checked by a test). For contacts the same holds but for the difference between the mean
-//! of the forces at both ends and the discrete gradient, of second order in the change of the approach.
+//! exactly dt^2 (x / d) |c_mean|^2 of M in a step (checked by a test). For contacts the same holds but for the
+//! difference between the mean of the forces at both ends and the discrete gradient, of second order in the change of
+//! the approach.
 
 /// Parameters of the scheme.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -35,7 +39,8 @@ pub struct Integrator {
     pub beta: f64,
     /// Newmark's gamma.
     pub gamma: f64,
-    /// Share of dt^2 a0 in the displacement, 1/2 - beta, and of dt a0 in the velocity, 1 - gamma; 0 when a is the mean acceleration.
+    /// Share of dt^2 a0 in the displacement, 1/2 - beta, and of dt a0 in the velocity, 1 - gamma; 0 when a is the
+    /// mean acceleration.
     pub old: [f64; 2],
 }
 
@@ -69,10 +74,11 @@ impl Integrator {
         Integrator::second_order(0.0, alpha)
     }
 
-    /// Newmark; second order only for gamma = 1/2, where balance is the mean of the balances at both ends: the same scheme for linear
-    /// bodies, and contacts then exchange exactly the energy that they store. With gamma > 1/2 it is written with the mean
-    /// acceleration of a step, which again changes nothing for linear bodies, and the energy falls monotonically with any
-    /// contacts, for gamma / 2 <= beta <= (gamma + 1/2)^2 / 4. There is no such form for a larger beta: it counts as the largest.
+    /// Newmark; second order only for gamma = 1/2, where balance is the mean of the balances at both ends: the same
+    /// scheme for linear bodies, and contacts then exchange exactly the energy that they store. With gamma > 1/2 it
+    /// is written with the mean acceleration of a step, which again changes nothing for linear bodies, and the energy
+    /// falls monotonically with any contacts, for gamma / 2 <= beta <= (gamma + 1/2)^2 / 4. There is no such form for
+    /// a larger beta: it counts as the largest.
     pub fn newmark(beta: f64, gamma: f64) -> Integrator {
         let excess = gamma - 0.5;
         if excess == 0.0 {
@@ -196,8 +202,8 @@ mod tests {
         }
     }
 
-    /// Wrong: Newmark without numerical damping would be another scheme than average acceleration, and contacts would gain
-    /// energy with it.
+    /// Wrong: Newmark without numerical damping would be another scheme than average acceleration, and contacts would
+    /// gain energy with it.
     #[test]
     fn newmark_without_damping_is_average_acceleration() {
         assert!(Integrator::newmark(0.25, 0.5).is_conserving());
@@ -218,9 +224,9 @@ mod tests {
         (0..n).map(step).collect()
     }
 
-    /// Wrong: damped Newmark would be another scheme than Newmark's. Its recurrence over three displacements,
-    /// (1 + b q) w2 + ((1/2 + g - 2 b) q - 2) w1 + (1 + (1/2 - g + b) q) w0 = 0 with q = (p dt)^2 (Hughes, The Finite Element Method,
-    /// 1987, 9.1), holds to round-off.
+    /// Wrong: damped Newmark would be another scheme than Newmark's. Its recurrence over three displacements, (1 + b
+    /// q) w2 + ((1/2 + g - 2 b) q - 2) w1 + (1 + (1/2 - g + b) q) w0 = 0 with q = (p dt)^2 (Hughes, The Finite
+    /// Element Method, 1987, 9.1), holds to round-off.
     #[test]
     fn damped_newmark_has_newmarks_recurrence() {
         for (beta, gamma) in [
@@ -250,8 +256,8 @@ mod tests {
         }
     }
 
-    /// Wrong: an integrator could feed energy into a linear body, and the norm in which it loses would not be that of the module's text.
-    /// Every step takes exactly dt^2 (x / d) |c_mean|^2, from any start, at any frequency.
+    /// Wrong: an integrator could feed energy into a linear body, and the norm in which it loses would not be that of
+    /// the module's text. Every step takes exactly dt^2 (x / d) |c_mean|^2, from any start, at any frequency.
     #[test]
     fn second_order_schemes_lose_in_their_norm_at_every_step() {
         let schemes = [

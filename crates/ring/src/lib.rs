@@ -1,8 +1,8 @@
 //! One elastic ring: its matrices, how it is held, and its linear solvers behind one border.
 //!
-//! A ring is made once ([`elastic_body`]) and factored for a scheme of steps; a step meets the world at its ports, the contacts and the
-//! mount ([`step`]). Whether one sparse factor, sectors or harmonics solve it is nobody's business outside.
-//! This crate does no input or output and knows no balls.
+//! A ring is made once ([`elastic_body`]) and factored for a scheme of steps; a step meets the world at its ports,
+//! the contacts and the mount ([`step`]). Whether one sparse factor, sectors or harmonics solve it is nobody's
+//! business outside. This crate does no input or output and knows no balls.
 
 pub mod body;
 pub mod coordinates;

@@ -1,8 +1,8 @@
-//! Stiffness and mass of a ring in its coordinates: of a periodic ring through one sector, of one in sectors as their sum, of any
-//! other as sparse matrices.
+//! Stiffness and mass of a ring in its coordinates: of a periodic ring through one sector, of one in sectors as their
+//! sum, of any other as sparse matrices.
 //!
-//! Coordinates y and nodal values w = T y: K acts as T^T K T. Cost of a product: of a periodic ring 9 multiplications and
-//! additions per coupling of nodes with weights in the cache; else one reading of the matrix from memory.
+//! Coordinates y and nodal values w = T y: K acts as T^T K T. Cost of a product: of a periodic ring 9 multiplications
+//! and additions per coupling of nodes with weights in the cache; else one reading of the matrix from memory.
 
 use mesh::NodePositions;
 use solver::CyclicStencil;
@@ -226,8 +226,8 @@ pub(crate) struct Nodes<'a> {
 }
 
 impl Nodes<'_> {
-    /// Columns of c_M M + c_K K that belong to the shaft dofs: the rows of the free dofs, column-major, and those of the
-    /// shaft, row-major.
+    /// Columns of c_M M + c_K K that belong to the shaft dofs: the rows of the free dofs, column-major, and those of
+    /// the shaft, row-major.
     pub fn border(&self, [cm, ck]: [f64; 2]) -> [Vec<f64>; 2] {
         let (n_free, n) = (self.coordinates.free().len(), self.coordinates.n());
         let (mut border, mut corner) = (Vec::new(), Vec::new());

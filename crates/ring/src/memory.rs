@@ -1,7 +1,7 @@
 //! Forecast of the memory of a static run, from sizes known before the first number is factored.
 //!
-//! Bytes of one ring with n nodes, N = 3 n dofs, e elements of p nodes, P node pairs (nnz(K) = 9 P), E stored entries of the
-//! lower triangle of the held K, a factor of F bytes with an analysis of S, and b balls:
+//! Bytes of one ring with n nodes, N = 3 n dofs, e elements of p nodes, P node pairs (nnz(K) = 9 P), E stored entries
+//! of the lower triangle of the held K, a factor of F bytes with an analysis of S, and b balls:
 //!
 //! | phase | bytes | arrays |
 //! |---|---|---|
@@ -17,13 +17,15 @@
 //! glibc returns no freed block below 32 MiB to the system, so they find that memory in use, or in pieces. On larger
 //! rings the forecast is high by as much, a few per cent.
 //!
-//! A periodic ring of n nodes has no matrix: its harmonics' factor takes F bytes, its sites, order and directions 152 n, a
-//! block of 8 columns 77 n each (right-hand sides, harmonics, what the allocator keeps), each coupling of its sector 600 (blocks of K, M, stress).
-//! What its results take fits into what the columns left. For rings in sectors see [`crate::rank_memory`].
+//! A periodic ring of n nodes has no matrix: its harmonics' factor takes F bytes, its sites, order and directions 152
+//! n, a block of 8 columns 77 n each (right-hand sides, harmonics, what the allocator keeps), each coupling of its
+//! sector 600 (blocks of K, M, stress). What its results take fits into what the columns left. For rings in sectors
+//! see [`crate::rank_memory`].
 //!
-//! **Motion** of a periodic ring of n nodes, N sectors and r section nodes in its raceway: factor, table of responses 72 N r^2, 900 per
-//! coupling of a sector, 24 n for each functional of the mount, 1340 n for mesh, sites, states and the vectors of a step, 390 n for each of two
-//! step files that wait to be written. The last three numbers are measured: see `tests/memory.rs`.
+//! **Motion** of a periodic ring of n nodes, N sectors and r section nodes in its raceway: factor, table of responses
+//! 72 N r^2, 900 per coupling of a sector, 24 n for each functional of the mount, 1340 n for mesh, sites, states and
+//! the vectors of a step, 390 n for each of two step files that wait to be written. The last three numbers are
+//! measured: see `tests/memory.rs`.
 //!
 //! The threads need not be in step, and the measured peak is then lower, down to that of one thread.
 
@@ -94,8 +96,8 @@ impl RingMemory {
         }
     }
 
-    /// Forecast for a periodic ring of `n_couplings` couplings per sector, whose harmonics' factor takes `factor` bytes and
-    /// solves blocks of `block` columns: see the module.
+    /// Forecast for a periodic ring of `n_couplings` couplings per sector, whose harmonics' factor takes `factor`
+    /// bytes and solves blocks of `block` columns: see the module.
     pub fn cyclic(mesh: &Mesh, n_couplings: usize, factor: usize, block: usize) -> RingMemory {
         let (n, list) = (mesh.n_nodes(), 8 * mesh.connectivity.len());
         let kept = factor + PERIODICITY_BYTES * n;
@@ -109,8 +111,8 @@ impl RingMemory {
         }
     }
 
-    /// The same for a ring with a defect that takes `bytes`: its factor, made of a table of responses, and stress element by
-    /// element.
+    /// The same for a ring with a defect that takes `bytes`: its factor, made of a table of responses, and stress
+    /// element by element.
     pub fn with_defect(self, mesh: &Mesh, bytes: usize) -> RingMemory {
         let recovery = 240 * mesh.n_nodes()
             + 24 * mesh.connectivity.len()

@@ -1,5 +1,5 @@
-//! Long vectors whose memory is used again. Every step of a ring ends in new ones; memory that is fresh from the system is zeroed page by
-//! page, which takes longer than to fill it.
+//! Long vectors whose memory is used again. Every step of a ring ends in new ones; memory that is fresh from the
+//! system is zeroed page by page, which takes longer than to fill it.
 
 use std::fmt;
 use std::ops::{Deref, DerefMut};

@@ -1,8 +1,8 @@
 //! Forecast of the memory of one rank that shares rings in sectors with others, or of all when it is alone.
 //!
-//! Bytes of one ring with n nodes, N = 3 n dofs, e elements of p nodes, s nodes in the lists of all sectors (n, and those they share again); of
-//! its sectors owned: o elements, k nodes, E stored entries of K, factors of F bytes with analyses of A and r rows; b balls. A worker is a thread
-//! that factors a sector.
+//! Bytes of one ring with n nodes, N = 3 n dofs, e elements of p nodes, s nodes in the lists of all sectors (n, and
+//! those they share again); of its sectors owned: o elements, k nodes, E stored entries of K, factors of F bytes with
+//! analyses of A and r rows; b balls. A worker is a thread that factors a sector.
 //!
 //! | part | bytes | what it is |
 //! |---|---|---|
@@ -17,8 +17,8 @@
 //! | results | rank 0: 240 n + 8 e + 24 o p + 48 o c; others: 24 r + 24 o p + 48 f c | stress of the elements owned, f in the largest sector; on rank 0 record and output; alone 24 e p |
 //! | reading | 3 (24 n + 8 e p) + 18 e | on rank 0 of several, both rings at once, before anything else: the meshes, and `mesh.hdf` as it is written |
 //!
-//! Statics has the matrices of one ring at a time and lets go of them; motion keeps those of both. Alone and with several threads
-//! both rings are made at once.
+//! Statics has the matrices of one ring at a time and lets go of them; motion keeps those of both. Alone and with
+//! several threads both rings are made at once.
 
 use std::ops::Range;
 
@@ -195,7 +195,8 @@ fn kept_elements(ring: &RingModel, layout: &SectorLayout, owned: &Range<usize>) 
     elements().enumerate().map(of_sector).sum()
 }
 
-/// Forecast of the largest resident memory of one rank in statics and in motion, bytes; inner ring first, None is rigid.
+/// Forecast of the largest resident memory of one rank in statics and in motion, bytes; inner ring first, None is
+/// rigid.
 pub fn forecast_rank_peak(rings: &[Option<RankMemory>; 2], share: &Share) -> [usize; 2] {
     let messages = match share.n_ranks {
         1 => 0,

@@ -1,15 +1,16 @@
 //! Rounds for the inertia of a turning frame, which depends on the motion that it changes.
 //!
-//! A trial finds the inertia that fits the increment, and the predictor under it, until the change is small; when the next is
-//! expected to be, it is checked at the end of the step. Rounds contract by about speed times step size, so that one or two trials
-//! and the end are the rule.
+//! A trial finds the inertia that fits the increment, and the predictor under it, until the change is small; when the
+//! next is expected to be, it is checked at the end of the step. Rounds contract by about speed times step size, so
+//! that one or two trials and the end are the rule.
 
 use crate::step::FrameTurn;
 
-/// Change of the inertia loads in a round, the most that all can add up to, over the largest force, at which they count as settled.
+/// Change of the inertia loads in a round, the most that all can add up to, over the largest force, at which they
+/// count as settled.
 const FRAME_TOLERANCE: f64 = 1e-9;
-/// The same over the inertia loads themselves, which a body without other forces has alone: what rounding of a transform of
-/// its motion leaves of them.
+/// The same over the inertia loads themselves, which a body without other forces has alone: what rounding of a
+/// transform of its motion leaves of them.
 const FRAME_ROUND_OFF: f64 = 1e-13;
 
 /// Difference of two loads.

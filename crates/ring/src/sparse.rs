@@ -1,4 +1,5 @@
-//! Products with sparse matrices, each row summed by one thread in its own order: the same bits on any number of threads.
+//! Products with sparse matrices, each row summed by one thread in its own order: the same bits on any number of
+//! threads.
 
 use mesh::Mesh;
 use rayon::prelude::*;
@@ -28,8 +29,8 @@ pub fn product(a: &CsMat<f64>, x: &[f64]) -> Vec<f64> {
         .collect()
 }
 
-/// A X of a block of vectors, column-major. The matrix is read once for every four vectors. A row is summed by one thread in
-/// its own order: the same bits on any number of threads.
+/// A X of a block of vectors, column-major. The matrix is read once for every four vectors. A row is summed by one
+/// thread in its own order: the same bits on any number of threads.
 pub fn products(a: &CsMat<f64>, x: &[f64], n_vectors: usize) -> Vec<f64> {
     let n = a.rows();
     let mut result = Vec::with_capacity(n * n_vectors);

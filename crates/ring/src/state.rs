@@ -8,8 +8,8 @@ use crate::integrator::StepScheme;
 use crate::pool::PooledVector;
 use crate::vectors::TASK;
 
-/// Tells a state from others: what was found from a state belongs to it as long as the stamps are the same. A copy of a state, which
-/// cannot change, has the stamp of the original.
+/// Tells a state from others: what was found from a state belongs to it as long as the stamps are the same. A copy of
+/// a state, which cannot change, has the stamp of the original.
 #[derive(Clone, Debug, Default)]
 pub struct Stamp(Arc<()>);
 
@@ -99,7 +99,8 @@ impl RingState {
         &self.stamp
     }
 
-    /// Displacement and velocity at the weighted time of the scheme when the step's increment is `dw`, or the velocity stays.
+    /// Displacement and velocity at the weighted time of the scheme when the step's increment is `dw`, or the
+    /// velocity stays.
     pub(crate) fn within(&self, scheme: StepScheme, dw: Option<&[f64]>) -> [Vec<f64>; 2] {
         let mut within = [vec![0.0; self.w.len()], vec![0.0; self.w.len()]];
         let to = within.each_mut().map(Vec::as_mut_slice);
@@ -123,7 +124,8 @@ impl RingState {
 #[derive(Clone, Debug)]
 pub(crate) struct RowValues(pub [Vec<f64>; 3]);
 
-/// Displacement and velocity at the weighted time of a step from `[w0, v0, a0]` with the increment `dw`, or at which the velocity stays.
+/// Displacement and velocity at the weighted time of a step from `[w0, v0, a0]` with the increment `dw`, or at which
+/// the velocity stays.
 pub(crate) fn within_part(
     StepScheme { integrator, dt }: StepScheme,
     dw: Option<&[f64]>,

@@ -1,7 +1,7 @@
 //! The border between an elastic ring and whoever moves it: one implicit step in time.
 //!
-//! A factor belongs to one scheme and step size, S = c_M M + c_C C + c_K K. A step of it meets the world at its *ports*: two directions
-//! of every contact, then the functionals of the mount. At these the ring answers
+//! A factor belongs to one scheme and step size, S = c_M M + c_C C + c_K K. A step of it meets the world at its
+//! *ports*: two directions of every contact, then the functionals of the mount. At these the ring answers
 //! ```text
 //! g(end) = predicted + compliance F
 //! ```
@@ -40,8 +40,8 @@ pub struct KnownLoad {
     pub turn: Option<FrameTurn>,
 }
 
-/// A [`KnownLoad`] and what was found of it ahead of the step: half a solve, a first guess of the inertia of the frame. No part of the
-/// state: found anew it has the same bits.
+/// A [`KnownLoad`] and what was found of it ahead of the step: half a solve, a first guess of the inertia of the
+/// frame. No part of the state: found anew it has the same bits.
 #[derive(Debug)]
 pub struct Known {
     pub(crate) of: Stamp,
@@ -164,7 +164,8 @@ pub trait ElasticStep: Send {
     /// Values of a vector of the body at the contacts, `[2 n_contacts]`.
     fn at_contacts(&self, x: &[f64]) -> Vec<f64>;
 
-    /// One round for the inertia of the turning frame under these forces; `scale` is the largest force of the whole bearing, N.
+    /// One round for the inertia of the turning frame under these forces; `scale` is the largest force of the whole
+    /// bearing, N.
     fn settle(&mut self, forces: PortForces<'_>, scale: f64) -> Settling;
 
     /// Ends the step under these forces. With `next`, looks ahead to a step of the same size under these known loads.

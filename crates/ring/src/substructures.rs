@@ -38,7 +38,8 @@ struct Matrices {
 }
 
 impl Substructures {
-    /// Cuts the ring, assembles the sectors owned, and analyses them for rows of the dofs `free`, ascending. Collective.
+    /// Cuts the ring, assembles the sectors owned, and analyses them for rows of the dofs `free`, ascending.
+    /// Collective.
     pub fn new(
         ring: &RingModel,
         name: &'static str,

@@ -1,8 +1,8 @@
 //! One ring as a vibrating body: K and M in its coordinates, the factor of K + s M, and what its partner imposes.
 //!
-//! A clamped surface that moves with dofs of the partner has these as coordinates. A mean-motion hold leaves all nodes free; its held
-//! motions are constraints c^T w = 0, where c takes the area-weighted least-squares rigid motion of the surface. A mass of the partner
-//! acts on the motions that it follows.
+//! A clamped surface that moves with dofs of the partner has these as coordinates. A mean-motion hold leaves all
+//! nodes free; its held motions are constraints c^T w = 0, where c takes the area-weighted least-squares rigid motion
+//! of the surface. A mass of the partner acts on the motions that it follows.
 
 use solver::LinearSolver;
 
@@ -28,8 +28,8 @@ pub struct VibratingRing {
 }
 
 impl VibratingRing {
-    /// Assembles a ring and factors K + `shift` M. It is held as its model says by a partner whose translations carry `mass` (kg), or
-    /// it floats.
+    /// Assembles a ring and factors K + `shift` M. It is held as its model says by a partner whose translations carry
+    /// `mass` (kg), or it floats.
     pub fn new(
         name: &'static str,
         ring: &RingModel,

@@ -10,20 +10,20 @@
 //!     V full? keep the best Ritz vectors V S and go on with Q'          (thick restart)
 //! until the wanted pairs have converged
 //! ```
-//! The vector space is that of Wu and Simon, SIAM J. Matrix Anal. Appl. 22 (2000) 602, doi:10.1137/S0895479898334605, with
-//! blocks.
+//! The vector space is that of Wu and Simon, SIAM J. Matrix Anal. Appl. 22 (2000) 602, doi:10.1137/S0895479898334605,
+//! with blocks.
 //!
-//! **Multiplicity.** A block of b vectors finds an eigenvalue of multiplicity b; a body of revolution has double ones, a row of
-//! equal balls clusters as wide as their number. What a start block misses altogether is looked for: once the pairs have
-//! converged, the search goes on from them and a fresh random block in their complement, until the best new pair of the
-//! complement is known to a hundredth and none of the wanted has changed. That is a check, no proof: a count of the negative
-//! pivots of K - lambda M would need an indefinite factorisation.
+//! **Multiplicity.** A block of b vectors finds an eigenvalue of multiplicity b; a body of revolution has double
+//! ones, a row of equal balls clusters as wide as their number. What a start block misses altogether is looked for:
+//! once the pairs have converged, the search goes on from them and a fresh random block in their complement, until
+//! the best new pair of the complement is known to a hundredth and none of the wanted has changed. That is a check,
+//! no proof: a count of the negative pivots of K - lambda M would need an indefinite factorisation.
 //!
 //! **Start.** The random numbers are those of a fixed linear congruential generator, so equal problems give equal bits.
 //! Everything here is sequential; the problem may use threads.
 //!
-//! Cost per step: one block solve, four products with M, and 8 n m b operations for m basis vectors. Memory: the basis, 8 n
-//! [`LanczosSettings::capacity`] bytes, once more at a restart.
+//! Cost per step: one block solve, four products with M, and 8 n m b operations for m basis vectors. Memory: the
+//! basis, 8 n [`LanczosSettings::capacity`] bytes, once more at a restart.
 
 use super::basis::{Basis, Block};
 use super::problem::{EigenProblem, Eigenpairs};
@@ -297,7 +297,8 @@ impl<'a> Search<'a> {
         let positive = ritz.thetas.iter().take(self.settings.n_pairs);
         let kept = positive.take_while(|theta| **theta > 0.0).count();
         let vectors = self.basis.combine(&ritz.vectors[..m * kept], kept);
-        // Once more through the operator: what round-off has brought into dofs without mass, which M does not see, goes.
+        // Once more through the operator: what round-off has brought into dofs without mass, which M does not see,
+        // goes.
         let vectors = self.problem.solve(self.problem.mass(&vectors, kept), kept);
         let capacity = self.settings.capacity();
         let (steps, problem) = (self.steps, self.problem);

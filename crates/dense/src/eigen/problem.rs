@@ -1,15 +1,16 @@
 //! The eigenproblem K x = lambda M x of free vibration, its lowest pairs, and how good they are.
 //!
-//! K and M are symmetric and positive semi-definite, and K + s M is positive definite for the shift s > 0: rigid motions
-//! (K x = 0) and dofs without mass (M x = 0) are both allowed. Pairs are sought through the operator
-//! A = (K + s M)^-1 M, which is self-adjoint in the inner product of M and has the eigenvalues theta = 1/(lambda + s): the
+//! K and M are symmetric and positive semi-definite, and K + s M is positive definite for the shift s > 0: rigid
+//! motions (K x = 0) and dofs without mass (M x = 0) are both allowed. Pairs are sought through the operator A = (K +
+//! s M)^-1 M, which is self-adjoint in the inner product of M and has the eigenvalues theta = 1/(lambda + s): the
 //! lowest lambda are its largest, well separated ones (Ericsson and Ruhe, Math. Comp. 35 (1980) 1251,
 //! doi:10.1090/S0025-5718-1980-0583502-2). Dofs without mass follow the others; their infinite lambda do not appear.
 //!
 //! Linear constraints are the problem's own business: its solve then stays in the space of the constraints, and
 //! [`EigenProblem::remove_reactions`] takes their forces out of a residual.
 //!
-//! **Bound.** With r = K x - lambda M x, A x - theta x = -theta (K + s M)^-1 r. A is self-adjoint, so an eigenvalue theta* has
+//! **Bound.** With r = K x - lambda M x, A x - theta x = -theta (K + s M)^-1 r. A is self-adjoint, so an eigenvalue
+//! theta* has
 //! |theta* - theta| <= theta eta with eta = |(K + s M)^-1 r|_M / |x|_M, and with it |lambda* - lambda| <= (lambda + s) eta/(1 - eta)
 //! (Parlett, *The Symmetric Eigenvalue Problem*, 1998, theorem 4.5.1). It counts round-off of K x as far as it matters,
 //! while the plain |r| is full of the highest frequencies.

@@ -7,8 +7,8 @@ use faer::{Mat, MatRef, Par};
 
 use crate::error::DenseError;
 
-/// Eigenvalues, ascending `[n]`, and orthonormal eigenvectors, column-major `[n][n]`, of the symmetric matrix `a`, `[n][n]`,
-/// of which the lower triangle of the row-major matrix is read.
+/// Eigenvalues, ascending `[n]`, and orthonormal eigenvectors, column-major `[n][n]`, of the symmetric matrix `a`,
+/// `[n][n]`, of which the lower triangle of the row-major matrix is read.
 ///
 /// # Panics
 /// When `a.len() != n * n`.
@@ -38,8 +38,9 @@ pub fn symmetric_eigen(n: usize, a: &[f64]) -> Result<(Vec<f64>, Vec<f64>), Dens
     Ok((values, vectors))
 }
 
-/// The power of two next below the largest entry; 1 for a zero matrix. Dividing by it is exact, and the factorisation, whose
-/// thresholds are absolute, then sees a matrix of ordinary size: unscaled, entries of 1e-11 cost ten digits.
+/// The power of two next below the largest entry; 1 for a zero matrix. Dividing by it is exact, and the
+/// factorisation, whose thresholds are absolute, then sees a matrix of ordinary size: unscaled, entries of 1e-11 cost
+/// ten digits.
 fn power_of_two(a: &[f64]) -> f64 {
     let largest = a.iter().fold(0.0f64, |m, x| m.max(x.abs()));
     if largest == 0.0 {

@@ -14,8 +14,8 @@ const INFINITE: f64 = 1e-14;
 
 /// The lowest pairs of a small problem, at most `n_pairs`: all finite ones are found.
 ///
-/// With the mass M = B B^T, the operator's eigenvectors are those of B^T (K + s M)^-1 B, a symmetric matrix in which neither
-/// dofs without mass nor constrained motions appear.
+/// With the mass M = B B^T, the operator's eigenvectors are those of B^T (K + s M)^-1 B, a symmetric matrix in which
+/// neither dofs without mass nor constrained motions appear.
 pub fn dense_lowest(problem: &dyn EigenProblem, n_pairs: usize) -> Result<Eigenpairs, DenseError> {
     let n = problem.n();
     let mut unit = vec![0.0; n * n];

@@ -1,27 +1,28 @@
 //! Natural frequencies and shapes: of one ring alone, or of the loaded bearing about its static equilibrium.
 //!
-//! Small free vibration, K x = omega^2 M x, without damping and without rotation: no gyroscopic splitting of modes, no cage,
-//! the contacts stay where they are and keep the tangent of their law. Unknowns of a bearing: the nodes of its flexible rings,
-//! the shaft's free dofs, and two dofs per ball, radial and axial. K holds the rings' stiffness and per contact, with
-//! l the vector from groove centre to ball centre,
+//! Small free vibration, K x = omega^2 M x, without damping and without rotation: no gyroscopic splitting of modes,
+//! no cage, the contacts stay where they are and keep the tangent of their law. Unknowns of a bearing: the nodes of
+//! its flexible rings, the shaft's free dofs, and two dofs per ball, radial and axial. K holds the rings' stiffness
+//! and per contact, with l the vector from groove centre to ball centre,
 //!
 //! ```text
 //! k n n^T + Q/|l| (1 - n n^T),    k = dQ/dg,  n = l/|l|
 //! ```
 //!
-//! spread over the ring by the weights of its patch. The second term is the geometric stiffness of the contact force: all
-//! that holds a ball across the contact normals. A contact without load has none, so unloaded balls have modes at zero.
+//! spread over the ring by the weights of its patch. The second term is the geometric stiffness of the contact force:
+//! all that holds a ball across the contact normals. A contact without load has none, so unloaded balls have modes at
+//! zero.
 //!
 //! - **Free** ring: six rigid motions at zero, then elastic modes, most of them double.
 //! - **Held** ring: its bore or seat is clamped or held in its mean motion, as the scene has it, by a partner at rest.
-//! - **Bearing**: the outer ring is held by the housing, which is at rest; the inner ring by the shaft, whose free dofs move
-//!   and carry `shaft_mass` (translations only: the shaft has no rotary inertia of its own). The rotation of the
-//!   shaft about z is held. A rigid inner ring has the mass of the shaft and no other; dofs of the shaft without mass
-//!   follow quasi-statically.
+//! - **Bearing**: the outer ring is held by the housing, which is at rest; the inner ring by the shaft, whose free
+//!   dofs move and carry `shaft_mass` (translations only: the shaft has no rotary inertia of its own). The rotation
+//!   of the shaft about z is held. A rigid inner ring has the mass of the shaft and no other; dofs of the shaft
+//!   without mass follow quasi-statically.
 //!
-//! Pairs come from block Lanczos about the negative shift lambda = -s ([`dense::eigen`]): K + s M is positive definite even
-//! for a free ring, so the rings' own sparse Cholesky factors serve, and contacts and constraints are a small dense system
-//! on top of them. Each ring is factored once, whatever the number of modes.
+//! Pairs come from block Lanczos about the negative shift lambda = -s ([`dense::eigen`]): K + s M is positive
+//! definite even for a free ring, so the rings' own sparse Cholesky factors serve, and contacts and constraints are a
+//! small dense system on top of them. Each ring is factored once, whatever the number of modes.
 
 mod columns;
 mod shape;

@@ -27,11 +27,12 @@ pub struct Mode {
     pub shape: Shape,
 }
 
-/// Displacements of all bodies in a mode, dimensionless: the largest is 1, its largest component positive. Tilts are per m.
+/// Displacements of all bodies in a mode, dimensionless: the largest is 1, its largest component positive. Tilts are
+/// per m.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Shape {
-    /// Nodal displacement of the rings in their own coordinates, `[n_nodes][3]` flat; None for rings that are rigid or not
-    /// part of the body.
+    /// Nodal displacement of the rings in their own coordinates, `[n_nodes][3]` flat; None for rings that are rigid
+    /// or not part of the body.
     pub rings: [Option<Vec<f64>>; 2],
     /// Balls [radial, axial]; empty for a ring alone.
     pub balls: Vec<[f64; 2]>,

@@ -1,9 +1,9 @@
 //! Rings, balls and shaft as one eigenproblem.
 //!
-//! Unknowns y: coordinates of the inner ring, of the outer ring, then the small dofs p (balls, shaft of a rigid ring). Contacts,
-//! constraints and the masses of mean motions act on a ring through few columns a_j, so K + s M is solved by the rings'
-//! factors and one dense system. With forces t of the columns and z = S^-1 b of the rings, r = z - X t with
-//! X = S^-1 [a_j], C = [a_i]^T X and l = a^T r + b^T p (a = -W, the patch weights, for a contact):
+//! Unknowns y: coordinates of the inner ring, of the outer ring, then the small dofs p (balls, shaft of a rigid
+//! ring). Contacts, constraints and the masses of mean motions act on a ring through few columns a_j, so K + s M is
+//! solved by the rings' factors and one dense system. With forces t of the columns and z = S^-1 b of the rings, r = z
+//! - X t with X = S^-1 [a_j], C = [a_i]^T X and l = a^T r + b^T p (a = -W, the patch weights, for a contact):
 //!
 //! ```text
 //! contact     t - D l = 0            D its 2 x 2 tangent, zero without load
@@ -12,8 +12,8 @@
 //! small dofs  s m p + sum of b t = f
 //! ```
 //!
-//! No tangent or mass is inverted, so unloaded contacts and dofs without mass are nothing special. X costs one block solve per
-//! ring; after that the operator costs one solve per ring and vector.
+//! No tangent or mass is inverted, so unloaded contacts and dofs without mass are nothing special. X costs one block
+//! solve per ring; after that the operator costs one solve per ring and vector.
 
 use dense::{DenseLu, EigenProblem};
 

@@ -1,9 +1,10 @@
 //! A ring's mesh divided between ranks: each keeps the elements of its sectors and the positions of their nodes.
 //!
-//! Every rank also keeps the elements with facets of the raceway and of the surface that is held, where patches and partner meet the
-//! ring, and the positions of the nodes of these facets. Rank 0 cuts the parts out of the whole mesh, which it alone has read, and sends
-//! them; then it keeps its own only. What is a field or an integral over the ring is made by sector ([`NodePlaces`]). Cost: one message per
-//! rank, 12 bytes per element node and 28 per node of its part.
+//! Every rank also keeps the elements with facets of the raceway and of the surface that is held, where patches and
+//! partner meet the ring, and the positions of the nodes of these facets. Rank 0 cuts the parts out of the whole
+//! mesh, which it alone has read, and sends them; then it keeps its own only. What is a field or an integral over the
+//! ring is made by sector ([`NodePlaces`]). Cost: one message per rank, 12 bytes per element node and 28 per node of
+//! its part.
 
 pub mod known;
 mod part;
@@ -30,7 +31,8 @@ pub struct SectorLists {
 }
 
 impl RingModel {
-    /// Cuts a ring that this process keeps whole; `side` is `inner` or `outer`. It is asked for its sectors often, which are then found once.
+    /// Cuts a ring that this process keeps whole; `side` is `inner` or `outer`. It is asked for its sectors often,
+    /// which are then found once.
     pub fn divide(mut self, side: &'static str, sectors: Sectors) -> Result<RingModel, RingError> {
         let cut = self.sector_cut(side, sectors)?;
         self.sectors.division = Some(Division {
@@ -41,8 +43,9 @@ impl RingModel {
         Ok(self)
     }
 
-    /// What a rank, given by its number and that of all ranks, keeps of a ring that is whole here, with the positions of the nodes `more`
-    /// besides. What only the whole mesh tells must have been asked for: the mass of its nodes, probes, its periodicity.
+    /// What a rank, given by its number and that of all ranks, keeps of a ring that is whole here, with the positions
+    /// of the nodes `more` besides. What only the whole mesh tells must have been asked for: the mass of its nodes,
+    /// probes, its periodicity.
     pub fn kept_by(self, cut: &SectorCut, rank: [usize; 2], more: &[usize]) -> RingModel {
         let part = RingPart::new(&self, cut, rank, more);
         let RingModel {
@@ -64,8 +67,9 @@ impl RingModel {
         })
     }
 
-    /// Divides a `ring` that rank 0 has read between all ranks: the others, which give None, make theirs by `model` of the mesh they get. Rank 0
-    /// keeps the positions of the nodes `more` besides. Conditions as for [`RingModel::kept_by`]. Collective.
+    /// Divides a `ring` that rank 0 has read between all ranks: the others, which give None, make theirs by `model`
+    /// of the mesh they get. Rank 0 keeps the positions of the nodes `more` besides. Conditions as for
+    /// [`RingModel::kept_by`]. Collective.
     pub fn deal(
         ring: Option<RingModel>,
         side: &'static str,
@@ -101,7 +105,8 @@ impl RingModel {
         division.map_or(self.mesh.n_elements(), |d| d.lengths.iter().sum())
     }
 
-    /// The sectors of the ring. Elements are numbered as in the mesh kept here; those of sectors that it lacks are missing.
+    /// The sectors of the ring. Elements are numbered as in the mesh kept here; those of sectors that it lacks are
+    /// missing.
     pub fn sector_cut(&self, side: &'static str, sectors: Sectors) -> Result<SectorCut, RingError> {
         if let Some(division) = &self.sectors.division {
             return Ok(division.cut.clone());
@@ -176,8 +181,8 @@ impl SectorLists {
     }
 }
 
-/// Nodal forces of a force per volume (N/m^3, a function of the position in m) on a ring, N, `[n_dofs]`, as [`fem::body_load`]. Of
-/// a ring in sectors each rank integrates its own. Collective.
+/// Nodal forces of a force per volume (N/m^3, a function of the position in m) on a ring, N, `[n_dofs]`, as
+/// [`fem::body_load`]. Of a ring in sectors each rank integrates its own. Collective.
 pub fn body_load(
     ring: &RingModel,
     side: &'static str,
@@ -209,8 +214,8 @@ pub(crate) fn wide(nodes: &[u32]) -> Vec<usize> {
     nodes.iter().map(|&node| node as usize).collect()
 }
 
-/// Sum of nodal vectors of all sectors, `[n_dofs]`, in the order of the sectors, from those of the sectors of this rank,
-/// `[3 nodes[s].len()]` each. Collective.
+/// Sum of nodal vectors of all sectors, `[n_dofs]`, in the order of the sectors, from those of the sectors of this
+/// rank, `[3 nodes[s].len()]` each. Collective.
 pub fn sum_of_sectors(comm: Communicator, nodes: &[Vec<u32>], own: &[Vec<f64>], n_dofs: usize) -> Vec<f64> {
     let length = |range: Range<usize>| nodes[range].iter().map(|nodes| 3 * nodes.len()).sum();
     let lengths: Vec<usize> = comm.shares(nodes.len()).into_iter().map(length).collect();

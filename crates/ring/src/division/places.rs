@@ -1,7 +1,7 @@
 //! Fields and integrals over the places of all nodes of a ring, of which a rank keeps some.
 //!
-//! A node belongs to the first sector that has it. Each rank works on the nodes that belong to its sectors; a field is then gathered, a sum
-//! is added in the order of the sectors, so that its bits do not depend on ranks.
+//! A node belongs to the first sector that has it. Each rank works on the nodes that belong to its sectors; a field
+//! is then gathered, a sum is added in the order of the sectors, so that its bits do not depend on ranks.
 
 use std::sync::Arc;
 

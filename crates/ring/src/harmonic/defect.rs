@@ -1,9 +1,11 @@
-//! The defect of a ring that is periodic but for some nodes and elements: what it adds to the matrices of the regular ring.
+//! The defect of a ring that is periodic but for some nodes and elements: what it adds to the matrices of the regular
+//! ring.
 //!
-//! K = K_regular + the difference of the defect's elements, assembled twice: with their nodes where they are, and where they would
-//! be in the regular ring, which has missing elements as well. The same for M. Products use the sum; factors follow from those of the
-//! regular ring ([`solver::cyclic::CyclicDefect`]). Elements of nodes that are held besides, or are free alone, belong to the defect too: their
-//! rows are gone from the true matrix, or new in it. Cost: 16 n^2 bytes for n rows.
+//! K = K_regular + the difference of the defect's elements, assembled twice: with their nodes where they are, and
+//! where they would be in the regular ring, which has missing elements as well. The same for M. Products use the sum;
+//! factors follow from those of the regular ring ([`solver::cyclic::CyclicDefect`]). Elements of nodes that are held
+//! besides, or are free alone, belong to the defect too: their rows are gone from the true matrix, or new in it.
+//! Cost: 16 n^2 bytes for n rows.
 
 use mesh::{Mesh, NearlyPeriodic};
 use sprs::CsMat;
@@ -33,7 +35,8 @@ pub struct RingDefect {
 }
 
 impl RingDefect {
-    /// The defect between a ring and its regular one; None when there is none. The inner error says why it cannot be solved as one.
+    /// The defect between a ring and its regular one; None when there is none. The inner error says why it cannot be
+    /// solved as one.
     pub fn new(
         ring: &RingModel,
         nearly: &NearlyPeriodic,

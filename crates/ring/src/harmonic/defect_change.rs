@@ -1,9 +1,10 @@
 //! What a defect changes in the matrices of a ring's coordinates.
 //!
-//! T^T A T of the defect's elements as they are less what it would be in the regular ring, each with the T of its own coordinates, taken
-//! at the nodes' own places. Coordinates that only the true ring has (nodes that are free alone) and those that only the regular ring has
-//! (absent nodes, and nodes that are held besides) come last and are condensed ([`solver::cyclic::Change::condensed`]), for each step size by itself: the condensed change of c_M M + c_K K is not
-//! the sum of those of M and K.
+//! T^T A T of the defect's elements as they are less what it would be in the regular ring, each with the T of its own
+//! coordinates, taken at the nodes' own places. Coordinates that only the true ring has (nodes that are free alone)
+//! and those that only the regular ring has (absent nodes, and nodes that are held besides) come last and are
+//! condensed ([`solver::cyclic::Change::condensed`]), for each step size by itself: the condensed change of c_M M +
+//! c_K K is not the sum of those of M and K.
 
 use std::collections::{BTreeMap, BTreeSet};
 

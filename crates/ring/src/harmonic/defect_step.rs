@@ -1,9 +1,9 @@
 //! The defect of a periodic ring during a step: the regular ring answers, and the forces of the defect correct it.
 //!
-//! The rows of the defect are functionals like those of the contacts. With t their values when the regular ring is under all
-//! other loads, the defect acts with f = -S t ([`solver::cyclic::Defect`]). V holds the motion of contacts and mount under unit forces
-//! on these rows, and of the rows under theirs. So contacts and mount see V^T f more motion and the compliance C - V^T S V,
-//! and a step needs no further solve.
+//! The rows of the defect are functionals like those of the contacts. With t their values when the regular ring is
+//! under all other loads, the defect acts with f = -S t ([`solver::cyclic::Defect`]). V holds the motion of contacts
+//! and mount under unit forces on these rows, and of the rows under theirs. So contacts and mount see V^T f more
+//! motion and the compliance C - V^T S V, and a step needs no further solve.
 
 use solver::cyclic::{Defect, RowResponses};
 
@@ -98,13 +98,15 @@ impl DefectStep {
         compliance.iter_mut().zip(change).for_each(|(c, d)| *c -= d);
     }
 
-    /// Adds what more loads move the rows by, and returns the motion of contacts and mount by the forces that this adds.
+    /// Adds what more loads move the rows by, and returns the motion of contacts and mount by the forces that this
+    /// adds.
     pub fn add(&mut self, defect: &Defect, more: &[f64]) -> Vec<f64> {
         self.at.iter_mut().zip(more).for_each(|(t, d)| *t += d);
         self.moved(&defect.forces(more))
     }
 
-    /// Forces of the defect on its rows, index and value, when contacts and mount act with `forces` on the regular ring.
+    /// Forces of the defect on its rows, index and value, when contacts and mount act with `forces` on the regular
+    /// ring.
     pub fn loads(&self, defect: &Defect, forces: &[f64]) -> Vec<(usize, f64)> {
         let rows = self.answers.chunks_exact(forces.len().max(1));
         let total = self.at.iter().zip(rows).map(|(t, row)| {

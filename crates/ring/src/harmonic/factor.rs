@@ -1,8 +1,9 @@
-//! The factor of a periodic ring: the first and second half of a solve in harmonic space, and what contacts and partner measure in
-//! between. Only nodes that they touch are transformed.
+//! The factor of a periodic ring: the first and second half of a solve in harmonic space, and what contacts and
+//! partner measure in between. Only nodes that they touch are transformed.
 //!
-//! The predictor of a step is the first half of a solve ([`solver::CyclicRing::ending_with`]), which has the motion of the touched nodes;
-//! forces on these come in, and the second half makes the increment. Of a ring with a defect the first half is all.
+//! The predictor of a step is the first half of a solve ([`solver::CyclicRing::ending_with`]), which has the motion
+//! of the touched nodes; forces on these come in, and the second half makes the increment. Of a ring with a defect
+//! the first half is all.
 
 use solver::cyclic::{CyclicBordered, Defect, Loose, PartHarmonics, ResponseTable};
 use solver::{LinearSolver, SectionPart};
@@ -120,8 +121,8 @@ impl CyclicFactor {
         }
     }
 
-    /// Loads on touched nodes and border, index and value: harmonics of the nodes, and the rows of the border and of those that the
-    /// regular ring lacks.
+    /// Loads on touched nodes and border, index and value: harmonics of the nodes, and the rows of the border and of
+    /// those that the regular ring lacks.
     pub fn forces(&self, loads: impl Iterator<Item = (usize, f64)>) -> (PartHarmonics<'_>, Vec<f64>) {
         let ring = self.solver.inner().ring();
         let n_loose = self.loose().map_or(0, Loose::len);

@@ -1,4 +1,5 @@
-//! A periodic ring with nodes that are free where most sectors hold them: its vectors are coordinates, its solves harmonic.
+//! A periodic ring with nodes that are free where most sectors hold them: its vectors are coordinates, its solves
+//! harmonic.
 
 use solver::cyclic::Loose;
 
@@ -54,8 +55,8 @@ impl NodalSolver for LooseSolver {
 }
 
 impl CyclicFactor {
-    /// The first half of S^-1 of a generalised load of coordinates: harmonics of the free nodes, then the rows of the border, and what
-    /// [`solver::cyclic::Loose::take`] says of rows that the regular ring lacks.
+    /// The first half of S^-1 of a generalised load of coordinates: harmonics of the free nodes, then the rows of the
+    /// border, and what [`solver::cyclic::Loose::take`] says of rows that the regular ring lacks.
     fn begin_coordinates(&self, mut load: Vec<f64>) -> Vec<f64> {
         let alone = self.loose().map(|loose| loose.take(&mut load));
         let mut x = to_harmonics(self.solver.inner().ring(), &load);

@@ -1,8 +1,9 @@
 //! A rotationally periodic ring, solved harmonic by harmonic, and what its defects change.
 //!
-//! Its state stays in harmonic space while it moves ([`space`]); one pass over the harmonics ends a step and begins the solve of the next
-//! ([`pass`]). Defects (moved, missing or otherwise held nodes) are forces on few rows of the regular ring. Where nodes are free
-//! that most sectors hold, the vectors are coordinates and only the solves are harmonic ([`loose`]).
+//! Its state stays in harmonic space while it moves ([`space`]); one pass over the harmonics ends a step and begins
+//! the solve of the next ([`pass`]). Defects (moved, missing or otherwise held nodes) are forces on few rows of the
+//! regular ring. Where nodes are free that most sectors hold, the vectors are coordinates and only the solves are
+//! harmonic ([`loose`]).
 
 mod body;
 pub mod defect;

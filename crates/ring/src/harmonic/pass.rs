@@ -1,17 +1,20 @@
-//! One pass over the harmonics of a periodic ring: the end of a step, and the half of a solve that the next one begins with.
+//! One pass over the harmonics of a periodic ring: the end of a step, and the half of a solve that the next one
+//! begins with.
 //!
-//! Between the contact forces of a step and the motion of the raceway under the known loads of the next, no harmonic meets another.
-//! So one group of harmonics after the other goes all the way while it is in the cache, and its factor is read from memory once:
+//! Between the contact forces of a step and the motion of the raceway under the known loads of the next, no harmonic
+//! meets another. So one group of harmonics after the other goes all the way while it is in the cache, and its factor
+//! is read from memory once:
 //! ```text
 //! dw = second half of S^-1 of predictor + first half of (forces of contacts and partner)
 //! w, v, a at the end; M v, K w, energies; work of the loads
 //! predictor of the next step = first half of S^-1 (its known loads - K w + M (history))
 //! ```
-//! The first half is a forward sweep, after which raceway and mount have moved as they do under these loads alone; forces on them take a
-//! solve of their own block, and the second half is a backward sweep ([`solver::cyclic`]). So a step takes one solve of a ring.
-//! The rows of the border go with the first group ([`parts`]). Sums over the groups are taken in their order. A predictor that is found on its own
-//! ([`Pass::predict`]: at the start, after a change of the step size, after a step file) comes from the same functions and has the
-//! same bits. Solves of a ring that ranks share are collective, so that there the parts of a pass follow each other for the whole ring.
+//! The first half is a forward sweep, after which raceway and mount have moved as they do under these loads alone;
+//! forces on them take a solve of their own block, and the second half is a backward sweep ([`solver::cyclic`]). So a
+//! step takes one solve of a ring. The rows of the border go with the first group ([`parts`]). Sums over the groups
+//! are taken in their order. A predictor that is found on its own ([`Pass::predict`]: at the start, after a change of
+//! the step size, after a step file) comes from the same functions and has the same bits. Solves of a ring that ranks
+//! share are collective, so that there the parts of a pass follow each other for the whole ring.
 
 use std::borrow::Cow;
 
@@ -43,8 +46,8 @@ pub(super) struct Pass<'a> {
 pub(super) struct Increment<'a> {
     /// Loads on touched nodes, and on the border.
     pub forces: Option<(PartHarmonics<'a>, Vec<f64>)>,
-    /// With forces the predictor, of which and of the forces the increment is the second half; else all of the increment. Harmonics and
-    /// border.
+    /// With forces the predictor, of which and of the forces the increment is the second half; else all of the
+    /// increment. Harmonics and border.
     pub rest: Cow<'a, [f64]>,
 }
 

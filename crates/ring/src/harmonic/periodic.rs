@@ -61,8 +61,8 @@ pub struct Defective {
 }
 
 impl Periodic {
-    /// The ring with the nodes `held` of the mesh held; the inner error is the reason why it has no sectors or is not to be
-    /// solved by them. A scene that forces them gets that reason as the outer error.
+    /// The ring with the nodes `held` of the mesh held; the inner error is the reason why it has no sectors or is not
+    /// to be solved by them. A scene that forces them gets that reason as the outer error.
     pub fn new(
         ring: &RingModel,
         side: &'static str,
@@ -198,8 +198,9 @@ impl Periodic {
         }
     }
 
-    /// The ring without its held nodes as it moves: its order ends with the nodes that contacts and mount touch, so that a step takes one
-    /// solve. Rings with a defect, whose rows are loaded as well, keep the order of rings at rest.
+    /// The ring without its held nodes as it moves: its order ends with the nodes that contacts and mount touch, so
+    /// that a step takes one solve. Rings with a defect, whose rows are loaded as well, keep the order of rings at
+    /// rest.
     pub fn in_motion(&self, ring: &RingModel, side: &'static str) -> Result<CyclicRing, RingError> {
         let free = &self.held.sectors.ring;
         if self.defect.is_some() {
@@ -285,7 +286,8 @@ impl Sectors {
         build().map_err(|source| RingError::Solver { side, source })
     }
 
-    /// The ring without the section nodes `held`, whose raceway has the section nodes `raceway`; the inner error says why that cannot be.
+    /// The ring without the section nodes `held`, whose raceway has the section nodes `raceway`; the inner error says
+    /// why that cannot be.
     fn without(
         &self,
         periodicity: &Periodicity,
@@ -331,8 +333,8 @@ impl HeldSectors {
     }
 }
 
-/// Section nodes of a raceway, those in the plane of the section first, along the groove: so that a patch is on neighbours in the
-/// table of responses.
+/// Section nodes of a raceway, those in the plane of the section first, along the groove: so that a patch is on
+/// neighbours in the table of responses.
 fn along_groove(mut raceway: Vec<usize>, mesh: &Mesh, periodicity: &Periodicity) -> Vec<usize> {
     let half_way = |node: usize| periodicity.half_way().is_some_and(|half_way| half_way[node]);
     let z = |node: usize| mesh.nodes[periodicity.nodes()[node]][2];

@@ -1,8 +1,8 @@
 //! The ring without its defect: the regular ring, what holds it, and which of its nodes the true ring has.
 //!
-//! A section node is held in the regular ring when it is held in most sectors. Nodes that are held besides are like absent ones:
-//! the regular ring has rows there that the true one lacks. Nodes that are free where most of their images are held are *loose*: rows
-//! that the regular ring lacks.
+//! A section node is held in the regular ring when it is held in most sectors. Nodes that are held besides are like
+//! absent ones: the regular ring has rows there that the true one lacks. Nodes that are free where most of their
+//! images are held are *loose*: rows that the regular ring lacks.
 
 use std::collections::BTreeSet;
 

@@ -1,9 +1,9 @@
 //! Where the vectors of a periodic ring live: its state, increments and loads are harmonics.
 //!
 //! The state of a periodic ring never leaves harmonic space while it moves: matrices act there harmonic by harmonic
-//! ([`solver::cyclic::HarmonicOperator`]), and so does the inertia of a turning frame, which is local in cylindrical components. Nodal
-//! fields are made when results ask for them. Scalar products of nodal vectors are those of Parseval. The dofs of a shaft that
-//! carries the bore stay what they are, behind the harmonics.
+//! ([`solver::cyclic::HarmonicOperator`]), and so does the inertia of a turning frame, which is local in cylindrical
+//! components. Nodal fields are made when results ask for them. Scalar products of nodal vectors are those of
+//! Parseval. The dofs of a shaft that carries the bore stay what they are, behind the harmonics.
 
 use std::sync::OnceLock;
 
@@ -35,8 +35,8 @@ pub(crate) struct HarmonicSpace {
     frame: OnceLock<FrameLoads>,
 }
 
-/// Inertia of a turning frame beyond that of the free nodes' motion, as low vectors: M P and M J of fields, with P u = (u_x, u_y, 0)
-/// and J u = (u_y, -u_x, 0).
+/// Inertia of a turning frame beyond that of the free nodes' motion, as low vectors: M P and M J of fields, with P u
+/// = (u_x, u_y, 0) and J u = (u_y, -u_x, 0).
 pub(super) struct FrameLoads {
     /// Of the node positions.
     position: [Vec<f64>; 2],

@@ -1,19 +1,22 @@
 //! A defect of a ring whose vectors are harmonics: those of its regular ring, which has rows that the true ring lacks.
 //!
-//! With D the change from the regular ring's matrices to the true ones on the rows r of the defect and the rows g that only the regular ring
-//! has, forces on r make the regular ring's equations on all true rows those of the true ring,
+//! With D the change from the regular ring's matrices to the true ones on the rows r of the defect and the rows g
+//! that only the regular ring has, forces on r make the regular ring's equations on all true rows those of the true
+//! ring,
 //! ```text
 //! f = (D_M m + D_K k)_r,    m = (history) - c_M x,   k = (history) - w - c_K x
 //! ```
-//! at the values on r and g. The rows g obey the regular ring's own equations: a piece of it that the true ring moves and that does not act
-//! back. So a step is that of the regular ring, all its solves and products harmonic by harmonic, under the forces f. With x0 the predictor of the
-//! regular ring, the rest of its increment x has no load on g, so that there D is the condensed one ([`solver::cyclic::Defect`]): with
-//! q = f(x0), G the compliance of r and V F the motion of r by the contacts,
+//! at the values on r and g. The rows g obey the regular ring's own equations: a piece of it that the true ring moves
+//! and that does not act back. So a step is that of the regular ring, all its solves and products harmonic by
+//! harmonic, under the forces f. With x0 the predictor of the regular ring, the rest of its increment x has no load
+//! on g, so that there D is the condensed one ([`solver::cyclic::Defect`]): with q = f(x0), G the compliance of r and
+//! V F the motion of r by the contacts,
 //! ```text
 //! f = q - S (G q + V F)
 //! ```
-//! Energies and other quadratic forms are those of the regular ring plus the form of D, which takes the rows g out again. At the start g
-//! is at rest in the regular ring's statics. Cost: a transform of the defect's section nodes per vector, three products of n^2.
+//! Energies and other quadratic forms are those of the regular ring plus the form of D, which takes the rows g out
+//! again. At the start g is at rest in the regular ring's statics. Cost: a transform of the defect's section nodes
+//! per vector, three products of n^2.
 
 use dense::DenseCholesky;
 use solver::cyclic::SectionPart;
@@ -46,8 +49,8 @@ pub(crate) struct SpaceDefect {
     frame: Option<FrameRows>,
 }
 
-/// Inertia of a turning frame on the rows that does not come from the rows' own motion, the true ring's less the regular one's, for P u = (u_x,
-/// u_y, 0) and J u = (u_y, -u_x, 0).
+/// Inertia of a turning frame on the rows that does not come from the rows' own motion, the true ring's less the
+/// regular one's, for P u = (u_x, u_y, 0) and J u = (u_y, -u_x, 0).
 struct FrameRows {
     /// Of the node positions.
     position: [Vec<f64>; 2],
@@ -73,8 +76,8 @@ pub(super) struct Terms {
 }
 
 impl SpaceDefect {
-    /// The defect that changes the matrices of the regular ring `held` by `changes`. None when the true ring has rows that the regular
-    /// one lacks, or when a piece that is missing hangs on a hinge in the regular ring.
+    /// The defect that changes the matrices of the regular ring `held` by `changes`. None when the true ring has rows
+    /// that the regular one lacks, or when a piece that is missing hangs on a hinge in the regular ring.
     pub(super) fn new(changes: &Changes, held: &HeldSectors) -> Option<SpaceDefect> {
         let (regular, seen) = (held.sectors.ring.clone(), held.seen.as_ref()?);
         let n_free = 3 * seen.len();
@@ -147,7 +150,8 @@ impl SpaceDefect {
         &self.regular
     }
 
-    /// Inertia of the turning frame on the rows, the true ring's less the regular one's, at displacement and velocity `w` and `v` of the rows.
+    /// Inertia of the turning frame on the rows, the true ring's less the regular one's, at displacement and velocity
+    /// `w` and `v` of the rows.
     pub(super) fn inertia(&self, turn: FrameTurn, [w, v]: [&[f64]; 2]) -> Vec<f64> {
         let (speed, acceleration) = (turn.speed, turn.acceleration);
         let square = speed * speed;
@@ -193,7 +197,8 @@ impl SpaceDefect {
         RowValues(state.vectors().map(|x| self.values(x)))
     }
 
-    /// q, the forces of the defect at the predictor `predictor` of the regular ring from a state with the values `state`, on the true rows.
+    /// q, the forces of the defect at the predictor `predictor` of the regular ring from a state with the values
+    /// `state`, on the true rows.
     pub(super) fn known(&self, terms: Terms, state: &RowValues, predictor: &[f64]) -> Vec<f64> {
         let RowValues([w, v, a]) = state;
         let ([m, k], [cm, ck]) = (terms.history, terms.effective);

@@ -1,5 +1,5 @@
-//! A step of a ring in harmonic space, around its pass over the harmonics ([`super::pass`]): its contacts meet the predictor, their
-//! forces make the increment.
+//! A step of a ring in harmonic space, around its pass over the harmonics ([`super::pass`]): its contacts meet the
+//! predictor, their forces make the increment.
 
 use std::borrow::Cow;
 use std::sync::Arc;
@@ -65,8 +65,8 @@ impl HarmonicFactor {
         }
     }
 
-    /// Rows of a defect in a step from `start` with the regular ring's predictor; `answers` is V, `moved` the motion of the rows that the
-    /// inertia of the frame is to fit, where it does not stay at the velocity of the start.
+    /// Rows of a defect in a step from `start` with the regular ring's predictor; `answers` is V, `moved` the motion
+    /// of the rows that the inertia of the frame is to fit, where it does not stay at the velocity of the start.
     fn defect_step(
         &self,
         (of_space, defect): (&SpaceDefect, &DefectFactor),

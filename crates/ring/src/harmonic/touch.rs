@@ -1,4 +1,5 @@
-//! Contacts as the responses of a periodic ring's raceway meet them: their motion by the predictor, and their compliance.
+//! Contacts as the responses of a periodic ring's raceway meet them: their motion by the predictor, and their
+//! compliance.
 
 use contact::NodalWeights;
 use solver::LinearSolver;
@@ -29,8 +30,8 @@ pub(super) struct Meeting {
 }
 
 impl CyclicFactor {
-    /// What ports see of a predictor, harmonics and border; `defect_step` makes the step of a defect from the motion of its rows under
-    /// unit forces at the ports.
+    /// What ports see of a predictor, harmonics and border; `defect_step` makes the step of a defect from the motion
+    /// of its rows under unit forces at the ports.
     pub(super) fn meet(
         &self,
         held: &HeldRing,
@@ -78,8 +79,9 @@ impl CyclicFactor {
         }
     }
 
-    /// Compliance of contacts, then mount, from the responses of the raceway: those of the ring without its border, plus what
-    /// the border adds, V M^-1 V^T, with M the border's compliance and V the motion of the contacts under its unit forces.
+    /// Compliance of contacts, then mount, from the responses of the raceway: those of the ring without its border,
+    /// plus what the border adds, V M^-1 V^T, with M the border's compliance and V the motion of the contacts under
+    /// its unit forces.
     fn table_compliance(&self, touch: &Touch, m: usize) -> Vec<f64> {
         let (direct, v) = (self.responses.table.compliances(&touch.patches), &touch.by_mount);
         let n = v.len();
@@ -98,8 +100,8 @@ impl CyclicFactor {
         compliance
     }
 
-    /// Motion of contacts, then mount, under unit forces on the rows of a defect, row-major, without the defect; of n coordinates n_free are
-    /// free.
+    /// Motion of contacts, then mount, under unit forces on the rows of a defect, row-major, without the defect; of n
+    /// coordinates n_free are free.
     fn answers(&self, defect: &DefectFactor, touch: &Touch, n_free: usize, n: usize) -> Vec<f64> {
         let (rows, contacts) = (defect.answer.rows(), touch.by_mount.len());
         let columns: Vec<&[f64]> = self.mount.columns.chunks_exact(n).collect();

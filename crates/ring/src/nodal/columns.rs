@@ -123,8 +123,8 @@ pub(crate) fn acting<'a>(
     all.flat_map(|(functional, f)| functional.iter().map(move |&(i, w)| (i, f * w)))
 }
 
-/// Compliance of `size` ports, of which the first `contacts` are those of contacts, exactly symmetric, from the `motion(i, j)` of port i
-/// under a unit force on contact j and the mount's own compliance.
+/// Compliance of `size` ports, of which the first `contacts` are those of contacts, exactly symmetric, from the
+/// `motion(i, j)` of port i under a unit force on contact j and the mount's own compliance.
 pub(super) fn column_compliance(
     [size, contacts]: [usize; 2],
     mount: &[f64],

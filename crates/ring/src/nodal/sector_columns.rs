@@ -1,5 +1,5 @@
-//! Solves of a ring in sectors whose solutions stay by sector: of the columns of contacts and mount, ranks exchange what contacts and
-//! mount measure, and of an increment its sum. Memory: one number per dof owned and column.
+//! Solves of a ring in sectors whose solutions stay by sector: of the columns of contacts and mount, ranks exchange
+//! what contacts and mount measure, and of an increment its sum. Memory: one number per dof owned and column.
 
 use solver::{BorderedColumns, SectorBordered};
 
@@ -43,7 +43,8 @@ impl SectorFactor {
         self.solver.measure(&self.mount, &all)
     }
 
-    /// Predictor under the right-hand side `side`, `[n]`, and columns of the contacts; `all` are the functionals to measure.
+    /// Predictor under the right-hand side `side`, `[n]`, and columns of the contacts; `all` are the functionals to
+    /// measure.
     pub fn prepare(
         &self,
         side: &[f64],

@@ -1,7 +1,8 @@
 //! The workspace of one flexible ring in statics: its factored stiffness and the displacement under loads.
 //!
-//! A periodic ring is factored harmonic by harmonic from one sector, any other as one sparse matrix. Cost: one factorisation;
-//! then one solve per right-hand side. Displacements are elastic, relative to the rigid partner (see [`crate::support`]).
+//! A periodic ring is factored harmonic by harmonic from one sector, any other as one sparse matrix. Cost: one
+//! factorisation; then one solve per right-hand side. Displacements are elastic, relative to the rigid partner (see
+//! [`crate::support`]).
 
 mod harmonic;
 mod prepared;

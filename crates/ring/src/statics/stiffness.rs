@@ -13,7 +13,8 @@ use crate::support::Support;
 pub enum Numbers {
     /// The ring's own numbers.
     Assembled,
-    /// Zeros where they will stand: enough for a forecast, nothing that can be factored. One sector is assembled all the same.
+    /// Zeros where they will stand: enough for a forecast, nothing that can be factored. One sector is assembled all
+    /// the same.
     Pattern,
 }
 

@@ -1,4 +1,5 @@
-//! Stress of a ring from its displacements: at nodes and at integration points, of the whole ring or by sectors on their ranks.
+//! Stress of a ring from its displacements: at nodes and at integration points, of the whole ring or by sectors on
+//! their ranks.
 
 pub mod nodal;
 pub mod point;

@@ -1,6 +1,8 @@
-//! Stress at the integration points of a flexible ring: element by element, or of a periodic ring by the weights of one sector.
+//! Stress at the integration points of a flexible ring: element by element, or of a periodic ring by the weights of
+//! one sector.
 //!
-//! Both are the same to round-off. The second needs the nodes of all elements of a class in the same order, as in a revolved mesh.
+//! Both are the same to round-off. The second needs the nodes of all elements of a class in the same order, as in a
+//! revolved mesh.
 
 use fem::StressRecovery;
 

@@ -31,8 +31,8 @@ pub(crate) fn stress_operator(
     Ok(Some(whole.stencil(6, &couplings(&stress.couplings), weights)))
 }
 
-/// The operator of the stress at the integration points, Pa, of a ring that harmonics can solve and whose elements are alike; None of any
-/// other.
+/// The operator of the stress at the integration points, Pa, of a ring that harmonics can solve and whose elements
+/// are alike; None of any other.
 pub(crate) fn point_operator(
     ring: &RingModel,
     recovery: &StressRecovery,

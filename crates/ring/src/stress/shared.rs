@@ -1,12 +1,13 @@
 //! Stress of a ring in sectors: every rank recovers that of the sectors it owns, rank 0 puts it together.
 //!
-//! At a node, the stress of the elements around it times their volume is summed within each sector, in ascending order of the
-//! elements; the sums and the volumes of the sectors are added in the order of the sectors, and divided. At integration points
-//! a sector has the stress of its elements. So the bits depend on the sectors, but not on ranks and threads, and the stress at nodes is that
-//! of the whole ring ([`fem::StressRecovery`]) to round-off.
+//! At a node, the stress of the elements around it times their volume is summed within each sector, in ascending
+//! order of the elements; the sums and the volumes of the sectors are added in the order of the sectors, and divided.
+//! At integration points a sector has the stress of its elements. So the bits depend on the sectors, but not on ranks
+//! and threads, and the stress at nodes is that of the whole ring ([`fem::StressRecovery`]) to round-off.
 //!
-//! Messages: one per sector to rank 0, 48 B per node of the sector or per integration point. Memory: 20 B per element node and 24 B per
-//! node of the sectors owned, corner stresses of one sector at a time; rank 0 has the stress of the ring, and one sector's message.
+//! Messages: one per sector to rank 0, 48 B per node of the sector or per integration point. Memory: 20 B per element
+//! node and 24 B per node of the sectors owned, corner stresses of one sector at a time; rank 0 has the stress of the
+//! ring, and one sector's message.
 
 use comm::Communicator;
 use fem::StressRecovery;
@@ -113,8 +114,8 @@ impl SharedStress {
         self.points_per_element
     }
 
-    /// Positions of the integration points in the order of the elements, m, `[n_elements * points_per_element][3]`, on rank 0, None on
-    /// the others. Collective.
+    /// Positions of the integration points in the order of the elements, m, `[n_elements * points_per_element][3]`,
+    /// on rank 0, None on the others. Collective.
     ///
     /// # Panics
     /// When the stress is that at nodes.
@@ -124,7 +125,8 @@ impl SharedStress {
         self.collect(own.collect())
     }
 
-    /// Stress of the sectors this rank owns, as [`Self::gather`] takes it, from displacements of the ring, m, `[3 n_nodes]`.
+    /// Stress of the sectors this rank owns, as [`Self::gather`] takes it, from displacements of the ring, m, `[3
+    /// n_nodes]`.
     pub fn recover(&self, u: &[f64]) -> Vec<Vec<[f64; 6]>> {
         let of_part = |part: &Part| {
             let nodes = part.nodes.iter().flat_map(|&node| &u[3 * node..3 * node + 3]);
@@ -138,8 +140,8 @@ impl SharedStress {
         self.parts.iter().map(of_part).collect()
     }
 
-    /// Stress of the ring from that of the sectors of all ranks, Pa, `[n_nodes][6]` or `[n_elements * points_per_element][6]`, on rank 0,
-    /// None on the others. Collective.
+    /// Stress of the ring from that of the sectors of all ranks, Pa, `[n_nodes][6]` or `[n_elements *
+    /// points_per_element][6]`, on rank 0, None on the others. Collective.
     pub fn gather(&self, own: Vec<Vec<[f64; 6]>>) -> Option<Vec<[f64; 6]>> {
         let mut stress = self.collect(own)?;
         for (stress, &volume) in stress.iter_mut().zip(&self.whole.volumes) {

@@ -1,4 +1,5 @@
-//! What a pass does with one group of harmonics. Vectors of a group are `[low_len()]`, in the first with the rows of the border.
+//! What a pass does with one group of harmonics. Vectors of a group are `[low_len()]`, in the first with the rows of
+//! the border.
 
 use solver::cyclic::PartHarmonics;
 
@@ -55,7 +56,8 @@ impl<'a> Pass<'a> {
         }
     }
 
-    /// The increment: the second half of S^-1 of the first half of forces and of the predictor `rest`; without forces `rest` itself.
+    /// The increment: the second half of S^-1 of the first half of forces and of the predictor `rest`; without forces
+    /// `rest` itself.
     pub(super) fn increment_part(
         &self,
         group: usize,
@@ -77,7 +79,8 @@ impl<'a> Pass<'a> {
         self.factor.solver.finish_group(group, &mut dw[..low]);
     }
 
-    /// Inertia of the turning frame at the weighted time of a step from `[w, v, a]` with an increment, or at which the velocity stays.
+    /// Inertia of the turning frame at the weighted time of a step from `[w, v, a]` with an increment, or at which
+    /// the velocity stays.
     pub(super) fn frame_part(
         &self,
         turning: Turning<'_>,
@@ -102,8 +105,8 @@ impl<'a> Pass<'a> {
         [space.part_dot(group, v, mv), space.part_dot(group, w, kw)]
     }
 
-    /// The first half of S^-1 of the known loads of the next step, M (m0 v + m1 a) + K (k0 v + k1 a - w) + load + inertia, into `solved`; `mv` and `kw`
-    /// are the products of [`Pass::products`], and are overwritten.
+    /// The first half of S^-1 of the known loads of the next step, M (m0 v + m1 a) + K (k0 v + k1 a - w) + load +
+    /// inertia, into `solved`; `mv` and `kw` are the products of [`Pass::products`], and are overwritten.
     pub(super) fn predict_part(
         &self,
         group: usize,

@@ -1,4 +1,5 @@
-//! Vectors of a ring by groups of harmonics, each group's part one slice: the first with the rows of the border, of which there is a copy.
+//! Vectors of a ring by groups of harmonics, each group's part one slice: the first with the rows of the border, of
+//! which there is a copy.
 
 use rayon::prelude::*;
 
@@ -33,8 +34,8 @@ impl HarmonicSpace {
         }
     }
 
-    /// Does `work` for each group, given by its number, with B buffers of its length and with its parts of the vectors that are
-    /// written; of empty vectors they are empty. What it returns comes in the order of the groups.
+    /// Does `work` for each group, given by its number, with B buffers of its length and with its parts of the
+    /// vectors that are written; of empty vectors they are empty. What it returns comes in the order of the groups.
     pub(in super::super) fn over_groups<const W: usize, const B: usize, T: Send>(
         &self,
         mut vectors: [&mut [f64]; W],
