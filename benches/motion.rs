@@ -23,8 +23,9 @@ use std::io::Write;
 use std::path::Path;
 
 use checkpoint::{Body, CellFields, Output, PointFields, StateArray, StepRecord, Storage};
-use clock::{Laps, least_wall};
+use clock::{Runs, least_wall};
 use contact::Side;
+use dynamics::costs::*;
 use dynamics::effects::FrameRotation;
 use dynamics::kinematics::Speed;
 use dynamics::motion::{Motion, MotionSettings, MotionState, StepCache, StepReport};
@@ -33,6 +34,7 @@ use fem::stress::von_mises;
 use rayon::prelude::*;
 use support::Case;
 use support::rings::Level;
+use timer::Stopwatch;
 
 /// Steps of each kind, and step files.
 const REPEATS: usize = 12;
@@ -47,6 +49,17 @@ const SIZES: [(&str, Level); 4] = [
 const UPDATED: usize = 8;
 /// Steps of a hundredth of a ball's revolution of 77 ms.
 const HUNDREDTH: usize = 77;
+/// Parts of a step in the table, and their laps.
+const PARTS: [(&str, &str); 8] = [
+    ("step/loads", LOADS),
+    ("step/patches", PATCHES),
+    ("step/right_side", RIGHT_SIDE),
+    ("step/solve", BLOCK_SOLVE),
+    ("step/raceways", RACEWAYS),
+    ("step/newton", NEWTON),
+    ("step/frame", FRAME),
+    ("step/update", UPDATE),
+];
 /// Step size, s, and speed, rad/s (1800 rpm).
 const DT: f64 = 1e-5;
 const SPEED: f64 = 60.0 * std::f64::consts::PI;
@@ -74,7 +87,7 @@ struct Rolling<'a> {
     motion: Motion<'a>,
     state: MotionState,
     cache: StepCache,
-    laps: Laps,
+    laps: Runs,
     report: StepReport,
     n_steps: usize,
 }
@@ -96,7 +109,7 @@ impl<'a> Rolling<'a> {
             motion,
             state,
             cache,
-            laps: Laps::default(),
+            laps: Runs::default(),
             report: StepReport::default(),
             n_steps: 0,
         }
@@ -107,8 +120,8 @@ impl<'a> Rolling<'a> {
             .laps
             .time("step", || self.motion.step(&self.state, &mut self.cache))
             .expect("slow rolling");
-        for (part, seconds) in report.seconds.parts() {
-            self.laps.add_wall(&format!("  {part}"), seconds);
+        for (part, lap) in PARTS {
+            self.laps.add_wall(part, report.laps.seconds(lap));
         }
         self.laps.end_run();
         self.report.add(&report);
@@ -171,7 +184,7 @@ impl Writer {
     }
 
     /// Stress and file of one state; bytes of the file.
-    fn write(&mut self, bearing: &Rolling<'_>, step: u64, laps: &mut Laps) -> u64 {
+    fn write(&mut self, bearing: &Rolling<'_>, step: u64, laps: &mut Runs) -> u64 {
         let state = &bearing.state;
         let fields = Side::BOTH.map(|side| bearing.motion.ring_displacement(state, side).expect("a ring").0);
         let rings: Vec<Vec<[f64; 6]>> = laps.time("stress, both rings", || {
@@ -287,7 +300,7 @@ fn measure(name: &str, level: Level) -> (f64, f64) {
     turning.print("with frame_rotation");
     let dir = tempfile::tempdir().expect("a folder for temporary files");
     let mut writer = Writer::new(&models[0], dir.path());
-    let (mut laps, mut file) = (Laps::default(), 0);
+    let (mut laps, mut file) = (Runs::default(), 0);
     for step in 0..REPEATS {
         file = writer.write(&plain, step as u64, &mut laps);
     }
@@ -320,14 +333,14 @@ fn measure(name: &str, level: Level) -> (f64, f64) {
 fn print_floors(
     rolling: &Rolling<'_>,
     writer: &Writer,
-    laps: &Laps,
+    laps: &Runs,
     (nodes, file): (usize, usize),
     dir: &Path,
 ) {
     println!("\nleast times against floors");
     let factor = rolling.motion.factor_bytes();
     let memory = read_bandwidth(factor);
-    let update = rolling.laps.least("  update")[1];
+    let update = rolling.laps.least("step/update")[1];
     let coordinates: usize = Side::BOTH
         .map(|side| rolling.motion.n_coordinates(side))
         .iter()
@@ -353,13 +366,13 @@ fn paper() {
     let mut rolling = Rolling::new(&model);
     let dir = tempfile::tempdir().expect("a folder for temporary files");
     let mut writer = Writer::new(&model, dir.path());
-    let (mut laps, mut file, clock) = (Laps::default(), 0, std::time::Instant::now());
+    let (mut laps, mut file, mut clock) = (Runs::default(), 0, Stopwatch::start());
     for step in 0..HUNDREDTH {
         rolling.step();
         file = writer.write(&rolling, step as u64, &mut laps);
         fs::remove_file(dir.path().join(format!("step_{step:06}.hdf"))).expect("it was written");
     }
-    let seconds = clock.elapsed().as_secs_f64();
+    let seconds = clock.lap();
     println!(
         "\n== paper: 2 x {name} dofs, {HUNDREDTH} steps with stress and file of each: {seconds:.1} s, {:.1} ms per step; the \
          revolution of {} steps: {:.0} min, {:.0} GB",

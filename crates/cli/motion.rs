@@ -1,7 +1,5 @@
 //! `raceway run` of a `[dynamic]` scene: static start, then steps in time with histories, step files and the ledger.
 
-mod spent;
-
 use std::collections::BTreeMap;
 use std::path::Path;
 use std::time::Instant;
@@ -9,9 +7,10 @@ use std::time::Instant;
 use anyhow::anyhow;
 use comm::print;
 use contact::Side;
+use dynamics::costs::{EFFECTS, FACTOR};
 use dynamics::motion::ledger::LOSSY;
 use dynamics::motion::{Motion, MotionState, StepCache};
-use dynamics::{DynamicsError, Model, Timing};
+use dynamics::{DynamicsError, Model};
 use results::console;
 use results::disk::Forecast;
 use results::failure::{Failure, agree};
@@ -25,12 +24,12 @@ use results::summary::{Findings, Summary};
 use results::survey::build_surveyed;
 use results::watch::Watch;
 use scene::{Dynamic, Scene, settings};
+use timer::{Laps, Stopwatch};
 
 use crate::options::Limits;
 use crate::progress::Progress;
 use crate::resume::Stored;
 use crate::start::settle;
-use spent::Spent;
 
 /// Steps between two lines of progress in a log.
 const PROGRESS_STEPS: u64 = 50;
@@ -50,8 +49,9 @@ pub fn run(
     }))?;
     let read = start.elapsed().as_secs_f64();
     let settled = settle(&model, dynamic, &progress)?;
+    let mut laps = settled.timing.clone();
     progress.stage("factoring the effective matrices");
-    let (motion, factor) = factored(&model, scene, dynamic)?;
+    let motion = factored(&model, scene, dynamic, &mut laps)?;
     say_solvers(&motion, &progress);
     let state = settled.first_state(&motion, dynamic)?;
     let first = Snapshot::of_motion(&motion, &state);
@@ -72,7 +72,7 @@ pub fn run(
         state,
         cache: StepCache::default(),
         newton: 0,
-        spent: Spent::default(),
+        laps,
         watch: Watch::new(model.geometry.n_balls),
         last_file: None,
         dir,
@@ -82,10 +82,6 @@ pub fn run(
     let costs = StartCosts {
         read,
         forecast: Forecasts::of_motion(settled.forecast, &motion, dynamic),
-        timing: Timing {
-            factor: settled.timing.factor + factor,
-            ..settled.timing
-        },
         start,
     };
     march.finish_run(progress, limits, settled.warnings(), costs)
@@ -108,7 +104,8 @@ pub fn resume(
     }))?;
     let read = start.elapsed().as_secs_f64();
     progress.stage("factoring the effective matrices");
-    let (motion, factor) = factored(&model, scene, dynamic)?;
+    let mut laps = Laps::default();
+    let motion = factored(&model, scene, dynamic, &mut laps)?;
     say_solvers(&motion, &progress);
     let (state, newton, watch) = agree(stored.state(&motion))?;
     let (first, warnings) = (Snapshot::of_motion(&motion, &state), stored.warnings);
@@ -130,27 +127,27 @@ pub fn resume(
         state,
         cache: StepCache::default(),
         newton,
-        spent: Spent::default(),
+        laps,
         watch,
         dir: &dir,
     };
     let costs = StartCosts {
         read,
         forecast: Forecasts::of_motion([None, None], &motion, dynamic),
-        timing: Timing {
-            factor,
-            ..Timing::default()
-        },
         start,
     };
     march.finish_run(progress, limits, warnings, costs)
 }
 
-/// The model ready to move, and the seconds that its matrices and factors took.
-fn factored<'a>(model: &'a Model, scene: &Scene, dynamic: &Dynamic) -> Result<(Motion<'a>, f64), Failure> {
-    let clock = Instant::now();
-    let motion = Motion::new(model, settings(scene, dynamic)).map_err(Failure::solving)?;
-    Ok((motion, clock.elapsed().as_secs_f64()))
+/// The model ready to move, with its matrices and factors.
+fn factored<'a>(
+    model: &'a Model,
+    scene: &Scene,
+    dynamic: &Dynamic,
+    laps: &mut Laps,
+) -> Result<Motion<'a>, Failure> {
+    let motion = laps.time(FACTOR, || Motion::new(model, settings(scene, dynamic)));
+    motion.map_err(Failure::solving)
 }
 
 /// Says how each ring is solved.
@@ -166,7 +163,6 @@ fn say_solvers(motion: &Motion<'_>, progress: &Progress) {
 struct StartCosts {
     read: f64,
     forecast: Forecasts,
-    timing: Timing,
     start: Instant,
 }
 
@@ -182,8 +178,8 @@ struct March<'a> {
     cache: StepCache,
     /// Newton iterations so far.
     newton: u64,
-    /// Seconds in the steps so far.
-    spent: Spent,
+    /// Wall time so far, files and effects apart.
+    laps: Laps,
     /// Contacts beyond their limits so far.
     watch: Watch,
     /// The last step handed over to be written.
@@ -200,14 +196,15 @@ impl March<'_> {
         mut warnings: Vec<String>,
         costs: StartCosts,
     ) -> Result<(), Failure> {
-        let clock = Instant::now();
+        let mut clock = Stopwatch::start();
         let first = self.state.step;
         let mut stop = Stop::listen(costs.start, limits.wall_time)?;
         let ended = self.steps(&mut progress, &mut stop);
         progress.finish();
-        let seconds = clock.elapsed().as_secs_f64();
-        let spent = self.spent.with(costs.timing);
-        let finished = self.files.finish(costs.read, costs.forecast, spent, costs.start);
+        let seconds = clock.lap();
+        let (mut laps, effects) = (self.laps, self.motion.costs.laps());
+        laps.merge_into(EFFECTS, &effects);
+        let finished = self.files.finish(costs.read, costs.forecast, laps, costs.start);
         let costs = agree(finished);
         // A run that failed says why, not what its failure did to the files; one that stopped must have its step.
         let costs = match (costs, &ended) {
@@ -226,7 +223,6 @@ impl March<'_> {
             points: Vec::new(),
             iterations: BTreeMap::from([("steps", state.step as usize), ("newton", self.newton as usize)]),
             warnings,
-            effect_seconds: motion.costs.seconds(),
         };
         let summary = Summary::new(self.scene, self.model, findings, &costs);
         summary.write(self.dir)?;
@@ -261,7 +257,7 @@ impl March<'_> {
             match self.motion.step(&self.state, &mut self.cache) {
                 Ok((next, report)) => {
                     self.newton += report.newton_iterations as u64;
-                    self.spent.add(report.seconds);
+                    self.laps.merge(&report.laps);
                     if let Err(failure) = check_ledger(self.dynamic, self.motion, &next, self.dir) {
                         return Err(self.rejected(next, failure));
                     }

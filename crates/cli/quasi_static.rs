@@ -18,6 +18,7 @@ use results::summary::{Findings, Summary};
 use results::survey::build_surveyed;
 use results::{console, fields};
 use scene::{Scene, rolling};
+use timer::Stopwatch;
 
 use crate::options::Limits;
 use crate::progress::Progress;
@@ -67,14 +68,14 @@ pub fn run(
         warned: 0,
         last: first,
     };
-    let clock = Instant::now();
+    let mut clock = Stopwatch::start();
     let ended = series.run(&mut bearing, &mut progress, dir);
-    let seconds = clock.elapsed().as_secs_f64();
+    let seconds = clock.lap();
     progress.finish();
-    let findings = series.findings(&ended, bearing.solver.costs.seconds());
+    let findings = series.findings(&ended);
     let snapshot = findings.last.clone();
     let forecast = Side::BOTH.map(|side| bearing.solver.ring(side).map(|r| r.solver.memory));
-    let costs = agree(files.finish(read, Forecasts::at_rest(forecast), bearing.solver.timing, start));
+    let costs = agree(files.finish(read, Forecasts::at_rest(forecast), bearing.solver.laps(), start));
     // A run that failed says why, not what its failure did to the files.
     let costs = match (costs, &ended) {
         (Err(_), Err(_)) => return ended,
@@ -194,7 +195,7 @@ impl Series<'_> {
             .write_fields(|stress| fields::record(&shown(model, last), last, (stress, gathered), at, scene))
     }
 
-    fn findings(self, ended: &Result<(), Failure>, effect_seconds: BTreeMap<&'static str, f64>) -> Findings {
+    fn findings(self, ended: &Result<(), Failure>) -> Findings {
         let [steps, rounds, newton] = self.iterations;
         let mut warnings = self.warnings;
         if self.warned > 1 {
@@ -212,7 +213,6 @@ impl Series<'_> {
             points: Vec::new(),
             iterations: BTreeMap::from([("steps", steps), ("rounds", rounds), ("newton", newton)]),
             warnings,
-            effect_seconds,
         }
     }
 }

@@ -137,9 +137,8 @@ pub fn run(
     let forecast = Side::BOTH.map(|side| solver.ring(side).map(|r| r.solver.memory));
     // Points that were solved get their summary, whatever came after them.
     if let Some(files) = results {
-        let costs = agree(files.finish(read, Forecasts::at_rest(forecast), solver.timing, start))?;
-        let mut findings = findings(&scene, &solutions, &failure);
-        findings.effect_seconds = solver.costs.seconds();
+        let costs = agree(files.finish(read, Forecasts::at_rest(forecast), solver.laps(), start))?;
+        let findings = findings(&scene, &solutions, &failure);
         let summary = Summary::new(&scene, &model, findings, &costs);
         summary.write(&dir)?;
         if failure.is_none() {
@@ -190,7 +189,6 @@ fn findings(scene: &Scene, solutions: &[Solved], failure: &Option<Failure>) -> F
             .iter()
             .flat_map(|point| warnings(scene, point))
             .collect(),
-        effect_seconds: BTreeMap::new(),
     }
 }
 

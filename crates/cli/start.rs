@@ -2,9 +2,10 @@
 
 use contact::Side;
 use dynamics::motion::{Motion, MotionState};
-use dynamics::{Model, RingMemory, StaticSolution, StaticSolver, Timing};
+use dynamics::{Model, RingMemory, StaticSolution, StaticSolver};
 use results::failure::Failure;
 use scene::{Dynamic, Start};
+use timer::Laps;
 
 use crate::progress::Progress;
 
@@ -14,8 +15,8 @@ pub struct Settled {
     equilibrium: Option<StaticSolution>,
     /// Forecast of the memory of both rings.
     pub forecast: [Option<RingMemory>; 2],
-    /// Seconds of the static solution.
-    pub timing: Timing,
+    /// Wall time of the static solution.
+    pub timing: Laps,
 }
 
 /// Static equilibrium at t = 0, if the motion starts from it. Its factors are not kept: the motion has its own.

@@ -17,10 +17,11 @@ use dynamics::motion::contacts::ContactScheme;
 use dynamics::motion::shaft::ShaftStep;
 use dynamics::motion::small::{Inertia, RingAnswer, SmallSystem};
 use dynamics::problem::Site;
-use dynamics::{Backend, EffectCosts, Hold, RingModel};
+use dynamics::{Backend, Hold, RingModel};
 use fem::Material;
 use mesh::{ElementKind, Facet, Mesh};
 use ring::{BodySettings, End, Frame, KnownLoad, Partner, PortForces, RingState, StepScheme, elastic_body};
+use timer::SharedLaps;
 
 /// Dimensions and numbers of a bar and its flight.
 #[derive(Clone, Copy)]
@@ -138,7 +139,7 @@ impl Rod {
         let mass = self.wall * self.mass();
         let mut wall = [[0.0; 3]; 2];
         let mut flight = Flight::default();
-        let costs = EffectCosts::default();
+        let costs = SharedLaps::default();
         let (mut work, mut loss, mut first) = (0.0, 0.0, None);
         let site = Site {
             ball: 0,

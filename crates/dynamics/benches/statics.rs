@@ -19,10 +19,11 @@ mod clock;
 
 use std::sync::{Arc, LazyLock};
 
-use clock::{Lap, Laps};
+use clock::Runs;
 use contact::Side;
 use divan::Bencher;
 use divan::counter::BytesCount;
+use dynamics::costs::{COLUMNS, NEWTON, PATCHES, SOLVE};
 use dynamics::{ContactMode, Hold, Model, RingModel, StaticSolver};
 use solver::{LinearSolver, SparseCholesky, Symbolic};
 use sprs::CsMat;
@@ -80,7 +81,7 @@ fn factor(stiffness: &Stiffness, symbolic: &Symbolic) -> SparseCholesky {
 }
 
 /// One bearing from section to equilibrium, every part on the clock.
-fn run(level: Level, laps: &mut Laps) {
+fn run(level: Level, laps: &mut Runs) {
     let mut model = load_case().rigid();
     model.contact.mode = ContactMode::Patch;
     model.rings = Side::BOTH.map(|side| {
@@ -95,20 +96,17 @@ fn run(level: Level, laps: &mut Laps) {
             divan::black_box(factor(&stiffness, &symbolic))
         });
     }
-    let total = Lap::start();
-    let mut solver = laps.time("  new: assemble and factor", || new_solver(&model));
+    let mut solver = laps.time("total/new: assemble and factor", || new_solver(&model));
     let solution = laps
-        .time("  solve", || solver.solve(&model, None))
+        .time("total/solve", || solver.solve(&model, None))
         .expect("the bearing has an equilibrium");
-    laps.add("total", total.stop());
-    let t = solver.timing;
-    for (part, seconds) in [
-        ("columns", t.columns),
-        ("patches", t.patches),
-        ("solves", t.solve),
-        ("newton", t.newton),
+    for (part, lap) in [
+        ("total/solve/columns", COLUMNS),
+        ("total/solve/patches", PATCHES),
+        ("total/solve/solves", SOLVE),
+        ("total/solve/newton", NEWTON),
     ] {
-        laps.add_wall(&format!("    {part}"), seconds);
+        laps.add_wall(part, solver.timing.seconds(lap));
     }
     laps.note = format!(
         "{} rounds, {} newton iterations",
@@ -122,7 +120,7 @@ fn new_solver(model: &Model) -> StaticSolver {
 }
 
 fn report(name: &str, level: Level) {
-    let mut laps = Laps::default();
+    let mut laps = Runs::default();
     for _ in 0..REPEATS {
         run(level, &mut laps);
     }

@@ -1,60 +1,44 @@
-//! What a run spent its time on: the parts of the solver, and every effect by name.
+//! What a run spends its time on: names of the laps of the solver, and a lap for every effect.
+//!
+//! Laps live in the workspace of a solver, never in an effect, and nothing that is computed depends on them.
+//! Effects that add loads are timed by [`crate::effects::timed_loads`]; those inside the steps of a motion time
+//! themselves.
 
-use std::collections::BTreeMap;
-use std::sync::Mutex;
-use std::time::Instant;
+use timer::{Laps, SharedLaps};
 
 use crate::model::Model;
 
-/// Seconds spent, by part.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Timing {
-    /// Assembly of the stiffness matrices.
-    pub assemble: f64,
-    /// Ordering, analysis and factorisation.
-    pub factor: f64,
-    /// Compliance columns of the contacts.
-    pub columns: f64,
-    /// Placing of patches.
-    pub patches: f64,
-    /// Full-field solves.
-    pub solve: f64,
-    /// Newton on contacts, balls and shaft.
-    pub newton: f64,
-}
+pub use ring::statics::{ASSEMBLE, FACTOR};
+pub use ring::step::{RACEWAYS, RIGHT_SIDE};
 
-/// Seconds spent on each effect. It lives in the workspace of a solver, never in an effect, and nothing that is computed
-/// depends on it.
-///
-/// Effects that add loads are timed by [`crate::effects::timed_loads`]; those inside the steps of a motion time
-/// themselves with [`EffectCosts::time`].
-#[derive(Debug, Default)]
-pub struct EffectCosts(Mutex<BTreeMap<&'static str, f64>>);
+/// All that is done at the contacts.
+pub const CONTACT: &str = "contact";
+/// Placing of the patches.
+pub const PATCHES: &str = "contact/patches";
+/// Newton on contacts, balls and shaft.
+pub const NEWTON: &str = "contact/newton";
+/// Compliance columns of the contacts, in statics.
+pub const COLUMNS: &str = "columns";
+/// The search for modes.
+pub const SEARCH: &str = "search";
+/// Full-field solves of statics; in motion whole rings: products, solves, new states, energies.
+pub const SOLVE: &str = "solve";
+/// In motion, predictor and columns: the block solve.
+pub const BLOCK_SOLVE: &str = "solve/solve";
+/// In motion, inertia of the turning frame: products and solves.
+pub const FRAME: &str = "solve/frame";
+/// In motion, new state, energies and ledger.
+pub const UPDATE: &str = "solve/update";
+/// In motion, loads of the effects.
+pub const LOADS: &str = "loads";
+/// Effects, each a part by its name; they overlap with the other laps.
+pub const EFFECTS: &str = "effects";
 
-impl EffectCosts {
-    /// A line of 0 s for every effect of the model.
-    pub fn new(model: &Model) -> EffectCosts {
-        let lines = model.effects.iter().map(|e| (e.name(), 0.0));
-        EffectCosts(Mutex::new(lines.collect()))
+/// A lap of 0 s for every effect of the model.
+pub fn of_effects(model: &Model) -> SharedLaps {
+    let mut laps = Laps::default();
+    for effect in &model.effects {
+        laps.add(effect.name(), 0.0);
     }
-
-    /// Does some work and adds its time to an effect.
-    pub fn time<T>(&self, effect: &'static str, work: impl FnOnce() -> T) -> T {
-        let clock = Instant::now();
-        let result = work();
-        let seconds = clock.elapsed().as_secs_f64();
-        *self.lines().entry(effect).or_insert(0.0) += seconds;
-        result
-    }
-
-    /// Seconds by effect, in the order of their names.
-    pub fn seconds(&self) -> BTreeMap<&'static str, f64> {
-        self.lines().clone()
-    }
-
-    fn lines(&self) -> std::sync::MutexGuard<'_, BTreeMap<&'static str, f64>> {
-        self.0
-            .lock()
-            .expect("no thread panics while it adds a number to the costs")
-    }
+    laps.into()
 }

@@ -24,7 +24,6 @@ pub mod raceway;
 pub mod solution;
 pub mod statics;
 
-pub use costs::{EffectCosts, Timing};
 pub use effects::{Effect, Loads};
 pub use error::DynamicsError;
 pub use model::{ContactMode, ContactSettings, Model, ShaftDof, Tolerances};

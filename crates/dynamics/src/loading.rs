@@ -9,8 +9,8 @@
 //! a share of the change is taken, by Aitken's rule (Irons and Tuck, Int. J. Numer. Meth. Eng. 1 (1969) 275).
 
 use contact::Side;
+use timer::SharedLaps;
 
-use crate::costs::EffectCosts;
 use crate::effects::{self, Loads, Now};
 use crate::equilibrium::{SearchScales, minimise};
 use crate::error::DynamicsError;
@@ -39,7 +39,7 @@ impl<'a> LoadCase<'a> {
     pub fn new(
         model: &'a Model,
         pose: Pose,
-        costs: &EffectCosts,
+        costs: &SharedLaps,
         u: &Displacements,
     ) -> Result<LoadCase<'a>, DynamicsError> {
         let problem = pose.problem(model);
@@ -58,7 +58,7 @@ impl<'a> LoadCase<'a> {
     }
 
     /// Loads at the contact angles of `u`.
-    fn loads_at(&self, costs: &EffectCosts, u: &Displacements) -> Result<Loads, DynamicsError> {
+    fn loads_at(&self, costs: &SharedLaps, u: &Displacements) -> Result<Loads, DynamicsError> {
         let angle = |site: &Site| site.contact_angle(&site.state(u));
         let angles: Vec<f64> = self.problem.sites.iter().map(angle).collect();
         let now = Now {
@@ -81,7 +81,7 @@ impl<'a> LoadCase<'a> {
     /// effects goes to `costs`.
     pub fn settle(
         &mut self,
-        costs: &EffectCosts,
+        costs: &SharedLaps,
         start: Displacements,
     ) -> Result<Displacements, DynamicsError> {
         let mut u = self.minimise(start)?;

@@ -13,12 +13,12 @@
 //! C is only a tangent: a slightly outdated one costs rounds, never accuracy; it is renewed when rounds contract slowly.
 
 use std::sync::Arc;
-use std::time::Instant;
 
 use contact::Side;
+use timer::{Laps, SharedLaps, Stopwatch};
 
 use crate::compliance;
-use crate::costs::{EffectCosts, Timing};
+use crate::costs::{self, COLUMNS, EFFECTS, FACTOR, NEWTON, PATCHES, SOLVE};
 use crate::effects::Loads;
 use crate::equilibrium::{SearchScales, check_held, minimise, round_off};
 use crate::error::DynamicsError;
@@ -54,10 +54,10 @@ pub struct StaticRing {
 pub struct StaticSolver {
     rings: [Option<StaticRing>; 2],
     columns: [Option<Vec<f64>>; 2],
-    /// Seconds so far.
-    pub timing: Timing,
-    /// Seconds so far, by effect.
-    pub costs: EffectCosts,
+    /// Wall time so far, effects apart.
+    pub timing: Laps,
+    /// Wall time so far, by effect.
+    pub costs: SharedLaps,
 }
 
 /// What the ring on `side` is made with.
@@ -73,11 +73,9 @@ pub fn settings(model: &Model, side: Side) -> StaticSettings {
 impl StaticRing {
     /// Assembles and factors the stiffness of the ring on `side`.
     pub fn new(model: &Model, side: Side, ring: &RingModel) -> Result<StaticRing, DynamicsError> {
-        let start = Instant::now();
         let mut solver = RingSolver::new(ring, settings(model, side))?;
-        let made = start.elapsed().as_secs_f64();
-        let raceway = Raceway::new(ring, model.contact.mode);
-        solver.seconds[1] += start.elapsed().as_secs_f64() - made;
+        let raceway = || Raceway::new(ring, model.contact.mode);
+        let raceway = solver.laps.time(FACTOR, raceway);
         Ok(StaticRing { solver, raceway })
     }
 }
@@ -91,17 +89,23 @@ impl StaticSolver {
         };
         let (inner, outer) = model.backend.both(|| build(Side::Inner), || build(Side::Outer));
         let rings = [inner?, outer?];
-        let mut timing = Timing::default();
+        let mut timing = Laps::default();
         for ring in rings.iter().flatten() {
-            timing.assemble += ring.solver.seconds[0];
-            timing.factor += ring.solver.seconds[1];
+            timing.merge(&ring.solver.laps);
         }
         Ok(StaticSolver {
             rings,
             columns: [None, None],
             timing,
-            costs: EffectCosts::new(model),
+            costs: costs::of_effects(model),
         })
+    }
+
+    /// Wall time so far, effects among it.
+    pub fn laps(&self) -> Laps {
+        let mut laps = self.timing.clone();
+        laps.merge_into(EFFECTS, &self.costs.laps());
+        laps
     }
 
     /// The ring of one side.
@@ -134,10 +138,10 @@ impl StaticSolver {
     ) -> Result<StaticSolution, DynamicsError> {
         let u = self.start(model, pose.now.time, start);
         let mut case = LoadCase::new(model, *pose, &self.costs, &u)?;
-        let clock = Instant::now();
+        let mut clock = Stopwatch::start();
         // Rings as they were (undeformed without a start): places and forces near those of the new loads.
         let u = case.settle(&self.costs, u)?;
-        self.timing.newton += clock.elapsed().as_secs_f64();
+        self.timing.add(NEWTON, clock.lap());
         if self.rings.iter().any(Option::is_some) {
             return self.rounds(case, u);
         }
@@ -172,26 +176,26 @@ impl StaticSolver {
         let mut forces = site_forces(&case.problem, &u);
         let (mut history, mut worst) = (Vec::new(), 0);
         for round in 1..=model.tolerances.max_rounds {
-            let clock = Instant::now();
+            let mut clock = Stopwatch::start();
             let mut feet = [Vec::new(), Vec::new()];
             for side in Side::BOTH {
                 if let Some(ring) = &self.rings[side.index()] {
                     feet[side.index()] = place(model, side, &ring.raceway, &mut case.problem, &u, &forces)?;
                 }
             }
-            self.timing.patches += clock.elapsed().as_secs_f64();
+            self.timing.add(PATCHES, clock.lap());
             self.renew_columns(model.backend, &feet, &history)?;
             let ring_forces = case.ring_forces(&forces);
             let fields = self.fields(model.backend, &feet, &ring_forces, &case.loads);
             self.respond(&mut case.problem, &feet, &ring_forces, &fields);
             let contact_loads = case.loads.contacts.clone();
-            let clock = Instant::now();
+            let mut clock = Stopwatch::start();
             if round == 1 {
                 adopt_offsets(&case.problem, &mut u);
                 u = approach_facets(&mut case.problem, u, case.scales)?;
             }
             u = case.settle(&self.costs, u)?;
-            self.timing.newton += clock.elapsed().as_secs_f64();
+            self.timing.add(NEWTON, clock.lap());
             let updated = site_forces(&case.problem, &u);
             let largest = largest_force(&updated);
             let normal = largest_change(&forces, &updated, largest);
@@ -233,7 +237,7 @@ impl StaticSolver {
         history: &[f64],
     ) -> Result<(), DynamicsError> {
         let slow = matches!(history, [.., before, last] if *last > SLOW_CONTRACTION * before);
-        let clock = Instant::now();
+        let mut clock = Stopwatch::start();
         let rings = &self.rings;
         let columns = &self.columns;
         let renewed = |side: Side| -> Option<Result<Vec<f64>, DynamicsError>> {
@@ -253,7 +257,7 @@ impl StaticSolver {
                 *columns = Some(new?);
             }
         }
-        self.timing.columns += clock.elapsed().as_secs_f64();
+        self.timing.add(COLUMNS, clock.lap());
         Ok(())
     }
 
@@ -265,7 +269,7 @@ impl StaticSolver {
         forces: &[[f64; 2]],
         loads: &Loads,
     ) -> [Option<Vec<f64>>; 2] {
-        let clock = Instant::now();
+        let mut clock = Stopwatch::start();
         let field = |side: Side| {
             let ring = self.rings[side.index()].as_ref()?;
             let mut load = loads.rings[side.index()]
@@ -277,7 +281,7 @@ impl StaticSolver {
             Some(ring.solver.solve(load, 1))
         };
         let (inner, outer) = backend.both(|| field(Side::Inner), || field(Side::Outer));
-        self.timing.solve += clock.elapsed().as_secs_f64();
+        self.timing.add(SOLVE, clock.lap());
         [inner, outer]
     }
 

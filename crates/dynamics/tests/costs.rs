@@ -3,12 +3,14 @@
 mod support;
 
 use contact::Side;
+use dynamics::costs::of_effects;
 use dynamics::effects::{self, AxialForce, Effect, Gravity, Now};
 use dynamics::kinematics::Speed;
 use dynamics::motion::contacts::ContactDamping;
 use dynamics::motion::{Motion, MotionSettings, StepCache};
-use dynamics::{ContactMode, EffectCosts, Hold, Inventory, Model, StaticSolver};
+use dynamics::{ContactMode, Hold, Inventory, Model, StaticSolver};
 use input::Schedule;
+use timer::Laps;
 
 use support::Case;
 use support::rings::Level;
@@ -19,6 +21,10 @@ fn flexible(effects: Vec<Box<dyn Effect>>) -> Model {
     let mut model = Case::axial(1000.0).flexible(ContactMode::Patch, SMALL, Hold::Clamped);
     model.effects = effects;
     model
+}
+
+fn by_name(laps: &Laps) -> Vec<(&'static str, f64)> {
+    laps.iter().map(|lap| (lap.name, lap.seconds)).collect()
 }
 
 fn settings() -> MotionSettings {
@@ -114,22 +120,19 @@ fn costs_are_kept_by_effect() {
         value: 1.0,
         schedule: Schedule::Constant,
     })];
-    let costs = EffectCosts::new(&model);
-    assert_eq!(
-        costs.seconds().into_iter().collect::<Vec<_>>(),
-        [("axial_force", 0.0)]
-    );
+    let costs = of_effects(&model);
+    assert_eq!(by_name(&costs.laps()), [("axial_force", 0.0)]);
     effects::timed_loads(&model, &Now::default(), &costs).unwrap();
-    let before = costs.seconds();
-    assert_eq!(before.len(), 1);
+    let before = costs.laps();
+    assert_eq!(by_name(&before).len(), 1);
     let answer = costs.time("contact_damping", || {
         std::thread::sleep(std::time::Duration::from_millis(5));
         7
     });
-    let after = costs.seconds();
+    let after = costs.laps();
     assert_eq!(answer, 7);
-    assert_eq!(after["axial_force"], before["axial_force"]);
-    assert!(after["contact_damping"] >= 5e-3);
+    assert_eq!(after.seconds("axial_force"), before.seconds("axial_force"));
+    assert!(after.seconds("contact_damping") >= 5e-3);
 }
 
 /// Wrong: the log of a run would not say what damping costs, or would show damping that is off. Both dampings are inside the steps.
@@ -145,9 +148,10 @@ fn dampings_are_charged_in_a_motion() {
         motion
             .step(&motion.start(&solution), &mut StepCache::default())
             .unwrap();
-        motion.costs.seconds()
+        motion.costs.laps()
     };
-    assert!(lines(settings()).keys().eq(&["axial_force"]));
+    let plain = lines(settings());
+    assert!(plain.iter().map(|lap| lap.name).eq(["axial_force"]));
     let damped = MotionSettings {
         contact_damping: Some(ContactDamping {
             coefficient: 50.0,
@@ -158,6 +162,6 @@ fn dampings_are_charged_in_a_motion() {
     };
     let charged = lines(damped);
     for name in ["contact_damping", "rayleigh_damping"] {
-        assert!(charged[name] > 0.0, "{charged:?}");
+        assert!(charged.seconds(name) > 0.0, "{charged:?}");
     }
 }

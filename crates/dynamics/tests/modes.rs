@@ -124,7 +124,7 @@ fn free_rings_converge_and_have_six_rigid_motions() {
                 side.name(),
                 set.n_unknowns,
                 set.steps,
-                set.seconds
+                set.laps
             );
             assert!(largest < 1e-6, "{largest:e}");
             assert!(difference < limit, "{difference:e}");

@@ -12,8 +12,9 @@ use checkpoint::{
     Storage,
 };
 use comm::{Communicator, print};
-use dynamics::{Model, Timing};
+use dynamics::Model;
 use scene::{Analysis, Scene};
+use timer::{Laps, Stopwatch};
 
 use super::about::about;
 use super::fields;
@@ -22,7 +23,7 @@ use super::probes::Probes;
 use super::ring_stress::{Gathered, RingStress};
 use super::shown::Shown;
 use super::snapshot::Snapshot;
-use super::summary::{Costs, SUMMARY_FILE};
+use super::summary::{Costs, DISK, DISK_WAIT, GATHER, NEAR_FIELD, OUTPUT, READ, STRESS, SUMMARY_FILE, TOTAL};
 use super::tables::{OwnColumns, Tables};
 use crate::failure::Failure;
 use crate::survey::Survey;
@@ -36,8 +37,8 @@ pub struct Files {
     open: Option<Open>,
     /// Stress of the rings, shared with the thread that writes.
     ring_stress: Arc<RingStress>,
-    /// Seconds of stress that ranks recover together: that of the sectors of this rank, and putting it together on rank 0.
-    shared_seconds: [f64; 2],
+    /// Laps of this thread since the files were opened.
+    laps: Laps,
 }
 
 /// The open files of one run.
@@ -45,13 +46,6 @@ struct Open {
     output: BackgroundOutput,
     tables: Tables,
     probes: Option<Probes>,
-    spent: Spent,
-}
-
-/// Seconds of this thread since the files were opened.
-struct Spent {
-    stress: f64,
-    output: f64,
 }
 
 impl Files {
@@ -68,7 +62,7 @@ impl Files {
         if !Communicator::world().is_root() {
             return Ok(Files::new(None, ring_stress));
         }
-        let clock = Instant::now();
+        let mut clock = Stopwatch::start();
         let Survey { probes, mesh } = survey;
         let mesh = mesh.map_or_else(|| MeshFile::new(&fields::bodies(model)), Ok)?;
         let mut output = Output::create_of(dir, &mesh, storage(scene))?;
@@ -76,10 +70,9 @@ impl Files {
         note_dead_owner(output.lock());
         output.describe(about(scene, dir, warnings)?)?;
         let tables = Tables::create(dir, swept_column(scene), first, &own_columns(probes.as_ref()))?;
-        Ok(Files::new(
-            Some(Open::new(output, tables, probes, clock)?),
-            ring_stress,
-        ))
+        let mut files = Files::new(Some(Open::new(output, tables, probes)?), ring_stress);
+        files.laps.add(OUTPUT, clock.lap());
+        Ok(files)
     }
 
     /// Opens the files of a locked folder to go on after its step `last`. Collective.
@@ -95,7 +88,7 @@ impl Files {
         let Some(lock) = lock else {
             return Ok(Files::new(None, ring_stress));
         };
-        let clock = Instant::now();
+        let mut clock = Stopwatch::start();
         let dir = lock.dir().to_path_buf();
         let texts = about(scene, &dir, warnings)?;
         // The tables tell whether the step can be resumed from; nothing is changed before all is known to fit.
@@ -134,17 +127,16 @@ impl Files {
             }
             _ => {}
         }
-        Ok(Files::new(
-            Some(Open::new(output, tables, probes, clock)?),
-            ring_stress,
-        ))
+        let mut files = Files::new(Some(Open::new(output, tables, probes)?), ring_stress);
+        files.laps.add(OUTPUT, clock.lap());
+        Ok(files)
     }
 
     fn new(open: Option<Open>, ring_stress: RingStress) -> Files {
         Files {
             open,
             ring_stress: Arc::new(ring_stress),
-            shared_seconds: [0.0; 2],
+            laps: Laps::default(),
         }
     }
 
@@ -156,8 +148,8 @@ impl Files {
     /// Stress of an instant of the rings that several ranks share, for its fields. Collective, and never a failure of one rank: to be
     /// called before anything of the instant is written.
     pub fn gather_stress(&mut self, shown: &Shown<'_>) -> Gathered {
-        let (gathered, seconds) = self.ring_stress.gather(shown);
-        (0..2).for_each(|i| self.shared_seconds[i] += seconds[i]);
+        let (gathered, laps) = self.ring_stress.gather(shown);
+        self.laps.merge(&laps);
         gathered
     }
 
@@ -173,9 +165,9 @@ impl Files {
         let Some(probes) = &open.probes else {
             return Ok(());
         };
-        let values = open.spent.on_stress(|| probes.values(shown))?;
+        let values = self.laps.time(STRESS, || probes.values(shown))?;
         let append = || open.tables.append_probes(step, time, value, &values);
-        open.spent.on_output(append)?;
+        self.laps.time(OUTPUT, append)?;
         Ok(())
     }
 
@@ -189,7 +181,7 @@ impl Files {
     ) -> Result<(), Failure> {
         let Some(open) = &mut self.open else { return Ok(()) };
         let append = || open.tables.append(step, time, value, snapshot);
-        open.spent.on_output(append)?;
+        self.laps.time(OUTPUT, append)?;
         Ok(())
     }
 
@@ -205,9 +197,9 @@ impl Files {
         let Some(probes) = &open.probes else {
             return Ok(());
         };
-        let rows = open.spent.on_stress(|| probes.profile_rows(shown))?;
+        let rows = self.laps.time(STRESS, || probes.profile_rows(shown))?;
         let append = || open.tables.append_profiles(step, time, value, rows);
-        open.spent.on_output(append)?;
+        self.laps.time(OUTPUT, append)?;
         Ok(())
     }
 
@@ -218,8 +210,8 @@ impl Files {
         record: impl FnOnce(&RingStress) -> Result<StepRecord, Failure>,
     ) -> Result<(), Failure> {
         let Some(open) = &mut self.open else { return Ok(()) };
-        let record = open.spent.on_stress(|| record(&self.ring_stress))?;
-        open.spent.on_output(|| open.output.write_step(record))?;
+        let record = self.laps.time(STRESS, || record(&self.ring_stress))?;
+        self.laps.time(OUTPUT, || open.output.write_step(record))?;
         Ok(())
     }
 
@@ -231,7 +223,7 @@ impl Files {
         let Some(open) = &mut self.open else { return Ok(()) };
         let ring_stress = self.ring_stress.clone();
         let hand_over = || open.output.write_step_made_by(move || record(&ring_stress));
-        open.spent.on_output(hand_over)?;
+        self.laps.time(OUTPUT, hand_over)?;
         Ok(())
     }
 
@@ -242,79 +234,60 @@ impl Files {
             .map_or(Duration::ZERO, |open| open.output.waited())
     }
 
-    /// Waits for the disk, closes the files and says what the run cost.
+    /// Waits for the disk, closes the files and says what the run cost that began at `start`; `laps` are those of
+    /// the solver.
     pub fn finish(
         self,
         read: f64,
         forecast: Forecasts,
-        solver: Timing,
+        mut laps: Laps,
         start: Instant,
     ) -> Result<Costs, Failure> {
+        laps.add(READ, read);
         let Some(open) = self.open else {
+            laps.add(TOTAL, start.elapsed().as_secs_f64());
             return Ok(Costs {
-                read,
-                total: start.elapsed().as_secs_f64(),
+                laps,
                 forecast,
-                solver,
-                ..Costs::default()
+                probes: Vec::new(),
             });
         };
-        let clock = Instant::now();
+        let mut clock = Stopwatch::start();
         let written = open.output.finish()?;
-        let of_probes = open.probes.as_ref().and_then(Probes::near_field_time);
-        let near_fields = [self.ring_stress.near_field_time(), of_probes];
-        let near_field = near_fields.into_iter().flatten().reduce(|a, b| a + b);
+        let of_probes = open.probes.as_ref().and_then(Probes::near_field_seconds);
+        let near_fields = [self.ring_stress.near_field_seconds(), of_probes];
         if let Some(views) = written.output.finish()? {
             warn_of_damage(&views.damaged);
         }
+        laps.merge(&self.laps);
+        laps.add(STRESS, written.making.as_secs_f64());
+        for seconds in near_fields.into_iter().flatten() {
+            laps.add_part(NEAR_FIELD, seconds);
+        }
+        if Communicator::world().size() > 1 {
+            laps.add(GATHER, 0.0);
+        }
+        laps.add(OUTPUT, clock.lap());
+        laps.add_part(DISK_WAIT, written.waited.as_secs_f64());
+        laps.add(DISK, written.writing.as_secs_f64());
+        laps.add(TOTAL, start.elapsed().as_secs_f64());
         Ok(Costs {
-            read,
-            stress: open.spent.stress + written.making.as_secs_f64() + self.shared_seconds[0],
-            gather: (Communicator::world().size() > 1).then_some(self.shared_seconds[1]),
-            near_field: near_field.map(|time| time.as_secs_f64()),
-            output: open.spent.output + clock.elapsed().as_secs_f64(),
-            disk_wait: written.waited.as_secs_f64(),
-            disk: written.writing.as_secs_f64(),
-            total: start.elapsed().as_secs_f64(),
+            laps,
             forecast,
-            solver,
             probes: open.probes.map_or(Vec::new(), |p| p.places().cloned().collect()),
         })
     }
 }
 
 impl Open {
-    fn new(output: Output, tables: Tables, probes: Option<Probes>, clock: Instant) -> Result<Open, Failure> {
+    fn new(output: Output, tables: Tables, probes: Option<Probes>) -> Result<Open, Failure> {
         let companions = tables.companions(output.dir())?;
         Ok(Open {
             output: BackgroundOutput::start(output, QUEUE, companions),
             tables,
             probes,
-            spent: Spent {
-                stress: 0.0,
-                output: clock.elapsed().as_secs_f64(),
-            },
         })
     }
-}
-
-impl Spent {
-    /// What `work` makes; its seconds count as stress.
-    fn on_stress<T>(&mut self, work: impl FnOnce() -> T) -> T {
-        timed(&mut self.stress, work)
-    }
-
-    /// What `work` makes; its seconds count as output.
-    fn on_output<T>(&mut self, work: impl FnOnce() -> T) -> T {
-        timed(&mut self.output, work)
-    }
-}
-
-fn timed<T>(seconds: &mut f64, work: impl FnOnce() -> T) -> T {
-    let clock = Instant::now();
-    let made = work();
-    *seconds += clock.elapsed().as_secs_f64();
-    made
 }
 
 /// Columns of the tables that probes need.

@@ -13,16 +13,18 @@ use checkpoint::{CellFields, Output, PointFields, StateArray, StepRecord};
 use comm::print;
 use contact::Side;
 use dynamics::balls::BallResult;
+use dynamics::costs::{FACTOR, SEARCH};
 use dynamics::{Mode, ModeSet, Model};
 use scene::{ModeBody, Scene};
 use serde::Serialize;
+use timer::Laps;
 
 use super::fields;
 use super::files::storage;
 use super::ring_stress::{Basis, RingStress, ShownRing};
 use super::shown::Turn;
 use super::snapshot::Snapshot;
-use super::summary::{ShaftSummary, mode_name, peak_memory, sides, write_summary};
+use super::summary::{ShaftSummary, TOTAL, mode_name, peak_memory, sides, write_summary};
 use crate::failure::Failure;
 
 /// Largest displacement of a shape in a step file, m.
@@ -145,7 +147,7 @@ pub fn print_modes(name: &str, set: &ModeSet) {
         "{name}: {} unknowns, {} blocks, {:.2} s",
         set.n_unknowns,
         set.steps,
-        set.seconds.iter().sum::<f64>()
+        set.laps.total()
     ));
     print::line(format_args!(
         "mode  frequency Hz    bound Hz  modal kg   kinetic energy: inner  outer  balls  shaft"
@@ -206,7 +208,9 @@ impl ModesSummary {
         warnings: Vec<String>,
         start: Instant,
     ) -> ModesSummary {
-        let part = |i: usize| sets.iter().map(|(_, set)| set.seconds[i]).sum();
+        let mut laps = Laps::default();
+        sets.iter().for_each(|(_, set)| laps.merge(&set.laps));
+        laps.add(TOTAL, start.elapsed().as_secs_f64());
         let body = |set: &ModeSet| BodySummary {
             unknowns: set.n_unknowns,
             blocks: set.steps,
@@ -227,11 +231,7 @@ impl ModesSummary {
             shaft: equilibrium.map(ShaftSummary::new),
             balls: equilibrium.map(|e| e.balls.clone()),
             warnings,
-            timing_s: BTreeMap::from([
-                ("factor", part(0)),
-                ("search", part(1)),
-                ("total", start.elapsed().as_secs_f64()),
-            ]),
+            timing_s: [FACTOR, SEARCH, TOTAL].map(|lap| (lap, laps.seconds(lap))).into(),
             peak_memory_bytes: peak_memory(),
         }
     }

@@ -1,7 +1,5 @@
 //! Probes: single numbers of a run, a line per step in `probes.csv`. The scene's own documentation says what they are.
 
-use std::time::Duration;
-
 use contact::Side;
 use dynamics::Model;
 use dynamics::balls::BallResult;
@@ -100,11 +98,11 @@ impl Probes {
         self.nodes.iter().map(|probe| &probe.place)
     }
 
-    /// Time spent on near fields so far; None where no probe has one.
-    pub fn near_field_time(&self) -> Option<Duration> {
+    /// Seconds spent on near fields so far; None where no probe has one.
+    pub fn near_field_seconds(&self) -> Option<f64> {
         let lines = [&self.points, &self.profiles].into_iter().flatten();
-        let of_lines = lines.filter_map(StressPoints::near_field_time);
-        let of_nodes = self.near_fields.iter().flatten().map(TimedNearField::spent);
+        let of_lines = lines.filter_map(StressPoints::near_field_seconds);
+        let of_nodes = self.near_fields.iter().flatten().map(TimedNearField::seconds);
         of_nodes.chain(of_lines).reduce(|a, b| a + b)
     }
 

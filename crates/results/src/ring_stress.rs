@@ -1,7 +1,5 @@
 //! Stress of the rings as step files hold it: averaged at nodes, or at the integration points of the elements.
 
-use std::time::{Duration, Instant};
-
 use checkpoint::{CellFields, IntegrationPointStress};
 use comm::Communicator;
 use contact::{LoadedPatch, Side};
@@ -10,8 +8,10 @@ use fem::quadrature::stiffness_rule;
 use fem::stress::von_mises;
 use mesh::NodePositions;
 use scene::{Scene, StressOutput};
+use timer::Laps;
 
 use super::shown::{Shown, Turn};
+use super::summary::{GATHER, STRESS};
 use super::timed_near_field::TimedNearField;
 use crate::failure::Failure;
 
@@ -100,43 +100,39 @@ impl RingStress {
         })
     }
 
-    /// Stress of the rings that several ranks share, and what else their fields take, on rank 0; seconds of the sectors of this rank, and of
-    /// putting all together. Collective.
-    pub fn gather(&self, shown: &Shown<'_>) -> (Gathered, [f64; 2]) {
-        let (mut gathered, mut seconds) = (Gathered::default(), [0.0; 2]);
+    /// Stress of the rings that several ranks share, and what else their fields take, on rank 0;
+    /// laps of the sectors of this rank, and of putting all together. Collective.
+    pub fn gather(&self, shown: &Shown<'_>) -> (Gathered, Laps) {
+        let (mut gathered, mut laps) = (Gathered::default(), Laps::default());
         let model = shown.model();
         if !matches!(model.backend, Backend::Sector(sectors) if sectors.comm.size() > 1) {
-            return (gathered, seconds);
+            return (gathered, laps);
         }
         for side in Side::BOTH {
             let (Some(ring), Some(field)) = (model.ring(side), shown.ring(side)) else {
                 continue;
             };
-            let clock = Instant::now();
-            if field.needs_places() {
-                let places = ring.places(side.name(), model.backend);
-                let places = places.expect("a ring that is divided has sectors");
-                gathered.places[side.index()] = places.to_root();
-            }
-            seconds[1] += clock.elapsed().as_secs_f64();
+            laps.time(GATHER, || {
+                if field.needs_places() {
+                    let places = ring.places(side.name(), model.backend);
+                    let places = places.expect("a ring that is divided has sectors");
+                    gathered.places[side.index()] = places.to_root();
+                }
+            });
             let recovery = self.rings[side.index()].as_ref();
             let Some(Source::Shared(shared)) = recovery.map(|r| &r.source) else {
                 continue;
             };
-            let clock = Instant::now();
-            let own = shared.recover(&field.strained);
-            let recovered = clock.elapsed().as_secs_f64();
-            gathered.stress[side.index()] = shared.gather(own);
-            seconds[0] += recovered;
-            seconds[1] += clock.elapsed().as_secs_f64() - recovered;
+            let own = laps.time(STRESS, || shared.recover(&field.strained));
+            gathered.stress[side.index()] = laps.time(GATHER, || shared.gather(own));
         }
-        (gathered, seconds)
+        (gathered, laps)
     }
 
-    /// Time spent on near fields so far; None where no ring has one.
-    pub fn near_field_time(&self) -> Option<Duration> {
+    /// Seconds spent on near fields so far; None where no ring has one.
+    pub fn near_field_seconds(&self) -> Option<f64> {
         let fields = self.rings.iter().flatten().filter_map(|r| r.near_field.as_ref());
-        fields.map(TimedNearField::spent).reduce(|a, b| a + b)
+        fields.map(TimedNearField::seconds).reduce(|a, b| a + b)
     }
 
     /// Stress of a ring with its near field, Pa, in its own frame.

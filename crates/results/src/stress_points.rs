@@ -1,7 +1,5 @@
 //! Stress at points given in ring coordinates, for probes and profiles.
 
-use std::time::Duration;
-
 use anyhow::anyhow;
 use contact::near_field::in_axes;
 use contact::{RingPoint, Side};
@@ -90,10 +88,10 @@ impl StressPoints {
         &self.lines
     }
 
-    /// Time spent on near fields so far; None where no point has one.
-    pub fn near_field_time(&self) -> Option<Duration> {
+    /// Seconds spent on near fields so far; None where no point has one.
+    pub fn near_field_seconds(&self) -> Option<f64> {
         let fields = self.rings.iter().flatten().filter_map(|r| r.near_field.as_ref());
-        fields.map(TimedNearField::spent).reduce(|a, b| a + b)
+        fields.map(TimedNearField::seconds).reduce(|a, b| a + b)
     }
 
     /// Values of [`COLUMNS`] at every point, line after line, Pa.

@@ -7,9 +7,10 @@ use anyhow::Context;
 use comm::{Communicator, print};
 use contact::Side;
 use dynamics::balls::BallResult;
-use dynamics::{Model, Timing};
+use dynamics::{Model, costs};
 use scene::{Analysis, Scene};
 use serde::Serialize;
+use timer::Laps;
 
 use super::memory::Forecasts;
 use super::probe_places::NodePlace;
@@ -18,6 +19,38 @@ use super::subsurface::{self, ContactSubsurface};
 
 /// Start of the keys of `timing_s` that are effects.
 const EFFECT_TIMING: &str = "effect_";
+/// Lap: reading and checking.
+pub const READ: &str = "read";
+/// Lap: stress recovery.
+pub const STRESS: &str = "stress";
+/// Lap: near fields of step files, probes and profiles; absent where the scene asks for none.
+pub const NEAR_FIELD: &str = "stress/near_field";
+/// Lap: putting together on rank 0 the stress that ranks recover; absent with one process.
+pub const GATHER: &str = "gather";
+/// Lap: writing, as far as the run had to wait for it: tables, handing over steps, closing.
+pub const OUTPUT: &str = "output";
+/// Lap: waiting for the disk.
+pub const DISK_WAIT: &str = "output/disk_wait";
+/// Lap: writing of step files on its own thread, beside the computation.
+pub const DISK: &str = "disk";
+/// Lap: the whole run.
+pub const TOTAL: &str = "total";
+/// Laps that `timing_s` has of every run.
+const ALWAYS: [&str; 11] = [
+    READ,
+    costs::ASSEMBLE,
+    costs::FACTOR,
+    costs::COLUMNS,
+    costs::CONTACT,
+    costs::SOLVE,
+    STRESS,
+    OUTPUT,
+    DISK,
+    DISK_WAIT,
+    TOTAL,
+];
+/// Laps that it has where they were run.
+const SOMETIMES: [&str; 2] = [NEAR_FIELD, GATHER];
 /// Name of the file in the result folder.
 pub const SUMMARY_FILE: &str = "summary.json";
 
@@ -94,26 +127,10 @@ struct SweepRow {
 /// Costs of a run that only its driver knows.
 #[derive(Default)]
 pub struct Costs {
-    /// Seconds of reading and checking, stress recovery, writing, and in all.
-    pub read: f64,
-    /// Stress recovery.
-    pub stress: f64,
-    /// Putting together on rank 0 the stress that ranks recover; None with one process.
-    pub gather: Option<f64>,
-    /// Near fields of step files, probes and profiles, a part of `stress`; None where the scene asks for none.
-    pub near_field: Option<f64>,
-    /// Writing, as far as the run had to wait for it: tables, handing over steps, closing.
-    pub output: f64,
-    /// Waiting for the disk, a part of `output`.
-    pub disk_wait: f64,
-    /// Writing of step files on its own thread, beside the computation.
-    pub disk: f64,
-    /// Whole run.
-    pub total: f64,
+    /// Wall time by part: of the solver, see [`dynamics::costs`], and of what is named here.
+    pub laps: Laps,
     /// Memory forecast.
     pub forecast: Forecasts,
-    /// Parts of the solver.
-    pub solver: Timing,
     /// Nodes that were probed.
     pub probes: Vec<NodePlace>,
 }
@@ -143,8 +160,6 @@ pub struct Findings {
     pub iterations: BTreeMap<&'static str, usize>,
     /// What a user should know.
     pub warnings: Vec<String>,
-    /// Seconds by effect, of those whose time can be told apart.
-    pub effect_seconds: BTreeMap<&'static str, f64>,
 }
 
 impl Summary {
@@ -194,7 +209,7 @@ impl Summary {
             sweep,
             warnings,
             probes: costs.probes.clone(),
-            timing_s: timing(costs, &findings.effect_seconds),
+            timing_s: timing(&costs.laps),
             factor_bytes_forecast: sides(|i| costs.forecast.rings[i].map_or(0, |ring| ring.factorisation)),
             peak_memory_forecast_bytes: costs.forecast.peak,
             peak_memory_bytes: peak_memory(),
@@ -290,34 +305,16 @@ fn balls(snapshot: &Snapshot) -> Vec<BallSummary> {
     snapshot.balls.iter().map(ball).collect()
 }
 
-fn timing(costs: &Costs, effects: &BTreeMap<&'static str, f64>) -> BTreeMap<String, f64> {
-    let s = &costs.solver;
-    let parts = [
-        ("read", costs.read),
-        ("assemble", s.assemble),
-        ("factor", s.factor),
-        ("columns", s.columns),
-        ("contact", s.patches + s.newton),
-        ("solve", s.solve),
-        ("stress", costs.stress),
-        ("output", costs.output),
-        ("disk", costs.disk),
-        ("disk_wait", costs.disk_wait),
-        ("total", costs.total),
-    ];
-    let own = effects
-        .iter()
-        .map(|(name, s)| (format!("{EFFECT_TIMING}{name}"), *s));
-    let some = [("near_field", costs.near_field), ("gather", costs.gather)];
-    let asked = some
+/// Seconds by the last name of a lap; those of effects by theirs.
+fn timing(laps: &Laps) -> BTreeMap<String, f64> {
+    let key = |path: &str| path.rsplit('/').next().unwrap_or(path).to_string();
+    let always = ALWAYS.map(|path| (key(path), laps.seconds(path)));
+    let sometimes = SOMETIMES
         .into_iter()
-        .filter_map(|(name, s)| Some((name.to_string(), s?)));
-    parts
-        .map(|(part, s)| (part.to_string(), s))
-        .into_iter()
-        .chain(own)
-        .chain(asked)
-        .collect()
+        .filter_map(|path| Some((key(path), laps.get(path)?.seconds)));
+    let effects = laps.get(costs::EFFECTS).into_iter().flat_map(|lap| &lap.parts);
+    let own = effects.map(|lap| (format!("{EFFECT_TIMING}{}", lap.name), lap.seconds));
+    always.into_iter().chain(sometimes).chain(own).collect()
 }
 
 /// Largest resident memory of this process, bytes; 0 where the system does not tell.

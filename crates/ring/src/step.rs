@@ -18,6 +18,7 @@
 use std::sync::Arc;
 
 use contact::NodalWeights;
+use timer::Laps;
 
 use crate::pool::PooledVector;
 use crate::state::{RingState, RowValues, Stamp};
@@ -81,16 +82,11 @@ pub struct PortAnswer {
     pub compliance: Vec<f64>,
 }
 
-/// Wall time of the answer at the ports, s.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct AnswerSeconds {
-    /// Right-hand side of the predictor.
-    pub right_side: f64,
-    /// Block solve.
-    pub solve: f64,
-    /// What a table of responses says of the contacts.
-    pub table: f64,
-}
+/// Lap of a step: right-hand sides, products with K and M.
+pub const RIGHT_SIDE: &str = "solve/right_side";
+/// Lap of a step: motion of the raceways of periodic rings by the predictor, and compliance of their contacts by
+/// the table of responses.
+pub const RACEWAYS: &str = "contact/raceways";
 
 /// Whether a round leaves the answer at the ports as it was.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -155,11 +151,11 @@ pub trait ElasticStep: Send {
     /// What its ports see.
     fn answer(&self) -> &PortAnswer;
 
-    /// Wall time of the answer that [`StepFactor::begin`] gave.
-    fn seconds(&self) -> AnswerSeconds;
+    /// Wall time of the answer that [`StepFactor::begin`] gave, as far as it is told apart from the block solve.
+    fn laps(&self) -> &Laps;
 
-    /// Moves the contacts to other places; says of what kind the work was.
-    fn move_contacts(&mut self, contacts: &[NodalWeights]) -> AnswerSeconds;
+    /// Moves the contacts to other places; says of the time what is told apart from the block solve.
+    fn move_contacts(&mut self, contacts: &[NodalWeights]) -> Laps;
 
     /// Values of a vector of the body at the contacts, `[2 n_contacts]`.
     fn at_contacts(&self, x: &[f64]) -> Vec<f64>;
@@ -170,20 +166,4 @@ pub trait ElasticStep: Send {
 
     /// Ends the step under these forces. With `next`, looks ahead to a step of the same size under these known loads.
     fn end(&mut self, forces: PortForces<'_>, scale: f64, next: Option<KnownLoad>) -> End;
-}
-
-impl AnswerSeconds {
-    /// Time to move contacts, by a table or by solves.
-    pub(crate) fn of_contacts(by_table: bool, seconds: f64) -> AnswerSeconds {
-        match by_table {
-            true => AnswerSeconds {
-                table: seconds,
-                ..AnswerSeconds::default()
-            },
-            false => AnswerSeconds {
-                solve: seconds,
-                ..AnswerSeconds::default()
-            },
-        }
-    }
 }

@@ -39,10 +39,9 @@ impl Laps {
         }
     }
 
-    /// Parts of a lap whose own seconds are measured as a whole: what is added here is not added to the lap.
-    pub fn parts(&mut self, path: &'static str) -> &mut Laps {
-        path.split(SEPARATOR)
-            .fold(self, |laps, name| &mut laps.lap(name).parts)
+    /// Adds seconds to a lap alone: what it is a part of is measured as a whole.
+    pub fn add_part(&mut self, path: &'static str, seconds: f64) {
+        self.find(path).seconds += seconds;
     }
 
     /// Adds all laps of another tree.
@@ -53,7 +52,7 @@ impl Laps {
     /// Adds all laps of another tree as parts of a lap.
     pub fn merge_into(&mut self, path: &'static str, other: &Laps) {
         self.add(path, other.total());
-        self.parts(path).merge(other);
+        self.find(path).parts.merge(other);
     }
 
     /// The longer of each lap: of work that was done side by side.
@@ -85,6 +84,13 @@ impl Laps {
     /// The laps, without looking into their parts.
     pub fn iter(&self) -> std::slice::Iter<'_, Lap> {
         self.0.iter()
+    }
+
+    fn find(&mut self, path: &'static str) -> &mut Lap {
+        match path.rsplit_once(SEPARATOR) {
+            Some((whole, part)) => self.find(whole).parts.lap(part),
+            None => self.lap(path),
+        }
     }
 
     fn lap(&mut self, name: &'static str) -> &mut Lap {

@@ -1,8 +1,8 @@
 //! Where the wall time goes: a tree of named laps.
 //!
-//! A lap is named by its path, `"contact/newton"`: what is added to it is added to `contact` as well. So the seconds of a lap
-//! include those of its parts. Whoever works carries its [`Laps`]: there is no global, and nothing that is computed depends on
-//! them.
+//! A lap is named by its path, `"contact/newton"`: what is added to it is added to `contact` as well. So the seconds
+//! of a lap include those of its parts. Whoever works carries its [`Laps`]: there is no global, and nothing that is
+//! computed depends on them.
 //!
 //! ```
 //! let mut laps = timer::Laps::default();

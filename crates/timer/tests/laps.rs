@@ -42,8 +42,8 @@ fn a_lap_of_no_time_is_there() {
 #[test]
 fn parts_of_a_whole_leave_it_as_it_is() {
     let mut laps = laps(&[("a", 4.0)]);
-    laps.parts("a").add("x", 1.0);
-    laps.parts("a/x").add("deep", 0.5);
+    laps.add_part("a/x", 1.0);
+    laps.add_part("a/x/deep", 0.5);
     let found = ["a", "a/x", "a/x/deep"].map(|path| laps.seconds(path));
     assert_eq!(found, [4.0, 1.0, 0.5]);
 }
@@ -62,7 +62,8 @@ fn merging_adds_lap_by_lap() {
     assert_eq!(whole.seconds("all/a/y"), 0.5);
 }
 
-/// Wrong: two rings side by side would take the time of both one after the other, or a lap that one of them lacks would be lost.
+/// Wrong: two rings side by side would take the time of both one after the other, or a lap that one of them lacks
+/// would be lost.
 #[test]
 fn side_by_side_the_longer_counts() {
     let [inner, outer] = [

@@ -2,117 +2,110 @@
 
 #![allow(dead_code)]
 
-use std::time::Instant;
+use timer::{Laps, Stopwatch};
 
-/// A stopwatch.
-pub struct Lap {
+/// Processor and wall time.
+struct Clock {
     cpu: f64,
-    wall: Instant,
+    wall: Stopwatch,
 }
 
-impl Lap {
+impl Clock {
     /// Starts now.
-    pub fn start() -> Lap {
-        Lap {
+    fn start() -> Clock {
+        Clock {
             cpu: cpu_seconds(),
-            wall: Instant::now(),
+            wall: Stopwatch::start(),
         }
     }
 
     /// Seconds [processor, wall] since the start.
-    pub fn stop(&self) -> [f64; 2] {
-        [cpu_seconds() - self.cpu, self.wall.elapsed().as_secs_f64()]
+    fn stop(mut self) -> [f64; 2] {
+        [cpu_seconds() - self.cpu, self.wall.lap()]
     }
 }
 
-/// Seconds of named parts, run by run.
+/// Laps of several runs, each in [processor, wall] time.
 #[derive(Default)]
-pub struct Laps {
-    /// Parts in the order of their first use, with [processor, wall] of each run; the last entry is the current run.
-    parts: Vec<(String, Vec<[f64; 2]>)>,
-    n_runs: usize,
+pub struct Runs {
+    ended: Vec<[Laps; 2]>,
+    current: [Laps; 2],
     /// Printed with the table.
     pub note: String,
 }
 
-impl Laps {
-    /// Runs `work` as (a further piece of) a part of the current run.
-    pub fn time<T>(&mut self, part: &str, work: impl FnOnce() -> T) -> T {
-        let lap = Lap::start();
+impl Runs {
+    /// Runs `work` as (a further piece of) a lap of the current run.
+    pub fn time<T>(&mut self, path: &'static str, work: impl FnOnce() -> T) -> T {
+        let clock = Clock::start();
         let result = work();
-        self.add(part, lap.stop());
+        let seconds = clock.stop();
+        (0..2).for_each(|i| self.current[i].add(path, seconds[i]));
         result
     }
 
-    /// Adds seconds [processor, wall] to a part of the current run.
-    pub fn add(&mut self, part: &str, seconds: [f64; 2]) {
-        let index = self
-            .parts
-            .iter()
-            .position(|(name, _)| name == part)
-            .unwrap_or_else(|| {
-                self.parts.push((part.to_string(), Vec::new()));
-                self.parts.len() - 1
-            });
-        let runs = &mut self.parts[index].1;
-        runs.resize(self.n_runs + 1, [0.0; 2]);
-        (0..2).for_each(|i| runs[self.n_runs][i] += seconds[i]);
-    }
-
-    /// Adds wall seconds to a part whose processor time is not known.
-    pub fn add_wall(&mut self, part: &str, seconds: f64) {
-        self.add(part, [f64::NAN, seconds]);
+    /// Adds wall seconds to a part of a lap, whose processor time is not known.
+    pub fn add_wall(&mut self, path: &'static str, seconds: f64) {
+        self.current[1].add_part(path, seconds);
     }
 
     /// The next times belong to another run.
     pub fn end_run(&mut self) {
-        self.n_runs += 1;
+        self.ended.push(std::mem::take(&mut self.current));
     }
 
-    /// Prints least and median seconds of every part.
+    /// Prints least and median seconds of every lap, parts below their whole.
     pub fn print(&self) {
         println!(
             "{:28} {:>9} {:>9} {:>9} {:>9}",
             "seconds", "cpu min", "median", "wall min", "median"
         );
-        for (name, runs) in &self.parts {
-            let [cpu, wall] = [0, 1].map(|i| least_and_median(runs.iter().map(|r| r[i]).collect()));
-            let cell = |x: f64| {
-                if x.is_nan() {
-                    "-".to_string()
-                } else {
-                    format!("{x:.4}")
-                }
-            };
+        let mut all = Laps::default();
+        self.ended.iter().for_each(|[_, wall]| all.merge(wall));
+        self.print_laps(&all, "", "");
+    }
+
+    fn print_laps(&self, laps: &Laps, whole: &str, indent: &str) {
+        for lap in laps {
+            let path = format!("{whole}{}", lap.name);
+            let [cpu, wall] = [0, 1].map(|i| match self.seconds(&path, i) {
+                Some(seconds) => least_and_median(seconds).map(|x| format!("{x:.4}")),
+                None => ["-", "-"].map(str::to_string),
+            });
             println!(
-                "{name:28} {:>9} {:>9} {:>9} {:>9}",
-                cell(cpu[0]),
-                cell(cpu[1]),
-                cell(wall[0]),
-                cell(wall[1])
+                "{:28} {:>9} {:>9} {:>9} {:>9}",
+                format!("{indent}{}", lap.name),
+                cpu[0],
+                cpu[1],
+                wall[0],
+                wall[1]
             );
+            self.print_laps(&lap.parts, &format!("{path}/"), &format!("{indent}  "));
         }
     }
 
-    /// Least seconds of some parts over those of others, [processor, wall].
+    /// Least seconds of some laps over those of others, [processor, wall].
     pub fn ratio(&self, above: &[&str], below: &[&str]) -> [f64; 2] {
         [0, 1].map(|i| self.least_sum(above, i) / self.least_sum(below, i))
     }
 
-    /// Least seconds of a part, [processor, wall].
-    pub fn least(&self, part: &str) -> [f64; 2] {
-        [0, 1].map(|i| self.least_sum(&[part], i))
+    /// Least seconds of a lap, [processor, wall].
+    pub fn least(&self, path: &str) -> [f64; 2] {
+        [0, 1].map(|i| self.least_sum(&[path], i))
     }
 
-    /// Sum over the parts of their least seconds.
-    fn least_sum(&self, names: &[&str], i: usize) -> f64 {
-        let chosen = self
-            .parts
-            .iter()
-            .filter(|(name, _)| names.contains(&name.as_str()));
-        chosen
-            .map(|(_, runs)| least_and_median(runs.iter().map(|r| r[i]).collect())[0])
-            .sum()
+    /// Sum over the laps of their least seconds.
+    fn least_sum(&self, paths: &[&str], i: usize) -> f64 {
+        let known = paths.iter().filter_map(|path| self.seconds(path, i));
+        known.map(|seconds| least_and_median(seconds)[0]).sum()
+    }
+
+    /// Seconds of a lap run by run; None if they are not known.
+    fn seconds(&self, path: &str, i: usize) -> Option<Vec<f64>> {
+        let runs = self.ended.iter().map(|run| &run[i]);
+        runs.clone()
+            .any(|laps| laps.get(path).is_some())
+            .then(|| runs.map(|laps| laps.seconds(path)).collect())
     }
 }
 
@@ -125,9 +118,9 @@ fn least_and_median(mut values: Vec<f64>) -> [f64; 2] {
 pub fn least_wall(n_runs: usize, mut work: impl FnMut()) -> f64 {
     let mut seconds: Vec<f64> = Vec::new();
     for _ in 0..n_runs {
-        let start = Instant::now();
+        let mut clock = Stopwatch::start();
         work();
-        seconds.push(start.elapsed().as_secs_f64());
+        seconds.push(clock.lap());
     }
     least_and_median(seconds)[0]
 }
@@ -164,6 +157,6 @@ fn cpu_seconds() -> f64 {
 
 /// Wall seconds since the first call.
 fn since_start() -> f64 {
-    static START: std::sync::LazyLock<Instant> = std::sync::LazyLock::new(Instant::now);
+    static START: std::sync::LazyLock<std::time::Instant> = std::sync::LazyLock::new(std::time::Instant::now);
     START.elapsed().as_secs_f64()
 }

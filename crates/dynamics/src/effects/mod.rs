@@ -21,9 +21,9 @@ pub use radial_force::RadialForce;
 use contact::Side;
 use input::Schedule;
 pub use ring::FrameTurn;
+use timer::SharedLaps;
 
 use crate::balls::BallResult;
-use crate::costs::EffectCosts;
 use crate::error::DynamicsError;
 use crate::model::Model;
 use ring::division::NodePlaces;
@@ -161,11 +161,11 @@ pub trait Effect: Send + Sync {
 
 /// Loads of all effects of the model at an instant.
 pub fn loads(model: &Model, now: &Now) -> Result<Loads, DynamicsError> {
-    timed_loads(model, now, &EffectCosts::default())
+    timed_loads(model, now, &SharedLaps::default())
 }
 
 /// [`loads`], with the time of each effect added to `costs`.
-pub fn timed_loads(model: &Model, now: &Now, costs: &EffectCosts) -> Result<Loads, DynamicsError> {
+pub fn timed_loads(model: &Model, now: &Now, costs: &SharedLaps) -> Result<Loads, DynamicsError> {
     let mut loads = Loads::none(model);
     for effect in &model.effects {
         costs.time(effect.name(), || effect.add_loads(model, now, &mut loads))?;

@@ -28,11 +28,11 @@ mod columns;
 mod shape;
 mod system;
 
-use std::time::Instant;
-
 use contact::Side;
 use dense::{LanczosSettings, Searched, lowest_pairs};
+use timer::{Laps, Stopwatch};
 
+use crate::costs::{FACTOR, SEARCH};
 use crate::error::DynamicsError;
 use crate::model::{ContactMode, Model, ShaftDof};
 use crate::problem::site_hessian;
@@ -82,8 +82,8 @@ pub struct ModeSet {
     pub n_unknowns: usize,
     /// Blocks of Lanczos; 0 by the dense method.
     pub steps: usize,
-    /// Seconds of assembly and factorisation, and of the search.
-    pub seconds: [f64; 2],
+    /// Wall time of assembly and factorisation, [`FACTOR`], and of the search, [`SEARCH`].
+    pub laps: Laps,
 }
 
 /// Modes of a ring alone.
@@ -94,7 +94,7 @@ pub fn ring_modes(
     settings: ModesSettings,
     progress: &mut dyn FnMut(Searched),
 ) -> Result<ModeSet, DynamicsError> {
-    let start = Instant::now();
+    let clock = Stopwatch::start();
     let speed = (ring.material.young_modulus / ring.material.density).sqrt();
     let shift = shift(settings, speed / ring.groove.centre_radius);
     let partner = match support {
@@ -105,7 +105,7 @@ pub fn ring_modes(
     let mut rings = [None, None];
     rings[side.index()] = Some(body);
     let system = System::new(rings, Vec::new(), Vec::new(), shift)?;
-    search(&system, settings, RING_BLOCK, start, progress)
+    search(&system, settings, RING_BLOCK, clock, progress)
 }
 
 /// Modes of the loaded bearing about an equilibrium of the model.
@@ -115,7 +115,7 @@ pub fn bearing_modes(
     settings: ModesSettings,
     progress: &mut dyn FnMut(Searched),
 ) -> Result<ModeSet, DynamicsError> {
-    let start = Instant::now();
+    let clock = Stopwatch::start();
     check_supported(model, equilibrium)?;
     let steel = &model.ball_material;
     let speed = (steel.young_modulus / steel.density).sqrt();
@@ -151,7 +151,7 @@ pub fn bearing_modes(
         shaft,
         model.geometry.centre_radius(Side::Inner),
     );
-    search(&system, settings, block, start, progress)
+    search(&system, settings, block, clock, progress)
 }
 
 /// Largest number of basis vectors that a search keeps, for forecasts of memory: ring alone, bearing.
@@ -213,10 +213,11 @@ fn search(
     system: &System,
     settings: ModesSettings,
     block: usize,
-    start: Instant,
+    mut clock: Stopwatch,
     progress: &mut dyn FnMut(Searched),
 ) -> Result<ModeSet, DynamicsError> {
-    let built = start.elapsed().as_secs_f64();
+    let mut laps = Laps::default();
+    laps.add(FACTOR, clock.lap());
     let lanczos = LanczosSettings::new(settings.number, block);
     let pairs = lowest_pairs(system, lanczos, progress).map_err(|source| DynamicsError::Modes { source })?;
     let n = dense::EigenProblem::n(system);
@@ -225,10 +226,12 @@ fn search(
         let is_rigid = value <= RIGID * dense::EigenProblem::shift(system);
         Mode::new(system, x, [value, bound], pairs.residuals[i], is_rigid)
     });
+    let modes = modes.collect();
+    laps.add(SEARCH, clock.lap());
     Ok(ModeSet {
-        modes: modes.collect(),
+        modes,
         n_unknowns: n,
         steps: pairs.steps,
-        seconds: [built, start.elapsed().as_secs_f64() - built],
+        laps,
     })
 }

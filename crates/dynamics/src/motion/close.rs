@@ -12,6 +12,7 @@ use super::place::expected;
 use super::run::Motion;
 use super::state::MotionState;
 use super::substep::{Part, Span};
+use crate::costs::{FRAME, UPDATE};
 use crate::error::DynamicsError;
 
 /// Rounds for the inertia of the turning frame before a step counts as failed; each contracts by about speed times step size.
@@ -47,7 +48,7 @@ impl Motion<'_> {
                 // Every ring has its round, whatever the one before says.
                 steps.map(settle).fold(Settling::Settled, both_settled)
             });
-            part.report.seconds.frame += part.clock.lap();
+            part.report.laps.add(FRAME, part.clock.lap());
             if settled == Settling::Again {
                 self.next_round(part)?;
                 return Ok(None);
@@ -64,7 +65,7 @@ impl Motion<'_> {
             .model
             .backend
             .both(|| end(inner, Side::Inner), || end(outer, Side::Outer));
-        part.report.seconds.update += part.clock.lap();
+        part.report.laps.add(UPDATE, part.clock.lap());
         let mut rings = [None, None];
         for (ring, end) in rings.iter_mut().zip([inner, outer]) {
             match end {

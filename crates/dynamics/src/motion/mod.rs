@@ -38,4 +38,4 @@ pub use ring::{Integrator, RingState};
 pub use run::Motion;
 pub use shape::{RingShape, StateShape};
 pub use start::check_supported;
-pub use state::{Ladder, MotionSettings, MotionState, StepReport, StepSeconds};
+pub use state::{Ladder, MotionSettings, MotionState, StepReport};

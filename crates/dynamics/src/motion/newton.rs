@@ -2,10 +2,10 @@
 
 use contact::Side;
 use dense::DenseLu;
+use timer::SharedLaps;
 
 use super::contacts::MeanForce;
 use super::small::SmallSystem;
-use crate::costs::EffectCosts;
 use crate::equilibrium::MAX_TILT;
 use crate::error::DynamicsError;
 use crate::footprint::require_in_groove;
@@ -63,7 +63,7 @@ impl SmallSystem {
     }
 
     /// Solves the step. Fails with the residual history and the place of the largest residual.
-    pub fn solve(&self, scale: f64, costs: &EffectCosts) -> Result<SmallSolution, DynamicsError> {
+    pub fn solve(&self, scale: f64, costs: &SharedLaps) -> Result<SmallSolution, DynamicsError> {
         let (n, mut x) = (self.n(), self.guess());
         let linear = self.linear_slope();
         let mut jacobian = linear.clone();
@@ -133,7 +133,7 @@ impl SmallSystem {
     }
 
     /// Halves the step until the residual shrinks.
-    fn search(&self, x: &[f64], step: &[f64], residual: &[f64], costs: &EffectCosts) -> Vec<f64> {
+    fn search(&self, x: &[f64], step: &[f64], residual: &[f64], costs: &SharedLaps) -> Vec<f64> {
         let size = |r: &[f64]| r.iter().map(|v| v * v).sum::<f64>();
         let mut share = 1.0;
         loop {

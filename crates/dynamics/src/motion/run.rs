@@ -7,6 +7,7 @@
 use std::sync::{Arc, OnceLock};
 
 use contact::Side;
+use timer::SharedLaps;
 
 use crate::kinematics::Kinematics;
 use ring::memory::forecast_motion_peak;
@@ -17,7 +18,7 @@ use super::cache::StepCache;
 use super::start::check_supported;
 use super::state::{MotionSettings, MotionState, StepReport};
 use super::substep::Span;
-use crate::costs::EffectCosts;
+use crate::costs;
 use crate::error::DynamicsError;
 use crate::model::Model;
 use crate::raceway::Raceway;
@@ -46,7 +47,7 @@ pub struct Motion<'a> {
     pub(super) token: Arc<()>,
     rungs: Vec<OnceLock<Rung>>,
     /// Seconds so far, by effect.
-    pub costs: EffectCosts,
+    pub costs: SharedLaps,
 }
 
 impl<'a> Motion<'a> {
@@ -83,7 +84,7 @@ impl<'a> Motion<'a> {
             settings,
             token: Arc::new(()),
             rungs,
-            costs: EffectCosts::new(model),
+            costs: costs::of_effects(model),
         };
         motion.rung(0)?;
         Ok(motion)

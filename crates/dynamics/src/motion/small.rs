@@ -5,10 +5,10 @@
 //! contacts and shaft. [`super::newton`] solves it.
 
 use contact::Side;
+use timer::SharedLaps;
 
 use super::contacts::{ContactDamping, ContactScheme, MeanForce, mean_force, viscous};
 use super::shaft::ShaftStep;
-use crate::costs::EffectCosts;
 use crate::problem::Site;
 use ring::Integrator;
 
@@ -162,7 +162,7 @@ impl SmallSystem {
     }
 
     /// Mean forces of all contacts; `costs` gets the time of the damping.
-    pub(super) fn forces(&self, x: &[f64], costs: &EffectCosts) -> Vec<MeanForce> {
+    pub(super) fn forces(&self, x: &[f64], costs: &SharedLaps) -> Vec<MeanForce> {
         let reaches: Vec<_> = self.sites.iter().map(|s| self.reach(s, x)).collect();
         let places = || self.sites.iter().zip(&reaches);
         let damping = self.damping.as_ref().map(|damping| {

@@ -5,6 +5,7 @@ use super::ledger::Ledger;
 use crate::kinematics::Speed;
 use ring::Integrator;
 use ring::RingState;
+use timer::Laps;
 
 /// Choices of a motion.
 #[derive(Clone, Debug, PartialEq)]
@@ -113,7 +114,7 @@ impl MotionState {
 }
 
 /// What happened in a step.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct StepReport {
     /// Newton iterations on the contacts.
     pub newton_iterations: usize,
@@ -127,45 +128,8 @@ pub struct StepReport {
     pub retries: usize,
     /// Largest accepted local error over the largest contact approach; 0 when steps do not adapt.
     pub error: f64,
-    /// Wall time by part.
-    pub seconds: StepSeconds,
-}
-
-/// Wall time of a step by part, s; of two rings side by side, the longer.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct StepSeconds {
-    /// Loads of the effects.
-    pub loads: f64,
-    /// Placing of the patches.
-    pub patches: f64,
-    /// Right-hand sides: products with K and M.
-    pub right_side: f64,
-    /// Predictor and columns: the block solve.
-    pub solve: f64,
-    /// Motion of the raceways of periodic rings by the predictor, and compliance of their contacts by the table of responses.
-    pub raceways: f64,
-    /// Newton on contacts, balls and shaft.
-    pub newton: f64,
-    /// Inertia of the turning frame: products and solves.
-    pub frame: f64,
-    /// New state, energies and ledger.
-    pub update: f64,
-}
-
-impl StepSeconds {
-    /// Names and times of all parts.
-    pub fn parts(&self) -> [(&'static str, f64); 8] {
-        [
-            ("loads", self.loads),
-            ("patches", self.patches),
-            ("right_side", self.right_side),
-            ("solve", self.solve),
-            ("raceways", self.raceways),
-            ("newton", self.newton),
-            ("frame", self.frame),
-            ("update", self.update),
-        ]
-    }
+    /// Wall time by part, see [`crate::costs`]; of two rings side by side, the longer.
+    pub laps: Laps,
 }
 
 impl StepReport {
@@ -177,14 +141,6 @@ impl StepReport {
         self.substeps += other.substeps;
         self.retries += other.retries;
         self.error = self.error.max(other.error);
-        let (to, from) = (&mut self.seconds, &other.seconds);
-        to.loads += from.loads;
-        to.patches += from.patches;
-        to.right_side += from.right_side;
-        to.raceways += from.raceways;
-        to.solve += from.solve;
-        to.newton += from.newton;
-        to.frame += from.frame;
-        to.update += from.update;
+        self.laps.merge(&other.laps);
     }
 }

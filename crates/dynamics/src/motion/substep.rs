@@ -2,11 +2,10 @@
 //! are those of the motion found, then the new state.
 
 use std::sync::Arc;
-use std::time::Instant;
 
 use contact::Side;
 use ring::ElasticStep;
-use ring::step::AnswerSeconds;
+use timer::{Laps, Stopwatch};
 
 use super::cache::{Ahead, ExpectedLoads, StepCache};
 use super::newton::{SmallSolution, check_patches, check_range};
@@ -15,6 +14,7 @@ use super::place::Placing;
 use super::run::Motion;
 use super::small::SmallSystem;
 use super::state::{MotionState, StepReport};
+use crate::costs::{BLOCK_SOLVE, LOADS, NEWTON, PATCHES, UPDATE};
 use crate::error::DynamicsError;
 
 /// Rounds for the places of the patches before a step counts as failed.
@@ -50,7 +50,7 @@ pub(super) struct Part<'m> {
     /// Largest force that acts at the start, N.
     pub scale: f64,
     pub report: StepReport,
-    pub clock: Lap,
+    pub clock: Stopwatch,
 }
 
 impl Motion<'_> {
@@ -78,7 +78,7 @@ impl Motion<'_> {
         next.places[0] = places;
         let mut report = part.report;
         report.error = error;
-        report.seconds.update += part.clock.lap();
+        report.laps.add(UPDATE, part.clock.lap());
         Ok((next, report, ends.ahead))
     }
 
@@ -93,21 +93,17 @@ impl Motion<'_> {
             substeps: 1,
             ..StepReport::default()
         };
-        let mut clock = Lap::new();
+        let mut clock = Stopwatch::start();
         let ahead = self.ahead(state, span, cache)?;
         let expected = ahead.loads.clone();
-        report.seconds.loads = clock.lap();
+        report.laps.add(LOADS, clock.lap());
         let places = expected.places.clone();
         let placing = self.place(&places, self.weighted_time(span))?;
-        report.seconds.patches = clock.lap();
+        report.laps.add(PATCHES, clock.lap());
         let rings = self.begin_rings(state, ahead, &placing.feet)?;
-        let longest = |of: fn(AnswerSeconds) -> f64| {
-            let rings = rings.iter().flatten();
-            rings.map(|step| of(step.seconds())).fold(0.0, f64::max)
-        };
-        report.seconds.right_side = longest(|s| s.right_side);
-        report.seconds.raceways = longest(|s| s.table);
-        report.seconds.solve = clock.lap() - report.seconds.right_side - report.seconds.raceways;
+        let known = longest(rings.iter().flatten().map(|step| step.laps()));
+        report.laps.add(BLOCK_SOLVE, clock.lap() - known.total());
+        report.laps.merge(&known);
         let system = self.system(state, span, placing.sites.clone(), &rings, &expected.loads)?;
         Ok(Part {
             span,
@@ -136,7 +132,7 @@ impl Motion<'_> {
         for _ in 0..=MAX_PLACE_ROUNDS {
             let solution = part.system.solve(part.scale, &self.costs)?;
             part.report.newton_iterations += solution.iterations;
-            part.report.seconds.newton += part.clock.lap();
+            part.report.laps.add(NEWTON, part.clock.lap());
             let met = part.system.places(&solution);
             if part.placing.holds(&part.places, &met) {
                 return Ok(solution);
@@ -144,7 +140,7 @@ impl Motion<'_> {
             part.report.place_rounds += 1;
             part.placing = self.place(&met, self.weighted_time(part.span))?;
             part.places = met;
-            part.report.seconds.patches += part.clock.lap();
+            part.report.laps.add(PATCHES, part.clock.lap());
             self.move_contacts(part);
             let sites = part.placing.sites.clone();
             part.system = self.system(state, part.span, sites, &part.rings, &part.expected.loads)?;
@@ -167,25 +163,14 @@ impl Motion<'_> {
             .model
             .backend
             .both(|| move_ring(inner, Side::Inner), || move_ring(outer, Side::Outer));
-        let table = [inner, outer].into_iter().flatten().map(|s| s.table);
-        part.report.seconds.raceways += table.clone().fold(0.0, f64::max);
-        part.report.seconds.solve += part.clock.lap() - table.fold(0.0, f64::max);
+        let known = longest([&inner, &outer].into_iter().flatten());
+        let laps = &mut part.report.laps;
+        laps.add(BLOCK_SOLVE, part.clock.lap() - known.total());
+        laps.merge(&known);
     }
 }
 
-/// A stop watch.
-pub(super) struct Lap(Instant);
-
-impl Lap {
-    fn new() -> Lap {
-        Lap(Instant::now())
-    }
-
-    /// Seconds since the last lap.
-    pub(super) fn lap(&mut self) -> f64 {
-        let now = Instant::now();
-        let seconds = (now - self.0).as_secs_f64();
-        self.0 = now;
-        seconds
-    }
+/// Laps of rings side by side: of each the longest.
+fn longest<'a>(rings: impl Iterator<Item = &'a Laps>) -> Laps {
+    rings.fold(Laps::default(), Laps::longest)
 }

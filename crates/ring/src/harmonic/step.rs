@@ -3,9 +3,9 @@
 
 use std::borrow::Cow;
 use std::sync::Arc;
-use std::time::Instant;
 
 use contact::NodalWeights;
+use timer::{Laps, Stopwatch};
 
 use super::defect_step::{DefectFactor, DefectStep};
 use super::factor::CyclicFactor;
@@ -19,7 +19,7 @@ use crate::pool::PooledVector;
 use crate::settling::FrameRounds;
 use crate::state::{RingState, RowValues, within_part};
 use crate::step::{
-    AnswerSeconds, ElasticStep, End, Ended, FrameTurn, Known, KnownLoad, PortAnswer, PortForces, Settling,
+    ElasticStep, End, Ended, FrameTurn, Known, KnownLoad, PortAnswer, PortForces, RACEWAYS, Settling,
     StepFactor, Works,
 };
 use crate::vectors::{add, combined, dot, sum};
@@ -44,7 +44,7 @@ struct HarmonicStep<'a> {
     /// What a defect makes of it.
     defect: Option<DefectStep>,
     answer: PortAnswer,
-    seconds: AnswerSeconds,
+    laps: Laps,
     /// Inertia of the turning frame that acts.
     inertia: Option<(FrameTurn, Arc<PooledVector>)>,
     rounds: FrameRounds,
@@ -126,7 +126,7 @@ impl StepFactor for HarmonicFactor {
         known: Arc<Known>,
         contacts: &[NodalWeights],
     ) -> Box<dyn ElasticStep + 'a> {
-        let clock = Instant::now();
+        let mut clock = Stopwatch::start();
         let held = &self.body.held;
         let solved = known.solved.clone();
         let predictor = solved.expect("a ring in harmonic space predicts by its pass");
@@ -141,7 +141,7 @@ impl StepFactor for HarmonicFactor {
             predictor,
             defect: None,
             answer: PortAnswer::default(),
-            seconds: AnswerSeconds::default(),
+            laps: Laps::default(),
             known,
         };
         let Meeting { step: defect, moved } = {
@@ -157,7 +157,7 @@ impl StepFactor for HarmonicFactor {
         };
         step.defect = defect;
         step.answer_with(moved);
-        step.seconds.table = clock.elapsed().as_secs_f64();
+        step.laps.add(RACEWAYS, clock.lap());
         Box::new(step)
     }
 }
@@ -265,12 +265,12 @@ impl ElasticStep for HarmonicStep<'_> {
         &self.answer
     }
 
-    fn seconds(&self) -> AnswerSeconds {
-        self.seconds
+    fn laps(&self) -> &Laps {
+        &self.laps
     }
 
-    fn move_contacts(&mut self, contacts: &[NodalWeights]) -> AnswerSeconds {
-        let clock = Instant::now();
+    fn move_contacts(&mut self, contacts: &[NodalWeights]) -> Laps {
+        let (mut laps, mut clock) = (Laps::default(), Stopwatch::start());
         let held = &self.factor.body.held;
         self.ports = Ports::new(held, contacts);
         let old = self.defect.take();
@@ -282,7 +282,8 @@ impl ElasticStep for HarmonicStep<'_> {
                 });
         self.defect = step;
         self.answer_with(moved);
-        AnswerSeconds::of_contacts(true, clock.elapsed().as_secs_f64())
+        laps.add(RACEWAYS, clock.lap());
+        laps
     }
 
     fn at_contacts(&self, x: &[f64]) -> Vec<f64> {

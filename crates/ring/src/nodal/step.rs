@@ -1,9 +1,9 @@
 //! A step of a ring whose vectors are coordinates.
 
 use std::sync::Arc;
-use std::time::Instant;
 
 use contact::NodalWeights;
+use timer::{Laps, Stopwatch};
 
 use super::columns::{Columns, NodalBody, NodalSolver, Ports, measure};
 use crate::body::{ElasticBody, frame_load};
@@ -12,8 +12,8 @@ use crate::pool::PooledVector;
 use crate::settling::{Change, FrameRounds};
 use crate::state::RingState;
 use crate::step::{
-    AnswerSeconds, ElasticStep, End, Ended, FrameTurn, Known, KnownLoad, PortAnswer, PortForces, Settling,
-    StepFactor, Works,
+    ElasticStep, End, Ended, FrameTurn, Known, KnownLoad, PortAnswer, PortForces, RACEWAYS, RIGHT_SIDE,
+    Settling, StepFactor, Works,
 };
 use crate::vectors::{add, combined, dot, sum};
 
@@ -32,7 +32,7 @@ struct NodalStep<'a, S: NodalSolver> {
     ports: Ports,
     predictor: <S::Columns as Columns>::Predictor,
     answer: PortAnswer,
-    seconds: AnswerSeconds,
+    laps: Laps,
     /// Inertia of the turning frame that acts.
     inertia: Option<(FrameTurn, Arc<PooledVector>)>,
     rounds: FrameRounds,
@@ -99,7 +99,7 @@ impl<S: NodalSolver> StepFactor for NodalFactor<S> {
         known: Arc<Known>,
         contacts: &[NodalWeights],
     ) -> Box<dyn ElasticStep + 'a> {
-        let clock = Instant::now();
+        let (mut laps, mut clock) = (Laps::default(), Stopwatch::start());
         let held = &self.body.held;
         let ports = Ports::new(held, contacts);
         let load = match (known.load.load.as_deref(), known.inertia.as_deref()) {
@@ -108,7 +108,7 @@ impl<S: NodalSolver> StepFactor for NodalFactor<S> {
         };
         let side = self.right_side(from, load.as_deref());
         let start = measure(&ports.all(held), from.displacement());
-        let right_side = clock.elapsed().as_secs_f64();
+        laps.add(RIGHT_SIDE, clock.lap());
         let (predictor, moved) = self.columns.begin(held, side, &ports);
         let turn = known.load.turn;
         Box::new(NodalStep {
@@ -119,11 +119,7 @@ impl<S: NodalSolver> StepFactor for NodalFactor<S> {
                 start,
                 compliance: moved.compliance,
             },
-            seconds: AnswerSeconds {
-                right_side,
-                solve: clock.elapsed().as_secs_f64() - right_side,
-                table: 0.0,
-            },
+            laps,
             inertia: turn.zip(known.inertia.clone()),
             rounds: FrameRounds::new(turn, self.scheme.dt, held.coordinates.n()),
             increment: None,
@@ -146,12 +142,12 @@ impl<S: NodalSolver> ElasticStep for NodalStep<'_, S> {
         &self.answer
     }
 
-    fn seconds(&self) -> AnswerSeconds {
-        self.seconds
+    fn laps(&self) -> &Laps {
+        &self.laps
     }
 
-    fn move_contacts(&mut self, contacts: &[NodalWeights]) -> AnswerSeconds {
-        let clock = Instant::now();
+    fn move_contacts(&mut self, contacts: &[NodalWeights]) -> Laps {
+        let (mut laps, mut clock) = (Laps::default(), Stopwatch::start());
         let held = &self.factor.body.held;
         self.ports = Ports::new(held, contacts);
         let start = measure(&self.ports.all(held), self.old.displacement());
@@ -164,7 +160,10 @@ impl<S: NodalSolver> ElasticStep for NodalStep<'_, S> {
             start,
             compliance: moved.compliance,
         };
-        AnswerSeconds::of_contacts(S::Columns::BY_TABLE, clock.elapsed().as_secs_f64())
+        if S::Columns::BY_TABLE {
+            laps.add(RACEWAYS, clock.lap());
+        }
+        laps
     }
 
     fn at_contacts(&self, x: &[f64]) -> Vec<f64> {

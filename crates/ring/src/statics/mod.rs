@@ -12,5 +12,5 @@ mod sparse;
 mod stiffness;
 
 pub use prepared::{Prepared, StaticSettings};
-pub use solver::{RingSolver, iterations_note};
+pub use solver::{ASSEMBLE, FACTOR, RingSolver, iterations_note};
 pub use stiffness::{Factored, HeldStiffness, Numbers};

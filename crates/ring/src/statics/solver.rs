@@ -1,9 +1,8 @@
 //! One flexible ring in statics, factored: its displacement under loads.
 
-use std::time::Instant;
-
 use ::solver::{LinearSolver, SparseVector};
 use contact::NodalWeights;
+use timer::{Laps, Stopwatch};
 
 use super::prepared::{Prepared, StaticSettings};
 use super::stiffness::Numbers;
@@ -12,6 +11,11 @@ use crate::inventory::Inventory;
 use crate::memory::RingMemory;
 use crate::model::RingModel;
 use crate::support::Support;
+
+/// Lap: assembly of the stiffness.
+pub const ASSEMBLE: &str = "assemble";
+/// Lap: ordering, analysis and factorisation.
+pub const FACTOR: &str = "factor";
 
 /// Factored stiffness of one ring.
 pub struct RingSolver {
@@ -22,8 +26,8 @@ pub struct RingSolver {
     /// The linear solver and why it is that one, for a log.
     note: String,
     n_dofs: usize,
-    /// Seconds of assembly and of factorisation (ordering and analysis included).
-    pub seconds: [f64; 2],
+    /// Wall time of [`ASSEMBLE`] and [`FACTOR`].
+    pub laps: Laps,
     /// Memory forecast from the analysis, before the factorisation.
     pub memory: RingMemory,
 }
@@ -31,9 +35,9 @@ pub struct RingSolver {
 impl RingSolver {
     /// Assembles and factors the stiffness of a ring.
     pub fn new(ring: &RingModel, settings: StaticSettings) -> Result<RingSolver, RingError> {
-        let start = Instant::now();
+        let (mut laps, mut clock) = (Laps::default(), Stopwatch::start());
         let prepared = Prepared::new(ring, settings, Numbers::Assembled)?;
-        let assembled = start.elapsed().as_secs_f64();
+        laps.add(ASSEMBLE, clock.lap());
         let Prepared { support, stiffness } = prepared;
         let (memory, mut note) = (stiffness.memory(), stiffness.note());
         let block = stiffness.block(settings.n_contacts);
@@ -41,9 +45,10 @@ impl RingSolver {
         if let Some(iterations) = iterations {
             note.push_str(&iterations_note(iterations));
         }
+        laps.add(FACTOR, clock.lap());
         Ok(RingSolver {
             n_dofs: ring.mesh.n_dofs(),
-            seconds: [assembled, start.elapsed().as_secs_f64() - assembled],
+            laps,
             memory,
             support,
             factor,
