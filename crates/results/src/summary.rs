@@ -6,8 +6,9 @@ use std::path::Path;
 use anyhow::Context;
 use comm::{Communicator, print};
 use contact::Side;
+use dynamics::Model;
 use dynamics::balls::BallResult;
-use dynamics::{Model, costs};
+use dynamics::costs::{ASSEMBLE, COLUMNS, CONTACT, EFFECTS, FACTOR, SOLVE};
 use scene::{Analysis, Scene};
 use serde::Serialize;
 use timer::Laps;
@@ -37,17 +38,7 @@ pub const DISK: &str = "disk";
 pub const TOTAL: &str = "total";
 /// Laps that `timing_s` has of every run.
 const ALWAYS: [&str; 11] = [
-    READ,
-    costs::ASSEMBLE,
-    costs::FACTOR,
-    costs::COLUMNS,
-    costs::CONTACT,
-    costs::SOLVE,
-    STRESS,
-    OUTPUT,
-    DISK,
-    DISK_WAIT,
-    TOTAL,
+    READ, ASSEMBLE, FACTOR, COLUMNS, CONTACT, SOLVE, STRESS, OUTPUT, DISK, DISK_WAIT, TOTAL,
 ];
 /// Laps that it has where they were run.
 const SOMETIMES: [&str; 2] = [NEAR_FIELD, GATHER];
@@ -312,7 +303,7 @@ fn timing(laps: &Laps) -> BTreeMap<String, f64> {
     let sometimes = SOMETIMES
         .into_iter()
         .filter_map(|path| Some((key(path), laps.get(path)?.seconds)));
-    let effects = laps.get(costs::EFFECTS).into_iter().flat_map(|lap| &lap.parts);
+    let effects = laps.get(EFFECTS).into_iter().flat_map(|lap| lap.parts.iter());
     let own = effects.map(|lap| (format!("{EFFECT_TIMING}{}", lap.name), lap.seconds));
     always.into_iter().chain(sometimes).chain(own).collect()
 }

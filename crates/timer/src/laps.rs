@@ -114,12 +114,3 @@ impl Laps {
         }
     }
 }
-
-impl<'a> IntoIterator for &'a Laps {
-    type Item = &'a Lap;
-    type IntoIter = std::slice::Iter<'a, Lap>;
-
-    fn into_iter(self) -> Self::IntoIter {
-        self.iter()
-    }
-}

@@ -66,7 +66,7 @@ impl Runs {
     }
 
     fn print_laps(&self, laps: &Laps, whole: &str, indent: &str) {
-        for lap in laps {
+        for lap in laps.iter() {
             let path = format!("{whole}{}", lap.name);
             let [cpu, wall] = [0, 1].map(|i| match self.seconds(&path, i) {
                 Some(seconds) => least_and_median(seconds).map(|x| format!("{x:.4}")),
