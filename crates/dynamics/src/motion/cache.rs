@@ -10,8 +10,8 @@ use contact::Side;
 use ring::{FrameTurn, Known, KnownLoad};
 
 use super::run::Motion;
+use super::span::Span;
 use super::state::MotionState;
-use super::substep::Span;
 use crate::effects::Loads;
 use crate::error::DynamicsError;
 use crate::frame::turn_nodal;

@@ -10,8 +10,9 @@ use super::cache::{Ahead, ExpectedLoads};
 use super::newton::SmallSolution;
 use super::place::expected;
 use super::run::Motion;
+use super::span::Span;
 use super::state::MotionState;
-use super::substep::{Part, Span};
+use super::substep::Part;
 use crate::costs::{FRAME, UPDATE};
 use crate::error::DynamicsError;
 

@@ -13,10 +13,12 @@
 //! A periodic ring solves once in a step: one pass over its harmonics (in [`ring`]) ends the solve of a step with the contact forces and begins that
 //! of the known loads of the step that follows. Each round for the inertia of the turning frame is a pass as well.
 
+mod advance;
 mod cache;
 mod close;
 pub mod contacts;
 mod finish;
+pub mod inertia;
 pub mod ledger;
 mod limits;
 pub mod newton;
@@ -27,6 +29,7 @@ pub mod run;
 pub mod shaft;
 pub mod shape;
 pub mod small;
+mod span;
 pub mod start;
 pub mod state;
 mod substep;
@@ -35,7 +38,6 @@ pub use cache::StepCache;
 pub use ledger::Ledger;
 pub use limits::{ContactLimit, Exceeded};
 pub use ring::{Integrator, RingState};
-pub use run::Motion;
+pub use run::{Motion, check_supported};
 pub use shape::{RingShape, StateShape};
-pub use start::check_supported;
 pub use state::{Ladder, MotionSettings, MotionState, StepReport};

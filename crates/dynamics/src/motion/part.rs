@@ -4,12 +4,13 @@ use contact::{NodalWeights, Side};
 use ring::{ElasticStep, PortForces};
 
 use super::cache::Ahead;
+use super::inertia::Inertia;
 use super::newton::SmallSolution;
 use super::run::Motion;
 use super::shaft::ShaftStep;
-use super::small::{Inertia, RingAnswer, SmallSystem};
+use super::small::{RingAnswer, SmallSystem};
+use super::span::Span;
 use super::state::MotionState;
-use super::substep::Span;
 use crate::compliance;
 use crate::effects::{self, Loads, Now};
 use crate::error::DynamicsError;

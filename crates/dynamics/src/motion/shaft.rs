@@ -1,6 +1,6 @@
 //! The shaft over one step: five dofs in space, each free or imposed, with its own mass.
 
-use super::small::Inertia;
+use super::inertia::Inertia;
 use crate::frame::turn;
 
 /// The shaft over one step.

@@ -10,7 +10,6 @@ use super::ledger::Ledger;
 use super::run::Motion;
 use super::state::{Ladder, MotionSettings, MotionState};
 use crate::error::DynamicsError;
-use crate::model::{ContactMode, Model};
 use crate::problem::Site;
 use crate::solution::StaticSolution;
 
@@ -203,13 +202,4 @@ fn ring_at_start(
 ) -> RingState {
     let turned = [omega * q[1], -omega * q[0], 0.0, omega * q[4], -omega * q[3]];
     body.rigid_state(elastic, q, [0, 1, 2, 3, 4].map(|i| velocity[i] + turned[i]))
-}
-
-/// Refuses what statics knows and motion does not.
-pub fn check_supported(model: &Model) -> Result<(), DynamicsError> {
-    let refuse = |what: &'static str| Err(DynamicsError::NotInMotion { what });
-    if model.contact.mode == ContactMode::Facet {
-        return refuse("contact.mode = \"facet\"; use \"patch\"");
-    }
-    Ok(())
 }

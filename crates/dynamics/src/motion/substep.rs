@@ -13,30 +13,13 @@ use super::part::RingSteps;
 use super::place::Placing;
 use super::run::Motion;
 use super::small::SmallSystem;
+use super::span::Span;
 use super::state::{MotionState, StepReport};
 use crate::costs::{BLOCK_SOLVE, LOADS, NEWTON, PATCHES, UPDATE};
 use crate::error::DynamicsError;
 
 /// Rounds for the places of the patches before a step counts as failed.
 const MAX_PLACE_ROUNDS: usize = 20;
-
-/// A part of a step.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Span {
-    /// Time at its start, s.
-    pub start: f64,
-    /// Its size, s.
-    pub dt: f64,
-    /// Its rung of the ladder.
-    pub rung: u32,
-}
-
-impl Span {
-    /// Time at a share of the part, s.
-    pub fn at(&self, share: f64) -> f64 {
-        self.start + share * self.dt
-    }
-}
 
 /// A part of a step under way.
 pub(super) struct Part<'m> {

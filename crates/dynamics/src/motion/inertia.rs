@@ -1,0 +1,54 @@
+//! A point mass or rigid body dof over one step.
+
+use ring::Integrator;
+
+/// A point mass or rigid body dof over one step, by the rings' integrator.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Inertia {
+    /// Mass or moment of inertia, kg or kg m^2.
+    pub mass: f64,
+    /// Displacement, velocity and acceleration at the start.
+    pub start: [f64; 3],
+    /// Load at the weighted time of the step.
+    pub load: f64,
+    /// Load per unit of weighted displacement (ball centrifugal force), N/m.
+    pub load_slope: f64,
+}
+
+impl Inertia {
+    /// Load at the end displacement `x`.
+    pub fn load_at(&self, scheme: Integrator, x: f64) -> f64 {
+        self.load + self.load_slope * (scheme.alpha_f * self.start[0] + (1.0 - scheme.alpha_f) * x)
+    }
+
+    /// Out-of-balance force at displacement `x` and its derivative.
+    pub fn residual(&self, scheme: Integrator, x: f64, dt: f64) -> [f64; 2] {
+        let [x0, v0, a0] = self.start;
+        let [acceleration, slope] = scheme.weighted_acceleration(dt, x - x0, v0, a0);
+        [
+            self.mass * acceleration - self.load_at(scheme, x),
+            self.mass * slope - (1.0 - scheme.alpha_f) * self.load_slope,
+        ]
+    }
+
+    /// Velocity and acceleration at the end; without mass nothing is remembered but the mean velocity.
+    pub fn update(&self, scheme: Integrator, x: f64, dt: f64) -> [f64; 2] {
+        let [x0, v0, a0] = self.start;
+        if self.mass > 0.0 {
+            scheme.update(dt, x - x0, v0, a0)
+        } else {
+            [(x - x0) / dt, 0.0]
+        }
+    }
+
+    /// Energy that the scheme takes from the body, J: work of its inertia less the gain of kinetic energy.
+    pub fn numerical_loss(&self, scheme: Integrator, x: f64, dt: f64) -> f64 {
+        if self.mass == 0.0 || scheme.is_conserving() {
+            return 0.0;
+        }
+        let [x0, v0, a0] = self.start;
+        let [v1, _] = scheme.update(dt, x - x0, v0, a0);
+        let [acceleration, _] = scheme.weighted_acceleration(dt, x - x0, v0, a0);
+        self.mass * (acceleration * (x - x0) - 0.5 * (v1 + v0) * (v1 - v0))
+    }
+}
