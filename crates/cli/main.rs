@@ -27,7 +27,7 @@ use comm::{Communicator, End, Environment, print};
 use mesh::Overwrite;
 use plot::Plot;
 use report::Report;
-use results::failure::Failure;
+use results::failure::{Failure, agree, say_of_rank};
 use results::summary::peak_memory;
 
 use crate::cycles::Cycles;
@@ -124,20 +124,18 @@ fn main() -> ExitCode {
         }
     };
     let failure = execute(arguments).err();
-    if let Some(failure) = &failure {
-        print::note(format_args!("{}: {}", failure.kind(), failure.text()));
-    }
     let end = environment.finish(failure.is_none());
     let Some(failure) = failure else {
         return ExitCode::SUCCESS;
     };
+    let comm = Communicator::world();
     if end == End::Alone {
-        let rank = Communicator::world().rank();
-        if rank > 0 {
-            let (kind, text) = (failure.kind(), failure.text());
-            print::from_any_rank(format_args!("{kind}: on rank {rank}: {text}"));
-        }
+        say_of_rank(&failure);
         environment.abort(failure.number());
+    }
+    match comm.has_failed_alone() && comm.is_root() {
+        true => say_of_rank(&failure),
+        false => print::note(format_args!("{}: {}", failure.kind(), failure.text())),
     }
     ExitCode::from(failure.number())
 }
@@ -173,9 +171,8 @@ fn execute(arguments: Arguments) -> Result<(), Failure> {
                 "--threads is 0; expected at least 1"
             )));
         }
-        rayon::ThreadPoolBuilder::new()
-            .num_threads(threads)
-            .build_global()?;
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
+        agree(pool.build_global().map_err(Failure::from))?;
     }
     let ranks = Communicator::world().size();
     if ranks > 1 {

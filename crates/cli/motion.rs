@@ -13,7 +13,7 @@ use dynamics::motion::{Motion, MotionState, StepCache};
 use dynamics::{DynamicsError, Model};
 use results::console;
 use results::disk::Forecast;
-use results::failure::{Failure, agree};
+use results::failure::{Failure, agree, of_all};
 use results::files::Files;
 use results::memory::Forecasts;
 use results::motion_fields::Recorded;
@@ -198,7 +198,7 @@ impl March<'_> {
     ) -> Result<(), Failure> {
         let mut clock = Stopwatch::start();
         let first = self.state.step;
-        let mut stop = Stop::listen(costs.start, limits.wall_time)?;
+        let mut stop = agree(Stop::listen(costs.start, limits.wall_time).map_err(Failure::from))?;
         let ended = self.steps(&mut progress, &mut stop);
         progress.finish();
         let seconds = clock.lap();
@@ -225,7 +225,7 @@ impl March<'_> {
             warnings,
         };
         let summary = Summary::new(self.scene, self.model, findings, &costs);
-        summary.write(self.dir)?;
+        agree(summary.write(self.dir).map_err(Failure::from))?;
         ended?;
         console::print_snapshot(&Snapshot::of_motion(motion, state));
         print::line(format_args!(
@@ -294,10 +294,10 @@ impl March<'_> {
 
     /// Saves the last good state and says where the failed step was.
     fn failed(&mut self, error: DynamicsError) -> Failure {
+        let failure = of_all(Failure::solving(error));
         let saved = self.write_fields();
         let n = self.state.step + 1;
         let place = format!("step {n}, t = {:.6e} s", self.motion.time(n));
-        let failure = Failure::solving(error);
         match saved {
             Ok(()) => failure.context(format!(
                 "{place}; the last good state is in {}",
@@ -312,6 +312,7 @@ impl March<'_> {
 
     /// Saves the last good state. The tables get a line of the state that was rejected, but it gets no step file.
     fn rejected(&mut self, state: MotionState, failure: Failure) -> Failure {
+        let failure = of_all(failure);
         let saved = self.write_fields();
         self.state = state;
         match saved.and_then(|()| self.write_tables()) {

@@ -9,7 +9,7 @@ use contact::Side;
 use dynamics::kinematics::{Rolling, Speed};
 use dynamics::{Model, QuasiStatic, StaticSolution};
 use results::disk::Forecast;
-use results::failure::{Failure, agree};
+use results::failure::{Failure, agree, of_all};
 use results::files::Files;
 use results::memory::Forecasts;
 use results::shown::Shown;
@@ -82,7 +82,7 @@ pub fn run(
         (costs, _) => costs?,
     };
     let summary = Summary::new(scene, &model, findings, &costs);
-    summary.write(dir)?;
+    agree(summary.write(dir).map_err(Failure::from))?;
     ended?;
     console::print_snapshot(&snapshot);
     let steps = settings.n_steps;
@@ -130,6 +130,7 @@ impl Series<'_> {
             match bearing.step(n, Some(&self.last)) {
                 Ok(next) => self.last = next,
                 Err(error) => {
+                    let failure = of_all(Failure::solving(error));
                     if !self.has_file(n - 1) {
                         agree(self.write_fields(bearing, n - 1))?;
                     }
@@ -138,7 +139,7 @@ impl Series<'_> {
                         bearing.time(n),
                         dir.display()
                     );
-                    return Err(Failure::solving(error).context(place));
+                    return Err(failure.context(place));
                 }
             }
             self.write(bearing, n)?;

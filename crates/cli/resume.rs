@@ -110,28 +110,18 @@ impl Stored {
 pub fn resume(request: &Request) -> Result<(), Failure> {
     let start = Instant::now();
     let dir = &request.dir;
-    if !dir.is_dir() {
-        return Err(anyhow!("{} is no folder; expected the results of a run", dir.display()).into());
-    }
     let lock = agree(acquire(dir))?;
-    // All ranks read before the first one writes: what follows may fail on one of them, and ends with an agreement.
-    let record = agree(choose_step(dir, request.step))?;
-    let about = read_about(&dir.join(step_file_name(record.step)))?;
-    note_version(&about);
-    let scene = scene_of(request, &record, &about)?;
-    let dynamic = require_motion(&scene, dir)?;
-    require_same_meshes(&scene, &about)?;
-    let (step, n_steps) = (record.step, dynamic.n_steps);
-    if step > n_steps {
-        return Err(anyhow!(
-            "the run is at step {step}, t = {} s, beyond dynamic.duration = {} s; expected a longer duration, or an \
-             earlier --step",
-            record.time,
-            dynamic.duration
-        )
-        .into());
-    }
-    if step == n_steps && is_finished(dir, step)? {
+    // All ranks read before the first one writes.
+    let step = same_step(dir, request.step)?;
+    let Read {
+        record,
+        about,
+        scene,
+        dynamic,
+        is_finished,
+    } = agree(read(request, step))?;
+    let n_steps = dynamic.n_steps;
+    if is_finished {
         print::line(format_args!(
             "nothing to do: {} has finished with step {step} of {n_steps}, t = {} s; a longer duration goes on from \
              there, --set dynamic.duration=...",
@@ -160,8 +150,61 @@ pub fn resume(request: &Request) -> Result<(), Failure> {
     Ok(())
 }
 
+/// What a rank reads of a run that goes on.
+struct Read {
+    record: StepRecord,
+    about: BTreeMap<String, String>,
+    scene: Scene,
+    dynamic: Dynamic,
+    /// Whether nothing is left to do.
+    is_finished: bool,
+}
+
+/// Reads a step and all that says how to go on from it. May fail on one rank alone.
+fn read(request: &Request, step: u64) -> Result<Read, Failure> {
+    let dir = &request.dir;
+    let path = dir.join(step_file_name(step));
+    let (record, about) = (read_step(&path)?, read_about(&path)?);
+    note_version(&about);
+    let scene = scene_of(request, &record, &about)?;
+    let dynamic = require_motion(&scene, dir)?;
+    require_same_meshes(&scene, &about)?;
+    if step > dynamic.n_steps {
+        return Err(anyhow!(
+            "the run is at step {step}, t = {} s, beyond dynamic.duration = {} s; expected a longer duration, or an \
+             earlier --step",
+            record.time,
+            dynamic.duration
+        )
+        .into());
+    }
+    Ok(Read {
+        is_finished: step == dynamic.n_steps && is_finished(dir, step)?,
+        record,
+        about,
+        scene,
+        dynamic,
+    })
+}
+
+/// The step to go on from, which rank 0 chooses for all: ranks may see the newest files at different times.
+fn same_step(dir: &Path, step: Option<u64>) -> Result<u64, Failure> {
+    let comm = Communicator::world();
+    let chosen = agree(match comm.is_root() {
+        true => choose_step(dir, step),
+        false => Ok(0),
+    })?;
+    let bytes = comm.from_root(chosen.to_le_bytes().to_vec());
+    Ok(u64::from_le_bytes(
+        bytes.try_into().expect("rank 0 sends a number"),
+    ))
+}
+
 /// The lock of the folder, which rank 0 holds for all.
 fn acquire(dir: &Path) -> Result<Option<FolderLock>, Failure> {
+    if !dir.is_dir() {
+        return Err(anyhow!("{} is no folder; expected the results of a run", dir.display()).into());
+    }
     if !Communicator::world().is_root() {
         return Ok(None);
     }
@@ -171,11 +214,12 @@ fn acquire(dir: &Path) -> Result<Option<FolderLock>, Failure> {
 }
 
 /// The step asked for, or the newest whole one, with a warning for every newer one that is damaged.
-fn choose_step(dir: &Path, step: Option<u64>) -> Result<StepRecord, Failure> {
+fn choose_step(dir: &Path, step: Option<u64>) -> Result<u64, Failure> {
     let Some(step) = step else {
-        return Ok(newest_step(dir, |error| {
+        let newest = newest_step(dir, |error| {
             print::note(format_args!("warning: {error}; falling back to the step before"));
-        })?);
+        })?;
+        return Ok(newest.step);
     };
     let steps = checkpoint::committed_steps(dir)?;
     if !steps.contains(&step) && checkpoint::all_steps(dir)?.contains(&step) {
@@ -204,7 +248,7 @@ fn choose_step(dir: &Path, step: Option<u64>) -> Result<StepRecord, Failure> {
         }
         .into());
     }
-    Ok(read_step(&dir.join(step_file_name(step)))?)
+    Ok(step)
 }
 
 fn note_version(about: &BTreeMap<String, String>) {

@@ -9,7 +9,7 @@ use comm::{Communicator, print};
 use contact::Side;
 use dynamics::{DynamicsError, StaticSolution, StaticSolver};
 use results::disk::Forecast;
-use results::failure::{Failure, agree};
+use results::failure::{Failure, agree, of_all};
 use results::files::Files;
 use results::memory::Forecasts;
 use results::shown::Shown;
@@ -90,7 +90,7 @@ pub fn run(
         let solution = match solver.solve(&model, before) {
             Ok(solution) => solution,
             Err(error) => {
-                failure = Some(at_point(error, &scene, *value, &dir, step));
+                failure = Some(of_all(at_point(error, &scene, *value, &dir, step)));
                 break;
             }
         };
@@ -140,7 +140,7 @@ pub fn run(
         let costs = agree(files.finish(read, Forecasts::at_rest(forecast), solver.laps(), start))?;
         let findings = findings(&scene, &solutions, &failure);
         let summary = Summary::new(&scene, &model, findings, &costs);
-        summary.write(&dir)?;
+        agree(summary.write(&dir).map_err(Failure::from))?;
         if failure.is_none() {
             print_results(&scene, &solutions, &summary);
         }

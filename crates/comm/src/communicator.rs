@@ -58,6 +58,7 @@ impl Communicator {
     ///
     /// # Panics
     /// When `values` has another length than was announced.
+    #[track_caller]
     pub fn all_gather(self, values: Vec<f64>, lengths: &[usize]) -> Vec<f64> {
         assert_eq!(
             values.len(),
@@ -68,7 +69,10 @@ impl Communicator {
         match self {
             Communicator::Serial => values,
             #[cfg(feature = "mpi")]
-            Communicator::Mpi => crate::messages::all_gather(&values, lengths),
+            Communicator::Mpi => {
+                let fault = self.fault("all_gather");
+                spoiled(crate::messages::all_gather(&values, lengths), fault)
+            }
         }
     }
 
@@ -76,6 +80,7 @@ impl Communicator {
     ///
     /// # Panics
     /// When there is not one message per rank, or that of a single rank to itself has another length than was announced.
+    #[track_caller]
     pub fn exchange(self, sent: Vec<Vec<f64>>, lengths: &[usize]) -> Vec<f64> {
         assert_eq!(
             [sent.len(), lengths.len()],
@@ -91,7 +96,10 @@ impl Communicator {
         match self {
             Communicator::Serial => sent.concat(),
             #[cfg(feature = "mpi")]
-            Communicator::Mpi => crate::messages::exchange(&sent, lengths),
+            Communicator::Mpi => {
+                let fault = self.fault("exchange");
+                spoiled(crate::messages::exchange(&sent, lengths), fault)
+            }
         }
     }
 
@@ -99,6 +107,7 @@ impl Communicator {
     ///
     /// # Panics
     /// When the values of `from` have another length than was announced.
+    #[track_caller]
     pub fn to_root(self, from: usize, values: Vec<f64>, length: usize) -> Option<Vec<f64>> {
         if self.rank() == from {
             assert_eq!(values.len(), length, "numbers of rank {from}");
@@ -106,21 +115,29 @@ impl Communicator {
         match self {
             Communicator::Serial => Some(values),
             #[cfg(feature = "mpi")]
-            Communicator::Mpi => crate::messages::to_root(from, values, length),
+            Communicator::Mpi => {
+                self.fault("to_root");
+                crate::messages::to_root(from, values, length)
+            }
         }
     }
 
     /// The bytes of rank 0, on all ranks; those of the others do not matter.
+    #[track_caller]
     pub fn from_root(self, bytes: Vec<u8>) -> Vec<u8> {
         match self {
             Communicator::Serial => bytes,
             #[cfg(feature = "mpi")]
-            Communicator::Mpi => crate::messages::from_root(bytes),
+            Communicator::Mpi => {
+                self.fault("from_root");
+                crate::messages::from_root(bytes)
+            }
         }
     }
 
     /// The bytes that rank 0 makes for this rank; only there, `of` is called, for one rank after the other, so that one message is in
     /// memory at a time. Its own is empty: what it would send itself, it has.
+    #[track_caller]
     pub fn deal(self, of: impl FnMut(usize) -> Vec<u8>) -> Vec<u8> {
         match self {
             Communicator::Serial => {
@@ -128,12 +145,16 @@ impl Communicator {
                 Vec::new()
             }
             #[cfg(feature = "mpi")]
-            Communicator::Mpi => crate::messages::deal(of),
+            Communicator::Mpi => {
+                self.fault("deal");
+                crate::messages::deal(of)
+            }
         }
     }
 
     /// The result, if every rank has one. Otherwise an error on all: a rank's own, or what `elsewhere` makes of the lowest
     /// failed rank and its message. To be called before a collective, so that no rank waits for one that has given up.
+    #[track_caller]
     pub fn agree<T, E: std::fmt::Display>(
         self,
         result: Result<T, E>,
@@ -146,14 +167,78 @@ impl Communicator {
             }
             #[cfg(feature = "mpi")]
             Communicator::Mpi => {
+                let injected = self.fault("agree").is_some();
+                let injected = injected.then(|| "an injected failure".to_string());
                 let message = result.as_ref().err().map(E::to_string);
-                match crate::messages::first_failure(message) {
-                    None => result,
-                    Some((rank, text)) => Err(result.err().unwrap_or_else(|| elsewhere(rank, text))),
+                let Some(first) = crate::messages::first_failure(message.or(injected)) else {
+                    return result;
+                };
+                if !first.of_all && result.is_err() {
+                    environment::note_own_failure();
                 }
+                Err(result.err().unwrap_or_else(|| elsewhere(first.rank, first.text)))
             }
         }
     }
+
+    /// The lowest rank that gives a text, and that text, on all ranks.
+    #[track_caller]
+    pub fn first_text(self, text: Option<String>) -> Option<(usize, String)> {
+        match self {
+            Communicator::Serial => text.map(|text| (0, text)),
+            #[cfg(feature = "mpi")]
+            Communicator::Mpi => {
+                self.fault("first_text");
+                crate::messages::first_failure(text).map(|first| (first.rank, first.text))
+            }
+        }
+    }
+
+    /// Whether all ranks call this within some seconds. To be called by a rank whose computation has failed, before it exchanges anything more:
+    /// all ranks compute the same and fail together, unless the numbers of one are wrong.
+    pub fn all_failed(self) -> bool {
+        match self {
+            Communicator::Serial => true,
+            #[cfg(feature = "mpi")]
+            Communicator::Mpi => environment::all_failed(),
+        }
+    }
+
+    /// Whether an agreement has failed by this rank and not by all: then its message has to name the rank.
+    pub fn has_failed_alone(self) -> bool {
+        environment::has_failed_alone()
+    }
+
+    /// Ends all ranks at once with an exit code.
+    pub fn abort(self, code: u8) -> ! {
+        #[cfg(feature = "mpi")]
+        if self == Communicator::Mpi {
+            crate::messages::abort(i32::from(code));
+        }
+        std::process::exit(i32::from(code))
+    }
+
+    /// The fault asked for at this message of the caller's caller; always None in a program for users.
+    #[cfg(feature = "mpi")]
+    #[cfg_attr(feature = "inject", track_caller)]
+    fn fault(self, operation: &str) -> Option<&'static str> {
+        #[cfg(feature = "inject")]
+        return crate::inject::before(operation, self.rank(), std::panic::Location::caller());
+        #[cfg(not(feature = "inject"))]
+        {
+            let _ = operation;
+            None
+        }
+    }
+}
+
+/// Numbers, or none when a fault was asked for.
+#[cfg(feature = "mpi")]
+fn spoiled(mut numbers: Vec<f64>, fault: Option<&str>) -> Vec<f64> {
+    if fault.is_some() {
+        numbers.fill(f64::NAN);
+    }
+    numbers
 }
 
 /// Equal runs of `n` units of work for each of `size` ranks, in order.

@@ -1,5 +1,6 @@
 //! Start and end of a process as one of the ranks.
 
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
 use crate::communicator::Communicator;
@@ -8,6 +9,10 @@ use crate::launch;
 
 /// How long a rank that has failed waits for the others to fail as well before it ends them.
 pub const PATIENCE: Duration = Duration::from_secs(2);
+
+/// How long a rank whose computation has failed waits for those of the others to fail as well. Longer than [`PATIENCE`], because ranks that go
+/// on compute until they fail.
+pub const FAILURE_PATIENCE: Duration = Duration::from_secs(10);
 
 /// A process among its ranks; to be kept until the end.
 pub struct Environment {
@@ -57,12 +62,20 @@ impl Environment {
 
     /// Ends all ranks at once with an exit code.
     pub fn abort(&self, code: u8) -> ! {
-        #[cfg(feature = "mpi")]
-        if let Some(mpi) = &self.mpi {
-            mpi.abort(code);
-        }
-        std::process::exit(i32::from(code))
+        Communicator::world().abort(code)
     }
+}
+
+/// Whether an agreement has failed by this rank and not by all.
+static OWN_FAILURE: AtomicBool = AtomicBool::new(false);
+
+#[cfg(feature = "mpi")]
+pub(crate) fn note_own_failure() {
+    OWN_FAILURE.store(true, Ordering::Relaxed);
+}
+
+pub(crate) fn has_failed_alone() -> bool {
+    OWN_FAILURE.load(Ordering::Relaxed)
 }
 
 #[cfg(not(feature = "mpi"))]
@@ -71,19 +84,20 @@ pub(crate) fn world() -> Communicator {
 }
 
 #[cfg(feature = "mpi")]
-pub(crate) use parallel::world;
+pub(crate) use parallel::{all_failed, world};
 
 #[cfg(feature = "mpi")]
 mod parallel {
+    use std::cell::{Cell, RefCell};
     use std::sync::OnceLock;
-    use std::time::Instant;
+    use std::time::{Duration, Instant};
 
     use mpi::Threading;
     use mpi::collective::CommunicatorCollectives;
     use mpi::environment::Universe;
     use mpi::topology::{Communicator as _, SimpleCommunicator};
 
-    use super::{Communicator, End, PATIENCE};
+    use super::{Communicator, End, FAILURE_PATIENCE, PATIENCE};
     use crate::error::CommError;
     use crate::messages;
 
@@ -93,10 +107,50 @@ mod parallel {
     /// Set once MPI runs: the library itself is one per process.
     static RUNNING: OnceLock<()> = OnceLock::new();
 
+    thread_local! {
+        /// A set of the same ranks on which those meet that have failed; of the main thread, which sends all messages.
+        static FAILING: RefCell<Option<SimpleCommunicator>> = const { RefCell::new(None) };
+        /// Whether this rank has waited for the others to fail in vain.
+        static ALONE: Cell<bool> = const { Cell::new(false) };
+    }
+
     pub(crate) fn world() -> Communicator {
         match RUNNING.get() {
             Some(()) => Communicator::Mpi,
             None => Communicator::Serial,
+        }
+    }
+
+    /// Whether all ranks call this within [`FAILURE_PATIENCE`]. Once they have not, the answer stays.
+    pub(crate) fn all_failed() -> bool {
+        let met = || {
+            FAILING.with_borrow(|ranks| {
+                ranks
+                    .as_ref()
+                    .is_none_or(|ranks| meet(ranks, Some(FAILURE_PATIENCE)))
+            })
+        };
+        if !ALONE.get() && !met() {
+            ALONE.set(true);
+        }
+        !ALONE.get()
+    }
+
+    /// Waits for all ranks to come here, not longer than the patience, if any; whether they came.
+    fn meet(ranks: &SimpleCommunicator, patience: Option<Duration>) -> bool {
+        let start = Instant::now();
+        let mut barrier = ranks.immediate_barrier();
+        loop {
+            barrier = match barrier.test() {
+                Ok(_) => return true,
+                Err(pending) => pending,
+            };
+            if patience.is_some_and(|patience| start.elapsed() > patience) {
+                // The barrier is never completed: the process ends with it.
+                std::mem::forget(barrier);
+                return false;
+            }
+            std::thread::sleep(Duration::from_millis(1));
         }
     }
 
@@ -131,8 +185,10 @@ mod parallel {
                 });
             }
             let _ = RUNNING.set(());
-            let shown = std::panic::take_hook();
+            FAILING.set(Some(SimpleCommunicator::world().duplicate()));
+            let (rank, shown) = (messages::rank(), std::panic::take_hook());
             std::panic::set_hook(Box::new(move |panic| {
+                crate::print::from_any_rank(format_args!("error: on rank {rank}: a fault of the program:"));
                 shown(panic);
                 // Unwinding would wait for the others in MPI_Finalize, for ever.
                 SimpleCommunicator::world().abort(PANICKED);
@@ -144,24 +200,18 @@ mod parallel {
         }
 
         pub(super) fn finish(&self, success: bool) -> End {
-            let start = Instant::now();
-            let mut barrier = self.ending.immediate_barrier();
-            loop {
-                barrier = match barrier.test() {
-                    Ok(_) => return End::Together,
-                    Err(pending) => pending,
-                };
-                if !success && start.elapsed() > PATIENCE {
-                    // The barrier is never completed: the process ends with it.
-                    std::mem::forget(barrier);
-                    return End::Alone;
-                }
-                std::thread::sleep(std::time::Duration::from_millis(1));
+            let patience = (!success).then_some(PATIENCE);
+            match meet(&self.ending, patience) {
+                true => End::Together,
+                false => End::Alone,
             }
         }
+    }
 
-        pub(super) fn abort(&self, code: u8) -> ! {
-            SimpleCommunicator::world().abort(i32::from(code))
+    impl Drop for Mpi {
+        fn drop(&mut self) {
+            // Before MPI ends, with the universe.
+            FAILING.take();
         }
     }
 }

@@ -115,8 +115,16 @@ pub(crate) fn deal(mut of: impl FnMut(usize) -> Vec<u8>) -> Vec<u8> {
     bytes
 }
 
+/// The lowest rank that has failed.
+pub(crate) struct FirstFailure {
+    pub(crate) rank: usize,
+    pub(crate) text: String,
+    /// Whether all ranks have failed.
+    pub(crate) of_all: bool,
+}
+
 /// The lowest rank with a message and that message, on all ranks.
-pub(crate) fn first_failure(message: Option<String>) -> Option<(usize, String)> {
+pub(crate) fn first_failure(message: Option<String>) -> Option<FirstFailure> {
     let bytes = message.map(String::into_bytes);
     // One more than the length: an empty message is one too.
     let own = bytes.as_ref().map_or(0, |b| b.len() as u64 + 1);
@@ -130,5 +138,14 @@ pub(crate) fn first_failure(message: Option<String>) -> Option<(usize, String)> 
     world()
         .process_at_rank(i32::try_from(failed).expect("a rank"))
         .broadcast_into(&mut text[..]);
-    Some((failed, String::from_utf8_lossy(&text).into_owned()))
+    Some(FirstFailure {
+        rank: failed,
+        text: String::from_utf8_lossy(&text).into_owned(),
+        of_all: !lengths.contains(&0),
+    })
+}
+
+/// Ends all ranks at once.
+pub(crate) fn abort(code: i32) -> ! {
+    world().abort(code)
 }

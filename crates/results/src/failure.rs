@@ -3,7 +3,7 @@
 use std::fmt;
 
 use anyhow::anyhow;
-use comm::Communicator;
+use comm::{Communicator, print};
 use dynamics::DynamicsError;
 
 /// Exit code of a user error: bad input, missing files, results that would be overwritten.
@@ -93,11 +93,29 @@ impl Failure {
 
 /// The result of all ranks: one that fails is a failure of all. To be called where a rank may fail alone, such as with its files,
 /// before ranks meet again.
+#[track_caller]
 pub fn agree<T>(result: Result<T, Failure>) -> Result<T, Failure> {
     let result = result.map_err(Coded);
     Communicator::world()
         .agree(result, Coded::elsewhere)
         .map_err(|coded| coded.0)
+}
+
+/// A failure of what all ranks compute, for a rank that goes on to save what it has: all have failed. A rank that has failed alone ends all
+/// with its message, because the others wait for other messages than those it would send.
+pub fn of_all(failure: Failure) -> Failure {
+    let comm = Communicator::world();
+    if comm.all_failed() {
+        return failure;
+    }
+    say_of_rank(&failure);
+    comm.abort(failure.number())
+}
+
+/// Says that this rank has failed alone, and why.
+pub fn say_of_rank(failure: &Failure) {
+    let (kind, text, rank) = (failure.kind(), failure.text(), Communicator::world().rank());
+    print::from_any_rank(format_args!("{kind}: on rank {rank}: {text}"));
 }
 
 /// A failure as ranks tell each other of it: its exit code, then its text.

@@ -57,9 +57,9 @@ impl Stop {
 
     /// Called by all ranks between steps: why the run has to stop now, if it has to. What one rank knows stops all.
     pub fn reason(&mut self) -> Option<String> {
-        let own = self.own_reason().map_or(Ok(()), Err);
-        let elsewhere = |rank, reason| format!("{reason} on rank {rank}");
-        Communicator::world().agree(own, elsewhere).err()
+        let own = self.own_reason();
+        let first = Communicator::world().first_text(own.clone());
+        first.map(|(rank, reason)| own.unwrap_or_else(|| format!("{reason} on rank {rank}")))
     }
 
     fn own_reason(&mut self) -> Option<String> {

@@ -27,7 +27,7 @@ pub struct Survey {
 }
 
 /// The model of a scene (a point of `scene` when that is a sweep) with results in `dir`, and its survey, if a last test of the whole passes.
-/// Collective where ranks share rings in sectors.
+/// Collective.
 pub fn build_surveyed(
     point: &Scene,
     scene: &Scene,
@@ -35,6 +35,7 @@ pub fn build_surveyed(
     test: impl FnOnce(&Model) -> Result<(), Failure>,
 ) -> Result<(Model, Survey), Failure> {
     let comm = Communicator::world();
+    agree(require_same_scene(scene, comm))?;
     if comm.size() > 1 && point.solver.backend == scene::Backend::Sector {
         return build_shared(point, scene, dir, test);
     }
@@ -74,7 +75,6 @@ fn build_shared(
     test: impl FnOnce(&Model) -> Result<(), Failure>,
 ) -> Result<(Model, Survey), Failure> {
     let comm = Communicator::world();
-    agree(require_same_scene(scene, comm))?;
     let survey = || {
         let (model, probes) = whole(point, scene, test)?;
         let mesh = MeshFile::new(&fields::bodies(&model))?.spooled(dir)?;
@@ -111,7 +111,7 @@ fn build_shared(
     Ok((model, survey.unwrap_or_default()))
 }
 
-/// Fails unless this rank has the scene of rank 0, whose meshes it gets.
+/// Fails unless this rank has the scene of rank 0: all compute the same.
 fn require_same_scene(scene: &Scene, comm: Communicator) -> Result<(), Failure> {
     let text = comm.from_root(scene.text.clone().into_bytes());
     let text = String::from_utf8_lossy(&text);

@@ -1,5 +1,7 @@
 //! One step of the full size, in parts on the ladder dt 2^-k where a part fails or is too inaccurate.
 
+use comm::Communicator;
+
 use super::cache::StepCache;
 use super::run::Motion;
 use super::span::Span;
@@ -44,7 +46,12 @@ impl Motion<'_> {
                         rung -= 1;
                     }
                 }
-                Err(error) if rung < ladder.halvings && error.may_pass_with_smaller_step() => {
+                // Ranks that share rings try again together or not at all.
+                Err(error)
+                    if rung < ladder.halvings
+                        && error.may_pass_with_smaller_step()
+                        && Communicator::world().all_failed() =>
+                {
                     rung += 1;
                     report.retries += 1;
                 }

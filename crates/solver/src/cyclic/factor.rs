@@ -184,6 +184,7 @@ impl CyclicRing {
     }
 
     /// A failure of one rank is one of all.
+    #[track_caller]
     fn agree(&self, result: Result<(), SolverError>) -> Result<(), SolverError> {
         self.comm
             .agree(result, |rank, message| SolverError::OnRank { rank, message })
