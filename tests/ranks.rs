@@ -2,6 +2,7 @@
 //!
 //! `scripts/test-mpi` builds the program with the feature `mpi`, says where it is in `RACEWAY_MPI`, and runs these.
 
+mod faults;
 mod memory;
 mod parts;
 mod stress;
@@ -371,7 +372,11 @@ fn a_full_disk_ends_all_with_its_message() {
         let first = [&socket[..], &["bash", "-c", &limited], &run[..]].concat();
         let (outcome, time) = different(&dir, &first, &[&socket[..], &run[..]].concat());
         assert_eq!(outcome.code, Some(2), "{}", outcome.stderr);
-        assert!(outcome.stderr.contains("error: "), "{}", outcome.stderr);
+        assert!(
+            outcome.stderr.contains("error: on rank 0: "),
+            "{}",
+            outcome.stderr
+        );
         assert!(outcome.stderr.contains("File too large"), "{}", outcome.stderr);
         assert!(time < 2 * SECONDS, "{time:?}");
     }
