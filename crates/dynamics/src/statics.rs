@@ -87,8 +87,10 @@ impl StaticSolver {
             let ring = model.ring(side);
             ring.map(|ring| StaticRing::new(model, side, ring)).transpose()
         };
-        let (inner, outer) = model.backend.both(|| build(Side::Inner), || build(Side::Outer));
-        let rings = [inner?, outer?];
+        let (inner, outer) = model
+            .backend
+            .try_both(|| build(Side::Inner), || build(Side::Outer))?;
+        let rings = [inner, outer];
         let mut timing = Laps::default();
         for ring in rings.iter().flatten() {
             timing.merge(&ring.solver.laps);
@@ -240,21 +242,20 @@ impl StaticSolver {
         let mut clock = Stopwatch::start();
         let rings = &self.rings;
         let columns = &self.columns;
-        let renewed = |side: Side| -> Option<Result<Vec<f64>, DynamicsError>> {
+        let renewed = |side: Side| -> Result<Option<Vec<f64>>, DynamicsError> {
             let i = side.index();
-            let ring = rings[i].as_ref()?;
-            if columns[i].is_some() && !slow {
-                return None;
-            }
+            let Some(ring) = rings[i].as_ref().filter(|_| columns[i].is_none() || slow) else {
+                return Ok(None);
+            };
             let weights: Vec<_> = feet[i].iter().map(|f| f.weights.clone()).collect();
             let n = 2 * weights.len();
             let columns = ring.solver.compliance(&weights);
-            Some(compliance::inverse(side, n, n / 2, &columns))
+            compliance::inverse(side, n, n / 2, &columns).map(Some)
         };
-        let (inner, outer) = backend.both(|| renewed(Side::Inner), || renewed(Side::Outer));
+        let (inner, outer) = backend.try_both(|| renewed(Side::Inner), || renewed(Side::Outer))?;
         for (columns, new) in self.columns.iter_mut().zip([inner, outer]) {
-            if let Some(new) = new {
-                *columns = Some(new?);
+            if new.is_some() {
+                *columns = new;
             }
         }
         self.timing.add(COLUMNS, clock.lap());

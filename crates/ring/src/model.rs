@@ -158,4 +158,20 @@ impl Backend {
             _ => rayon::join(first, second),
         }
     }
+
+    /// The same of work that may fail. Where ranks share a ring, none begins the second when the first has failed: the others might wait for
+    /// other messages than those of the second.
+    pub fn try_both<A: Send, B: Send, E: Send>(
+        self,
+        first: impl FnOnce() -> Result<A, E> + Send,
+        second: impl FnOnce() -> Result<B, E> + Send,
+    ) -> Result<(A, B), E> {
+        match self {
+            _ if self.comm().size() > 1 => Ok((first()?, second()?)),
+            _ => {
+                let (first, second) = rayon::join(first, second);
+                Ok((first?, second?))
+            }
+        }
+    }
 }

@@ -68,13 +68,15 @@ impl<'a> Motion<'a> {
             };
             model.ring(side).map(moving).transpose()
         };
-        let (inner, outer) = model.backend.both(|| build(Side::Inner), || build(Side::Outer));
+        let (inner, outer) = model
+            .backend
+            .try_both(|| build(Side::Inner), || build(Side::Outer))?;
         let kinematics = Kinematics::new(&model.geometry, settings.slip);
         let rungs = (0..=settings.ladder.halvings).map(|_| OnceLock::new()).collect();
         let motion = Motion {
             model,
             kinematics,
-            rings: [inner?, outer?],
+            rings: [inner, outer],
             settings,
             token: Arc::new(()),
             rungs,
@@ -102,8 +104,8 @@ impl<'a> Motion<'a> {
         let (inner, outer) = self
             .model
             .backend
-            .both(|| build(&self.rings[0]), || build(&self.rings[1]));
-        let rung = [inner?, outer?];
+            .try_both(|| build(&self.rings[0]), || build(&self.rings[1]))?;
+        let rung = [inner, outer];
         // A second thread may have been faster: it made the same bits.
         Ok(cell.get_or_init(|| rung))
     }

@@ -67,7 +67,7 @@ impl CyclicBordered {
             }
         }
         Ok(CyclicBordered {
-            schur: factor_complement(n, &complement, corner)?,
+            schur: ring.agree(factor_complement(n, &complement, corner))?,
             factor,
             columns,
         })

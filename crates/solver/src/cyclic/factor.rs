@@ -185,7 +185,7 @@ impl CyclicRing {
 
     /// A failure of one rank is one of all.
     #[track_caller]
-    fn agree(&self, result: Result<(), SolverError>) -> Result<(), SolverError> {
+    pub(super) fn agree<T>(&self, result: Result<T, SolverError>) -> Result<T, SolverError> {
         self.comm
             .agree(result, |rank, message| SolverError::OnRank { rank, message })
     }

@@ -6,7 +6,7 @@
 use dense::DenseCholesky;
 
 use super::columns::SectorColumns;
-use super::factor::SectorCholesky;
+use super::factor::{SectorCholesky, agree};
 use crate::bordered::factor_complement;
 use crate::error::SolverError;
 use crate::linear_solver::{LinearSolver, SparseVector};
@@ -60,7 +60,7 @@ impl SectorBordered {
             }
         }
         Ok(SectorBordered {
-            schur: factor_complement(n, &complement, corner)?,
+            schur: agree(inner.shared.comm, factor_complement(n, &complement, corner))?,
             inner,
             border,
             rows,
