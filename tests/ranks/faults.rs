@@ -1,7 +1,8 @@
 //! Faults of one of two ranks, at every message of a run: all end, and the one message names the rank and the cause.
 //!
-//! `scripts/test-mpi` builds a second program, with the feature `inject` (`comm::inject`), and says where it is in `RACEWAY_INJECTED`. A run tells
-//! all places of the program that send messages; then each gets its fault. So a new place is tested as soon as it is there.
+//! `scripts/test-mpi` builds a second program, with the feature `inject` (`comm::inject`), and says where it is in
+//! `RACEWAY_INJECTED`. A run tells all places of the program that send messages; then each gets its fault. So a new
+//! place is tested as soon as it is there.
 
 use std::collections::BTreeMap;
 use std::time::{Duration, Instant};
@@ -148,7 +149,8 @@ fn first_and_middle(count: usize) -> Vec<usize> {
     }
 }
 
-/// Gives each place of all cases its fault on both ranks, at the `numbers` of its messages: those of the `wanted` operations.
+/// Gives each place of all cases its fault on both ranks, at the `numbers` of its messages: those of the `wanted`
+/// operations.
 fn for_all(
     kind: &str,
     wanted: impl Fn(&str) -> bool,
@@ -230,8 +232,8 @@ fn a_panic_of_one_rank_at_every_message_ends_all_with_its_message() {
     );
 }
 
-/// Wrong: a rank whose numbers are not those of the others, and that fails alone for them, would leave them waiting: it would save a state
-/// or try a smaller step, which the others do not.
+/// Wrong: a rank whose numbers are not those of the others, and that fails alone for them, would leave them waiting:
+/// it would save a state or try a smaller step, which the others do not.
 #[test]
 #[ignore = "needs mpirun and a program built with MPI: scripts/test-mpi"]
 fn a_computation_that_fails_on_one_rank_ends_all_with_its_message() {
@@ -276,8 +278,8 @@ fn a_computation_that_fails_on_one_rank_ends_all_with_its_message() {
     assert!(n_alone > 0, "no rank has failed alone");
 }
 
-/// Wrong: a rank whose scene cannot be read, or says something else, or that does not see the folder of the results, would leave the others waiting,
-/// or compute something else than they.
+/// Wrong: a rank whose scene cannot be read, or says something else, or that does not see the folder of the results,
+/// would leave the others waiting, or compute something else than they.
 #[test]
 #[ignore = "needs mpirun and a program built with MPI: scripts/test-mpi"]
 fn what_one_rank_alone_cannot_read_ends_all_with_its_message() {

@@ -194,8 +194,8 @@ impl Communicator {
         }
     }
 
-    /// Whether all ranks call this within some seconds. To be called by a rank whose computation has failed, before it exchanges anything more:
-    /// all ranks compute the same and fail together, unless the numbers of one are wrong.
+    /// Whether all ranks call this within some seconds. To be called by a rank whose computation has failed, before it
+    /// exchanges anything more: all ranks compute the same and fail together, unless the numbers of one are wrong.
     pub fn all_failed(self) -> bool {
         match self {
             Communicator::Serial => true,

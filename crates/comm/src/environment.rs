@@ -10,8 +10,8 @@ use crate::launch;
 /// How long a rank that has failed waits for the others to fail as well before it ends them.
 pub const PATIENCE: Duration = Duration::from_secs(2);
 
-/// How long a rank whose computation has failed waits for those of the others to fail as well. Longer than [`PATIENCE`], because ranks that go
-/// on compute until they fail.
+/// How long a rank whose computation has failed waits for those of the others to fail as well. Longer than
+/// [`PATIENCE`], because ranks that go on compute until they fail.
 pub const FAILURE_PATIENCE: Duration = Duration::from_secs(10);
 
 /// A process among its ranks; to be kept until the end.

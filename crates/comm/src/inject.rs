@@ -1,8 +1,10 @@
 //! Faults on request, to test that a fault of one rank ends all.
 //!
-//! `RACEWAY_INJECT` says what: `list` prints a line `op OPERATION PLACE` on rank 0 for every message, PLACE being the line of the program that
-//! sends it. `KIND RANK PLACE NUMBER` makes one fault on one rank at the message that this rank sends from PLACE for the NUMBER-th time, from 1.
-//! Kinds: `error` fails an agreement, `panic` panics before a message, `nan` spoils the numbers of a message that this rank gets.
+//! `RACEWAY_INJECT` says what: `list` prints a line `op OPERATION PLACE` on rank 0 for every message, PLACE being the
+//! line of the program that sends it. `KIND RANK PLACE NUMBER` makes one fault on one rank at the message that this
+//! rank sends from PLACE for the NUMBER-th time, from 1.
+//! Kinds: `error` fails an agreement, `panic` panics before a message, `nan` spoils the numbers of a message that this
+//! rank gets.
 
 use std::panic::Location;
 use std::sync::OnceLock;

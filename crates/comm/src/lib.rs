@@ -7,8 +7,8 @@
 //! **Failure.** Ranks agree on success before the next operation where one of them may fail alone ([`Communicator::agree`]). What
 //! slips through is caught at the end: a rank that ends with an error waits [`PATIENCE`] for the others to end as well, and then
 //! ends them ([`Environment::finish`]); a panic ends all at once. A rank that is killed is the launcher's business, which ends
-//! the others. What should fail on all ranks, because they compute it from the same numbers, may fail on one whose numbers are wrong: it
-//! exchanges nothing more before it knows that all have failed ([`Communicator::all_failed`]).
+//! the others. What should fail on all ranks, because they compute it from the same numbers, may fail on one whose
+//! numbers are wrong: it exchanges nothing more before it knows that all have failed ([`Communicator::all_failed`]).
 //!
 //! With the feature `inject`, which only `scripts/test-mpi` turns on, faults can be asked for at every message.
 

@@ -101,8 +101,8 @@ pub fn agree<T>(result: Result<T, Failure>) -> Result<T, Failure> {
         .map_err(|coded| coded.0)
 }
 
-/// A failure of what all ranks compute, for a rank that goes on to save what it has: all have failed. A rank that has failed alone ends all
-/// with its message, because the others wait for other messages than those it would send.
+/// A failure of what all ranks compute, for a rank that goes on to save what it has: all have failed. A rank that has
+/// failed alone ends all with its message, because the others wait for other messages than those it would send.
 pub fn of_all(failure: Failure) -> Failure {
     let comm = Communicator::world();
     if comm.all_failed() {

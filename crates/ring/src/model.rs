@@ -159,8 +159,8 @@ impl Backend {
         }
     }
 
-    /// The same of work that may fail. Where ranks share a ring, none begins the second when the first has failed: the others might wait for
-    /// other messages than those of the second.
+    /// The same of work that may fail. Where ranks share a ring, none begins the second when the first has failed: the
+    /// others might wait for other messages than those of the second.
     pub fn try_both<A: Send, B: Send, E: Send>(
         self,
         first: impl FnOnce() -> Result<A, E> + Send,
