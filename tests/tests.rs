@@ -4,6 +4,7 @@
 mod bad_input;
 mod batch;
 mod cuts;
+mod damaged_tables;
 mod examples;
 mod export;
 mod hard;

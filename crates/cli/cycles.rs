@@ -6,8 +6,12 @@ use anyhow::{Context, anyhow};
 use clap::Args;
 use comm::print;
 use results::failure::Failure;
+use results::integrity::warn_of_doubts;
 use results::rainflow::{rainflow, turning_points};
+use results::table::Table;
 
+/// Table that is read.
+const PROBES: &str = "probes.csv";
 /// Tables that are written into the folder.
 const RANGES: &str = "stress_ranges.csv";
 const CYCLES: &str = "stress_cycles.csv";
@@ -45,11 +49,12 @@ pub fn cycles(request: &Cycles) -> Result<(), Failure> {
         .into());
     }
     let dir = &request.dir;
-    let histories = Histories::read(&dir.join("probes.csv"), [request.from, request.to])?;
+    let histories = Histories::read(dir, [request.from, request.to])?;
+    warn_of_doubts(dir)?;
     let (Some(first), Some(last)) = (histories.times.first(), histories.times.last()) else {
         return Err(anyhow!(
             "{} has no step from {} s to {} s",
-            dir.join("probes.csv").display(),
+            dir.join(PROBES).display(),
             request.from,
             request.to
         )
@@ -107,50 +112,34 @@ const RANGE_COLUMNS: [&str; 8] = [
 ];
 
 impl Histories {
-    /// Reads the stresses of a table of probes within a span of time.
-    fn read(path: &Path, [from, to]: [f64; 2]) -> anyhow::Result<Histories> {
-        let mut reader = csv::Reader::from_path(path).with_context(|| {
+    /// Reads the stresses of the probes of the run in `dir` within a span of time.
+    fn read(dir: &Path, [from, to]: [f64; 2]) -> anyhow::Result<Histories> {
+        let path = dir.join(PROBES);
+        let expected = || {
             format!(
                 "cannot read {}: expected the results of a scene with [probes.node.*] or [probes.point.*]",
                 path.display()
             )
-        })?;
-        let header = reader.headers()?.clone();
-        let time = header.iter().position(|name| name == "time_s");
-        let time = time.ok_or_else(|| anyhow!("{} has no column time_s", path.display()))?;
-        let stresses: Vec<usize> = (0..header.len())
-            .filter(|&i| header[i].ends_with("_pa"))
-            .collect();
-        if stresses.is_empty() {
+        };
+        let table = Table::read(dir, PROBES)?.with_context(expected)?;
+        let all = table.column("time_s")?;
+        let is_counted = |i: &usize| (from..=to).contains(&all[*i]);
+        let rows: Vec<usize> = (0..table.n_rows()).filter(is_counted).collect();
+        let chosen = |column: &[f64]| rows.iter().map(|&i| column[i]).collect::<Vec<f64>>();
+        let stresses = table.names().iter().filter(|name| name.ends_with("_pa"));
+        let columns = stresses
+            .map(|name| Ok((name.clone(), chosen(table.column(name)?))))
+            .collect::<anyhow::Result<Vec<_>>>()?;
+        if columns.is_empty() {
             return Err(anyhow!(
                 "{} has no stress: expected columns that end in _pa, from [probes.node.*] or [probes.point.*]",
                 path.display()
             ));
         }
-        let mut histories = Histories {
-            times: Vec::new(),
-            columns: stresses
-                .iter()
-                .map(|&i| (header[i].to_string(), Vec::new()))
-                .collect(),
-        };
-        for (line, record) in reader.records().enumerate() {
-            let record = record.with_context(|| format!("cannot read {}", path.display()))?;
-            let number = |i: usize| {
-                let cell = record.get(i).unwrap_or("");
-                let place = || format!("{}, line {}: {cell:?} is no number", path.display(), line + 2);
-                cell.parse::<f64>().with_context(place)
-            };
-            let now = number(time)?;
-            if now < from || now > to {
-                continue;
-            }
-            histories.times.push(now);
-            for (column, &i) in histories.columns.iter_mut().zip(&stresses) {
-                column.1.push(number(i)?);
-            }
-        }
-        Ok(histories)
+        Ok(Histories {
+            times: chosen(all),
+            columns,
+        })
     }
 }
 

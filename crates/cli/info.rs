@@ -9,6 +9,7 @@ use checkpoint::{
 use comm::print;
 use results::disk::size;
 use results::failure::Failure;
+use results::integrity::doubts;
 use results::summary::SUMMARY_FILE;
 
 /// How closely the steps of a folder are looked at.
@@ -95,6 +96,7 @@ fn folder(dir: &Path, depth: Depth) -> Result<(), Failure> {
             &format!("{}, {} steps, {}", path.display(), steps.len(), size(bytes)),
         );
     }
+    damaged.extend(doubts(dir)?);
     folder_state(dir)?;
     for text in &damaged {
         line("damaged", text);

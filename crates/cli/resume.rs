@@ -9,7 +9,9 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use anyhow::{Context, anyhow};
-use checkpoint::{FolderLock, StateArray, StepRecord, newest_step, read_about, read_step, step_file_name};
+use checkpoint::{
+    FolderLock, Stamps, StateArray, StepRecord, newest_step, read_about, read_step, step_file_name,
+};
 use clap::Args;
 use comm::{Communicator, print};
 use dynamics::motion::{Motion, MotionState};
@@ -17,7 +19,7 @@ use results::about::{OVERRIDES, SCENE_FILE, WARNINGS, require_same_meshes};
 use results::failure::{Failure, agree};
 use results::files::note_dead_owner;
 use results::state_arrays;
-use results::summary::SUMMARY_FILE;
+use results::summary::status;
 use results::watch::Watch;
 use scene::{Analysis, Dynamic, MeshFiles, Scene, difference};
 
@@ -64,6 +66,8 @@ pub struct Stored {
     pub step: u64,
     /// Warnings of the start of the run.
     pub warnings: Vec<String>,
+    /// What the step tells of the tables; None if it is of a version that kept no checksums of them.
+    pub tables: Option<Stamps>,
     time: f64,
     arrays: BTreeMap<String, StateArray>,
 }
@@ -118,6 +122,12 @@ pub fn resume(request: &Request) -> Result<(), Failure> {
     let record = agree(choose_step(dir, request.step))?;
     let about = read_about(&dir.join(step_file_name(record.step)))?;
     note_version(&about);
+    if record.tables.is_none() {
+        print::note(format_args!(
+            "warning: step {} is of a version that kept no checksums of tables; only the steps in them are looked at",
+            record.step
+        ));
+    }
     let scene = scene_of(request, &record, &about)?;
     let dynamic = require_motion(&scene, dir)?;
     require_same_meshes(&scene, &about)?;
@@ -152,6 +162,7 @@ pub fn resume(request: &Request) -> Result<(), Failure> {
         dir: dir.clone(),
         step,
         warnings,
+        tables: record.tables,
         time: record.time,
         arrays: record.state,
     };
@@ -296,9 +307,7 @@ fn require_motion(scene: &Scene, dir: &Path) -> Result<Dynamic, Failure> {
 /// Whether a run got to its end: its last step is the newest, and all that is written after it is there.
 fn is_finished(dir: &Path, step: u64) -> Result<bool, Failure> {
     let newest = checkpoint::committed_steps(dir)?.last() == Some(&step);
-    let summary = std::fs::read_to_string(dir.join(SUMMARY_FILE)).unwrap_or_default();
-    let status = serde_json::from_str::<serde_json::Value>(&summary).ok();
-    let finished = status.is_some_and(|summary| summary["status"] == "finished");
+    let finished = status(dir).is_some_and(|status| status == "finished");
     Ok(newest && finished && dir.join("run.vtkhdf").exists())
 }
 

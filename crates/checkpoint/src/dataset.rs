@@ -11,6 +11,7 @@ use hdf5::{Dataset, File, Group, Location};
 
 use crate::checksum::{CHECKSUM_ATTRIBUTE, Element, checksum};
 use crate::error::CheckpointError;
+use crate::regular::open_regular;
 use crate::storage::{Compression, Precision};
 
 /// Size of a compressed chunk, bytes: large enough for the filters, small enough for their caches.
@@ -161,7 +162,7 @@ impl<'a> CheckedFile<'a> {
     /// Opens `path` with the group `root` as the start of all paths.
     pub fn open_at(path: &'a Path, root: &str) -> Result<Self, CheckpointError> {
         // The library's own words for a missing or forbidden file are less clear than the system's.
-        std::fs::File::open(path).map_err(CheckpointError::io("read", path))?;
+        open_regular(path)?;
         let file = File::open(path).and_then(|file| file.group(root));
         let file = file.map_err(CheckpointError::hdf("read", path))?;
         Ok(CheckedFile { path, file })
@@ -277,6 +278,12 @@ impl<'a> CheckedFile<'a> {
         self.compare(path, expected, checksum(path, &[bytes.len()], &bytes))?;
         String::from_utf8(bytes)
             .map_err(|_| CheckpointError::malformed(self.path, format!("text {path} is not UTF-8 text")))
+    }
+
+    /// Whether there is such a text.
+    pub fn has_text(&self, path: &str) -> Result<bool, CheckpointError> {
+        let (owner, name) = owner_and_name(path);
+        Ok(self.texts(owner)?.iter().any(|text| text == name))
     }
 
     fn compare(&self, dataset: &str, expected: u32, found: u32) -> Result<(), CheckpointError> {

@@ -22,6 +22,7 @@ use std::path::Path;
 use crc32fast::Hasher;
 
 use crate::error::CheckpointError;
+use crate::regular::open_regular;
 
 /// Length of the last line: `seal`, ten digits, eight hexadecimal digits.
 const FOOTER_LENGTH: u64 = 25;
@@ -153,7 +154,7 @@ fn damaged_structure(path: &Path) -> CheckpointError {
 }
 
 fn open_sealed(path: &Path) -> Result<(File, Seal), CheckpointError> {
-    let mut file = File::open(path).map_err(CheckpointError::io("read", path))?;
+    let mut file = open_regular(path)?;
     let table = read_table(&mut file).map_err(CheckpointError::io("read", path))?;
     match table.as_deref().and_then(parse_table) {
         Some(seal) => Ok((file, seal)),

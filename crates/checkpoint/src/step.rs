@@ -8,6 +8,8 @@
 //!   FieldData/time        [1], s
 //! /restart                texts as attributes: scene, program_version, mesh_hash,
 //!                         contents: paths of all data sets, one per line, sorted
+//!                         tables: a line `CRC LENGTH NAME` for each table of the run, of its start up to this step;
+//!                         absent in files of earlier versions
 //!   step                  [1], i64
 //!   state/NAME            the arrays of the state, [n], f64 or i64
 //!   about                 texts about the run as attributes, the same in every step
@@ -26,6 +28,7 @@ use crate::dataset::{
     CheckedFile, create_group, create_vtkhdf, link_mesh, write_array, write_field, write_text,
 };
 use crate::error::CheckpointError;
+use crate::growing::{Stamps, parse_stamps, stamps_text};
 use crate::mesh_file::{MESH_FILE, MESH_HASH};
 use crate::record::{PointFields, StateArray, StepRecord};
 use crate::seal::{verify_seal, verify_structure};
@@ -43,6 +46,7 @@ const STEP: &str = "/restart/step";
 const SCENE: &str = "/restart/scene";
 const PROGRAM_VERSION: &str = "/restart/program_version";
 const CONTENTS: &str = "/restart/contents";
+const TABLES: &str = "/restart/tables";
 const STATE: &str = "/restart/state";
 const ABOUT: &str = "/restart/about";
 
@@ -105,6 +109,9 @@ pub(crate) fn fill_step(
     write_array(group, TIME, &[1], &[record.time], Compression::None)?;
     write_array(group, STEP, &[1], &[record.step as i64], Compression::None)?;
     write_text(group, SCENE, &record.scene)?;
+    if let Some(stamps) = &record.tables {
+        write_text(group, TABLES, &stamps_text(stamps))?;
+    }
     write_text(group, PROGRAM_VERSION, origin.program_version)?;
     write_text(group, MESH_HASH, origin.mesh_hash)?;
     create_group(group, "restart/about")?;
@@ -139,6 +146,7 @@ pub(crate) fn read_record(file: &CheckedFile, path: &Path) -> Result<StepRecord,
         cells: CellFields::default(),
         scene: file.text(SCENE)?,
         state: Default::default(),
+        tables: stamps_of(file, path)?,
     };
     for name in file.members(POINT_DATA)? {
         read_field(file, path, &name, &mut record.points)?;
@@ -172,6 +180,21 @@ pub fn read_about(path: &Path) -> Result<BTreeMap<String, String>, CheckpointErr
     texts.insert("program_version".to_string(), file.text(PROGRAM_VERSION)?);
     texts.insert("mesh_hash".to_string(), file.text(MESH_HASH)?);
     Ok(texts)
+}
+
+/// What a step file says about the tables of its run; None if it is of a version that kept no stamps.
+pub fn read_stamps(path: &Path) -> Result<Option<Stamps>, CheckpointError> {
+    verify_structure(path)?;
+    stamps_of(&CheckedFile::open(path)?, path)
+}
+
+fn stamps_of(file: &CheckedFile, path: &Path) -> Result<Option<Stamps>, CheckpointError> {
+    if !file.has_text(TABLES)? {
+        return Ok(None);
+    }
+    let stamps = parse_stamps(&file.text(TABLES)?);
+    let unknown = || CheckpointError::malformed(path, "its checksums of tables are of no known form");
+    stamps.ok_or_else(unknown).map(Some)
 }
 
 /// The texts that [`crate::Output::describe`] set.

@@ -15,7 +15,6 @@ mod run;
 mod section;
 mod shaft;
 mod surface;
-mod table;
 
 use std::path::{Path, PathBuf};
 
@@ -24,10 +23,10 @@ use clap::Args;
 use comm::print;
 use figure::Figure;
 use results::failure::Failure;
+use results::integrity::warn_of_doubts;
 
 pub use quantity::Unit;
 pub use run::{Results, Steps};
-pub use table::Table;
 
 /// What the command line asks for.
 #[derive(Debug, Args)]
@@ -73,6 +72,7 @@ impl Named {
 /// Writes the figures of a run as SVG and PNG.
 pub fn plot(request: &Plot) -> Result<(), Failure> {
     let figures = figures(&request.dir, &request.choice)?;
+    warn_of_doubts(&request.dir)?;
     let out = request.out.clone().unwrap_or_else(|| request.dir.join("figures"));
     std::fs::create_dir_all(&out).with_context(|| format!("cannot create folder {}", out.display()))?;
     for named in &figures {

@@ -28,6 +28,9 @@ pub struct Report {
 /// Writes the page of a run.
 pub fn report(request: &Report) -> Result<(), Failure> {
     let source = source::read(&request.dir)?;
+    for doubt in &source.doubts {
+        print::note(format_args!("warning: {doubt}"));
+    }
     let figures = plot::figures(&request.dir, &request.choice)?;
     let numbers = numbers::numbers(&Results::read(&request.dir)?)?;
     let pictures = figures

@@ -16,7 +16,7 @@ pub fn page(source: &Source, numbers: &[Number], pictures: &[(String, String)]) 
     let parts = [
         format!("<h1>{title}</h1>"),
         about(summary),
-        warnings(summary),
+        warnings(source),
         key_numbers(numbers),
         figures(pictures),
         energy(summary),
@@ -54,10 +54,12 @@ fn about(summary: &Value) -> String {
     table("about", None, rows)
 }
 
-fn warnings(summary: &Value) -> String {
-    let warnings = list(summary, "warnings");
-    let items: Vec<String> = warnings
+fn warnings(source: &Source) -> String {
+    let warnings = list(&source.summary, "warnings");
+    let items: Vec<String> = source
+        .doubts
         .iter()
+        .chain(&warnings)
         .map(|w| format!("<li>{}</li>", encode_text(w)))
         .collect();
     match items.is_empty() {
@@ -248,6 +250,7 @@ mod tests {
         let summary = serde_json::json!({ "title": "a < b & <script>", "warnings": ["x > y"] });
         let source = Source {
             summary,
+            doubts: vec![],
             scene: Some("# <pre>".into()),
             files: vec![],
         };

@@ -8,8 +8,8 @@ use std::time::{Duration, Instant};
 
 use anyhow::anyhow;
 use checkpoint::{
-    BackgroundOutput, CheckpointError, Compression, FolderLock, MeshFile, Output, Precision, StepRecord,
-    Storage,
+    BackgroundOutput, CheckpointError, Compression, FolderLock, MeshFile, Output, Precision, Stamps,
+    StepRecord, Storage,
 };
 use comm::{Communicator, print};
 use dynamics::{Model, Timing};
@@ -38,6 +38,16 @@ pub struct Files {
     ring_stress: Arc<RingStress>,
     /// Seconds of stress that ranks recover together: that of the sectors of this rank, and putting it together on rank 0.
     shared_seconds: [f64; 2],
+}
+
+/// The step from which a run goes on.
+pub struct ResumedFrom<'a> {
+    /// Its number.
+    pub step: u64,
+    /// What its file tells of the tables; None if it is of a version that kept no checksums of them.
+    pub tables: Option<&'a Stamps>,
+    /// Warnings of the start of the run.
+    pub warnings: &'a [String],
 }
 
 /// The open files of one run.
@@ -89,7 +99,7 @@ impl Files {
         lock: Option<FolderLock>,
         first: &Snapshot,
         survey: Survey,
-        (last, warnings): (u64, &[String]),
+        resumed: &ResumedFrom<'_>,
     ) -> Result<Files, Failure> {
         let ring_stress = RingStress::new(model, scene)?;
         let Some(lock) = lock else {
@@ -97,17 +107,18 @@ impl Files {
         };
         let clock = Instant::now();
         let dir = lock.dir().to_path_buf();
-        let texts = about(scene, &dir, warnings)?;
+        let last = resumed.step;
+        let texts = about(scene, &dir, resumed.warnings)?;
         // The tables tell whether the step can be resumed from; nothing is changed before all is known to fit.
         let Survey { probes, mesh } = survey;
         let columns = own_columns(probes.as_ref());
-        let cuts = Tables::cuts(&dir, first, &columns, last)?;
+        let cuts = Tables::cuts(&dir, first, &columns, (last, resumed.tables))?;
         let mesh = mesh.map_or_else(|| MeshFile::new(&fields::bodies(model)), Ok)?;
-        let resumed = Output::resume_of(lock, &mesh, storage(scene), last)?;
+        let opened = Output::resume_of(lock, &mesh, storage(scene), last)?;
         drop(mesh);
-        let (mut output, damaged, mut superseded) = (resumed.output, resumed.damaged, resumed.superseded);
+        let (mut output, damaged, mut superseded) = (opened.output, opened.damaged, opened.superseded);
         output.describe(texts)?;
-        if resumed.mesh_restored {
+        if opened.mesh_restored {
             print::note(format_args!(
                 "note: mesh.hdf was missing in {} and is written again",
                 dir.display()
@@ -218,7 +229,8 @@ impl Files {
         record: impl FnOnce(&RingStress) -> Result<StepRecord, Failure>,
     ) -> Result<(), Failure> {
         let Some(open) = &mut self.open else { return Ok(()) };
-        let record = open.spent.on_stress(|| record(&self.ring_stress))?;
+        let mut record = open.spent.on_stress(|| record(&self.ring_stress))?;
+        record.tables = Some(open.tables.stamps());
         open.spent.on_output(|| open.output.write_step(record))?;
         Ok(())
     }
@@ -230,7 +242,12 @@ impl Files {
     ) -> Result<(), Failure> {
         let Some(open) = &mut self.open else { return Ok(()) };
         let ring_stress = self.ring_stress.clone();
-        let hand_over = || open.output.write_step_made_by(move || record(&ring_stress));
+        let tables = Some(open.tables.stamps());
+        let make = move || StepRecord {
+            tables,
+            ..record(&ring_stress)
+        };
+        let hand_over = || open.output.write_step_made_by(make);
         open.spent.on_output(hand_over)?;
         Ok(())
     }
@@ -285,7 +302,7 @@ impl Files {
 
 impl Open {
     fn new(output: Output, tables: Tables, probes: Option<Probes>, clock: Instant) -> Result<Open, Failure> {
-        let companions = tables.companions(output.dir())?;
+        let companions = tables.companions()?;
         Ok(Open {
             output: BackgroundOutput::start(output, QUEUE, companions),
             tables,

@@ -8,8 +8,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use std::time::Instant;
 
-use anyhow::Context;
-use checkpoint::{CellFields, Output, PointFields, StateArray, StepRecord};
+use checkpoint::{CellFields, GrowingFile, Output, PointFields, Stamps, StateArray, StepRecord};
 use comm::print;
 use contact::Side;
 use dynamics::balls::BallResult;
@@ -23,10 +22,14 @@ use super::ring_stress::{Basis, RingStress, ShownRing};
 use super::shown::Turn;
 use super::snapshot::Snapshot;
 use super::summary::{ShaftSummary, mode_name, peak_memory, sides, write_summary};
+use super::tables;
 use crate::failure::Failure;
 
 /// Largest displacement of a shape in a step file, m.
 const AMPLITUDE: f64 = 1e-3;
+
+/// Name of the table.
+const TABLE: &str = "modes.csv";
 
 const COLUMNS: [&str; 12] = [
     "step",
@@ -46,7 +49,7 @@ const COLUMNS: [&str; 12] = [
 /// The open files of a run.
 pub struct ModeFiles {
     output: Output,
-    table: csv::Writer<std::fs::File>,
+    table: csv::Writer<GrowingFile>,
     stress: RingStress,
     step: u64,
 }
@@ -55,13 +58,9 @@ impl ModeFiles {
     /// Creates the folder's files.
     pub fn create(scene: &Scene, model: &Model, dir: &Path) -> Result<ModeFiles, Failure> {
         let output = Output::create(dir, &fields::bodies(model), storage(scene))?;
-        let path = dir.join("modes.csv");
-        let mut table =
-            csv::Writer::from_path(&path).with_context(|| format!("cannot create {}", path.display()))?;
-        table.write_record(COLUMNS)?;
         Ok(ModeFiles {
             output,
-            table,
+            table: tables::create(dir, TABLE, &COLUMNS.map(str::to_string))?,
             stress: RingStress::new(model, scene)?,
             step: 0,
         })
@@ -78,6 +77,9 @@ impl ModeFiles {
         for (i, mode) in set.modes.iter().enumerate() {
             self.step += 1;
             let (points, cell_fields) = self.fields(model, mode);
+            // The table first: a step vouches for it.
+            tables::append(&mut self.table, TABLE, [cells(self.step, body, i + 1, mode)])?;
+            self.table.get_ref().handle()?.sync_data()?;
             let record = StepRecord {
                 step: self.step,
                 time: self.step as f64,
@@ -89,11 +91,10 @@ impl ModeFiles {
                     ("mode".to_string(), StateArray::Integer(vec![i as i64 + 1])),
                     ("modes_body".to_string(), StateArray::Integer(vec![body as i64])),
                 ]),
+                tables: Some(Stamps::from([(TABLE.to_string(), self.table.get_ref().stamp())])),
             };
             self.output.write_step(&record)?;
-            self.table.write_record(cells(self.step, body, i + 1, mode))?;
         }
-        self.table.flush().context("cannot write modes.csv")?;
         Ok(())
     }
 

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use anyhow::Context;
+use checkpoint::open_regular;
 use comm::{Communicator, print};
 use contact::Side;
 use dynamics::balls::BallResult;
@@ -257,6 +258,13 @@ pub fn write_summary(dir: &Path, summary: &impl Serialize) -> anyhow::Result<()>
     std::fs::write(&temporary, text + "\n")
         .and_then(|()| std::fs::rename(&temporary, &path))
         .with_context(|| format!("cannot write {}", path.display()))
+}
+
+/// How the run in `dir` ended, as its summary says; None without one.
+pub fn status(dir: &Path) -> Option<String> {
+    let text = std::io::read_to_string(open_regular(&dir.join(SUMMARY_FILE)).ok()?).ok()?;
+    let summary: serde_json::Value = serde_json::from_str(&text).ok()?;
+    Some(summary["status"].as_str()?.to_string())
 }
 
 /// A value per side, by name.
