@@ -305,3 +305,34 @@ fn the_forecast_of_the_output_is_its_size() {
         crate::util::assert_close(line, total.unwrap(), all, 0.05);
     }
 }
+
+/// Wrong: a job that failed before its first step would be stuck: nothing to resume, and a folder that no run may use.
+#[test]
+fn a_run_that_ended_before_its_first_step_is_started_again() {
+    let dir = small_motion();
+    dir.run("whole", &[]);
+    let size = |name: &str| {
+        std::fs::metadata(dir.path(&format!("whole/{name}")))
+            .unwrap()
+            .len()
+    };
+    assert!(
+        size("step_000000.hdf") > size("mesh.hdf"),
+        "the mesh must fit where the step does not"
+    );
+    let limit = (size("step_000000.hdf") / 1024) as u32;
+    let run = ["run", "scene.toml", "--out", "out"];
+    let outcome = dir.raceway_with_small_files(limit, &run);
+    assert_eq!(outcome.code, Some(2), "{}", outcome.stderr);
+    assert!(dir.path("out/balls.csv").exists() && committed_steps(&dir.path("out")).unwrap().is_empty());
+    let outcome = dir.raceway(&["resume", "out"]);
+    assert_eq!(outcome.code, Some(2), "{}", outcome.stderr);
+    let said = "out holds no committed step: the run ended before its first one; start it again with raceway run SCENE --out out";
+    assert!(outcome.stderr.contains(said), "{}", outcome.stderr);
+    let outcome = dir.raceway(&run);
+    assert_eq!(outcome.code, Some(0), "{}", outcome.stderr);
+    let said = "note: the run in out ended before its first step; it is started anew";
+    assert!(outcome.stderr.contains(said), "{}", outcome.stderr);
+    assert_same_run(&dir, "whole", "out");
+    assert!(!dir.path("out/.raceway.starting").exists());
+}

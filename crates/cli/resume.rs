@@ -10,25 +10,22 @@ use std::time::Instant;
 
 use anyhow::{Context, anyhow};
 use checkpoint::{
-    FolderLock, Stamps, StateArray, StepRecord, newest_step, read_about, read_step, step_file_name,
+    FolderLock, Stamps, StateArray, StepRecord, newest_step, read_about, read_any_step, step_file_name,
 };
 use clap::Args;
 use comm::{Communicator, print};
 use dynamics::motion::{Motion, MotionState};
-use results::about::{OVERRIDES, SCENE_FILE, WARNINGS, require_same_meshes};
+use results::about::{MAY_CHANGE, OVERRIDES, SCENE_FILE, WARNINGS, require_same_meshes, scene_file};
 use results::failure::{Failure, agree};
 use results::files::note_dead_owner;
 use results::state_arrays;
-use results::summary::status;
+use results::summary::read_summary;
 use results::watch::Watch;
 use scene::{Analysis, Dynamic, MeshFiles, Scene, difference};
 
 use crate::motion;
 use crate::options::Limits;
 use crate::run::note_unshared;
-
-/// Keys and tables of a scene that a resumed run may change: none of them touches the motion.
-const MAY_CHANGE: [&str; 3] = ["dynamic.duration", "dynamic.output_every", "output"];
 
 /// Array of a step file that counts Newton's iterations since the start of the run.
 const NEWTON: &str = "newton_iterations";
@@ -183,6 +180,14 @@ fn acquire(dir: &Path) -> Result<Option<FolderLock>, Failure> {
 
 /// The step asked for, or the newest whole one, with a warning for every newer one that is damaged.
 fn choose_step(dir: &Path, step: Option<u64>) -> Result<StepRecord, Failure> {
+    if checkpoint::is_unfinished_start(dir)? {
+        return Err(anyhow!(
+            "{} holds no committed step: the run ended before its first one; start it again with raceway run SCENE --out {}",
+            dir.display(),
+            dir.display()
+        )
+        .into());
+    }
     let Some(step) = step else {
         return Ok(newest_step(dir, |error| {
             print::note(format_args!("warning: {error}; falling back to the step before"));
@@ -215,7 +220,7 @@ fn choose_step(dir: &Path, step: Option<u64>) -> Result<StepRecord, Failure> {
         }
         .into());
     }
-    Ok(read_step(&dir.join(step_file_name(step)))?)
+    Ok(read_any_step(dir, step)?)
 }
 
 fn note_version(about: &BTreeMap<String, String>) {
@@ -236,7 +241,7 @@ fn scene_of(
     let overrides = about.get(OVERRIDES).map_or(Vec::new(), |text| lines(text));
     let path = match (&request.scene, about.get(SCENE_FILE)) {
         (Some(path), _) => path.clone(),
-        (None, Some(path)) => request.dir.join(path),
+        (None, Some(path)) => scene_file(&request.dir, path),
         (None, None) => return Err(anyhow!("step {} does not say where its scene is", record.step).into()),
     };
     if request.scene.is_some() || path.exists() {
@@ -250,7 +255,14 @@ fn scene_of(
             record.step
         ));
     }
-    let mut scene = Scene::parse(&record.scene, &path, &request.overrides, MeshFiles::MustExist)?;
+    let parsed = Scene::parse(&record.scene, &path, &request.overrides, MeshFiles::MustExist);
+    let mut scene = match parsed {
+        Err(error) if !path.exists() => {
+            let hint = "the meshes are looked for from the place of the scene file, which is not there: --scene says where it is";
+            return Err(anyhow::Error::from(error).context(hint).into());
+        }
+        parsed => parsed?,
+    };
     let changes = difference(&record.scene, &scene.text)?;
     if let Some(change) = changes.iter().find(|change| !change.is_below(&MAY_CHANGE)) {
         return Err(anyhow!(
@@ -307,7 +319,8 @@ fn require_motion(scene: &Scene, dir: &Path) -> Result<Dynamic, Failure> {
 /// Whether a run got to its end: its last step is the newest, and all that is written after it is there.
 fn is_finished(dir: &Path, step: u64) -> Result<bool, Failure> {
     let newest = checkpoint::committed_steps(dir)?.last() == Some(&step);
-    let finished = status(dir).is_some_and(|status| status == "finished");
+    let summary = read_summary(dir);
+    let finished = summary.is_some_and(|summary| summary["status"] == "finished");
     Ok(newest && finished && dir.join("run.vtkhdf").exists())
 }
 

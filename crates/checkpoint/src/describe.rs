@@ -7,7 +7,7 @@ use crate::dataset::CheckedFile;
 use crate::error::CheckpointError;
 use crate::mesh_file::{MESH_FILE, MESH_HASH};
 use crate::seal::{verify_seal, verify_structure};
-use crate::step::{read_about, read_contents};
+use crate::step::{read_about, read_contents, run_of_file};
 
 /// One array of a file.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -58,7 +58,8 @@ pub fn describe(path: &Path) -> Result<FileDescription, CheckpointError> {
             "CellData/radius",
         ];
         let paths = names.map(|name| format!("/VTKHDF/{name}"));
-        let about = BTreeMap::from([("mesh_hash".to_string(), file.text(MESH_HASH)?)]);
+        let mut about = BTreeMap::from([("mesh_hash".to_string(), file.text(MESH_HASH)?)]);
+        about.extend(run_of_file(&file)?.map(|run| ("run".to_string(), run)));
         return Ok(FileDescription {
             bytes,
             arrays: arrays(&file, &paths)?,

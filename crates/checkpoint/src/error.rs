@@ -130,6 +130,18 @@ pub enum CheckpointError {
         /// Fingerprint in the file.
         found: String,
     },
+    /// A step that was put into the folder of another run.
+    #[error(
+        "{} is a step of another run, {found}; the run in its folder is {expected}; move it away", path.display()
+    )]
+    OtherRun {
+        /// The file.
+        path: PathBuf,
+        /// Identity of the run in the folder.
+        expected: String,
+        /// Identity in the file.
+        found: String,
+    },
     /// A body cannot be drawn.
     #[error("body \"{body}\": {what}")]
     Body {

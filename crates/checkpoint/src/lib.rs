@@ -53,7 +53,10 @@ pub use cells::{CellFields, IntegrationPointStress};
 pub use checksum::file_checksum;
 pub use describe::{ArrayDescription, FileDescription, describe};
 pub use error::CheckpointError;
-pub use folder::{committed_steps, new_superseded_folder, newest_step, step_file_name};
+pub use folder::{
+    clear_unfinished_start, committed_steps, is_unfinished_start, new_superseded_folder, newest_step,
+    require_run, run_of, step_file_name,
+};
 pub use grid::Grid;
 pub use growing::{GrowingFile, Stamp, Stamps, start_of};
 pub use index::{Views, rebuild_index};

@@ -11,8 +11,8 @@ use std::path::{Path, PathBuf};
 use crate::body::Body;
 use crate::error::CheckpointError;
 use crate::folder::{
-    committed_steps, move_aside, remove_if_present, remove_leftovers, require_no_results, sound_steps,
-    step_file_name,
+    committed_steps, move_aside, note_first_step, note_start, remove_if_present, remove_leftovers,
+    require_no_results, sound_steps, step_file_name,
 };
 use crate::index::{INDEX_FILE, Views, rebuild_index};
 use crate::lock::FolderLock;
@@ -30,6 +30,7 @@ pub struct Output {
     n_points: usize,
     n_cells: usize,
     mesh_hash: String,
+    run: Option<String>,
     about: BTreeMap<String, String>,
     /// Number and time, s, of the committed steps, growing.
     steps: Vec<(u64, f64)>,
@@ -76,9 +77,15 @@ impl Output {
     /// The same of a mesh file that was prepared.
     pub fn create_of(dir: &Path, mesh: &MeshFile, storage: Storage) -> Result<Output, CheckpointError> {
         fs::create_dir_all(dir).map_err(CheckpointError::io("create folder", dir))?;
-        let lock = FolderLock::acquire(dir)?;
+        Output::create_in(FolderLock::acquire(dir)?, mesh, storage)
+    }
+
+    /// The same in a folder that is there and locked.
+    pub fn create_in(lock: FolderLock, mesh: &MeshFile, storage: Storage) -> Result<Output, CheckpointError> {
+        let dir = lock.dir();
         require_no_results(dir)?;
         remove_leftovers(dir)?;
+        note_start(dir)?;
         mesh.write(dir)?;
         Ok(Output::new(lock, mesh, storage, Vec::new()))
     }
@@ -142,6 +149,7 @@ impl Output {
             n_points: mesh.n_points,
             n_cells: mesh.n_cells,
             mesh_hash: mesh.hash.clone(),
+            run: mesh.run.clone(),
             about: BTreeMap::new(),
             steps,
         }
@@ -175,9 +183,13 @@ impl Output {
         let origin = Origin {
             program_version: env!("CARGO_PKG_VERSION"),
             mesh_hash: &self.mesh_hash,
+            run: self.run.as_deref(),
             about: &self.about,
         };
         write_step_file(dir, &name, record, &origin, self.storage)?;
+        if self.steps.is_empty() {
+            note_first_step(dir)?;
+        }
         self.steps.push((record.step, record.time));
         write_series(dir, &self.steps)?;
         Ok(dir.join(name))
@@ -215,6 +227,11 @@ impl Output {
     /// Fingerprint of the mesh, as stored in every step.
     pub fn mesh_hash(&self) -> &str {
         &self.mesh_hash
+    }
+
+    /// Identity of the run, as stored in every file; None if it was not given.
+    pub fn run(&self) -> Option<&str> {
+        self.run.as_deref()
     }
 
     /// Number and time, s, of the last committed step.

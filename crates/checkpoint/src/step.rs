@@ -7,6 +7,7 @@
 //!                         attribute layout, which says the order of points and components
 //!   FieldData/time        [1], s
 //! /restart                texts as attributes: scene, program_version, mesh_hash,
+//!                         run: identity of the run, absent in files of earlier versions
 //!                         contents: paths of all data sets, one per line, sorted
 //!                         tables: a line `CRC LENGTH NAME` for each table of the run, of its start up to this step;
 //!                         absent in files of earlier versions
@@ -29,7 +30,7 @@ use crate::dataset::{
 };
 use crate::error::CheckpointError;
 use crate::growing::{Stamps, parse_stamps, stamps_text};
-use crate::mesh_file::{MESH_FILE, MESH_HASH};
+use crate::mesh_file::{MESH_FILE, MESH_HASH, RUN};
 use crate::record::{PointFields, StateArray, StepRecord};
 use crate::seal::{verify_seal, verify_structure};
 use crate::storage::{Compression, Precision, Storage};
@@ -54,6 +55,7 @@ const ABOUT: &str = "/restart/about";
 pub(crate) struct Origin<'a> {
     pub program_version: &'a str,
     pub mesh_hash: &'a str,
+    pub run: Option<&'a str>,
     pub about: &'a BTreeMap<String, String>,
 }
 
@@ -114,6 +116,9 @@ pub(crate) fn fill_step(
     }
     write_text(group, PROGRAM_VERSION, origin.program_version)?;
     write_text(group, MESH_HASH, origin.mesh_hash)?;
+    if let Some(run) = origin.run {
+        write_text(group, RUN, run)?;
+    }
     create_group(group, "restart/about")?;
     for (name, text) in origin.about {
         write_text(group, &format!("{ABOUT}/{name}"), text)?;
@@ -179,7 +184,36 @@ pub fn read_about(path: &Path) -> Result<BTreeMap<String, String>, CheckpointErr
     let mut texts = read_texts(&file)?;
     texts.insert("program_version".to_string(), file.text(PROGRAM_VERSION)?);
     texts.insert("mesh_hash".to_string(), file.text(MESH_HASH)?);
+    if let Some(run) = run_of_file(&file)? {
+        texts.insert("run".to_string(), run);
+    }
     Ok(texts)
+}
+
+/// Identity of the run that a step or mesh file is of; None in a file of an earlier version.
+pub(crate) fn run_of_file(file: &CheckedFile) -> Result<Option<String>, CheckpointError> {
+    let is_there = file.has_text(RUN)?;
+    is_there.then(|| file.text(RUN)).transpose()
+}
+
+/// Fails if a step or mesh file at `path` is of another run than `expected`. A file of an earlier version says nothing.
+pub(crate) fn require_run_in(
+    file: &CheckedFile,
+    path: &Path,
+    expected: Option<&str>,
+) -> Result<(), CheckpointError> {
+    let (Some(expected), Some(found)) = (expected, run_of_file(file)?) else {
+        return Ok(());
+    };
+    if found == expected {
+        return Ok(());
+    }
+    let (path, expected) = (path.to_path_buf(), expected.to_string());
+    Err(CheckpointError::OtherRun {
+        path,
+        expected,
+        found,
+    })
 }
 
 /// What a step file says about the tables of its run; None if it is of a version that kept no stamps.

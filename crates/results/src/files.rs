@@ -15,8 +15,9 @@ use comm::{Communicator, print};
 use dynamics::{Model, Timing};
 use scene::{Analysis, Scene};
 
-use super::about::about;
+use super::about::{about, identity};
 use super::fields;
+use super::folder;
 use super::memory::Forecasts;
 use super::probes::Probes;
 use super::ring_stress::{Gathered, RingStress};
@@ -80,10 +81,11 @@ impl Files {
         }
         let clock = Instant::now();
         let Survey { probes, mesh } = survey;
-        let mesh = mesh.map_or_else(|| MeshFile::new(&fields::bodies(model)), Ok)?;
-        let mut output = Output::create_of(dir, &mesh, storage(scene))?;
+        let mesh = mesh.map_or_else(|| mesh_file(scene, model), Ok)?;
+        let lock = folder::prepare(dir)?;
+        note_dead_owner(&lock);
+        let mut output = Output::create_in(lock, &mesh, storage(scene))?;
         drop(mesh);
-        note_dead_owner(output.lock());
         output.describe(about(scene, dir, warnings)?)?;
         let tables = Tables::create(dir, swept_column(scene), first, &own_columns(probes.as_ref()))?;
         Ok(Files::new(
@@ -113,7 +115,7 @@ impl Files {
         let Survey { probes, mesh } = survey;
         let columns = own_columns(probes.as_ref());
         let cuts = Tables::cuts(&dir, first, &columns, (last, resumed.tables))?;
-        let mesh = mesh.map_or_else(|| MeshFile::new(&fields::bodies(model)), Ok)?;
+        let mesh = mesh.map_or_else(|| mesh_file(scene, model), Ok)?;
         let opened = Output::resume_of(lock, &mesh, storage(scene), last)?;
         drop(mesh);
         let (mut output, damaged, mut superseded) = (opened.output, opened.damaged, opened.superseded);
@@ -281,10 +283,12 @@ impl Files {
         let of_probes = open.probes.as_ref().and_then(Probes::near_field_time);
         let near_fields = [self.ring_stress.near_field_time(), of_probes];
         let near_field = near_fields.into_iter().flatten().reduce(|a, b| a + b);
+        let run = written.output.run().map(str::to_string);
         if let Some(views) = written.output.finish()? {
             warn_of_damage(&views.damaged);
         }
         Ok(Costs {
+            run,
             read,
             stress: open.spent.stress + written.making.as_secs_f64() + self.shared_seconds[0],
             gather: (Communicator::world().size() > 1).then_some(self.shared_seconds[1]),
@@ -366,6 +370,11 @@ fn swept_column(scene: &Scene) -> Option<&str> {
         Analysis::Sweep(sweep) => Some(sweep.column.as_str()),
         Analysis::Static | Analysis::QuasiStatic(_) | Analysis::Dynamic(_) | Analysis::Modes(_) => None,
     }
+}
+
+/// The content of `mesh.hdf`.
+pub fn mesh_file(scene: &Scene, model: &Model) -> anyhow::Result<MeshFile> {
+    Ok(MeshFile::new(&fields::bodies(model))?.of_run(identity(scene)?))
 }
 
 /// How fields are stored.

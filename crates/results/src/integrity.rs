@@ -2,20 +2,42 @@
 
 use std::path::Path;
 
-use checkpoint::{Stamp, Stamps, committed_steps, read_stamps, start_of, step_file_name};
+use checkpoint::{
+    Stamp, Stamps, committed_steps, read_stamps, require_run, run_of, start_of, step_file_name,
+};
 use comm::print;
 
-use crate::summary::status;
+use crate::summary::{SUMMARY_FILE, read_summary};
 
-/// What is wrong with the tables in `dir`, a sentence each; nothing if they are as written, or if no step tells of them.
+/// What is wrong with tables and summary in `dir`, a sentence each; nothing if they are as written, or if no step tells of them.
 pub fn doubts(dir: &Path) -> anyhow::Result<Vec<String>> {
+    let run = run_of(dir)?;
+    let mut doubts = doubt_of_summary(dir, run.as_deref());
     for &step in committed_steps(dir)?.iter().rev() {
-        // A damaged step says nothing; an older one may.
-        if let Ok(stamps) = read_stamps(&dir.join(step_file_name(step))) {
-            return stamps.map_or(Ok(Vec::new()), |stamps| doubts_at(dir, step, &stamps));
+        // A step that is damaged or of another run says nothing; an older one may.
+        let path = dir.join(step_file_name(step));
+        let stamps = require_run(&path, run.as_deref()).and_then(|()| read_stamps(&path));
+        if let Ok(stamps) = stamps {
+            let more = stamps.map_or(Ok(Vec::new()), |stamps| doubts_at(dir, step, &stamps));
+            doubts.extend(more?);
+            break;
         }
     }
-    Ok(Vec::new())
+    Ok(doubts)
+}
+
+/// A summary that was copied from elsewhere.
+fn doubt_of_summary(dir: &Path, run: Option<&str>) -> Vec<String> {
+    let found = read_summary(dir).and_then(|summary| Some(summary["run"].as_str()?.to_string()));
+    let other = found.zip(run).filter(|(found, run)| found != run);
+    let text = |(found, run): (String, &str)| {
+        let path = dir.join(SUMMARY_FILE);
+        format!(
+            "{} is of another run, {found}; the run in its folder is {run}",
+            path.display()
+        )
+    };
+    other.map(text).into_iter().collect()
 }
 
 /// Prints what is wrong with the tables in `dir`.
@@ -27,7 +49,7 @@ pub fn warn_of_doubts(dir: &Path) -> anyhow::Result<()> {
 }
 
 fn doubts_at(dir: &Path, step: u64, stamps: &Stamps) -> anyhow::Result<Vec<String>> {
-    let is_finished = status(dir).is_some_and(|status| status == "finished");
+    let is_finished = read_summary(dir).is_some_and(|summary| summary["status"] == "finished");
     let mut doubts = Vec::new();
     for (name, stamp) in stamps {
         let path = dir.join(name);

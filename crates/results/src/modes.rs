@@ -17,7 +17,8 @@ use scene::{ModeBody, Scene};
 use serde::Serialize;
 
 use super::fields;
-use super::files::storage;
+use super::files::{mesh_file, storage};
+use super::folder;
 use super::ring_stress::{Basis, RingStress, ShownRing};
 use super::shown::Turn;
 use super::snapshot::Snapshot;
@@ -57,7 +58,7 @@ pub struct ModeFiles {
 impl ModeFiles {
     /// Creates the folder's files.
     pub fn create(scene: &Scene, model: &Model, dir: &Path) -> Result<ModeFiles, Failure> {
-        let output = Output::create(dir, &fields::bodies(model), storage(scene))?;
+        let output = Output::create_in(folder::prepare(dir)?, &mesh_file(scene, model)?, storage(scene))?;
         Ok(ModeFiles {
             output,
             table: tables::create(dir, TABLE, &COLUMNS.map(str::to_string))?,
@@ -98,10 +99,11 @@ impl ModeFiles {
         Ok(())
     }
 
-    /// Closes the files.
-    pub fn finish(self) -> Result<(), Failure> {
+    /// Closes the files and returns the identity of the run.
+    pub fn finish(self) -> Result<Option<String>, Failure> {
+        let run = self.output.run().map(str::to_string);
         self.output.finish()?;
-        Ok(())
+        Ok(run)
     }
 
     /// Fields of a shape over the points and cells of all bodies; those that do not take part are at rest.
@@ -165,12 +167,13 @@ pub fn print_modes(name: &str, set: &ModeSet) {
     }
 }
 
-/// `summary.json` of a `[modes]` scene; `schema`, `scene`, `title`, `version`, `status`, `contact_mode`, `effects`, `dofs`,
+/// `summary.json` of a `[modes]` scene; `schema`, `scene`, `run`, `title`, `version`, `status`, `contact_mode`, `effects`, `dofs`,
 /// `warnings` and `peak_memory_bytes` as in all runs.
 #[derive(Debug, Serialize)]
 pub struct ModesSummary {
     schema: u32,
     scene: String,
+    run: Option<String>,
     title: Option<String>,
     version: &'static str,
     analysis: &'static str,
@@ -204,7 +207,7 @@ impl ModesSummary {
         model: &Model,
         sets: &[(ModeBody, ModeSet)],
         equilibrium: Option<&Snapshot>,
-        warnings: Vec<String>,
+        (run, warnings): (Option<String>, Vec<String>),
         start: Instant,
     ) -> ModesSummary {
         let part = |i: usize| sets.iter().map(|(_, set)| set.seconds[i]).sum();
@@ -217,6 +220,7 @@ impl ModesSummary {
         ModesSummary {
             schema: 1,
             scene: scene.path.display().to_string(),
+            run,
             title: scene.title.clone(),
             version: env!("CARGO_PKG_VERSION"),
             analysis: "modes",

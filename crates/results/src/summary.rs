@@ -27,6 +27,7 @@ pub const SUMMARY_FILE: &str = "summary.json";
 pub struct Summary {
     schema: u32,
     scene: String,
+    run: Option<String>,
     title: Option<String>,
     version: &'static str,
     analysis: &'static str,
@@ -92,9 +93,11 @@ struct SweepRow {
     balls: Vec<BallSummary>,
 }
 
-/// Costs of a run that only its driver knows.
+/// Costs of a run that only its driver knows, and its identity.
 #[derive(Default)]
 pub struct Costs {
+    /// Identity of the run, which all its files carry; None on ranks that write none.
+    pub run: Option<String>,
     /// Seconds of reading and checking, stress recovery, writing, and in all.
     pub read: f64,
     /// Stress recovery.
@@ -176,6 +179,7 @@ impl Summary {
         Summary {
             schema: 1,
             scene: scene.path.display().to_string(),
+            run: costs.run.clone(),
             title: scene.title.clone(),
             version: env!("CARGO_PKG_VERSION"),
             analysis,
@@ -260,11 +264,10 @@ pub fn write_summary(dir: &Path, summary: &impl Serialize) -> anyhow::Result<()>
         .with_context(|| format!("cannot write {}", path.display()))
 }
 
-/// How the run in `dir` ended, as its summary says; None without one.
-pub fn status(dir: &Path) -> Option<String> {
-    let text = std::io::read_to_string(open_regular(&dir.join(SUMMARY_FILE)).ok()?).ok()?;
-    let summary: serde_json::Value = serde_json::from_str(&text).ok()?;
-    Some(summary["status"].as_str()?.to_string())
+/// The summary in `dir`; None if there is none that can be read.
+pub fn read_summary(dir: &Path) -> Option<serde_json::Value> {
+    let file = open_regular(&dir.join(SUMMARY_FILE)).ok()?;
+    serde_json::from_reader(std::io::BufReader::new(file)).ok()
 }
 
 /// A value per side, by name.
