@@ -9,6 +9,7 @@ use results::failure::Failure;
 use results::integrity::warn_of_doubts;
 use results::rainflow::{rainflow, turning_points};
 use results::table::Table;
+use results::whole;
 
 /// Table that is read.
 const PROBES: &str = "probes.csv";
@@ -60,8 +61,8 @@ pub fn cycles(request: &Cycles) -> Result<(), Failure> {
         )
         .into());
     };
-    let mut ranges = create(&dir.join(RANGES), &RANGE_COLUMNS)?;
-    let mut counted = create(&dir.join(CYCLES), &["stress", "range_pa", "mean_pa", "count"])?;
+    let mut ranges = header(&RANGE_COLUMNS)?;
+    let mut counted = header(&CYCLE_COLUMNS)?;
     for (name, values) in &histories.columns {
         let low = values.iter().copied().fold(f64::INFINITY, f64::min);
         let high = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
@@ -77,21 +78,15 @@ pub fn cycles(request: &Cycles) -> Result<(), Failure> {
             n,
         ];
         let row = std::iter::once(name.clone()).chain(numbers.map(|x| format!("{x:?}")));
-        ranges
-            .write_record(row)
-            .with_context(|| format!("cannot write {RANGES}"))?;
+        ranges.write_record(row)?;
         for cycle in cycles {
             let numbers = [cycle.range, cycle.mean, cycle.count].map(|x| format!("{x:?}"));
             let row = std::iter::once(name.clone()).chain(numbers);
-            counted
-                .write_record(row)
-                .with_context(|| format!("cannot write {CYCLES}"))?;
+            counted.write_record(row)?;
         }
     }
-    ranges.flush().with_context(|| format!("cannot write {RANGES}"))?;
-    counted
-        .flush()
-        .with_context(|| format!("cannot write {CYCLES}"))?;
+    write(dir, RANGES, &RANGE_COLUMNS, ranges)?;
+    write(dir, CYCLES, &CYCLE_COLUMNS, counted)?;
     print::line(format_args!(
         "{} stresses from {first} s to {last} s: {RANGES} and {CYCLES} in {}",
         histories.columns.len(),
@@ -100,6 +95,7 @@ pub fn cycles(request: &Cycles) -> Result<(), Failure> {
     Ok(())
 }
 
+const CYCLE_COLUMNS: [&str; 4] = ["stress", "range_pa", "mean_pa", "count"];
 const RANGE_COLUMNS: [&str; 8] = [
     "stress",
     "from_s",
@@ -143,9 +139,16 @@ impl Histories {
     }
 }
 
-fn create(path: &Path, columns: &[&str]) -> anyhow::Result<csv::Writer<std::fs::File>> {
-    let mut writer =
-        csv::Writer::from_path(path).with_context(|| format!("cannot create {}", path.display()))?;
+/// A table in memory with its header line.
+fn header(columns: &[&str]) -> anyhow::Result<csv::Writer<Vec<u8>>> {
+    let mut writer = csv::Writer::from_writer(Vec::new());
     writer.write_record(columns)?;
     Ok(writer)
+}
+
+/// Writes a table in the place of one that this command wrote before.
+fn write(dir: &Path, name: &str, columns: &[&str], table: csv::Writer<Vec<u8>>) -> anyhow::Result<()> {
+    let content = table.into_inner().context("cannot format a table")?;
+    let own = columns.join(",") + "\n";
+    whole::write(&dir.join(name), &content, |old| old.starts_with(own.as_bytes()))
 }

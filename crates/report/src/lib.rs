@@ -7,11 +7,11 @@ mod source;
 
 use std::path::PathBuf;
 
-use anyhow::Context;
 use clap::Args;
 use comm::print;
 use plot::{Choice, Results};
 use results::failure::Failure;
+use results::whole;
 
 /// What the command line asks for.
 #[derive(Debug, Args)]
@@ -42,7 +42,7 @@ pub fn report(request: &Report) -> Result<(), Failure> {
         .out
         .clone()
         .unwrap_or_else(|| request.dir.join("report.html"));
-    std::fs::write(&path, page).with_context(|| format!("cannot write {}", path.display()))?;
+    whole::write(&path, page.as_bytes(), page::is_page)?;
     print::line(format_args!("report: {}", path.display()));
     Ok(())
 }

@@ -32,3 +32,4 @@ pub mod table;
 mod tables;
 mod timed_near_field;
 pub mod watch;
+pub mod whole;

@@ -16,6 +16,7 @@ use super::memory::Forecasts;
 use super::probe_places::NodePlace;
 use super::snapshot::Snapshot;
 use super::subsurface::{self, ContactSubsurface};
+use super::whole;
 
 /// Start of the keys of `timing_s` that are effects.
 const EFFECT_TIMING: &str = "effect_";
@@ -257,11 +258,8 @@ pub fn write_summary(dir: &Path, summary: &impl Serialize) -> anyhow::Result<()>
         return Ok(());
     }
     let path = dir.join(SUMMARY_FILE);
-    let temporary = dir.join("summary.json.tmp");
-    let text = serde_json::to_string_pretty(summary).context("cannot format summary.json")?;
-    std::fs::write(&temporary, text + "\n")
-        .and_then(|()| std::fs::rename(&temporary, &path))
-        .with_context(|| format!("cannot write {}", path.display()))
+    let text = serde_json::to_string_pretty(summary).context("cannot format summary.json")? + "\n";
+    whole::write(&path, text.as_bytes(), |old| whole::holds(old, "\"schema\""))
 }
 
 /// The summary in `dir`; None if there is none that can be read.

@@ -136,7 +136,9 @@ fn run_once(plan: &Plan, set: &[String], dir: &Path, repeat: usize) -> Result<Re
         std::fs::remove_dir_all(&out).with_context(|| format!("cannot remove {}", out.display()))?;
     }
     let log_path = dir.join(LOG);
-    let log = File::create(&log_path).with_context(|| format!("cannot write {}", log_path.display()))?;
+    // The log of an earlier try goes, also a link; it is gone if there was none.
+    let _ = std::fs::remove_file(&log_path);
+    let log = File::create_new(&log_path).with_context(|| format!("cannot write {}", log_path.display()))?;
     let mut command = Command::new(std::env::current_exe().context("cannot find this program")?);
     command
         .args(["--threads", &plan.threads.to_string(), "run"])
