@@ -83,10 +83,10 @@ pub fn describe(path: &Path) -> Result<FileDescription, CheckpointError> {
 fn arrays(file: &CheckedFile, paths: &[String]) -> Result<Vec<ArrayDescription>, CheckpointError> {
     let array = |path: &String| {
         let (shape, kind) = (file.shape(path)?, file.descriptor(path)?);
-        let n: usize = shape.iter().product();
+        let n = shape.iter().fold(1, |n: usize, &extent| n.saturating_mul(extent));
         Ok(ArrayDescription {
             path: path.clone(),
-            bytes: (n * kind.size()) as u64,
+            bytes: n.saturating_mul(kind.size()) as u64,
             kind: kind.to_string(),
             shape,
         })

@@ -13,7 +13,7 @@ use crate::pack::pack_range;
 use crate::record::StepRecord;
 use crate::seal::verify_structure;
 use crate::series::{SERIES_FILE, write_series};
-use crate::step::{read_step, read_step_time, require_run_in, run_of_file};
+use crate::step::{read_step, read_step_number, read_step_time, require_run_in, run_of_file};
 
 /// File name of a step: `step_000042.hdf`; more than six digits when needed.
 pub fn step_file_name(step: u64) -> String {
@@ -45,10 +45,17 @@ pub fn run_of(dir: &Path) -> Result<Option<String>, CheckpointError> {
     Ok(steps.iter().find_map(|&step| run(&step_file_name(step)).ok()?))
 }
 
-/// Fails if the step file at `path` is damaged in its structure or of another run than `run`.
+/// Fails if the step file at `path` is damaged in its structure, of another run than `run`, or holds another step than its name says.
 pub fn require_run(path: &Path, run: Option<&str>) -> Result<(), CheckpointError> {
     verify_structure(path)?;
-    require_run_in(&CheckedFile::open(path)?, path, run)
+    let file = CheckedFile::open(path)?;
+    require_run_in(&file, path, run)?;
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    let (named, held) = (step_number(&name), read_step_number(&file, path)?);
+    match named.filter(|&named| named != held) {
+        None => Ok(()),
+        Some(_) => Err(CheckpointError::malformed(path, format!("it holds step {held}"))),
+    }
 }
 
 /// Number and time, s, of those of `steps` whose structure is sound and that are of the folder's run, and why the others are not.

@@ -11,8 +11,7 @@ use crate::grid::Grid;
 use crate::seal::verify_seal;
 use crate::storage::Compression;
 
-/// Name of the file in the result folder.
-pub(crate) const MESH_FILE: &str = "mesh.hdf";
+pub(crate) use crate::error::MESH_FILE;
 
 /// Fingerprint of the mesh, in `mesh.hdf` and in every step.
 pub(crate) const MESH_HASH: &str = "/restart/mesh_hash";
@@ -143,6 +142,12 @@ pub fn read_mesh(dir: &Path) -> Result<Grid, CheckpointError> {
         body: file.array("/VTKHDF/CellData/body")?.1,
         radius: file.array("/VTKHDF/CellData/radius")?.1,
     };
+    if !grid.is_sound() {
+        return Err(CheckpointError::malformed(
+            &path,
+            "its cells do not fit its points",
+        ));
+    }
     let (expected, found) = (file.text(MESH_HASH)?, grid.fingerprint());
     if expected == found {
         return Ok(grid);

@@ -16,7 +16,7 @@ use crate::folder::{
 };
 use crate::index::{INDEX_FILE, Views, rebuild_index};
 use crate::lock::FolderLock;
-use crate::mesh_file::{MESH_FILE, MeshFile, require_same_mesh};
+use crate::mesh_file::{MESH_FILE, MeshFile, read_mesh, require_same_mesh};
 use crate::record::{StepRecord, require_texts};
 use crate::series::write_series;
 use crate::step::{Origin, read_about, write_step_file};
@@ -45,15 +45,17 @@ pub struct Resumed {
     pub superseded: Option<PathBuf>,
     /// Earlier steps that are damaged: they stay where they are, but out of the views.
     pub damaged: Vec<CheckpointError>,
-    /// Whether `mesh.hdf` was missing and has been written again.
-    pub mesh_restored: bool,
+    /// What was wrong with `mesh.hdf`, if it has been written again: "missing" or "damaged".
+    pub mesh_restored: Option<&'static str>,
 }
 
-/// Writes `mesh.hdf` again when it is missing and the step to resume from is of this mesh.
-fn restore_mesh(dir: &Path, mesh: &MeshFile, step: u64) -> Result<bool, CheckpointError> {
-    if dir.join(MESH_FILE).exists() {
-        return Ok(false);
-    }
+/// Writes `mesh.hdf` again when it is missing or damaged and the step to resume from is of this mesh. Says what was wrong.
+fn restore_mesh(dir: &Path, mesh: &MeshFile, step: u64) -> Result<Option<&'static str>, CheckpointError> {
+    let fault = match (dir.join(MESH_FILE).exists(), read_mesh(dir)) {
+        (true, Ok(_)) => return Ok(None),
+        (true, Err(_)) => "damaged",
+        (false, _) => "missing",
+    };
     let path = dir.join(step_file_name(step));
     let (expected, found) = (mesh.hash.clone(), read_about(&path)?["mesh_hash"].clone());
     if expected != found {
@@ -64,7 +66,7 @@ fn restore_mesh(dir: &Path, mesh: &MeshFile, step: u64) -> Result<bool, Checkpoi
         });
     }
     mesh.write(dir)?;
-    Ok(true)
+    Ok(Some(fault))
 }
 
 impl Output {

@@ -286,7 +286,7 @@ pub(crate) fn read_mesh_hash(file: &CheckedFile) -> Result<String, CheckpointErr
     file.text(MESH_HASH)
 }
 
-fn read_step_number(file: &CheckedFile, path: &Path) -> Result<u64, CheckpointError> {
+pub(crate) fn read_step_number(file: &CheckedFile, path: &Path) -> Result<u64, CheckpointError> {
     let step: i64 = file.scalar(STEP)?;
     u64::try_from(step).map_err(|_| {
         CheckpointError::malformed(path, format!("its step number is {step}, expected 0 or more"))
