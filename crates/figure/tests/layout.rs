@@ -255,6 +255,27 @@ fn a_figure_is_written_as_svg_and_png() {
     assert_eq!(&images.png[1..4], b"PNG");
 }
 
+/// Wrong: a sweep of many points would have no figure, because its legend leaves no room for the axes.
+#[test]
+fn a_figure_of_many_shaded_series_names_some_of_them() {
+    let mut figure = Figure::new(
+        "A sweep",
+        Axis::linear("angle", "deg"),
+        Axis::linear("force", "N"),
+    );
+    for i in 0..200 {
+        let points = (0..10).map(|j| [f64::from(j), f64::from(i + j)]).collect();
+        let name = format!("axial force {i}.125 kN");
+        figure = figure.series(Series::line(name, points).shade(i as usize, 200));
+    }
+    let svg = figure.svg().unwrap();
+    let named = |i: u32| svg.contains(&format!("axial force {i}.125 kN"));
+    assert!(named(0) && named(199), "the ends have their names");
+    let n = (0..200).filter(|&i| named(i)).count();
+    assert!((5..50).contains(&n), "{n} names");
+    assert_eq!(clashes(&svg).unwrap(), Vec::<String>::new());
+}
+
 /// The figures of these tests as files, to look at: FIGURES=DIR.
 #[test]
 fn examples_can_be_looked_at() {
