@@ -38,6 +38,8 @@ pub fn info(path: &Path, depth: Depth) -> Result<(), Failure> {
 }
 
 fn line(name: &str, text: &str) {
+    // A long name is followed by a space, too.
+    let name = format!("{name} ");
     print::line(format_args!("{name:<11}{text}"));
 }
 
