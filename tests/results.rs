@@ -160,7 +160,7 @@ fn the_summary_says_what_was_computed() {
     let summary = summary(&dir, "out");
     let expected = [
         ("schema", 1.into()),
-        ("scene", "scene.toml".into()),
+        ("run", "scene", "scene.toml".into()),
         ("title", "7010C under test".into()),
         ("version", env!("CARGO_PKG_VERSION").into()),
         ("analysis", "static".into()),

@@ -346,6 +346,26 @@ fn missing_files_are_made_again_where_that_can_be() {
         let read = |folder: &str| std::fs::read(dir.path(&format!("{folder}/{name}"))).unwrap();
         assert!(read("whole") == read("cut"), "{name} differs");
     }
+    // Damage of the mesh is no reason to go back.
+    let mut bytes = std::fs::read(dir.path("cut/mesh.hdf")).unwrap();
+    bytes[2000] ^= 4;
+    dir.write("cut/mesh.hdf", bytes);
+    let advised = "raceway resume writes it again";
+    let info = dir.raceway(&["info", "cut"]);
+    assert!(
+        info.code == Some(2) && info.stdout.contains(advised),
+        "{}",
+        info.stdout
+    );
+    let outcome = resumed(&dir, &["cut"]);
+    assert!(
+        outcome
+            .stderr
+            .contains("mesh.hdf was damaged in cut and is written again"),
+        "{}",
+        outcome.stderr
+    );
+    assert_eq!(dir.raceway(&["info", "cut"]).code, Some(0));
     std::fs::remove_file(dir.path("cut/energy.csv")).unwrap();
     refused(
         &dir,

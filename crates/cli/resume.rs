@@ -321,7 +321,7 @@ fn is_finished(dir: &Path, step: u64) -> Result<bool, Failure> {
     let newest = checkpoint::committed_steps(dir)?.last() == Some(&step);
     let summary = read_summary(dir);
     let finished = summary.is_some_and(|summary| summary["status"] == "finished");
-    Ok(newest && finished && dir.join("run.vtkhdf").exists())
+    Ok(newest && finished && dir.join("run.vtkhdf").exists() && checkpoint::read_mesh(dir).is_ok())
 }
 
 fn lines(text: &str) -> Vec<String> {

@@ -120,9 +120,9 @@ impl Files {
         drop(mesh);
         let (mut output, damaged, mut superseded) = (opened.output, opened.damaged, opened.superseded);
         output.describe(texts)?;
-        if opened.mesh_restored {
+        if let Some(fault) = opened.mesh_restored {
             print::note(format_args!(
-                "note: mesh.hdf was missing in {} and is written again",
+                "note: mesh.hdf was {fault} in {} and is written again",
                 dir.display()
             ));
         }
