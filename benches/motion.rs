@@ -234,6 +234,7 @@ impl Writer {
             },
             cells: CellFields::default(),
             scene: String::new(),
+            tables: None,
             state: named.collect(),
         }
     }

@@ -148,7 +148,7 @@ fn a_signal_stops_between_steps() {
         "--set",
         "dynamic.output_every=100000",
     ];
-    for (name, out) in [("TERM", "term"), ("USR1", "usr1"), ("INT", "int")] {
+    for (name, out) in [("TERM", "term"), ("USR1", "usr1"), ("INT", "int"), ("HUP", "hup")] {
         let mut child = dir.start(&[&["run", "scene.toml", "--out", out], &slow[..]].concat());
         let lines = wait_for_steps(&mut child);
         signal(&child, name);
@@ -303,5 +303,82 @@ fn the_forecast_of_the_output_is_its_size() {
             .next()
             .and_then(|part| part.rsplit(' ').next()?.parse::<f64>().ok());
         crate::util::assert_close(line, total.unwrap(), all, 0.05);
+    }
+}
+
+/// Wrong: a job that failed before its first step would be stuck: nothing to resume, and a folder that no run may use.
+#[test]
+fn a_run_that_ended_before_its_first_step_is_started_again() {
+    let dir = small_motion();
+    dir.run("whole", &[]);
+    let size = |name: &str| {
+        std::fs::metadata(dir.path(&format!("whole/{name}")))
+            .unwrap()
+            .len()
+    };
+    assert!(
+        size("step_000000.hdf") > size("mesh.hdf"),
+        "the mesh must fit where the step does not"
+    );
+    let limit = (size("step_000000.hdf") / 1024) as u32;
+    let run = ["run", "scene.toml", "--out", "out"];
+    let outcome = dir.raceway_with_small_files(limit, &run);
+    assert_eq!(outcome.code, Some(2), "{}", outcome.stderr);
+    assert!(dir.path("out/balls.csv").exists() && committed_steps(&dir.path("out")).unwrap().is_empty());
+    let outcome = dir.raceway(&["resume", "out"]);
+    assert_eq!(outcome.code, Some(2), "{}", outcome.stderr);
+    let said = "out holds no committed step: the run ended before its first one; start it again with raceway run SCENE --out out";
+    assert!(outcome.stderr.contains(said), "{}", outcome.stderr);
+    let outcome = dir.raceway(&run);
+    assert_eq!(outcome.code, Some(0), "{}", outcome.stderr);
+    let said = "note: the run in out ended before its first step; it is started anew";
+    assert!(outcome.stderr.contains(said), "{}", outcome.stderr);
+    assert_same_run(&dir, "whole", "out");
+    assert!(!dir.path("out/.raceway.starting").exists());
+}
+
+/// Wrong: a run under nohup would end when its terminal closes.
+#[test]
+fn a_run_that_ignores_a_closed_terminal_goes_on() {
+    let dir = small_motion();
+    let slow = [
+        "--set",
+        "dynamic.duration=2 s",
+        "--set",
+        "dynamic.output_every=100000",
+    ];
+    let arguments = [&["run", "scene.toml", "--out", "out"], &slow[..]].concat();
+    let mut command = dir.shell("trap '' HUP", &arguments);
+    let mut child = command.stderr(std::process::Stdio::piped()).spawn().unwrap();
+    let lines = wait_for_steps(&mut child);
+    signal(&child, "HUP");
+    std::thread::sleep(Duration::from_millis(300));
+    assert!(child.try_wait().unwrap().is_none(), "it ended");
+    signal(&child, "TERM");
+    let outcome = outcome_of(child, lines);
+    assert!(
+        outcome.stderr.contains("stopped: SIGTERM received"),
+        "{}",
+        outcome.stderr
+    );
+}
+
+/// Wrong: under a small limit of the address space the program would abort, which tells a user nothing.
+#[test]
+fn too_little_address_space_is_an_error() {
+    let dir = small_motion();
+    for kilobytes in [100_000, 250_000] {
+        let outcome = dir.raceway_after(
+            &format!("ulimit -v {kilobytes}"),
+            &["run", "scene.toml", "--out", "out"],
+        );
+        assert_eq!(outcome.code, Some(2), "{}", outcome.stderr);
+        let said = "error: the address space of this process is limited to ";
+        assert!(
+            outcome.stderr.starts_with(said) && outcome.stderr.contains("expected at least 320 MB"),
+            "{}",
+            outcome.stderr
+        );
+        assert!(!dir.path("out").exists());
     }
 }

@@ -368,3 +368,34 @@ fn a_quantity_that_is_not_there_is_said() {
         outcome.stdout
     );
 }
+
+/// Wrong: a study that was killed would leave its run behind, which goes on writing into the folder that the same command then
+/// cannot empty.
+#[test]
+fn a_killed_study_takes_its_run_with_it() {
+    let dir = Dir::with_scene(&with_line("[static]", "[static]", DYNAMIC));
+    let study = STUDY.replace("set = [\n", "set = [\n    'dynamic.duration = \"20 s\"',\n");
+    assert!(study != STUDY);
+    dir.write("study.toml", &study);
+    let table = dir.path("out/points/0000/run/balls.csv");
+    for _ in 0..2 {
+        let mut child = dir.start(&["study", "study.toml", "--out", "out"]);
+        while !table.exists() {
+            assert!(child.try_wait().unwrap().is_none(), "the study ended");
+            std::thread::sleep(std::time::Duration::from_millis(20));
+        }
+        child.kill().unwrap();
+        child.wait().unwrap();
+        // At once: the run is gone, or its folder is locked until it is.
+        std::fs::remove_file(&table).unwrap();
+    }
+    std::thread::sleep(std::time::Duration::from_millis(500));
+    let size = |name: &str| {
+        std::fs::metadata(dir.path(&format!("out/points/0000/run/{name}")))
+            .unwrap()
+            .len()
+    };
+    let before = size("shaft.csv");
+    std::thread::sleep(std::time::Duration::from_millis(500));
+    assert_eq!(size("shaft.csv"), before, "a run still writes");
+}

@@ -4,6 +4,7 @@
 mod bad_input;
 mod batch;
 mod cuts;
+mod damaged_tables;
 mod examples;
 mod export;
 mod hard;
@@ -13,6 +14,7 @@ mod limits;
 mod memory;
 mod modes;
 mod motion;
+mod own_files;
 mod plot;
 mod prices;
 mod probes;

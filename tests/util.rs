@@ -147,15 +147,29 @@ impl Dir {
 
     /// Starts the program here under a limit of the size of its files, kB; writing beyond it is an error.
     pub fn raceway_with_small_files(&self, limit: u32, arguments: &[&str]) -> Outcome {
+        self.raceway_after(&format!("trap '' XFSZ; ulimit -f {limit}"), arguments)
+    }
+
+    /// Starts the program here after some words of a shell, such as a limit.
+    pub fn raceway_after(&self, words: &str, arguments: &[&str]) -> Outcome {
+        Outcome::of(self.shell(words, arguments).output().unwrap())
+    }
+
+    /// The program as a shell starts it after some words; it takes the place of the shell.
+    pub fn shell(&self, words: &str, arguments: &[&str]) -> Command {
         let mut shell = Command::new("bash");
         for name in LAUNCHERS {
             shell.env_remove(name);
         }
-        let script = format!("trap '' XFSZ; ulimit -f {limit}; exec \"$0\" \"$@\"");
         shell
-            .args(["-c", &script, env!("CARGO_BIN_EXE_raceway")])
-            .args(arguments);
-        Outcome::of(shell.current_dir(self.0.path()).output().unwrap())
+            .args([
+                "-c",
+                &format!("{words}; exec \"$0\" \"$@\""),
+                env!("CARGO_BIN_EXE_raceway"),
+            ])
+            .args(arguments)
+            .current_dir(self.0.path());
+        shell
     }
 
     fn command(&self, arguments: &[&str]) -> Command {

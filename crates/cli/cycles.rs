@@ -6,8 +6,13 @@ use anyhow::{Context, anyhow};
 use clap::Args;
 use comm::print;
 use results::failure::Failure;
+use results::integrity::warn_of_doubts;
 use results::rainflow::{rainflow, turning_points};
+use results::table::Table;
+use results::whole;
 
+/// Table that is read.
+const PROBES: &str = "probes.csv";
 /// Tables that are written into the folder.
 const RANGES: &str = "stress_ranges.csv";
 const CYCLES: &str = "stress_cycles.csv";
@@ -45,18 +50,19 @@ pub fn cycles(request: &Cycles) -> Result<(), Failure> {
         .into());
     }
     let dir = &request.dir;
-    let histories = Histories::read(&dir.join("probes.csv"), [request.from, request.to])?;
+    let histories = Histories::read(dir, [request.from, request.to])?;
+    warn_of_doubts(dir)?;
     let (Some(first), Some(last)) = (histories.times.first(), histories.times.last()) else {
         return Err(anyhow!(
             "{} has no step from {} s to {} s",
-            dir.join("probes.csv").display(),
+            dir.join(PROBES).display(),
             request.from,
             request.to
         )
         .into());
     };
-    let mut ranges = create(&dir.join(RANGES), &RANGE_COLUMNS)?;
-    let mut counted = create(&dir.join(CYCLES), &["stress", "range_pa", "mean_pa", "count"])?;
+    let mut ranges = header(&RANGE_COLUMNS)?;
+    let mut counted = header(&CYCLE_COLUMNS)?;
     for (name, values) in &histories.columns {
         let low = values.iter().copied().fold(f64::INFINITY, f64::min);
         let high = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
@@ -72,21 +78,15 @@ pub fn cycles(request: &Cycles) -> Result<(), Failure> {
             n,
         ];
         let row = std::iter::once(name.clone()).chain(numbers.map(|x| format!("{x:?}")));
-        ranges
-            .write_record(row)
-            .with_context(|| format!("cannot write {RANGES}"))?;
+        ranges.write_record(row)?;
         for cycle in cycles {
             let numbers = [cycle.range, cycle.mean, cycle.count].map(|x| format!("{x:?}"));
             let row = std::iter::once(name.clone()).chain(numbers);
-            counted
-                .write_record(row)
-                .with_context(|| format!("cannot write {CYCLES}"))?;
+            counted.write_record(row)?;
         }
     }
-    ranges.flush().with_context(|| format!("cannot write {RANGES}"))?;
-    counted
-        .flush()
-        .with_context(|| format!("cannot write {CYCLES}"))?;
+    write(dir, RANGES, &RANGE_COLUMNS, ranges)?;
+    write(dir, CYCLES, &CYCLE_COLUMNS, counted)?;
     print::line(format_args!(
         "{} stresses from {first} s to {last} s: {RANGES} and {CYCLES} in {}",
         histories.columns.len(),
@@ -95,6 +95,7 @@ pub fn cycles(request: &Cycles) -> Result<(), Failure> {
     Ok(())
 }
 
+const CYCLE_COLUMNS: [&str; 4] = ["stress", "range_pa", "mean_pa", "count"];
 const RANGE_COLUMNS: [&str; 8] = [
     "stress",
     "from_s",
@@ -107,56 +108,47 @@ const RANGE_COLUMNS: [&str; 8] = [
 ];
 
 impl Histories {
-    /// Reads the stresses of a table of probes within a span of time.
-    fn read(path: &Path, [from, to]: [f64; 2]) -> anyhow::Result<Histories> {
-        let mut reader = csv::Reader::from_path(path).with_context(|| {
+    /// Reads the stresses of the probes of the run in `dir` within a span of time.
+    fn read(dir: &Path, [from, to]: [f64; 2]) -> anyhow::Result<Histories> {
+        let path = dir.join(PROBES);
+        let expected = || {
             format!(
                 "cannot read {}: expected the results of a scene with [probes.node.*] or [probes.point.*]",
                 path.display()
             )
-        })?;
-        let header = reader.headers()?.clone();
-        let time = header.iter().position(|name| name == "time_s");
-        let time = time.ok_or_else(|| anyhow!("{} has no column time_s", path.display()))?;
-        let stresses: Vec<usize> = (0..header.len())
-            .filter(|&i| header[i].ends_with("_pa"))
-            .collect();
-        if stresses.is_empty() {
+        };
+        let table = Table::read(dir, PROBES)?.with_context(expected)?;
+        let all = table.column("time_s")?;
+        let is_counted = |i: &usize| (from..=to).contains(&all[*i]);
+        let rows: Vec<usize> = (0..table.n_rows()).filter(is_counted).collect();
+        let chosen = |column: &[f64]| rows.iter().map(|&i| column[i]).collect::<Vec<f64>>();
+        let stresses = table.names().iter().filter(|name| name.ends_with("_pa"));
+        let columns = stresses
+            .map(|name| Ok((name.clone(), chosen(table.column(name)?))))
+            .collect::<anyhow::Result<Vec<_>>>()?;
+        if columns.is_empty() {
             return Err(anyhow!(
                 "{} has no stress: expected columns that end in _pa, from [probes.node.*] or [probes.point.*]",
                 path.display()
             ));
         }
-        let mut histories = Histories {
-            times: Vec::new(),
-            columns: stresses
-                .iter()
-                .map(|&i| (header[i].to_string(), Vec::new()))
-                .collect(),
-        };
-        for (line, record) in reader.records().enumerate() {
-            let record = record.with_context(|| format!("cannot read {}", path.display()))?;
-            let number = |i: usize| {
-                let cell = record.get(i).unwrap_or("");
-                let place = || format!("{}, line {}: {cell:?} is no number", path.display(), line + 2);
-                cell.parse::<f64>().with_context(place)
-            };
-            let now = number(time)?;
-            if now < from || now > to {
-                continue;
-            }
-            histories.times.push(now);
-            for (column, &i) in histories.columns.iter_mut().zip(&stresses) {
-                column.1.push(number(i)?);
-            }
-        }
-        Ok(histories)
+        Ok(Histories {
+            times: chosen(all),
+            columns,
+        })
     }
 }
 
-fn create(path: &Path, columns: &[&str]) -> anyhow::Result<csv::Writer<std::fs::File>> {
-    let mut writer =
-        csv::Writer::from_path(path).with_context(|| format!("cannot create {}", path.display()))?;
+/// A table in memory with its header line.
+fn header(columns: &[&str]) -> anyhow::Result<csv::Writer<Vec<u8>>> {
+    let mut writer = csv::Writer::from_writer(Vec::new());
     writer.write_record(columns)?;
     Ok(writer)
+}
+
+/// Writes a table in the place of one that this command wrote before.
+fn write(dir: &Path, name: &str, columns: &[&str], table: csv::Writer<Vec<u8>>) -> anyhow::Result<()> {
+    let content = table.into_inner().context("cannot format a table")?;
+    let own = columns.join(",") + "\n";
+    whole::write(&dir.join(name), &content, |old| old.starts_with(own.as_bytes()))
 }

@@ -1,7 +1,7 @@
 //! `raceway export`: steps as files for other tools, VTU for those that read VTK's XML formats, CSV for all others.
 
 use std::ops::RangeInclusive;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use anyhow::{Context, anyhow};
 use checkpoint::{Grid, StepRecord, all_steps, read_any_step, read_mesh};
@@ -9,6 +9,7 @@ use clap::{Args, ValueEnum};
 use comm::print;
 use results::export::{csv, integration_points, vtu};
 use results::failure::Failure;
+use results::whole::write_new;
 
 /// What the command line asks for.
 #[derive(Debug, Args)]
@@ -115,20 +116,6 @@ fn require_same_mesh(grid: &Grid, record: &StepRecord) -> Result<(), Failure> {
     };
     rows(record.points.arrays(), "points", grid.points.len())?;
     rows(record.cells.arrays(), "cells", grid.types.len())?;
-    Ok(())
-}
-
-/// Fills a new file; one that is there already is an error.
-fn write_new(
-    path: &Path,
-    fill: impl FnOnce(&mut dyn std::io::Write) -> std::io::Result<()>,
-) -> Result<(), Failure> {
-    let create = || -> std::io::Result<()> {
-        let mut file = std::io::BufWriter::new(std::fs::File::create_new(path)?);
-        fill(&mut file)?;
-        std::io::Write::flush(&mut file)
-    };
-    create().with_context(|| format!("cannot write {}", path.display()))?;
     Ok(())
 }
 

@@ -4,11 +4,13 @@ use std::path::Path;
 
 use anyhow::{Context, anyhow};
 use checkpoint::{
-    FileDescription, committed_steps, describe, read_mesh, read_step, read_step_time, step_file_name,
+    FileDescription, committed_steps, describe, read_mesh, read_step, read_step_time, require_run, run_of,
+    step_file_name,
 };
 use comm::print;
 use results::disk::size;
 use results::failure::Failure;
+use results::integrity::doubts;
 use results::summary::SUMMARY_FILE;
 
 /// How closely the steps of a folder are looked at.
@@ -36,6 +38,8 @@ pub fn info(path: &Path, depth: Depth) -> Result<(), Failure> {
 }
 
 fn line(name: &str, text: &str) {
+    // A long name is followed by a space, too.
+    let name = format!("{name} ");
     print::line(format_args!("{name:<11}{text}"));
 }
 
@@ -43,14 +47,15 @@ fn folder(dir: &Path, depth: Depth) -> Result<(), Failure> {
     let steps = committed_steps(dir)?;
     line("folder", &dir.display().to_string());
     let (mut damaged, mut sound, mut bytes) = (Vec::new(), Vec::new(), 0);
+    let run = run_of(dir)?;
     for &step in &steps {
         let path = dir.join(step_file_name(step));
         bytes += std::fs::metadata(&path).map_or(0, |data| data.len());
-        let time = match depth {
+        let time = || match depth {
             Depth::Structure => read_step_time(&path),
             Depth::Bytes => read_step(&path).map(|record| record.time),
         };
-        match time {
+        match require_run(&path, run.as_deref()).and_then(|()| time()) {
             Ok(time) => sound.push((step, time)),
             Err(error) => damaged.push(error.to_string()),
         }
@@ -95,6 +100,7 @@ fn folder(dir: &Path, depth: Depth) -> Result<(), Failure> {
             &format!("{}, {} steps, {}", path.display(), steps.len(), size(bytes)),
         );
     }
+    damaged.extend(doubts(dir)?);
     folder_state(dir)?;
     for text in &damaged {
         line("damaged", text);

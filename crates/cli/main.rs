@@ -28,6 +28,7 @@ use mesh::Overwrite;
 use plot::Plot;
 use report::Report;
 use results::failure::{Failure, agree, say_of_rank};
+use results::memory::require_address_space;
 use results::summary::peak_memory;
 
 use crate::cycles::Cycles;
@@ -44,9 +45,15 @@ struct Arguments {
     /// Number of threads; default: all cores. Results do not depend on it.
     #[arg(long, global = true)]
     threads: Option<usize>,
+    /// Ends with the process of this number, which started this one.
+    #[arg(long, global = true, hide = true)]
+    parent: Option<i32>,
     #[command(subcommand)]
     command: Command,
 }
+
+/// Most threads that can be asked for: more than any machine has cores.
+const MOST_THREADS: usize = 4096;
 
 #[derive(Debug, Subcommand)]
 enum Command {
@@ -165,10 +172,17 @@ fn say_memory_of_ranks() {
 
 fn execute(arguments: Arguments) -> Result<(), Failure> {
     require_one_task(&arguments.command)?;
+    require_address_space()?;
+    arguments.parent.map_or(Ok(()), results::stop::end_with)?;
     if let Some(threads) = arguments.threads {
-        if threads == 0 {
+        if !(1..=MOST_THREADS).contains(&threads) {
+            let expected = if threads == 0 {
+                "at least 1".to_string()
+            } else {
+                format!("at most {MOST_THREADS}")
+            };
             return Err(Failure::User(anyhow::anyhow!(
-                "--threads is 0; expected at least 1"
+                "--threads is {threads}; expected {expected}"
             )));
         }
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);

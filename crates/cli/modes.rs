@@ -63,12 +63,10 @@ pub fn run(
         progress.advance();
     }
     progress.finish();
-    if let Some(files) = files {
-        files.finish()?;
-    }
+    let run = files.map_or(Ok(None), ModeFiles::finish)?;
     let snapshot = equilibrium.as_ref().map(|e| Snapshot::of_equilibrium(e, None));
     let warnings = warnings(&sets, equilibrium.as_ref(), wanted);
-    let summary = ModesSummary::new(scene, &model, &sets, snapshot.as_ref(), warnings, start);
+    let summary = ModesSummary::new(scene, &model, &sets, snapshot.as_ref(), (run, warnings), start);
     summary.write(dir)?;
     for (body, set) in &sets {
         print_modes(&name(*body, wanted), set);

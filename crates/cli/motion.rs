@@ -14,7 +14,7 @@ use dynamics::{DynamicsError, Model};
 use results::console;
 use results::disk::Forecast;
 use results::failure::{Failure, agree, of_all};
-use results::files::Files;
+use results::files::{Files, ResumedFrom};
 use results::memory::Forecasts;
 use results::motion_fields::Recorded;
 use results::shown::Shown;
@@ -109,14 +109,12 @@ pub fn resume(
     say_solvers(&motion, &progress);
     let (state, newton, watch) = agree(stored.state(&motion))?;
     let (first, warnings) = (Snapshot::of_motion(&motion, &state), stored.warnings);
-    let files = agree(Files::resume(
-        scene,
-        &model,
-        stored.lock,
-        &first,
-        survey,
-        (state.step, &warnings),
-    ))?;
+    let from = ResumedFrom {
+        step: state.step,
+        tables: stored.tables.as_ref(),
+        warnings: &warnings,
+    };
+    let files = agree(Files::resume(scene, &model, stored.lock, &first, survey, &from))?;
     let march = March {
         scene,
         dynamic,

@@ -9,24 +9,23 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use anyhow::{Context, anyhow};
-use checkpoint::{FolderLock, StateArray, StepRecord, newest_step, read_about, read_step, step_file_name};
+use checkpoint::{
+    FolderLock, Stamps, StateArray, StepRecord, newest_step, read_about, read_any_step, step_file_name,
+};
 use clap::Args;
 use comm::{Communicator, print};
 use dynamics::motion::{Motion, MotionState};
-use results::about::{OVERRIDES, SCENE_FILE, WARNINGS, require_same_meshes};
+use results::about::{MAY_CHANGE, OVERRIDES, SCENE_FILE, WARNINGS, require_same_meshes, scene_file};
 use results::failure::{Failure, agree};
 use results::files::note_dead_owner;
 use results::state_arrays;
-use results::summary::SUMMARY_FILE;
+use results::summary::read_summary;
 use results::watch::Watch;
 use scene::{Analysis, Dynamic, MeshFiles, Scene, difference};
 
 use crate::motion;
 use crate::options::Limits;
 use crate::run::note_unshared;
-
-/// Keys and tables of a scene that a resumed run may change: none of them touches the motion.
-const MAY_CHANGE: [&str; 3] = ["dynamic.duration", "dynamic.output_every", "output"];
 
 /// Array of a step file that counts Newton's iterations since the start of the run.
 const NEWTON: &str = "newton_iterations";
@@ -64,6 +63,8 @@ pub struct Stored {
     pub step: u64,
     /// Warnings of the start of the run.
     pub warnings: Vec<String>,
+    /// What the step tells of the tables; None if it is of a version that kept no checksums of them.
+    pub tables: Option<Stamps>,
     time: f64,
     arrays: BTreeMap<String, StateArray>,
 }
@@ -142,6 +143,7 @@ pub fn resume(request: &Request) -> Result<(), Failure> {
         dir: dir.clone(),
         step,
         warnings,
+        tables: record.tables,
         time: record.time,
         arrays: record.state,
     };
@@ -164,8 +166,14 @@ struct Read {
 fn read(request: &Request, step: u64) -> Result<Read, Failure> {
     let dir = &request.dir;
     let path = dir.join(step_file_name(step));
-    let (record, about) = (read_step(&path)?, read_about(&path)?);
+    let (record, about) = (read_any_step(dir, step)?, read_about(&path)?);
     note_version(&about);
+    if record.tables.is_none() {
+        print::note(format_args!(
+            "warning: step {} is of a version that kept no checksums of tables; only the steps in them are looked at",
+            record.step
+        ));
+    }
     let scene = scene_of(request, &record, &about)?;
     let dynamic = require_motion(&scene, dir)?;
     require_same_meshes(&scene, &about)?;
@@ -215,6 +223,14 @@ fn acquire(dir: &Path) -> Result<Option<FolderLock>, Failure> {
 
 /// The step asked for, or the newest whole one, with a warning for every newer one that is damaged.
 fn choose_step(dir: &Path, step: Option<u64>) -> Result<u64, Failure> {
+    if checkpoint::is_unfinished_start(dir)? {
+        return Err(anyhow!(
+            "{} holds no committed step: the run ended before its first one; start it again with raceway run SCENE --out {}",
+            dir.display(),
+            dir.display()
+        )
+        .into());
+    }
     let Some(step) = step else {
         let newest = newest_step(dir, |error| {
             print::note(format_args!("warning: {error}; falling back to the step before"));
@@ -269,7 +285,7 @@ fn scene_of(
     let overrides = about.get(OVERRIDES).map_or(Vec::new(), |text| lines(text));
     let path = match (&request.scene, about.get(SCENE_FILE)) {
         (Some(path), _) => path.clone(),
-        (None, Some(path)) => request.dir.join(path),
+        (None, Some(path)) => scene_file(&request.dir, path),
         (None, None) => return Err(anyhow!("step {} does not say where its scene is", record.step).into()),
     };
     if request.scene.is_some() || path.exists() {
@@ -283,7 +299,14 @@ fn scene_of(
             record.step
         ));
     }
-    let mut scene = Scene::parse(&record.scene, &path, &request.overrides, MeshFiles::MustExist)?;
+    let parsed = Scene::parse(&record.scene, &path, &request.overrides, MeshFiles::MustExist);
+    let mut scene = match parsed {
+        Err(error) if !path.exists() => {
+            let hint = "the meshes are looked for from the place of the scene file, which is not there: --scene says where it is";
+            return Err(anyhow::Error::from(error).context(hint).into());
+        }
+        parsed => parsed?,
+    };
     let changes = difference(&record.scene, &scene.text)?;
     if let Some(change) = changes.iter().find(|change| !change.is_below(&MAY_CHANGE)) {
         return Err(anyhow!(
@@ -340,10 +363,9 @@ fn require_motion(scene: &Scene, dir: &Path) -> Result<Dynamic, Failure> {
 /// Whether a run got to its end: its last step is the newest, and all that is written after it is there.
 fn is_finished(dir: &Path, step: u64) -> Result<bool, Failure> {
     let newest = checkpoint::committed_steps(dir)?.last() == Some(&step);
-    let summary = std::fs::read_to_string(dir.join(SUMMARY_FILE)).unwrap_or_default();
-    let status = serde_json::from_str::<serde_json::Value>(&summary).ok();
-    let finished = status.is_some_and(|summary| summary["status"] == "finished");
-    Ok(newest && finished && dir.join("run.vtkhdf").exists())
+    let summary = read_summary(dir);
+    let finished = summary.is_some_and(|summary| summary["status"] == "finished");
+    Ok(newest && finished && dir.join("run.vtkhdf").exists() && checkpoint::read_mesh(dir).is_ok())
 }
 
 fn lines(text: &str) -> Vec<String> {

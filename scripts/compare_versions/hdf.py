@@ -5,8 +5,9 @@ import numpy as np
 
 from .difference import Difference, compare_reals
 
-# Who wrote a file, and when; seals follow from the content, which is compared itself.
-LEFT_OUT = {"commit", "program_version", "created", "written"}
+# Who wrote a file, and when; seals and checksums of tables follow from the content, which is compared itself, and the
+# identity of a run from its scene and meshes.
+LEFT_OUT = {"commit", "program_version", "created", "written", "run", "tables"}
 SEAL = "crc32"
 
 

@@ -8,8 +8,9 @@ import numpy as np
 
 from .difference import Difference, compare_reals, magnitude
 
-# What a summary says of cost, program and paths, not of the bearing.
+# What a summary says of cost, program and paths, not of the bearing; and the identity of the run.
 LEFT_OUT = {
+    "run",
     "scene",
     "timing_s",
     "factor_bytes_forecast",

@@ -6,7 +6,7 @@ use crate::util::{Dir, RIGID, SCENE};
 /// Arguments and the essential part of the message.
 type Case = (&'static [&'static str], &'static str);
 
-const COMMANDS: [Case; 9] = [
+const COMMANDS: [Case; 10] = [
     (&["solve", "scene.toml"], "error: unrecognized subcommand 'solve'"),
     (
         &["run"],
@@ -27,6 +27,10 @@ const COMMANDS: [Case; 9] = [
     (
         &["run", "scene.toml", "--threads", "0"],
         "error: --threads is 0; expected at least 1",
+    ),
+    (
+        &["run", "scene.toml", "--threads", "1000000"],
+        "error: --threads is 1000000; expected at most 4096",
     ),
     (
         &["run", "scene.toml", "--threads", "two"],

@@ -155,6 +155,7 @@ fn record(step: u64, bodies: &[Body]) -> StepRecord {
         cells: CellFields::default(),
         scene: "# invented\n".to_string(),
         state,
+        tables: None,
     }
 }
 

@@ -72,7 +72,7 @@ pub(crate) fn write_copy(dir: &Path, name: &str, mut content: &File) -> Result<(
     let (tmp, path) = (temporary(dir, name), dir.join(name));
     let mut copy = || {
         content.rewind()?;
-        let mut file = File::create(&tmp)?;
+        let mut file = create_fresh(&tmp)?;
         std::io::copy(&mut content, &mut file)?;
         file.sync_all()
     };
@@ -86,7 +86,7 @@ pub(crate) fn write_copy(dir: &Path, name: &str, mut content: &File) -> Result<(
 pub(crate) fn write_text(dir: &Path, name: &str, text: &str) -> Result<(), CheckpointError> {
     let (tmp, path) = (temporary(dir, name), dir.join(name));
     let write = || {
-        let mut file = File::create(&tmp)?;
+        let mut file = create_fresh(&tmp)?;
         file.write_all(text.as_bytes())?;
         file.sync_all()
     };
@@ -99,6 +99,19 @@ pub(crate) fn sync_dir(dir: &Path) -> Result<(), CheckpointError> {
     File::open(dir)
         .and_then(|folder| folder.sync_all())
         .map_err(CheckpointError::io("sync folder", dir))
+}
+
+/// A new file; what a killed run left under this name goes, also a link.
+fn create_fresh(tmp: &Path) -> std::io::Result<File> {
+    remove_if_there(tmp)?;
+    File::create_new(tmp)
+}
+
+fn remove_if_there(tmp: &Path) -> std::io::Result<()> {
+    match fs::remove_file(tmp) {
+        Err(error) if error.kind() != std::io::ErrorKind::NotFound => Err(error),
+        _ => Ok(()),
+    }
 }
 
 /// Gives the temporary file its name, or removes it when writing failed.
@@ -125,13 +138,14 @@ fn create_hdf(
     format: Format,
     fill: impl FnOnce(&hdf5::File) -> hdf5::Result<Vec<String>>,
 ) -> hdf5::Result<Vec<Extent>> {
+    remove_if_there(tmp).map_err(|error| error.to_string())?;
     let file = hdf5::File::with_options()
         .with_fapl(|access| match format {
             Format::Earliest => access.libver_earliest(),
             Format::V110 => access.libver_v110(),
         })
         .with_fcpl(|root| root.obj_track_times(false))
-        .create(tmp)?;
+        .create_excl(tmp)?;
     let paths = fill(&file)?;
     file.flush()?;
     let found: hdf5::Result<Vec<Vec<Extent>>> = paths.iter().map(|path| extents(&file, path)).collect();

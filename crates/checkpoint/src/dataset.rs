@@ -11,10 +11,13 @@ use hdf5::{Dataset, File, Group, Location};
 
 use crate::checksum::{CHECKSUM_ATTRIBUTE, Element, checksum};
 use crate::error::CheckpointError;
+use crate::regular::open_regular;
 use crate::storage::{Compression, Precision};
 
 /// Size of a compressed chunk, bytes: large enough for the filters, small enough for their caches.
 const CHUNK_BYTES: usize = 1 << 18;
+/// Bytes that a byte of deflated data can stand for at most (zlib, "Technical Details": 1032).
+const MOST_DEFLATED: u64 = 1032;
 
 /// Creates the groups and attributes of a VTKHDF unstructured grid of the given version.
 ///
@@ -148,6 +151,8 @@ fn write_checksum(dataset: &Dataset, value: u32) -> hdf5::Result<()> {
 /// A file open for reading; every value it returns has passed its checksum.
 pub(crate) struct CheckedFile<'a> {
     path: &'a Path,
+    /// Bytes of the file: no array can have more.
+    length: u64,
     /// The group at which paths start.
     file: Group,
 }
@@ -161,10 +166,11 @@ impl<'a> CheckedFile<'a> {
     /// Opens `path` with the group `root` as the start of all paths.
     pub fn open_at(path: &'a Path, root: &str) -> Result<Self, CheckpointError> {
         // The library's own words for a missing or forbidden file are less clear than the system's.
-        std::fs::File::open(path).map_err(CheckpointError::io("read", path))?;
+        let plain = open_regular(path)?;
+        let length = plain.metadata().map_err(CheckpointError::io("read", path))?.len();
         let file = File::open(path).and_then(|file| file.group(root));
         let file = file.map_err(CheckpointError::hdf("read", path))?;
-        Ok(CheckedFile { path, file })
+        Ok(CheckedFile { path, length, file })
     }
 
     /// True when the file has this data set.
@@ -192,13 +198,45 @@ impl<'a> CheckedFile<'a> {
 
     /// Shape and row-major values.
     pub fn array<T: Element>(&self, dataset: &str) -> Result<(Vec<usize>, Vec<T>), CheckpointError> {
-        let read = || {
-            let stored = self.file.dataset(below(dataset))?;
-            Ok((stored.shape(), stored.read_raw::<T>()?, read_checksum(&stored)?))
-        };
+        let open = || self.file.dataset(below(dataset));
+        let stored = open().map_err(CheckpointError::hdf("read", self.path))?;
+        self.require_size(dataset, &stored)?;
+        let read = || Ok((stored.shape(), stored.read_raw::<T>()?, read_checksum(&stored)?));
         let (shape, values, expected) = read().map_err(CheckpointError::hdf("read", self.path))?;
         self.compare(dataset, expected, checksum(dataset, &shape, &values))?;
         Ok((shape, values))
+    }
+
+    /// Fails unless a data set has the size that its bytes in the file can have, before memory is taken for it.
+    fn require_size(&self, dataset: &str, stored: &Dataset) -> Result<(), CheckpointError> {
+        let hdf = CheckpointError::hdf("read", self.path);
+        let element = stored.dtype().map_err(hdf)?.size() as u64;
+        let bytes_of = |shape: &[usize]| {
+            let rows = shape
+                .iter()
+                .try_fold(element, |n, &extent| n.checked_mul(extent as u64));
+            rows.filter(|_| !shape.is_empty())
+        };
+        let (shape, in_file) = (stored.shape(), stored.storage_size());
+        let bytes = bytes_of(&shape);
+        // A chunk is unpacked as a whole.
+        let chunk = stored.chunk().map_or(Some(0), |chunk| bytes_of(&chunk));
+        let most = match stored.filters().is_empty() {
+            true => in_file,
+            false => in_file.saturating_mul(MOST_DEFLATED),
+        };
+        let fits = in_file <= self.length
+            && bytes.is_some_and(|bytes| {
+                bytes <= most && chunk.is_some_and(|chunk| chunk <= bytes.max(CHUNK_BYTES as u64))
+            });
+        if fits {
+            return Ok(());
+        }
+        let what = format!(
+            "data set {dataset} has shape {shape:?}, which its {in_file} bytes of {} in the file cannot hold",
+            self.length
+        );
+        Err(CheckpointError::malformed(self.path, what))
     }
 
     /// Shape and row-major values of a floating-point array of either precision.
@@ -241,13 +279,12 @@ impl<'a> CheckedFile<'a> {
         read().map_err(CheckpointError::hdf("read", self.path))
     }
 
-    /// Shape, without reading the values.
+    /// Shape, without reading the values; at least one extent.
     pub fn shape(&self, dataset: &str) -> Result<Vec<usize>, CheckpointError> {
-        Ok(self
-            .file
-            .dataset(below(dataset))
-            .map_err(CheckpointError::hdf("read", self.path))?
-            .shape())
+        let stored = self.file.dataset(below(dataset));
+        let stored = stored.map_err(CheckpointError::hdf("read", self.path))?;
+        self.require_size(dataset, &stored)?;
+        Ok(stored.shape())
     }
 
     /// The only value of a data set with one element.
@@ -277,6 +314,12 @@ impl<'a> CheckedFile<'a> {
         self.compare(path, expected, checksum(path, &[bytes.len()], &bytes))?;
         String::from_utf8(bytes)
             .map_err(|_| CheckpointError::malformed(self.path, format!("text {path} is not UTF-8 text")))
+    }
+
+    /// Whether there is such a text.
+    pub fn has_text(&self, path: &str) -> Result<bool, CheckpointError> {
+        let (owner, name) = owner_and_name(path);
+        Ok(self.texts(owner)?.iter().any(|text| text == name))
     }
 
     fn compare(&self, dataset: &str, expected: u32, found: u32) -> Result<(), CheckpointError> {

@@ -7,7 +7,7 @@ use crate::dataset::CheckedFile;
 use crate::error::CheckpointError;
 use crate::mesh_file::{MESH_FILE, MESH_HASH};
 use crate::seal::{verify_seal, verify_structure};
-use crate::step::{read_about, read_contents};
+use crate::step::{read_about, read_contents, run_of_file};
 
 /// One array of a file.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -58,7 +58,8 @@ pub fn describe(path: &Path) -> Result<FileDescription, CheckpointError> {
             "CellData/radius",
         ];
         let paths = names.map(|name| format!("/VTKHDF/{name}"));
-        let about = BTreeMap::from([("mesh_hash".to_string(), file.text(MESH_HASH)?)]);
+        let mut about = BTreeMap::from([("mesh_hash".to_string(), file.text(MESH_HASH)?)]);
+        about.extend(run_of_file(&file)?.map(|run| ("run".to_string(), run)));
         return Ok(FileDescription {
             bytes,
             arrays: arrays(&file, &paths)?,
@@ -82,10 +83,10 @@ pub fn describe(path: &Path) -> Result<FileDescription, CheckpointError> {
 fn arrays(file: &CheckedFile, paths: &[String]) -> Result<Vec<ArrayDescription>, CheckpointError> {
     let array = |path: &String| {
         let (shape, kind) = (file.shape(path)?, file.descriptor(path)?);
-        let n: usize = shape.iter().product();
+        let n = shape.iter().fold(1, |n: usize, &extent| n.saturating_mul(extent));
         Ok(ArrayDescription {
             path: path.clone(),
-            bytes: (n * kind.size()) as u64,
+            bytes: n.saturating_mul(kind.size()) as u64,
             kind: kind.to_string(),
             shape,
         })

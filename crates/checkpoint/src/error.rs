@@ -65,8 +65,8 @@ pub enum CheckpointError {
     },
     /// A data set does not hold what was written.
     #[error(
-        "data set {dataset} of {} is damaged: its checksum is {found:08x} and {expected:08x} was written; use an \
-         earlier step", path.display()
+        "data set {dataset} of {} is damaged: its checksum is {found:08x} and {expected:08x} was written; {}",
+        path.display(), Kind::of(path).advice()
     )]
     Damaged {
         /// The file.
@@ -79,7 +79,7 @@ pub enum CheckpointError {
         found: u32,
     },
     /// A file is readable HDF5 but not what this crate writes.
-    #[error("{} is not a complete step file: {what}; use an earlier step", path.display())]
+    #[error("{} is {}: {what}; {}", path.display(), Kind::of(path).refused(), Kind::of(path).advice())]
     Malformed {
         /// The file.
         path: PathBuf,
@@ -128,6 +128,18 @@ pub enum CheckpointError {
         /// Fingerprint of the bodies given.
         expected: String,
         /// Fingerprint in the file.
+        found: String,
+    },
+    /// A step that was put into the folder of another run.
+    #[error(
+        "{} is a step of another run, {found}; the run in its folder is {expected}; move it away", path.display()
+    )]
+    OtherRun {
+        /// The file.
+        path: PathBuf,
+        /// Identity of the run in the folder.
+        expected: String,
+        /// Identity in the file.
         found: String,
     },
     /// A body cannot be drawn.
@@ -196,3 +208,49 @@ fn innermost_cause(error: &hdf5::Error) -> String {
         .last()
         .map_or_else(|| error.to_string(), |frame| frame.desc().to_string())
 }
+
+/// What a file is by its name.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Kind {
+    Mesh,
+    Step,
+    Pack,
+    Other,
+}
+
+impl Kind {
+    fn of(path: &Path) -> Kind {
+        let name = path.file_name().unwrap_or_default().to_string_lossy();
+        match &*name {
+            MESH_FILE => Kind::Mesh,
+            name if name.starts_with("step_") => Kind::Step,
+            name if name.starts_with("pack_") => Kind::Pack,
+            _ => Kind::Other,
+        }
+    }
+
+    /// What a file of this kind is not.
+    fn refused(self) -> &'static str {
+        match self {
+            Kind::Mesh => "not a complete mesh of results",
+            Kind::Step => "not a complete step file",
+            Kind::Pack => "not a complete pack of steps",
+            Kind::Other => "no file of results",
+        }
+    }
+
+    /// What to do about damage.
+    fn advice(self) -> &'static str {
+        match self {
+            Kind::Mesh => {
+                "raceway resume writes it again; results that cannot be resumed are to be computed again"
+            }
+            Kind::Step => "use an earlier step",
+            Kind::Pack => "use steps outside of it",
+            Kind::Other => "expected mesh.hdf, step_*.hdf or pack_*.hdf as raceway writes them",
+        }
+    }
+}
+
+/// Name of the mesh in a result folder.
+pub(crate) const MESH_FILE: &str = "mesh.hdf";

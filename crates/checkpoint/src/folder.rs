@@ -4,13 +4,16 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use crate::atomic;
+use crate::dataset::CheckedFile;
 use crate::error::CheckpointError;
 use crate::index::INDEX_FILE;
+use crate::lock::FolderLock;
 use crate::mesh_file::MESH_FILE;
 use crate::pack::pack_range;
 use crate::record::StepRecord;
+use crate::seal::verify_structure;
 use crate::series::{SERIES_FILE, write_series};
-use crate::step::{read_step, read_step_time};
+use crate::step::{read_step, read_step_number, read_step_time, require_run_in, run_of_file};
 
 /// File name of a step: `step_000042.hdf`; more than six digits when needed.
 pub fn step_file_name(step: u64) -> String {
@@ -27,11 +30,41 @@ pub fn committed_steps(dir: &Path) -> Result<Vec<u64>, CheckpointError> {
     Ok(steps)
 }
 
-/// Number and time, s, of those of `steps` whose structure is sound, and why the others are not.
+/// Identity of the run in `dir`: that of its mesh, or of its first sound step if the mesh has none. None where no file has
+/// one, as in results of earlier versions.
+pub fn run_of(dir: &Path) -> Result<Option<String>, CheckpointError> {
+    let run = |name: &str| {
+        let path = dir.join(name);
+        verify_structure(&path)?;
+        run_of_file(&CheckedFile::open(&path)?)
+    };
+    if let Ok(Some(run)) = run(MESH_FILE) {
+        return Ok(Some(run));
+    }
+    let steps = committed_steps(dir)?;
+    Ok(steps.iter().find_map(|&step| run(&step_file_name(step)).ok()?))
+}
+
+/// Fails if the step file at `path` is damaged in its structure, of another run than `run`, or holds another step than its name says.
+pub fn require_run(path: &Path, run: Option<&str>) -> Result<(), CheckpointError> {
+    verify_structure(path)?;
+    let file = CheckedFile::open(path)?;
+    require_run_in(&file, path, run)?;
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    let (named, held) = (step_number(&name), read_step_number(&file, path)?);
+    match named.filter(|&named| named != held) {
+        None => Ok(()),
+        Some(_) => Err(CheckpointError::malformed(path, format!("it holds step {held}"))),
+    }
+}
+
+/// Number and time, s, of those of `steps` whose structure is sound and that are of the folder's run, and why the others are not.
 pub(crate) fn sound_steps(dir: &Path, steps: &[u64]) -> (Vec<(u64, f64)>, Vec<CheckpointError>) {
     let (mut sound, mut damaged) = (Vec::new(), Vec::new());
+    let run = run_of(dir).ok().flatten();
     for &step in steps {
-        match read_step_time(&dir.join(step_file_name(step))) {
+        let path = dir.join(step_file_name(step));
+        match require_run(&path, run.as_deref()).and_then(|()| read_step_time(&path)) {
             Ok(time) => sound.push((step, time)),
             Err(error) => damaged.push(error),
         }
@@ -46,8 +79,10 @@ pub fn newest_step(
 ) -> Result<StepRecord, CheckpointError> {
     let path = dir.to_path_buf();
     let mut error = CheckpointError::NoSteps { path };
+    let run = run_of(dir)?;
     for &step in committed_steps(dir)?.iter().rev() {
-        match read_step(&dir.join(step_file_name(step))) {
+        let path = dir.join(step_file_name(step));
+        match require_run(&path, run.as_deref()).and_then(|()| read_step(&path)) {
             Ok(record) => return Ok(record),
             Err(damage) => {
                 skipped(&damage);
@@ -66,6 +101,44 @@ pub fn new_superseded_folder(dir: &Path) -> Result<PathBuf, CheckpointError> {
     let aside = aside.expect("fewer than 2^64 folders exist");
     fs::create_dir(&aside).map_err(CheckpointError::io("create folder", &aside))?;
     Ok(aside)
+}
+
+/// A run that has made its folder and has no step yet; what is there is of no use to anybody. Removed with the first step.
+const STARTING: &str = ".raceway.starting";
+
+/// Whether the folder holds only what a run left that ended before its first step was committed.
+pub fn is_unfinished_start(dir: &Path) -> Result<bool, CheckpointError> {
+    if !dir.join(STARTING).exists() {
+        return Ok(false);
+    }
+    let has_pack = file_names(dir)?.iter().any(|name| pack_range(name).is_some());
+    Ok(committed_steps(dir)?.is_empty() && !has_pack)
+}
+
+/// Removes what a run left that ended before its first step: its own files and these `tables`. True if there was such a run.
+pub fn clear_unfinished_start(lock: &FolderLock, tables: &[&str]) -> Result<bool, CheckpointError> {
+    let dir = lock.dir();
+    if !is_unfinished_start(dir)? {
+        return Ok(false);
+    }
+    for name in [MESH_FILE, SERIES_FILE, INDEX_FILE].iter().chain(tables) {
+        remove_if_present(&dir.join(name))?;
+    }
+    Ok(true)
+}
+
+/// Says that a run begins here.
+pub(crate) fn note_start(dir: &Path) -> Result<(), CheckpointError> {
+    let path = dir.join(STARTING);
+    remove_if_present(&path)?;
+    let made = fs::File::create_new(&path).map(drop);
+    made.map_err(CheckpointError::io("create", &path))?;
+    atomic::sync_dir(dir)
+}
+
+/// Says that a run has its first step.
+pub(crate) fn note_first_step(dir: &Path) -> Result<(), CheckpointError> {
+    remove_if_present(&dir.join(STARTING))
 }
 
 /// The number in a step's file name; names this crate would not write are not steps.

@@ -67,6 +67,17 @@ impl Grid {
         }
     }
 
+    /// Whether every cell has its arrays, and nodes that are there.
+    pub fn is_sound(&self) -> bool {
+        let (n_points, n_cells) = (self.points.len() as i64, self.types.len());
+        let ends = (self.offsets.first(), self.offsets.last());
+        self.offsets.len() == n_cells + 1
+            && ends == (Some(&0), Some(&(self.connectivity.len() as i64)))
+            && self.offsets.is_sorted()
+            && [self.body.len(), self.radius.len()] == [n_cells; 2]
+            && self.connectivity.iter().all(|node| (0..n_points).contains(node))
+    }
+
     /// Fingerprint of the grid: sizes and checksums of points, cells and bodies. It tells apart meshes made by
     /// different recipes; it is no protection against forgery.
     pub fn fingerprint(&self) -> String {

@@ -28,6 +28,7 @@ pub mod body;
 pub mod cells;
 pub mod error;
 pub mod grid;
+pub mod growing;
 pub mod index;
 pub mod lock;
 pub mod output;
@@ -43,6 +44,7 @@ mod dataset;
 mod describe;
 mod folder;
 mod mesh_file;
+mod regular;
 mod seal;
 
 pub use background::{BackgroundOutput, Companion, Written};
@@ -51,13 +53,18 @@ pub use cells::{CellFields, IntegrationPointStress};
 pub use checksum::file_checksum;
 pub use describe::{ArrayDescription, FileDescription, describe};
 pub use error::CheckpointError;
-pub use folder::{committed_steps, new_superseded_folder, newest_step, step_file_name};
+pub use folder::{
+    clear_unfinished_start, committed_steps, is_unfinished_start, new_superseded_folder, newest_step,
+    require_run, run_of, step_file_name,
+};
 pub use grid::Grid;
+pub use growing::{GrowingFile, Stamp, Stamps, start_of};
 pub use index::{Views, rebuild_index};
 pub use lock::FolderLock;
 pub use mesh_file::{MeshFile, read_mesh};
 pub use output::{Output, Resumed};
 pub use pack::{all_steps, pack_steps, packs, read_any_step, unpack_steps};
 pub use record::{PointFields, StateArray, StepRecord};
-pub use step::{read_about, read_step, read_step_time};
+pub use regular::open_regular;
+pub use step::{read_about, read_stamps, read_step, read_step_time};
 pub use storage::{Compression, Precision, Storage};

@@ -26,6 +26,7 @@ impl FolderLock {
     /// Takes the lock of the folder `dir`, or says who has it.
     pub fn acquire(dir: &Path) -> Result<FolderLock, CheckpointError> {
         let path = dir.join(LOCK_FILE);
+        require_plain(&path)?;
         let mut file = OpenOptions::new()
             .read(true)
             .write(true)
@@ -66,12 +67,23 @@ impl FolderLock {
     }
 }
 
+/// Fails if the lock is a link or a pipe: what is written into it would go elsewhere.
+fn require_plain(path: &Path) -> Result<(), CheckpointError> {
+    if path.symlink_metadata().is_ok_and(|data| !data.is_file()) {
+        let what = "it is no plain file; remove it if no run is writing here";
+        let source = std::io::Error::new(std::io::ErrorKind::InvalidInput, what);
+        return Err(CheckpointError::io("open the lock", path)(source));
+    }
+    Ok(())
+}
+
 /// Who writes to the folder `dir` now; changes nothing.
 pub fn writer(dir: &Path) -> Result<Option<String>, CheckpointError> {
     let path = dir.join(LOCK_FILE);
     if !path.exists() {
         return Ok(None);
     }
+    require_plain(&path)?;
     let mut file = File::open(&path).map_err(CheckpointError::io("read", &path))?;
     match file.try_lock_shared() {
         Ok(()) => Ok(None),

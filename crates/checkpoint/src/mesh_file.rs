@@ -11,11 +11,13 @@ use crate::grid::Grid;
 use crate::seal::verify_seal;
 use crate::storage::Compression;
 
-/// Name of the file in the result folder.
-pub(crate) const MESH_FILE: &str = "mesh.hdf";
+pub(crate) use crate::error::MESH_FILE;
 
 /// Fingerprint of the mesh, in `mesh.hdf` and in every step.
 pub(crate) const MESH_HASH: &str = "/restart/mesh_hash";
+
+/// Identity of the run, in `mesh.hdf` and in every step; absent in files of earlier versions.
+pub(crate) const RUN: &str = "/restart/run";
 
 /// The content of `mesh.hdf`, before there is a folder for it.
 #[derive(Debug)]
@@ -23,6 +25,7 @@ pub struct MeshFile {
     pub(crate) n_points: usize,
     pub(crate) n_cells: usize,
     pub(crate) hash: String,
+    pub(crate) run: Option<String>,
     content: Content,
 }
 
@@ -41,8 +44,15 @@ impl MeshFile {
             n_points: grid.points.len(),
             n_cells: grid.types.len(),
             hash: grid.fingerprint(),
+            run: None,
             content: Content::Memory(grid),
         })
+    }
+
+    /// The same as a file of the run with this identity. To be said before it is spooled.
+    pub fn of_run(self, run: String) -> MeshFile {
+        let run = Some(run);
+        MeshFile { run, ..self }
     }
 
     /// The same on the disk of the folder `dir`, which need not exist yet, instead of in memory. No other process sees the file, and
@@ -53,7 +63,7 @@ impl MeshFile {
         };
         let absolute = std::path::absolute(dir).map_err(CheckpointError::io("find folder", dir))?;
         let above = absolute.ancestors().find(|path| path.is_dir()).unwrap_or(dir);
-        let fill = |file: &hdf5::File| fill(file, grid);
+        let fill = |file: &hdf5::File| fill(file, grid, self.run.as_deref());
         let file = atomic::write_unnamed_hdf(above, MESH_FILE, Format::Earliest, fill)?;
         Ok(MeshFile {
             content: Content::Disk(file),
@@ -64,16 +74,16 @@ impl MeshFile {
     /// Writes `mesh.hdf`. It is small beside the steps, so it is never compressed.
     pub(crate) fn write(&self, dir: &Path) -> Result<(), CheckpointError> {
         match &self.content {
-            Content::Memory(grid) => {
-                atomic::write_hdf(dir, MESH_FILE, Format::Earliest, |file| fill(file, grid))
-            }
+            Content::Memory(grid) => atomic::write_hdf(dir, MESH_FILE, Format::Earliest, |file| {
+                fill(file, grid, self.run.as_deref())
+            }),
             Content::Disk(file) => atomic::write_copy(dir, MESH_FILE, file),
         }
     }
 }
 
 /// Fills the file, and says which data sets a message about damage shall name.
-fn fill(file: &hdf5::File, grid: &Grid) -> hdf5::Result<Vec<String>> {
+fn fill(file: &hdf5::File, grid: &Grid, run: Option<&str>) -> hdf5::Result<Vec<String>> {
     create_vtkhdf(file, [1, 0])?;
     let plain = Compression::None;
     let (n_points, n_cells) = (grid.points.len(), grid.types.len());
@@ -111,6 +121,9 @@ fn fill(file: &hdf5::File, grid: &Grid) -> hdf5::Result<Vec<String>> {
     write_array(file, "/VTKHDF/CellData/radius", &[n_cells], &grid.radius, plain)?;
     create_group(file, "restart")?;
     write_text(file, MESH_HASH, &grid.fingerprint())?;
+    if let Some(run) = run {
+        write_text(file, RUN, run)?;
+    }
     Ok(["Points", "Connectivity", "Offsets", "Types"]
         .map(|name| format!("/VTKHDF/{name}"))
         .to_vec())
@@ -129,6 +142,12 @@ pub fn read_mesh(dir: &Path) -> Result<Grid, CheckpointError> {
         body: file.array("/VTKHDF/CellData/body")?.1,
         radius: file.array("/VTKHDF/CellData/radius")?.1,
     };
+    if !grid.is_sound() {
+        return Err(CheckpointError::malformed(
+            &path,
+            "its cells do not fit its points",
+        ));
+    }
     let (expected, found) = (file.text(MESH_HASH)?, grid.fingerprint());
     if expected == found {
         return Ok(grid);

@@ -11,12 +11,12 @@ use std::path::{Path, PathBuf};
 use crate::body::Body;
 use crate::error::CheckpointError;
 use crate::folder::{
-    committed_steps, move_aside, remove_if_present, remove_leftovers, require_no_results, sound_steps,
-    step_file_name,
+    committed_steps, move_aside, note_first_step, note_start, remove_if_present, remove_leftovers,
+    require_no_results, sound_steps, step_file_name,
 };
 use crate::index::{INDEX_FILE, Views, rebuild_index};
 use crate::lock::FolderLock;
-use crate::mesh_file::{MESH_FILE, MeshFile, require_same_mesh};
+use crate::mesh_file::{MESH_FILE, MeshFile, read_mesh, require_same_mesh};
 use crate::record::{StepRecord, require_texts};
 use crate::series::write_series;
 use crate::step::{Origin, read_about, write_step_file};
@@ -30,6 +30,7 @@ pub struct Output {
     n_points: usize,
     n_cells: usize,
     mesh_hash: String,
+    run: Option<String>,
     about: BTreeMap<String, String>,
     /// Number and time, s, of the committed steps, growing.
     steps: Vec<(u64, f64)>,
@@ -44,15 +45,17 @@ pub struct Resumed {
     pub superseded: Option<PathBuf>,
     /// Earlier steps that are damaged: they stay where they are, but out of the views.
     pub damaged: Vec<CheckpointError>,
-    /// Whether `mesh.hdf` was missing and has been written again.
-    pub mesh_restored: bool,
+    /// What was wrong with `mesh.hdf`, if it has been written again: "missing" or "damaged".
+    pub mesh_restored: Option<&'static str>,
 }
 
-/// Writes `mesh.hdf` again when it is missing and the step to resume from is of this mesh.
-fn restore_mesh(dir: &Path, mesh: &MeshFile, step: u64) -> Result<bool, CheckpointError> {
-    if dir.join(MESH_FILE).exists() {
-        return Ok(false);
-    }
+/// Writes `mesh.hdf` again when it is missing or damaged and the step to resume from is of this mesh. Says what was wrong.
+fn restore_mesh(dir: &Path, mesh: &MeshFile, step: u64) -> Result<Option<&'static str>, CheckpointError> {
+    let fault = match (dir.join(MESH_FILE).exists(), read_mesh(dir)) {
+        (true, Ok(_)) => return Ok(None),
+        (true, Err(_)) => "damaged",
+        (false, _) => "missing",
+    };
     let path = dir.join(step_file_name(step));
     let (expected, found) = (mesh.hash.clone(), read_about(&path)?["mesh_hash"].clone());
     if expected != found {
@@ -63,7 +66,7 @@ fn restore_mesh(dir: &Path, mesh: &MeshFile, step: u64) -> Result<bool, Checkpoi
         });
     }
     mesh.write(dir)?;
-    Ok(true)
+    Ok(Some(fault))
 }
 
 impl Output {
@@ -76,9 +79,15 @@ impl Output {
     /// The same of a mesh file that was prepared.
     pub fn create_of(dir: &Path, mesh: &MeshFile, storage: Storage) -> Result<Output, CheckpointError> {
         fs::create_dir_all(dir).map_err(CheckpointError::io("create folder", dir))?;
-        let lock = FolderLock::acquire(dir)?;
+        Output::create_in(FolderLock::acquire(dir)?, mesh, storage)
+    }
+
+    /// The same in a folder that is there and locked.
+    pub fn create_in(lock: FolderLock, mesh: &MeshFile, storage: Storage) -> Result<Output, CheckpointError> {
+        let dir = lock.dir();
         require_no_results(dir)?;
         remove_leftovers(dir)?;
+        note_start(dir)?;
         mesh.write(dir)?;
         Ok(Output::new(lock, mesh, storage, Vec::new()))
     }
@@ -142,6 +151,7 @@ impl Output {
             n_points: mesh.n_points,
             n_cells: mesh.n_cells,
             mesh_hash: mesh.hash.clone(),
+            run: mesh.run.clone(),
             about: BTreeMap::new(),
             steps,
         }
@@ -175,9 +185,13 @@ impl Output {
         let origin = Origin {
             program_version: env!("CARGO_PKG_VERSION"),
             mesh_hash: &self.mesh_hash,
+            run: self.run.as_deref(),
             about: &self.about,
         };
         write_step_file(dir, &name, record, &origin, self.storage)?;
+        if self.steps.is_empty() {
+            note_first_step(dir)?;
+        }
         self.steps.push((record.step, record.time));
         write_series(dir, &self.steps)?;
         Ok(dir.join(name))
@@ -215,6 +229,11 @@ impl Output {
     /// Fingerprint of the mesh, as stored in every step.
     pub fn mesh_hash(&self) -> &str {
         &self.mesh_hash
+    }
+
+    /// Identity of the run, as stored in every file; None if it was not given.
+    pub fn run(&self) -> Option<&str> {
+        self.run.as_deref()
     }
 
     /// Number and time, s, of the last committed step.

@@ -14,14 +14,14 @@ use std::path::{Path, PathBuf};
 use crate::atomic::{self, Format};
 use crate::dataset::{CheckedFile, create_group, create_vtkhdf};
 use crate::error::CheckpointError;
-use crate::folder::{committed_steps, file_names, remove_if_present, step_file_name};
+use crate::folder::{committed_steps, file_names, remove_if_present, require_run, run_of, step_file_name};
 use crate::index::rebuild_index;
 use crate::lock::FolderLock;
 use crate::record::StepRecord;
 use crate::seal::{verify_seal, verify_structure};
 use crate::step::{
     Origin, fill_step, read_mesh_hash, read_record, read_step, read_storage, read_texts, read_time,
-    read_version, write_step_file,
+    read_version, require_run_in, run_of_file, write_step_file,
 };
 use crate::storage::Storage;
 
@@ -80,6 +80,7 @@ struct Whole {
     record: StepRecord,
     program_version: String,
     mesh_hash: String,
+    run: Option<String>,
     about: BTreeMap<String, String>,
     storage: Storage,
 }
@@ -92,6 +93,7 @@ impl Whole {
             record: read_record(&file, &place.path)?,
             program_version: read_version(&file)?,
             mesh_hash: read_mesh_hash(&file)?,
+            run: run_of_file(&file)?,
             about: read_texts(&file)?,
             storage: read_storage(&file)?,
         })
@@ -101,6 +103,7 @@ impl Whole {
         Origin {
             program_version: &self.program_version,
             mesh_hash: &self.mesh_hash,
+            run: self.run.as_deref(),
             about: &self.about,
         }
     }
@@ -130,7 +133,7 @@ pub fn packs(dir: &Path) -> Result<Vec<(PathBuf, Vec<u64>)>, CheckpointError> {
 /// Time, s, and place of steps, and why others are not among them.
 type SoundPlaces = (Vec<(f64, Place)>, Vec<CheckpointError>);
 
-/// Time and place of every step with a sound structure, growing, and why others are not.
+/// Time and place of every step of the folder's run with a sound structure, growing, and why others are not.
 pub(crate) fn sound_places(dir: &Path) -> Result<SoundPlaces, CheckpointError> {
     let (mut places, mut damaged) = (BTreeMap::new(), Vec::new());
     for (path, steps) in packs(dir)? {
@@ -140,14 +143,19 @@ pub(crate) fn sound_places(dir: &Path) -> Result<SoundPlaces, CheckpointError> {
     for step in committed_steps(dir)? {
         places.insert(step, Place::single(dir, step));
     }
-    let mut sound = Vec::new();
+    let (mut sound, run) = (Vec::new(), run_of(dir)?);
+    let time_of = |place: &Place| {
+        let file = place.open()?;
+        require_run_in(&file, &place.path, run.as_deref())?;
+        read_time(&file)
+    };
     for place in places.into_values() {
         let structure = if place.is_packed() {
             Ok(())
         } else {
             verify_structure(&place.path)
         };
-        match structure.and_then(|()| read_time(&place.open()?)) {
+        match structure.and_then(|()| time_of(&place)) {
             Ok(time) => sound.push((time, place)),
             Err(error) => damaged.push(error),
         }
@@ -196,12 +204,15 @@ pub fn pack_steps(lock: &FolderLock, keep: usize, per_file: usize) -> Result<usi
 fn write_pack(dir: &Path, steps: &[u64]) -> Result<PathBuf, CheckpointError> {
     let name = pack_name(steps[0], steps[steps.len() - 1]);
     let path = dir.join(&name);
-    let mut failure = None;
+    let (mut failure, run) = (None, run_of(dir)?);
     let written = atomic::write_hdf(dir, &name, Format::Earliest, |file| {
         let mut contents = Vec::new();
         for &step in steps {
             let place = Place::single(dir, step);
-            let whole = match verify_seal(&place.path).and_then(|()| Whole::read(&place)) {
+            let whole = verify_seal(&place.path)
+                .and_then(|()| require_run(&place.path, run.as_deref()))
+                .and_then(|()| Whole::read(&place));
+            let whole = match whole {
                 Ok(whole) => whole,
                 Err(error) => {
                     let text = error.to_string();
@@ -262,13 +273,21 @@ pub fn all_steps(dir: &Path) -> Result<Vec<u64>, CheckpointError> {
     Ok(steps)
 }
 
-/// Reads a step, packed or not; every value read is verified.
+/// Reads a step of the run in `dir`, packed or not; every value read is verified.
 pub fn read_any_step(dir: &Path, step: u64) -> Result<StepRecord, CheckpointError> {
     let single = Place::single(dir, step);
-    let mut packs = packs(dir)?.into_iter();
+    let (mut packs, run) = (packs(dir)?.into_iter(), run_of(dir)?);
     match packs.find(|(_, steps)| steps.contains(&step)) {
-        Some((path, _)) if !single.path.exists() => read_record(&Place::packed(&path, step).open()?, &path),
-        _ => read_step(&single.path),
+        Some((path, _)) if !single.path.exists() => {
+            let place = Place::packed(&path, step);
+            let file = place.open()?;
+            require_run_in(&file, &path, run.as_deref())?;
+            read_record(&file, &path)
+        }
+        _ => {
+            require_run(&single.path, run.as_deref())?;
+            read_step(&single.path)
+        }
     }
 }
 

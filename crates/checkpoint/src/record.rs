@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use crate::cells::CellFields;
 use crate::error::CheckpointError;
+use crate::growing::Stamps;
 use crate::storage::{Precision, Storage};
 
 /// Everything written for one step.
@@ -21,6 +22,8 @@ pub struct StepRecord {
     pub scene: String,
     /// Everything else that evolves, by name (letters, digits, `_`). Never shown by viewers.
     pub state: BTreeMap<String, StateArray>,
+    /// The tables of the run up to this step; None where the version that wrote the step kept no stamps.
+    pub tables: Option<Stamps>,
 }
 
 /// Fields over points, one row per point of all bodies in their order ([`crate::point_ranges`]). A field that is
@@ -151,6 +154,11 @@ impl StepRecord {
             require_text("the layout of stress_integration_points", &stress.layout)?;
         }
         require_text("the scene text", &self.scene)?;
+        for name in self.tables.iter().flat_map(Stamps::keys) {
+            if name.contains(['\n', '\0', '/']) {
+                return Err(text_error("a table named", name, "expected the name of a file"));
+            }
+        }
         self.state
             .keys()
             .try_for_each(|name| require_name("a state array named", name))

@@ -22,9 +22,14 @@ use std::path::Path;
 use crc32fast::Hasher;
 
 use crate::error::CheckpointError;
+use crate::regular::open_regular;
 
 /// Length of the last line: `seal`, ten digits, eight hexadecimal digits.
 const FOOTER_LENGTH: u64 = 25;
+/// Most bytes of a step outside of its arrays, nearly all of them the text of its scene.
+const MOST_STRUCTURE: u64 = 64 << 20;
+/// A mesh has some arrays that its seal does not tell apart: not more than this part of the file.
+const MESH_SHARE: u64 = 4;
 /// Bytes read at a time.
 const BLOCK: usize = 1 << 18;
 
@@ -153,12 +158,40 @@ fn damaged_structure(path: &Path) -> CheckpointError {
 }
 
 fn open_sealed(path: &Path) -> Result<(File, Seal), CheckpointError> {
-    let mut file = File::open(path).map_err(CheckpointError::io("read", path))?;
+    let mut file = open_regular(path)?;
     let table = read_table(&mut file).map_err(CheckpointError::io("read", path))?;
     match table.as_deref().and_then(parse_table) {
-        Some(seal) => Ok((file, seal)),
+        Some(seal) => {
+            require_small_structure(path, &seal)?;
+            Ok((file, seal))
+        }
         None => Err(CheckpointError::malformed(path, "its seal is missing or damaged")),
     }
+}
+
+/// Fails if there is more outside of the arrays than names, shapes and texts can be: the library reads all of that into memory.
+fn require_small_structure(path: &Path, seal: &Seal) -> Result<(), CheckpointError> {
+    let arrays = seal
+        .arrays
+        .iter()
+        .fold(0, |sum: u64, (_, extent)| sum.saturating_add(extent.length));
+    let structure = seal.length.saturating_sub(arrays);
+    let most = MOST_STRUCTURE
+        .saturating_mul(steps_in(path))
+        .max(seal.length / MESH_SHARE);
+    if structure <= most {
+        return Ok(());
+    }
+    let what = format!("it has {structure} bytes outside of its arrays, expected at most {most}");
+    Err(CheckpointError::malformed(path, what))
+}
+
+/// Steps that a file holds by its name: one, or those of a pack.
+fn steps_in(path: &Path) -> u64 {
+    let name = path.file_stem().unwrap_or_default().to_string_lossy();
+    let range = name.strip_prefix("pack_").and_then(|range| range.split_once('_'));
+    let ends = range.and_then(|(first, last)| Some((first.parse::<u64>().ok()?, last.parse::<u64>().ok()?)));
+    ends.map_or(1, |(first, last)| last.saturating_sub(first).saturating_add(1))
 }
 
 /// The lines above the footer, if the footer belongs to them.
@@ -170,7 +203,8 @@ fn read_table(file: &mut File) -> io::Result<Option<String>> {
     let Some((table_length, crc)) = parse_footer(&read_range(file, footer_start, FOOTER_LENGTH)?) else {
         return Ok(None);
     };
-    let Some(table_start) = footer_start.checked_sub(table_length) else {
+    let in_file = footer_start.checked_sub(table_length);
+    let Some(table_start) = in_file.filter(|_| table_length <= MOST_STRUCTURE) else {
         return Ok(None);
     };
     let table = read_range(file, table_start, table_length)?;

@@ -7,7 +7,10 @@
 //!                         attribute layout, which says the order of points and components
 //!   FieldData/time        [1], s
 //! /restart                texts as attributes: scene, program_version, mesh_hash,
+//!                         run: identity of the run, absent in files of earlier versions
 //!                         contents: paths of all data sets, one per line, sorted
+//!                         tables: a line `CRC LENGTH NAME` for each table of the run, of its start up to this step;
+//!                         absent in files of earlier versions
 //!   step                  [1], i64
 //!   state/NAME            the arrays of the state, [n], f64 or i64
 //!   about                 texts about the run as attributes, the same in every step
@@ -26,7 +29,8 @@ use crate::dataset::{
     CheckedFile, create_group, create_vtkhdf, link_mesh, write_array, write_field, write_text,
 };
 use crate::error::CheckpointError;
-use crate::mesh_file::{MESH_FILE, MESH_HASH};
+use crate::growing::{Stamps, parse_stamps, stamps_text};
+use crate::mesh_file::{MESH_FILE, MESH_HASH, RUN};
 use crate::record::{PointFields, StateArray, StepRecord};
 use crate::seal::{verify_seal, verify_structure};
 use crate::storage::{Compression, Precision, Storage};
@@ -43,6 +47,7 @@ const STEP: &str = "/restart/step";
 const SCENE: &str = "/restart/scene";
 const PROGRAM_VERSION: &str = "/restart/program_version";
 const CONTENTS: &str = "/restart/contents";
+const TABLES: &str = "/restart/tables";
 const STATE: &str = "/restart/state";
 const ABOUT: &str = "/restart/about";
 
@@ -50,6 +55,7 @@ const ABOUT: &str = "/restart/about";
 pub(crate) struct Origin<'a> {
     pub program_version: &'a str,
     pub mesh_hash: &'a str,
+    pub run: Option<&'a str>,
     pub about: &'a BTreeMap<String, String>,
 }
 
@@ -105,8 +111,14 @@ pub(crate) fn fill_step(
     write_array(group, TIME, &[1], &[record.time], Compression::None)?;
     write_array(group, STEP, &[1], &[record.step as i64], Compression::None)?;
     write_text(group, SCENE, &record.scene)?;
+    if let Some(stamps) = &record.tables {
+        write_text(group, TABLES, &stamps_text(stamps))?;
+    }
     write_text(group, PROGRAM_VERSION, origin.program_version)?;
     write_text(group, MESH_HASH, origin.mesh_hash)?;
+    if let Some(run) = origin.run {
+        write_text(group, RUN, run)?;
+    }
     create_group(group, "restart/about")?;
     for (name, text) in origin.about {
         write_text(group, &format!("{ABOUT}/{name}"), text)?;
@@ -139,6 +151,7 @@ pub(crate) fn read_record(file: &CheckedFile, path: &Path) -> Result<StepRecord,
         cells: CellFields::default(),
         scene: file.text(SCENE)?,
         state: Default::default(),
+        tables: stamps_of(file, path)?,
     };
     for name in file.members(POINT_DATA)? {
         read_field(file, path, &name, &mut record.points)?;
@@ -171,7 +184,51 @@ pub fn read_about(path: &Path) -> Result<BTreeMap<String, String>, CheckpointErr
     let mut texts = read_texts(&file)?;
     texts.insert("program_version".to_string(), file.text(PROGRAM_VERSION)?);
     texts.insert("mesh_hash".to_string(), file.text(MESH_HASH)?);
+    if let Some(run) = run_of_file(&file)? {
+        texts.insert("run".to_string(), run);
+    }
     Ok(texts)
+}
+
+/// Identity of the run that a step or mesh file is of; None in a file of an earlier version.
+pub(crate) fn run_of_file(file: &CheckedFile) -> Result<Option<String>, CheckpointError> {
+    let is_there = file.has_text(RUN)?;
+    is_there.then(|| file.text(RUN)).transpose()
+}
+
+/// Fails if a step or mesh file at `path` is of another run than `expected`. A file of an earlier version says nothing.
+pub(crate) fn require_run_in(
+    file: &CheckedFile,
+    path: &Path,
+    expected: Option<&str>,
+) -> Result<(), CheckpointError> {
+    let (Some(expected), Some(found)) = (expected, run_of_file(file)?) else {
+        return Ok(());
+    };
+    if found == expected {
+        return Ok(());
+    }
+    let (path, expected) = (path.to_path_buf(), expected.to_string());
+    Err(CheckpointError::OtherRun {
+        path,
+        expected,
+        found,
+    })
+}
+
+/// What a step file says about the tables of its run; None if it is of a version that kept no stamps.
+pub fn read_stamps(path: &Path) -> Result<Option<Stamps>, CheckpointError> {
+    verify_structure(path)?;
+    stamps_of(&CheckedFile::open(path)?, path)
+}
+
+fn stamps_of(file: &CheckedFile, path: &Path) -> Result<Option<Stamps>, CheckpointError> {
+    if !file.has_text(TABLES)? {
+        return Ok(None);
+    }
+    let stamps = parse_stamps(&file.text(TABLES)?);
+    let unknown = || CheckpointError::malformed(path, "its checksums of tables are of no known form");
+    stamps.ok_or_else(unknown).map(Some)
 }
 
 /// The texts that [`crate::Output::describe`] set.
@@ -229,7 +286,7 @@ pub(crate) fn read_mesh_hash(file: &CheckedFile) -> Result<String, CheckpointErr
     file.text(MESH_HASH)
 }
 
-fn read_step_number(file: &CheckedFile, path: &Path) -> Result<u64, CheckpointError> {
+pub(crate) fn read_step_number(file: &CheckedFile, path: &Path) -> Result<u64, CheckpointError> {
     let step: i64 = file.scalar(STEP)?;
     u64::try_from(step).map_err(|_| {
         CheckpointError::malformed(path, format!("its step number is {step}, expected 0 or more"))

@@ -1,7 +1,5 @@
 //! Errors of the figure crate.
 
-use std::path::PathBuf;
-
 /// Why a figure cannot be drawn.
 #[derive(Debug, thiserror::Error)]
 pub enum FigureError {
@@ -50,13 +48,5 @@ pub enum FigureError {
     Raster {
         /// What the library says.
         reason: String,
-    },
-    /// A file could not be written.
-    #[error("cannot write {path}", path = path.display())]
-    Write {
-        /// The file.
-        path: PathBuf,
-        /// Why not.
-        source: std::io::Error,
     },
 }

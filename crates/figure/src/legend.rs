@@ -45,11 +45,43 @@ impl Legend {
     }
 }
 
-/// Arranges the names of all series in rows of the given width, from the origin.
+/// The legend takes at most this part of a figure if there are shaded series to leave out.
+const MOST: f64 = 0.25;
+
+/// Arranges the names of all series in rows of the given width, from the origin. Where they would take too much of the figure, only
+/// some of the shaded series are named, the first and the last among them: the shades between tell the others.
 pub fn arrange(figure: &Figure, room: f64) -> Legend {
+    let all = names(&figure.series);
+    let (mut legend, mut every) = (in_rows(&all, room), 1);
+    let n_shaded = all
+        .iter()
+        .filter(|(i, _)| figure.series[*i].shade.is_some())
+        .count();
+    while legend.height() > MOST * f64::from(figure.size.1) && every < n_shaded {
+        every *= 2;
+        legend = in_rows(&some_shaded(&figure.series, &all, every), room);
+    }
+    legend
+}
+
+/// The names without shaded ones, but for each of a number `every` and the last.
+fn some_shaded<'a>(series: &[Series], all: &[(usize, &'a str)], every: usize) -> Vec<(usize, &'a str)> {
+    let is_shaded = |i: usize| series[i].shade.is_some();
+    let last = all.iter().rposition(|(i, _)| is_shaded(*i));
+    let (mut kept, mut n) = (Vec::new(), 0);
+    for (place, &(i, name)) in all.iter().enumerate() {
+        if !is_shaded(i) || n % every == 0 || Some(place) == last {
+            kept.push((i, name));
+        }
+        n += usize::from(is_shaded(i));
+    }
+    kept
+}
+
+fn in_rows(names: &[(usize, &str)], room: f64) -> Legend {
     let mut legend = Legend::default();
     let mut x = 0.0;
-    for (series, name) in names(&figure.series) {
+    for &(series, name) in names {
         let name = text::fit(name, TEXT, Weight::Regular, room - SAMPLE - GAP);
         let width = SAMPLE + 0.5 * GAP + text::width(&name, TEXT, Weight::Regular);
         if legend.n_rows == 0 || x + width > room {

@@ -24,8 +24,6 @@ mod thin;
 mod ticked;
 mod ticks;
 
-use std::path::Path;
-
 pub use axis::{Axis, Scale};
 pub use clashes::clashes;
 pub use error::FigureError;
@@ -45,6 +43,15 @@ pub struct Figure {
     pub(crate) surface: Option<Surface>,
     pub(crate) labels: Vec<Label>,
     pub(crate) size: (u32, u32),
+}
+
+/// A figure as two files of the same look.
+#[derive(Clone, Debug)]
+pub struct Images {
+    /// The SVG document.
+    pub svg: String,
+    /// The bytes of the PNG image.
+    pub png: Vec<u8>,
 }
 
 /// A text at a point of the data.
@@ -105,15 +112,11 @@ impl Figure {
         png::rasterise(&self.svg()?, scale)
     }
 
-    /// Writes `path` with the endings svg and png; an existing file is replaced.
-    pub fn write(&self, path: &Path) -> Result<(), FigureError> {
+    /// The figure as SVG and as PNG: the bytes of two files.
+    pub fn images(&self) -> Result<Images, FigureError> {
         let svg = self.svg()?;
         let png = png::rasterise(&svg, PNG_SCALE)?;
-        for (ending, bytes) in [("svg", svg.as_bytes()), ("png", png.as_slice())] {
-            let path = path.with_added_extension(ending);
-            std::fs::write(&path, bytes).map_err(|source| FigureError::Write { path, source })?;
-        }
-        Ok(())
+        Ok(Images { svg, png })
     }
 }
 

@@ -4,8 +4,8 @@ use figure::{Axis, Figure, Series};
 
 use super::quantity::{DEGREE, GIGAPASCAL, MICROMETRE, NEWTON, Unit, azimuth_axis, points};
 use super::run::Steps;
-use super::table::Table;
 use super::{Choice, Named, Results};
+use results::table::Table;
 
 /// A quantity of both contacts of a ball.
 struct Contact {

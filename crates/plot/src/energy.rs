@@ -4,8 +4,8 @@ use figure::{Axis, Figure, Series};
 
 use super::quantity::{MILLIJOULE, MILLISECOND, points};
 use super::run::Steps;
-use super::table::Table;
 use super::{Named, Results};
+use results::table::Table;
 
 /// Sums of columns that are shown as one line.
 const LINES: [(&str, &[&str]); 5] = [

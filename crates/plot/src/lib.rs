@@ -15,7 +15,6 @@ mod run;
 mod section;
 mod shaft;
 mod surface;
-mod table;
 
 use std::path::{Path, PathBuf};
 
@@ -24,10 +23,11 @@ use clap::Args;
 use comm::print;
 use figure::Figure;
 use results::failure::Failure;
+use results::integrity::warn_of_doubts;
+use results::whole::{require_own_picture, write_picture};
 
 pub use quantity::Unit;
 pub use run::{Results, Steps};
-pub use table::Table;
 
 /// What the command line asks for.
 #[derive(Debug, Args)]
@@ -73,10 +73,17 @@ impl Named {
 /// Writes the figures of a run as SVG and PNG.
 pub fn plot(request: &Plot) -> Result<(), Failure> {
     let figures = figures(&request.dir, &request.choice)?;
+    warn_of_doubts(&request.dir)?;
     let out = request.out.clone().unwrap_or_else(|| request.dir.join("figures"));
+    // All are drawn, and all places looked at, before the first is written.
+    let drawn = |named: &Named| Ok((out.join(&named.name), named.figure.images()?));
+    let images = figures.iter().map(drawn).collect::<Result<Vec<_>, Failure>>()?;
+    images
+        .iter()
+        .try_for_each(|(path, _)| require_own_picture(path))?;
     std::fs::create_dir_all(&out).with_context(|| format!("cannot create folder {}", out.display()))?;
-    for named in &figures {
-        named.figure.write(&out.join(&named.name))?;
+    for (path, images) in &images {
+        write_picture(path, &images.svg, &images.png)?;
     }
     let names: Vec<&str> = figures.iter().map(|named| named.name.as_str()).collect();
     print::line(format_args!(

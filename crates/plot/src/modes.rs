@@ -4,7 +4,9 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use anyhow::Context;
+use csv::StringRecord;
 use figure::{Axis, Figure, Series};
+use results::table::{Rows, read_rows};
 use serde::Deserialize;
 
 use super::Named;
@@ -21,13 +23,15 @@ struct Row {
 /// Frequencies against the number of the mode, a series per body, with the largest possible error.
 pub fn figures(dir: &Path) -> anyhow::Result<Vec<Named>> {
     let path = dir.join("modes.csv");
-    if !path.exists() {
+    let Some(Rows { names, rows }) = read_rows(&path)? else {
         return Ok(Vec::new());
-    }
+    };
+    let header = StringRecord::from(names);
     let mut bodies: BTreeMap<String, Vec<Row>> = BTreeMap::new();
-    let damaged = || format!("{} is damaged", path.display());
-    for row in csv::Reader::from_path(&path).with_context(damaged)?.deserialize() {
-        let row: Row = row.with_context(damaged)?;
+    for row in &rows {
+        let row: Row = row
+            .deserialize(Some(&header))
+            .with_context(|| format!("{} is damaged", path.display()))?;
         bodies.entry(row.body.clone()).or_default().push(row);
     }
     let axes = (

@@ -2,8 +2,9 @@
 
 use std::collections::BTreeMap;
 
-use anyhow::{Context, anyhow};
+use anyhow::anyhow;
 use figure::{Axis, Figure, Series};
+use results::table::{Rows, read_rows};
 
 use super::quantity::{self, DEGREE, MEGAPASCAL, MICROMETRE, Unit, points};
 use super::run::Steps;
@@ -33,12 +34,9 @@ type Columns = BTreeMap<String, Vec<f64>>;
 /// The figures of `profiles.csv` at the chosen step, else at the last, and then of a sweep over all points.
 pub fn figures(results: &Results, choice: &Choice) -> anyhow::Result<Vec<Named>> {
     let path = results.dir.join(FILE);
-    if !path.exists() {
+    let Some(Rows { names, rows }) = read_rows(&path)? else {
         return Ok(Vec::new());
-    }
-    let mut reader =
-        csv::Reader::from_path(&path).with_context(|| format!("cannot read {}", path.display()))?;
-    let names: Vec<String> = reader.headers()?.iter().map(str::to_string).collect();
+    };
     let place = |name: &str| {
         let found = names.iter().position(|n| n == name);
         found.ok_or_else(|| {
@@ -50,10 +48,6 @@ pub fn figures(results: &Results, choice: &Choice) -> anyhow::Result<Vec<Named>>
         })
     };
     let (step, profile) = (place("step")?, place("profile")?);
-    let rows: Vec<csv::StringRecord> = reader
-        .records()
-        .collect::<Result<_, _>>()
-        .with_context(|| format!("{} is damaged", path.display()))?;
     let mut profiles: BTreeMap<String, BTreeMap<u64, Columns>> = BTreeMap::new();
     for row in &rows {
         let Ok(number) = row[step].parse() else { continue };

@@ -6,7 +6,7 @@ use anyhow::anyhow;
 use figure::Axis;
 
 use super::quantity::{self, MILLISECOND};
-use super::table::Table;
+use results::table::Table;
 
 /// Tables of a run and what its steps are.
 pub struct Results {

@@ -7,8 +7,8 @@ use figure::{Figure, Series};
 use super::quantity::{DEGREE, MEGAPASCAL};
 use super::raceways;
 use super::run::Steps;
-use super::table::Table;
 use super::{Choice, Named, Results};
+use results::table::Table;
 
 /// A figure per raceway: of a sweep a curve per point, else the chosen step.
 pub fn figures(results: &Results, choice: &Choice) -> anyhow::Result<Vec<Named>> {

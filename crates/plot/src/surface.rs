@@ -11,8 +11,8 @@ use figure::{Axis, Figure, Look, Series, Surface};
 
 use super::quantity::{DEGREE, MEGAPASCAL, azimuth_axis};
 use super::raceways::{self, Node};
-use super::table::Table;
 use super::{Choice, Named, Results};
+use results::table::Table;
 
 /// Columns and rows of the picture of a raceway.
 const CELLS: [usize; 2] = [240, 24];

@@ -7,11 +7,11 @@ mod source;
 
 use std::path::PathBuf;
 
-use anyhow::Context;
 use clap::Args;
 use comm::print;
 use plot::{Choice, Results};
 use results::failure::Failure;
+use results::whole;
 
 /// What the command line asks for.
 #[derive(Debug, Args)]
@@ -28,6 +28,9 @@ pub struct Report {
 /// Writes the page of a run.
 pub fn report(request: &Report) -> Result<(), Failure> {
     let source = source::read(&request.dir)?;
+    for doubt in &source.doubts {
+        print::note(format_args!("warning: {doubt}"));
+    }
     let figures = plot::figures(&request.dir, &request.choice)?;
     let numbers = numbers::numbers(&Results::read(&request.dir)?)?;
     let pictures = figures
@@ -39,7 +42,7 @@ pub fn report(request: &Report) -> Result<(), Failure> {
         .out
         .clone()
         .unwrap_or_else(|| request.dir.join("report.html"));
-    std::fs::write(&path, page).with_context(|| format!("cannot write {}", path.display()))?;
+    whole::write(&path, page.as_bytes(), page::is_page)?;
     print::line(format_args!("report: {}", path.display()));
     Ok(())
 }

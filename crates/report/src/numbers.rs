@@ -1,7 +1,8 @@
 //! Key numbers of a run from its tables: smallest, mean and largest over all rows of a table, and of a motion the root mean
 //! square of what oscillates.
 
-use plot::{Results, Steps, Table, Unit, quantity};
+use plot::{Results, Steps, Unit, quantity};
+use results::table::Table;
 
 /// A row of the table of key numbers, in the unit shown.
 pub struct Number {

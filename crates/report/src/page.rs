@@ -1,6 +1,7 @@
 //! The page itself: every text of the run is escaped, nothing is loaded from elsewhere.
 
 use html_escape::{encode_double_quoted_attribute, encode_text};
+use results::whole;
 use serde_json::Value;
 
 use super::numbers::Number;
@@ -16,7 +17,7 @@ pub fn page(source: &Source, numbers: &[Number], pictures: &[(String, String)]) 
     let parts = [
         format!("<h1>{title}</h1>"),
         about(summary),
-        warnings(summary),
+        warnings(source),
         key_numbers(numbers),
         figures(pictures),
         energy(summary),
@@ -25,11 +26,19 @@ pub fn page(source: &Source, numbers: &[Number], pictures: &[(String, String)]) 
     ];
     format!(
         "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
-         <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>{title}</title>\n\
+         <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n{GENERATOR}\n<title>{title}</title>\n\
          <style>\n{STYLE}</style>\n</head>\n<body>\n{}\n</body>\n</html>\n",
         parts.join("\n")
     )
 }
+
+/// Whether a file is a page of this command, of this version or an earlier one.
+pub fn is_page(content: &[u8]) -> bool {
+    whole::holds(content, GENERATOR) || whole::holds(content, "<h2>Key numbers</h2>")
+}
+
+/// Says in the page who made it.
+const GENERATOR: &str = "<meta name=\"generator\" content=\"raceway report\">";
 
 /// What was run, by which program, and how it ended.
 fn about(summary: &Value) -> String {
@@ -54,10 +63,12 @@ fn about(summary: &Value) -> String {
     table("about", None, rows)
 }
 
-fn warnings(summary: &Value) -> String {
-    let warnings = list(summary, "warnings");
-    let items: Vec<String> = warnings
+fn warnings(source: &Source) -> String {
+    let warnings = list(&source.summary, "warnings");
+    let items: Vec<String> = source
+        .doubts
         .iter()
+        .chain(&warnings)
         .map(|w| format!("<li>{}</li>", encode_text(w)))
         .collect();
     match items.is_empty() {
@@ -248,6 +259,7 @@ mod tests {
         let summary = serde_json::json!({ "title": "a < b & <script>", "warnings": ["x > y"] });
         let source = Source {
             summary,
+            doubts: vec![],
             scene: Some("# <pre>".into()),
             files: vec![],
         };

@@ -3,8 +3,9 @@
 use std::path::Path;
 
 use anyhow::{Context, anyhow};
-use checkpoint::{all_steps, read_any_step};
+use checkpoint::{all_steps, open_regular, read_any_step};
 use results::failure::Failure;
+use results::integrity::doubts;
 use results::summary::SUMMARY_FILE;
 use serde_json::Value;
 
@@ -12,6 +13,8 @@ use serde_json::Value;
 pub struct Source {
     /// `summary.json`.
     pub summary: Value,
+    /// What is wrong with the tables.
+    pub doubts: Vec<String>,
     /// Text of the scene with its overrides; none if no step was kept.
     pub scene: Option<String>,
     /// Name and size of the files of the run, bytes.
@@ -28,7 +31,8 @@ pub fn read(dir: &Path) -> Result<Source, Failure> {
         )
         .into());
     }
-    let text = std::fs::read_to_string(&path).with_context(|| format!("cannot read {}", path.display()))?;
+    let file = open_regular(&path)?;
+    let text = std::io::read_to_string(file).with_context(|| format!("cannot read {}", path.display()))?;
     let summary = serde_json::from_str(&text).with_context(|| format!("{} is damaged", path.display()))?;
     let scene = match all_steps(dir)?.last() {
         Some(&step) => Some(read_any_step(dir, step)?.scene),
@@ -36,6 +40,7 @@ pub fn read(dir: &Path) -> Result<Source, Failure> {
     };
     Ok(Source {
         summary,
+        doubts: doubts(dir)?,
         scene,
         files: files(dir)?,
     })

@@ -6,7 +6,7 @@ use std::path::{Component, Path, PathBuf};
 
 use anyhow::{Context, anyhow};
 use contact::Side;
-use scene::{FlexibleRing, Scene, StressOutput};
+use scene::{FlexibleRing, Scene, StressOutput, difference};
 
 /// Scene file, relative to the result folder.
 pub const SCENE_FILE: &str = "scene_file";
@@ -22,12 +22,41 @@ pub const WARNINGS: &str = "warnings";
 /// Commit of the source of this program, as [`COMMIT`] says it.
 pub const SOURCE_COMMIT: &str = env!("RACEWAY_COMMIT");
 
+/// Keys and tables of a scene that a resumed run may change: none of them touches what it computes.
+pub const MAY_CHANGE: [&str; 3] = ["dynamic.duration", "dynamic.output_every", "output"];
+
+/// Identity of a run, which all its files carry: a fingerprint of its scene, without [`MAY_CHANGE`], and of its meshes. Runs with
+/// one identity compute the same, so that a file of one is as good as that of another. The form of the fingerprint must not
+/// change: a resumed run finds its own files by it.
+pub fn identity(scene: &Scene) -> anyhow::Result<String> {
+    let keys = difference("", &scene.text)?;
+    let lasting = keys.iter().filter(|key| !key.is_below(&MAY_CHANGE));
+    let mut lines: Vec<String> = lasting
+        .map(|key| format!("{} = {}", key.key, key.after.as_deref().unwrap_or_default()))
+        .collect();
+    for side in Side::BOTH {
+        let mesh = flexible(scene, side).map(mesh_text).transpose()?;
+        lines.push(format!("{} {}", side.name(), mesh.unwrap_or_default()));
+    }
+    Ok(format!("{:016x}", fingerprint(lines.join("\n").as_bytes())))
+}
+
+/// FNV-1a of 64 bits (Fowler, Noll, Vo 1991): told apart, not protected against forgery.
+fn fingerprint(bytes: &[u8]) -> u64 {
+    let step = |hash: u64, byte: &u8| (hash ^ u64::from(*byte)).wrapping_mul(0x0100_0000_01b3);
+    bytes.iter().fold(0xcbf2_9ce4_8422_2325, step)
+}
+
 /// The texts of a run that writes into `dir`.
 pub fn about(scene: &Scene, dir: &Path, warnings: &[String]) -> anyhow::Result<BTreeMap<String, String>> {
     let absolute = |path: &Path| {
         std::path::absolute(path).with_context(|| format!("cannot tell where {} is", path.display()))
     };
-    let file = relative(&absolute(&scene.path)?, &absolute(dir)?);
+    let scene_path = absolute(&scene.path)?;
+    let (folder, name) = (scene_path.parent(), scene_path.file_name());
+    // Meshes are found from the folder of the scene as it was typed: a scene that is a link itself stays one.
+    let file = physical(folder.unwrap_or(Path::new("/"))).join(name.unwrap_or_default());
+    let file = relative(&file, &physical(&absolute(dir)?));
     let mut texts = BTreeMap::from([
         (SCENE_FILE.to_string(), file.to_string_lossy().into_owned()),
         (OVERRIDES.to_string(), scene.overrides.join("\n")),
@@ -98,6 +127,27 @@ fn mesh_text(ring: &FlexibleRing) -> anyhow::Result<String> {
     ))
 }
 
+/// The scene file that a step file of the folder `dir` tells of.
+pub fn scene_file(dir: &Path, stored: &str) -> PathBuf {
+    let path = dir.join(stored);
+    // Earlier versions made the path by its text, which fails behind a link.
+    let by_text = || {
+        let absolute = std::path::absolute(dir).ok()?.join(stored);
+        let names = normal(&absolute).into_iter();
+        let path = names.fold(PathBuf::from("/"), |path, name| path.join(name));
+        path.exists().then_some(path)
+    };
+    if path.exists() {
+        return path;
+    }
+    by_text().unwrap_or(path)
+}
+
+/// A folder without links, as the system follows a path from it; as it is if it is not there.
+fn physical(folder: &Path) -> PathBuf {
+    folder.canonicalize().unwrap_or_else(|_| folder.to_path_buf())
+}
+
 /// The path that leads from the folder `from` to `to`; both absolute.
 fn relative(to: &Path, from: &Path) -> PathBuf {
     let (to, from) = (normal(to), normal(from));
@@ -124,6 +174,15 @@ fn normal(path: &Path) -> Vec<&std::ffi::OsStr> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// Wrong: results of an earlier version would be taken for those of another run. The values are those of the published
+    /// test vectors of FNV-1a.
+    #[test]
+    fn fingerprints_stay_as_they_are() {
+        assert_eq!(fingerprint(b""), 0xcbf2_9ce4_8422_2325);
+        assert_eq!(fingerprint(b"a"), 0xaf63_dc4c_8601_ec8c);
+        assert_eq!(fingerprint(b"foobar"), 0x8594_4171_f739_67e8);
+    }
 
     /// Wrong: a resumed run would look for its scene in another place.
     #[test]

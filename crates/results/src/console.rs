@@ -46,10 +46,11 @@ pub fn print_sweep(column: &str, solutions: &[(f64, &StaticSolution)]) {
         );
         let q = s.displacements.shaft;
         print::line(format_args!(
-            "{value:28} {:7.3} {:8.3} {:12.2} {:9.2} {:8.2} {:10.3} {:8.3}",
-            1e6 * q[0],
-            1e6 * q[2],
-            1e6 * q[4],
+            "{:>28} {:>7} {:>8} {:>12} {:9.2} {:8.2} {:10.3} {:8.3}",
+            digits(*value),
+            fixed::<3>(1e6 * q[0]),
+            fixed::<3>(1e6 * q[2]),
+            fixed::<2>(1e6 * q[4]),
             force.0,
             force.1,
             angle.0,
@@ -61,11 +62,45 @@ pub fn print_sweep(column: &str, solutions: &[(f64, &StaticSolution)]) {
 fn print_shaft(snapshot: &Snapshot) {
     let [x, y, z, tilt_x, tilt_y] = snapshot.shaft;
     print::line(format_args!(
-        "shaft: x {:.4} um, y {:.4} um, z {:.4} um, tilt x {:.3} urad, tilt y {:.3} urad",
-        1e6 * x,
-        1e6 * y,
-        1e6 * z,
-        1e6 * tilt_x,
-        1e6 * tilt_y
+        "shaft: x {} um, y {} um, z {} um, tilt x {} urad, tilt y {} urad",
+        fixed::<4>(1e6 * x),
+        fixed::<4>(1e6 * y),
+        fixed::<4>(1e6 * z),
+        fixed::<3>(1e6 * tilt_x),
+        fixed::<3>(1e6 * tilt_y)
     ));
+}
+
+/// A number with N decimals; one that rounds to zero has no sign.
+fn fixed<const N: usize>(x: f64) -> String {
+    let text = format!("{x:.N$}");
+    match text.strip_prefix('-') {
+        Some(rest) if rest.chars().all(|c| c == '0' || c == '.') => rest.to_string(),
+        _ => text,
+    }
+}
+
+/// A number of the scene with as many digits as it was typed with, not those of its unit's factor: seven at most.
+fn digits(x: f64) -> String {
+    let rounded: f64 = format!("{x:.6e}").parse().unwrap_or(x);
+    rounded.to_string()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Wrong: a reader would see round-off instead of a number.
+    #[test]
+    fn numbers_are_shown_as_people_write_them() {
+        assert_eq!(
+            [fixed::<4>(-1e-9), fixed::<4>(-1.5), fixed::<2>(0.0)],
+            ["0.0000", "-1.5000", "0.00"]
+        );
+        assert_eq!(
+            [digits(1256.6370614359173), digits(0.1), digits(2000.0)],
+            ["1256.637", "0.1", "2000"]
+        );
+        assert_eq!(digits(f64::NAN), "NaN");
+    }
 }

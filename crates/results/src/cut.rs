@@ -3,39 +3,69 @@
 //! A killed run leaves rows beyond its last step file, the last of them perhaps torn. The run that resumes computes
 //! these steps again, so that its tables end up as those of a run that was never interrupted.
 
-use std::fs::{File, OpenOptions};
+use std::fs::File;
 use std::io::{BufRead, BufReader, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, anyhow};
+use checkpoint::{GrowingFile, Stamp, open_regular, start_of};
+
+use crate::integrity::{doubt, newest_agreeing};
 
 /// Where a table is to be cut.
 pub struct Cut {
     path: PathBuf,
     header: String,
-    /// Bytes that stay.
-    keep: u64,
+    /// What stays.
+    keep: Stamp,
     /// All bytes.
     length: u64,
 }
 
 impl Cut {
-    /// Looks at the table `name` in `dir`: its header must be `header`, and it must have rows up to step `last`.
-    pub fn find(dir: &Path, name: &str, header: &str, last: u64) -> anyhow::Result<Cut> {
+    /// The table `name` in `dir` is cut where a step file says that it ended, and must be what that file tells of. Its header
+    /// must be `header`.
+    pub fn at_stamp(
+        dir: &Path,
+        name: &str,
+        header: &str,
+        (last, stamp): (u64, Stamp),
+    ) -> anyhow::Result<Cut> {
         let path = dir.join(name);
-        let file = File::open(&path).with_context(|| format!("cannot read {}", path.display()))?;
+        if let Some(doubt) = doubt(&path, stamp, last)? {
+            let advice = match newest_agreeing(dir, last) {
+                Some(step) => format!(
+                    "put it back, or go on from step {step}, the newest whose tables are as written: --step {step}"
+                ),
+                None => "put it back, or run the scene again".to_string(),
+            };
+            return Err(anyhow!("{doubt}; {advice}"));
+        }
+        let file = open_regular(&path)?;
         let length = file.metadata().map_or(0, |data| data.len());
         let mut lines = Lines {
             reader: BufReader::new(file),
             bytes: Vec::new(),
         };
-        let found = lines.next(&path)?.unwrap_or_default().trim_end().to_string();
-        if found != header {
-            return Err(anyhow!(
-                "{} has the columns {found:?}, this version writes {header:?}; resume with the version of the run",
-                path.display()
-            ));
-        }
+        require_header(&mut lines, header, &path)?;
+        Ok(Cut {
+            path,
+            header: header.to_string(),
+            keep: stamp,
+            length,
+        })
+    }
+
+    /// The same for a step of a version that kept no checksums of tables: there must be rows up to step `last`.
+    pub fn find(dir: &Path, name: &str, header: &str, last: u64) -> anyhow::Result<Cut> {
+        let path = dir.join(name);
+        let file = open_regular(&path)?;
+        let length = file.metadata().map_or(0, |data| data.len());
+        let mut lines = Lines {
+            reader: BufReader::new(file),
+            bytes: Vec::new(),
+        };
+        require_header(&mut lines, header, &path)?;
         let (mut keep, mut newest) = (header.len() as u64 + 1, None);
         while let Some(line) = lines.next(&path)? {
             let step = line.split(',').next().and_then(|cell| cell.parse::<u64>().ok());
@@ -55,39 +85,49 @@ impl Cut {
             ));
         }
         Ok(Cut {
+            keep: start_of(&path, keep)?,
             path,
             header: header.to_string(),
-            keep,
             length,
         })
     }
 
     /// Moves what follows the cut into the folder that `aside` makes and returns the table, open for appending.
-    pub fn make(&self, aside: &mut dyn FnMut() -> anyhow::Result<PathBuf>) -> anyhow::Result<File> {
-        let rows = if self.length > self.keep {
+    pub fn make(&self, aside: &mut dyn FnMut() -> anyhow::Result<PathBuf>) -> anyhow::Result<GrowingFile> {
+        let rows = if self.length > self.keep.length {
             Some(aside()?)
         } else {
             None
         };
-        self.make_in(rows)
-            .with_context(|| format!("cannot cut {} at the step to resume from", self.path.display()))
+        let cut = || format!("cannot cut {} at the step to resume from", self.path.display());
+        if let Some(aside) = rows {
+            self.copy_rows(&aside).with_context(cut)?;
+        }
+        GrowingFile::reopen(&self.path, self.keep).with_context(cut)
     }
 
-    fn make_in(&self, aside: Option<PathBuf>) -> std::io::Result<File> {
-        if let (Some(aside), Some(name)) = (aside, self.path.file_name()) {
-            let mut rows = File::open(&self.path)?;
-            rows.seek(SeekFrom::Start(self.keep))?;
-            let mut copy = File::create(aside.join(name))?;
-            writeln!(copy, "{}", self.header)?;
-            std::io::copy(&mut rows, &mut copy)?;
-            copy.sync_all()?;
-            File::open(&aside)?.sync_all()?;
-            let table = OpenOptions::new().write(true).open(&self.path)?;
-            table.set_len(self.keep)?;
-            table.sync_all()?;
-        }
-        OpenOptions::new().append(true).open(&self.path)
+    fn copy_rows(&self, aside: &Path) -> anyhow::Result<()> {
+        let name = self.path.file_name().expect("a table has a name");
+        let mut rows = open_regular(&self.path)?;
+        rows.seek(SeekFrom::Start(self.keep.length))?;
+        let mut copy = File::create_new(aside.join(name))?;
+        writeln!(copy, "{}", self.header)?;
+        std::io::copy(&mut rows, &mut copy)?;
+        copy.sync_all()?;
+        File::open(aside)?.sync_all()?;
+        Ok(())
     }
+}
+
+fn require_header(lines: &mut Lines, header: &str, path: &Path) -> anyhow::Result<()> {
+    let found = lines.next(path)?.unwrap_or_default().trim_end().to_string();
+    if found == header {
+        return Ok(());
+    }
+    Err(anyhow!(
+        "{} has the columns {found:?}, this version writes {header:?}; resume with the version of the run",
+        path.display()
+    ))
 }
 
 /// Lines of a file with their ends; bytes that are no text end the reading like the end of the file.

@@ -55,6 +55,7 @@ pub fn record(
         cells,
         scene: scene.text.clone(),
         state: state(solution),
+        tables: None,
     })
 }
 

@@ -8,16 +8,17 @@ use std::time::{Duration, Instant};
 
 use anyhow::anyhow;
 use checkpoint::{
-    BackgroundOutput, CheckpointError, Compression, FolderLock, MeshFile, Output, Precision, StepRecord,
-    Storage,
+    BackgroundOutput, CheckpointError, Compression, FolderLock, MeshFile, Output, Precision, Stamps,
+    StepRecord, Storage,
 };
 use comm::{Communicator, print};
 use dynamics::Model;
 use scene::{Analysis, Scene};
 use timer::{Laps, Stopwatch};
 
-use super::about::about;
+use super::about::{about, identity};
 use super::fields;
+use super::folder;
 use super::memory::Forecasts;
 use super::probes::Probes;
 use super::ring_stress::{Gathered, RingStress};
@@ -39,6 +40,16 @@ pub struct Files {
     ring_stress: Arc<RingStress>,
     /// Laps of this thread since the files were opened.
     laps: Laps,
+}
+
+/// The step from which a run goes on.
+pub struct ResumedFrom<'a> {
+    /// Its number.
+    pub step: u64,
+    /// What its file tells of the tables; None if it is of a version that kept no checksums of them.
+    pub tables: Option<&'a Stamps>,
+    /// Warnings of the start of the run.
+    pub warnings: &'a [String],
 }
 
 /// The open files of one run.
@@ -64,10 +75,11 @@ impl Files {
         }
         let mut clock = Stopwatch::start();
         let Survey { probes, mesh } = survey;
-        let mesh = mesh.map_or_else(|| MeshFile::new(&fields::bodies(model)), Ok)?;
-        let mut output = Output::create_of(dir, &mesh, storage(scene))?;
+        let mesh = mesh.map_or_else(|| mesh_file(scene, model), Ok)?;
+        let lock = folder::prepare(dir)?;
+        note_dead_owner(&lock);
+        let mut output = Output::create_in(lock, &mesh, storage(scene))?;
         drop(mesh);
-        note_dead_owner(output.lock());
         output.describe(about(scene, dir, warnings)?)?;
         let tables = Tables::create(dir, swept_column(scene), first, &own_columns(probes.as_ref()))?;
         let mut files = Files::new(Some(Open::new(output, tables, probes)?), ring_stress);
@@ -82,7 +94,7 @@ impl Files {
         lock: Option<FolderLock>,
         first: &Snapshot,
         survey: Survey,
-        (last, warnings): (u64, &[String]),
+        resumed: &ResumedFrom<'_>,
     ) -> Result<Files, Failure> {
         let ring_stress = RingStress::new(model, scene)?;
         let Some(lock) = lock else {
@@ -90,19 +102,20 @@ impl Files {
         };
         let mut clock = Stopwatch::start();
         let dir = lock.dir().to_path_buf();
-        let texts = about(scene, &dir, warnings)?;
+        let last = resumed.step;
+        let texts = about(scene, &dir, resumed.warnings)?;
         // The tables tell whether the step can be resumed from; nothing is changed before all is known to fit.
         let Survey { probes, mesh } = survey;
         let columns = own_columns(probes.as_ref());
-        let cuts = Tables::cuts(&dir, first, &columns, last)?;
-        let mesh = mesh.map_or_else(|| MeshFile::new(&fields::bodies(model)), Ok)?;
-        let resumed = Output::resume_of(lock, &mesh, storage(scene), last)?;
+        let cuts = Tables::cuts(&dir, first, &columns, (last, resumed.tables))?;
+        let mesh = mesh.map_or_else(|| mesh_file(scene, model), Ok)?;
+        let opened = Output::resume_of(lock, &mesh, storage(scene), last)?;
         drop(mesh);
-        let (mut output, damaged, mut superseded) = (resumed.output, resumed.damaged, resumed.superseded);
+        let (mut output, damaged, mut superseded) = (opened.output, opened.damaged, opened.superseded);
         output.describe(texts)?;
-        if resumed.mesh_restored {
+        if let Some(fault) = opened.mesh_restored {
             print::note(format_args!(
-                "note: mesh.hdf was missing in {} and is written again",
+                "note: mesh.hdf was {fault} in {} and is written again",
                 dir.display()
             ));
         }
@@ -210,7 +223,8 @@ impl Files {
         record: impl FnOnce(&RingStress) -> Result<StepRecord, Failure>,
     ) -> Result<(), Failure> {
         let Some(open) = &mut self.open else { return Ok(()) };
-        let record = self.laps.time(STRESS, || record(&self.ring_stress))?;
+        let mut record = self.laps.time(STRESS, || record(&self.ring_stress))?;
+        record.tables = Some(open.tables.stamps());
         self.laps.time(OUTPUT, || open.output.write_step(record))?;
         Ok(())
     }
@@ -222,7 +236,12 @@ impl Files {
     ) -> Result<(), Failure> {
         let Some(open) = &mut self.open else { return Ok(()) };
         let ring_stress = self.ring_stress.clone();
-        let hand_over = || open.output.write_step_made_by(move || record(&ring_stress));
+        let tables = Some(open.tables.stamps());
+        let make = move || StepRecord {
+            tables,
+            ..record(&ring_stress)
+        };
+        let hand_over = || open.output.write_step_made_by(make);
         self.laps.time(OUTPUT, hand_over)?;
         Ok(())
     }
@@ -247,6 +266,7 @@ impl Files {
         let Some(open) = self.open else {
             laps.add(TOTAL, start.elapsed().as_secs_f64());
             return Ok(Costs {
+                run: None,
                 laps,
                 forecast,
                 probes: Vec::new(),
@@ -256,6 +276,7 @@ impl Files {
         let written = open.output.finish()?;
         let of_probes = open.probes.as_ref().and_then(Probes::near_field_seconds);
         let near_fields = [self.ring_stress.near_field_seconds(), of_probes];
+        let run = written.output.run().map(str::to_string);
         if let Some(views) = written.output.finish()? {
             warn_of_damage(&views.damaged);
         }
@@ -272,6 +293,7 @@ impl Files {
         laps.add(DISK, written.writing.as_secs_f64());
         laps.add(TOTAL, start.elapsed().as_secs_f64());
         Ok(Costs {
+            run,
             laps,
             forecast,
             probes: open.probes.map_or(Vec::new(), |p| p.places().cloned().collect()),
@@ -281,7 +303,7 @@ impl Files {
 
 impl Open {
     fn new(output: Output, tables: Tables, probes: Option<Probes>) -> Result<Open, Failure> {
-        let companions = tables.companions(output.dir())?;
+        let companions = tables.companions()?;
         Ok(Open {
             output: BackgroundOutput::start(output, QUEUE, companions),
             tables,
@@ -322,6 +344,11 @@ fn swept_column(scene: &Scene) -> Option<&str> {
         Analysis::Sweep(sweep) => Some(sweep.column.as_str()),
         Analysis::Static | Analysis::QuasiStatic(_) | Analysis::Dynamic(_) | Analysis::Modes(_) => None,
     }
+}
+
+/// The content of `mesh.hdf`.
+pub fn mesh_file(scene: &Scene, model: &Model) -> anyhow::Result<MeshFile> {
+    Ok(MeshFile::new(&fields::bodies(model))?.of_run(identity(scene)?))
 }
 
 /// How fields are stored.

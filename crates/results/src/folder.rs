@@ -6,20 +6,23 @@ use std::os::unix::ffi::OsStringExt;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, anyhow};
-use comm::Communicator;
+use checkpoint::{FolderLock, clear_unfinished_start, is_unfinished_start};
+use comm::{Communicator, print};
 
 use crate::failure::{Failure, agree};
+use crate::summary::SUMMARY_FILE;
 
 /// Largest number that a default result folder may carry.
 const MAX_FOLDERS: usize = 10_000;
 
 /// Files that say that a folder holds results, besides those of steps.
-const RESULT_FILES: [&str; 9] = [
-    "summary.json",
+const RESULT_FILES: [&str; 10] = [
+    SUMMARY_FILE,
     "balls.csv",
     "shaft.csv",
     "energy.csv",
     "probes.csv",
+    "profiles.csv",
     "modes.csv",
     "mesh.hdf",
     "run.hdf.series",
@@ -86,8 +89,31 @@ fn require_writable(dir: &Path) -> Result<(), Failure> {
     Ok(())
 }
 
+/// Tables that a run may write.
+const TABLES: [&str; 6] = [
+    "balls.csv",
+    "shaft.csv",
+    "energy.csv",
+    "probes.csv",
+    "profiles.csv",
+    "modes.csv",
+];
+
+/// Makes the folder `dir` and locks it. What a run left there that ended before its first step is removed.
+pub fn prepare(dir: &Path) -> Result<FolderLock, Failure> {
+    std::fs::create_dir_all(dir).with_context(|| format!("cannot create folder {}", dir.display()))?;
+    let lock = FolderLock::acquire(dir)?;
+    if clear_unfinished_start(&lock, &TABLES)? {
+        print::note(format_args!(
+            "note: the run in {} ended before its first step; it is started anew",
+            dir.display()
+        ));
+    }
+    Ok(lock)
+}
+
 fn require_no_results(dir: &Path) -> Result<(), Failure> {
-    if !dir.exists() {
+    if !dir.exists() || is_unfinished_start(dir)? && !dir.join(SUMMARY_FILE).exists() {
         return Ok(());
     }
     let file = RESULT_FILES

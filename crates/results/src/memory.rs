@@ -1,9 +1,13 @@
 //! Forecasts of the memory of a run, known before its first step.
 
+use anyhow::anyhow;
 use comm::Communicator;
 use dynamics::motion::Motion;
 use dynamics::{RingMemory, forecast_peak};
+use rustix::process::{Resource, getrlimit};
 use scene::Dynamic;
+
+use crate::failure::Failure;
 
 /// Steps between files up to which files wait for the disk.
 const OFTEN: u64 = 10;
@@ -47,5 +51,22 @@ fn rings_at_once() -> usize {
     match Communicator::world().size() {
         1 => rayon::current_num_threads(),
         _ => 1,
+    }
+}
+
+/// Least address space, bytes: the libraries reserve some before the first ring is read, and end the program where they get none.
+const LEAST_ADDRESS_SPACE: u64 = 320_000_000;
+
+/// Fails if the system gives this process too little address space for any work.
+pub fn require_address_space() -> Result<(), Failure> {
+    let limit = getrlimit(Resource::As).current;
+    match limit.filter(|&limit| limit < LEAST_ADDRESS_SPACE) {
+        None => Ok(()),
+        Some(limit) => Err(Failure::User(anyhow!(
+            "the address space of this process is limited to {} MB; expected at least {} MB and the memory that raceway check \
+             forecasts, see ulimit -v",
+            limit / 1_000_000,
+            LEAST_ADDRESS_SPACE / 1_000_000
+        ))),
     }
 }

@@ -8,8 +8,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use std::time::Instant;
 
-use anyhow::Context;
-use checkpoint::{CellFields, Output, PointFields, StateArray, StepRecord};
+use checkpoint::{CellFields, GrowingFile, Output, PointFields, Stamps, StateArray, StepRecord};
 use comm::print;
 use contact::Side;
 use dynamics::balls::BallResult;
@@ -20,15 +19,20 @@ use serde::Serialize;
 use timer::Laps;
 
 use super::fields;
-use super::files::storage;
+use super::files::{mesh_file, storage};
+use super::folder;
 use super::ring_stress::{Basis, RingStress, ShownRing};
 use super::shown::Turn;
 use super::snapshot::Snapshot;
 use super::summary::{ShaftSummary, TOTAL, mode_name, peak_memory, sides, write_summary};
+use super::tables;
 use crate::failure::Failure;
 
 /// Largest displacement of a shape in a step file, m.
 const AMPLITUDE: f64 = 1e-3;
+
+/// Name of the table.
+const TABLE: &str = "modes.csv";
 
 const COLUMNS: [&str; 12] = [
     "step",
@@ -48,7 +52,7 @@ const COLUMNS: [&str; 12] = [
 /// The open files of a run.
 pub struct ModeFiles {
     output: Output,
-    table: csv::Writer<std::fs::File>,
+    table: csv::Writer<GrowingFile>,
     stress: RingStress,
     step: u64,
 }
@@ -56,14 +60,10 @@ pub struct ModeFiles {
 impl ModeFiles {
     /// Creates the folder's files.
     pub fn create(scene: &Scene, model: &Model, dir: &Path) -> Result<ModeFiles, Failure> {
-        let output = Output::create(dir, &fields::bodies(model), storage(scene))?;
-        let path = dir.join("modes.csv");
-        let mut table =
-            csv::Writer::from_path(&path).with_context(|| format!("cannot create {}", path.display()))?;
-        table.write_record(COLUMNS)?;
+        let output = Output::create_in(folder::prepare(dir)?, &mesh_file(scene, model)?, storage(scene))?;
         Ok(ModeFiles {
             output,
-            table,
+            table: tables::create(dir, TABLE, &COLUMNS.map(str::to_string))?,
             stress: RingStress::new(model, scene)?,
             step: 0,
         })
@@ -80,6 +80,9 @@ impl ModeFiles {
         for (i, mode) in set.modes.iter().enumerate() {
             self.step += 1;
             let (points, cell_fields) = self.fields(model, mode);
+            // The table first: a step vouches for it.
+            tables::append(&mut self.table, TABLE, [cells(self.step, body, i + 1, mode)])?;
+            self.table.get_ref().handle()?.sync_data()?;
             let record = StepRecord {
                 step: self.step,
                 time: self.step as f64,
@@ -91,18 +94,18 @@ impl ModeFiles {
                     ("mode".to_string(), StateArray::Integer(vec![i as i64 + 1])),
                     ("modes_body".to_string(), StateArray::Integer(vec![body as i64])),
                 ]),
+                tables: Some(Stamps::from([(TABLE.to_string(), self.table.get_ref().stamp())])),
             };
             self.output.write_step(&record)?;
-            self.table.write_record(cells(self.step, body, i + 1, mode))?;
         }
-        self.table.flush().context("cannot write modes.csv")?;
         Ok(())
     }
 
-    /// Closes the files.
-    pub fn finish(self) -> Result<(), Failure> {
+    /// Closes the files and returns the identity of the run.
+    pub fn finish(self) -> Result<Option<String>, Failure> {
+        let run = self.output.run().map(str::to_string);
         self.output.finish()?;
-        Ok(())
+        Ok(run)
     }
 
     /// Fields of a shape over the points and cells of all bodies; those that do not take part are at rest.
@@ -166,12 +169,13 @@ pub fn print_modes(name: &str, set: &ModeSet) {
     }
 }
 
-/// `summary.json` of a `[modes]` scene; `schema`, `scene`, `title`, `version`, `status`, `contact_mode`, `effects`, `dofs`,
-/// `warnings` and `peak_memory_bytes` as in all runs.
+/// `summary.json` of a `[modes]` scene; `schema`, `scene`, `run`, `title`, `version`, `status`,
+/// `contact_mode`, `effects`, `dofs`, `warnings` and `peak_memory_bytes` as in all runs.
 #[derive(Debug, Serialize)]
 pub struct ModesSummary {
     schema: u32,
     scene: String,
+    run: Option<String>,
     title: Option<String>,
     version: &'static str,
     analysis: &'static str,
@@ -205,7 +209,7 @@ impl ModesSummary {
         model: &Model,
         sets: &[(ModeBody, ModeSet)],
         equilibrium: Option<&Snapshot>,
-        warnings: Vec<String>,
+        (run, warnings): (Option<String>, Vec<String>),
         start: Instant,
     ) -> ModesSummary {
         let mut laps = Laps::default();
@@ -220,6 +224,7 @@ impl ModesSummary {
         ModesSummary {
             schema: 1,
             scene: scene.path.display().to_string(),
+            run,
             title: scene.title.clone(),
             version: env!("CARGO_PKG_VERSION"),
             analysis: "modes",

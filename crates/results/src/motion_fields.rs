@@ -49,6 +49,7 @@ impl Recorded {
             cells,
             scene: self.scene,
             state: self.state,
+            tables: None,
         }
     }
 }

@@ -1,6 +1,6 @@
 //! Stopping early: on a signal, or when the wall time that a batch job has is used up.
 //!
-//! A signal (SIGINT, SIGTERM, SIGUSR1, as batch systems send before they kill) only leaves a note; the run looks at it
+//! A signal (SIGINT, SIGTERM, SIGUSR1, as batch systems send before they kill, SIGHUP when a terminal closes) only leaves a note; the run looks at it
 //! between two steps, never within one, so the state it saves is that of a finished step. A second SIGINT ends the
 //! program at once.
 
@@ -8,13 +8,19 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
 
-use anyhow::Context;
+use anyhow::{Context, ensure};
 use comm::Communicator;
-use signal_hook::consts::{SIGINT, SIGTERM, SIGUSR1};
+use rustix::process;
+use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM, SIGUSR1};
 use signal_hook::flag;
 
 /// The signals that stop a run, with their names.
-const SIGNALS: [(i32, &str); 3] = [(SIGINT, "SIGINT"), (SIGTERM, "SIGTERM"), (SIGUSR1, "SIGUSR1")];
+const SIGNALS: [(i32, &str); 4] = [
+    (SIGINT, "SIGINT"),
+    (SIGTERM, "SIGTERM"),
+    (SIGUSR1, "SIGUSR1"),
+    (SIGHUP, "SIGHUP"),
+];
 /// Exit code at a second SIGINT: 128 and its number, as a shell says it.
 const INTERRUPTED: i32 = 130;
 /// Steps of the longest duration so far that must still fit into the wall time: the next one, its writing, and the
@@ -40,7 +46,11 @@ impl Stop {
         flag::register_conditional_shutdown(SIGINT, INTERRUPTED, interrupted.clone())
             .and_then(|_| flag::register(SIGINT, interrupted))
             .context("cannot listen to signals")?;
-        for (number, _) in SIGNALS {
+        // A run under nohup goes on when its terminal closes.
+        let heard = SIGNALS
+            .iter()
+            .filter(|(number, _)| *number != SIGHUP || !is_ignored(SIGHUP));
+        for &(number, _) in heard {
             flag::register_usize(number, signal.clone(), number as usize)
                 .context("cannot listen to signals")?;
         }
@@ -78,6 +88,26 @@ impl Stop {
             )
         })
     }
+}
+
+/// Whether this process was started to ignore a signal; the system shows such signals as bits from 1.
+fn is_ignored(signal: i32) -> bool {
+    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let mask = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
+    let mask = mask.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok());
+    mask.is_some_and(|mask| mask >> (signal - 1) & 1 == 1)
+}
+
+/// Lets this process end at once when its parent `pid` ends, however that ends: nobody would use its results.
+pub fn end_with(pid: i32) -> anyhow::Result<()> {
+    let ask = process::set_parent_process_death_signal(Some(process::Signal::KILL));
+    ask.context("cannot ask to end with the parent")?;
+    let parent = process::getppid().map(process::Pid::as_raw_nonzero);
+    ensure!(
+        parent.is_some_and(|parent| parent.get() == pid),
+        "the process {pid} that started this one has ended"
+    );
+    Ok(())
 }
 
 /// Reads hh:mm:ss, as batch systems write it.

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use anyhow::Context;
+use checkpoint::open_regular;
 use comm::{Communicator, print};
 use contact::Side;
 use dynamics::Model;
@@ -17,6 +18,7 @@ use super::memory::Forecasts;
 use super::probe_places::NodePlace;
 use super::snapshot::Snapshot;
 use super::subsurface::{self, ContactSubsurface};
+use super::whole;
 
 /// Start of the keys of `timing_s` that are effects.
 const EFFECT_TIMING: &str = "effect_";
@@ -50,6 +52,7 @@ pub const SUMMARY_FILE: &str = "summary.json";
 pub struct Summary {
     schema: u32,
     scene: String,
+    run: Option<String>,
     title: Option<String>,
     version: &'static str,
     analysis: &'static str,
@@ -115,9 +118,11 @@ struct SweepRow {
     balls: Vec<BallSummary>,
 }
 
-/// Costs of a run that only its driver knows.
+/// Costs of a run that only its driver knows, and its identity.
 #[derive(Default)]
 pub struct Costs {
+    /// Identity of the run, which all its files carry; None on ranks that write none.
+    pub run: Option<String>,
     /// Wall time by part: of the solver, see [`dynamics::costs`], and of what is named here.
     pub laps: Laps,
     /// Memory forecast.
@@ -181,6 +186,7 @@ impl Summary {
         Summary {
             schema: 1,
             scene: scene.path.display().to_string(),
+            run: costs.run.clone(),
             title: scene.title.clone(),
             version: env!("CARGO_PKG_VERSION"),
             analysis,
@@ -258,11 +264,14 @@ pub fn write_summary(dir: &Path, summary: &impl Serialize) -> anyhow::Result<()>
         return Ok(());
     }
     let path = dir.join(SUMMARY_FILE);
-    let temporary = dir.join("summary.json.tmp");
-    let text = serde_json::to_string_pretty(summary).context("cannot format summary.json")?;
-    std::fs::write(&temporary, text + "\n")
-        .and_then(|()| std::fs::rename(&temporary, &path))
-        .with_context(|| format!("cannot write {}", path.display()))
+    let text = serde_json::to_string_pretty(summary).context("cannot format summary.json")? + "\n";
+    whole::write(&path, text.as_bytes(), |old| whole::holds(old, "\"schema\""))
+}
+
+/// The summary in `dir`; None if there is none that can be read.
+pub fn read_summary(dir: &Path) -> Option<serde_json::Value> {
+    let file = open_regular(&dir.join(SUMMARY_FILE)).ok()?;
+    serde_json::from_reader(std::io::BufReader::new(file)).ok()
 }
 
 /// A value per side, by name.

@@ -13,6 +13,7 @@ use contact::Side;
 use dynamics::{Backend, Model, RingModel, Sectors};
 use scene::{Scene, build_model, difference, material, model_with_rings, ring_of, say_doubts};
 
+use crate::about::identity;
 use crate::failure::{Failure, agree};
 use crate::fields;
 use crate::probes::Probes;
@@ -77,7 +78,8 @@ fn build_shared(
     let comm = Communicator::world();
     let survey = || {
         let (model, probes) = whole(point, scene, test)?;
-        let mesh = MeshFile::new(&fields::bodies(&model))?.spooled(dir)?;
+        let mesh = MeshFile::new(&fields::bodies(&model))?.of_run(identity(scene)?);
+        let mesh = mesh.spooled(dir)?;
         let mesh = Some(mesh);
         Ok((model, Survey { probes, mesh }))
     };

@@ -2,8 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
-use anyhow::Context;
-use checkpoint::Companion;
+use anyhow::{Context, anyhow};
+use checkpoint::{Companion, GrowingFile, Stamps};
 use dynamics::balls::{BallResult, ContactResult};
 
 use super::cut::Cut;
@@ -12,13 +12,13 @@ use super::snapshot::Snapshot;
 
 /// The tables of one run, open for appending.
 pub struct Tables {
-    balls: csv::Writer<std::fs::File>,
-    shaft: csv::Writer<std::fs::File>,
-    energy: csv::Writer<std::fs::File>,
+    balls: csv::Writer<GrowingFile>,
+    shaft: csv::Writer<GrowingFile>,
+    energy: csv::Writer<GrowingFile>,
     /// Only in a scene with probes.
-    probes: Option<csv::Writer<std::fs::File>>,
+    probes: Option<csv::Writer<GrowingFile>>,
     /// Only in a scene with profiles.
-    profiles: Option<csv::Writer<std::fs::File>>,
+    profiles: Option<csv::Writer<GrowingFile>>,
     /// Whether balls have a spin.
     with_spin: bool,
 }
@@ -70,10 +70,24 @@ impl Tables {
         })
     }
 
-    /// Looks where the files of an earlier run are to be cut to go on after its step `last`.
-    pub fn cuts(dir: &Path, first: &Snapshot, own: &OwnColumns, last: u64) -> anyhow::Result<Vec<Cut>> {
+    /// Looks where the files of an earlier run are to be cut to go on after its step `last`, which tells of them by `stamps`.
+    pub fn cuts(
+        dir: &Path,
+        first: &Snapshot,
+        own: &OwnColumns,
+        (last, stamps): (u64, Option<&Stamps>),
+    ) -> anyhow::Result<Vec<Cut>> {
         let [balls, shaft, energy] = columns(None, first);
-        let find = |name: &str, columns: &[String]| Cut::find(dir, name, &columns.join(","), last);
+        let find = |name: &str, columns: &[String]| {
+            let header = columns.join(",");
+            let Some(stamps) = stamps else {
+                return Cut::find(dir, name, &header, last);
+            };
+            let stamp = stamps.get(name).copied();
+            let stamp =
+                stamp.ok_or_else(|| anyhow!("step {last} does not tell of {name}, which this scene has"))?;
+            Cut::at_stamp(dir, name, &header, (last, stamp))
+        };
         let mut cuts = vec![find(BALLS, &balls)?, find(SHAFT, &shaft)?, find(ENERGY, &energy)?];
         for (name, columns) in [(PROBES, &own.probes), (PROFILES, &own.profiles)] {
             if let Some(columns) = columns {
@@ -109,18 +123,26 @@ impl Tables {
     }
 
     /// The files, for a thread that brings them to the disk.
-    pub fn companions(&self, dir: &Path) -> anyhow::Result<Vec<Companion>> {
+    pub fn companions(&self) -> anyhow::Result<Vec<Companion>> {
+        let companion = |(_, table): (&str, &csv::Writer<GrowingFile>)| {
+            let (path, file) = (table.get_ref().path().to_path_buf(), table.get_ref().handle()?);
+            Ok(Companion { path, file })
+        };
+        self.all().map(companion).collect()
+    }
+
+    /// Length and checksum of each table as written so far.
+    pub fn stamps(&self) -> Stamps {
+        let stamp =
+            |(name, table): (&str, &csv::Writer<GrowingFile>)| (name.to_string(), table.get_ref().stamp());
+        self.all().map(stamp).collect()
+    }
+
+    fn all(&self) -> impl Iterator<Item = (&'static str, &csv::Writer<GrowingFile>)> {
         [(BALLS, &self.balls), (SHAFT, &self.shaft), (ENERGY, &self.energy)]
             .into_iter()
             .chain(self.probes.as_ref().map(|table| (PROBES, table)))
             .chain(self.profiles.as_ref().map(|table| (PROFILES, table)))
-            .map(|(name, table)| {
-                let path = dir.join(name);
-                let file = table.get_ref().try_clone();
-                let file = file.with_context(|| format!("cannot write {}", path.display()))?;
-                Ok(Companion { path, file })
-            })
-            .collect()
     }
 
     /// Appends one step; `swept` is the swept value in SI.
@@ -216,8 +238,8 @@ fn place_of(step: u64, time: f64, swept: Option<f64>) -> Vec<String> {
 }
 
 /// Appends rows and hands them to the system: a killed run loses none of them.
-fn append(
-    table: &mut csv::Writer<std::fs::File>,
+pub fn append(
+    table: &mut csv::Writer<GrowingFile>,
     name: &str,
     rows: impl IntoIterator<Item = Vec<String>>,
 ) -> anyhow::Result<()> {
@@ -283,10 +305,9 @@ fn columns(swept: Option<&str>, first: &Snapshot) -> [Vec<String>; 3] {
     [head(&balls), head(&shaft), head(&energy)]
 }
 
-fn create(dir: &Path, name: &str, columns: &[String]) -> anyhow::Result<csv::Writer<std::fs::File>> {
-    let path = dir.join(name);
-    let mut writer =
-        csv::Writer::from_path(&path).with_context(|| format!("cannot create {}", path.display()))?;
-    writer.write_record(columns)?;
+/// A new table with its header line.
+pub fn create(dir: &Path, name: &str, columns: &[String]) -> anyhow::Result<csv::Writer<GrowingFile>> {
+    let mut writer = csv::Writer::from_writer(GrowingFile::create(&dir.join(name))?);
+    append(&mut writer, name, [columns.to_vec()])?;
     Ok(writer)
 }

@@ -3,6 +3,7 @@
 //! Gmsh meshes the section (or the whole ring, for tetrahedra); hexahedra are made by revolving the section into
 //! equal sectors. The section's .geo and .msh stay beside the mesh, so that it can be made again.
 
+use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use comm::print;
@@ -153,8 +154,31 @@ fn beside(mesh: &Path, ending: &str) -> PathBuf {
     mesh.with_extension(ending)
 }
 
+/// Writes the geometry of a ring: whole or not at all, and only over one that was written here.
 fn write_text(path: &Path, text: &str) -> Result<(), BuildError> {
-    std::fs::write(path, text).map_err(file_error("write", path))
+    let write = || {
+        require_own(path)?;
+        let hidden = path.with_extension("geo.tmp");
+        // What a killed process left; it is gone if there was none.
+        let _ = std::fs::remove_file(&hidden);
+        std::fs::File::create_new(&hidden)?.write_all(text.as_bytes())?;
+        std::fs::rename(&hidden, path)
+    };
+    write().map_err(file_error("write", path))
+}
+
+/// Words in the first line of every geometry.
+const OWN: &str = " ring of a ball bearing; lengths in mm";
+
+fn require_own(path: &Path) -> std::io::Result<()> {
+    let Ok(data) = path.symlink_metadata() else {
+        return Ok(());
+    };
+    if data.is_file() && String::from_utf8_lossy(&std::fs::read(path)?).contains(OWN) {
+        return Ok(());
+    }
+    let what = "it was not written by raceway mesh; move it away";
+    Err(std::io::Error::new(std::io::ErrorKind::AlreadyExists, what))
 }
 
 fn file_error(action: &'static str, path: &Path) -> impl Fn(std::io::Error) -> BuildError {
@@ -163,5 +187,32 @@ fn file_error(action: &'static str, path: &Path) -> impl Fn(std::io::Error) -> B
         action,
         path: path.clone(),
         source,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Wrong: a geometry of the user's beside a mesh would be written over.
+    #[test]
+    fn only_own_geometries_are_written_over() {
+        let dir = tempfile::tempdir().unwrap();
+        let path = dir.path().join("inner.geo");
+        let text = format!("// inner{OWN}\n");
+        (0..2).for_each(|_| write_text(&path, &text).unwrap());
+        std::fs::write(&path, "Point(1) = {0, 0, 0};").unwrap();
+        let said = with_cause(&write_text(&path, &text).unwrap_err());
+        assert!(
+            said.contains("it was not written by raceway mesh; move it away"),
+            "{said}"
+        );
+        assert_eq!(std::fs::read_to_string(&path).unwrap(), "Point(1) = {0, 0, 0};");
+    }
+
+    /// A message with its cause.
+    fn with_cause(error: &BuildError) -> String {
+        let cause = std::error::Error::source(error).map(|cause| cause.to_string());
+        format!("{error} {}", cause.unwrap_or_default())
     }
 }

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use anyhow::Context;
 use figure::{Axis, Figure, Series};
+use results::whole::write_picture;
 
 use super::format::CostKind;
 use super::report::{PointReport, QuantityReport, Report};
@@ -22,7 +23,8 @@ pub fn write(report: &Report, out: &Path) -> anyhow::Result<Vec<PathBuf>> {
         };
         std::fs::create_dir_all(&dir).with_context(|| format!("cannot create {}", dir.display()))?;
         let path = dir.join(file_name(&quantity.name));
-        figure.write(&path)?;
+        let images = figure.images()?;
+        write_picture(&path, &images.svg, &images.png)?;
         paths.push(path);
     }
     Ok(paths)

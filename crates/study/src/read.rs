@@ -5,6 +5,7 @@ use std::path::Path;
 
 use anyhow::{Context, bail};
 use results::summary::SUMMARY_FILE;
+use results::table::{Rows, read_rows};
 use serde_json::Value;
 
 use super::format::{Cell, Take};
@@ -97,9 +98,11 @@ fn table_rows(
     wanted: &BTreeMap<String, Cell>,
 ) -> anyhow::Result<Vec<[f64; 2]>> {
     let path = dir.join(file);
-    let mut reader =
-        csv::Reader::from_path(&path).with_context(|| format!("cannot read {}", path.display()))?;
-    let header: Vec<String> = reader.headers()?.iter().map(str::to_string).collect();
+    let table = read_rows(&path)?;
+    let Rows {
+        names: header,
+        rows: all,
+    } = table.with_context(|| format!("cannot read {}", path.display()))?;
     let index = |name: &str| match header.iter().position(|h| h == name) {
         Some(i) => Ok(i),
         None => bail!("{file} has no column {name:?}; columns are {}", header.join(", ")),
@@ -111,8 +114,7 @@ fn table_rows(
         .map(|(name, cell)| Ok((index(name)?, cell)))
         .collect::<anyhow::Result<Vec<_>>>()?;
     let mut rows = Vec::new();
-    for (i, row) in reader.records().enumerate() {
-        let row = row.with_context(|| format!("cannot read {}", path.display()))?;
+    for (i, row) in all.iter().enumerate() {
         if !wanted.iter().all(|(c, cell)| matches_cell(&row[*c], cell)) {
             continue;
         }

@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, bail};
 use results::about::SOURCE_COMMIT;
+use results::whole;
 use serde::{Deserialize, Serialize};
 
 use super::plan::{Plan, Point};
@@ -102,10 +103,14 @@ pub fn to_json(value: &impl Serialize) -> anyhow::Result<String> {
     Ok(serde_json::to_string_pretty(value).context("cannot format JSON")? + "\n")
 }
 
-/// Writes a text file: complete or not at all.
+/// Writes a text file of a study: complete or not at all, and only over one that a study wrote.
 pub fn write_whole(path: &Path, text: &str) -> anyhow::Result<()> {
-    let temporary = path.with_extension("tmp");
-    std::fs::write(&temporary, text)
-        .and_then(|()| std::fs::rename(&temporary, path))
-        .with_context(|| format!("cannot write {}", path.display()))
+    // Pages say who made them; tables and JSON begin with the same key.
+    let start = &text.as_bytes()[..text.len().min(KEY)];
+    whole::write(path, text.as_bytes(), |old| {
+        whole::holds(old, "Made by `raceway ") || old.starts_with(start)
+    })
 }
+
+/// Bytes that hold the first key of a file.
+const KEY: usize = 12;

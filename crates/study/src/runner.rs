@@ -8,10 +8,10 @@
 use std::fs::{File, TryLockError};
 use std::os::unix::process::ExitStatusExt;
 use std::path::Path;
-use std::process::{Command, Stdio};
+use std::process::Command;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Mutex, PoisonError};
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use anyhow::{Context, anyhow};
 use comm::print;
@@ -26,6 +26,9 @@ use super::machine;
 use super::plan::{Plan, Point, arguments};
 use super::record::{self, Cost, LOG, RUN, Record};
 
+/// How often a lock is tried, and how long to wait between.
+const LOCK_TRIES: usize = 10;
+const LOCK_WAIT: Duration = Duration::from_millis(100);
 /// Exit code of a run that was asked to stop.
 const STOPPED: i32 = 75;
 
@@ -68,7 +71,7 @@ fn run_point(plan: &Plan, point: &Point, out: &Path) -> Result<(), Failure> {
     std::fs::create_dir_all(&dir).with_context(|| format!("cannot create {}", dir.display()))?;
     let path = dir.join(".lock");
     let lock = File::create(&path).with_context(|| format!("cannot write {}", path.display()))?;
-    match lock.try_lock() {
+    match try_lock(&lock) {
         Ok(()) => {}
         Err(TryLockError::WouldBlock) => {
             print::note(format_args!(
@@ -104,7 +107,7 @@ fn run_point(plan: &Plan, point: &Point, out: &Path) -> Result<(), Failure> {
         if record.failure.is_some() {
             break;
         }
-        match run_once(plan, &set, &dir, repeat)? {
+        match run_once(plan, &set, (&dir, &lock), repeat)? {
             Ok(cost) => record.costs.push(cost),
             Err(reason) => {
                 // The folder of the study may be moved.
@@ -119,6 +122,17 @@ fn run_point(plan: &Plan, point: &Point, out: &Path) -> Result<(), Failure> {
     Ok(record::write(&record, out)?)
 }
 
+/// Takes a lock. A run whose study was killed ends a moment later and has the lock so long.
+fn try_lock(lock: &File) -> Result<(), TryLockError> {
+    for _ in 0..LOCK_TRIES {
+        match lock.try_lock() {
+            Err(TryLockError::WouldBlock) => std::thread::sleep(LOCK_WAIT),
+            taken => return taken,
+        }
+    }
+    lock.try_lock()
+}
+
 /// Builds the meshes of a point that are missing; one process at a time.
 fn build_meshes(plan: &Plan, set: &[String], out: &Path) -> Result<(), Failure> {
     let scene = Scene::parse(&plan.scene_text, &plan.scene, set, MeshFiles::MayBeMissing)?;
@@ -130,21 +144,31 @@ fn build_meshes(plan: &Plan, set: &[String], out: &Path) -> Result<(), Failure> 
 }
 
 /// Runs the program once: the cost, or why there are no results. Results of repeats are not kept: they are the same.
-fn run_once(plan: &Plan, set: &[String], dir: &Path, repeat: usize) -> Result<Result<Cost, String>, Failure> {
+/// The run has the lock of its folder as its input, so that the folder stays locked as long as anybody writes into it, and ends with
+/// this process.
+fn run_once(
+    plan: &Plan,
+    set: &[String],
+    (dir, lock): (&Path, &File),
+    repeat: usize,
+) -> Result<Result<Cost, String>, Failure> {
     let out = dir.join(if repeat == 0 { RUN } else { "repeat" });
     if out.exists() {
         std::fs::remove_dir_all(&out).with_context(|| format!("cannot remove {}", out.display()))?;
     }
     let log_path = dir.join(LOG);
-    let log = File::create(&log_path).with_context(|| format!("cannot write {}", log_path.display()))?;
+    // The log of an earlier try goes, also a link; it is gone if there was none.
+    let _ = std::fs::remove_file(&log_path);
+    let log = File::create_new(&log_path).with_context(|| format!("cannot write {}", log_path.display()))?;
     let mut command = Command::new(std::env::current_exe().context("cannot find this program")?);
     command
-        .args(["--threads", &plan.threads.to_string(), "run"])
+        .args(["--threads", &plan.threads.to_string()])
+        .args(["--parent", &std::process::id().to_string(), "run"])
         .arg(&plan.scene)
         .arg("--out")
         .arg(&out)
         .args(set.iter().flat_map(|s| ["--set", s]))
-        .stdin(Stdio::null())
+        .stdin(lock.try_clone().context("cannot share a lock")?)
         .stdout(log.try_clone().context("cannot write a log")?)
         .stderr(log);
     let (start, busy) = (Instant::now(), machine::busy());

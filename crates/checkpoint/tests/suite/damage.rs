@@ -210,3 +210,114 @@ fn a_missing_file_says_so() {
         "{text}"
     );
 }
+
+/// A step file whose content somebody has changed with the library, under a seal that fits.
+fn forged(dir: &Path, change: impl FnOnce(&hdf5::File)) -> PathBuf {
+    let path = one_step(dir);
+    let bytes = content(&path);
+    fs::write(&path, bytes).unwrap();
+    let file = hdf5::File::open_rw(&path).unwrap();
+    change(&file);
+    file.close().unwrap();
+    seal(&path, &fs::read(&path).unwrap());
+    path
+}
+
+/// Wrong: a hostile file would make the program ask for terabytes, or stop it in a place of its own.
+#[test]
+fn a_size_that_the_file_cannot_hold_is_refused_before_memory_is_taken() {
+    const TERABYTES: usize = 600_000_000_000;
+    let path_of = "VTKHDF/PointData/von_mises";
+    let forge = |make: &dyn Fn(&hdf5::File)| {
+        let dir = tempfile::tempdir().unwrap();
+        let path = forged(dir.path(), |file| {
+            file.unlink(path_of).unwrap();
+            make(file);
+            let von_mises = file.dataset(path_of).unwrap();
+            von_mises
+                .new_attr::<u32>()
+                .create("crc32")
+                .unwrap()
+                .write_scalar(&0u32)
+                .unwrap();
+        });
+        let read = read_step(&path).unwrap_err().to_string();
+        let described = checkpoint::describe(&path).map(|_| ()).unwrap_err().to_string();
+        assert_eq!(read, described);
+        let index = checkpoint::rebuild_index(dir.path()).unwrap_err().to_string();
+        assert!(index.contains("cannot hold"), "{index}");
+        read
+    };
+    let text = forge(&|file| {
+        file.new_dataset::<f64>()
+            .shape([TERABYTES])
+            .create(path_of)
+            .unwrap();
+    });
+    assert!(
+        text.contains("/VTKHDF/PointData/von_mises has shape [600000000000], which its 0 bytes of"),
+        "{text}"
+    );
+    let text = forge(&|file| {
+        let chunks = file.new_dataset::<f64>().chunk([1 << 20]).deflate(9);
+        chunks.shape([TERABYTES]).create(path_of).unwrap();
+    });
+    assert!(text.contains("cannot hold"), "{text}");
+    let text = forge(&|file| {
+        file.new_dataset::<f64>()
+            .shape(hdf5::Extents::Null)
+            .create(path_of)
+            .unwrap();
+    });
+    assert!(text.contains("has shape [], which"), "{text}");
+}
+
+/// Wrong: a text of hundreds of megabytes would be read, at several times its size.
+#[test]
+fn a_text_that_no_scene_has_is_refused() {
+    let dir = tempfile::tempdir().unwrap();
+    let path = one_step(dir.path());
+    let mut bytes = content(&path);
+    bytes.resize(80 << 20, b' ');
+    seal(&path, &bytes);
+    let text = read_step(&path).unwrap_err().to_string();
+    assert!(
+        text.contains("it has 83886080 bytes outside of its arrays, expected at most 67108864"),
+        "{text}"
+    );
+}
+
+/// Wrong: a step under the number of another would be shown or resumed from as that one.
+#[test]
+fn a_step_under_another_number_is_refused() {
+    let dir = tempfile::tempdir().unwrap();
+    let path = one_step(dir.path());
+    let copy = dir.path().join("step_000009.hdf");
+    fs::copy(path, &copy).unwrap();
+    let text = checkpoint::read_any_step(dir.path(), 9).unwrap_err().to_string();
+    assert!(
+        text.contains("step_000009.hdf is not a complete step file: it holds step 4"),
+        "{text}"
+    );
+    let newest = checkpoint::newest_step(dir.path(), |_| {}).unwrap();
+    assert_eq!(newest.step, 4);
+}
+
+/// Wrong: who has a damaged mesh would look for an earlier step, which does not help, or take a Gmsh file for damaged results.
+#[test]
+fn the_advice_is_that_of_the_kind_of_file() {
+    let dir = tempfile::tempdir().unwrap();
+    one_step(dir.path());
+    let mesh = dir.path().join("mesh.hdf");
+    let bytes = fs::read(&mesh).unwrap();
+    fs::write(&mesh, &bytes[..bytes.len() / 2]).unwrap();
+    let text = checkpoint::read_mesh(dir.path()).unwrap_err().to_string();
+    assert!(
+        text.contains("mesh.hdf is not a complete mesh of results: its seal is missing or damaged; raceway resume writes it again"),
+        "{text}"
+    );
+    let other = dir.path().join("ring.msh");
+    fs::write(&other, "$MeshFormat").unwrap();
+    let text = checkpoint::describe(&other).unwrap_err().to_string();
+    assert!(text.contains("ring.msh is no file of results: "), "{text}");
+}

@@ -2,7 +2,9 @@
 
 use std::collections::BTreeMap;
 
-use checkpoint::{Body, CellFields, IntegrationPointStress, PointFields, StateArray, StepRecord};
+use checkpoint::{
+    Body, CellFields, IntegrationPointStress, PointFields, Stamp, Stamps, StateArray, StepRecord,
+};
 use mesh::{ElementKind, Mesh};
 
 /// Points of all bodies: 8 + 10 + 2.
@@ -82,6 +84,16 @@ pub fn record(step: u64) -> StepRecord {
         cells: cells(step),
         scene,
         state,
+        tables: Some(Stamps::from([
+            (
+                "balls.csv".to_string(),
+                Stamp {
+                    length: 1000 * step,
+                    crc: 7,
+                },
+            ),
+            ("Größe 1.csv".to_string(), Stamp { length: 0, crc: 0 }),
+        ])),
     }
 }
 
@@ -111,6 +123,7 @@ pub fn bare_record(step: u64) -> StepRecord {
         points,
         cells: CellFields::default(),
         state: BTreeMap::new(),
+        tables: None,
         ..full
     }
 }

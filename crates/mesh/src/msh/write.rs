@@ -54,7 +54,9 @@ pub fn write_msh(
         path: temporary.to_path_buf(),
         source,
     };
-    let file = std::fs::File::create(temporary).map_err(fail)?;
+    // What a killed run left under this name goes, also a link; it is gone if there was none.
+    let _ = std::fs::remove_file(temporary);
+    let file = std::fs::File::create_new(temporary).map_err(fail)?;
     let written = write_file(file, mesh, unit, format);
     if let Err(source) = written {
         // The first error is the one to tell; a left-over temporary file harms nobody.

@@ -79,7 +79,14 @@ fn describe(text: &str, span: Range<usize>, message: &str) -> String {
     }
     if message.starts_with("missing field") {
         let name = names.first().copied().unwrap_or("");
-        return match path.as_str() {
+        // What lacks a table is the whole scene, whose first key is no table.
+        let is_value = |value: &DeValue<'_>| value.as_table().is_none() && value.as_array().is_none();
+        let first = document.get_ref().get(path.as_str());
+        let table = path.as_str();
+        return match table {
+            _ if first.is_some_and(|first| is_value(first.get_ref())) => {
+                format!("the table [{name}] is missing")
+            }
             "" => format!("the table [{name}] is missing"),
             table => format!("[{table}] has no key {name:?}, which is required"),
         };

@@ -183,7 +183,12 @@ impl RawRing {
             .collect();
         let typed = self.mesh.as_ref()?;
         let mesh = context.scene.parent().unwrap_or(Path::new("")).join(typed);
-        if context.mesh_files == MeshFiles::MustExist && !mesh.is_file() {
+        if context.mesh_files == MeshFiles::MustExist && mesh.exists() && !mesh.is_file() && !mesh.is_dir() {
+            problems.add(format!(
+                "{key}.mesh is {typed:?}, but {} is no plain file; expected a mesh that Gmsh or raceway mesh wrote",
+                mesh.display()
+            ));
+        } else if context.mesh_files == MeshFiles::MustExist && !mesh.is_file() {
             problems.add(format!(
                 "{key}.mesh is {typed:?}, but there is no file {}; {}correct the path, which is relative to the \
                  scene file",

@@ -361,6 +361,26 @@ fn shoulders_of_both_rings_must_leave_a_gap() {
     assert!(message.contains(expected), "{message}");
 }
 
+/// If this failed, a scene without a table would be told that its title lacks a key, and a device would count as missing.
+#[test]
+fn a_missing_table_and_a_mesh_that_is_no_file_are_said() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("scene.toml");
+    let (head, tail) = EXAMPLE.split_once("[bearing]").unwrap();
+    let rest = tail.split_once("\n[").unwrap().1;
+    std::fs::write(&path, format!("{head}[{rest}")).unwrap();
+    let message = Scene::load(&path, &[]).unwrap_err().to_string();
+    assert!(message.contains("the table [bearing] is missing"), "{message}");
+    std::fs::write(&path, EXAMPLE).unwrap();
+    let message = Scene::load(&path, &["inner.mesh = \"/dev/null\"".into()])
+        .unwrap_err()
+        .to_string();
+    assert!(
+        message.contains("inner.mesh is \"/dev/null\", but /dev/null is no plain file"),
+        "{message}"
+    );
+}
+
 /// If this failed, a wrong path would surface after minutes of set-up, without the place that was looked at or the
 /// command that builds the mesh.
 #[test]

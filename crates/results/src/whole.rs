@@ -1,0 +1,130 @@
+//! Files that commands write: whole or not at all, never through a link, and only over what the program wrote itself.
+//!
+//! The content goes to a new hidden file in the same folder, is brought to the disk, and renamed.
+
+use std::fs::File;
+use std::io::{BufWriter, Write};
+use std::path::Path;
+
+use anyhow::{Context, anyhow};
+
+/// Writes a file. One that is there already is replaced if `is_own` knows its content as the program's own.
+pub fn write(path: &Path, content: &[u8], is_own: impl Fn(&[u8]) -> bool) -> anyhow::Result<()> {
+    require_own(path, is_own)?;
+    write_by(path, |file| file.write_all(content))
+}
+
+/// Writes a file that is not there yet, by what `fill` writes.
+pub fn write_new(
+    path: &Path,
+    fill: impl FnOnce(&mut dyn Write) -> std::io::Result<()>,
+) -> anyhow::Result<()> {
+    if path.symlink_metadata().is_ok() {
+        return Err(anyhow!("cannot write {}: File exists", path.display()));
+    }
+    write_by(path, fill)
+}
+
+/// Fails if there is something at `path` that the program did not write.
+pub fn require_own(path: &Path, is_own: impl Fn(&[u8]) -> bool) -> anyhow::Result<()> {
+    let Ok(data) = path.symlink_metadata() else {
+        return Ok(());
+    };
+    if !data.is_file() {
+        return Err(anyhow!(
+            "{} is no plain file, so it is not written over; remove it or choose another --out",
+            path.display()
+        ));
+    }
+    let old = std::fs::read(path).with_context(|| format!("cannot read {}", path.display()))?;
+    if is_own(&old) {
+        return Ok(());
+    }
+    Err(anyhow!(
+        "{} was not written by this command, so it is not written over; remove it or choose another --out",
+        path.display()
+    ))
+}
+
+/// Fails if a picture of this name, without ending, would replace one that the program did not draw. A PNG has no place for a
+/// mark; it is known by the SVG beside it.
+pub fn require_own_picture(path: &Path) -> anyhow::Result<()> {
+    let svg = path.with_added_extension("svg");
+    let is_own = |old: &[u8]| old.starts_with(b"<svg width=\"") && holds(old, "DejaVu Sans");
+    require_own(&svg, is_own)?;
+    require_own(&path.with_added_extension("png"), |_| svg.exists())
+}
+
+/// Writes a picture under a name without ending as SVG and PNG, in the place of those that the program drew before.
+pub fn write_picture(path: &Path, svg: &str, png: &[u8]) -> anyhow::Result<()> {
+    require_own_picture(path)?;
+    write(&path.with_added_extension("svg"), svg.as_bytes(), |_| true)?;
+    write(&path.with_added_extension("png"), png, |_| true)
+}
+
+/// Whether a file holds a text.
+pub fn holds(content: &[u8], text: &str) -> bool {
+    content
+        .windows(text.len())
+        .any(|window| window == text.as_bytes())
+}
+
+fn write_by(path: &Path, fill: impl FnOnce(&mut dyn Write) -> std::io::Result<()>) -> anyhow::Result<()> {
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    let hidden = path.with_file_name(format!(".{name}.{}.tmp", std::process::id()));
+    // What a process of this number left; it is gone if there was none.
+    let _ = std::fs::remove_file(&hidden);
+    let written = write_hidden(&hidden, fill).and_then(|()| std::fs::rename(&hidden, path));
+    if written.is_err() {
+        // The first error is the one to report.
+        let _ = std::fs::remove_file(&hidden);
+    }
+    written.with_context(|| format!("cannot write {}", path.display()))
+}
+
+fn write_hidden(
+    hidden: &Path,
+    fill: impl FnOnce(&mut dyn Write) -> std::io::Result<()>,
+) -> std::io::Result<()> {
+    let mut file = BufWriter::new(File::create_new(hidden)?);
+    fill(&mut file)?;
+    file.flush()?;
+    file.get_ref().sync_all()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Wrong: a command would replace a file of the user's, write through a link, or leave half a file.
+    #[test]
+    fn only_own_files_are_written_over() {
+        let dir = tempfile::tempdir().unwrap();
+        let path = dir.path().join("a.html");
+        let own = |old: &[u8]| old.starts_with(b"ours");
+        write(&path, b"ours 1", own).unwrap();
+        write(&path, b"ours 2", own).unwrap();
+        assert_eq!(std::fs::read(&path).unwrap(), b"ours 2");
+        std::fs::write(&path, "theirs").unwrap();
+        let text = write(&path, b"ours 3", own).unwrap_err().to_string();
+        assert!(text.contains("a.html was not written by this command"), "{text}");
+        let link = dir.path().join("link");
+        std::os::unix::fs::symlink(&path, &link).unwrap();
+        let text = write(&link, b"ours 3", own).unwrap_err().to_string();
+        assert!(text.contains("link is no plain file"), "{text}");
+        let text = write_new(&link, |_| Ok(())).unwrap_err().to_string();
+        assert!(text.contains("File exists"), "{text}");
+        assert_eq!(std::fs::read(&path).unwrap(), b"theirs");
+        let half = |file: &mut dyn Write| {
+            file.write_all(b"half")?;
+            Err(std::io::Error::other("full"))
+        };
+        let text = format!("{:#}", write_new(&dir.path().join("b"), half).unwrap_err());
+        assert!(text.contains("cannot write ") && text.ends_with("full"), "{text}");
+        assert_eq!(
+            std::fs::read_dir(dir.path()).unwrap().count(),
+            2,
+            "no hidden file stays"
+        );
+    }
+}
