@@ -220,6 +220,7 @@ impl Writer {
                 ..PointFields::default()
             },
             cells: CellFields::default(),
+            tables: None,
             scene: String::new(),
             state: named.collect(),
         }

@@ -167,8 +167,8 @@ pub fn print_modes(name: &str, set: &ModeSet) {
     }
 }
 
-/// `summary.json` of a `[modes]` scene; `schema`, `scene`, `run`, `title`, `version`, `status`, `contact_mode`, `effects`, `dofs`,
-/// `warnings` and `peak_memory_bytes` as in all runs.
+/// `summary.json` of a `[modes]` scene; `schema`, `scene`, `run`, `title`, `version`, `status`,
+/// `contact_mode`, `effects`, `dofs`, `warnings` and `peak_memory_bytes` as in all runs.
 #[derive(Debug, Serialize)]
 pub struct ModesSummary {
     schema: u32,
