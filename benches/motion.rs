@@ -233,6 +233,7 @@ impl Writer {
                 ..PointFields::default()
             },
             cells: CellFields::default(),
+            tables: None,
             scene: String::new(),
             tables: None,
             state: named.collect(),

@@ -327,7 +327,8 @@ fn a_run_that_ended_before_its_first_step_is_started_again() {
     assert!(dir.path("out/balls.csv").exists() && committed_steps(&dir.path("out")).unwrap().is_empty());
     let outcome = dir.raceway(&["resume", "out"]);
     assert_eq!(outcome.code, Some(2), "{}", outcome.stderr);
-    let said = "out holds no committed step: the run ended before its first one; start it again with raceway run SCENE --out out";
+    let said = "out holds no committed step: the run ended before its first one; \
+                start it again with raceway run SCENE --out out";
     assert!(outcome.stderr.contains(said), "{}", outcome.stderr);
     let outcome = dir.raceway(&run);
     assert_eq!(outcome.code, Some(0), "{}", outcome.stderr);

@@ -4,7 +4,8 @@ use std::os::unix::fs::symlink;
 
 use crate::util::{Dir, RIGID, SCENE};
 
-/// Wrong: a report, a figure, a count of cycles or an export would replace a file of the user's, or one that a link leads to.
+/// Wrong: a report, a figure, a count of cycles or an export would replace a file of the user's, or one that
+/// a link leads to.
 #[test]
 fn a_file_that_is_not_the_programs_own_stays() {
     let dir = Dir::with_scene(SCENE);
@@ -12,7 +13,8 @@ fn a_file_that_is_not_the_programs_own_stays() {
     let report = |path: &str| dir.raceway(&["report", "out", "--out", path]);
     let outcome = report("scene.toml");
     assert_eq!(outcome.code, Some(2), "{}", outcome.stderr);
-    let said = "error: scene.toml was not written by this command, so it is not written over; remove it or choose another --out";
+    let said = "error: scene.toml was not written by this command, so it is not written over; \
+                remove it or choose another --out";
     assert!(outcome.stderr.contains(said), "{}", outcome.stderr);
     assert_eq!(dir.text("scene.toml"), SCENE);
     // Its own page is replaced, a link is neither followed nor replaced.
@@ -81,8 +83,8 @@ fn a_run_writes_through_no_link() {
     assert!(!other.path("nowhere").exists());
 }
 
-/// Wrong: a full disk would leave an empty page, or half a figure, in the place of a whole one. A limit on the size of files
-/// stands for the full disk.
+/// Wrong: a full disk would leave an empty page, or half a figure, in the place of a whole one. A limit on
+/// the size of files stands for the full disk.
 #[test]
 fn a_full_disk_leaves_the_old_file() {
     let dir = Dir::with_scene(SCENE);

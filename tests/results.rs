@@ -8,7 +8,7 @@ use crate::statics::reference;
 use crate::util::tables::{Table, keys, number, summary};
 use crate::util::{Dir, RIGID, SCENE, assert_within};
 
-const SUMMARY_KEYS: [&str; 19] = [
+const SUMMARY_KEYS: [&str; 20] = [
     "analysis",
     "balls",
     "contact_mode",
@@ -19,6 +19,7 @@ const SUMMARY_KEYS: [&str; 19] = [
     "iterations",
     "peak_memory_bytes",
     "peak_memory_forecast_bytes",
+    "run",
     "scene",
     "schema",
     "shaft",

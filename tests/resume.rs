@@ -9,7 +9,7 @@ use crate::util::tables::{Table, summary};
 use crate::util::{Dir, Files, Outcome, RIGID};
 
 /// A folder with the small motion run to its end as `whole`; once for all tests.
-fn moved() -> Dir {
+pub fn moved() -> Dir {
     static FILES: OnceLock<Files> = OnceLock::new();
     Dir::with_files(FILES.get_or_init(|| {
         let dir = small_motion();
@@ -23,14 +23,14 @@ fn resume(dir: &Dir, arguments: &[&str]) -> Outcome {
 }
 
 #[track_caller]
-fn resumed(dir: &Dir, arguments: &[&str]) -> Outcome {
+pub fn resumed(dir: &Dir, arguments: &[&str]) -> Outcome {
     let outcome = resume(dir, arguments);
     assert_eq!(outcome.code, Some(0), "{arguments:?}: {}", outcome.stderr);
     outcome
 }
 
 #[track_caller]
-fn refused(dir: &Dir, arguments: &[&str], parts: &[&str]) {
+pub fn refused(dir: &Dir, arguments: &[&str], parts: &[&str]) {
     let before = dir.snapshot();
     let outcome = resume(dir, arguments);
     assert_eq!(outcome.code, Some(2), "{arguments:?}: {}", outcome.stderr);
@@ -400,118 +400,5 @@ fn only_motions_are_resumed() {
         &dir,
         &["out"],
         &["holds results of a [static] scene; only a motion"],
-    );
-}
-
-/// Wrong: a step that was copied from another run of the same names would be gone on from, shown, packed or exported.
-#[test]
-fn a_step_of_another_run_is_not_taken_for_one_of_this() {
-    let dir = moved();
-    dir.run("other", &["--set", "effects.axial_force.value=0.5 kN"]);
-    copy(&dir, "whole", "cut");
-    let step = |folder: &str, step: u32| dir.path(&format!("{folder}/step_{step:06}.hdf"));
-    std::fs::copy(step("other", 20), step("cut", 20)).unwrap();
-    let said = "cut/step_000020.hdf is a step of another run, ";
-    for (command, code) in [
-        (&["info", "cut"][..], 2),
-        (&["export", "cut", "--to", "csv"], 2),
-        (&["plot", "cut", "--step", "20"], 2),
-        (&["resume", "cut", "--step", "20"], 2),
-        (&["resume", "cut"], 0),
-    ] {
-        let outcome = dir.raceway(command);
-        let text = outcome.stdout.clone() + &outcome.stderr;
-        assert_eq!(outcome.code, Some(code), "{command:?}: {text}");
-        assert!(text.contains(said), "{command:?}: {text} lacks {said}");
-    }
-    assert_same_run(&dir, "whole", "cut");
-    assert!(
-        std::fs::read(dir.path("cut/superseded_1/step_000020.hdf")).unwrap()
-            == std::fs::read(step("other", 20)).unwrap(),
-        "nothing is lost"
-    );
-    // One in the middle stays out of the views; a summary says whose it is.
-    std::fs::copy(step("other", 4), step("cut", 4)).unwrap();
-    std::fs::copy(dir.path("other/summary.json"), dir.path("cut/summary.json")).unwrap();
-    let outcome = resumed(&dir, &["cut", "--step", "19"]);
-    assert!(
-        outcome
-            .stderr
-            .contains("cut/step_000004.hdf is a step of another run"),
-        "{}",
-        outcome.stderr
-    );
-    assert!(!dir.text("cut/run.hdf.series").contains("step_000004"));
-    std::fs::copy(dir.path("other/summary.json"), dir.path("cut/summary.json")).unwrap();
-    let outcome = dir.raceway(&["report", "cut"]);
-    assert!(
-        outcome
-            .stderr
-            .contains("warning: cut/summary.json is of another run, "),
-        "{}",
-        outcome.stderr
-    );
-    // A run that goes further, or writes other fields, is the same run.
-    resumed(
-        &dir,
-        &[
-            "whole",
-            "--set",
-            "dynamic.duration=0.44 ms",
-            "--set",
-            "output.stress=none",
-        ],
-    );
-    let run = |out: &str| summary(&dir, out)["run"].as_str().unwrap().to_string();
-    assert_eq!((run("whole").len(), run("whole") == run("other")), (16, false));
-    assert_eq!(dir.raceway(&["info", "whole"]).code, Some(0));
-}
-
-/// Wrong: results behind a link, as on the scratch disks of clusters, would have lost their scene and their meshes.
-#[test]
-fn results_behind_a_link_are_resumed() {
-    let dir = moved();
-    std::fs::create_dir_all(dir.path("deep/a/b")).unwrap();
-    std::os::unix::fs::symlink("deep/a/b", dir.path("scratch")).unwrap();
-    for stored in [&[][..], &["--stored-scene"]] {
-        let outcome = dir.raceway(&[
-            "run",
-            "scene.toml",
-            "--out",
-            "scratch/out",
-            "--wall-time",
-            "00:00:00",
-        ]);
-        assert_eq!(outcome.code, Some(75), "{}", outcome.stderr);
-        let outcome = resumed(&dir, &[&["scratch/out"], stored].concat());
-        assert!(
-            !outcome.stderr.contains("is not there any more"),
-            "{}",
-            outcome.stderr
-        );
-        assert_same_run(&dir, "whole", "scratch/out");
-        std::fs::remove_dir_all(dir.path("deep/a/b/out")).unwrap();
-    }
-    // The scene behind a link, and the results moved away together with it.
-    std::fs::create_dir(dir.path("project")).unwrap();
-    for name in ["scene.toml", "inner.msh", "outer.msh"] {
-        std::fs::rename(dir.path(name), dir.path(&format!("project/{name}"))).unwrap();
-    }
-    std::os::unix::fs::symlink("project", dir.path("link")).unwrap();
-    let stopped = ["--out", "link/out", "--wall-time", "00:00:00"];
-    assert_eq!(
-        dir.raceway(&[&["run", "link/scene.toml"], &stopped[..]].concat())
-            .code,
-        Some(75)
-    );
-    std::fs::remove_file(dir.path("link")).unwrap();
-    std::fs::rename(dir.path("project"), dir.path("elsewhere")).unwrap();
-    resumed(&dir, &["elsewhere/out"]);
-    assert_same_run(&dir, "whole", "elsewhere/out");
-    std::fs::rename(dir.path("elsewhere/out"), dir.path("out")).unwrap();
-    refused(
-        &dir,
-        &["out", "--step", "3"],
-        &["--scene says where it is", "inner.msh"],
     );
 }

@@ -369,8 +369,8 @@ fn a_quantity_that_is_not_there_is_said() {
     );
 }
 
-/// Wrong: a study that was killed would leave its run behind, which goes on writing into the folder that the same command then
-/// cannot empty.
+/// Wrong: a study that was killed would leave its run behind, which goes on writing into the folder that the
+/// same command then cannot empty.
 #[test]
 fn a_killed_study_takes_its_run_with_it() {
     let dir = Dir::with_scene(&with_line("[static]", "[static]", DYNAMIC));

@@ -14,6 +14,7 @@ mod limits;
 mod memory;
 mod modes;
 mod motion;
+mod moved_results;
 mod own_files;
 mod plot;
 mod prices;

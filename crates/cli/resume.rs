@@ -225,7 +225,8 @@ fn acquire(dir: &Path) -> Result<Option<FolderLock>, Failure> {
 fn choose_step(dir: &Path, step: Option<u64>) -> Result<u64, Failure> {
     if checkpoint::is_unfinished_start(dir)? {
         return Err(anyhow!(
-            "{} holds no committed step: the run ended before its first one; start it again with raceway run SCENE --out {}",
+            "{} holds no committed step: the run ended before its first one; start it again with raceway run SCENE \
+             --out {}",
             dir.display(),
             dir.display()
         )
@@ -302,7 +303,8 @@ fn scene_of(
     let parsed = Scene::parse(&record.scene, &path, &request.overrides, MeshFiles::MustExist);
     let mut scene = match parsed {
         Err(error) if !path.exists() => {
-            let hint = "the meshes are looked for from the place of the scene file, which is not there: --scene says where it is";
+            let hint = "the meshes are looked for from the place of the scene file, which is not there: --scene says \
+                        where it is";
             return Err(anyhow::Error::from(error).context(hint).into());
         }
         parsed => parsed?,

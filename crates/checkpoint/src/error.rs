@@ -66,7 +66,7 @@ pub enum CheckpointError {
     /// A data set does not hold what was written.
     #[error(
         "data set {dataset} of {} is damaged: its checksum is {found:08x} and {expected:08x} was written; {}",
-        path.display(), Kind::of(path).advice()
+        path.display(), FileKind::of(path).advice()
     )]
     Damaged {
         /// The file.
@@ -79,7 +79,7 @@ pub enum CheckpointError {
         found: u32,
     },
     /// A file is readable HDF5 but not what this crate writes.
-    #[error("{} is {}: {what}; {}", path.display(), Kind::of(path).refused(), Kind::of(path).advice())]
+    #[error("{} is {}: {what}; {}", path.display(), FileKind::of(path).refused(), FileKind::of(path).advice())]
     Malformed {
         /// The file.
         path: PathBuf,
@@ -211,43 +211,43 @@ fn innermost_cause(error: &hdf5::Error) -> String {
 
 /// What a file is by its name.
 #[derive(Clone, Copy, PartialEq, Eq)]
-enum Kind {
+enum FileKind {
     Mesh,
     Step,
     Pack,
     Other,
 }
 
-impl Kind {
-    fn of(path: &Path) -> Kind {
+impl FileKind {
+    fn of(path: &Path) -> FileKind {
         let name = path.file_name().unwrap_or_default().to_string_lossy();
         match &*name {
-            MESH_FILE => Kind::Mesh,
-            name if name.starts_with("step_") => Kind::Step,
-            name if name.starts_with("pack_") => Kind::Pack,
-            _ => Kind::Other,
+            MESH_FILE => FileKind::Mesh,
+            name if name.starts_with("step_") => FileKind::Step,
+            name if name.starts_with("pack_") => FileKind::Pack,
+            _ => FileKind::Other,
         }
     }
 
     /// What a file of this kind is not.
     fn refused(self) -> &'static str {
         match self {
-            Kind::Mesh => "not a complete mesh of results",
-            Kind::Step => "not a complete step file",
-            Kind::Pack => "not a complete pack of steps",
-            Kind::Other => "no file of results",
+            FileKind::Mesh => "not a complete mesh of results",
+            FileKind::Step => "not a complete step file",
+            FileKind::Pack => "not a complete pack of steps",
+            FileKind::Other => "no file of results",
         }
     }
 
     /// What to do about damage.
     fn advice(self) -> &'static str {
         match self {
-            Kind::Mesh => {
+            FileKind::Mesh => {
                 "raceway resume writes it again; results that cannot be resumed are to be computed again"
             }
-            Kind::Step => "use an earlier step",
-            Kind::Pack => "use steps outside of it",
-            Kind::Other => "expected mesh.hdf, step_*.hdf or pack_*.hdf as raceway writes them",
+            FileKind::Step => "use an earlier step",
+            FileKind::Pack => "use steps outside of it",
+            FileKind::Other => "expected mesh.hdf, step_*.hdf or pack_*.hdf as raceway writes them",
         }
     }
 }

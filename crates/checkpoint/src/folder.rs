@@ -30,8 +30,8 @@ pub fn committed_steps(dir: &Path) -> Result<Vec<u64>, CheckpointError> {
     Ok(steps)
 }
 
-/// Identity of the run in `dir`: that of its mesh, or of its first sound step if the mesh has none. None where no file has
-/// one, as in results of earlier versions.
+/// Identity of the run in `dir`: that of its mesh, or of its first sound step if the mesh has none. None
+/// where no file has one, as in results of earlier versions.
 pub fn run_of(dir: &Path) -> Result<Option<String>, CheckpointError> {
     let run = |name: &str| {
         let path = dir.join(name);
@@ -45,7 +45,8 @@ pub fn run_of(dir: &Path) -> Result<Option<String>, CheckpointError> {
     Ok(steps.iter().find_map(|&step| run(&step_file_name(step)).ok()?))
 }
 
-/// Fails if the step file at `path` is damaged in its structure, of another run than `run`, or holds another step than its name says.
+/// Fails if the step file at `path` is damaged in its structure, of another run than `run`, or holds another
+/// step than its name says.
 pub fn require_run(path: &Path, run: Option<&str>) -> Result<(), CheckpointError> {
     verify_structure(path)?;
     let file = CheckedFile::open(path)?;
@@ -58,7 +59,8 @@ pub fn require_run(path: &Path, run: Option<&str>) -> Result<(), CheckpointError
     }
 }
 
-/// Number and time, s, of those of `steps` whose structure is sound and that are of the folder's run, and why the others are not.
+/// Number and time, s, of those of `steps` whose structure is sound and that are of the folder's run, and
+/// why the others are not.
 pub(crate) fn sound_steps(dir: &Path, steps: &[u64]) -> (Vec<(u64, f64)>, Vec<CheckpointError>) {
     let (mut sound, mut damaged) = (Vec::new(), Vec::new());
     let run = run_of(dir).ok().flatten();
@@ -103,7 +105,8 @@ pub fn new_superseded_folder(dir: &Path) -> Result<PathBuf, CheckpointError> {
     Ok(aside)
 }
 
-/// A run that has made its folder and has no step yet; what is there is of no use to anybody. Removed with the first step.
+/// A run that has made its folder and has no step yet; what is there is of no use to anybody. Removed with
+/// the first step.
 const STARTING: &str = ".raceway.starting";
 
 /// Whether the folder holds only what a run left that ended before its first step was committed.
@@ -115,7 +118,8 @@ pub fn is_unfinished_start(dir: &Path) -> Result<bool, CheckpointError> {
     Ok(committed_steps(dir)?.is_empty() && !has_pack)
 }
 
-/// Removes what a run left that ended before its first step: its own files and these `tables`. True if there was such a run.
+/// Removes what a run left that ended before its first step: its own files and these `tables`. True if there
+/// was such a run.
 pub fn clear_unfinished_start(lock: &FolderLock, tables: &[&str]) -> Result<bool, CheckpointError> {
     let dir = lock.dir();
     if !is_unfinished_start(dir)? {

@@ -1,7 +1,8 @@
 //! Files that grow beside the steps, such as the tables of a run, and how the steps vouch for them.
 //!
-//! A step holds length and CRC-32 of each of them as it was when the step was handed over. Whether its start is still what the
-//! run wrote can be told at any time, and a run that resumes knows where to cut. Cost: one pass over what is written.
+//! A step holds length and CRC-32 of each of them as it was when the step was handed over. Whether its start is
+//! still what the run wrote can be told at any time, and a run that resumes knows where to cut. Cost: one pass
+//! over what is written.
 
 use std::collections::BTreeMap;
 use std::fs::{File, OpenOptions};
@@ -15,7 +16,7 @@ use crate::regular;
 
 /// Length and checksum of the start of a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Stamp {
+pub struct FileStamp {
     /// Bytes from the start.
     pub length: u64,
     /// Their CRC-32.
@@ -23,7 +24,7 @@ pub struct Stamp {
 }
 
 /// Stamps by the name of the file.
-pub type Stamps = BTreeMap<String, Stamp>;
+pub type Stamps = BTreeMap<String, FileStamp>;
 
 /// A file open for appending that knows its own stamp.
 #[derive(Debug)]
@@ -47,7 +48,7 @@ impl GrowingFile {
     }
 
     /// Goes on behind the start of a file that `start` tells of; what follows it is cut off.
-    pub fn reopen(path: &Path, start: Stamp) -> Result<GrowingFile, CheckpointError> {
+    pub fn reopen(path: &Path, start: FileStamp) -> Result<GrowingFile, CheckpointError> {
         let open = || {
             regular::open(path)?;
             let file = OpenOptions::new().append(true).open(path)?;
@@ -66,8 +67,8 @@ impl GrowingFile {
     }
 
     /// What has been written so far.
-    pub fn stamp(&self) -> Stamp {
-        Stamp {
+    pub fn stamp(&self) -> FileStamp {
+        FileStamp {
             length: self.length,
             crc: self.hasher.clone().finalize(),
         }
@@ -99,7 +100,7 @@ impl Write for GrowingFile {
 }
 
 /// The stamp of the first `length` bytes of a file, or of all if it has fewer.
-pub fn start_of(path: &Path, length: u64) -> Result<Stamp, CheckpointError> {
+pub fn start_of(path: &Path, length: u64) -> Result<FileStamp, CheckpointError> {
     let sum = || {
         let mut file = regular::open(path)?.take(length);
         let (mut hasher, mut block, mut length) = (Hasher::new(), vec![0; 1 << 16], 0);
@@ -113,14 +114,14 @@ pub fn start_of(path: &Path, length: u64) -> Result<Stamp, CheckpointError> {
             }
         }
         let crc = hasher.finalize();
-        Ok(Stamp { length, crc })
+        Ok(FileStamp { length, crc })
     };
     sum().map_err(CheckpointError::io("read", path))
 }
 
 /// Stamps as a step file holds them: a line `CRC LENGTH NAME` per file.
 pub(crate) fn stamps_text(stamps: &Stamps) -> String {
-    let line = |(name, stamp): (&String, &Stamp)| format!("{:08x} {} {name}", stamp.crc, stamp.length);
+    let line = |(name, stamp): (&String, &FileStamp)| format!("{:08x} {} {name}", stamp.crc, stamp.length);
     stamps.iter().map(line).collect::<Vec<_>>().join("\n")
 }
 
@@ -130,7 +131,7 @@ pub(crate) fn parse_stamps(text: &str) -> Option<Stamps> {
         let mut words = line.splitn(3, ' ');
         let crc = u32::from_str_radix(words.next()?, 16).ok()?;
         let length = words.next()?.parse().ok()?;
-        Some((words.next()?.to_string(), Stamp { length, crc }))
+        Some((words.next()?.to_string(), FileStamp { length, crc }))
     };
     text.lines().map(stamp).collect()
 }

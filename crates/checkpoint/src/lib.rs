@@ -58,7 +58,7 @@ pub use folder::{
     require_run, run_of, step_file_name,
 };
 pub use grid::Grid;
-pub use growing::{GrowingFile, Stamp, Stamps, start_of};
+pub use growing::{FileStamp, GrowingFile, Stamps, start_of};
 pub use index::{Views, rebuild_index};
 pub use lock::FolderLock;
 pub use mesh_file::{MeshFile, read_mesh};

@@ -49,7 +49,8 @@ pub struct Resumed {
     pub mesh_restored: Option<&'static str>,
 }
 
-/// Writes `mesh.hdf` again when it is missing or damaged and the step to resume from is of this mesh. Says what was wrong.
+/// Writes `mesh.hdf` again when it is missing or damaged and the step to resume from is of this mesh. Says
+/// what was wrong.
 fn restore_mesh(dir: &Path, mesh: &MeshFile, step: u64) -> Result<Option<&'static str>, CheckpointError> {
     let fault = match (dir.join(MESH_FILE).exists(), read_mesh(dir)) {
         (true, Ok(_)) => return Ok(None),

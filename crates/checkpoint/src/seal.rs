@@ -169,7 +169,8 @@ fn open_sealed(path: &Path) -> Result<(File, Seal), CheckpointError> {
     }
 }
 
-/// Fails if there is more outside of the arrays than names, shapes and texts can be: the library reads all of that into memory.
+/// Fails if there is more outside of the arrays than names, shapes and texts can be: the library reads all
+/// of that into memory.
 fn require_small_structure(path: &Path, seal: &Seal) -> Result<(), CheckpointError> {
     let arrays = seal
         .arrays

@@ -29,8 +29,8 @@ pub fn from_any_rank(text: Arguments<'_>) {
 /// Most characters of a line that are shown: texts may come from files.
 const LONGEST: usize = 4000;
 
-/// A text that cannot steer a terminal or fill it: control characters other than tabs and ends of lines are spelled out, and lines of
-/// more than [`LONGEST`] characters are cut.
+/// A text that cannot steer a terminal or fill it: control characters other than tabs and ends of lines are
+/// spelled out, and lines of more than [`LONGEST`] characters are cut.
 pub fn harmless(text: String) -> String {
     let steers = |c: char| c.is_control() && !['\n', '\t'].contains(&c);
     let is_harmless = |line: &str| line.len() <= LONGEST && !line.contains(steers);

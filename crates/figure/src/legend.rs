@@ -48,8 +48,9 @@ impl Legend {
 /// The legend takes at most this part of a figure if there are shaded series to leave out.
 const MOST: f64 = 0.25;
 
-/// Arranges the names of all series in rows of the given width, from the origin. Where they would take too much of the figure, only
-/// some of the shaded series are named, the first and the last among them: the shades between tell the others.
+/// Arranges the names of all series in rows of the given width, from the origin. Where they would take too much of
+/// the figure, only some of the shaded series are named, the first and the last among them: the shades between
+/// tell the others.
 pub fn arrange(figure: &Figure, room: f64) -> Legend {
     let all = names(&figure.series);
     let (mut legend, mut every) = (in_rows(&all, room), 1);

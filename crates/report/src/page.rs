@@ -26,19 +26,18 @@ pub fn page(source: &Source, numbers: &[Number], pictures: &[(String, String)]) 
     ];
     format!(
         "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
-         <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n{GENERATOR}\n<title>{title}</title>\n\
+         <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>{title}</title>\n\
          <style>\n{STYLE}</style>\n</head>\n<body>\n{}\n</body>\n</html>\n",
         parts.join("\n")
     )
 }
 
-/// Whether a file is a page of this command, of this version or an earlier one.
+/// Whether a file is a page of this command.
 pub fn is_page(content: &[u8]) -> bool {
-    whole::holds(content, GENERATOR) || whole::holds(content, "<h2>Key numbers</h2>")
+    ["<h2>Warnings</h2>", "<h2>Key numbers</h2>"]
+        .iter()
+        .all(|head| whole::holds(content, head))
 }
-
-/// Says in the page who made it.
-const GENERATOR: &str = "<meta name=\"generator\" content=\"raceway report\">";
 
 /// What was run, by which program, and how it ended.
 fn about(summary: &Value) -> String {

@@ -25,9 +25,9 @@ pub const SOURCE_COMMIT: &str = env!("RACEWAY_COMMIT");
 /// Keys and tables of a scene that a resumed run may change: none of them touches what it computes.
 pub const MAY_CHANGE: [&str; 3] = ["dynamic.duration", "dynamic.output_every", "output"];
 
-/// Identity of a run, which all its files carry: a fingerprint of its scene, without [`MAY_CHANGE`], and of its meshes. Runs with
-/// one identity compute the same, so that a file of one is as good as that of another. The form of the fingerprint must not
-/// change: a resumed run finds its own files by it.
+/// Identity of a run, which all its files carry: a fingerprint of its scene, without [`MAY_CHANGE`], and of its
+/// meshes. Runs with one identity compute the same, so that a file of one is as good as that of another. The form
+/// of the fingerprint must not change: a resumed run finds its own files by it.
 pub fn identity(scene: &Scene) -> anyhow::Result<String> {
     let keys = difference("", &scene.text)?;
     let lasting = keys.iter().filter(|key| !key.is_below(&MAY_CHANGE));
@@ -175,8 +175,8 @@ fn normal(path: &Path) -> Vec<&std::ffi::OsStr> {
 mod tests {
     use super::*;
 
-    /// Wrong: results of an earlier version would be taken for those of another run. The values are those of the published
-    /// test vectors of FNV-1a.
+    /// Wrong: results of an earlier version would be taken for those of another run. The values are those of
+    /// the published test vectors of FNV-1a.
     #[test]
     fn fingerprints_stay_as_they_are() {
         assert_eq!(fingerprint(b""), 0xcbf2_9ce4_8422_2325);

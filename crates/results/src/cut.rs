@@ -8,7 +8,7 @@ use std::io::{BufRead, BufReader, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, anyhow};
-use checkpoint::{GrowingFile, Stamp, open_regular, start_of};
+use checkpoint::{FileStamp, GrowingFile, open_regular, start_of};
 
 use crate::integrity::{doubt, newest_agreeing};
 
@@ -17,19 +17,19 @@ pub struct Cut {
     path: PathBuf,
     header: String,
     /// What stays.
-    keep: Stamp,
+    keep: FileStamp,
     /// All bytes.
     length: u64,
 }
 
 impl Cut {
-    /// The table `name` in `dir` is cut where a step file says that it ended, and must be what that file tells of. Its header
-    /// must be `header`.
+    /// The table `name` in `dir` is cut where a step file says that it ended, and must be what that file
+    /// tells of. Its header must be `header`.
     pub fn at_stamp(
         dir: &Path,
         name: &str,
         header: &str,
-        (last, stamp): (u64, Stamp),
+        (last, stamp): (u64, FileStamp),
     ) -> anyhow::Result<Cut> {
         let path = dir.join(name);
         if let Some(doubt) = doubt(&path, stamp, last)? {

@@ -1,15 +1,17 @@
-//! Whether the tables of a run are still what it wrote: each step file holds length and checksum of every table up to its step.
+//! Whether the tables of a run are still what it wrote: each step file holds length and checksum of every
+//! table up to its step.
 
 use std::path::Path;
 
 use checkpoint::{
-    Stamp, Stamps, committed_steps, read_stamps, require_run, run_of, start_of, step_file_name,
+    FileStamp, Stamps, committed_steps, read_stamps, require_run, run_of, start_of, step_file_name,
 };
 use comm::print;
 
 use crate::summary::{SUMMARY_FILE, read_summary};
 
-/// What is wrong with tables and summary in `dir`, a sentence each; nothing if they are as written, or if no step tells of them.
+/// What is wrong with tables and summary in `dir`, a sentence each; nothing if they are as written, or if no
+/// step tells of them.
 pub fn doubts(dir: &Path) -> anyhow::Result<Vec<String>> {
     let run = run_of(dir)?;
     let mut doubts = doubt_of_summary(dir, run.as_deref());
@@ -67,7 +69,7 @@ fn doubts_at(dir: &Path, step: u64, stamps: &Stamps) -> anyhow::Result<Vec<Strin
 }
 
 /// How a table differs from what the file of `step` tells of it; None if it does not.
-pub fn doubt(path: &Path, stamp: Stamp, step: u64) -> anyhow::Result<Option<String>> {
+pub fn doubt(path: &Path, stamp: FileStamp, step: u64) -> anyhow::Result<Option<String>> {
     let (found, file) = (start_of(path, stamp.length)?, step_file_name(step));
     if found == stamp {
         return Ok(None);
@@ -85,13 +87,14 @@ pub fn doubt(path: &Path, stamp: Stamp, step: u64) -> anyhow::Result<Option<Stri
     }))
 }
 
-/// The newest step before `step` of which all tables are as written. What a table lost at one step it lacks at all later ones.
+/// The newest step before `step` of which all tables are as written. What a table lost at one step it lacks
+/// at all later ones.
 pub fn newest_agreeing(dir: &Path, step: u64) -> Option<u64> {
     let mut steps = committed_steps(dir).ok()?;
     steps.retain(|&n| n < step);
     let agrees = |&n: &u64| {
         let stamps = read_stamps(&dir.join(step_file_name(n)));
-        let fits = |(name, stamp): (&String, &Stamp)| {
+        let fits = |(name, stamp): (&String, &FileStamp)| {
             start_of(&dir.join(name), stamp.length).is_ok_and(|s| s == *stamp)
         };
         stamps.is_ok_and(|stamps| stamps.is_some_and(|stamps| stamps.iter().all(fits)))

@@ -54,7 +54,8 @@ fn rings_at_once() -> usize {
     }
 }
 
-/// Least address space, bytes: the libraries reserve some before the first ring is read, and end the program where they get none.
+/// Least address space, bytes: the libraries reserve some before the first ring is read, and end the program
+/// where they get none.
 const LEAST_ADDRESS_SPACE: u64 = 320_000_000;
 
 /// Fails if the system gives this process too little address space for any work.
@@ -63,8 +64,8 @@ pub fn require_address_space() -> Result<(), Failure> {
     match limit.filter(|&limit| limit < LEAST_ADDRESS_SPACE) {
         None => Ok(()),
         Some(limit) => Err(Failure::User(anyhow!(
-            "the address space of this process is limited to {} MB; expected at least {} MB and the memory that raceway check \
-             forecasts, see ulimit -v",
+            "the address space of this process is limited to {} MB; expected at least {} MB and the memory that \
+             raceway check forecasts, see ulimit -v",
             limit / 1_000_000,
             LEAST_ADDRESS_SPACE / 1_000_000
         ))),

@@ -1,8 +1,8 @@
 //! Stopping early: on a signal, or when the wall time that a batch job has is used up.
 //!
-//! A signal (SIGINT, SIGTERM, SIGUSR1, as batch systems send before they kill, SIGHUP when a terminal closes) only leaves a note; the run looks at it
-//! between two steps, never within one, so the state it saves is that of a finished step. A second SIGINT ends the
-//! program at once.
+//! A signal (SIGINT, SIGTERM, SIGUSR1, as batch systems send before they kill, SIGHUP when a terminal closes) only
+//! leaves a note; the run looks at it between two steps, never within one, so the state it saves is that of a
+//! finished step. A second SIGINT ends the program at once.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};

@@ -29,8 +29,8 @@ pub struct Table {
     columns: Vec<Vec<f64>>,
 }
 
-/// Reads a table of a run; none if there is no such file. Fails, with the line, at a cell that is no finite number, at a
-/// step or time that falls, and at balls out of their order.
+/// Reads a table of a run; none if there is no such file. Fails, with the line, at a cell that is no finite
+/// number, at a step or time that falls, and at balls out of their order.
 pub fn read_rows(path: &Path) -> anyhow::Result<Option<Rows>> {
     if !path.exists() {
         return Ok(None);
@@ -43,7 +43,7 @@ pub fn read_rows(path: &Path) -> anyhow::Result<Option<Rows>> {
         .iter()
         .map(str::to_string)
         .collect();
-    let mut order = Order::new(&names);
+    let mut order = RowOrder::new(&names);
     let mut rows = Vec::new();
     for (i, row) in reader.records().enumerate() {
         let at = || format!("{}, line {}", path.display(), i + 2);
@@ -75,7 +75,7 @@ fn require_number(column: usize, name: &str, cell: &str) -> anyhow::Result<()> {
 }
 
 /// What one row says of the next.
-struct Order {
+struct RowOrder {
     step: Option<usize>,
     time: Option<usize>,
     ball: Option<usize>,
@@ -85,10 +85,10 @@ struct Order {
     n_balls: Option<usize>,
 }
 
-impl Order {
-    fn new(names: &[String]) -> Order {
+impl RowOrder {
+    fn new(names: &[String]) -> RowOrder {
         let place = |wanted: &str| names.iter().position(|name| name == wanted);
-        Order {
+        RowOrder {
             step: place(STEP),
             time: place(TIME),
             ball: place(BALL),

@@ -70,7 +70,8 @@ impl Tables {
         })
     }
 
-    /// Looks where the files of an earlier run are to be cut to go on after its step `last`, which tells of them by `stamps`.
+    /// Looks where the files of an earlier run are to be cut to go on after its step `last`, which tells of
+    /// them by `stamps`.
     pub fn cuts(
         dir: &Path,
         first: &Snapshot,

@@ -46,8 +46,8 @@ pub fn require_own(path: &Path, is_own: impl Fn(&[u8]) -> bool) -> anyhow::Resul
     ))
 }
 
-/// Fails if a picture of this name, without ending, would replace one that the program did not draw. A PNG has no place for a
-/// mark; it is known by the SVG beside it.
+/// Fails if a picture of this name, without ending, would replace one that the program did not draw. A PNG
+/// has no place for a mark; it is known by the SVG beside it.
 pub fn require_own_picture(path: &Path) -> anyhow::Result<()> {
     let svg = path.with_added_extension("svg");
     let is_own = |old: &[u8]| old.starts_with(b"<svg width=\"") && holds(old, "DejaVu Sans");

@@ -144,8 +144,8 @@ fn build_meshes(plan: &Plan, set: &[String], out: &Path) -> Result<(), Failure> 
 }
 
 /// Runs the program once: the cost, or why there are no results. Results of repeats are not kept: they are the same.
-/// The run has the lock of its folder as its input, so that the folder stays locked as long as anybody writes into it, and ends with
-/// this process.
+/// The run has the lock of its folder as its input, so that the folder stays locked as long as anybody
+/// writes into it, and ends with this process.
 fn run_once(
     plan: &Plan,
     set: &[String],

@@ -303,7 +303,8 @@ fn a_step_under_another_number_is_refused() {
     assert_eq!(newest.step, 4);
 }
 
-/// Wrong: who has a damaged mesh would look for an earlier step, which does not help, or take a Gmsh file for damaged results.
+/// Wrong: who has a damaged mesh would look for an earlier step, which does not help, or take a Gmsh file
+/// for damaged results.
 #[test]
 fn the_advice_is_that_of_the_kind_of_file() {
     let dir = tempfile::tempdir().unwrap();
@@ -313,7 +314,10 @@ fn the_advice_is_that_of_the_kind_of_file() {
     fs::write(&mesh, &bytes[..bytes.len() / 2]).unwrap();
     let text = checkpoint::read_mesh(dir.path()).unwrap_err().to_string();
     assert!(
-        text.contains("mesh.hdf is not a complete mesh of results: its seal is missing or damaged; raceway resume writes it again"),
+        text.contains(
+            "mesh.hdf is not a complete mesh of results: its seal is missing or damaged; \
+             raceway resume writes it again"
+        ),
         "{text}"
     );
     let other = dir.path().join("ring.msh");

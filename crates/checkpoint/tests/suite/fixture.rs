@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use checkpoint::{
-    Body, CellFields, IntegrationPointStress, PointFields, Stamp, Stamps, StateArray, StepRecord,
+    Body, CellFields, FileStamp, IntegrationPointStress, PointFields, Stamps, StateArray, StepRecord,
 };
 use mesh::{ElementKind, Mesh};
 
@@ -87,12 +87,12 @@ pub fn record(step: u64) -> StepRecord {
         tables: Some(Stamps::from([
             (
                 "balls.csv".to_string(),
-                Stamp {
+                FileStamp {
                     length: 1000 * step,
                     crc: 7,
                 },
             ),
-            ("Größe 1.csv".to_string(), Stamp { length: 0, crc: 0 }),
+            ("Größe 1.csv".to_string(), FileStamp { length: 0, crc: 0 }),
         ])),
     }
 }

@@ -361,7 +361,8 @@ fn shoulders_of_both_rings_must_leave_a_gap() {
     assert!(message.contains(expected), "{message}");
 }
 
-/// If this failed, a scene without a table would be told that its title lacks a key, and a device would count as missing.
+/// If this failed, a scene without a table would be told that its title lacks a key, and a device would
+/// count as missing.
 #[test]
 fn a_missing_table_and_a_mesh_that_is_no_file_are_said() {
     let folder = tempfile::tempdir().unwrap();
