@@ -233,7 +233,6 @@ impl Writer {
                 ..PointFields::default()
             },
             cells: CellFields::default(),
-            tables: None,
             scene: String::new(),
             tables: None,
             state: named.collect(),
