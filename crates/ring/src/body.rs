@@ -83,7 +83,7 @@ pub struct HeldRing {
     pub mount: Vec<SparseLoad>,
     /// Where the nodes are.
     pub places: NodePlaces,
-    /// Rayleigh damping: C = damping[0] M + damping[1] K.
+    /// Rayleigh damping: C = a M + b K with `[a, b]`.
     pub damping: [f64; 2],
 }
 

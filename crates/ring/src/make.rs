@@ -15,7 +15,7 @@ use crate::nodal::sparse::SparseBody;
 pub struct BodySettings {
     /// What holds it.
     pub partner: Partner,
-    /// Rayleigh damping: C = damping[0] M + damping[1] K.
+    /// Rayleigh damping: C = a M + b K with `[a, b]`.
     pub damping: [f64; 2],
     /// Linear solver.
     pub backend: Backend,
