@@ -30,7 +30,7 @@ pub fn from_any_rank(text: Arguments<'_>) {
 const LONGEST: usize = 4000;
 
 /// A text that cannot steer a terminal or fill it: control characters other than tabs and ends of lines are
-/// spelled out, and lines of more than [`LONGEST`] characters are cut.
+/// spelled out, and lines of more than `LONGEST` characters are cut.
 pub fn harmless(text: String) -> String {
     let steers = |c: char| c.is_control() && !['\n', '\t'].contains(&c);
     let is_harmless = |line: &str| line.len() <= LONGEST && !line.contains(steers);
