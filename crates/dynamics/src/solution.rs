@@ -1,6 +1,7 @@
 //! A static equilibrium: displacements, forces, energies and the checks on them.
 
 use contact::{LoadedPatch, Side};
+use ring::vectors::dot;
 
 use crate::balls::{BallResult, ball_results};
 use crate::effects::Loads;
@@ -246,9 +247,4 @@ fn edge_warnings(footprints: &[Vec<Footprint>; 2], forces: &[[f64; 2]]) -> Vec<S
         }
     }
     warnings
-}
-
-/// a . b, summed in order.
-pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(x, y)| x * y).sum()
 }

@@ -49,12 +49,6 @@ impl RingState {
         }
     }
 
-    /// At rest, without acceleration, at the displacement `w`.
-    pub fn at_rest(w: Vec<f64>) -> RingState {
-        let zero = vec![0.0; w.len()];
-        RingState::new(w, zero.clone(), zero)
-    }
-
     /// Total displacement in the ring's frame.
     pub fn displacement(&self) -> &[f64] {
         &self.w

@@ -172,11 +172,7 @@ impl HarmonicStep<'_> {
     /// Takes what the ports see of the predictor.
     fn answer_with(&mut self, moved: Moved) {
         let start = self.measure(self.old.displacement());
-        self.answer = PortAnswer {
-            predicted: sum(&start, &moved.predicted),
-            start,
-            compliance: moved.compliance,
-        };
+        self.answer = moved.into_answer(start);
     }
 
     /// The increment under these forces, before it is solved for.

@@ -7,7 +7,8 @@ use crate::error::RingError;
 use crate::matrices::NodalMatrices;
 use crate::memory::MotionSizes;
 use crate::sparse::{SparseLoad, sparse_dot};
-use crate::step::PortForces;
+use crate::step::{PortAnswer, PortForces};
+use crate::vectors::sum;
 
 /// A ring and what solves it.
 pub struct NodalBody<S> {
@@ -89,6 +90,17 @@ pub(crate) struct Moved {
     pub compliance: Vec<f64>,
 }
 
+impl Moved {
+    /// The answer of ports with these values at the start of the step.
+    pub fn into_answer(self, start: Vec<f64>) -> PortAnswer {
+        PortAnswer {
+            predicted: sum(&start, &self.predicted),
+            start,
+            compliance: self.compliance,
+        }
+    }
+}
+
 impl Ports {
     pub fn new(held: &HeldRing, places: &[NodalWeights]) -> Ports {
         Ports {
@@ -108,19 +120,10 @@ impl Ports {
         held: &'a HeldRing,
         forces: PortForces<'a>,
     ) -> impl Iterator<Item = (usize, f64)> + 'a {
-        acting(&self.contacts, &held.mount, forces)
+        let contacts = self.contacts.iter().zip(forces.contacts);
+        let all = contacts.chain(held.mount.iter().zip(forces.mount));
+        all.flat_map(|(functional, f)| functional.iter().map(move |&(i, w)| (i, f * w)))
     }
-}
-
-/// Generalised loads of forces on contacts and mount, index and value.
-pub(crate) fn acting<'a>(
-    contacts: &'a [SparseLoad],
-    mount: &'a [SparseLoad],
-    forces: PortForces<'a>,
-) -> impl Iterator<Item = (usize, f64)> + 'a {
-    let contacts = contacts.iter().zip(forces.contacts);
-    let all = contacts.chain(mount.iter().zip(forces.mount));
-    all.flat_map(|(functional, f)| functional.iter().map(move |&(i, w)| (i, f * w)))
 }
 
 /// Compliance of `size` ports, of which the first `contacts` are those of contacts, exactly symmetric, from the

@@ -1,7 +1,5 @@
 //! A ring in sectors cut by angle: its columns stay by sector.
 
-use std::sync::Arc;
-
 use solver::SectorBordered;
 
 use super::columns::{Columns, Moved, NodalBody, NodalSolver, Ports, column_compliance};
@@ -17,7 +15,7 @@ use crate::substructures::Substructures;
 pub type SectorBody = NodalBody<SectorSolver>;
 
 /// The sectors, which solve themselves.
-pub struct SectorSolver(Arc<Substructures>);
+pub struct SectorSolver(Substructures);
 
 /// The factor of the sectors and the compliance of the mount, row-major.
 pub struct SectorsFactored {
@@ -30,7 +28,7 @@ impl SectorBody {
     pub fn new(ring: &RingModel, held: HeldRing, sectors: Sectors) -> Result<SectorBody, RingError> {
         let parts = Substructures::new(ring, held.name, held.coordinates.free(), sectors)?;
         Ok(NodalBody {
-            solver: SectorSolver(Arc::new(parts)),
+            solver: SectorSolver(parts),
             held,
         })
     }
@@ -40,7 +38,7 @@ impl NodalSolver for SectorSolver {
     type Columns = SectorsFactored;
 
     fn matrices(&self) -> &dyn NodalMatrices {
-        &*self.0
+        &self.0
     }
 
     fn name(&self) -> &'static str {

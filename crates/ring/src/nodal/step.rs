@@ -15,7 +15,7 @@ use crate::step::{
     ElasticStep, End, Ended, FrameTurn, Known, KnownLoad, PortAnswer, PortForces, RACEWAYS, RIGHT_SIDE,
     Settling, StepFactor, Works,
 };
-use crate::vectors::{add, combined, dot, sum};
+use crate::vectors::{add, combined, dot};
 
 /// The factor of one ring at one step size.
 pub(super) struct NodalFactor<S: NodalSolver> {
@@ -114,11 +114,7 @@ impl<S: NodalSolver> StepFactor for NodalFactor<S> {
         Box::new(NodalStep {
             factor: self,
             old: from,
-            answer: PortAnswer {
-                predicted: sum(&start, &moved.predicted),
-                start,
-                compliance: moved.compliance,
-            },
+            answer: moved.into_answer(start),
             laps,
             inertia: turn.zip(known.inertia.clone()),
             rounds: FrameRounds::new(turn, self.scheme.dt, held.coordinates.n()),
@@ -155,11 +151,7 @@ impl<S: NodalSolver> ElasticStep for NodalStep<'_, S> {
             .factor
             .columns
             .move_contacts(held, &mut self.predictor, &self.ports);
-        self.answer = PortAnswer {
-            predicted: sum(&start, &moved.predicted),
-            start,
-            compliance: moved.compliance,
-        };
+        self.answer = moved.into_answer(start);
         if S::Columns::BY_TABLE {
             laps.add(RACEWAYS, clock.lap());
         }
