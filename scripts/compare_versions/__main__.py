@@ -7,7 +7,7 @@ import sys
 import time
 from pathlib import Path
 
-from . import inputs, motions, ranks, rests, rules, runs, selftest, tools
+from . import inputs, motions, ranks, rests, rules, runs, scene, selftest, tools
 
 GROUPS = {inputs.NAME: inputs.compare, tools.NAME: tools.compare}
 
@@ -22,15 +22,19 @@ def arguments():
     parser.add_argument("--only", default="")
     parser.add_argument("--lines", type=int, default=12)
     parser.add_argument("--mpi", nargs=2, type=Path, metavar=("OLD", "NEW"))
+    parser.add_argument("--undeformed", action="store_true")
     parser.add_argument("--list", action="store_true")
     parser.add_argument("--self-test", action="store_true")
     return parser.parse_args()
 
 
-def chosen(only, has_mpi):
+def chosen(only, has_mpi, from_undeformed):
     """Names of scenes and groups to compare, with how; empty when a name is unknown."""
-    jobs = {case.name: (lambda s, case=case: runs.compare(s, case)) for case in motions.CASES + rests.CASES}
-    jobs.update(GROUPS)
+    cases = motions.CASES + rests.CASES
+    if from_undeformed:
+        cases = [scene.undeformed(case) for case in motions.CASES]
+    jobs = {case.name: (lambda s, case=case: runs.compare(s, case)) for case in cases}
+    jobs.update({} if from_undeformed else GROUPS)
     if has_mpi:
         jobs[ranks.NAME] = ranks.compare
     names = [name for name in only.split(",") if name]
@@ -71,7 +75,7 @@ def exit_code(verdicts):
 def main():
     """Exit code as above."""
     options = arguments()
-    jobs = chosen(options.only, options.mpi is not None)
+    jobs = chosen(options.only, options.mpi is not None, options.undeformed)
     if options.list:
         print("\n".join(jobs))
         return 0

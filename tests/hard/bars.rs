@@ -1,7 +1,7 @@
 //! An elastic bar on a rigid wall, see [`super::rod`].
 
+use dynamics::interactions::discrete_gradient::ContactScheme;
 use dynamics::motion::Integrator;
-use dynamics::motion::contacts::ContactScheme;
 
 use super::plot::{Curve, Plot};
 use super::record::{LEDGER, Record};

@@ -6,7 +6,7 @@
 
 use contact::Side;
 use dynamics::effects::{Effect, Loads, Now};
-use dynamics::motion::contacts::ContactScheme;
+use dynamics::interactions::discrete_gradient::ContactScheme;
 use dynamics::motion::{Integrator, Motion, MotionSettings, MotionState, StepCache};
 use dynamics::{DynamicsError, Model, ShaftDof};
 

@@ -12,8 +12,8 @@ use std::sync::Arc;
 
 use contact::{ContactLaw, Groove, NodalWeights, Side};
 use dense::DenseCholesky;
+use dynamics::interactions::discrete_gradient::ContactScheme;
 use dynamics::motion::Integrator;
-use dynamics::motion::contacts::ContactScheme;
 use dynamics::motion::inertia::Inertia;
 use dynamics::motion::shaft::ShaftStep;
 use dynamics::motion::small::{RingAnswer, SmallSystem};

@@ -7,7 +7,7 @@
 //! must not give back what they took: Newmark's in the energy at every step, the others in their own norm (`norm`), once the loads rest
 //! and where steps resolve the balls.
 
-use dynamics::motion::contacts::ContactScheme;
+use dynamics::interactions::discrete_gradient::ContactScheme;
 use dynamics::motion::ledger::LOSSY;
 use dynamics::motion::{Integrator, MotionSettings};
 use dynamics::{Model, ShaftDof};

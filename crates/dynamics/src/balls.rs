@@ -3,8 +3,9 @@
 use contact::Side;
 use serde::Serialize;
 
+use crate::displacements::Displacements;
 use crate::model::Model;
-use crate::problem::{Displacements, Problem};
+use crate::parts::Parts;
 
 /// One contact of a ball.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -54,14 +55,14 @@ impl BallResult {
 }
 
 /// Results of all balls at given displacements.
-pub fn ball_results(model: &Model, problem: &Problem, u: &Displacements) -> Vec<BallResult> {
+pub fn ball_results(model: &Model, parts: &Parts, u: &Displacements) -> Vec<BallResult> {
+    let (sites, states) = (&parts.contacts.sites, parts.states_at(u));
     let contact = |i: usize| {
-        let site = &problem.sites[i];
-        let state = site.state(u);
+        let (site, state) = (&sites[i], &states[i]);
         let hertz = &model.hertz[site.side.index()];
         ContactResult {
             force_n: state.force.force,
-            contact_angle_rad: site.contact_angle(&state),
+            contact_angle_rad: state.angle,
             approach_m: state.force.approach,
             semi_axes_m: hertz.semi_axes(state.force.force),
             peak_pressure_pa: hertz.peak_pressure(state.force.force),
@@ -69,9 +70,7 @@ pub fn ball_results(model: &Model, problem: &Problem, u: &Displacements) -> Vec<
     };
     (0..model.geometry.n_balls)
         .map(|ball| BallResult {
-            azimuth_rad: problem.sites[2 * ball]
-                .azimuth
-                .rem_euclid(2.0 * std::f64::consts::PI),
+            azimuth_rad: sites[2 * ball].azimuth.rem_euclid(2.0 * std::f64::consts::PI),
             inner: contact(2 * ball + Side::Inner.index()),
             outer: contact(2 * ball + Side::Outer.index()),
             displacement_m: BallDisplacement {

@@ -1,4 +1,10 @@
-//! What the contact problem solves for.
+//! What an equilibrium is found for, and the unknowns of a bearing at rest.
+
+use contact::Side;
+
+use crate::interactions::raceway_contact::SiteState;
+use crate::parts::{FIRST_BALL, Parts, SHAFT};
+use crate::system::Body;
 
 /// Displacements of everything small: m, rad.
 #[derive(Clone, Debug, PartialEq)]
@@ -19,5 +25,45 @@ impl Displacements {
             balls: vec![[0.0; 2]; n_balls],
             grooves: flexible.map(|f| if f { vec![[0.0; 2]; n_balls] } else { Vec::new() }),
         }
+    }
+}
+
+impl Parts {
+    /// The unknowns that place the bodies at `u`.
+    pub fn unknowns(&self, u: &Displacements) -> Vec<f64> {
+        let mut x: Vec<f64> = self.shaft.free().map(|dof| u.shaft[dof]).collect();
+        x.extend(u.balls.as_flattened());
+        for (ports, grooves) in self.rings.iter().zip(&u.grooves) {
+            if ports.is_some() {
+                x.extend(grooves.as_flattened());
+            }
+        }
+        x
+    }
+
+    /// Where the unknowns place the bodies. Grooves of rings that do not answer stay as in `held`.
+    pub fn displacements(&self, x: &[f64], held: &Displacements) -> Displacements {
+        let system = self.system();
+        let grooves = |side: Side| match self.elastic(side) {
+            Some(i) => x[system.unknowns(Body::Elastic(i))].as_chunks().0.to_vec(),
+            None => held.grooves[side.index()].clone(),
+        };
+        Displacements {
+            shaft: system.coordinates(SHAFT, x),
+            balls: (0..self.balls.len())
+                .map(|ball| system.coordinates(FIRST_BALL + ball, x))
+                .collect(),
+            grooves: Side::BOTH.map(grooves),
+        }
+    }
+
+    /// All contacts at given displacements.
+    pub fn states_at(&self, u: &Displacements) -> Vec<SiteState> {
+        self.states(&self.unknowns(u))
+    }
+
+    /// Force on the ring of every site [radial, axial], N.
+    pub fn forces_at(&self, u: &Displacements) -> Vec<[f64; 2]> {
+        self.states_at(u).iter().map(SiteState::on_ring).collect()
     }
 }

@@ -1,32 +1,29 @@
-//! Minimum of the contact problem's energy by Newton with line search.
+//! Static equilibrium of bodies and contacts as they are: the minimum of the energy.
 //!
-//! The energy is convex, so a step along which the slope of the energy shrinks is progress, whatever opens or closes;
-//! the test needs no energy values and so loses no digits near the solution. A small proximal stiffness makes
-//! steps of unloaded balls zero instead of undefined; it does not shift the solution. Steps are capped, which
-//! makes any start safe: no load, huge load, unloaded balls. Cost: one dense factorisation of 2 n_balls (1 + rings) +
-//! 5 unknowns per iteration.
+//! The elastic energy of the rings is a positive quadratic form and that of the contacts convex, so the total energy is
+//! convex and its minimum is the equilibrium. Steps of Newton are capped, which makes any start safe: no load, huge
+//! load, unloaded balls. Cost: one dense factorisation of 2 n_balls (1 + rings) + 5 unknowns per iteration.
 
 use contact::{BearingGeometry, Side};
-use dense::{DenseCholesky, DenseError, DenseLu};
+use dense::{DenseError, DenseLu};
+use timer::SharedLaps;
 
+use crate::bodies::AXES;
+use crate::displacements::Displacements;
 use crate::error::DynamicsError;
 use crate::footprint::loaded;
-use crate::problem::{Displacements, Problem, SHAFT_DOFS, Site, site_forces};
+use crate::model::MAX_TILT;
+use crate::parts::{Parts, SHAFT};
+use crate::system::newton::{Policy, RoundOff, Search};
 
 /// Largest residual over the force scale at which Newton may stop; it goes on to round-off while it improves.
 const RESIDUAL_LIMIT: f64 = 1e-10;
-/// Residual over the force scale below which further improvement is round-off.
-const RESIDUAL_TARGET: f64 = 1e-14;
 /// Newton iterations before giving up. Preloaded bearings need 6 to 40. Loose ones need up to some hundred: a ball that
 /// comes off leaves its last raceway by a factor 3 in approach per iteration, and every ball that is met on the way
 /// takes its turn.
-const MAX_ITERATIONS: usize = 2000;
+const MOST_ITERATIONS: usize = 2000;
 /// Proximal stiffness over the contact stiffness scale.
 const PROXIMAL: f64 = 1e-9;
-/// Slope of the energy that ends a line search, relative to its start.
-const SLOPE_SHRINK: f64 = 0.5;
-/// Largest tilt for which small rotations hold, rad (about 3 deg).
-pub const MAX_TILT: f64 = 0.05;
 
 /// Limits and scales of the search.
 #[derive(Clone, Copy, Debug)]
@@ -37,6 +34,8 @@ pub struct SearchScales {
     pub range: f64,
     /// Stiffness of a typical contact, N/m.
     pub stiffness: f64,
+    /// Length by which tilts are scaled, m.
+    pub tilt_arm: f64,
 }
 
 impl SearchScales {
@@ -48,174 +47,70 @@ impl SearchScales {
             step: 0.25 * distance,
             range: 0.5 * geometry.ball_diameter,
             stiffness: 1.5 * hertz_stiffness * (0.01 * distance).sqrt(),
+            tilt_arm: geometry.centre_radius(Side::Inner),
         }
+    }
+
+    /// Length per unknown: tilts count by their arm.
+    fn of_unknowns(&self, parts: &Parts) -> Vec<f64> {
+        let mut scales: Vec<f64> = parts
+            .shaft
+            .free()
+            .map(|dof| if dof < 3 { 1.0 } else { 1.0 / self.tilt_arm })
+            .collect();
+        scales.resize(parts.system().n(), 1.0);
+        scales
     }
 }
 
 /// Displacements of the minimum, from any start, and the iterations it took.
 pub fn minimise(
-    problem: &Problem,
-    start: Displacements,
+    parts: &Parts,
+    start: &Displacements,
     scales: SearchScales,
 ) -> Result<(Displacements, usize), DynamicsError> {
-    let mut u = start;
-    let mut gradient = problem.gradient(&u);
-    let mut history: Vec<f64> = Vec::new();
-    let mut best = f64::INFINITY;
-    let mut stalled = 0;
-    for iteration in 0..MAX_ITERATIONS {
-        let residual = largest(&gradient);
-        if !residual.is_finite() {
-            return Err(DynamicsError::NotFinite {
-                what: "a contact force",
-            });
-        }
-        let scale = force_scale(problem, &u);
-        stalled = if residual < 0.5 * best { 0 } else { stalled + 1 };
-        best = best.min(residual);
-        history.push(residual);
-        let good = residual <= (RESIDUAL_LIMIT * scale).max(round_off(problem, &u));
-        if residual <= RESIDUAL_TARGET * scale || (good && stalled >= 2) {
-            return Ok((u, iteration));
-        }
-        let direction = direction(problem, &u, &gradient, scales)?;
-        (u, gradient) = line_search(problem, &u, &gradient, &direction);
-        check_range(&u, scales)?;
-    }
-    let (worst, residual) =
-        gradient.iter().enumerate().fold(
-            (0, 0.0),
-            |(w, r), (i, g)| {
-                if g.abs() > r { (i, g.abs()) } else { (w, r) }
-            },
-        );
-    let tail = history.len().saturating_sub(8);
-    Err(DynamicsError::NewtonStalled {
-        iterations: MAX_ITERATIONS,
-        residual,
-        place: problem.name(worst),
-        limit: RESIDUAL_LIMIT * force_scale(problem, &u),
-        history: history.split_off(tail),
-    })
-}
-
-/// Newton direction, capped.
-fn direction(
-    problem: &Problem,
-    u: &Displacements,
-    gradient: &[f64],
-    scales: SearchScales,
-) -> Result<Vec<f64>, DynamicsError> {
-    let n = problem.n();
-    let mut hessian = problem.hessian(u);
-    for i in 0..n {
-        hessian[n * i + i] += proximal(problem, scales);
-    }
-    let mut direction: Vec<f64> = gradient.iter().map(|g| -g).collect();
-    if problem.is_conservative() {
-        DenseCholesky::factor(n, &hessian)
-            .map_err(dense_error)?
-            .solve(&mut direction, 1);
-    } else {
-        DenseLu::factor(n, &hessian)
-            .map_err(dense_error)?
-            .solve(&mut direction, 1);
-    }
-    let length = largest(&direction);
-    if length > scales.step {
-        direction.iter_mut().for_each(|x| *x *= scales.step / length);
-    }
-    Ok(direction)
-}
-
-/// Longest step of at most 1 along which the slope of the convex energy is still falling or has shrunk enough.
-fn line_search(
-    problem: &Problem,
-    u: &Displacements,
-    gradient: &[f64],
-    direction: &[f64],
-) -> (Displacements, Vec<f64>) {
-    if !problem.is_conservative() {
-        return backtrack(problem, u, gradient, direction);
-    }
-    let slope_at = |g: &[f64]| g.iter().zip(direction).map(|(g, p)| g * p).sum::<f64>();
-    let start = slope_at(gradient);
-    let mut step = 1.0;
-    // 60 reductions reach below the resolution of any step.
-    for _ in 0..60 {
-        let trial = problem.moved(u, direction, step);
-        let trial_gradient = problem.gradient(&trial);
-        let slope = slope_at(&trial_gradient);
-        if slope <= SLOPE_SHRINK * start.abs() {
-            return (trial, trial_gradient);
-        }
-        // The slope has passed zero: secant to its root, kept away from both ends.
-        step *= (start / (start - slope)).clamp(0.1, 0.9);
-    }
-    (u.clone(), gradient.to_vec())
-}
-
-/// Halves the step until the residual shrinks: the search without an energy.
-fn backtrack(
-    problem: &Problem,
-    u: &Displacements,
-    gradient: &[f64],
-    direction: &[f64],
-) -> (Displacements, Vec<f64>) {
-    let size = |g: &[f64]| g.iter().map(|x| x * x).sum::<f64>();
-    let mut step = 1.0;
-    // 30 halvings reach below what a smooth residual can need; then the last step is tried as it is.
-    for _ in 0..30 {
-        let trial = problem.moved(u, direction, step);
-        let trial_gradient = problem.gradient(&trial);
-        if size(&trial_gradient) < (1.0 - 0.1 * step) * size(gradient) {
-            return (trial, trial_gradient);
-        }
-        step *= 0.5;
-    }
-    let trial = problem.moved(u, direction, step);
-    let trial_gradient = problem.gradient(&trial);
-    (trial, trial_gradient)
+    let system = parts.system();
+    let lengths = scales.of_unknowns(parts);
+    let policy = Policy {
+        most_iterations: MOST_ITERATIONS,
+        residual_limit: RESIDUAL_LIMIT,
+        force_scale: largest_load(parts, scales),
+        round_off: RoundOff::Links,
+        scales: Some(&lengths),
+        proximal: proximal(parts, scales),
+        longest_step: scales.step,
+        search: Search::Energy,
+        watch: &|x| check_range(system.coordinates(SHAFT, x), scales),
+        costs: &SharedLaps::default(),
+    };
+    let solved = system.solve(parts.unknowns(start), &policy)?;
+    Ok((parts.displacements(&solved.unknowns, start), solved.iterations))
 }
 
 /// Force, N, that the round-off of positions makes in all contacts together: what a light load can be balanced to.
-pub fn round_off(problem: &Problem, u: &Displacements) -> f64 {
-    let of_site = |site: &Site| {
-        let state = site.state(u);
-        // The vector between the centres is a sum of terms of the size of these two.
-        let place = 2.0 * f64::EPSILON * (state.length + site.reach[0].hypot(site.reach[1]));
-        // A contact that has no stiffness yet has the force of an approach that cannot be told from zero.
-        (place * state.force.tangent).max(site.law.evaluate(place).force)
-    };
-    problem.sites.iter().map(of_site).sum()
+pub fn round_off(parts: &Parts, u: &Displacements) -> f64 {
+    parts.system().round_off(&parts.unknowns(u))
 }
 
-/// Largest force in the problem, N.
-fn force_scale(problem: &Problem, u: &Displacements) -> f64 {
-    let contacts = problem.sites.iter().map(|s| s.state(u).force.force);
-    let loads = problem
-        .ball_load
-        .iter()
-        .flatten()
-        .chain(&problem.shaft_load[..3])
-        .map(|f| f.abs());
-    let moments = problem.shaft_load[3..].iter().map(|m| m.abs() / problem.tilt_arm);
-    contacts
-        .chain(loads)
-        .chain(moments)
-        .fold(0.0, f64::max)
-        .max(f64::MIN_POSITIVE)
+/// Largest load on shaft and balls, N.
+fn largest_load(parts: &Parts, scales: SearchScales) -> f64 {
+    let shaft = parts.shaft.dofs.iter().enumerate();
+    let shaft = shaft.map(|(dof, x)| if dof < 3 { x.load } else { x.load / scales.tilt_arm });
+    let balls = parts.balls.iter().flat_map(|ball| ball.dofs.map(|dof| dof.load));
+    shaft
+        .chain(balls)
+        .fold(f64::MIN_POSITIVE, |most, load| most.max(load.abs()))
 }
 
-fn check_range(u: &Displacements, scales: SearchScales) -> Result<(), DynamicsError> {
-    for (i, q) in u.shaft.iter().enumerate() {
+fn check_range(shaft: [f64; 5], scales: SearchScales) -> Result<(), DynamicsError> {
+    for (i, q) in shaft.into_iter().enumerate() {
         let (limit, text) = match i {
             0..3 => (scales.range, format!("{:.3} mm", 1e3 * scales.range)),
             _ => (MAX_TILT, format!("{MAX_TILT} rad, where small rotations end")),
         };
         if q.abs() > limit {
             return Err(DynamicsError::NoEquilibrium {
-                dof: SHAFT_DOFS[i],
+                dof: AXES[i],
                 limit: text,
             });
         }
@@ -224,12 +119,21 @@ fn check_range(u: &Displacements, scales: SearchScales) -> Result<(), DynamicsEr
 }
 
 /// Fails when a free shaft dof has no stiffness at the solution `u`.
-pub fn check_held(problem: &Problem, u: &Displacements, scales: SearchScales) -> Result<(), DynamicsError> {
-    let free: Vec<usize> = (0..5).filter(|&i| problem.shaft_free[i]).collect();
-    let (n, m) = (problem.n(), free.len());
-    let mut hessian = problem.hessian(u);
+pub fn check_held(parts: &Parts, u: &Displacements, scales: SearchScales) -> Result<(), DynamicsError> {
+    let free: Vec<usize> = parts.shaft.free().collect();
+    let (system, x) = (parts.system(), parts.unknowns(u));
+    let (n, m) = (system.n(), free.len());
+    let at = system.evaluate(&x, &SharedLaps::default());
+    let mut hessian = system.body_tangent(&x);
+    system.add_link_tangents(&x, &at.links, &mut hessian);
+    let lengths = scales.of_unknowns(parts);
+    for (row, a) in hessian.chunks_exact_mut(n).zip(&lengths) {
+        row.iter_mut()
+            .zip(&lengths)
+            .for_each(|(value, b)| *value *= a * b);
+    }
     for i in m..n {
-        hessian[n * i + i] += proximal(problem, scales);
+        hessian[n * i + i] += proximal(parts, scales);
     }
     // Condense everything but the shaft: stiffness of the shaft on its balls and rings.
     let rest = n - m;
@@ -256,7 +160,7 @@ pub fn check_held(problem: &Problem, u: &Displacements, scales: SearchScales) ->
         let pivot = stiffness[m * i + i];
         if pivot < 1e3 * PROXIMAL * scale {
             return Err(DynamicsError::Unheld {
-                dof: SHAFT_DOFS[free[i]],
+                dof: AXES[free[i]],
                 stiffness: (pivot / scale).max(0.0),
             });
         }
@@ -269,46 +173,63 @@ pub fn check_held(problem: &Problem, u: &Displacements, scales: SearchScales) ->
 }
 
 /// Proximal stiffness, N/m: a trace of the contacts' and more than what a growing ball load takes away.
-fn proximal(problem: &Problem, scales: SearchScales) -> f64 {
-    let slope = problem
-        .ball_slopes
-        .iter()
-        .fold(0.0, |largest, s| f64::max(largest, *s));
-    PROXIMAL * scales.stiffness + 2.0 * slope
+fn proximal(parts: &Parts, scales: SearchScales) -> f64 {
+    let slopes = parts.balls.iter().map(|ball| ball.dofs[0].load_slope);
+    PROXIMAL * scales.stiffness + 2.0 * slopes.fold(0.0, f64::max)
 }
 
 fn dense_error(source: DenseError) -> DynamicsError {
     DynamicsError::ContactSystem { source }
 }
 
-fn largest(v: &[f64]) -> f64 {
-    // NaN must not be lost in a maximum.
-    v.iter()
-        .fold(0.0, |m, x| if x.abs() > m || x.is_nan() { x.abs() } else { m })
-}
-
 /// Unloaded balls rest midway between their raceways: those without a load of their own that are not squeezed between
 /// both. A ball that Newton left touching a raceway, with a force below its residual, is unloaded.
-pub fn centre_unloaded(problem: &Problem, u: &mut Displacements) {
-    let size = |load: &[f64; 2]| load[0].hypot(load[1]);
+pub fn centre_unloaded(parts: &Parts, u: &mut Displacements) {
+    let size = |load: [f64; 2]| load[0].hypot(load[1]);
+    let loads: Vec<f64> = (0..parts.balls.len())
+        .map(|ball| size(parts.ball_load(ball)))
+        .collect();
     // The weight of a ball across its meridian plane leaves round-off in that plane.
-    let heaviest = problem.ball_load.iter().map(size).fold(0.0, f64::max);
-    let weightless = 4.0 * f64::EPSILON * heaviest;
-    let loaded = loaded(&site_forces(problem, u));
-    for (pair, loaded) in problem.sites.chunks_exact(2).zip(loaded.chunks_exact(2)) {
-        let (inner, outer) = (pair[0].state(u), pair[1].state(u));
+    let weightless = 4.0 * f64::EPSILON * loads.iter().copied().fold(0.0, f64::max);
+    let loaded = loaded(&parts.forces_at(u));
+    let states = parts.states_at(u);
+    let pairs = parts.contacts.sites.chunks_exact(2).zip(states.chunks_exact(2));
+    for ((pair, states), loaded) in pairs.zip(loaded.chunks_exact(2)) {
         let ball = pair[0].ball;
-        if loaded == [true, true] || size(&problem.ball_load[ball]) > weightless {
+        if loaded == [true, true] || loads[ball] > weightless {
             continue;
         }
         debug_assert!(pair[0].side == Side::Inner && pair[1].side == Side::Outer);
-        let from = |s: &crate::problem::SiteState| [s.normal[0] * s.length, s.normal[1] * s.length];
-        let (to_ball_inner, to_ball_outer) = (from(&inner), from(&outer));
         // Groove centres seen from the ball, then the point of equal gap on their line.
-        let centre_inner = [-to_ball_inner[0], -to_ball_inner[1]];
-        let centre_outer = [-to_ball_outer[0], -to_ball_outer[1]];
+        let [centre_inner, centre_outer] = [0, 1].map(|i| states[i].reach().map(|l| -l));
         let shift = contact::geometry::midway(centre_inner, centre_outer, pair[0].touching, pair[1].touching);
         u.balls[ball][0] += shift[0];
         u.balls[ball][1] += shift[1];
+    }
+}
+
+impl Parts {
+    /// Load on a ball at its just-touching position and what its contacts add besides their normal forces [radial,
+    /// axial], N.
+    pub fn ball_load(&self, ball: usize) -> [f64; 2] {
+        let mut load = self.balls[ball].dofs.map(|dof| dof.load);
+        for (site, dead) in self.contacts.sites.iter().zip(&self.contacts.dead) {
+            if site.ball == ball {
+                load = [load[0] - dead[0], load[1] - dead[1]];
+            }
+        }
+        load
+    }
+
+    /// Loads on the shaft with what the contacts of a ring that it carries add besides their normal forces, N and N m.
+    pub fn shaft_load(&self) -> [f64; 5] {
+        let mut sum = self.shaft.dofs.map(|dof| dof.load);
+        let contacts = self.contacts.sites.iter().zip(&self.contacts.dead);
+        for (site, dead) in contacts.filter(|(site, _)| site.side == Side::Inner) {
+            for (load, row) in sum.iter_mut().zip(site.carrier_rows()) {
+                *load += row[0] * dead[0] + row[1] * dead[1];
+            }
+        }
+        sum
     }
 }

@@ -62,12 +62,12 @@ pub enum DynamicsError {
     },
     /// A free shaft dof of a motion has neither inertia nor a contact that holds it.
     #[error(
-        "{dof} of the shaft is free, but it has no mass and no ball touches it, so nothing says where it goes: \
+        "{dof} is free, but it has no mass and no ball touches it, so nothing says where it goes: \
          give shaft.mass, lock it in [shaft], or load the bearing so that balls touch"
     )]
     Adrift {
-        /// Shaft dof.
-        dof: &'static str,
+        /// What it is.
+        dof: String,
     },
     /// A motion went where the equations do not hold.
     #[error(

@@ -9,8 +9,8 @@ use mesh::NodePositions;
 use rayon::prelude::*;
 
 use crate::error::DynamicsError;
+use crate::interactions::raceway_contact::{RacewayContacts, Site, SiteState};
 use crate::model::{ContactMode, Model, elastic};
-use crate::problem::{Displacements, Problem, Site};
 use crate::raceway::Raceway;
 use ring::RingModel;
 
@@ -35,14 +35,14 @@ pub struct Footprint {
     pub truncated: bool,
 }
 
-/// Places all contacts of one ring for the displacements `u` and site forces, and sets the laws (patch compliance)
-/// and, for facets, the unevenness of the grooves.
+/// Places all contacts of one ring, which stand at `states` with these site forces, and sets the laws (patch
+/// compliance) and, for facets, the unevenness of the grooves.
 pub fn place(
     model: &Model,
     side: Side,
     raceway: &Raceway,
-    problem: &mut Problem,
-    u: &Displacements,
+    contacts: &mut RacewayContacts,
+    states: &[SiteState],
     forces: &[[f64; 2]],
 ) -> Result<Vec<Footprint>, DynamicsError> {
     let ring = model.ring(side).expect("only flexible rings have footprints");
@@ -51,10 +51,10 @@ pub fn place(
     let mut feet = Vec::with_capacity(n_balls);
     for ball in 0..n_balls {
         let index = 2 * ball + side.index();
-        let site = &mut problem.sites[index];
+        let (site, angle) = (&mut contacts.sites[index], states[index].angle);
         feet.push(match model.contact.mode {
-            ContactMode::Facet => place_facet(model, ring, raceway, site, u, forces[index])?,
-            _ => place_patch(model, ring, raceway, site, u, forces[index], loaded[index])?,
+            ContactMode::Facet => place_facet(model, ring, raceway, site, angle, forces[index])?,
+            _ => place_patch(model, ring, raceway, site, angle, forces[index], loaded[index])?,
         });
     }
     Ok(feet)
@@ -65,12 +65,12 @@ fn place_patch(
     ring: &RingModel,
     raceway: &Raceway,
     site: &mut Site,
-    u: &Displacements,
+    angle: f64,
     force: [f64; 2],
     loaded: bool,
 ) -> Result<Footprint, DynamicsError> {
     let load = force[0].hypot(force[1]);
-    let angle = on_groove(&raceway.surface, site.contact_angle(&site.state(u)), loaded);
+    let angle = on_groove(&raceway.surface, angle, loaded);
     let hertz = model.hertz[site.side.index()].semi_axes(load);
     let spacings = model.contact.patch_spacings;
     let shape = PatchShape::new(&raceway.surface, site.ring_azimuth, angle, hertz, spacings)?;
@@ -110,28 +110,27 @@ pub fn on_groove(surface: &RacewaySurface, angle: f64, loaded: bool) -> f64 {
 /// Fails when a loaded ball of an equilibrium lies beyond the rim of a flexible ring's groove.
 pub fn check_on_groove(
     surface: &RacewaySurface,
-    problem: &Problem,
-    u: &Displacements,
+    sites: &[Site],
+    states: &[SiteState],
     forces: &[[f64; 2]],
 ) -> Result<(), DynamicsError> {
     let of_ring = |site: &Site| site.side == surface.groove.side;
-    let contacts = problem.sites.iter().zip(loaded(forces));
-    for (site, _) in contacts.filter(|(site, loaded)| *loaded && of_ring(site)) {
-        let angle = site.contact_angle(&site.state(u));
-        require_on_groove(surface, site.ball, angle)?;
+    let contacts = sites.iter().zip(states).zip(loaded(forces));
+    for ((site, state), _) in contacts.filter(|((site, _), loaded)| *loaded && of_ring(site)) {
+        require_on_groove(surface, site.ball, state.angle)?;
     }
     Ok(())
 }
 
 /// Fails when a loaded ball of an equilibrium presses where no groove can be: on a rigid ring nothing else says so.
 pub fn check_in_grooves(
-    problem: &Problem,
-    u: &Displacements,
+    sites: &[Site],
+    states: &[SiteState],
     forces: &[[f64; 2]],
 ) -> Result<(), DynamicsError> {
-    let contacts = problem.sites.iter().zip(loaded(forces));
-    for (site, _) in contacts.filter(|(_, loaded)| *loaded) {
-        require_in_groove(site.ball, site.side, site.contact_angle(&site.state(u)))?;
+    let contacts = sites.iter().zip(states).zip(loaded(forces));
+    for ((site, state), _) in contacts.filter(|(_, loaded)| *loaded) {
+        require_in_groove(site.ball, site.side, state.angle)?;
     }
     Ok(())
 }
@@ -172,14 +171,13 @@ fn place_facet(
     ring: &RingModel,
     raceway: &Raceway,
     site: &mut Site,
-    u: &Displacements,
+    angle: f64,
     force: [f64; 2],
 ) -> Result<Footprint, DynamicsError> {
     let search = FacetSearch::new(model, ring, raceway, site);
     if site.unevenness.is_none() {
         site.unevenness = Some(Arc::new(search.unevenness(raceway.surface.angle_range)?));
     }
-    let angle = site.contact_angle(&site.state(u));
     // The rim itself is left out: a foot point beyond it is on no facet.
     let contact = search.foot(on_groove(&raceway.surface, angle, false))?;
     let hertz = model.hertz[site.side.index()].semi_axes(force[0].hypot(force[1]));

@@ -4,6 +4,7 @@
 //! contacts). This crate does no input or output.
 
 pub mod balls;
+mod bodies;
 mod compliance;
 pub mod costs;
 pub mod displacements;
@@ -12,17 +13,19 @@ pub mod equilibrium;
 pub mod error;
 pub mod footprint;
 pub mod frame;
+pub mod interactions;
 pub mod kinematics;
 pub mod loading;
 pub mod model;
 pub mod modes;
 pub mod motion;
+pub mod parts;
 pub mod pose;
-pub mod problem;
 pub mod quasi_static;
 pub mod raceway;
 pub mod solution;
 pub mod statics;
+pub mod system;
 
 pub use effects::{Effect, Loads};
 pub use error::DynamicsError;

@@ -1,4 +1,4 @@
-//! Loads in the contact problem: at rest, and for loads that follow the contact angles, until both rest.
+//! Loads on bodies and contacts: at rest, and for loads that follow the contact angles, until both rest.
 //!
 //! Loads that do not depend on contact angles are evaluated once. Those that do (the gyroscopic moment; with the speeds of outer
 //! raceway control the centrifugal force of the balls too) are evaluated
@@ -11,21 +11,22 @@
 use contact::Side;
 use timer::SharedLaps;
 
+use crate::displacements::Displacements;
 use crate::effects::{self, Loads, Now};
 use crate::equilibrium::{SearchScales, minimise};
 use crate::error::DynamicsError;
 use crate::model::Model;
+use crate::parts::Parts;
 use crate::pose::Pose;
-use crate::problem::{Displacements, Problem, Site, site_forces};
 
-/// The contact problem of a model at an instant, with its loads.
+/// Bodies and contacts of a model at an instant, with their loads.
 pub struct LoadCase<'a> {
     /// Model.
     pub model: &'a Model,
     /// Instant.
     pub pose: Pose,
-    /// Contact problem, with the loads in it.
-    pub problem: Problem,
+    /// Bodies and contacts, with the loads in them.
+    pub parts: Parts,
     /// The loads.
     pub loads: Loads,
     /// Limits and scales of the search.
@@ -35,32 +36,32 @@ pub struct LoadCase<'a> {
 }
 
 impl<'a> LoadCase<'a> {
-    /// The problem on rigid rings, with the loads of an instant on contacts as they stand in `u`.
+    /// Those on rigid rings, with the loads of an instant on contacts as they stand in `u`.
     pub fn new(
         model: &'a Model,
         pose: Pose,
         costs: &SharedLaps,
         u: &Displacements,
     ) -> Result<LoadCase<'a>, DynamicsError> {
-        let problem = pose.problem(model);
+        let mut parts = pose.parts(model);
+        parts.set_rings([None, None], &u.grooves);
         let stiffness = model.hertz[0].stiffness.max(model.hertz[1].stiffness);
         let mut case = LoadCase {
             model,
             pose,
-            problem,
+            parts,
             loads: Loads::none(model),
             scales: SearchScales::new(&model.geometry, stiffness),
             newton_iterations: 0,
         };
         case.loads = case.loads_at(costs, u)?;
-        case.problem.set_loads(&case.loads);
+        case.parts.set_loads(&case.loads);
         Ok(case)
     }
 
     /// Loads at the contact angles of `u`.
     fn loads_at(&self, costs: &SharedLaps, u: &Displacements) -> Result<Loads, DynamicsError> {
-        let angle = |site: &Site| site.contact_angle(&site.state(u));
-        let angles: Vec<f64> = self.problem.sites.iter().map(angle).collect();
+        let angles: Vec<f64> = self.parts.states_at(u).iter().map(|state| state.angle).collect();
         let now = Now {
             angles: Some(&angles),
             ..self.pose.now
@@ -70,9 +71,9 @@ impl<'a> LoadCase<'a> {
         self.pose.in_frames(self.model, loads, inertia)
     }
 
-    /// Newton on the problem as it is.
-    pub fn minimise(&mut self, start: Displacements) -> Result<Displacements, DynamicsError> {
-        let (u, iterations) = minimise(&self.problem, start, self.scales)?;
+    /// Newton on bodies and contacts as they are.
+    pub fn minimise(&mut self, start: &Displacements) -> Result<Displacements, DynamicsError> {
+        let (u, iterations) = minimise(&self.parts, start, self.scales)?;
         self.newton_iterations += iterations;
         Ok(u)
     }
@@ -84,7 +85,7 @@ impl<'a> LoadCase<'a> {
         costs: &SharedLaps,
         start: Displacements,
     ) -> Result<Displacements, DynamicsError> {
-        let mut u = self.minimise(start)?;
+        let mut u = self.minimise(&start)?;
         if !self.loads.follows_angles {
             return Ok(u);
         }
@@ -93,7 +94,7 @@ impl<'a> LoadCase<'a> {
         let mut relaxation = Relaxation::default();
         for _ in 0..self.model.tolerances.max_rounds {
             let mut next = self.loads_at(costs, &u)?;
-            let largest = largest_force(&site_forces(&self.problem, &u));
+            let largest = largest_force(&self.parts.forces_at(&u));
             let n_contacts = next.contacts.len();
             let (change, place) = largest_change(&following(&self.loads), &following(&next), largest);
             if change <= tolerance {
@@ -107,8 +108,8 @@ impl<'a> LoadCase<'a> {
             history.push(change);
             relaxation.shorten(&self.loads, &mut next);
             self.loads = next;
-            self.problem.set_loads(&self.loads);
-            u = self.minimise(u)?;
+            self.parts.set_loads(&self.loads);
+            u = self.minimise(&u)?;
         }
         Err(not_settled(self.model, tolerance, worst, history))
     }
@@ -123,23 +124,21 @@ impl<'a> LoadCase<'a> {
     }
 }
 
-impl Problem {
+impl Parts {
     /// Puts loads in the place of those before.
     pub fn set_loads(&mut self, loads: &Loads) {
-        self.shaft_load = [0, 1, 2, 3, 4].map(|i| loads.shaft[i] + loads.ring_on_shaft[i]);
-        self.ball_load.clone_from(&loads.balls);
-        self.contact_load.clone_from(&loads.contacts);
-        self.ball_slopes.clone_from(&loads.ball_slopes);
-        for (site, force) in self.sites.iter().zip(&loads.contacts) {
-            for i in 0..2 {
-                self.ball_load[site.ball][i] -= force[i];
-            }
-            if site.side == Side::Inner {
-                for (load, row) in self.shaft_load.iter_mut().zip(site.shaft_rows()) {
-                    *load += row[0] * force[0] + row[1] * force[1];
-                }
-            }
+        for (i, dof) in self.shaft.dofs.iter_mut().enumerate() {
+            dof.load = loads.shaft[i] + loads.ring_on_shaft[i];
         }
+        for (ball, (load, slope)) in self
+            .balls
+            .iter_mut()
+            .zip(loads.balls.iter().zip(&loads.ball_slopes))
+        {
+            (ball.dofs[0].load, ball.dofs[1].load) = (load[0], load[1]);
+            ball.dofs[0].load_slope = *slope;
+        }
+        self.contacts.dead.clone_from(&loads.contacts);
     }
 }
 

@@ -15,6 +15,9 @@ use ring::{Backend, RingModel};
 
 use crate::effects::Effect;
 
+/// Largest tilt for which small rotations hold, rad (about 3 deg).
+pub const MAX_TILT: f64 = 0.05;
+
 /// One degree of freedom of the shaft.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ShaftDof {

@@ -6,11 +6,14 @@
 
 use contact::Side;
 
+use crate::bodies::{FlatBody, Inertia, Name};
 use crate::effects::{Loads, Now, resultant};
 use crate::error::DynamicsError;
 use crate::frame::{turn, turn_nodal};
-use crate::model::{Model, ShaftDof};
-use crate::problem::{Problem, Site};
+use crate::interactions::raceway_contact::Site;
+use crate::model::Model;
+use crate::parts::{ContactParts, Parts};
+use crate::system::Interval;
 
 /// Time and angles of an instant; the default is a bearing that has not turned, at time 0.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -30,8 +33,8 @@ impl Pose {
         }
     }
 
-    /// Contact problem of this instant on rings that do not deform, still without loads.
-    pub(crate) fn problem(&self, model: &Model) -> Problem {
+    /// Bodies and contacts of this instant on rings that do not deform, still without loads.
+    pub(crate) fn parts(&self, model: &Model) -> Parts {
         let geometry = &model.geometry;
         let site = |ball: usize, side: Side| {
             let azimuth = geometry.azimuth(ball) + self.now.cage_angle;
@@ -40,16 +43,19 @@ impl Pose {
             site
         };
         let sites = (0..geometry.n_balls).flat_map(|ball| Side::BOTH.map(|side| site(ball, side)));
-        Problem {
-            sites: sites.collect(),
-            rings: [None, None],
-            shaft_free: model.shaft.map(|d| d == ShaftDof::Free),
-            shaft_load: [0.0; 5],
-            ball_load: vec![[0.0; 2]; geometry.n_balls],
-            contact_load: Vec::new(),
-            ball_slopes: vec![0.0; geometry.n_balls],
-            tilt_arm: geometry.centre_radius(Side::Inner),
-        }
+        let imposed = [0, 1, 2, 3, 4].map(|dof| model.prescribed(dof, self.now.time));
+        let ball = |ball: usize| FlatBody::new(Name::Ball(ball), [Inertia::default(); 2], [None; 2]);
+        Parts::new(
+            Interval::Rest,
+            FlatBody::new(Name::Shaft, [Inertia::default(); 5], imposed),
+            (0..geometry.n_balls).map(ball).collect(),
+            [None, None],
+            ContactParts {
+                sites: sites.collect(),
+                dead: Vec::new(),
+                means: None,
+            },
+        )
     }
 
     /// Loads of which those on the nodes of a flexible inner ring are given in its own frame, and the shaft carries

@@ -4,12 +4,14 @@ use contact::{LoadedPatch, Side};
 use ring::vectors::dot;
 
 use crate::balls::{BallResult, ball_results};
+use crate::displacements::Displacements;
 use crate::effects::Loads;
 use crate::equilibrium::centre_unloaded;
 use crate::footprint::{Footprint, loaded};
+use crate::interactions::raceway_contact::{Site, SiteState};
 use crate::loading::LoadCase;
+use crate::parts::Parts;
 use crate::pose::Pose;
-use crate::problem::{Displacements, Problem, Site, site_forces};
 
 /// Peak pressure that leaves a permanent indentation of 1e-4 of the ball diameter in bearing steel, Pa: ISO 76, for ball
 /// bearings.
@@ -49,6 +51,8 @@ pub struct StaticSolution {
     pub warnings: Vec<String>,
     /// All contacts with their laws: ball 0 inner, ball 0 outer, ball 1 inner, ...
     pub sites: Vec<Site>,
+    /// The same contacts at the equilibrium.
+    pub contacts: Vec<SiteState>,
     /// Growth of the radial load of each ball with its radial displacement, N/m.
     pub ball_slopes: Vec<f64>,
     footprints: [Vec<Footprint>; 2],
@@ -65,23 +69,24 @@ pub struct RingFields {
 impl StaticSolution {
     /// Evaluates everything at the equilibrium `u` of a load case, found in a number of rounds.
     pub fn new(case: &LoadCase, mut u: Displacements, rings: RingFields, rounds: usize) -> StaticSolution {
-        let (model, problem) = (case.model, &case.problem);
-        centre_unloaded(problem, &mut u);
-        let (residual, reaction) = shaft_balance(problem, &u);
-        let forces = site_forces(problem, &u);
+        let (model, parts) = (case.model, &case.parts);
+        centre_unloaded(parts, &mut u);
+        let states = parts.states_at(&u);
+        let (residual, reaction) = shaft_balance(parts, &states);
+        let forces: Vec<[f64; 2]> = states.iter().map(SiteState::on_ring).collect();
         // Loads on the rings, through their elastic motion: on their bodies and, besides the normal forces, at contacts.
         let ring_load_work = body_work(&case.loads, &rings) + ring_contact_work(&rings, &case.loads.contacts);
         let strain_energy = 0.5 * (ring_contact_work(&rings, &forces) + ring_load_work);
-        let hertz_energy = problem.sites.iter().map(|s| s.state(&u).force.energy).sum();
-        let contact_work: f64 = problem.sites.iter().map(|s| s.work(&u)).sum();
-        let ball_work: f64 = problem
-            .ball_loads(&u)
-            .iter()
-            .zip(&u.balls)
-            .map(|(f, x)| dot(f, x))
+        let hertz_energy = states.iter().map(|state| state.force.energy).sum();
+        let contact_work: f64 = parts.contacts.sites.iter().zip(&states).map(contact_work).sum();
+        let slopes = parts.balls.iter().map(|ball| ball.dofs[0].load_slope);
+        let loads = (0..parts.balls.len()).map(|ball| parts.ball_load(ball));
+        let ball_work = loads.zip(slopes).zip(&u.balls);
+        let ball_work: f64 = ball_work
+            .map(|((f, slope), x)| dot(&[f[0] + slope * x[0], f[1]], x))
             .sum();
-        let balls = ball_results(model, problem, &u);
-        let load_work = ball_work + dot(&problem.shaft_load, &u.shaft) + ring_load_work;
+        let balls = ball_results(model, parts, &u);
+        let load_work = ball_work + dot(&parts.shaft_load(), &u.shaft) + ring_load_work;
         StaticSolution {
             warnings: warnings(&rings.footprints, &forces, &balls)
                 .into_iter()
@@ -104,8 +109,9 @@ impl StaticSolution {
             newton_iterations: case.newton_iterations,
             displacements: u,
             pose: case.pose,
-            sites: problem.sites.clone(),
-            ball_slopes: problem.ball_slopes.clone(),
+            sites: parts.contacts.sites.clone(),
+            contacts: states,
+            ball_slopes: parts.balls.iter().map(|ball| ball.dofs[0].load_slope).collect(),
             elastic: rings.elastic,
             footprints: rings.footprints,
         }
@@ -143,6 +149,13 @@ impl StaticSolution {
     }
 }
 
+/// Work of a contact force through the whole displacement of ball against groove centre, J.
+fn contact_work((site, state): (&Site, &SiteState)) -> f64 {
+    let (l, n) = (state.reach(), state.normal);
+    let moved = [0, 1].map(|i| l[i] - site.reach[i]);
+    state.force.force * (n[0] * moved[0] + n[1] * moved[1])
+}
+
 /// Forces at the contacts, by site or none at all, times the elastic motion of the groove centres, J.
 fn ring_contact_work(rings: &RingFields, forces: &[[f64; 2]]) -> f64 {
     let mut work = 0.0;
@@ -167,17 +180,17 @@ fn body_work(loads: &Loads, rings: &RingFields) -> f64 {
 }
 
 /// Sum of contact and applied loads on the shaft: on free dofs a residual, on the others minus the reaction.
-fn shaft_balance(problem: &Problem, u: &Displacements) -> ([f64; 5], [f64; 5]) {
-    let mut sum = problem.shaft_load;
-    for site in problem.sites.iter().filter(|s| s.side == Side::Inner) {
-        let state = site.state(u);
-        for (total, row) in sum.iter_mut().zip(site.shaft_rows()) {
+fn shaft_balance(parts: &Parts, states: &[SiteState]) -> ([f64; 5], [f64; 5]) {
+    let mut sum = parts.shaft_load();
+    let contacts = parts.contacts.sites.iter().zip(states);
+    for (site, state) in contacts.filter(|(site, _)| site.side == Side::Inner) {
+        for (total, row) in sum.iter_mut().zip(site.carrier_rows()) {
             *total += state.force.force * dot(&row, &state.normal);
         }
     }
     let pick = |free: bool| {
         [0, 1, 2, 3, 4].map(|i| {
-            if problem.shaft_free[i] == free {
+            if parts.shaft.imposed[i].is_none() == free {
                 sum[i]
             } else {
                 0.0

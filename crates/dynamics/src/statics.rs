@@ -19,6 +19,7 @@ use timer::{Laps, SharedLaps, Stopwatch};
 
 use crate::compliance;
 use crate::costs::{self, COLUMNS, EFFECTS, FACTOR, NEWTON, PATCHES, SOLVE};
+use crate::displacements::Displacements;
 use crate::effects::Loads;
 use crate::equilibrium::{SearchScales, check_held, minimise, round_off};
 use crate::error::DynamicsError;
@@ -26,10 +27,11 @@ use crate::footprint::{Footprint, check_in_grooves, check_on_groove, place};
 use crate::loading::{LoadCase, largest_change, largest_force, not_settled};
 use crate::model::{ContactMode, Model};
 use crate::motion::run::partner;
+use crate::parts::Parts;
 use crate::pose::Pose;
-use crate::problem::{Displacements, Problem, RingResponse, site_forces};
 use crate::raceway::Raceway;
 use crate::solution::{RingFields, StaticSolution};
+use crate::system::ElasticPorts;
 use ring::Inventory;
 use ring::statics::{RingSolver, StaticSettings};
 use ring::{Backend, RingModel};
@@ -147,8 +149,9 @@ impl StaticSolver {
         if self.rings.iter().any(Option::is_some) {
             return self.rounds(case, u);
         }
-        check_in_grooves(&case.problem, &u, &site_forces(&case.problem, &u))?;
-        check_held(&case.problem, &u, case.scales)?;
+        let sites = &case.parts.contacts.sites;
+        check_in_grooves(sites, &case.parts.states_at(&u), &case.parts.forces_at(&u))?;
+        check_held(&case.parts, &u, case.scales)?;
         let rings = RingFields {
             elastic: [None, None],
             footprints: [Vec::new(), Vec::new()],
@@ -175,40 +178,43 @@ impl StaticSolver {
             ContactMode::Facet => model.tolerances.force.max(FACET_TOLERANCE),
             _ => model.tolerances.force,
         };
-        let mut forces = site_forces(&case.problem, &u);
+        let mut forces = case.parts.forces_at(&u);
         let (mut history, mut worst) = (Vec::new(), 0);
         for round in 1..=model.tolerances.max_rounds {
             let mut clock = Stopwatch::start();
             let mut feet = [Vec::new(), Vec::new()];
+            let states = case.parts.states_at(&u);
             for side in Side::BOTH {
                 if let Some(ring) = &self.rings[side.index()] {
-                    feet[side.index()] = place(model, side, &ring.raceway, &mut case.problem, &u, &forces)?;
+                    let contacts = &mut case.parts.contacts;
+                    feet[side.index()] = place(model, side, &ring.raceway, contacts, &states, &forces)?;
                 }
             }
             self.timing.add(PATCHES, clock.lap());
             self.renew_columns(model.backend, &feet, &history)?;
             let ring_forces = case.ring_forces(&forces);
             let fields = self.fields(model.backend, &feet, &ring_forces, &case.loads);
-            self.respond(&mut case.problem, &feet, &ring_forces, &fields);
+            let rings = self.answers(&feet, &ring_forces, &fields);
+            case.parts.set_rings(rings, &u.grooves);
             let contact_loads = case.loads.contacts.clone();
             let mut clock = Stopwatch::start();
             if round == 1 {
-                adopt_offsets(&case.problem, &mut u);
-                u = approach_facets(&mut case.problem, u, case.scales)?;
+                adopt_offsets(&case.parts, &mut u);
+                u = approach_facets(&mut case.parts, u, case.scales)?;
             }
             u = case.settle(&self.costs, u)?;
             self.timing.add(NEWTON, clock.lap());
-            let updated = site_forces(&case.problem, &u);
+            let updated = case.parts.forces_at(&u);
             let largest = largest_force(&updated);
             let normal = largest_change(&forces, &updated, largest);
             let across = largest_change(&contact_loads, &case.loads.contacts, largest);
             let (change, place) = if across.0 > normal.0 { across } else { normal };
             (forces, worst) = (updated, place);
             history.push(change);
-            if change <= tolerance.max(round_off(&case.problem, &u) / largest) {
-                self.check_places(&case.problem, &u, &forces)?;
-                check_held(&case.problem, &u, case.scales)?;
-                check_patches(&case.problem, &u)?;
+            if change <= tolerance.max(round_off(&case.parts, &u) / largest) {
+                self.check_places(&case.parts, &u, &forces)?;
+                check_held(&case.parts, &u, case.scales)?;
+                check_patches(&case.parts, &u)?;
                 let rings = RingFields {
                     elastic: fields,
                     footprints: feet,
@@ -216,19 +222,20 @@ impl StaticSolver {
                 return Ok(StaticSolution::new(&case, u, rings, round));
             }
         }
-        self.check_places(&case.problem, &u, &forces)?;
+        self.check_places(&case.parts, &u, &forces)?;
         Err(not_settled(model, tolerance, worst, history))
     }
 
     fn check_places(
         &self,
-        problem: &Problem,
+        parts: &Parts,
         u: &Displacements,
         forces: &[[f64; 2]],
     ) -> Result<(), DynamicsError> {
+        let (sites, states) = (&parts.contacts.sites, parts.states_at(u));
         let mut rings = self.rings.iter().flatten();
-        rings.try_for_each(|ring| check_on_groove(&ring.raceway.surface, problem, u, forces))?;
-        check_in_grooves(problem, u, forces)
+        rings.try_for_each(|ring| check_on_groove(&ring.raceway.surface, sites, &states, forces))?;
+        check_in_grooves(sites, &states, forces)
     }
 
     /// Computes the compliance columns when there are none, and again when rounds contract slowly.
@@ -286,53 +293,61 @@ impl StaticSolver {
         [inner, outer]
     }
 
-    /// Puts the measured motions and the columns into the problem.
-    fn respond(
+    /// How the rings answer at their contacts: the motions measured under these forces, and the columns.
+    fn answers(
         &self,
-        problem: &mut Problem,
         feet: &[Vec<Footprint>; 2],
         forces: &[[f64; 2]],
         fields: &[Option<Vec<f64>>; 2],
-    ) {
-        for side in Side::BOTH {
+    ) -> [Option<ElasticPorts>; 2] {
+        Side::BOTH.map(|side| {
             let i = side.index();
-            if let (Some(field), Some(stiffness)) = (&fields[i], &self.columns[i]) {
-                problem.rings[i] = Some(RingResponse {
-                    offset: feet[i].iter().flat_map(|f| f.weights.measure(field)).collect(),
-                    force: (0..feet[i].len()).flat_map(|b| forces[2 * b + i]).collect(),
-                    stiffness: stiffness.clone(),
-                });
-            }
-        }
+            let (field, stiffness) = (fields[i].as_ref()?, self.columns[i].as_ref()?);
+            let measured = feet[i].iter().flat_map(|f| f.weights.measure(field));
+            Some(ElasticPorts {
+                name: side.name(),
+                start: vec![0.0; 2 * feet[i].len()],
+                offset: measured.collect(),
+                at_forces: (0..feet[i].len()).flat_map(|b| forces[2 * b + i]).collect(),
+                stiffness: stiffness.clone(),
+                n_moving: 2 * feet[i].len(),
+                follow: None,
+            })
+        })
     }
 }
 
 /// Follows the equilibrium from exact grooves to their facets, whose offsets exceed the approach of the balls.
 fn approach_facets(
-    problem: &mut Problem,
+    parts: &mut Parts,
     mut u: Displacements,
     scales: SearchScales,
 ) -> Result<Displacements, DynamicsError> {
-    if problem.is_conservative() {
+    if parts.system().has_energy() {
         return Ok(u);
     }
-    let full: Vec<_> = problem.sites.iter().map(|s| s.unevenness.clone()).collect();
+    let full: Vec<_> = parts
+        .contacts
+        .sites
+        .iter()
+        .map(|s| s.unevenness.clone())
+        .collect();
     for i in 1..FACET_STAGES {
         let share = i as f64 / FACET_STAGES as f64;
-        for (site, unevenness) in problem.sites.iter_mut().zip(&full) {
+        for (site, unevenness) in parts.contacts.sites.iter_mut().zip(&full) {
             site.unevenness = unevenness.as_ref().map(|x| Arc::new(x.scaled(share)));
         }
-        u = minimise(problem, u, scales)?.0;
+        u = minimise(parts, &u, scales)?.0;
     }
-    for (site, unevenness) in problem.sites.iter_mut().zip(full) {
+    for (site, unevenness) in parts.contacts.sites.iter_mut().zip(full) {
         site.unevenness = unevenness;
     }
     Ok(u)
 }
 
 /// Starts groove motions at what was measured: the first guess of a ring that answers for the first time.
-fn adopt_offsets(problem: &Problem, u: &mut Displacements) {
-    for (groove, ring) in u.grooves.iter_mut().zip(&problem.rings) {
+fn adopt_offsets(parts: &Parts, u: &mut Displacements) {
+    for (groove, ring) in u.grooves.iter_mut().zip(&parts.rings) {
         if let Some(ring) = ring {
             for (g, c) in groove.iter_mut().flatten().zip(&ring.offset) {
                 *g = *c;
@@ -341,9 +356,8 @@ fn adopt_offsets(problem: &Problem, u: &mut Displacements) {
     }
 }
 
-fn check_patches(problem: &Problem, u: &Displacements) -> Result<(), DynamicsError> {
-    for site in &problem.sites {
-        let state = site.state(u);
+fn check_patches(parts: &Parts, u: &Displacements) -> Result<(), DynamicsError> {
+    for (site, state) in parts.contacts.sites.iter().zip(parts.states_at(u)) {
         if state.force.beyond_limit {
             return Err(DynamicsError::PatchTooSmall {
                 ball: site.ball,

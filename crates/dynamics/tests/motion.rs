@@ -2,8 +2,8 @@
 
 mod support;
 
+use dynamics::interactions::discrete_gradient::{ContactDamping, ContactScheme};
 use dynamics::kinematics::Speed;
-use dynamics::motion::contacts::{ContactDamping, ContactScheme};
 use dynamics::motion::{Motion, MotionSettings, MotionState, StepCache};
 use dynamics::{ContactMode, Hold, Model, StaticSolution};
 use support::rings::Level;

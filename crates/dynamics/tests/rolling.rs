@@ -7,8 +7,8 @@ use std::sync::LazyLock;
 
 use contact::Side;
 use dynamics::balls::BallResult;
+use dynamics::interactions::discrete_gradient::ContactDamping;
 use dynamics::kinematics::{Rolling, Speed};
-use dynamics::motion::contacts::ContactDamping;
 use dynamics::motion::{Motion, MotionSettings, MotionState, StepCache};
 use dynamics::{ContactMode, Hold, Model, QuasiStatic};
 use support::Case;

@@ -1,7 +1,7 @@
 //! What a scene says about a motion, as the solver wants it.
 
+use dynamics::interactions::discrete_gradient::{ContactDamping, ContactScheme};
 use dynamics::kinematics::Speed;
-use dynamics::motion::contacts::{ContactDamping, ContactScheme};
 use dynamics::motion::{Integrator, Ladder, MotionSettings};
 
 use crate::tables::{self, Dynamic, IntegratorChoice, Scene};

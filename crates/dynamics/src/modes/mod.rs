@@ -34,8 +34,8 @@ use timer::{Laps, Stopwatch};
 
 use crate::costs::{FACTOR, SEARCH};
 use crate::error::DynamicsError;
+use crate::interactions::raceway_contact::{Site, SiteState};
 use crate::model::{ContactMode, Model, ShaftDof};
-use crate::problem::site_hessian;
 use crate::solution::StaticSolution;
 use columns::Contact;
 use ring::{Backend, Partner, RingModel, VibratingRing};
@@ -186,7 +186,7 @@ fn contacts(
     rings: &[Option<VibratingRing>; 2],
     shaft: &[(usize, usize)],
 ) -> Vec<Contact> {
-    let of_site = |site: &crate::problem::Site| {
+    let of_site = |(site, state): (&Site, &SiteState)| {
         let i = site.side.index();
         let weights = rings[i].as_ref().map(|ring| {
             let foot = &equilibrium.footprints(site.side)[site.ball];
@@ -195,18 +195,23 @@ fn contacts(
         let small = [0, 1].map(|direction| {
             let mut row = vec![(2 * site.ball + direction, 1.0)];
             if site.side == Side::Inner {
-                let rows = site.shaft_rows();
+                let rows = site.carrier_rows();
                 row.extend(shaft.iter().map(|&(dof, place)| (place, -rows[dof][direction])));
             }
             row
         });
         Contact {
-            stiffness: site_hessian(&site.state(&equilibrium.displacements)),
+            stiffness: state.tangent(),
             ring: weights.map(|w| (i, w)),
             small,
         }
     };
-    equilibrium.sites.iter().map(of_site).collect()
+    equilibrium
+        .sites
+        .iter()
+        .zip(&equilibrium.contacts)
+        .map(of_site)
+        .collect()
 }
 
 fn search(

@@ -7,9 +7,9 @@ use contact::Side;
 use ring::{ElasticStep, End, Ended, Settling};
 
 use super::cache::{Ahead, ExpectedLoads};
-use super::newton::SmallSolution;
 use super::place::expected;
 use super::run::Motion;
+use super::solve::StepSolution;
 use super::span::Span;
 use super::state::MotionState;
 use super::substep::Part;
@@ -33,10 +33,10 @@ impl Motion<'_> {
         &self,
         state: &MotionState,
         part: &mut Part<'_>,
-        solution: &SmallSolution,
+        solution: &StepSolution,
         upcoming: Option<Span>,
     ) -> Result<Option<RingEnds>, DynamicsError> {
-        let forces = Side::BOTH.map(|side| part.system.forces_at_ports(side, solution));
+        let forces = Side::BOTH.map(|side| part.parts.forces_at_ports(side, solution));
         let scale = part.scale;
         if part.expected.loads.frame.is_some() {
             let settle = |(step, forces): (&mut Box<dyn ElasticStep + '_>, &super::part::RingForces)| {
@@ -92,16 +92,16 @@ impl Motion<'_> {
         &self,
         state: &MotionState,
         part: &Part<'_>,
-        solution: &SmallSolution,
+        solution: &StepSolution,
         upcoming: Option<Span>,
     ) -> Option<Arc<ExpectedLoads>> {
         let span = upcoming.filter(|span| span.rung == part.span.rung)?;
-        let met = part.system.places(solution);
+        let met = part.parts.places(solution);
         let places = expected([&met, &state.places[0], &state.places[1]]);
         self.expected_loads(places, span).ok()
     }
 
-    /// Counts a round and hands the new predictors to the small system.
+    /// Counts a round and hands the new predictors to the system.
     fn next_round(&self, part: &mut Part<'_>) -> Result<(), DynamicsError> {
         part.report.frame_rounds += 1;
         if part.report.frame_rounds > MAX_FRAME_ROUNDS {
@@ -110,9 +110,9 @@ impl Motion<'_> {
                 speed: part.expected.loads.frame.map_or(0.0, |turn| turn.speed),
             });
         }
-        for (answer, step) in part.system.rings.iter_mut().zip(&part.rings) {
-            if let (Some(answer), Some(step)) = (answer, step) {
-                answer.predicted.clone_from(&step.answer().predicted);
+        for (ports, step) in part.parts.rings.iter_mut().zip(&part.rings) {
+            if let (Some(ports), Some(step)) = (ports, step) {
+                ports.offset.clone_from(&step.answer().predicted);
             }
         }
         Ok(())

@@ -1,21 +1,24 @@
 //! The new state of a part of a step, its energies and its ledger.
 
 use contact::Side;
-use ring::{ElasticStep, Ended, RingState, Works};
+use ring::{ElasticStep, Ended, RingState, StepScheme, Works};
 
-use super::newton::SmallSolution;
+use super::ledger::Ledger;
 use super::part::RingSteps;
 use super::run::{Motion, MovingRing};
-use super::small::{SmallSystem, first_five};
+use super::solve::StepSolution;
 use super::state::MotionState;
+use crate::bodies::FlatBody;
+use crate::parts::Parts;
+use crate::system::{Interval, Lumped};
 
 impl Motion<'_> {
     /// The state after a part, and its local error over the largest contact approach.
     pub(super) fn finish(
         &self,
         state: &MotionState,
-        system: &SmallSystem,
-        solution: &SmallSolution,
+        (parts, dt): (&Parts, f64),
+        solution: &StepSolution,
         rings: RingSteps<'_>,
         ends: [Option<Ended>; 2],
     ) -> (MotionState, f64) {
@@ -24,7 +27,7 @@ impl Motion<'_> {
             .settings
             .ladder
             .tolerance
-            .map(|_| vec![[0.0; 2]; 3 * system.balls.len()]);
+            .map(|_| vec![[0.0; 2]; 3 * parts.balls.len()]);
         let energies = ends
             .each_ref()
             .map(|end| end.as_ref().map_or([0.0; 2], |end| end.energies));
@@ -32,10 +35,10 @@ impl Motion<'_> {
             let i = side.index();
             if let (Some(step), Some(end), Some(old)) = (step, end, &state.rings[i]) {
                 let works = (end.works, &*step);
-                self.finish_ring(&mut next, side, (system, solution), works, [old, &end.state]);
+                self.finish_ring(&mut next, side, (parts, solution), works, [old, &end.state]);
                 if let Some(trend) = &mut trend {
-                    let mean = mean_acceleration(&*step, [old, &end.state], system.dt);
-                    let first = system.balls.len() + i;
+                    let mean = mean_acceleration(&*step, [old, &end.state], dt);
+                    let first = parts.balls.len() + i;
                     for (ball, a) in mean.chunks_exact(2).enumerate() {
                         trend[first + 2 * ball] = [a[0], a[1]];
                     }
@@ -43,18 +46,22 @@ impl Motion<'_> {
                 next.rings[i] = Some(end.state);
             }
         }
-        self.finish_shaft(&mut next, system, solution);
-        finish_balls(&mut next, system, solution);
-        finish_contacts(&mut next, system, solution);
+        let step = StepScheme {
+            integrator: self.settings.integrator,
+            dt,
+        };
+        finish_shaft(&mut next, parts, solution, step);
+        finish_balls(&mut next, parts, solution, step);
+        finish_contacts(&mut next, parts, solution);
         self.note_energies(&mut next, energies);
         next.ledger.note_scale();
         let Some(mut trend) = trend else {
             return (next, 0.0);
         };
-        for (b, mean) in trend.iter_mut().take(system.balls.len()).enumerate() {
-            *mean = [0, 1].map(|i| (next.ball_velocities[b][i] - state.ball_velocities[b][i]) / system.dt);
+        for (b, mean) in trend.iter_mut().take(parts.balls.len()).enumerate() {
+            *mean = [0, 1].map(|i| (next.ball_velocities[b][i] - state.ball_velocities[b][i]) / dt);
         }
-        let error = local_error(&trend, &state.trend, system.dt, &next.approaches);
+        let error = local_error(&trend, &state.trend, dt, &next.approaches);
         next.trend = trend;
         (next, error)
     }
@@ -64,7 +71,7 @@ impl Motion<'_> {
         &self,
         next: &mut MotionState,
         side: Side,
-        (system, solution): (&SmallSystem, &SmallSolution),
+        (parts, solution): (&Parts, &StepSolution),
         (works, step): (Works, &dyn ElasticStep),
         [old, new]: [&RingState; 2],
     ) {
@@ -80,37 +87,18 @@ impl Motion<'_> {
             ledger.rayleigh_loss += self.costs.time("rayleigh_damping", loss);
         }
         ledger.numerical_loss += body.numerical_loss(integrator, old, new);
-        if side == Side::Inner {
+        if let Some(follow) = parts.rings[side.index()].as_ref().and_then(|ports| ports.follow) {
             // What the shaft gives in space and what the ring gets in its frame differ by the work of the turning.
-            let mount = &solution.mounts[0];
-            let n = 2 * system.balls.len();
-            let (start, end) = (
-                &step.answer().start[n..],
-                system.shaft.in_frame(system.shaft_end(&solution.unknowns)),
-            );
+            let mount = &solution.mounts[side.index()];
+            let n = 2 * parts.balls.len();
+            let (start, end) = (&step.answer().start[n..], follow.in_frame(solution.shaft));
             let in_frame: f64 = (0..mount.len().min(5))
                 .map(|i| mount[i] * (end[i] - start[i]))
                 .sum();
-            let force = system.shaft.in_space(first_five(mount));
-            let (from, to) = (system.shaft.start(), system.shaft_end(&solution.unknowns));
+            let force = follow.in_space(mount);
+            let (from, to) = (parts.shaft.start(), solution.shaft);
             let in_space: f64 = (0..5).map(|i| force[i] * (to[i] - from[i])).sum();
             ledger.frame_work += in_frame - in_space;
-        }
-    }
-
-    fn finish_shaft(&self, next: &mut MotionState, system: &SmallSystem, solution: &SmallSolution) {
-        let end = system.shaft_end(&solution.unknowns);
-        let reactions = system.shaft_reactions(solution);
-        for (dof, body) in system.shaft.bodies.iter().enumerate() {
-            let change = end[dof] - body.start[0];
-            next.ledger.load_work += body.load * change;
-            if system.shaft.imposed[dof].is_some() {
-                next.ledger.imposed_work += reactions[dof] * change;
-            }
-            next.shaft[dof] = end[dof];
-            next.ledger.numerical_loss += body.numerical_loss(system.integrator, end[dof], system.dt);
-            [next.shaft_velocity[dof], next.shaft_acceleration[dof]] =
-                body.update(system.integrator, end[dof], system.dt);
         }
     }
 
@@ -171,58 +159,86 @@ fn local_error(new: &[[f64; 2]], old: &[[f64; 2]], dt: f64, approaches: &[f64]) 
     }
 }
 
-/// State and work of the balls.
-fn finish_balls(next: &mut MotionState, system: &SmallSystem, solution: &SmallSolution) {
-    let (scheme, dt) = (system.integrator, system.dt);
-    for (b, bodies) in system.balls.iter().enumerate() {
-        for (i, body) in bodies.iter().enumerate() {
-            let x = solution.unknowns[system.ball_index(b) + i];
-            next.ledger.load_work += body.load_at(scheme, x) * (x - body.start[0]);
-            next.ledger.numerical_loss += body.numerical_loss(scheme, x, dt);
-            next.balls[b][i] = x;
-            [next.ball_velocities[b][i], next.ball_accelerations[b][i]] = body.update(scheme, x, dt);
-        }
+/// Velocities and accelerations of a body at the end of a step; adds its works.
+fn finish_body<const N: usize>(
+    body: &FlatBody<N>,
+    StepScheme { integrator, dt }: StepScheme,
+    end: [f64; N],
+    ledger: &mut Ledger,
+) -> [[f64; N]; 2] {
+    let [mut velocity, mut acceleration] = [[0.0; N]; 2];
+    for (i, (dof, x)) in body.dofs.iter().zip(end).enumerate() {
+        ledger.load_work += dof.load_at(integrator, x) * (x - dof.start[0]);
+        ledger.numerical_loss += dof.numerical_loss(integrator, x, dt);
+        [velocity[i], acceleration[i]] = dof.update(integrator, x, dt);
+    }
+    [velocity, acceleration]
+}
+
+fn finish_shaft(next: &mut MotionState, parts: &Parts, solution: &StepSolution, step: StepScheme) {
+    let reactions = parts.shaft_reactions(solution, step);
+    let imposed = parts
+        .shaft
+        .imposed
+        .iter()
+        .enumerate()
+        .filter(|(_, value)| value.is_some());
+    for (dof, _) in imposed {
+        let change = solution.shaft[dof] - parts.shaft.dofs[dof].start[0];
+        next.ledger.imposed_work += reactions[dof] * change;
+    }
+    next.shaft = solution.shaft;
+    [next.shaft_velocity, next.shaft_acceleration] =
+        finish_body(&parts.shaft, step, solution.shaft, &mut next.ledger);
+}
+
+fn finish_balls(next: &mut MotionState, parts: &Parts, solution: &StepSolution, step: StepScheme) {
+    for (b, (ball, end)) in parts.balls.iter().zip(&solution.balls).enumerate() {
+        next.balls[b] = *end;
+        [next.ball_velocities[b], next.ball_accelerations[b]] =
+            finish_body(ball, step, *end, &mut next.ledger);
     }
 }
 
-fn finish_contacts(next: &mut MotionState, system: &SmallSystem, solution: &SmallSolution) {
+fn finish_contacts(next: &mut MotionState, parts: &Parts, solution: &StepSolution) {
     let (mut start, mut end) = (0.0, 0.0);
-    for (index, site) in system.sites.iter().enumerate() {
-        let [l0, l1] = system.reach(site, &solution.unknowns);
+    for (index, site) in parts.contacts.sites.iter().enumerate() {
+        let [l0, l1] = solution.reach(index);
         let at = |l: [f64; 2]| site.law.evaluate(l[0].hypot(l[1]) - site.touching);
         let last = at(l1);
         start += at(l0).energy;
         end += last.energy;
         next.approaches[index] = last.approach;
-        let sign = site.side.sign();
-        next.angles[index] = (sign * l1[1]).atan2(sign * l1[0]);
+        next.angles[index] = site.angle(l1);
         next.forces[index] = solution.forces[index].force;
         next.ledger.contact_loss += solution.forces[index].loss;
         next.ledger.numerical_loss += solution.forces[index].numerical_loss;
-        if let Some(extra) = system.extra.get(index) {
+        if let Some(dead) = parts.contacts.dead.get(index) {
             // On the ring and, with the opposite sign, on the ball.
-            next.ledger.load_work -= extra[0] * (l1[0] - l0[0]) + extra[1] * (l1[1] - l0[1]);
+            next.ledger.load_work -= dead[0] * (l1[0] - l0[0]) + dead[1] * (l1[1] - l0[1]);
         }
     }
     next.ledger.patch_work += start - next.ledger.hertz;
     next.ledger.hertz = end;
 }
 
-impl SmallSystem {
+impl Parts {
     /// Forces that hold or drive the shaft's dofs, N and N m; zero to round-off for free ones.
-    fn shaft_reactions(&self, solution: &SmallSolution) -> [f64; 5] {
-        let end = self.shaft_end(&solution.unknowns);
-        let mut reactions =
-            [0, 1, 2, 3, 4].map(|i| self.shaft.bodies[i].residual(self.integrator, end[i], self.dt)[0]);
-        if self.rings[0].is_some() {
-            let force = self.shaft.in_space(first_five(&solution.mounts[0]));
+    fn shaft_reactions(&self, solution: &StepSolution, step: StepScheme) -> [f64; 5] {
+        let dofs = self.shaft.dofs.iter().zip(solution.shaft);
+        let mut reactions = [0.0; 5];
+        for (reaction, (dof, end)) in reactions.iter_mut().zip(dofs) {
+            *reaction = dof.residual(Interval::Step(step), end)[0];
+        }
+        if let Some(follow) = self.rings[0].as_ref().and_then(|ports| ports.follow) {
+            let force = follow.in_space(&solution.mounts[0]);
             (0..5).for_each(|i| reactions[i] += force[i]);
             return reactions;
         }
         let loads = self.ring_loads(Side::Inner, solution);
-        for site in self.sites.iter().filter(|s| s.side == Side::Inner) {
+        for site in self.contacts.sites.iter().filter(|s| s.side == Side::Inner) {
             let force = &loads[2 * site.ball..2 * site.ball + 2];
-            for (reaction, row) in reactions.iter_mut().zip(site.shaft_rows()) {
+            for (reaction, row) in reactions.iter_mut().zip(site.carrier_rows()) {
                 *reaction -= row[0] * force[0] + row[1] * force[1];
             }
         }

@@ -1,20 +1,20 @@
-//! What a part of a step asks of loads, rings and shaft, and the small system they make.
+//! What a part of a step asks of loads, rings and shaft, and the bodies and contacts they make.
 
 use contact::{NodalWeights, Side};
-use ring::{ElasticStep, PortForces};
+use ring::{ElasticStep, PortForces, StepScheme};
 
 use super::cache::Ahead;
-use super::inertia::Inertia;
-use super::newton::SmallSolution;
 use super::run::Motion;
-use super::shaft::ShaftStep;
-use super::small::{RingAnswer, SmallSystem};
+use super::solve::StepSolution;
 use super::span::Span;
 use super::state::MotionState;
+use crate::bodies::{FlatBody, Inertia, Name};
 use crate::compliance;
 use crate::effects::{self, Loads, Now};
 use crate::error::DynamicsError;
-use crate::problem::Site;
+use crate::interactions::raceway_contact::{Means, Site};
+use crate::parts::{ContactParts, Parts, SHAFT};
+use crate::system::{ElasticPorts, Follow, Interval};
 
 /// Force scale of a bearing on which nothing acts, N.
 const LEAST_FORCE: f64 = 1e-9;
@@ -80,50 +80,87 @@ impl Motion<'_> {
         Ok([inner, outer])
     }
 
-    pub(super) fn system(
+    /// Bodies and contacts of a part.
+    pub(super) fn parts(
         &self,
         state: &MotionState,
         span: Span,
         sites: Vec<Site>,
         rings: &RingSteps<'_>,
         loads: &Loads,
-    ) -> Result<SmallSystem, DynamicsError> {
-        let mass = self.model.ball_mass();
-        let balls = (0..self.model.geometry.n_balls).map(|b| {
-            [0, 1].map(|i| Inertia {
-                mass,
-                start: [
-                    state.balls[b][i],
-                    state.ball_velocities[b][i],
-                    state.ball_accelerations[b][i],
-                ],
-                load: loads.balls[b][i],
-                load_slope: if i == 0 { loads.ball_slopes[b] } else { 0.0 },
-            })
-        });
-        let answer = |side: Side| -> Result<Option<RingAnswer>, DynamicsError> {
-            let Some(step) = &rings[side.index()] else {
-                return Ok(None);
-            };
-            let (answer, n_balls) = (step.answer(), self.model.geometry.n_balls);
-            let n = answer.start.len();
-            Ok(Some(RingAnswer {
-                start: answer.start.clone(),
-                predicted: answer.predicted.clone(),
-                stiffness: compliance::inverse(side, n, n_balls, &answer.compliance)?,
-            }))
+    ) -> Result<Parts, DynamicsError> {
+        let ports = |side: Side| {
+            let step = rings[side.index()].as_deref();
+            step.map(|step| self.ports(span, side, step)).transpose()
         };
-        Ok(SmallSystem {
-            dt: span.dt,
-            integrator: self.settings.integrator,
+        let (integrator, dt) = (self.settings.integrator, span.dt);
+        let contacts = ContactParts {
             sites,
-            balls: balls.collect(),
-            shaft: self.shaft_step(state, span, loads),
-            rings: [answer(Side::Inner)?, answer(Side::Outer)?],
-            scheme: self.settings.scheme,
-            damping: self.settings.contact_damping,
-            extra: loads.contacts.clone(),
+            dead: loads.contacts.clone(),
+            means: Some(Means {
+                dt,
+                scheme: self.settings.scheme,
+                weight: integrator.alpha_f,
+                damping: self.settings.contact_damping,
+            }),
+        };
+        Ok(Parts::new(
+            Interval::Step(StepScheme { integrator, dt }),
+            self.shaft(state, span, loads),
+            (0..self.n_balls())
+                .map(|ball| self.ball(state, ball, loads))
+                .collect(),
+            [ports(Side::Inner)?, ports(Side::Outer)?],
+            contacts,
+        ))
+    }
+
+    /// A flexible ring by its ports: contacts move freely, the mount follows its partner.
+    fn ports(&self, span: Span, side: Side, step: &dyn ElasticStep) -> Result<ElasticPorts, DynamicsError> {
+        let (answer, n_balls) = (step.answer(), self.n_balls());
+        let n = answer.start.len();
+        let angle = |share: f64| self.frame_angle(side, span.at(share));
+        Ok(ElasticPorts {
+            name: side.name(),
+            start: answer.start.clone(),
+            offset: answer.predicted.clone(),
+            at_forces: Vec::new(),
+            stiffness: compliance::inverse(side, n, n_balls, &answer.compliance)?,
+            n_moving: 2 * n_balls,
+            follow: (side == Side::Inner).then(|| Follow {
+                body: SHAFT,
+                frame: [angle(1.0 - self.settings.integrator.alpha_f), angle(1.0)],
+            }),
         })
+    }
+
+    fn ball(&self, state: &MotionState, ball: usize, loads: &Loads) -> FlatBody<2> {
+        let dofs = [0, 1].map(|i| Inertia {
+            mass: self.model.ball_mass(),
+            start: [
+                state.balls[ball][i],
+                state.ball_velocities[ball][i],
+                state.ball_accelerations[ball][i],
+            ],
+            load: loads.balls[ball][i],
+            load_slope: if i == 0 { loads.ball_slopes[ball] } else { 0.0 },
+        });
+        FlatBody::new(Name::Ball(ball), dofs, [None; 2])
+    }
+
+    fn shaft(&self, state: &MotionState, span: Span, loads: &Loads) -> FlatBody<5> {
+        let dofs = [0, 1, 2, 3, 4].map(|i| Inertia {
+            mass: if i < 3 { self.model.shaft_mass } else { 0.0 },
+            start: [
+                state.shaft[i],
+                state.shaft_velocity[i],
+                state.shaft_acceleration[i],
+            ],
+            load: loads.shaft[i],
+            load_slope: 0.0,
+        });
+        let imposed = [0, 1, 2, 3, 4].map(|i| self.model.prescribed(i, span.at(1.0)));
+        FlatBody::new(Name::Shaft, dofs, imposed)
     }
 
     /// Largest force that acts at the start of a part, N: of the contacts, on shaft, balls and rings.
@@ -142,38 +179,11 @@ impl Motion<'_> {
             .chain(rings)
             .fold(LEAST_FORCE, |m, f| m.max(f.abs()))
     }
-
-    fn shaft_step(&self, state: &MotionState, span: Span, loads: &Loads) -> ShaftStep {
-        let inertia = [
-            self.model.shaft_mass,
-            self.model.shaft_mass,
-            self.model.shaft_mass,
-            0.0,
-            0.0,
-        ];
-        let bodies = [0, 1, 2, 3, 4].map(|i| Inertia {
-            mass: inertia[i],
-            start: [
-                state.shaft[i],
-                state.shaft_velocity[i],
-                state.shaft_acceleration[i],
-            ],
-            load: loads.shaft[i],
-            load_slope: 0.0,
-        });
-        let imposed = [0, 1, 2, 3, 4].map(|i| self.model.prescribed(i, span.at(1.0)));
-        let angle = |share: f64| self.frame_angle(Side::Inner, span.at(share));
-        ShaftStep {
-            bodies,
-            imposed,
-            frame: [angle(1.0 - self.settings.integrator.alpha_f), angle(1.0)],
-        }
-    }
 }
 
-impl SmallSystem {
+impl Parts {
     /// Forces at the ports of a ring.
-    pub(super) fn forces_at_ports(&self, side: Side, solution: &SmallSolution) -> RingForces {
+    pub(super) fn forces_at_ports(&self, side: Side, solution: &StepSolution) -> RingForces {
         RingForces {
             contacts: self.ring_loads(side, solution),
             mount: solution.mounts[side.index()].clone(),
@@ -181,15 +191,13 @@ impl SmallSystem {
     }
 
     /// Forces on a ring's contacts, `[2 n_balls]`, N.
-    pub(super) fn ring_loads(&self, side: Side, solution: &SmallSolution) -> Vec<f64> {
-        let n = self.balls.len();
-        (0..n)
-            .flat_map(|ball| {
-                let site = 2 * ball + side.index();
-                let extra = self.extra.get(site).copied().unwrap_or_default();
-                let force = solution.forces[site].force;
-                [force[0] + extra[0], force[1] + extra[1]]
-            })
-            .collect()
+    pub(super) fn ring_loads(&self, side: Side, solution: &StepSolution) -> Vec<f64> {
+        let of_ball = |ball: usize| {
+            let site = 2 * ball + side.index();
+            let dead = self.contacts.dead.get(site).copied().unwrap_or_default();
+            let force = solution.forces[site].force;
+            [force[0] + dead[0], force[1] + dead[1]]
+        };
+        (0..self.balls.len()).flat_map(of_ball).collect()
     }
 }

@@ -13,14 +13,15 @@ use contact::patch::PatchShape;
 use contact::{NodalWeights, Patch, Side};
 use rayon::prelude::*;
 
-use super::newton::SmallSolution;
 use super::run::Motion;
-use super::small::SmallSystem;
+use super::solve::StepSolution;
 use super::state::MotionState;
 use crate::error::DynamicsError;
 use crate::footprint::{loaded, on_groove, require_on_groove};
+use crate::interactions::discrete_gradient::MeanForce;
+use crate::interactions::raceway_contact::Site;
 use crate::model::elastic;
-use crate::problem::Site;
+use crate::parts::Parts;
 
 /// Distance of a patch from its contact at which it counts as in place, semi-axes, times the share of its force in the largest.
 const ANGLE_TOLERANCE: f64 = 1e-4;
@@ -80,16 +81,17 @@ pub(super) fn expected(places: [&[[f64; 2]]; 3]) -> Vec<[f64; 2]> {
         .collect()
 }
 
-impl SmallSystem {
+impl Parts {
     /// Where the contacts of the part were at its weighted time: contact angle, rad, and force, N, by site.
-    pub(super) fn places(&self, solution: &SmallSolution) -> Vec<[f64; 2]> {
-        let start = self.integrator.alpha_f;
-        let place = |(site, force): (&Site, &super::contacts::MeanForce)| {
-            let [l0, l1] = self.reach(site, &solution.unknowns);
+    pub(super) fn places(&self, solution: &StepSolution) -> Vec<[f64; 2]> {
+        let start = self.contacts.means.map_or(0.0, |means| means.weight);
+        let place = |(index, (site, force)): (usize, (&Site, &MeanForce))| {
+            let [l0, l1] = solution.reach(index);
             let l = [0, 1].map(|i| site.side.sign() * (start * l0[i] + (1.0 - start) * l1[i]));
             [l[1].atan2(l[0]), force.force[0].hypot(force.force[1])]
         };
-        self.sites.iter().zip(&solution.forces).map(place).collect()
+        let contacts = self.contacts.sites.iter().zip(&solution.forces);
+        contacts.enumerate().map(place).collect()
     }
 }
 

@@ -5,12 +5,12 @@ use contact::Side;
 use ring::{ElasticBody, Integrator, RingState};
 
 use super::cache::StepCache;
-use super::contacts::ContactScheme;
 use super::ledger::Ledger;
 use super::run::Motion;
 use super::state::{Ladder, MotionSettings, MotionState};
 use crate::error::DynamicsError;
-use crate::problem::Site;
+use crate::interactions::discrete_gradient::ContactScheme;
+use crate::interactions::raceway_contact::Site;
 use crate::solution::StaticSolution;
 
 impl Motion<'_> {
@@ -173,7 +173,7 @@ impl Motion<'_> {
                 *l += state.balls[ball][i];
                 if side == Side::Inner {
                     *l -= (0..5)
-                        .map(|dof| site.shaft_rows()[dof][i] * state.shaft[dof])
+                        .map(|dof| site.carrier_rows()[dof][i] * state.shaft[dof])
                         .sum::<f64>();
                 }
             }

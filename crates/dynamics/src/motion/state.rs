@@ -1,7 +1,7 @@
 //! Choices of a motion, all that evolves in it, and what a step reports.
 
-use super::contacts::{ContactDamping, ContactScheme};
 use super::ledger::Ledger;
+use crate::interactions::discrete_gradient::{ContactDamping, ContactScheme};
 use crate::kinematics::Speed;
 use ring::Integrator;
 use ring::RingState;

@@ -8,15 +8,15 @@ use ring::ElasticStep;
 use timer::{Laps, Stopwatch};
 
 use super::cache::{Ahead, ExpectedLoads, StepCache};
-use super::newton::{SmallSolution, check_patches, check_range};
 use super::part::RingSteps;
 use super::place::Placing;
 use super::run::Motion;
-use super::small::SmallSystem;
+use super::solve::{StepSolution, check_patches, check_range};
 use super::span::Span;
 use super::state::{MotionState, StepReport};
 use crate::costs::{BLOCK_SOLVE, LOADS, NEWTON, PATCHES, UPDATE};
 use crate::error::DynamicsError;
+use crate::parts::Parts;
 
 /// Rounds for the places of the patches before a step counts as failed.
 const MAX_PLACE_ROUNDS: usize = 20;
@@ -29,7 +29,7 @@ pub(super) struct Part<'m> {
     places: Vec<[f64; 2]>,
     placing: Placing,
     pub rings: RingSteps<'m>,
-    pub system: SmallSystem,
+    pub parts: Parts,
     /// Largest force that acts at the start, N.
     pub scale: f64,
     pub report: StepReport,
@@ -52,11 +52,11 @@ impl Motion<'_> {
                 break (solution, ends);
             }
         };
-        check_patches(&part.system, &solution)?;
-        check_range(self.model, &part.system, &solution)?;
-        let places = part.system.places(&solution);
+        check_patches(&part.parts, &solution)?;
+        check_range(self.model, &part.parts, &solution)?;
+        let places = part.parts.places(&solution);
         self.check_on_grooves(&places)?;
-        let (mut next, error) = self.finish(state, &part.system, &solution, part.rings, ends.rings);
+        let (mut next, error) = self.finish(state, (&part.parts, span.dt), &solution, part.rings, ends.rings);
         next.places.rotate_right(1);
         next.places[0] = places;
         let mut report = part.report;
@@ -87,12 +87,12 @@ impl Motion<'_> {
         let known = longest(rings.iter().flatten().map(|step| step.laps()));
         report.laps.add(BLOCK_SOLVE, clock.lap() - known.total());
         report.laps.merge(&known);
-        let system = self.system(state, span, placing.sites.clone(), &rings, &expected.loads)?;
+        let parts = self.parts(state, span, placing.sites.clone(), &rings, &expected.loads)?;
         Ok(Part {
             span,
             places,
             placing,
-            system,
+            parts,
             scale: self.force_scale(state, &expected.loads),
             expected,
             rings,
@@ -111,12 +111,12 @@ impl Motion<'_> {
         &self,
         state: &MotionState,
         part: &mut Part<'_>,
-    ) -> Result<SmallSolution, DynamicsError> {
+    ) -> Result<StepSolution, DynamicsError> {
         for _ in 0..=MAX_PLACE_ROUNDS {
-            let solution = part.system.solve(part.scale, &self.costs)?;
+            let solution = part.parts.solve_step(part.scale, &self.costs)?;
             part.report.newton_iterations += solution.iterations;
             part.report.laps.add(NEWTON, part.clock.lap());
-            let met = part.system.places(&solution);
+            let met = part.parts.places(&solution);
             if part.placing.holds(&part.places, &met) {
                 return Ok(solution);
             }
@@ -126,7 +126,7 @@ impl Motion<'_> {
             part.report.laps.add(PATCHES, part.clock.lap());
             self.move_contacts(part);
             let sites = part.placing.sites.clone();
-            part.system = self.system(state, part.span, sites, &part.rings, &part.expected.loads)?;
+            part.parts = self.parts(state, part.span, sites, &part.rings, &part.expected.loads)?;
         }
         // A ball that presses beyond the rim has no place: that is the cause then.
         self.check_on_grooves(&part.places)?;

@@ -1,6 +1,8 @@
 //! A point mass or rigid body dof over one step.
 
-use ring::Integrator;
+use ring::{Integrator, StepScheme};
+
+use crate::system::Interval;
 
 /// A point mass or rigid body dof over one step, by the rings' integrator.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -21,9 +23,24 @@ impl Inertia {
         self.load + self.load_slope * (scheme.alpha_f * self.start[0] + (1.0 - scheme.alpha_f) * x)
     }
 
+    /// Displacement at the end when nothing accelerates.
+    pub fn guess(&self, interval: Interval) -> f64 {
+        match interval {
+            Interval::Rest => self.start[0],
+            Interval::Step(step) => self.start[0] + step.dt * self.start[1],
+        }
+    }
+
     /// Out-of-balance force at displacement `x` and its derivative.
-    pub fn residual(&self, scheme: Integrator, x: f64, dt: f64) -> [f64; 2] {
+    pub fn residual(&self, interval: Interval, x: f64) -> [f64; 2] {
         let [x0, v0, a0] = self.start;
+        let StepScheme {
+            integrator: scheme,
+            dt,
+        } = match interval {
+            Interval::Rest => return [-(self.load + self.load_slope * x), -self.load_slope],
+            Interval::Step(step) => step,
+        };
         let [acceleration, slope] = scheme.weighted_acceleration(dt, x - x0, v0, a0);
         [
             self.mass * acceleration - self.load_at(scheme, x),

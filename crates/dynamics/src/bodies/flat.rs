@@ -1,0 +1,100 @@
+//! A lumped body whose coordinates are its own displacements, each free or imposed: shaft, ball.
+
+use super::inertia::Inertia;
+use crate::system::{Interval, Lumped};
+
+/// Names of the coordinates of a shaft, as in the scene.
+pub const AXES: [&str; 5] = ["x", "y", "z", "tilt_x", "tilt_y"];
+
+/// Which body it is, for messages.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Name {
+    /// The shaft, with the coordinates [`AXES`].
+    Shaft,
+    /// A ball in its meridian plane: radial, axial.
+    Ball(usize),
+}
+
+/// A body over an interval, coordinate by coordinate.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FlatBody<const N: usize> {
+    name: Name,
+    /// Inertia, start and load of each coordinate.
+    pub dofs: [Inertia; N],
+    /// Displacements at the end that are imposed; None is free.
+    pub imposed: [Option<f64>; N],
+    start: [f64; N],
+}
+
+impl<const N: usize> FlatBody<N> {
+    /// A body by coordinate.
+    pub fn new(name: Name, dofs: [Inertia; N], imposed: [Option<f64>; N]) -> FlatBody<N> {
+        FlatBody {
+            name,
+            start: dofs.map(|dof| dof.start[0]),
+            dofs,
+            imposed,
+        }
+    }
+
+    /// Numbers of the free coordinates, ascending: those of the unknowns.
+    pub fn free(&self) -> impl Iterator<Item = usize> {
+        (0..N).filter(|&i| self.imposed[i].is_none())
+    }
+}
+
+impl<const N: usize> Lumped for FlatBody<N> {
+    fn n_coordinates(&self) -> usize {
+        N
+    }
+
+    fn n_unknowns(&self) -> usize {
+        self.free().count()
+    }
+
+    fn start(&self) -> &[f64] {
+        &self.start
+    }
+
+    fn place(&self, x: &[f64], end: &mut [f64]) {
+        let mut unknowns = x.iter();
+        for (end, imposed) in end.iter_mut().zip(&self.imposed) {
+            let mut free = || unknowns.next().copied().unwrap_or_default();
+            *end = imposed.unwrap_or_else(&mut free);
+        }
+    }
+
+    fn slopes(&self, _x: &[f64]) -> Vec<(usize, usize, f64)> {
+        self.free()
+            .enumerate()
+            .map(|(unknown, i)| (i, unknown, 1.0))
+            .collect()
+    }
+
+    fn guess(&self, interval: Interval) -> Vec<f64> {
+        self.free().map(|i| self.dofs[i].guess(interval)).collect()
+    }
+
+    fn balance(&self, interval: Interval, x: &[f64], residual: &mut [f64]) {
+        for ((residual, i), x) in residual.iter_mut().zip(self.free()).zip(x) {
+            *residual = self.dofs[i].residual(interval, *x)[0];
+        }
+    }
+
+    fn tangent(&self, interval: Interval) -> Vec<f64> {
+        let n = self.n_unknowns();
+        let mut tangent = vec![0.0; n * n];
+        for (k, i) in self.free().enumerate() {
+            tangent[(n + 1) * k] = self.dofs[i].residual(interval, self.start[i])[1];
+        }
+        tangent
+    }
+
+    fn name(&self, unknown: usize) -> String {
+        let i = self.free().nth(unknown).unwrap_or_default();
+        match self.name {
+            Name::Shaft => format!("{} of the shaft", AXES[i]),
+            Name::Ball(ball) => format!("ball {ball}, {}", ["radial", "axial"][i]),
+        }
+    }
+}

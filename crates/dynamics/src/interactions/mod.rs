@@ -1,0 +1,4 @@
+//! Interactions of a bearing's bodies.
+
+pub mod discrete_gradient;
+pub mod raceway_contact;

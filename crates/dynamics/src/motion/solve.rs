@@ -1,0 +1,146 @@
+//! The forces of one part of a step: bodies and contacts of the bearing over it, solved, and what cannot be a solution.
+//!
+//! Unknowns are the displacements at the end of the part. Residuals are forces: inertia and loads of balls and shaft at
+//! the weighted time, and for every flexible ring what it asks for at its ports.
+
+use contact::Side;
+use timer::SharedLaps;
+
+use crate::bodies::AXES;
+use crate::error::DynamicsError;
+use crate::footprint::require_in_groove;
+use crate::interactions::discrete_gradient::MeanForce;
+use crate::interactions::raceway_contact::Site;
+use crate::model::{MAX_TILT, Model};
+use crate::parts::{FIRST_BALL, Parts, SHAFT, lengths};
+use crate::system::newton::{Policy, RoundOff, Search};
+
+/// Newton iterations before a step counts as failed.
+const MOST_ITERATIONS: usize = 40;
+/// Residual over the force scale at which iteration may stop; it goes on while it improves.
+const RESIDUAL_LIMIT: f64 = 1e-9;
+/// Halvings of a Newton step: to below 1e-3.
+const HALVINGS: u32 = 10;
+
+/// Solution of a part.
+pub(super) struct StepSolution {
+    /// Shaft at the end, m and rad.
+    pub shaft: [f64; 5],
+    /// Balls at the end [radial, axial], m.
+    pub balls: Vec<[f64; 2]>,
+    /// l of every contact at start and end, `[2 n_sites]`, m.
+    reaches: [Vec<f64>; 2],
+    /// Mean forces, by site, without the dead ones.
+    pub forces: Vec<MeanForce>,
+    /// Forces of the partners on the mounts of inner and outer ring, in the ring's frame.
+    pub mounts: [Vec<f64>; 2],
+    /// Newton iterations.
+    pub iterations: usize,
+}
+
+impl StepSolution {
+    /// l of a contact at the start and at the end of the part, m.
+    pub fn reach(&self, site: usize) -> [[f64; 2]; 2] {
+        lengths(&self.reaches).of(site)
+    }
+}
+
+impl Parts {
+    /// Solves the part; `scale` is the largest force that acts at its start, N.
+    pub(super) fn solve_step(&self, scale: f64, costs: &SharedLaps) -> Result<StepSolution, DynamicsError> {
+        let system = self.system();
+        let policy = Policy {
+            most_iterations: MOST_ITERATIONS,
+            residual_limit: RESIDUAL_LIMIT,
+            force_scale: scale,
+            round_off: RoundOff::Unknowns,
+            scales: None,
+            proximal: 0.0,
+            longest_step: f64::INFINITY,
+            search: Search::Residual(HALVINGS),
+            watch: &|_| Ok(()),
+            costs,
+        };
+        let solved = system.solve(system.guess(), &policy)?;
+        let (x, reaches) = (&solved.unknowns, self.reaches(&solved.unknowns));
+        let means = self.contacts.means;
+        let forces = means.map(|means| self.contacts.mean_forces(lengths(&reaches), means, costs));
+        let n_moving = 2 * self.balls.len();
+        let mount = |side: Side| match self.elastic(side) {
+            Some(body) => system.port_forces(body, x)[n_moving..].to_vec(),
+            None => Vec::new(),
+        };
+        Ok(StepSolution {
+            shaft: system.coordinates(SHAFT, x),
+            balls: (0..self.balls.len())
+                .map(|ball| system.coordinates(FIRST_BALL + ball, x))
+                .collect(),
+            forces: forces.unwrap_or_default(),
+            reaches,
+            mounts: Side::BOTH.map(mount),
+            iterations: solved.iterations,
+        })
+    }
+}
+
+/// Fails when a ball presses where no groove can be.
+fn check_grooves(parts: &Parts, solution: &StepSolution) -> Result<(), DynamicsError> {
+    for (index, site) in parts.contacts.sites.iter().enumerate() {
+        let [_, end] = solution.reach(index);
+        if end[0].hypot(end[1]) > site.touching {
+            require_in_groove(site.ball, site.side, site.angle(end))?;
+        }
+    }
+    Ok(())
+}
+
+/// Fails when shaft or balls are where small motions and the search for equilibrium end.
+pub(super) fn check_range(
+    model: &Model,
+    parts: &Parts,
+    solution: &StepSolution,
+) -> Result<(), DynamicsError> {
+    let diameter = model.geometry.ball_diameter;
+    let in_mm = |x: f64| format!("{:.3} mm", 1e3 * x);
+    for (dof, q) in solution.shaft.into_iter().enumerate() {
+        let (limit, text): (f64, fn(f64) -> String) = match dof {
+            0..3 => (0.5 * diameter, in_mm),
+            _ => (MAX_TILT, |x| format!("{x:.3} rad")),
+        };
+        if q.abs() > limit {
+            let what = format!("{} of the shaft", AXES[dof]);
+            return Err(left(what, text(q), text(limit)));
+        }
+    }
+    for (ball, [radial, axial]) in solution.balls.iter().enumerate() {
+        if radial.hypot(*axial) > diameter {
+            let what = format!("ball {ball}");
+            return Err(left(what, in_mm(radial.hypot(*axial)), in_mm(diameter)));
+        }
+    }
+    check_grooves(parts, solution)
+}
+
+fn left(what: String, value: String, limit: String) -> DynamicsError {
+    DynamicsError::LeftBearing { what, value, limit }
+}
+
+/// Fails when a contact is beyond what its patch leaves of Hertz's law.
+pub(super) fn check_patches(parts: &Parts, solution: &StepSolution) -> Result<(), DynamicsError> {
+    let contacts = parts.contacts.sites.iter().zip(&solution.forces).enumerate();
+    for (index, (site, force)) in contacts {
+        let [_, end] = solution.reach(index);
+        if beyond_limit(site, end) {
+            return Err(DynamicsError::PatchTooSmall {
+                ball: site.ball,
+                side: site.side.name(),
+                force: force.force[0].hypot(force.force[1]),
+            });
+        }
+    }
+    Ok(())
+}
+
+fn beyond_limit(site: &Site, l: [f64; 2]) -> bool {
+    site.law.evaluate(l[0].hypot(l[1]) - site.touching).beyond_limit
+}

@@ -1,0 +1,51 @@
+//! Bodies with few coordinates of their own.
+
+use ring::StepScheme;
+
+/// Between which instants a system is in balance.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Interval {
+    /// At one instant: nothing has inertia.
+    Rest,
+    /// Over a step in time.
+    Step(StepScheme),
+}
+
+/// A body of a system: its place in the list of its kind.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Body {
+    /// A lumped body.
+    Lumped(usize),
+    /// The ports of an elastic one.
+    Elastic(usize),
+}
+
+/// A body that its own unknowns place.
+pub trait Lumped: Send + Sync {
+    /// Number of coordinates.
+    fn n_coordinates(&self) -> usize;
+
+    /// Number of unknowns.
+    fn n_unknowns(&self) -> usize;
+
+    /// Coordinates at the start of the interval, m and rad.
+    fn start(&self) -> &[f64];
+
+    /// Coordinates at its end for the unknowns `x`.
+    fn place(&self, x: &[f64], end: &mut [f64]);
+
+    /// Growth of the coordinates with the unknowns at `x`: (coordinate, unknown, value), in ascending order.
+    fn slopes(&self, x: &[f64]) -> Vec<(usize, usize, f64)>;
+
+    /// Unknowns when nothing accelerates.
+    fn guess(&self, interval: Interval) -> Vec<f64>;
+
+    /// Forces that the body asks for to be placed by `x`, less its loads, N and N m.
+    fn balance(&self, interval: Interval, x: &[f64], residual: &mut [f64]);
+
+    /// Growth of these with the unknowns, row-major; constant over an interval.
+    fn tangent(&self, interval: Interval) -> Vec<f64>;
+
+    /// What an unknown is, for messages.
+    fn name(&self, unknown: usize) -> String;
+}

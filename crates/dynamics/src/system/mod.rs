@@ -1,0 +1,29 @@
+//! The nonlinear system of a bearing between two instants: bodies, interactions between them, one Newton.
+//!
+//! A body has *coordinates*, the displacements that others see, and unknowns that place them: [`Lumped`] ones few of
+//! their own, [`ElasticPorts`] the motion at the ports of an elastic body. An [`Interaction`] is a family of links;
+//! each sees a few lengths that grow with the coordinates, and answers with the forces that belong to them.
+//!
+//! ```text
+//! coordinates  q = place(x)                          by body
+//! lengths      l = reach + sum of rows q             by link
+//! residual     balance(x) + K (g - offset) + (dl/dx)^T F(l)
+//! tangent      its derivative, of which bodies give the constant part
+//! ```
+//!
+//! At rest forces are those of the instant, and the residual is the gradient of the energy if all interactions have
+//! one. Over a step they are means over it. This module knows no bearing: statics, motion and equilibria in time
+//! differ by their bodies, and by the policy of [`newton`].
+//!
+//! The order of a sum is that of the lists, so equal lists give equal bits: lumped bodies, elastic ones, links.
+
+mod assembly;
+mod elastic;
+mod interaction;
+mod lumped;
+pub mod newton;
+
+pub use assembly::{Evaluated, System};
+pub use elastic::{ElasticPorts, Follow};
+pub use interaction::{Character, Interaction, Lengths, Link, LinkForces, MOST_ROWS, Rows, Term};
+pub use lumped::{Body, Interval, Lumped};

@@ -1,0 +1,269 @@
+//! Newton on a system, with line search: one algorithm, and a policy for each use.
+//!
+//! A step in time begins near its solution and may have any tangent: LU, and steps that are halved until the residual
+//! shrinks. An equilibrium may begin anywhere: where forces have a convex energy, Cholesky, and a step along which the
+//! slope of the energy still falls is progress, whatever opens or closes; the test needs no energy values and so loses
+//! no digits near the solution. A small proximal stiffness makes steps of unloaded bodies zero instead of undefined and
+//! does not shift the solution. Cost: one dense factorisation of the unknowns per iteration.
+
+use dense::{DenseCholesky, DenseError, DenseLu};
+use timer::SharedLaps;
+
+use super::assembly::{Evaluated, System};
+use super::interaction::LinkForces;
+use crate::error::DynamicsError;
+
+/// Residual over the force scale that counts as round-off.
+const RESIDUAL_TARGET: f64 = 1e-14;
+/// Slope of the energy that ends a line search, relative to its start.
+const SLOPE_SHRINK: f64 = 0.5;
+
+/// How residuals are judged by the round-off of positions.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum RoundOff {
+    /// Of the unknowns on the diagonal of the tangent: decisive for bodies that fly without any force.
+    Unknowns,
+    /// Of the lengths of all links.
+    Links,
+}
+
+/// How a step is shortened.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Search {
+    /// Along the slope of the energy; without one, by halves of at most 2^-30.
+    Energy,
+    /// Halved at most so many times until the residual does not grow.
+    Residual(u32),
+}
+
+/// What a use asks of Newton.
+pub struct Policy<'p> {
+    /// Iterations before giving up.
+    pub most_iterations: usize,
+    /// Residual over the force scale at which iteration may stop; it goes on while it improves.
+    pub residual_limit: f64,
+    /// Least force scale, N.
+    pub force_scale: f64,
+    /// Floor of the residual.
+    pub round_off: RoundOff,
+    /// Length per unknown by which it is scaled, so that all are lengths; None: they are taken as they are.
+    pub scales: Option<&'p [f64]>,
+    /// Stiffness added to the diagonal, N/m.
+    pub proximal: f64,
+    /// Longest change of a scaled unknown in an iteration.
+    pub longest_step: f64,
+    /// How a step is shortened.
+    pub search: Search,
+    /// Fails where there is no use in going on.
+    pub watch: &'p dyn Fn(&[f64]) -> Result<(), DynamicsError>,
+    /// Gets the wall time of effects.
+    pub costs: &'p SharedLaps,
+}
+
+/// A solved system.
+pub struct Solved {
+    /// The unknowns.
+    pub unknowns: Vec<f64>,
+    /// Forces of the links, by family.
+    pub links: Vec<LinkForces>,
+    /// Newton iterations.
+    pub iterations: usize,
+}
+
+impl System<'_> {
+    /// Solves the system from the unknowns `x`. Fails with the residual history and the place of the largest residual.
+    pub fn solve(&self, mut x: Vec<f64>, policy: &Policy) -> Result<Solved, DynamicsError> {
+        let bodies = self.body_tangent(&x);
+        let mut tangent = bodies.clone();
+        let (mut history, mut best, mut stalled) = (Vec::new(), f64::INFINITY, 0);
+        let mut at = self.evaluate(&x, policy.costs);
+        let (mut worst, mut limit) = (0, 0.0);
+        for iteration in 0..policy.most_iterations {
+            let (place, now) = largest(&policy.scaled(&at.residual));
+            worst = place;
+            if !now.is_finite() {
+                return Err(DynamicsError::NotFinite {
+                    what: "a contact force",
+                });
+            }
+            history.push(now);
+            stalled = if now < 0.5 * best { 0 } else { stalled + 1 };
+            best = best.min(now);
+            tangent.copy_from_slice(&bodies);
+            self.add_link_tangents(&x, &at.links, &mut tangent);
+            let scale = force_scale(&at.links, policy.force_scale);
+            limit = policy.residual_limit * scale;
+            let floor = || match policy.round_off {
+                RoundOff::Unknowns => round_off(&tangent, &x),
+                RoundOff::Links => self.round_off(&x),
+            };
+            if now <= RESIDUAL_TARGET * scale || (stalled >= 2 && now <= limit.max(floor())) {
+                return Ok(Solved {
+                    unknowns: x,
+                    links: at.links,
+                    iterations: iteration,
+                });
+            }
+            let step = self.direction(&tangent, &at.residual, policy)?;
+            (x, at) = self.search(x, at, &step, policy);
+            (policy.watch)(&x)?;
+        }
+        let tail = history.len().saturating_sub(8);
+        Err(DynamicsError::NewtonStalled {
+            iterations: policy.most_iterations,
+            residual: *history.last().unwrap_or(&f64::NAN),
+            place: self.name(worst),
+            limit,
+            history: history.split_off(tail),
+        })
+    }
+
+    /// Newton's step.
+    fn direction(
+        &self,
+        tangent: &[f64],
+        residual: &[f64],
+        policy: &Policy,
+    ) -> Result<Vec<f64>, DynamicsError> {
+        self.check_held(tangent, residual, policy)?;
+        let n = self.n();
+        let mut step: Vec<f64> = policy.scaled(residual).iter().map(|r| -r).collect();
+        let matrix = policy.matrix(n, tangent);
+        let error = |source: DenseError| DynamicsError::ContactSystem { source };
+        if self.has_energy() {
+            DenseCholesky::factor(n, &matrix)
+                .map_err(error)?
+                .solve(&mut step, 1);
+        } else {
+            DenseLu::factor(n, &matrix).map_err(error)?.solve(&mut step, 1);
+        }
+        let length = step.iter().fold(0.0, |most: f64, s| most.max(s.abs()));
+        if length > policy.longest_step {
+            step.iter_mut().for_each(|s| *s *= policy.longest_step / length);
+        }
+        Ok(policy.scaled(&step))
+    }
+
+    /// Fails when an unknown has neither inertia nor stiffness: its row of the tangent is empty. Names the one that the
+    /// loads push most.
+    fn check_held(&self, tangent: &[f64], residual: &[f64], policy: &Policy) -> Result<(), DynamicsError> {
+        if policy.proximal > 0.0 {
+            return Ok(());
+        }
+        let rows = tangent.chunks_exact(self.n()).zip(residual).enumerate();
+        let adrift = rows.filter(|(_, (row, _))| row.iter().all(|x| *x == 0.0));
+        match adrift.max_by(|a, b| a.1.1.abs().total_cmp(&b.1.1.abs())) {
+            Some((unknown, _)) => Err(DynamicsError::Adrift {
+                dof: self.name(unknown),
+            }),
+            None => Ok(()),
+        }
+    }
+
+    /// The unknowns after a step that may have been shortened, and the system there.
+    fn search(&self, x: Vec<f64>, at: Evaluated, step: &[f64], policy: &Policy) -> (Vec<f64>, Evaluated) {
+        let trial = |share: f64| {
+            let trial: Vec<f64> = x.iter().zip(step).map(|(x, s)| x + share * s).collect();
+            let at = self.evaluate(&trial, policy.costs);
+            (trial, at)
+        };
+        match policy.search {
+            Search::Residual(halvings) => halve(&at, policy, halvings, 0.0, trial),
+            Search::Energy if !self.has_energy() => halve(&at, policy, 30, 0.1, trial),
+            Search::Energy => along_energy(&at.residual, step, trial).unwrap_or((x, at)),
+        }
+    }
+}
+
+impl Policy<'_> {
+    /// Forces on scaled unknowns, or unknowns of scaled ones.
+    fn scaled(&self, values: &[f64]) -> Vec<f64> {
+        match self.scales {
+            Some(scales) => values.iter().zip(scales).map(|(v, s)| v * s).collect(),
+            None => values.to_vec(),
+        }
+    }
+
+    /// The tangent of scaled unknowns with the proximal stiffness.
+    fn matrix(&self, n: usize, tangent: &[f64]) -> Vec<f64> {
+        let mut matrix = tangent.to_vec();
+        if let Some(scales) = self.scales {
+            for (row, a) in matrix.chunks_exact_mut(n).zip(scales) {
+                row.iter_mut().zip(scales).for_each(|(value, b)| *value *= a * b);
+            }
+        }
+        matrix
+            .iter_mut()
+            .step_by(n + 1)
+            .for_each(|diagonal| *diagonal += self.proximal);
+        matrix
+    }
+}
+
+/// Halves the step until the residual has shrunk by the share `decrease` of the step, at most `halvings` times.
+fn halve(
+    at: &Evaluated,
+    policy: &Policy,
+    halvings: u32,
+    decrease: f64,
+    trial: impl Fn(f64) -> (Vec<f64>, Evaluated),
+) -> (Vec<f64>, Evaluated) {
+    let size = |r: &[f64]| policy.scaled(r).iter().map(|v| v * v).sum::<f64>();
+    let before = size(&at.residual);
+    let mut share = 1.0;
+    for _ in 0..halvings {
+        let found = trial(share);
+        if size(&found.1.residual) <= (1.0 - decrease * share) * before {
+            return found;
+        }
+        share *= 0.5;
+    }
+    trial(share)
+}
+
+/// Longest step of at most 1 along which the slope of the convex energy is still falling or has shrunk enough; None
+/// where no step can be told from none.
+fn along_energy(
+    residual: &[f64],
+    step: &[f64],
+    trial: impl Fn(f64) -> (Vec<f64>, Evaluated),
+) -> Option<(Vec<f64>, Evaluated)> {
+    let slope_at = |gradient: &[f64]| gradient.iter().zip(step).map(|(g, p)| g * p).sum::<f64>();
+    let start = slope_at(residual);
+    let mut share = 1.0;
+    // 60 reductions reach below the resolution of any step.
+    for _ in 0..60 {
+        let found = trial(share);
+        let slope = slope_at(&found.1.residual);
+        if slope <= SLOPE_SHRINK * start.abs() {
+            return Some(found);
+        }
+        // The slope has passed zero: secant to its root, kept away from both ends.
+        share *= (start / (start - slope)).clamp(0.1, 0.9);
+    }
+    None
+}
+
+/// Largest force of a link, at least `least`, N.
+fn force_scale(links: &[LinkForces], least: f64) -> f64 {
+    let forces = links.iter().flat_map(|family| &family.forces);
+    forces.fold(least, |most, force| most.max(force.abs()))
+}
+
+/// Residual that round-off of the unknowns alone can make.
+fn round_off(tangent: &[f64], x: &[f64]) -> f64 {
+    let diagonal = tangent.iter().step_by(x.len() + 1);
+    let terms = diagonal.zip(x).map(|(slope, x)| (slope * x).abs());
+    16.0 * f64::EPSILON * terms.fold(0.0, f64::max)
+}
+
+/// Place and size of the largest entry; NaN wins.
+fn largest(r: &[f64]) -> (usize, f64) {
+    r.iter().enumerate().fold((0, 0.0), |(place, most), (i, v)| {
+        if v.is_nan() || v.abs() > most {
+            (i, v.abs())
+        } else {
+            (place, most)
+        }
+    })
+}
