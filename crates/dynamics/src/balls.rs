@@ -3,9 +3,9 @@
 use contact::Side;
 use serde::Serialize;
 
+use crate::bearing::Bearing;
 use crate::displacements::Displacements;
 use crate::model::Model;
-use crate::parts::Parts;
 
 /// One contact of a ball.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -55,7 +55,7 @@ impl BallResult {
 }
 
 /// Results of all balls at given displacements.
-pub fn ball_results(model: &Model, parts: &Parts, u: &Displacements) -> Vec<BallResult> {
+pub fn ball_results(model: &Model, parts: &Bearing, u: &Displacements) -> Vec<BallResult> {
     let (sites, states) = (&parts.contacts.sites, parts.states_at(u));
     let contact = |i: usize| {
         let (site, state) = (&sites[i], &states[i]);

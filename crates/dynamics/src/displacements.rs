@@ -2,8 +2,8 @@
 
 use contact::Side;
 
+use crate::bearing::{Bearing, FIRST_BALL, SHAFT};
 use crate::interactions::raceway_contact::SiteState;
-use crate::parts::{FIRST_BALL, Parts, SHAFT};
 use crate::system::Body;
 
 /// Displacements of everything small: m, rad.
@@ -28,7 +28,7 @@ impl Displacements {
     }
 }
 
-impl Parts {
+impl Bearing {
     /// The unknowns that place the bodies at `u`.
     pub fn unknowns(&self, u: &Displacements) -> Vec<f64> {
         let mut x: Vec<f64> = self.shaft.free().map(|dof| u.shaft[dof]).collect();

@@ -4,6 +4,7 @@
 //! contacts). This crate does no input or output.
 
 pub mod balls;
+pub mod bearing;
 mod bodies;
 mod compliance;
 pub mod costs;
@@ -19,7 +20,6 @@ pub mod loading;
 pub mod model;
 pub mod modes;
 pub mod motion;
-pub mod parts;
 pub mod pose;
 pub mod quasi_static;
 pub mod raceway;

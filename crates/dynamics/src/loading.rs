@@ -11,12 +11,12 @@
 use contact::Side;
 use timer::SharedLaps;
 
+use crate::bearing::Bearing;
 use crate::displacements::Displacements;
 use crate::effects::{self, Loads, Now};
 use crate::equilibrium::{SearchScales, minimise};
 use crate::error::DynamicsError;
 use crate::model::Model;
-use crate::parts::Parts;
 use crate::pose::Pose;
 
 /// Bodies and contacts of a model at an instant, with their loads.
@@ -26,7 +26,7 @@ pub struct LoadCase<'a> {
     /// Instant.
     pub pose: Pose,
     /// Bodies and contacts, with the loads in them.
-    pub parts: Parts,
+    pub parts: Bearing,
     /// The loads.
     pub loads: Loads,
     /// Limits and scales of the search.
@@ -124,7 +124,7 @@ impl<'a> LoadCase<'a> {
     }
 }
 
-impl Parts {
+impl Bearing {
     /// Puts loads in the place of those before.
     pub fn set_loads(&mut self, loads: &Loads) {
         for (i, dof) in self.shaft.dofs.iter_mut().enumerate() {

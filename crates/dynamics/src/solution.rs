@@ -4,13 +4,13 @@ use contact::{LoadedPatch, Side};
 use ring::vectors::dot;
 
 use crate::balls::{BallResult, ball_results};
+use crate::bearing::Bearing;
 use crate::displacements::Displacements;
 use crate::effects::Loads;
 use crate::equilibrium::centre_unloaded;
 use crate::footprint::{Footprint, loaded};
 use crate::interactions::raceway_contact::{Site, SiteState};
 use crate::loading::LoadCase;
-use crate::parts::Parts;
 use crate::pose::Pose;
 
 /// Peak pressure that leaves a permanent indentation of 1e-4 of the ball diameter in bearing steel, Pa: ISO 76, for ball
@@ -49,12 +49,8 @@ pub struct StaticSolution {
     pub newton_iterations: usize,
     /// Warnings a user should read.
     pub warnings: Vec<String>,
-    /// All contacts with their laws: ball 0 inner, ball 0 outer, ball 1 inner, ...
-    pub sites: Vec<Site>,
-    /// The same contacts at the equilibrium.
-    pub contacts: Vec<SiteState>,
-    /// Growth of the radial load of each ball with its radial displacement, N/m.
-    pub ball_slopes: Vec<f64>,
+    /// Bodies and contacts as they were solved.
+    pub parts: Bearing,
     footprints: [Vec<Footprint>; 2],
 }
 
@@ -68,7 +64,7 @@ pub struct RingFields {
 
 impl StaticSolution {
     /// Evaluates everything at the equilibrium `u` of a load case, found in a number of rounds.
-    pub fn new(case: &LoadCase, mut u: Displacements, rings: RingFields, rounds: usize) -> StaticSolution {
+    pub fn new(case: LoadCase, mut u: Displacements, rings: RingFields, rounds: usize) -> StaticSolution {
         let (model, parts) = (case.model, &case.parts);
         centre_unloaded(parts, &mut u);
         let states = parts.states_at(&u);
@@ -109,9 +105,7 @@ impl StaticSolution {
             newton_iterations: case.newton_iterations,
             displacements: u,
             pose: case.pose,
-            sites: parts.contacts.sites.clone(),
-            contacts: states,
-            ball_slopes: parts.balls.iter().map(|ball| ball.dofs[0].load_slope).collect(),
+            parts: case.parts,
             elastic: rings.elastic,
             footprints: rings.footprints,
         }
@@ -128,7 +122,7 @@ impl StaticSolution {
             let contact = self.balls[ball].contact(side);
             let angle = contact.contact_angle_rad;
             Some(LoadedPatch {
-                azimuth: self.sites[2 * ball + side.index()].ring_azimuth,
+                azimuth: self.parts.contacts.sites[2 * ball + side.index()].ring_azimuth,
                 force: contact.force_n,
                 angle,
                 semi_axes: contact.semi_axes_m,
@@ -180,7 +174,7 @@ fn body_work(loads: &Loads, rings: &RingFields) -> f64 {
 }
 
 /// Sum of contact and applied loads on the shaft: on free dofs a residual, on the others minus the reaction.
-fn shaft_balance(parts: &Parts, states: &[SiteState]) -> ([f64; 5], [f64; 5]) {
+fn shaft_balance(parts: &Bearing, states: &[SiteState]) -> ([f64; 5], [f64; 5]) {
     let mut sum = parts.shaft_load();
     let contacts = parts.contacts.sites.iter().zip(states);
     for (site, state) in contacts.filter(|(site, _)| site.side == Side::Inner) {

@@ -13,7 +13,7 @@ use timer::SharedLaps;
 
 use super::discrete_gradient::{ContactDamping, ContactScheme, MeanForce, mean_force, viscous};
 use crate::model::Model;
-use crate::system::{Body, Character, Interaction, Lengths, Link, LinkForces, Rows, Term};
+use crate::system::{Body, Character, Interaction, Lengths, Link, LinkForces, LinkRows, LinkTerm};
 
 /// One ball on one raceway.
 #[derive(Clone, Debug, PartialEq)]
@@ -247,17 +247,20 @@ impl RacewayContacts {
 
 /// A contact as a link: l = reach + ball - groove centre.
 fn link(site: &Site, ball: Body, ring: &GrooveBodies) -> Link {
-    let mut terms = vec![Term::new(ball, 0, [1.0, 0.0]), Term::new(ball, 1, [0.0, 1.0])];
+    let mut terms = vec![
+        LinkTerm::new(ball, 0, [1.0, 0.0]),
+        LinkTerm::new(ball, 1, [0.0, 1.0]),
+    ];
     if let Some(elastic) = ring.elastic {
         let body = Body::Elastic(elastic);
-        terms.push(Term::new(body, 2 * site.ball, [-1.0, 0.0]));
-        terms.push(Term::new(body, 2 * site.ball + 1, [0.0, -1.0]));
+        terms.push(LinkTerm::new(body, 2 * site.ball, [-1.0, 0.0]));
+        terms.push(LinkTerm::new(body, 2 * site.ball + 1, [0.0, -1.0]));
     }
     if let Some(carrier) = ring.carrier {
         let rows = site.carrier_rows().into_iter().enumerate();
-        terms.extend(rows.map(|(dof, row)| Term::new(Body::Lumped(carrier), dof, row.map(|r| -r))));
+        terms.extend(rows.map(|(dof, row)| LinkTerm::new(Body::Lumped(carrier), dof, row.map(|r| -r))));
     }
-    let mut reach: Rows = Rows::default();
+    let mut reach: LinkRows = LinkRows::default();
     let held = ring.held.get(site.ball).copied().unwrap_or_default();
     (reach[0], reach[1]) = (site.reach[0] - held[0], site.reach[1] - held[1]);
     Link { reach, terms }

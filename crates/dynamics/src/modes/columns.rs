@@ -1,24 +1,31 @@
-//! The functionals through which contacts, carried masses and constraints act on rings and small dofs.
+//! The functionals through which interactions, carried masses and constraints act on rings and small dofs.
 
 use ring::VibratingRing;
 use ring::sparse::SparseLoad;
 use ring::vectors::dot;
 
-/// A contact: its tangent and what moves it.
-pub struct Contact {
-    /// Tangent over [radial, axial], N/m.
-    pub stiffness: [[f64; 2]; 2],
-    /// Ring and motion [radial, axial] of its groove centre per coordinate; None on a rigid ring.
-    pub ring: Option<(usize, [SparseLoad; 2])>,
-    /// Ball centre minus rigid groove centre [radial, axial] per small dof.
-    pub small: [SparseLoad; 2],
+/// A link of an interaction: its tangent, and what growth it.
+pub struct LinkTangent {
+    /// Tangent over its lengths, N/m, row-major.
+    pub tangent: Vec<f64>,
+    /// What growth each of its lengths.
+    pub lengths: Vec<LengthGrowth>,
+}
+
+/// Growth of a length with the coordinates of a ring and with the small dofs.
+#[derive(Clone, Default)]
+pub struct LengthGrowth {
+    /// Ring and growth per coordinate; None on a rigid ring.
+    pub ring: Option<(usize, SparseLoad)>,
+    /// Growth per small dof.
+    pub small: SparseLoad,
 }
 
 /// What a column does.
 #[derive(Clone, Copy)]
 pub enum Role {
-    /// Direction, 0 or 1, of a contact.
-    Contact(usize, usize),
+    /// A length, by number, of a link_tangent.
+    Link(usize, usize),
     /// Carries a mass, kg.
     Mass(f64),
     /// Does not move.
@@ -35,19 +42,21 @@ pub struct Column {
     pub small: SparseLoad,
 }
 
-/// The columns of contacts, two each and in pairs, then of carried masses and constraints.
-pub fn columns(rings: &[Option<VibratingRing>; 2], contacts: &[Contact]) -> Vec<Column> {
+/// The columns of link_tangents, side by side those of each, then of carried masses and constraints.
+pub fn columns(rings: &[Option<VibratingRing>; 2], link_tangents: &[LinkTangent]) -> Vec<Column> {
     let mut columns = Vec::new();
-    for (c, contact) in contacts.iter().enumerate() {
-        for direction in 0..2 {
-            let minus = |load: &SparseLoad| load.iter().map(|&(k, w)| (k, -w)).collect::<SparseLoad>();
-            let ring = contact.ring.as_ref();
-            columns.push(Column {
-                role: Role::Contact(c, direction),
-                ring: ring.map(|(i, motion)| (*i, minus(&motion[direction]))),
-                small: contact.small[direction].clone(),
-            });
-        }
+    for (c, link_tangent) in link_tangents.iter().enumerate() {
+        columns.extend(
+            link_tangent
+                .lengths
+                .iter()
+                .enumerate()
+                .map(|(row, growth)| Column {
+                    role: Role::Link(c, row),
+                    ring: growth.ring.clone(),
+                    small: growth.small.clone(),
+                }),
+        );
     }
     for (i, ring) in rings.iter().enumerate() {
         let Some(ring) = ring else { continue };

@@ -30,16 +30,17 @@ mod system;
 
 use contact::Side;
 use dense::{LanczosSettings, Searched, lowest_pairs};
-use timer::{Laps, Stopwatch};
+use timer::{Laps, SharedLaps, Stopwatch};
 
+use crate::bearing::{FIRST_BALL, SHAFT};
 use crate::costs::{FACTOR, SEARCH};
 use crate::error::DynamicsError;
-use crate::interactions::raceway_contact::{Site, SiteState};
 use crate::model::{ContactMode, Model, ShaftDof};
 use crate::solution::StaticSolution;
-use columns::Contact;
+use crate::system::{Body, Lengths, Link};
+use columns::{LengthGrowth, LinkTangent};
 use ring::{Backend, Partner, RingModel, VibratingRing};
-use system::System;
+use system::VibratingBearing;
 
 pub use shape::{Mode, Shape};
 
@@ -104,7 +105,7 @@ pub fn ring_modes(
     let body = VibratingRing::new(side.name(), ring, partner, shift, settings.backend)?;
     let mut rings = [None, None];
     rings[side.index()] = Some(body);
-    let system = System::new(rings, Vec::new(), Vec::new(), shift)?;
+    let system = VibratingBearing::new(rings, Vec::new(), Vec::new(), shift)?;
     search(&system, settings, RING_BLOCK, clock, progress)
 }
 
@@ -143,9 +144,9 @@ pub fn bearing_modes(
             small_mass.push(if dof < 3 { model.shaft_mass } else { 0.0 });
         }
     }
-    let contacts = contacts(equilibrium, &rings, &shaft);
+    let link_tangents = link_tangents(equilibrium, &rings, &shaft);
     let block = model.geometry.n_balls.clamp(RING_BLOCK, LARGEST_BLOCK);
-    let mut system = System::new(rings, small_mass, contacts, shift)?;
+    let mut system = VibratingBearing::new(rings, small_mass, link_tangents, shift)?;
     system.set_bearing(
         model.geometry.n_balls,
         shaft,
@@ -165,7 +166,12 @@ fn check_supported(model: &Model, equilibrium: &StaticSolution) -> Result<(), Dy
         let what = "contact.mode = \"facet\", whose forces have no energy; use \"patch\"";
         return Err(DynamicsError::NotInModes { what });
     }
-    if equilibrium.ball_slopes.iter().any(|slope| *slope != 0.0) {
+    if equilibrium
+        .parts
+        .balls
+        .iter()
+        .any(|ball| ball.dofs[0].load_slope != 0.0)
+    {
         let what = "the centrifugal force of balls: they belong to a bearing that does not turn";
         return Err(DynamicsError::NotInModes { what });
     }
@@ -180,42 +186,74 @@ fn shift(settings: ModesSettings, wave_rate: f64) -> f64 {
     }
 }
 
-/// Tangents of all contacts and what they connect.
-fn contacts(
+/// Tangents of all interactions of the equilibrium and what they connect.
+fn link_tangents(
     equilibrium: &StaticSolution,
     rings: &[Option<VibratingRing>; 2],
     shaft: &[(usize, usize)],
-) -> Vec<Contact> {
-    let of_site = |(site, state): (&Site, &SiteState)| {
-        let i = site.side.index();
-        let weights = rings[i].as_ref().map(|ring| {
-            let foot = &equilibrium.footprints(site.side)[site.ball];
-            ring.held().coordinates.reduce_weights(&foot.weights)
-        });
-        let small = [0, 1].map(|direction| {
-            let mut row = vec![(2 * site.ball + direction, 1.0)];
-            if site.side == Side::Inner {
-                let rows = site.carrier_rows();
-                row.extend(shaft.iter().map(|&(dof, place)| (place, -rows[dof][direction])));
-            }
-            row
-        });
-        Contact {
-            stiffness: state.tangent(),
-            ring: weights.map(|w| (i, w)),
-            small,
+) -> Vec<LinkTangent> {
+    let parts = &equilibrium.parts;
+    let x = parts.unknowns(&equilibrium.displacements);
+    let mut link_tangents = Vec::new();
+    for (number, family) in parts.interactions().into_iter().enumerate() {
+        let [start, end] = parts.system().lengths_at(number, &x);
+        let lengths = Lengths {
+            start: &start,
+            end: &end,
+        };
+        let tangents = family.evaluate(lengths, &SharedLaps::default()).tangents;
+        let n = family.n_rows();
+        for (link, tangent) in family.links().iter().zip(tangents.chunks_exact(n * n)) {
+            link_tangents.push(LinkTangent {
+                tangent: tangent.to_vec(),
+                lengths: (0..n)
+                    .map(|row| growth(link, row, equilibrium, rings, shaft))
+                    .collect(),
+            });
         }
-    };
-    equilibrium
-        .sites
-        .iter()
-        .zip(&equilibrium.contacts)
-        .map(of_site)
-        .collect()
+    }
+    link_tangents
+}
+
+/// What growth one length of a link. The motion of a flexible ring has that of its partner in it.
+fn growth(
+    link: &Link,
+    row: usize,
+    equilibrium: &StaticSolution,
+    rings: &[Option<VibratingRing>; 2],
+    shaft: &[(usize, usize)],
+) -> LengthGrowth {
+    let mut growth = LengthGrowth::default();
+    for term in link.terms.iter().filter(|term| term.rows[row] != 0.0) {
+        let value = term.rows[row];
+        match term.body {
+            Body::Lumped(SHAFT) => {
+                let place = shaft.iter().find(|(dof, _)| *dof == term.coordinate);
+                growth.small.extend(place.map(|(_, place)| (*place, value)));
+            }
+            Body::Lumped(body) => growth
+                .small
+                .push((2 * (body - FIRST_BALL) + term.coordinate, value)),
+            Body::Elastic(body) => {
+                let found = Side::BOTH
+                    .into_iter()
+                    .find(|side| equilibrium.parts.elastic(*side) == Some(body));
+                let Some((side, ring)) = found.and_then(|side| Some((side, rings[side.index()].as_ref()?)))
+                else {
+                    continue;
+                };
+                let foot = &equilibrium.footprints(side)[term.coordinate / 2];
+                let weights = ring.held().coordinates.reduce_weights(&foot.weights);
+                let load = weights[term.coordinate % 2].iter().map(|&(k, w)| (k, value * w));
+                growth.ring = Some((side.index(), load.collect()));
+            }
+        }
+    }
+    growth
 }
 
 fn search(
-    system: &System,
+    system: &VibratingBearing,
     settings: ModesSettings,
     block: usize,
     mut clock: Stopwatch,

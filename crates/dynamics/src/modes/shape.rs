@@ -2,7 +2,7 @@
 
 use contact::Side;
 
-use super::system::System;
+use super::system::VibratingBearing;
 
 /// Share of the largest component that counts as just as large, so that round-off does not choose the sign of a shape.
 const AS_LARGE: f64 = 1.0 - 1e-6;
@@ -18,7 +18,7 @@ pub struct Mode {
     pub residual: f64,
     /// Whether it is a motion at zero frequency.
     pub is_rigid: bool,
-    /// Mass that moves, kg, when the largest displacement is the coordinate: twice the kinetic energy over the square
+    /// Mass that growth, kg, when the largest displacement is the coordinate: twice the kinetic energy over the square
     /// of its velocity.
     pub modal_mass: f64,
     /// Shares of the kinetic energy: inner ring, outer ring, balls, shaft.
@@ -43,7 +43,7 @@ pub struct Shape {
 impl Mode {
     /// The mode of an eigenvector with x^T M x = 1; `[value, bound]` are omega^2 and its largest error, 1/s^2.
     pub(super) fn new(
-        system: &System,
+        system: &VibratingBearing,
         x: &[f64],
         [value, bound]: [f64; 2],
         residual: f64,
@@ -71,7 +71,7 @@ impl Mode {
 }
 
 impl Shape {
-    fn new(system: &System, x: &[f64]) -> Shape {
+    fn new(system: &VibratingBearing, x: &[f64]) -> Shape {
         let small = system.part(x, 2);
         let n_balls = system.dofs.n_balls;
         let mut shaft = [0.0; 5];

@@ -1,12 +1,12 @@
 //! Rings, balls and shaft as one eigenproblem.
 //!
 //! Unknowns y: coordinates of the inner ring, of the outer ring, then the small dofs p (balls, shaft of a rigid
-//! ring). Contacts, constraints and the masses of mean motions act on a ring through few columns a_j, so K + s M is
+//! ring). Interactions, constraints and the masses of mean motions act on a ring through few columns a_j, so K + s M is
 //! solved by the rings' factors and one dense system. With forces t of the columns and z = S^-1 b of the rings, r = z
 //! - X t with X = S^-1 [a_j], C = [a_i]^T X and l = a^T r + b^T p (a = -W, the patch weights, for a contact):
 //!
 //! ```text
-//! contact     t - D l = 0            D its 2 x 2 tangent, zero without load
+//! link        t - D l = 0            D its tangent, of a contact 2 x 2 and zero without load
 //! mass m_s    t - s m_s a^T r = 0
 //! constraint  a^T r = 0
 //! small dofs  s m p + sum of b t = f
@@ -17,7 +17,7 @@
 
 use dense::{DenseLu, EigenProblem};
 
-use super::columns::{Column, Contact, Role, columns, reactions};
+use super::columns::{Column, LinkTangent, Role, columns, reactions};
 use crate::error::DynamicsError;
 use ring::VibratingRing;
 use ring::sparse::sparse_dot;
@@ -35,11 +35,11 @@ pub(super) struct BearingDofs {
 }
 
 /// The eigenproblem of rings, balls and shaft.
-pub struct System {
+pub struct VibratingBearing {
     pub(super) rings: [Option<VibratingRing>; 2],
     /// Masses of the small dofs, kg.
     small_mass: Vec<f64>,
-    contacts: Vec<Contact>,
+    link_tangents: Vec<LinkTangent>,
     columns: Vec<Column>,
     /// S^-1 of the columns of each ring, column-major, and their numbers.
     answers: [Answer; 2],
@@ -59,22 +59,22 @@ struct Answer {
     columns: Vec<f64>,
 }
 
-impl System {
-    /// A system of rings, small dofs of given masses and contacts.
+impl VibratingBearing {
+    /// A system of rings, small dofs of given masses and what couples them.
     pub fn new(
         rings: [Option<VibratingRing>; 2],
         small_mass: Vec<f64>,
-        contacts: Vec<Contact>,
+        link_tangents: Vec<LinkTangent>,
         shift: f64,
-    ) -> Result<System, DynamicsError> {
-        let columns = columns(&rings, &contacts);
-        let entries = contacts.iter().flat_map(|c| c.stiffness.as_flattened());
+    ) -> Result<VibratingBearing, DynamicsError> {
+        let columns = columns(&rings, &link_tangents);
+        let entries = link_tangents.iter().flat_map(|c| &c.tangent);
         let largest = entries.fold(0.0f64, |m, x| m.max(x.abs()));
-        let mut system = System {
+        let mut system = VibratingBearing {
             reactions: [0, 1].map(|i| reactions(&rings, &columns, i)),
             rings,
             small_mass,
-            contacts,
+            link_tangents,
             columns,
             answers: Default::default(),
             force_unit: if largest > 0.0 { largest } else { 1.0 },
@@ -198,9 +198,12 @@ impl System {
     /// own t_j - sum of share l_k = 0: the law of a column's force.
     fn law(&self, j: usize) -> (f64, Vec<(usize, f64)>) {
         match self.columns[j].role {
-            Role::Contact(c, direction) => {
-                let row = self.contacts[c].stiffness[direction];
-                (1.0, vec![(j - direction, row[0]), (j - direction + 1, row[1])])
+            Role::Link(c, row) => {
+                let n = self.link_tangents[c].lengths.len();
+                let shares = self.link_tangents[c].tangent[n * row..n * (row + 1)]
+                    .iter()
+                    .enumerate();
+                (1.0, shares.map(|(k, share)| (j - row + k, *share)).collect())
             }
             Role::Mass(mass) => (1.0, vec![(j, self.shift * mass)]),
             Role::Constraint => (0.0, vec![(j, 1.0)]),
@@ -232,7 +235,7 @@ impl System {
         }
     }
 
-    /// Parts of a ring of a block of vectors, column-major.
+    /// Bearing of a ring of a block of vectors, column-major.
     fn parts(&self, x: &[f64], i: usize) -> Vec<f64> {
         let columns = x.chunks_exact(self.n());
         columns.flat_map(|y| self.part(y, i).iter().copied()).collect()
@@ -301,7 +304,7 @@ impl System {
     }
 }
 
-impl EigenProblem for System {
+impl EigenProblem for VibratingBearing {
     fn n(&self) -> usize {
         self.starts()[3]
     }
@@ -314,7 +317,7 @@ impl EigenProblem for System {
         let mut result = self.ring_products(x, |ring, y| ring.stiffness(&y, n_vectors), |_| 0.0);
         for (y, result) in x.chunks_exact(self.n()).zip(result.chunks_exact_mut(self.n())) {
             self.add_columns(y, result, |j, lengths| match self.columns[j].role {
-                Role::Contact(..) => self.law(j).1.iter().map(|&(k, share)| share * lengths[k]).sum(),
+                Role::Link(..) => self.law(j).1.iter().map(|&(k, share)| share * lengths[k]).sum(),
                 Role::Mass(_) | Role::Constraint => 0.0,
             });
         }
@@ -326,7 +329,7 @@ impl EigenProblem for System {
         for (y, result) in x.chunks_exact(self.n()).zip(result.chunks_exact_mut(self.n())) {
             self.add_columns(y, result, |j, lengths| match self.columns[j].role {
                 Role::Mass(mass) => mass * lengths[j],
-                Role::Contact(..) | Role::Constraint => 0.0,
+                Role::Link(..) | Role::Constraint => 0.0,
             });
         }
         result

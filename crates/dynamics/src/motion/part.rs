@@ -8,12 +8,12 @@ use super::run::Motion;
 use super::solve::StepSolution;
 use super::span::Span;
 use super::state::MotionState;
+use crate::bearing::{Bearing, ContactList, SHAFT};
 use crate::bodies::{FlatBody, Inertia, Name};
 use crate::compliance;
 use crate::effects::{self, Loads, Now};
 use crate::error::DynamicsError;
 use crate::interactions::raceway_contact::{Means, Site};
-use crate::parts::{ContactParts, Parts, SHAFT};
 use crate::system::{ElasticPorts, Follow, Interval};
 
 /// Force scale of a bearing on which nothing acts, N.
@@ -88,13 +88,13 @@ impl Motion<'_> {
         sites: Vec<Site>,
         rings: &RingSteps<'_>,
         loads: &Loads,
-    ) -> Result<Parts, DynamicsError> {
+    ) -> Result<Bearing, DynamicsError> {
         let ports = |side: Side| {
             let step = rings[side.index()].as_deref();
             step.map(|step| self.ports(span, side, step)).transpose()
         };
         let (integrator, dt) = (self.settings.integrator, span.dt);
-        let contacts = ContactParts {
+        let contacts = ContactList {
             sites,
             dead: loads.contacts.clone(),
             means: Some(Means {
@@ -104,7 +104,7 @@ impl Motion<'_> {
                 damping: self.settings.contact_damping,
             }),
         };
-        Ok(Parts::new(
+        Ok(Bearing::new(
             Interval::Step(StepScheme { integrator, dt }),
             self.shaft(state, span, loads),
             (0..self.n_balls())
@@ -181,7 +181,7 @@ impl Motion<'_> {
     }
 }
 
-impl Parts {
+impl Bearing {
     /// Forces at the ports of a ring.
     pub(super) fn forces_at_ports(&self, side: Side, solution: &StepSolution) -> RingForces {
         RingForces {

@@ -16,12 +16,12 @@ use rayon::prelude::*;
 use super::run::Motion;
 use super::solve::StepSolution;
 use super::state::MotionState;
+use crate::bearing::Bearing;
 use crate::error::DynamicsError;
 use crate::footprint::{loaded, on_groove, require_on_groove};
 use crate::interactions::discrete_gradient::MeanForce;
 use crate::interactions::raceway_contact::Site;
 use crate::model::elastic;
-use crate::parts::Parts;
 
 /// Distance of a patch from its contact at which it counts as in place, semi-axes, times the share of its force in the largest.
 const ANGLE_TOLERANCE: f64 = 1e-4;
@@ -81,7 +81,7 @@ pub(super) fn expected(places: [&[[f64; 2]]; 3]) -> Vec<[f64; 2]> {
         .collect()
 }
 
-impl Parts {
+impl Bearing {
     /// Where the contacts of the part were at its weighted time: contact angle, rad, and force, N, by site.
     pub(super) fn places(&self, solution: &StepSolution) -> Vec<[f64; 2]> {
         let start = self.contacts.means.map_or(0.0, |means| means.weight);

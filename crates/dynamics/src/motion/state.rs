@@ -122,9 +122,9 @@ pub struct StepReport {
     pub frame_rounds: usize,
     /// Rounds for the places of the patches.
     pub place_rounds: usize,
-    /// Parts in which the step was done.
+    /// Bearing in which the step was done.
     pub substeps: usize,
-    /// Parts that failed or were too inaccurate and were done again.
+    /// Bearing that failed or were too inaccurate and were done again.
     pub retries: usize,
     /// Largest accepted local error over the largest contact approach; 0 when steps do not adapt.
     pub error: f64,

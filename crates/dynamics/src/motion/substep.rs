@@ -14,9 +14,9 @@ use super::run::Motion;
 use super::solve::{StepSolution, check_patches, check_range};
 use super::span::Span;
 use super::state::{MotionState, StepReport};
+use crate::bearing::Bearing;
 use crate::costs::{BLOCK_SOLVE, LOADS, NEWTON, PATCHES, UPDATE};
 use crate::error::DynamicsError;
-use crate::parts::Parts;
 
 /// Rounds for the places of the patches before a step counts as failed.
 const MAX_PLACE_ROUNDS: usize = 20;
@@ -29,7 +29,7 @@ pub(super) struct Part<'m> {
     places: Vec<[f64; 2]>,
     placing: Placing,
     pub rings: RingSteps<'m>,
-    pub parts: Parts,
+    pub parts: Bearing,
     /// Largest force that acts at the start, N.
     pub scale: f64,
     pub report: StepReport,

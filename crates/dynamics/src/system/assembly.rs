@@ -5,7 +5,7 @@ use std::ops::Range;
 use timer::SharedLaps;
 
 use super::elastic::{ElasticPorts, Follow};
-use super::interaction::{Character, Interaction, Lengths, Link, LinkForces, Rows};
+use super::interaction::{Character, Interaction, Lengths, Link, LinkForces, LinkRows};
 use super::lumped::{Body, Interval, Lumped};
 
 /// Bodies and interactions over an interval.
@@ -282,7 +282,7 @@ impl<'a> System<'a> {
     }
 
     /// Unknowns that move a link, and the growth of its lengths with each.
-    fn moved_by(&self, link: &Link, moves: &Moves, moved: &mut Vec<(usize, Rows)>) {
+    fn moved_by(&self, link: &Link, moves: &Moves, moved: &mut Vec<(usize, LinkRows)>) {
         moved.clear();
         for term in &link.terms {
             let coordinate = self.first[self.number(term.body)][1] + term.coordinate;

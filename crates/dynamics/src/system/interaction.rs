@@ -8,24 +8,24 @@ use super::lumped::Body;
 pub const MOST_ROWS: usize = 6;
 
 /// A value for each length of a link; those beyond its number are zero.
-pub type Rows = [f64; MOST_ROWS];
+pub type LinkRows = [f64; MOST_ROWS];
 
 /// What a link sees of one coordinate: the growth of its lengths with it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Term {
+pub struct LinkTerm {
     /// The body.
     pub body: Body,
     /// Its coordinate.
     pub coordinate: usize,
     /// Growth of the lengths.
-    pub rows: Rows,
+    pub rows: LinkRows,
 }
 
-impl Term {
+impl LinkTerm {
     /// A coordinate of a body with the growth of the first lengths.
-    pub fn new<const N: usize>(body: Body, coordinate: usize, rows: [f64; N]) -> Term {
+    pub fn new<const N: usize>(body: Body, coordinate: usize, rows: [f64; N]) -> LinkTerm {
         let rows = std::array::from_fn(|i| rows.get(i).copied().unwrap_or(0.0));
-        Term {
+        LinkTerm {
             body,
             coordinate,
             rows,
@@ -37,9 +37,9 @@ impl Term {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Link {
     /// Lengths when all coordinates are zero, m.
-    pub reach: Rows,
+    pub reach: LinkRows,
     /// The coordinates that it sees.
-    pub terms: Vec<Term>,
+    pub terms: Vec<LinkTerm>,
 }
 
 /// Lengths of all links of a family, one after the other.

@@ -34,7 +34,8 @@ pub trait Lumped: Send + Sync {
     /// Coordinates at its end for the unknowns `x`.
     fn place(&self, x: &[f64], end: &mut [f64]);
 
-    /// Growth of the coordinates with the unknowns at `x`: (coordinate, unknown, value), in ascending order.
+    /// Growth of the coordinates with the unknowns at `x`: (coordinate, unknown, value), in ascending order. Where it
+    /// changes with `x`, Newton's tangent leaves that change out and converges linearly.
     fn slopes(&self, x: &[f64]) -> Vec<(usize, usize, f64)>;
 
     /// Unknowns when nothing accelerates.

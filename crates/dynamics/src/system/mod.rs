@@ -22,8 +22,10 @@ mod elastic;
 mod interaction;
 mod lumped;
 pub mod newton;
+#[cfg(test)]
+mod tests;
 
 pub use assembly::{Evaluated, System};
 pub use elastic::{ElasticPorts, Follow};
-pub use interaction::{Character, Interaction, Lengths, Link, LinkForces, MOST_ROWS, Rows, Term};
+pub use interaction::{Character, Interaction, Lengths, Link, LinkForces, LinkRows, LinkTerm, MOST_ROWS};
 pub use lumped::{Body, Interval, Lumped};

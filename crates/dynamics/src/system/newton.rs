@@ -89,22 +89,23 @@ impl System<'_> {
             history.push(now);
             stalled = if now < 0.5 * best { 0 } else { stalled + 1 };
             best = best.min(now);
-            tangent.copy_from_slice(&bodies);
-            self.add_link_tangents(&x, &at.links, &mut tangent);
             let scale = force_scale(&at.links, policy.force_scale);
             limit = policy.residual_limit * scale;
+            tangent.copy_from_slice(&bodies);
+            self.add_link_tangents(&x, &at.links, &mut tangent);
             let floor = || match policy.round_off {
                 RoundOff::Unknowns => round_off(&tangent, &x),
                 RoundOff::Links => self.round_off(&x),
             };
-            if now <= RESIDUAL_TARGET * scale || (stalled >= 2 && now <= limit.max(floor())) {
+            let is_solved = now <= RESIDUAL_TARGET * scale || (stalled >= 2 && now <= limit.max(floor()));
+            if is_solved {
                 return Ok(Solved {
                     unknowns: x,
                     links: at.links,
                     iterations: iteration,
                 });
             }
-            let step = self.direction(&tangent, &at.residual, policy)?;
+            let step = self.direction(&mut tangent, &at.residual, policy)?;
             (x, at) = self.search(x, at, &step, policy);
             (policy.watch)(&x)?;
         }
@@ -121,21 +122,21 @@ impl System<'_> {
     /// Newton's step.
     fn direction(
         &self,
-        tangent: &[f64],
+        matrix: &mut [f64],
         residual: &[f64],
         policy: &Policy,
     ) -> Result<Vec<f64>, DynamicsError> {
-        self.check_held(tangent, residual, policy)?;
+        self.check_held(matrix, residual, policy)?;
         let n = self.n();
         let mut step: Vec<f64> = policy.scaled(residual).iter().map(|r| -r).collect();
-        let matrix = policy.matrix(n, tangent);
+        policy.scale(n, matrix);
         let error = |source: DenseError| DynamicsError::ContactSystem { source };
         if self.has_energy() {
-            DenseCholesky::factor(n, &matrix)
+            DenseCholesky::factor(n, matrix)
                 .map_err(error)?
                 .solve(&mut step, 1);
         } else {
-            DenseLu::factor(n, &matrix).map_err(error)?.solve(&mut step, 1);
+            DenseLu::factor(n, matrix).map_err(error)?.solve(&mut step, 1);
         }
         let length = step.iter().fold(0.0, |most: f64, s| most.max(s.abs()));
         if length > policy.longest_step {
@@ -184,19 +185,22 @@ impl Policy<'_> {
         }
     }
 
-    /// The tangent of scaled unknowns with the proximal stiffness.
-    fn matrix(&self, n: usize, tangent: &[f64]) -> Vec<f64> {
-        let mut matrix = tangent.to_vec();
-        if let Some(scales) = self.scales {
-            for (row, a) in matrix.chunks_exact_mut(n).zip(scales) {
-                row.iter_mut().zip(scales).for_each(|(value, b)| *value *= a * b);
-            }
+    /// Makes a tangent that of scaled unknowns, with the proximal stiffness.
+    fn scale(&self, n: usize, tangent: &mut [f64]) {
+        let scales = self.scales.unwrap_or_default().iter().enumerate();
+        for (i, scale) in scales.filter(|(_, scale)| **scale != 1.0) {
+            tangent[n * i..n * (i + 1)]
+                .iter_mut()
+                .for_each(|value| *value *= scale);
+            tangent[i..]
+                .iter_mut()
+                .step_by(n)
+                .for_each(|value| *value *= scale);
         }
-        matrix
+        tangent
             .iter_mut()
             .step_by(n + 1)
             .for_each(|diagonal| *diagonal += self.proximal);
-        matrix
     }
 }
 

@@ -9,7 +9,7 @@ use contact::Side;
 
 use crate::bodies::FlatBody;
 use crate::interactions::raceway_contact::{GrooveBodies, Means, RacewayContacts, Site, SiteState};
-use crate::system::{ElasticPorts, Interval, Lengths, Lumped, System};
+use crate::system::{ElasticPorts, Interaction, Interval, Lengths, Lumped, System};
 
 /// Number of the shaft among the lumped bodies.
 pub const SHAFT: usize = 0;
@@ -19,7 +19,7 @@ pub const FIRST_BALL: usize = 1;
 pub const CONTACTS: usize = 0;
 
 /// Bodies and interactions of a bearing over an interval.
-pub struct Parts {
+pub struct Bearing {
     /// The interval.
     pub interval: Interval,
     /// The shaft.
@@ -33,7 +33,7 @@ pub struct Parts {
 }
 
 /// What a bearing's contacts are made of.
-pub struct ContactParts {
+pub struct ContactList {
     /// The contacts.
     pub sites: Vec<Site>,
     /// Additional forces on the rings, by site; see [`RacewayContacts::dead`].
@@ -42,19 +42,19 @@ pub struct ContactParts {
     pub means: Option<Means>,
 }
 
-impl Parts {
+impl Bearing {
     /// A bearing of these bodies; connects the contacts.
     pub fn new(
         interval: Interval,
         shaft: FlatBody<5>,
         balls: Vec<FlatBody<2>>,
         rings: [Option<ElasticPorts>; 2],
-        contacts: ContactParts,
-    ) -> Parts {
+        contacts: ContactList,
+    ) -> Bearing {
         let held = [Vec::new(), Vec::new()];
         let grooves = groove_bodies(interval, &rings, &held);
-        let ContactParts { sites, dead, means } = contacts;
-        Parts {
+        let ContactList { sites, dead, means } = contacts;
+        Bearing {
             interval,
             shaft,
             balls,
@@ -78,8 +78,13 @@ impl Parts {
             self.interval,
             lumped,
             self.rings.iter().flatten().collect(),
-            vec![&self.contacts],
+            self.interactions(),
         )
+    }
+
+    /// The interactions of its bodies.
+    pub fn interactions(&self) -> Vec<&dyn Interaction> {
+        vec![&self.contacts]
     }
 
     /// Number of a flexible ring among the elastic bodies.
