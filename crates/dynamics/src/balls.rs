@@ -3,10 +3,6 @@
 use contact::Side;
 use serde::Serialize;
 
-use crate::bearing::Bearing;
-use crate::displacements::Displacements;
-use crate::model::Model;
-
 /// One contact of a ball.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct ContactResult {
@@ -52,31 +48,4 @@ impl BallResult {
             Side::Outer => &self.outer,
         }
     }
-}
-
-/// Results of all balls at given displacements.
-pub fn ball_results(model: &Model, parts: &Bearing, u: &Displacements) -> Vec<BallResult> {
-    let (sites, states) = (&parts.contacts.sites, parts.states_at(u));
-    let contact = |i: usize| {
-        let (site, state) = (&sites[i], &states[i]);
-        let hertz = &model.hertz[site.side.index()];
-        ContactResult {
-            force_n: state.force.force,
-            contact_angle_rad: state.angle,
-            approach_m: state.force.approach,
-            semi_axes_m: hertz.semi_axes(state.force.force),
-            peak_pressure_pa: hertz.peak_pressure(state.force.force),
-        }
-    };
-    (0..model.geometry.n_balls)
-        .map(|ball| BallResult {
-            azimuth_rad: sites[2 * ball].azimuth.rem_euclid(2.0 * std::f64::consts::PI),
-            inner: contact(2 * ball + Side::Inner.index()),
-            outer: contact(2 * ball + Side::Outer.index()),
-            displacement_m: BallDisplacement {
-                radial: u.balls[ball][0],
-                axial: u.balls[ball][1],
-            },
-        })
-        .collect()
 }

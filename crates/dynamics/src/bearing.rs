@@ -6,6 +6,7 @@
 //! and its mount follows the shaft.
 
 use contact::Side;
+use ring::Partner;
 
 use crate::bodies::FlatBody;
 use crate::interactions::raceway_contact::{GrooveBodies, Means, RacewayContacts, Site, SiteState};
@@ -19,7 +20,7 @@ pub const FIRST_BALL: usize = 1;
 pub const CONTACTS: usize = 0;
 
 /// Bodies and interactions of a bearing over an interval.
-pub struct Bearing {
+pub struct BearingParts {
     /// The interval.
     pub interval: Interval,
     /// The shaft.
@@ -42,7 +43,7 @@ pub struct ContactList {
     pub means: Option<Means>,
 }
 
-impl Bearing {
+impl BearingParts {
     /// A bearing of these bodies; connects the contacts.
     pub fn new(
         interval: Interval,
@@ -50,11 +51,11 @@ impl Bearing {
         balls: Vec<FlatBody<2>>,
         rings: [Option<ElasticPorts>; 2],
         contacts: ContactList,
-    ) -> Bearing {
+    ) -> BearingParts {
         let held = [Vec::new(), Vec::new()];
         let grooves = groove_bodies(interval, &rings, &held);
         let ContactList { sites, dead, means } = contacts;
-        Bearing {
+        BearingParts {
             interval,
             shaft,
             balls,
@@ -133,4 +134,12 @@ fn groove_bodies(
             elastic,
         }
     })
+}
+
+/// What holds a ring.
+pub(crate) fn partner(side: Side) -> Partner {
+    match side {
+        Side::Inner => Partner::SHAFT,
+        Side::Outer => Partner::AT_REST,
+    }
 }

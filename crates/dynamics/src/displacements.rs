@@ -2,7 +2,7 @@
 
 use contact::Side;
 
-use crate::bearing::{Bearing, FIRST_BALL, SHAFT};
+use crate::bearing::{BearingParts, FIRST_BALL, SHAFT};
 use crate::interactions::raceway_contact::SiteState;
 use crate::system::Body;
 
@@ -28,7 +28,7 @@ impl Displacements {
     }
 }
 
-impl Bearing {
+impl BearingParts {
     /// The unknowns that place the bodies at `u`.
     pub fn unknowns(&self, u: &Displacements) -> Vec<f64> {
         let mut x: Vec<f64> = self.shaft.free().map(|dof| u.shaft[dof]).collect();

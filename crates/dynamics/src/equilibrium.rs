@@ -8,13 +8,13 @@ use contact::{BearingGeometry, Side};
 use dense::{DenseError, DenseLu};
 use timer::SharedLaps;
 
-use crate::bearing::{Bearing, SHAFT};
+use crate::bearing::{BearingParts, SHAFT};
 use crate::bodies::AXES;
 use crate::displacements::Displacements;
 use crate::error::DynamicsError;
 use crate::footprint::loaded;
 use crate::model::MAX_TILT;
-use crate::system::newton::{Policy, RoundOff, Search};
+use crate::system::newton::{Policy, RoundOff, Shortening};
 
 /// Largest residual over the force scale at which Newton may stop; it goes on to round-off while it improves.
 const RESIDUAL_LIMIT: f64 = 1e-10;
@@ -52,7 +52,7 @@ impl SearchScales {
     }
 
     /// Length per unknown: tilts count by their arm.
-    fn of_unknowns(&self, parts: &Bearing) -> Vec<f64> {
+    fn of_unknowns(&self, parts: &BearingParts) -> Vec<f64> {
         let mut scales: Vec<f64> = parts
             .shaft
             .free()
@@ -65,7 +65,7 @@ impl SearchScales {
 
 /// Displacements of the minimum, from any start, and the iterations it took.
 pub fn minimise(
-    parts: &Bearing,
+    parts: &BearingParts,
     start: &Displacements,
     scales: SearchScales,
 ) -> Result<(Displacements, usize), DynamicsError> {
@@ -79,7 +79,7 @@ pub fn minimise(
         scales: Some(&lengths),
         proximal: proximal(parts, scales),
         longest_step: scales.step,
-        search: Search::Energy,
+        search: Shortening::Energy,
         watch: &|x| check_range(system.coordinates(SHAFT, x), scales),
         costs: &SharedLaps::default(),
     };
@@ -88,12 +88,12 @@ pub fn minimise(
 }
 
 /// Force, N, that the round-off of positions makes in all contacts together: what a light load can be balanced to.
-pub fn round_off(parts: &Bearing, u: &Displacements) -> f64 {
+pub fn round_off(parts: &BearingParts, u: &Displacements) -> f64 {
     parts.system().round_off(&parts.unknowns(u))
 }
 
 /// Largest load on shaft and balls, N.
-fn largest_load(parts: &Bearing, scales: SearchScales) -> f64 {
+fn largest_load(parts: &BearingParts, scales: SearchScales) -> f64 {
     let shaft = parts.shaft.dofs.iter().enumerate();
     let shaft = shaft.map(|(dof, x)| if dof < 3 { x.load } else { x.load / scales.tilt_arm });
     let balls = parts.balls.iter().flat_map(|ball| ball.dofs.map(|dof| dof.load));
@@ -119,7 +119,11 @@ fn check_range(shaft: [f64; 5], scales: SearchScales) -> Result<(), DynamicsErro
 }
 
 /// Fails when a free shaft dof has no stiffness at the solution `u`.
-pub fn check_held(parts: &Bearing, u: &Displacements, scales: SearchScales) -> Result<(), DynamicsError> {
+pub fn check_held(
+    parts: &BearingParts,
+    u: &Displacements,
+    scales: SearchScales,
+) -> Result<(), DynamicsError> {
     let free: Vec<usize> = parts.shaft.free().collect();
     let (system, x) = (parts.system(), parts.unknowns(u));
     let (n, m) = (system.n(), free.len());
@@ -173,7 +177,7 @@ pub fn check_held(parts: &Bearing, u: &Displacements, scales: SearchScales) -> R
 }
 
 /// Proximal stiffness, N/m: a trace of the contacts' and more than what a growing ball load takes away.
-fn proximal(parts: &Bearing, scales: SearchScales) -> f64 {
+fn proximal(parts: &BearingParts, scales: SearchScales) -> f64 {
     let slopes = parts.balls.iter().map(|ball| ball.dofs[0].load_slope);
     PROXIMAL * scales.stiffness + 2.0 * slopes.fold(0.0, f64::max)
 }
@@ -184,7 +188,7 @@ fn dense_error(source: DenseError) -> DynamicsError {
 
 /// Unloaded balls rest midway between their raceways: those without a load of their own that are not squeezed between
 /// both. A ball that Newton left touching a raceway, with a force below its residual, is unloaded.
-pub fn centre_unloaded(parts: &Bearing, u: &mut Displacements) {
+pub fn centre_unloaded(parts: &BearingParts, u: &mut Displacements) {
     let size = |load: [f64; 2]| load[0].hypot(load[1]);
     let loads: Vec<f64> = (0..parts.balls.len())
         .map(|ball| size(parts.ball_load(ball)))
@@ -208,7 +212,7 @@ pub fn centre_unloaded(parts: &Bearing, u: &mut Displacements) {
     }
 }
 
-impl Bearing {
+impl BearingParts {
     /// Load on a ball at its just-touching position and what its contacts add besides their normal forces [radial,
     /// axial], N.
     pub fn ball_load(&self, ball: usize) -> [f64; 2] {

@@ -11,13 +11,16 @@
 use contact::Side;
 use timer::SharedLaps;
 
-use crate::bearing::Bearing;
+use crate::bearing::{BearingParts, ContactList};
+use crate::bodies::{FlatBody, Inertia, Name};
 use crate::displacements::Displacements;
 use crate::effects::{self, Loads, Now};
 use crate::equilibrium::{SearchScales, minimise};
 use crate::error::DynamicsError;
+use crate::interactions::raceway_contact::Site;
 use crate::model::Model;
 use crate::pose::Pose;
+use crate::system::Interval;
 
 /// Bodies and contacts of a model at an instant, with their loads.
 pub struct LoadCase<'a> {
@@ -26,7 +29,7 @@ pub struct LoadCase<'a> {
     /// Instant.
     pub pose: Pose,
     /// Bodies and contacts, with the loads in them.
-    pub parts: Bearing,
+    pub parts: BearingParts,
     /// The loads.
     pub loads: Loads,
     /// Limits and scales of the search.
@@ -43,7 +46,7 @@ impl<'a> LoadCase<'a> {
         costs: &SharedLaps,
         u: &Displacements,
     ) -> Result<LoadCase<'a>, DynamicsError> {
-        let mut parts = pose.parts(model);
+        let mut parts = parts_at(&pose, model);
         parts.set_rings([None, None], &u.grooves);
         let stiffness = model.hertz[0].stiffness.max(model.hertz[1].stiffness);
         let mut case = LoadCase {
@@ -124,7 +127,32 @@ impl<'a> LoadCase<'a> {
     }
 }
 
-impl Bearing {
+/// Bodies and contacts of an instant on rings that do not deform, still without loads.
+fn parts_at(pose: &Pose, model: &Model) -> BearingParts {
+    let geometry = &model.geometry;
+    let site = |ball: usize, side: Side| {
+        let azimuth = geometry.azimuth(ball) + pose.now.cage_angle;
+        let mut site = Site::new(model, ball, side, azimuth);
+        site.ring_azimuth -= pose.frame_angle(side);
+        site
+    };
+    let sites = (0..geometry.n_balls).flat_map(|ball| Side::BOTH.map(|side| site(ball, side)));
+    let imposed = [0, 1, 2, 3, 4].map(|dof| model.prescribed(dof, pose.now.time));
+    let ball = |ball: usize| FlatBody::new(Name::Ball(ball), [Inertia::default(); 2], [None; 2]);
+    BearingParts::new(
+        Interval::Rest,
+        FlatBody::new(Name::Shaft, [Inertia::default(); 5], imposed),
+        (0..geometry.n_balls).map(ball).collect(),
+        [None, None],
+        ContactList {
+            sites: sites.collect(),
+            dead: Vec::new(),
+            means: None,
+        },
+    )
+}
+
+impl BearingParts {
     /// Puts loads in the place of those before.
     pub fn set_loads(&mut self, loads: &Loads) {
         for (i, dof) in self.shaft.dofs.iter_mut().enumerate() {

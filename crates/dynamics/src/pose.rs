@@ -6,14 +6,10 @@
 
 use contact::Side;
 
-use crate::bearing::{Bearing, ContactList};
-use crate::bodies::{FlatBody, Inertia, Name};
 use crate::effects::{Loads, Now, resultant};
 use crate::error::DynamicsError;
 use crate::frame::{turn, turn_nodal};
-use crate::interactions::raceway_contact::Site;
 use crate::model::Model;
-use crate::system::Interval;
 
 /// Time and angles of an instant; the default is a bearing that has not turned, at time 0.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -31,31 +27,6 @@ impl Pose {
             Side::Inner => self.inner_angle,
             Side::Outer => 0.0,
         }
-    }
-
-    /// Bodies and contacts of this instant on rings that do not deform, still without loads.
-    pub(crate) fn parts(&self, model: &Model) -> Bearing {
-        let geometry = &model.geometry;
-        let site = |ball: usize, side: Side| {
-            let azimuth = geometry.azimuth(ball) + self.now.cage_angle;
-            let mut site = Site::new(model, ball, side, azimuth);
-            site.ring_azimuth -= self.frame_angle(side);
-            site
-        };
-        let sites = (0..geometry.n_balls).flat_map(|ball| Side::BOTH.map(|side| site(ball, side)));
-        let imposed = [0, 1, 2, 3, 4].map(|dof| model.prescribed(dof, self.now.time));
-        let ball = |ball: usize| FlatBody::new(Name::Ball(ball), [Inertia::default(); 2], [None; 2]);
-        Bearing::new(
-            Interval::Rest,
-            FlatBody::new(Name::Shaft, [Inertia::default(); 5], imposed),
-            (0..geometry.n_balls).map(ball).collect(),
-            [None, None],
-            ContactList {
-                sites: sites.collect(),
-                dead: Vec::new(),
-                means: None,
-            },
-        )
     }
 
     /// Loads of which those on the nodes of a flexible inner ring are given in its own frame, and the shaft carries

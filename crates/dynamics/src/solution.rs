@@ -3,14 +3,15 @@
 use contact::{LoadedPatch, Side};
 use ring::vectors::dot;
 
-use crate::balls::{BallResult, ball_results};
-use crate::bearing::Bearing;
+use crate::balls::{BallDisplacement, BallResult, ContactResult};
+use crate::bearing::BearingParts;
 use crate::displacements::Displacements;
 use crate::effects::Loads;
 use crate::equilibrium::centre_unloaded;
 use crate::footprint::{Footprint, loaded};
 use crate::interactions::raceway_contact::{Site, SiteState};
 use crate::loading::LoadCase;
+use crate::model::Model;
 use crate::pose::Pose;
 
 /// Peak pressure that leaves a permanent indentation of 1e-4 of the ball diameter in bearing steel, Pa: ISO 76, for ball
@@ -50,7 +51,7 @@ pub struct StaticSolution {
     /// Warnings a user should read.
     pub warnings: Vec<String>,
     /// Bodies and contacts as they were solved.
-    pub parts: Bearing,
+    pub parts: BearingParts,
     footprints: [Vec<Footprint>; 2],
 }
 
@@ -174,7 +175,7 @@ fn body_work(loads: &Loads, rings: &RingFields) -> f64 {
 }
 
 /// Sum of contact and applied loads on the shaft: on free dofs a residual, on the others minus the reaction.
-fn shaft_balance(parts: &Bearing, states: &[SiteState]) -> ([f64; 5], [f64; 5]) {
+fn shaft_balance(parts: &BearingParts, states: &[SiteState]) -> ([f64; 5], [f64; 5]) {
     let mut sum = parts.shaft_load();
     let contacts = parts.contacts.sites.iter().zip(states);
     for (site, state) in contacts.filter(|(site, _)| site.side == Side::Inner) {
@@ -254,4 +255,31 @@ fn edge_warnings(footprints: &[Vec<Footprint>; 2], forces: &[[f64; 2]]) -> Vec<S
         }
     }
     warnings
+}
+
+/// Results of all balls at given displacements.
+fn ball_results(model: &Model, parts: &BearingParts, u: &Displacements) -> Vec<BallResult> {
+    let (sites, states) = (&parts.contacts.sites, parts.states_at(u));
+    let contact = |i: usize| {
+        let (site, state) = (&sites[i], &states[i]);
+        let hertz = &model.hertz[site.side.index()];
+        ContactResult {
+            force_n: state.force.force,
+            contact_angle_rad: state.angle,
+            approach_m: state.force.approach,
+            semi_axes_m: hertz.semi_axes(state.force.force),
+            peak_pressure_pa: hertz.peak_pressure(state.force.force),
+        }
+    };
+    (0..model.geometry.n_balls)
+        .map(|ball| BallResult {
+            azimuth_rad: sites[2 * ball].azimuth.rem_euclid(2.0 * std::f64::consts::PI),
+            inner: contact(2 * ball + Side::Inner.index()),
+            outer: contact(2 * ball + Side::Outer.index()),
+            displacement_m: BallDisplacement {
+                radial: u.balls[ball][0],
+                axial: u.balls[ball][1],
+            },
+        })
+        .collect()
 }

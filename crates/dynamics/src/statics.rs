@@ -17,7 +17,7 @@ use std::sync::Arc;
 use contact::Side;
 use timer::{Laps, SharedLaps, Stopwatch};
 
-use crate::bearing::Bearing;
+use crate::bearing::{BearingParts, partner};
 use crate::compliance;
 use crate::costs::{self, COLUMNS, EFFECTS, FACTOR, NEWTON, PATCHES, SOLVE};
 use crate::displacements::Displacements;
@@ -27,7 +27,6 @@ use crate::error::DynamicsError;
 use crate::footprint::{Footprint, check_in_grooves, check_on_groove, place};
 use crate::loading::{LoadCase, largest_change, largest_force, not_settled};
 use crate::model::{ContactMode, Model};
-use crate::motion::run::partner;
 use crate::pose::Pose;
 use crate::raceway::Raceway;
 use crate::solution::{RingFields, StaticSolution};
@@ -228,7 +227,7 @@ impl StaticSolver {
 
     fn check_places(
         &self,
-        parts: &Bearing,
+        parts: &BearingParts,
         u: &Displacements,
         forces: &[[f64; 2]],
     ) -> Result<(), DynamicsError> {
@@ -319,7 +318,7 @@ impl StaticSolver {
 
 /// Follows the equilibrium from exact grooves to their facets, whose offsets exceed the approach of the balls.
 fn approach_facets(
-    parts: &mut Bearing,
+    parts: &mut BearingParts,
     mut u: Displacements,
     scales: SearchScales,
 ) -> Result<Displacements, DynamicsError> {
@@ -346,7 +345,7 @@ fn approach_facets(
 }
 
 /// Starts groove motions at what was measured: the first guess of a ring that answers for the first time.
-fn adopt_offsets(parts: &Bearing, u: &mut Displacements) {
+fn adopt_offsets(parts: &BearingParts, u: &mut Displacements) {
     for (groove, ring) in u.grooves.iter_mut().zip(&parts.rings) {
         if let Some(ring) = ring {
             for (g, c) in groove.iter_mut().flatten().zip(&ring.offset) {
@@ -356,7 +355,7 @@ fn adopt_offsets(parts: &Bearing, u: &mut Displacements) {
     }
 }
 
-fn check_patches(parts: &Bearing, u: &Displacements) -> Result<(), DynamicsError> {
+fn check_patches(parts: &BearingParts, u: &Displacements) -> Result<(), DynamicsError> {
     for (site, state) in parts.contacts.sites.iter().zip(parts.states_at(u)) {
         if state.force.beyond_limit {
             return Err(DynamicsError::PatchTooSmall {

@@ -8,7 +8,7 @@ use super::part::RingSteps;
 use super::run::{Motion, MovingRing};
 use super::solve::StepSolution;
 use super::state::MotionState;
-use crate::bearing::Bearing;
+use crate::bearing::BearingParts;
 use crate::bodies::FlatBody;
 use crate::system::{Interval, Lumped};
 
@@ -17,7 +17,7 @@ impl Motion<'_> {
     pub(super) fn finish(
         &self,
         state: &MotionState,
-        (parts, dt): (&Bearing, f64),
+        (parts, dt): (&BearingParts, f64),
         solution: &StepSolution,
         rings: RingSteps<'_>,
         ends: [Option<Ended>; 2],
@@ -71,7 +71,7 @@ impl Motion<'_> {
         &self,
         next: &mut MotionState,
         side: Side,
-        (parts, solution): (&Bearing, &StepSolution),
+        (parts, solution): (&BearingParts, &StepSolution),
         (works, step): (Works, &dyn ElasticStep),
         [old, new]: [&RingState; 2],
     ) {
@@ -175,7 +175,7 @@ fn finish_body<const N: usize>(
     [velocity, acceleration]
 }
 
-fn finish_shaft(next: &mut MotionState, parts: &Bearing, solution: &StepSolution, step: StepScheme) {
+fn finish_shaft(next: &mut MotionState, parts: &BearingParts, solution: &StepSolution, step: StepScheme) {
     let reactions = parts.shaft_reactions(solution, step);
     let imposed = parts
         .shaft
@@ -192,7 +192,7 @@ fn finish_shaft(next: &mut MotionState, parts: &Bearing, solution: &StepSolution
         finish_body(&parts.shaft, step, solution.shaft, &mut next.ledger);
 }
 
-fn finish_balls(next: &mut MotionState, parts: &Bearing, solution: &StepSolution, step: StepScheme) {
+fn finish_balls(next: &mut MotionState, parts: &BearingParts, solution: &StepSolution, step: StepScheme) {
     for (b, (ball, end)) in parts.balls.iter().zip(&solution.balls).enumerate() {
         next.balls[b] = *end;
         [next.ball_velocities[b], next.ball_accelerations[b]] =
@@ -200,7 +200,7 @@ fn finish_balls(next: &mut MotionState, parts: &Bearing, solution: &StepSolution
     }
 }
 
-fn finish_contacts(next: &mut MotionState, parts: &Bearing, solution: &StepSolution) {
+fn finish_contacts(next: &mut MotionState, parts: &BearingParts, solution: &StepSolution) {
     let (mut start, mut end) = (0.0, 0.0);
     for (index, site) in parts.contacts.sites.iter().enumerate() {
         let [l0, l1] = solution.reach(index);
@@ -222,7 +222,7 @@ fn finish_contacts(next: &mut MotionState, parts: &Bearing, solution: &StepSolut
     next.ledger.hertz = end;
 }
 
-impl Bearing {
+impl BearingParts {
     /// Forces that hold or drive the shaft's dofs, N and N m; zero to round-off for free ones.
     fn shaft_reactions(&self, solution: &StepSolution, step: StepScheme) -> [f64; 5] {
         let dofs = self.shaft.dofs.iter().zip(solution.shaft);

@@ -8,7 +8,7 @@ use super::run::Motion;
 use super::solve::StepSolution;
 use super::span::Span;
 use super::state::MotionState;
-use crate::bearing::{Bearing, ContactList, SHAFT};
+use crate::bearing::{BearingParts, ContactList, SHAFT};
 use crate::bodies::{FlatBody, Inertia, Name};
 use crate::compliance;
 use crate::effects::{self, Loads, Now};
@@ -88,7 +88,7 @@ impl Motion<'_> {
         sites: Vec<Site>,
         rings: &RingSteps<'_>,
         loads: &Loads,
-    ) -> Result<Bearing, DynamicsError> {
+    ) -> Result<BearingParts, DynamicsError> {
         let ports = |side: Side| {
             let step = rings[side.index()].as_deref();
             step.map(|step| self.ports(span, side, step)).transpose()
@@ -104,7 +104,7 @@ impl Motion<'_> {
                 damping: self.settings.contact_damping,
             }),
         };
-        Ok(Bearing::new(
+        Ok(BearingParts::new(
             Interval::Step(StepScheme { integrator, dt }),
             self.shaft(state, span, loads),
             (0..self.n_balls())
@@ -181,7 +181,7 @@ impl Motion<'_> {
     }
 }
 
-impl Bearing {
+impl BearingParts {
     /// Forces at the ports of a ring.
     pub(super) fn forces_at_ports(&self, side: Side, solution: &StepSolution) -> RingForces {
         RingForces {

@@ -16,7 +16,7 @@ use rayon::prelude::*;
 use super::run::Motion;
 use super::solve::StepSolution;
 use super::state::MotionState;
-use crate::bearing::Bearing;
+use crate::bearing::BearingParts;
 use crate::error::DynamicsError;
 use crate::footprint::{loaded, on_groove, require_on_groove};
 use crate::interactions::discrete_gradient::MeanForce;
@@ -81,7 +81,7 @@ pub(super) fn expected(places: [&[[f64; 2]]; 3]) -> Vec<[f64; 2]> {
         .collect()
 }
 
-impl Bearing {
+impl BearingParts {
     /// Where the contacts of the part were at its weighted time: contact angle, rad, and force, N, by site.
     pub(super) fn places(&self, solution: &StepSolution) -> Vec<[f64; 2]> {
         let start = self.contacts.means.map_or(0.0, |means| means.weight);

@@ -12,9 +12,10 @@ use timer::SharedLaps;
 use crate::kinematics::Kinematics;
 use ring::memory::forecast_motion_peak;
 use ring::statics::iterations_note;
-use ring::{BodySettings, ElasticBody, Frame, Inventory, Partner, StepFactor, StepScheme, elastic_body};
+use ring::{BodySettings, ElasticBody, Frame, Inventory, StepFactor, StepScheme, elastic_body};
 
 use super::state::MotionSettings;
+use crate::bearing::partner;
 use crate::costs;
 use crate::error::DynamicsError;
 use crate::model::{ContactMode, Model};
@@ -195,14 +196,6 @@ impl<'a> Motion<'a> {
     /// Angle the cage has turned since the start, rad.
     pub(super) fn cage_angle(&self, time: f64) -> f64 {
         self.kinematics.cage * self.settings.speed.angle(time)
-    }
-}
-
-/// What holds a ring.
-pub(crate) fn partner(side: Side) -> Partner {
-    match side {
-        Side::Inner => Partner::SHAFT,
-        Side::Outer => Partner::AT_REST,
     }
 }
 

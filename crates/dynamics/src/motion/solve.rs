@@ -6,14 +6,14 @@
 use contact::Side;
 use timer::SharedLaps;
 
-use crate::bearing::{Bearing, FIRST_BALL, SHAFT, lengths};
+use crate::bearing::{BearingParts, FIRST_BALL, SHAFT, lengths};
 use crate::bodies::AXES;
 use crate::error::DynamicsError;
 use crate::footprint::require_in_groove;
 use crate::interactions::discrete_gradient::MeanForce;
 use crate::interactions::raceway_contact::Site;
 use crate::model::{MAX_TILT, Model};
-use crate::system::newton::{Policy, RoundOff, Search};
+use crate::system::newton::{Policy, RoundOff, Shortening};
 
 /// Newton iterations before a step counts as failed.
 const MOST_ITERATIONS: usize = 40;
@@ -45,7 +45,7 @@ impl StepSolution {
     }
 }
 
-impl Bearing {
+impl BearingParts {
     /// Solves the part; `scale` is the largest force that acts at its start, N.
     pub(super) fn solve_step(&self, scale: f64, costs: &SharedLaps) -> Result<StepSolution, DynamicsError> {
         let system = self.system();
@@ -57,7 +57,7 @@ impl Bearing {
             scales: None,
             proximal: 0.0,
             longest_step: f64::INFINITY,
-            search: Search::Residual(HALVINGS),
+            search: Shortening::Residual(HALVINGS),
             watch: &|_| Ok(()),
             costs,
         };
@@ -84,7 +84,7 @@ impl Bearing {
 }
 
 /// Fails when a ball presses where no groove can be.
-fn check_grooves(parts: &Bearing, solution: &StepSolution) -> Result<(), DynamicsError> {
+fn check_grooves(parts: &BearingParts, solution: &StepSolution) -> Result<(), DynamicsError> {
     for (index, site) in parts.contacts.sites.iter().enumerate() {
         let [_, end] = solution.reach(index);
         if end[0].hypot(end[1]) > site.touching {
@@ -97,7 +97,7 @@ fn check_grooves(parts: &Bearing, solution: &StepSolution) -> Result<(), Dynamic
 /// Fails when shaft or balls are where small motions and the search for equilibrium end.
 pub(super) fn check_range(
     model: &Model,
-    parts: &Bearing,
+    parts: &BearingParts,
     solution: &StepSolution,
 ) -> Result<(), DynamicsError> {
     let diameter = model.geometry.ball_diameter;
@@ -126,7 +126,7 @@ fn left(what: String, value: String, limit: String) -> DynamicsError {
 }
 
 /// Fails when a contact is beyond what its patch leaves of Hertz's law.
-pub(super) fn check_patches(parts: &Bearing, solution: &StepSolution) -> Result<(), DynamicsError> {
+pub(super) fn check_patches(parts: &BearingParts, solution: &StepSolution) -> Result<(), DynamicsError> {
     let contacts = parts.contacts.sites.iter().zip(&solution.forces).enumerate();
     for (index, (site, force)) in contacts {
         let [_, end] = solution.reach(index);

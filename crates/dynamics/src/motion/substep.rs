@@ -14,7 +14,7 @@ use super::run::Motion;
 use super::solve::{StepSolution, check_patches, check_range};
 use super::span::Span;
 use super::state::{MotionState, StepReport};
-use crate::bearing::Bearing;
+use crate::bearing::BearingParts;
 use crate::costs::{BLOCK_SOLVE, LOADS, NEWTON, PATCHES, UPDATE};
 use crate::error::DynamicsError;
 
@@ -29,7 +29,7 @@ pub(super) struct Part<'m> {
     places: Vec<[f64; 2]>,
     placing: Placing,
     pub rings: RingSteps<'m>,
-    pub parts: Bearing,
+    pub parts: BearingParts,
     /// Largest force that acts at the start, N.
     pub scale: f64,
     pub report: StepReport,

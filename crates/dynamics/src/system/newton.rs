@@ -29,7 +29,7 @@ pub enum RoundOff {
 
 /// How a step is shortened.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Search {
+pub enum Shortening {
     /// Along the slope of the energy; without one, by halves of at most 2^-30.
     Energy,
     /// Halved at most so many times until the residual does not grow.
@@ -53,7 +53,7 @@ pub struct Policy<'p> {
     /// Longest change of a scaled unknown in an iteration.
     pub longest_step: f64,
     /// How a step is shortened.
-    pub search: Search,
+    pub search: Shortening,
     /// Fails where there is no use in going on.
     pub watch: &'p dyn Fn(&[f64]) -> Result<(), DynamicsError>,
     /// Gets the wall time of effects.
@@ -61,7 +61,7 @@ pub struct Policy<'p> {
 }
 
 /// A solved system.
-pub struct Solved {
+pub struct NewtonSolution {
     /// The unknowns.
     pub unknowns: Vec<f64>,
     /// Forces of the links, by family.
@@ -72,7 +72,7 @@ pub struct Solved {
 
 impl System<'_> {
     /// Solves the system from the unknowns `x`. Fails with the residual history and the place of the largest residual.
-    pub fn solve(&self, mut x: Vec<f64>, policy: &Policy) -> Result<Solved, DynamicsError> {
+    pub fn solve(&self, mut x: Vec<f64>, policy: &Policy) -> Result<NewtonSolution, DynamicsError> {
         let bodies = self.body_tangent(&x);
         let mut tangent = bodies.clone();
         let (mut history, mut best, mut stalled) = (Vec::new(), f64::INFINITY, 0);
@@ -99,7 +99,7 @@ impl System<'_> {
             };
             let is_solved = now <= RESIDUAL_TARGET * scale || (stalled >= 2 && now <= limit.max(floor()));
             if is_solved {
-                return Ok(Solved {
+                return Ok(NewtonSolution {
                     unknowns: x,
                     links: at.links,
                     iterations: iteration,
@@ -169,9 +169,9 @@ impl System<'_> {
             (trial, at)
         };
         match policy.search {
-            Search::Residual(halvings) => halve(&at, policy, halvings, 0.0, trial),
-            Search::Energy if !self.has_energy() => halve(&at, policy, 30, 0.1, trial),
-            Search::Energy => along_energy(&at.residual, step, trial).unwrap_or((x, at)),
+            Shortening::Residual(halvings) => halve(&at, policy, halvings, 0.0, trial),
+            Shortening::Energy if !self.has_energy() => halve(&at, policy, 30, 0.1, trial),
+            Shortening::Energy => along_energy(&at.residual, step, trial).unwrap_or((x, at)),
         }
     }
 }

@@ -1,6 +1,6 @@
 //! Systems that no bearing has yet: what the lists must be able to hold.
 
-use super::newton::{Policy, RoundOff, Search};
+use super::newton::{Policy, RoundOff, Shortening};
 use super::{
     Body, Character, ElasticPorts, Follow, Interaction, Interval, Lengths, Link, LinkForces, LinkRows,
     LinkTerm, Lumped, System,
@@ -164,7 +164,7 @@ fn solve(system: &System) -> Result<Vec<f64>, DynamicsError> {
         scales: None,
         proximal: 0.0,
         longest_step: f64::INFINITY,
-        search: Search::Residual(10),
+        search: Shortening::Residual(10),
         watch: &|_| Ok(()),
         costs: &costs,
     };
