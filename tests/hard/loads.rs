@@ -111,7 +111,7 @@ pub fn cases() -> Vec<HardCase> {
 }
 
 /// Share of its displacement by which a damped bearing may still be off its equilibrium.
-const SETTLED: f64 = 0.02;
+pub const SETTLED: f64 = 0.02;
 /// Share of the largest energy that the moving of patches may give or take.
 const PUMPED: f64 = 0.05;
 
@@ -149,24 +149,35 @@ fn pumped(record: &mut Record, course: &Course) {
 
 /// A jump between two equilibria: ledger and bounds without damping; with damping the settled place against statics.
 pub fn jump(record: &mut Record, model: &Model, duration: f64) {
+    undamped_jump(record, model, duration);
+    settled(record, model, duration);
+}
+
+/// A jump without damping: ledger, bounds and plot.
+pub fn undamped_jump(record: &mut Record, model: &Model, duration: f64) {
     let course = transient(model, conserving(5e-6), duration);
     record.closed(&course);
     bounded(record, model, &course, duration);
-    settled(record, model, duration);
     record.plot = plot(&course);
 }
 
-/// With contact damping and an integrator that damps what the contacts cannot, the bearing comes to the equilibrium of its load.
-fn settled(record: &mut Record, model: &Model, end: f64) {
-    let settings = MotionSettings {
+/// Contact damping, and an integrator that damps what the contacts cannot.
+pub fn settling() -> MotionSettings {
+    MotionSettings {
         dt: 1e-5,
         integrator: Integrator::chung_hulbert(0.5),
         ..with_damping(500.0, 1e-6)
-    };
+    }
+}
+
+/// With damping the bearing comes to the equilibrium of its load.
+fn settled(record: &mut Record, model: &Model, end: f64) {
+    let settings = settling();
     let coming = transient(model, settings.clone(), 2.0 * end);
     record.closed(&coming);
+    let steps = (0.2 * end / settings.dt) as usize;
     let motion = Motion::new(model, settings).unwrap();
-    let mean = march(&motion, coming.last, (0.2 * end / 1e-5) as usize).mean_shaft;
+    let mean = march(&motion, coming.last, steps).mean_shaft;
     let rest = equilibrium_at(model, end).unwrap().displacements.shaft;
     let size = |q: [f64; 5]| q[0].hypot(q[1]).hypot(q[2]);
     let off = size([0, 1, 2, 3, 4].map(|i| mean[i] - rest[i]));

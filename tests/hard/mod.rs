@@ -25,6 +25,7 @@ mod statics;
 mod steps;
 #[path = "../../crates/dynamics/tests/support/mod.rs"]
 mod support;
+mod swings;
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
