@@ -95,6 +95,52 @@ fn every_run_has_the_figures_of_its_kind() {
     }
 }
 
+/// Wrong: the stress of forces that are spread over patches would be taken for that under a ball, or the picture of a raceway and
+/// that of its section would have two scales for one step.
+#[test]
+fn stress_without_near_field_says_so_and_one_step_has_one_scale() {
+    let dir = plotted();
+    let note = "Without near field: stress of forces spread over the contact patches";
+    let numbers =
+        |svg: &str| -> Vec<f64> { svg.lines().filter_map(|line| line.trim().parse().ok()).collect() };
+    for side in ["inner", "outer"] {
+        let figures = [
+            format!("sweep/figures/raceway_{side}.svg"),
+            format!("sweep/figures/section_{side}.svg"),
+        ];
+        assert!(figures.iter().all(|name| dir.text(name).contains(note)), "{side}");
+        let names = [
+            format!("motion/figures/raceway_{side}.svg"),
+            format!("motion/figures/section_{side}.svg"),
+        ];
+        let [raceway, section] = names.map(|name| dir.text(&name));
+        assert!(
+            !raceway.contains("near field") && !section.contains("near field"),
+            "{side}"
+        );
+        // The colour bar comes after the azimuths.
+        let (raceway, section) = (numbers(&raceway), numbers(&section));
+        let bar = &raceway[raceway.iter().rposition(|tick| *tick == 360.0).unwrap() + 1..];
+        assert!(bar.len() > 2, "{side}: {raceway:?}");
+        assert!(
+            section.windows(bar.len()).any(|ticks| ticks == bar),
+            "{side}: {bar:?} {section:?}"
+        );
+    }
+}
+
+/// Wrong: a motion of a bearing that does not turn would show its whole history as a bar at one azimuth.
+#[test]
+fn a_bearing_that_does_not_turn_is_shown_in_time() {
+    let still = "[dynamic]\nduration = \"0.2 ms\"\nstep = \"20 us\"";
+    let dir = Dir::with_scene(&with_line("[static]", "[static]", still));
+    dir.run("out", &[&RIGID[..], &["--set", "shaft.mass=0.5 kg"]].concat());
+    assert_eq!(dir.raceway(&["plot", "out"]).code, Some(0));
+    let svg = dir.text("out/figures/ball_force.svg");
+    assert!(svg.contains("Contact force of ball 0, which does not turn") && svg.contains("time (ms)"));
+    assert!(!svg.contains("azimuth"));
+}
+
 /// Wrong: a label would lie on another or be cut off, or an axis would not tell its unit.
 #[test]
 fn figures_of_runs_can_be_read() {

@@ -8,7 +8,8 @@ use crate::statics::reference;
 use crate::util::tables::{Table, keys, number, summary};
 use crate::util::{Dir, RIGID, SCENE, assert_within};
 
-const SUMMARY_KEYS: [&str; 20] = [
+const SUMMARY_KEYS: [&str; 21] = [
+    "advice",
     "analysis",
     "balls",
     "contact_mode",

@@ -22,6 +22,7 @@ mod probes;
 mod quasi_static;
 mod ranks;
 mod readers;
+mod remarks;
 mod report;
 mod results;
 mod resume;

@@ -14,6 +14,7 @@ mod pack;
 mod progress;
 mod quasi_static;
 mod rank_table;
+mod remarks;
 mod resume;
 mod rules;
 mod run;

@@ -13,10 +13,12 @@ use results::disk::Forecast;
 use results::failure::Failure;
 use results::modes::{ModeFiles, ModesSummary, print_modes};
 use results::snapshot::Snapshot;
-use scene::{ModeBody, ModeSupport, Modes, Scene, build_model, say_doubts};
+use results::survey::say_doubts;
+use scene::{ModeBody, ModeSupport, Modes, Scene, build_model, doubts};
 
 use crate::options::Limits;
 use crate::progress::Progress;
+use crate::remarks::Remarks;
 
 /// Blocks of the search between two lines of progress in a log.
 const PROGRESS_STEPS: usize = 10;
@@ -39,7 +41,9 @@ pub fn run(
     let mut progress = Progress::new(wanted.bodies.len() as u64);
     progress.stage("reading meshes");
     let (model, _) = build_model(scene)?;
-    say_doubts(scene, &model);
+    let doubts = doubts(scene, &model);
+    say_doubts(&doubts);
+    let remarks = Remarks::on(scene, &model, doubts);
     Forecast::new(scene, &model, 0).require_space(dir, limits.ignore_disk_space)?;
     let equilibrium = if wanted.bodies.contains(&ModeBody::Bearing) {
         progress.stage("equilibrium");
@@ -65,8 +69,9 @@ pub fn run(
     progress.finish();
     let run = files.map_or(Ok(None), ModeFiles::finish)?;
     let snapshot = equilibrium.as_ref().map(|e| Snapshot::of_equilibrium(e, None));
-    let warnings = warnings(&sets, equilibrium.as_ref(), wanted);
-    let summary = ModesSummary::new(scene, &model, &sets, snapshot.as_ref(), (run, warnings), start);
+    let remarks = remarks.with(warnings(&sets, equilibrium.as_ref(), wanted));
+    let remarks = [remarks.warnings, remarks.advice];
+    let summary = ModesSummary::new(scene, &model, &sets, snapshot.as_ref(), run, remarks, start);
     summary.write(dir)?;
     for (body, set) in &sets {
         print_modes(&name(*body, wanted), set);

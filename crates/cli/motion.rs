@@ -28,6 +28,7 @@ use timer::{Laps, Stopwatch};
 
 use crate::options::Limits;
 use crate::progress::Progress;
+use crate::remarks::Remarks;
 use crate::resume::Stored;
 use crate::start::settle;
 
@@ -44,9 +45,10 @@ pub fn run(
 ) -> Result<(), Failure> {
     let progress = Progress::new(dynamic.n_steps);
     progress.stage("reading meshes");
-    let (model, survey) = agree(build_surveyed(scene, scene, dir, |model| {
+    let (model, mut survey) = agree(build_surveyed(scene, scene, dir, |model| {
         Forecast::new(scene, model, 0).require_space(dir, limits.ignore_disk_space)
     }))?;
+    let remarks = Remarks::on(scene, &model, std::mem::take(&mut survey.doubts));
     let read = start.elapsed().as_secs_f64();
     let settled = settle(&model, dynamic, &progress)?;
     let mut laps = settled.timing.clone();
@@ -75,6 +77,7 @@ pub fn run(
         laps,
         watch: Watch::new(model.geometry.n_balls),
         last_file: None,
+        last_row: None,
         dir,
     };
     agree(march.write_tables())?;
@@ -84,7 +87,7 @@ pub fn run(
         forecast: Forecasts::of_motion(settled.forecast, &motion, dynamic),
         start,
     };
-    march.finish_run(progress, limits, settled.warnings(), costs)
+    march.finish_run(progress, limits, remarks.with(settled.warnings()), costs)
 }
 
 /// Goes on with the motion from a stored step.
@@ -99,9 +102,10 @@ pub fn resume(
     let mut progress = Progress::new(dynamic.n_steps);
     progress.start_at(stored.step);
     progress.stage("reading meshes");
-    let (model, survey) = agree(build_surveyed(scene, scene, &dir, |model| {
+    let (model, mut survey) = agree(build_surveyed(scene, scene, &dir, |model| {
         Forecast::new(scene, model, stored.step).require_space(&dir, limits.ignore_disk_space)
     }))?;
+    let remarks = Remarks::on(scene, &model, std::mem::take(&mut survey.doubts));
     let read = start.elapsed().as_secs_f64();
     progress.stage("factoring the effective matrices");
     let mut laps = Laps::default();
@@ -122,6 +126,7 @@ pub fn resume(
         motion: &motion,
         files,
         last_file: Some(state.step),
+        last_row: Some(state.step),
         state,
         cache: StepCache::default(),
         newton,
@@ -134,7 +139,7 @@ pub fn resume(
         forecast: Forecasts::of_motion([None, None], &motion, dynamic),
         start,
     };
-    march.finish_run(progress, limits, warnings, costs)
+    march.finish_run(progress, limits, remarks.with(warnings), costs)
 }
 
 /// The model ready to move, with its matrices and factors.
@@ -182,6 +187,8 @@ struct March<'a> {
     watch: Watch,
     /// The last step handed over to be written.
     last_file: Option<u64>,
+    /// The last step with rows in the tables.
+    last_row: Option<u64>,
     dir: &'a Path,
 }
 
@@ -191,7 +198,7 @@ impl March<'_> {
         mut self,
         mut progress: Progress,
         limits: &Limits,
-        mut warnings: Vec<String>,
+        remarks: Remarks,
         costs: StartCosts,
     ) -> Result<(), Failure> {
         let mut clock = Stopwatch::start();
@@ -210,6 +217,7 @@ impl March<'_> {
             (costs, _) => costs?,
         };
         let (state, motion) = (&self.state, self.motion);
+        let mut warnings = remarks.warnings;
         warnings.extend(self.watch.warnings(|step| motion.time(step)));
         warnings.extend(lossy(state));
         let findings = Findings {
@@ -221,6 +229,7 @@ impl March<'_> {
             points: Vec::new(),
             iterations: BTreeMap::from([("steps", state.step as usize), ("newton", self.newton as usize)]),
             warnings,
+            advice: remarks.advice,
         };
         let summary = Summary::new(self.scene, self.model, findings, &costs);
         agree(summary.write(self.dir).map_err(Failure::from))?;
@@ -267,7 +276,9 @@ impl March<'_> {
                 }
                 Err(error) => return Err(self.failed(error)),
             }
-            agree(self.write_tables())?;
+            if n.is_multiple_of(self.scene.output.tables_every) {
+                agree(self.write_tables())?;
+            }
             if n == n_steps || n.is_multiple_of(self.dynamic.output_every) {
                 agree(self.write_fields())?;
             }
@@ -328,6 +339,10 @@ impl March<'_> {
         if self.last_file == Some(self.state.step) {
             return Ok(());
         }
+        if self.last_row != Some(self.state.step) {
+            // A step file vouches for the tables up to its step.
+            agree(self.write_tables())?;
+        }
         let (model, motion, state) = (self.model, self.motion, &self.state);
         let shown = Shown::Motion { model, motion, state };
         let gathered = self.files.gather_stress(&shown);
@@ -355,7 +370,9 @@ impl March<'_> {
         let snapshot = Snapshot::of_motion(motion, state);
         self.files.write_tables(state.step, time, None, &snapshot)?;
         let shown = Shown::Motion { model, motion, state };
-        self.files.write_probes(state.step, time, None, &shown)
+        self.files.write_probes(state.step, time, None, &shown)?;
+        self.last_row = Some(state.step);
+        Ok(())
     }
 }
 

@@ -22,6 +22,7 @@ use timer::Stopwatch;
 
 use crate::options::Limits;
 use crate::progress::Progress;
+use crate::remarks::Remarks;
 
 /// Steps between two lines of progress in a log.
 const PROGRESS_STEPS: u64 = 50;
@@ -36,9 +37,10 @@ pub fn run(
 ) -> Result<(), Failure> {
     let mut progress = Progress::new(1 + settings.n_steps);
     progress.stage("reading meshes");
-    let (model, survey) = agree(build_surveyed(scene, scene, dir, |model| {
+    let (model, mut survey) = agree(build_surveyed(scene, scene, dir, |model| {
         Forecast::new(scene, model, 0).require_space(dir, limits.ignore_disk_space)
     }))?;
+    let remarks = Remarks::on(scene, &model, std::mem::take(&mut survey.doubts));
     let read = start.elapsed().as_secs_f64();
     progress.stage("factoring the stiffness of the rings");
     let rolling = rolling(scene);
@@ -72,7 +74,7 @@ pub fn run(
     let ended = series.run(&mut bearing, &mut progress, dir);
     let seconds = clock.lap();
     progress.finish();
-    let findings = series.findings(&ended);
+    let findings = series.findings(&ended, remarks);
     let snapshot = findings.last.clone();
     let forecast = Side::BOTH.map(|side| bearing.solver.ring(side).map(|r| r.solver.memory));
     let costs = agree(files.finish(read, Forecasts::at_rest(forecast), bearing.solver.laps(), start));
@@ -132,6 +134,9 @@ impl Series<'_> {
                 Err(error) => {
                     let failure = of_all(Failure::solving(error));
                     if !self.has_file(n - 1) {
+                        if !(n - 1).is_multiple_of(self.scene.output.tables_every) {
+                            agree(self.write_tables(bearing.time(n - 1), n - 1))?;
+                        }
                         agree(self.write_fields(bearing, n - 1))?;
                     }
                     let place = format!(
@@ -159,7 +164,9 @@ impl Series<'_> {
         self.iterations[1] += self.last.rounds;
         self.iterations[2] += self.last.newton_iterations;
         self.note_warnings(bearing.time(step));
-        agree(self.write_tables(bearing.time(step), step))?;
+        if step.is_multiple_of(self.scene.output.tables_every) || self.has_file(step) {
+            agree(self.write_tables(bearing.time(step), step))?;
+        }
         if self.has_file(step) {
             agree(self.write_fields(bearing, step))?;
         }
@@ -196,9 +203,9 @@ impl Series<'_> {
             .write_fields(|stress| fields::record(&shown(model, last), last, (stress, gathered), at, scene))
     }
 
-    fn findings(self, ended: &Result<(), Failure>) -> Findings {
+    fn findings(self, ended: &Result<(), Failure>, remarks: Remarks) -> Findings {
         let [steps, rounds, newton] = self.iterations;
-        let mut warnings = self.warnings;
+        let mut warnings = [remarks.warnings, self.warnings].concat();
         if self.warned > 1 {
             warnings.push(format!(
                 "{} instants have warnings; those of the first are given",
@@ -214,6 +221,7 @@ impl Series<'_> {
             points: Vec::new(),
             iterations: BTreeMap::from([("steps", steps), ("rounds", rounds), ("newton", newton)]),
             warnings,
+            advice: remarks.advice,
         }
     }
 }

@@ -16,6 +16,7 @@
 //! gravity                weight of shaft, inner ring and balls over the load
 //! flexibility            u / d: hoop stretch of a ring that nothing holds, u = Z Q cos a r / (2 pi E A)
 //! damping                an undamped motion rings on: its transients outlive any run
+//! shaft.z                0 is the just-touching state; grooves opposite each other are at -A sin a, A their distance
 //! ```
 //!
 //! a is the free contact angle, which is lower than the one under load: Q is rather too large, angles too small.
@@ -25,7 +26,7 @@
 use contact::Side;
 use dynamics::Model;
 use dynamics::kinematics::Kinematics;
-use scene::{Analysis, Scene, Support};
+use scene::{Analysis, Motion, Scene, Support};
 
 /// Ratio from which an effect that is off is pointed out.
 const MATTERS: f64 = 1e-2;
@@ -70,7 +71,24 @@ pub fn advice(scene: &Scene, model: &Model) -> Vec<String> {
         flexibility(&case, &mut lines);
     }
     damping(&case, &mut lines);
+    zero_of_the_shaft(scene, model, &mut lines);
     lines
+}
+
+/// Displacements count from the just-touching state, which is not the middle of the axial play.
+fn zero_of_the_shaft(scene: &Scene, model: &Model, lines: &mut Vec<String>) {
+    let geometry = &model.geometry;
+    let angle = geometry.free_contact_angle();
+    let play = geometry.groove_distance() * angle.sin();
+    if scene.shaft.z != Motion::Locked || play <= 0.0 {
+        return;
+    }
+    lines.push(format!(
+        "shaft.z is \"locked\" at 0, where all balls just touch at the free contact angle of {:.2} deg; with the grooves \
+         opposite each other, as in a deep groove bearing without thrust, it is shaft.z = \"{:.3} um\"",
+        angle.to_degrees(),
+        -1e6 * play
+    ));
 }
 
 impl Case<'_> {

@@ -24,6 +24,7 @@ use crate::motion;
 use crate::options::{Limits, Part};
 use crate::progress::Progress;
 use crate::quasi_static;
+use crate::remarks::Remarks;
 
 /// One load case of a run: the swept value (None for a static scene) and its scene.
 type Point = (Option<f64>, Scene);
@@ -71,6 +72,7 @@ pub fn run(
     let (mut model, mut survey) = agree(build_surveyed(&points[0].1, &scene, &dir, |model| {
         Forecast::new(&scene, model, 0).require_space(&dir, limits.ignore_disk_space)
     }))?;
+    let remarks = Remarks::on(&scene, &model, std::mem::take(&mut survey.doubts));
     let placed = model.geometry;
     let read = start.elapsed().as_secs_f64();
     progress.stage("factoring the stiffness of the rings");
@@ -138,7 +140,7 @@ pub fn run(
     // Points that were solved get their summary, whatever came after them.
     if let Some(files) = results {
         let costs = agree(files.finish(read, Forecasts::at_rest(forecast), solver.laps(), start))?;
-        let findings = findings(&scene, &solutions, &failure);
+        let findings = findings(&scene, &solutions, &failure, remarks);
         let summary = Summary::new(&scene, &model, findings, &costs);
         agree(summary.write(&dir).map_err(Failure::from))?;
         if failure.is_none() {
@@ -174,7 +176,7 @@ fn print_results(scene: &Scene, solutions: &[Solved], summary: &Summary) {
     summary.print_costs();
 }
 
-fn findings(scene: &Scene, solutions: &[Solved], failure: &Option<Failure>) -> Findings {
+fn findings(scene: &Scene, solutions: &[Solved], failure: &Option<Failure>, remarks: Remarks) -> Findings {
     let last = solutions.last().expect("a finished run has a solution");
     let points = solutions.iter().map(|s| (s.value, s.snapshot.clone()));
     Findings {
@@ -185,10 +187,12 @@ fn findings(scene: &Scene, solutions: &[Solved], failure: &Option<Failure>) -> F
             ("rounds", last.solution.rounds),
             ("newton", last.solution.newton_iterations),
         ]),
-        warnings: solutions
-            .iter()
-            .flat_map(|point| warnings(scene, point))
+        warnings: remarks
+            .warnings
+            .into_iter()
+            .chain(solutions.iter().flat_map(|point| warnings(scene, point)))
             .collect(),
+        advice: remarks.advice,
     }
 }
 

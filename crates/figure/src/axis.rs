@@ -19,6 +19,7 @@ pub struct Axis {
     pub(crate) scale: Scale,
     pub(crate) step: Option<f64>,
     pub(crate) includes: Vec<f64>,
+    pub(crate) resolution: f64,
     pub(crate) tight: Margin,
 }
 
@@ -43,6 +44,7 @@ impl Axis {
             scale: Scale::Linear,
             step: None,
             includes: Vec::new(),
+            resolution: 0.0,
             tight: Margin::Small,
         }
     }
@@ -58,6 +60,12 @@ impl Axis {
     /// Distance of the ticks of a linear axis, such as 45 for angles.
     pub fn ticks_every(mut self, step: f64) -> Axis {
         self.step = Some(step);
+        self
+    }
+
+    /// Differences of a linear axis below `resolution` are round-off: a range that is smaller is shown as one value.
+    pub fn no_finer_than(mut self, resolution: f64) -> Axis {
+        self.resolution = resolution;
         self
     }
 
@@ -113,7 +121,7 @@ impl Axis {
         if low > high {
             return None;
         }
-        let (low, high) = widen(low, high, self.scale);
+        let (low, high) = widen(low, high, self.scale, self.resolution);
         let margin = match self.tight {
             Margin::None => 0.0,
             Margin::Small => MARGIN * (high - low),
@@ -135,17 +143,18 @@ impl Axis {
 }
 
 /// A range of one value gets a width.
-fn widen(low: f64, high: f64, scale: Scale) -> (f64, f64) {
+fn widen(low: f64, high: f64, scale: Scale, resolution: f64) -> (f64, f64) {
+    let largest = low.abs().max(high.abs());
     let smallest = match scale {
-        Scale::Linear => 1e-9 * low.abs().max(high.abs()),
+        Scale::Linear => resolution.max(1e-9 * largest),
         Scale::Logarithmic => 1e-3,
     };
     if high - low > smallest {
         return (low, high);
     }
     let half = match scale {
-        Scale::Linear if low == 0.0 && high == 0.0 => 1.0,
-        Scale::Linear => 0.05 * low.abs().max(high.abs()),
+        Scale::Linear if largest <= resolution => 1.0,
+        Scale::Linear => 0.05 * largest,
         Scale::Logarithmic => 0.5,
     };
     (low - half, high + half)

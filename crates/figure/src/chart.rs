@@ -132,6 +132,18 @@ fn draw_names(figure: &Figure, layout: &Layout, canvas: &Canvas) -> Drawn {
         let y = GAP + (i as f64 + 0.5) * LINE * TITLE;
         write(canvas, line, [0.5 * width, y], TITLE, Weight::Bold, HPos::Center)?;
     }
+    let (note, first) = &layout.note;
+    for (i, line) in note.iter().enumerate() {
+        let y = first + i as f64 * LINE * TEXT;
+        write(
+            canvas,
+            line,
+            [0.5 * width, y],
+            TEXT,
+            Weight::Regular,
+            HPos::Center,
+        )?;
+    }
     let x_name = text::fit(&figure.x.text(), TEXT, Weight::Regular, width - 2.0 * GAP);
     let overhang = 0.5 * text::width(&x_name, TEXT, Weight::Regular) + GAP;
     let middle = (0.5 * (plot.left + plot.right)).clamp(overhang, (width - overhang).max(overhang));

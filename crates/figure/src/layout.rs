@@ -59,6 +59,8 @@ pub struct Span {
 #[derive(Clone, Debug)]
 pub struct Layout {
     pub title: Vec<String>,
+    /// Lines below the title, and the middle of the first.
+    pub note: (Vec<String>, f64),
     pub legend: Legend,
     /// Area between the axes.
     pub plot: Rect,
@@ -77,14 +79,16 @@ pub fn lay_out(figure: &Figure) -> Result<Layout, FigureError> {
         .map(|s| value_span(figure, &s.value))
         .transpose()?;
     let [width, height] = [f64::from(figure.size.0), f64::from(figure.size.1)];
-    let title = wrap(&figure.title, TITLE, width - 2.0 * GAP);
+    let title = wrap(&figure.title, (TITLE, Weight::Bold), width - 2.0 * GAP);
+    let note = wrap(&figure.note, (TEXT, Weight::Regular), width - 2.0 * GAP);
     let left = GAP + LINE * TEXT + GAP + widest(&y.ticks) + TICK;
     let bar_room = value.as_ref().map_or(0.0, |v| {
         2.0 * GAP + BAR + TICK + widest(&v.ticks) + GAP + LINE * TEXT
     });
     let right = width - GAP - bar_room - 0.5 * widest(&x.ticks).min(40.0);
     let legend = legend::arrange(figure, width - left - GAP);
-    let legend_top = GAP + title.len() as f64 * LINE * TITLE + 0.5 * GAP;
+    let note_top = GAP + title.len() as f64 * LINE * TITLE;
+    let legend_top = note_top + note.len() as f64 * LINE * TEXT + 0.5 * GAP;
     let top = legend_top + legend.height() + GAP;
     let bottom = height - GAP - LINE * TEXT - GAP - LINE * TEXT - TICK + 4.0;
     if right - left < SMALLEST || bottom - top < SMALLEST {
@@ -115,6 +119,7 @@ pub fn lay_out(figure: &Figure) -> Result<Layout, FigureError> {
     };
     Ok(Layout {
         title,
+        note: (note, note_top + 0.5 * LINE * TEXT),
         legend: legend.at(left, legend_top),
         plot,
         x,
@@ -193,13 +198,13 @@ fn separate(span: &mut Span, length: f64, extent: impl Fn(&str) -> f64) {
 }
 
 /// The text in lines of at most `room`, broken at spaces; a word that is longer is cut.
-fn wrap(text: &str, size: f64, room: f64) -> Vec<String> {
+fn wrap(text: &str, (size, weight): (f64, Weight), room: f64) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
     for word in text.split_whitespace() {
         let longer = lines.last().map(|line| format!("{line} {word}"));
-        match longer.filter(|line| text::width(line, size, Weight::Bold) <= room) {
+        match longer.filter(|line| text::width(line, size, weight) <= room) {
             Some(line) => *lines.last_mut().expect("there is a line to lengthen") = line,
-            None => lines.push(text::fit(word, size, Weight::Bold, room)),
+            None => lines.push(text::fit(word, size, weight, room)),
         }
     }
     lines

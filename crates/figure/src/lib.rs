@@ -37,6 +37,7 @@ pub const SIZE: (u32, u32) = (720, 450);
 #[derive(Clone, Debug)]
 pub struct Figure {
     pub(crate) title: String,
+    pub(crate) note: String,
     pub(crate) x: Axis,
     pub(crate) y: Axis,
     pub(crate) series: Vec<Series>,
@@ -66,6 +67,7 @@ impl Figure {
     pub fn new(title: impl Into<String>, x: Axis, y: Axis) -> Figure {
         Figure {
             title: title.into(),
+            note: String::new(),
             x,
             y,
             series: Vec::new(),
@@ -73,6 +75,12 @@ impl Figure {
             labels: Vec::new(),
             size: SIZE,
         }
+    }
+
+    /// Writes a sentence below the title: what a reader must know of the numbers.
+    pub fn note(mut self, text: impl Into<String>) -> Figure {
+        self.note = text.into();
+        self
     }
 
     /// Adds a series. Series of equal names share an entry of the legend; a series without a name has none.

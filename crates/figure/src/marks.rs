@@ -13,6 +13,8 @@ use crate::{Figure, Look, palette};
 const SERIES_WIDTH: u32 = 16;
 /// Width of the first series: it shows at both sides of another on the same points.
 const FIRST_WIDTH: u32 = 30;
+/// Width of the ends of a band beside others.
+const BAND_END: u32 = 7;
 /// The same for marks: size of those of the first series over that of others.
 const FIRST_MARK: f64 = 1.4;
 /// Half the size of a mark, pixels.
@@ -92,6 +94,18 @@ pub fn draw_band(figure: &Figure, index: usize, pen: &Pen, canvas: &Canvas) -> D
     };
     let mut outline: Vec<(i32, i32)> = end(1).collect();
     let below: Vec<(i32, i32)> = end(0).collect();
+    if figure
+        .series
+        .iter()
+        .filter(|series| series.band.is_some())
+        .count()
+        > 1
+    {
+        // Two fills that overlap have a colour of neither: lines at their ends keep both apart.
+        let colour = colour(figure, index).mix(0.7).stroke_width(BAND_END);
+        canvas.draw(&PathElement::new(outline, colour))?;
+        return canvas.draw(&PathElement::new(below, colour));
+    }
     outline.extend(below.iter().rev());
     canvas.draw(&Polygon::new(outline, colour(figure, index).mix(0.2)))
 }

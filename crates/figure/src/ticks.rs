@@ -16,10 +16,11 @@ pub struct Ticks {
     pub minor: Vec<f64>,
 }
 
-/// Ticks at multiples of 1, 2 or 5 times a power of ten, or of `step`, in the range.
+/// Ticks at multiples of 1, 2 or 5 times a power of ten, in the range; or of `step`, where two of these are in it and not too many.
 pub fn linear(low: f64, high: f64, step: Option<f64>) -> Ticks {
     let step = step
         .filter(|step| (high - low) / step <= 4.0 * MOST_LINEAR)
+        .filter(|step| (high / step + 1e-9).floor() > (low / step - 1e-9).ceil())
         .unwrap_or_else(|| round_step((high - low) / (0.6 * MOST_LINEAR)));
     let (first, last) = ((low / step - 1e-9).ceil(), (high / step + 1e-9).floor());
     let largest = low.abs().max(high.abs());
@@ -159,6 +160,12 @@ mod tests {
             texts(&linear(0.0, 360.0, Some(90.0))),
             ["0", "90", "180", "270", "360"]
         );
+        // A step that leaves one tick alone is not taken.
+        assert_eq!(
+            texts(&linear(0.0, 20.0, Some(45.0))),
+            ["0", "5", "10", "15", "20"]
+        );
+        assert_eq!(texts(&linear(40.0, 50.0, Some(45.0))).len(), 6);
         assert_eq!(
             texts(&linear(331.7, 331.9, None)),
             ["331.70", "331.75", "331.80", "331.85", "331.90"]

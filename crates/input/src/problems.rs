@@ -32,7 +32,7 @@ impl Problems {
     /// Adds `key is value; rule` unless `holds`. A comparison with NaN does not hold, so NaN is reported.
     pub fn require(&mut self, holds: bool, key: &str, value: impl Display, rule: impl Display) {
         if !holds {
-            self.add(format!("{key} is {value}; {rule}"));
+            self.add(format!("{key} is {}; {rule}", short(&value.to_string())));
         }
     }
 
@@ -55,5 +55,14 @@ impl Problems {
             format!("expected a whole number from {min} to {max}"),
         );
         usize::try_from(value.clamp(min, max)).unwrap_or(0)
+    }
+}
+
+/// A number of hundreds of digits with its power of ten.
+fn short(text: &str) -> String {
+    const LONG: usize = 24;
+    match text.parse::<f64>() {
+        Ok(number) if text.len() > LONG => format!("{number:e}"),
+        _ => text.to_string(),
     }
 }

@@ -202,6 +202,30 @@ pub enum MeshError {
         /// The names there.
         groups: String,
     },
+    /// A group that is a part of its surface only.
+    #[error(
+        "{path}: group \"{group}\" has {circle:.1} % of the circle and {area:.1} % of the area of its surface: {missing} of \
+         {total} faces on it are in no group or in another one (the first is of element {element}); expected the whole \
+         surface; add them to the group in the .geo, or, if a part is meant, {remedy}"
+    )]
+    PartialGroup {
+        /// The file.
+        path: PathBuf,
+        /// Group name.
+        group: Box<str>,
+        /// Share of the circle in which it has facets, %.
+        circle: f64,
+        /// Share of the area, %.
+        area: f64,
+        /// Faces that it lacks.
+        missing: usize,
+        /// Faces on the surface.
+        total: usize,
+        /// Tag of the element of the first that it lacks.
+        element: u64,
+        /// What to do if a part is meant.
+        remedy: Box<str>,
+    },
     /// An element is inside out or flat.
     #[error(
         "{path}: element {element} is {problem}, its jacobian determinant falls to {worst:.3e} of a mean {mean:.3e} \

@@ -18,13 +18,17 @@ pub mod positions;
 pub mod ring;
 pub mod section;
 
-pub use check::{Torus, check_mesh, check_torus, check_unit, require_groups};
+pub use check::{
+    Coverage, Cylinder, Revolved, Torus, check_mesh, check_torus, check_unit, check_whole, coverage,
+    require_groups,
+};
 pub use element::{ElementKind, FacetKind};
 pub use error::{MeshError, Place};
 pub use geometry::volume;
 pub use gmsh::{mesh_section_with_gmsh, mesh_tets_with_gmsh};
 pub use mesh::{Facet, Mesh};
-pub use msh::write::{MshFormat, Overwrite, write_msh};
+pub use msh::record::read_record;
+pub use msh::write::{MshFormat, Overwrite, write_msh, write_msh_with_record};
 pub use msh::{read_msh, read_msh_with_origin};
 pub use origin::Origin;
 pub use periodic::{

@@ -14,6 +14,14 @@ struct Contact {
     axis: &'static str,
     column: &'static str,
     unit: Unit,
+    /// Differences below are round-off, in the unit.
+    resolution: f64,
+}
+
+impl Contact {
+    fn y_axis(&self) -> Axis {
+        self.unit.axis(self.axis).no_finer_than(self.resolution)
+    }
 }
 
 const CONTACTS: [Contact; 3] = [
@@ -23,6 +31,7 @@ const CONTACTS: [Contact; 3] = [
         axis: "contact force",
         column: "force_n",
         unit: NEWTON,
+        resolution: 1e-6,
     },
     Contact {
         name: "contact_angle",
@@ -30,6 +39,7 @@ const CONTACTS: [Contact; 3] = [
         axis: "contact angle",
         column: "contact_angle_rad",
         unit: DEGREE,
+        resolution: 1e-6,
     },
     Contact {
         name: "peak_pressure",
@@ -37,6 +47,7 @@ const CONTACTS: [Contact; 3] = [
         axis: "peak pressure",
         column: "peak_pressure_pa",
         unit: GIGAPASCAL,
+        resolution: 1e-9,
     },
 ];
 
@@ -57,7 +68,10 @@ pub fn figures(results: &Results, choice: &Choice) -> anyhow::Result<Vec<Named>>
                 figures.push(round_each(results, table, &steps, contact)?);
             }
             Steps::Times => {
-                figures.push(way_round(table, &steps, contact, choice.ball)?);
+                figures.push(match turns(table, &steps, choice.ball)? {
+                    true => way_round(table, &steps, contact, choice.ball)?,
+                    false => in_time(results, table, &steps, contact, choice.ball)?,
+                });
                 figures.push(over_values(results, table, &steps, contact)?);
             }
         }
@@ -119,7 +133,7 @@ fn values(table: &Table, contact: &Contact, side: &str, rows: &[usize]) -> anyho
 /// One equilibrium: both contacts against the azimuth of the balls.
 fn round(table: &Table, rows: &[usize], contact: &Contact) -> anyhow::Result<Named> {
     let title = format!("{} of the balls", contact.title);
-    let mut figure = Figure::new(title, azimuth_axis(), contact.unit.axis(contact.axis));
+    let mut figure = Figure::new(title, azimuth_axis(), contact.y_axis());
     for side in SIDES {
         let places = by_azimuth(table, rows, &values(table, contact, side, rows)?)?;
         figure = figure.series(Series::line_and_marks(format!("{side} contact"), places));
@@ -130,7 +144,7 @@ fn round(table: &Table, rows: &[usize], contact: &Contact) -> anyhow::Result<Nam
 /// A sweep: the inner contacts against the azimuth of the balls, a curve per point.
 fn round_each(results: &Results, table: &Table, steps: &Rows, contact: &Contact) -> anyhow::Result<Named> {
     let title = format!("{} of the balls at the inner ring", contact.title);
-    let mut figure = Figure::new(title, azimuth_axis(), contact.unit.axis(contact.axis));
+    let mut figure = Figure::new(title, azimuth_axis(), contact.y_axis());
     let against = results.against(table)?;
     let n = steps.n_steps();
     for step in 0..n {
@@ -166,7 +180,7 @@ fn over_values(results: &Results, table: &Table, steps: &Rows, contact: &Contact
         unreachable!("a single step has nothing to be plotted against")
     };
     let title = format!("{}, mean and range over the balls", contact.title);
-    let mut figure = Figure::new(title, x_axis, contact.unit.axis(contact.axis));
+    let mut figure = Figure::new(title, x_axis, contact.y_axis());
     for side in SIDES {
         let (mut mean, mut band) = (Vec::new(), Vec::new());
         for step in 0..steps.n_steps() {
@@ -192,6 +206,34 @@ fn over_values(results: &Results, table: &Table, steps: &Rows, contact: &Contact
     Ok(Named::new(format!("{}{suffix}", contact.name), figure))
 }
 
+/// Whether a ball moves round.
+fn turns(table: &Table, steps: &Rows, ball: usize) -> anyhow::Result<bool> {
+    let (rows, azimuth) = (steps.of_ball(ball)?, table.column("azimuth_rad")?);
+    Ok(rows.iter().any(|&row| azimuth[row] != azimuth[rows[0]]))
+}
+
+/// A motion of a bearing that does not turn: the contacts of one ball against time.
+fn in_time(
+    results: &Results,
+    table: &Table,
+    steps: &Rows,
+    contact: &Contact,
+    ball: usize,
+) -> anyhow::Result<Named> {
+    let rows = steps.of_ball(ball)?;
+    let Some((x_axis, x)) = results.against(table)? else {
+        unreachable!("a motion has times")
+    };
+    let times: Vec<f64> = rows.iter().map(|&row| x[row]).collect();
+    let title = format!("{} of ball {ball}, which does not turn", contact.title);
+    let mut figure = Figure::new(title, x_axis, contact.y_axis());
+    for side in SIDES {
+        let line = points(&times, &values(table, contact, side, &rows)?);
+        figure = figure.series(Series::line(format!("{side} contact"), line));
+    }
+    Ok(Named::new(contact.name, figure))
+}
+
 /// A motion: the contacts of one ball against its azimuth.
 fn way_round(table: &Table, steps: &Rows, contact: &Contact, ball: usize) -> anyhow::Result<Named> {
     let rows = steps.of_ball(ball)?;
@@ -200,7 +242,7 @@ fn way_round(table: &Table, steps: &Rows, contact: &Contact, ball: usize) -> any
     let x_axis = Axis::linear(format!("azimuth of ball {ball}"), "deg")
         .ticks_every(45.0)
         .tight();
-    let mut figure = Figure::new(title, x_axis, contact.unit.axis(contact.axis));
+    let mut figure = Figure::new(title, x_axis, contact.y_axis());
     for side in SIDES {
         let along = rows.iter().zip(values(table, contact, side, &rows)?);
         let mut line: Vec<[f64; 2]> = Vec::new();

@@ -23,6 +23,7 @@ use clap::Args;
 use comm::print;
 use figure::Figure;
 use results::failure::Failure;
+use results::folder::say_later;
 use results::integrity::warn_of_doubts;
 use results::whole::{require_own_picture, write_picture};
 
@@ -74,6 +75,7 @@ impl Named {
 pub fn plot(request: &Plot) -> Result<(), Failure> {
     let figures = figures(&request.dir, &request.choice)?;
     warn_of_doubts(&request.dir)?;
+    say_later(&request.dir);
     let out = request.out.clone().unwrap_or_else(|| request.dir.join("figures"));
     // All are drawn, and all places looked at, before the first is written.
     let drawn = |named: &Named| Ok((out.join(&named.name), named.figure.images()?));

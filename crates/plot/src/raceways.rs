@@ -24,8 +24,20 @@ pub struct Node {
     pub von_mises: f64,
 }
 
-/// The grooves of the bearing of a step, inner first.
-pub fn grooves(record: &StepRecord) -> anyhow::Result<[Groove; 2]> {
+/// What the scene of a step says of its raceways.
+pub struct Raceways {
+    /// The grooves, inner first.
+    pub grooves: [Groove; 2],
+    /// What a reader must know of their stress.
+    pub note: &'static str,
+}
+
+/// Where the stress under a ball is not that of its contact.
+const WITHOUT_NEAR_FIELD: &str = "Without near field: stress of forces spread over the contact patches, far below that under a ball \
+                                  ([stress] near_field = true shows it)";
+
+/// The raceways of a step.
+pub fn raceways(record: &StepRecord) -> anyhow::Result<Raceways> {
     let scene = Scene::parse(
         &record.scene,
         Path::new("scene of the step"),
@@ -33,7 +45,18 @@ pub fn grooves(record: &StepRecord) -> anyhow::Result<[Groove; 2]> {
         MeshFiles::MayBeMissing,
     )?;
     let geometry = geometry(&scene);
-    Ok(Side::BOTH.map(|side| groove(&geometry, side)))
+    Ok(Raceways {
+        grooves: Side::BOTH.map(|side| groove(&geometry, side)),
+        note: match scene.stress.near_field_reach {
+            Some(_) => "",
+            None => WITHOUT_NEAR_FIELD,
+        },
+    })
+}
+
+/// The largest von Mises stress of some nodes, Pa.
+pub fn largest(nodes: &[Node]) -> f64 {
+    nodes.iter().map(|node| node.von_mises).fold(0.0, f64::max)
 }
 
 fn groove(geometry: &BearingGeometry, side: Side) -> Groove {

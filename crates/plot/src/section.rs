@@ -28,7 +28,8 @@ pub fn figures(results: &Results, choice: &Choice) -> anyhow::Result<Vec<Named>>
     for (i, &step) in steps.iter().enumerate() {
         let record = read_any_step(&results.dir, step)?;
         let name = results.name_of(record.step)?;
-        for (figure, groove) in figures.iter_mut().zip(raceways::grooves(&record)?) {
+        let raceways = raceways::raceways(&record)?;
+        for (figure, groove) in figures.iter_mut().zip(raceways.grooves) {
             let nodes = raceways::nodes(&grid, &record, &groove);
             let (ball, azimuth) = most_loaded(balls, step, &groove)?;
             let points: Vec<[f64; 2]> = raceways::rows(&nodes)
@@ -44,7 +45,13 @@ pub fn figures(results: &Results, choice: &Choice) -> anyhow::Result<Vec<Named>>
                 continue;
             }
             let label = format!("{name}, ball {ball} at {azimuth:.0} deg");
-            let empty = figure.take().unwrap_or_else(|| over_section(&groove));
+            // One step has the scale of the picture of its raceway.
+            let largest = match steps.len() {
+                1 => raceways::largest(&nodes) * MEGAPASCAL.factor,
+                _ => 0.0,
+            };
+            let empty = || over_section(&groove, largest).note(raceways.note);
+            let empty = figure.take().unwrap_or_else(empty);
             *figure = Some(empty.series(Series::line_and_marks(label, points).shade(i, steps.len())));
         }
     }
@@ -54,7 +61,8 @@ pub fn figures(results: &Results, choice: &Choice) -> anyhow::Result<Vec<Named>>
         .collect())
 }
 
-fn over_section(groove: &Groove) -> Figure {
+/// An empty figure whose scale reaches from 0 to `largest`, MPa, at least.
+fn over_section(groove: &Groove, largest: f64) -> Figure {
     let title = format!(
         "Stress over the section of the {} raceway at its most loaded ball",
         groove.side.name()
@@ -62,7 +70,10 @@ fn over_section(groove: &Groove) -> Figure {
     Figure::new(
         title,
         DEGREE.axis("groove angle").tight(),
-        MEGAPASCAL.axis("von Mises stress").including(0.0),
+        MEGAPASCAL
+            .axis("von Mises stress")
+            .including(0.0)
+            .including(largest),
     )
 }
 

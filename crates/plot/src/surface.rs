@@ -30,10 +30,13 @@ pub fn figures(results: &Results, choice: &Choice) -> anyhow::Result<Vec<Named>>
     let record = read_any_step(&results.dir, step)?;
     let grid = read_mesh(&results.dir)?;
     let mut figures = Vec::new();
-    for groove in raceways::grooves(&record)? {
+    let raceways = raceways::raceways(&record)?;
+    for groove in raceways.grooves {
         let nodes = raceways::nodes(&grid, &record, &groove);
         if raceways::rows(&nodes).len() > 1 {
-            figures.push(unrolled(&nodes, &groove, balls, step)?);
+            let mut named = unrolled(&nodes, &groove, balls, step)?;
+            named.figure = named.figure.note(raceways.note);
+            figures.push(named);
         }
     }
     Ok(figures)
@@ -64,13 +67,17 @@ fn unrolled(nodes: &[Node], groove: &Groove, balls: &Table, step: u64) -> anyhow
             values.push(value * MEGAPASCAL.factor);
         }
     }
-    let value_axis = MEGAPASCAL.axis("von Mises stress").including(0.0);
+    let largest = raceways::largest(nodes) * MEGAPASCAL.factor;
+    let value_axis = MEGAPASCAL
+        .axis("von Mises stress")
+        .including(0.0)
+        .including(largest);
     let y_edges = y_edges.into_iter().map(arc).collect();
     let title = format!("Stress of the {side} raceway with the contact ellipses, step {step}");
     let y_axis = Axis::linear("arc of the groove from its bottom", "mm").tight();
     let mut figure = Figure::new(title, azimuth_axis(), y_axis)
         .surface(Surface::new(value_axis, x_edges, y_edges, values)?)
-        .size(900, 380);
+        .size(900, 400);
     for ellipse in ellipses(groove, balls, step)? {
         figure = figure.series(Series::new("contact ellipse", Look::Outline, ellipse));
     }

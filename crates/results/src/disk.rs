@@ -55,6 +55,13 @@ impl Forecast {
             Analysis::Modes(wanted) => ((wanted.number * wanted.bodies.len()) as u64, 0),
             Analysis::QuasiStatic(quasi) => files_and_rows(quasi.output_every, quasi.n_steps, done),
         };
+        // Every step with fields has a row besides.
+        let every = scene.output.tables_every;
+        let n_rows = if every == 1 {
+            n_rows
+        } else {
+            n_rows.min(n_rows / every + n_files)
+        };
         let cells = BALL_CELLS * model.geometry.n_balls as u64 + OTHER_CELLS;
         Forecast {
             step,

@@ -74,7 +74,7 @@ impl Files {
             return Ok(Files::new(None, ring_stress));
         }
         let mut clock = Stopwatch::start();
-        let Survey { probes, mesh } = survey;
+        let Survey { probes, mesh, .. } = survey;
         let mesh = mesh.map_or_else(|| mesh_file(scene, model), Ok)?;
         let lock = folder::prepare(dir)?;
         note_dead_owner(&lock);
@@ -105,7 +105,7 @@ impl Files {
         let last = resumed.step;
         let texts = about(scene, &dir, resumed.warnings)?;
         // The tables tell whether the step can be resumed from; nothing is changed before all is known to fit.
-        let Survey { probes, mesh } = survey;
+        let Survey { probes, mesh, .. } = survey;
         let columns = own_columns(probes.as_ref());
         let cuts = Tables::cuts(&dir, first, &columns, (last, resumed.tables))?;
         let mesh = mesh.map_or_else(|| mesh_file(scene, model), Ok)?;

@@ -45,11 +45,64 @@ pub fn choose(scene: &Path, out: Option<PathBuf>) -> Result<PathBuf, Failure> {
 fn choose_alone(scene: &Path, out: Option<PathBuf>) -> Result<PathBuf, Failure> {
     let dir = match out {
         Some(dir) => dir,
-        None => next_free(scene)?,
+        None => {
+            let dir = next_free(scene)?;
+            if let Some(earlier) = earlier(&dir) {
+                print::note(format_args!(
+                    "note: {} holds an earlier run; this one goes to {}, which plot, report and the like have to be told",
+                    earlier.display(),
+                    dir.display()
+                ));
+            }
+            dir
+        }
     };
     require_writable(&dir)?;
     require_no_results(&dir)?;
     Ok(dir)
+}
+
+/// Name and number of a default folder: 1 where it has none.
+fn numbered(dir: &Path) -> Option<(&str, usize)> {
+    let name = dir.file_name()?.to_str()?;
+    let split = name
+        .rsplit_once('-')
+        .and_then(|(stem, number)| Some((stem, number.parse().ok()?)));
+    Some(split.filter(|&(_, number)| number > 1).unwrap_or((name, 1)))
+}
+
+/// The folder of the same name with another number.
+fn with_number(dir: &Path, stem: &str, number: usize) -> PathBuf {
+    match number {
+        1 => dir.with_file_name(stem),
+        _ => dir.with_file_name(format!("{stem}-{number}")),
+    }
+}
+
+/// The default folder of the run before that of `dir`.
+fn earlier(dir: &Path) -> Option<PathBuf> {
+    let (stem, number) = numbered(dir)?;
+    (number > 1).then(|| with_number(dir, stem, number - 1))
+}
+
+/// Says that a later run of the same default name has results in another folder, where a command shows those of `dir`.
+pub fn say_later(dir: &Path) {
+    if let Some(later) = later(dir) {
+        print::note(format_args!(
+            "note: {} holds a later run; this is {}",
+            later.display(),
+            dir.display()
+        ));
+    }
+}
+
+/// The folder of the last run that was given the default name of `dir` after it.
+fn later(dir: &Path) -> Option<PathBuf> {
+    let (stem, number) = numbered(dir)?;
+    let following = (number + 1..MAX_FOLDERS).map(|next| with_number(dir, stem, next));
+    // A run of the scene that is going on has no summary yet.
+    let holds_run = |dir: &PathBuf| dir.join(SUMMARY_FILE).exists() || dir.join("mesh.hdf").exists();
+    following.take_while(|dir| dir.exists()).filter(holds_run).last()
 }
 
 fn next_free(scene: &Path) -> Result<PathBuf, Failure> {
@@ -129,5 +182,29 @@ fn require_no_results(dir: &Path) -> Result<(), Failure> {
             "{} already holds results of a run ({name}); choose another --out or remove them",
             dir.display()
         ))),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Wrong: `plot` of a folder would show an old run without a word on the later one, or call another folder one.
+    #[test]
+    fn later_runs_of_a_default_folder_are_found() {
+        let root = tempfile::tempdir().unwrap();
+        for name in ["a", "a-2", "a-3", "a-5", "b-7"] {
+            let dir = root.path().join(name);
+            std::fs::create_dir(&dir).unwrap();
+            std::fs::write(dir.join(SUMMARY_FILE), "{}").unwrap();
+        }
+        let later =
+            |name: &str| later(&root.path().join(name)).map(|dir| dir.file_name().unwrap().to_owned());
+        assert_eq!(later("a"), Some("a-3".into()));
+        assert_eq!(later("a-2"), Some("a-3".into()));
+        assert_eq!(later("a-3"), None);
+        assert_eq!(later("b-7"), None);
+        assert_eq!(earlier(&root.path().join("a-2")), Some(root.path().join("a")));
+        assert_eq!(earlier(&root.path().join("a")), None);
     }
 }

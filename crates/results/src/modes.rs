@@ -170,7 +170,7 @@ pub fn print_modes(name: &str, set: &ModeSet) {
 }
 
 /// `summary.json` of a `[modes]` scene; `schema`, `scene`, `run`, `title`, `version`, `status`,
-/// `contact_mode`, `effects`, `dofs`, `warnings` and `peak_memory_bytes` as in all runs.
+/// `contact_mode`, `effects`, `dofs`, `warnings`, `advice` and `peak_memory_bytes` as in all runs.
 #[derive(Debug, Serialize)]
 pub struct ModesSummary {
     schema: u32,
@@ -190,6 +190,7 @@ pub struct ModesSummary {
     #[serde(skip_serializing_if = "Option::is_none")]
     balls: Option<Vec<BallResult>>,
     warnings: Vec<String>,
+    advice: Vec<String>,
     timing_s: BTreeMap<&'static str, f64>,
     peak_memory_bytes: u64,
 }
@@ -209,7 +210,8 @@ impl ModesSummary {
         model: &Model,
         sets: &[(ModeBody, ModeSet)],
         equilibrium: Option<&Snapshot>,
-        (run, warnings): (Option<String>, Vec<String>),
+        run: Option<String>,
+        [warnings, advice]: [Vec<String>; 2],
         start: Instant,
     ) -> ModesSummary {
         let mut laps = Laps::default();
@@ -236,6 +238,7 @@ impl ModesSummary {
             shaft: equilibrium.map(ShaftSummary::new),
             balls: equilibrium.map(|e| e.balls.clone()),
             warnings,
+            advice,
             timing_s: [FACTOR, SEARCH, TOTAL].map(|lap| (lap, laps.seconds(lap))).into(),
             peak_memory_bytes: peak_memory(),
         }

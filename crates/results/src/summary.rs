@@ -69,6 +69,8 @@ pub struct Summary {
     #[serde(skip_serializing_if = "Option::is_none")]
     sweep: Option<SweepSummary>,
     warnings: Vec<String>,
+    /// What rules of thumb say about its effects.
+    advice: Vec<String>,
     /// Nodes that are probed; absent when there are none.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     probes: Vec<NodePlace>,
@@ -156,6 +158,8 @@ pub struct Findings {
     pub iterations: BTreeMap<&'static str, usize>,
     /// What a user should know.
     pub warnings: Vec<String>,
+    /// What rules of thumb say about effects that are missing or idle.
+    pub advice: Vec<String>,
 }
 
 impl Summary {
@@ -205,6 +209,7 @@ impl Summary {
             iterations: findings.iterations,
             sweep,
             warnings,
+            advice: findings.advice,
             probes: costs.probes.clone(),
             timing_s: timing(&costs.laps),
             factor_bytes_forecast: sides(|i| costs.forecast.rings[i].map_or(0, |ring| ring.factorisation)),

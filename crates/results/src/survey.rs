@@ -8,10 +8,10 @@ use std::sync::Arc;
 
 use anyhow::anyhow;
 use checkpoint::MeshFile;
-use comm::Communicator;
+use comm::{Communicator, print};
 use contact::Side;
 use dynamics::{Backend, Model, RingModel, Sectors};
-use scene::{Scene, build_model, difference, material, model_with_rings, ring_of, say_doubts};
+use scene::{Scene, build_model, difference, doubts, material, model_with_rings, ring_of};
 
 use crate::about::identity;
 use crate::failure::{Failure, agree};
@@ -23,6 +23,8 @@ use crate::probes::Probes;
 pub struct Survey {
     /// The probes of the scene, if it has some; where ranks share rings, on rank 0 only.
     pub probes: Option<Probes>,
+    /// What is most likely a slip in the scene; where ranks share rings, on rank 0 only.
+    pub doubts: Vec<String>,
     /// The content of `mesh.hdf` where the model will not have all of it, on rank 0.
     pub mesh: Option<MeshFile>,
 }
@@ -40,27 +42,40 @@ pub fn build_surveyed(
     if comm.size() > 1 && point.solver.backend == scene::Backend::Sector {
         return build_shared(point, scene, dir, test);
     }
-    let (mut model, probes) = whole(point, scene, test)?;
+    let (mut model, survey) = whole(point, scene, test)?;
     if let Backend::Sector(sectors) = model.backend {
         for side in Side::BOTH {
             let divided = take(&mut model, side).map(|ring| ring.divide(side.name(), sectors));
             model.rings[side.index()] = divided.transpose().map_err(Failure::solving)?.map(Arc::new);
         }
     }
-    Ok((model, Survey { probes, mesh: None }))
+    Ok((model, survey))
 }
 
-/// Model and probes of whole meshes.
+/// The model of whole meshes and their survey.
 fn whole(
     point: &Scene,
     scene: &Scene,
     test: impl FnOnce(&Model) -> Result<(), Failure>,
-) -> Result<(Model, Option<Probes>), Failure> {
+) -> Result<(Model, Survey), Failure> {
     let (model, tags) = build_model(point)?;
-    say_doubts(point, &model);
+    let doubts = doubts(point, &model);
+    say_doubts(&doubts);
     let probes = Probes::new(scene, &model, &tags)?;
     test(&model)?;
-    Ok((model, probes))
+    let survey = Survey {
+        probes,
+        doubts,
+        mesh: None,
+    };
+    Ok((model, survey))
+}
+
+/// Says what is most likely a slip, before a run begins.
+pub fn say_doubts(doubts: &[String]) {
+    for doubt in doubts {
+        print::note(format_args!("warning: {doubt}"));
+    }
 }
 
 fn take(model: &mut Model, side: Side) -> Option<RingModel> {
@@ -77,11 +92,11 @@ fn build_shared(
 ) -> Result<(Model, Survey), Failure> {
     let comm = Communicator::world();
     let survey = || {
-        let (model, probes) = whole(point, scene, test)?;
+        let (model, survey) = whole(point, scene, test)?;
         let mesh = MeshFile::new(&fields::bodies(&model))?.of_run(identity(scene)?);
         let mesh = mesh.spooled(dir)?;
         let mesh = Some(mesh);
-        Ok((model, Survey { probes, mesh }))
+        Ok((model, Survey { mesh, ..survey }))
     };
     let read: Result<Option<(Model, Survey)>, Failure> = match comm.is_root() {
         true => survey().map(Some),

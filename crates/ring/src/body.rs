@@ -10,7 +10,7 @@
 
 use std::sync::Arc;
 
-use crate::coordinates::Coordinates;
+use crate::coordinates::{Coordinates, RIGID_MOTIONS};
 use crate::division::NodePlaces;
 use crate::error::RingError;
 use crate::integrator::Integrator;
@@ -19,7 +19,7 @@ use crate::inventory::Inventory;
 use crate::matrices::{Matrix, NodalMatrices, Nodes};
 use crate::memory::MotionSizes;
 use crate::model::{Backend, Hold, RingModel};
-use crate::sparse::SparseLoad;
+use crate::sparse::{SparseLoad, sparse_dot};
 use crate::state::RingState;
 use crate::step::{FrameTurn, StepFactor};
 use crate::support::mean_motion;
@@ -175,6 +175,26 @@ impl HeldRing {
             [mass[0] + am * damping[0], mass[1] + am * damping[1]],
             [ak * damping[0], ak * damping[1]],
         ]
+    }
+
+    /// The displacement `w`, of coordinates, less the rigid motion of the ring's partner. That strains nothing; in the energy of
+    /// total displacements it would leave its round-off, which is large beside the energy of small loads. Collective.
+    pub(crate) fn without_rigid_motion(&self, w: &[f64]) -> Vec<f64> {
+        let mut strained = w.to_vec();
+        let (shaft, first) = self.coordinates.shaft();
+        let mut q = [0.0; RIGID_MOTIONS];
+        for (k, row) in self.mount.iter().enumerate() {
+            q[shaft.get(k).copied().unwrap_or(k)] = sparse_dot(row, w);
+        }
+        if q == [0.0; RIGID_MOTIONS] {
+            return strained;
+        }
+        let rigid = self.places.field(|x| self.coordinates.whole_rigid_motion(x, q));
+        let free = strained.iter_mut().zip(self.coordinates.free());
+        free.for_each(|(w, &dof)| *w -= rigid[dof]);
+        let of_shaft = strained[first..].iter_mut().zip(shaft);
+        of_shaft.for_each(|(w, &dof)| *w -= q[dof]);
+        strained
     }
 
     /// What harmonics take of the matrices.

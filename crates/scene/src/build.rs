@@ -15,15 +15,20 @@ use dynamics::{
 };
 use fem::Material;
 use input::Scheduled;
-use mesh::{Mesh, Torus};
+use mesh::{Coverage, Cylinder, Mesh, Torus};
 
 use crate::error::BuildError;
+use crate::resolution::require_resolvable;
+use crate::section_record::{require_fresh, with_command};
 use crate::settings::speed;
 use crate::tables::{self, FlexibleRing, Scene};
 
 /// Deviation of raceway nodes from the scene's torus that is taken for round-off of a file, over the groove
 /// radius.
 const TORUS_TOLERANCE: f64 = 2e-4;
+
+/// Deviation of the corners of a bore or seat from a cylinder that is taken for round-off of a file, over its radius.
+const CYLINDER_TOLERANCE: f64 = 1e-5;
 
 /// Gmsh tags of the nodes of flexible rings, inner first, `[n_nodes]`.
 pub type NodeTags = [Option<Vec<u64>>; 2];
@@ -32,6 +37,7 @@ pub type NodeTags = [Option<Vec<u64>>; 2];
 pub fn build_model(scene: &Scene) -> Result<(Model, NodeTags), BuildError> {
     let geometry = geometry(scene);
     geometry.validate()?;
+    require_resolvable(scene)?;
     let rings = rayon::join(
         || ring(scene, &geometry, Side::Inner),
         || ring(scene, &geometry, Side::Outer),
@@ -176,26 +182,44 @@ fn ring(
 ) -> Result<Option<(RingModel, Vec<u64>)>, BuildError> {
     let (ring, held_group, diameter) = of_side(scene, side);
     let Some(body) = &ring.body else { return Ok(None) };
+    let section = ring.section.as_ref();
+    require_fresh(scene, side, body, section)?;
     let (mesh, origin) = mesh::read_msh_with_origin(&body.mesh, body.mesh_unit)?;
     mesh::check_unit(&mesh, &origin, diameter)?;
     mesh::require_groups(&mesh, &body.mesh, &[RACEWAY_GROUP, held_group])?;
     let groove = groove(geometry, side, body.groove_z);
-    let torus = Torus {
-        centre_radius: groove.centre_radius,
-        groove_radius: groove.groove_radius,
-        centre_z: groove.centre_z,
-    };
+    let torus = torus(&groove);
     mesh::check_torus(
         &mesh,
         &origin,
         RACEWAY_GROUP,
         &torus,
         TORUS_TOLERANCE * groove.groove_radius,
-    )?;
+    )
+    .map_err(|error| with_command(error, scene, section))?;
+    if !body.is_partial {
+        let remedy = format!("say so in the scene: {}.partial = true", side.name());
+        for (group, coverage) in coverages(&mesh, held_group, &torus) {
+            mesh::check_whole(&mesh, &origin, group, coverage, &remedy)?;
+        }
+    }
     let (mesh, nodes) = cut(mesh, body)?;
     let node_tags = nodes.iter().map(|&node| origin.node_tags[node]).collect();
     let steel = material(&scene.materials.rings)?;
     Ok(ring_of(scene, side, steel, mesh).map(|ring| (ring, node_tags)))
+}
+
+/// What the groups of a ring have of the surfaces of revolution that they should be the whole of: raceway, and bore or seat.
+pub fn coverages(
+    mesh: &Mesh,
+    held_group: &'static str,
+    torus: &Torus,
+) -> [(&'static str, Option<Coverage>); 2] {
+    let cylinder = Cylinder::of_group(mesh, held_group);
+    let tolerance = TORUS_TOLERANCE * torus.groove_radius;
+    let raceway = mesh::coverage(mesh, RACEWAY_GROUP, torus, tolerance);
+    let held = mesh::coverage(mesh, held_group, &cylinder, CYLINDER_TOLERANCE * cylinder.radius);
+    [(RACEWAY_GROUP, raceway), (held_group, held)]
 }
 
 /// The mesh of a ring without what the scene cuts out, and the old numbers of its nodes.
@@ -253,6 +277,15 @@ fn of_side(scene: &Scene, side: Side) -> (&tables::Ring, &'static str, f64) {
     match side {
         Side::Inner => (&scene.inner, "bore", scene.bearing.inner_raceway_diameter),
         Side::Outer => (&scene.outer, "seat", scene.bearing.outside_diameter),
+    }
+}
+
+/// The surface of a groove.
+pub fn torus(groove: &Groove) -> Torus {
+    Torus {
+        centre_radius: groove.centre_radius,
+        groove_radius: groove.groove_radius,
+        centre_z: groove.centre_z,
     }
 }
 

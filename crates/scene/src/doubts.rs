@@ -1,16 +1,18 @@
-//! What a run can do with but is most likely a slip: a material like no other, a mesh of other main dimensions than the scene's.
+//! What a run can do with but is most likely a slip: a material like no other, a mesh of other main dimensions than the
+//! scene's, a step that is too long for what happens.
 //!
 //! Results never depend on `bearing.bore_diameter`, `outside_diameter` and `width` where there is a mesh, so that a mesh of another size is
 //! no error: a groove that does not fit is one. But the scene then says something else than what is solved.
 
 use std::ops::RangeInclusive;
 
-use comm::print;
 use contact::Side;
 use dynamics::{Model, RingModel};
 use input::{DENSITY, LENGTH, Quantity, STRESS};
 
-use crate::tables::{Material, Scene};
+use crate::build::{coverages, torus};
+use crate::resolution::unresolved;
+use crate::tables::{Material, Scene, unusual_stiffnesses};
 
 /// Young's modulus of what rings and balls are made of, Pa: from soft plastics to diamond.
 const MODULI: RangeInclusive<f64> = 4e8..=1.3e12;
@@ -19,13 +21,6 @@ const DENSITIES: RangeInclusive<f64> = 500.0..=25_000.0;
 /// Relative difference of a diameter, and of a width, from which a mesh is said to have another.
 const OTHER_DIAMETER: f64 = 2e-3;
 const OTHER_WIDTH: f64 = 2e-2;
-
-/// Warns of what is most likely a slip in the scene.
-pub fn say_doubts(scene: &Scene, model: &Model) {
-    for doubt in doubts(scene, model) {
-        print::note(format_args!("warning: {doubt}"));
-    }
-}
 
 /// A sentence for each slip; `model` has whole meshes.
 pub fn doubts(scene: &Scene, model: &Model) -> Vec<String> {
@@ -37,9 +32,27 @@ pub fn doubts(scene: &Scene, model: &Model) -> Vec<String> {
         if let (Some(ring), Some(body)) = (&model.rings[side.index()], body) {
             let path = body.mesh.display().to_string();
             doubt_size(scene, side, ring, &path, &mut lines);
+            if body.is_partial {
+                say_parts(ring, &path, &mut lines);
+            }
         }
     }
+    lines.extend(unusual_stiffnesses(&scene.contact, &scene.bearing, materials));
+    lines.extend(unresolved(scene));
     lines
+}
+
+/// Says how much of their surfaces groups have that may be parts of them.
+fn say_parts(ring: &RingModel, path: &str, lines: &mut Vec<String>) {
+    for (group, coverage) in coverages(&ring.mesh, ring.held_group, &torus(&ring.groove)) {
+        if let Some(coverage) = coverage {
+            lines.push(format!(
+                "mesh {path}: group \"{group}\" has {:.1} % of the circle and {:.1} % of the area of its surface",
+                100.0 * coverage.circle,
+                100.0 * coverage.area
+            ));
+        }
+    }
 }
 
 fn doubt_material(table: &str, material: &Material, lines: &mut Vec<String>) {

@@ -36,6 +36,30 @@ pub enum BuildError {
         /// What is wrong, and what was expected.
         problem: String,
     },
+    /// The mesh was made from other values than the scene has.
+    #[error(
+        "mesh {} was made with {differences}; build the mesh of this scene: {command}, which needs Gmsh, with another \
+         {key}.mesh if the old one is to stay",
+        path.display()
+    )]
+    StaleMesh {
+        /// The mesh file.
+        path: PathBuf,
+        /// The values that differ.
+        differences: String,
+        /// The command that builds it.
+        command: String,
+        /// The ring: `inner` or `outer`.
+        key: &'static str,
+    },
+    /// Steps that cannot show what happens.
+    #[error("scene {}: {}", path.display(), problems.join("; "))]
+    Unresolvable {
+        /// The scene file.
+        path: PathBuf,
+        /// A sentence for each.
+        problems: Vec<String>,
+    },
     /// The scene has no table of a mesh.
     #[error(
         "{} describes no mesh to build: expected [inner.section] or [outer.section] of a flexible ring",

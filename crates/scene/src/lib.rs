@@ -7,12 +7,14 @@ mod build;
 mod doubts;
 mod error;
 mod meshing;
+mod resolution;
+mod section_record;
 mod settings;
 pub mod tables;
 mod toml_text;
 
 pub use build::{NodeTags, build_model, geometry, material, model_with_rings, ring_of, rolling};
-pub use doubts::{doubts, say_doubts};
+pub use doubts::doubts;
 pub use error::BuildError;
 pub use meshing::{build_meshes, build_missing};
 pub use settings::{settings, speed};

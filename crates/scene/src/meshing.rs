@@ -7,9 +7,11 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use comm::print;
-use mesh::{ElementKind, Mesh, MshFormat, Overwrite, RingSection, RingSide};
+use contact::Side;
+use mesh::{ElementKind, Mesh, Overwrite, RingSection, RingSide};
 
 use crate::error::BuildError;
+use crate::section_record::record;
 use crate::tables::{FlexibleRing, MeshFiles, Ring, Scene, Section, SectionElement};
 
 /// Length unit of the files that Gmsh reads and writes, m.
@@ -61,7 +63,12 @@ fn build_file(
     overwrite: Overwrite,
 ) -> Result<(), BuildError> {
     let mesh = build_ring(scene, side, body, section)?;
-    mesh::write_msh(&body.mesh, &mesh, body.mesh_unit, MshFormat::Binary, overwrite)?;
+    let contact_side = match side {
+        RingSide::Inner => Side::Inner,
+        RingSide::Outer => Side::Outer,
+    };
+    let record = record(scene, contact_side, body, section);
+    mesh::write_msh_with_record(&body.mesh, &mesh, body.mesh_unit, overwrite, &record)?;
     print::line(format_args!(
         "{}: {} {} elements, {} nodes, {} dofs",
         body.mesh.display(),

@@ -3,6 +3,7 @@
 mod ahead;
 mod defect;
 mod missing;
+mod rigid_motion;
 #[path = "../support/mod.rs"]
 mod support;
 

@@ -29,6 +29,11 @@ fn with_meshes(level: Level, hold: Hold, backend: Backend, change: impl Fn(Side,
     model
 }
 
+/// The bearing with a keyway in both rings.
+pub fn keyed(level: Level, hold: Hold, backend: Backend) -> Model {
+    with_meshes(level, hold, backend, keyway)
+}
+
 /// A keyway over the whole width in the bore of the inner ring and in the outer ring's seat: 3 sectors wide, half as deep as the
 /// ring.
 fn keyway(side: Side, mesh: Mesh) -> Mesh {

@@ -5,6 +5,7 @@
 mod fit;
 mod shape;
 mod topology;
+mod whole;
 
 use std::path::Path;
 
@@ -15,6 +16,7 @@ use crate::origin::Origin;
 pub use fit::{Torus, check_torus, check_unit};
 pub(crate) use shape::worst_element;
 pub(crate) use topology::{check_coincident_nodes, check_connected};
+pub use whole::{Coverage, Cylinder, Revolved, check_whole, coverage};
 
 /// Runs the checks that need nothing but the mesh: det J, coincident nodes, one connected part.
 /// Cost: about 47 determinants per 20-node hexahedron and one sort of the nodes.

@@ -12,6 +12,7 @@ mod body;
 mod cursor;
 mod facets;
 mod raw;
+pub mod record;
 mod tags;
 mod types;
 mod v22;

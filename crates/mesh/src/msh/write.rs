@@ -8,6 +8,7 @@ use std::collections::BTreeMap;
 use std::io::{BufWriter, Write};
 use std::path::Path;
 
+use super::record::section;
 use super::{BODY, check_scale};
 use crate::error::MeshError;
 use crate::mesh::{Facet, Mesh};
@@ -38,7 +39,35 @@ pub fn write_msh(
     format: MshFormat,
     overwrite: Overwrite,
 ) -> Result<(), MeshError> {
-    let path = path.as_ref();
+    write(path.as_ref(), mesh, unit, format, overwrite, None)
+}
+
+/// The same in binary form with one line that says what the mesh was made from, which [`super::record::read_record`] finds.
+pub fn write_msh_with_record(
+    path: impl AsRef<Path>,
+    mesh: &Mesh,
+    unit: f64,
+    overwrite: Overwrite,
+    record: &str,
+) -> Result<(), MeshError> {
+    write(
+        path.as_ref(),
+        mesh,
+        unit,
+        MshFormat::Binary,
+        overwrite,
+        Some(record),
+    )
+}
+
+fn write(
+    path: &Path,
+    mesh: &Mesh,
+    unit: f64,
+    format: MshFormat,
+    overwrite: Overwrite,
+    record: Option<&str>,
+) -> Result<(), MeshError> {
     check_scale(unit)?;
     check_writable(path, mesh)?;
     if overwrite == Overwrite::Refuse && path.exists() {
@@ -57,7 +86,7 @@ pub fn write_msh(
     // What a killed run left under this name goes, also a link; it is gone if there was none.
     let _ = std::fs::remove_file(temporary);
     let file = std::fs::File::create_new(temporary).map_err(fail)?;
-    let written = write_file(file, mesh, unit, format);
+    let written = write_file(file, mesh, unit, format, record);
     if let Err(source) = written {
         // The first error is the one to tell; a left-over temporary file harms nobody.
         let _ = std::fs::remove_file(temporary);
@@ -70,12 +99,18 @@ pub fn write_msh(
     })
 }
 
-fn write_file(file: std::fs::File, mesh: &Mesh, unit: f64, format: MshFormat) -> std::io::Result<()> {
+fn write_file(
+    file: std::fs::File,
+    mesh: &Mesh,
+    unit: f64,
+    format: MshFormat,
+    record: Option<&str>,
+) -> std::io::Result<()> {
     let mut out = Writer {
         out: BufWriter::new(file),
         format,
     };
-    out.write_head(mesh, unit)?;
+    out.write_head(mesh, unit, record)?;
     out.write_nodes(mesh, unit)?;
     out.write_elements(mesh)?;
     out.out.flush()?;
@@ -161,13 +196,16 @@ impl<W: Write> Writer<W> {
     }
 
     /// Format, names and entities.
-    fn write_head(&mut self, mesh: &Mesh, unit: f64) -> std::io::Result<()> {
+    fn write_head(&mut self, mesh: &Mesh, unit: f64, record: Option<&str>) -> std::io::Result<()> {
         let file_type = if self.format == MshFormat::Binary { 1 } else { 0 };
         writeln!(self.out, "$MeshFormat\n4.1 {file_type} 8")?;
         if self.format == MshFormat::Binary {
             self.int(1)?;
         }
         self.end_section("MeshFormat")?;
+        if let Some(record) = record {
+            self.out.write_all(section(record).as_bytes())?;
+        }
         writeln!(self.out, "$PhysicalNames\n{}", mesh.groups.len() + 1)?;
         for (i, name) in mesh.groups.keys().enumerate() {
             writeln!(self.out, "2 {} \"{name}\"", i + 2)?;

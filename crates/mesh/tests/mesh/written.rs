@@ -1,6 +1,9 @@
 //! Meshes written and read back.
 
-use mesh::{ElementKind, Facet, MshFormat, Overwrite, RingSide, read_msh, read_msh_with_origin, write_msh};
+use mesh::{
+    ElementKind, Facet, MshFormat, Overwrite, RingSide, read_msh, read_msh_with_origin, read_record,
+    write_msh, write_msh_with_record,
+};
 
 use crate::{data, revolved};
 
@@ -23,6 +26,28 @@ fn a_mesh_read_back_has_the_same_bits() {
             assert_eq!(origin, mesh::Origin::of_generated(&path, 1.0, mesh));
         }
     }
+}
+
+/// If this failed, what a mesh was made from would get lost or change the mesh, or another program could not read the file.
+#[test]
+fn a_record_is_read_back_and_changes_nothing() {
+    let folder = tempfile::tempdir().unwrap();
+    let mesh = revolved(RingSide::Outer, 12, ElementKind::Hex8);
+    let (with, without) = (folder.path().join("with.msh"), folder.path().join("without.msh"));
+    let record = "outer.section.sectors = 12; bearing.width = 16 mm";
+    write_msh_with_record(&with, &mesh, 1.0, Overwrite::Replace, record).unwrap();
+    write_msh(&without, &mesh, 1.0, MshFormat::Binary, Overwrite::Replace).unwrap();
+    assert_eq!(read_record(&with).unwrap().as_deref(), Some(record));
+    assert_eq!(read_record(&without).unwrap(), None);
+    assert_eq!(read_msh(&with, 1.0).unwrap(), read_msh(&without, 1.0).unwrap());
+    let section = format!("$Comments\nmade by raceway mesh from {record}\n$EndComments\n");
+    let [with, without] = [with, without].map(|path| std::fs::read(path).unwrap());
+    let at = with
+        .windows(section.len())
+        .position(|bytes| bytes == section.as_bytes())
+        .unwrap();
+    assert_eq!([&with[..at], &with[at + section.len()..]].concat(), without);
+    assert!(mshio::parse_msh_bytes(&with).is_ok());
 }
 
 /// If this failed, millimetres would not survive a file; one unit in the last place is lost at most.

@@ -16,6 +16,7 @@ pub(crate) mod make;
 mod pass;
 pub mod periodic;
 pub mod regular;
+mod rigid;
 mod space;
 pub(crate) mod space_defect;
 mod step;

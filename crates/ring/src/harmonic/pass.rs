@@ -152,7 +152,7 @@ impl Pass<'_> {
         let mut energies = total(&found, |f| f.energies).map(|twice| 0.5 * twice);
         let rows = space.defect.as_ref().map(|defect| {
             let rows = defect.of_state(&state);
-            let more = defect.energies(&rows);
+            let more = space.defect_energies(defect, state.displacement(), &rows);
             energies = [energies[0] + more[0], energies[1] + more[1]];
             rows
         });

@@ -5,16 +5,18 @@
 //! components. Nodal fields are made when results ask for them. Scalar products of nodal vectors are those of
 //! Parseval. The dofs of a shaft that carries the bore stay what they are, behind the harmonics.
 
+use std::borrow::Cow;
 use std::sync::OnceLock;
 
 use solver::cyclic::{HarmonicOperator, NODE_LEN, turned};
 use solver::{CyclicRing, SolverError};
 
 use super::periodic::HeldSectors;
+use super::rigid::RigidMotions;
 use super::space_defect::SpaceDefect;
 use crate::matrices::{Matrix, Nodes};
 use crate::pool::VectorPool;
-use crate::state::RingState;
+use crate::state::{RingState, RowValues};
 use crate::step::FrameTurn;
 use crate::vectors::dot;
 
@@ -29,6 +31,8 @@ pub(crate) struct HarmonicSpace {
     pub(super) stiffness: HarmonicOperator,
     /// A defect, of whose regular ring the matrices are.
     pub(super) defect: Option<SpaceDefect>,
+    /// What strains nothing.
+    rigid: RigidMotions,
     /// Vectors of the space that are free.
     pub(super) pool: VectorPool,
     /// Made when a frame turns for the first time.
@@ -77,7 +81,9 @@ impl HarmonicSpace {
             HarmonicOperator::new(&free.ring, matrix, &border, &corner)
         };
         let n_shaft = nodes.coordinates.shaft().0.len();
+        let of_rigid = defect.as_ref().map_or(&free.ring, SpaceDefect::regular);
         Ok(HarmonicSpace {
+            rigid: RigidMotions::new(of_rigid, nodes, defect.as_ref()),
             pool: VectorPool::new(free.ring.harmonic_len() + n_shaft),
             n_shaft,
             mass: operator(&free.mass, [1.0, 0.0])?,
@@ -110,18 +116,50 @@ impl HarmonicSpace {
     /// Kinetic and strain energy, J.
     pub(super) fn energies(&self, state: &RingState) -> [f64; 2] {
         let [w, v, _] = state.vectors();
-        let regular = [(&self.mass, v), (&self.stiffness, w)].map(|(operator, x)| {
+        let mut strained = w.to_vec();
+        self.put_low(self.strained_part(0, &self.low_of(w)).as_ref(), &mut strained);
+        let regular = [(&self.mass, v, v), (&self.stiffness, &strained, w)].map(|(operator, a, x)| {
             let (product, len) = (operator.product(x), self.ring.harmonic_len());
-            let harmonics = self.ring.harmonic_dot(&x[..len], &product[..len]);
-            0.5 * (harmonics + dot(&x[len..], &product[len..]))
+            let harmonics = self.ring.harmonic_dot(&a[..len], &product[..len]);
+            0.5 * (harmonics + dot(&a[len..], &product[len..]))
         });
         match &self.defect {
             None => regular,
             Some(defect) => {
-                let more = defect.energies(&defect.of_state(state));
+                let more = self.defect_energies(defect, w, &defect.of_state(state));
                 [regular[0] + more[0], regular[1] + more[1]]
             }
         }
+    }
+
+    /// What a defect adds to kinetic and strain energy, J, of a state with the displacement `w`.
+    pub(super) fn defect_energies(&self, defect: &SpaceDefect, w: &[f64], rows: &RowValues) -> [f64; 2] {
+        let RowValues([on_rows, v, _]) = rows;
+        let strained = self.rigid.strained_rows(&self.ring, &self.low_of(w), on_rows);
+        [
+            0.5 * defect.form(Matrix::Mass, v, v),
+            0.5 * defect.form(Matrix::Stiffness, &strained, on_rows),
+        ]
+    }
+
+    /// The part of one group's displacement that is no rigid motion.
+    pub(super) fn strained_part<'w>(&self, group: usize, w: &'w [f64]) -> Cow<'w, [f64]> {
+        if group > 0 || self.rigid.is_empty() {
+            return Cow::Borrowed(w);
+        }
+        Cow::Owned(self.rigid.strained(&self.ring, w))
+    }
+
+    /// The first group of a vector with the border.
+    fn low_of(&self, x: &[f64]) -> Vec<f64> {
+        [&x[..self.ring.low_len()], &x[self.ring.harmonic_len()..]].concat()
+    }
+
+    /// Puts the first group with the border into a vector.
+    fn put_low(&self, low: &[f64], x: &mut [f64]) {
+        let (harmonics, border) = low.split_at(self.ring.low_len());
+        x[..harmonics.len()].copy_from_slice(harmonics);
+        x[self.ring.harmonic_len()..].copy_from_slice(border);
     }
 
     /// a M b or a K b.

@@ -220,11 +220,6 @@ impl SpaceDefect {
         dot(a, &product(&self.change[matrix as usize], b))
     }
 
-    /// What the defect adds to kinetic and strain energy, J.
-    pub(super) fn energies(&self, RowValues([w, v, _]): &RowValues) -> [f64; 2] {
-        [(Matrix::Mass, v), (Matrix::Stiffness, w)].map(|(matrix, x)| 0.5 * self.form(matrix, x, x))
-    }
-
     /// Moves the rows that the true ring lacks, which are zero in `x`, as the statics of the regular ring does.
     pub(super) fn fill(&self, x: &mut [f64]) {
         let Some(lacking) = &self.lacking else { return };

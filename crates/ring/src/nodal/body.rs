@@ -71,7 +71,8 @@ impl<S: NodalSolver> ElasticBody for NodalBody<S> {
 
     fn energies(&self, state: &RingState) -> [f64; 2] {
         let matrices = self.solver.matrices();
-        matrices.energies(&self.held.coordinates, state.velocity(), state.displacement())
+        let strained = self.held.without_rigid_motion(state.displacement());
+        matrices.energies(&self.held.coordinates, state.velocity(), &strained)
     }
 
     fn step_factor(self: Arc<Self>, scheme: StepScheme) -> Result<Box<dyn StepFactor>, RingError> {

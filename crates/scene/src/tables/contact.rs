@@ -43,9 +43,32 @@ pub struct Contact {
 
 /// Smaller patches see single elements (design number: the structural compliance is then mesh-independent).
 const DEFAULT_PATCH_ELEMENTS: f64 = 2.0;
-/// A given K may differ from E* sqrt(D_w), the size of exact Hertz, by this factor: more is a slip of the
-/// unit (N/m^1.5 for N/mm^1.5 is 3e4).
-const STIFFNESS_FACTOR: f64 = 100.0;
+/// A given K may differ from E* sqrt(D_w), the size of exact Hertz, by this factor, such as to compare with rigid contacts: more is
+/// nothing that numbers of 16 digits can solve.
+const SLIP_FACTOR: f64 = 1e8;
+/// From this factor on a given K is said to be unusual: N/m^1.5 for N/mm^1.5 is 3e4.
+const UNUSUAL_FACTOR: f64 = 100.0;
+
+/// A sentence for each given stiffness that is most likely a slip of its unit.
+pub fn unusual_stiffnesses(contact: &Contact, bearing: &Bearing, materials: &Materials) -> Vec<String> {
+    let hertz = hertz_scale(bearing, materials);
+    let given = [
+        ("contact.inner_stiffness", contact.inner_stiffness),
+        ("contact.outer_stiffness", contact.outer_stiffness),
+    ];
+    let unusual = |(key, stiffness): (&str, Option<f64>)| {
+        let stiffness = stiffness?;
+        let ratio = stiffness / hertz;
+        let is_usual = (1.0 / UNUSUAL_FACTOR..=UNUSUAL_FACTOR).contains(&ratio);
+        (!is_usual).then(|| {
+            format!(
+                "{key} is {}, {ratio:.1e} times E* sqrt(ball_diameter), the size of exact Hertz; check its unit, N/mm^1.5 is usual",
+                Quantity::<HERTZ_STIFFNESS>::about(stiffness)
+            )
+        })
+    };
+    given.into_iter().filter_map(unusual).collect()
+}
 
 impl RawContact {
     /// Checks the table; bearing and materials are there when they are sound, to judge the size of a
@@ -75,7 +98,7 @@ impl RawContact {
                 continue;
             };
             problems.require(
-                (1.0 / STIFFNESS_FACTOR..=STIFFNESS_FACTOR).contains(&ratio),
+                (1.0 / SLIP_FACTOR..=SLIP_FACTOR).contains(&ratio),
                 key,
                 stiffness,
                 format!(

@@ -54,9 +54,37 @@ fn floor_boundary(text: &str, mut index: usize) -> usize {
     index
 }
 
+/// Whole numbers of a file.
+const WHOLE_RANGE: &str =
+    "this whole number is too large; expected -9223372036854775808 to 9223372036854775807";
+
+/// The line, from 1, on which a text has the key that a problem begins with, such as `bearing.width` or `[probes.node.a]`.
+pub fn line_of(text: &str, problem: &str) -> Option<usize> {
+    let key = problem.split([' ', ',', ':']).next()?.trim_matches(['[', ']']);
+    let document = DeTable::parse(text).ok()?;
+    let mut names = key.split('.');
+    let mut table = document.get_ref();
+    let (mut place, mut value) = entry(table, names.next()?)?;
+    for name in names {
+        table = value.as_table()?;
+        (place, value) = entry(table, name)?;
+    }
+    Some(1 + text[..floor_boundary(text, place.start)].matches('\n').count())
+}
+
+/// The place of a key in its table, and its value.
+fn entry<'a, 'i>(table: &'a DeTable<'i>, name: &str) -> Option<(Range<usize>, &'a DeValue<'i>)> {
+    let (key, value) = table.iter().find(|(key, _)| key.get_ref() == name)?;
+    Some((key.span(), value.get_ref()))
+}
+
 /// Adds the key's path to the reader's message, and says it in the words of a scene.
 fn describe(text: &str, span: Range<usize>, message: &str) -> String {
-    let message = message.trim_end().replace('\n', "; ");
+    let message = message
+        .trim_end()
+        .replace('\n', "; ")
+        .replace("integer number overflowed", WHOLE_RANGE)
+        .replace("wanted string or table", "expected a string");
     let Ok(document) = DeTable::parse(text) else {
         return format!("this is not TOML: {message}");
     };

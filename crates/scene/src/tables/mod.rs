@@ -68,6 +68,7 @@ use serde::Deserialize;
 use toml_edit::DocumentMut;
 
 pub use self::bearing::Bearing;
+pub(crate) use self::contact::unusual_stiffnesses;
 pub use self::contact::{Contact, ContactMode};
 pub use self::difference::difference;
 pub use self::dynamic::{ContactScheme, Dynamic, IntegratorChoice};
@@ -202,6 +203,7 @@ impl Scene {
     ) -> Result<Scene, SceneError> {
         let source = Source {
             path,
+            original: text,
             overrides,
             mesh_files,
         };
@@ -235,6 +237,8 @@ impl Scene {
 /// Where a text comes from and how strictly it is checked.
 struct Source<'a> {
     path: &'a Path,
+    /// The text before overrides, whose lines are those of the file.
+    original: &'a str,
     overrides: &'a [String],
     mesh_files: MeshFiles,
 }
@@ -243,6 +247,15 @@ impl Source<'_> {
     fn document(&self, text: &str) -> Result<DocumentMut, SceneError> {
         text.parse()
             .map_err(|e: toml_edit::TomlError| self.format_error(text, e.span(), e.message()))
+    }
+
+    /// Whether the command line gives the value that a problem is about.
+    fn is_overridden(&self, problem: &str) -> bool {
+        let keys = self
+            .overrides
+            .iter()
+            .filter_map(|argument| argument.split_once('='));
+        keys.into_iter().any(|(key, _)| problem.starts_with(key.trim()))
     }
 
     fn format_error(&self, text: &str, span: Option<Range<usize>>, message: &str) -> SceneError {
@@ -257,7 +270,13 @@ impl Source<'_> {
         }
     }
 
+    /// Problems of values, each with its line in the file where it has one.
     fn invalid(&self, problems: Vec<String>) -> SceneError {
+        let with_line = |problem: String| match locate::line_of(self.original, &problem) {
+            Some(line) if !self.is_overridden(&problem) => format!("{problem} (line {line})"),
+            _ => problem,
+        };
+        let problems = problems.into_iter().map(with_line).collect();
         SceneError::Invalid {
             path: self.path.to_path_buf(),
             overrides: self.overrides.to_vec(),
@@ -294,7 +313,8 @@ impl Source<'_> {
         let ball_speeds = speed.map_or(BallSpeeds::default(), |s| s.ball_speeds(&effects, &mut problems));
         let speed = speed.and_then(|s| s.check(raw.speed_use(), &mut problems));
         let solver = raw.solver.check(&mut problems);
-        let output = raw.output.check(&mut problems);
+        let has_steps = raw.dynamic.is_some() || raw.quasi_static.is_some();
+        let output = raw.output.check(has_steps, &mut problems);
         let stress = StressContext {
             contact: contact.mode,
             is_modes: raw.modes.is_some(),

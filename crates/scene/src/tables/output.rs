@@ -10,6 +10,7 @@ pub struct RawOutput {
     stress: Option<StressOutput>,
     precision: Option<Precision>,
     compression: Option<i64>,
+    tables_every: Option<i64>,
     inner_ring: Option<InnerRingFrame>,
 }
 
@@ -54,18 +55,30 @@ pub struct Output {
     pub precision: Precision,
     /// Level of deflate, 0 (none) to 9.
     pub compression: u8,
+    /// Steps from one row of the tables to the next, at least 1; steps with fields have theirs besides.
+    pub tables_every: u64,
     /// Where a turning inner ring is shown.
     pub inner_ring: InnerRingFrame,
 }
 
+/// No run has more steps.
+const MAX_EVERY: i64 = 100_000_000;
+
 impl RawOutput {
-    /// Checks ranges and fills in defaults.
-    pub fn check(&self, problems: &mut Problems) -> Output {
+    /// Checks ranges and fills in defaults; `has_steps` says whether the scene has steps in time.
+    pub fn check(&self, has_steps: bool, problems: &mut Problems) -> Output {
+        if self.tables_every.is_some() && !has_steps {
+            problems.add(
+                "output.tables_every does nothing without steps in time, [dynamic] or [quasi_static]; remove it",
+            );
+        }
+        let tables_every = self.tables_every.unwrap_or(1);
         let level = problems.whole(self.compression.unwrap_or(0), "output.compression", 0, 9);
         Output {
             stress: self.stress.unwrap_or(StressOutput::Nodal),
             precision: self.precision.unwrap_or(Precision::F32),
             compression: level as u8,
+            tables_every: problems.whole(tables_every, "output.tables_every", 1, MAX_EVERY) as u64,
             inner_ring: self.inner_ring.unwrap_or(InnerRingFrame::Space),
         }
     }

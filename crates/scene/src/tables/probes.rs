@@ -182,6 +182,13 @@ impl RawProbes {
             require_flexible(&key, raw.ring, context, problems);
             points.push(raw.check(&key, name, problems));
         }
+        // The columns of both in probes.csv begin with the name and end with the same stresses.
+        for name in self.node.keys().filter(|name| self.point.contains_key(*name)) {
+            problems.add(format!(
+                "[probes.node.{name}] and [probes.point.{name}] have one name, with which their columns in probes.csv begin; \
+                 expected another name for one of them"
+            ));
+        }
         let mut profiles = Vec::new();
         for (name, raw) in &self.profile {
             let key = format!("probes.profile.{name}");

@@ -19,6 +19,7 @@ pub struct RawRing {
     mesh_unit: Option<String>,
     support: Option<Support>,
     groove_z: Option<Quantity<LENGTH>>,
+    partial: Option<bool>,
     section: Option<RawSection>,
     #[serde(default)]
     cut: Vec<RawCut>,
@@ -84,6 +85,8 @@ pub struct FlexibleRing {
     pub support: Support,
     /// Axial position of the groove's centre plane in the mesh, m.
     pub groove_z: f64,
+    /// Whether the groups of the mesh may be parts of their surfaces.
+    pub is_partial: bool,
     /// Regions whose elements are left out.
     pub cuts: Vec<Cut>,
 }
@@ -202,6 +205,7 @@ impl RawRing {
             mesh_unit: mesh_unit?,
             support: self.support?,
             groove_z,
+            is_partial: self.partial.unwrap_or(false),
             cuts,
         })
     }

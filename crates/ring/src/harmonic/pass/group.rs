@@ -97,12 +97,13 @@ impl<'a> Pass<'a> {
         self.space.frame_part(turning, group, motion, field, load);
     }
 
-    /// M v and K w into `mv` and `kw`; twice the energies.
+    /// M v and K w into `mv` and `kw`; twice the energies, that of K without the round-off of rigid motions.
     pub(super) fn products(&self, group: usize, [w, v]: [&[f64]; 2], [mv, kw]: [&mut [f64]; 2]) -> [f64; 2] {
         let space = self.space;
         space.mass.group_product(group, v, mv);
         space.stiffness.group_product(group, w, kw);
-        [space.part_dot(group, v, mv), space.part_dot(group, w, kw)]
+        let strained = space.strained_part(group, w);
+        [space.part_dot(group, v, mv), space.part_dot(group, &strained, kw)]
     }
 
     /// The first half of S^-1 of the known loads of the next step, M (m0 v + m1 a) + K (k0 v + k1 a - w) + load +

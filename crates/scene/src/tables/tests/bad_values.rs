@@ -3,7 +3,7 @@
 use super::{Case, EXAMPLE, Scene, assert_messages, message_of, with_line};
 
 /// Values that make no sense.
-const INVALID: [Case; 52] = [
+const INVALID: [Case; 53] = [
     (
         "cut",
         "cut = [{ azimuth = [\"96 deg\", \"84 deg\"] }]",
@@ -153,15 +153,20 @@ const INVALID: [Case; 52] = [
     ),
     (
         "outer_stiffness",
-        "outer_stiffness = \"8.09e5 N/m^1.5\"",
+        "outer_stiffness = \"8.09e20 N/m^1.5\"",
         &[
-            "contact.outer_stiffness is 8.09e5 N/m^1.5; that is 7.5e-5 times E* sqrt(ball_diameter), check its unit",
+            "contact.outer_stiffness is 8.09e20 N/m^1.5; that is 7.5e10 times E* sqrt(ball_diameter), check its unit",
         ],
     ),
     (
         "patch_elements",
         "patch_elements = 0",
         &["contact.patch_elements is 0; expected 0.5 to 20 element sizes"],
+    ),
+    (
+        "patch_elements",
+        "patch_elements = 1e300",
+        &["contact.patch_elements is 1e300; expected 0.5 to 20 element sizes"],
     ),
     (
         "patch_elements",

@@ -1,0 +1,35 @@
+//! What is said about a run before it begins and stands in its summary: slips of the scene, and what `raceway check` advises.
+
+use comm::print;
+use dynamics::Model;
+use scene::Scene;
+
+use crate::rules;
+
+/// Remarks on a run.
+pub struct Remarks {
+    /// What is most likely a slip; it was said where the meshes were read.
+    pub warnings: Vec<String>,
+    /// What rules of thumb say about effects.
+    pub advice: Vec<String>,
+}
+
+impl Remarks {
+    /// Those on a scene and its model, of which `doubts` are known. Says the advice.
+    pub fn on(scene: &Scene, model: &Model, doubts: Vec<String>) -> Remarks {
+        let advice = rules::advice(scene, model);
+        for line in &advice {
+            print::note(format_args!("advice: {line}"));
+        }
+        Remarks {
+            warnings: doubts,
+            advice,
+        }
+    }
+
+    /// The same and what was found at the start of the run.
+    pub fn with(mut self, warnings: Vec<String>) -> Remarks {
+        self.warnings.extend(warnings);
+        self
+    }
+}

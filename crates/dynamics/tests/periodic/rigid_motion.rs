@@ -1,0 +1,109 @@
+//! Small loads on a ring that its shaft has moved far: the play of the bearing is a thousand times its elastic deflection.
+
+use contact::Side;
+use dynamics::kinematics::Speed;
+use dynamics::motion::{Motion, MotionSettings, StepCache};
+use dynamics::{Backend, Hold, Model, RingModel};
+use ring::{BodySettings, Frame, Partner, elastic_body};
+
+use crate::HEX8;
+use crate::missing::keyed;
+use crate::support::{Case, equilibrium};
+use crate::{bearing, twisted};
+
+/// All ways to solve a ring, clamped and in its mean motion.
+fn cases() -> Vec<(&'static str, Model)> {
+    let mut cases = Vec::new();
+    for hold in [Hold::Clamped, Hold::MeanMotion] {
+        for (name, backend) in [
+            ("cyclic", Backend::Cyclic),
+            ("sparse", Backend::Sparse),
+            ("sector", Backend::Sector(Default::default())),
+        ] {
+            cases.push((name, bearing(HEX8, hold, backend)));
+        }
+        let mut asymmetric = bearing(HEX8, hold, Backend::Cyclic);
+        twisted(&mut asymmetric);
+        cases.push(("cyclic, twisted", asymmetric));
+        cases.push(("cyclic with a keyway", keyed(HEX8, hold, Backend::Cyclic)));
+    }
+    cases
+}
+
+/// The same bearing under another axial force alone, with a shaft that may tilt.
+fn pulled(model: Model, axial: f64) -> Model {
+    let case = Case {
+        free_tilt: true,
+        ..Case::axial(axial)
+    };
+    let rigid = case.rigid();
+    Model {
+        rings: model.rings,
+        contact: model.contact,
+        backend: model.backend,
+        ..rigid
+    }
+}
+
+/// A smooth field of 1 nm that leaves held nodes where they are, `[n_dofs]`.
+fn small_field(ring: &RingModel, held: &[usize]) -> Vec<f64> {
+    let field = |x: &[f64; 3]| {
+        [
+            1e-9 * (200.0 * x[1]).sin(),
+            1e-9 * (150.0 * x[2]).cos(),
+            1e-9 * (100.0 * x[0]).sin(),
+        ]
+    };
+    let mut u: Vec<f64> = ring.mesh.nodes.iter().flat_map(field).collect();
+    held.iter().for_each(|&node| u[3 * node..3 * node + 3].fill(0.0));
+    u
+}
+
+/// Wrong: a rigid motion would change the strain energy of a ring: by its round-off, which a ledger takes for energy that came from
+/// nowhere. 1 mm of translation and 1 mrad of tilt on deformations of 1 nm: their sum has the deformations to 1e-10.
+#[test]
+fn a_rigid_motion_does_not_change_the_strain_energy() {
+    for (name, model) in cases() {
+        let ring = model.ring(Side::Inner).unwrap();
+        let settings = BodySettings {
+            partner: Partner::SHAFT,
+            damping: [0.0; 2],
+            backend: model.backend,
+            frame: Frame::Still,
+        };
+        let body = elastic_body("inner", ring, settings).unwrap();
+        let u = small_field(ring, &body.held().coordinates.held_nodes());
+        let energy = |q: [f64; 5]| body.energies(&body.rigid_state(&u, q, [0.0; 5]))[1];
+        let expected = energy([0.0; 5]);
+        let found = energy([1e-3, -1e-3, 1e-3, 1e-3, -1e-3]);
+        println!("{name}: {expected:e} J, changed by {:e}", found / expected - 1.0);
+        assert!(
+            (found / expected - 1.0).abs() < 1e-8,
+            "{name}: {found:e} J for {expected:e} J"
+        );
+    }
+}
+
+/// Wrong: the ledger would stop a motion under small loads, pulled through its axial play of 0.2 mm, where strain energies are 1e-11
+/// of k d^2. The equilibrium it starts from is known to 1e-10 of the loads.
+#[test]
+fn the_ledger_closes_under_small_loads_at_the_far_end_of_the_play() {
+    for (name, model) in cases() {
+        let model = pulled(model, -0.1);
+        let start = equilibrium(&model);
+        let settings = MotionSettings::conserving(2e-5, Speed::constant(0.0));
+        let motion = Motion::new(&model, settings).unwrap();
+        let (mut state, mut cache) = (motion.start(&start), StepCache::default());
+        assert!(
+            state.shaft[2] < -1e-4,
+            "the play is that of {:e} m",
+            state.shaft[2]
+        );
+        for _ in 0..10 {
+            state = motion.step(&state, &mut cache).unwrap().0;
+        }
+        let defect = state.ledger.relative_defect();
+        println!("{name}: defect {defect:e}");
+        assert!(defect.abs() < 1e-7, "{name}: {defect:e}, {:?}", state.ledger);
+    }
+}

@@ -1,0 +1,263 @@
+//! Whether the steps of a scene can follow what happens in it: balls that pass, loads and motions that change.
+//!
+//! ```text
+//! balls pass a point of the inner raceway    Z |omega_i - omega_c| / (2 pi) times per second
+//! balls pass a point of the outer raceway    Z |omega_c| / (2 pi) times per second
+//! ```
+//! (Harris, Rolling Bearing Analysis, 4th ed., chapter 8). With n steps per period the amplitude that a step's mean load has is
+//! sinc(pi / n) of the true one: 0.996 with 20 steps, 0.64 with two, none with one. With fewer than two steps per period a motion
+//! shows another frequency than that of the load, and balls change places unseen: that is refused. Equilibria in time are right each
+//! for itself, and adaptive steps may become smaller: they are warned of.
+
+use std::f64::consts::TAU;
+
+use dynamics::kinematics::Kinematics;
+use input::{Quantity, Schedule, TIME};
+
+use crate::build::geometry;
+use crate::error::BuildError;
+use crate::tables::{Analysis, Scene};
+
+/// Steps per period from which a result is one.
+const STEPS_PER_PERIOD: f64 = 20.0;
+/// Steps per period below which a motion shows another frequency (Nyquist).
+const LEAST_STEPS: f64 = 2.0;
+/// Steps of a pulse from which its shape is there.
+const STEPS_PER_PULSE: f64 = 10.0;
+
+/// Steps in time.
+struct Steps {
+    table: &'static str,
+    step: f64,
+    duration: f64,
+    /// Whether what is not resolved makes all results wrong.
+    is_fixed_motion: bool,
+}
+
+/// What is said about steps.
+#[derive(Default)]
+struct Said {
+    problems: Vec<String>,
+    warnings: Vec<String>,
+}
+
+/// What the steps of a scene show badly: a sentence each.
+pub fn unresolved(scene: &Scene) -> Vec<String> {
+    judged(scene).warnings
+}
+
+/// Fails where the steps of a scene cannot show what happens.
+pub fn require_resolvable(scene: &Scene) -> Result<(), BuildError> {
+    let problems = judged(scene).problems;
+    if problems.is_empty() {
+        return Ok(());
+    }
+    Err(BuildError::Unresolvable {
+        path: scene.path.clone(),
+        problems,
+    })
+}
+
+fn judged(scene: &Scene) -> Said {
+    let mut said = Said::default();
+    let Some(steps) = Steps::of(scene) else {
+        return said;
+    };
+    judge_passing(scene, &steps, &mut said);
+    for (key, schedule) in schedules(scene) {
+        judge_schedule(&key, schedule, &steps, &mut said);
+    }
+    judge_speed(scene, &steps, &mut said);
+    said
+}
+
+impl Steps {
+    fn of(scene: &Scene) -> Option<Steps> {
+        match &scene.analysis {
+            Analysis::Dynamic(dynamic) => Some(Steps {
+                table: "dynamic",
+                step: dynamic.step,
+                duration: dynamic.duration,
+                is_fixed_motion: dynamic.adaptive.is_none(),
+            }),
+            Analysis::QuasiStatic(quasi) => Some(Steps {
+                table: "quasi_static",
+                step: quasi.step,
+                duration: quasi.duration,
+                is_fixed_motion: false,
+            }),
+            Analysis::Static | Analysis::Sweep(_) | Analysis::Modes(_) => None,
+        }
+    }
+
+    /// Judges something that repeats `rate` times per second: `what` is a sentence without its end.
+    fn judge_rate(&self, what: &str, rate: f64, said: &mut Said) {
+        let n = 1.0 / (rate * self.step);
+        if n >= STEPS_PER_PERIOD {
+            return;
+        }
+        let advice = 1.0 / (rate * STEPS_PER_PERIOD);
+        let numbers = format!(
+            "{what}, {n:.2} steps of {} per period; expected {STEPS_PER_PERIOD} or more: {}.step of {} or less",
+            time(self.step),
+            self.table,
+            time(below(advice))
+        );
+        if n < LEAST_STEPS && self.is_fixed_motion {
+            said.problems.push(format!(
+                "{numbers}; with fewer than {LEAST_STEPS} no result is right"
+            ));
+        } else {
+            said.warnings.push(numbers);
+        }
+    }
+}
+
+/// Balls that pass a point of a raceway, at the largest speed.
+fn judge_passing(scene: &Scene, steps: &Steps, said: &mut Said) {
+    let speeds = scene.speed.iter().flat_map(|speed| &speed.values);
+    let speed = speeds.fold(0.0, |largest: f64, speed| largest.max(speed.abs()));
+    if speed == 0.0 {
+        return;
+    }
+    let cage = Kinematics::new(&geometry(scene), scene.effects.cage_slip.unwrap_or([0.0; 2])).cage;
+    let per_turn = scene.bearing.balls as f64 * speed / TAU;
+    let [inner, outer] = [per_turn * (1.0 - cage).abs(), per_turn * cage.abs()];
+    // Equilibria in time are seen from the housing, in which the loads stand.
+    let (name, rate) = match inner > outer && steps.table == "dynamic" {
+        true => ("inner", inner),
+        false => ("outer", outer),
+    };
+    let turns = speed / TAU * steps.step;
+    let what = format!(
+        "at {:.1} rpm ({turns:.3} turns a step) balls pass a point of the {name} raceway {rate:.1} times per second",
+        speed / TAU * 60.0
+    );
+    steps.judge_rate(&what, rate, said);
+}
+
+/// The keys of a scene that have a schedule, and it.
+fn schedules(scene: &Scene) -> Vec<(String, &Schedule)> {
+    let e = &scene.effects;
+    let loads = [
+        (
+            "effects.axial_force",
+            e.axial_force.as_ref().map(|load| &load.schedule),
+        ),
+        (
+            "effects.radial_force",
+            e.radial_force.as_ref().map(|load| &load.schedule),
+        ),
+        ("effects.moment", e.moment.as_ref().map(|load| &load.schedule)),
+        ("effects.gravity", e.gravity.as_ref().map(|load| &load.schedule)),
+    ];
+    let loads = loads
+        .into_iter()
+        .filter_map(|(key, schedule)| Some((key.to_string(), schedule?)));
+    let dofs = ["x", "y", "z", "tilt_x", "tilt_y"].map(|dof| format!("shaft.{dof}"));
+    loads
+        .chain(dofs.into_iter().zip(&scene.shaft.schedules))
+        .collect()
+}
+
+fn judge_schedule(key: &str, schedule: &Schedule, steps: &Steps, said: &mut Said) {
+    let mut warn = |text: String| said.warnings.push(format!("{key}.schedule: {text}"));
+    let end = steps.duration;
+    match schedule {
+        Schedule::Constant => {}
+        Schedule::Harmonic {
+            frequency, amplitude, ..
+        } => {
+            if *amplitude != 0.0 && *frequency != 0.0 {
+                let what = format!("{key}.schedule: a harmonic of {frequency} Hz");
+                steps.judge_rate(&what, frequency.abs(), said);
+            }
+        }
+        Schedule::Impact { start, duration } => {
+            if *start >= end {
+                warn(format!(
+                    "the impact begins at {}, the run ends at {}",
+                    time(*start),
+                    time(end)
+                ));
+            } else if *duration < STEPS_PER_PULSE * steps.step {
+                warn(format!(
+                    "an impact of {} is {:.2} steps of {}; expected {STEPS_PER_PULSE} or more: {}.step of {} or less; {}",
+                    time(*duration),
+                    duration / steps.step,
+                    time(steps.step),
+                    steps.table,
+                    time(below(duration / STEPS_PER_PULSE)),
+                    match steps.table {
+                        "dynamic" => "its impulse is whole, its shape is not there",
+                        _ => "its peak may lie between two instants",
+                    }
+                ));
+            }
+        }
+        Schedule::Ramp {
+            from,
+            to,
+            start,
+            duration,
+        } => {
+            if *start >= end && from != to {
+                warn(format!(
+                    "the ramp begins at {}, the run ends at {}",
+                    time(*start),
+                    time(end)
+                ));
+            } else if *duration < steps.step && from != to {
+                warn(format!(
+                    "a ramp of {} is shorter than a step of {}: it is a jump",
+                    time(*duration),
+                    time(steps.step)
+                ));
+            }
+        }
+        Schedule::Step { at, before, after } => {
+            if *at >= end && before != after {
+                warn(format!(
+                    "the step is at {}, the run ends at {}",
+                    time(*at),
+                    time(end)
+                ));
+            }
+        }
+        Schedule::Table { times, .. } => warn_of_table(times, steps, &mut warn),
+    }
+}
+
+/// A speed that changes within a step.
+fn judge_speed(scene: &Scene, steps: &Steps, said: &mut Said) {
+    if let Some(speed) = &scene.speed {
+        let mut warn = |text: String| said.warnings.push(format!("speed.inner: {text}"));
+        warn_of_table(&speed.times, steps, &mut warn);
+    }
+}
+
+/// Points of a table that lie within a step of the run.
+fn warn_of_table(times: &[f64], steps: &Steps, warn: &mut dyn FnMut(String)) {
+    let within = times
+        .windows(2)
+        .filter(|pair| pair[1] > 0.0 && pair[0] < steps.duration);
+    let smallest = within.map(|pair| pair[1] - pair[0]).fold(f64::INFINITY, f64::min);
+    // Times on the grid of the steps differ from it by round-off.
+    if smallest < (1.0 - 1e-9) * steps.step {
+        warn(format!(
+            "its points are {} apart, less than a step of {}: what happens between is not seen",
+            time(smallest),
+            time(steps.step)
+        ));
+    }
+}
+
+/// Two digits of a time, not more than it.
+fn below(seconds: f64) -> f64 {
+    let unit = 10f64.powi(seconds.log10().floor() as i32 - 1);
+    (seconds / unit * (1.0 + 1e-9)).floor() * unit
+}
+
+fn time(seconds: f64) -> String {
+    Quantity::<TIME>::about(seconds).to_string()
+}
