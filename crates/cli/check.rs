@@ -14,7 +14,6 @@ use results::disk::{self, Forecast};
 use results::failure::Failure;
 use results::memory::queued_steps;
 use results::probes::Probes;
-use results::summary::effects_on;
 use scene::{Analysis, Scene, build_model, doubts};
 
 use crate::modes;
@@ -54,7 +53,7 @@ pub fn check(path: &Path, overrides: &[String]) -> Result<(), Failure> {
             sweep.points.len()
         )),
     }
-    let names = effects_on(&scene, &model);
+    let names = scene.effects.names();
     print::line(format_args!(
         "effects  {}",
         if names.is_empty() {
@@ -96,7 +95,7 @@ pub fn check(path: &Path, overrides: &[String]) -> Result<(), Failure> {
     ));
     for line in doubts(&scene, &model)
         .iter()
-        .chain(&rules::advice(&scene, &model))
+        .chain(&rules::advice(&scene, &model)?)
     {
         print::line(format_args!("advice   {line}"));
     }
@@ -111,7 +110,7 @@ fn print_rolling(scene: &Scene, geometry: &BearingGeometry) {
     let Some(&inner) = speeds.max_by(|a, b| a.abs().total_cmp(&b.abs())) else {
         return;
     };
-    let turning = Kinematics::new(geometry, scene.effects.cage_slip.unwrap_or([0.0; 2]));
+    let turning = Kinematics::new(geometry, scene.effects.slip());
     let rpm = |speed: f64| speed * 30.0 / PI;
     let hertz = |speed: f64| speed.abs() / (2.0 * PI);
     let n = geometry.n_balls as f64;

@@ -43,7 +43,7 @@ pub fn run(
     let (model, _) = build_model(scene)?;
     let doubts = doubts(scene, &model);
     say_doubts(&doubts);
-    let remarks = Remarks::on(scene, &model, doubts);
+    let remarks = Remarks::on(scene, &model, doubts)?;
     Forecast::new(scene, &model, 0).require_space(dir, limits.ignore_disk_space)?;
     let equilibrium = if wanted.bodies.contains(&ModeBody::Bearing) {
         progress.stage("equilibrium");

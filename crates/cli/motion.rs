@@ -48,7 +48,7 @@ pub fn run(
     let (model, mut survey) = agree(build_surveyed(scene, scene, dir, |model| {
         Forecast::new(scene, model, 0).require_space(dir, limits.ignore_disk_space)
     }))?;
-    let remarks = Remarks::on(scene, &model, std::mem::take(&mut survey.doubts));
+    let remarks = Remarks::on(scene, &model, std::mem::take(&mut survey.doubts))?;
     let read = start.elapsed().as_secs_f64();
     let settled = settle(&model, dynamic, &progress)?;
     let mut laps = settled.timing.clone();
@@ -105,7 +105,7 @@ pub fn resume(
     let (model, mut survey) = agree(build_surveyed(scene, scene, &dir, |model| {
         Forecast::new(scene, model, stored.step).require_space(&dir, limits.ignore_disk_space)
     }))?;
-    let remarks = Remarks::on(scene, &model, std::mem::take(&mut survey.doubts));
+    let remarks = Remarks::on(scene, &model, std::mem::take(&mut survey.doubts))?;
     let read = start.elapsed().as_secs_f64();
     progress.stage("factoring the effective matrices");
     let mut laps = Laps::default();

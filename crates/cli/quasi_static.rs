@@ -40,7 +40,7 @@ pub fn run(
     let (model, mut survey) = agree(build_surveyed(scene, scene, dir, |model| {
         Forecast::new(scene, model, 0).require_space(dir, limits.ignore_disk_space)
     }))?;
-    let remarks = Remarks::on(scene, &model, std::mem::take(&mut survey.doubts));
+    let remarks = Remarks::on(scene, &model, std::mem::take(&mut survey.doubts))?;
     let read = start.elapsed().as_secs_f64();
     progress.stage("factoring the stiffness of the rings");
     let rolling = rolling(scene);

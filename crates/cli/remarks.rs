@@ -2,6 +2,7 @@
 
 use comm::print;
 use dynamics::Model;
+use results::failure::Failure;
 use scene::Scene;
 
 use crate::rules;
@@ -16,15 +17,15 @@ pub struct Remarks {
 
 impl Remarks {
     /// Those on a scene and its model, of which `doubts` are known. Says the advice.
-    pub fn on(scene: &Scene, model: &Model, doubts: Vec<String>) -> Remarks {
-        let advice = rules::advice(scene, model);
+    pub fn on(scene: &Scene, model: &Model, doubts: Vec<String>) -> Result<Remarks, Failure> {
+        let advice = rules::advice(scene, model)?;
         for line in &advice {
             print::note(format_args!("advice: {line}"));
         }
-        Remarks {
+        Ok(Remarks {
             warnings: doubts,
             advice,
-        }
+        })
     }
 
     /// The same and what was found at the start of the run.

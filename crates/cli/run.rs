@@ -72,7 +72,7 @@ pub fn run(
     let (mut model, mut survey) = agree(build_surveyed(&points[0].1, &scene, &dir, |model| {
         Forecast::new(&scene, model, 0).require_space(&dir, limits.ignore_disk_space)
     }))?;
-    let remarks = Remarks::on(&scene, &model, std::mem::take(&mut survey.doubts));
+    let remarks = Remarks::on(&scene, &model, std::mem::take(&mut survey.doubts))?;
     let placed = model.geometry;
     let read = start.elapsed().as_secs_f64();
     progress.stage("factoring the stiffness of the rings");

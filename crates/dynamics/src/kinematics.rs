@@ -6,6 +6,7 @@
 
 use contact::{BearingGeometry, Side};
 use input::schedule::piecewise_linear;
+use serde::Deserialize;
 
 use crate::effects::Now;
 use crate::model::Model;
@@ -65,6 +66,9 @@ impl Speed {
     }
 }
 
+/// Share of the rolling motion that is lost at the inner and at the outer raceway, 0 to below 1; 0 is pure rolling.
+pub type SlipRatios = [f64; 2];
+
 /// Turning of cage and balls per turn of the inner ring.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Kinematics {
@@ -119,7 +123,8 @@ pub fn pitch_angle(geometry: &BearingGeometry, outer_angle: f64) -> f64 {
 }
 
 /// Contact angles that the speeds of a ball follow, for its centrifugal force and gyroscopic moment.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Eq)]
+#[serde(rename_all = "snake_case")]
 pub enum BallSpeeds {
     /// Those of the kinematic cage: the free contact angle.
     #[default]

@@ -18,7 +18,7 @@ pub mod units;
 
 pub use problems::Problems;
 pub use schedule::Schedule;
-pub use schedule_table::{Clock, RawSchedule, Scheduled, check_schedule, require_growing};
+pub use schedule_table::{Clock, RawSchedule, check_schedule, require_growing, schedule_of};
 pub use units::{
     ACCELERATION, ANGLE, ANGULAR_SPEED, AnyQuantity, DAMPING, DENSITY, Dimension, FORCE, HERTZ_STIFFNESS,
     KINDS, Kind, LENGTH, MASS, MOMENT, Quantity, RATE, SPEED, STRESS, TIME, UnitError, bare_number,

@@ -16,7 +16,7 @@ use crate::schedule::Schedule;
 use crate::units::{ANGLE, Quantity, RATE, TIME};
 
 /// As typed.
-#[derive(Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize, PartialEq)]
 #[serde(
     deny_unknown_fields,
     expecting = "a table with one of ramp, step, impact, harmonic and table"
@@ -30,7 +30,7 @@ pub struct RawSchedule {
 }
 
 /// As typed.
-#[derive(Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize, PartialEq)]
 #[serde(deny_unknown_fields, expecting = "a table with start and duration of a ramp")]
 struct RawRamp {
     from: Option<f64>,
@@ -40,7 +40,7 @@ struct RawRamp {
 }
 
 /// As typed.
-#[derive(Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize, PartialEq)]
 #[serde(deny_unknown_fields, expecting = "a table with the time of a step")]
 struct RawStep {
     at: Quantity<TIME>,
@@ -49,7 +49,7 @@ struct RawStep {
 }
 
 /// As typed.
-#[derive(Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize, PartialEq)]
 #[serde(
     deny_unknown_fields,
     expecting = "a table with start and duration of an impact"
@@ -60,7 +60,7 @@ struct RawImpact {
 }
 
 /// As typed.
-#[derive(Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize, PartialEq)]
 #[serde(deny_unknown_fields, expecting = "a table with the frequency of a harmonic")]
 struct RawHarmonic {
     frequency: Quantity<RATE>,
@@ -70,7 +70,7 @@ struct RawHarmonic {
 }
 
 /// As typed.
-#[derive(Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize, PartialEq)]
 #[serde(deny_unknown_fields, expecting = "a table with times and factors")]
 struct RawTable {
     times: Vec<Quantity<TIME>>,
@@ -84,25 +84,6 @@ pub enum Clock {
     AtRest,
     /// Loads may change in its time.
     Running,
-}
-
-/// A value and its factor over time.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Scheduled<T> {
-    /// What the factor multiplies, SI.
-    pub value: T,
-    /// Factor over time.
-    pub schedule: Schedule,
-}
-
-impl<T> Scheduled<T> {
-    /// A value that stays.
-    pub fn constant(value: T) -> Scheduled<T> {
-        Scheduled {
-            value,
-            schedule: Schedule::Constant,
-        }
-    }
 }
 
 /// Checks the schedule of the table `owner` such as `effects.radial_force`; without one the value is constant.
@@ -153,6 +134,13 @@ pub fn check_schedule(
             Schedule::Constant
         }
     }
+}
+
+/// The schedule of a table that was checked; without one the value is constant.
+pub fn schedule_of(raw: Option<&RawSchedule>) -> Schedule {
+    raw.map_or(Schedule::Constant, |raw| {
+        raw.schedule("schedule", &mut Problems::default())
+    })
 }
 
 impl RawSchedule {

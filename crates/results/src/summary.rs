@@ -203,7 +203,7 @@ impl Summary {
                 .into_iter()
                 .zip(subsurface::contacts(model, &scene.materials, &last.balls))
                 .collect(),
-            effects: effects_on(scene, model),
+            effects: scene.effects.names(),
             dofs: sides(|i| model.rings[i].as_ref().map_or(0, |r| r.mesh.n_dofs())),
             energy_j: last.energies.iter().copied().collect(),
             iterations: findings.iterations,
@@ -291,14 +291,6 @@ pub fn mode_name(model: &Model) -> &'static str {
         dynamics::ContactMode::Facet => "facet",
         dynamics::ContactMode::Rigid => "rigid",
     }
-}
-
-/// Names of all effects of a run: those that add loads and those inside its steps.
-pub fn effects_on(scene: &Scene, model: &Model) -> Vec<&'static str> {
-    let mut names: Vec<&str> = model.effects.iter().map(|e| e.name()).collect();
-    names.extend(scene.effects.inside_steps());
-    names.sort_unstable();
-    names
 }
 
 /// All balls of an instant.

@@ -5,16 +5,13 @@ use std::sync::Arc;
 use comm::Communicator;
 use contact::{BearingGeometry, Groove, HertzContact, Side};
 use dynamics::RACEWAY_GROUP;
-use dynamics::effects::{
-    AxialForce, BallCentrifugal, Effect, FrameRotation, Gravity, GyroscopicMoment, Moment, RadialForce,
-};
-use dynamics::kinematics::{BallSpeeds, Rolling};
+use dynamics::effects::Setting;
+use dynamics::kinematics::Rolling;
 use dynamics::model::elastic;
 use dynamics::{
     Backend, ContactMode, ContactSettings, Hold, Model, RingModel, Sectors, ShaftDof, Tolerances,
 };
 use fem::Material;
-use input::Scheduled;
 use mesh::{Coverage, Cylinder, Mesh, Torus};
 
 use crate::error::BuildError;
@@ -50,16 +47,8 @@ pub fn build_model(scene: &Scene) -> Result<(Model, NodeTags), BuildError> {
 
 /// How balls and cage roll; None when the scene has no speed.
 pub fn rolling(scene: &Scene) -> Option<Rolling> {
-    let slip = scene.effects.cage_slip.unwrap_or([0.0; 2]);
     let speed = scene.speed.as_ref().map(|_| speed(scene));
-    speed.map(|speed| Rolling::new(&geometry(scene), speed, slip))
-}
-
-fn ball_speeds(scene: &Scene) -> BallSpeeds {
-    match scene.ball_speeds {
-        tables::BallSpeeds::FreeAngle => BallSpeeds::FreeAngle,
-        tables::BallSpeeds::OuterControl => BallSpeeds::OuterControl,
-    }
+    speed.map(|speed| Rolling::new(&geometry(scene), speed, scene.effects.slip()))
 }
 
 /// The model of a scene with rings that were read before: the points of a sweep share them.
@@ -74,7 +63,12 @@ pub fn model_with_rings(scene: &Scene, rings: [Option<Arc<RingModel>>; 2]) -> Re
         let exact = HertzContact::new(&geometry, side, elastic(&ball_steel), elastic(&ring_steel));
         given[side.index()].map_or(exact, |k| exact.with_stiffness(k))
     });
-    let effects = effects(scene, &rings)?;
+    let effects = scene.effects.loads(Setting {
+        speed: &speed(scene),
+        slip: scene.effects.slip(),
+        ball_speeds: scene.ball_speeds,
+        rings: &rings,
+    })?;
     let shaft = &scene.shaft;
     let dofs = [shaft.x, shaft.y, shaft.z, shaft.tilt_x, shaft.tilt_y].map(|motion| match motion {
         tables::Motion::Free => ShaftDof::Free,
@@ -132,46 +126,6 @@ pub fn geometry(scene: &Scene) -> BearingGeometry {
 /// A material, checked.
 pub fn material(m: &tables::Material) -> Result<Material, BuildError> {
     Ok(Material::new(m.young_modulus, m.poisson_ratio, m.density)?)
-}
-
-fn effects(scene: &Scene, rings: &[Option<Arc<RingModel>>; 2]) -> Result<Vec<Box<dyn Effect>>, BuildError> {
-    let mut effects: Vec<Box<dyn Effect>> = Vec::new();
-    let (asked, slip) = (&scene.effects, scene.effects.cage_slip.unwrap_or([0.0; 2]));
-    if let Some(Scheduled { value, schedule }) = asked.axial_force.clone() {
-        effects.push(Box::new(AxialForce { value, schedule }));
-    }
-    if asked.ball_centrifugal {
-        effects.push(Box::new(BallCentrifugal {
-            speed: speed(scene),
-            slip,
-            ball_speeds: ball_speeds(scene),
-        }));
-    }
-    if asked.frame_rotation {
-        effects.push(Box::new(FrameRotation { speed: speed(scene) }));
-    }
-    if let Some(Scheduled { value, schedule }) = asked.gravity.clone() {
-        effects.push(Box::new(Gravity::new(value, schedule, rings)?));
-    }
-    if let Some(shares) = asked.gyroscopic_moment {
-        effects.push(Box::new(GyroscopicMoment {
-            speed: speed(scene),
-            slip,
-            shares,
-            ball_speeds: ball_speeds(scene),
-        }));
-    }
-    if let Some(Scheduled { value, schedule }) = asked.moment.clone() {
-        effects.push(Box::new(Moment { value, schedule }));
-    }
-    if let Some(Scheduled { value, schedule }) = asked.radial_force.clone() {
-        effects.push(Box::new(RadialForce {
-            value: value.value,
-            direction: value.direction,
-            schedule,
-        }));
-    }
-    Ok(effects)
 }
 
 /// Reads and checks the mesh of one ring, and tells its nodes' tags; None for a rigid ring.

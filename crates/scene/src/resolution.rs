@@ -65,7 +65,7 @@ fn judged(scene: &Scene) -> Said {
     };
     judge_passing(scene, &steps, &mut said);
     for (key, schedule) in schedules(scene) {
-        judge_schedule(&key, schedule, &steps, &mut said);
+        judge_schedule(&key, &schedule, &steps, &mut said);
     }
     judge_speed(scene, &steps, &mut said);
     said
@@ -120,7 +120,7 @@ fn judge_passing(scene: &Scene, steps: &Steps, said: &mut Said) {
     if speed == 0.0 {
         return;
     }
-    let cage = Kinematics::new(&geometry(scene), scene.effects.cage_slip.unwrap_or([0.0; 2])).cage;
+    let cage = Kinematics::new(&geometry(scene), scene.effects.slip()).cage;
     let per_turn = scene.bearing.balls as f64 * speed / TAU;
     let [inner, outer] = [per_turn * (1.0 - cage).abs(), per_turn * cage.abs()];
     // Equilibria in time are seen from the housing, in which the loads stand.
@@ -137,26 +137,12 @@ fn judge_passing(scene: &Scene, steps: &Steps, said: &mut Said) {
 }
 
 /// The keys of a scene that have a schedule, and it.
-fn schedules(scene: &Scene) -> Vec<(String, &Schedule)> {
-    let e = &scene.effects;
-    let loads = [
-        (
-            "effects.axial_force",
-            e.axial_force.as_ref().map(|load| &load.schedule),
-        ),
-        (
-            "effects.radial_force",
-            e.radial_force.as_ref().map(|load| &load.schedule),
-        ),
-        ("effects.moment", e.moment.as_ref().map(|load| &load.schedule)),
-        ("effects.gravity", e.gravity.as_ref().map(|load| &load.schedule)),
-    ];
-    let loads = loads
-        .into_iter()
-        .filter_map(|(key, schedule)| Some((key.to_string(), schedule?)));
+fn schedules(scene: &Scene) -> Vec<(String, Schedule)> {
+    let loads = scene.effects.schedules().into_iter();
+    let loads = loads.map(|(name, schedule)| (format!("effects.{name}"), schedule));
     let dofs = ["x", "y", "z", "tilt_x", "tilt_y"].map(|dof| format!("shaft.{dof}"));
     loads
-        .chain(dofs.into_iter().zip(&scene.shaft.schedules))
+        .chain(dofs.into_iter().zip(scene.shaft.schedules.clone()))
         .collect()
 }
 

@@ -1,10 +1,12 @@
 //! What a scene says about a motion, as the solver wants it.
 
-use dynamics::interactions::discrete_gradient::{ContactDamping, ContactScheme};
+use dynamics::effects::Context;
+use dynamics::interactions::discrete_gradient::ContactScheme;
 use dynamics::kinematics::Speed;
 use dynamics::motion::{Integrator, Ladder, MotionSettings};
+use input::Clock;
 
-use crate::tables::{self, Dynamic, IntegratorChoice, Scene};
+use crate::tables::{self, Analysis, Dynamic, IntegratorChoice, Scene};
 
 fn integrator_of(dynamic: &Dynamic) -> Integrator {
     match dynamic.integrator {
@@ -30,15 +32,27 @@ pub fn settings(scene: &Scene, dynamic: &Dynamic) -> MotionSettings {
             tables::ContactScheme::Pointwise => ContactScheme::Pointwise,
         },
         speed: speed(scene),
-        slip: scene.effects.cage_slip.unwrap_or([0.0; 2]),
-        contact_damping: scene.effects.contact_damping.map(|d| ContactDamping {
-            coefficient: d.coefficient,
-            full_approach: d.full_approach,
-        }),
+        slip: scene.effects.slip(),
+        contact_damping: scene.effects.contact_damping(),
         rayleigh: scene
             .effects
-            .rayleigh_damping
+            .ring_damping()
             .map_or([0.0; 2], |d| [d.mass, d.stiffness]),
+    }
+}
+
+/// What the effects of a checked scene had to go with.
+pub fn effects_context(scene: &Scene) -> Context {
+    let analysis = &scene.analysis;
+    let is_at_rest = matches!(
+        analysis,
+        Analysis::Static | Analysis::Sweep(_) | Analysis::Modes(_)
+    );
+    Context {
+        is_without_inertia: !matches!(analysis, Analysis::Dynamic(_)),
+        clock: if is_at_rest { Clock::AtRest } else { Clock::Running },
+        has_speed: scene.speed.is_some(),
+        has_flexible_inner: scene.inner.body.is_some(),
     }
 }
 

@@ -1,14 +1,72 @@
-//! ```toml
-//! [effects.axial_force]
-//! value = "2 kN"      # + presses the inner ring along +z into the balls (preload)
-//! ```
-//! An axial force on the shaft. On the axis, so it has no moment. With a sub-table `schedule` it changes in time.
+//! Axial force on the shaft, on the axis, so it has no moment.
+//!
+//! F = value f(t) e_z, f the factor of its schedule.
 
-use input::Schedule;
+use input::{FORCE, Problems, Quantity, RawSchedule, Schedule, check_schedule, schedule_of};
+use serde::Deserialize;
 
-use super::{Effect, Loads, Now};
+use super::loads::{Effect, Loads, Now};
+use super::rules::PeakLoad;
+use super::table::{self, About, Context, Setting, SpeedRole, require_load};
 use crate::error::DynamicsError;
 use crate::model::Model;
+
+const EXAMPLE: &str = r#"[effects.axial_force]
+value = "2 kN"          # + presses the inner ring along +z into the balls (preload)
+schedule.ramp = { start = "0 s", duration = "1 ms" }    # optional: its factor over time
+"#;
+
+/// The table of a scene.
+#[derive(Clone, Debug, Deserialize, PartialEq)]
+#[serde(deny_unknown_fields, expecting = "the table [effects.axial_force]")]
+pub struct Table {
+    /// Force along +z.
+    pub value: Quantity<FORCE>,
+    schedule: Option<RawSchedule>,
+}
+
+impl Table {
+    /// Its factor over time.
+    pub fn schedule(&self) -> Schedule {
+        schedule_of(self.schedule.as_ref())
+    }
+}
+
+impl table::Table for Table {
+    fn about() -> About {
+        About {
+            name: "axial_force",
+            example: EXAMPLE,
+            speed: SpeedRole::None,
+            needs: &[],
+            trial: None,
+        }
+    }
+
+    fn check(&self, context: Context, problems: &mut Problems) {
+        let owner = "effects.axial_force";
+        let schedule = check_schedule(self.schedule.as_ref(), owner, context.clock, problems);
+        require_load(&self.value, &schedule, "effects.axial_force.value", problems);
+    }
+
+    fn load(&self, _setting: Setting<'_>) -> Result<Option<Box<dyn Effect>>, DynamicsError> {
+        Ok(Some(Box::new(AxialForce {
+            value: self.value.si(),
+            schedule: self.schedule(),
+        })))
+    }
+
+    fn peak_load(&self, _speed: f64) -> PeakLoad {
+        PeakLoad {
+            axial: self.value.si().abs() * self.schedule().peak(),
+            radial: 0.0,
+        }
+    }
+
+    fn schedule(&self) -> Schedule {
+        self.schedule()
+    }
+}
 
 /// Axial force on the shaft.
 pub struct AxialForce {

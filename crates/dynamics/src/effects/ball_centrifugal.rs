@@ -1,19 +1,64 @@
-//! ```toml
-//! [effects.ball_centrifugal]      # needs [speed]
-//! ```
-//! Centrifugal force of the balls, m omega_c^2 r, omega_c the cage's speed: it presses balls outwards, so the outer contact
-//! angle falls and the inner one rises. The force grows with the ball's radial displacement.
+//! Centrifugal force of the balls: it presses them outwards, so the outer contact angle falls and the inner one rises.
 //!
-//! With `speed.ball_speeds = "outer_control"` each ball has the speed omega_c of its own contact angles (`BallSpeeds`).
+//! m omega_c^2 r, omega_c the cage's speed; the force grows with the ball's radial displacement. With
+//! `speed.ball_speeds = "outer_control"` each ball has the speed omega_c of its own contact angles
+//! ([`BallSpeeds`]).
+//!
+//! Rule of thumb: m r omega_c^2 over the load Q of a ball.
 
-use super::{Effect, Loads, Now};
+use serde::Deserialize;
+
+use super::loads::{Effect, Loads, Now};
+use super::rules::{Case, judge, percent};
+use super::table::{self, About, Setting, SpeedRole, Trial};
 use crate::balls::BallResult;
 use crate::error::DynamicsError;
 use crate::kinematics::{BallSpeeds, Kinematics, Speed};
 use crate::model::Model;
 
+const EXAMPLE: &str = "[effects.ball_centrifugal]      # needs [speed]\n";
+
 /// Error of a contact force that is worth a warning.
 const MATTERS: f64 = 0.01;
+
+/// The table of a scene: it has no keys.
+#[derive(Clone, Debug, Deserialize, PartialEq)]
+#[serde(deny_unknown_fields, expecting = "the empty table [effects.ball_centrifugal]")]
+pub struct Table {}
+
+impl table::Table for Table {
+    fn about() -> About {
+        About {
+            name: "ball_centrifugal",
+            example: EXAMPLE,
+            speed: SpeedRole::BallForce,
+            needs: &[],
+            trial: Some(Trial { what: "", keys: &[] }),
+        }
+    }
+
+    fn advice(table: Option<&Self>, case: &Case<'_>) -> Vec<String> {
+        let load = case.ball_load();
+        if load == 0.0 {
+            return Vec::new();
+        }
+        let force = case.centrifugal_force();
+        let ratio = force / load;
+        let estimate = format!(
+            "the centrifugal force of a ball, m r omega_c^2 = {force:.3} N, is {} of its load of about {load:.0} N",
+            percent(ratio),
+        );
+        judge("ball_centrifugal", table.is_some(), ratio, &estimate)
+    }
+
+    fn load(&self, setting: Setting<'_>) -> Result<Option<Box<dyn Effect>>, DynamicsError> {
+        Ok(Some(Box::new(BallCentrifugal {
+            speed: setting.speed.clone(),
+            slip: setting.slip,
+            ball_speeds: setting.ball_speeds,
+        })))
+    }
+}
 
 /// Centrifugal force of the balls.
 pub struct BallCentrifugal {
@@ -63,8 +108,8 @@ impl Effect for BallCentrifugal {
         (error > MATTERS).then(|| {
             let degrees = [balls[ball].inner, balls[ball].outer].map(|c| c.contact_angle_rad.to_degrees());
             format!(
-                "ball {ball} rolls at contact angles of {:.1} deg inside and {:.1} deg outside, which would change its centrifugal \
-                 force by {:+.1} %, or {:.1} % of its contact force: the cage has the speed of the free contact angle; \
+                "ball {ball} rolls at contact angles of {:.1} deg inside and {:.1} deg outside, which would change its \
+                 centrifugal force by {:+.1} %, or {:.1} % of its contact force: the cage has the speed of the free contact angle; \
                  speed.ball_speeds = \"outer_control\" gives each ball that of its own angles",
                 degrees[0],
                 degrees[1],

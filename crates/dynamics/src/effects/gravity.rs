@@ -1,23 +1,120 @@
-//! ```toml
-//! [effects.gravity]
-//! acceleration = "9.81 m/s2"
-//! direction = [0.0, -1.0, 0.0]
-//! ```
-//! Weight of the balls (in their meridian planes; the cage carries the rest), of flexible rings and of the shaft's
-//! own mass, which acts at the load point. With a sub-table `schedule` its size changes in time.
+//! Weight of the balls, of flexible rings and of the shaft's own mass.
+//!
+//! Balls have it in their meridian planes; the cage carries the rest. The shaft's acts at the load point.
 //!
 //! The weight of a ring is its nodal masses, the integrals of rho N_a over the ring, times the acceleration: they are
 //! integrated once per ring, so an instant costs one pass over the nodes. Memory: 8 bytes per node.
+//!
+//! Rule of thumb: weight of shaft, inner ring and balls over the load.
 
 use std::sync::Arc;
 
 use contact::Side;
-use input::Schedule;
+use input::{ACCELERATION, Problems, Quantity, RawSchedule, Schedule, check_schedule, schedule_of};
+use serde::Deserialize;
 
-use super::{Effect, Loads, Now};
+use super::loads::{Effect, Loads, Now};
+use super::rules::{Case, judge, percent};
+use super::table::{self, About, Context, Setting, SpeedRole, Trial};
 use crate::error::DynamicsError;
 use crate::model::Model;
 use ring::{NodeMasses, RingError, RingModel};
+
+const EXAMPLE: &str = r#"[effects.gravity]
+acceleration = "9.81 m/s2"
+direction = [0.0, -1.0, 0.0]    # its length does not matter
+schedule.step = { at = "1 ms" } # optional: its factor over time
+"#;
+
+/// A gravity beyond a million times the earth's is a slip of the unit, m/s2.
+const MAX_ACCELERATION: f64 = 1e7;
+/// Acceleration of the earth, m/s2.
+const EARTH: f64 = 9.81;
+
+/// The table of a scene.
+#[derive(Clone, Debug, Deserialize, PartialEq)]
+#[serde(deny_unknown_fields, expecting = "the table [effects.gravity]")]
+pub struct Table {
+    acceleration: Quantity<ACCELERATION>,
+    direction: [f64; 3],
+    schedule: Option<RawSchedule>,
+}
+
+impl Table {
+    /// Acceleration, m/s2, `[3]` in x, y, z.
+    pub fn acceleration(&self) -> [f64; 3] {
+        let g = self.acceleration.si();
+        let length = self.length();
+        self.direction.map(|d| g * d / length)
+    }
+
+    /// Its factor over time.
+    pub fn schedule(&self) -> Schedule {
+        schedule_of(self.schedule.as_ref())
+    }
+
+    /// Length of the direction.
+    fn length(&self) -> f64 {
+        self.direction.iter().map(|d| d * d).sum::<f64>().sqrt()
+    }
+}
+
+impl table::Table for Table {
+    fn about() -> About {
+        About {
+            name: "gravity",
+            example: EXAMPLE,
+            speed: SpeedRole::None,
+            needs: &[],
+            trial: Some(Trial {
+                what: "9.81 m/s2 along -y",
+                keys: &[("acceleration", "9.81 m/s2"), ("direction", "[0.0, -1.0, 0.0]")],
+            }),
+        }
+    }
+
+    fn advice(table: Option<&Self>, case: &Case<'_>) -> Vec<String> {
+        let load = case.load.axial.max(case.load.radial);
+        if load == 0.0 {
+            return Vec::new();
+        }
+        let rotor = case.model.shaft_mass + case.inner_ring_mass();
+        let weight = (rotor + case.n_balls() * case.model.ball_mass()) * EARTH;
+        let ratio = weight / load;
+        let estimate = format!(
+            "shaft, inner ring and balls weigh about m g = {weight:.1} N, {} of the load",
+            percent(ratio)
+        );
+        judge("gravity", table.is_some(), ratio, &estimate)
+    }
+
+    fn check(&self, context: Context, problems: &mut Problems) {
+        let g = self.acceleration.si();
+        problems.require(
+            (0.0..=MAX_ACCELERATION).contains(&g),
+            "effects.gravity.acceleration",
+            &self.acceleration,
+            "expected 0 to 1e7 m/s2, its direction is a key of its own",
+        );
+        let length = self.length();
+        problems.require(
+            length > 0.0 && length.is_finite(),
+            "effects.gravity.direction",
+            format!("{:?}", self.direction),
+            "expected a vector with a direction such as [0.0, -1.0, 0.0]; its length does not matter",
+        );
+        check_schedule(self.schedule.as_ref(), "effects.gravity", context.clock, problems);
+    }
+
+    fn load(&self, setting: Setting<'_>) -> Result<Option<Box<dyn Effect>>, DynamicsError> {
+        let gravity = Gravity::new(self.acceleration(), self.schedule(), setting.rings)?;
+        Ok(Some(Box::new(gravity)))
+    }
+
+    fn schedule(&self) -> Schedule {
+        self.schedule()
+    }
+}
 
 /// Uniform gravity.
 pub struct Gravity {

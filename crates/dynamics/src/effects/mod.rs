@@ -1,174 +1,185 @@
-//! Effects: one file each, named by the scene. An absent table is never constructed and costs nothing.
+//! Effects: loads and other physics that a scene may ask for, one file each.
 //!
-//! An effect is immutable: it cannot hide state.
+//! The file of an effect holds its table in a scene ([`Table`]), checks, equations, the slots of the bearing that
+//! it fills, its rule of thumb and its price. A new one is its file, and here its `mod`, its field and its entry in
+//! [`Effects::list`]. A table that is absent is never constructed and costs nothing.
 
-mod axial_force;
-mod ball_centrifugal;
-mod frame_rotation;
-mod gravity;
-mod gyroscopic_moment;
-mod moment;
-mod radial_force;
+pub mod axial_force;
+pub mod ball_centrifugal;
+pub mod cage_slip;
+pub mod contact_damping;
+pub mod frame_rotation;
+pub mod gravity;
+pub mod gyroscopic_moment;
+mod loads;
+pub mod moment;
+pub mod radial_force;
+pub mod rayleigh_damping;
+pub mod rules;
+mod table;
 
 pub use axial_force::AxialForce;
 pub use ball_centrifugal::BallCentrifugal;
 pub use frame_rotation::{FrameRotation, static_inertia};
 pub use gravity::Gravity;
 pub use gyroscopic_moment::GyroscopicMoment;
+pub(crate) use loads::resultant;
+pub use loads::{Effect, FrameTurn, Loads, Now, loads, timed_loads};
 pub use moment::Moment;
 pub use radial_force::RadialForce;
+pub use table::{About, Context, Entry, Need, RingDamping, Setting, SpeedRole, Table, Trial};
 
-use contact::Side;
-use input::Schedule;
-pub use ring::FrameTurn;
-use timer::SharedLaps;
+use input::{Problems, Schedule};
+use serde::Deserialize;
 
-use crate::balls::BallResult;
 use crate::error::DynamicsError;
-use crate::model::Model;
-use ring::division::NodePlaces;
+use crate::interactions::discrete_gradient::ContactDamping;
+use crate::kinematics::SlipRatios;
+use rules::{Case, PeakLoad};
 
-/// Loads on all bodies at one instant.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Loads {
-    /// Generalised shaft loads: force x, y, z in N, moment x, y in N m about the shaft's origin.
-    pub shaft: [f64; 5],
-    /// What the body loads of a flexible inner ring add to them, N and N m.
-    pub ring_on_shaft: [f64; 5],
-    /// Force on each ball [radial, axial] at its just-touching position, N.
-    pub balls: Vec<[f64; 2]>,
-    /// Growth of the radial force on each ball with its radial displacement, N/m.
-    pub ball_slopes: Vec<f64>,
-    /// Whether forces on balls or contacts depend on the contact angles.
-    pub follows_angles: bool,
-    /// Body loads on the nodes of a flexible ring, N, `[n_nodes][3]` flat; None: no such load.
-    pub rings: [Option<Vec<f64>>; 2],
-    /// Force on the ring at each contact [radial, axial] besides the normal one, N, by site (2 ball + side), acting at the
-    /// groove centre; the ball gets its negative. Empty: no effect adds any.
-    pub contacts: Vec<[f64; 2]>,
-    /// Turning of the inner ring's frame, when its inertia is called for.
-    pub frame: Option<FrameTurn>,
+/// The tables `[effects.*]` of a scene.
+#[derive(Clone, Debug, Default, Deserialize, PartialEq)]
+#[serde(deny_unknown_fields, expecting = "tables [effects.*]")]
+pub struct Effects {
+    /// Force on the shaft along z.
+    pub axial_force: Option<axial_force::Table>,
+    /// Force on the shaft across z.
+    pub radial_force: Option<radial_force::Table>,
+    /// Moment on the shaft.
+    pub moment: Option<moment::Table>,
+    /// Weight.
+    pub gravity: Option<gravity::Table>,
+    /// Centrifugal force of the balls.
+    pub ball_centrifugal: Option<ball_centrifugal::Table>,
+    /// Gyroscopic moment of the balls.
+    pub gyroscopic_moment: Option<gyroscopic_moment::Table>,
+    /// Slip of balls on the raceways.
+    pub cage_slip: Option<cage_slip::Table>,
+    /// Inertia of the inner ring's turning frame.
+    pub frame_rotation: Option<frame_rotation::Table>,
+    /// Damping of contacts.
+    pub contact_damping: Option<contact_damping::Table>,
+    /// Damping of the rings.
+    pub rayleigh_damping: Option<rayleigh_damping::Table>,
 }
 
-impl Loads {
-    /// No load.
-    pub fn none(model: &Model) -> Loads {
-        Loads {
-            shaft: [0.0; 5],
-            ring_on_shaft: [0.0; 5],
-            ball_slopes: vec![0.0; model.geometry.n_balls],
-            follows_angles: false,
-            balls: vec![[0.0; 2]; model.geometry.n_balls],
-            rings: [None, None],
-            contacts: Vec::new(),
-            frame: None,
-        }
-    }
-
-    /// Adds a force (N) at the load point of the shaft.
-    pub fn add_shaft_force(&mut self, model: &Model, force: [f64; 3]) {
-        for i in 0..3 {
-            self.shaft[i] += force[i];
-        }
-        // Moment of a force at distance L along the axis: L e_z x F.
-        self.shaft[3] -= model.load_point * force[1];
-        self.shaft[4] += model.load_point * force[0];
-    }
-
-    /// Adds a force (N) [radial, axial] on the ring at one contact; the ball gets its negative.
-    pub fn add_contact_force(&mut self, ball: usize, side: Side, force: [f64; 2]) {
-        self.contacts.resize(2 * self.balls.len(), [0.0; 2]);
-        let sum = &mut self.contacts[2 * ball + side.index()];
-        (sum[0], sum[1]) = (sum[0] + force[0], sum[1] + force[1]);
-    }
-
-    /// Adds nodal body loads (N) to a flexible ring; the shaft carries the `resultant` of those of the inner ring: force x, y, z, N, and
-    /// moment about x and y, N m, about the shaft's origin.
-    pub fn add_ring_load(&mut self, side: Side, load: Vec<f64>, resultant: [f64; 5]) {
-        if side == Side::Inner {
-            let sum = self.ring_on_shaft.iter_mut().zip(resultant);
-            sum.for_each(|(s, f)| *s += f);
-        }
-        match &mut self.rings[side.index()] {
-            Some(sum) => sum.iter_mut().zip(&load).for_each(|(s, l)| *s += l),
-            none => *none = Some(load),
-        }
-    }
-}
-
-/// Force x, y, z, N, and moment about x and y, N m, of nodal loads on a ring (N, `[n_nodes][3]` flat), about the point `origin_z` of its
-/// axis. Collective.
-pub(crate) fn resultant(places: &NodePlaces, origin_z: f64, load: &[f64]) -> [f64; 5] {
-    places.sum(|node, [x, y, z]| {
-        let [f, arm] = [&load[3 * node..3 * node + 3], &[x, y, z - origin_z]];
-        [
-            f[0],
-            f[1],
-            f[2],
-            arm[1] * f[2] - arm[2] * f[1],
-            arm[2] * f[0] - arm[0] * f[2],
+impl Effects {
+    /// Every effect there is, in the order of the fields, with or without its table.
+    pub fn list(&self) -> Vec<&dyn Entry> {
+        // Without `..`: a field that is not in the list does not compile.
+        let Effects {
+            axial_force,
+            radial_force,
+            moment,
+            gravity,
+            ball_centrifugal,
+            gyroscopic_moment,
+            cage_slip,
+            frame_rotation,
+            contact_damping,
+            rayleigh_damping,
+        } = self;
+        vec![
+            axial_force,
+            radial_force,
+            moment,
+            gravity,
+            ball_centrifugal,
+            gyroscopic_moment,
+            cage_slip,
+            frame_rotation,
+            contact_damping,
+            rayleigh_damping,
         ]
-    })
-}
-
-/// An instant of a motion; the default is the start.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Now<'a> {
-    /// Time, s.
-    pub time: f64,
-    /// Loads are means over an interval of so many seconds about the time: that of a step in time; 0 at an instant.
-    pub width: f64,
-    /// Angle the cage has turned since the start, rad.
-    pub cage_angle: f64,
-    /// Contact angles, rad, by site (2 ball + side), `[2 n_balls]`; None: not known yet, the free contact angle stands for
-    /// them.
-    pub angles: Option<&'a [f64]>,
-}
-
-impl Now<'_> {
-    /// Factor of a scheduled load.
-    pub fn factor(&self, schedule: &Schedule) -> f64 {
-        schedule.mean(self.time, self.width)
     }
 
-    /// Contact angle of a ball on one raceway, rad.
-    pub fn contact_angle(&self, model: &Model, ball: usize, side: Side) -> f64 {
-        match self.angles {
-            Some(angles) => angles[2 * ball + side.index()],
-            None => model.geometry.free_contact_angle(),
+    /// The effects that the scene has.
+    fn on(&self) -> impl Iterator<Item = (About, &dyn Table)> {
+        let entries = self.list().into_iter();
+        entries.filter_map(|entry| Some((entry.about(), entry.table()?)))
+    }
+
+    /// Names of the effects that the scene has, in their order.
+    pub fn names(&self) -> Vec<&'static str> {
+        let mut names: Vec<&str> = self.on().map(|(about, _)| about.name).collect();
+        names.sort_unstable();
+        names
+    }
+
+    /// Checks values, and that speed and analysis give each effect something to do.
+    pub fn check(&self, context: Context, problems: &mut Problems) {
+        for (about, table) in self.on() {
+            table.check(context, problems);
+            about.check_needs(context, problems);
         }
     }
-}
 
-/// A physical effect that adds loads.
-pub trait Effect: Send + Sync {
-    /// Name of its scene table.
-    fn name(&self) -> &'static str;
-
-    /// Adds its loads at an instant.
-    fn add_loads(&self, model: &Model, now: &Now, loads: &mut Loads) -> Result<(), DynamicsError>;
-
-    /// Whether it is the inertia of the inner ring's turning frame.
-    fn turns_frame(&self) -> bool {
-        false
+    /// Whether an effect that the scene has takes its speed in some way.
+    pub fn use_speed(&self, takes: impl Fn(SpeedRole) -> bool) -> bool {
+        self.on().any(|(about, _)| takes(about.speed))
     }
 
-    /// What a reader of an equilibrium should know: where the effect is beyond what it assumes.
-    fn warning(&self, _model: &Model, _now: &Now, _balls: &[BallResult]) -> Option<String> {
-        None
+    /// Loads, in the order of the effects' names.
+    pub fn loads(&self, setting: Setting<'_>) -> Result<Vec<Box<dyn Effect>>, DynamicsError> {
+        let found = self.on().filter_map(|(_, table)| table.load(setting).transpose());
+        let mut loads = found.collect::<Result<Vec<_>, _>>()?;
+        loads.sort_by_key(|load| load.name());
+        Ok(loads)
+    }
+
+    /// Slip ratios at the inner and outer raceway.
+    pub fn slip(&self) -> SlipRatios {
+        self.on().find_map(|(_, table)| table.slip()).unwrap_or_default()
+    }
+
+    /// Damping of contacts along their normal.
+    pub fn contact_damping(&self) -> Option<ContactDamping> {
+        self.on().find_map(|(_, table)| table.contact_damping())
+    }
+
+    /// Damping of the rings.
+    pub fn ring_damping(&self) -> Option<RingDamping> {
+        self.on().find_map(|(_, table)| table.ring_damping())
+    }
+
+    /// Largest forces on the shaft at a speed in rad/s.
+    pub fn peak_load(&self, speed: f64) -> PeakLoad {
+        self.on().fold(PeakLoad::default(), |sum, (_, table)| {
+            let PeakLoad { axial, radial } = table.peak_load(speed);
+            PeakLoad {
+                axial: sum.axial + axial,
+                radial: sum.radial + radial,
+            }
+        })
+    }
+
+    /// Whether a load changes in time by a schedule.
+    pub fn are_scheduled(&self) -> bool {
+        !self.schedules().is_empty()
+    }
+
+    /// Names of the effects whose loads change in time, and the factors of these.
+    pub fn schedules(&self) -> Vec<(&'static str, Schedule)> {
+        let all = self.on().map(|(about, table)| (about.name, table.schedule()));
+        all.filter(|(_, schedule)| *schedule != Schedule::Constant)
+            .collect()
+    }
+
+    /// What the rules of thumb say: a sentence each, with estimate and formula.
+    pub fn advice(&self, case: &Case<'_>) -> Vec<String> {
+        self.list().iter().flat_map(|entry| entry.advice(case)).collect()
     }
 }
 
-/// Loads of all effects of the model at an instant.
-pub fn loads(model: &Model, now: &Now) -> Result<Loads, DynamicsError> {
-    timed_loads(model, now, &SharedLaps::default())
-}
-
-/// [`loads`], with the time of each effect added to `costs`.
-pub fn timed_loads(model: &Model, now: &Now, costs: &SharedLaps) -> Result<Loads, DynamicsError> {
-    let mut loads = Loads::none(model);
-    for effect in &model.effects {
-        costs.time(effect.name(), || effect.add_loads(model, now, &mut loads))?;
+/// Headers of the tables of all effects that take the speed in some way: `[effects.a], [effects.b] or [effects.c]`.
+pub fn headers_that_use_speed(takes: impl Fn(SpeedRole) -> bool) -> String {
+    let none = Effects::default();
+    let users = none.list().into_iter().map(|entry| entry.about());
+    let mut names: Vec<&str> = users.filter(|a| takes(a.speed)).map(|a| a.name).collect();
+    names.sort_unstable();
+    let headers: Vec<String> = names.iter().map(|name| format!("[effects.{name}]")).collect();
+    match headers.as_slice() {
+        [others @ .., last] if !others.is_empty() => format!("{} or {last}", others.join(", ")),
+        few => few.concat(),
     }
-    Ok(loads)
 }

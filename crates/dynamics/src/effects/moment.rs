@@ -1,15 +1,66 @@
-//! ```toml
-//! [effects.moment]
-//! x = "3 N m"
-//! y = "0 N m"
-//! ```
-//! A tilting moment on the shaft; right-hand rule about +x and +y. With a sub-table `schedule` it changes in time.
+//! Tilting moment on the shaft; right-hand rule about +x and +y.
 
-use input::Schedule;
+use input::{MOMENT, Problems, Quantity, RawSchedule, Schedule, check_schedule, schedule_of};
+use serde::Deserialize;
 
-use super::{Effect, Loads, Now};
+use super::loads::{Effect, Loads, Now};
+use super::table::{self, About, Context, Setting, SpeedRole, require_load};
 use crate::error::DynamicsError;
 use crate::model::Model;
+
+const EXAMPLE: &str = r#"[effects.moment]
+x = "3 N m"
+y = "0 N m"
+schedule.harmonic = { frequency = "50 Hz" }     # optional: its factor over time
+"#;
+
+/// The table of a scene.
+#[derive(Clone, Debug, Deserialize, PartialEq)]
+#[serde(deny_unknown_fields, expecting = "the table [effects.moment]")]
+pub struct Table {
+    /// Moment about x.
+    pub x: Quantity<MOMENT>,
+    /// Moment about y.
+    pub y: Quantity<MOMENT>,
+    schedule: Option<RawSchedule>,
+}
+
+impl Table {
+    /// Its factor over time.
+    pub fn schedule(&self) -> Schedule {
+        schedule_of(self.schedule.as_ref())
+    }
+}
+
+impl table::Table for Table {
+    fn about() -> About {
+        About {
+            name: "moment",
+            example: EXAMPLE,
+            speed: SpeedRole::None,
+            needs: &[],
+            trial: None,
+        }
+    }
+
+    fn check(&self, context: Context, problems: &mut Problems) {
+        let owner = "effects.moment";
+        let schedule = check_schedule(self.schedule.as_ref(), owner, context.clock, problems);
+        require_load(&self.x, &schedule, "effects.moment.x", problems);
+        require_load(&self.y, &schedule, "effects.moment.y", problems);
+    }
+
+    fn load(&self, _setting: Setting<'_>) -> Result<Option<Box<dyn Effect>>, DynamicsError> {
+        Ok(Some(Box::new(Moment {
+            value: [self.x.si(), self.y.si()],
+            schedule: self.schedule(),
+        })))
+    }
+
+    fn schedule(&self) -> Schedule {
+        self.schedule()
+    }
+}
 
 /// Tilting moment on the shaft.
 pub struct Moment {

@@ -1,16 +1,76 @@
-//! ```toml
-//! [effects.radial_force]
-//! value = "1 kN"
-//! direction = "0 deg"     # azimuth, fixed in space
-//! ```
-//! A radial force on the shaft at the scene's load point; off the groove plane it also tilts. With a sub-table
-//! `schedule` it changes in time.
+//! Radial force on the shaft at the scene's load point; off the groove plane it also tilts.
+//!
+//! F = value f(t) (cos d, sin d, 0), d its direction, which is fixed in space, and f the factor of its schedule.
 
-use input::Schedule;
+use input::{ANGLE, FORCE, Problems, Quantity, RawSchedule, Schedule, check_schedule, schedule_of};
+use serde::Deserialize;
 
-use super::{Effect, Loads, Now};
+use super::loads::{Effect, Loads, Now};
+use super::rules::PeakLoad;
+use super::table::{self, About, Context, Setting, SpeedRole, require_load};
 use crate::error::DynamicsError;
 use crate::model::Model;
+
+const EXAMPLE: &str = r#"[effects.radial_force]
+value = "1 kN"          # negative points the other way
+direction = "0 deg"     # azimuth, from +x towards +y, fixed in space
+schedule.step = { at = "1 ms" }     # optional: its factor over time
+"#;
+
+/// The table of a scene.
+#[derive(Clone, Debug, Deserialize, PartialEq)]
+#[serde(deny_unknown_fields, expecting = "the table [effects.radial_force]")]
+pub struct Table {
+    /// Size; negative points the other way.
+    pub value: Quantity<FORCE>,
+    /// Azimuth it points to, from +x towards +y.
+    pub direction: Quantity<ANGLE>,
+    schedule: Option<RawSchedule>,
+}
+
+impl Table {
+    /// Its factor over time.
+    pub fn schedule(&self) -> Schedule {
+        schedule_of(self.schedule.as_ref())
+    }
+}
+
+impl table::Table for Table {
+    fn about() -> About {
+        About {
+            name: "radial_force",
+            example: EXAMPLE,
+            speed: SpeedRole::None,
+            needs: &[],
+            trial: None,
+        }
+    }
+
+    fn check(&self, context: Context, problems: &mut Problems) {
+        let owner = "effects.radial_force";
+        let schedule = check_schedule(self.schedule.as_ref(), owner, context.clock, problems);
+        require_load(&self.value, &schedule, "effects.radial_force.value", problems);
+    }
+
+    fn load(&self, _setting: Setting<'_>) -> Result<Option<Box<dyn Effect>>, DynamicsError> {
+        Ok(Some(Box::new(RadialForce {
+            value: self.value.si(),
+            direction: self.direction.si(),
+            schedule: self.schedule(),
+        })))
+    }
+
+    fn peak_load(&self, _speed: f64) -> PeakLoad {
+        PeakLoad {
+            axial: 0.0,
+            radial: self.value.si().abs() * self.schedule().peak(),
+        }
+    }
+
+    fn schedule(&self) -> Schedule {
+        self.schedule()
+    }
+}
 
 /// Radial force on the shaft.
 pub struct RadialForce {

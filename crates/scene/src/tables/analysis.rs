@@ -1,13 +1,13 @@
 //! Which analysis a scene asks for, and what that means for its other tables.
 
+use dynamics::effects::Context;
 use input::{Clock, Problems};
 use toml_edit::DocumentMut;
 
 use super::RawScene;
-use super::effects::EffectsContext;
 use super::modes::ModesContext;
 use super::shaft::Shaft;
-use super::speed::SpeedUse;
+use super::speed::{SpeedUse, makes_force};
 use super::sweep::{Analysis, RawStatic};
 
 impl RawScene {
@@ -79,8 +79,8 @@ impl RawScene {
         self.is_at_rest() || (self.dynamic.is_none() && self.quasi_static.is_some())
     }
 
-    pub(super) fn effects_context(&self, has_flexible_inner: bool) -> EffectsContext {
-        EffectsContext {
+    pub(super) fn effects_context(&self, has_flexible_inner: bool) -> Context {
+        Context {
             is_without_inertia: self.is_without_inertia(),
             clock: self.clock(),
             has_speed: self.speed.is_some(),
@@ -92,7 +92,7 @@ impl RawScene {
         if self.dynamic.is_none() && self.modes.is_some() {
             return SpeedUse::Modes;
         }
-        match (self.is_at_rest(), self.effects.use_speed_at_rest()) {
+        match (self.is_at_rest(), self.effects.use_speed(makes_force)) {
             (false, _) => SpeedUse::Motion,
             (true, true) => SpeedUse::ForceAtRest,
             (true, false) => SpeedUse::Nothing,

@@ -35,13 +35,10 @@ mod analysis;
 mod bearing;
 mod contact;
 mod cut;
-mod damping;
 mod difference;
 mod dynamic;
 mod edit;
-mod effects;
 mod error;
-mod gyroscopic;
 mod locate;
 mod materials;
 mod modes;
@@ -64,6 +61,8 @@ mod tests;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
+use dynamics::effects::Effects;
+use dynamics::kinematics::BallSpeeds;
 use serde::Deserialize;
 use toml_edit::DocumentMut;
 
@@ -72,7 +71,6 @@ pub(crate) use self::contact::unusual_stiffnesses;
 pub use self::contact::{Contact, ContactMode};
 pub use self::difference::difference;
 pub use self::dynamic::{ContactScheme, Dynamic, IntegratorChoice};
-pub use self::effects::Effects;
 pub use self::error::SceneError;
 pub use self::locate::locate;
 pub use self::materials::{Material, Materials};
@@ -84,7 +82,7 @@ pub use self::ring::{FlexibleRing, MeshFiles, Ring, RingName, Support};
 pub use self::section::{Section, SectionElement};
 pub use self::shaft::{Motion, Shaft};
 pub use self::solver::{Backend, Solver};
-pub use self::speed::{BallSpeeds, SpeedTable};
+pub use self::speed::SpeedTable;
 pub use self::start::Start;
 pub use self::stress::Stress;
 pub use self::stress_probes::StressLine;
@@ -93,7 +91,6 @@ pub use self::sweep::{Analysis, SweepPoint};
 use self::bearing::RawBearing;
 use self::contact::RawContact;
 use self::dynamic::RawDynamic;
-use self::effects::RawEffects;
 use self::materials::RawMaterials;
 use self::modes::{ModesContext, RawModes};
 use self::output::RawOutput;
@@ -122,7 +119,7 @@ struct RawScene {
     shaft: RawShaft,
     speed: Option<RawSpeed>,
     #[serde(default)]
-    effects: RawEffects,
+    effects: Effects,
     #[serde(default)]
     solver: RawSolver,
     #[serde(default)]
@@ -306,11 +303,10 @@ impl Source<'_> {
             section::check_gap(inner, outer, &mut problems);
         }
         let shaft = raw.shaft.check(bearing.as_ref(), raw.clock(), &mut problems);
-        let effects = raw
-            .effects
-            .check(raw.effects_context(inner.body.is_some()), &mut problems);
+        let effects = &raw.effects;
+        effects.check(raw.effects_context(inner.body.is_some()), &mut problems);
         let speed = raw.speed.as_ref();
-        let ball_speeds = speed.map_or(BallSpeeds::default(), |s| s.ball_speeds(&effects, &mut problems));
+        let ball_speeds = speed.map_or(BallSpeeds::default(), |s| s.ball_speeds(effects, &mut problems));
         let speed = speed.and_then(|s| s.check(raw.speed_use(), &mut problems));
         let solver = raw.solver.check(&mut problems);
         let has_steps = raw.dynamic.is_some() || raw.quasi_static.is_some();
@@ -345,7 +341,7 @@ impl Source<'_> {
                 shaft,
                 speed,
                 ball_speeds,
-                effects,
+                effects: raw.effects,
                 solver,
                 output,
                 stress,

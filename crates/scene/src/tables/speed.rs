@@ -6,12 +6,12 @@
 
 use std::fmt;
 
+use dynamics::effects::{self, Effects, SpeedRole};
+use dynamics::kinematics::BallSpeeds;
 use input::{ANGULAR_SPEED, Problems, Quantity, TIME, bare_number, require_growing};
 use serde::Deserialize;
 use serde::de::value::MapAccessDeserializer;
 use serde::de::{Deserializer, Error, MapAccess, Visitor};
-
-use super::effects::Effects;
 
 /// As typed.
 #[derive(Debug, Deserialize)]
@@ -19,17 +19,6 @@ use super::effects::Effects;
 pub struct RawSpeed {
     inner: RawRingSpeed,
     ball_speeds: Option<BallSpeeds>,
-}
-
-/// Contact angles that the speeds of balls follow.
-#[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Eq)]
-#[serde(rename_all = "snake_case")]
-pub enum BallSpeeds {
-    /// The free contact angle.
-    #[default]
-    FreeAngle,
-    /// Those that each ball has, under outer raceway control.
-    OuterControl,
 }
 
 /// As typed: a speed, or a table over time.
@@ -63,7 +52,7 @@ struct RawSpeedRamp {
 pub enum SpeedUse {
     /// Motion in time.
     Motion,
-    /// The centrifugal force or the gyroscopic moment of balls in an equilibrium.
+    /// A force that an effect makes of it in an equilibrium.
     ForceAtRest,
     /// An equilibrium without any effect of speed.
     Nothing,
@@ -83,15 +72,24 @@ pub struct SpeedTable {
 /// No ring turns faster: a slip of the unit, rad/s (almost a million revolutions per minute).
 const MAX_SPEED: f64 = 1e5;
 
+/// Whether an effect makes a force of the speed, in an equilibrium too.
+pub(super) fn makes_force(takes: SpeedRole) -> bool {
+    matches!(takes, SpeedRole::Force | SpeedRole::BallForce)
+}
+
+/// Whether it is a force on balls.
+fn loads_balls(takes: SpeedRole) -> bool {
+    takes == SpeedRole::BallForce
+}
+
 impl RawSpeed {
     /// Contact angles that the speeds of balls follow, for the effects that need them.
     pub fn ball_speeds(&self, effects: &Effects, problems: &mut Problems) -> BallSpeeds {
-        let are_used = effects.ball_centrifugal || effects.gyroscopic_moment.is_some();
-        if self.ball_speeds.is_some() && !are_used {
-            problems.add(
-                "speed.ball_speeds does nothing without [effects.ball_centrifugal] or [effects.gyroscopic_moment]; add one, or \
-                 remove it",
-            );
+        if self.ball_speeds.is_some() && !effects.use_speed(loads_balls) {
+            problems.add(format!(
+                "speed.ball_speeds does nothing without {}; add one, or remove it",
+                effects::headers_that_use_speed(loads_balls)
+            ));
         }
         self.ball_speeds.unwrap_or_default()
     }
@@ -100,10 +98,11 @@ impl RawSpeed {
     pub fn check(&self, speed_use: SpeedUse, problems: &mut Problems) -> Option<SpeedTable> {
         let before = problems.len();
         if speed_use == SpeedUse::Nothing {
-            problems.add(
-                "[speed] does nothing in a scene at rest without [effects.ball_centrifugal], [effects.frame_rotation] or \
-                 [effects.gyroscopic_moment]; add one, compute motion with [dynamic], or remove [speed]",
-            );
+            problems.add(format!(
+                "[speed] does nothing in a scene at rest without {}; add one, compute motion with [dynamic], or remove \
+                 [speed]",
+                effects::headers_that_use_speed(makes_force)
+            ));
             return None;
         }
         if speed_use == SpeedUse::Modes {

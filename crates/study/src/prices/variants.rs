@@ -1,21 +1,15 @@
 //! Scenes that differ from a given one in a single effect.
 
+use dynamics::effects::{About, Entry, Need, SpeedRole};
 use scene::{Analysis, ContactMode, FlexibleRing, Ring, Scene, StressOutput, Support};
 
 /// Name and `--set` arguments of a variant.
 pub type Variant = (String, Vec<String>);
 
-/// An effect with a table of its own, and the values that a scene without it gets.
-struct Entry {
-    name: &'static str,
-    is_on: bool,
-    /// `--set` arguments that turn it on; none when it cannot be turned on in this scene.
-    on: Option<(&'static str, &'static [&'static str])>,
-}
-
 /// Every effect that is on turned off, and every other turned on as far as the scene allows.
 pub fn of(scene: &Scene) -> Vec<Variant> {
-    let mut variants: Vec<Variant> = entries(scene).iter().filter_map(|e| variant(scene, e)).collect();
+    let effects = scene.effects.list();
+    let mut variants: Vec<Variant> = effects.iter().filter_map(|e| variant(scene, *e)).collect();
     for (name, ring) in [("inner", &scene.inner), ("outer", &scene.outer)] {
         variants.extend(ring_variants(scene, name, ring));
     }
@@ -24,115 +18,52 @@ pub fn of(scene: &Scene) -> Vec<Variant> {
     variants
 }
 
-fn entries(scene: &Scene) -> Vec<Entry> {
-    let e = &scene.effects;
-    let turns = scene.speed.is_some();
-    let moves = matches!(scene.analysis, Analysis::Dynamic(_));
-    let when = |condition: bool, on| condition.then_some(on);
-    vec![
-        Entry {
-            name: "gravity",
-            is_on: e.gravity.is_some(),
-            on: when(
-                true,
-                (
-                    "9.81 m/s2 along -y",
-                    &[
-                        "effects.gravity.acceleration=9.81 m/s2",
-                        "effects.gravity.direction=[0.0, -1.0, 0.0]",
-                    ][..],
-                ),
-            ),
-        },
-        Entry {
-            name: "ball_centrifugal",
-            is_on: e.ball_centrifugal,
-            on: when(turns, ("", &["effects.ball_centrifugal={}"][..])),
-        },
-        Entry {
-            name: "gyroscopic_moment",
-            is_on: e.gyroscopic_moment.is_some(),
-            on: when(
-                turns,
-                ("outer raceway control", &["effects.gyroscopic_moment={}"][..]),
-            ),
-        },
-        Entry {
-            name: "cage_slip",
-            is_on: e.cage_slip.is_some(),
-            on: when(
-                turns,
-                (
-                    "2 % at the inner raceway",
-                    &["effects.cage_slip.inner=0.02", "effects.cage_slip.outer=0.0"][..],
-                ),
-            ),
-        },
-        Entry {
-            name: "frame_rotation",
-            is_on: e.frame_rotation,
-            on: when(
-                turns && scene.inner.body.is_some(),
-                ("", &["effects.frame_rotation={}"][..]),
-            ),
-        },
-        Entry {
-            name: "contact_damping",
-            is_on: e.contact_damping.is_some(),
-            on: when(
-                moves,
-                (
-                    "0.05 N s/mm from 1 um on",
-                    &[
-                        "effects.contact_damping.coefficient=5e-2 N s/mm",
-                        "effects.contact_damping.full_approach=1 um",
-                    ][..],
-                ),
-            ),
-        },
-        Entry {
-            name: "rayleigh_damping",
-            is_on: e.rayleigh_damping.is_some(),
-            on: when(
-                moves,
-                (
-                    "1e-7 s times stiffness",
-                    &[
-                        "effects.rayleigh_damping.mass=0 1/s",
-                        "effects.rayleigh_damping.stiffness=1e-7 s",
-                    ][..],
-                ),
-            ),
-        },
-    ]
-}
-
-fn variant(scene: &Scene, entry: &Entry) -> Option<Variant> {
-    if entry.is_on {
-        let mut set = vec![format!("effects.{}=none", entry.name)];
-        set.extend(unused_speed(scene, entry.name));
-        return Some((format!("{} off", entry.name), set));
+/// An effect turned off, or on with the values of its trial where the scene allows it; None for a load that is not varied.
+fn variant(scene: &Scene, entry: &dyn Entry) -> Option<Variant> {
+    let about = entry.about();
+    let (name, trial) = (about.name, about.trial?);
+    if entry.table().is_some() {
+        let mut set = vec![format!("effects.{name}=none")];
+        set.extend(unused_speed(scene, about));
+        return Some((format!("{name} off"), set));
     }
-    let (how, set) = entry.on?;
-    let name = match how {
-        "" => format!("{} on", entry.name),
-        how => format!("{} on, {how}", entry.name),
+    if !about.fits(scene::effects_context(scene)) {
+        return None;
+    }
+    let set = match trial.keys {
+        [] => vec![format!("effects.{name}={{}}")],
+        keys => keys
+            .iter()
+            .map(|(key, value)| format!("effects.{name}.{key}={value}"))
+            .collect(),
     };
-    Some((name, set.iter().map(|s| s.to_string()).collect()))
+    Some(match trial.what {
+        "" => (format!("{name} on"), set),
+        what => (format!("{name} on, {what}"), set),
+    })
 }
 
 /// At rest a speed without an effect that uses it is refused: it goes with the last of them.
-fn unused_speed(scene: &Scene, off: &str) -> Option<String> {
-    let e = &scene.effects;
-    let users = [
-        ("ball_centrifugal", e.ball_centrifugal),
-        ("gyroscopic_moment", e.gyroscopic_moment.is_some()),
-        ("frame_rotation", e.frame_rotation),
-    ];
+fn unused_speed(scene: &Scene, off: About) -> Option<String> {
+    let is_user = |about: About| matches!(about.speed, SpeedRole::Force | SpeedRole::BallForce);
+    let mut others = scene.effects.list().into_iter().filter(|e| e.table().is_some());
     let is_at_rest = matches!(scene.analysis, Analysis::Static | Analysis::Sweep(_));
-    let is_last = users.iter().all(|(name, is_on)| !is_on || *name == off);
-    let is_user = users.iter().any(|(name, _)| *name == off);
-    (is_at_rest && is_user && is_last).then(|| "speed=none".to_string())
+    let is_last = others.all(|e| !is_user(e.about()) || e.about().name == off.name);
+    (is_at_rest && is_user(off) && is_last).then(|| "speed=none".to_string())
+}
+
+/// Takes out the effects that the scene has and that need something it loses.
+fn without(scene: &Scene, need: Need) -> Vec<String> {
+    let entries = scene.effects.list().into_iter().filter(|e| e.table().is_some());
+    let abouts = entries
+        .map(|e| e.about())
+        .filter(|about| about.needs.contains(&need));
+    abouts
+        .flat_map(|about| {
+            let off = format!("effects.{}=none", about.name);
+            [Some(off), unused_speed(scene, about)].into_iter().flatten()
+        })
+        .collect()
 }
 
 /// A flexible ring made rigid, and held the other way.
@@ -141,9 +72,8 @@ fn ring_variants(scene: &Scene, name: &str, ring: &Ring) -> Vec<Variant> {
         return Vec::new();
     };
     let mut rigid = vec![format!("{name}.flexible=false")];
-    if name == "inner" && scene.effects.frame_rotation {
-        rigid.push("effects.frame_rotation=none".to_string());
-        rigid.extend(unused_speed(scene, "frame_rotation"));
+    if name == "inner" {
+        rigid.extend(without(scene, Need::FlexibleInner));
     }
     // Probes of a ring without a mesh are refused.
     let probes = scene.probes.nodes.iter().filter(|p| p.ring.key() == name);
@@ -204,12 +134,7 @@ fn without_inertia(scene: &Scene) -> Option<Variant> {
         format!("quasi_static.step={:?} s", dynamic.step),
         format!("quasi_static.output_every={}", dynamic.output_every),
     ];
-    if scene.effects.contact_damping.is_some() {
-        set.push("effects.contact_damping=none".to_string());
-    }
-    if scene.effects.rayleigh_damping.is_some() {
-        set.push("effects.rayleigh_damping=none".to_string());
-    }
+    set.extend(without(scene, Need::Inertia));
     Some(("inertia off (quasi-static)".to_string(), set))
 }
 

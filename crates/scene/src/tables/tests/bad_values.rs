@@ -346,8 +346,8 @@ fn all_problems_are_reported_together() {
 fn a_shaft_free_along_its_axis_may_be_pushed_either_way() {
     let scene = super::parse(&with_line("value = \"2 kN\"", "value = \"-2 kN\""), &[]).unwrap();
     assert_eq!(
-        scene.effects.axial_force,
-        Some(input::Scheduled::constant(-2000.0))
+        super::axial_of(&scene),
+        Some((-2000.0, input::Schedule::Constant))
     );
 }
 

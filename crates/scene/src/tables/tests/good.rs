@@ -1,9 +1,6 @@
 //! Scenes that must be read, and what they say.
 
-use input::Scheduled;
-
 use super::*;
-use crate::tables::effects::RadialForce;
 
 /// If this failed, the documentation would show a scene that the program refuses or reads as something else.
 #[test]
@@ -37,17 +34,21 @@ fn the_example_of_the_documentation_reads_as_it_says() {
     assert_eq!(scene.contact.mode, ContactMode::Patch);
     assert_eq!(scene.shaft.z, Motion::Free);
     assert_eq!(scene.shaft.tilt_x, Motion::Locked);
+    let effects = &scene.effects;
+    let radial = effects.radial_force.as_ref().unwrap();
     assert_eq!(
-        scene.effects.radial_force,
-        Some(Scheduled::constant(RadialForce {
-            value: 1e3,
-            direction: 0.0
-        }))
+        (radial.value.si(), radial.direction.si(), radial.schedule()),
+        (1e3, 0.0, Schedule::Constant)
     );
-    assert_eq!(scene.effects.moment, Some(Scheduled::constant([0.0, 3.0])));
+    let moment = effects.moment.as_ref().unwrap();
     assert_eq!(
-        scene.effects.gravity,
-        Some(Scheduled::constant([0.0, -9.81, 0.0]))
+        (moment.x.si(), moment.y.si(), moment.schedule()),
+        (0.0, 3.0, Schedule::Constant)
+    );
+    let gravity = effects.gravity.as_ref().unwrap();
+    assert_eq!(
+        (gravity.acceleration(), gravity.schedule()),
+        ([0.0, -9.81, 0.0], Schedule::Constant)
     );
     assert_eq!(scene.text, EXAMPLE);
     let inner = scene.inner.body.unwrap();
@@ -164,16 +165,8 @@ fn the_delivered_scenes_are_valid() {
     for (name, axial, radial, n_points, tilt) in expected {
         let path = folder.join(format!("{name}.toml"));
         let scene = Scene::load_with(&path, &[], MeshFiles::MayBeMissing).unwrap_or_else(|e| panic!("{e}"));
-        assert_eq!(
-            scene.effects.axial_force,
-            Some(Scheduled::constant(axial)),
-            "{name}"
-        );
-        assert_eq!(
-            scene.effects.radial_force.as_ref().map(|f| f.value.value),
-            radial,
-            "{name}"
-        );
+        assert_eq!(axial_of(&scene), Some((axial, Schedule::Constant)), "{name}");
+        assert_eq!(radial_of(&scene), radial, "{name}");
         assert_eq!(scene.sweep_scenes().unwrap().len(), n_points, "{name}");
         assert_eq!((scene.shaft.tilt_x, scene.shaft.tilt_y), (tilt, tilt), "{name}");
         assert_eq!(scene.bearing, parse(EXAMPLE, &[]).unwrap().bearing, "{name}");
@@ -201,17 +194,9 @@ fn the_delivered_motions_are_valid() {
         };
         assert_eq!((dynamic.n_steps, dynamic.step), (n_steps, step), "{name}");
         assert_eq!(dynamic.contact, ContactScheme::DiscreteGradient, "{name}");
-        assert_eq!(scene.speed.map(|s| s.times), Some(vec![0.0]), "{name}");
-        assert_eq!(
-            scene.effects.axial_force,
-            Some(Scheduled::constant(2e3)),
-            "{name}"
-        );
-        assert_eq!(
-            scene.effects.radial_force.map(|f| f.value.value),
-            Some(1e3),
-            "{name}"
-        );
+        assert_eq!(scene.speed.as_ref().map(|s| &s.times), Some(&vec![0.0]), "{name}");
+        assert_eq!(axial_of(&scene), Some((2e3, Schedule::Constant)), "{name}");
+        assert_eq!(radial_of(&scene), Some(1e3), "{name}");
         assert_eq!(
             (scene.shaft.tilt_x, scene.shaft.tilt_y),
             (Motion::Locked, Motion::Locked),

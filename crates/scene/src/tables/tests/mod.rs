@@ -3,6 +3,7 @@
 mod bad_format;
 mod bad_motion;
 mod bad_values;
+mod effects;
 mod good;
 mod modes;
 mod motion;
@@ -13,6 +14,8 @@ mod schedules;
 mod sweeps;
 
 use std::path::Path;
+
+use input::Schedule;
 
 use super::*;
 
@@ -31,6 +34,18 @@ fn parse(text: &str, overrides: &[&str]) -> Result<Scene, SceneError> {
         &overrides,
         MeshFiles::MayBeMissing,
     )
+}
+
+/// Axial force of a scene, N, and its factor over time.
+fn axial_of(scene: &Scene) -> Option<(f64, Schedule)> {
+    let force = scene.effects.axial_force.as_ref();
+    force.map(|force| (force.value.si(), force.schedule()))
+}
+
+/// Radial force of a scene, N.
+fn radial_of(scene: &Scene) -> Option<f64> {
+    let force = scene.effects.radial_force.as_ref();
+    force.map(|force| force.value.si())
 }
 
 /// The example with the first line that starts with `line` replaced, comment and all.

@@ -47,8 +47,8 @@ fn the_delivered_scene_is_valid() {
     };
     assert_eq!((modes.number, modes.bodies.len()), (14, 3));
     assert_eq!(
-        (scene.effects.axial_force, scene.shaft.mass),
-        (Some(input::Scheduled::constant(2e3)), 2.0)
+        (axial_of(&scene), scene.shaft.mass),
+        (Some((2e3, Schedule::Constant)), 2.0)
     );
 }
 

@@ -1,7 +1,5 @@
 //! Tests of `--set path=value`.
 
-use input::Scheduled;
-
 use super::*;
 
 /// If this failed, `--set` would change another key, or not what is solved.
@@ -9,9 +7,10 @@ use super::*;
 fn an_override_replaces_exactly_its_key() {
     let plain = parse(EXAMPLE, &[]).unwrap();
     let set = parse(EXAMPLE, &["effects.axial_force.value=3 kN"]).unwrap();
-    assert_eq!(set.effects.axial_force, Some(Scheduled::constant(3000.0)));
+    assert_eq!(axial_of(&plain), Some((2000.0, Schedule::Constant)));
+    assert_eq!(axial_of(&set), Some((3000.0, Schedule::Constant)));
     let restored = Effects {
-        axial_force: Some(Scheduled::constant(2000.0)),
+        axial_force: plain.effects.axial_force.clone(),
         ..set.effects
     };
     assert_eq!(restored, plain.effects);
@@ -72,7 +71,11 @@ fn an_override_adds_missing_tables() {
         "effects.gravity.direction=[0.0, 3.0, 0.0]",
     ];
     let scene = parse(&text, &set).unwrap();
-    assert_eq!(scene.effects.gravity, Some(Scheduled::constant([0.0, 2.0, 0.0])));
+    let gravity = scene.effects.gravity.as_ref().unwrap();
+    assert_eq!(
+        (gravity.acceleration(), gravity.schedule()),
+        ([0.0, 2.0, 0.0], Schedule::Constant)
+    );
     assert_eq!(parse(&scene.text, &[]).unwrap(), without_arguments(&scene));
 }
 

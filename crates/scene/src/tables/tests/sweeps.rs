@@ -20,10 +20,7 @@ fn a_sweep_has_a_static_scene_per_value() {
     let values: Vec<f64> = sweep.points.iter().map(|p| p.value).collect();
     assert_eq!(values, [0.0, 500.0, 1000.0]);
     for (point, value) in points.iter().zip(values) {
-        assert_eq!(
-            point.effects.radial_force.as_ref().map(|f| f.value.value),
-            Some(value)
-        );
+        assert_eq!(radial_of(point), Some(value));
         assert_eq!(point.analysis, Analysis::Static);
         let same = Scene {
             text: scene.text.clone(),
@@ -42,12 +39,7 @@ fn equal_steps_include_both_ends() {
     let scene = parse(&text, &[]).unwrap();
     let values: Vec<f64> = sweep_of(&scene).points.iter().map(|p| p.value).collect();
     assert_eq!(values, [0.0, 1e3, 2e3, 3e3, 4e3, 5e3, 6e3, 7e3]);
-    let forces: Vec<_> = scene
-        .sweep_scenes()
-        .unwrap()
-        .iter()
-        .map(|s| s.effects.radial_force.as_ref().map(|f| f.value.value))
-        .collect();
+    let forces: Vec<_> = scene.sweep_scenes().unwrap().iter().map(radial_of).collect();
     assert_eq!(forces, values.iter().map(|v| Some(*v)).collect::<Vec<_>>());
 }
 

@@ -1,0 +1,163 @@
+//! Loads on the bodies at one instant, and the trait of what adds them.
+//!
+//! An effect is immutable: it cannot hide state.
+
+use contact::Side;
+use input::Schedule;
+pub use ring::FrameTurn;
+use timer::SharedLaps;
+
+use crate::balls::BallResult;
+use crate::error::DynamicsError;
+use crate::model::Model;
+use ring::division::NodePlaces;
+
+/// Loads on all bodies at one instant.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Loads {
+    /// Generalised shaft loads: force x, y, z in N, moment x, y in N m about the shaft's origin.
+    pub shaft: [f64; 5],
+    /// What the body loads of a flexible inner ring add to them, N and N m.
+    pub ring_on_shaft: [f64; 5],
+    /// Force on each ball [radial, axial] at its just-touching position, N.
+    pub balls: Vec<[f64; 2]>,
+    /// Growth of the radial force on each ball with its radial displacement, N/m.
+    pub ball_slopes: Vec<f64>,
+    /// Whether forces on balls or contacts depend on the contact angles.
+    pub follows_angles: bool,
+    /// Body loads on the nodes of a flexible ring, N, `[n_nodes][3]` flat; None: no such load.
+    pub rings: [Option<Vec<f64>>; 2],
+    /// Force on the ring at each contact [radial, axial] besides the normal one, N, by site (2 ball + side), acting
+    /// at the groove centre; the ball gets its negative. Empty: no effect adds any.
+    pub contacts: Vec<[f64; 2]>,
+    /// Turning of the inner ring's frame, when its inertia is called for.
+    pub frame: Option<FrameTurn>,
+}
+
+impl Loads {
+    /// No load.
+    pub fn none(model: &Model) -> Loads {
+        Loads {
+            shaft: [0.0; 5],
+            ring_on_shaft: [0.0; 5],
+            ball_slopes: vec![0.0; model.geometry.n_balls],
+            follows_angles: false,
+            balls: vec![[0.0; 2]; model.geometry.n_balls],
+            rings: [None, None],
+            contacts: Vec::new(),
+            frame: None,
+        }
+    }
+
+    /// Adds a force (N) at the load point of the shaft.
+    pub fn add_shaft_force(&mut self, model: &Model, force: [f64; 3]) {
+        self.add_shaft_force_at(model.load_point, force);
+    }
+
+    /// Adds a force (N) on the shaft's axis at a distance (m) from the plane of the inner groove centres.
+    pub fn add_shaft_force_at(&mut self, distance: f64, force: [f64; 3]) {
+        for i in 0..3 {
+            self.shaft[i] += force[i];
+        }
+        // Moment of a force at distance L along the axis: L e_z x F.
+        self.shaft[3] -= distance * force[1];
+        self.shaft[4] += distance * force[0];
+    }
+
+    /// Adds a force (N) [radial, axial] on the ring at one contact; the ball gets its negative.
+    pub fn add_contact_force(&mut self, ball: usize, side: Side, force: [f64; 2]) {
+        self.contacts.resize(2 * self.balls.len(), [0.0; 2]);
+        let sum = &mut self.contacts[2 * ball + side.index()];
+        (sum[0], sum[1]) = (sum[0] + force[0], sum[1] + force[1]);
+    }
+
+    /// Adds nodal body loads (N) to a flexible ring; the shaft carries the `resultant` of those of the inner ring:
+    /// force x, y, z, N, and moment about x and y, N m, about the shaft's origin.
+    pub fn add_ring_load(&mut self, side: Side, load: Vec<f64>, resultant: [f64; 5]) {
+        if side == Side::Inner {
+            let sum = self.ring_on_shaft.iter_mut().zip(resultant);
+            sum.for_each(|(s, f)| *s += f);
+        }
+        match &mut self.rings[side.index()] {
+            Some(sum) => sum.iter_mut().zip(&load).for_each(|(s, l)| *s += l),
+            none => *none = Some(load),
+        }
+    }
+}
+
+/// Force x, y, z, N, and moment about x and y, N m, of nodal loads on a ring (N, `[n_nodes][3]` flat), about the
+/// point `origin_z` of its axis. Collective.
+pub(crate) fn resultant(places: &NodePlaces, origin_z: f64, load: &[f64]) -> [f64; 5] {
+    places.sum(|node, [x, y, z]| {
+        let [f, arm] = [&load[3 * node..3 * node + 3], &[x, y, z - origin_z]];
+        [
+            f[0],
+            f[1],
+            f[2],
+            arm[1] * f[2] - arm[2] * f[1],
+            arm[2] * f[0] - arm[0] * f[2],
+        ]
+    })
+}
+
+/// An instant of a motion; the default is the start.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Now<'a> {
+    /// Time, s.
+    pub time: f64,
+    /// Loads are means over an interval of so many seconds about the time: that of a step in time; 0 at an instant.
+    pub width: f64,
+    /// Angle the cage has turned since the start, rad.
+    pub cage_angle: f64,
+    /// Contact angles, rad, by site (2 ball + side), `[2 n_balls]`; None: not known yet, the free contact angle
+    /// stands for them.
+    pub angles: Option<&'a [f64]>,
+}
+
+impl Now<'_> {
+    /// Factor of a scheduled load.
+    pub fn factor(&self, schedule: &Schedule) -> f64 {
+        schedule.mean(self.time, self.width)
+    }
+
+    /// Contact angle of a ball on one raceway, rad.
+    pub fn contact_angle(&self, model: &Model, ball: usize, side: Side) -> f64 {
+        match self.angles {
+            Some(angles) => angles[2 * ball + side.index()],
+            None => model.geometry.free_contact_angle(),
+        }
+    }
+}
+
+/// What an effect with loads is in a bearing.
+pub trait Effect: Send + Sync {
+    /// Name of its scene table.
+    fn name(&self) -> &'static str;
+
+    /// Adds its loads at an instant.
+    fn add_loads(&self, model: &Model, now: &Now, loads: &mut Loads) -> Result<(), DynamicsError>;
+
+    /// Whether it is the inertia of the inner ring's turning frame.
+    fn turns_frame(&self) -> bool {
+        false
+    }
+
+    /// What a reader of an equilibrium should know: where the effect is beyond what it assumes.
+    fn warning(&self, _model: &Model, _now: &Now, _balls: &[BallResult]) -> Option<String> {
+        None
+    }
+}
+
+/// Loads of all effects of the model at an instant.
+pub fn loads(model: &Model, now: &Now) -> Result<Loads, DynamicsError> {
+    timed_loads(model, now, &SharedLaps::default())
+}
+
+/// [`loads`], with the time of each effect added to `costs`.
+pub fn timed_loads(model: &Model, now: &Now, costs: &SharedLaps) -> Result<Loads, DynamicsError> {
+    let mut loads = Loads::none(model);
+    for effect in &model.effects {
+        costs.time(effect.name(), || effect.add_loads(model, now, &mut loads))?;
+    }
+    Ok(loads)
+}

@@ -1,0 +1,133 @@
+//! Rules of thumb: what an effect brings, over what is there without it.
+//!
+//! Every rule is a ratio from a closed form of rigid rings, stated in the file of its effect. An effect that is off
+//! is pointed out from a ratio of 1 % on, one that is on below 0.1 %. Estimates are good to a factor of about two:
+//! they say where to look, and `raceway prices` measures.
+//!
+//! ```text
+//! load of a ball         Q = F_a / (Z sin a) + 4.37 F_r / (Z cos a)     Stribeck's number for ball bearings
+//! Hertz approach         d = (Q / K)^(2/3)
+//! ```
+//!
+//! a is the free contact angle, which is lower than the one under load: Q is rather too large, angles too small.
+//! References: Harris, Rolling Bearing Analysis, 4th ed., chapters 5, 7 and 13.
+
+use contact::Side;
+use fem::Material;
+
+use crate::kinematics::{Kinematics, SlipRatios};
+use crate::model::Model;
+
+/// Ratio from which an effect that is off is pointed out.
+pub const MATTERS: f64 = 1e-2;
+/// Ratio below which an effect that is on is pointed out.
+pub const NEGLIGIBLE: f64 = 1e-3;
+/// Stribeck's number: the most loaded ball of a bearing under a radial load carries 4.37 F_r / Z (Harris, chapter 7).
+const STRIBECK: f64 = 4.37;
+
+/// Largest forces on the shaft, N.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct PeakLoad {
+    /// Along the axis.
+    pub axial: f64,
+    /// Across it.
+    pub radial: f64,
+}
+
+/// What a scene is judged by.
+pub struct Case<'a> {
+    /// The bearing.
+    pub model: &'a Model,
+    /// Loads on the shaft at their peaks.
+    pub load: PeakLoad,
+    /// Largest speed of the inner ring, rad/s.
+    pub speed: f64,
+    /// Slip ratios at the inner and outer raceway.
+    pub slip: SlipRatios,
+    /// What rings are made of.
+    pub ring_steel: Material,
+    /// Bore of the inner ring, m.
+    pub bore_diameter: f64,
+    /// Width of the rings, m.
+    pub width: f64,
+    /// Whether it is a motion with inertia.
+    pub has_inertia: bool,
+    /// Whether an effect damps it.
+    pub is_damped: bool,
+    /// Whether loads or speed change in time.
+    pub changes_in_time: bool,
+}
+
+impl Case<'_> {
+    /// Load of a ball, N; 0 when no load is given: modes and imposed displacements alone have none to compare with.
+    pub fn ball_load(&self) -> f64 {
+        let (sin, cos) = self.contact_angle().sin_cos();
+        let PeakLoad { axial, radial } = self.load;
+        let z = self.n_balls();
+        axial / (z * sin.max(f64::MIN_POSITIVE)) + STRIBECK * radial / (z * cos)
+    }
+
+    /// Mean Hertz approach of inner and outer contact under the load of a ball, m.
+    pub fn approach(&self) -> f64 {
+        let stiffness = |side: Side| self.model.hertz[side.index()].stiffness;
+        let approach = |side| (self.ball_load() / stiffness(side)).powf(2.0 / 3.0);
+        let [inner, outer] = Side::BOTH.map(approach);
+        0.5 * (inner + outer)
+    }
+
+    /// Free contact angle, rad.
+    pub fn contact_angle(&self) -> f64 {
+        self.model.geometry.free_contact_angle()
+    }
+
+    /// Number of balls.
+    pub fn n_balls(&self) -> f64 {
+        self.model.geometry.n_balls as f64
+    }
+
+    /// Turning of cage and balls.
+    pub fn kinematics(&self) -> Kinematics {
+        Kinematics::new(&self.model.geometry, self.slip)
+    }
+
+    /// Centrifugal force of a ball, N.
+    pub fn centrifugal_force(&self) -> f64 {
+        let cage = self.kinematics().cage * self.speed;
+        self.model.ball_mass() * self.model.geometry.ball_centre()[0] * cage * cage
+    }
+
+    /// Radius of the bottom of the inner groove, m.
+    pub fn inner_radius(&self) -> f64 {
+        0.5 * self.model.geometry.inner_raceway_diameter
+    }
+
+    /// Mass of the inner ring, about, kg.
+    pub fn inner_ring_mass(&self) -> f64 {
+        let radius = self.inner_radius();
+        let area = std::f64::consts::PI * (radius * radius - 0.25 * self.bore_diameter * self.bore_diameter);
+        self.ring_steel.density * area * self.width
+    }
+}
+
+/// Says that an effect is off and matters, or on and does not.
+pub fn judge(name: &str, is_on: bool, ratio: f64, estimate: &str) -> Vec<String> {
+    if !is_on && ratio >= MATTERS {
+        return vec![format!("[effects.{name}] is off, but {estimate}")];
+    }
+    if is_on && ratio < NEGLIGIBLE {
+        return vec![format!(
+            "[effects.{name}] is on, but {estimate}: it could be left off"
+        )];
+    }
+    Vec::new()
+}
+
+/// A ratio in per cent.
+pub fn percent(ratio: f64) -> String {
+    let p = 100.0 * ratio;
+    if p >= 0.1 {
+        format!("{p:.1} %")
+    } else {
+        format!("{p:.1e} %")
+    }
+}

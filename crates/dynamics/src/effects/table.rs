@@ -1,0 +1,229 @@
+//! What every table `[effects.NAME]` of a scene says of itself: its checks, the slots of the bearing that it fills,
+//! when it matters, and how its price is found.
+//!
+//! A slot is a place where the bearing takes what effects bring. Each is a method of [`Table`] that brings nothing
+//! unless a table says otherwise:
+//!
+//! | slot | method | who reads it |
+//! |---|---|---|
+//! | loads, and the inertia of a turning frame | `load` | equilibria and steps, by [`Effect`] |
+//! | kinematics of the cage | `slip` | [`crate::kinematics`] |
+//! | terms of the raceway contact | `contact_damping` | [`crate::interactions::discrete_gradient`] |
+//! | damping of rings | `ring_damping` | the elastic bodies |
+
+use std::sync::Arc;
+
+use input::{Clock, Problems, Quantity, Schedule};
+use ring::RingModel;
+
+use super::loads::Effect;
+use super::rules::{Case, PeakLoad};
+use crate::error::DynamicsError;
+use crate::interactions::discrete_gradient::ContactDamping;
+use crate::kinematics::{BallSpeeds, SlipRatios, Speed};
+
+/// A load beyond this is a slip of the unit, N and N m.
+const MAX_LOAD: f64 = 1e9;
+
+/// What is known of an effect whether or not a scene has it.
+#[derive(Clone, Copy, Debug)]
+pub struct About {
+    /// Name of its table.
+    pub name: &'static str,
+    /// The table as a scene has it, header and all, with every key.
+    pub example: &'static str,
+    /// What it takes from the speed of the inner ring.
+    pub speed: SpeedRole,
+    /// What else a scene must have.
+    pub needs: &'static [Need],
+    /// What `raceway prices` turns on; None: a load that is not varied.
+    pub trial: Option<Trial>,
+}
+
+/// What an effect takes from the speed of the inner ring.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SpeedRole {
+    /// Nothing.
+    None,
+    /// It changes how parts roll: nothing in an equilibrium by itself.
+    Rolling,
+    /// It makes a force of it, in an equilibrium too.
+    Force,
+    /// It makes a force on balls of it, whose speeds may follow their contact angles.
+    BallForce,
+}
+
+/// What a scene must have, or an effect does nothing.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Need {
+    /// Inertia: motion in time.
+    Inertia,
+    /// A finite-element inner ring.
+    FlexibleInner,
+}
+
+/// Values with which `raceway prices` turns an effect on.
+#[derive(Clone, Copy, Debug)]
+pub struct Trial {
+    /// In words; empty for a table without keys.
+    pub what: &'static str,
+    /// Keys of the table and their values, as for `--set`.
+    pub keys: &'static [(&'static str, &'static str)],
+}
+
+/// What the effects of a scene have to go with.
+#[derive(Clone, Copy, Debug)]
+pub struct Context {
+    /// Whether equilibria are computed, not motion with inertia.
+    pub is_without_inertia: bool,
+    /// Whether loads may change in time.
+    pub clock: Clock,
+    /// Whether the scene has the table `[speed]`.
+    pub has_speed: bool,
+    /// Whether the inner ring is a finite-element body.
+    pub has_flexible_inner: bool,
+}
+
+/// What loads are made with.
+#[derive(Clone, Copy)]
+pub struct Setting<'a> {
+    /// Speed of the inner ring.
+    pub speed: &'a Speed,
+    /// Slip ratios at the inner and outer raceway.
+    pub slip: SlipRatios,
+    /// Contact angles that the speeds of balls follow.
+    pub ball_speeds: BallSpeeds,
+    /// Flexible rings, inner first; None is a rigid ring.
+    pub rings: &'a [Option<Arc<RingModel>>; 2],
+}
+
+/// Damping matrix of the rings, C = mass M + stiffness K.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RingDamping {
+    /// Factor of the mass matrix, 1/s.
+    pub mass: f64,
+    /// Factor of the stiffness matrix, s.
+    pub stiffness: f64,
+}
+
+/// A table of a scene.
+pub trait Table {
+    /// What is known without a scene.
+    fn about() -> About
+    where
+        Self: Sized;
+
+    /// Rule of thumb for `raceway check`: sentences on an effect that is off and matters, or on and does not.
+    fn advice(_table: Option<&Self>, _case: &Case<'_>) -> Vec<String>
+    where
+        Self: Sized,
+    {
+        Vec::new()
+    }
+
+    /// Checks its values; what a scene must have is checked for all tables alike.
+    fn check(&self, _context: Context, _problems: &mut Problems) {}
+
+    /// Slot of loads.
+    fn load(&self, _setting: Setting<'_>) -> Result<Option<Box<dyn Effect>>, DynamicsError> {
+        Ok(None)
+    }
+
+    /// Slot of kinematics: slip ratios at the inner and outer raceway.
+    fn slip(&self) -> Option<SlipRatios> {
+        None
+    }
+
+    /// Slot of contact terms: damping along the normal.
+    fn contact_damping(&self) -> Option<ContactDamping> {
+        None
+    }
+
+    /// Slot of ring damping.
+    fn ring_damping(&self) -> Option<RingDamping> {
+        None
+    }
+
+    /// Largest forces on the shaft at a speed in rad/s: what rules of thumb compare with.
+    fn peak_load(&self, _speed: f64) -> PeakLoad {
+        PeakLoad::default()
+    }
+
+    /// Factor of its load over time.
+    fn schedule(&self) -> Schedule {
+        Schedule::Constant
+    }
+}
+
+/// A table that a scene may have.
+pub trait Entry {
+    /// What is known of it.
+    fn about(&self) -> About;
+
+    /// The table, if the scene has it.
+    fn table(&self) -> Option<&dyn Table>;
+
+    /// Its rule of thumb.
+    fn advice(&self, case: &Case<'_>) -> Vec<String>;
+}
+
+impl<T: Table> Entry for Option<T> {
+    fn about(&self) -> About {
+        T::about()
+    }
+
+    fn table(&self) -> Option<&dyn Table> {
+        self.as_ref().map(|table| table as &dyn Table)
+    }
+
+    fn advice(&self, case: &Case<'_>) -> Vec<String> {
+        T::advice(self.as_ref(), case)
+    }
+}
+
+impl About {
+    /// Whether the effect can do something in a scene.
+    pub fn fits(&self, context: Context) -> bool {
+        let mut problems = Problems::default();
+        self.check_needs(context, &mut problems);
+        problems.is_empty()
+    }
+
+    /// Reports what the scene lacks for the effect to do something.
+    pub fn check_needs(&self, context: Context, problems: &mut Problems) {
+        let name = self.name;
+        if self.speed != SpeedRole::None && !context.has_speed {
+            problems.add(format!(
+                "[effects.{name}] needs the speed of the inner ring; add [speed] with inner = \"1800 rpm\" or \
+                 remove the effect"
+            ));
+        }
+        for need in self.needs {
+            match need {
+                Need::FlexibleInner if !context.has_flexible_inner => problems.add(format!(
+                    "[effects.{name}] is the inertia of a flexible inner ring, but the inner ring is rigid; remove it"
+                )),
+                Need::Inertia if context.is_without_inertia => problems.add(format!(
+                    "[effects.{name}] does nothing in a scene without inertia; remove it, or compute motion with \
+                     [dynamic]"
+                )),
+                Need::FlexibleInner | Need::Inertia => {}
+            }
+        }
+    }
+}
+
+/// Reports a load that is beyond any bearing at the peak of its schedule.
+pub(super) fn require_load<const KIND: usize>(
+    load: &Quantity<KIND>,
+    schedule: &Schedule,
+    key: &str,
+    problems: &mut Problems,
+) {
+    let rule = match schedule {
+        Schedule::Constant => "that is more than any bearing carries, check its unit",
+        _ => "times its schedule that is more than any bearing carries, check its unit and factors",
+    };
+    let size = load.si().abs();
+    problems.require(size * schedule.peak() <= MAX_LOAD, key, load, rule);
+}

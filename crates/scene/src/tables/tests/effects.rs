@@ -1,0 +1,78 @@
+//! The tables of all effects, each by its own example.
+
+use dynamics::effects::{About, Effects, SpeedRole};
+
+use super::*;
+
+/// All there is to know of every effect.
+fn all() -> Vec<About> {
+    let none = Effects::default();
+    none.list().iter().map(|entry| entry.about()).collect()
+}
+
+/// A scene of motion with a speed, flexible rings and no effects but what is given.
+fn with_effects(tables: &str) -> String {
+    let (head, tail) = DYNAMIC.split_once("[effects.axial_force]").unwrap();
+    let (_, tail) = tail.split_once("[dynamic]").unwrap();
+    format!("{head}{tables}\n[dynamic]{tail}")
+}
+
+/// Wrong: the example in the file of an effect would be refused, or be the table of another; a new effect would not be in the
+/// list, or under a name that is not its key.
+#[test]
+fn the_example_of_every_effect_is_its_table() {
+    for about in all() {
+        let scene = parse(&with_effects(about.example), &[]).unwrap_or_else(|e| panic!("{e}"));
+        assert_eq!(scene.effects.names(), [about.name]);
+        let header = format!("[effects.{}]", about.name);
+        assert!(about.example.starts_with(&header), "{}", about.example);
+    }
+}
+
+/// Wrong: `raceway prices` would turn an effect on with values that a scene refuses.
+#[test]
+fn the_trial_of_every_effect_is_a_table_of_it() {
+    for (about, trial) in all().iter().filter_map(|about| Some((about, about.trial?))) {
+        let value = |(key, value): &(&str, &str)| format!("effects.{}.{key}={value}", about.name);
+        let mut set: Vec<String> = trial.keys.iter().map(value).collect();
+        if set.is_empty() {
+            set.push(format!("effects.{}={{}}", about.name));
+        }
+        let set: Vec<&str> = set.iter().map(String::as_str).collect();
+        let scene = parse(&with_effects(""), &set).unwrap_or_else(|e| panic!("{e}"));
+        assert_eq!(scene.effects.names(), [about.name]);
+    }
+}
+
+/// Wrong: an effect would be computed with a speed of zero, as if it were not there.
+#[test]
+fn every_effect_of_speed_needs_one() {
+    let text = with_effects("");
+    let (head, tail) = text.split_once("[speed]").unwrap();
+    let (_, tail) = tail.split_once("[dynamic]").unwrap();
+    for about in all() {
+        let result = parse(&format!("{head}{}\n[dynamic]{tail}", about.example), &[]);
+        let expected = format!(
+            "[effects.{}] needs the speed of the inner ring; add [speed]",
+            about.name
+        );
+        match result {
+            Ok(_) => assert_eq!(about.speed, SpeedRole::None, "{}", about.name),
+            Err(error) => assert!(error.to_string().contains(&expected), "{error}"),
+        }
+    }
+}
+
+/// Wrong: the remedy of an idle speed would leave out an effect that uses it, or name one that does not.
+#[test]
+fn an_idle_speed_is_refused_with_every_effect_that_would_use_it() {
+    let idle = replace_line(&at_rest("inner = \"1800 rpm\""), "[effects.ball_centrifugal]", "");
+    let message = message_of(&idle, &[]);
+    let remedy = "; add one, compute motion with [dynamic], or remove [speed]";
+    assert!(message.contains(remedy), "{message}");
+    for about in all() {
+        let uses_it = matches!(about.speed, SpeedRole::Force | SpeedRole::BallForce);
+        let header = format!("[effects.{}]", about.name);
+        assert_eq!(message.contains(&header), uses_it, "{header}: {message}");
+    }
+}
