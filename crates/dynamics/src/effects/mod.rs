@@ -17,6 +17,7 @@ pub mod radial_force;
 pub mod rayleigh_damping;
 pub mod rules;
 mod table;
+pub mod unbalance;
 
 pub use axial_force::AxialForce;
 pub use ball_centrifugal::BallCentrifugal;
@@ -61,6 +62,8 @@ pub struct Effects {
     pub contact_damping: Option<contact_damping::Table>,
     /// Damping of the rings.
     pub rayleigh_damping: Option<rayleigh_damping::Table>,
+    /// A mass off the axis of shaft and inner ring.
+    pub unbalance: Option<unbalance::Table>,
 }
 
 impl Effects {
@@ -78,6 +81,7 @@ impl Effects {
             frame_rotation,
             contact_damping,
             rayleigh_damping,
+            unbalance,
         } = self;
         vec![
             axial_force,
@@ -90,6 +94,7 @@ impl Effects {
             frame_rotation,
             contact_damping,
             rayleigh_damping,
+            unbalance,
         ]
     }
 
