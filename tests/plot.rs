@@ -95,8 +95,8 @@ fn every_run_has_the_figures_of_its_kind() {
     }
 }
 
-/// Wrong: the stress of forces that are spread over patches would be taken for that under a ball, or the picture of a raceway and
-/// that of its section would have two scales for one step.
+/// Wrong: the stress of forces that are spread over patches would be taken for that under a ball, or the picture of a
+/// raceway and that of its section would have two scales for one step.
 #[test]
 fn stress_without_near_field_says_so_and_one_step_has_one_scale() {
     let dir = plotted();

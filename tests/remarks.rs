@@ -1,5 +1,5 @@
-//! What a run says before it begins and keeps in its summary: slips, steps that resolve too little, advice of rules of thumb; and
-//! meshes and steps that are refused because nothing could be right.
+//! What a run says before it begins and keeps in its summary: slips, steps that resolve too little, advice of rules of
+//! thumb; and meshes and steps that are refused because nothing could be right.
 
 use mesh::{Facet, Mesh, MshFormat, Overwrite, RingSide};
 
@@ -53,8 +53,8 @@ fn assert_refused(dir: &Dir, arguments: &[&str], parts: &[&str]) {
 
 const MOVING: &str = "[dynamic]\nduration = \"1 ms\"\nstep = \"20 us\"\noutput_every = 50";
 
-/// Wrong: 1.5 turns of the bearing in a step would draw no remark: balls change places unseen, and every number is wrong. Balls of the
-/// 7010C pass its inner raceway 306 times per second at 1800 rpm.
+/// Wrong: 1.5 turns of the bearing in a step would draw no remark: balls change places unseen, and every number is
+/// wrong. Balls of the 7010C pass its inner raceway 306 times per second at 1800 rpm.
 #[test]
 fn steps_in_which_balls_change_places_unseen_are_refused() {
     let slow = "[dynamic]\nduration = \"500 ms\"\nstep = \"50 ms\"";
@@ -63,8 +63,8 @@ fn steps_in_which_balls_change_places_unseen_are_refused() {
         assert_eq!(outcome.code, Some(2), "{}", outcome.stderr);
         let part = "at 1800.0 rpm (1.500 turns a step) balls pass a point of the inner raceway 306.1";
         assert!(outcome.stderr.contains(part), "{}", outcome.stderr);
-        let part = " 0.07 steps of 50 ms per period; expected 20 or more: dynamic.step of 160 us or less; with fewer than 2 no \
-                    result is right";
+        let part = " 0.07 steps of 50 ms per period; expected 20 or more: dynamic.step of 160 us or less; with \
+                    fewer than 2 no result is right";
         assert!(outcome.stderr.contains(part), "{}", outcome.stderr);
         assert!(!dir.path("out").exists());
     }
@@ -73,16 +73,17 @@ fn steps_in_which_balls_change_places_unseen_are_refused() {
 /// Wrong: a load of 50 kHz at steps of 20 us, whose mean over a step is nothing, would be left out in silence.
 #[test]
 fn a_harmonic_of_which_a_step_takes_the_mean_is_refused() {
-    let set = "effects.radial_force.schedule.harmonic={ frequency = \"50 kHz\", phase = \"0 deg\", mean = 1.0, amplitude = 0.5 }";
+    let set =
+        "effects.radial_force.schedule.harmonic={ frequency = \"50 kHz\", mean = 1.0, amplitude = 0.5 }";
     let (_, outcome) = turning("check", MOVING, &[set]);
     assert_eq!(outcome.code, Some(2), "{}", outcome.stderr);
-    let part = "effects.radial_force.schedule: a harmonic of 50000 Hz, 1.00 steps of 20 us per period; expected 20 or more: \
-                dynamic.step of 1 us or less";
+    let part = "effects.radial_force.schedule: a harmonic of 50000 Hz, 1.00 steps of 20 us per period; expected 20 or \
+                more: dynamic.step of 1 us or less";
     assert!(outcome.stderr.contains(part), "{}", outcome.stderr);
 }
 
-/// Wrong: steps that resolve badly would be warned of by `check` alone, or by the terminal and not by the summary; equilibria in time,
-/// each right for itself, would be refused.
+/// Wrong: steps that resolve badly would be warned of by `check` alone, or by the terminal and not by the summary;
+/// equilibria in time, each right for itself, would be refused.
 #[test]
 fn steps_that_resolve_badly_are_warned_of_and_stand_in_the_summary() {
     let coarse = "[dynamic]\nduration = \"5 ms\"\nstep = \"500 us\"";
@@ -112,7 +113,8 @@ fn schedules_that_the_steps_do_not_show_are_warned_of() {
         ),
         (
             "impact={ start = \"0 ms\", duration = \"50 us\" }",
-            "an impact of 50 us is 2.50 steps of 20 us; expected 10 or more: dynamic.step of 5 us or less; its impulse is whole",
+            "an impact of 50 us is 2.50 steps of 20 us; expected 10 or more: dynamic.step of 5 us or less; its \
+             impulse is whole",
         ),
         (
             "step={ at = \"1 s\" }",
@@ -169,15 +171,16 @@ fn a_run_says_what_check_advises() {
     );
 }
 
-/// Wrong: a shaft that is locked at 0 would be taken for one in the middle of its play: a deep groove bearing has contact angles then.
-/// The 7010C has grooves 0.4 mm apart and a free contact angle of 14.93 deg.
+/// Wrong: a shaft that is locked at 0 would be taken for one in the middle of its play: a deep groove bearing has
+/// contact angles then. The 7010C has grooves 0.4 mm apart and a free contact angle of 14.93 deg.
 #[test]
 fn a_shaft_locked_at_zero_is_told_where_the_middle_is() {
     let dir = Dir::with_scene(SCENE);
     let check = [&["check", "scene.toml"], &RIGID[..], &["--set", "shaft.z=locked"]].concat();
     let outcome = dir.raceway(&check);
-    let part = "advice   shaft.z is \"locked\" at 0, where all balls just touch at the free contact angle of 14.93 deg; with the \
-                grooves opposite each other, as in a deep groove bearing without thrust, it is shaft.z = \"-103.";
+    let part = "advice   shaft.z is \"locked\" at 0, where all balls just touch at the free contact angle of 14.93 deg; \
+                with the grooves opposite each other, as in a deep groove bearing without thrust, it is \
+                shaft.z = \"-103.";
     assert!(outcome.stdout.contains(part), "{}", outcome.stdout);
     let outcome = dir.raceway(&check[..check.len() - 2]);
     assert!(!outcome.stdout.contains("locked"), "{}", outcome.stdout);
@@ -186,12 +189,13 @@ fn a_shaft_locked_at_zero_is_told_where_the_middle_is() {
 /// Wrong: two columns of probes.csv would have one name.
 #[test]
 fn probes_of_two_kinds_with_one_name_are_refused() {
-    let probes = "[probes.node.a]\nring = \"inner\"\nazimuth = \"0 deg\"\ngroove_angle = \"15 deg\"\n\n[probes.point.a]\nring = \
-                  \"inner\"\nazimuth = \"0 deg\"\ngroove_angle = \"15 deg\"\ndepth = \"0.1 mm\"\n\n[static]";
+    let probes = "[probes.node.a]\nring = \"inner\"\nazimuth = \"0 deg\"\ngroove_angle = \"15 deg\"\n\n\
+                  [probes.point.a]\nring = \"inner\"\nazimuth = \"0 deg\"\ngroove_angle = \"15 deg\"\n\
+                  depth = \"0.1 mm\"\n\n[static]";
     let dir = tiny();
     dir.write("scene.toml", with_line("[static]", "[static]", probes));
-    let part = "[probes.node.a] and [probes.point.a] have one name, with which their columns in probes.csv begin; expected \
-                another name for one of them";
+    let part = "[probes.node.a] and [probes.point.a] have one name, with which their columns in probes.csv begin; \
+                expected another name for one of them";
     assert_refused(&dir, &["run", "scene.toml", "--out", "out"], &[part]);
     dir.write(
         "scene.toml",
@@ -201,7 +205,8 @@ fn probes_of_two_kinds_with_one_name_are_refused() {
     assert_eq!(outcome.code, Some(0), "{}", outcome.stderr);
 }
 
-/// Wrong: a second run would go elsewhere with one line at its end, and `plot` of the first folder would show the old results.
+/// Wrong: a second run would go elsewhere with one line at its end, and `plot` of the first folder would show the old
+/// results.
 #[test]
 fn a_second_run_says_where_it_goes_and_plot_says_that_there_is_a_later_one() {
     let dir = Dir::with_scene(SCENE);
@@ -239,7 +244,8 @@ fn slips_stand_in_the_summary() {
     assert!(texts(&dir, "warnings").iter().any(|text| text.starts_with(part)));
 }
 
-/// Wrong: a stiffness for a comparison, such as nearly rigid contacts, would be refused, or a slip of its unit pass without a word.
+/// Wrong: a stiffness for a comparison, such as nearly rigid contacts, would be refused, or a slip of its unit pass
+/// without a word.
 #[test]
 fn an_unusual_stiffness_is_warned_of_and_solved() {
     let dir = Dir::with_scene(&with_line(
@@ -259,8 +265,8 @@ fn an_unusual_stiffness_is_warned_of_and_solved() {
     );
 }
 
-/// Wrong: long motions would write tables that nobody can read; a thinned table would lack rows of steps with fields, or a run that was
-/// resumed would have other tables.
+/// Wrong: long motions would write tables that nobody can read; a thinned table would lack rows of steps with fields,
+/// or a run that was resumed would have other tables.
 #[test]
 fn tables_are_thinned_and_keep_the_rows_of_step_files() {
     use crate::util::tables::Table;
@@ -351,7 +357,7 @@ fn a_group_that_is_a_part_of_its_surface_is_refused_unless_it_is_meant() {
         (
             "bore",
             (|azimuth, _| azimuth > 0.0) as fn(f64, f64) -> bool,
-            "group \"bore\" has 50.0 % of the circle and 50.0 % of the area of its surface: 54 of 108 faces on it are in no group",
+            "group \"bore\" has 50.0 % of the circle and 50.0 % of the area of its surface: 54 of 108 faces",
         ),
         (
             "bore",
@@ -365,7 +371,8 @@ fn a_group_that_is_a_part_of_its_surface_is_refused_unless_it_is_meant() {
         ),
     ] {
         dir.write("inner.msh", with_group(group, keeps));
-        let remedy = "add them to the group in the .geo, or, if a part is meant, say so in the scene: inner.partial = true";
+        let remedy = "add them to the group in the .geo, or, if a part is meant, say so in the scene: \
+                      inner.partial = true";
         assert_refused(&dir, &run, &[part, remedy]);
     }
     dir.write("inner.msh", with_group("bore", |azimuth, _| azimuth > 0.0));
@@ -377,12 +384,14 @@ fn a_group_that_is_a_part_of_its_surface_is_refused_unless_it_is_meant() {
 }
 
 /// The section of the tiny mesh in a scene, and what `raceway mesh` writes into its file.
-const SECTION: &str = "[inner.section]\nshoulder_diameters = [\"60.4 mm\", \"60.4 mm\"]\nelement = \"hex8\"\nsectors = 18\n\
-                       groove_elements = 4\nthickness_elements = 1\nshoulder_elements = 1\n\n[outer]";
-const RECORD: &str = "bearing.bore_diameter = 50 mm; bearing.inner_raceway_diameter = 56.01 mm; bearing.inner_groove_radius = \
-                      4.65 mm; bearing.width = 16 mm; inner.groove_z = 0 mm; inner.section.shoulder_diameters = [60.4 mm, 60.4 \
-                      mm]; inner.section.element = hex8; inner.section.sectors = 18; inner.section.groove_elements = 4; \
-                      inner.section.thickness_elements = 1; inner.section.shoulder_elements = 1; inner.section.grading = 1";
+const SECTION: &str = "[inner.section]\nshoulder_diameters = [\"60.4 mm\", \"60.4 mm\"]\nelement = \"hex8\"\n\
+                       sectors = 18\ngroove_elements = 4\nthickness_elements = 1\nshoulder_elements = 1\n\n[outer]";
+const RECORD: &str = "bearing.bore_diameter = 50 mm; bearing.inner_raceway_diameter = 56.01 mm; \
+                      bearing.inner_groove_radius = 4.65 mm; bearing.width = 16 mm; inner.groove_z = 0 mm; \
+                      inner.section.shoulder_diameters = [60.4 mm, 60.4 mm]; inner.section.element = hex8; \
+                      inner.section.sectors = 18; inner.section.groove_elements = 4; \
+                      inner.section.thickness_elements = 1; inner.section.shoulder_elements = 1; \
+                      inner.section.grading = 1";
 
 /// Wrong: a stale mesh would give its own results under the scene's new section.
 #[test]

@@ -1,11 +1,12 @@
 //! `raceway info`: what a result folder or one of its files holds.
 
+use std::io::Read;
 use std::path::Path;
 
 use anyhow::{Context, anyhow};
 use checkpoint::{
-    FileDescription, committed_steps, describe, read_mesh, read_step, read_step_time, require_run, run_of,
-    step_file_name,
+    FileDescription, committed_steps, describe, open_regular, read_mesh, read_step, read_step_time,
+    require_run, run_of, step_file_name,
 };
 use comm::print;
 use results::disk::size;
@@ -26,15 +27,67 @@ pub enum Depth {
 pub fn info(path: &Path, depth: Depth) -> Result<(), Failure> {
     if path.is_dir() {
         folder(path, depth)
+    } else if is_msh(path) {
+        ring_mesh(path)
     } else if path.exists() {
         file(path)
     } else {
         Err(anyhow!(
-            "{} is not there; expected a result folder, a step file or mesh.hdf",
+            "{} is not there; expected a result folder, a step file, mesh.hdf or a mesh of Gmsh",
             path.display()
         )
         .into())
     }
+}
+
+/// Whether a file is one of Gmsh, by its first bytes.
+fn is_msh(path: &Path) -> bool {
+    let mut head = [0; MSH_HEAD.len()];
+    let read = open_regular(path).map(|mut file| file.read_exact(&mut head));
+    matches!(read, Ok(Ok(()))) && head == *MSH_HEAD
+}
+
+/// What a mesh of Gmsh begins with.
+const MSH_HEAD: &[u8; 11] = b"$MeshFormat";
+
+/// The mesh of a ring, in the unit of its file.
+fn ring_mesh(path: &Path) -> Result<(), Failure> {
+    let mesh = mesh::read_msh(path, 1.0)?;
+    let bytes = std::fs::metadata(path).map_or(0, |data| data.len());
+    line("file", &format!("{}, {}", path.display(), size(bytes)));
+    line(
+        "mesh",
+        &format!(
+            "{} {}, {} nodes, {} dofs",
+            mesh.n_elements(),
+            mesh.kind.name(),
+            mesh.n_nodes(),
+            mesh.n_dofs()
+        ),
+    );
+    let radii = mesh.nodes.iter().map(|x| x[0].hypot(x[1]));
+    let [inside, outside] = range(radii);
+    let [low, high] = range(mesh.nodes.iter().map(|x| x[2]));
+    let [inside, outside, low, high] =
+        [2.0 * inside, 2.0 * outside, low, high].map(|x| (1e6 * x).round() / 1e6 + 0.0);
+    line(
+        "size",
+        &format!("diameters {inside} to {outside}, z from {low} to {high}, in the unit of the file"),
+    );
+    for (name, facets) in &mesh.groups {
+        line("group", &format!("{name}, {} facets", facets.len()));
+    }
+    if let Some(record) = mesh::read_record(path)? {
+        line("made from", &record);
+    }
+    Ok(())
+}
+
+/// Smallest and largest of some numbers.
+fn range(values: impl Iterator<Item = f64>) -> [f64; 2] {
+    values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| {
+        [low.min(x), high.max(x)]
+    })
 }
 
 fn line(name: &str, text: &str) {

@@ -1,4 +1,5 @@
-//! What is said about a run before it begins and stands in its summary: slips of the scene, and what `raceway check` advises.
+//! What is said about a run before it begins and stands in its summary: slips of the scene, and what `raceway check`
+//! advises.
 
 use comm::print;
 use dynamics::Model;

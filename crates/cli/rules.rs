@@ -46,8 +46,8 @@ fn zero_of_the_shaft(scene: &Scene, model: &Model, lines: &mut Vec<String>) {
         return;
     }
     lines.push(format!(
-        "shaft.z is \"locked\" at 0, where all balls just touch at the free contact angle of {:.2} deg; with the grooves \
-         opposite each other, as in a deep groove bearing without thrust, it is shaft.z = \"{:.3} um\"",
+        "shaft.z is \"locked\" at 0, where all balls just touch at the free contact angle of {:.2} deg; with the \
+         grooves opposite each other, as in a deep groove bearing without thrust, it is shaft.z = \"{:.3} um\"",
         angle.to_degrees(),
         -1e6 * play
     ));

@@ -77,11 +77,7 @@ pub fn run(
     let read = start.elapsed().as_secs_f64();
     progress.stage("factoring the stiffness of the rings");
     let mut solver = StaticSolver::new(&model).map_err(Failure::solving)?;
-    for side in Side::BOTH {
-        if let Some(ring) = solver.ring(side) {
-            progress.stage(&format!("{} ring: {}", side.name(), ring.solver.solver_note()));
-        }
-    }
+    say_solvers(&solver, &progress);
     let mut solutions: Vec<Solved> = Vec::new();
     let mut results: Option<Files> = None;
     let mut failure = None;
@@ -148,6 +144,15 @@ pub fn run(
         }
     }
     failure.map_or(Ok(dir), Err)
+}
+
+/// Says how each ring is solved.
+fn say_solvers(solver: &StaticSolver, progress: &Progress) {
+    for side in Side::BOTH {
+        if let Some(ring) = solver.ring(side) {
+            progress.stage(&format!("{} ring: {}", side.name(), ring.solver.solver_note()));
+        }
+    }
 }
 
 /// Says what ranks do not share.

@@ -74,6 +74,34 @@ def find_steps(folder, first, last):
     return series, chosen
 
 
+def instant(folder, number, time):
+    """What a step shows, in words: modes have a frequency, points of a sweep their value; both have no time."""
+    modes = os.path.join(folder, "modes.csv")
+    if os.path.isfile(modes):
+        with open(modes, newline="") as file:
+            for row in csv.DictReader(file):
+                if int(row["step"]) == number:
+                    return "mode %s, %s, %.6g Hz" % (row["mode"], row["body"], float(row["frequency_hz"]))
+    column, value = swept(folder, number)
+    if column:
+        return "point %d, %s = %s" % (number, column, value)
+    return "step %d, t = %.6g s" % (number, time)
+
+
+def swept(folder, number):
+    """Column and text of the value of a point of a sweep; None twice for another run."""
+    shaft = os.path.join(folder, "shaft.csv")
+    if os.path.isfile(shaft):
+        with open(shaft, newline="") as file:
+            rows = csv.reader(file)
+            column = next(rows, ["", "", ""])[2]
+            value = next((row[2] for row in rows if row[0] == str(number)), None)
+            # The path of a key of the scene has dots, other columns have none.
+            if "." in column and value is not None:
+                return column, value
+    return None, None
+
+
 def open_series(series, time):
     """The reader at the given time; fails when the arrays to draw are not there."""
     reader = OpenDataFile(series)

@@ -104,7 +104,7 @@ def render(options):
         look(view, focus + (0.3 if side == INNER else -0.3) * outward, focus, 2.9 * reach)
         write_title(view, "%s raceway" % name, 22, "Upper Center")
         views.append(view)
-    write_title(views[0], "step %d, t = %.6g s" % (number, time), 15, "Lower Center")
+    write_title(views[0], instant(options.results, number, time), 15, "Lower Center")
     write_title(views[1], "most loaded: ball %d, %.4g N" % (loaded, rows[loaded]["outer_force_n"]), 15, "Lower Center")
     layout.SplitVertical(0, 0.5)
     layout.AssignView(1, views[0])
@@ -112,8 +112,8 @@ def render(options):
     layout.SetSize(*options.size)
     SaveScreenshot(os.path.abspath(options.picture), layout, ImageResolution=options.size)
     loads = sum(row["outer_force_n"] > 0 for row in rows)
-    print("%s: step %d, t = %.6g s, %d loaded balls, colours 0 to %.4g MPa, largest %.4g MPa"
-          % (options.picture, number, time, loads, top, values.max()))
+    print("%s: %s, %d loaded balls, colours 0 to %.4g MPa, largest %.4g MPa"
+          % (options.picture, instant(options.results, number, time), loads, top, values.max()))
 
 
 main("render_contacts.py", parse_arguments(sys.argv[1:]), render)

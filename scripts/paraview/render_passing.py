@@ -76,7 +76,7 @@ def render(options):
     GetActiveCamera().SetWindowCenter(0.07, 0.0)
     os.makedirs(options.frames, exist_ok=True)
     for i, (number, time) in enumerate(steps):
-        note.Text = "step %d, t = %.6g s" % (number, time)
+        note.Text = instant(options.results, number, time)
         view.ViewTime = time
         Render(view)
         SaveScreenshot(os.path.join(os.path.abspath(options.frames), "frame_%04d.png" % i), view,

@@ -103,12 +103,12 @@ def render(options):
         show_balls(balls, time, view)
     deformed = "displacements x %g" % options.scale
     write_title(view, options.title, 26, "Upper Center")
-    note = "step %d, t = %.6g s, %s; largest nodal value %.4g MPa" % (number, time, deformed, values.max())
+    note = "%s, %s; largest nodal value %.4g MPa" % (instant(options.results, number, time), deformed, values.max())
     write_title(view, note, 15, "Lower Center")
     place_camera(view, options.view)
     SaveScreenshot(os.path.abspath(options.picture), view, ImageResolution=options.size)
-    print("%s: step %d, t = %.6g s, colours 0 to %.4g MPa, largest %.4g MPa"
-          % (options.picture, number, time, top, values.max()))
+    print("%s: %s, colours 0 to %.4g MPa, largest %.4g MPa"
+          % (options.picture, instant(options.results, number, time), top, values.max()))
 
 
 main("render_rings.py", parse_arguments(sys.argv[1:]), render)

@@ -89,11 +89,11 @@ def render(options):
     view.CameraParallelScale = 0.62 * max(heights.max() - heights.min(), high[2] - low[2])
     GetActiveCamera().SetWindowCenter(0.08, 0.0)
     write_title(view, "von Mises stress at azimuth %.1f deg" % (numpy.degrees(azimuth) % 360.0), 24, "Upper Center")
-    write_title(view, "step %d, t = %.6g s; largest in the section %.4g MPa" % (number, time, values.max()), 15,
+    write_title(view, "%s; largest in the section %.4g MPa" % (instant(options.results, number, time), values.max()), 15,
                 "Lower Center")
     SaveScreenshot(os.path.abspath(options.picture), view, ImageResolution=options.size)
-    print("%s: step %d, t = %.6g s, azimuth %.4g deg, colours 0 to %.4g MPa, largest %.4g MPa"
-          % (options.picture, number, time, numpy.degrees(azimuth) % 360.0, top, values.max()))
+    print("%s: %s, azimuth %.4g deg, colours 0 to %.4g MPa, largest %.4g MPa"
+          % (options.picture, instant(options.results, number, time), numpy.degrees(azimuth) % 360.0, top, values.max()))
 
 
 main("render_section.py", parse_arguments(sys.argv[1:]), render)

@@ -248,7 +248,7 @@ fn rings_that_are_none() -> Vec<Case> {
             "a raceway with a hole",
             rebuilt(|m| m.groups.get_mut("raceway").unwrap().truncate(36)),
             &[
-                "group \"raceway\" has 50.0 % of the circle and 50.0 % of the area of its surface: 36 of 72 faces on it are in no group",
+                "group \"raceway\" has 50.0 % of the circle and 50.0 % of the area of its surface: 36 of 72 faces",
             ],
         ),
     ]

@@ -115,8 +115,8 @@ pub enum DynamicsError {
     /// The patch is smaller than the Hertz ellipse at this load.
     #[error(
         "ball {ball}, {side} raceway: at {force:.1} N the spread patch takes more compliance than Hertz's law has; \
-         the force is too large or a stiffness given in [contact] too high for this mesh, or the groove too narrow; check the \
-         loads, use a finer mesh or the exact stiffness"
+         the force is too large or a stiffness given in [contact] too high for this mesh, or the groove too narrow; \
+         check the loads, use a finer mesh or the exact stiffness"
     )]
     PatchTooSmall {
         /// Ball number, from 0.

@@ -16,7 +16,8 @@ pub struct Ticks {
     pub minor: Vec<f64>,
 }
 
-/// Ticks at multiples of 1, 2 or 5 times a power of ten, in the range; or of `step`, where two of these are in it and not too many.
+/// Ticks at multiples of 1, 2 or 5 times a power of ten, in the range; or of `step`, where two of these are in it and
+/// not too many.
 pub fn linear(low: f64, high: f64, step: Option<f64>) -> Ticks {
     let step = step
         .filter(|step| (high - low) / step <= 4.0 * MOST_LINEAR)

@@ -204,9 +204,9 @@ pub enum MeshError {
     },
     /// A group that is a part of its surface only.
     #[error(
-        "{path}: group \"{group}\" has {circle:.1} % of the circle and {area:.1} % of the area of its surface: {missing} of \
-         {total} faces on it are in no group or in another one (the first is of element {element}); expected the whole \
-         surface; add them to the group in the .geo, or, if a part is meant, {remedy}"
+        "{path}: group \"{group}\" has {circle:.1} % of the circle and {area:.1} % of the area of its surface: \
+         {missing} of {total} faces on it are in no group or in another one (the first is of element {element}); \
+         expected the whole surface; add them to the group in the .geo, or, if a part is meant, {remedy}"
     )]
     PartialGroup {
         /// The file.

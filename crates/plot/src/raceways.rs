@@ -33,8 +33,8 @@ pub struct Raceways {
 }
 
 /// Where the stress under a ball is not that of its contact.
-const WITHOUT_NEAR_FIELD: &str = "Without near field: stress of forces spread over the contact patches, far below that under a ball \
-                                  ([stress] near_field = true shows it)";
+const WITHOUT_NEAR_FIELD: &str = "Without near field: stress of forces spread over the contact patches, \
+                                  far below that under a ball ([stress] near_field = true shows it)";
 
 /// The raceways of a step.
 pub fn raceways(record: &StepRecord) -> anyhow::Result<Raceways> {

@@ -11,6 +11,7 @@ use clap::Args;
 use comm::print;
 use plot::{Choice, Results};
 use results::failure::Failure;
+use results::folder::say_later;
 use results::whole;
 
 /// What the command line asks for.
@@ -28,6 +29,7 @@ pub struct Report {
 /// Writes the page of a run.
 pub fn report(request: &Report) -> Result<(), Failure> {
     let source = source::read(&request.dir)?;
+    say_later(&request.dir);
     for doubt in &source.doubts {
         print::note(format_args!("warning: {doubt}"));
     }

@@ -18,7 +18,8 @@ pub fn page(source: &Source, numbers: &[Number], pictures: &[(String, String)]) 
         format!("<h1>{title}</h1>"),
         about(summary),
         warnings(source),
-        key_numbers(numbers),
+        modes(summary),
+        key_numbers(numbers, summary),
         figures(pictures),
         energy(summary),
         cost(summary, &source.files),
@@ -79,7 +80,43 @@ fn warnings(source: &Source) -> String {
     }
 }
 
-fn key_numbers(numbers: &[Number]) -> String {
+/// Natural frequencies of each body with the largest errors that they can have.
+fn modes(summary: &Value) -> String {
+    let Some(Value::Object(bodies)) = summary.get("modes") else {
+        return String::new();
+    };
+    let numbers = |body: &Value, key: &str| -> Vec<f64> {
+        let list = body.get(key).and_then(Value::as_array).into_iter().flatten();
+        list.filter_map(Value::as_f64).collect()
+    };
+    let tables = bodies.iter().map(|(name, body)| {
+        let (frequencies, bounds) = (numbers(body, "frequency_hz"), numbers(body, "bound_hz"));
+        let rows = frequencies
+            .iter()
+            .zip(&bounds)
+            .zip(1..)
+            .map(|((frequency, bound), mode)| {
+                row(
+                    &mode.to_string(),
+                    &[digits(*frequency), format!("{bound:.1e}")],
+                    Cells::Numbers,
+                )
+            });
+        let head = ["mode", "frequency, Hz", "largest error, Hz"];
+        format!(
+            "<h3>{}</h3>\n{}",
+            encode_text(name),
+            table("numbers", Some(&head), rows)
+        )
+    });
+    let tables: Vec<String> = tables.collect();
+    format!("<h2>Natural frequencies</h2>\n{}", tables.join("\n"))
+}
+
+fn key_numbers(numbers: &[Number], summary: &Value) -> String {
+    if numbers.is_empty() && summary.get("modes").is_some() {
+        return "<h2>Key numbers</h2>\n<p>Those of the modes are above.</p>".into();
+    }
     if numbers.is_empty() {
         return "<h2>Key numbers</h2>\n<p>The run has no tables of balls or shaft.</p>".into();
     }
@@ -250,6 +287,28 @@ mod tests {
         for (value, text) in pairs {
             assert_eq!(digits(value), text);
         }
+    }
+
+    /// Wrong: the page of a search for modes would not tell a frequency.
+    #[test]
+    fn modes_have_a_table_for_each_body() {
+        let summary = serde_json::json!({ "modes": {
+            "bearing": { "frequency_hz": [1234.5678, 2000.0], "bound_hz": [1e-7, 2e-7] },
+            "inner": { "frequency_hz": [4321.0], "bound_hz": [0.0] }
+        } });
+        let text = modes(&summary);
+        for part in [
+            "<h3>bearing</h3>",
+            "<h3>inner</h3>",
+            "1234.6",
+            "2000.0",
+            "2.0e-7",
+            "4321.0",
+        ] {
+            assert!(text.contains(part), "{part} in {text}");
+        }
+        assert_eq!(text.matches("<tr><th>2</th>").count(), 1, "{text}");
+        assert_eq!(modes(&serde_json::json!({})), "");
     }
 
     /// Wrong: a title with signs of HTML would break the page.

@@ -49,7 +49,8 @@ fn choose_alone(scene: &Path, out: Option<PathBuf>) -> Result<PathBuf, Failure> 
             let dir = next_free(scene)?;
             if let Some(earlier) = earlier(&dir) {
                 print::note(format_args!(
-                    "note: {} holds an earlier run; this one goes to {}, which plot, report and the like have to be told",
+                    "note: {} holds an earlier run; this one goes to {}, which plot, report and the like have to be \
+                     told",
                     earlier.display(),
                     dir.display()
                 ));

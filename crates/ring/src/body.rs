@@ -177,8 +177,9 @@ impl HeldRing {
         ]
     }
 
-    /// The displacement `w`, of coordinates, less the rigid motion of the ring's partner. That strains nothing; in the energy of
-    /// total displacements it would leave its round-off, which is large beside the energy of small loads. Collective.
+    /// The displacement `w`, of coordinates, less the rigid motion of the ring's partner. That strains nothing; in the
+    /// energy of total displacements it would leave its round-off, which is large beside the energy of small loads.
+    /// Collective.
     pub(crate) fn without_rigid_motion(&self, w: &[f64]) -> Vec<f64> {
         let mut strained = w.to_vec();
         let (shaft, first) = self.coordinates.shaft();

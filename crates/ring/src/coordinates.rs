@@ -132,15 +132,16 @@ impl Coordinates {
         (0..5).map(|i| rigid_lever(arm, component, i) * q[i]).sum()
     }
 
-    /// Motion of a node at `x` (m) under a rigid motion of the ring: the five of the shaft, then the rotation about the axis.
+    /// Motion of a node at `x` (m) under a rigid motion of the ring: the five of the shaft, then the rotation about the
+    /// axis.
     pub fn whole_rigid_motion(&self, x: [f64; 3], q: [f64; RIGID_MOTIONS]) -> [f64; 3] {
         let [of_shaft @ .., turn] = q;
         let [u, v, w] = [0, 1, 2].map(|component| self.rigid_motion(component, x, of_shaft));
         [u - turn * x[1], v + turn * x[0], w]
     }
 
-    /// Rigid motions that the coordinates take without strain, by their places in a whole one: those of the shaft that carries
-    /// the ring, or all where no node is held.
+    /// Rigid motions that the coordinates take without strain, by their places in a whole one: those of the shaft that
+    /// carries the ring, or all where no node is held.
     pub fn rigid_motions(&self) -> Vec<usize> {
         if self.arms.is_empty() {
             (0..RIGID_MOTIONS).collect()

@@ -34,7 +34,7 @@ pub type NodeTags = [Option<Vec<u64>>; 2];
 pub fn build_model(scene: &Scene) -> Result<(Model, NodeTags), BuildError> {
     let geometry = geometry(scene);
     geometry.validate()?;
-    require_resolvable(scene)?;
+    require_resolvable(scene, &geometry)?;
     let rings = rayon::join(
         || ring(scene, &geometry, Side::Inner),
         || ring(scene, &geometry, Side::Outer),
@@ -163,7 +163,8 @@ fn ring(
     Ok(ring_of(scene, side, steel, mesh).map(|ring| (ring, node_tags)))
 }
 
-/// What the groups of a ring have of the surfaces of revolution that they should be the whole of: raceway, and bore or seat.
+/// What the groups of a ring have of the surfaces of revolution that they should be the whole of: raceway, and bore or
+/// seat.
 pub fn coverages(
     mesh: &Mesh,
     held_group: &'static str,

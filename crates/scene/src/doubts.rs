@@ -38,7 +38,7 @@ pub fn doubts(scene: &Scene, model: &Model) -> Vec<String> {
         }
     }
     lines.extend(unusual_stiffnesses(&scene.contact, &scene.bearing, materials));
-    lines.extend(unresolved(scene));
+    lines.extend(unresolved(scene, &model.geometry));
     lines
 }
 

@@ -63,11 +63,7 @@ fn build_file(
     overwrite: Overwrite,
 ) -> Result<(), BuildError> {
     let mesh = build_ring(scene, side, body, section)?;
-    let contact_side = match side {
-        RingSide::Inner => Side::Inner,
-        RingSide::Outer => Side::Outer,
-    };
-    let record = record(scene, contact_side, body, section);
+    let record = record(scene, Side::BOTH[side as usize], body, section);
     mesh::write_msh_with_record(&body.mesh, &mesh, body.mesh_unit, overwrite, &record)?;
     print::line(format_args!(
         "{}: {} {} elements, {} nodes, {} dofs",

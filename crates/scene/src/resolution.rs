@@ -4,29 +4,29 @@
 //! balls pass a point of the inner raceway    Z |omega_i - omega_c| / (2 pi) times per second
 //! balls pass a point of the outer raceway    Z |omega_c| / (2 pi) times per second
 //! ```
-//! (Harris, Rolling Bearing Analysis, 4th ed., chapter 8). With n steps per period the amplitude that a step's mean load has is
-//! sinc(pi / n) of the true one: 0.996 with 20 steps, 0.64 with two, none with one. With fewer than two steps per period a motion
-//! shows another frequency than that of the load, and balls change places unseen: that is refused. Equilibria in time are right each
-//! for itself, and adaptive steps may become smaller: they are warned of.
+//! (Harris, Rolling Bearing Analysis, 4th ed., chapter 8). With n steps per period the amplitude that a step's mean
+//! load has is sinc(pi / n) of the true one: 0.996 with 20 steps, 0.64 with two, none with one. With fewer than two
+//! steps per period a motion shows another frequency than that of the load, and balls change places unseen: that is
+//! refused. Equilibria in time are right each for itself, and adaptive steps may become smaller: they are warned of.
 
 use std::f64::consts::TAU;
 
+use contact::BearingGeometry;
 use dynamics::kinematics::Kinematics;
 use input::{Quantity, Schedule, TIME};
 
-use crate::build::geometry;
 use crate::error::BuildError;
 use crate::tables::{Analysis, Scene};
 
-/// Steps per period from which a result is one.
+/// TimeSteps per period from which a result is one.
 const STEPS_PER_PERIOD: f64 = 20.0;
-/// Steps per period below which a motion shows another frequency (Nyquist).
+/// TimeSteps per period below which a motion shows another frequency (Nyquist).
 const LEAST_STEPS: f64 = 2.0;
-/// Steps of a pulse from which its shape is there.
+/// TimeSteps of a pulse from which its shape is there.
 const STEPS_PER_PULSE: f64 = 10.0;
 
-/// Steps in time.
-struct Steps {
+/// TimeSteps in time.
+struct TimeSteps {
     table: &'static str,
     step: f64,
     duration: f64,
@@ -42,13 +42,13 @@ struct Said {
 }
 
 /// What the steps of a scene show badly: a sentence each.
-pub fn unresolved(scene: &Scene) -> Vec<String> {
-    judged(scene).warnings
+pub fn unresolved(scene: &Scene, geometry: &BearingGeometry) -> Vec<String> {
+    judged(scene, geometry).warnings
 }
 
 /// Fails where the steps of a scene cannot show what happens.
-pub fn require_resolvable(scene: &Scene) -> Result<(), BuildError> {
-    let problems = judged(scene).problems;
+pub fn require_resolvable(scene: &Scene, geometry: &BearingGeometry) -> Result<(), BuildError> {
+    let problems = judged(scene, geometry).problems;
     if problems.is_empty() {
         return Ok(());
     }
@@ -58,12 +58,12 @@ pub fn require_resolvable(scene: &Scene) -> Result<(), BuildError> {
     })
 }
 
-fn judged(scene: &Scene) -> Said {
+fn judged(scene: &Scene, geometry: &BearingGeometry) -> Said {
     let mut said = Said::default();
-    let Some(steps) = Steps::of(scene) else {
+    let Some(steps) = TimeSteps::of(scene) else {
         return said;
     };
-    judge_passing(scene, &steps, &mut said);
+    judge_passing(scene, geometry, &steps, &mut said);
     for (key, schedule) in schedules(scene) {
         judge_schedule(&key, &schedule, &steps, &mut said);
     }
@@ -71,16 +71,16 @@ fn judged(scene: &Scene) -> Said {
     said
 }
 
-impl Steps {
-    fn of(scene: &Scene) -> Option<Steps> {
+impl TimeSteps {
+    fn of(scene: &Scene) -> Option<TimeSteps> {
         match &scene.analysis {
-            Analysis::Dynamic(dynamic) => Some(Steps {
+            Analysis::Dynamic(dynamic) => Some(TimeSteps {
                 table: "dynamic",
                 step: dynamic.step,
                 duration: dynamic.duration,
                 is_fixed_motion: dynamic.adaptive.is_none(),
             }),
-            Analysis::QuasiStatic(quasi) => Some(Steps {
+            Analysis::QuasiStatic(quasi) => Some(TimeSteps {
                 table: "quasi_static",
                 step: quasi.step,
                 duration: quasi.duration,
@@ -114,13 +114,13 @@ impl Steps {
 }
 
 /// Balls that pass a point of a raceway, at the largest speed.
-fn judge_passing(scene: &Scene, steps: &Steps, said: &mut Said) {
+fn judge_passing(scene: &Scene, geometry: &BearingGeometry, steps: &TimeSteps, said: &mut Said) {
     let speeds = scene.speed.iter().flat_map(|speed| &speed.values);
     let speed = speeds.fold(0.0, |largest: f64, speed| largest.max(speed.abs()));
     if speed == 0.0 {
         return;
     }
-    let cage = Kinematics::new(&geometry(scene), scene.effects.slip()).cage;
+    let cage = Kinematics::new(geometry, scene.effects.slip()).cage;
     let per_turn = scene.bearing.balls as f64 * speed / TAU;
     let [inner, outer] = [per_turn * (1.0 - cage).abs(), per_turn * cage.abs()];
     // Equilibria in time are seen from the housing, in which the loads stand.
@@ -146,7 +146,7 @@ fn schedules(scene: &Scene) -> Vec<(String, Schedule)> {
         .collect()
 }
 
-fn judge_schedule(key: &str, schedule: &Schedule, steps: &Steps, said: &mut Said) {
+fn judge_schedule(key: &str, schedule: &Schedule, steps: &TimeSteps, said: &mut Said) {
     let mut warn = |text: String| said.warnings.push(format!("{key}.schedule: {text}"));
     let end = steps.duration;
     match schedule {
@@ -168,7 +168,8 @@ fn judge_schedule(key: &str, schedule: &Schedule, steps: &Steps, said: &mut Said
                 ));
             } else if *duration < STEPS_PER_PULSE * steps.step {
                 warn(format!(
-                    "an impact of {} is {:.2} steps of {}; expected {STEPS_PER_PULSE} or more: {}.step of {} or less; {}",
+                    "an impact of {} is {:.2} steps of {}; expected {STEPS_PER_PULSE} or more: {}.step of {} or \
+                     less; {}",
                     time(*duration),
                     duration / steps.step,
                     time(steps.step),
@@ -215,7 +216,7 @@ fn judge_schedule(key: &str, schedule: &Schedule, steps: &Steps, said: &mut Said
 }
 
 /// A speed that changes within a step.
-fn judge_speed(scene: &Scene, steps: &Steps, said: &mut Said) {
+fn judge_speed(scene: &Scene, steps: &TimeSteps, said: &mut Said) {
     if let Some(speed) = &scene.speed {
         let mut warn = |text: String| said.warnings.push(format!("speed.inner: {text}"));
         warn_of_table(&speed.times, steps, &mut warn);
@@ -223,7 +224,7 @@ fn judge_speed(scene: &Scene, steps: &Steps, said: &mut Said) {
 }
 
 /// Points of a table that lie within a step of the run.
-fn warn_of_table(times: &[f64], steps: &Steps, warn: &mut dyn FnMut(String)) {
+fn warn_of_table(times: &[f64], steps: &TimeSteps, warn: &mut dyn FnMut(String)) {
     let within = times
         .windows(2)
         .filter(|pair| pair[1] > 0.0 && pair[0] < steps.duration);

@@ -1,6 +1,7 @@
 //! What a mesh of `raceway mesh` was made from, kept in its file, so that a stale mesh is not solved in silence.
 //!
-//! The record lists the values of the scene that the mesh follows from, as `key = value` with lengths in mm. A scene whose
+//! The record lists the values of the scene that the mesh follows from, as `key = value` with lengths in mm. A scene
+//! whose
 //! `[inner.section]` or dimensions say something else is refused with the values and the command that builds its mesh.
 
 use contact::Side;
@@ -19,8 +20,8 @@ pub fn record(scene: &Scene, side: Side, body: &FlexibleRing, section: &Section)
     entries.join(SEPARATOR)
 }
 
-/// Fails when the file of a ring's mesh says that it was made from other values than the scene has. A file without a record, and a
-/// scene without a section, cannot be compared.
+/// Fails when the file of a ring's mesh says that it was made from other values than the scene has. A file without a
+/// record, and a scene without a section, cannot be compared.
 pub fn require_fresh(
     scene: &Scene,
     side: Side,
@@ -62,14 +63,12 @@ pub fn with_command(mut error: MeshError, scene: &Scene, section: Option<&Sectio
 /// Keys of the scene and their values.
 fn entries(scene: &Scene, side: Side, body: &FlexibleRing, section: &Section) -> Vec<(String, String)> {
     let (b, ring) = (&scene.bearing, side.name());
-    let held = match side {
-        Side::Inner => ("bore_diameter", b.bore_diameter),
-        Side::Outer => ("outside_diameter", b.outside_diameter),
-    };
-    let [raceway, groove] = match side {
-        Side::Inner => [b.inner_raceway_diameter, b.inner_groove_radius],
-        Side::Outer => [b.outer_raceway_diameter, b.outer_groove_radius],
-    };
+    let held = [
+        ("bore_diameter", b.bore_diameter),
+        ("outside_diameter", b.outside_diameter),
+    ][side.index()];
+    let raceway = [b.inner_raceway_diameter, b.outer_raceway_diameter][side.index()];
+    let groove = [b.inner_groove_radius, b.outer_groove_radius][side.index()];
     let element = match section.element {
         SectionElement::Hex8 => "hex8",
         SectionElement::Hex20 => "hex20",

@@ -17,6 +17,7 @@ mod advance;
 mod cache;
 mod close;
 mod finish;
+mod finite;
 pub mod ledger;
 mod limits;
 mod part;

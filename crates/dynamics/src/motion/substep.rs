@@ -8,6 +8,7 @@ use ring::ElasticStep;
 use timer::{Laps, Stopwatch};
 
 use super::cache::{Ahead, ExpectedLoads, StepCache};
+use super::finite::require_finite;
 use super::part::RingSteps;
 use super::place::Placing;
 use super::run::Motion;
@@ -57,6 +58,7 @@ impl Motion<'_> {
         let places = part.parts.places(&solution);
         self.check_on_grooves(&places)?;
         let (mut next, error) = self.finish(state, (&part.parts, span.dt), &solution, part.rings, ends.rings);
+        require_finite(&next)?;
         next.places.rotate_right(1);
         next.places[0] = places;
         let mut report = part.report;

@@ -1,4 +1,5 @@
-//! Small loads on a ring that its shaft has moved far: the play of the bearing is a thousand times its elastic deflection.
+//! Small loads on a ring that its shaft has moved far: the play of the bearing is a thousand times its elastic
+//! deflection.
 
 use contact::Side;
 use dynamics::kinematics::Speed;
@@ -59,8 +60,9 @@ fn small_field(ring: &RingModel, held: &[usize]) -> Vec<f64> {
     u
 }
 
-/// Wrong: a rigid motion would change the strain energy of a ring: by its round-off, which a ledger takes for energy that came from
-/// nowhere. 1 mm of translation and 1 mrad of tilt on deformations of 1 nm: their sum has the deformations to 1e-10.
+/// Wrong: a rigid motion would change the strain energy of a ring: by its round-off, which a ledger takes for energy
+/// that came from nowhere. 1 mm of translation and 1 mrad of tilt on deformations of 1 nm: their sum has the
+/// deformations to 1e-10.
 #[test]
 fn a_rigid_motion_does_not_change_the_strain_energy() {
     for (name, model) in cases() {
@@ -84,8 +86,8 @@ fn a_rigid_motion_does_not_change_the_strain_energy() {
     }
 }
 
-/// Wrong: the ledger would stop a motion under small loads, pulled through its axial play of 0.2 mm, where strain energies are 1e-11
-/// of k d^2. The equilibrium it starts from is known to 1e-10 of the loads.
+/// Wrong: the ledger would stop a motion under small loads, pulled through its axial play of 0.2 mm, where strain
+/// energies are 1e-11 of k d^2. The equilibrium it starts from is known to 1e-10 of the loads.
 #[test]
 fn the_ledger_closes_under_small_loads_at_the_far_end_of_the_play() {
     for (name, model) in cases() {

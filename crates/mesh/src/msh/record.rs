@@ -1,4 +1,5 @@
-//! What a mesh file says of its making: one line of text near its head, in a `$Comments` section, which every reader skips.
+//! What a mesh file says of its making: one line of text near its head, in a `$Comments` section, which every reader
+//! skips.
 //!
 //! A file that Gmsh or another program has saved again has none.
 

@@ -42,7 +42,8 @@ pub fn write_msh(
     write(path.as_ref(), mesh, unit, format, overwrite, None)
 }
 
-/// The same in binary form with one line that says what the mesh was made from, which [`super::record::read_record`] finds.
+/// The same in binary form with one line that says what the mesh was made from, which [`super::record::read_record`]
+/// finds.
 pub fn write_msh_with_record(
     path: impl AsRef<Path>,
     mesh: &Mesh,

@@ -28,7 +28,8 @@ fn a_mesh_read_back_has_the_same_bits() {
     }
 }
 
-/// If this failed, what a mesh was made from would get lost or change the mesh, or another program could not read the file.
+/// If this failed, what a mesh was made from would get lost or change the mesh, or another program could not read the
+/// file.
 #[test]
 fn a_record_is_read_back_and_changes_nothing() {
     let folder = tempfile::tempdir().unwrap();

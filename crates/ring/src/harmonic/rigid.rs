@@ -1,9 +1,10 @@
 //! Rigid motions of a periodic ring in harmonic space, which its strain energy leaves out.
 //!
-//! Displacements are total, so a ring that its shaft has moved by d has w = R d + e with a small e. K R = 0, but w K w / 2 has a
-//! round-off of some 1e-16 k d^2, k a stiffness between neighbouring nodes. Under loads of some newtons that is more of the energy
-//! than the ledger tolerates. (w - R q) K w / 2 is the same energy for every q; with the q that brings w - R q down to the size of
-//! e its round-off is smaller by e / d. Rigid motions have harmonics 0 and 1 only, which the first group has.
+//! Displacements are total, so a ring that its shaft has moved by d has w = R d + e with a small e. K R = 0, but w K w
+//! / 2 has a round-off of some 1e-16 k d^2, k a stiffness between neighbouring nodes. Under loads of some newtons that
+//! is more of the energy than the ledger tolerates. (w - R q) K w / 2 is the same energy for every q; with the q that
+//! brings w - R q down to the size of e its round-off is smaller by e / d. Rigid motions have harmonics 0 and 1 only,
+//! which the first group has.
 
 use solver::CyclicRing;
 
@@ -71,8 +72,8 @@ impl RigidMotions {
         strained
     }
 
-    /// The values on the rows of a defect, `rows`, of a displacement whose first group with the border is `w`, less those of its
-    /// rigid motion.
+    /// The values on the rows of a defect, `rows`, of a displacement whose first group with the border is `w`, less
+    /// those of its rigid motion.
     pub fn strained_rows(&self, ring: &CyclicRing, w: &[f64], rows: &[f64]) -> Vec<f64> {
         let mut strained = rows.to_vec();
         for (rigid, on_rows) in self.low.iter().zip(&self.on_defect) {

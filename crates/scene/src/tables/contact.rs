@@ -43,8 +43,8 @@ pub struct Contact {
 
 /// Smaller patches see single elements (design number: the structural compliance is then mesh-independent).
 const DEFAULT_PATCH_ELEMENTS: f64 = 2.0;
-/// A given K may differ from E* sqrt(D_w), the size of exact Hertz, by this factor, such as to compare with rigid contacts: more is
-/// nothing that numbers of 16 digits can solve.
+/// A given K may differ from E* sqrt(D_w), the size of exact Hertz, by this factor, such as to compare with rigid
+/// contacts: more is nothing that numbers of 16 digits can solve.
 const SLIP_FACTOR: f64 = 1e8;
 /// From this factor on a given K is said to be unusual: N/m^1.5 for N/mm^1.5 is 3e4.
 const UNUSUAL_FACTOR: f64 = 100.0;
@@ -62,7 +62,8 @@ pub fn unusual_stiffnesses(contact: &Contact, bearing: &Bearing, materials: &Mat
         let is_usual = (1.0 / UNUSUAL_FACTOR..=UNUSUAL_FACTOR).contains(&ratio);
         (!is_usual).then(|| {
             format!(
-                "{key} is {}, {ratio:.1e} times E* sqrt(ball_diameter), the size of exact Hertz; check its unit, N/mm^1.5 is usual",
+                "{key} is {}, {ratio:.1e} times E* sqrt(ball_diameter), the size of exact Hertz; check its unit, \
+                 N/mm^1.5 is usual",
                 Quantity::<HERTZ_STIFFNESS>::about(stiffness)
             )
         })

@@ -58,7 +58,8 @@ fn floor_boundary(text: &str, mut index: usize) -> usize {
 const WHOLE_RANGE: &str =
     "this whole number is too large; expected -9223372036854775808 to 9223372036854775807";
 
-/// The line, from 1, on which a text has the key that a problem begins with, such as `bearing.width` or `[probes.node.a]`.
+/// The line, from 1, on which a text has the key that a problem begins with, such as `bearing.width` or
+/// `[probes.node.a]`.
 pub fn line_of(text: &str, problem: &str) -> Option<usize> {
     let key = problem.split([' ', ',', ':']).next()?.trim_matches(['[', ']']);
     let document = DeTable::parse(text).ok()?;

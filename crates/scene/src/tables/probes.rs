@@ -185,8 +185,8 @@ impl RawProbes {
         // The columns of both in probes.csv begin with the name and end with the same stresses.
         for name in self.node.keys().filter(|name| self.point.contains_key(*name)) {
             problems.add(format!(
-                "[probes.node.{name}] and [probes.point.{name}] have one name, with which their columns in probes.csv begin; \
-                 expected another name for one of them"
+                "[probes.node.{name}] and [probes.point.{name}] have one name, with which their columns in probes.csv \
+                 begin; expected another name for one of them"
             ));
         }
         let mut profiles = Vec::new();
