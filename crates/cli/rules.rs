@@ -42,7 +42,7 @@ fn zero_of_the_shaft(scene: &Scene, model: &Model, lines: &mut Vec<String>) {
     let geometry = &model.geometry;
     let angle = geometry.free_contact_angle();
     let play = geometry.groove_distance() * angle.sin();
-    if scene.shaft.z != Motion::Locked || play <= 0.0 {
+    if scene.shaft.z != Motion::Locked || play <= 0.0 || model.seat().is_some() {
         return;
     }
     lines.push(format!(

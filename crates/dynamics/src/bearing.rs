@@ -1,15 +1,17 @@
 //! Bodies and interactions of a bearing over an interval: the one list from which statics and motion make their system,
 //! and of which modes take the contacts.
 //!
-//! Lumped bodies: the shaft, then the balls. Elastic ones: the flexible rings, inner first. Of a ring that a static
+//! Lumped bodies: the shaft, the balls, then the seat of the outer ring if it slides. Elastic ones: the flexible rings, inner first. Of a ring that a static
 //! equilibrium sees, ports are the elastic motion relative to what carries it; of one that moves in time, all motion,
 //! and its mount follows the shaft.
 
 use contact::Side;
 use ring::Partner;
 
-use crate::bodies::FlatBody;
+use crate::bodies::{FlatBody, Inertia, Name};
 use crate::interactions::raceway_contact::{GrooveBodies, Means, RacewayContacts, Site, SiteState};
+use crate::interactions::seat_spring::{Seat, SeatSpring};
+use crate::model::Model;
 use crate::system::{ElasticPorts, Interaction, Interval, Lengths, Lumped, System};
 
 /// Number of the shaft among the lumped bodies.
@@ -31,6 +33,26 @@ pub struct BearingParts {
     pub rings: [Option<ElasticPorts>; 2],
     /// Contacts of balls and rings.
     pub contacts: RacewayContacts,
+    /// The seat of the outer ring and its spring, if it slides along the axis.
+    pub seat: Option<SlidingSeat>,
+}
+
+/// The seat of the outer ring along the axis.
+pub struct SlidingSeat {
+    /// The seat; only z is free.
+    pub body: FlatBody<5>,
+    /// What presses it.
+    pub spring: SeatSpring,
+}
+
+/// A seat over an interval: what is known of it, and its inertia, start and load along z.
+pub struct SeatStep {
+    /// The seat.
+    pub seat: Seat,
+    /// Its motion along z.
+    pub axial: Inertia,
+    /// Weight of the start in the spring's force.
+    pub weight: f64,
 }
 
 /// What a bearing's contacts are made of.
@@ -51,9 +73,18 @@ impl BearingParts {
         balls: Vec<FlatBody<2>>,
         rings: [Option<ElasticPorts>; 2],
         contacts: ContactList,
+        seat: Option<SeatStep>,
     ) -> BearingParts {
         let held = [Vec::new(), Vec::new()];
-        let grooves = groove_bodies(interval, &rings, &held);
+        let number = FIRST_BALL + balls.len();
+        let seat = seat.map(|step| SlidingSeat::new(step, number));
+        let carriers = [SHAFT, number].map(Some);
+        let grooves = groove_bodies(
+            interval,
+            &rings,
+            &held,
+            [carriers[0], seat.as_ref().and(carriers[1])],
+        );
         let ContactList { sites, dead, means } = contacts;
         BearingParts {
             interval,
@@ -61,13 +92,15 @@ impl BearingParts {
             balls,
             rings,
             contacts: RacewayContacts::new(sites, FIRST_BALL, &grooves, dead, means),
+            seat,
         }
     }
 
     /// Puts flexible rings in the place of those before. Grooves of a ring that is None here stay at `held`, m, by ball.
     pub fn set_rings(&mut self, rings: [Option<ElasticPorts>; 2], held: &[Vec<[f64; 2]>; 2]) {
         self.rings = rings;
-        let grooves = groove_bodies(self.interval, &self.rings, held);
+        let carriers = Side::BOTH.map(|side| self.carrier(side));
+        let grooves = groove_bodies(self.interval, &self.rings, held, carriers);
         self.contacts.connect(FIRST_BALL, &grooves);
     }
 
@@ -75,6 +108,7 @@ impl BearingParts {
     pub fn system(&self) -> System<'_> {
         let mut lumped: Vec<&dyn Lumped> = vec![&self.shaft];
         lumped.extend(self.balls.iter().map(|ball| ball as &dyn Lumped));
+        lumped.extend(self.seat.iter().map(|seat| &seat.body as &dyn Lumped));
         System::new(
             self.interval,
             lumped,
@@ -85,7 +119,18 @@ impl BearingParts {
 
     /// The interactions of its bodies.
     pub fn interactions(&self) -> Vec<&dyn Interaction> {
-        vec![&self.contacts]
+        let seat = self.seat.iter().map(|seat| &seat.spring as &dyn Interaction);
+        std::iter::once(&self.contacts as &dyn Interaction)
+            .chain(seat)
+            .collect()
+    }
+
+    /// Number of the lumped body that carries a ring; None is at rest.
+    pub fn carrier(&self, side: Side) -> Option<usize> {
+        match side {
+            Side::Inner => Some(SHAFT),
+            Side::Outer => self.seat.as_ref().map(|_| FIRST_BALL + self.balls.len()),
+        }
     }
 
     /// Number of a flexible ring among the elastic bodies.
@@ -104,6 +149,18 @@ impl BearingParts {
     }
 }
 
+impl SlidingSeat {
+    fn new(SeatStep { seat, axial, weight }: SeatStep, body: usize) -> SlidingSeat {
+        let mut dofs = [Inertia::default(); 5];
+        dofs[2] = axial;
+        let imposed = [Some(0.0), Some(0.0), None, Some(0.0), Some(0.0)];
+        SlidingSeat {
+            body: FlatBody::new(Name::Seat, dofs, imposed),
+            spring: SeatSpring::new(seat, body, weight),
+        }
+    }
+}
+
 /// Lengths of the contacts as the contacts take them.
 pub fn lengths([start, end]: &[Vec<f64>; 2]) -> Lengths<'_> {
     Lengths { start, end }
@@ -114,18 +171,19 @@ fn elastic_number(side: Side, rings: &[Option<ElasticPorts>; 2]) -> Option<usize
     rings[side.index()].as_ref().map(|_| before)
 }
 
-/// What moves the grooves of the rings. The housing is at rest.
+/// What moves the grooves of the rings.
 fn groove_bodies(
     interval: Interval,
     rings: &[Option<ElasticPorts>; 2],
     held: &[Vec<[f64; 2]>; 2],
+    carriers: [Option<usize>; 2],
 ) -> [GrooveBodies; 2] {
     Side::BOTH.map(|side| {
         let elastic = elastic_number(side, rings);
         let carries = elastic.is_none() || interval == Interval::Rest;
         let held = &held[side.index()];
         GrooveBodies {
-            carrier: (side == Side::Inner && carries).then_some(SHAFT),
+            carrier: carriers[side.index()].filter(|_| carries),
             held: if elastic.is_none() {
                 held.clone()
             } else {
@@ -136,10 +194,12 @@ fn groove_bodies(
     })
 }
 
-/// What holds a ring.
-pub(crate) fn partner(side: Side) -> Partner {
+/// What holds a ring: the shaft the inner one, the housing the outer one, in which it may slide.
+pub(crate) fn partner(model: &Model, side: Side) -> Partner {
     match side {
         Side::Inner => Partner::SHAFT,
+        // A seat that slides is held in its other dofs by the bearing's own list.
+        Side::Outer if model.seat().is_some() => Partner::SHAFT,
         Side::Outer => Partner::AT_REST,
     }
 }

@@ -15,6 +15,8 @@ pub struct Displacements {
     pub balls: Vec<[f64; 2]>,
     /// Elastic motion of the groove centres, inner ring then outer, `[n_balls][2]`.
     pub grooves: [Vec<[f64; 2]>; 2],
+    /// The seat of the outer ring along z; 0 unless it slides.
+    pub seat: f64,
 }
 
 impl Displacements {
@@ -24,6 +26,7 @@ impl Displacements {
             shaft: [0.0; 5],
             balls: vec![[0.0; 2]; n_balls],
             grooves: flexible.map(|f| if f { vec![[0.0; 2]; n_balls] } else { Vec::new() }),
+            seat: 0.0,
         }
     }
 }
@@ -33,6 +36,7 @@ impl BearingParts {
     pub fn unknowns(&self, u: &Displacements) -> Vec<f64> {
         let mut x: Vec<f64> = self.shaft.free().map(|dof| u.shaft[dof]).collect();
         x.extend(u.balls.as_flattened());
+        x.extend(self.seat.iter().map(|_| u.seat));
         for (ports, grooves) in self.rings.iter().zip(&u.grooves) {
             if ports.is_some() {
                 x.extend(grooves.as_flattened());
@@ -54,7 +58,14 @@ impl BearingParts {
                 .map(|ball| system.coordinates(FIRST_BALL + ball, x))
                 .collect(),
             grooves: Side::BOTH.map(grooves),
+            seat: self.seat_end(x),
         }
+    }
+
+    /// Displacement of the outer ring's seat along z for the unknowns `x`, m; 0 unless it slides.
+    pub fn seat_end(&self, x: &[f64]) -> f64 {
+        let carrier = self.carrier(Side::Outer);
+        carrier.map_or(0.0, |body| self.system().coordinates::<5>(body, x)[2])
     }
 
     /// All contacts at given displacements.

@@ -11,7 +11,7 @@
 use contact::Side;
 use timer::SharedLaps;
 
-use crate::bearing::{BearingParts, ContactList};
+use crate::bearing::{BearingParts, ContactList, SeatStep};
 use crate::bodies::{FlatBody, Inertia, Name};
 use crate::displacements::Displacements;
 use crate::effects::{self, Loads, Now};
@@ -149,6 +149,11 @@ fn parts_at(pose: &Pose, model: &Model) -> BearingParts {
             dead: Vec::new(),
             means: None,
         },
+        model.seat().map(|seat| SeatStep {
+            seat,
+            axial: Inertia::default(),
+            weight: 0.0,
+        }),
     )
 }
 
@@ -165,6 +170,9 @@ impl BearingParts {
         {
             (ball.dofs[0].load, ball.dofs[1].load) = (load[0], load[1]);
             ball.dofs[0].load_slope = *slope;
+        }
+        if let Some(seat) = &mut self.seat {
+            seat.body.dofs[2].load = loads.ring_on_seat;
         }
         self.contacts.dead.clone_from(&loads.contacts);
     }

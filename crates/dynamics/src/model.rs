@@ -14,6 +14,7 @@ use input::Schedule;
 use ring::{Backend, RingModel};
 
 use crate::effects::Effect;
+use crate::interactions::seat_spring::Seat;
 
 /// Largest tilt for which small rotations hold, rad (about 3 deg).
 pub const MAX_TILT: f64 = 0.05;
@@ -120,6 +121,11 @@ impl Model {
             ShaftDof::Free => None,
             ShaftDof::Prescribed(value) => Some(value * factor(&self.shaft_schedules[dof])),
         }
+    }
+
+    /// The seat of the outer ring, if it slides along the axis.
+    pub fn seat(&self) -> Option<Seat> {
+        self.effects.iter().find_map(|effect| effect.seat())
     }
 
     /// Mass of one ball, kg.

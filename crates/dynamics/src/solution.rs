@@ -4,7 +4,7 @@ use contact::{LoadedPatch, Side};
 use ring::vectors::dot;
 
 use crate::balls::{BallDisplacement, BallResult, ContactResult};
-use crate::bearing::BearingParts;
+use crate::bearing::{BearingParts, SlidingSeat};
 use crate::displacements::Displacements;
 use crate::effects::Loads;
 use crate::equilibrium::centre_unloaded;
@@ -83,7 +83,8 @@ impl StaticSolution {
             .map(|((f, slope), x)| dot(&[f[0] + slope * x[0], f[1]], x))
             .sum();
         let balls = ball_results(model, parts, &u);
-        let load_work = ball_work + dot(&parts.shaft_load(), &u.shaft) + ring_load_work;
+        let load_work =
+            ball_work + dot(&parts.shaft_load(), &u.shaft) + ring_load_work + seat_work(parts, &u);
         StaticSolution {
             warnings: warnings(&rings.footprints, &forces, &balls)
                 .into_iter()
@@ -142,6 +143,12 @@ impl StaticSolution {
             .filter_map(|f| f.semi_axes)
             .collect()
     }
+}
+
+/// Load and spring of a seat that slides, through its displacement, J.
+fn seat_work(parts: &BearingParts, u: &Displacements) -> f64 {
+    let of_seat = |seat: &SlidingSeat| (seat.body.dofs[2].load - seat.spring.force(u.seat)) * u.seat;
+    parts.seat.as_ref().map_or(0.0, of_seat)
 }
 
 /// Work of a contact force through the whole displacement of ball against groove centre, J.

@@ -65,7 +65,7 @@ pub struct StaticSolver {
 pub fn settings(model: &Model, side: Side) -> StaticSettings {
     StaticSettings {
         name: side.name(),
-        partner: partner(side),
+        partner: partner(model, side),
         backend: model.backend,
         n_contacts: model.geometry.n_balls,
     }

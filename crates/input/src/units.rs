@@ -29,7 +29,7 @@ use thiserror::Error;
 use self::expression::Unit;
 pub use self::kind::{
     ACCELERATION, ANGLE, ANGULAR_SPEED, DAMPING, DENSITY, FORCE, HERTZ_STIFFNESS, KINDS, Kind, LENGTH, MASS,
-    MOMENT, RATE, SPEED, STRESS, TIME, kind_of_dimension,
+    MOMENT, RATE, SPEED, STIFFNESS, STRESS, TIME, kind_of_dimension,
 };
 use self::number::Decimal;
 

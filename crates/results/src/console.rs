@@ -69,6 +69,12 @@ fn print_shaft(snapshot: &Snapshot) {
         fixed::<3>(1e6 * tilt_x),
         fixed::<3>(1e6 * tilt_y)
     ));
+    if let Some(z) = snapshot.seat {
+        print::line(format_args!(
+            "seat of the outer ring: z {} um",
+            fixed::<4>(1e6 * z)
+        ));
+    }
 }
 
 /// A number with N decimals; one that rounds to zero has no sign.

@@ -109,11 +109,17 @@ impl<'a> Shown<'a> {
             } => {
                 let strained = solution.elastic[side.index()].as_ref()?;
                 let angle = solution.pose.frame_angle(side);
-                let rigid = (side == Side::Inner).then(|| {
-                    let mut q = solution.displacements.shaft;
-                    q[2] = q[2] + model.geometry.axial_offset() - placed.axial_offset();
-                    turn(q, -angle)
-                });
+                let rigid = match side {
+                    Side::Inner => {
+                        let mut q = solution.displacements.shaft;
+                        q[2] = q[2] + model.geometry.axial_offset() - placed.axial_offset();
+                        Some(turn(q, -angle))
+                    }
+                    Side::Outer => {
+                        let seat = solution.displacements.seat;
+                        (seat != 0.0).then_some([0.0, 0.0, seat, 0.0, 0.0])
+                    }
+                };
                 Some(RingField {
                     centre_z: ring.groove.centre_z,
                     places: ring.mesh.nodes.clone(),

@@ -14,6 +14,8 @@ pub struct Snapshot {
     pub spin: Option<f64>,
     /// Shaft x, y, z, m, tilt x, tilt y, rad, in space.
     pub shaft: [f64; 5],
+    /// Displacement of the outer ring's seat along z, m; None where it does not slide.
+    pub seat: Option<f64>,
     /// Force and moment that hold prescribed dofs, N and N m; None where it is not known (motion).
     pub reaction: Option<[f64; 5]>,
     /// Energy terms, J, by name: the columns of `energy.csv`.
@@ -29,6 +31,7 @@ impl Snapshot {
             balls: solution.balls.clone(),
             spin: rolling.map(|r| r.spin(solution.pose.now.time)),
             shaft: solution.displacements.shaft,
+            seat: solution.parts.seat.as_ref().map(|_| solution.displacements.seat),
             reaction: Some(solution.shaft_reaction),
             energies: vec![
                 ("strain", solution.strain_energy),
@@ -46,6 +49,7 @@ impl Snapshot {
             balls: motion.balls(state),
             spin: motion.spin(state),
             shaft: state.shaft,
+            seat: state.seat.map(|seat| seat[0]),
             reaction: None,
             energies: ledger_terms(&state.ledger),
         }

@@ -56,6 +56,7 @@ fn exchange(state: &mut MotionState, shape: &StateShape, port: &mut Port<'_>) ->
         shaft,
         shaft_velocity,
         shaft_acceleration,
+        seat,
         trend,
         forces,
         angles,
@@ -72,6 +73,9 @@ fn exchange(state: &mut MotionState, shape: &StateShape, port: &mut Port<'_>) ->
     port.values("shaft", shaft)?;
     port.values("shaft_velocity", shaft_velocity)?;
     port.values("shaft_acceleration", shaft_acceleration)?;
+    if shape.has_seat {
+        port.values("seat", seat.get_or_insert_default())?;
+    }
     port.rows("trend", trend, 3 * shape.n_balls)?;
     port.rows("forces", forces, n_sites)?;
     port.list("angles", angles, n_sites)?;
@@ -260,6 +264,7 @@ mod tests {
             }),
             None,
         ],
+        has_seat: true,
     };
 
     /// A state in which every number is another one, with a NaN and a negative zero.
@@ -289,6 +294,7 @@ mod tests {
             shaft: [0, 1, 2, 3, 4].map(|_| number()),
             shaft_velocity: [0, 1, 2, 3, 4].map(|_| number()),
             shaft_acceleration: [0, 1, 2, 3, 4].map(|_| number()),
+            seat: Some([0, 1, 2].map(|_| number())),
             ledger: Ledger {
                 kinetic: [0, 1, 2].map(|_| number()),
                 strain: [0, 1].map(|_| number()),

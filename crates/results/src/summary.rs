@@ -93,6 +93,9 @@ pub struct ShaftSummary {
     reaction_force_n: Option<[f64; 3]>,
     #[serde(skip_serializing_if = "Option::is_none")]
     reaction_moment_n_m: Option<[f64; 2]>,
+    /// Displacement of the outer ring's seat along z, m; absent where it does not slide.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    outer_seat_z_m: Option<f64>,
 }
 
 /// One ball.
@@ -142,6 +145,7 @@ impl ShaftSummary {
             rotation_rad: [tilt_x, tilt_y, 0.0],
             reaction_force_n: snapshot.reaction.map(|r| [r[0], r[1], r[2]]),
             reaction_moment_n_m: snapshot.reaction.map(|r| [r[3], r[4]]),
+            outer_seat_z_m: snapshot.seat,
         }
     }
 }

@@ -164,6 +164,7 @@ impl Tables {
             .into_iter()
             .collect();
         let shaft = snapshot.shaft.iter().chain(snapshot.reaction.iter().flatten());
+        let shaft = shaft.chain(&snapshot.seat);
         let energies = snapshot.energies.iter();
         append(
             &mut self.balls,
@@ -300,6 +301,9 @@ fn columns(swept: Option<&str>, first: &Snapshot) -> [Vec<String>; 3] {
     let mut shaft = names(&["x_m", "y_m", "z_m", "tilt_x_rad", "tilt_y_rad"]);
     if first.reaction.is_some() {
         shaft.extend(names(&REACTION_COLUMNS));
+    }
+    if first.seat.is_some() {
+        shaft.push("outer_seat_z_m".to_string());
     }
     let terms = first.energies.iter();
     let energy: Vec<String> = terms.map(|(term, _)| format!("{term}_j")).collect();

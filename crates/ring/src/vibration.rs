@@ -119,6 +119,11 @@ impl VibratingRing {
         self.factor.solve(loads, n_vectors);
     }
 
+    /// Generalised load of a motion (0 to 4: x, y, z, tilt x, tilt y) of the partner, where the ring knows it.
+    pub fn partner_load(&self, dof: usize) -> Option<&SparseLoad> {
+        self.partner[dof].as_ref()
+    }
+
     /// Motion x, y, z, tilt x, tilt y of the partner, m and rad.
     pub fn partner_motion(&self, y: &[f64]) -> [f64; 5] {
         let value = |motion: &Option<SparseLoad>| motion.as_ref().map_or(0.0, |m| sparse_dot(m, y));

@@ -11,6 +11,8 @@ pub const AXES: [&str; 5] = ["x", "y", "z", "tilt_x", "tilt_y"];
 pub enum Name {
     /// The shaft, with the coordinates [`AXES`].
     Shaft,
+    /// The seat of the outer ring, with the coordinates [`AXES`].
+    Seat,
     /// A ball in its meridian plane: radial, axial.
     Ball(usize),
 }
@@ -94,6 +96,7 @@ impl<const N: usize> Lumped for FlatBody<N> {
         let i = self.free().nth(unknown).unwrap_or_default();
         match self.name {
             Name::Shaft => format!("{} of the shaft", AXES[i]),
+            Name::Seat => format!("{} of the outer ring's seat", AXES[i]),
             Name::Ball(ball) => format!("ball {ball}, {}", ["radial", "axial"][i]),
         }
     }

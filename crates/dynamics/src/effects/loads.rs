@@ -9,6 +9,7 @@ use timer::SharedLaps;
 
 use crate::balls::BallResult;
 use crate::error::DynamicsError;
+use crate::interactions::seat_spring::Seat;
 use crate::model::Model;
 use ring::division::NodePlaces;
 
@@ -19,6 +20,8 @@ pub struct Loads {
     pub shaft: [f64; 5],
     /// What the body loads of a flexible inner ring add to them, N and N m.
     pub ring_on_shaft: [f64; 5],
+    /// Force along z of the body loads of a flexible outer ring, which its seat carries, N.
+    pub ring_on_seat: f64,
     /// Force on each ball [radial, axial] at its just-touching position, N.
     pub balls: Vec<[f64; 2]>,
     /// Growth of the radial force on each ball with its radial displacement, N/m.
@@ -40,6 +43,7 @@ impl Loads {
         Loads {
             shaft: [0.0; 5],
             ring_on_shaft: [0.0; 5],
+            ring_on_seat: 0.0,
             ball_slopes: vec![0.0; model.geometry.n_balls],
             follows_angles: false,
             balls: vec![[0.0; 2]; model.geometry.n_balls],
@@ -71,12 +75,14 @@ impl Loads {
         (sum[0], sum[1]) = (sum[0] + force[0], sum[1] + force[1]);
     }
 
-    /// Adds nodal body loads (N) to a flexible ring; the shaft carries the `resultant` of those of the inner ring:
-    /// force x, y, z, N, and moment about x and y, N m, about the shaft's origin.
+    /// Adds nodal body loads (N) to a flexible ring; shaft and housing carry the `resultant`: force x, y, z, N,
+    /// and moment about x and y, N m, about the shaft's origin.
     pub fn add_ring_load(&mut self, side: Side, load: Vec<f64>, resultant: [f64; 5]) {
         if side == Side::Inner {
             let sum = self.ring_on_shaft.iter_mut().zip(resultant);
             sum.for_each(|(s, f)| *s += f);
+        } else {
+            self.ring_on_seat += resultant[2];
         }
         match &mut self.rings[side.index()] {
             Some(sum) => sum.iter_mut().zip(&load).for_each(|(s, l)| *s += l),
@@ -140,6 +146,11 @@ pub trait Effect: Send + Sync {
     /// Whether it is the inertia of the inner ring's turning frame.
     fn turns_frame(&self) -> bool {
         false
+    }
+
+    /// Slot of interactions: the spring that holds the outer ring along the axis, whose seat then slides.
+    fn seat(&self) -> Option<Seat> {
+        None
     }
 
     /// What a reader of an equilibrium should know: where the effect is beyond what it assumes.

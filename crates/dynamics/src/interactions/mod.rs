@@ -2,3 +2,4 @@
 
 pub mod discrete_gradient;
 pub mod raceway_contact;
+pub mod seat_spring;

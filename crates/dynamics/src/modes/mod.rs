@@ -125,10 +125,14 @@ pub fn bearing_modes(
     let shaft = Partner {
         moves: model.shaft.map(|dof| dof == ShaftDof::Free),
     };
+    let housing = Partner {
+        moves: [false, false, model.seat().is_some(), false, false],
+    };
+    let seat_mass = model.seat().map_or(0.0, |seat| seat.mass);
     let build = |side: Side| {
         let partner = match side {
             Side::Inner => (shaft, model.shaft_mass),
-            Side::Outer => (Partner::AT_REST, 0.0),
+            Side::Outer => (housing, seat_mass),
         };
         let ring = model.ring(side);
         ring.map(|ring| VibratingRing::new(side.name(), ring, Some(partner), shift, settings.backend))
@@ -137,14 +141,19 @@ pub fn bearing_modes(
     let (inner, outer) = rayon::join(|| build(Side::Inner), || build(Side::Outer));
     let rings = [inner?, outer?];
     let mut small_mass = vec![model.ball_mass(); 2 * model.geometry.n_balls];
-    let mut shaft = Vec::new();
+    let mut places = Vec::new();
     if rings[0].is_none() {
         for &dof in &free {
-            shaft.push((dof, small_mass.len()));
+            places.push((SHAFT, dof, small_mass.len()));
             small_mass.push(if dof < 3 { model.shaft_mass } else { 0.0 });
         }
     }
-    let link_tangents = link_tangents(equilibrium, &rings, &shaft);
+    let shaft = places.iter().map(|&(_, dof, place)| (dof, place)).collect();
+    if let (None, Some(body)) = (&rings[1], equilibrium.parts.carrier(Side::Outer)) {
+        places.push((body, 2, small_mass.len()));
+        small_mass.push(seat_mass);
+    }
+    let link_tangents = link_tangents(equilibrium, &rings, &places);
     let block = model.geometry.n_balls.clamp(RING_BLOCK, LARGEST_BLOCK);
     let mut system = VibratingBearing::new(rings, small_mass, link_tangents, shift)?;
     system.set_bearing(
@@ -190,7 +199,7 @@ fn shift(settings: ModesSettings, wave_rate: f64) -> f64 {
 fn link_tangents(
     equilibrium: &StaticSolution,
     rings: &[Option<VibratingRing>; 2],
-    shaft: &[(usize, usize)],
+    places: &[(usize, usize, usize)],
 ) -> Vec<LinkTangent> {
     let parts = &equilibrium.parts;
     let x = parts.unknowns(&equilibrium.displacements);
@@ -207,7 +216,7 @@ fn link_tangents(
             link_tangents.push(LinkTangent {
                 tangent: tangent.to_vec(),
                 lengths: (0..n)
-                    .map(|row| growth(link, row, equilibrium, rings, shaft))
+                    .map(|row| growth(link, row, equilibrium, rings, places))
                     .collect(),
             });
         }
@@ -215,21 +224,36 @@ fn link_tangents(
     link_tangents
 }
 
-/// What growth one length of a link. The motion of a flexible ring has that of its partner in it.
+/// What moves one length of a link. What carries a ring has its dofs by body among the small ones, at `places`, or in
+/// the motion of a flexible ring, which has that of its partner in it.
 fn growth(
     link: &Link,
     row: usize,
     equilibrium: &StaticSolution,
     rings: &[Option<VibratingRing>; 2],
-    shaft: &[(usize, usize)],
+    places: &[(usize, usize, usize)],
 ) -> LengthGrowth {
+    let parts = &equilibrium.parts;
+    let is_ring = link
+        .terms
+        .iter()
+        .any(|term| matches!(term.body, Body::Elastic(_)));
     let mut growth = LengthGrowth::default();
     for term in link.terms.iter().filter(|term| term.rows[row] != 0.0) {
         let value = term.rows[row];
         match term.body {
-            Body::Lumped(SHAFT) => {
-                let place = shaft.iter().find(|(dof, _)| *dof == term.coordinate);
-                growth.small.extend(place.map(|(_, place)| (*place, value)));
+            Body::Lumped(body) if Side::BOTH.map(|side| parts.carrier(side)).contains(&Some(body)) => {
+                let mut places = places
+                    .iter()
+                    .filter(|(of, dof, _)| (*of, *dof) == (body, term.coordinate));
+                growth
+                    .small
+                    .extend(places.next().map(|(_, _, place)| (*place, value)));
+                let side = Side::BOTH[usize::from(body != SHAFT)];
+                let ring = rings[side.index()].as_ref().filter(|_| !is_ring);
+                if let Some(load) = ring.and_then(|ring| ring.partner_load(term.coordinate)) {
+                    growth.ring = Some((side.index(), load.iter().map(|&(k, w)| (k, value * w)).collect()));
+                }
             }
             Body::Lumped(body) => growth
                 .small

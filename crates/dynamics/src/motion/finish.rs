@@ -8,7 +8,7 @@ use super::part::RingSteps;
 use super::run::{Motion, MovingRing};
 use super::solve::StepSolution;
 use super::state::MotionState;
-use crate::bearing::BearingParts;
+use crate::bearing::{BearingParts, SHAFT};
 use crate::bodies::FlatBody;
 use crate::system::{Interval, Lumped};
 
@@ -52,6 +52,7 @@ impl Motion<'_> {
         };
         finish_shaft(&mut next, parts, solution, step);
         finish_balls(&mut next, parts, solution, step);
+        finish_seat(&mut next, parts, solution, step);
         finish_contacts(&mut next, parts, solution);
         self.note_energies(&mut next, energies);
         next.ledger.note_scale();
@@ -87,7 +88,8 @@ impl Motion<'_> {
             ledger.rayleigh_loss += self.costs.time("rayleigh_damping", loss);
         }
         ledger.numerical_loss += body.numerical_loss(integrator, old, new);
-        if let Some(follow) = parts.rings[side.index()].as_ref().and_then(|ports| ports.follow) {
+        let follow = parts.rings[side.index()].as_ref().and_then(|ports| ports.follow);
+        if let Some(follow) = follow.filter(|follow| follow.body == SHAFT) {
             // What the shaft gives in space and what the ring gets in its frame differ by the work of the turning.
             let mount = &solution.mounts[side.index()];
             let n = 2 * parts.balls.len();
@@ -126,7 +128,12 @@ impl Motion<'_> {
             .iter()
             .map(|v| kinetic(self.model.shaft_mass, v))
             .sum();
-        state.ledger.kinetic = [inner[0] + shaft, outer[0], balls];
+        let seat = state.seat.zip(self.model.seat());
+        let outer_kinetic = match seat {
+            Some((seat, of)) => outer[0] + kinetic(of.mass, &seat[1]),
+            None => outer[0],
+        };
+        state.ledger.kinetic = [inner[0] + shaft, outer_kinetic, balls];
         state.ledger.strain = [inner[1], outer[1]];
     }
 }
@@ -198,6 +205,16 @@ fn finish_balls(next: &mut MotionState, parts: &BearingParts, solution: &StepSol
         [next.ball_velocities[b], next.ball_accelerations[b]] =
             finish_body(ball, step, *end, &mut next.ledger);
     }
+}
+
+fn finish_seat(next: &mut MotionState, parts: &BearingParts, solution: &StepSolution, step: StepScheme) {
+    let Some(seat) = &parts.seat else { return };
+    let end = [0.0, 0.0, solution.seat, 0.0, 0.0];
+    let [velocity, acceleration] = finish_body(&seat.body, step, end, &mut next.ledger);
+    let [work, loss] = seat.spring.works([seat.body.dofs[2].start[0], solution.seat]);
+    next.ledger.load_work += work;
+    next.ledger.numerical_loss += loss;
+    next.seat = Some([solution.seat, velocity[2], acceleration[2]]);
 }
 
 fn finish_contacts(next: &mut MotionState, parts: &BearingParts, solution: &StepSolution) {

@@ -36,6 +36,10 @@ pub(super) fn require_finite(state: &MotionState) -> Result<(), DynamicsError> {
             "the motion of the shaft at the end of a step",
             shaft.iter().flatten().sum(),
         ),
+        (
+            "the motion of the outer ring's seat at the end of a step",
+            state.seat.iter().flatten().sum(),
+        ),
         ("the contacts at the end of a step", contacts + ledger.hertz),
         ("the work of a step", works),
     ];

@@ -8,7 +8,7 @@ use super::run::Motion;
 use super::solve::StepSolution;
 use super::span::Span;
 use super::state::MotionState;
-use crate::bearing::{BearingParts, ContactList, SHAFT};
+use crate::bearing::{BearingParts, ContactList, FIRST_BALL, SHAFT, SeatStep};
 use crate::bodies::{FlatBody, Inertia, Name};
 use crate::compliance;
 use crate::effects::{self, Loads, Now};
@@ -112,7 +112,28 @@ impl Motion<'_> {
                 .collect(),
             [ports(Side::Inner)?, ports(Side::Outer)?],
             contacts,
+            self.seat(state, loads),
         ))
+    }
+
+    fn seat(&self, state: &MotionState, loads: &Loads) -> Option<SeatStep> {
+        let (seat, start) = (self.model.seat()?, state.seat?);
+        // A flexible ring carries its own loads to the seat.
+        let load = if self.rings[1].is_some() {
+            0.0
+        } else {
+            loads.ring_on_seat
+        };
+        Some(SeatStep {
+            seat,
+            axial: Inertia {
+                mass: seat.mass,
+                start,
+                load,
+                load_slope: 0.0,
+            },
+            weight: self.settings.integrator.alpha_f,
+        })
     }
 
     /// A flexible ring by its ports: contacts move freely, the mount follows its partner.
@@ -127,11 +148,19 @@ impl Motion<'_> {
             at_forces: Vec::new(),
             stiffness: compliance::inverse(side, n, n_balls, &answer.compliance)?,
             n_moving: 2 * n_balls,
-            follow: (side == Side::Inner).then(|| Follow {
-                body: SHAFT,
+            follow: self.carrier(side).map(|body| Follow {
+                body,
                 frame: [angle(1.0 - self.settings.integrator.alpha_f), angle(1.0)],
             }),
         })
+    }
+
+    /// Number of the lumped body that a ring's mount follows; None: it is held.
+    fn carrier(&self, side: Side) -> Option<usize> {
+        match side {
+            Side::Inner => Some(SHAFT),
+            Side::Outer => self.model.seat().map(|_| FIRST_BALL + self.n_balls()),
+        }
     }
 
     fn ball(&self, state: &MotionState, ball: usize, loads: &Loads) -> FlatBody<2> {

@@ -57,7 +57,7 @@ impl<'a> Motion<'a> {
         let build = |side: Side| {
             let moving = |ring| -> Result<MovingRing, DynamicsError> {
                 let settings = BodySettings {
-                    partner: partner(side),
+                    partner: partner(model, side),
                     damping: settings.rayleigh,
                     backend: model.backend,
                     frame: frame(side),

@@ -11,6 +11,8 @@ pub struct StateShape {
     pub n_balls: usize,
     /// Vectors of the inner and the outer ring; None for a rigid ring.
     pub rings: [Option<RingShape>; 2],
+    /// Whether the seat of the outer ring slides.
+    pub has_seat: bool,
 }
 
 impl Motion<'_> {
@@ -19,6 +21,7 @@ impl Motion<'_> {
         StateShape {
             n_balls: self.model.geometry.n_balls,
             rings: [0, 1].map(|i| self.rings[i].as_ref().map(|ring| ring.body.shape())),
+            has_seat: self.model.seat().is_some(),
         }
     }
 }

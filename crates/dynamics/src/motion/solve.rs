@@ -28,6 +28,8 @@ pub(super) struct StepSolution {
     pub shaft: [f64; 5],
     /// Balls at the end [radial, axial], m.
     pub balls: Vec<[f64; 2]>,
+    /// The seat of the outer ring along z at the end, m; 0 unless it slides.
+    pub seat: f64,
     /// l of every contact at start and end, `[2 n_sites]`, m.
     reaches: [Vec<f64>; 2],
     /// Mean forces, by site, without the dead ones.
@@ -75,6 +77,7 @@ impl BearingParts {
             balls: (0..self.balls.len())
                 .map(|ball| system.coordinates(FIRST_BALL + ball, x))
                 .collect(),
+            seat: self.seat_end(x),
             forces: forces.unwrap_or_default(),
             reaches,
             mounts: Side::BOTH.map(mount),

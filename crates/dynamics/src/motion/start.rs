@@ -21,13 +21,14 @@ impl Motion<'_> {
         let omega = self.settings.speed.at(0.0);
         // A driven shaft moves already.
         let velocity = [0, 1, 2, 3, 4].map(|dof| model.prescribed_rate(dof, 0.0).unwrap_or(0.0));
+        let seat = [0.0, 0.0, solution.displacements.seat, 0.0, 0.0];
         let ring = |side: Side| {
             let moving = self.rings[side.index()].as_ref()?;
             let elastic = solution.elastic[side.index()].as_ref()?;
             Some(ring_at_start(
                 &*moving.body,
                 elastic,
-                if side == Side::Inner { q } else { [0.0; 5] },
+                if side == Side::Inner { q } else { seat },
                 if side == Side::Inner { velocity } else { [0.0; 5] },
                 if side == Side::Inner { omega } else { 0.0 },
             ))
@@ -57,6 +58,7 @@ impl Motion<'_> {
             shaft: q,
             shaft_velocity: velocity,
             shaft_acceleration: [0.0; 5],
+            seat: model.seat().map(|_| [solution.displacements.seat, 0.0, 0.0]),
             trend: vec![[0.0; 2]; 3 * model.geometry.n_balls],
             forces: forces.collect(),
             places: [(); 3].map(|()| places.clone()),
@@ -103,6 +105,7 @@ impl Motion<'_> {
             shaft: q,
             shaft_velocity: velocity,
             shaft_acceleration: [0.0; 5],
+            seat: self.model.seat().map(|_| [0.0; 3]),
             // Nothing is known of the accelerations.
             trend: vec![[f64::NAN; 2]; 3 * n],
             forces: vec![[0.0; 2]; 2 * n],
@@ -141,6 +144,11 @@ impl Motion<'_> {
         }
         for (b, moved) in next.ball_velocities.iter().enumerate() {
             state.ball_accelerations[b] = [0, 1].map(|i| mean(moved[i], state.ball_velocities[b][i]));
+        }
+        if let (Some(seat), Some(moved), Some(model)) = (&mut state.seat, next.seat, self.model.seat())
+            && model.mass > 0.0
+        {
+            seat[2] = mean(moved[1], seat[1]);
         }
         for dof in 0..3 {
             if self.model.shaft_mass > 0.0 {

@@ -74,6 +74,8 @@ pub struct MotionState {
     pub shaft_velocity: [f64; 5],
     /// Its acceleration; 0 for dofs without mass of their own.
     pub shaft_acceleration: [f64; 5],
+    /// The seat of the outer ring along z, if it slides: displacement, velocity, acceleration, m, m/s, m/s^2.
+    pub seat: Option<[f64; 3]>,
     /// Mean accelerations [radial, axial] over the last part of a step, of the balls, then of the groove centres by site,
     /// m/s^2: what the local error is estimated from. Zero when steps do not adapt, NaN where nothing is known yet.
     pub trend: Vec<[f64; 2]>,
@@ -103,6 +105,7 @@ impl MotionState {
             shaft: self.shaft,
             shaft_velocity: self.shaft_velocity,
             shaft_acceleration: self.shaft_acceleration,
+            seat: self.seat,
             trend: self.trend.clone(),
             forces: self.forces.clone(),
             angles: self.angles.clone(),

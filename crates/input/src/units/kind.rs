@@ -43,7 +43,9 @@ pub const RATE: usize = 10;
 pub const DAMPING: usize = 11;
 /// Index of masses, kg.
 pub const MASS: usize = 12;
-/// A speed.
+/// Index of stiffnesses, N/m.
+pub const STIFFNESS: usize = 13;
+/// Index of speeds, m/s.
 pub const SPEED: usize = 14;
 
 /// All kinds: those a scene uses first, at the index of their constant, then those only named in messages.
