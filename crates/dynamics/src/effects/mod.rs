@@ -16,6 +16,7 @@ pub mod moment;
 pub mod radial_force;
 pub mod rayleigh_damping;
 pub mod rules;
+pub mod spring_preload;
 mod table;
 pub mod unbalance;
 
@@ -28,6 +29,7 @@ pub(crate) use loads::resultant;
 pub use loads::{Effect, FrameTurn, Loads, Now, loads, timed_loads};
 pub use moment::Moment;
 pub use radial_force::RadialForce;
+pub use spring_preload::SpringPreload;
 pub use table::{About, Context, Entry, Need, RingDamping, Setting, SpeedRole, Table, Trial};
 
 use input::{Problems, Schedule};
@@ -62,6 +64,8 @@ pub struct Effects {
     pub contact_damping: Option<contact_damping::Table>,
     /// Damping of the rings.
     pub rayleigh_damping: Option<rayleigh_damping::Table>,
+    /// Spring that presses the outer ring along the axis.
+    pub spring_preload: Option<spring_preload::Table>,
     /// A mass off the axis of shaft and inner ring.
     pub unbalance: Option<unbalance::Table>,
 }
@@ -81,6 +85,7 @@ impl Effects {
             frame_rotation,
             contact_damping,
             rayleigh_damping,
+            spring_preload,
             unbalance,
         } = self;
         vec![
@@ -94,6 +99,7 @@ impl Effects {
             frame_rotation,
             contact_damping,
             rayleigh_damping,
+            spring_preload,
             unbalance,
         ]
     }
