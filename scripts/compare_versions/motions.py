@@ -76,8 +76,8 @@ SUPPORTS = [
         MASS,
         'shaft.z={ value = "30 um", schedule.ramp = { from = 1, to = 2, start = "0 s", duration = "0.2 ms" } }',
     ),
-    motion("inner_partly_held", dynamic() + FRAME, meshes="inner_partly_held", resume=(10,)),
-    motion("outer_partly_held", None, meshes="outer_partly_held", threads=True),
+    motion("inner_partly_held", dynamic() + FRAME, "inner.partial=true", meshes="inner_partly_held", resume=(10,)),
+    motion("outer_partly_held", None, "outer.partial=true", meshes="outer_partly_held", threads=True),
 ]
 RINGS = [
     motion("frame_rotation", dynamic() + FRAME + DAMPING, LOW_PRELOAD, resume=(10,), threads=True),

@@ -16,7 +16,7 @@ REST = [
     Case("static_rigid", STATIC, settings=RIGID),
     Case("static_tilt_mean", STATIC, settings=FREE_TILT, edits=MEAN),
     Case("static_keyway", STATIC, KEYWAY + "[static]\n"),
-    Case("static_partly_held", STATIC, meshes="inner_partly_held"),
+    Case("static_partly_held", STATIC, settings=("inner.partial=true",), meshes="inner_partly_held"),
     Case("static_moved_nodes", STATIC, meshes="moved_nodes"),
     Case("static_sparse", STATIC, settings=(SPARSE,)),
     Case("static_sectors", STATIC, settings=("solver.backend=sector", "solver.sectors=5"), threads=True),
@@ -40,7 +40,7 @@ MODE_CASES = [
     Case("modes_free", MODES, '[modes]\nnumber = 9\nbodies = ["outer", "inner"]\nsupport = "free"\n'),
     Case("modes_mean_tilt", MODES, ALL_BODIES, FREE_TILT, edits=MEAN),
     Case("modes_sparse", MODES, ALL_BODIES, (MASS, SPARSE)),
-    Case("modes_partly_held", MODES, ALL_BODIES, (MASS,), meshes="outer_partly_held"),
+    Case("modes_partly_held", MODES, ALL_BODIES, (MASS, "outer.partial=true"), meshes="outer_partly_held"),
     Case("modes_keyway", MODES, KEYWAY + ALL_BODIES, (MASS,)),
     Case("modes_rigid", MODES, "[modes]\nnumber = 60\n", (MASS, *RIGID)),
 ]

@@ -7,23 +7,31 @@
 //! which the first group has.
 
 use solver::CyclicRing;
+use solver::cyclic::HarmonicOperator;
 
 use super::space_defect::SpaceDefect;
 use crate::coordinates::RIGID_MOTIONS;
-use crate::matrices::Nodes;
+use crate::matrices::{Matrix, Nodes};
 use crate::vectors::dot;
 
 /// Orthonormal rigid motions that strain nothing.
 pub(super) struct RigidMotions {
     /// The first group with the border.
     low: Vec<Vec<f64>>,
-    /// Their values on the rows of a defect.
-    on_defect: Vec<Vec<f64>>,
+    /// K R, which is round-off, but the same in every step: the motion obeys it, and so the energy has it, R q K w / 2.
+    residue: Vec<Vec<f64>>,
+    /// Their values on the rows of a defect, and the defect's part of K R.
+    on_defect: Vec<[Vec<f64>; 2]>,
 }
 
 impl RigidMotions {
     /// Those of the ring with all rows of the regular one, as its `nodes` are held.
-    pub fn new(ring: &CyclicRing, nodes: Nodes<'_>, defect: Option<&SpaceDefect>) -> RigidMotions {
+    pub fn new(
+        ring: &CyclicRing,
+        nodes: Nodes<'_>,
+        stiffness: &HarmonicOperator,
+        defect: Option<&SpaceDefect>,
+    ) -> RigidMotions {
         let coordinates = nodes.coordinates;
         let (shaft, _) = coordinates.shaft();
         let mut low: Vec<Vec<f64>> = Vec::new();
@@ -50,9 +58,20 @@ impl RigidMotions {
                 whole[len..].copy_from_slice(&low[low_len..]);
                 whole
             };
-            low.iter().map(|low| defect.values(&whole(low))).collect()
+            let rows = |low: &Vec<f64>| {
+                let rows = defect.values(&whole(low));
+                let residue = defect.product(Matrix::Stiffness, &rows);
+                [rows, residue]
+            };
+            low.iter().map(rows).collect()
+        };
+        let product = |low: &Vec<f64>| {
+            let mut product = vec![0.0; low.len()];
+            stiffness.group_product(0, low, &mut product);
+            product
         };
         RigidMotions {
+            residue: low.iter().map(product).collect(),
             on_defect: defect.map_or_else(Vec::new, on_rows),
             low,
         }
@@ -72,11 +91,29 @@ impl RigidMotions {
         strained
     }
 
+    /// Twice the energy that the round-off of K R has at a displacement whose first group with the border is `w`.
+    pub fn twice_residual_energy(&self, ring: &CyclicRing, w: &[f64]) -> f64 {
+        let pairs = self.low.iter().zip(&self.residue);
+        pairs
+            .map(|(rigid, residue)| low_dot(ring, rigid, w) * low_dot(ring, residue, w))
+            .sum()
+    }
+
+    /// Twice the energy of a defect with the stiffness product `product` at the values `rows` of a displacement whose
+    /// first group with the border is `w`.
+    pub fn twice_defect_energy(&self, ring: &CyclicRing, w: &[f64], [rows, product]: [&[f64]; 2]) -> f64 {
+        let mut residual = 0.0;
+        for (rigid, [_, residue]) in self.low.iter().zip(&self.on_defect) {
+            residual += low_dot(ring, rigid, w) * dot(residue, rows);
+        }
+        dot(&self.strained_rows(ring, w, rows), product) + residual
+    }
+
     /// The values on the rows of a defect, `rows`, of a displacement whose first group with the border is `w`, less
     /// those of its rigid motion.
-    pub fn strained_rows(&self, ring: &CyclicRing, w: &[f64], rows: &[f64]) -> Vec<f64> {
+    fn strained_rows(&self, ring: &CyclicRing, w: &[f64], rows: &[f64]) -> Vec<f64> {
         let mut strained = rows.to_vec();
-        for (rigid, on_rows) in self.low.iter().zip(&self.on_defect) {
+        for (rigid, [on_rows, _]) in self.low.iter().zip(&self.on_defect) {
             let share = low_dot(ring, rigid, w);
             strained
                 .iter_mut()

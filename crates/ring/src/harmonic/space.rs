@@ -81,13 +81,14 @@ impl HarmonicSpace {
             HarmonicOperator::new(&free.ring, matrix, &border, &corner)
         };
         let n_shaft = nodes.coordinates.shaft().0.len();
+        let stiffness = operator(&free.stiffness, [0.0, 1.0])?;
         let of_rigid = defect.as_ref().map_or(&free.ring, SpaceDefect::regular);
         Ok(HarmonicSpace {
-            rigid: RigidMotions::new(of_rigid, nodes, defect.as_ref()),
+            rigid: RigidMotions::new(of_rigid, nodes, &stiffness, defect.as_ref()),
             pool: VectorPool::new(free.ring.harmonic_len() + n_shaft),
             n_shaft,
             mass: operator(&free.mass, [1.0, 0.0])?,
-            stiffness: operator(&free.stiffness, [0.0, 1.0])?,
+            stiffness,
             ring: match &held.seen {
                 Some(seen) => free.ring.seen_at(seen),
                 None => free.ring.clone(),
@@ -118,11 +119,12 @@ impl HarmonicSpace {
         let [w, v, _] = state.vectors();
         let mut strained = w.to_vec();
         self.put_low(self.strained_part(0, &self.low_of(w)).as_ref(), &mut strained);
-        let regular = [(&self.mass, v, v), (&self.stiffness, &strained, w)].map(|(operator, a, x)| {
+        let mut regular = [(&self.mass, v, v), (&self.stiffness, &strained, w)].map(|(operator, a, x)| {
             let (product, len) = (operator.product(x), self.ring.harmonic_len());
             let harmonics = self.ring.harmonic_dot(&a[..len], &product[..len]);
             0.5 * (harmonics + dot(&a[len..], &product[len..]))
         });
+        regular[1] += 0.5 * self.residual_energy(0, &self.low_of(w));
         match &self.defect {
             None => regular,
             Some(defect) => {
@@ -135,11 +137,11 @@ impl HarmonicSpace {
     /// What a defect adds to kinetic and strain energy, J, of a state with the displacement `w`.
     pub(super) fn defect_energies(&self, defect: &SpaceDefect, w: &[f64], rows: &RowValues) -> [f64; 2] {
         let RowValues([on_rows, v, _]) = rows;
-        let strained = self.rigid.strained_rows(&self.ring, &self.low_of(w), on_rows);
-        [
-            0.5 * defect.form(Matrix::Mass, v, v),
-            0.5 * defect.form(Matrix::Stiffness, &strained, on_rows),
-        ]
+        let product = defect.product(Matrix::Stiffness, on_rows);
+        let twice = self
+            .rigid
+            .twice_defect_energy(&self.ring, &self.low_of(w), [on_rows, &product]);
+        [0.5 * defect.form(Matrix::Mass, v, v), 0.5 * twice]
     }
 
     /// The part of one group's displacement that is no rigid motion.
@@ -148,6 +150,14 @@ impl HarmonicSpace {
             return Cow::Borrowed(w);
         }
         Cow::Owned(self.rigid.strained(&self.ring, w))
+    }
+
+    /// Twice the energy that is left out with the rigid motion of one group's displacement: that of the round-off of K.
+    pub(super) fn residual_energy(&self, group: usize, w: &[f64]) -> f64 {
+        match group {
+            0 => self.rigid.twice_residual_energy(&self.ring, w),
+            _ => 0.0,
+        }
     }
 
     /// The first group of a vector with the border.

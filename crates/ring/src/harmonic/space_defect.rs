@@ -217,7 +217,12 @@ impl SpaceDefect {
 
     /// a D b of one matrix.
     pub(super) fn form(&self, matrix: Matrix, a: &[f64], b: &[f64]) -> f64 {
-        dot(a, &product(&self.change[matrix as usize], b))
+        dot(a, &self.product(matrix, b))
+    }
+
+    /// D b of one matrix.
+    pub(super) fn product(&self, matrix: Matrix, b: &[f64]) -> Vec<f64> {
+        product(&self.change[matrix as usize], b)
     }
 
     /// Moves the rows that the true ring lacks, which are zero in `x`, as the statics of the regular ring does.

@@ -103,7 +103,8 @@ impl<'a> Pass<'a> {
         space.mass.group_product(group, v, mv);
         space.stiffness.group_product(group, w, kw);
         let strained = space.strained_part(group, w);
-        [space.part_dot(group, v, mv), space.part_dot(group, &strained, kw)]
+        let strain = space.part_dot(group, &strained, kw) + space.residual_energy(group, w);
+        [space.part_dot(group, v, mv), strain]
     }
 
     /// The first half of S^-1 of the known loads of the next step, M (m0 v + m1 a) + K (k0 v + k1 a - w) + load +
