@@ -399,6 +399,10 @@ fn check_ledger(
     if defect.abs() <= dynamic.ledger_tolerance {
         return Ok(());
     }
+    // A bearing that hardly moves has less energy than the round-off of its positions.
+    if state.ledger.defect().abs() <= motion.energy_round_off(state)? {
+        return Ok(());
+    }
     Err(Failure::Numerical(anyhow!(
         "the energy ledger does not close at step {}, t = {:.6e} s: the defect is {defect:.3e} of the largest energy, \
          dynamic.ledger_tolerance is {:.1e}; use contact = \"discrete_gradient\" with integrator = \

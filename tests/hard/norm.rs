@@ -8,7 +8,7 @@ use contact::Side;
 use dynamics::Model;
 use dynamics::effects::{self, Now};
 use dynamics::motion::{Integrator, Motion, MotionSettings, MotionState};
-use dynamics::problem::Site;
+use dynamics::interactions::raceway_contact::Site;
 
 use super::bearings::equilibrium_at;
 use super::course::{Course, march_with};
@@ -96,7 +96,7 @@ fn forces(model: &Model, motion: &Motion<'_>, state: &MotionState) -> (Vec<[f64;
         let force = [size * cos, size * sin];
         (0..2).for_each(|i| balls[ball][i] -= force[i]);
         if side == Side::Inner {
-            for (sum, row) in shaft.iter_mut().zip(site.shaft_rows()) {
+            for (sum, row) in shaft.iter_mut().zip(site.carrier_rows()) {
                 *sum += row[0] * force[0] + row[1] * force[1];
             }
         }

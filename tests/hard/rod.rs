@@ -1,5 +1,6 @@
-//! An elastic bar on a rigid wall, by the code of a ring: `ring::elastic_body` of a mesh that happens to be a straight bar, its
-//! predictor and compliance (`ring::ElasticStep`), the discrete gradient of the contact and the small Newton (`SmallSystem`).
+//! An elastic bar on a rigid wall, by the code of a ring: `ring::elastic_body` of a mesh that happens to be a straight
+//! bar, its predictor and compliance (`ring::ElasticStep`), the discrete gradient of the contact and the bearing's
+//! system with its Newton (`BearingParts`).
 //!
 //! The bar lies along z, one element thick, Poisson's ratio 0: its waves are those of a rod. Its end face is the "groove centre"
 //! of one contact; the "ball" is the wall (1e9 masses of the bar) or a free body. Closed form: the end stops at impact, a
@@ -12,12 +13,12 @@ use std::sync::Arc;
 
 use contact::{ContactLaw, Groove, NodalWeights, Side};
 use dense::DenseCholesky;
+use dynamics::bearing::{BearingParts, ContactList};
+use dynamics::bodies::{FlatBody, Inertia, Name};
 use dynamics::interactions::discrete_gradient::ContactScheme;
+use dynamics::interactions::raceway_contact::{Means, Site};
 use dynamics::motion::Integrator;
-use dynamics::motion::inertia::Inertia;
-use dynamics::motion::shaft::ShaftStep;
-use dynamics::motion::small::{RingAnswer, SmallSystem};
-use dynamics::problem::Site;
+use dynamics::system::{ElasticPorts, Interval};
 use dynamics::{Backend, Hold, RingModel};
 use fem::Material;
 use mesh::{ElementKind, Facet, Mesh};
@@ -162,33 +163,38 @@ impl Rod {
             let mut moving = factor.begin(&state, known, std::slice::from_ref(&foot));
             let answer = moving.answer().clone();
             let inverse = DenseCholesky::factor(2, &answer.compliance).unwrap().inverse();
-            let system = SmallSystem {
-                dt,
-                integrator,
-                sites: vec![site.clone()],
-                balls: vec![wall.map(|start| Inertia {
-                    mass,
-                    start,
-                    ..Inertia::default()
-                })],
-                shaft: ShaftStep {
-                    bodies: [Inertia::default(); 5],
-                    imposed: [Some(0.0); 5],
-                    frame: [0.0; 2],
-                },
-                rings: [
-                    None,
-                    Some(RingAnswer {
-                        start: answer.start,
-                        predicted: answer.predicted,
-                        stiffness: inverse,
-                    }),
-                ],
-                scheme,
-                damping: None,
-                extra: Vec::new(),
+            let inertia = wall.map(|start| Inertia {
+                mass,
+                start,
+                ..Inertia::default()
+            });
+            let bar = ElasticPorts {
+                name: "outer",
+                start: answer.start,
+                offset: answer.predicted,
+                stiffness: inverse,
+                n_moving: 2,
+                ..ElasticPorts::default()
             };
-            let solution = system.solve(scale, &costs).unwrap();
+            let contacts = ContactList {
+                sites: vec![site.clone()],
+                dead: Vec::new(),
+                means: Some(Means {
+                    dt,
+                    scheme,
+                    weight: integrator.alpha_f,
+                    damping: None,
+                }),
+            };
+            let parts = BearingParts::new(
+                Interval::Step(StepScheme { integrator, dt }),
+                FlatBody::new(Name::Shaft, [Inertia::default(); 5], [Some(0.0); 5]),
+                vec![FlatBody::new(Name::Ball(0), inertia, [None; 2])],
+                [None, Some(bar)],
+                contacts,
+                None,
+            );
+            let solution = parts.solve_step(scale, &costs).unwrap();
             let contact = solution.forces[0];
             let forces = PortForces {
                 contacts: &contact.force,
@@ -202,14 +208,13 @@ impl Rod {
             work += ended.works.load;
             loss += body.numerical_loss(integrator, &state, &next) + contact.numerical_loss;
             for (i, place) in wall.iter_mut().enumerate() {
-                let inertia = system.balls[0][i];
-                let x = solution.unknowns[i];
+                let (inertia, x) = (inertia[i], solution.balls[0][i]);
                 loss += inertia.numerical_loss(integrator, x, dt);
                 let [v, a] = inertia.update(integrator, x, dt);
                 *place = [x, v, a];
             }
             state = next;
-            let [_, end] = system.reach(&site, &solution.unknowns);
+            let [_, end] = solution.reach(0);
             let stored = law.evaluate(end[0].hypot(end[1]) - touching).energy;
             let energy =
                 body.energies(&state).iter().sum::<f64>() + stored + 0.5 * mass * wall[1][1] * wall[1][1];

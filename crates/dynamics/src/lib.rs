@@ -5,7 +5,7 @@
 
 pub mod balls;
 pub mod bearing;
-mod bodies;
+pub mod bodies;
 mod compliance;
 pub mod costs;
 pub mod displacements;

@@ -1,6 +1,7 @@
 //! A spring between housing and outer ring along the axis: the ring slides in its seat.
 //!
-//! With u the displacement of the seat along +z, the spring presses the ring along -z with F0 + k u: V = F0 u + k u^2/2.
+//! With u the displacement of the seat along +z, the spring presses the ring along -z with F0 + k u:
+//! V = F0 u + k u^2/2.
 //! Over a step the force is F0 + k (w u0 + (1 - w) u1), w the weight of the start. For w = 1/2 that is the discrete
 //! gradient of V, which exchanges energy and makes none; a scheme that dissipates takes (1/2 - w) k (u1 - u0)^2.
 

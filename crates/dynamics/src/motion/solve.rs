@@ -23,7 +23,7 @@ const RESIDUAL_LIMIT: f64 = 1e-9;
 const HALVINGS: u32 = 10;
 
 /// Solution of a part.
-pub(super) struct StepSolution {
+pub struct StepSolution {
     /// Shaft at the end, m and rad.
     pub shaft: [f64; 5],
     /// Balls at the end [radial, axial], m.
@@ -49,7 +49,7 @@ impl StepSolution {
 
 impl BearingParts {
     /// Solves the part; `scale` is the largest force that acts at its start, N.
-    pub(super) fn solve_step(&self, scale: f64, costs: &SharedLaps) -> Result<StepSolution, DynamicsError> {
+    pub fn solve_step(&self, scale: f64, costs: &SharedLaps) -> Result<StepSolution, DynamicsError> {
         let system = self.system();
         let policy = Policy {
             most_iterations: MOST_ITERATIONS,

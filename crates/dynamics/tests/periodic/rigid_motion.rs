@@ -110,3 +110,36 @@ fn the_ledger_closes_under_small_loads_at_the_far_end_of_the_play() {
         assert!(defect.abs() < 1e-7, "{name}: {defect:e}, {:?}", state.ledger);
     }
 }
+
+/// Wrong: a bearing that drifts freely at 0.1 mm/s would be stopped by round-off of its positions with blame on step and
+/// scheme. All of its energy is 1e-9 J; what the ledger misses must stay below the energy of round-off, and that far
+/// below the energies of a bearing under load.
+#[test]
+fn a_slow_drift_loses_no_more_than_round_off() {
+    for hold in [Hold::Clamped, Hold::MeanMotion] {
+        let mut model = pulled(bearing(HEX8, hold, Backend::Cyclic), 0.0);
+        model.effects.clear();
+        model.shaft_mass = 0.1;
+        let settings = MotionSettings::conserving(2e-4, Speed::constant(0.0));
+        let motion = Motion::new(&model, settings).unwrap();
+        let mut state = motion.rest([0.0; 5], [0.0, 0.0, -1e-4, 0.0, 0.0]);
+        let (mut cache, mut worst) = (StepCache::default(), 0.0f64);
+        for _ in 0..600 {
+            state = motion.step(&state, &mut cache).unwrap().0;
+            let floor = motion.energy_round_off(&state).unwrap();
+            let closes = state.ledger.relative_defect().abs() <= 1e-6;
+            assert!(
+                closes || state.ledger.defect().abs() <= floor,
+                "{:?}, {floor:e}",
+                state.ledger
+            );
+            worst = worst.max(state.ledger.relative_defect().abs());
+        }
+        let floor = motion.energy_round_off(&state).unwrap();
+        println!(
+            "largest relative defect {worst:e}, round-off {floor:e} J of {:e} J",
+            state.ledger.largest
+        );
+        assert!(floor < 1e-9, "{floor:e} J would hide what a loaded bearing loses");
+    }
+}
