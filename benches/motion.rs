@@ -1,16 +1,17 @@
 //! A step in time of a bearing of 2 x 57 k dof, part by part, with stress and step file, each beside its floor.
 //!
-//! The bearing rolls at 1800 rpm under 2 kN and 1 kN with two threads. Steps with and without `frame_rotation` take turns,
-//! so that other work on the machine meets both. Floors: the pass that ends a step (`update`) reads the factor of each ring once from memory, a
-//! group of harmonics after the other, reads predictor and state and writes both anew; stress reads displacements and writes six
-//! components per node; a step file is written and synced. Bandwidth of memory and disk are measured in the same run. Run with
-//! `cargo bench -p raceway --bench motion`.
+//! The bearing rolls at 1800 rpm under 2 kN and 1 kN with two threads. Steps with and without `frame_rotation` take
+//! turns, so that other work on the machine meets both. Floors: the pass that ends a step (`update`) reads the factor
+//! of each ring once from memory, a group of harmonics after the other, reads predictor and state and writes both
+//! anew; stress reads displacements and writes six components per node; a step file is written and synced. Bandwidth
+//! of memory and disk are measured in the same run. Run with `cargo bench -p raceway --bench motion`.
 //!
 //!     cargo bench -p raceway --bench motion -- [57k] [159k] [410k] [1M] [paper]
 //!
-//! The names are dofs per ring; without names 57k. With more than one the growth of the cost of a step from the first to the
-//! last is printed as an exponent. `paper` rolls 2 x 410 k dofs for a hundredth of a ball's revolution, 77 steps of 1e-5 s,
-//! each with the stress of all nodes and a step file, and says what the whole would take. Results: docs/performance.md.
+//! The names are dofs per ring; without names 57k. With more than one the growth of the cost of a step from the first
+//! to the last is printed as an exponent. `paper` rolls 2 x 410 k dofs for a hundredth of a ball's revolution, 77
+//! steps of 1e-5 s, each with the stress of all nodes and a step file, and says what the whole would take. Results:
+//! docs/performance.md.
 
 #[path = "../crates/dynamics/tests/support/mod.rs"]
 mod support;

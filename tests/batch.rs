@@ -130,7 +130,8 @@ fn a_launcher_is_told_to_stop_its_ranks_not_to_end() {
     }
 }
 
-/// Sends a signal to the script when its program has started. The script's exit code, and whether it queued the job again.
+/// Sends a signal to the script when its program has started. The script's exit code, and whether it queued the job
+/// again.
 fn end_by(signal: &str, dir: &Dir, child: Child) -> (Option<i32>, bool) {
     let begun = Instant::now();
     while !dir.path("started").exists() {

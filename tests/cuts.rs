@@ -16,8 +16,9 @@ pub fn cut_motion() -> Dir {
     dir
 }
 
-/// Wrong: a ring with a part cut out would be another one to harmonics than to a sparse factor, its bits would depend on the number of
-/// threads, or a run that was cut short would go on otherwise. That the ledger closes in every step, the program checks itself.
+/// Wrong: a ring with a part cut out would be another one to harmonics than to a sparse factor, its bits would depend
+/// on the number of threads, or a run that was cut short would go on otherwise. That the ledger closes in every step,
+/// the program checks itself.
 #[test]
 fn a_motion_of_cut_rings_has_the_same_bits_resumes_and_agrees_with_sparse_factors() {
     let dir = cut_motion();
@@ -60,7 +61,8 @@ fn a_motion_of_cut_rings_has_the_same_bits_resumes_and_agrees_with_sparse_factor
     assert!(difference > 1e-6 * largest, "{difference} N");
 }
 
-/// Wrong: `raceway check` would hide that a ring has a defect, what it costs, or that its mesh has fewer nodes than the file.
+/// Wrong: `raceway check` would hide that a ring has a defect, what it costs, or that its mesh has fewer nodes than
+/// the file.
 #[test]
 fn check_says_what_is_cut() {
     let dir = cut_motion();

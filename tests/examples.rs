@@ -1,4 +1,5 @@
-//! The worked examples of `docs/examples.md`: the shipped scenes of other bearings give the values of books and standards.
+//! The worked examples of `docs/examples.md`: the shipped scenes of other bearings give the values of books and
+//! standards.
 
 use std::path::Path;
 
@@ -40,7 +41,8 @@ fn the_218_under_thrust_is_that_of_the_book() {
 fn the_6010_without_clearance_has_stribecks_constant() {
     let dir = rigid("6010_radial.toml", &[]);
     let force = Table::read(&dir, "out/balls.csv").column("inner_force_n");
-    // Largest force 4.37 F_r / Z (Harris, 4th ed., ch. 7: Stribeck's sum, without clearance); exact to its three digits.
+    // Largest force 4.37 F_r / Z (Harris, 4th ed., ch. 7: Stribeck's sum, without clearance); exact to its three
+    // digits.
     assert_close("largest ball force", force[0], 4.37 * 16e3 / 14.0, 2e-3);
     let (sum, lift): (f64, Vec<f64>) = (
         (0..14)

@@ -244,8 +244,9 @@ fn packs_and_exports_keep_it() {
     assert!(text.contains("ComponentName47=\"7_XZ\""));
 }
 
-/// Wrong: the near field would be missing at integration points, be that of another place, or be added where no contact is. What it changes
-/// there is what it changes at probes in the same points, which find their stress in another way; far from contacts no bit changes.
+/// Wrong: the near field would be missing at integration points, be that of another place, or be added where no
+/// contact is. What it changes there is what it changes at probes in the same points, which find their stress in
+/// another way; far from contacts no bit changes.
 #[test]
 fn the_near_field_is_added_at_integration_points() {
     let dir = Dir::with_meshes();

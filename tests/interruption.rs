@@ -137,8 +137,8 @@ fn a_killed_run_goes_on_from_whole_steps() {
     println!("{done} kills, {survived} runs ended before theirs");
 }
 
-/// Wrong: a batch system that warns before it kills would get no checkpoint, an unfinished step, or a run that cannot go
-/// on to the same bits; the exit code tells scripts that there is more to do.
+/// Wrong: a batch system that warns before it kills would get no checkpoint, an unfinished step, or a run that cannot
+/// go on to the same bits; the exit code tells scripts that there is more to do.
 #[test]
 fn a_signal_stops_between_steps() {
     let dir = small_motion();

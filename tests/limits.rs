@@ -1,4 +1,5 @@
-//! Contacts of a motion beyond what Hertz's theory and steel can do: said once per ball, counted in the summary, also after a resume.
+//! Contacts of a motion beyond what Hertz's theory and steel can do: said once per ball, counted in the summary, also
+//! after a resume.
 
 use crate::util::tables::summary;
 use crate::util::{Dir, RIGID, SCENE, with_line};
@@ -28,8 +29,8 @@ fn warnings(dir: &Dir, out: &str) -> Vec<String> {
     list.iter().map(|w| w.as_str().unwrap().to_string()).collect()
 }
 
-/// Wrong: contacts that yield in a motion would pass without a word, or the log would repeat them at every step; a run that was resumed
-/// would have another count.
+/// Wrong: contacts that yield in a motion would pass without a word, or the log would repeat them at every step; a
+/// run that was resumed would have another count.
 #[test]
 fn contacts_beyond_the_static_limit_in_motion_are_said_once_per_ball() {
     let dir = overload();

@@ -74,8 +74,9 @@ fn the_forecast_of_memory_holds_over_sizes_and_elements() {
     }
 }
 
-/// Wrong: a job for a motion would ask for too little memory and be killed, or for a machine it does not need. Measured with `rings`, a file every step and
-/// at the ends only, 1 and 2 threads, 7 k to 376 k dofs a ring: -11 to +11 %.
+/// Wrong: a job for a motion would ask for too little memory and be killed, or for a machine it does not need.
+/// Measured with `rings`, a file every step and at the ends only, 1 and 2 threads, 7 k to 376 k dofs a ring: -11 to
+/// +11 %.
 #[test]
 fn check_forecasts_the_memory_of_motions_of_periodic_rings() {
     for (n_sectors, every) in [(198, "1"), (198, "1000"), (360, "1")] {

@@ -59,7 +59,8 @@ fn every_mode_has_a_line_a_file_and_a_number_in_the_summary() {
     );
 }
 
-/// If this failed, the free ring would not be that of the mesh: double modes, the first near the 2376 Hz of a fine mesh.
+/// If this failed, the free ring would not be that of the mesh: double modes, the first near the 2376 Hz of a fine
+/// mesh.
 #[test]
 fn the_outer_ring_rings_near_its_known_frequency() {
     let dir = found();

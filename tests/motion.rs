@@ -96,7 +96,8 @@ fn a_ledger_that_does_not_close_stops_the_run() {
         "{}",
         outcome.stderr
     );
-    // The tables have the step that was rejected, the newest step file is the one before: resuming comes to the same end.
+    // The tables have the step that was rejected, the newest step file is the one before: resuming comes to the same
+    // end.
     let energy = dir.text("out/energy.csv");
     let rejected: u64 = energy
         .lines()

@@ -1,5 +1,5 @@
-//! Figures of a run through the whole program: which there are, that they show the numbers of the tables, and that they can
-//! be read.
+//! Figures of a run through the whole program: which there are, that they show the numbers of the tables, and that
+//! they can be read.
 
 use std::sync::OnceLock;
 

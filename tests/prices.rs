@@ -175,7 +175,8 @@ fn the_price_list_shows_what_an_effect_changes() {
     );
 }
 
-/// Wrong: a user would not see what the near field costs, or what it changes: the stress of a probe below a ball, and no force.
+/// Wrong: a user would not see what the near field costs, or what it changes: the stress of a probe below a ball, and
+/// no force.
 #[test]
 fn the_price_list_has_the_near_field() {
     let dir = Dir::with_meshes();

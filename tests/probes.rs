@@ -60,9 +60,10 @@ fn six(table: &Table, name: &str) -> [f64; 6] {
     ["xx", "yy", "zz", "xy", "yz", "xz"].map(|ij| table.column(&format!("{name}_stress_{ij}_pa"))[0])
 }
 
-/// If this failed, a history of a node would not be the history of the field that ParaView shows, of nodes of the fixed and of
-/// the turning ring, at rest and in motion: displacements have the same bits; stress, which a probe takes from the elements around
-/// its node and the field of a periodic ring from the weights of its sector, agrees to rounding of the largest stress.
+/// If this failed, a history of a node would not be the history of the field that ParaView shows, of nodes of the
+/// fixed and of the turning ring, at rest and in motion: displacements have the same bits; stress, which a probe
+/// takes from the elements around its node and the field of a periodic ring from the weights of its sector, agrees to
+/// rounding of the largest stress.
 #[test]
 fn a_node_probe_has_the_numbers_of_the_step_file() {
     for (analysis, last) in ANALYSES {
@@ -102,8 +103,9 @@ fn a_node_probe_has_the_numbers_of_the_step_file() {
     }
 }
 
-/// If this failed, cylindrical components would be in other axes, or those of the turning ring not turn with it: traces and
-/// von Mises stress agree with the Cartesian ones of the same node, and the radial stress is n . s n at its azimuth.
+/// If this failed, cylindrical components would be in other axes, or those of the turning ring not turn with it:
+/// traces and von Mises stress agree with the Cartesian ones of the same node, and the radial stress is n . s n at
+/// its azimuth.
 #[test]
 fn cylindrical_components_are_those_at_the_node() {
     for (analysis, last) in ANALYSES {
@@ -230,8 +232,8 @@ fn a_sweep_has_a_line_per_point() {
     );
 }
 
-/// If this failed, a probe beside the ring would silently give the stress of some other place; and what was found would not
-/// be told.
+/// If this failed, a probe beside the ring would silently give the stress of some other place; and what was found
+/// would not be told.
 #[test]
 fn a_point_beside_the_mesh_is_refused_and_a_found_node_is_named() {
     let dir = Dir::with_meshes();

@@ -115,8 +115,9 @@ fn one_and_two_threads_write_the_same_instants() {
     }
 }
 
-/// If this failed, instants before one without equilibrium would be lost, or the message would not say which it is. At some
-/// hundred thousand turns a minute the centrifugal force of the balls drives the inner contacts over the shoulder.
+/// If this failed, instants before one without equilibrium would be lost, or the message would not say which it is.
+/// At some hundred thousand turns a minute the centrifugal force of the balls drives the inner contacts over the
+/// shoulder.
 #[test]
 fn instants_before_a_failure_are_kept() {
     let dir = Dir::with_meshes();

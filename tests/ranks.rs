@@ -48,7 +48,8 @@ fn done(outcome: &Outcome) {
     assert_eq!(outcome.code, Some(0), "{}", outcome.stderr);
 }
 
-/// Wrong: results would depend on the machine. 200 steps, with 1 to 4 ranks of one and two threads, against the program without MPI.
+/// Wrong: results would depend on the machine. 200 steps, with 1 to 4 ranks of one and two threads, against the
+/// program without MPI.
 #[test]
 #[ignore = "needs mpirun and a program built with MPI: scripts/test-mpi"]
 fn motion_has_the_same_bits_on_any_number_of_ranks() {
@@ -76,7 +77,8 @@ fn motion_has_the_same_bits_on_any_number_of_ranks() {
     }
 }
 
-/// Wrong: harmonics that ranks share would give other results than one process: 200 steps on 1 to 4 ranks, and equilibria on up to 6.
+/// Wrong: harmonics that ranks share would give other results than one process: 200 steps on 1 to 4 ranks, and
+/// equilibria on up to 6.
 #[test]
 #[ignore = "needs mpirun and a program built with MPI: scripts/test-mpi"]
 fn harmonics_have_the_same_bits_on_any_number_of_ranks() {
@@ -317,8 +319,8 @@ fn different(dir: &Dir, first: &[&str], others: &[&str]) -> (Outcome, Duration) 
     (Outcome::of(command.output().unwrap()), begin.elapsed())
 }
 
-/// Wrong: a mesh that rank 0 cannot read, which it alone does, would leave the others waiting, or end them without its reason; ranks would
-/// compute with one mesh what their scenes ask of another.
+/// Wrong: a mesh that rank 0 cannot read, which it alone does, would leave the others waiting, or end them without
+/// its reason; ranks would compute with one mesh what their scenes ask of another.
 #[test]
 #[ignore = "needs mpirun and a program built with MPI: scripts/test-mpi"]
 fn a_bad_mesh_on_one_rank_ends_all_with_its_message() {
@@ -345,7 +347,8 @@ fn a_bad_mesh_on_one_rank_ends_all_with_its_message() {
     );
 }
 
-/// Wrong: a full disk, which only rank 0 sees, would hang the run or be lost. Before the first step, and in the middle of a run.
+/// Wrong: a full disk, which only rank 0 sees, would hang the run or be lost. Before the first step, and in the
+/// middle of a run.
 #[test]
 #[ignore = "needs mpirun and a program built with MPI: scripts/test-mpi"]
 fn a_full_disk_ends_all_with_its_message() {

@@ -16,8 +16,8 @@ fn late_force() -> Dir {
     Dir::with_scene(&moving.replace("[effects.radial_force]", late))
 }
 
-/// If this failed, a load would act at another time than its schedule says, or with another size: until its time nothing
-/// moves, and then its work is the force times the way of the shaft.
+/// If this failed, a load would act at another time than its schedule says, or with another size: until its time
+/// nothing moves, and then its work is the force times the way of the shaft.
 #[test]
 fn a_load_acts_from_its_time_on() {
     let dir = late_force();
@@ -84,8 +84,8 @@ fn the_gyroscopic_moment_lowers_the_outer_contact_angle() {
     );
 }
 
-/// If this failed, a shaft that a scene drives would be elsewhere, or its work, or that of the gyroscopic moment, would be
-/// missing in the ledger.
+/// If this failed, a shaft that a scene drives would be elsewhere, or its work, or that of the gyroscopic moment,
+/// would be missing in the ledger.
 #[test]
 fn a_driven_shaft_moves_in_time() {
     let scene = late_force().text("scene.toml");

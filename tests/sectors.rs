@@ -7,7 +7,8 @@ use crate::util::{Dir, assert_close};
 /// Few sectors, of unequal sizes: 54 layers of elements in 5.
 pub const SECTOR: [&str; 4] = ["--set", "solver.backend=sector", "--set", "solver.sectors=5"];
 
-/// Wrong: the number of threads would show in the results, or sectors would give another motion than the ring as a whole.
+/// Wrong: the number of threads would show in the results, or sectors would give another motion than the ring as a
+/// whole.
 #[test]
 fn a_motion_in_sectors_has_the_same_bits_on_any_number_of_threads() {
     let dir = small_motion();

@@ -17,8 +17,8 @@ const RADIAL: f64 = 1000.0;
 /// Radius of the circle of the inner groove's centres: half of 56.01 mm and 4.65 mm, m.
 const INNER_LEVER: f64 = 32.655e-3;
 
-/// Contact forces settle to 1e-10 of the largest (`solver.tolerance`); sums over 18 balls and Newton's own residual take
-/// another digit.
+/// Contact forces settle to 1e-10 of the largest (`solver.tolerance`); sums over 18 balls and Newton's own residual
+/// take another digit.
 const BALANCE: f64 = 1e-9;
 
 /// A folder where the tests' scene was solved on the coarse meshes; solved once for all tests that look at it.

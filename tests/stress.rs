@@ -49,9 +49,9 @@ fn profile(dir: &Dir, out: &str, name: &str, column: &str) -> Vec<f64> {
     own.map(|row| row[column].parse().unwrap()).collect()
 }
 
-/// If this failed, the stress under a ball would not be Hertz's on a coarse mesh, or be so without being asked for: von Mises at the depth of
-/// its largest value, the pressure on the surface and the ellipse along the groove, within 3 % of the peak (mesh: some 5 elements from ball
-/// to ball).
+/// If this failed, the stress under a ball would not be Hertz's on a coarse mesh, or be so without being asked for:
+/// von Mises at the depth of its largest value, the pressure on the surface and the ellipse along the groove, within
+/// 3 % of the peak (mesh: some 5 elements from ball to ball).
 #[test]
 fn the_near_field_gives_the_stress_under_a_ball() {
     let dir = Dir::with_meshes();
@@ -124,7 +124,8 @@ fn the_near_field_gives_the_stress_under_a_ball() {
     }
 }
 
-/// If this failed, probes and step files would disagree about the near field: the same bits, at rest and in motion, and it is there.
+/// If this failed, probes and step files would disagree about the near field: the same bits, at rest and in motion,
+/// and it is there.
 #[test]
 fn a_node_probe_has_the_near_field_of_the_step_file() {
     let probe = "[probes.node.n]\nring = \"RING\"\nazimuth = \"0 deg\"\ngroove_angle = \"19 deg\"\naxes = \"cartesian\"\n\
@@ -172,9 +173,9 @@ fn a_node_probe_has_the_near_field_of_the_step_file() {
     }
 }
 
-/// If this failed, histories would have jumps or pulses that no ball makes. Balls roll by over 40 degrees of the cage, half an ellipse a step: the
-/// orthogonal shear at its depth has Hertz's range, from ball to ball, the pulses are those of the kinematics on both rings, the
-/// history is smooth, and the counted cycles have the same range.
+/// If this failed, histories would have jumps or pulses that no ball makes. Balls roll by over 40 degrees of the
+/// cage, half an ellipse a step: the orthogonal shear at its depth has Hertz's range, from ball to ball, the pulses
+/// are those of the kinematics on both rings, the history is smooth, and the counted cycles have the same range.
 #[test]
 fn passing_balls_leave_pulses_of_hertz_size() {
     let dir = Dir::with_meshes();
@@ -250,7 +251,8 @@ fn passing_balls_leave_pulses_of_hertz_size() {
         };
         let passed = ((turned - ring_turned).abs() + PI / 18.0) / (PI / 9.0);
         assert_eq!(pulses, passed as usize, "{ring}: {passed} balls");
-        // Half an ellipse a step: no step changes by more than the steepest slope of Hertz's field, about two amplitudes an ellipse.
+        // Half an ellipse a step: no step changes by more than the steepest slope of Hertz's field, about two
+        // amplitudes an ellipse.
         let jump = history
             .windows(2)
             .map(|w| (w[1] - w[0]).abs())

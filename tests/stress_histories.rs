@@ -1,4 +1,5 @@
-//! Stress histories under passing balls over a whole revolution of the balls, on several meshes: `scripts/test-slow` runs it.
+//! Stress histories under passing balls over a whole revolution of the balls, on several meshes: `scripts/test-slow`
+//! runs it.
 
 use std::f64::consts::PI;
 
@@ -102,8 +103,9 @@ const LEVELS: [Level; 3] = [
     },
 ];
 
-/// Wrong: what a point of a raceway feels as the balls pass would be that of the mesh. Three meshes of 3 to
-/// 7 elements from ball to ball: every instant, the height and the width of the pulses; and as many pulses as balls pass.
+/// Wrong: what a point of a raceway feels as the balls pass would be that of the mesh. Three meshes of 3 to 7
+/// elements from ball to ball: every instant, the height and the width of the pulses; and as many pulses as balls
+/// pass.
 #[test]
 #[ignore = "three revolutions of the balls: minutes; scripts/test-slow runs it"]
 fn histories_of_a_revolution_do_not_depend_on_the_mesh() {
@@ -150,7 +152,8 @@ fn histories_of_a_revolution_do_not_depend_on_the_mesh() {
     }
 }
 
-/// Wrong: a motion would show other stress than the equilibria it passes through: from equilibrium, at constant speed, inertia does little.
+/// Wrong: a motion would show other stress than the equilibria it passes through: from equilibrium, at constant
+/// speed, inertia does little.
 #[test]
 #[ignore = "a fifth of a revolution with inertia: a minute; scripts/test-slow runs it"]
 fn a_motion_has_the_histories_of_its_equilibria() {

@@ -1,5 +1,5 @@
-//! Studies through the whole program: orders, fronts, advice, what is kept of failed and interrupted points, and what is
-//! refused.
+//! Studies through the whole program: orders, fronts, advice, what is kept of failed and interrupted points, and what
+//! is refused.
 
 use std::sync::OnceLock;
 

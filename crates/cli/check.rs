@@ -102,9 +102,9 @@ pub fn check(path: &Path, overrides: &[String]) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Prints how cage and balls roll at the largest speed of the scene, and how often balls pass a point of each raceway (Harris, 4th
-/// ed., chapter 8): n |omega_c| / (2 pi) on the outer ring, n |omega_i - omega_c| / (2 pi) on the inner one. A point of a
-/// ball meets each raceway once per turn about its own axis.
+/// Prints how cage and balls roll at the largest speed of the scene, and how often balls pass a point of each raceway
+/// (Harris, 4th ed., chapter 8): n |omega_c| / (2 pi) on the outer ring, n |omega_i - omega_c| / (2 pi) on the inner
+/// one. A point of a ball meets each raceway once per turn about its own axis.
 fn print_rolling(scene: &Scene, geometry: &BearingGeometry) {
     let speeds = scene.speed.iter().flat_map(|speed| &speed.values);
     let Some(&inner) = speeds.max_by(|a, b| a.abs().total_cmp(&b.abs())) else {
@@ -125,8 +125,8 @@ fn print_rolling(scene: &Scene, geometry: &BearingGeometry) {
     ));
 }
 
-/// Prints the forecast of the peak. Of a motion `motion` has the sizes of each ring, Some(None) when it is rigid, None when its steps
-/// are not forecast.
+/// Prints the forecast of the peak. Of a motion `motion` has the sizes of each ring, Some(None) when it is rigid,
+/// None when its steps are not forecast.
 fn print_memory(
     scene: &Scene,
     model: &Model,

@@ -1,4 +1,5 @@
-//! `raceway cycles`: amplitude, mean and rain-flow cycles of every stress in `probes.csv`: what fatigue work starts from.
+//! `raceway cycles`: amplitude, mean and rain-flow cycles of every stress in `probes.csv`: what fatigue work starts
+//! from.
 
 use std::path::{Path, PathBuf};
 

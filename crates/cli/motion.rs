@@ -333,8 +333,8 @@ impl March<'_> {
         }
     }
 
-    /// Hands over the state to be written as a step file, unless it was; ranks recover its stress first. To be called by all ranks
-    /// or none: they must have agreed on what was written before.
+    /// Hands over the state to be written as a step file, unless it was; ranks recover its stress first. To be called
+    /// by all ranks or none: they must have agreed on what was written before.
     fn write_fields(&mut self) -> Result<(), Failure> {
         if self.last_file == Some(self.state.step) {
             return Ok(());

@@ -1,8 +1,9 @@
-//! Damaged results: any bytes as a file of a run, or a sound file with bytes changed and its end cut. It is refused, or what is
-//! read is exactly what was written.
+//! Damaged results: any bytes as a file of a run, or a sound file with bytes changed and its end cut. It is refused,
+//! or what is read is exactly what was written.
 //!
-//! The first byte of the input chooses: even, the rest is the file; odd, the rest is damage: four bytes of a length to keep (0: all),
-//! then places of four bytes and a value each. Its second bit chooses between a step file and the mesh.
+//! The first byte of the input chooses: even, the rest is the file; odd, the rest is damage: four bytes of a length
+//! to keep (0: all), then places of four bytes and a value each. Its second bit chooses between a step file and the
+//! mesh.
 
 #![no_main]
 

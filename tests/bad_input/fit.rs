@@ -89,7 +89,8 @@ fn a_mesh_about_another_axis_is_named() {
     assert_refused("about x", &dir, &[], &run(&[]), &[part]);
 }
 
-/// If this failed, a scene could say one bearing, or a unit a thousand times too small, and solve another without a word.
+/// If this failed, a scene could say one bearing, or a unit a thousand times too small, and solve another without a
+/// word.
 #[test]
 fn slips_that_a_run_can_do_with_are_warned_of() {
     let dir = tiny();

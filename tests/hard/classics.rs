@@ -1,8 +1,8 @@
 //! One ball on Hertz springs against closed forms: impact, rattling, and the order of every integrator.
 //!
-//! The ball is one of two in a 7010C with rigid rings, run by `Motion` as any bearing. The inner ring is held where both groove
-//! centres lie in one plane, so that a ball that moves radially meets both raceways head on: outer at r + 0, inner after
-//! the radial clearance.
+//! The ball is one of two in a 7010C with rigid rings, run by `Motion` as any bearing. The inner ring is held where
+//! both groove centres lie in one plane, so that a ball that moves radially meets both raceways head on: outer at r +
+//! 0, inner after the radial clearance.
 
 use contact::Side;
 use dynamics::effects::{Effect, Loads, Now};

@@ -138,7 +138,8 @@ pub fn bounded(record: &mut Record, model: &Model, course: &Course, end: f64) {
     ));
 }
 
-/// Patches that move and change their size with the contacts must not drive the motion: the ledger closes all the same if they do.
+/// Patches that move and change their size with the contacts must not drive the motion: the ledger closes all the
+/// same if they do.
 fn pumped(record: &mut Record, course: &Course) {
     let ledger = &course.last.ledger;
     if course.last.rings.iter().any(Option::is_some) {

@@ -1,20 +1,20 @@
 //! The norm in which a dissipating integrator loses energy, of a bearing with rigid rings.
 //!
-//! `ring::integrator` derives it: E + dt^2 M [(x - e^2) a^2 / 2 + e v c / dt + e^2 c a + x e c^2 / (2 d)], with c the part of
-//! the acceleration that the forces at the instant do not explain. For linear bodies it falls at every step; contacts add the
-//! difference between the mean of the forces at both ends of a step and the discrete gradient.
+//! `ring::integrator` derives it: E + dt^2 M [(x - e^2) a^2 / 2 + e v c / dt + e^2 c a + x e c^2 / (2 d)], with c the
+//! part of the acceleration that the forces at the instant do not explain. For linear bodies it falls at every step;
+//! contacts add the difference between the mean of the forces at both ends of a step and the discrete gradient.
 
 use contact::Side;
 use dynamics::Model;
 use dynamics::effects::{self, Now};
-use dynamics::motion::{Integrator, Motion, MotionSettings, MotionState};
 use dynamics::interactions::raceway_contact::Site;
+use dynamics::motion::{Integrator, Motion, MotionSettings, MotionState};
 
 use super::bearings::equilibrium_at;
 use super::course::{Course, march_with};
 
-/// A motion, and what its integrator gave back in its own norm at most after it had taken it, J; from the time `quiet`, s, on, when
-/// loads rest: the norm does not know what a changing load is.
+/// A motion, and what its integrator gave back in its own norm at most after it had taken it, J; from the time
+/// `quiet`, s, on, when loads rest: the norm does not know what a changing load is.
 pub fn watched(model: &Model, settings: MotionSettings, duration: f64, quiet: f64) -> (Course, f64) {
     let start = equilibrium_at(model, 0.0).unwrap();
     let n = (duration / settings.dt).round() as usize;

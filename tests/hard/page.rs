@@ -1,4 +1,5 @@
-//! Writes the results into `stability.md`, between its marks, and plots beside it. Cases that were not run keep their lines.
+//! Writes the results into `stability.md`, between its marks, and plots beside it. Cases that were not run keep their
+//! lines.
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;

@@ -258,8 +258,8 @@ fn motions(record: &mut Record, cases: u32) {
         let course = from_equilibrium(&jumped, &start, settings, 200);
         worst.set(worst.get().max(course.defect));
         if let Some(error) = &course.error {
-            // Where balls swing out of what a groove can be, the program must say so; in a bearing that keeps its balls loaded and
-            // bears its load they do not.
+            // Where balls swing out of what a groove can be, the program must say so; in a bearing that keeps its
+            // balls loaded and bears its load they do not.
             prop_assert!(error.contains("but no groove reaches beyond 90 deg"), "{error}");
             prop_assert!(may_leave(&jumped), "{error}");
             left.set(left.get() + 1);
@@ -276,9 +276,9 @@ fn motions(record: &mut Record, cases: u32) {
     );
 }
 
-/// Whether a ball may leave its groove: somewhere in a turn of the cage the bearing has no equilibrium within its grooves, or one beyond
-/// the static rating of steel, or with contacts steeper than those of angular contact bearings (40 deg at most, and 10 deg more under
-/// load), or with a loose ball, which swings without damping.
+/// Whether a ball may leave its groove: somewhere in a turn of the cage the bearing has no equilibrium within its
+/// grooves, or one beyond the static rating of steel, or with contacts steeper than those of angular contact bearings
+/// (40 deg at most, and 10 deg more under load), or with a loose ball, which swings without damping.
 fn may_leave(model: &Model) -> bool {
     const PLACES: usize = 8;
     let pitch = std::f64::consts::TAU / model.geometry.n_balls as f64;

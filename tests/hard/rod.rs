@@ -2,11 +2,12 @@
 //! bar, its predictor and compliance (`ring::ElasticStep`), the discrete gradient of the contact and the bearing's
 //! system with its Newton (`BearingParts`).
 //!
-//! The bar lies along z, one element thick, Poisson's ratio 0: its waves are those of a rod. Its end face is the "groove centre"
-//! of one contact; the "ball" is the wall (1e9 masses of the bar) or a free body. Closed form: the end stops at impact, a
-//! wave c = sqrt(E/rho) runs to the far end and back, force A rho c V meanwhile, and the bar parts after 2 L/c with -V.
-//! References: Doyen, Ern, Piperno, SIAM J. Sci. Comput. 33 (2011) 223, doi:10.1137/090777542 (L = 10 m, E = 900 Pa,
-//! rho = 1 kg/m3, 5 m from the wall, 10 m/s); ANSYS Verification Manual, VM85 (a rod in inches and pounds).
+//! The bar lies along z, one element thick, Poisson's ratio 0: its waves are those of a rod. Its end face is the
+//! "groove centre" of one contact; the "ball" is the wall (1e9 masses of the bar) or a free body. Closed form: the
+//! end stops at impact, a wave c = sqrt(E/rho) runs to the far end and back, force A rho c V meanwhile, and the bar
+//! parts after 2 L/c with -V. References: Doyen, Ern, Piperno, SIAM J. Sci. Comput. 33 (2011) 223,
+//! doi:10.1137/090777542 (L = 10 m, E = 900 Pa, rho = 1 kg/m3, 5 m from the wall, 10 m/s); ANSYS Verification Manual,
+//! VM85 (a rod in inches and pounds).
 
 use std::collections::BTreeMap;
 use std::sync::Arc;

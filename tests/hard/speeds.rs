@@ -87,7 +87,8 @@ pub fn cases() -> Vec<HardCase> {
     ]
 }
 
-/// Statics must settle, in balance, with loads that are those of its angles, and must say that no friction carries them.
+/// Statics must settle, in balance, with loads that are those of its angles, and must say that no friction carries
+/// them.
 fn gyroscopic_alone(record: &mut Record) {
     for radial in [0.0, 100.0, 400.0] {
         let mut model = rigid(Load::dead(500.0), Load::dead(radial));
@@ -175,8 +176,8 @@ fn run_up(record: &mut Record, rpm: [f64; 2], duration: f64) {
     record.plot = plot(&course);
 }
 
-/// The mean place lies nearer to the static one after the change than the change moves it. (The balls' transverse motion along
-/// the grooves, which nothing damps, shifts it: their angles swing by degrees.)
+/// The mean place lies nearer to the static one after the change than the change moves it. (The balls' transverse
+/// motion along the grooves, which nothing damps, shifts it: their angles swing by degrees.)
 fn settled_between(record: &mut Record, model: &Model, course: &Course, end: f64) {
     let at = |t| equilibrium_at(model, t).unwrap().displacements.shaft[2];
     let (from, middle, to) = (at(0.0), at(0.5e-3), at(end));

@@ -1,11 +1,11 @@
-//! The same cases at steps from 1 to 50 us with every integrator a scene offers: stable, stopped with an error, or caught by the
-//! ledger.
+//! The same cases at steps from 1 to 50 us with every integrator a scene offers: stable, stopped with an error, or
+//! caught by the ledger.
 //!
-//! A run that comes to its end with a closed ledger must also be right: forces bounded, and up to 20 us (a ball's period is
-//! 23 us) its mean place that of the reference, average acceleration at 1 us, to a share of the way that the shaft makes in it. (After
-//! an impact the shaft swings about the place where it was: its mean is no measure, its swing is.) Integrators that dissipate
-//! must not give back what they took: Newmark's in the energy at every step, the others in their own norm (`norm`), once the loads rest
-//! and where steps resolve the balls.
+//! A run that comes to its end with a closed ledger must also be right: forces bounded, and up to 20 us (a ball's
+//! period is 23 us) its mean place that of the reference, average acceleration at 1 us, to a share of the way that
+//! the shaft makes in it. (After an impact the shaft swings about the place where it was: its mean is no measure, its
+//! swing is.) Integrators that dissipate must not give back what they took: Newmark's in the energy at every step,
+//! the others in their own norm (`norm`), once the loads rest and where steps resolve the balls.
 
 use dynamics::interactions::discrete_gradient::ContactScheme;
 use dynamics::motion::ledger::LOSSY;
@@ -28,8 +28,9 @@ const RESOLVED: f64 = 20.0;
 const MEAN: f64 = 0.15;
 /// A swing may be smaller or larger than that of the reference by this share.
 const SWING: f64 = 0.25;
-/// Share of the largest energy that an integrator with memory may give back in its norm in steps of at most `FINE` us, after
-/// `QUIET` s, when all loads rest: the difference between the discrete gradient and the forces at both ends of a step.
+/// Share of the largest energy that an integrator with memory may give back in its norm in steps of at most `FINE`
+/// us, after `QUIET` s, when all loads rest: the difference between the discrete gradient and the forces at both ends
+/// of a step.
 const GIVEN_BACK: f64 = 0.01;
 const FINE: f64 = 10.0;
 const QUIET: f64 = 70e-6;
@@ -298,8 +299,9 @@ fn must_hold(record: &mut Record, setting: &Setting, course: &Course, end: &End)
     }
 }
 
-/// What a dissipating integrator took it must keep: Newmark's at every step, the others in their norm but for a share; `back` is
-/// what it gave back there, J, unknown for flexible rings. Gives the share of one that is only noted.
+/// What a dissipating integrator took it must keep: Newmark's at every step, the others in their norm but for a
+/// share; `back` is what it gave back there, J, unknown for flexible rings. Gives the share of one that is only
+/// noted.
 fn loses(record: &mut Record, setting: &Setting, (course, back): (&Course, Option<f64>)) -> f64 {
     let Setting {
         name, dt, integrator, ..

@@ -25,7 +25,8 @@ const SECTORS: [&str; 6] = [
     "1",
 ];
 
-/// Forecast peaks of rank 0 and of the largest other one, MB, from the row of the table that begins with the number of ranks.
+/// Forecast peaks of rank 0 and of the largest other one, MB, from the row of the table that begins with the number
+/// of ranks.
 fn forecast(checked: &str, ranks: usize) -> [f64; 2] {
     let rows = checked
         .lines()
@@ -85,8 +86,8 @@ fn assert_near(dir: &Dir, scene: &str, more: &[&str]) {
     }
 }
 
-/// Wrong: a rank would keep elements or positions of nodes that others need. Two ranks keep half of the elements each, and of the rest the 43 %
-/// at raceway and bore; of the nodes half, and of the rest the 35 % on these surfaces.
+/// Wrong: a rank would keep elements or positions of nodes that others need. Two ranks keep half of the elements
+/// each, and of the rest the 43 % at raceway and bore; of the nodes half, and of the rest the 35 % on these surfaces.
 #[track_caller]
 fn assert_divided(log: &str) {
     let words: Vec<&str> = log.split_whitespace().collect();

@@ -38,8 +38,9 @@ const MEAN: [&str; 4] = [
     "outer.support=mean_motion",
 ];
 
-/// Wrong: a rank would lack the position of a node that it needs, or sum over the nodes in another order: rings held in their mean motion or
-/// clamped, in motion, at rest and in a sweep of the weight, whose probes lie in sectors of other ranks than the first.
+/// Wrong: a rank would lack the position of a node that it needs, or sum over the nodes in another order: rings held
+/// in their mean motion or clamped, in motion, at rest and in a sweep of the weight, whose probes lie in sectors of
+/// other ranks than the first.
 #[test]
 #[ignore = "needs mpirun and a program built with MPI: scripts/test-mpi"]
 fn parts_of_meshes_give_the_same_bits_as_whole_ones() {

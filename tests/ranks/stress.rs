@@ -10,8 +10,8 @@ const SERIES: &str = "[quasi_static]\nduration = \"0.6 ms\"\nstep = \"0.2 ms\"\n
                       inner = \"18000 rpm\"\n\n[effects.frame_rotation]\n\n[effects.gravity]\n\
                       acceleration = \"9.81 m/s2\"\ndirection = [0, -1, 0]";
 
-/// Wrong: stress, with near field or without, at nodes or at integration points, or loads on the volume of a ring, would depend on the
-/// number of ranks, more of them than sectors included, or a rank would wait for another.
+/// Wrong: stress, with near field or without, at nodes or at integration points, or loads on the volume of a ring,
+/// would depend on the number of ranks, more of them than sectors included, or a rank would wait for another.
 #[test]
 #[ignore = "needs mpirun and a program built with MPI: scripts/test-mpi"]
 fn stress_has_the_same_bits_on_any_number_of_ranks() {

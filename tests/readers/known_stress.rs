@@ -17,8 +17,8 @@ use crate::util::rings::{TINY, ring};
 /// Displacement gradient of the known state: strain xx 1e-3, yy -2e-4, zz 3e-4, engineering shear xy 4e-4, yz -1e-4,
 /// xz 2e-4, and rotations besides, which must not matter.
 const KNOWN_GRADIENT: [[f64; 3]; 3] = [[1e-3, 3e-4, 5e-5], [1e-4, -2e-4, -2e-4], [1.5e-4, 1e-4, 3e-4]];
-/// Its stress by Hooke's law by hand, MPa: with E = 200 GPa and Poisson's ratio 1/4, lambda = mu = 80 GPa, trace 1.1e-3:
-/// xx = 88 + 160, yy = 88 - 32, zz = 88 + 48; xy = 80e3 4e-4 and so on.
+/// Its stress by Hooke's law by hand, MPa: with E = 200 GPa and Poisson's ratio 1/4, lambda = mu = 80 GPa, trace
+/// 1.1e-3: xx = 88 + 160, yy = 88 - 32, zz = 88 + 48; xy = 80e3 4e-4 and so on.
 const KNOWN_STRESS: [f64; 6] = [248.0, 56.0, 136.0, 32.0, -8.0, 16.0];
 /// Square of its von Mises stress, MPa^2: (192^2 + 80^2 + 112^2)/2 + 3 (32^2 + 8^2 + 16^2).
 const KNOWN_VON_MISES_SQUARED: f64 = 31936.0;
@@ -131,8 +131,8 @@ fn assert_known_seen(text: &str, steps: &[u64]) {
     }
 }
 
-/// Wrong: VTK would show another stress than the one known by hand, at a node or at the integration points of a cell, in
-/// a step, in the view of all steps, packed or not, or in what is exported.
+/// Wrong: VTK would show another stress than the one known by hand, at a node or at the integration points of a cell,
+/// in a step, in the view of all steps, packed or not, or in what is exported.
 #[test]
 fn vtk_reads_the_stress_known_by_hand() {
     let Some(python) = python() else { return };

@@ -48,7 +48,8 @@ pub(crate) fn write_hdf(
     sync_dir(dir)
 }
 
-/// Writes an HDF5 file in `dir` as [`write_hdf`] does, but without a name: it is gone when it is closed, however the process ends.
+/// Writes an HDF5 file in `dir` as [`write_hdf`] does, but without a name: it is gone when it is closed, however the
+/// process ends.
 pub(crate) fn write_unnamed_hdf(
     dir: &Path,
     name: &str,

@@ -6,8 +6,8 @@ use crate::storage::Storage;
 /// Components of a stress tensor, in the order xx yy zz xy yz xz.
 pub(crate) const TENSOR: usize = 6;
 
-/// Fields over cells, one row per cell of all bodies in their order. A field that is `None` is not written. Rows where a
-/// field has no meaning, such as stress of balls, hold zeros, as in [`crate::PointFields`].
+/// Fields over cells, one row per cell of all bodies in their order. A field that is `None` is not written. Rows
+/// where a field has no meaning, such as stress of balls, hold zeros, as in [`crate::PointFields`].
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct CellFields {
     /// Stress at the integration points of each cell.

@@ -103,8 +103,8 @@ pub(crate) fn write_field(
     }
 }
 
-/// Writes a text as an attribute of its group or data set, with its checksum beside it. As a data set it would cost 2 ms: the
-/// library fills megabytes of buffers to write one string. HDF5 ends texts at a NUL, so there must be none.
+/// Writes a text as an attribute of its group or data set, with its checksum beside it. As a data set it would cost 2
+/// ms: the library fills megabytes of buffers to write one string. HDF5 ends texts at a NUL, so there must be none.
 pub(crate) fn write_text(file: &Group, path: &str, text: &str) -> hdf5::Result<()> {
     let value: VarLenUnicode = text.parse().map_err(|e| format!("{path}: {e}"))?;
     let (owner, name) = owner_and_name(path);

@@ -12,11 +12,11 @@
 //! | `.raceway.lock` | who writes here, see [`lock`] | while a run writes |
 //!
 //! A step file is VTKHDF version 1.0 whose mesh is external links to `mesh.hdf`; what a restart needs besides the
-//! fields stands in the group `/restart`, which VTK ignores. Files appear under their final name only when they
-//! are complete and on the disk ([`output`]), every data set carries a checksum of its name, type, shape and values (attribute
-//! `crc32`), and a seal at the end of the file covers all its bytes, so that a damaged file is refused before the
-//! HDF5 library, which may crash on it, opens it.
-//! The last two files are derived from the steps and can be built again at any time ([`rebuild_index`]).
+//! fields stands in the group `/restart`, which VTK ignores. Files appear under their final name only when they are
+//! complete and on the disk ([`output`]), every data set carries a checksum of its name, type, shape and values
+//! (attribute `crc32`), and a seal at the end of the file covers all its bytes, so that a damaged file is refused
+//! before the HDF5 library, which may crash on it, opens it. The last two files are derived from the steps and can be
+//! built again at any time ([`rebuild_index`]).
 //!
 //! This crate computes nothing: what it writes is what it was given.
 //!

@@ -55,8 +55,8 @@ impl MeshFile {
         MeshFile { run, ..self }
     }
 
-    /// The same on the disk of the folder `dir`, which need not exist yet, instead of in memory. No other process sees the file, and
-    /// nothing is left of it when this one ends.
+    /// The same on the disk of the folder `dir`, which need not exist yet, instead of in memory. No other process
+    /// sees the file, and nothing is left of it when this one ends.
     pub fn spooled(self, dir: &Path) -> Result<MeshFile, CheckpointError> {
         let Content::Memory(grid) = &self.content else {
             return Ok(self);

@@ -132,8 +132,8 @@ fn write_state<T: Element>(file: &hdf5::Group, path: &str, values: &[T]) -> hdf5
     write_array(file, path, &[values.len()], values, Compression::None)
 }
 
-/// Reads a step file, verifying its seal and the checksum of every data set. Stress comes back as it was stored: rounded to
-/// f32 unless the run chose f64; everything else bit for bit.
+/// Reads a step file, verifying its seal and the checksum of every data set. Stress comes back as it was stored:
+/// rounded to f32 unless the run chose f64; everything else bit for bit.
 pub fn read_step(path: &Path) -> Result<StepRecord, CheckpointError> {
     verify_seal(path)?;
     read_record(&CheckedFile::open(path)?, path)

@@ -1,8 +1,8 @@
 //! Failing and killed writers: what has its final name is whole, what was acknowledged is there.
 //!
 //! Writers run as children of the test: the test binary starts itself with [`FOLDER`] set and only [`writer`]
-//! selected. This is a test binary of its own, and its tests take turns: a child inherits the files that are open when it
-//! starts, and with them HDF5's locks.
+//! selected. This is a test binary of its own, and its tests take turns: a child inherits the files that are open
+//! when it starts, and with them HDF5's locks.
 
 #[path = "suite/fixture.rs"]
 mod fixture;

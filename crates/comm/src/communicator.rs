@@ -76,10 +76,12 @@ impl Communicator {
         }
     }
 
-    /// Sends `sent[r]` to each rank r. Returns what the ranks have sent to this one, in rank order; rank r sends `lengths[r]` numbers.
+    /// Sends `sent[r]` to each rank r. Returns what the ranks have sent to this one, in rank order; rank r sends
+    /// `lengths[r]` numbers.
     ///
     /// # Panics
-    /// When there is not one message per rank, or that of a single rank to itself has another length than was announced.
+    /// When there is not one message per rank, or that of a single rank to itself has another length than was
+    /// announced.
     #[track_caller]
     pub fn exchange(self, sent: Vec<Vec<f64>>, lengths: &[usize]) -> Vec<f64> {
         assert_eq!(
@@ -103,7 +105,8 @@ impl Communicator {
         }
     }
 
-    /// The `length` numbers of rank `from`, on rank 0; None on all others. `values` of ranks other than `from` do not matter.
+    /// The `length` numbers of rank `from`, on rank 0; None on all others. `values` of ranks other than `from` do not
+    /// matter.
     ///
     /// # Panics
     /// When the values of `from` have another length than was announced.
@@ -135,8 +138,8 @@ impl Communicator {
         }
     }
 
-    /// The bytes that rank 0 makes for this rank; only there, `of` is called, for one rank after the other, so that one message is in
-    /// memory at a time. Its own is empty: what it would send itself, it has.
+    /// The bytes that rank 0 makes for this rank; only there, `of` is called, for one rank after the other, so that
+    /// one message is in memory at a time. Its own is empty: what it would send itself, it has.
     #[track_caller]
     pub fn deal(self, of: impl FnMut(usize) -> Vec<u8>) -> Vec<u8> {
         match self {
@@ -152,8 +155,9 @@ impl Communicator {
         }
     }
 
-    /// The result, if every rank has one. Otherwise an error on all: a rank's own, or what `elsewhere` makes of the lowest
-    /// failed rank and its message. To be called before a collective, so that no rank waits for one that has given up.
+    /// The result, if every rank has one. Otherwise an error on all: a rank's own, or what `elsewhere` makes of the
+    /// lowest failed rank and its message. To be called before a collective, so that no rank waits for one that has
+    /// given up.
     #[track_caller]
     pub fn agree<T, E: std::fmt::Display>(
         self,

@@ -49,8 +49,8 @@ impl Environment {
         Ok(Environment { mpi })
     }
 
-    /// Waits for all ranks to end. A rank that failed waits [`PATIENCE`] only, and then learns that it is alone: the others wait
-    /// for its messages, and it must end them with [`Environment::abort`].
+    /// Waits for all ranks to end. A rank that failed waits [`PATIENCE`] only, and then learns that it is alone: the
+    /// others wait for its messages, and it must end them with [`Environment::abort`].
     pub fn finish(&self, success: bool) -> End {
         #[cfg(feature = "mpi")]
         if let Some(mpi) = &self.mpi {
@@ -156,7 +156,8 @@ mod parallel {
 
     /// MPI, running.
     pub(super) struct Mpi {
-        /// A second set of the same ranks, on which the end is announced: messages of the run cannot be mistaken for it.
+        /// A second set of the same ranks, on which the end is announced: messages of the run cannot be mistaken for
+        /// it.
         ending: SimpleCommunicator,
         /// Ends MPI when it is dropped.
         _universe: Universe,

@@ -5,9 +5,9 @@
 /// is one process, has it as well.
 pub(crate) const TASK_COUNTS: [&str; 3] = ["OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "SLURM_STEP_NUM_TASKS"];
 
-/// The variable that counts the tasks of this launch, and their number, from the environment, given as a function from name
-/// to value. None without a launcher, or with one task. The innermost launcher decides: Slurm's step that carries mpirun's
-/// daemons does not count.
+/// The variable that counts the tasks of this launch, and their number, from the environment, given as a function
+/// from name to value. None without a launcher, or with one task. The innermost launcher decides: Slurm's step that
+/// carries mpirun's daemons does not count.
 pub(crate) fn tasks(value: impl Fn(&str) -> Option<String>) -> Option<(&'static str, usize)> {
     let count = |variable| {
         value(variable)?

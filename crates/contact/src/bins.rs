@@ -2,7 +2,8 @@
 
 use std::f64::consts::PI;
 
-/// How far the box of a facet's nodes is grown, as a share of its size, to hold all points that are taken for the facet's.
+/// How far the box of a facet's nodes is grown, as a share of its size, to hold all points that are taken for the
+/// facet's.
 const BOX_GROWTH: f64 = 0.05;
 
 /// Which facets may hold a point.

@@ -1,19 +1,20 @@
 //! Reference coordinates of points of a facet in the plane of azimuth and groove angle.
 //!
-//! Facets whose edges are lines of constant azimuth and of constant groove angle, as those of revolved rings are, with mid-nodes in the
-//! middle, have an affine map, which is inverted once and for all. Others take Newton's iteration.
+//! Facets whose edges are lines of constant azimuth and of constant groove angle, as those of revolved rings are,
+//! with mid-nodes in the middle, have an affine map, which is inverted once and for all. Others take Newton's
+//! iteration.
 
 use fem::facet;
 use mesh::FacetKind;
 
 use crate::raceway::unwrap_near;
 
-/// Distance of the nodes of an affine facet from where the affine map has them, reference coordinates: what round-off of positions
-/// makes of a thousandth of a turn, with a margin.
+/// Distance of the nodes of an affine facet from where the affine map has them, reference coordinates: what round-off
+/// of positions makes of a thousandth of a turn, with a margin.
 const AFFINE: f64 = 1e-11;
 
-/// Newton's step, in reference coordinates, after which a point is found: the error left is about its square. Azimuths are
-/// rounded to 1e-14 of a facet, so that smaller steps may never come.
+/// Newton's step, in reference coordinates, after which a point is found: the error left is about its square.
+/// Azimuths are rounded to 1e-14 of a facet, so that smaller steps may never come.
 const CONVERGED: f64 = 1e-9;
 
 /// The inverse of an affine map from reference coordinates to (azimuth, groove angle), rad.
@@ -108,8 +109,8 @@ fn determinant(j: [[f64; 2]; 2]) -> Option<f64> {
 mod tests {
     use super::*;
 
-    /// Wrong: points of a skewed parallelogram would be found elsewhere than by Newton, or a facet with a mid-node out of the
-    /// middle, or a trapezium, would be taken for affine.
+    /// Wrong: points of a skewed parallelogram would be found elsewhere than by Newton, or a facet with a mid-node
+    /// out of the middle, or a trapezium, would be taken for affine.
     #[test]
     fn parallelograms_are_inverted_as_newton_does() {
         for kind in [FacetKind::Quad4, FacetKind::Quad8, FacetKind::Tri6] {

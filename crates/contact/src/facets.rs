@@ -52,7 +52,8 @@ pub struct FacetContact {
 }
 
 impl FacetSurface {
-    /// Surface of the facets `group` of a raceway whose nodes lie on `groove`. Every box holds a fixed number of facets.
+    /// Surface of the facets `group` of a raceway whose nodes lie on `groove`. Every box holds a fixed number of
+    /// facets.
     pub fn new(mesh: &Mesh, group: &[Facet], groove: Groove) -> FacetSurface {
         let kind = mesh.kind.facet_kind();
         let mut facets: Vec<(f64, Facet)> = group.iter().map(|&f| (azimuth_of(mesh, f), f)).collect();

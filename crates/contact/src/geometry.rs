@@ -103,8 +103,8 @@ impl BearingGeometry {
         }
     }
 
-    /// Principal curvature of a raceway in the rolling direction where a ball touches it at the free contact angle, 1/m;
-    /// positive on the convex inner raceway. By Meusnier's theorem cos a0 over the distance from the axis.
+    /// Principal curvature of a raceway in the rolling direction where a ball touches it at the free contact angle,
+    /// 1/m; positive on the convex inner raceway. By Meusnier's theorem cos a0 over the distance from the axis.
     pub fn rolling_curvature(&self, side: Side) -> f64 {
         let cos = self.free_contact_angle().cos();
         let radius = self.centre_radius(side) + side.sign() * self.groove_radius(side) * cos;
@@ -179,8 +179,9 @@ impl BearingGeometry {
     }
 }
 
-/// Point with equal approach to two groove centres at touching distances `di`, `do_`, on their line. Where one groove is so much
-/// wider that there is none between the centres, the point is at most half a touching distance beyond one: it touches neither.
+/// Point with equal approach to two groove centres at touching distances `di`, `do_`, on their line. Where one groove
+/// is so much wider that there is none between the centres, the point is at most half a touching distance beyond one:
+/// it touches neither.
 pub fn midway(inner: [f64; 2], outer: [f64; 2], di: f64, do_: f64) -> [f64; 2] {
     let line = [inner[0] - outer[0], inner[1] - outer[1]];
     let length = line[0].hypot(line[1]);

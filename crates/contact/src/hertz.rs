@@ -8,9 +8,10 @@
 //! - approach d = 3 Q K(m) / (2 pi a E*), hence Q = K_hertz d^1.5.
 //!
 //! Reference: Johnson, Contact Mechanics (1985), 4.2; Harris, Rolling Bearing Analysis (4th ed.), chapter 6.
-//! Curvatures are those of the torus where the ball touches it at the free contact angle a0: across the groove 1/R, in the
-//! rolling direction cos(a0) over the distance from the axis (Harris's 2/D_w gamma / (1 -+ gamma), gamma = D_w cos(a0) / D_m).
-//! They stay those under load; 10 degrees more at the 7010C would be 0.1 % of the stiffness and 0.4 % of the pressure.
+//! Curvatures are those of the torus where the ball touches it at the free contact angle a0: across the groove 1/R,
+//! in the rolling direction cos(a0) over the distance from the axis (Harris's 2/D_w gamma / (1 -+ gamma), gamma = D_w
+//! cos(a0) / D_m). They stay those under load; 10 degrees more at the 7010C would be 0.1 % of the stiffness and 0.4 %
+//! of the pressure.
 
 use crate::elliptic::complete_elliptic;
 use crate::geometry::{BearingGeometry, Side};
@@ -163,8 +164,8 @@ mod tests {
         }
     }
 
-    /// Wrong: the contact of an oblique ball would be that at the bottom of the groove, with 2.4 % too much pressure at 40 degrees.
-    /// Harris (4th ed.), eq. 2.28 and 2.30, by gamma: curvature sums of the 218 of his book.
+    /// Wrong: the contact of an oblique ball would be that at the bottom of the groove, with 2.4 % too much pressure
+    /// at 40 degrees. Harris (4th ed.), eq. 2.28 and 2.30, by gamma: curvature sums of the 218 of his book.
     #[test]
     fn curvatures_are_those_at_the_free_contact_angle() {
         let geometry = BearingGeometry {

@@ -1,25 +1,29 @@
 //! Stress near contacts that a mesh cannot resolve: Hertz's instead of that of the spread patch.
 //!
-//! A ring carries a contact force over a patch of a few elements ([`crate::patch`]), not over the much smaller Hertz ellipse. Both have
-//! the same force, so their fields differ only nearby, and there the raceway is nearly a half-space:
+//! A ring carries a contact force over a patch of a few elements ([`crate::patch`]), not over the much smaller Hertz
+//! ellipse. Both have the same force, so their fields differ only nearby, and there the raceway is nearly a
+//! half-space:
 //!
 //! ```text
 //! sigma = sigma_FE(patch) + w [ sigma_halfspace(Hertz ellipse) - sigma_halfspace(patch) ]
 //! ```
 //!
-//! **Frame.** The half-space is wrapped round the torus: x is the arc along the groove and y that in the rolling direction, both on the
-//! raceway, z the depth below it, and the tensor is taken in the directions of these coordinates at the point itself. So the raceway stays
-//! free of traction outside the ellipse and carries exactly Hertz's pressure inside, everywhere on the torus. What the curvatures of the
-//! raceway change below is added to first order ([`CurvedSurface`]): up to 0.1 of the peak pressure, as tension along the groove. Left
-//! out: the second order in size over radius, how the circles of rolling diverge, and that the forces of a patch are parallel.
+//! **Frame.** The half-space is wrapped round the torus: x is the arc along the groove and y that in the rolling
+//! direction, both on the raceway, z the depth below it, and the tensor is taken in the directions of these
+//! coordinates at the point itself. So the raceway stays free of traction outside the ellipse and carries exactly
+//! Hertz's pressure inside, everywhere on the torus. What the curvatures of the raceway change below is added to
+//! first order ([`CurvedSurface`]): up to 0.1 of the peak pressure, as tension along the groove. Left out: the second
+//! order in size over radius, how the circles of rolling diverge, and that the forces of a patch are parallel.
 //!
-//! **Distance.** The difference falls with the fourth power of the distance. The weight w is 1 up to half the reach, then falls with two
-//! continuous derivatives to 0 at the reach, so nothing jumps when a ball rolls by. `reach` counts larger semi-axes of the patch.
+//! **Distance.** The difference falls with the fourth power of the distance. The weight w is 1 up to half the reach,
+//! then falls with two continuous derivatives to 0 at the reach, so nothing jumps when a ball rolls by. `reach`
+//! counts larger semi-axes of the patch.
 //!
 //! Friction: the difference of tangential tractions would be added in the same way; there is none yet.
 //!
-//! Cost: two half-space fields at every point within reach of a contact; of their corrections for curvature, up to 320 point loads each for
-//! points within one to two semi-axes, 4 to 16 beyond, by the vectors of the processor. Memory: 28 bytes per point.
+//! Cost: two half-space fields at every point within reach of a contact; of their corrections for curvature, up to
+//! 320 point loads each for points within one to two semi-axes, 4 to 16 beyond, by the vectors of the processor.
+//! Memory: 28 bytes per point.
 
 use std::f64::consts::PI;
 
@@ -106,7 +110,8 @@ impl RingPoint {
 }
 
 impl NearField {
-    /// Prepares points (m, in the coordinates of the mesh) of a ring of a given Poisson's ratio; `reach` counts larger semi-axes of a patch.
+    /// Prepares points (m, in the coordinates of the mesh) of a ring of a given Poisson's ratio; `reach` counts
+    /// larger semi-axes of a patch.
     pub fn new(groove: Groove, poisson_ratio: f64, reach: f64, positions: &[[f64; 3]]) -> NearField {
         let points: Vec<RingPoint> = positions.iter().map(|&x| RingPoint::of(&groove, x)).collect();
         let mut start = vec![0; N_BINS + 1];
@@ -131,8 +136,8 @@ impl NearField {
         }
     }
 
-    /// Adds the correction of all contacts to the stress of the points, Pa, `[n_points][6]`, in the axes of the mesh. Contacts are
-    /// added in their order, so the bits do not depend on threads nor on the other points.
+    /// Adds the correction of all contacts to the stress of the points, Pa, `[n_points][6]`, in the axes of the mesh.
+    /// Contacts are added in their order, so the bits do not depend on threads nor on the other points.
     ///
     /// # Panics
     /// If `stress` has another length.
@@ -191,7 +196,8 @@ impl NearField {
         EllipticPressure::of_force(contact.force, semi_axes, self.poisson_ratio)
     }
 
-    /// Curvatures of the raceway at a groove angle, 1/m, [along the groove, in the rolling direction], positive where concave.
+    /// Curvatures of the raceway at a groove angle, 1/m, [along the groove, in the rolling direction], positive where
+    /// concave.
     fn curvatures(&self, angle: f64) -> [f64; 2] {
         let [outwards, _] = self.groove.direction(angle);
         [
@@ -232,7 +238,8 @@ fn length(x: [f64; 3]) -> f64 {
     (x[0] * x[0] + x[1] * x[1] + x[2] * x[2]).sqrt()
 }
 
-/// 1 up to half the reach, 0 from the reach on, between them the polynomial of fifth order with two continuous derivatives.
+/// 1 up to half the reach, 0 from the reach on, between them the polynomial of fifth order with two continuous
+/// derivatives.
 fn weight(share: f64) -> f64 {
     let s = (2.0 * share - 1.0).clamp(0.0, 1.0);
     1.0 - s * s * s * (10.0 + s * (6.0 * s - 15.0))

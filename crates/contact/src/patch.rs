@@ -68,7 +68,8 @@ impl PatchShape {
     }
 }
 
-/// Whether a Hertz ellipse of semi-axes `hertz_axes`, m, at a contact angle, rad, reaches beyond the edge of the groove.
+/// Whether a Hertz ellipse of semi-axes `hertz_axes`, m, at a contact angle, rad, reaches beyond the edge of the
+/// groove.
 pub fn is_truncated(surface: &RacewaySurface, angle: f64, hertz_axes: [f64; 2]) -> bool {
     hertz_axes[0] > EDGE_SHARE * surface.rim_distance(angle)
 }

@@ -1,8 +1,8 @@
 //! The pressure of a patch on the nodes of a raceway: their weights and first moments.
 //!
-//! With the points q of the pressure, of weights w_q, and the shape functions N_a, a facet keeps `sum of w N_a` and `sum of w N_a N_b`.
-//! As points lie where shape functions put them, x_q = `sum over b of N_b x_b`, these give all moments; points need no position of
-//! their own.
+//! With the points q of the pressure, of weights w_q, and the shape functions N_a, a facet keeps `sum of w N_a` and
+//! `sum of w N_a N_b`. As points lie where shape functions put them, x_q = `sum over b of N_b x_b`, these give all
+//! moments; points need no position of their own.
 
 use fem::facet;
 use mesh::{FacetKind, NodePositions};

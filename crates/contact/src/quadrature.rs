@@ -3,9 +3,10 @@
 //! With u = sqrt(1 - rho^2) the pressure integral is 3 u^2 du over 0..1 times a mean over the angle: Gauss-Legendre
 //! in u, equal angles. Weights sum to 1; with N points in u every polynomial of degree below 2 N in u is exact.
 //!
-//! A patch is integrated over the facets of a mesh, which the points must outnumber: where facets see the single points, the ring
-//! is loaded in a pattern of its own, which nodal stress shows beside the patch. So every doubling of a patch, counted in node spacings,
-//! doubles the points along each direction; in between two rules are blended, so that weights are continuous as a patch grows.
+//! A patch is integrated over the facets of a mesh, which the points must outnumber: where facets see the single
+//! points, the ring is loaded in a pattern of its own, which nodal stress shows beside the patch. So every doubling
+//! of a patch, counted in node spacings, doubles the points along each direction; in between two rules are blended,
+//! so that weights are continuous as a patch grows.
 
 /// Gauss points in u of the coarsest rule.
 const N_RADIAL: usize = 8;
@@ -13,7 +14,8 @@ const N_RADIAL: usize = 8;
 const N_ANGULAR: usize = 32;
 /// Rules, each with twice the points of the one before along each direction.
 const N_RULES: usize = 4;
-/// Node spacings in a semi-axis up to which the coarsest rule is used alone (nine points a facet), and from which the next one is.
+/// Node spacings in a semi-axis up to which the coarsest rule is used alone (nine points a facet), and from which the
+/// next one is.
 const BLEND: [f64; 2] = [3.0, 4.0];
 
 /// Points `[along, across]` in the unit disc with pressure-weighted weights.
@@ -135,8 +137,8 @@ mod tests {
         }
     }
 
-    /// Wrong: patches of ordinary meshes would cost more, large ones would be loaded point by point, or the weights of a patch that
-    /// grows through the change of rules would jump.
+    /// Wrong: patches of ordinary meshes would cost more, large ones would be loaded point by point, or the weights
+    /// of a patch that grows through the change of rules would jump.
     #[test]
     fn larger_patches_have_more_points_without_a_jump() {
         let rule = PressureRule::new();

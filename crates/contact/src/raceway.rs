@@ -54,8 +54,8 @@ impl Groove {
     }
 
     /// How far a facet lies towards the groove centre because it is a chord in the rolling direction, m, at groove
-    /// angle `angle`: half the radius times the shape-function-weighted variance of its nodes' azimuths. The interpolation
-    /// error of a circle, h^2/(8 r) in the middle of a flat facet and none on a quadratic one.
+    /// angle `angle`: half the radius times the shape-function-weighted variance of its nodes' azimuths. The
+    /// interpolation error of a circle, h^2/(8 r) in the middle of a flat facet and none on a quadratic one.
     pub fn chord_offset(&self, angle: f64, nodes: impl Iterator<Item = ([f64; 3], f64)> + Clone) -> f64 {
         let azimuths = nodes.map(|(x, weight)| (self.coordinates(x)[0], weight));
         let Some((first, _)) = azimuths.clone().next() else {

@@ -1,15 +1,15 @@
 //! A static bearing of 2 x 57 k dof: total time over the time of its two factorisations, and where the rest goes.
 //!
-//! The first report takes every figure from the same run, several times over, and prints its minimum and its median in
-//! seconds of processor time and of wall time. The factorisations are those of one ring after the other on one thread: order,
-//! analysis, numbers. On a machine with other work only the minima of processor time mean much. The target is a
-//! total, mesh in memory to equilibrium, of at most 3 factorisations. Run with
+//! The first report takes every figure from the same run, several times over, and prints its minimum and its median
+//! in seconds of processor time and of wall time. The factorisations are those of one ring after the other on one
+//! thread: order, analysis, numbers. On a machine with other work only the minima of processor time mean much. The
+//! target is a total, mesh in memory to equilibrium, of at most 3 factorisations. Run with
 //! `cargo bench -p raceway-dynamics`.
 //!
-//! Measured, 2-core machine shared with other work, November 2026, least processor seconds of 7 runs: hex8 (2 x 56 700 dof)
-//! order 0.08, analysis 0.11, numbers 0.57, assembly 0.31, solve 0.56, total 1.66 = 2.2 factorisations, or 2.9 of their
-//! numeric part alone; hex20 (2 x 51 570 dof) 0.04, 0.20, 1.00, 0.49, 0.73, total 2.45 = 2.0 or 2.4. On two threads
-//! the totals took 0.9 and 1.3 s of wall time.
+//! Measured, 2-core machine shared with other work, November 2026, least processor seconds of 7 runs: hex8 (2 x 56
+//! 700 dof) order 0.08, analysis 0.11, numbers 0.57, assembly 0.31, solve 0.56, total 1.66 = 2.2 factorisations, or
+//! 2.9 of their numeric part alone; hex20 (2 x 51 570 dof) 0.04, 0.20, 1.00, 0.49, 0.73, total 2.45 = 2.0 or 2.4. On
+//! two threads the totals took 0.9 and 1.3 s of wall time.
 
 #[path = "../tests/support/mod.rs"]
 mod support;

@@ -1,9 +1,9 @@
 //! Bodies and interactions of a bearing over an interval: the one list from which statics and motion make their system,
 //! and of which modes take the contacts.
 //!
-//! Lumped bodies: the shaft, the balls, then the seat of the outer ring if it slides. Elastic ones: the flexible rings, inner first. Of a ring that a static
-//! equilibrium sees, ports are the elastic motion relative to what carries it; of one that moves in time, all motion,
-//! and its mount follows the shaft.
+//! Lumped bodies: the shaft, the balls, then the seat of the outer ring if it slides. Elastic ones: the flexible
+//! rings, inner first. Of a ring that a static equilibrium sees, ports are the elastic motion relative to what
+//! carries it; of one that moves in time, all motion, and its mount follows the shaft.
 
 use contact::Side;
 use ring::Partner;
@@ -96,7 +96,8 @@ impl BearingParts {
         }
     }
 
-    /// Puts flexible rings in the place of those before. Grooves of a ring that is None here stay at `held`, m, by ball.
+    /// Puts flexible rings in the place of those before. Grooves of a ring that is None here stay at `held`, m, by
+    /// ball.
     pub fn set_rings(&mut self, rings: [Option<ElasticPorts>; 2], held: &[Vec<[f64; 2]>; 2]) {
         self.rings = rings;
         let carriers = Side::BOTH.map(|side| self.carrier(side));

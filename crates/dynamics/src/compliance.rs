@@ -5,8 +5,9 @@ use dense::DenseCholesky;
 
 use crate::error::DynamicsError;
 
-/// Largest product of a diagonal entry of C and the same of C^-1: the digits that the inverse has lost there. Contacts that
-/// the mesh tells apart have 1 to 10, with a ring that floats up to 1e4; of ones that it does not, nothing is left.
+/// Largest product of a diagonal entry of C and the same of C^-1: the digits that the inverse has lost there.
+/// Contacts that the mesh tells apart have 1 to 10, with a ring that floats up to 1e4; of ones that it does not,
+/// nothing is left.
 const LARGEST_LOSS: f64 = 1e10;
 
 /// C^-1 of the compliance C of contacts and mount, SI, row-major `[n][n]`.

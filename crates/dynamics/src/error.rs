@@ -202,7 +202,8 @@ pub enum DynamicsError {
 }
 
 impl DynamicsError {
-    /// Whether the cause is in what a user gave, not in its solution: something unheld, a choice that cannot be, a mesh with a hole.
+    /// Whether the cause is in what a user gave, not in its solution: something unheld, a choice that cannot be, a
+    /// mesh with a hole.
     pub fn is_of_input(&self) -> bool {
         match self {
             DynamicsError::Ring(error) => error.is_of_input(),

@@ -1,7 +1,7 @@
 //! Kinematics of cage, balls and inner ring.
 //!
-//! The inner ring turns by the prescribed theta_i(t). Pure rolling gives the cage (Harris, 4th ed., eq. 8.24; the paper's
-//! eq. 10): omega_c = omega_i / 2 (1 - (D_w / D_m) cos a0), with slip ratios the share of the inner and outer
+//! The inner ring turns by the prescribed theta_i(t). Pure rolling gives the cage (Harris, 4th ed., eq. 8.24; the
+//! paper's eq. 10): omega_c = omega_i / 2 (1 - (D_w / D_m) cos a0), with slip ratios the share of the inner and outer
 //! rolling motion that is lost.
 
 use contact::{BearingGeometry, Side};
@@ -95,9 +95,9 @@ impl Kinematics {
         }
     }
 
-    /// Rolling at the contact angles `[inner, outer]`, rad, about an axis pitched by beta (`pitch_angle`): the surface of the
-    /// ball has cos(a - beta) of its largest speed at a contact (Harris, 4th ed., chapter 8; Jones 1959). Without slip
-    /// omega_c = omega_i (1 - D_w / D_m cos a_i) / (1 + cos(a_i - a_o)).
+    /// Rolling at the contact angles `[inner, outer]`, rad, about an axis pitched by beta (`pitch_angle`): the
+    /// surface of the ball has cos(a - beta) of its largest speed at a contact (Harris, 4th ed., chapter 8; Jones
+    /// 1959). Without slip omega_c = omega_i (1 - D_w / D_m cos a_i) / (1 + cos(a_i - a_o)).
     pub fn outer_control(geometry: &BearingGeometry, slip: [f64; 2], angles: [f64; 2]) -> Kinematics {
         let ratio = geometry.ball_diameter / geometry.pitch_diameter();
         let pitch = pitch_angle(geometry, angles[1]);
@@ -178,8 +178,8 @@ impl Rolling {
         }
     }
 
-    /// Speed of a ball's rotation about its own axis relative to the cage at a time, rad/s (Harris, 4th ed., eq. 8.25). It
-    /// turns against the inner ring, and + goes with a positive speed of that ring.
+    /// Speed of a ball's rotation about its own axis relative to the cage at a time, rad/s (Harris, 4th ed., eq.
+    /// 8.25). It turns against the inner ring, and + goes with a positive speed of that ring.
     pub fn spin(&self, time: f64) -> f64 {
         self.kinematics.ball * self.speed.at(time)
     }
@@ -203,8 +203,8 @@ mod tests {
         assert!((outer + inner - 540.0).abs() < 1e-9);
     }
 
-    /// Wrong: the spin of balls. Pure rolling: the ball's surface moves with both raceways, seen from the cage, and Harris'
-    /// n_R = n_i D_m / (2 D_w) (1 - gamma^2).
+    /// Wrong: the spin of balls. Pure rolling: the ball's surface moves with both raceways, seen from the cage, and
+    /// Harris' n_R = n_i D_m / (2 D_w) (1 - gamma^2).
     #[test]
     fn rolling_balls_spin_as_both_raceways_drive_them() {
         let geometry = BearingGeometry::reference_7010c();

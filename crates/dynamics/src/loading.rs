@@ -1,12 +1,13 @@
 //! Loads on bodies and contacts: at rest, and for loads that follow the contact angles, until both rest.
 //!
-//! Loads that do not depend on contact angles are evaluated once. Those that do (the gyroscopic moment; with the speeds of outer
-//! raceway control the centrifugal force of the balls too) are evaluated
-//! again at the angles of the equilibrium that they gave, until they do not change: a fixed point, since they are dead
-//! loads to Newton. Each pass shrinks the change by (change of the loads) / (change of the contact forces), below 0.4 for
-//! the gyroscopic moment with the centrifugal force of the balls, even on balls that have left the inner raceway. Where it does not
-//! shrink so fast, as for the moment of a fast bearing alone under a small load, where full steps go back and forth for ever, only
-//! a share of the change is taken, by Aitken's rule (Irons and Tuck, Int. J. Numer. Meth. Eng. 1 (1969) 275).
+//! Loads that do not depend on contact angles are evaluated once. Those that do (the gyroscopic moment; with the
+//! speeds of outer raceway control the centrifugal force of the balls too) are evaluated again at the angles of the
+//! equilibrium that they gave, until they do not change: a fixed point, since they are dead loads to Newton. Each
+//! pass shrinks the change by (change of the loads) / (change of the contact forces), below 0.4 for the gyroscopic
+//! moment with the centrifugal force of the balls, even on balls that have left the inner raceway. Where it does not
+//! shrink so fast, as for the moment of a fast bearing alone under a small load, where full steps go back and forth
+//! for ever, only a share of the change is taken, by Aitken's rule (Irons and Tuck, Int. J. Numer. Meth. Eng. 1
+//! (1969) 275).
 
 use contact::Side;
 use timer::SharedLaps;

@@ -1,8 +1,8 @@
 //! Where the parts of a bearing stand at an instant: what an equilibrium depends on besides its loads.
 //!
-//! The cage has carried the balls round by its angle. The inner ring has turned by its own: its mesh is turned with it, so a
-//! ball at azimuth psi in space touches the mesh at psi minus that angle, and loads that are fixed in space turn
-//! backwards on it. Shaft, balls and groove motions are measured in space, in the meridian planes of the balls.
+//! The cage has carried the balls round by its angle. The inner ring has turned by its own: its mesh is turned with
+//! it, so a ball at azimuth psi in space touches the mesh at psi minus that angle, and loads that are fixed in space
+//! turn backwards on it. Shaft, balls and groove motions are measured in space, in the meridian planes of the balls.
 
 use contact::Side;
 
@@ -30,7 +30,8 @@ impl Pose {
     }
 
     /// Loads of which those on the nodes of a flexible inner ring are given in its own frame, and the shaft carries
-    /// their resultant where the turned nodes stand. `inertia` is a load in that frame, N, `[n_nodes][3]` flat. Collective.
+    /// their resultant where the turned nodes stand. `inertia` is a load in that frame, N, `[n_nodes][3]` flat.
+    /// Collective.
     pub(crate) fn in_frames(
         &self,
         model: &Model,

@@ -4,8 +4,8 @@
 //! and accelerations are taken as zero, so nothing rings and steps may be as long as the pose allows. Centrifugal
 //! force of the balls is a load like others. Damping and the inertia of rings and shaft have no part in it.
 //!
-//! Cost of a step: one solve per ring and round, four (coarse meshes) to seven rounds were measured. The compliance of the contacts is a tangent
-//! only, so that of the first instant serves until rounds settle slowly.
+//! Cost of a step: one solve per ring and round, four (coarse meshes) to seven rounds were measured. The compliance
+//! of the contacts is a tangent only, so that of the first instant serves until rounds settle slowly.
 
 use crate::error::DynamicsError;
 use crate::kinematics::Rolling;

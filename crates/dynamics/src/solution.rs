@@ -14,11 +14,11 @@ use crate::loading::LoadCase;
 use crate::model::Model;
 use crate::pose::Pose;
 
-/// Peak pressure that leaves a permanent indentation of 1e-4 of the ball diameter in bearing steel, Pa: ISO 76, for ball
-/// bearings.
+/// Peak pressure that leaves a permanent indentation of 1e-4 of the ball diameter in bearing steel, Pa: ISO 76, for
+/// ball bearings.
 pub(crate) const STATIC_LIMIT: f64 = 4.2e9;
-/// Friction coefficient of bearing steel above which a force across a contact cannot be carried: lubricated contacts have 0.05 to 0.1,
-/// dry ones hardly more than 0.15 in rolling (Harris, 4th ed., chapter 14).
+/// Friction coefficient of bearing steel above which a force across a contact cannot be carried: lubricated contacts
+/// have 0.05 to 0.1, dry ones hardly more than 0.15 in rolling (Harris, 4th ed., chapter 14).
 const MOST_FRICTION: f64 = 0.15;
 
 /// A static equilibrium.
@@ -29,8 +29,8 @@ pub struct StaticSolution {
     pub pose: Pose,
     /// Results of every ball.
     pub balls: Vec<BallResult>,
-    /// Elastic nodal displacements of flexible rings relative to shaft or housing, in the frame of the ring's mesh, which
-    /// may have turned, m, `[n_nodes][3]` flat.
+    /// Elastic nodal displacements of flexible rings relative to shaft or housing, in the frame of the ring's mesh,
+    /// which may have turned, m, `[n_nodes][3]` flat.
     pub elastic: [Option<Vec<f64>>; 2],
     /// Out-of-balance force on the shaft, N and N m, about its origin; zero on prescribed dofs.
     pub shaft_residual: [f64; 5],
@@ -71,7 +71,8 @@ impl StaticSolution {
         let states = parts.states_at(&u);
         let (residual, reaction) = shaft_balance(parts, &states);
         let forces: Vec<[f64; 2]> = states.iter().map(SiteState::on_ring).collect();
-        // Loads on the rings, through their elastic motion: on their bodies and, besides the normal forces, at contacts.
+        // Loads on the rings, through their elastic motion: on their bodies and, besides the normal forces, at
+        // contacts.
         let ring_load_work = body_work(&case.loads, &rings) + ring_contact_work(&rings, &case.loads.contacts);
         let strain_energy = 0.5 * (ring_contact_work(&rings, &forces) + ring_load_work);
         let hertz_energy = states.iter().map(|state| state.force.energy).sum();
@@ -118,7 +119,8 @@ impl StaticSolution {
         &self.footprints[side.index()]
     }
 
-    /// Contact forces on the ring of one side and the patches over which they are spread, by ball; empty for a rigid ring or facets.
+    /// Contact forces on the ring of one side and the patches over which they are spread, by ball; empty for a rigid
+    /// ring or facets.
     pub fn patches(&self, side: Side) -> Vec<LoadedPatch> {
         let patch = |(ball, foot): (usize, &Footprint)| {
             let contact = self.balls[ball].contact(side);

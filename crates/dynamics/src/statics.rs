@@ -10,7 +10,8 @@
 //!         (again while loads that follow the contact angles change)
 //! until no force changes
 //! ```
-//! C is only a tangent: a slightly outdated one costs rounds, never accuracy; it is renewed when rounds contract slowly.
+//! C is only a tangent: a slightly outdated one costs rounds, never accuracy; it is renewed when rounds contract
+//! slowly.
 
 use std::sync::Arc;
 

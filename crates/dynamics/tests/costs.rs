@@ -31,8 +31,8 @@ fn settings() -> MotionSettings {
     MotionSettings::conserving(1e-5, Speed::constant(0.0))
 }
 
-/// Wrong: a scene would pay for an effect it does not name. Rigid rings have no dofs and no matrices; without effects there
-/// is no load vector; every thing that is made is counted on the objects that hold it.
+/// Wrong: a scene would pay for an effect it does not name. Rigid rings have no dofs and no matrices; without effects
+/// there is no load vector; every thing that is made is counted on the objects that hold it.
 #[test]
 fn a_scene_without_an_effect_pays_nothing() {
     let rigid = Case::axial(1000.0).rigid();
@@ -85,8 +85,8 @@ fn motion_holds_three_matrices_per_flexible_ring() {
     assert_eq!(counted(&flexible(Vec::new()), damped), both);
 }
 
-/// Wrong: the weight of a ring from nodal masses would not be the integral of its body force. Same quadrature, one product
-/// more: round-off.
+/// Wrong: the weight of a ring from nodal masses would not be the integral of its body force. Same quadrature, one
+/// product more: round-off.
 #[test]
 fn gravity_on_nodal_masses_is_the_body_load() {
     let g = [1.5, -9.81, 0.7];
@@ -135,7 +135,8 @@ fn costs_are_kept_by_effect() {
     assert!(after.seconds("contact_damping") >= 5e-3);
 }
 
-/// Wrong: the log of a run would not say what damping costs, or would show damping that is off. Both dampings are inside the steps.
+/// Wrong: the log of a run would not say what damping costs, or would show damping that is off. Both dampings are
+/// inside the steps.
 #[test]
 fn dampings_are_charged_in_a_motion() {
     let model = flexible(vec![Box::new(AxialForce {

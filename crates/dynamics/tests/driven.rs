@@ -54,8 +54,8 @@ fn assert_ledger_closes(states: &[MotionState]) {
     }
 }
 
-/// Wrong: motion would load the balls otherwise than statics does. Thrust alone is the same all round, so the equilibrium
-/// at speed lasts while the balls go round.
+/// Wrong: motion would load the balls otherwise than statics does. Thrust alone is the same all round, so the
+/// equilibrium at speed lasts while the balls go round.
 #[test]
 fn an_equilibrium_with_the_gyroscopic_moment_lasts() {
     for shares in [[0.0, 2.0], [1.0, 1.0]] {
@@ -72,8 +72,8 @@ fn an_equilibrium_with_the_gyroscopic_moment_lasts() {
     }
 }
 
-/// Wrong: the work of friction on rings and balls would be missing in the ledger, or be counted twice. A radial force, so
-/// all angles change; flexible and rigid rings.
+/// Wrong: the work of friction on rings and balls would be missing in the ledger, or be counted twice. A radial
+/// force, so all angles change; flexible and rigid rings.
 #[test]
 fn the_ledger_closes_with_the_gyroscopic_moment() {
     let case = Case {
@@ -107,8 +107,8 @@ fn driven(rigid: bool) -> Model {
     model
 }
 
-/// Wrong: a driven shaft would not be where its schedule has it, its work would be missing in the ledger, or balls would not
-/// follow: driven slowly against their modes, their forces are those of statics at the same place.
+/// Wrong: a driven shaft would not be where its schedule has it, its work would be missing in the ledger, or balls
+/// would not follow: driven slowly against their modes, their forces are those of statics at the same place.
 #[test]
 fn a_driven_shaft_moves_the_balls() {
     for rigid in [true, false] {
@@ -137,8 +137,8 @@ fn a_driven_shaft_moves_the_balls() {
                 state.forces[0][0].hypot(state.forces[0][1]),
                 statics.balls[0].inner.force_n,
             );
-            // Forces are means over the step. The ball's modes are above 4 kHz, the drive is at 0.5 kHz: (1/8)^2 / 2 of the
-            // change at most.
+            // Forces are means over the step. The ball's modes are above 4 kHz, the drive is at 0.5 kHz: (1/8)^2 / 2
+            // of the change at most.
             assert!(
                 (force - still).abs() < 0.01 * still,
                 "{rigid}, step {i}: {force} {still}"

@@ -134,8 +134,8 @@ fn element_kinds_agree() {
     assert!(b < 3e-3, "tet10 against hex20: {b}");
 }
 
-/// Wrong: the flexible bearing would not contain the rigid one. Rings 1e4 times stiffer (1e5 where the bore may ovalise, which
-/// is an order softer), the same Hertz contacts.
+/// Wrong: the flexible bearing would not contain the rigid one. Rings 1e4 times stiffer (1e5 where the bore may
+/// ovalise, which is an order softer), the same Hertz contacts.
 #[test]
 fn stiff_rings_give_the_rigid_bearing() {
     for (hold, factor) in [(Hold::Clamped, 1e4), (Hold::MeanMotion, 1e5)] {

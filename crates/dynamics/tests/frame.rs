@@ -84,8 +84,9 @@ fn free_flight(speed: Speed, dt: f64, n: usize, v: f64) -> [f64; 2] {
     [cos * mean[0] - sin * mean[1], sin * mean[0] + cos * mean[1]]
 }
 
-/// Wrong: Coriolis force, spin softening or Euler force have a wrong sign or size. A ring that no force holds flies straight
-/// through space, whatever its frame does; in the turning frame only these forces bend its path. Second order in the step.
+/// Wrong: Coriolis force, spin softening or Euler force have a wrong sign or size. A ring that no force holds flies
+/// straight through space, whatever its frame does; in the turning frame only these forces bend its path. Second
+/// order in the step.
 #[test]
 fn a_free_ring_flies_straight_in_a_turning_frame() {
     let (v, time) = (10e-3, 3e-4);
@@ -144,8 +145,8 @@ fn a_locked_direction_stays_locked_in_space() {
     assert!(worst_defect(&states) < 1e-8, "{}", worst_defect(&states));
 }
 
-/// Wrong: numerical dissipation would not be in the ledger, or a setting would gain energy. The unloading case under every
-/// setting of the family: the ledger closes, and what the integrator takes it never gives back.
+/// Wrong: numerical dissipation would not be in the ledger, or a setting would gain energy. The unloading case under
+/// every setting of the family: the ledger closes, and what the integrator takes it never gives back.
 #[test]
 fn every_integrator_closes_the_ledger() {
     let (model, start) = radial_step(5000.0, Hold::Clamped, false);
@@ -207,8 +208,9 @@ fn a_spinning_ring_rests_in_its_static_expansion() {
     assert!(worst_defect(&states) < 1e-8, "{}", worst_defect(&states));
 }
 
-/// Wrong: the cyclic solver or sectors would solve other equations than the sparse one. 60 steps of a load step with each, at speed,
-/// clamped and in mean motion: forces and displacements agree to 1e-10 of their size; each names itself.
+/// Wrong: the cyclic solver or sectors would solve other equations than the sparse one. 60 steps of a load step with
+/// each, at speed, clamped and in mean motion: forces and displacements agree to 1e-10 of their size; each names
+/// itself.
 #[test]
 fn cyclic_sparse_and_sector_steps_agree() {
     for hold in [Hold::Clamped, Hold::MeanMotion] {

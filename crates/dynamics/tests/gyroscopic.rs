@@ -43,9 +43,9 @@ fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
     [0, 1, 2].map(|i| a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3])
 }
 
-/// Wrong: the moment would turn the balls the wrong way or have another size. Vectors in space: the ball's spin axis lies
-/// in its meridian plane, it rolls on the inner raceway in the direction of the turning ring and does not pivot on the
-/// outer one; friction must supply the rate of its angular momentum. Round-off.
+/// Wrong: the moment would turn the balls the wrong way or have another size. Vectors in space: the ball's spin axis
+/// lies in its meridian plane, it rolls on the inner raceway in the direction of the turning ring and does not pivot
+/// on the outer one; friction must supply the rate of its angular momentum. Round-off.
 #[test]
 fn friction_supplies_the_rate_of_the_angular_momentum() {
     for (shares, omega) in [(OUTER, FAST), (BOTH, FAST), ([0.5, 1.5], -0.3 * FAST)] {
@@ -62,8 +62,9 @@ fn friction_supplies_the_rate_of_the_angular_momentum() {
         for ball in 0..g.n_balls {
             let (sin_psi, cos_psi) = (g.azimuth(ball) + 0.2).sin_cos();
             let space = |v: [f64; 2]| [v[0] * cos_psi, v[0] * sin_psi, v[1]];
-            // Spin relative to the cage. On the outer ring, which turns backwards seen from the cage, the ball rolls and does
-            // not pivot: the ratio of both conditions, free of the speeds, gives the pitch angle by bisection.
+            // Spin relative to the cage. On the outer ring, which turns backwards seen from the cage, the ball rolls
+            // and does not pivot: the ratio of both conditions, free of the speeds, gives the pitch angle by
+            // bisection.
             let a = angles[2 * ball + 1];
             let spin_at = |b: f64| [b.sin(), -b.cos()].map(|x| x * kinematics.ball * omega);
             let gamma = g.ball_diameter / g.pitch_diameter();
@@ -123,8 +124,9 @@ fn first_ball(solution: &StaticSolution) -> [f64; 4] {
     ]
 }
 
-/// Wrong: contact forces and angles at speed. An independent solution of Harris's equations (Rolling Bearing Analysis, 4th
-/// ed., chapter 9), whose Newton converges to 1e-8 N of 100 N; speeds of the free angle, and his of outer raceway control.
+/// Wrong: contact forces and angles at speed. An independent solution of Harris's equations (Rolling Bearing
+/// Analysis, 4th ed., chapter 9), whose Newton converges to 1e-8 N of 100 N; speeds of the free angle, and his of
+/// outer raceway control.
 #[test]
 fn thrust_at_speed_has_harris_solution() {
     for (thrust, speeds) in [500.0, 2000.0, 10_000.0]
@@ -145,7 +147,8 @@ fn thrust_at_speed_has_harris_solution() {
     }
 }
 
-/// Wrong: at equal contact angles outer raceway control would not be the rolling of the cage, or the slip would be lost.
+/// Wrong: at equal contact angles outer raceway control would not be the rolling of the cage, or the slip would be
+/// lost.
 #[test]
 fn outer_control_at_equal_angles_is_plain_rolling() {
     let model = Case::axial(0.0).rigid();
@@ -166,8 +169,8 @@ fn outer_control_at_equal_angles_is_plain_rolling() {
     }
 }
 
-/// Wrong: nobody would be told that balls at other angles than the free one are faster than the cage is taken to be. Where 1 % of a
-/// contact force hangs on it there is a warning, but not where the speeds follow the angles.
+/// Wrong: nobody would be told that balls at other angles than the free one are faster than the cage is taken to be.
+/// Where 1 % of a contact force hangs on it there is a warning, but not where the speeds follow the angles.
 #[test]
 fn speeds_of_another_angle_are_warned_of() {
     let warnings = |speeds, thrust, omega| {
@@ -183,8 +186,9 @@ fn speeds_of_another_angle_are_warned_of() {
     assert_eq!(warnings(BallSpeeds::FreeAngle, 2000.0, 0.1 * FAST), "");
 }
 
-/// Wrong: the moment would act against the centrifugal force instead of with it. Under outer raceway control friction on
-/// the outer raceway pushes the ball back along -z, so its contact angle falls; the inner forces stay those of the thrust.
+/// Wrong: the moment would act against the centrifugal force instead of with it. Under outer raceway control friction
+/// on the outer raceway pushes the ball back along -z, so its contact angle falls; the inner forces stay those of the
+/// thrust.
 #[test]
 fn outer_control_lowers_the_outer_contact_angle() {
     let without = first_ball(&equilibrium(&spinning(Case::axial(2000.0).rigid(), FAST, None)));
@@ -198,8 +202,8 @@ fn outer_control_lowers_the_outer_contact_angle() {
     assert!(with[0] * with[2].sin() > 0.0 && relative(with[0] * with[2].sin(), 2000.0 / 18.0) < 1e-9);
 }
 
-/// Wrong: balls that the centrifugal force has lifted off the inner raceway would not come to rest, or not where they run:
-/// in the plane of their own circle, pressed outwards by m omega_c^2 r, without any moment.
+/// Wrong: balls that the centrifugal force has lifted off the inner raceway would not come to rest, or not where they
+/// run: in the plane of their own circle, pressed outwards by m omega_c^2 r, without any moment.
 #[test]
 fn balls_off_the_inner_raceway_run_in_their_plane() {
     let case = Case {
@@ -237,8 +241,8 @@ fn without_speed_nothing_changes() {
     assert_eq!(first_ball(&at_rest), first_ball(&with));
 }
 
-/// Wrong: the shaft would not carry what balls rub onto the inner ring. Forces at the true contact points, by hand, with
-/// the load: radial force, free tilt, so every ball has its own angles. 1e-9 of the load; moments times 30 mm.
+/// Wrong: the shaft would not carry what balls rub onto the inner ring. Forces at the true contact points, by hand,
+/// with the load: radial force, free tilt, so every ball has its own angles. 1e-9 of the load; moments times 30 mm.
 #[test]
 fn friction_of_the_balls_is_balanced_by_the_shaft() {
     let case = Case {
@@ -289,8 +293,8 @@ fn friction_of_the_balls_is_balanced_by_the_shaft() {
     }
 }
 
-/// Wrong: the moment would not go round with the balls. Half a ball spacing on, the equilibrium is that of a bearing whose
-/// first ball is there; a radial force makes balls differ.
+/// Wrong: the moment would not go round with the balls. Half a ball spacing on, the equilibrium is that of a bearing
+/// whose first ball is there; a radial force makes balls differ.
 #[test]
 fn the_moment_goes_round_with_the_cage() {
     let case = Case {

@@ -139,8 +139,8 @@ impl OneMode {
         0.5 * AMPLITUDE * (1.0 - (self.omega * t).cos())
     }
 
-    /// Largest error of the mode over its amplitude at `SAMPLES` times of 1.2 periods when each takes `parts` steps; error at
-    /// the end; largest share of other shapes.
+    /// Largest error of the mode over its amplitude at `SAMPLES` times of 1.2 periods when each takes `parts` steps;
+    /// error at the end; largest share of other shapes.
     fn error(&self, integrator: Integrator, parts: usize) -> [f64; 3] {
         let n = SAMPLES * parts;
         let dt = PERIODS * TAU / self.omega / n as f64;
@@ -157,8 +157,9 @@ impl OneMode {
     }
 }
 
-/// Wrong: a setting would not have its order on a ring, its mass would not be that of the modes, or a load in one mode would
-/// move another. Average acceleration is late by omega t (omega dt)^2/12 (Hughes, The Finite Element Method, 9.3).
+/// Wrong: a setting would not have its order on a ring, its mass would not be that of the modes, or a load in one
+/// mode would move another. Average acceleration is late by omega t (omega dt)^2/12 (Hughes, The Finite Element
+/// Method, 9.3).
 #[test]
 fn every_setting_has_its_order_on_an_elastic_ring() {
     let case = OneMode::new();
@@ -206,9 +207,10 @@ fn superposition(modes: &[Mode], load: &[f64], t: f64) -> Vec<f64> {
     u
 }
 
-/// Wrong: a load on the raceway would not reach the modes, or higher modes would not move as they do. A radial traction
-/// cos 2 theta on the raceway from t = 0 on, over half a period of the oval mode, against the sum of the first 200 modes, up
-/// to 198 kHz. Those at 49 and 55 kHz are worth 2e-3; the rest is that of the series and of the steps.
+/// Wrong: a load on the raceway would not reach the modes, or higher modes would not move as they do. A radial
+/// traction cos 2 theta on the raceway from t = 0 on, over half a period of the oval mode, against the sum of the
+/// first 200 modes, up to 198 kHz. Those at 49 and 55 kHz are worth 2e-3; the rest is that of the series and of the
+/// steps.
 #[test]
 fn a_suddenly_squeezed_ring_moves_as_its_modes() {
     let ring = Arc::new(ring(Side::Outer, SMALL, Hold::Free));

@@ -18,7 +18,8 @@ fn settings(dt: f64, ladder: Ladder) -> MotionSettings {
     }
 }
 
-/// 1 kN of thrust at rest, and the same under 2 kN across that come at t = 0; rigid rings on a shaft of 0.5 kg or flexible.
+/// 1 kN of thrust at rest, and the same under 2 kN across that come at t = 0; rigid rings on a shaft of 0.5 kg or
+/// flexible.
 fn radial_step(flexible: bool) -> (Model, StaticSolution) {
     let before = Case::axial(1000.0);
     let still = if flexible {
@@ -49,8 +50,8 @@ fn march(motion: &Motion<'_>, start: &StaticSolution, n: usize) -> (MotionState,
     (state, parts, retries)
 }
 
-/// Wrong: the tolerance would not govern the error. Against steps of 1/64, each tenth of the tolerance lowers the error, and
-/// the smallest tolerance is far better than the full step.
+/// Wrong: the tolerance would not govern the error. Against steps of 1/64, each tenth of the tolerance lowers the
+/// error, and the smallest tolerance is far better than the full step.
 #[test]
 fn the_tolerance_governs_the_error() {
     let (model, start) = radial_step(false);
@@ -137,8 +138,8 @@ fn the_floor_of_the_ladder_is_an_error_that_says_so() {
     );
 }
 
-/// Wrong: steps could not adapt from undeformed bodies, whose first acceleration is no error; or a driven shaft would start
-/// elsewhere than it is driven. 2 kN of thrust come on at t = 0, x is held 1 um aside.
+/// Wrong: steps could not adapt from undeformed bodies, whose first acceleration is no error; or a driven shaft would
+/// start elsewhere than it is driven. 2 kN of thrust come on at t = 0, x is held 1 um aside.
 #[test]
 fn undeformed_bodies_start_under_load_with_adaptive_steps() {
     let mut model = Case::axial(2000.0).flexible(ContactMode::Patch, SMALL, Hold::Clamped);

@@ -66,9 +66,9 @@ fn square_ring(radius: f64, side: f64, sectors: usize) -> RingModel {
     model
 }
 
-/// Wrong: natural frequencies of rings. Thin ring, Love (Mathematical Theory of Elasticity, 4th ed., art. 293): bending in
-/// its plane, w^2 = E I/(rho A R^4) n^2 (n^2-1)^2/(n^2+1), and across it, with E I/(G J) for the 1, J = 0.1406 a^4. The theory
-/// leaves out shear, extension and rotary inertia, of order (n a/R)^2.
+/// Wrong: natural frequencies of rings. Thin ring, Love (Mathematical Theory of Elasticity, 4th ed., art. 293):
+/// bending in its plane, w^2 = E I/(rho A R^4) n^2 (n^2-1)^2/(n^2+1), and across it, with E I/(G J) for the 1, J =
+/// 0.1406 a^4. The theory leaves out shear, extension and rotary inertia, of order (n a/R)^2.
 #[test]
 fn a_thin_ring_bends_as_love_says() {
     let (radius, side) = (0.1, 4e-3);
@@ -99,8 +99,8 @@ fn a_thin_ring_bends_as_love_says() {
     }
 }
 
-/// Wrong: a free ring would resist rigid motions, have other than six, or its elastic modes would not converge with the mesh.
-/// omega^2 of rigid motions is below 1e-6 of the first elastic one.
+/// Wrong: a free ring would resist rigid motions, have other than six, or its elastic modes would not converge with
+/// the mesh. omega^2 of rigid motions is below 1e-6 of the first elastic one.
 #[test]
 fn free_rings_converge_and_have_six_rigid_motions() {
     for side in Side::BOTH {
@@ -132,8 +132,9 @@ fn free_rings_converge_and_have_six_rigid_motions() {
     }
 }
 
-/// Wrong: clamping would not hold, or a mean-motion hold would stiffen what it must leave free. Modes of two and more waves
-/// round the ring have no mean motion of the bore, so they are those of the free ring; the others must rise from zero.
+/// Wrong: clamping would not hold, or a mean-motion hold would stiffen what it must leave free. Modes of two and more
+/// waves round the ring have no mean motion of the bore, so they are those of the free ring; the others must rise
+/// from zero.
 #[test]
 fn held_rings_have_the_modes_their_hold_leaves() {
     for side in Side::BOTH {
@@ -181,8 +182,8 @@ fn coarse_and_fine_clamped_rings_agree() {
     assert!(largest_difference(&coarse, &fine) < 1e-2);
 }
 
-/// Stiffness of one contact [[rr, rz], [rz, zz]] from its reported force, angle and approach: k n n^T + Q/l (1 - n n^T),
-/// k = 3/2 K^(2/3) Q^(1/3).
+/// Stiffness of one contact [[rr, rz], [rz, zz]] from its reported force, angle and approach: k n n^T + Q/l (1 - n
+/// n^T), k = 3/2 K^(2/3) Q^(1/3).
 fn tangent(model: &Model, solution: &StaticSolution, side: Side) -> [[f64; 2]; 2] {
     let ball = &solution.balls[0];
     let contact = if side == Side::Inner {
@@ -222,8 +223,9 @@ fn small_frequencies(k: &[&[f64]], m: &[f64]) -> Vec<f64> {
     (0..n).map(|i| a[i][i].max(0.0).sqrt() / TAU).collect()
 }
 
-/// Frequencies of a bearing with rigid rings under pure thrust, tilt locked, whose shaft has the mass `shaft`: by symmetry
-/// the balls and z move together, x and y go with one wave of the balls, and the other waves leave the shaft at rest.
+/// Frequencies of a bearing with rigid rings under pure thrust, tilt locked, whose shaft has the mass `shaft`: by
+/// symmetry the balls and z move together, x and y go with one wave of the balls, and the other waves leave the shaft
+/// at rest.
 fn thrust_frequencies(model: &Model, solution: &StaticSolution, shaft: f64) -> Vec<f64> {
     let [inner, outer] = Side::BOTH.map(|side| tangent(model, solution, side));
     let ball = [0, 1].map(|i| [0, 1].map(|j| inner[i][j] + outer[i][j]));
@@ -295,8 +297,8 @@ fn unloaded_balls_have_modes_at_zero() {
     assert_eq!(rigid, 2 * unloaded);
 }
 
-/// Wrong: rings would be coupled to balls and shaft otherwise than rigid ones when they are stiff. Rings 1e4 times stiffer
-/// than steel, their mass on the shaft of the rigid model.
+/// Wrong: rings would be coupled to balls and shaft otherwise than rigid ones when they are stiff. Rings 1e4 times
+/// stiffer than steel, their mass on the shaft of the rigid model.
 #[test]
 fn stiff_rings_have_the_modes_of_rigid_ones() {
     let mut model = Case::axial(2000.0).flexible(ContactMode::Patch, SMALL, Hold::Clamped);

@@ -22,8 +22,8 @@ fn floating() -> Model {
     model
 }
 
-/// Linear momentum and moment of momentum about the centre of the outer grooves of ring and balls, and what the levers of
-/// linear theory leave out of the latter, the sum over time of u_c x F.
+/// Linear momentum and moment of momentum about the centre of the outer grooves of ring and balls, and what the
+/// levers of linear theory leave out of the latter, the sum over time of u_c x F.
 struct Momentum {
     linear: [f64; 3],
     angular: [f64; 3],
@@ -59,10 +59,10 @@ fn momentum(model: &Model, motion: &Motion<'_>, state: &MotionState) -> Momentum
     Momentum { linear, angular }
 }
 
-/// Wrong: the force on the ring and on the ball would differ, or act along different lines: the torque of the normal force
-/// would be missing. Two balls thrown at a free ring, one along the contact normal: linear momentum and momentum about the
-/// axis are kept to round-off at every step, through impact and rebound; momentum about the other axes is kept to what
-/// small displacements leave out of the ring's levers, dt u_c x F, to round-off.
+/// Wrong: the force on the ring and on the ball would differ, or act along different lines: the torque of the normal
+/// force would be missing. Two balls thrown at a free ring, one along the contact normal: linear momentum and
+/// momentum about the axis are kept to round-off at every step, through impact and rebound; momentum about the other
+/// axes is kept to what small displacements leave out of the ring's levers, dt u_c x F, to round-off.
 #[test]
 fn free_balls_in_a_free_ring_keep_their_momentum() {
     let model = floating();

@@ -134,8 +134,8 @@ fn slow_rolling_follows_the_static_forces() {
     assert!(state.ledger.relative_defect().abs() < 1e-6, "{:?}", state.ledger);
 }
 
-/// Wrong: the ledger would not notice a scheme that makes energy. Pointwise trapezoidal contact on the unloading case gains
-/// energy while every Newton converges; this is kept as the test of the alarm.
+/// Wrong: the ledger would not notice a scheme that makes energy. Pointwise trapezoidal contact on the unloading case
+/// gains energy while every Newton converges; this is kept as the test of the alarm.
 #[test]
 fn pointwise_contact_gains_energy_and_the_ledger_tells() {
     let (loaded, solution) = radial_step(5000.0);
@@ -220,8 +220,8 @@ fn motion_has_the_same_bits_on_any_number_of_threads() {
     assert!(solve(1) == solve(2), "states differ");
 }
 
-/// Wrong: a rigid bearing could not move, or ball centrifugal force would not act: at speed the outer contacts carry more
-/// than the inner by m omega_c^2 r / cos of the angles, here against the static equilibrium with the same loads.
+/// Wrong: a rigid bearing could not move, or ball centrifugal force would not act: at speed the outer contacts carry
+/// more than the inner by m omega_c^2 r / cos of the angles, here against the static equilibrium with the same loads.
 #[test]
 fn rigid_rings_carry_the_centrifugal_force_of_the_balls() {
     let mut model = Case::axial(500.0).rigid();
@@ -267,10 +267,10 @@ fn unsupported_choices_are_refused_by_name() {
     );
 }
 
-/// Wrong: patches that follow an oscillating contact angle would feed it. A ball of a bearing at rest is pushed along its
-/// grooves, where only geometry holds it and nothing damps it: its energy stays what it was, and what patches take in half a
-/// period they give back in the next. (A patch that is late by half a step makes it grow, by 40 % within these 5 ms on this
-/// mesh, without bound in longer runs.)
+/// Wrong: patches that follow an oscillating contact angle would feed it. A ball of a bearing at rest is pushed along
+/// its grooves, where only geometry holds it and nothing damps it: its energy stays what it was, and what patches
+/// take in half a period they give back in the next. (A patch that is late by half a step makes it grow, by 40 %
+/// within these 5 ms on this mesh, without bound in longer runs.)
 #[test]
 fn moving_patches_do_not_feed_an_oscillating_ball() {
     let case = Case {

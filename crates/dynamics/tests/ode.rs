@@ -102,8 +102,8 @@ impl System<f64, DVector<f64>> for Bearing {
     }
 }
 
-/// Wrong: motion would not be the solution of the equations of motion. A smooth radial pulse on a preloaded bearing with
-/// rigid rings, against a Runge-Kutta solution of independently written equations: the error falls with the
+/// Wrong: motion would not be the solution of the equations of motion. A smooth radial pulse on a preloaded bearing
+/// with rigid rings, against a Runge-Kutta solution of independently written equations: the error falls with the
 /// square of the step, and is below 1e-4 of the displacement at 0.5 us.
 #[test]
 fn rigid_rings_follow_an_independent_ode_solution() {

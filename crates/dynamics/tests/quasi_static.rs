@@ -52,8 +52,8 @@ fn force_change(a: &StaticSolution, b: &StaticSolution, shift: usize) -> f64 {
     (0..n).map(change).fold(0.0, f64::max) / largest
 }
 
-/// Wrong: the balls would not stand where the cage has carried them. Rigid rings: the equilibrium of a bearing whose first
-/// ball is at that azimuth, to the round-off that Newton leaves.
+/// Wrong: the balls would not stand where the cage has carried them. Rigid rings: the equilibrium of a bearing whose
+/// first ball is at that azimuth, to the round-off that Newton leaves.
 #[test]
 fn rigid_rings_pass_through_the_equilibria_at_the_phases_of_the_cage() {
     for free_tilt in [false, true] {
@@ -83,9 +83,10 @@ fn rigid_rings_pass_through_the_equilibria_at_the_phases_of_the_cage() {
     }
 }
 
-/// Wrong: a ball would meet other rings than the one before it. When the cage has turned by one pitch, and the inner ring by
-/// what belongs to it, every ball carries what the next one carried. The outer mesh repeats after a pitch (54 elements, 18
-/// balls); the inner one stands elsewhere under the balls, which is worth the difference between places on a mesh.
+/// Wrong: a ball would meet other rings than the one before it. When the cage has turned by one pitch, and the inner
+/// ring by what belongs to it, every ball carries what the next one carried. The outer mesh repeats after a pitch (54
+/// elements, 18 balls); the inner one stands elsewhere under the balls, which is worth the difference between places
+/// on a mesh.
 #[test]
 fn forces_repeat_when_every_ball_stands_where_the_next_one_stood() {
     let model = combined().flexible(ContactMode::Patch, SMALL, Hold::Clamped);
@@ -114,8 +115,9 @@ fn forces_repeat_when_every_ball_stands_where_the_next_one_stood() {
     assert!(change < 1e-8, "{change}");
 }
 
-/// Wrong: the turning inner ring would carry loads or contacts in directions that do not turn back with it: by symmetry a
-/// quarter turn of loads, balls and ring together turns the displacement of the shaft and changes no force.
+/// Wrong: the turning inner ring would carry loads or contacts in directions that do not turn back with it: by
+/// symmetry a quarter turn of loads, balls and ring together turns the displacement of the shaft and changes no
+/// force.
 #[test]
 fn a_turned_bearing_under_turned_loads_is_the_same_bearing() {
     let quarter = 0.5 * PI;
@@ -162,8 +164,8 @@ fn a_turned_bearing_under_turned_loads_is_the_same_bearing() {
     }
 }
 
-/// Wrong: quasi-static and dynamic runs of the same scene would be two different bearings. At 1800 rpm inertia is small: the
-/// forces differ by less than 1e-4, of which most is the mean over a step against its end.
+/// Wrong: quasi-static and dynamic runs of the same scene would be two different bearings. At 1800 rpm inertia is
+/// small: the forces differ by less than 1e-4, of which most is the mean over a step against its end.
 #[test]
 fn slow_motion_follows_the_quasi_static_run() {
     let mut model = combined().flexible(ContactMode::Patch, SMALL, Hold::Clamped);

@@ -115,7 +115,8 @@ fn unloaded_balls_rest_midway() {
 }
 
 /// Wrong: balls that Newton leaves touching one raceway, with a force below its residual, would be reported off their
-/// place and with contact angles of chance. A loose bearing under a radial load alone, its shaft free to find the middle.
+/// place and with contact angles of chance. A loose bearing under a radial load alone, its shaft free to find the
+/// middle.
 #[test]
 fn balls_that_only_touch_are_unloaded() {
     for radial in [100.0, 1000.0, 10_000.0] {
@@ -139,8 +140,8 @@ fn balls_that_only_touch_are_unloaded() {
     }
 }
 
-/// Wrong: gravity would press balls at its horizon, whose weight the cage carries, against one raceway by the round-off of
-/// a cosine. Two balls of 18 lie there; a thousand earths' gravity unloads them.
+/// Wrong: gravity would press balls at its horizon, whose weight the cage carries, against one raceway by the
+/// round-off of a cosine. Two balls of 18 lie there; a thousand earths' gravity unloads them.
 #[test]
 fn gravity_leaves_unloaded_balls_at_its_horizon_midway() {
     let mut model = Case::axial(500.0).rigid();

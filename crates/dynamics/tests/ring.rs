@@ -203,8 +203,9 @@ fn places_off_the_raceway_are_errors() {
     );
 }
 
-/// Wrong: a ring in sectors would show other stress than the ring as a whole: on every kind of element, at nodes and integration points, any
-/// number of sectors, an uneven mesh. At nodes sums of sectors differ by round-off; at integration points every bit is the same.
+/// Wrong: a ring in sectors would show other stress than the ring as a whole: on every kind of element, at nodes and
+/// integration points, any number of sectors, an uneven mesh. At nodes sums of sectors differ by round-off; at
+/// integration points every bit is the same.
 #[test]
 fn stress_by_sector_is_that_of_the_whole_ring() {
     let mut rings = vec![
@@ -248,7 +249,8 @@ fn stress_by_sector_is_that_of_the_whole_ring() {
     }
 }
 
-/// Wrong: sectors would weigh a ring otherwise than the whole does, or a ring that was divided for one process would not be what it was.
+/// Wrong: sectors would weigh a ring otherwise than the whole does, or a ring that was divided for one process would
+/// not be what it was.
 #[test]
 fn loads_by_sector_are_those_of_the_whole_ring() {
     let sectors = Sectors {
@@ -273,7 +275,8 @@ fn loads_by_sector_are_those_of_the_whole_ring() {
     }
 }
 
-/// Wrong: a rank would hold the whole mesh, or not have what it needs of its sectors and of the surfaces that contacts and partner touch.
+/// Wrong: a rank would hold the whole mesh, or not have what it needs of its sectors and of the surfaces that
+/// contacts and partner touch.
 #[test]
 fn a_rank_keeps_its_part_of_the_mesh_and_knows_no_other() {
     let sectors = Sectors {

@@ -22,8 +22,8 @@ const SPEED: f64 = 60.0 * PI;
 const PITCH_STEPS: usize = 180;
 const START: usize = 1;
 
-/// What is seen of a step: time of its middle, inner and outer forces of the balls, N; at its end, shaft x, y, z, m, and the
-/// elastic radial displacement of one raceway node of each ring, m.
+/// What is seen of a step: time of its middle, inner and outer forces of the balls, N; at its end, shaft x, y, z, m,
+/// and the elastic radial displacement of one raceway node of each ring, m.
 struct Seen {
     middle: f64,
     forces: [Vec<f64>; 2],
@@ -140,8 +140,8 @@ fn windowed(values: &[f64], dt: f64, frequency: f64) -> f64 {
 /// 2 kN and 1 kN: all balls are loaded.
 static LOADED: LazyLock<Run> = LazyLock::new(|| Run::new(2000.0, 1000.0, 4));
 
-/// Wrong: motion would carry what its start has left behind, or find other forces than equilibria do. After one ball pitch
-/// the forces are those of equilibria at the same places, to 1e-4 of the largest.
+/// Wrong: motion would carry what its start has left behind, or find other forces than equilibria do. After one ball
+/// pitch the forces are those of equilibria at the same places, to 1e-4 of the largest.
 #[test]
 fn rolling_settles_on_the_quasi_static_forces() {
     let run = &*LOADED;
@@ -164,9 +164,9 @@ fn rolling_settles_on_the_quasi_static_forces() {
     assert!(worst < 1e-4, "{worst}");
 }
 
-/// Wrong: the mesh would be felt. Neither at the elements that a ball passes on the outer ring nor at those on the inner one
-/// has its force a component of 1e-4 of the mean, and nor has it at any azimuth harmonic between 5 and 150: over one pitch
-/// the balls together pass the whole circle.
+/// Wrong: the mesh would be felt. Neither at the elements that a ball passes on the outer ring nor at those on the
+/// inner one has its force a component of 1e-4 of the mean, and nor has it at any azimuth harmonic between 5 and 150:
+/// over one pitch the balls together pass the whole circle.
 #[test]
 fn balls_do_not_feel_the_elements() {
     let run = &*LOADED;
@@ -240,10 +240,10 @@ fn raceways_feel_the_balls_at_their_passing_frequencies() {
     }
 }
 
-/// Wrong: the shaft would not move as balls enter and leave the load zone, or at another rate. With 0.5 kN of thrust and
-/// 2 kN across, 11 balls of 18 carry no load; in a window of three pitches, whose lines are 78 Hz apart, the shaft moves at
-/// 234 Hz and multiples of it, as far as equilibria do. What else there is rings on from the start: balls in their clearance.
-/// (Under 2 kN and 1 kN all balls are loaded, and this line is below 1e-12 m.)
+/// Wrong: the shaft would not move as balls enter and leave the load zone, or at another rate. With 0.5 kN of thrust
+/// and 2 kN across, 11 balls of 18 carry no load; in a window of three pitches, whose lines are 78 Hz apart, the
+/// shaft moves at 234 Hz and multiples of it, as far as equilibria do. What else there is rings on from the start:
+/// balls in their clearance. (Under 2 kN and 1 kN all balls are loaded, and this line is below 1e-12 m.)
 #[test]
 fn the_shaft_moves_at_the_ball_passing_frequency() {
     let run = Run::new(500.0, 2000.0, 3);
@@ -278,9 +278,9 @@ fn the_shaft_moves_at_the_ball_passing_frequency() {
     }
 }
 
-/// Wrong: rolling without friction would need a drive, or be one. Where the shaft tilts, contacts go up and down the grooves
-/// once per turn of a ball. Patches that follow them late do work, which comes out at the drive; with play of a tenth of a
-/// patch it was 1e-3 of the energy in two pitches.
+/// Wrong: rolling without friction would need a drive, or be one. Where the shaft tilts, contacts go up and down the
+/// grooves once per turn of a ball. Patches that follow them late do work, which comes out at the drive; with play of
+/// a tenth of a patch it was 1e-3 of the energy in two pitches.
 #[test]
 fn rolling_without_friction_needs_no_drive() {
     let case = Case {

@@ -52,8 +52,8 @@ fn on_outer(solution: &StaticSolution) -> f64 {
     contacts.map(|c| c.force_n * c.contact_angle_rad.sin()).sum()
 }
 
-/// Wrong: the spring would press with another force, or the seat slide the other way. A constant force on the outer ring
-/// is the mirror of the same force on the shaft: equal ball forces, opposite displacements.
+/// Wrong: the spring would press with another force, or the seat slide the other way. A constant force on the outer
+/// ring is the mirror of the same force on the shaft: equal ball forces, opposite displacements.
 #[test]
 fn a_constant_force_is_the_mirror_of_an_axial_load() {
     for (loaded, bare) in bearings().into_iter().zip(bearings()) {
@@ -96,8 +96,8 @@ fn run(motion: &Motion<'_>, mut state: MotionState, n: usize) -> MotionState {
     state
 }
 
-/// Wrong: a sprung bearing would not stay in its equilibrium, or the spring make energy when a blow moves the ring: with a
-/// mass that slides and without one, rigid and flexible rings.
+/// Wrong: a sprung bearing would not stay in its equilibrium, or the spring make energy when a blow moves the ring:
+/// with a mass that slides and without one, rigid and flexible rings.
 #[test]
 fn a_motion_keeps_the_balance_and_the_ledger() {
     for mass in [0.0, 0.3] {

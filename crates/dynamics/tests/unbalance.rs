@@ -77,9 +77,10 @@ fn floating(speed: &Speed) -> Model {
     unbalanced(model, speed, 0.0)
 }
 
-/// Wrong: momentum would come from nowhere while the speed changes. M v + m e d/dt (cos psi, sin psi) is kept to round-off
-/// at every step, over both corners of a ramp that lie inside of steps. Without any momentum the shaft goes round the common
-/// centre of mass, x = -(m e / M) (cos psi, sin psi); the trapezoidal rule is off by (Omega dt)^2 / 12 a step.
+/// Wrong: momentum would come from nowhere while the speed changes. M v + m e d/dt (cos psi, sin psi) is kept to
+/// round-off at every step, over both corners of a ramp that lie inside of steps. Without any momentum the shaft goes
+/// round the common centre of mass, x = -(m e / M) (cos psi, sin psi); the trapezoidal rule is off by (Omega dt)^2 /
+/// 12 a step.
 #[test]
 fn a_free_shaft_and_its_unbalance_keep_their_momentum() {
     let speed = Speed::table(vec![0.93e-3, 2.57e-3], vec![500.0, 1500.0]);
@@ -108,8 +109,8 @@ fn a_free_shaft_and_its_unbalance_keep_their_momentum() {
     assert!(fastest > 0.2 * scale, "{fastest}: it does not move");
 }
 
-/// Wrong: size or phase of the whirl of a Jeffcott rotor. On a spring of stiffness k its amplitude is
-/// m e Omega^2 / (k - M Omega^2): with the mass below resonance, against it above, where it turns about its centre of mass.
+/// Wrong: size or phase of the whirl of a Jeffcott rotor. On a spring of stiffness k its amplitude is m e Omega^2 /
+/// (k - M Omega^2): with the mass below resonance, against it above, where it turns about its centre of mass.
 #[test]
 fn the_whirl_is_that_of_a_jeffcott_rotor() {
     let preload = 500.0;
@@ -163,7 +164,8 @@ fn the_whirl_is_that_of_a_jeffcott_rotor() {
     }
 }
 
-/// Wrong: the work of the force would be missing in the ledger, with rigid or with flexible rings, while the speed changes.
+/// Wrong: the work of the force would be missing in the ledger, with rigid or with flexible rings, while the speed
+/// changes.
 #[test]
 fn the_ledger_closes_with_an_unbalance() {
     let speed = Speed::table(vec![0.1e-3, 0.5e-3], vec![800.0, 2000.0]);
@@ -182,8 +184,8 @@ fn the_ledger_closes_with_an_unbalance() {
     }
 }
 
-/// Wrong: an equilibrium in time would have the force of another instant. It is that of a bearing under a radial force of
-/// the same size and direction, to the round-off that Newton leaves.
+/// Wrong: an equilibrium in time would have the force of another instant. It is that of a bearing under a radial
+/// force of the same size and direction, to the round-off that Newton leaves.
 #[test]
 fn equilibria_in_time_are_those_under_its_force() {
     let speed = Speed::constant(600.0);

@@ -1,7 +1,8 @@
-//! Times assembly, loads and stress recovery on a ring: `cargo run --release -p raceway-fem --example measure [hex8|hex20|tet10]`.
+//! Times assembly, loads and stress recovery on a ring:
+//! `cargo run --release -p raceway-fem --example measure [hex8|hex20|tet10]`.
 //!
-//! Best of several repeats on one thread and on all. Measured on one thread of a 2-core Xeon (Sapphire Rapids, 2.3 GHz, shared
-//! with other work, load 2.4), November 2026, ms:
+//! Best of several repeats on one thread and on all. Measured on one thread of a 2-core Xeon (Sapphire Rapids, 2.3
+//! GHz, shared with other work, load 2.4), November 2026, ms:
 //!
 //! | | hex8, 68 040 dofs | hex20, 70 740 dofs | tet10, 65 520 dofs |
 //! |---|---|---|---|

@@ -13,7 +13,8 @@ const TASK: usize = 32;
 const WAVE: usize = 512;
 
 /// Calls `compute(e, values)` for every element, in parallel, with `n_values` values to overwrite (they hold an
-/// earlier element's), and `scatter(e, values)` in the order of the elements. The error of the first failing element is returned.
+/// earlier element's), and `scatter(e, values)` in the order of the elements. The error of the first failing element
+/// is returned.
 pub(crate) fn for_each_element<C, S>(
     n_elements: usize,
     n_values: usize,

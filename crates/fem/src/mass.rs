@@ -15,7 +15,8 @@ use crate::table::Table;
 
 /// The mass matrix of all degrees of freedom, kg, `[3 n_nodes][3 n_nodes]`, CSR, exactly symmetric.
 ///
-/// It has the stiffness's pattern, with explicit zeros between components; [`assemble_node_mass`] is nine times smaller.
+/// It has the stiffness's pattern, with explicit zeros between components; [`assemble_node_mass`] is nine times
+/// smaller.
 pub fn assemble_mass(mesh: &Mesh, material: &Material) -> Result<CsMat<f64>, FemError> {
     let pattern = Pattern::new(mesh)?;
     let mut values = vec![0.0; pattern.n_values()];

@@ -1,6 +1,7 @@
 //! Norms of the difference between a finite-element displacement and a known solution, for convergence studies.
 //!
-//! Integrated with [`crate::quadrature::mass_rule`], not with the stiffness points, where the strain is better than elsewhere.
+//! Integrated with [`crate::quadrature::mass_rule`], not with the stiffness points, where the strain is better than
+//! elsewhere.
 
 use mesh::Mesh;
 
@@ -35,8 +36,8 @@ where
     })
 }
 
-/// `sqrt(integral of (e_h - e) : D (e_h - e) dV)`, J^(1/2), from displacements, m, `[3 n_nodes]`, and the exact strain with
-/// engineering shear.
+/// `sqrt(integral of (e_h - e) : D (e_h - e) dV)`, J^(1/2), from displacements, m, `[3 n_nodes]`, and the exact
+/// strain with engineering shear.
 ///
 /// The strain of hex8 includes its incompatible modes, as its stress does.
 pub fn energy_error<F>(mesh: &Mesh, material: &Material, u: &[f64], exact: F) -> Result<f64, FemError>

@@ -1,9 +1,9 @@
 //! The sparsity pattern shared by stiffness and mass: 3 x 3 blocks between nodes that share an element.
 //!
-//! Rows are compressed (CSR); row `3 a + i` has the columns `3 b + j` of the sorted neighbours b of node a, itself included.
-//! The pattern is symmetric, so the arrays are CSC as well. Stiffness and mass have the same values layout:
-//! `c K + d M` is a loop over two value arrays. Memory: one index per node pair and two bytes per node pair of
-//! every element.
+//! Rows are compressed (CSR); row `3 a + i` has the columns `3 b + j` of the sorted neighbours b of node a, itself
+//! included. The pattern is symmetric, so the arrays are CSC as well. Stiffness and mass have the same values layout:
+//! `c K + d M` is a loop over two value arrays. Memory: one index per node pair and two bytes per node pair of every
+//! element.
 
 use mesh::Mesh;
 use rayon::prelude::*;

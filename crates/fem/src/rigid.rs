@@ -1,6 +1,7 @@
 //! The body as a whole: volume, mass, centre, inertia, rigid motions.
 //!
-//! Integrated with [`crate::quadrature::mass_rule`]: exact for the meshed shape, so the only error is that of the shape.
+//! Integrated with [`crate::quadrature::mass_rule`]: exact for the meshed shape, so the only error is that of the
+//! shape.
 
 use mesh::Mesh;
 

@@ -2,8 +2,9 @@
 //!
 //! Every node has its own frame, radial, azimuthal and axial at its own azimuth: `u_cyl = Q u`,
 //! `Q = [c s 0; -s c 0; 0 0 1]`. In these components the couplings between nodes are the same in every sector, so the
-//! elements of one sector say all: an element between nodes (s_a, a) and (s_b, b), with s the sector and a, b the section
-//! nodes, adds `Q_a K_ab Q_b^T` to the coupling of a with b at the shift s_b - s_a. The mass `m_ab I` becomes `m_ab Q_a Q_b^T`.
+//! elements of one sector say all: an element between nodes (s_a, a) and (s_b, b), with s the sector and a, b the
+//! section nodes, adds `Q_a K_ab Q_b^T` to the coupling of a with b at the shift s_b - s_a. The mass `m_ab I` becomes
+//! `m_ab Q_a Q_b^T`.
 //!
 //! Cost: the elements of one sector; memory: two 3 x 3 blocks per coupling of one sector.
 

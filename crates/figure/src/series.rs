@@ -78,7 +78,8 @@ impl Series {
         self
     }
 
-    /// The colour of curve `i` of a family of `n`, from the first to the last shade, instead of the next of the palette.
+    /// The colour of curve `i` of a family of `n`, from the first to the last shade, instead of the next of the
+    /// palette.
     pub fn shade(mut self, i: usize, n: usize) -> Series {
         self.shade = Some(i as f64 / n.saturating_sub(1).max(1) as f64);
         self

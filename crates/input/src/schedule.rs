@@ -11,9 +11,10 @@
 //!
 //! A rate at a corner is that of the time after it. The jump of a step is in no rate.
 //!
-//! Loads of a time step are means over its length ([`Schedule::mean`]), in closed form, so a step of any size gives the whole impulse,
-//! also of a pulse that is shorter than the step. The interval has the length of the step and its middle at the weighted time of the
-//! integrator, so one that dissipates leaves out (1/2 - alpha_f) steps at the very start of a run.
+//! Loads of a time step are means over its length ([`Schedule::mean`]), in closed form, so a step of any size gives
+//! the whole impulse, also of a pulse that is shorter than the step. The interval has the length of the step and its
+//! middle at the weighted time of the integrator, so one that dissipates leaves out (1/2 - alpha_f) steps at the very
+//! start of a run.
 
 use std::f64::consts::PI;
 
@@ -316,8 +317,8 @@ mod tests {
         assert_eq!(step().peak(), 0.5);
     }
 
-    /// Wrong: a step of a motion would get another impulse than the load has, a short pulse none or twice its own. Sums of
-    /// 40 000 middle values: their error is below a jump over their number.
+    /// Wrong: a step of a motion would get another impulse than the load has, a short pulse none or twice its own.
+    /// Sums of 40 000 middle values: their error is below a jump over their number.
     #[test]
     fn means_are_those_of_the_values() {
         for schedule in [Schedule::default(), ramp(), step(), impact(), harmonic(), table()] {
@@ -344,7 +345,8 @@ mod tests {
         }
     }
 
-    /// Wrong: steps late in a long run would get loads with the round-off of the time. A ramp's middle, 10^4 s after zero.
+    /// Wrong: steps late in a long run would get loads with the round-off of the time. A ramp's middle, 10^4 s after
+    /// zero.
     #[test]
     fn means_late_in_a_run_keep_their_digits() {
         let late = Schedule::Impact {
@@ -361,8 +363,8 @@ mod tests {
         assert_eq!(ramp.mean(1e4, 1e-6), 1.5);
     }
 
-    /// Wrong: a driven shaft would have a velocity that is not that of its displacement. Central differences, whose error
-    /// is h^2/6 times the third derivative (below 4 here) plus round-off 1e-16/h.
+    /// Wrong: a driven shaft would have a velocity that is not that of its displacement. Central differences, whose
+    /// error is h^2/6 times the third derivative (below 4 here) plus round-off 1e-16/h.
     #[test]
     fn rates_are_derivatives() {
         let h = 1e-5;

@@ -2,8 +2,8 @@
 //!
 //! Two ways lead to a [`Mesh`]: [`read_msh`] takes any 3-D Gmsh mesh of a ring (physical volume `ring`, named
 //! physical surfaces); [`read_section`] and [`revolve`] take a 2-D mesh of its section and make a ring that is
-//! exactly rotationally periodic. [`ring_geo`] writes the section of a ring for Gmsh. [`find_periodicity`] finds the equal
-//! sectors of any mesh, or the reason why there are none.
+//! exactly rotationally periodic. [`ring_geo`] writes the section of a ring for Gmsh. [`find_periodicity`] finds the
+//! equal sectors of any mesh, or the reason why there are none.
 
 pub mod check;
 pub mod element;

@@ -72,8 +72,8 @@ impl Mesh {
         nodes
     }
 
-    /// The mesh with some of its elements only, ascending, numbered 0.. in this order: all nodes stay, groups lose the facets of other
-    /// elements.
+    /// The mesh with some of its elements only, ascending, numbered 0.. in this order: all nodes stay, groups lose
+    /// the facets of other elements.
     pub fn with_elements(mut self, elements: &[usize]) -> Mesh {
         let n = self.kind.n_nodes();
         for (place, &e) in elements.iter().enumerate() {
@@ -91,8 +91,9 @@ impl Mesh {
         self
     }
 
-    /// The mesh without the elements for which `is_lost`, such as those of a keyway; nodes that no other element has and facets of these
-    /// elements go with them. What stays keeps its order; faces that become free belong to no group. Also the old numbers of the nodes.
+    /// The mesh without the elements for which `is_lost`, such as those of a keyway; nodes that no other element has
+    /// and facets of these elements go with them. What stays keeps its order; faces that become free belong to no
+    /// group. Also the old numbers of the nodes.
     pub fn without_elements(self, is_lost: impl Fn(usize) -> bool) -> (Mesh, Vec<usize>) {
         let kept: Vec<usize> = (0..self.n_elements()).filter(|&e| !is_lost(e)).collect();
         let mut mesh = self.with_elements(&kept);
@@ -116,8 +117,8 @@ impl Mesh {
         [0, 1, 2].map(mean)
     }
 
-    /// The mesh of some elements alone, without groups. `nodes` are the nodes of these elements, ascending; the part numbers
-    /// them 0.. in this order.
+    /// The mesh of some elements alone, without groups. `nodes` are the nodes of these elements, ascending; the part
+    /// numbers them 0.. in this order.
     ///
     /// # Panics
     /// When `nodes` lacks a node of an element.

@@ -1,7 +1,7 @@
 //! Positions of the nodes of a ring: of all, or on a rank that shares the ring of those that it needs.
 //!
-//! Nodes keep their numbers in the ring. A list of the kept ones, 4 bytes each, leads to their positions; asking for another node, or for
-//! all of a ring of which some are not kept, panics. Copies share the positions.
+//! Nodes keep their numbers in the ring. A list of the kept ones, 4 bytes each, leads to their positions; asking for
+//! another node, or for all of a ring of which some are not kept, panics. Copies share the positions.
 
 use std::ops::{Deref, DerefMut, Index, IndexMut};
 use std::sync::Arc;

@@ -1,8 +1,8 @@
 //! `raceway plot`: figures of a finished run, from its tables and step files alone.
 //!
-//! Which figures there are follows from what the run computed: an equilibrium and a sweep are shown against the azimuth of
-//! the balls and against the swept value, a motion against time and against the azimuth of one ball. Fields of the raceways
-//! come from the step files.
+//! Which figures there are follows from what the run computed: an equilibrium and a sweep are shown against the
+//! azimuth of the balls and against the swept value, a motion against time and against the azimuth of one ball.
+//! Fields of the raceways come from the step files.
 
 mod balls;
 mod energy;

@@ -1,7 +1,7 @@
 //! The nodes of the raceways in the step files, in coordinates of their grooves.
 //!
-//! A node belongs to a raceway if it lies on its torus. Its azimuth is that in space: the inner ring of a motion is turned
-//! in the step files.
+//! A node belongs to a raceway if it lies on its torus. Its azimuth is that in space: the inner ring of a motion is
+//! turned in the step files.
 
 use std::collections::BTreeMap;
 use std::path::Path;

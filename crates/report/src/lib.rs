@@ -1,5 +1,5 @@
-//! `raceway report`: one HTML page of a finished run that needs no other file: what was run, what came out, what it cost and
-//! what a reader should know before believing it.
+//! `raceway report`: one HTML page of a finished run that needs no other file: what was run, what came out, what it
+//! cost and what a reader should know before believing it.
 
 mod numbers;
 mod page;

@@ -1,5 +1,5 @@
-//! Key numbers of a run from its tables: smallest, mean and largest over all rows of a table, and of a motion the root mean
-//! square of what oscillates.
+//! Key numbers of a run from its tables: smallest, mean and largest over all rows of a table, and of a motion the
+//! root mean square of what oscillates.
 
 use plot::{Results, Steps, Unit, quantity};
 use results::table::Table;

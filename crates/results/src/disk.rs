@@ -111,8 +111,8 @@ fn rows(bodies: &[Body], count: impl Fn(&Body) -> usize) -> u64 {
     bodies.iter().map(|body| count(body) as u64).sum()
 }
 
-/// Bytes of stress in a step file: a tensor and its von Mises stress per point, or the tensors of the integration points
-/// of a cell and the largest of their von Mises stresses.
+/// Bytes of stress in a step file: a tensor and its von Mises stress per point, or the tensors of the integration
+/// points of a cell and the largest of their von Mises stresses.
 fn stress_bytes(scene: &Scene, model: &Model) -> u64 {
     let bodies = fields::bodies(model);
     let kinds = Side::BOTH.into_iter().filter_map(|side| model.ring(side));

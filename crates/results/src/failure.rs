@@ -91,8 +91,8 @@ impl Failure {
     }
 }
 
-/// The result of all ranks: one that fails is a failure of all. To be called where a rank may fail alone, such as with its files,
-/// before ranks meet again.
+/// The result of all ranks: one that fails is a failure of all. To be called where a rank may fail alone, such as
+/// with its files, before ranks meet again.
 #[track_caller]
 pub fn agree<T>(result: Result<T, Failure>) -> Result<T, Failure> {
     let result = result.map_err(Coded);

@@ -39,7 +39,8 @@ pub fn bodies(model: &Model) -> Vec<Body> {
     bodies
 }
 
-/// The record of one equilibrium, with the stress that ranks have `gathered`; its step also stands for its time where there is none.
+/// The record of one equilibrium, with the stress that ranks have `gathered`; its step also stands for its time where
+/// there is none.
 pub fn record(
     shown: &Shown<'_>,
     solution: &StaticSolution,
@@ -70,7 +71,8 @@ pub struct Places {
 }
 
 impl Places {
-    /// Places of rings and balls, the inner ring as it stands in space or in its own frame, and the stress that ranks have `gathered`.
+    /// Places of rings and balls, the inner ring as it stands in space or in its own frame, and the stress that ranks
+    /// have `gathered`.
     pub fn new(shown: &Shown<'_>, mut gathered: Gathered, scene: &Scene) -> Result<Places, Failure> {
         let (mut displacement, mut rings) = (Vec::new(), [None, None]);
         for side in Side::BOTH {

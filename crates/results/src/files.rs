@@ -32,8 +32,8 @@ use crate::survey::Survey;
 /// Step files that may wait for the disk, besides the one being written.
 const QUEUE: usize = 2;
 
-/// The files of one run. Rank 0 writes for all; on the others there are none, and writing does nothing. The stress of rings in
-/// sectors is recovered by all ranks.
+/// The files of one run. Rank 0 writes for all; on the others there are none, and writing does nothing. The stress of
+/// rings in sectors is recovered by all ranks.
 pub struct Files {
     open: Option<Open>,
     /// Stress of the rings, shared with the thread that writes.
@@ -158,8 +158,8 @@ impl Files {
         self.open.is_some()
     }
 
-    /// Stress of an instant of the rings that several ranks share, for its fields. Collective, and never a failure of one rank: to be
-    /// called before anything of the instant is written.
+    /// Stress of an instant of the rings that several ranks share, for its fields. Collective, and never a failure of
+    /// one rank: to be called before anything of the instant is written.
     pub fn gather_stress(&mut self, shown: &Shown<'_>) -> Gathered {
         let (gathered, laps) = self.ring_stress.gather(shown);
         self.laps.merge(&laps);

@@ -1,7 +1,7 @@
 //! What a run leaves behind: `summary.json`, tables, VTKHDF files, a table on the screen, and how it ended.
 //!
-//! [`files::Files`] writes a run step by step from a [`snapshot::Snapshot`] of each. [`survey`] finds what only whole meshes
-//! tell, before ranks divide them. A command that does not end well is a [`failure::Failure`].
+//! [`files::Files`] writes a run step by step from a [`snapshot::Snapshot`] of each. [`survey`] finds what only whole
+//! meshes tell, before ranks divide them. A command that does not end well is a [`failure::Failure`].
 
 pub mod about;
 pub mod console;

@@ -1,8 +1,8 @@
 //! Results of a `[modes]` scene: `modes.csv`, a step file per mode, `summary.json`, and tables on the screen.
 //!
-//! A step file holds one shape as the field `displacement`, scaled so that the largest displacement is 1 mm, and the stress
-//! that goes with it. Steps count from 1 through all bodies; the time of a step is its number, because viewers need times
-//! that grow and double modes share a frequency: `modes.csv` and the group `/restart` of the file give it.
+//! A step file holds one shape as the field `displacement`, scaled so that the largest displacement is 1 mm, and the
+//! stress that goes with it. Steps count from 1 through all bodies; the time of a step is its number, because viewers
+//! need times that grow and double modes share a frequency: `modes.csv` and the group `/restart` of the file give it.
 
 use std::collections::BTreeMap;
 use std::path::Path;

@@ -31,7 +31,8 @@ pub fn turning_points(history: &[f64], least: f64) -> Vec<f64> {
     points
 }
 
-/// Cycles of a sequence of peaks and valleys, in the order in which they close; what is left at the end are half cycles.
+/// Cycles of a sequence of peaks and valleys, in the order in which they close; what is left at the end are half
+/// cycles.
 pub fn rainflow(points: &[f64]) -> Vec<Cycle> {
     let (mut stack, mut cycles): (Vec<f64>, Vec<Cycle>) = (Vec::new(), Vec::new());
     let cycle = |a: f64, b: f64, count: f64| Cycle {
@@ -64,8 +65,8 @@ pub fn rainflow(points: &[f64]) -> Vec<Cycle> {
 mod tests {
     use super::*;
 
-    /// Wrong: cycles would be counted in another way than the standard's. Its example, figure 6: ranges 3, 4, 6, 8, 9 with counts
-    /// 0.5, 1.5, 0.5, 1, 0.5.
+    /// Wrong: cycles would be counted in another way than the standard's. Its example, figure 6: ranges 3, 4, 6, 8, 9
+    /// with counts 0.5, 1.5, 0.5, 1, 0.5.
     #[test]
     fn the_example_of_the_standard_is_counted_as_printed() {
         let history = [-2.0, 1.0, -3.0, 5.0, -1.0, 3.0, -4.0, 4.0, -2.0];

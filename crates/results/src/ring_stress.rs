@@ -85,7 +85,8 @@ pub struct StressFields {
 }
 
 impl RingStress {
-    /// Prepares what the scene asks for: on rank 0 that of all rings, on others their part of rings that ranks share. Collective.
+    /// Prepares what the scene asks for: on rank 0 that of all rings, on others their part of rings that ranks share.
+    /// Collective.
     pub fn new(model: &Model, scene: &Scene) -> Result<RingStress, Failure> {
         let recovery = |side: Side| match model.ring(side) {
             Some(ring) if scene.output.stress != StressOutput::None => {

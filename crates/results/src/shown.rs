@@ -87,7 +87,8 @@ impl<'a> Shown<'a> {
         self.ring_moved(side, |motion, state| motion.ring_displacement(state, side))
     }
 
-    /// The same with a field of which only the chosen nodes may be asked for: all that is transformed of a ring in motion.
+    /// The same with a field of which only the chosen nodes may be asked for: all that is transformed of a ring in
+    /// motion.
     pub fn ring_at(&self, side: Side, nodes: &[usize]) -> Option<RingField<'a>> {
         self.ring_moved(side, |motion, state| {
             motion.ring_displacement_at(state, side, nodes)

@@ -23,8 +23,8 @@ pub struct Snapshot {
 }
 
 impl Snapshot {
-    /// An equilibrium, of a bearing that rolls or stands. `total` is the potential energy that it minimises; `defect` is what is missing in the virtual
-    /// work of all forces through the displacements, zero at equilibrium.
+    /// An equilibrium, of a bearing that rolls or stands. `total` is the potential energy that it minimises; `defect`
+    /// is what is missing in the virtual work of all forces through the displacements, zero at equilibrium.
     pub fn of_equilibrium(solution: &StaticSolution, rolling: Option<&Rolling>) -> Snapshot {
         let total = solution.strain_energy + solution.hertz_energy - solution.load_work;
         Snapshot {

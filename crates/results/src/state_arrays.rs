@@ -119,7 +119,8 @@ fn exchange_ring(
     Ok(())
 }
 
-/// Refuses the state of a ring that is stored in another form than the run computes with: it could go on, but not to the same bits.
+/// Refuses the state of a ring that is stored in another form than the run computes with: it could go on, but not to
+/// the same bits.
 fn require_kind(arrays: &Arrays, side: &str, ring: Option<RingShape>) -> anyhow::Result<()> {
     let Some(RingShape { kind, .. }) = ring else {
         return Ok(());

@@ -13,7 +13,8 @@ use super::shown::Shown;
 use super::timed_near_field::TimedNearField;
 use crate::failure::Failure;
 
-/// Names of the columns of one point: components in the directions g (along the groove), t (rolling direction) and d (depth).
+/// Names of the columns of one point: components in the directions g (along the groove), t (rolling direction) and d
+/// (depth).
 pub const COLUMNS: [&str; 12] = [
     "stress_gg_pa",
     "stress_tt_pa",

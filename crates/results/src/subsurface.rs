@@ -1,7 +1,8 @@
 //! Stress of balls and raceways below their contacts, by Hertz: what `summary.json` says of it.
 //!
-//! It is proportional to the peak pressure, and depths to the ellipse, whose shape does not depend on the load: so the ratios hold for all
-//! contacts of a side at every step, and the values are those of the most loaded contact of the last one.
+//! It is proportional to the peak pressure, and depths to the ellipse, whose shape does not depend on the load: so
+//! the ratios hold for all contacts of a side at every step, and the values are those of the most loaded contact of
+//! the last one.
 
 use contact::Side;
 use contact::halfspace::{Extreme, subsurface};

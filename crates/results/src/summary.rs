@@ -76,7 +76,8 @@ pub struct Summary {
     probes: Vec<NodePlace>,
     timing_s: BTreeMap<String, f64>,
     factor_bytes_forecast: BTreeMap<&'static str, usize>,
-    /// Absent in motions of rings that harmonics do not solve, and in searches for modes: their matrices are not forecast.
+    /// Absent in motions of rings that harmonics do not solve, and in searches for modes: their matrices are not
+    /// forecast.
     #[serde(skip_serializing_if = "Option::is_none")]
     peak_memory_forecast_bytes: Option<usize>,
     peak_memory_bytes: u64,

@@ -1,7 +1,8 @@
 //! What only whole meshes tell, found before ranks divide them, and the model that is left.
 //!
-//! Alone, this process reads both meshes and keeps them. Where ranks share rings in sectors, rank 0 alone reads and checks them, finds the
-//! probes, writes the content of `mesh.hdf` to the disk and sends each rank its part; then it lets go of the whole.
+//! Alone, this process reads both meshes and keeps them. Where ranks share rings in sectors, rank 0 alone reads and
+//! checks them, finds the probes, writes the content of `mesh.hdf` to the disk and sends each rank its part; then it
+//! lets go of the whole.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -29,8 +30,8 @@ pub struct Survey {
     pub mesh: Option<MeshFile>,
 }
 
-/// The model of a scene (a point of `scene` when that is a sweep) with results in `dir`, and its survey, if a last test of the whole passes.
-/// Collective.
+/// The model of a scene (a point of `scene` when that is a sweep) with results in `dir`, and its survey, if a last
+/// test of the whole passes. Collective.
 pub fn build_surveyed(
     point: &Scene,
     scene: &Scene,

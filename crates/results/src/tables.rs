@@ -1,4 +1,5 @@
-//! Long tables of a run: `balls.csv`, `shaft.csv`, `energy.csv`, `probes.csv`, `profiles.csv`. SI units in the column names.
+//! Long tables of a run: `balls.csv`, `shaft.csv`, `energy.csv`, `probes.csv`, `profiles.csv`. SI units in the column
+//! names.
 
 use std::path::{Path, PathBuf};
 
@@ -47,8 +48,8 @@ const CONTACT_COLUMNS: [&str; 6] = [
 ];
 
 impl Tables {
-    /// Creates the files with the header lines of a first snapshot; `swept` is the column of a swept value, `probes` are
-    /// the columns of probes. Balls have a spin if the first snapshot has one.
+    /// Creates the files with the header lines of a first snapshot; `swept` is the column of a swept value, `probes`
+    /// are the columns of probes. Balls have a spin if the first snapshot has one.
     pub fn create(
         dir: &Path,
         swept: Option<&str>,
@@ -98,8 +99,8 @@ impl Tables {
         Ok(cuts)
     }
 
-    /// Opens the files of an earlier run at [`Tables::cuts`]. Rows after the cuts are moved into the folder that `aside`
-    /// makes.
+    /// Opens the files of an earlier run at [`Tables::cuts`]. Rows after the cuts are moved into the folder that
+    /// `aside` makes.
     pub fn resume(
         cuts: &[Cut],
         first: &Snapshot,

@@ -1,4 +1,5 @@
-//! Watches a motion for contacts beyond their limits: a line in the log at the first step of every ball, a count in the summary.
+//! Watches a motion for contacts beyond their limits: a line in the log at the first step of every ball, a count in
+//! the summary.
 
 use contact::Side;
 use dynamics::motion::{ContactLimit, Exceeded};

@@ -227,7 +227,8 @@ pub fn ring_of(scene: &Scene, side: Side, material: Material, mesh: Mesh) -> Opt
     })
 }
 
-/// The ring of one side in the scene, the facet group that is held, and the diameter by which the unit of its mesh is checked, m.
+/// The ring of one side in the scene, the facet group that is held, and the diameter by which the unit of its mesh is
+/// checked, m.
 fn of_side(scene: &Scene, side: Side) -> (&tables::Ring, &'static str, f64) {
     match side {
         Side::Inner => (&scene.inner, "bore", scene.bearing.inner_raceway_diameter),

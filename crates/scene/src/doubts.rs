@@ -1,8 +1,9 @@
 //! What a run can do with but is most likely a slip: a material like no other, a mesh of other main dimensions than the
 //! scene's, a step that is too long for what happens.
 //!
-//! Results never depend on `bearing.bore_diameter`, `outside_diameter` and `width` where there is a mesh, so that a mesh of another size is
-//! no error: a groove that does not fit is one. But the scene then says something else than what is solved.
+//! Results never depend on `bearing.bore_diameter`, `outside_diameter` and `width` where there is a mesh, so that a
+//! mesh of another size is no error: a groove that does not fit is one. But the scene then says something else than
+//! what is solved.
 
 use std::ops::RangeInclusive;
 

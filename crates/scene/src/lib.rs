@@ -1,7 +1,7 @@
 //! Scenes: what a scene file says, checked, and the model and the meshes made from it.
 //!
-//! [`Scene`] reads and checks a file, whose format is on the page [`tables`]. [`build_model`] reads its meshes and constructs the
-//! model; [`build_meshes`] makes meshes that it describes. It is the only crate that names TOML.
+//! [`Scene`] reads and checks a file, whose format is on the page [`tables`]. [`build_model`] reads its meshes and
+//! constructs the model; [`build_meshes`] makes meshes that it describes. It is the only crate that names TOML.
 
 mod build;
 mod doubts;

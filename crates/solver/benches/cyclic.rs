@@ -1,11 +1,12 @@
-//! The cyclic solver beside the sparse one on rings of 65 k, 151 k, 410 k and 1 M dof: set-up, 1 and 36 right-hand sides,
-//! memory, and the time to read the factor once, which no solve can beat. Then products and stress of one sector's blocks.
+//! The cyclic solver beside the sparse one on rings of 65 k, 151 k, 410 k and 1 M dof: set-up, 1 and 36 right-hand
+//! sides, memory, and the time to read the factor once, which no solve can beat. Then products and stress of one
+//! sector's blocks.
 //!
 //!     cargo bench -p raceway-solver --bench cyclic -- [65k] [150k] [400k] [1M] [sparse] [hermitian]
 //!
-//! Without sizes all but 1M, the sparse solver at the smaller two. `hermitian` turns the planes of the ring against each
-//! other, so that no section is its own mirror image. The sparse factor of 1 M dof takes 7 GB. All on the threads of
-//! RAYON_NUM_THREADS; best of several runs.
+//! Without sizes all but 1M, the sparse solver at the smaller two. `hermitian` turns the planes of the ring against
+//! each other, so that no section is its own mirror image. The sparse factor of 1 M dof takes 7 GB. All on the
+//! threads of RAYON_NUM_THREADS; best of several runs.
 
 #[path = "support/clock.rs"]
 mod clock;

@@ -4,12 +4,12 @@
 //!     cargo bench -p raceway-solver --bench peers -- measure SIZE sparse|cyclic|sector
 //!     cargo bench -p raceway-solver --bench peers -- count SIZE
 //!
-//! The matrix is S = K + c M of a free ring, c that of a step of 1e-5 s. `export` writes its lower triangle by columns:
-//! `size.txt` (rows, entries), `starts.i64` `[n + 1]`, `rows.i32` and `values.f64` `[entries]`, little-endian, counted
-//! from 0. `measure` prints one line of `name value` pairs: seconds of processor time and on the wall of ordering and
-//! analysis, factorisation, one and 36 right-hand sides, reading an array as large as the factor once, bytes of the factor, peak memory of the process, and the error
-//! of the solution of S x = b with a known x. `count` prints the sizes of both factors and the operations of the sparse one,
-//! without factoring.
+//! The matrix is S = K + c M of a free ring, c that of a step of 1e-5 s. `export` writes its lower triangle by
+//! columns: `size.txt` (rows, entries), `starts.i64` `[n + 1]`, `rows.i32` and `values.f64` `[entries]`,
+//! little-endian, counted from 0. `measure` prints one line of `name value` pairs: seconds of processor time and on
+//! the wall of ordering and analysis, factorisation, one and 36 right-hand sides, reading an array as large as the
+//! factor once, bytes of the factor, peak memory of the process, and the error of the solution of S x = b with a
+//! known x. `count` prints the sizes of both factors and the operations of the sparse one, without factoring.
 
 #[path = "support/clock.rs"]
 mod clock;

@@ -1,10 +1,12 @@
-//! A ring in sectors on one and two threads, against the same ring as one sparse matrix and against the time to read the factor.
+//! A ring in sectors on one and two threads, against the same ring as one sparse matrix and against the time to read
+//! the factor.
 //!
 //!     cargo bench -p raceway-solver --bench sector -- 65k 150k 400k
 //!
-//! S = K + c M of a free ring of hex8, c that of a step of 1e-5 s. Every round measures all variants one after the other, and
-//! the least of all rounds counts, so that other programs disturb all alike; wall and processor time are given. The floor
-//! of a solve is the time to read the stored factor twice, in pieces of a sector's size, by as many threads.
+//! S = K + c M of a free ring of hex8, c that of a step of 1e-5 s. Every round measures all variants one after the
+//! other, and the least of all rounds counts, so that other programs disturb all alike; wall and processor time are
+//! given. The floor of a solve is the time to read the stored factor twice, in pieces of a sector's size, by as many
+//! threads.
 
 #[path = "support/clock.rs"]
 mod clock;

@@ -186,7 +186,8 @@ impl SolverError {
         }
     }
 
-    /// The error of a part as one of the whole matrix of `n` rows, in which row and column k of the part are number `of(k)`.
+    /// The error of a part as one of the whole matrix of `n` rows, in which row and column k of the part are number
+    /// `of(k)`.
     pub(crate) fn in_whole(mut self, n: usize, of: impl Fn(usize) -> usize) -> SolverError {
         match &mut self {
             SolverError::NotPositiveDefinite { row, n: rows }

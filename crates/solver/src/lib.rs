@@ -21,10 +21,11 @@
 //! A ring whose sectors are equal is solved harmonic by harmonic ([`cyclic`]), two orders of magnitude cheaper, through
 //! the same trait. A few dense rows more, such as those of a rigid partner, are a [`Bordered`] factor.
 //!
-//! Any other ring is cut by angle into sectors ([`sector`]), which are factored and solved in parallel and joined exactly.
+//! Any other ring is cut by angle into sectors ([`sector`]), which are factored and solved in parallel and joined
+//! exactly.
 //!
-//! All but the cyclic and the sector solver is sequential. Those run their harmonics and sectors in parallel, each in its
-//! own place, and sum in a fixed order. So the bits of a result cannot depend on the number of threads.
+//! All but the cyclic and the sector solver is sequential. Those run their harmonics and sectors in parallel, each in
+//! its own place, and sum in a fixed order. So the bits of a result cannot depend on the number of threads.
 
 pub mod cyclic;
 pub mod dissection;

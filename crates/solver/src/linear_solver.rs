@@ -20,7 +20,8 @@ pub trait LinearSolver: Send + Sync {
     /// When `rhs.len() != n * n_rhs`.
     fn solve(&self, rhs: &mut [f64], n_rhs: usize);
 
-    /// Values at a few `rows` of the solutions for right-hand sides with few entries, row-major `[rows.len()][loads.len()]`.
+    /// Values at a few `rows` of the solutions for right-hand sides with few entries, row-major
+    /// `[rows.len()][loads.len()]`.
     fn solve_at(&self, loads: &[SparseVector], rows: &[usize]) -> Vec<f64> {
         let n = self.n();
         let mut block = vec![0.0; n * loads.len()];

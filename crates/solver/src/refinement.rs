@@ -1,9 +1,9 @@
 //! One step of iterative refinement with the true matrix, and the backward error that says whether it was enough.
 //!
-//! The backward error of a column is the normwise one of Rigal and Gaches, `|b - A x| / (|A| |x| + |b|)` in the maximum norm
-//! (Higham, *Accuracy and Stability of Numerical Algorithms*, 2nd ed. 2002, theorem 7.1): the smallest relative
-//! change of A and b for which x is exact. The plain residual |r|/|b| is no measure where a rigid motion is almost
-//! free: |x| is then huge and |r|/|b| stays large however well the system is solved.
+//! The backward error of a column is the normwise one of Rigal and Gaches, `|b - A x| / (|A| |x| + |b|)` in the
+//! maximum norm (Higham, *Accuracy and Stability of Numerical Algorithms*, 2nd ed. 2002, theorem 7.1): the smallest
+//! relative change of A and b for which x is exact. The plain residual |r|/|b| is no measure where a rigid motion is
+//! almost free: |x| is then huge and |r|/|b| stays large however well the system is solved.
 
 use sprs::CsMat;
 

@@ -21,7 +21,8 @@ use crate::permutation::invert;
 
 /// Adjacent supernodes are merged when the first number bounds their columns and the second their fraction of zeros.
 /// Rings have three degrees of freedom per node, so narrow supernodes are merged more eagerly than faer does by
-/// default: 2-7 % more bytes, 4-18 % less time to factor (best of 5, loaded 2-core Xeon; hex8, tet10, hex20 of 34-90 k dof).
+/// default: 2-7 % more bytes, 4-18 % less time to factor (best of 5, loaded 2-core Xeon; hex8, tet10, hex20 of 34-90
+/// k dof).
 const RELAX: &[(usize, f64)] = &[(12, 1.0), (36, 0.5), (96, 0.2), (usize::MAX, 0.05)];
 
 /// Analysis of one sparsity pattern and one elimination order. Any number of matrices of that pattern, such as those

@@ -147,8 +147,8 @@ fn a_free_ring_has_one_rigid_motion_and_double_modes() {
     }
 }
 
-/// Wrong: eigenvalues of higher multiplicity than the block would be reported once or twice, and later ones taken in their
-/// place. Six equal rows, a block of two: only the search in the complement finds the others.
+/// Wrong: eigenvalues of higher multiplicity than the block would be reported once or twice, and later ones taken in
+/// their place. Six equal rows, a block of two: only the search in the complement finds the others.
 #[test]
 fn multiplicities_above_the_block_are_found() {
     let n = 120;
@@ -232,8 +232,8 @@ fn a_search_that_ends_early_says_so() {
     );
 }
 
-/// Wrong: a search that must restart would lose what it has found when lambda is large, as in metres and kilograms: 90 pairs
-/// of a row of springs with omega^2 up to 1e15.
+/// Wrong: a search that must restart would lose what it has found when lambda is large, as in metres and kilograms:
+/// 90 pairs of a row of springs with omega^2 up to 1e15.
 #[test]
 fn restarts_keep_what_was_found_in_any_unit() {
     let stiff = 4e14;

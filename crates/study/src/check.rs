@@ -73,8 +73,8 @@ fn checked(raw: RawStudy, path: &Path) -> anyhow::Result<Plan> {
     })
 }
 
-/// The path without steps into a folder and out again, for people: `scenes/a.toml` for `studies/../scenes/a.toml`. Left as it
-/// is where that would lead elsewhere, as through a link.
+/// The path without steps into a folder and out again, for people: `scenes/a.toml` for `studies/../scenes/a.toml`.
+/// Left as it is where that would lead elsewhere, as through a link.
 fn tidy(path: &Path) -> PathBuf {
     let mut tidy = PathBuf::new();
     for part in path.components() {

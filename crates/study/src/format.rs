@@ -136,8 +136,8 @@ pub enum Take {
     Range,
     /// Largest less smallest, over the mean.
     Ripple,
-    /// All rows against those of the reference at the same times: the error is the RMS of the difference over the RMS of
-    /// the reference, the number itself the RMS.
+    /// All rows against those of the reference at the same times: the error is the RMS of the difference over the RMS
+    /// of the reference, the number itself the RMS.
     History,
 }
 

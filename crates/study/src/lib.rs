@@ -1,4 +1,5 @@
-//! `raceway study`: what accuracy costs. A grid of runs of one scene, their errors against a reference, and their price.
+//! `raceway study`: what accuracy costs. A grid of runs of one scene, their errors against a reference, and their
+//! price.
 //!
 //! ```toml
 #![doc = include_str!("example.toml")]

@@ -1,9 +1,9 @@
 //! The machine that a study runs on: what it is, and how busy others keep it.
 //!
-//! The time of all processors comes from `/proc/stat`. What was busy during a run, less what the run used itself, is the
-//! load of others, this study's other jobs among them. Other loads share caches, memory and turbo clocks, so a timing is
-//! called disturbed from a small part of one processor on. Where the system does not tell, a run is disturbed when it
-//! waited for a processor.
+//! The time of all processors comes from `/proc/stat`. What was busy during a run, less what the run used itself, is
+//! the load of others, this study's other jobs among them. Other loads share caches, memory and turbo clocks, so a
+//! timing is called disturbed from a small part of one processor on. Where the system does not tell, a run is
+//! disturbed when it waited for a processor.
 
 use std::time::Duration;
 

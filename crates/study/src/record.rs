@@ -62,8 +62,8 @@ pub fn program() -> String {
     format!("{} {}", env!("CARGO_PKG_VERSION"), SOURCE_COMMIT)
 }
 
-/// The record of a point; `None` when it was not run, or not to an end. A record of another scene or of other settings is an
-/// error.
+/// The record of a point; `None` when it was not run, or not to an end. A record of another scene or of other
+/// settings is an error.
 pub fn find(plan: &Plan, point: &Point, out: &Path) -> anyhow::Result<Option<Record>> {
     let dir = folder(out, point.index);
     let path = dir.join(FILE);

@@ -7,10 +7,10 @@
 //! f0 = f1 + (f1 - f2) / ((h2 / h1)^p - 1)
 //! ```
 //!
-//! The uncertainty of f0 is, with three sizes, that of the grid convergence index, 1.25 |f0 - f1|; with four or more, the
-//! difference to f0 from the next three sizes, but no less than a tenth of the index. Values that do not approach
-//! a limit monotonically, or at an order outside 0.5 to 8, are not extrapolated: f0 is f1 then, and its uncertainty three
-//! times the largest difference of the three.
+//! The uncertainty of f0 is, with three sizes, that of the grid convergence index, 1.25 |f0 - f1|; with four or more,
+//! the difference to f0 from the next three sizes, but no less than a tenth of the index. Values that do not approach
+//! a limit monotonically, or at an order outside 0.5 to 8, are not extrapolated: f0 is f1 then, and its uncertainty
+//! three times the largest difference of the three.
 //!
 //! Reference: Celik et al. (2008), Procedure for estimation and reporting of uncertainty due to discretization in CFD
 //! applications, J. Fluids Eng. 130, 078001, eqs. 3 to 7, doi:10.1115/1.2960953.

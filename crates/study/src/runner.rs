@@ -1,9 +1,9 @@
-//! Runs the points of a study: each a child process of this program in a folder of its own, so that its time and memory are
-//! its own.
+//! Runs the points of a study: each a child process of this program in a folder of its own, so that its time and
+//! memory are its own.
 //!
-//! A folder `points/NNNN` holds `run` (the results), `log.txt` and, once the point came to an end, `point.json`. A point
-//! with a record is not run again; one without starts anew. A lock in the folder keeps two processes, such as the tasks of
-//! a Slurm array, from running the same point.
+//! A folder `points/NNNN` holds `run` (the results), `log.txt` and, once the point came to an end, `point.json`. A
+//! point with a record is not run again; one without starts anew. A lock in the folder keeps two processes, such as
+//! the tasks of a Slurm array, from running the same point.
 
 use std::fs::{File, TryLockError};
 use std::os::unix::process::ExitStatusExt;

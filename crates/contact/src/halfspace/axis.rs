@@ -1,10 +1,11 @@
 //! The largest shear and von Mises stress below a Hertz contact, and the range of orthogonal shear of rolling.
 //!
-//! All are proportional to the peak pressure, and their depths to the ellipse, so one set of numbers holds for a contact at every
-//! load. The largest maximum shear and von Mises stress of steel lie on the axis below the centre (Johnson 1985, 4.2, table 4.1). The
-//! orthogonal shear tau_yz of rolling, y the rolling direction, is largest in the plane x = 0 under the flanks of the contact and
-//! changes sign as the ball passes: its range is twice its amplitude (Lundberg and Palmgren 1947; Harris, Rolling Bearing Analysis,
-//! 4th ed., chapter 6). There, with l the confocal coordinate and zeta = z/sqrt(l),
+//! All are proportional to the peak pressure, and their depths to the ellipse, so one set of numbers holds for a
+//! contact at every load. The largest maximum shear and von Mises stress of steel lie on the axis below the centre
+//! (Johnson 1985, 4.2, table 4.1). The orthogonal shear tau_yz of rolling, y the rolling direction, is largest in the
+//! plane x = 0 under the flanks of the contact and changes sign as the ball passes: its range is twice its amplitude
+//! (Lundberg and Palmgren 1947; Harris, Rolling Bearing Analysis, 4th ed., chapter 6). There, with l the confocal
+//! coordinate and zeta = z/sqrt(l),
 //!
 //! ```text
 //! |tau_yz| = p0 a b zeta^2 sqrt(1 - zeta^2) sqrt(l) / ((l + b^2 zeta^2) sqrt(a^2 + l))
@@ -38,7 +39,8 @@ pub struct Subsurface {
     pub orthogonal_shear: Extreme,
 }
 
-/// Largest stresses below an ellipse with semi-axes [x, y], any unit, y the rolling direction, in a body of a Poisson's ratio.
+/// Largest stresses below an ellipse with semi-axes [x, y], any unit, y the rolling direction, in a body of a
+/// Poisson's ratio.
 pub fn subsurface(semi_axes: [f64; 2], poisson_ratio: f64) -> Subsurface {
     let minor = semi_axes[0].min(semi_axes[1]);
     let axes = semi_axes.map(|a| a / minor);

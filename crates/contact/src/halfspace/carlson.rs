@@ -1,8 +1,8 @@
 //! Carlson's elliptic integrals of the second kind, in the pair that an ellipse needs.
 //!
-//! R_D(x, y, z) = 3/2 integral over 0..inf of dt / ((t + z) sqrt((t+x)(t+y)(t+z))). Duplication changes all three arguments
-//! symmetrically, so R_D(x, y, z) and R_D(x, z, y) share it. Reference: Carlson (1995), Numerical Algorithms 10, 13-26,
-//! doi:10.1007/BF02198293; NIST DLMF 19.26.18, 19.36.2.
+//! R_D(x, y, z) = 3/2 integral over 0..inf of dt / ((t + z) sqrt((t+x)(t+y)(t+z))). Duplication changes all three
+//! arguments symmetrically, so R_D(x, y, z) and R_D(x, z, y) share it. Reference: Carlson (1995), Numerical
+//! Algorithms 10, 13-26, doi:10.1007/BF02198293; NIST DLMF 19.26.18, 19.36.2.
 
 use super::confocal::{LANES, Lanes};
 

@@ -1,7 +1,7 @@
 //! The confocal coordinate of a point about an ellipse, for a few points at once.
 //!
-//! lambda >= 0 is the largest root of `x^2/(a^2 + l) + y^2/(b^2 + l) + z^2/l = 1`: the ellipsoid with these semi-axes squared
-//! that is confocal with the ellipse goes through the point. It is 0 on the ellipse itself.
+//! lambda >= 0 is the largest root of `x^2/(a^2 + l) + y^2/(b^2 + l) + z^2/l = 1`: the ellipsoid with these semi-axes
+//! squared that is confocal with the ellipse goes through the point. It is 0 on the ellipse itself.
 
 /// Points that are worked on together, so that the compiler uses vector instructions.
 pub(super) const LANES: usize = 8;
@@ -15,10 +15,10 @@ const MAX_ROUNDS: usize = 60;
 
 /// lambda of points with squared coordinates, for squared semi-axes `a2 >= b2`, all in the same unit.
 ///
-/// Each round replaces k(l) = 1 - x^2/(a^2 + l) - y^2/(b^2 + l), which is concave, by its tangent and solves the quadratic
-/// l k(l) = z^2. The tangent lies above k, so the roots approach from below, also at the edge of the ellipse, where the root is
-/// double. The start takes the larger of two lower bounds: both terms with a^2, and the second term alone.
-/// A lane that has converged is frozen: its number does not depend on its neighbours.
+/// Each round replaces k(l) = 1 - x^2/(a^2 + l) - y^2/(b^2 + l), which is concave, by its tangent and solves the
+/// quadratic l k(l) = z^2. The tangent lies above k, so the roots approach from below, also at the edge of the
+/// ellipse, where the root is double. The start takes the larger of two lower bounds: both terms with a^2, and the
+/// second term alone. A lane that has converged is frozen: its number does not depend on its neighbours.
 #[inline(always)]
 pub(super) fn confocal([x2, y2, z2]: &[Lanes; 3], a2: f64, b2: f64) -> Lanes {
     let mut lambda = [0.0; LANES];

@@ -1,10 +1,12 @@
 //! What the curvature of a surface changes in the stress under a pressure, to first order.
 //!
-//! A half-space wrapped round a curved surface (arcs x and y on the surface, depth z, stress in the directions of these coordinates at the
-//! point itself) keeps the surface tractions, but is neither in equilibrium nor compatible: pushing the bottom of a groove outwards
-//! stretches it along the groove. Below semi-axes of 1.2 and 0.12 mm on a groove of 4.65 mm that is 0.1 of the peak pressure.
+//! A half-space wrapped round a curved surface (arcs x and y on the surface, depth z, stress in the directions of
+//! these coordinates at the point itself) keeps the surface tractions, but is neither in equilibrium nor compatible:
+//! pushing the bottom of a groove outwards stretches it along the groove. Below semi-axes of 1.2 and 0.12 mm on a
+//! groove of 4.65 mm that is 0.1 of the peak pressure.
 //!
-//! **Point load.** With curvature k along x, positive where the surface is concave, a point load P adds to Boussinesq's stress
+//! **Point load.** With curvature k along x, positive where the surface is concave, a point load P adds to
+//! Boussinesq's stress
 //!
 //! ```text
 //! k P / (2 pi rho) [ A(n) + (1 - 2 nu) B(n) ],    rho the distance from the load, n = (x, y, z)/rho
@@ -12,17 +14,18 @@
 //! A_xy = 3/2 x^3 y (1 + 5 z^2)  A_yz = 15/2 x^2 y z^3             A_xz = 15/2 x^3 z^3
 //! ```
 //!
-//! and B, polynomials of n over (1 + z)^2 to (1 + z)^4, as in the code. Derivation: the half-space tangent to the surface at the load is an exact field; taken to the wrapped coordinates,
-//! x -> x + k x z, z -> z - k x^2/2, its tensor turned by k x, it leaves shear tractions k x (sigma_xx, sigma_xy) on the surface, which a
-//! half-space with the opposite shear removes (three harmonic functions: ln(rho + z) and (x + i y)^2/(rho + z)^2 with their integrals over z).
-//! Curvature along y: x and y change places. The two add up.
+//! and B, polynomials of n over (1 + z)^2 to (1 + z)^4, as in the code. Derivation: the half-space tangent to the
+//! surface at the load is an exact field; taken to the wrapped coordinates, x -> x + k x z, z -> z - k x^2/2, its
+//! tensor turned by k x, it leaves shear tractions k x (sigma_xx, sigma_xy) on the surface, which a half-space with
+//! the opposite shear removes (three harmonic functions: ln(rho + z) and (x + i y)^2/(rho + z)^2 with their integrals
+//! over z). Curvature along y: x and y change places. The two add up.
 //!
-//! **Pressure.** Near the ellipse an integral along rays from the foot of the point, which nothing makes singular; away from it a few point
-//! loads (file `rays.rs`). Error: 3e-4 of the peak pressure for a semi-axis of a quarter of the radius, or of the given larger pressure;
-//! the second order in size over radius is left out.
+//! **Pressure.** Near the ellipse an integral along rays from the foot of the point, which nothing makes singular;
+//! away from it a few point loads (file `rays.rs`). Error: 3e-4 of the peak pressure for a semi-axis of a quarter of
+//! the radius, or of the given larger pressure; the second order in size over radius is left out.
 //!
-//! Points are worked on side by side in lanes, by the vectors of the processor; no product is fused with a sum, so the bits do not depend
-//! on it, nor those of a point on the other points.
+//! Points are worked on side by side in lanes, by the vectors of the processor; no product is fused with a sum, so
+//! the bits do not depend on it, nor those of a point on the other points.
 
 use std::f64::consts::PI;
 
@@ -36,12 +39,13 @@ use super::stress::EllipticPressure;
 struct Rule {
     /// Distances from the centre, in larger semi-axes, beyond which sixteen and four loads do.
     far: [f64; 2],
-    /// Rays over all angles for points above the ellipse, over the angles of the ellipse for points beside it, and points on a ray.
+    /// Rays over all angles for points above the ellipse, over the angles of the ellipse for points beside it, and
+    /// points on a ray.
     rays: [usize; 3],
 }
 
-/// For slender ellipses, errors up to 1e-4 of the peak pressure for a semi-axis of a quarter of the radius; for others; and for pressures that
-/// count little: errors up to 5e-3 of their own peak.
+/// For slender ellipses, errors up to 1e-4 of the peak pressure for a semi-axis of a quarter of the radius; for
+/// others; and for pressures that count little: errors up to 5e-3 of their own peak.
 const SLENDER: Rule = Rule {
     far: [1.5, 3.0],
     rays: [32, 28, 10],
@@ -138,8 +142,9 @@ impl<'a> CurvedSurface<'a> {
         CurvedSurface { curvatures, rules }
     }
 
-    /// Adds what the curvatures change in the stress xx yy zz xy yz xz, Pa, `[n][6]`, of a pressure at points [x, y, depth], m, `[n][3]`;
-    /// a negative depth counts as the surface. Errors count by the peak pressure `scale`, Pa: that of the pressure, or a larger one.
+    /// Adds what the curvatures change in the stress xx yy zz xy yz xz, Pa, `[n][6]`, of a pressure at points
+    /// [x, y, depth], m, `[n][3]`; a negative depth counts as the surface. Errors count by the peak pressure `scale`,
+    /// Pa: that of the pressure, or a larger one.
     ///
     /// # Panics
     /// If the lengths differ.
@@ -278,7 +283,8 @@ impl Target {
     }
 }
 
-/// Stress xx yy zz xy yz xz, 1/m^2, that curvatures [along x, along y], 1/m, add at a place [x, y, depth] from a unit load.
+/// Stress xx yy zz xy yz xz, 1/m^2, that curvatures [along x, along y], 1/m, add at a place [x, y, depth] from a unit
+/// load.
 #[inline(always)]
 pub fn point_load(curvatures: [f64; 2], poisson_ratio: f64, [x, y, z]: [f64; 3]) -> [f64; 6] {
     // A load at the point itself stands for no force: any finite number does.

@@ -1,11 +1,12 @@
 //! Quadratures of a semi-ellipsoidal pressure about points near and far: where its parts are taken as point loads.
 //!
-//! **Near.** A kernel that falls as 1/rho has no singularity in polar coordinates about the foot of the point. The ellipse is taken for the unit
-//! disc; then angles are stretched so that those across a slender ellipse get their share, and along each ray r = r0 + (r1 - r0) sin^2 phi takes
-//! out the root of the pressure.
+//! **Near.** A kernel that falls as 1/rho has no singularity in polar coordinates about the foot of the point. The
+//! ellipse is taken for the unit disc; then angles are stretched so that those across a slender ellipse get their
+//! share, and along each ray r = r0 + (r1 - r0) sin^2 phi takes out the root of the pressure.
 //!
-//! **Far.** Two circles of eight loads, exact for polynomials of seventh degree: with v = r^2 the pressure is sqrt(1 - v) dv, and
-//! v^2 - 8/9 v + 8/63 is orthogonal to what it must be. Further away four loads, exact for the third degree.
+//! **Far.** Two circles of eight loads, exact for polynomials of seventh degree: with v = r^2 the pressure is
+//! sqrt(1 - v) dv, and v^2 - 8/9 v + 8/63 is orthogonal to what it must be. Further away four loads, exact for the
+//! third degree.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -65,7 +66,8 @@ impl Rays {
         }
     }
 
-    /// Adds the loads for points whose feet are outside the disc, whose stretched axes are `axes`: along the rays that meet it.
+    /// Adds the loads for points whose feet are outside the disc, whose stretched axes are `axes`: along the rays
+    /// that meet it.
     #[inline(always)]
     pub fn beside(&self, axes: [f64; 2], target: &mut Target) {
         let (foot, stretch) = (target.foot(), (axes[0] / axes[1]).sqrt());

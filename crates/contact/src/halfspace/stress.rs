@@ -1,17 +1,19 @@
 //! Stress in an elastic half-space under a semi-ellipsoidal pressure, in closed form, anywhere.
 //!
-//! p = p0 sqrt(1 - x^2/a^2 - y^2/b^2) on z = 0; the body is z >= 0, the depth; x, y along the semi-axes a >= b (the code takes them in
-//! either order). With Boussinesq's potentials phi = integral of p/rho and psi, d psi/dz = phi (Love 1929; Johnson 1985, eq. 3.14 to 3.18),
+//! p = p0 sqrt(1 - x^2/a^2 - y^2/b^2) on z = 0; the body is z >= 0, the depth; x, y along the semi-axes a >= b (the
+//! code takes them in either order). With Boussinesq's potentials phi = integral of p/rho and psi, d psi/dz = phi
+//! (Love 1929; Johnson 1985, eq. 3.14 to 3.18),
 //!
 //! ```text
 //! 2 pi sigma_x = 2 nu phi_z - z phi_xx - (1 - 2 nu) psi_xx,    2 pi tau_xy = -z phi_xy - (1 - 2 nu) psi_xy
 //! 2 pi sigma_z = phi_z - z phi_zz,                             2 pi tau_xz = -z phi_xz
 //! ```
 //!
-//! phi is that of a flattened homogeneous ellipsoid (Johnson 1985, 3.5): with l the confocal coordinate and
-//! D(s) = sqrt((a^2 + s)(b^2 + s) s), phi = (pi a b p0/2) integral over l..inf of (1 - x^2/(a^2+s) - y^2/(b^2+s) - z^2/s)/D ds. Its
-//! derivatives need I_a = integral of ds/((a^2+s) D) = 2/3 R_D(l, b^2+l, a^2+l), I_b likewise, and I_z = 2/D(l) - I_a - I_b.
-//! psi_x = -integral of phi_x over z..inf becomes, by parts, pi a b p0 x (J_a - z I_a), where J_a is elementary because sqrt(s) cancels:
+//! phi is that of a flattened homogeneous ellipsoid (Johnson 1985, 3.5): with l the confocal coordinate and D(s) =
+//! sqrt((a^2 + s)(b^2 + s) s), phi = (pi a b p0/2) integral over l..inf of (1 - x^2/(a^2+s) - y^2/(b^2+s) - z^2/s)/D
+//! ds. Its derivatives need I_a = integral of ds/((a^2+s) D) = 2/3 R_D(l, b^2+l, a^2+l), I_b likewise, and I_z =
+//! 2/D(l) - I_a - I_b. psi_x = -integral of phi_x over z..inf becomes, by parts, pi a b p0 x (J_a - z I_a), where J_a
+//! is elementary because sqrt(s) cancels:
 //!
 //! ```text
 //! psi_xx / (pi a b p0) = -z I_a + E_a - 2 x^2 E_aa - y^2 E_ab,     psi_xy / (pi a b p0) = -x y E_ab
@@ -20,8 +22,9 @@
 //! ```
 //!
 //! With w = 1/(a^2+s), c = a^2 - b^2 and v = w/(1 + w sqrt(P)), ds/((a^2+s) sqrt(P)) = 2 dv/(1 - c x^2 v^2), hence
-//! E_a = 2 artanh(sqrt(c) |x| v)/(sqrt(c) |x|), and an arctan for E_b. The results are those of Sackfield and Hills (1983), Journal of
-//! Strain Analysis 18, 101-105, doi:10.1243/03093247V182101, in a form that stays exact on the axes, on the surface and for circles.
+//! E_a = 2 artanh(sqrt(c) |x| v)/(sqrt(c) |x|), and an arctan for E_b. The results are those of Sackfield and Hills
+//! (1983), Journal of Strain Analysis 18, 101-105, doi:10.1243/03093247V182101, in a form that stays exact on the
+//! axes, on the surface and for circles.
 //!
 //! Error: some units of 1e-14 of p0.
 
@@ -34,7 +37,8 @@ use super::confocal::{LANES, Lanes, confocal};
 
 /// c w below which E_aa and E_ab are integrated numerically: the closed forms divide by c.
 const NEARLY_CIRCULAR: f64 = 0.05;
-/// Gauss points and weights on 0..1 for rational integrands whose poles are at least four intervals away: error below 1e-16.
+/// Gauss points and weights on 0..1 for rational integrands whose poles are at least four intervals away: error below
+/// 1e-16.
 const GAUSS: [(f64, f64); 8] = [
     (0.019_855_071_751_231_884, 0.050_614_268_145_188_13),
     (0.101_666_761_293_186_64, 0.111_190_517_226_687_24),
@@ -92,8 +96,8 @@ impl EllipticPressure {
         stress[0]
     }
 
-    /// Stress xx yy zz xy yz xz, Pa, `[n][6]`, at points [x, y, depth], m, `[n][3]`; a negative depth counts as the surface. The stress of
-    /// a point does not depend on the other points.
+    /// Stress xx yy zz xy yz xz, Pa, `[n][6]`, at points [x, y, depth], m, `[n][3]`; a negative depth counts as the
+    /// surface. The stress of a point does not depend on the other points.
     ///
     /// # Panics
     /// If the lengths differ.

@@ -6,7 +6,8 @@ use crate::quadrature;
 
 const NU: f64 = 0.3;
 
-/// Stress in the fixed axes x y z, and a place in them, for a point load at the origin of a surface with a curvature along x.
+/// Stress in the fixed axes x y z, and a place in them, for a point load at the origin of a surface with a curvature
+/// along x.
 fn on_cylinder(curvature: f64, x: [f64; 3]) -> [f64; 6] {
     let radius = 1.0 / curvature;
     let (along, depth) = (
@@ -23,7 +24,8 @@ fn on_cylinder(curvature: f64, x: [f64; 3]) -> [f64; 6] {
     contact::near_field::from_axes(s, &[[cos, 0.0, -sin], [0.0, 1.0, 0.0], [sin, 0.0, cos]])
 }
 
-/// Largest residual of equilibrium and of the six equations of Beltrami and Michell at a place, by differences of fourth order.
+/// Largest residual of equilibrium and of the six equations of Beltrami and Michell at a place, by differences of
+/// fourth order.
 fn residual(stress: &dyn Fn([f64; 3]) -> [f64; 6], x: [f64; 3]) -> f64 {
     let (entries, h) = ([[0, 3, 5], [3, 1, 4], [5, 4, 2]], 4e-3);
     let moved = |shifts: &[(usize, f64)]| {
@@ -68,8 +70,8 @@ const PLACES: [[f64; 3]; 4] = [
     [0.02, 0.01, 0.7],
 ];
 
-/// Wrong: the point load on which the others rest. It is in equilibrium, its displacements fit together, its surface is free, and half a
-/// sphere about it carries a unit force: there is one such field, that of Boussinesq.
+/// Wrong: the point load on which the others rest. It is in equilibrium, its displacements fit together, its surface
+/// is free, and half a sphere about it carries a unit force: there is one such field, that of Boussinesq.
 #[test]
 fn the_point_load_is_that_of_boussinesq() {
     for x in PLACES {
@@ -91,8 +93,9 @@ fn the_point_load_is_that_of_boussinesq() {
     assert!((force + 1.0).abs() < 1e-12, "{force}");
 }
 
-/// Wrong: the stress of a wrapped half-space and what curvature adds would not be that of an elastic body. Its equilibrium and its
-/// compatibility in fixed axes fail by the second order of the curvature only, and it leaves the surface free.
+/// Wrong: the stress of a wrapped half-space and what curvature adds would not be that of an elastic body. Its
+/// equilibrium and its compatibility in fixed axes fail by the second order of the curvature only, and it leaves the
+/// surface free.
 #[test]
 fn a_point_load_on_a_curved_surface_is_elastic_to_first_order() {
     for x in PLACES {
@@ -108,8 +111,8 @@ fn a_point_load_on_a_curved_surface_is_elastic_to_first_order() {
     }
 }
 
-/// Wrong: the quadrature over the pressure, near and far, above and beside it, on the surface, or a jump between its rules. Half a million
-/// point loads have no rays.
+/// Wrong: the quadrature over the pressure, near and far, above and beside it, on the surface, or a jump between its
+/// rules. Half a million point loads have no rays.
 #[test]
 fn a_pressure_on_a_curved_surface_is_the_sum_of_its_point_loads() {
     for axes in [[1.0, 0.1], [1.0, 0.7], [0.3, 1.0]] {
@@ -146,9 +149,9 @@ fn a_pressure_on_a_curved_surface_is_the_sum_of_its_point_loads() {
     }
 }
 
-/// Wrong: histories would jump where one quadrature takes over from another. On rays from the centre, in steps of 1e-3 semi-axes, second
-/// differences are those of a smooth field but for 1e-4 of the peak pressure that errors are counted by, a hundredth of what the near field
-/// is good for.
+/// Wrong: histories would jump where one quadrature takes over from another. On rays from the centre, in steps of
+/// 1e-3 semi-axes, second differences are those of a smooth field but for 1e-4 of the peak pressure that errors are
+/// counted by, a hundredth of what the near field is good for.
 #[test]
 fn rules_of_the_quadrature_meet_without_a_jump() {
     let rules = CurvatureRules::new();
@@ -183,7 +186,8 @@ fn rules_of_the_quadrature_meet_without_a_jump() {
     }
 }
 
-/// Wrong: a point probe and a field would differ in some bits. Lanes do not see their neighbours, nor the order of the points.
+/// Wrong: a point probe and a field would differ in some bits. Lanes do not see their neighbours, nor the order of
+/// the points.
 #[test]
 fn a_point_does_not_depend_on_its_company() {
     let (rules, pressure) = (
@@ -213,8 +217,8 @@ fn a_point_does_not_depend_on_its_company() {
     }
 }
 
-/// Polar rings about the foot of the point would be what the code does; here equal cells of the disc, none nearer to the point than half of
-/// its own size.
+/// Polar rings about the foot of the point would be what the code does; here equal cells of the disc, none nearer to
+/// the point than half of its own size.
 fn sum_of_loads(axes: [f64; 2], x: [f64; 3]) -> [f64; 6] {
     let (n, mut sum) = (800, [0.0; 6]);
     for i in 0..n {

@@ -68,8 +68,8 @@ fn a_line_has_its_largest_shear_in_closed_form() {
     );
 }
 
-/// Wrong: the circle. On its axis sigma_r - sigma_z = 3/2/(1 + z^2) - (1 + nu)(1 - z arctan(1/z)) (Johnson 1985, eq. 3.45); both
-/// the shear, half of it, and von Mises stress are largest where it is.
+/// Wrong: the circle. On its axis sigma_r - sigma_z = 3/2/(1 + z^2) - (1 + nu)(1 - z arctan(1/z)) (Johnson 1985, eq.
+/// 3.45); both the shear, half of it, and von Mises stress are largest where it is.
 #[test]
 fn a_circle_has_its_largest_stresses_in_closed_form() {
     let difference = |z: f64| 1.5 / (1.0 + z * z) - (1.0 + NU) * (1.0 - z * (1.0 / z).atan());
@@ -85,8 +85,9 @@ fn a_circle_has_its_largest_stresses_in_closed_form() {
     assert_extreme("von Mises", found.von_mises, [difference(low), low], 1e-6);
 }
 
-/// Wrong: an ellipse between, those of the table above among them. The sum of point loads has the same values there, and its slope vanishes at the same depth: with a
-/// curvature of about 1 the depth is right to 1e-6 if the difference quotient is below.
+/// Wrong: an ellipse between, those of the table above among them. The sum of point loads has the same values there,
+/// and its slope vanishes at the same depth: with a curvature of about 1 the depth is right to 1e-6 if the difference
+/// quotient is below.
 #[test]
 fn an_ellipse_has_its_largest_stresses_where_the_sum_of_point_loads_has_them() {
     for axes in [

@@ -33,8 +33,8 @@ const ELLIPSES: [[f64; 2]; 8] = [
     [1.0, 0.05],
 ];
 
-/// Points below, in units of the semi-axes and the smaller one for the depth: under the centre, on both axes, off them, inside, under the
-/// edge, outside, far away.
+/// Points below, in units of the semi-axes and the smaller one for the depth: under the centre, on both axes, off
+/// them, inside, under the edge, outside, far away.
 const PLACES: [[f64; 3]; 10] = [
     [0.0, 0.0, 0.6],
     [0.0, 0.0, 2.0],
@@ -107,8 +107,8 @@ fn a_circle_has_the_stress_of_huber() {
     }
 }
 
-/// Wrong: the limit of a long ellipse, a roller's contact. McEwen (1949); Johnson (1985), eq. 4.49. At a/b = 1e7 the ends are felt
-/// by some b/a.
+/// Wrong: the limit of a long ellipse, a roller's contact. McEwen (1949); Johnson (1985), eq. 4.49. At a/b = 1e7 the
+/// ends are felt by some b/a.
 #[test]
 fn a_slender_ellipse_has_the_stress_of_a_line_contact() {
     let (b, slender) = (1.0f64, unit([1e7, 1.0]));
@@ -136,8 +136,8 @@ fn a_slender_ellipse_has_the_stress_of_a_line_contact() {
     }
 }
 
-/// Wrong: the limit itself. McEwen's formula against the sum of Flamant's line loads, sigma_r = -2/(pi r) cos(theta), which only balances a
-/// load on every half circle.
+/// Wrong: the limit itself. McEwen's formula against the sum of Flamant's line loads, sigma_r = -2/(pi r) cos(theta),
+/// which only balances a load on every half circle.
 #[test]
 fn the_line_contact_is_the_sum_of_line_loads() {
     let slender = unit([1e7, 1.0]);
@@ -163,7 +163,8 @@ fn the_line_contact_is_the_sum_of_line_loads() {
     }
 }
 
-/// Wrong: the surface, where cracks start: against the sum of point loads, at the centre, at the ends of both axes and between.
+/// Wrong: the surface, where cracks start: against the sum of point loads, at the centre, at the ends of both axes
+/// and between.
 #[test]
 fn the_surface_is_the_sum_of_point_loads() {
     for axes in [[1.0, 1.0], [1.0, 0.99], [1.0, 0.5], [1.0, 0.12], [0.3, 1.0]] {
@@ -220,7 +221,8 @@ fn the_surface_has_its_closed_forms_at_centre_and_ends() {
     }
 }
 
-/// Wrong: the added field would load the raceway where nothing touches it, or push with another pressure than the contact's.
+/// Wrong: the added field would load the raceway where nothing touches it, or push with another pressure than the
+/// contact's.
 #[test]
 fn the_surface_carries_the_pressure_and_nothing_else() {
     for axes in ELLIPSES {
@@ -245,7 +247,8 @@ fn the_surface_carries_the_pressure_and_nothing_else() {
     }
 }
 
-/// Wrong: the field would need body forces. Divergence by central differences of fourth order; exact fields leave only their error.
+/// Wrong: the field would need body forces. Divergence by central differences of fourth order; exact fields leave
+/// only their error.
 #[test]
 fn stress_is_in_equilibrium() {
     for axes in ELLIPSES {
@@ -273,7 +276,8 @@ fn stress_is_in_equilibrium() {
     }
 }
 
-/// Wrong: the displacements that belong to the stress would not fit together (Beltrami-Michell: the sum of normal stresses is harmonic).
+/// Wrong: the displacements that belong to the stress would not fit together (Beltrami-Michell: the sum of normal
+/// stresses is harmonic).
 #[test]
 fn the_sum_of_normal_stresses_is_harmonic() {
     for axes in ELLIPSES {
@@ -300,7 +304,8 @@ fn the_sum_of_normal_stresses_is_harmonic() {
     }
 }
 
-/// Wrong: far away an ellipse and a spread patch of the same force would differ by more than their second moments, (size/distance)^4.
+/// Wrong: far away an ellipse and a spread patch of the same force would differ by more than their second moments,
+/// (size/distance)^4.
 #[test]
 fn far_away_only_the_force_counts() {
     let force = 1.0;

@@ -1,4 +1,5 @@
-//! What the near field adds on a torus: how far from equilibrium it is, what its end at the reach leaves out, and how it moves.
+//! What the near field adds on a torus: how far from equilibrium it is, what its end at the reach leaves out, and how
+//! it moves.
 
 use contact::near_field::in_axes;
 use contact::{Groove, LoadedPatch, NearField, RingPoint, Side};
@@ -68,8 +69,9 @@ fn divergence(reach: f64, x: [f64; 3]) -> f64 {
     parts.iter().fold(0.0, |most, p| most.max(p.abs()))
 }
 
-/// Wrong: fading out at the reach would leave out stress that matters, or need body forces that do. Bounds chosen beforehand: 0.2 % of the peak
-/// pressure left out, and body forces that over the size of the patch add up to 0.5 % of it.
+/// Wrong: fading out at the reach would leave out stress that matters, or need body forces that do. Bounds chosen
+/// beforehand: 0.2 % of the peak pressure left out, and body forces that over the size of the patch add up to 0.5 %
+/// of it.
 #[test]
 fn the_end_at_the_reach_leaves_little_out() {
     let patch = CONTACT.patch_axes[1];
@@ -100,8 +102,9 @@ fn the_end_at_the_reach_leaves_little_out() {
     assert!(residual < 5e-3, "{residual:e}");
 }
 
-/// Wrong: histories would jump where a ball comes into reach, where the blend begins, where one quadrature takes over from another, or at the edge
-/// of the ellipse. With half the step the largest change of a step is half as large, everywhere on the way, but for 1e-6 of the peak pressure.
+/// Wrong: histories would jump where a ball comes into reach, where the blend begins, where one quadrature takes over
+/// from another, or at the edge of the ellipse. With half the step the largest change of a step is half as large,
+/// everywhere on the way, but for 1e-6 of the peak pressure.
 #[test]
 fn stress_is_smooth_as_a_ball_rolls_by() {
     let changes = |n: usize, from: f64, to: f64, depth: f64, angle: f64| {

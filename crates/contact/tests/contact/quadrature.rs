@@ -4,8 +4,9 @@ use std::f64::consts::PI;
 
 /// Stress xx yy zz xy yz xz over p0 under the pressure with semi-axes [a, b], at [x, y, depth] well below the surface.
 ///
-/// Point load: Johnson (1985), eq. 3.19, where tau_xy lacks a factor 2 on its first term (it would not turn as a tensor). With u = sqrt(1 - rho^2) over the unit disc the load is 3 u^2 du times a mean over
-/// the angle; Gauss-Legendre in u, equal angles: both converge exponentially below the surface.
+/// Point load: Johnson (1985), eq. 3.19, where tau_xy lacks a factor 2 on its first term (it would not turn as a
+/// tensor). With u = sqrt(1 - rho^2) over the unit disc the load is 3 u^2 du times a mean over the angle;
+/// Gauss-Legendre in u, equal angles: both converge exponentially below the surface.
 pub fn stress([a, b]: [f64; 2], nu: f64, x: [f64; 3], [n_radial, n_angular]: [usize; 2]) -> [f64; 6] {
     let mut sum = [0.0; 6];
     for (node, weight) in gauss_legendre(n_radial) {
@@ -25,10 +26,11 @@ pub fn stress([a, b]: [f64; 2], nu: f64, x: [f64; 3], [n_radial, n_angular]: [us
     sum.map(|s| 2.0 / 3.0 * PI * a * b * s)
 }
 
-/// Stress xx yy zz xy over p0 on the surface inside the ellipse or at an end of an axis, by the same sum. A load at the distance r pulls with
-/// (1 - 2 nu)/(2 pi r^2) along r and pushes as much across. What is left of the loads near the point itself, their pressure p there, is the
-/// mean of `point_load` over all distances, -(1 + 2 nu)/2 p in both directions. Polar coordinates about the point; r = R sin^2 phi takes the
-/// roots of the pressure out; Gauss-Legendre in both, quadrant by quadrant, because at an end of an axis only half of the angles count.
+/// Stress xx yy zz xy over p0 on the surface inside the ellipse or at an end of an axis, by the same sum. A load at
+/// the distance r pulls with (1 - 2 nu)/(2 pi r^2) along r and pushes as much across. What is left of the loads near
+/// the point itself, their pressure p there, is the mean of `point_load` over all distances, -(1 + 2 nu)/2 p in both
+/// directions. Polar coordinates about the point; r = R sin^2 phi takes the roots of the pressure out; Gauss-Legendre
+/// in both, quadrant by quadrant, because at an end of an axis only half of the angles count.
 pub fn surface_stress([a, b]: [f64; 2], nu: f64, [x, y]: [f64; 2]) -> [f64; 4] {
     let inside = (1.0 - x * x / (a * a) - y * y / (b * b)).max(0.0);
     let pressure = inside.sqrt();

@@ -15,11 +15,11 @@
 //! be 6 % larger.) With `speed.ball_speeds = "outer_control"` they are Harris's, of the contact angles of each ball
 //! (`BallSpeeds`).
 //!
-//! **Signs**, from first principles, at azimuth 0, with e_r = x, e_z = z, e_psi = y. The inner raceway (turning by + about
-//! z) drags the ball's inner side along +e_psi, so relative to the cage the ball turns with omega_b (sin beta e_r -
-//! cos beta e_z). The cage turns this vector: the angular momentum grows by
-//! omega_c e_z x J omega_b sin beta e_r = M_g e_psi per second. Friction must supply this moment: forces
-//! lambda M_g / D_w across the contact normals, on the ball
+//! **Signs**, from first principles, at azimuth 0, with e_r = x, e_z = z, e_psi = y. The inner raceway (turning by +
+//! about z) drags the ball's inner side along +e_psi, so relative to the cage the ball turns with omega_b (sin beta
+//! e_r - cos beta e_z). The cage turns this vector: the angular momentum grows by omega_c e_z x J omega_b sin beta
+//! e_r = M_g e_psi per second. Friction must supply this moment: forces lambda M_g / D_w across the contact normals,
+//! on the ball
 //!
 //! ```text
 //! outer: lambda_o M_g / D_w (  sin a_o, -cos a_o )   [radial, axial]

@@ -1,5 +1,5 @@
-//! Preload by a spring: the outer ring slides in its seat along the axis, and a spring between it and the housing presses
-//! it along -z against the balls.
+//! Preload by a spring: the outer ring slides in its seat along the axis, and a spring between it and the housing
+//! presses it along -z against the balls.
 //!
 //! ```text
 //! F = F0 + k u          u the displacement of the seat along +z, where the balls push it

@@ -6,16 +6,17 @@
 //! F = -m d2/dt2 [ e (cos psi, sin psi) ] = m e ( Omega^2 e_r - A e_psi )
 //! ```
 //!
-//! Omega the speed of the inner ring and A its acceleration. Off the plane of the inner groove centres it also tilts, by
-//! position e_z x F. The mass itself is part of `shaft.mass`; its motion with the shaft is the shaft's own inertia
+//! Omega the speed of the inner ring and A its acceleration. Off the plane of the inner groove centres it also tilts,
+//! by position e_z x F. The mass itself is part of `shaft.mass`; its motion with the shaft is the shaft's own inertia
 //! (e.g. Genta, Dynamics of Rotating Systems, 2005, ch. 2: the Jeffcott rotor).
 //!
-//! The mean over a step of a motion is exact for any course of the speed: it is the change of m e d/dt (cos psi, sin psi)
-//! over the step, so shaft and mass together keep their momentum to round-off. An equilibrium has the force of its
-//! instant. A drive holds the speed, so the work of the force is its own.
+//! The mean over a step of a motion is exact for any course of the speed: it is the change of m e d/dt (cos psi, sin
+//! psi) over the step, so shaft and mass together keep their momentum to round-off. An equilibrium has the force of
+//! its instant. A drive holds the speed, so the work of the force is its own.
 //!
-//! Rule of thumb: the force of a rotor of mass M balanced to G 2.5 (ISO 21940-11: e Omega = 2.5 mm/s, as for the spindles
-//! of machine tools), M (e Omega) Omega, over the load; of an unbalance that is given, its own force m e Omega^2.
+//! Rule of thumb: the force of a rotor of mass M balanced to G 2.5 (ISO 21940-11: e Omega = 2.5 mm/s, as for the
+//! spindles of machine tools), M (e Omega) Omega, over the load; of an unbalance that is given, its own force m e
+//! Omega^2.
 
 use input::{ANGLE, LENGTH, MASS, Problems, Quantity};
 use serde::Deserialize;
@@ -276,8 +277,8 @@ mod tests {
         );
     }
 
-    /// Wrong: a motion would gain or lose momentum. Means over steps that pass the corners of the speed add up to the change
-    /// of the mass's momentum, and short ones are the force of their instant.
+    /// Wrong: a motion would gain or lose momentum. Means over steps that pass the corners of the speed add up to the
+    /// change of the mass's momentum, and short ones are the force of their instant.
     #[test]
     fn means_over_steps_add_up_to_the_change_of_momentum() {
         let of = unbalance(Speed::table(vec![0.2, 0.55], vec![10.0, 90.0]));

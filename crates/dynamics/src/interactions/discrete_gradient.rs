@@ -1,10 +1,10 @@
 //! Contact forces that are means over a step.
 //!
-//! **Discrete gradient** (default): F = [V(d1) - V(d0)]/(d1 - d0) along (l1 + l0)/(|l1| + |l0|), l the vector from groove
-//! centre to ball centre. Then F . (l1 - l0) = V(d1) - V(d0) exactly: contact exchanges energy and makes none, at any
-//! step size (Gonzalez, J. Nonlinear Sci. 6 (1996) 449, doi:10.1007/BF02440162). **Pointwise** (for comparison only):
-//! the weighted mean of the force values at both ends along the same direction, as plain generalised-alpha takes it; it
-//! can gain energy without bound when balls unload.
+//! **Discrete gradient** (default): F = [V(d1) - V(d0)]/(d1 - d0) along (l1 + l0)/(|l1| + |l0|), l the vector from
+//! groove centre to ball centre. Then F . (l1 - l0) = V(d1) - V(d0) exactly: contact exchanges energy and makes none,
+//! at any step size (Gonzalez, J. Nonlinear Sci. 6 (1996) 449, doi:10.1007/BF02440162). **Pointwise** (for comparison
+//! only): the weighted mean of the force values at both ends along the same direction, as plain generalised-alpha
+//! takes it; it can gain energy without bound when balls unload.
 //!
 //! Damping (the paper's law): c(d) dd/dt with c rising from 0 at d = 0 to c0 at d = d0 by a cubic step; the sum is
 //! never tensile.
@@ -24,8 +24,8 @@ const GAUSS: [(f64, f64); 3] = [
 /// How forces are evaluated over a step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ContactScheme {
-    /// Energy-conserving mean force, plus (1/2 - weight) times its change over the step: the force at the weighted time of
-    /// an integrator that dissipates. V is convex, so this term only takes energy.
+    /// Energy-conserving mean force, plus (1/2 - weight) times its change over the step: the force at the weighted
+    /// time of an integrator that dissipates. V is convex, so this term only takes energy.
     DiscreteGradient,
     /// (1 - weight) times the force at the end plus `weight` times the force at the start.
     Pointwise,
@@ -67,8 +67,8 @@ fn mean_normal(law: &ContactLaw, d0: f64, d1: f64) -> [f64; 2] {
     [mean, (end.force - mean) / change]
 }
 
-/// Viscous force along the normal, N, and its derivative with respect to |l1|, N/m: c at the mean approach times the mean rate of
-/// a step of `dt` seconds.
+/// Viscous force along the normal, N, and its derivative with respect to |l1|, N/m: c at the mean approach times the
+/// mean rate of a step of `dt` seconds.
 pub fn viscous(damping: &ContactDamping, dt: f64, touching: f64, [l0, l1]: [[f64; 2]; 2]) -> [f64; 2] {
     let approach = |l: [f64; 2]| l[0].hypot(l[1]) - touching;
     let (d0, d1) = (approach(l0), approach(l1));
@@ -87,8 +87,8 @@ fn coefficient(damping: &ContactDamping, d: f64) -> [f64; 2] {
     ]
 }
 
-/// Mean force over a step between l0 and l1 (m); they touch at |l| = `touching`. `weight` is that of the start, the integrator's
-/// alpha_f; `viscous` what [`viscous`] gives, if there is damping.
+/// Mean force over a step between l0 and l1 (m); they touch at |l| = `touching`. `weight` is that of the start, the
+/// integrator's alpha_f; `viscous` what [`viscous`] gives, if there is damping.
 pub fn mean_force(
     law: &ContactLaw,
     touching: f64,
@@ -141,8 +141,8 @@ pub fn mean_force(
     result
 }
 
-/// Takes away the part of a force that pulls along the direction of `along`, which grows with l1, and keeps the part across it: so
-/// the force stays continuous.
+/// Takes away the part of a force that pulls along the direction of `along`, which grows with l1, and keeps the part
+/// across it: so the force stays continuous.
 fn drop_pull(along: [f64; 2], result: &mut MeanForce) {
     let length = along[0].hypot(along[1]);
     let e = along.map(|x| x / length);

@@ -12,8 +12,8 @@ use crate::error::DynamicsError;
 const RISE: f64 = 1.0 / 16.0;
 
 impl Motion<'_> {
-    /// One step of the full size, in parts where a part fails or is too inaccurate. `cache` has what the step before has found of it, and
-    /// then what this one finds of the next; no bit of the result depends on it.
+    /// One step of the full size, in parts where a part fails or is too inaccurate. `cache` has what the step before
+    /// has found of it, and then what this one finds of the next; no bit of the result depends on it.
     pub fn step(
         &self,
         state: &MotionState,

@@ -1,8 +1,8 @@
 //! What a step begins with that does not wait for its contacts, as the step before has found it.
 //!
-//! It is no part of the state. It is used only by the [`Motion`] that made it, if the step has the expected time and size, the contacts
-//! are expected where they were, and the rings are in the states from which it was found. Otherwise, and after the reading of a step
-//! file, it is found anew, to the same bits.
+//! It is no part of the state. It is used only by the [`Motion`] that made it, if the step has the expected time and
+//! size, the contacts are expected where they were, and the rings are in the states from which it was found.
+//! Otherwise, and after the reading of a step file, it is found anew, to the same bits.
 
 use std::sync::Arc;
 
@@ -83,8 +83,8 @@ impl Motion<'_> {
         }
     }
 
-    /// What acts on a ring in a part of a step and does not wait for its contacts. Loads are fixed in space: those of the inner ring are
-    /// turned into its frame.
+    /// What acts on a ring in a part of a step and does not wait for its contacts. Loads are fixed in space: those of
+    /// the inner ring are turned into its frame.
     pub(super) fn known_load(&self, side: Side, expected: &ExpectedLoads) -> KnownLoad {
         let loads = &expected.loads;
         let back = -self.frame_angle(side, self.weighted_time(expected.span));

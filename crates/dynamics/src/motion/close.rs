@@ -1,5 +1,5 @@
-//! The end of a part of a step for both rings, once their contacts are solved: inertia of the turning frame, new states, and what the
-//! part that follows begins with.
+//! The end of a part of a step for both rings, once their contacts are solved: inertia of the turning frame, new
+//! states, and what the part that follows begins with.
 
 use std::sync::Arc;
 
@@ -16,7 +16,8 @@ use super::substep::Part;
 use crate::costs::{FRAME, UPDATE};
 use crate::error::DynamicsError;
 
-/// Rounds for the inertia of the turning frame before a step counts as failed; each contracts by about speed times step size.
+/// Rounds for the inertia of the turning frame before a step counts as failed; each contracts by about speed times
+/// step size.
 const MAX_FRAME_ROUNDS: usize = 25;
 
 /// The ends of both rings.
@@ -27,8 +28,8 @@ pub(super) struct RingEnds {
 }
 
 impl Motion<'_> {
-    /// The ends of both rings under the forces of a solution, or None when the inertia of the turning frame has changed and the contacts
-    /// are to be solved again. Looks ahead to the part `upcoming`.
+    /// The ends of both rings under the forces of a solution, or None when the inertia of the turning frame has
+    /// changed and the contacts are to be solved again. Looks ahead to the part `upcoming`.
     pub(super) fn close(
         &self,
         state: &MotionState,

@@ -145,8 +145,8 @@ fn mean_acceleration(step: &dyn ElasticStep, [old, new]: [&RingState; 2], dt: f6
     step.at_contacts(&change)
 }
 
-/// Local error of the last part over the largest contact approach: dt^2/12 times the change of the mean accelerations, the
-/// leading term of average acceleration.
+/// Local error of the last part over the largest contact approach: dt^2/12 times the change of the mean
+/// accelerations, the leading term of average acceleration.
 fn local_error(new: &[[f64; 2]], old: &[[f64; 2]], dt: f64, approaches: &[f64]) -> f64 {
     let largest = |values: &mut dyn Iterator<Item = f64>| values.fold(0.0, |m: f64, x| m.max(x.abs()));
     // After a start from undeformed bodies there is no earlier acceleration: no estimate.

@@ -10,8 +10,9 @@
 //! dw = predictor + S^-1 W F; v, a; energies; ledger
 //! ```
 //!
-//! A periodic ring solves once in a step: one pass over its harmonics (in [`ring`]) ends the solve of a step with the contact forces and begins that
-//! of the known loads of the step that follows. Each round for the inertia of the turning frame is a pass as well.
+//! A periodic ring solves once in a step: one pass over its harmonics (in [`ring`]) ends the solve of a step with the
+//! contact forces and begins that of the known loads of the step that follows. Each round for the inertia of the
+//! turning frame is a pass as well.
 
 mod advance;
 mod cache;

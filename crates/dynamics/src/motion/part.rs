@@ -40,7 +40,8 @@ impl RingForces {
 }
 
 impl Motion<'_> {
-    /// Mean loads over an interval of `width` seconds about a time, those that follow the contact angles with the angles expected.
+    /// Mean loads over an interval of `width` seconds about a time, those that follow the contact angles with the
+    /// angles expected.
     pub(super) fn loads_at(
         &self,
         places: &[[f64; 2]],

@@ -1,13 +1,14 @@
 //! Contact sites and patches in the middle of a part of a step.
 //!
-//! A patch lies at the contact angle and has the size of the force *of its own part*, both at the weighted time: the middle, for
-//! schemes that conserve. They are found with the forces: a first guess goes on from the three parts before, and where forces
-//! show that a patch lay elsewhere, it is moved and the forces are found again; each round contracts by about 0.03.
+//! A patch lies at the contact angle and has the size of the force *of its own part*, both at the weighted time: the
+//! middle, for schemes that conserve. They are found with the forces: a first guess goes on from the three parts
+//! before, and where forces show that a patch lay elsewhere, it is moved and the forces are found again; each round
+//! contracts by about 0.03.
 //!
-//! A patch that lags behind its contact, by a part of a step or by some play, lies off the dent that it made before. The work of
-//! moving it then feeds the ball's transverse modes, which nothing damps (measured on the 7010C at steps of 20 us: a lag of
-//! half a step blows up within 40 ms; play of a tenth of a patch pumps 1.2 mJ into a revolution, 4 % of the energy). The
-//! middle of the part is the same seen forwards and backwards in time, so nothing is pumped.
+//! A patch that lags behind its contact, by a part of a step or by some play, lies off the dent that it made before.
+//! The work of moving it then feeds the ball's transverse modes, which nothing damps (measured on the 7010C at steps
+//! of 20 us: a lag of half a step blows up within 40 ms; play of a tenth of a patch pumps 1.2 mJ into a revolution, 4
+//! % of the energy). The middle of the part is the same seen forwards and backwards in time, so nothing is pumped.
 
 use contact::patch::PatchShape;
 use contact::{NodalWeights, Patch, Side};
@@ -23,7 +24,8 @@ use crate::interactions::discrete_gradient::MeanForce;
 use crate::interactions::raceway_contact::Site;
 use crate::model::elastic;
 
-/// Distance of a patch from its contact at which it counts as in place, semi-axes, times the share of its force in the largest.
+/// Distance of a patch from its contact at which it counts as in place, semi-axes, times the share of its force in
+/// the largest.
 const ANGLE_TOLERANCE: f64 = 1e-4;
 /// Difference of a patch's semi-axes from those of its force at which it counts as of that size, over the largest.
 const SIZE_TOLERANCE: f64 = 1e-3;
@@ -59,8 +61,8 @@ impl Placing {
 }
 
 /// Weights of the last three parts, the last first, in what is expected of the next: the mean of linear and quadratic
-/// extrapolation. Either is wrong by -i x^3 or +i x^3 in an oscillation that turns by x in a part, which feeds it or takes from
-/// it; their mean by -i x^5 / 2.
+/// extrapolation. Either is wrong by -i x^3 or +i x^3 in an oscillation that turns by x in a part, which feeds it or
+/// takes from it; their mean by -i x^5 / 2.
 const EXPECTED: [f64; 3] = [2.5, -2.0, 0.5];
 
 impl MotionState {

@@ -38,8 +38,8 @@ impl Motion<'_> {
         (0..self.model.geometry.n_balls).map(ball).collect()
     }
 
-    /// Contact forces on a flexible ring at the end of the last step, and the patches over which they are spread, by ball, with
-    /// azimuths in the ring's frame; empty for a rigid ring. Forces are means over the step.
+    /// Contact forces on a flexible ring at the end of the last step, and the patches over which they are spread, by
+    /// ball, with azimuths in the ring's frame; empty for a rigid ring. Forces are means over the step.
     pub fn patches(&self, state: &MotionState, side: Side) -> Result<Vec<LoadedPatch>, DynamicsError> {
         let Some(moving) = &self.rings[side.index()] else {
             return Ok(Vec::new());
@@ -101,15 +101,15 @@ impl Motion<'_> {
         Some(parts.map(|x| moving.body.coordinates(x)))
     }
 
-    /// Linear momentum, kg m/s, and moment of momentum about the groove's centre on the axis, kg m^2/s, of a flexible ring in
-    /// its own frame, with its nodes at their undeformed places.
+    /// Linear momentum, kg m/s, and moment of momentum about the groove's centre on the axis, kg m^2/s, of a flexible
+    /// ring in its own frame, with its nodes at their undeformed places.
     pub fn ring_momentum(&self, state: &MotionState, side: Side) -> Option<[[f64; 3]; 2]> {
         let moving = self.rings[side.index()].as_ref()?;
         Some(moving.body.momentum(state.rings[side.index()].as_ref()?))
     }
 
-    /// Mean motion [radial, axial] of the groove centre under a ball over a step of one part, m, measured by the patch of
-    /// that step; zero on a rigid ring.
+    /// Mean motion [radial, axial] of the groove centre under a ball over a step of one part, m, measured by the
+    /// patch of that step; zero on a rigid ring.
     pub fn groove_motion(
         &self,
         from: &MotionState,
@@ -129,7 +129,8 @@ impl Motion<'_> {
         Ok([0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1])])
     }
 
-    /// Speed of every ball's rotation about its own axis relative to the cage, rad/s; None when the bearing never turns.
+    /// Speed of every ball's rotation about its own axis relative to the cage, rad/s; None when the bearing never
+    /// turns.
     pub fn spin(&self, state: &MotionState) -> Option<f64> {
         let speed = &self.settings.speed;
         (!speed.is_zero()).then(|| self.kinematics.ball * speed.at(self.time(state.step)))

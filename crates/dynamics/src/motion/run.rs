@@ -1,8 +1,8 @@
 //! The time loop's step: from one State to the next, in parts on the ladder dt 2^-k if need be.
 //!
-//! The outer ring lives in space, the inner in a frame turned by theta_i(t): its contacts stand at azimuth minus theta_i,
-//! loads that are fixed in space are turned into it. Contacts of a step are placed at the azimuths of its weighted time. Factors of
-//! a rung are made when it is first used, and kept.
+//! The outer ring lives in space, the inner in a frame turned by theta_i(t): its contacts stand at azimuth minus
+//! theta_i, loads that are fixed in space are turned into it. Contacts of a step are placed at the azimuths of its
+//! weighted time. Factors of a rung are made when it is first used, and kept.
 
 use std::sync::{Arc, OnceLock};
 
@@ -127,8 +127,8 @@ impl<'a> Motion<'a> {
         }
     }
 
-    /// Forecast of the largest resident memory of the steps, bytes, while `queued` of them wait to be written; None when harmonics
-    /// do not solve all flexible rings.
+    /// Forecast of the largest resident memory of the steps, bytes, while `queued` of them wait to be written; None
+    /// when harmonics do not solve all flexible rings.
     pub fn memory_forecast(&self, queued: usize) -> Option<usize> {
         let sizes = |ring: &Option<MovingRing>| ring.as_ref().map(|ring| ring.body.sizes());
         match self.rings.each_ref().map(sizes) {

@@ -76,9 +76,9 @@ impl Motion<'_> {
 }
 
 impl Motion<'_> {
-    /// A bearing without elastic deformation: shaft and inner ring at displacement `q` (m, rad) with velocity `velocity`
-    /// (m/s, rad/s) in space, balls at their just-touching position, at rest.
-    /// Imposed dofs are where they are imposed.
+    /// A bearing without elastic deformation: shaft and inner ring at displacement `q` (m, rad) with velocity
+    /// `velocity` (m/s, rad/s) in space, balls at their just-touching position, at rest. Imposed dofs are where they
+    /// are imposed.
     pub fn rest(&self, mut q: [f64; 5], mut velocity: [f64; 5]) -> MotionState {
         let n = self.model.geometry.n_balls;
         for dof in 0..5 {
@@ -118,8 +118,9 @@ impl Motion<'_> {
         self.with_energies(state)
     }
 
-    /// The state with accelerations that fit its displacements and velocities: schemes that dissipate remember them, and
-    /// would be of first order without. They are means over a trial step of the conserving scheme, which needs none.
+    /// The state with accelerations that fit its displacements and velocities: schemes that dissipate remember them,
+    /// and would be of first order without. They are means over a trial step of the conserving scheme, which needs
+    /// none.
     pub fn with_accelerations(&self, mut state: MotionState) -> Result<MotionState, DynamicsError> {
         if self.settings.integrator.is_conserving() {
             return Ok(state);

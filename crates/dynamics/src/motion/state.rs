@@ -76,8 +76,9 @@ pub struct MotionState {
     pub shaft_acceleration: [f64; 5],
     /// The seat of the outer ring along z, if it slides: displacement, velocity, acceleration, m, m/s, m/s^2.
     pub seat: Option<[f64; 3]>,
-    /// Mean accelerations [radial, axial] over the last part of a step, of the balls, then of the groove centres by site,
-    /// m/s^2: what the local error is estimated from. Zero when steps do not adapt, NaN where nothing is known yet.
+    /// Mean accelerations [radial, axial] over the last part of a step, of the balls, then of the groove centres by
+    /// site, m/s^2: what the local error is estimated from. Zero when steps do not adapt, NaN where nothing is known
+    /// yet.
     pub trend: Vec<[f64; 2]>,
     /// Mean contact forces of the last step [radial, axial] on the rings, by site, N.
     pub forces: Vec<[f64; 2]>,
@@ -85,8 +86,8 @@ pub struct MotionState {
     pub angles: Vec<f64>,
     /// Hertz approaches at the end of the last step, by site, m; negative is a gap.
     pub approaches: Vec<f64>,
-    /// Contact angle, rad, and force, N, in the middle of the last three parts of a step, the last first, by site: where their
-    /// patches lay.
+    /// Contact angle, rad, and force, N, in the middle of the last three parts of a step, the last first, by site:
+    /// where their patches lay.
     pub places: [Vec<[f64; 2]>; 3],
     /// Energy ledger.
     pub ledger: Ledger,

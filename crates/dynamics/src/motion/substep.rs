@@ -1,5 +1,5 @@
-//! One part of a step, of one size: loads, patches and both rings, then Newton until patches and inertia of the turning frame
-//! are those of the motion found, then the new state.
+//! One part of a step, of one size: loads, patches and both rings, then Newton until patches and inertia of the
+//! turning frame are those of the motion found, then the new state.
 
 use std::sync::Arc;
 

@@ -188,8 +188,8 @@ fn three(body: Body, first: usize, sign: f64) -> [LinkTerm; 3] {
 
 const SKEW: [[f64; 3]; 3] = [[4.0, 1.0, 0.0], [-2.0, 5.0, 0.5], [0.0, -0.5, 3.0]];
 
-/// Wrong: friction, whose tangent is not symmetric and which remembers slip, could not enter; a port of three directions
-/// could not either. The solution is that of the linear system written by hand.
+/// Wrong: friction, whose tangent is not symmetric and which remembers slip, could not enter; a port of three
+/// directions could not either. The solution is that of the linear system written by hand.
 #[test]
 fn a_family_with_memory_and_without_symmetry_meets_a_port_of_three_directions() {
     let ball = Sprung::new(2.0, &[1.0, -2.0, 0.5]);
@@ -229,8 +229,8 @@ fn a_family_with_memory_and_without_symmetry_meets_a_port_of_three_directions() 
     }
 }
 
-/// Wrong: a body with finite rotations could not enter without touching Newton. A point on a circle of radius r, pulled to
-/// (0, -s) by a spring of stiffness k: the moment k r s cos(angle) balances the one applied.
+/// Wrong: a body with finite rotations could not enter without touching Newton. A point on a circle of radius r,
+/// pulled to (0, -s) by a spring of stiffness k: the moment k r s cos(angle) balances the one applied.
 #[test]
 fn a_body_may_place_itself_by_an_angle() {
     let (radius, s) = (2.0, 3.0);

@@ -31,8 +31,8 @@ fn fixed_patch() -> PatchShape {
     }
 }
 
-/// Von Mises stress, Pa, under one patch of fixed size at azimuth 0, from 7 to 13 degrees beside it, 10 degrees being half-way to the
-/// next ball: on the raceway, and 1.5 mm below it.
+/// Von Mises stress, Pa, under one patch of fixed size at azimuth 0, from 7 to 13 degrees beside it, 10 degrees being
+/// half-way to the next ball: on the raceway, and 1.5 mm below it.
 fn lines(level: Level) -> Vec<f64> {
     let ring = Ring::new(Side::Outer, level);
     let point = |i: usize| RingPoint {
@@ -50,8 +50,9 @@ fn gap(a: &[f64], b: &[f64]) -> f64 {
     (squares.sum::<f64>() / a.len() as f64).sqrt()
 }
 
-/// Wrong: far from contacts, where the finite elements are alone, stress would not converge as that of its elements does. Bounds chosen
-/// beforehand: nodal stress of hex8, a derivative of linear functions, of first order at least, that of hex20 of second.
+/// Wrong: far from contacts, where the finite elements are alone, stress would not converge as that of its elements
+/// does. Bounds chosen beforehand: nodal stress of hex8, a derivative of linear functions, of first order at least,
+/// that of hex20 of second.
 #[test]
 #[ignore = "rings of 400 000 dofs: half a minute; scripts/test-slow runs it"]
 fn stress_between_balls_converges_by_its_order() {
@@ -85,7 +86,8 @@ fn stress_between_balls_converges_by_its_order() {
     assert!(order > 2.0, "hex20: {order}");
 }
 
-/// Points of the third of the pitch between two balls, in planes of nodes and one plane beyond on both sides, plane by plane.
+/// Points of the third of the pitch between two balls, in planes of nodes and one plane beyond on both sides, plane
+/// by plane.
 fn between(level: Level) -> (usize, Vec<RingPoint>) {
     let element = 2.0 * PI / level.sectors as f64;
     let [first, last] = [PITCH / 3.0, PITCH * 2.0 / 3.0].map(|a| (a / element).round() as usize);
@@ -103,9 +105,10 @@ fn between(level: Level) -> (usize, Vec<RingPoint>) {
     (GROOVE_ANGLES.len() * DEPTHS.len(), points)
 }
 
-/// The largest part of any component, and of von Mises stress, that changes its sign from one plane of nodes to the next, over the
-/// largest von Mises stress, in the third between two balls. All balls are loaded, through patches as a run has them on the mesh. What the
-/// true field has in waves that short is taken off by a fine mesh, under the same patches.
+/// The largest part of any component, and of von Mises stress, that changes its sign from one plane of nodes to the
+/// next, over the largest von Mises stress, in the third between two balls. All balls are loaded, through patches as
+/// a run has them on the mesh. What the true field has in waves that short is taken off by a fine mesh, under the
+/// same patches.
 fn pattern(level: Level) -> f64 {
     let (own, fine) = (Ring::new(Side::Outer, level), Ring::new(Side::Outer, REFERENCE));
     let patch = own.patch(0.0);
@@ -144,9 +147,10 @@ fn pattern(level: Level) -> f64 {
     planes.into_iter().fold(0.0, f64::max)
 }
 
-/// Wrong: stress would have waves of two elements between the balls. Bound chosen beforehand: 1 % of the stress there, of every component, on a
-/// mesh of elements 1.5 times as long in the rolling direction as deep. That the measure sees a pattern is shown by elements seven times as
-/// long, on which a wave falls by a quarter per element only (`raceway-fem`, waves.rs).
+/// Wrong: stress would have waves of two elements between the balls. Bound chosen beforehand: 1 % of the stress
+/// there, of every component, on a mesh of elements 1.5 times as long in the rolling direction as deep. That the
+/// measure sees a pattern is shown by elements seven times as long, on which a wave falls by a quarter per element
+/// only (`raceway-fem`, waves.rs).
 #[test]
 #[ignore = "rings of a million dofs by sectors: a minute; scripts/test-slow runs it"]
 fn no_pattern_of_elements_is_between_balls() {

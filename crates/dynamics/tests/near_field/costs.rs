@@ -11,7 +11,8 @@ use fem::stress::StressRecovery;
 use crate::support::rings::{Level, ring};
 use crate::{ANGLE, FORCE, NU, model};
 
-/// Wrong: the price list of docs/stress.md. Shortest of some runs of both, in turn, on one thread, of 18 contacts on both rings.
+/// Wrong: the price list of docs/stress.md. Shortest of some runs of both, in turn, on one thread, of 18 contacts on
+/// both rings.
 #[test]
 #[ignore = "a measurement, which a busy machine spoils; scripts/test-slow runs it"]
 fn the_near_field_costs_what_the_documents_say() {

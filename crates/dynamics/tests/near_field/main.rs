@@ -24,8 +24,8 @@ const NU: f64 = 0.3;
 /// Of the peak pressure times 0.6, the largest von Mises stress: two per cent of the peak.
 const TWO_PER_CENT: f64 = 0.02 * 0.58;
 
-/// Places [along the groove, rolling direction] in semi-axes of the Hertz ellipse, and depths in its smaller one: below the centre, on the
-/// surface and its edges, off both axes, outside.
+/// Places [along the groove, rolling direction] in semi-axes of the Hertz ellipse, and depths in its smaller one:
+/// below the centre, on the surface and its edges, off both axes, outside.
 const PLACES: [[f64; 3]; 18] = [
     [0.0, 0.0, 0.0],
     [0.0, 0.0, 0.3],
@@ -105,8 +105,8 @@ fn on_mesh(side: Side, level: Level, share: f64, places: &[[f64; 3]]) -> Found {
     }
 }
 
-/// Prints raw and corrected von Mises stress over peak pressure beside a reference, and returns the largest differences from it, of von
-/// Mises stress and of any component.
+/// Prints raw and corrected von Mises stress over peak pressure beside a reference, and returns the largest
+/// differences from it, of von Mises stress and of any component.
 fn compare(title: &str, found: &Found, reference: &[[f64; 6]]) -> [f64; 2] {
     println!(
         "{title}: [groove, rolling, depth], von Mises over p0: finite elements alone, with near field, reference"
@@ -127,8 +127,9 @@ fn compare(title: &str, found: &Found, reference: &[[f64; 6]]) -> [f64; 2] {
     largest
 }
 
-/// Wrong: the stress under a ball would be that of the mesh. Three meshes, the ball on a node and in mid element, both rings:
-/// everywhere within 2 % of the peak of each other, where the finite elements alone miss up to 99 % of it.
+/// Wrong: the stress under a ball would be that of the mesh. Three meshes, the ball on a node and in mid element,
+/// both rings: everywhere within 2 % of the peak of each other, where the finite elements alone miss up to 99 % of
+/// it.
 #[test]
 fn stress_near_a_contact_does_not_depend_on_the_mesh() {
     for side in Side::BOTH {

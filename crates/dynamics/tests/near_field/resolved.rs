@@ -13,7 +13,8 @@ use crate::support::graded::{Grading, graded_ring};
 use crate::support::rings::{Level, ring};
 use crate::{ANGLE, FORCE, PLACES, TWO_PER_CENT, model, on_mesh};
 
-/// Elements along a semi-axis of the ellipse, and along its smaller one in depth: with their middle nodes, nodes are an eighth apart.
+/// Elements along a semi-axis of the ellipse, and along its smaller one in depth: with their middle nodes, nodes are
+/// an eighth apart.
 const ELEMENTS: f64 = 4.0;
 /// Parts of a facet along each of its axes, for its share of the pressure.
 const PARTS: usize = 12;
@@ -44,7 +45,8 @@ fn means(values: &[[f64; 6]]) -> Vec<[f64; 6]> {
     values.chunks(POINTS).map(mean).collect()
 }
 
-/// The contact on a ring whose mesh resolves the Hertz ellipse, which carries Hertz's pressure along the normals of the raceway.
+/// The contact on a ring whose mesh resolves the Hertz ellipse, which carries Hertz's pressure along the normals of
+/// the raceway.
 fn resolved(side: Side) -> Resolved {
     let rough = model(side, ring(side, Level::hex8(18, 4, 1, 1), Hold::Clamped));
     let hertz = rough.hertz[side.index()];
@@ -100,8 +102,8 @@ fn place(groove: &Groove, [a, b]: [f64; 2], x: [f64; 3]) -> [f64; 3] {
     ]
 }
 
-/// Adds the nodal forces of a semi-ellipsoidal pressure along the normals of the raceway: parts of facets, so that the edge of the ellipse
-/// cuts small ones only.
+/// Adds the nodal forces of a semi-ellipsoidal pressure along the normals of the raceway: parts of facets, so that
+/// the edge of the ellipse cuts small ones only.
 fn add_pressure(mesh: &Mesh, groove: &Groove, [a, b]: [f64; 2], peak: f64, load: &mut [f64]) {
     let rule = quadrilateral(3);
     let kind = mesh.kind.facet_kind();
@@ -138,10 +140,11 @@ fn add_pressure(mesh: &Mesh, groove: &Groove, [a, b]: [f64; 2], peak: f64, load:
     assert!((total / FORCE - 1.0).abs() < 1e-3, "{total} N of pressure");
 }
 
-/// Wrong: all meshes would agree on a wrong stress. A mesh graded to an eighth of the Hertz ellipse, loaded with its pressure, knows nothing of
-/// half-spaces. Compared are means over its elements, which need no extrapolation to the surface and no average over the kink of the pressure
-/// at the edge: at all places, of three meshes with the ball on a node and in mid element, von Mises stress within 2 % of its largest value,
-/// every component within 2 % of the peak pressure.
+/// Wrong: all meshes would agree on a wrong stress. A mesh graded to an eighth of the Hertz ellipse, loaded with its
+/// pressure, knows nothing of half-spaces. Compared are means over its elements, which need no extrapolation to the
+/// surface and no average over the kink of the pressure at the edge: at all places, of three meshes with the ball on
+/// a node and in mid element, von Mises stress within 2 % of its largest value, every component within 2 % of the
+/// peak pressure.
 #[test]
 #[ignore = "two rings of 230 000 dofs: minutes, 3 GB; scripts/test-slow runs it"]
 fn stress_near_a_contact_is_that_of_a_mesh_that_resolves_it() {

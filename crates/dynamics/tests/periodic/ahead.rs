@@ -20,8 +20,9 @@ pub(super) fn alone(state: &MotionState) -> MotionState {
     alone
 }
 
-/// Wrong: a resumed run would not go on as the run that was never stopped, or a step of another size would begin with what was found for
-/// the size before. Clamped and in mean motion, with all that known loads and history may hold, and sizes that change.
+/// Wrong: a resumed run would not go on as the run that was never stopped, or a step of another size would begin with
+/// what was found for the size before. Clamped and in mean motion, with all that known loads and history may hold,
+/// and sizes that change.
 #[test]
 fn a_step_from_its_state_alone_has_the_same_bits() {
     let conserving = MotionSettings::conserving(5e-6, Speed::constant(SPEED));

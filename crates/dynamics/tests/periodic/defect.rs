@@ -9,8 +9,8 @@ use dynamics::{Backend, Hold, Model, ModesSettings, RingSupport, StaticSolver};
 use crate::support::rings::{Level, ring_model};
 use crate::{HEX8, HEX20, assert_near, assert_same_motion, bearing, motion, motion_without_frame, statics};
 
-/// The bearing with a notch in each ring: in four sectors of 54 or 36 the nodes of a face, of the shoulders and of the held surface
-/// stand elsewhere, up to 0.15 mm. Nodes of the raceway stay.
+/// The bearing with a notch in each ring: in four sectors of 54 or 36 the nodes of a face, of the shoulders and of
+/// the held surface stand elsewhere, up to 0.15 mm. Nodes of the raceway stay.
 fn notched(level: Level, hold: Hold, backend: Backend) -> Model {
     let mut model = bearing(level, hold, backend);
     for side in Side::BOTH {
@@ -37,8 +37,8 @@ fn notched(level: Level, hold: Hold, backend: Backend) -> Model {
     model
 }
 
-/// Wrong: an equilibrium of rings with a notch would not be that of the sparse factor: clamped and in mean motion, linear and
-/// quadratic elements.
+/// Wrong: an equilibrium of rings with a notch would not be that of the sparse factor: clamped and in mean motion,
+/// linear and quadratic elements.
 #[test]
 fn statics_of_notched_rings_is_that_of_assembled_rings() {
     for (level, hold) in [
@@ -83,8 +83,8 @@ fn the_log_says_where_the_notch_is_and_what_it_costs() {
     assert!((a - b).abs() > 1e-6 * a, "{a} and {b}");
 }
 
-/// Wrong: a notch would make or take energy, or the motion would drift away from that of the sparse factor. The bore that follows
-/// the shaft is part of the notch.
+/// Wrong: a notch would make or take energy, or the motion would drift away from that of the sparse factor. The bore
+/// that follows the shaft is part of the notch.
 #[test]
 fn thirty_steps_of_notched_rings_agree_with_sparse_factors() {
     let backends = [Backend::Cyclic, Backend::Sparse];
@@ -126,7 +126,8 @@ fn modes_of_a_notched_ring_refuse_harmonics() {
     assert_near(&auto, &sparse, 1e-12, "frequencies");
 }
 
-/// Wrong: a scene that forces harmonics on a ring without sectors would be solved otherwise, or refused without the place.
+/// Wrong: a scene that forces harmonics on a ring without sectors would be solved otherwise, or refused without the
+/// place.
 #[test]
 fn statics_refuses_forced_harmonics_with_the_first_difference() {
     let mut model = bearing(HEX8, Hold::Clamped, Backend::Cyclic);

@@ -104,7 +104,8 @@ fn statics_of_sectors_is_that_of_assembled_rings() {
     }
 }
 
-/// Wrong: stress by the weights of one sector would not be that of the elements, at nodes or at integration points, in a loaded bearing.
+/// Wrong: stress by the weights of one sector would not be that of the elements, at nodes or at integration points,
+/// in a loaded bearing.
 #[test]
 fn stress_of_sectors_is_that_of_the_elements() {
     for level in [HEX8, HEX20] {
@@ -132,8 +133,8 @@ fn stress_of_sectors_is_that_of_the_elements() {
     }
 }
 
-/// Wrong: natural frequencies from sectors would not be those of assembled matrices: a free ring, a clamped bearing with a
-/// moving shaft, and rings in mean motion. The bounds of both searches are 1e-8 or better.
+/// Wrong: natural frequencies from sectors would not be those of assembled matrices: a free ring, a clamped bearing
+/// with a moving shaft, and rings in mean motion. The bounds of both searches are 1e-8 or better.
 #[test]
 fn modes_of_sectors_are_those_of_assembled_rings() {
     let settings = |backend| ModesSettings {
@@ -236,8 +237,8 @@ fn five_hundred_steps_agree_with_sparse_factors() {
     assert_same_motion(&found, &expected, 1e-10);
 }
 
-/// Wrong: a periodic ring solved by harmonics and the same ring cut by angle into sectors would be two different bearings. Statics to
-/// 1e-12, 500 steps to 1e-10.
+/// Wrong: a periodic ring solved by harmonics and the same ring cut by angle into sectors would be two different
+/// bearings. Statics to 1e-12, 500 steps to 1e-10.
 #[test]
 #[ignore = "takes minutes with the factors of sectors: scripts/test-slow"]
 fn statics_and_five_hundred_steps_agree_with_rings_cut_into_sectors() {
@@ -253,7 +254,8 @@ fn statics_and_five_hundred_steps_agree_with_rings_cut_into_sectors() {
     assert_same_motion(&found, &expected, 1e-10);
 }
 
-/// Wrong: products of sectors, which motion takes its energies and right-hand sides from, would be others; in few steps.
+/// Wrong: products of sectors, which motion takes its energies and right-hand sides from, would be others; in few
+/// steps.
 #[test]
 fn thirty_steps_agree_with_sparse_factors() {
     let [found, expected] = [Backend::Cyclic, Backend::Sparse].map(|backend| rolling(HEX8, backend, 30));
@@ -289,8 +291,8 @@ fn one_two_and_four_threads_give_the_same_bits() {
     }
 }
 
-/// Wrong: probes of a moving ring would show other nodes' motion, or the bore would not follow the shaft. Free and held nodes, to the
-/// bits of the transform of the whole field.
+/// Wrong: probes of a moving ring would show other nodes' motion, or the bore would not follow the shaft. Free and
+/// held nodes, to the bits of the transform of the whole field.
 #[test]
 fn chosen_nodes_move_as_in_the_whole_field() {
     let model = bearing(HEX8, Hold::Clamped, Backend::Auto);

@@ -1,4 +1,5 @@
-//! Rings that are periodic but for missing elements, such as a keyway, or nodes held besides: the results of sparse factors.
+//! Rings that are periodic but for missing elements, such as a keyway, or nodes held besides: the results of sparse
+//! factors.
 
 use dynamics::motion::StepCache;
 use std::sync::Arc;
@@ -34,8 +35,8 @@ pub fn keyed(level: Level, hold: Hold, backend: Backend) -> Model {
     with_meshes(level, hold, backend, keyway)
 }
 
-/// A keyway over the whole width in the bore of the inner ring and in the outer ring's seat: 3 sectors wide, half as deep as the
-/// ring.
+/// A keyway over the whole width in the bore of the inner ring and in the outer ring's seat: 3 sectors wide, half as
+/// deep as the ring.
 fn keyway(side: Side, mesh: Mesh) -> Mesh {
     let is_in = |mesh: &Mesh, e: usize| {
         let [x, y, _] = mesh.element_centre(e);
@@ -120,7 +121,8 @@ fn loosened(side: Side, mut mesh: Mesh) -> Mesh {
     mesh
 }
 
-/// A ring in its mean motion bends 1e5 times more easily than its elements strain, and their rounding shows in it as often.
+/// A ring in its mean motion bends 1e5 times more easily than its elements strain, and their rounding shows in it as
+/// often.
 fn assert_same_statics(hold: Hold, build: impl Fn(Backend) -> Model) {
     let tolerance = match hold {
         Hold::MeanMotion => 5e-12,
@@ -143,8 +145,8 @@ fn assert_same_statics(hold: Hold, build: impl Fn(Backend) -> Model) {
     }
 }
 
-/// Wrong: an equilibrium of rings with a keyway or a spall, or that are held elsewhere as well, would not be that of the sparse
-/// factor.
+/// Wrong: an equilibrium of rings with a keyway or a spall, or that are held elsewhere as well, would not be that of
+/// the sparse factor.
 #[test]
 fn statics_of_rings_with_missing_elements_is_that_of_assembled_rings() {
     for (level, hold) in [
@@ -167,8 +169,8 @@ fn statics_of_rings_with_missing_elements_is_that_of_assembled_rings() {
     });
 }
 
-/// Wrong: missing elements would make or take energy, or the motion would drift away from that of the sparse factor, by the
-/// mass of absent nodes or by the bore that follows the shaft.
+/// Wrong: missing elements would make or take energy, or the motion would drift away from that of the sparse factor,
+/// by the mass of absent nodes or by the bore that follows the shaft.
 #[test]
 fn thirty_steps_of_rings_with_missing_elements_agree_with_sparse_factors() {
     type Change = fn(Side, Mesh) -> Mesh;
@@ -205,8 +207,9 @@ fn sixty_steps_of_rings_with_a_keyway_keep_their_energy_and_agree_with_sparse_fa
     assert!(found.state.ledger.relative_defect().abs() < 1e-10);
 }
 
-/// Wrong: a resumed run of rings with a keyway would not go on as the run that was never stopped, or its bits would depend on the number of
-/// threads: with loads on the ring, losses and a history of accelerations, clamped and in mean motion.
+/// Wrong: a resumed run of rings with a keyway would not go on as the run that was never stopped, or its bits would
+/// depend on the number of threads: with loads on the ring, losses and a history of accelerations, clamped and in
+/// mean motion.
 #[test]
 fn a_step_of_rings_with_a_keyway_has_the_same_bits_from_its_state_alone() {
     // The last case takes several rounds for the inertia of the frame.
@@ -309,7 +312,8 @@ fn a_ball_over_missing_facets_stops_with_the_place() {
     assert_eq!(texts[0], texts[1]);
 }
 
-/// Wrong: a facet that one group lacks would cost a sparse factor though no matrix knows it, or the results would be others.
+/// Wrong: a facet that one group lacks would cost a sparse factor though no matrix knows it, or the results would be
+/// others.
 #[test]
 fn a_facet_that_a_group_lacks_changes_no_solver() {
     let unmarked = |side: Side, mut mesh: Mesh| {

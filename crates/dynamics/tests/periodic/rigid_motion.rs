@@ -61,8 +61,8 @@ fn small_field(ring: &RingModel, held: &[usize]) -> Vec<f64> {
 }
 
 /// Wrong: a rigid motion would change the strain energy of a deformed ring by its round-off, which a ledger takes for
-/// energy that came from nowhere. 1 mm of translation and 1 mrad of tilt on deformations of 1 nm, less the energy of the
-/// rigid motion alone, which is that of the round-off of K: the sum has the deformations to 1e-10.
+/// energy that came from nowhere. 1 mm of translation and 1 mrad of tilt on deformations of 1 nm, less the energy of
+/// the rigid motion alone, which is that of the round-off of K: the sum has the deformations to 1e-10.
 #[test]
 fn a_rigid_motion_does_not_change_the_strain_energy() {
     for (name, model) in cases() {
@@ -111,9 +111,9 @@ fn the_ledger_closes_under_small_loads_at_the_far_end_of_the_play() {
     }
 }
 
-/// Wrong: a bearing that drifts freely at 0.1 mm/s would be stopped by round-off of its positions with blame on step and
-/// scheme. All of its energy is 1e-9 J; what the ledger misses must stay below the energy of round-off, and that far
-/// below the energies of a bearing under load.
+/// Wrong: a bearing that drifts freely at 0.1 mm/s would be stopped by round-off of its positions with blame on step
+/// and scheme. All of its energy is 1e-9 J; what the ledger misses must stay below the energy of round-off, and that
+/// far below the energies of a bearing under load.
 #[test]
 fn a_slow_drift_loses_no_more_than_round_off() {
     for hold in [Hold::Clamped, Hold::MeanMotion] {

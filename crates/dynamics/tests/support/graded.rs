@@ -8,8 +8,9 @@ use mesh::ElementKind;
 
 use super::rings::{Columns, groove, measures, revolved, ring_model};
 
-/// How a mesh is graded towards a contact at azimuth 0: [size there, half the width of that size] along the groove and in the rolling
-/// direction, rad, and in depth, m; beyond, every element is larger than the one before by a factor.
+/// How a mesh is graded towards a contact at azimuth 0: [size there, half the width of that size] along the groove
+/// and in the rolling direction, rad, and in depth, m; beyond, every element is larger than the one before by a
+/// factor.
 #[derive(Clone, Copy, Debug)]
 pub struct Grading {
     pub angle: f64,
@@ -24,7 +25,8 @@ const WIDEST: f64 = 0.1;
 /// Longest element in the rolling direction, rad: a parabola through its nodes is an arc to 1e-3 of its length.
 const LONGEST: f64 = 0.4;
 
-/// Places from 0 to `end`: steps of `size` up to `width`, then growing ones up to `cap`, stretched so that the last place is `end`.
+/// Places from 0 to `end`: steps of `size` up to `width`, then growing ones up to `cap`, stretched so that the last
+/// place is `end`.
 fn graded([size, width]: [f64; 2], growth: f64, end: f64, cap: f64) -> Vec<f64> {
     let mut places = vec![0.0];
     while *places.last().unwrap() < width - 0.5 * size {

@@ -3,9 +3,9 @@
 use dynamics::Model;
 use dynamics::kinematics::BallSpeeds;
 
-/// Harris's high-speed equations for one ball of a row under thrust, rigid rings: residuals over (ball radial, ball axial,
-/// shaft axial), and [Q_i, Q_o, a_i, a_o]. Nothing of the program but the numbers of the bearing; friction acts in the
-/// directions that the documentation of the effect derives.
+/// Harris's high-speed equations for one ball of a row under thrust, rigid rings: residuals over (ball radial, ball
+/// axial, shaft axial), and [Q_i, Q_o, a_i, a_o]. Nothing of the program but the numbers of the bearing; friction
+/// acts in the directions that the documentation of the effect derives.
 fn harris(
     (model, ball_speeds): (&Model, BallSpeeds),
     thrust: f64,

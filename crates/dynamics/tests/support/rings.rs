@@ -57,7 +57,8 @@ pub fn ring_model(side: Side, mesh: Mesh, hold: Hold) -> RingModel {
     }
 }
 
-/// Places of the nodes of a section: columns across the groove as shares of its half, rows from the raceway as shares of the depth.
+/// Places of the nodes of a section: columns across the groove as shares of its half, rows from the raceway as shares
+/// of the depth.
 pub(super) struct Columns {
     pub shares: Vec<f64>,
     pub rows: Vec<f64>,

@@ -1,8 +1,8 @@
 //! The serendipity hexahedron.
 //!
-//! Corner a: `(1 + xi_a xi)(1 + eta_a eta)(1 + zeta_a zeta)(xi_a xi + eta_a eta + zeta_a zeta - 2) / 8`; mid-node of an edge
-//! along xi: `(1 - xi^2)(1 + eta_a eta)(1 + zeta_a zeta) / 4`, and likewise along eta and zeta.
-//! Zienkiewicz and Taylor, The Finite Element Method, 5th ed., vol. 1, 2000, section 8.11.
+//! Corner a: `(1 + xi_a xi)(1 + eta_a eta)(1 + zeta_a zeta)(xi_a xi + eta_a eta + zeta_a zeta - 2) / 8`; mid-node of
+//! an edge along xi: `(1 - xi^2)(1 + eta_a eta)(1 + zeta_a zeta) / 4`, and likewise along eta and zeta. Zienkiewicz
+//! and Taylor, The Finite Element Method, 5th ed., vol. 1, 2000, section 8.11.
 
 use super::MAX_NODES;
 

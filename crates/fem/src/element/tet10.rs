@@ -1,4 +1,5 @@
-//! The quadratic tetrahedron, in barycentric coordinates `L_0 = 1 - xi - eta - zeta`, `L_1 = xi`, `L_2 = eta`, `L_3 = zeta`.
+//! The quadratic tetrahedron, in barycentric coordinates `L_0 = 1 - xi - eta - zeta`, `L_1 = xi`, `L_2 = eta`,
+//! `L_3 = zeta`.
 //!
 //! Corner: `L (2 L - 1)`; mid-node of the edge ab: `4 L_a L_b`. Zienkiewicz and Taylor, The Finite Element Method,
 //! 5th ed., vol. 1, 2000, section 8.12.

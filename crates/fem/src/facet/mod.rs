@@ -1,7 +1,8 @@
 //! Shape functions of the boundary facets, and points and normals on them, one file per facet.
 //!
 //! Reference cells: quadrilaterals `[-1, 1]^2`; triangle `xi, eta >= 0`, `xi + eta <= 1`. Node order is that of
-//! [`mesh::FacetKind`]; the normal is outward by the right-hand rule. A facet's functions are the traces of its element's.
+//! [`mesh::FacetKind`]; the normal is outward by the right-hand rule. A facet's functions are the traces of its
+//! element's.
 
 mod quad4;
 mod quad8;

@@ -4,8 +4,9 @@
 //! `T_ij = integral of dN_a/dx_i dN_b/dx_j`, `K_ij = lambda T_ij + mu T_ji + mu tr(T) I_ij`: put Hooke's law
 //! `D_ikjl = lambda d_ik d_jl + mu (d_ij d_kl + d_il d_kj)` between the two gradients.
 //!
-//! Hexahedra with 8 nodes carry the incompatible modes of Taylor, Beresford and Wilson (file `modes.rs`), condensed inside the element: bending is right
-//! without reduced integration. Cost on one core of a 2.3 GHz machine: see the example `measure`.
+//! Hexahedra with 8 nodes carry the incompatible modes of Taylor, Beresford and Wilson (file `modes.rs`), condensed
+//! inside the element: bending is right without reduced integration. Cost on one core of a 2.3 GHz machine: see the
+//! example `measure`.
 
 pub(crate) mod kernel;
 pub(crate) mod modes;

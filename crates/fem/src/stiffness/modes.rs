@@ -1,9 +1,10 @@
 //! The incompatible modes of the 8-node hexahedron, `1 - xi_k^2`, k = 1, 2, 3, in each displacement component.
 //!
 //! Their gradients are taken with the Jacobian of the element's centre and scaled so that they integrate to zero,
-//! `dP_k/dx = (det J_0 / det J) J_0^-1 dP_k/dxi`: constant stress does no work on them and the patch test holds on any mesh
-//! (Taylor, Beresford and Wilson, International Journal for Numerical Methods in Engineering 10, 1976, 1211-1219,
-//! doi:10.1002/nme.1620100602, the element QM6; Wilson, Taylor, Doherty and Ghaboussi, 1973, for the modes).
+//! `dP_k/dx = (det J_0 / det J) J_0^-1 dP_k/dxi`: constant stress does no work on them and the patch test holds on
+//! any mesh (Taylor, Beresford and Wilson, International Journal for Numerical Methods in Engineering 10, 1976,
+//! 1211-1219, doi:10.1002/nme.1620100602, the element QM6; Wilson, Taylor, Doherty and Ghaboussi, 1973, for the
+//! modes).
 
 use mesh::ElementKind;
 

@@ -72,8 +72,8 @@ pub(crate) fn compatible_strains(
     dets
 }
 
-/// Incompatible modes of an 8-node element and their amplitudes, m, `[mode][component]`, in equilibrium with the strains
-/// of its nodal displacements at the points of the stiffness rule: `K_mm alpha = -integral of B_m^T sigma`.
+/// Incompatible modes of an 8-node element and their amplitudes, m, `[mode][component]`, in equilibrium with the
+/// strains of its nodal displacements at the points of the stiffness rule: `K_mm alpha = -integral of B_m^T sigma`.
 pub(crate) fn equilibrate_modes(
     table: &Table,
     state: &NodeState,
@@ -139,7 +139,8 @@ pub(crate) fn mode_gradient(modes: &Modes, alpha: &[[f64; 3]; 3], xi: [f64; 3], 
     gradient
 }
 
-/// Strain at the points of the stiffness rule, `[n_points]`, incompatible modes of hex8 included; returns the volume, m^3.
+/// Strain at the points of the stiffness rule, `[n_points]`, incompatible modes of hex8 included; returns the volume,
+/// m^3.
 pub(crate) fn strains(
     table: &Table,
     state: &NodeState,

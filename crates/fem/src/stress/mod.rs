@@ -1,7 +1,7 @@
 //! Stress and strain: their six components, invariants, and recovery from displacements.
 //!
-//! **Order of the six components, here and everywhere: xx, yy, zz, xy, yz, xz** (that of VTK's symmetric tensors). Strain
-//! has engineering shear, `gamma_xy = du_x/dy + du_y/dx`; stress is in Pa, tension positive.
+//! **Order of the six components, here and everywhere: xx, yy, zz, xy, yz, xz** (that of VTK's symmetric tensors).
+//! Strain has engineering shear, `gamma_xy = du_x/dy + du_y/dx`; stress is in Pa, tension positive.
 
 mod invariants;
 pub(crate) mod kernel;

@@ -1,8 +1,8 @@
 //! Stress at any points of a mesh, interpolated.
 //!
-//! Inside its element a point takes the shape functions' mix of the nodal values: for stress the averages that [`StressRecovery::nodal`]
-//! gives, so the result is continuous over the mesh. A point may lie a little outside the elements, because a curved surface is met by
-//! facets: then the nearest place of the reference cell counts.
+//! Inside its element a point takes the shape functions' mix of the nodal values: for stress the averages that
+//! [`StressRecovery::nodal`] gives, so the result is continuous over the mesh. A point may lie a little outside the
+//! elements, because a curved surface is met by facets: then the nearest place of the reference cell counts.
 
 use mesh::{ElementKind, Mesh};
 
@@ -34,7 +34,8 @@ pub struct PointRecovery {
 }
 
 impl PointRecovery {
-    /// Finds points (m, `[n][3]`) in the mesh and prepares recovery there. Cost: every element is looked at once per point.
+    /// Finds points (m, `[n][3]`) in the mesh and prepares recovery there. Cost: every element is looked at once per
+    /// point.
     pub fn new(mesh: &Mesh, material: &Material, points: &[[f64; 3]]) -> Result<PointRecovery, FemError> {
         let boxes: Vec<[[f64; 3]; 2]> = (0..mesh.n_elements()).map(|e| bounds(mesh, e)).collect();
         let places: Vec<MeshPoint> = points

@@ -1,10 +1,10 @@
 //! Stress at integration points and at nodes.
 //!
-//! Nodal stress: inside every element the stress of the integration points is projected by weighted least squares, which
-//! is L2 on the reference cell, onto the trilinear (hex) or linear (tet) functions of the corners; the values at a node
-//! are averaged over its elements with their volumes as weights, in ascending order of the elements. A linear stress field
-//! on affine elements is reproduced exactly. Reference: Hinton and Campbell, International Journal for Numerical Methods in
-//! Engineering 8, 1974, 461-480, doi:10.1002/nme.1620080303.
+//! Nodal stress: inside every element the stress of the integration points is projected by weighted least squares,
+//! which is L2 on the reference cell, onto the trilinear (hex) or linear (tet) functions of the corners; the values
+//! at a node are averaged over its elements with their volumes as weights, in ascending order of the elements. A
+//! linear stress field on affine elements is reproduced exactly. Reference: Hinton and Campbell, International
+//! Journal for Numerical Methods in Engineering 8, 1974, 461-480, doi:10.1002/nme.1620080303.
 //!
 //! Across a jump of material or over a re-entrant corner the average smears; integration points do not.
 //!

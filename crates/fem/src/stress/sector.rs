@@ -1,9 +1,9 @@
 //! Stress at the nodes of a rotationally periodic ring by the weights of one sector.
 //!
 //! Nodal stress ([`super::recovery`]) is linear in the displacements. In the cylindrical components of each node
-//! ([`crate::sector`]) the weights are the same in every sector, so the elements of one sector give all: an element between
-//! nodes (s_a, a) and (s_b, b) adds its share of the stress at a per displacement of b to the coupling of a with b
-//! at the shift s_b - s_a. The incompatible modes of hex8 are in the weights.
+//! ([`crate::sector`]) the weights are the same in every sector, so the elements of one sector give all: an element
+//! between nodes (s_a, a) and (s_b, b) adds its share of the stress at a per displacement of b to the coupling of a
+//! with b at the shift s_b - s_a. The incompatible modes of hex8 are in the weights.
 //!
 //! Cost: 3 n stresses per element of one sector, n nodes each; memory 144 B per coupling.
 
@@ -56,7 +56,8 @@ impl StressRecovery {
     }
 }
 
-/// Gives the state of an element with the nodes `nodes` of which node b alone moves, by one along its component j, for all `[b, j]`.
+/// Gives the state of an element with the nodes `nodes` of which node b alone moves, by one along its component j,
+/// for all `[b, j]`.
 pub(super) fn for_each_unit(
     mesh: &Mesh,
     nodes: &[usize],

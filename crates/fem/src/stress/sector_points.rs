@@ -1,9 +1,9 @@
 //! Stress at the integration points of a rotationally periodic ring by the weights of one sector.
 //!
-//! The elements of a ring fall into classes whose members turns take into each other ([`Periodicity::elements`] names one of each). In the
-//! cylindrical components of the nodes, and along the directions (radial, azimuthal, axial) at the first node of an element, stress at its
-//! points has the same weights in the whole class, if the nodes of all its elements are in the same order. The incompatible modes of hex8
-//! are in the weights.
+//! The elements of a ring fall into classes whose members turns take into each other ([`Periodicity::elements`] names
+//! one of each). In the cylindrical components of the nodes, and along the directions (radial, azimuthal, axial) at
+//! the first node of an element, stress at its points has the same weights in the whole class, if the nodes of all
+//! its elements are in the same order. The incompatible modes of hex8 are in the weights.
 //!
 //! Cost: 3 n stresses per element of one sector, n nodes each; memory 144 B per point and node of such an element.
 
@@ -18,11 +18,12 @@ use crate::sector::{SectorCoupling, azimuth_directions, coupling};
 /// Stress at the points of one element of every class.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SectorPoints {
-    /// Couplings of points with the nodes of their element, class by class, point by point: the row is the class of the element times the
-    /// points of an element, plus the point, and the shift that from the first node of the element.
+    /// Couplings of points with the nodes of their element, class by class, point by point: the row is the class of
+    /// the element times the points of an element, plus the point, and the shift that from the first node of the
+    /// element.
     pub couplings: Vec<SectorCoupling>,
-    /// Stress in the order rr tt zz rt tz rz, at the first node of the element, per displacement along (radial, azimuthal, axial),
-    /// Pa/m, `[n_couplings][6][3]`.
+    /// Stress in the order rr tt zz rt tz rz, at the first node of the element, per displacement along (radial,
+    /// azimuthal, axial), Pa/m, `[n_couplings][6][3]`.
     pub weights: Vec<[[f64; 3]; 6]>,
     /// Class and first node of every element of the mesh, `[n_elements]`.
     pub elements: Vec<[usize; 2]>,
@@ -31,8 +32,8 @@ pub struct SectorPoints {
 }
 
 impl StressRecovery {
-    /// The weights of one sector of the mesh, which `periodicity` describes; None when elements of one class have their nodes in
-    /// different orders, and so their points.
+    /// The weights of one sector of the mesh, which `periodicity` describes; None when elements of one class have
+    /// their nodes in different orders, and so their points.
     ///
     /// # Panics
     /// If mesh or periodicity are others than this recovery's.

@@ -61,7 +61,8 @@ fn the_centrifugal_load_is_the_mass_times_the_acceleration() {
     }
 }
 
-/// Otherwise a submerged body would drift or spin: pressure on a closed surface has no resultant, curved facets included.
+/// Otherwise a submerged body would drift or spin: pressure on a closed surface has no resultant, curved facets
+/// included.
 #[test]
 fn a_uniform_pressure_on_a_closed_surface_has_no_resultant() {
     for kind in ElementKind::ALL {
@@ -81,7 +82,8 @@ fn a_uniform_pressure_on_a_closed_surface_has_no_resultant() {
     }
 }
 
-/// Otherwise pressure would pull: pressure on the side z = 1 pushes along -z with pressure times area, as the like traction does.
+/// Otherwise pressure would pull: pressure on the side z = 1 pushes along -z with pressure times area, as the like
+/// traction does.
 #[test]
 fn a_pressure_pushes_against_the_outward_normal() {
     for kind in ElementKind::ALL {
@@ -98,7 +100,8 @@ fn a_pressure_pushes_against_the_outward_normal() {
     }
 }
 
-/// Otherwise a hydrostatic pressure would not lift by the weight of the fluid (Archimedes): divergence theorem on any mesh.
+/// Otherwise a hydrostatic pressure would not lift by the weight of the fluid (Archimedes): divergence theorem on any
+/// mesh.
 #[test]
 fn a_hydrostatic_traction_lifts_by_the_displaced_weight() {
     for kind in ElementKind::ALL {
@@ -110,7 +113,8 @@ fn a_hydrostatic_traction_lifts_by_the_displaced_weight() {
     }
 }
 
-/// Otherwise the mean motion of a bore would be biased: weights are sorted, sum to the area and integrate linear fields exactly.
+/// Otherwise the mean motion of a bore would be biased: weights are sorted, sum to the area and integrate linear
+/// fields exactly.
 #[test]
 fn facet_weights_integrate_linear_fields_over_the_surface() {
     for kind in ElementKind::ALL {

@@ -18,7 +18,8 @@ fn linear(x: [f64; 3]) -> [f64; 3] {
 /// Strain of [`linear`].
 const STRAIN: [f64; 6] = [0.7e-3, 0.6e-3, -0.9e-3, 0.2e-3, -0.2e-3, 0.0];
 
-/// Otherwise the elements would not converge on distorted meshes. Round-off: condition of K, some 1e3, times 1e-16, times u.
+/// Otherwise the elements would not converge on distorted meshes. Round-off: condition of K, some 1e3, times 1e-16,
+/// times u.
 #[test]
 fn a_linear_boundary_displacement_gives_constant_stress_on_distorted_meshes() {
     let material = steel();
@@ -47,7 +48,8 @@ fn a_linear_boundary_displacement_gives_constant_stress_on_distorted_meshes() {
     }
 }
 
-/// Otherwise loads and stress would disagree: the tractions of a constant stress must hold it in equilibrium by themselves.
+/// Otherwise loads and stress would disagree: the tractions of a constant stress must hold it in equilibrium by
+/// themselves.
 #[test]
 fn the_tractions_of_a_constant_stress_balance_its_internal_forces() {
     let material = steel();

@@ -6,8 +6,8 @@ use mesh::ElementKind;
 use crate::support::grids::{Ends, mapped_grid, wavy_cube};
 use crate::support::{assert_close, nodal_field};
 
-/// Otherwise a probe would show the stress of another place: quadratic displacement has linear stress, which is exact at every point of
-/// affine elements, whether it lies within an element, on a face, on an edge or on the boundary.
+/// Otherwise a probe would show the stress of another place: quadratic displacement has linear stress, which is exact
+/// at every point of affine elements, whether it lies within an element, on a face, on an edge or on the boundary.
 #[test]
 fn a_linear_stress_field_is_exact_at_any_point() {
     let field = |[x, y, z]: [f64; 3]| [x * x + 0.5 * y * z, 0.3 * z * z - x * y, x * z + 0.2 * y * y];

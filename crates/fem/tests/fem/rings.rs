@@ -53,9 +53,9 @@ const ORDERS: [(ElementKind, [usize; 2], f64); 3] = [
     (ElementKind::Tet10, [2, 4], 3.0),
 ];
 
-/// Otherwise pressure or stiffness would be wrong. Lamé's ring with free ends (Timoshenko and Goodier, Theory of Elasticity,
-/// 3rd ed., 1970, art. 28, eq. 45): with C = p a^2 / (b^2 - a^2), s_r = C (1 - b^2/r^2), s_t = C (1 + b^2/r^2), and the
-/// axial contraction is uniform, so the plane-stress solution is exact in three dimensions.
+/// Otherwise pressure or stiffness would be wrong. Lamé's ring with free ends (Timoshenko and Goodier, Theory of
+/// Elasticity, 3rd ed., 1970, art. 28, eq. 45): with C = p a^2 / (b^2 - a^2), s_r = C (1 - b^2/r^2), s_t = C (1 +
+/// b^2/r^2), and the axial contraction is uniform, so the plane-stress solution is exact in three dimensions.
 #[test]
 fn a_thick_ring_under_internal_pressure_converges_to_lame() {
     let pressure = 50e6;
@@ -95,8 +95,9 @@ fn check_hoop_stress(mesh: &Mesh, u: &[f64], c: f64) {
     }
 }
 
-/// Otherwise the centrifugal load would be wrong. Rotating ring between rigid plane ends: the disk of Timoshenko and Goodier,
-/// Theory of Elasticity, 3rd ed., 1970, art. 32, with E/(1 - nu^2) for E and nu/(1 - nu) for nu (plane strain).
+/// Otherwise the centrifugal load would be wrong. Rotating ring between rigid plane ends: the disk of Timoshenko and
+/// Goodier, Theory of Elasticity, 3rd ed., 1970, art. 32, with E/(1 - nu^2) for E and nu/(1 - nu) for nu (plane
+/// strain).
 #[test]
 fn a_rotating_ring_converges_to_the_closed_form() {
     let (density, omega) = (7800.0, 3000.0);

@@ -25,8 +25,9 @@ fn a_rigid_rotation_has_no_stress() {
     }
 }
 
-/// Otherwise extrapolation to the nodes would be biased: quadratic displacement has linear stress, which the projection keeps
-/// on affine elements. (Interpolated by hex8 it is not in equilibrium, so only the quadratic elements are asked.)
+/// Otherwise extrapolation to the nodes would be biased: quadratic displacement has linear stress, which the
+/// projection keeps on affine elements. (Interpolated by hex8 it is not in equilibrium, so only the quadratic
+/// elements are asked.)
 #[test]
 fn a_linear_stress_field_is_exact_at_every_node_and_point() {
     let field = |[x, y, z]: [f64; 3]| [x * x + 0.5 * y * z, 0.3 * z * z - x * y, x * z + 0.2 * y * y];
@@ -150,7 +151,8 @@ fn principal_stresses_are_sorted_and_accurate_even_when_nearly_equal() {
     }
 }
 
-/// Otherwise the average would not be weighted by volume: a slice of volume 1 with stress 1 beside one of volume 3 without.
+/// Otherwise the average would not be weighted by volume: a slice of volume 1 with stress 1 beside one of volume 3
+/// without.
 #[test]
 fn nodal_stress_is_the_volume_weighted_mean_of_its_elements() {
     let material = fem::Material::new(1.0, 0.0, 1.0).unwrap();
@@ -171,8 +173,8 @@ fn nodal_stress_is_the_volume_weighted_mean_of_its_elements() {
     }
 }
 
-/// Otherwise a history of the stress at a node would not be that of the fields, or would cost as much as they do: the same
-/// bits, from the elements around the nodes alone.
+/// Otherwise a history of the stress at a node would not be that of the fields, or would cost as much as they do: the
+/// same bits, from the elements around the nodes alone.
 #[test]
 fn stress_at_chosen_nodes_has_the_bits_of_the_whole_field() {
     for kind in ElementKind::ALL {

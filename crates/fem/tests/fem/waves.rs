@@ -28,9 +28,9 @@ fn block(size: [f64; 3]) -> Mesh {
     }
 }
 
-/// Factor per element, nearest to -1, by which a displacement that changes its sign from node to node along x falls without any load, on an
-/// endless regular mesh: (-1)^j in y or z or both, or constant there, and r^i in x makes the stencil of a node a 3 x 3 matrix
-/// L/r + M + R r, which is singular for its own r.
+/// Factor per element, nearest to -1, by which a displacement that changes its sign from node to node along x falls
+/// without any load, on an endless regular mesh: (-1)^j in y or z or both, or constant there, and r^i in x makes the
+/// stencil of a node a 3 x 3 matrix L/r + M + R r, which is singular for its own r.
 fn slowest_wave(size: [f64; 3]) -> f64 {
     let stiffness = assemble_stiffness(&block(size), &steel()).unwrap();
     let centre = 13;
@@ -63,10 +63,10 @@ fn determinant([a, b, c]: [[f64; 3]; 3]) -> f64 {
         + a[2] * (b[0] * c[1] - b[1] * c[0])
 }
 
-/// Wrong: a pattern of elements would reach far from what makes it. On cubes a wave of two elements falls to less than a third per element;
-/// in elements that are long in its direction it falls less, as incompatible modes let a layer bend (values of an independent program:
-/// 0.314, 0.569, 0.759 for these shapes; elements without these modes 0.22 to 0.27). Reduced integration would have a wave that does
-/// not fall at all.
+/// Wrong: a pattern of elements would reach far from what makes it. On cubes a wave of two elements falls to less
+/// than a third per element; in elements that are long in its direction it falls less, as incompatible modes let a
+/// layer bend (values of an independent program: 0.314, 0.569, 0.759 for these shapes; elements without these modes
+/// 0.22 to 0.27). Reduced integration would have a wave that does not fall at all.
 #[test]
 fn waves_of_two_elements_fall_within_some_elements() {
     for (size, factor) in [

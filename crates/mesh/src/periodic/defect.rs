@@ -1,13 +1,15 @@
-//! Rings that are periodic up to a defect: some nodes of a periodic ring stand elsewhere, or some of its elements are missing.
+//! Rings that are periodic up to a defect: some nodes of a periodic ring stand elsewhere, or some of its elements are
+//! missing.
 //!
 //! The ring without the defect, the *regular* ring, has N times the sector that most sectors share.
 //!
-//! A node is regular when most of a few turns by whole sectors take it to a node. Turns that take a regular node to no node
-//! show a vacancy. Every node that is not regular belongs to the vacancy nearest to it; what vacancies are left are *absent*
-//! nodes, which missing elements alone have. So a node may move by less than half of the distance to its neighbours. An element that
-//! turns in most sectors into another one is missing in the others ([`super::missing`]). The regular ring so found must be periodic in
-//! the strict sense of [`super`]; groups of facets do not count. More elements than the regular ring has, such as a refined patch, are no
-//! defect in this sense.
+//! A node is regular when most of a few turns by whole sectors take it to a node. Turns that take a regular node to
+//! no node show a vacancy. Every node that is not regular belongs to the vacancy nearest to it; what vacancies are
+//! left are *absent* nodes, which missing elements alone have. So a node may move by less than half of the distance
+//! to its neighbours. An element that turns in most sectors into another one is missing in the others
+//! ([`super::missing`]). The regular ring so found must be periodic in the strict sense of [`super`]; groups of
+//! facets do not count. More elements than the regular ring has, such as a refined patch, are no defect in this
+//! sense.
 //!
 //! The number of sectors is that of the gaps between the nodes on a circle, as most of a few elements have it.
 //!
@@ -28,8 +30,8 @@ use crate::mesh::Mesh;
 /// Elements that are asked for the number of sectors.
 const SAMPLES: usize = 9;
 
-/// A ring that would be periodic if some of its nodes stood elsewhere and it had some elements more. Nodes and elements of the regular
-/// ring have the numbers of the mesh; absent nodes and missing elements follow.
+/// A ring that would be periodic if some of its nodes stood elsewhere and it had some elements more. Nodes and
+/// elements of the regular ring have the numbers of the mesh; absent nodes and missing elements follow.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NearlyPeriodic {
     /// Sectors of the regular ring.
@@ -103,8 +105,8 @@ fn regular(mesh: &Mesh, moved: &[(usize, [f64; 3])], absent: &[[f64; 3]], missin
     }
 }
 
-/// The ring as a periodic one with a defect, which is empty when only groups of facets differ; or why it is not one. `tolerance` as for
-/// [`crate::find_periodicity`].
+/// The ring as a periodic one with a defect, which is empty when only groups of facets differ; or why it is not one.
+/// `tolerance` as for [`crate::find_periodicity`].
 pub fn find_nearly_periodic(mesh: &Mesh, tolerance: f64) -> Result<NearlyPeriodic, NotNearlyPeriodic> {
     let radii: Vec<f64> = mesh.nodes.iter().map(|x| x[0].hypot(x[1])).collect();
     let tolerance = tolerance * radii.iter().copied().fold(0.0, f64::max);

@@ -1,10 +1,11 @@
-//! Finds whether a ring's mesh is rotationally periodic: N equal sectors about the axis z, up to the numbering of nodes.
+//! Finds whether a ring's mesh is rotationally periodic: N equal sectors about the axis z, up to the numbering of
+//! nodes.
 //!
 //! A mesh is periodic with N sectors when a turn by 2 pi / N takes every node to a node, every element to an element
-//! (as a set of nodes) and every group of facets to itself. N divides the number of nodes at each (r, z), so the divisors of
-//! the smallest such numbers are tried, the largest first. Every node then has a site (sector, section node): a turn
-//! by one sector keeps the section node and adds one to the sector. Sector 0 holds the nodes from the azimuth of
-//! node 0 to a sector's angle farther.
+//! (as a set of nodes) and every group of facets to itself. N divides the number of nodes at each (r, z), so the
+//! divisors of the smallest such numbers are tried, the largest first. Every node then has a site (sector, section
+//! node): a turn by one sector keeps the section node and adds one to the sector. Sector 0 holds the nodes from the
+//! azimuth of node 0 to a sector's angle farther.
 //!
 //! Cost: n log n for sorting the nodes, then one search per node and element for each candidate that does not fail
 //! earlier; memory of a few indices per node and element.

@@ -68,8 +68,8 @@ pub enum NotPeriodic {
     },
 }
 
-/// Why a ring is not periodic up to a defect. Nodes and elements are indices of the mesh, from 0; those beyond its own are of the ring
-/// without a defect.
+/// Why a ring is not periodic up to a defect. Nodes and elements are indices of the mesh, from 0; those beyond its
+/// own are of the ring without a defect.
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum NotNearlyPeriodic {
     /// Neighbours on a circle have no usual distance.

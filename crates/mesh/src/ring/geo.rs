@@ -61,8 +61,8 @@ pub fn ring_geo(ring: &RingSection) -> Result<String, MeshError> {
 
 /// The whole ring about the z axis for quadratic tetrahedra of about `size` (m), nodes on the torus; groups as in
 /// [`ring_geo`]. Mesh it with [`crate::mesh_tets_with_gmsh`], read it with [`crate::read_msh`] in mm. The mesh
-/// numbers of the section are not used. Up to a `size` of 0.4 groove radii all meshes tried were valid; coarser ones may
-/// hold inverted elements, which [`crate::read_msh`] refuses.
+/// numbers of the section are not used. Up to a `size` of 0.4 groove radii all meshes tried were valid; coarser ones
+/// may hold inverted elements, which [`crate::read_msh`] refuses.
 pub fn ring_tet_geo(ring: &RingSection, size: f64) -> Result<String, MeshError> {
     ring.validate()?;
     if !(size.is_finite() && size > 0.0 && size <= ring.seat_diameter) {

@@ -8,7 +8,8 @@ use mesh::{
 use crate::periodic::{assert_sites_turn, renumbered};
 use crate::revolved;
 
-/// Wrong: a defect would be sought where none is, or it would not be found, or placed in other nodes than those that were moved.
+/// Wrong: a defect would be sought where none is, or it would not be found, or placed in other nodes than those that
+/// were moved.
 #[test]
 fn a_few_moved_nodes_are_a_defect() {
     for (kind, n) in [
@@ -70,8 +71,8 @@ fn slotted(ring: &Mesh, kind: ElementKind) -> Mesh {
     slotted
 }
 
-/// Wrong: a keyway would not be found, or filled with other elements than those that are missing: volume, nodes and sectors of the
-/// filled ring are those of the ring without it. In any numbering, with a dent elsewhere as well.
+/// Wrong: a keyway would not be found, or filled with other elements than those that are missing: volume, nodes and
+/// sectors of the filled ring are those of the ring without it. In any numbering, with a dent elsewhere as well.
 #[test]
 fn missing_elements_are_a_defect() {
     for (kind, n) in [
@@ -120,8 +121,8 @@ fn missing_elements_are_a_defect() {
     }
 }
 
-/// Wrong: a ring would be solved as a periodic one with a defect though it has more elements than that, or hardly any of it is regular,
-/// and nobody would be told why not.
+/// Wrong: a ring would be solved as a periodic one with a defect though it has more elements than that, or hardly any
+/// of it is regular, and nobody would be told why not.
 #[test]
 fn larger_defects_and_more_elements_are_no_defects() {
     let ring = revolved(RingSide::Inner, 36, ElementKind::Hex8);

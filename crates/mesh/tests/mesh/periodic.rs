@@ -246,8 +246,8 @@ fn the_deviation_is_that_of_the_coordinates() {
     );
 }
 
-/// Wrong: the rings that come with the program, read back from their files, would be solved as general meshes; or Gmsh's
-/// free mesh of tetrahedra would be taken for a periodic one.
+/// Wrong: the rings that come with the program, read back from their files, would be solved as general meshes; or
+/// Gmsh's free mesh of tetrahedra would be taken for a periodic one.
 #[test]
 fn stored_rings_are_periodic_and_a_free_mesh_is_not() {
     let stored = |name: &str| {

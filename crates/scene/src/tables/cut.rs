@@ -6,8 +6,8 @@
 //! radius = ["25 mm", "26.5 mm"]           # optional, default all
 //! z = ["-8 mm", "8 mm"]                   # optional, in coordinates of the mesh, default all
 //! ```
-//! Elements whose centre, the mean of their nodes, lies in the region are no part of the ring. Their facets leave their groups, and the
-//! faces that become free belong to none: walls of a keyway are not held.
+//! Elements whose centre, the mean of their nodes, lies in the region are no part of the ring. Their facets leave
+//! their groups, and the faces that become free belong to none: walls of a keyway are not held.
 
 use std::f64::consts::TAU;
 

@@ -8,8 +8,8 @@ use toml_edit::{DocumentMut, Item, Key, Table, TableLike, Value};
 /// The value that takes a table out, `--set effects.gravity=none`.
 const REMOVE: &str = "none";
 
-/// Applies `path=value` to the document. The value is read as TOML, or else taken as a string; `none` for a table takes it
-/// out.
+/// Applies `path=value` to the document. The value is read as TOML, or else taken as a string; `none` for a table
+/// takes it out.
 pub fn apply_override(document: &mut DocumentMut, text: &str) -> Result<(), String> {
     let Some((path, value)) = text.split_once('=') else {
         return Err("expected path=value such as \"effects.axial_force.value=3 kN\"".to_string());

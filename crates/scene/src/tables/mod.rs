@@ -1,9 +1,10 @@
 //! Scene files: the bearing, its meshes, its loads and what is computed, as TOML.
 //!
-//! Every quantity is a string with its unit, see [`input::units`]. Every table is checked against the list of
-//! its keys. An effect is a table `[effects.*]`: without the table there is no effect. Exactly one of
-//! `[static]`, `[sweep]`, `[quasi_static]`, `[dynamic]` and `[modes]` says what is computed. Axis z is axial, + is the direction of preload; azimuth
-//! runs from +x to +y; displacements count from the state where all balls just touch both raceways.
+//! Every quantity is a string with its unit, see [`input::units`]. Every table is checked against the list of its
+//! keys. An effect is a table `[effects.*]`: without the table there is no effect. Exactly one of `[static]`,
+//! `[sweep]`, `[quasi_static]`, `[dynamic]` and `[modes]` says what is computed. Axis z is axial, + is the direction
+//! of preload; azimuth runs from +x to +y; displacements count from the state where all balls just touch both
+//! raceways.
 //!
 //! Reading goes through two levels: the tables as typed (`Raw*`, private, in the file of their table), and
 //! the checked [`Scene`] in plain SI numbers and enums. A text that is not of the format stops at the first

@@ -12,9 +12,9 @@
 //! schedule.ramp = { start = "1 ms", duration = "2 ms" }
 //! ```
 //!
-//! In motion the displacement follows the schedule exactly. Its velocity and acceleration are those of the integrator: with
-//! average acceleration they alternate about the right ones from step to step after a corner (ramp, step, impact), with an
-//! integrator that has damping they settle.
+//! In motion the displacement follows the schedule exactly. Its velocity and acceleration are those of the
+//! integrator: with average acceleration they alternate about the right ones from step to step after a corner (ramp,
+//! step, impact), with an integrator that has damping they settle.
 //!
 //! In motion the shaft carries `mass`. A free translation without any mass (rigid inner ring, `mass` 0) is
 //! quasi-static: it follows from equilibrium at every instant.

@@ -1,8 +1,7 @@
 //! `[speed]`: how fast the inner ring turns.
 //!
-//! A constant, a ramp from one speed to another, or a table that is linear between its times and constant before the first
-//! and after the last.
-//! Positive from +x towards +y.
+//! A constant, a ramp from one speed to another, or a table that is linear between its times and constant before the
+//! first and after the last. Positive from +x towards +y.
 
 use std::fmt;
 

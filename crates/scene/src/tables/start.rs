@@ -1,4 +1,5 @@
-//! `[dynamic.start]`: the state at t = 0. Without the table it is static equilibrium under the loads and the speed of t = 0.
+//! `[dynamic.start]`: the state at t = 0. Without the table it is static equilibrium under the loads and the speed of
+//! t = 0.
 
 use input::{ANGLE, ANGULAR_SPEED, LENGTH, Problems, Quantity, SPEED};
 use serde::Deserialize;
@@ -40,8 +41,8 @@ pub enum Start {
     /// Static equilibrium under the loads and the speed at t = 0.
     #[default]
     Static,
-    /// Undeformed bodies; the shaft with the inner ring at this displacement and velocity, m, rad, m/s, rad/s; balls at their
-    /// just-touching position, at rest.
+    /// Undeformed bodies; the shaft with the inner ring at this displacement and velocity, m, rad, m/s, rad/s; balls
+    /// at their just-touching position, at rest.
     Given {
         /// Shaft x, y, z, tilt x, tilt y.
         displacement: [f64; 5],

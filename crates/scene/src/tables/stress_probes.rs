@@ -12,9 +12,10 @@
 //! depth = "0 mm"
 //! points = 181                      # evenly along the line, 2 to 10000
 //! ```
-//! Points in ring coordinates. Their stress is that of the finite elements, interpolated from the nodal averages, plus, with
-//! `stress.near_field`, the near field at the point itself, which is not interpolated. Components are in the directions of the raceway at
-//! the point: g along the groove (growing groove angle), t in the rolling direction (growing azimuth), d into the ring.
+//! Points in ring coordinates. Their stress is that of the finite elements, interpolated from the nodal averages,
+//! plus, with `stress.near_field`, the near field at the point itself, which is not interpolated. Components are in
+//! the directions of the raceway at the point: g along the groove (growing groove angle), t in the rolling direction
+//! (growing azimuth), d into the ring.
 
 use std::f64::consts::FRAC_PI_2;
 

@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 
 use mesh::{ElementKind, Mesh};
 
-/// Divides the edges of straight tetrahedra, longest first, until none is longer than `size` says at its middle. Quadratic
-/// tetrahedra in, quadratic ones out, with new numbers and without groups.
+/// Divides the edges of straight tetrahedra, longest first, until none is longer than `size` says at its middle.
+/// Quadratic tetrahedra in, quadratic ones out, with new numbers and without groups.
 pub fn refined(mesh: &Mesh, size: impl Fn([f64; 3]) -> f64) -> Mesh {
     assert_eq!(mesh.kind, ElementKind::Tet10, "only tetrahedra are divided");
     let mut points = mesh.nodes.to_vec();

@@ -86,8 +86,8 @@ impl CyclicBordered {
         &self.factor
     }
 
-    /// Replaces right-hand sides by solutions: `columns` in harmonic space, `[harmonic_len()]` each, and the rows of the
-    /// border `border`, `[columns.len()][m]`.
+    /// Replaces right-hand sides by solutions: `columns` in harmonic space, `[harmonic_len()]` each, and the rows of
+    /// the border `border`, `[columns.len()][m]`.
     ///
     /// # Panics
     /// When the lengths are others.
@@ -114,8 +114,9 @@ impl CyclicBordered {
         }
     }
 
-    /// Replaces one group's part of a right-hand side, `[low_len()]`, and in the first group the rows of the border, by the solution,
-    /// for passes over the groups while they are in the cache: the bits of [`CyclicBordered::solve_harmonic`].
+    /// Replaces one group's part of a right-hand side, `[low_len()]`, and in the first group the rows of the border,
+    /// by the solution, for passes over the groups while they are in the cache: the bits of
+    /// [`CyclicBordered::solve_harmonic`].
     ///
     /// # Panics
     /// When a length is another, or ranks share the solves.

@@ -1,25 +1,26 @@
 //! A periodic ring with a defect: a few rows and columns of its matrix are others.
 //!
-//! With A the matrix of the ring without the defect, P the unit vectors of the n rows that the defect touches, and D the
-//! change there, the true matrix is A + P D P^T. Conjugate gradients on it with A^-1 as preconditioner start from x0 = A^-1 b,
-//! and then never leave the space of A^-1 P: all residuals are P times n numbers. So they need the compliance
-//! G = P^T A^-1 P of those rows and nothing else of the ring ([`conjugate_gradients`]), and instead of iterating,
-//! the n unknown forces of the defect follow directly,
+//! With A the matrix of the ring without the defect, P the unit vectors of the n rows that the defect touches, and D
+//! the change there, the true matrix is A + P D P^T. Conjugate gradients on it with A^-1 as preconditioner start from
+//! x0 = A^-1 b, and then never leave the space of A^-1 P: all residuals are P times n numbers. So they need the
+//! compliance G = P^T A^-1 P of those rows and nothing else of the ring ([`conjugate_gradients`]), and instead of
+//! iterating, the n unknown forces of the defect follow directly,
 //! ```text
 //! x = x0 + A^-1 P f,    f = -S P^T x0,    S = (G + D^-1)^-1 = D - D (G^-1 + D)^-1 D
 //! ```
 //! (Woodbury; Golub and Van Loan, *Matrix Computations*, 4th ed. 2013, section 2.1.4). D need not be invertible: with
-//! G = L L^T, (G^-1 + D)^-1 = L (1 + L^T D L)^-1 L^T, and the matrix in brackets is positive definite exactly when the true
-//! one is. Solutions are those of the true matrix to round-off.
+//! G = L L^T, (G^-1 + D)^-1 = L (1 + L^T D L)^-1 L^T, and the matrix in brackets is positive definite exactly when
+//! the true one is. Solutions are those of the true matrix to round-off.
 //!
-//! **Rows that are gone.** The regular ring may have rows h that the true one lacks: nodes that only missing elements have, or that are
-//! held besides. All that they couple with is in the change, A_hh = -D_hh and A_hr = -D_hr, as the true matrix is zero there. Nothing
-//! loads them, so the regular ring answers at the other rows r as its Schur complement, and the change from that to the true
-//! matrix is D_rr - D_rh D_hh^-1 D_hr ([`Change::condensed`]). Callers never see h ([`super::CyclicRing::seen_at`]). Rows
-//! that the true ring has and the regular one lacks are eliminated ([`super::Loose`]).
+//! **Rows that are gone.** The regular ring may have rows h that the true one lacks: nodes that only missing elements
+//! have, or that are held besides. All that they couple with is in the change, A_hh = -D_hh and A_hr = -D_hr, as the
+//! true matrix is zero there. Nothing loads them, so the regular ring answers at the other rows r as its Schur
+//! complement, and the change from that to the true matrix is D_rr - D_rh D_hh^-1 D_hr ([`Change::condensed`]).
+//! Callers never see h ([`super::CyclicRing::seen_at`]). Rows that the true ring has and the regular one lacks are
+//! eliminated ([`super::Loose`]).
 //!
-//! Cost: a solve for every component of every section node that the defect touches, 4 n^3 operations, 16 n^2 bytes; then
-//! two solves per right-hand side in place of one for each iteration.
+//! Cost: a solve for every component of every section node that the defect touches, 4 n^3 operations, 16 n^2 bytes;
+//! then two solves per right-hand side in place of one for each iteration.
 
 use std::ops::Range;
 
@@ -67,8 +68,8 @@ pub struct CyclicDefect {
 }
 
 impl Change {
-    /// The change in the rows `rows` of a ring that has the rows `loose` more than the regular one, and lacks others: D of all,
-    /// row-major, symmetric, in this order. Both must be held by `rows`.
+    /// The change in the rows `rows` of a ring that has the rows `loose` more than the regular one, and lacks others:
+    /// D of all, row-major, symmetric, in this order. Both must be held by `rows`.
     ///
     /// # Panics
     /// When there are fewer values than rows.
@@ -106,8 +107,8 @@ impl Change {
 }
 
 impl Defect {
-    /// The answer of the ring whose regular factor is `base`; `table` has the responses without the border of all section nodes that
-    /// the change touches.
+    /// The answer of the ring whose regular factor is `base`; `table` has the responses without the border of all
+    /// section nodes that the change touches.
     ///
     /// # Panics
     /// When sizes disagree or the table lacks a node.
@@ -135,8 +136,8 @@ impl Defect {
         &self.rows
     }
 
-    /// Iterations that conjugate gradients preconditioned by the regular ring take to reduce the residual to 1e-10 of the first: how
-    /// much the defect disturbs the ring.
+    /// Iterations that conjugate gradients preconditioned by the regular ring take to reduce the residual to 1e-10 of
+    /// the first: how much the defect disturbs the ring.
     pub fn iterations(&self) -> usize {
         self.iterations
     }
@@ -301,7 +302,8 @@ impl BorderColumns {
 }
 
 /// Forces f of the defect by conjugate gradients on the true matrix with the regular ring as preconditioner, from the
-/// displacements `at` of the defect's rows without it; and the number of iterations. `compliance` is G, `change` D, both row-major.
+/// displacements `at` of the defect's rows without it; and the number of iterations. `compliance` is G, `change` D,
+/// both row-major.
 ///
 /// # Panics
 /// When sizes disagree.

@@ -71,10 +71,10 @@ impl CyclicRing {
         self.factor_into(matrix, Hold::Matrix, Vec::new())
     }
 
-    /// Factors the stiffness of a ring that nothing holds, with the least that holds it: springs on the mean axial and
-    /// azimuthal motion of one ring of nodes (harmonic 0), and on its radial and axial motion in harmonic 1. They carry a
-    /// load's resultants and nothing else. So for loads without resultant force and moment the solution is one of
-    /// the ring free in space, exactly; others differ by a rigid motion, which is the caller's to choose.
+    /// Factors the stiffness of a ring that nothing holds, with the least that holds it: springs on the mean axial
+    /// and azimuthal motion of one ring of nodes (harmonic 0), and on its radial and axial motion in harmonic 1. They
+    /// carry a load's resultants and nothing else. So for loads without resultant force and moment the solution is
+    /// one of the ring free in space, exactly; others differ by a rigid motion, which is the caller's to choose.
     pub fn factor_unheld(&self, matrix: &CyclicMatrix) -> Result<CyclicCholesky, SolverError> {
         self.factor_into(matrix, Hold::Springs, Vec::new())
     }
@@ -93,7 +93,8 @@ impl CyclicRing {
         }
     }
 
-    /// Bytes of a factor's values, known before anything is factored: to compare with [`crate::Symbolic::factor_bytes`].
+    /// Bytes of a factor's values, known before anything is factored: to compare with
+    /// [`crate::Symbolic::factor_bytes`].
     pub fn factor_bytes(&self, symmetry: Symmetry) -> usize {
         let group = 9 * symmetry.parts() * LANES * self.shared.rows.n_blocks();
         size_of::<f64>() * group * self.shared.phases.n_groups()
@@ -271,8 +272,8 @@ impl CyclicCholesky {
         self.symmetry
     }
 
-    /// Replaces right-hand sides in harmonic space, `[harmonic_len()]` each, by the solutions; harmonics in parallel. Of a ring that
-    /// ranks share, each solves its own, and one gather per column makes all whole.
+    /// Replaces right-hand sides in harmonic space, `[harmonic_len()]` each, by the solutions; harmonics in parallel.
+    /// Of a ring that ranks share, each solves its own, and one gather per column makes all whole.
     ///
     /// # Panics
     /// When a column has another length.

@@ -1,7 +1,8 @@
 //! Which blocks a factor of a section has: exactly those that elimination makes.
 //!
-//! Column j of the factor couples the nodes that node j is coupled with when it is eliminated: its neighbours and those of the columns
-//! that have j as their first row (George and Liu, *Computer Solution of Large Sparse Positive Definite Systems*, 1981, section 5.2).
+//! Column j of the factor couples the nodes that node j is coupled with when it is eliminated: its neighbours and
+//! those of the columns that have j as their first row (George and Liu, *Computer Solution of Large Sparse Positive
+//! Definite Systems*, 1981, section 5.2).
 
 /// Rows of a block factor: row i has blocks at ascending columns, the last one on the diagonal.
 #[derive(Clone, Debug, PartialEq)]
@@ -13,8 +14,8 @@ pub(crate) struct FactorRows {
     pub(super) memory: Memory,
 }
 
-/// How blocks follow each other in memory, which is read fastest in ascending order: as the sweep meets them that reads them first, before
-/// they are in the cache.
+/// How blocks follow each other in memory, which is read fastest in ascending order: as the sweep meets them that
+/// reads them first, before they are in the cache.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Memory {
     /// Row by row: forwards.

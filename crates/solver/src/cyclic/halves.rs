@@ -1,10 +1,10 @@
 //! Solves in two halves, between which loads on the nodes that trail come in.
 //!
-//! The motion of a raceway under known loads decides the contact forces, and these load the raceway alone. Of a ring whose order ends with
-//! its raceway ([`super::CyclicRing::ending_with`]) the first half, which finishes the raceway, is a forward sweep; contact forces cost a
-//! solve of the raceway's block; the second half is a backward sweep ([`super::sweep`]). So known loads and contact forces
-//! take one solve, not two. The first group of harmonics, which has the border, is solved in full by the first half, as is all of a
-//! ring in another order.
+//! The motion of a raceway under known loads decides the contact forces, and these load the raceway alone. Of a ring
+//! whose order ends with its raceway ([`super::CyclicRing::ending_with`]) the first half, which finishes the raceway,
+//! is a forward sweep; contact forces cost a solve of the raceway's block; the second half is a backward sweep
+//! ([`super::sweep`]). So known loads and contact forces take one solve, not two. The first group of harmonics, which
+//! has the border, is solved in full by the first half, as is all of a ring in another order.
 
 use std::marker::PhantomData;
 
@@ -17,8 +17,8 @@ use super::phases::LANES;
 use super::sweep::{Solve, Sweeps};
 
 impl CyclicBordered {
-    /// Replaces one group's part of a right-hand side, `[low_len()]`, and in the first group the rows of the border, by its half solved
-    /// form: final at the nodes that trail and in the border. Half solved vectors add up.
+    /// Replaces one group's part of a right-hand side, `[low_len()]`, and in the first group the rows of the border,
+    /// by its half solved form: final at the nodes that trail and in the border. Half solved vectors add up.
     ///
     /// # Panics
     /// When a length is another, or ranks share the solves.
@@ -68,8 +68,8 @@ impl CyclicBordered {
         }
     }
 
-    /// Replaces a right-hand side in harmonic space, `[harmonic_len()]`, and the rows of the border by its half solved form; collective
-    /// when ranks share the solves. The bits of [`CyclicBordered::begin_group`].
+    /// Replaces a right-hand side in harmonic space, `[harmonic_len()]`, and the rows of the border by its half
+    /// solved form; collective when ranks share the solves. The bits of [`CyclicBordered::begin_group`].
     ///
     /// # Panics
     /// When a length is another.
@@ -77,8 +77,8 @@ impl CyclicBordered {
         self.halve_harmonic(harmonics, border, Sweeps::Begin);
     }
 
-    /// The same of a right-hand side that is zero but at the nodes that trail, and in the first group anywhere. The bits of
-    /// [`CyclicBordered::begin_trailing_group`].
+    /// The same of a right-hand side that is zero but at the nodes that trail, and in the first group anywhere. The
+    /// bits of [`CyclicBordered::begin_trailing_group`].
     ///
     /// # Panics
     /// When a length is another.

@@ -1,8 +1,8 @@
 //! Block Cholesky factorisation and triangular solves of a group of harmonics, one harmonic per lane.
 //!
-//! L has rows of 3 x 3 blocks ([`super::factor_rows`]); the diagonal holds the inverses of the pivots' roots. Row i of the
-//! factor needs products with earlier rows only. A solve runs forwards and
-//! backwards while the group's factor is still in the cache ([`super::sweep`]).
+//! L has rows of 3 x 3 blocks ([`super::factor_rows`]); the diagonal holds the inverses of the pivots' roots. Row i
+//! of the factor needs products with earlier rows only. A solve runs forwards and backwards while the group's factor
+//! is still in the cache ([`super::sweep`]).
 
 use std::marker::PhantomData;
 
@@ -118,8 +118,8 @@ impl<F: Form> WithSimd for Factorise<'_, F> {
 /// Place of a block that a row lacks.
 const ABSENT: usize = usize::MAX;
 
-/// Blocks (i, j) of the factor, j < i, and the diagonal block less their products, in place of those of the matrix in `row`. `places` is
-/// [`ABSENT`] before and after.
+/// Blocks (i, j) of the factor, j < i, and the diagonal block less their products, in place of those of the matrix in
+/// `row`. `places` is [`ABSENT`] before and after.
 #[inline(always)]
 fn factor_row<S: Simd, N: Number<S>>(
     simd: S,

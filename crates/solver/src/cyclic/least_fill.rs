@@ -1,6 +1,6 @@
-//! Elimination order that makes few new couplings: the next node is always the one that makes the fewest (minimum deficiency; W. F. Tinney
-//! and J. W. Walker, Direct solutions of sparse network equations by optimally ordered triangular factorization, Proceedings of the
-//! IEEE 55, 1967, 1801-1809, doi:10.1109/PROC.1967.6011).
+//! Elimination order that makes few new couplings: the next node is always the one that makes the fewest (minimum
+//! deficiency; W. F. Tinney and J. W. Walker, Direct solutions of sparse network equations by optimally ordered
+//! triangular factorization, Proceedings of the IEEE 55, 1967, 1801-1809, doi:10.1109/PROC.1967.6011).
 //!
 //! Cost: of n nodes with fronts of f nodes about n f^2 / 64 words of n bits; memory n^2 bits.
 

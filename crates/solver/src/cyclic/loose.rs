@@ -1,8 +1,8 @@
 //! Rows that a ring has and its regular ring lacks, such as nodes that are free where most sectors are held.
 //!
-//! With b these rows and t their neighbours the matrix is [A_tt A_tb; A_bt A_bb]. b is eliminated first: the ring gets the loads
-//! f_t - A_tb A_bb^-1 f_b, its change has -A_tb A_bb^-1 A_bt more, and x_b = A_bb^-1 (f_b - A_bt x_t) follows. Cost: m^2 + 2 m n for m
-//! rows and n neighbours.
+//! With b these rows and t their neighbours the matrix is [A_tt A_tb; A_bt A_bb]. b is eliminated first: the ring
+//! gets the loads f_t - A_tb A_bb^-1 f_b, its change has -A_tb A_bb^-1 A_bt more, and x_b = A_bb^-1 (f_b - A_bt x_t)
+//! follows. Cost: m^2 + 2 m n for m rows and n neighbours.
 
 use dense::DenseCholesky;
 

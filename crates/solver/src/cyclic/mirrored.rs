@@ -1,14 +1,14 @@
 //! Products with matrices whose section is its own mirror image: half the multiplications.
 //!
-//! The blocks at the steps q and -q are then each other's images, `C(-q) = S C(q) S`, S = diag(1, -1, 1), and with the azimuthal
-//! component divided by i the harmonic k of the matrix is real:
+//! The blocks at the steps q and -q are then each other's images, `C(-q) = S C(q) S`, S = diag(1, -1, 1), and with
+//! the azimuthal component divided by i the harmonic k of the matrix is real:
 //! ```text
 //! A_k = sum over |q| of E_q cos(pi k |q| / N) + O_q sin(pi k |q| / N)
 //! ```
-//! E_q holds the entries of C(q) + C(-q) that are even under S (rr, rz, tt, zr, zz), O_q the odd ones of C(q) - C(-q) with the signs
-//! of the division by i (-rt, tr, -zt, tz). Mass couples no axial component with another, so the entries rz, zr, tz, zt may be left out.
-//! Cost: 14 entries per pair of section nodes in place of 27, of mass 8; what two images differ by in rounding is left out, as the
-//! factor does.
+//! E_q holds the entries of C(q) + C(-q) that are even under S (rr, rz, tt, zr, zz), O_q the odd ones of C(q) - C(-q)
+//! with the signs of the division by i (-rt, tr, -zt, tz). Mass couples no axial component with another, so the
+//! entries rz, zr, tz, zt may be left out. Cost: 14 entries per pair of section nodes in place of 27, of mass 8; what
+//! two images differ by in rounding is left out, as the factor does.
 
 use pulp::{Simd, WithSimd};
 
@@ -109,7 +109,8 @@ impl Mirrored {
     }
 }
 
-/// Rank of each place in an order that keeps neighbours together, for the cache: elimination may take nodes from anywhere.
+/// Rank of each place in an order that keeps neighbours together, for the cache: elimination may take nodes from
+/// anywhere.
 fn local_order(shared: &Shared) -> Vec<usize> {
     let neighbours = shared.pattern.neighbours();
     let order = sloan_orders(&neighbours).swap_remove(0);

@@ -1,8 +1,9 @@
-//! A periodic ring's matrix with a border, applied in harmonic space, and what else a state in harmonic space needs: no transform.
+//! A periodic ring's matrix with a border, applied in harmonic space, and what else a state in harmonic space needs:
+//! no transform.
 //!
-//! Vectors hold the harmonics and then the rows of the border, `[harmonic_len() + m]`. The border is that of [`super::border`]: rigid
-//! motions, which are harmonics 0 and 1, so that it touches the first group alone. *Low* vectors hold that group and the border,
-//! `[low_len() + m]`.
+//! Vectors hold the harmonics and then the rows of the border, `[harmonic_len() + m]`. The border is that of
+//! [`super::border`]: rigid motions, which are harmonics 0 and 1, so that it touches the first group alone. *Low*
+//! vectors hold that group and the border, `[low_len() + m]`.
 
 use pulp::Arch;
 use rayon::prelude::*;
@@ -26,8 +27,8 @@ pub struct HarmonicOperator {
 }
 
 impl HarmonicOperator {
-    /// Borders `matrix`, of the couplings of `ring`, with B, nodal, column-major `[n][m]`, of which the first group of harmonics counts,
-    /// and D, row-major `[m][m]`.
+    /// Borders `matrix`, of the couplings of `ring`, with B, nodal, column-major `[n][m]`, of which the first group
+    /// of harmonics counts, and D, row-major `[m][m]`.
     ///
     /// # Panics
     /// When the sizes disagree.
@@ -81,8 +82,8 @@ impl HarmonicOperator {
         y
     }
 
-    /// Overwrites one group's part of a product, `[low_len()]`, of the first group with the border, a low vector: what a pass over the
-    /// groups does while they are in the cache.
+    /// Overwrites one group's part of a product, `[low_len()]`, of the first group with the border, a low vector:
+    /// what a pass over the groups does while they are in the cache.
     ///
     /// # Panics
     /// When a length is another.
@@ -129,7 +130,8 @@ impl CyclicRing {
         self.group_len().min(self.harmonic_len())
     }
 
-    /// The low vector of the nodal vector `nodal` (Cartesian, `[n]`), which is of harmonics 0 and 1, and of the border's rows `border`.
+    /// The low vector of the nodal vector `nodal` (Cartesian, `[n]`), which is of harmonics 0 and 1, and of the
+    /// border's rows `border`.
     ///
     /// # Panics
     /// When the length is another.
@@ -142,8 +144,8 @@ impl CyclicRing {
     }
 }
 
-/// The field at a section node in harmonic space with the radial and azimuthal components of x, and those of z turned by a right angle
-/// about the axis, e_z x z.
+/// The field at a section node in harmonic space with the radial and azimuthal components of x, and those of z turned
+/// by a right angle about the axis, e_z x z.
 pub fn turned(x: &[f64; NODE_LEN], z: &[f64; NODE_LEN]) -> [f64; NODE_LEN] {
     let mut y = [0.0; NODE_LEN];
     for lane in 0..LANES {

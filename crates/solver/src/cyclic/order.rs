@@ -1,10 +1,10 @@
 //! Elimination order of a section's nodes: of several, the one whose factor has the fewest blocks.
 //!
-//! Every solve reads each block twice, so blocks count, not the operations of the factorisation. Orders are Sloan's ([`super::sloan`]),
-//! in which neighbours stand together: products and stress at the nodes run through the nodes in that order, and orders of least fill
-//! would make them 1.3 to 1.9 times as slow for 0 to 7 % fewer blocks. Where nodes are to come last, in motion, orders of least
-//! fill ([`super::least_fill`]) are tried as well: a line of nodes along the longer side then costs 6 % more blocks of 19 by 9 nodes and
-//! 45 % of 21 by 4.
+//! Every solve reads each block twice, so blocks count, not the operations of the factorisation. Orders are Sloan's
+//! ([`super::sloan`]), in which neighbours stand together: products and stress at the nodes run through the nodes in
+//! that order, and orders of least fill would make them 1.3 to 1.9 times as slow for 0 to 7 % fewer blocks. Where
+//! nodes are to come last, in motion, orders of least fill ([`super::least_fill`]) are tried as well: a line of nodes
+//! along the longer side then costs 6 % more blocks of 19 by 9 nodes and 45 % of 21 by 4.
 
 use super::factor_rows::{FactorRows, Memory};
 use super::least_fill::least_fill;
@@ -16,8 +16,9 @@ const TRIES: u64 = 4;
 /// Largest section, nodes, for which it is sought: half a second.
 const MOST_NODES: usize = 3000;
 
-/// The best order found, in which the nodes `last` come after all others, and the rows of its factor. `neighbours[a]` lists the nodes
-/// coupled with node a. With nodes that come last, whose solves are in two halves, the backward sweep reads the factor from memory.
+/// The best order found, in which the nodes `last` come after all others, and the rows of its factor. `neighbours[a]`
+/// lists the nodes coupled with node a. With nodes that come last, whose solves are in two halves, the backward sweep
+/// reads the factor from memory.
 pub(crate) fn ordered(neighbours: &[Vec<usize>], last: &[usize]) -> (Vec<usize>, FactorRows) {
     let mut is_last = vec![false; neighbours.len()];
     last.iter().for_each(|&node| is_last[node] = true);
@@ -77,8 +78,8 @@ mod tests {
         }
     }
 
-    /// Wrong: a raceway whose nodes come last would cost more than the solve that it saves, half of all blocks; or a node of it would
-    /// not come last.
+    /// Wrong: a raceway whose nodes come last would cost more than the solve that it saves, half of all blocks; or a
+    /// node of it would not come last.
     #[test]
     fn a_line_along_the_longer_side_that_comes_last_costs_little() {
         for (n, m, of_raceway, most) in [(21, 4, 3..18, 1.5), (19, 9, 3..16, 1.1), (26, 11, 4..22, 1.1)] {

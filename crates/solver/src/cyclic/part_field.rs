@@ -1,6 +1,8 @@
-//! Loads and displacements of all nodes of a few section nodes, such as those of the raceway, without a vector of the whole ring.
+//! Loads and displacements of all nodes of a few section nodes, such as those of the raceway, without a vector of the
+//! whole ring.
 //!
-//! Cost: three FFTs of length N per section node that is asked for or loaded; memory `[n_section_nodes of the part][3][N]`.
+//! Cost: three FFTs of length N per section node that is asked for or loaded; memory
+//! `[n_section_nodes of the part][3][N]`.
 
 use rayon::prelude::*;
 

@@ -1,15 +1,17 @@
-//! Nodal weights of a patch in the table of responses, and the compliance between two patches by the processor's vectors.
+//! Nodal weights of a patch in the table of responses, and the compliance between two patches by the processor's
+//! vectors.
 //!
-//! For each sector t of the loaded patch, z_p = `sum over s of G_{s-t}^T w_p` of both directions p of the moved patch stays in
-//! registers while the rows of the responses are read one after the other; then it meets the weights v_q once. So a number of the
-//! table serves two products, and vectors are summed across once per sector.
+//! For each sector t of the loaded patch, z_p = `sum over s of G_{s-t}^T w_p` of both directions p of the moved patch
+//! stays in registers while the rows of the responses are read one after the other; then it meets the weights v_q
+//! once. So a number of the table serves two products, and vectors are summed across once per sector.
 
 use std::ops::Range;
 
 use pulp::{Simd, WithSimd};
 
-/// Most vectors of a row that are read together. With two sums of each, the weights and the row they fit into the 16 registers of
-/// AVX2, and eight sums at a time hide how long an addition takes; narrower windows sum several rows apart.
+/// Most vectors of a row that are read together. With two sums of each, the weights and the row they fit into the 16
+/// registers of AVX2, and eight sums at a time hide how long an addition takes; narrower windows sum several rows
+/// apart.
 const WIDEST: usize = 4;
 /// Numbers in the longest vector.
 const LONGEST: usize = 8;
@@ -76,8 +78,8 @@ pub(super) struct Compliance<'a> {
 }
 
 impl Compliance<'_> {
-    /// What the force of `b` on V vectors of dofs from `first` on of a sector moves, with the weights `v` of two directions. U rows
-    /// are summed apart.
+    /// What the force of `b` on V vectors of dofs from `first` on of a sector moves, with the weights `v` of two
+    /// directions. U rows are summed apart.
     #[inline(always)]
     fn window<S: Simd, const V: usize, const U: usize>(
         &self,

@@ -2,11 +2,13 @@
 
 use std::f64::consts::PI;
 
-/// Harmonics treated together: one AVX2 vector. Eight, in two such vectors or in one of AVX-512, took 14-40 % longer per
-/// solve on rings of 150 k and 410 k dof (AMD EPYC 9004, November 2026): the factor of a group then leaves the L2 cache.
+/// Harmonics treated together: one AVX2 vector. Eight, in two such vectors or in one of AVX-512, took 14-40 % longer
+/// per solve on rings of 150 k and 410 k dof (AMD EPYC 9004, November 2026): the factor of a group then leaves the L2
+/// cache.
 pub(crate) const LANES: usize = 4;
 
-/// Numbers of one section node in a group's part of a vector: real and imaginary parts of three components, `[3][2][LANES]`.
+/// Numbers of one section node in a group's part of a vector: real and imaginary parts of three components,
+/// `[3][2][LANES]`.
 pub const NODE_LEN: usize = 6 * LANES;
 
 /// One number per harmonic of a group.

@@ -1,12 +1,11 @@
 //! Responses of chosen section nodes to unit loads at the same nodes of one sector; by rotation, to loads anywhere.
 //!
-//! G_d, d = 0..N, is the displacement of the chosen nodes of sector d under unit forces (radial, azimuthal, axial) on those
-//! of sector 0. The compliance between two patches of nodal weights w and v is then
+//! G_d, d = 0..N, is the displacement of the chosen nodes of sector d under unit forces (radial, azimuthal, axial) on
+//! those of sector 0. The compliance between two patches of nodal weights w and v is then
 //! `sum over p, q of w_p^T G_{s_p - s_q} v_q`: small products in place of solves.
 //!
-//! Cost: 3 n solves in harmonic space, of that part of the factor which begins with the first chosen node, and 9 n^2 inverse FFTs for
-//! n chosen nodes. Memory: 9 N n^2 numbers, 5 MB for 10 nodes
-//! and 720 sectors.
+//! Cost: 3 n solves in harmonic space, of that part of the factor which begins with the first chosen node, and 9 n^2
+//! inverse FFTs for n chosen nodes. Memory: 9 N n^2 numbers, 5 MB for 10 nodes and 720 sectors.
 
 use pulp::Arch;
 use rayon::prelude::*;
@@ -142,7 +141,8 @@ impl ResponseTable {
         std::array::from_fn(entry)
     }
 
-    /// Displacement of row `row` per force on row `column`, m/N; rows of the caller's Cartesian vectors, of chosen nodes.
+    /// Displacement of row `row` per force on row `column`, m/N; rows of the caller's Cartesian vectors, of chosen
+    /// nodes.
     ///
     /// # Panics
     /// When a node is not chosen.

@@ -76,8 +76,8 @@ pub(crate) struct Link {
 impl CyclicRing {
     /// A ring with the couplings of `matrix`. `nodes` is the caller's node at each (sector, section node),
     /// `[n_sectors][n_section_nodes]` flat, each node once; `directions` the (cos, sin) of the azimuth of each of the
-    /// caller's nodes; `half_way` says which section nodes lie half a sector beyond the plane of the others, `None` when
-    /// nodes lie anywhere. Finds the elimination order; no number is factored.
+    /// caller's nodes; `half_way` says which section nodes lie half a sector beyond the plane of the others, `None`
+    /// when nodes lie anywhere. Finds the elimination order; no number is factored.
     ///
     /// # Panics
     /// When the lengths disagree.
@@ -150,9 +150,10 @@ impl CyclicRing {
         })
     }
 
-    /// The same ring in an order that ends with the section nodes `last` (distinct): loads on them can then be added to a solve between its
-    /// forward and its backward sweep ([`super::CyclicBordered::begin_group`]). Vectors in harmonic space have another order. None: as
-    /// [`CyclicRing::new`] makes it. Not for a ring [`CyclicRing::seen_at`] some of its nodes.
+    /// The same ring in an order that ends with the section nodes `last` (distinct): loads on them can then be added
+    /// to a solve between its forward and its backward sweep ([`super::CyclicBordered::begin_group`]). Vectors in
+    /// harmonic space have another order. None: as [`CyclicRing::new`] makes it. Not for a ring
+    /// [`CyclicRing::seen_at`] some of its nodes.
     ///
     /// # Panics
     /// When a section node does not exist or comes twice, or a node of the ring is not seen.
@@ -182,8 +183,8 @@ impl CyclicRing {
         if group == 0 { 0 } else { self.shared.trailing }
     }
 
-    /// The ring whose groups of harmonics are dealt out to the ranks of `comm`, in equal runs: each factors and solves its own. Vectors
-    /// are whole on all ranks, so factors and solves are collective then.
+    /// The ring whose groups of harmonics are dealt out to the ranks of `comm`, in equal runs: each factors and
+    /// solves its own. Vectors are whole on all ranks, so factors and solves are collective then.
     pub fn shared_by(self, comm: Communicator) -> CyclicRing {
         CyclicRing { comm, ..self }
     }
@@ -225,8 +226,9 @@ impl CyclicRing {
         Ok(CyclicRing::new(matrix, &nodes, &directions, half_way)?.shared_by(self.comm))
     }
 
-    /// The same ring for vectors that hold the caller's nodes `nodes` (ascending) alone, in this order. The other nodes are there and
-    /// move, but nothing loads or measures them. `None` is a node that the ring lacks: it bears no load and does not move.
+    /// The same ring for vectors that hold the caller's nodes `nodes` (ascending) alone, in this order. The other
+    /// nodes are there and move, but nothing loads or measures them. `None` is a node that the ring lacks: it bears
+    /// no load and does not move.
     ///
     /// # Panics
     /// When `nodes` is not ascending or names a node outside.

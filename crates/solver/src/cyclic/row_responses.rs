@@ -1,9 +1,10 @@
 //! Displacements of a few rows, such as those of a defect, under unit loads on patches of the raceway.
 //!
-//! As in [`super::ResponseTable`] the responses depend on how many sectors row and load are apart. The displacements of all components
-//! that any of the rows needs stand next to each other for each loaded dof, so that a patch takes long sums of neighbours: per patch
-//! and sector with rows one product of its weights with a block `[weights][components]`. Cost: 2 multiplications and additions per weight,
-//! sector and component; memory 9 N n m numbers for n section nodes of the raceway and m of the rows.
+//! As in [`super::ResponseTable`] the responses depend on how many sectors row and load are apart. The displacements
+//! of all components that any of the rows needs stand next to each other for each loaded dof, so that a patch takes
+//! long sums of neighbours: per patch and sector with rows one product of its weights with a block
+//! `[weights][components]`. Cost: 2 multiplications and additions per weight, sector and component; memory 9 N n m
+//! numbers for n section nodes of the raceway and m of the rows.
 
 use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
@@ -82,8 +83,8 @@ impl RowResponses {
         }
     }
 
-    /// Displacements of the rows per force on each patch in its two directions, m/N, row-major `[n_rows][2 n_patches]`. The patches are those of
-    /// [`ResponseTable::first`].
+    /// Displacements of the rows per force on each patch in its two directions, m/N, row-major
+    /// `[n_rows][2 n_patches]`. The patches are those of [`ResponseTable::first`].
     pub fn of_patches(&self, patches: &[Patch]) -> Vec<f64> {
         let of_patch = |patch: &Patch| Arch::new().dispatch(Measure { table: self, patch });
         let columns: Vec<Vec<[f64; 2]>> = patches.par_iter().map(of_patch).collect();

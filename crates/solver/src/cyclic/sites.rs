@@ -1,6 +1,7 @@
 //! Loads and displacements of single nodes in harmonic space, without transforming the whole field.
 //!
-//! Cost: N/2 + 1 harmonics for each node, three components; for a few hundred nodes less than one transform of the field.
+//! Cost: N/2 + 1 harmonics for each node, three components; for a few hundred nodes less than one transform of the
+//! field.
 
 use rayon::prelude::*;
 

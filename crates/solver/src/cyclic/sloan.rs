@@ -1,9 +1,9 @@
 //! Elimination orders of a section's nodes that keep the front short.
 //!
-//! Sloan's algorithm (S. W. Sloan, A FORTRAN program for profile and wavefront reduction, International Journal
-//! for Numerical Methods in Engineering 28, 1989, 2651-2679, doi:10.1002/nme.1620281111), from several ends and forwards
-//! and backwards. On a grid of n by m nodes it is about as good as counting across the shorter side. Time: rows times width of
-//! the front.
+//! Sloan's algorithm (S. W. Sloan, A FORTRAN program for profile and wavefront reduction, International Journal for
+//! Numerical Methods in Engineering 28, 1989, 2651-2679, doi:10.1002/nme.1620281111), from several ends and forwards
+//! and backwards. On a grid of n by m nodes it is about as good as counting across the shorter side. Time: rows times
+//! width of the front.
 
 use std::collections::VecDeque;
 

@@ -1,12 +1,13 @@
 //! Products of block-circulant operators with nodal vectors, all sectors of a node at a time.
 //!
-//! An operator with R = 3 or 6 rows per node, such as a stiffness or the stress at the nodes, has the same R x 3 blocks in
-//! every sector: `(A u)_{s,a} = sum over couplings (a, b, d) of C_abd u_{s+d,b}`. With the values of a node's component in all
-//! sectors next to each other, a *line*, the sum runs over whole vectors of the processor, with one weight for all sectors.
+//! An operator with R = 3 or 6 rows per node, such as a stiffness or the stress at the nodes, has the same R x 3
+//! blocks in every sector: `(A u)_{s,a} = sum over couplings (a, b, d) of C_abd u_{s+d,b}`. With the values of a
+//! node's component in all sectors next to each other, a *line*, the sum runs over whole vectors of the processor,
+//! with one weight for all sectors.
 //!
-//! *Lines*: `[n_section_nodes][3 or R][stride]`, section nodes in elimination order, components (radial, azimuthal, axial),
-//! then sectors. A line of displacements begins with the values of the last sectors and ends with those of the first, as
-//! many as couplings reach, so that no sum wraps round.
+//! *Lines*: `[n_section_nodes][3 or R][stride]`, section nodes in elimination order, components (radial, azimuthal,
+//! axial), then sectors. A line of displacements begins with the values of the last sectors and ends with those of
+//! the first, as many as couplings reach, so that no sum wraps round.
 //!
 //! Cost: 3 R multiplications and additions per coupling and sector; the blocks of one sector stay in the cache.
 
@@ -53,8 +54,8 @@ struct Term {
 }
 
 impl CyclicRing {
-    /// The operator with the given blocks, row-major `[n_couplings][rows][3]`, rows 3 or 6. No coupling may reach farther than
-    /// those of the ring.
+    /// The operator with the given blocks, row-major `[n_couplings][rows][3]`, rows 3 or 6. No coupling may reach
+    /// farther than those of the ring.
     ///
     /// # Panics
     /// When the lengths disagree, rows are neither 3 nor 6, or a coupling reaches too far.
@@ -170,8 +171,8 @@ impl CyclicRing {
         });
     }
 
-    /// Gives each node's numbers, `per_node` of them, its values in `lines` and its direction (cos, sin). The first three
-    /// values are given for vectors; tensors ask for all with `R` = 6.
+    /// Gives each node's numbers, `per_node` of them, its values in `lines` and its direction (cos, sin). The first
+    /// three values are given for vectors; tensors ask for all with `R` = 6.
     fn for_each_node<const R: usize>(
         &self,
         lines: &[f64],
@@ -279,8 +280,8 @@ impl CyclicStencil {
             .sum()
     }
 
-    /// Tensors of the nodes in Cartesian components, order xx yy zz xy yz xz, from the operator's six rows in the order rr
-    /// tt zz rt tz rz, for displacements `x` (Cartesian, `[n]`).
+    /// Tensors of the nodes in Cartesian components, order xx yy zz xy yz xz, from the operator's six rows in the
+    /// order rr tt zz rt tz rz, for displacements `x` (Cartesian, `[n]`).
     ///
     /// # Panics
     /// When the operator has three rows, or the lengths are others.

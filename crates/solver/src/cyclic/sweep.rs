@@ -5,10 +5,10 @@
 //! [L_11      ]        [r_1]
 //! [L_21  L_22],  r =  [r_2],  z = L^-1 r,  x_2 = L_22^-H z_2,  x_1 = L_11^-H (z_1 - L_21^H x_2)
 //! ```
-//! *Half solved* is (z_1, x_2): a forward sweep and the trailing block finish the nodes that trail, and a backward sweep finishes the
-//! others. Of a right-hand side that is zero where nodes lead z_1 = 0, so that its half takes the trailing block alone. Half solved
-//! vectors add up. So loads that are known early and loads on trailing nodes, which depend on the motion there under the first, take one
-//! forward and one backward sweep together.
+//! *Half solved* is (z_1, x_2): a forward sweep and the trailing block finish the nodes that trail, and a backward
+//! sweep finishes the others. Of a right-hand side that is zero where nodes lead z_1 = 0, so that its half takes the
+//! trailing block alone. Half solved vectors add up. So loads that are known early and loads on trailing nodes, which
+//! depend on the motion there under the first, take one forward and one backward sweep together.
 
 use std::marker::PhantomData;
 

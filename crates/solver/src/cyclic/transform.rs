@@ -5,8 +5,8 @@
 //! ```text
 //! w_{k,a} = D^H sum over s of u_{s,a} exp(-2 pi i k (s + o_a) / N),    D = diag(1, i, 1),    k = 0..=N/2
 //! ```
-//! The phase of each node's own azimuth and the factor i of the azimuthal component make the harmonics of a section that
-//! is its own mirror image real. Cost: one real FFT of length N per dof of the section.
+//! The phase of each node's own azimuth and the factor i of the azimuthal component make the harmonics of a section
+//! that is its own mirror image real. Cost: one real FFT of length N per dof of the section.
 
 use std::sync::Arc;
 
@@ -317,8 +317,8 @@ pub(super) fn restore_line(
         .expect("the lengths are those of the plan");
 }
 
-/// Writes the harmonics of the nodes at `places` into a group's part of a vector, `[n_section_nodes][3][2][LANES]`, from
-/// their spectra.
+/// Writes the harmonics of the nodes at `places` into a group's part of a vector, `[n_section_nodes][3][2][LANES]`,
+/// from their spectra.
 pub(super) fn collect_group(
     group: usize,
     n_harmonics: usize,

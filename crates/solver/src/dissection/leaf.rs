@@ -1,7 +1,8 @@
 //! Minimum-degree order of a small part, counting the separator nodes around it.
 //!
 //! Exact degrees on bit sets: the neighbours of an eliminated node become a clique. Nodes already placed (the halo)
-//! are eliminated later, so they count as neighbours and are never candidates. Time O(n_nodes^2 (n_nodes + n_halo) / 64).
+//! are eliminated later, so they count as neighbours and are never candidates. Time O(n_nodes^2 (n_nodes + n_halo) /
+//! 64).
 
 use super::part::Part;
 

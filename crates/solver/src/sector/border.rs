@@ -1,4 +1,5 @@
-//! A ring in sectors whose held nodes follow a rigid partner: a border of a few rows, next to nothing of it beside the sectors.
+//! A ring in sectors whose held nodes follow a rigid partner: a border of a few rows, next to nothing of it beside
+//! the sectors.
 //!
 //! The block elimination of [`crate::bordered`], with Z = A^-1 B left by sector and B sparse:
 //! `y = C^-1 (g - B^T A^-1 f)`, `x = A^-1 f - Z y`. All functions are collective.
@@ -32,8 +33,8 @@ pub struct BorderedColumns {
 }
 
 impl SectorBordered {
-    /// Borders the matrix A of `inner` with the columns B and the symmetric D, row-major `[m][m]`, of which the lower triangle
-    /// counts. Errors name rows of the whole, those of the border from n on.
+    /// Borders the matrix A of `inner` with the columns B and the symmetric D, row-major `[m][m]`, of which the lower
+    /// triangle counts. Errors name rows of the whole, those of the border from n on.
     ///
     /// # Panics
     /// When the sizes disagree.

@@ -1,7 +1,9 @@
-//! Solutions of many right-hand sides that stay where they are: each rank has those of its sectors, all have the interface.
+//! Solutions of many right-hand sides that stay where they are: each rank has those of its sectors, all have the
+//! interface.
 //!
-//! What leaves a rank are values at a few rows, and sums of all solutions, one vector instead of one per right-hand side.
-//! Memory: one number per row of the sectors owned and right-hand side, and of the interface. All functions are collective.
+//! What leaves a rank are values at a few rows, and sums of all solutions, one vector instead of one per right-hand
+//! side. Memory: one number per row of the sectors owned and right-hand side, and of the interface. All functions are
+//! collective.
 
 use std::sync::Arc;
 

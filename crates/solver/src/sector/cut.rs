@@ -1,9 +1,10 @@
 //! Where a ring is cut into sectors: near equal shares of the work, through as few nodes as possible.
 //!
-//! Elements are sorted by the azimuth of their centroids; a sector is a run of them. A run of layers with m nodes in a cross-section
-//! has O(m^2) entries of the factor per layer, that is O(m) per element: an element's work is taken as the number of nodes across the ring
-//! where it stands. Where layers are alike these are equal numbers of elements. Each cut is sought within a quarter of a share around
-//! its place for equal work, so that a layered mesh is cut between layers whatever their number. Time O(n_elements log n_elements).
+//! Elements are sorted by the azimuth of their centroids; a sector is a run of them. A run of layers with m nodes in
+//! a cross-section has O(m^2) entries of the factor per layer, that is O(m) per element: an element's work is taken
+//! as the number of nodes across the ring where it stands. Where layers are alike these are equal numbers of
+//! elements. Each cut is sought within a quarter of a share around its place for equal work, so that a layered mesh
+//! is cut between layers whatever their number. Time O(n_elements log n_elements).
 
 /// Sector of each element, `[n_elements]`, 0 to `n_sectors - 1` round the ring. Other arguments as
 /// [`crate::angular_dissection`]; `n_sectors` is at most the number of elements.
@@ -51,8 +52,8 @@ fn by_azimuth(points: &[[f64; 3]], elements: &[usize], nodes_per_element: usize)
 /// Azimuths nearer than this, rad, are the same but for round-off.
 const SAME_AZIMUTH: f64 = 1e-9;
 
-/// Work of each element by position, `[n_elements]`: the number of nodes across the ring in front of all elements of its azimuth, whose
-/// order among themselves is a matter of round-off.
+/// Work of each element by position, `[n_elements]`: the number of nodes across the ring in front of all elements of
+/// its azimuth, whose order among themselves is a matter of round-off.
 fn work(crossing: &[usize], azimuths: &[f64]) -> Vec<usize> {
     let n = crossing.len();
     let begins = |&p: &usize| {

@@ -41,8 +41,9 @@ pub struct SectorCholesky {
 }
 
 impl SectorSymbolic {
-    /// Analyses a ring. `points`, `elements` and `nodes_per_element` are those of the layout, at least of the sectors of this rank; `matrix(s)` has the pattern of the
-    /// own matrix of sector s, all dofs of its nodes, and is asked for the sectors of this rank only. Collective.
+    /// Analyses a ring. `points`, `elements` and `nodes_per_element` are those of the layout, at least of the sectors
+    /// of this rank; `matrix(s)` has the pattern of the own matrix of sector s, all dofs of its nodes, and is asked
+    /// for the sectors of this rank only. Collective.
     pub fn new<'m>(
         layout: SectorLayout,
         comm: Communicator,

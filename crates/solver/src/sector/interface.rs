@@ -1,8 +1,8 @@
 //! The matrix of the interface: the sum of the sectors' Schur complements, block cyclic tridiagonal, and its factor.
 //!
-//! Few sectors: all ranks hold and solve all of it, which takes one message. From [`REDUCED_FROM`] sectors on it would be most of
-//! what a rank holds and does, and cross-sections are divided among the ranks ([`super::reduction`]). The number of
-//! sectors decides, not that of the ranks, so that the bits stay.
+//! Few sectors: all ranks hold and solve all of it, which takes one message. From [`REDUCED_FROM`] sectors on it
+//! would be most of what a rank holds and does, and cross-sections are divided among the ranks
+//! ([`super::reduction`]). The number of sectors decides, not that of the ranks, so that the bits stay.
 
 use comm::Communicator;
 use sprs::CsMat;
@@ -71,7 +71,8 @@ impl InterfaceSymbolic {
         }
     }
 
-    /// Factors the sum of the complements of all sectors, added in their order; given are those of the sectors owned. Collective.
+    /// Factors the sum of the complements of all sectors, added in their order; given are those of the sectors owned.
+    /// Collective.
     pub(super) fn factor(
         &self,
         layout: &SectorLayout,

@@ -1,11 +1,12 @@
 //! Triangular solves of one right-hand side with one strip of a panel.
 //!
-//! A strip is column-major `[width][height]`, a lower trapezoid. Forwards it is read column by column from its first entry to its
-//! last, backwards from its last to its first: memory comes fastest in one stream, up or down alike, and each entry is read
-//! once. Four or eight columns side by side, or columns backwards with their rows forwards, take two to three times as long
-//! when columns are shorter than 300 rows.
+//! A strip is column-major `[width][height]`, a lower trapezoid. Forwards it is read column by column from its first
+//! entry to its last, backwards from its last to its first: memory comes fastest in one stream, up or down alike, and
+//! each entry is read once. Four or eight columns side by side, or columns backwards with their rows forwards, take
+//! two to three times as long when columns are shorter than 300 rows.
 //!
-//! Products and sums are not fused, and sums run in eight lanes whatever the processor has, so that the bits do not depend on it.
+//! Products and sums are not fused, and sums run in eight lanes whatever the processor has, so that the bits do not
+//! depend on it.
 
 /// Partial sums of a scalar product.
 const LANES: usize = 8;

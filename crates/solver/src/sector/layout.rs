@@ -1,7 +1,7 @@
 //! Which elements, nodes and rows belong to which sector, and the order of the interface.
 //!
-//! Every rank knows the nodes of all sectors, 4 bytes each, the owner of each row, 4 bytes, and the interface; rows and elements of its own
-//! sectors only.
+//! Every rank knows the nodes of all sectors, 4 bytes each, the owner of each row, 4 bytes, and the interface; rows
+//! and elements of its own sectors only.
 
 use std::ops::Range;
 use std::sync::Arc;
@@ -63,8 +63,9 @@ pub(super) enum Place {
     Shared(usize),
 }
 
-/// Number of sectors for a ring of `n_dofs` dofs: enough to keep a node's cores busy, few enough that the interface stays
-/// a few per cent of the factor. It depends on nothing but the ring, because results depend on it in their last bits.
+/// Number of sectors for a ring of `n_dofs` dofs: enough to keep a node's cores busy, few enough that the interface
+/// stays a few per cent of the factor. It depends on nothing but the ring, because results depend on it in their last
+/// bits.
 pub fn default_sectors(n_dofs: usize) -> usize {
     match n_dofs {
         0..5_000 => 2,
@@ -120,8 +121,8 @@ impl SectorLayout {
         Ok(SectorLayout::of(cut, points.len(), free, 0..n_sectors))
     }
 
-    /// Rows of a ring of `n_nodes` nodes that was cut; `free` are the dofs (3 * node + component) that have a row, ascending, `kept` the
-    /// sectors whose rows are listed.
+    /// Rows of a ring of `n_nodes` nodes that was cut; `free` are the dofs (3 * node + component) that have a row,
+    /// ascending, `kept` the sectors whose rows are listed.
     ///
     /// # Panics
     /// When a node is in no sector.
@@ -178,7 +179,8 @@ impl SectorLayout {
         &self.nodes
     }
 
-    /// Goes through all rows, ascending, with their places in the interface or among the inner rows of all sectors, one after the other.
+    /// Goes through all rows, ascending, with their places in the interface or among the inner rows of all sectors,
+    /// one after the other.
     pub(super) fn each_row(&self, mut put: impl FnMut(usize, Place)) {
         let mut next: Vec<usize> = Vec::with_capacity(self.sectors.len());
         let mut first = 0;
@@ -349,7 +351,8 @@ fn sectors_of_nodes(n_nodes: usize, nodes: &[Vec<u32>]) -> Vec<[u32; 2]> {
     of_node
 }
 
-/// Cross-sections and their nodes in the order of cyclic reduction; number n_sectors are the nodes of more than two sectors.
+/// Cross-sections and their nodes in the order of cyclic reduction; number n_sectors are the nodes of more than two
+/// sectors.
 fn interface_order(of_node: &[[u32; 2]], n_sectors: usize) -> Vec<(usize, Vec<u32>)> {
     // Cross-section s lies behind sector s.
     let mut sections = vec![Vec::new(); n_sectors + 1];
@@ -370,8 +373,8 @@ fn interface_order(of_node: &[[u32; 2]], n_sectors: usize) -> Vec<(usize, Vec<u3
         .collect()
 }
 
-/// Cyclic reduction of `n` things round a circle: every second one, then every second one of those that stay, until one is
-/// left. Things of one level are not neighbours.
+/// Cyclic reduction of `n` things round a circle: every second one, then every second one of those that stay, until
+/// one is left. Things of one level are not neighbours.
 pub(super) fn reduction(n: usize) -> Vec<Vec<usize>> {
     let mut levels = Vec::new();
     let mut stay: Vec<usize> = (0..n).collect();

@@ -1,11 +1,12 @@
-//! The columns of a factor that belong to a sector's interior, as dense panels, and the two triangular sweeps over them.
+//! The columns of a factor that belong to a sector's interior, as dense panels, and the two triangular sweeps over
+//! them.
 //!
-//! Places 0..n_interior are the interior in elimination order, the rest the boundary. faer's own solver runs forwards and
-//! backwards in one call; here the interface comes between. One right-hand side is bound by memory and has its own
-//! kernel; for several, faer multiplies dense blocks.
+//! Places 0..n_interior are the interior in elimination order, the rest the boundary. faer's own solver runs forwards
+//! and backwards in one call; here the interface comes between. One right-hand side is bound by memory and has its
+//! own kernel; for several, faer multiplies dense blocks.
 //!
-//! A panel is stored in *strips* of [`STRIP`] columns, each without the rows above its first: sweeps read next to nothing
-//! but entries of L, in one stream.
+//! A panel is stored in *strips* of [`STRIP`] columns, each without the rows above its first: sweeps read next to
+//! nothing but entries of L, in one stream.
 
 use faer::linalg::matmul::matmul;
 use faer::linalg::triangular_solve::{solve_lower_triangular_in_place, solve_upper_triangular_in_place};
@@ -59,8 +60,8 @@ fn strips(width: usize) -> impl DoubleEndedIterator<Item = (usize, usize)> {
 }
 
 impl Panels {
-    /// Takes the columns before `n_interior` from a supernodal factor; `values` is what faer's layout says, column-major
-    /// `[width][height]` for each supernode.
+    /// Takes the columns before `n_interior` from a supernodal factor; `values` is what faer's layout says,
+    /// column-major `[width][height]` for each supernode.
     pub(super) fn new(
         supernodal: &SymbolicSupernodalCholesky<usize>,
         mut values: Vec<f64>,
@@ -111,7 +112,8 @@ impl Panels {
         size_of::<f64>() * self.values.capacity()
     }
 
-    /// `[y; g] = [L^-1 f; g - F L^-1 f]`, row-major `[places][n_rhs]`. Panels that the right-hand sides do not touch are not read.
+    /// `[y; g] = [L^-1 f; g - F L^-1 f]`, row-major `[places][n_rhs]`. Panels that the right-hand sides do not touch
+    /// are not read.
     pub(super) fn forward(&self, x: &mut [f64], n_rhs: usize) {
         let mut buffer = vec![0.0; self.tallest * n_rhs];
         if n_rhs == 1 {
@@ -255,8 +257,8 @@ impl<'a> Strip<'a> {
     }
 }
 
-/// A sweep over one right-hand side, compiled for the vectors of the processor: panels, right-hand side by places, buffer. A
-/// closure would be compiled for the oldest processor.
+/// A sweep over one right-hand side, compiled for the vectors of the processor: panels, right-hand side by places,
+/// buffer. A closure would be compiled for the oldest processor.
 struct Forward<'a>(&'a Panels, &'a mut [f64], &'a mut [f64]);
 struct Backward<'a>(&'a Panels, &'a mut [f64], &'a mut [f64]);
 

@@ -102,7 +102,8 @@ impl PartSymbolic {
         }
     }
 
-    /// Factors the sector's own matrix. Returns the factor and the Schur complement on the boundary, its lower triangle by rows.
+    /// Factors the sector's own matrix. Returns the factor and the Schur complement on the boundary, its lower
+    /// triangle by rows.
     pub(super) fn factor(
         &self,
         sector: &Sector,

@@ -1,4 +1,5 @@
-//! Block cyclic reduction of the interface, divided among ranks: each factors and keeps the cross-sections behind its sectors.
+//! Block cyclic reduction of the interface, divided among ranks: each factors and keeps the cross-sections behind its
+//! sectors.
 //!
 //! ```text
 //! of a level, cross-sections k with the neighbours a, b that stay:
@@ -7,10 +8,10 @@
 //!     y_k = L^-1 f_k,    f_a -= W_a y_k,    f_b -= W_b y_k                       (forwards)
 //!     x_k = L^-T (y_k - W_a^T x_a - W_b^T x_b)                                   (backwards, levels in reverse)
 //! ```
-//! (Golub and Van Loan, *Matrix Computations*, 4th ed. 2013, section 4.5.4.) Blocks go where they are eliminated; sums run
-//! in the order of sectors or cross-sections, so the bits do not depend on the ranks. Vectors of the interface are whole
-//! on all ranks. Memory 3 m^2 numbers per cross-section owned; messages per solve: one gather per level, forwards and
-//! backwards, in all 4 m numbers per cross-section and right-hand side.
+//! (Golub and Van Loan, *Matrix Computations*, 4th ed. 2013, section 4.5.4.) Blocks go where they are eliminated;
+//! sums run in the order of sectors or cross-sections, so the bits do not depend on the ranks. Vectors of the
+//! interface are whole on all ranks. Memory 3 m^2 numbers per cross-section owned; messages per solve: one gather per
+//! level, forwards and backwards, in all 4 m numbers per cross-section and right-hand side.
 
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -130,7 +131,8 @@ impl Reduction {
         }
     }
 
-    /// Adds the `addends` of all ranks, in their order, to the blocks; `own` are those of this rank, in the same order. Collective.
+    /// Adds the `addends` of all ranks, in their order, to the blocks; `own` are those of this rank, in the same
+    /// order. Collective.
     fn add(&self, comm: Communicator, addends: &[Addend], own: Vec<Mat<f64>>, blocks: &mut Blocks) {
         let holder = |addend: &Addend| self.owner[addend.block[1]];
         let size = |addend: &Addend| self.rows(addend.block[0]) * self.rows(addend.block[1]);

@@ -55,7 +55,8 @@ impl LinearSolver for SectorCholesky {
 }
 
 impl SectorCholesky {
-    /// Solutions for `dense` right-hand sides, column-major `[n][..]`, and then `sparse` ones, left by sector. Collective.
+    /// Solutions for `dense` right-hand sides, column-major `[n][..]`, and then `sparse` ones, left by sector.
+    /// Collective.
     ///
     /// # Panics
     /// When `dense.len()` is no multiple of n.

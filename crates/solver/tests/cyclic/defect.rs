@@ -75,8 +75,9 @@ fn a_ring_with_changed_elements_is_solved_as_its_assembled_matrix() {
     }
 }
 
-/// Wrong: the direct forces of a defect would not be where conjugate gradients with the regular ring as preconditioner converge, or
-/// these would not converge as fast as they do: 13 iterations for half or twice the modulus, 60 to 86 for a hundredth.
+/// Wrong: the direct forces of a defect would not be where conjugate gradients with the regular ring as
+/// preconditioner converge, or these would not converge as fast as they do: 13 iterations for half or twice the
+/// modulus, 60 to 86 for a hundredth.
 #[test]
 fn conjugate_gradients_on_the_true_matrix_end_at_the_direct_solution() {
     for (ring, _) in rings() {
@@ -112,8 +113,8 @@ fn a_change_that_leaves_no_positive_definite_matrix_is_refused() {
     assert!(is_refused, "{error}");
 }
 
-/// Wrong: elements that are gone with their inner nodes would not be those of the assembled matrix without them, or callers would meet
-/// nodes that they do not have.
+/// Wrong: elements that are gone with their inner nodes would not be those of the assembled matrix without them, or
+/// callers would meet nodes that they do not have.
 #[test]
 fn a_ring_that_lacks_elements_and_nodes_is_solved_as_its_assembled_matrix() {
     for (ring, _) in rings() {
@@ -180,8 +181,8 @@ fn a_ring_that_lacks_elements_and_nodes_is_solved_as_its_assembled_matrix() {
     }
 }
 
-/// Wrong: rows of a defect would not move under loads on patches as solves for these loads say, or the small table of the raceway would not
-/// be part of the large one.
+/// Wrong: rows of a defect would not move under loads on patches as solves for these loads say, or the small table of
+/// the raceway would not be part of the large one.
 #[test]
 fn rows_of_a_defect_move_under_patches_as_solves_say() {
     for (ring, _) in rings() {

@@ -9,9 +9,10 @@ use crate::rings::{loads, rings};
 /// Section nodes on one line and one beside it, not ascending.
 const LAST: [usize; 4] = [5, 1, 3, 2];
 
-/// Wrong: contact forces that come in between the two sweeps of a solve would move the ring otherwise than in a solve of their own; the
-/// raceway would not have moved as it does under the known loads when they are asked for; or sections without mirror symmetry, or the
-/// first harmonics with their border, would be solved otherwise; or one group after the other otherwise than all together.
+/// Wrong: contact forces that come in between the two sweeps of a solve would move the ring otherwise than in a solve
+/// of their own; the raceway would not have moved as it does under the known loads when they are asked for; or
+/// sections without mirror symmetry, or the first harmonics with their border, would be solved otherwise; or one
+/// group after the other otherwise than all together.
 #[test]
 fn forces_between_the_halves_of_a_solve_move_the_ring_as_in_a_solve_of_their_own() {
     for (ring, _) in rings() {
@@ -85,8 +86,8 @@ fn forces_between_the_halves_of_a_solve_move_the_ring_as_in_a_solve_of_their_own
     }
 }
 
-/// Wrong: a ring whose order ends nowhere in particular, as a ring that ranks share or one with a defect has it, would have to be
-/// treated in another way than one that ends with its raceway.
+/// Wrong: a ring whose order ends nowhere in particular, as a ring that ranks share or one with a defect has it,
+/// would have to be treated in another way than one that ends with its raceway.
 #[test]
 fn without_nodes_that_trail_the_first_half_is_all() {
     let (ring, _) = rings().swap_remove(0);

@@ -139,7 +139,8 @@ fn a_bore_that_follows_five_rigid_dofs_is_a_border() {
     }
 }
 
-/// Wrong: a partner that is not rigid, or holds parts of rings only, would lose all but its lowest harmonics in silence.
+/// Wrong: a partner that is not rigid, or holds parts of rings only, would lose all but its lowest harmonics in
+/// silence.
 #[test]
 fn a_border_beyond_the_lowest_harmonics_is_refused() {
     let (ring, _) = rings().swap_remove(0);

@@ -105,8 +105,8 @@ fn the_table_gives_the_compliances_of_solves() {
     }
 }
 
-/// Wrong: a patch on so many neighbouring nodes that their responses do not fit into the registers would meet some of them twice or not
-/// at all.
+/// Wrong: a patch on so many neighbouring nodes that their responses do not fit into the registers would meet some of
+/// them twice or not at all.
 #[test]
 fn compliances_of_large_patches_are_sums_over_the_table() {
     for (ring, _) in rings() {
@@ -185,8 +185,8 @@ fn single_nodes_are_loaded_and_measured_as_in_the_whole_field() {
     }
 }
 
-/// Wrong: a vector on the raceway alone would get other harmonics than as part of the whole field, or nodes read back from a
-/// field would be others; nodes left out must keep their values.
+/// Wrong: a vector on the raceway alone would get other harmonics than as part of the whole field, or nodes read back
+/// from a field would be others; nodes left out must keep their values.
 #[test]
 fn part_of_a_section_is_transformed_as_in_the_whole() {
     for (ring, _) in rings() {
@@ -230,8 +230,8 @@ fn part_of_a_section_is_transformed_as_in_the_whole() {
     }
 }
 
-/// Wrong: the state of a moving ring, which stays in harmonic space, would meet another matrix there than the assembled one with the
-/// rows of its shaft; or what turns with a frame would turn the wrong way.
+/// Wrong: the state of a moving ring, which stays in harmonic space, would meet another matrix there than the
+/// assembled one with the rows of its shaft; or what turns with a frame would turn the wrong way.
 #[test]
 fn bordered_products_and_turned_fields_are_those_of_nodal_vectors() {
     for (ring, _) in rings() {

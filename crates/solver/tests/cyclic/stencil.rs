@@ -27,8 +27,8 @@ fn stress_by_the_sector_is_that_of_the_elements() {
     }
 }
 
-/// Wrong: a ring that only turns and moves would be stressed, or a uniform strain would give another stress than Hooke's:
-/// the weights would be those of another axis system.
+/// Wrong: a ring that only turns and moves would be stressed, or a uniform strain would give another stress than
+/// Hooke's: the weights would be those of another axis system.
 #[test]
 fn rigid_motions_and_uniform_strain_have_the_stress_of_the_textbook() {
     for (ring, _) in rings() {

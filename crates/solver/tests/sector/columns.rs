@@ -6,8 +6,8 @@ use solver::{Bordered, LinearSolver, SectorBordered, SectorColumns, SparseVector
 use crate::common::{Numbers, relative_error};
 use crate::rings::{Held, Problem, irregular, ring};
 
-/// From 16 sectors on the interface is reduced cyclically: powers of two, odd numbers at several levels, and, with 48 sectors of
-/// linear elements, sectors without an inside.
+/// From 16 sectors on the interface is reduced cyclically: powers of two, odd numbers at several levels, and, with 48
+/// sectors of linear elements, sectors without an inside.
 const MANY: [usize; 6] = [16, 17, 19, 23, 32, 48];
 
 /// Wrong: an interface that is divided among ranks would be another than that of the ring.
@@ -76,7 +76,8 @@ fn sparse_loads(n: usize, count: usize) -> Vec<SparseVector> {
         .collect()
 }
 
-/// Wrong: contact columns would differ from solutions of the whole ring, or values of one row be taken for those of another.
+/// Wrong: contact columns would differ from solutions of the whole ring, or values of one row be taken for those of
+/// another.
 #[test]
 fn columns_left_by_sector_are_the_solutions() {
     let problem = Problem::new(irregular(ring(ElementKind::Hex20, 24)), Held::Inertia);

@@ -21,7 +21,8 @@ pub fn steel() -> Material {
     Material::new(207e9, 0.3, 7800.0).unwrap()
 }
 
-/// A ring of `layers` layers of 2 x 2 quads, so thick that it bends little more easily than it stretches; its inner side is the `bore`.
+/// A ring of `layers` layers of 2 x 2 quads, so thick that it bends little more easily than it stretches; its inner
+/// side is the `bore`.
 pub fn ring(kind: ElementKind, layers: usize) -> Mesh {
     let at = |i: usize, j: usize| 3 * j + i;
     let points = (0..9).map(|k| [0.012 + 0.008 * (k % 3) as f64, 0.008 * (k / 3) as f64]);

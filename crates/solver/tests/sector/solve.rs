@@ -110,8 +110,8 @@ fn a_cut_ring_fills_like_the_whole_one() {
     }
 }
 
-/// Wrong: ranks would wait for the one whose sectors lie where a ring is finer, with more nodes in each cross-section: of equal
-/// numbers of elements, the largest factor would be 1.74 times the mean.
+/// Wrong: ranks would wait for the one whose sectors lie where a ring is finer, with more nodes in each
+/// cross-section: of equal numbers of elements, the largest factor would be 1.74 times the mean.
 #[test]
 fn sectors_of_a_refined_ring_have_near_equal_work() {
     let place = [0.02, 0.0, 0.008];
@@ -131,7 +131,8 @@ fn sectors_of_a_refined_ring_have_near_equal_work() {
     assert!(costs.iter().all(|c| c.flops > 0.0));
 }
 
-/// Wrong: round-off, which decides the order of elements of one azimuth, would move the cuts of a ring whose layers are alike.
+/// Wrong: round-off, which decides the order of elements of one azimuth, would move the cuts of a ring whose layers
+/// are alike.
 #[test]
 fn sectors_of_a_ring_of_equal_layers_are_equal() {
     for (kind, layers, n_sectors) in [

@@ -18,7 +18,8 @@ pub fn of(scene: &Scene) -> Vec<Variant> {
     variants
 }
 
-/// An effect turned off, or on with the values of its trial where the scene allows it; None for a load that is not varied.
+/// An effect turned off, or on with the values of its trial where the scene allows it; None for a load that is not
+/// varied.
 fn variant(scene: &Scene, entry: &dyn Entry) -> Option<Variant> {
     let about = entry.about();
     let (name, trial) = (about.name, about.trial?);
@@ -149,7 +150,8 @@ mod tests {
         Scene::parse(SCENE, "scene.toml".as_ref(), set, MeshFiles::MayBeMissing).unwrap()
     }
 
-    /// Wrong: a variant of a scene with near field and probes would be refused, or a scene without stress offered a near field.
+    /// Wrong: a variant of a scene with near field and probes would be refused, or a scene without stress offered a
+    /// near field.
     #[test]
     fn every_variant_of_a_scene_with_near_field_is_sound() {
         let point = "probes.point.p={ ring = \"outer\", azimuth = \"0 deg\", groove_angle = \"19 deg\", depth = \"0 mm\" }";

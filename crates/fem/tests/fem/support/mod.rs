@@ -101,8 +101,8 @@ pub fn eigenvalues(matrix: &CsMat<f64>) -> Vec<f64> {
     dense.self_adjoint_eigenvalues(Side::Lower).unwrap()
 }
 
-/// Fails unless errors on meshes refined by `ratios` (h coarse over h fine) fall with `order`: not less by more than 0.25 (terms
-/// of higher order on coarse meshes), and not so much better that the error measured would be another.
+/// Fails unless errors on meshes refined by `ratios` (h coarse over h fine) fall with `order`: not less by more than
+/// 0.25 (terms of higher order on coarse meshes), and not so much better that the error measured would be another.
 #[track_caller]
 pub fn assert_order(errors: &[f64], ratios: &[f64], order: f64, what: &str) {
     for (pair, ratio) in errors.windows(2).zip(ratios) {

@@ -17,8 +17,8 @@ fn with_effects(tables: &str) -> String {
     format!("{head}{tables}\n[dynamic]{tail}")
 }
 
-/// Wrong: the example in the file of an effect would be refused, or be the table of another; a new effect would not be in the
-/// list, or under a name that is not its key.
+/// Wrong: the example in the file of an effect would be refused, or be the table of another; a new effect would not
+/// be in the list, or under a name that is not its key.
 #[test]
 fn the_example_of_every_effect_is_its_table() {
     for about in all() {

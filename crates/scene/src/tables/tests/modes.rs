@@ -17,8 +17,8 @@ fn read(text: &str) -> Modes {
     }
 }
 
-/// If this failed, the documentation would show a table that the program refuses or reads as something else, or a default
-/// would differ from what it says.
+/// If this failed, the documentation would show a table that the program refuses or reads as something else, or a
+/// default would differ from what it says.
 #[test]
 fn the_example_of_the_documentation_reads_as_it_says() {
     let expected = Modes {
@@ -52,8 +52,8 @@ fn the_delivered_scene_is_valid() {
     );
 }
 
-/// If this failed, modes would be computed that are not those of the scene: of a turning bearing, of a rigid ring, about
-/// forces without energy.
+/// If this failed, modes would be computed that are not those of the scene: of a turning bearing, of a rigid ring,
+/// about forces without energy.
 #[test]
 fn what_has_no_modes_is_refused() {
     let cases: [(&str, &[&str], &str); 10] = [

@@ -18,7 +18,8 @@ fn axial_schedule(lines: &str) -> Schedule {
     scene.effects.axial_force.unwrap().schedule()
 }
 
-/// If this failed, a load would follow another course in time than its scene says, or a default would not be the stated one.
+/// If this failed, a load would follow another course in time than its scene says, or a default would not be the
+/// stated one.
 #[test]
 fn every_kind_of_schedule_reads_as_it_says() {
     let cases = [
@@ -315,7 +316,8 @@ fn motions_speeds_and_shares_that_make_no_sense_are_refused() {
     assert_messages(DYNAMIC, &cases);
 }
 
-/// If this failed, an equilibrium would silently be computed with the load at t = 0, or without the speed that an effect needs.
+/// If this failed, an equilibrium would silently be computed with the load at t = 0, or without the speed that an
+/// effect needs.
 #[test]
 fn a_scene_at_rest_has_no_schedules() {
     let constant = at_rest("inner = \"1800 rpm\"");

@@ -1,7 +1,9 @@
-//! Tensors at points of a ring that are no nodes, such as the integration points of its elements, by the weights of one sector.
+//! Tensors at points of a ring that are no nodes, such as the integration points of its elements, by the weights of
+//! one sector.
 //!
-//! A point belongs to a *class* of points that turns take into each other; the rows of the operator are the classes in place of the
-//! section nodes, and a line holds the points of a class by the sector of the node that each is attached to.
+//! A point belongs to a *class* of points that turns take into each other; the rows of the operator are the classes
+//! in place of the section nodes, and a line holds the points of a class by the sector of the node that each is
+//! attached to.
 
 use rayon::prelude::*;
 
@@ -20,8 +22,9 @@ pub struct PointStencil {
 }
 
 impl CyclicRing {
-    /// The operator with the blocks `blocks`, row-major `[n_couplings][6][3]`, where the row of a coupling is one of `n_classes` of points,
-    /// and its shift that from the node to which the point is attached. Points come in elements of `points_per_element` classes.
+    /// The operator with the blocks `blocks`, row-major `[n_couplings][6][3]`, where the row of a coupling is one of
+    /// `n_classes` of points, and its shift that from the node to which the point is attached. Points come in
+    /// elements of `points_per_element` classes.
     ///
     /// # Panics
     /// When the lengths disagree, or a coupling reaches farther than those of the ring.
@@ -39,9 +42,9 @@ impl CyclicRing {
 }
 
 impl PointStencil {
-    /// Tensors in Cartesian components, order xx yy zz xy yz xz, at the points of elements, `[n_elements][points_per_element]`, for
-    /// displacements `x` (Cartesian, `[n]`). `elements` has the class of elements of each, and the caller's node to which its points are
-    /// attached.
+    /// Tensors in Cartesian components, order xx yy zz xy yz xz, at the points of elements,
+    /// `[n_elements][points_per_element]`, for displacements `x` (Cartesian, `[n]`). `elements` has the class of
+    /// elements of each, and the caller's node to which its points are attached.
     ///
     /// # Panics
     /// When the lengths are others.
