@@ -75,33 +75,41 @@ impl BearingParts {
         contacts: ContactList,
         seat: Option<SeatStep>,
     ) -> BearingParts {
-        let held = [Vec::new(), Vec::new()];
-        let number = FIRST_BALL + balls.len();
-        let seat = seat.map(|step| SlidingSeat::new(step, number));
-        let carriers = [SHAFT, number].map(Some);
-        let grooves = groove_bodies(
-            interval,
-            &rings,
-            &held,
-            [carriers[0], seat.as_ref().and(carriers[1])],
-        );
         let ContactList { sites, dead, means } = contacts;
-        BearingParts {
+        let mut parts = BearingParts {
             interval,
             shaft,
-            balls,
             rings,
-            contacts: RacewayContacts::new(sites, FIRST_BALL, &grooves, dead, means),
-            seat,
-        }
+            contacts: RacewayContacts::new(sites, dead, means),
+            seat: seat.map(|step| SlidingSeat::new(step, FIRST_BALL + balls.len())),
+            balls,
+        };
+        parts.connect(&[Vec::new(), Vec::new()]);
+        parts
     }
 
     /// Puts flexible rings in the place of those before. Grooves of a ring that is None here stay at `held`, m, by
     /// ball.
     pub fn set_rings(&mut self, rings: [Option<ElasticPorts>; 2], held: &[Vec<[f64; 2]>; 2]) {
         self.rings = rings;
-        let carriers = Side::BOTH.map(|side| self.carrier(side));
-        let grooves = groove_bodies(self.interval, &self.rings, held, carriers);
+        self.connect(held);
+    }
+
+    /// Connects the contacts with what moves the grooves of the rings.
+    fn connect(&mut self, held: &[Vec<[f64; 2]>; 2]) {
+        let grooves = Side::BOTH.map(|side| {
+            let elastic = self.elastic(side);
+            // The ports of a ring in motion have the motion of what carries it in them.
+            let carries = elastic.is_none() || self.interval == Interval::Rest;
+            GrooveBodies {
+                carrier: self.carrier(side).filter(|_| carries),
+                held: match elastic {
+                    Some(_) => Vec::new(),
+                    None => held[side.index()].clone(),
+                },
+                elastic,
+            }
+        });
         self.contacts.connect(FIRST_BALL, &grooves);
     }
 
@@ -128,15 +136,13 @@ impl BearingParts {
 
     /// Number of the lumped body that carries a ring; None is at rest.
     pub fn carrier(&self, side: Side) -> Option<usize> {
-        match side {
-            Side::Inner => Some(SHAFT),
-            Side::Outer => self.seat.as_ref().map(|_| FIRST_BALL + self.balls.len()),
-        }
+        carrier(side, self.balls.len(), self.seat.is_some())
     }
 
     /// Number of a flexible ring among the elastic bodies.
     pub fn elastic(&self, side: Side) -> Option<usize> {
-        elastic_number(side, &self.rings)
+        let before = self.rings[..side.index()].iter().flatten().count();
+        self.rings[side.index()].as_ref().map(|_| before)
     }
 
     /// l of every contact at start and end, `[2 n_sites]`.
@@ -167,32 +173,13 @@ pub fn lengths([start, end]: &[Vec<f64>; 2]) -> Lengths<'_> {
     Lengths { start, end }
 }
 
-fn elastic_number(side: Side, rings: &[Option<ElasticPorts>; 2]) -> Option<usize> {
-    let before = rings[..side.index()].iter().flatten().count();
-    rings[side.index()].as_ref().map(|_| before)
-}
-
-/// What moves the grooves of the rings.
-fn groove_bodies(
-    interval: Interval,
-    rings: &[Option<ElasticPorts>; 2],
-    held: &[Vec<[f64; 2]>; 2],
-    carriers: [Option<usize>; 2],
-) -> [GrooveBodies; 2] {
-    Side::BOTH.map(|side| {
-        let elastic = elastic_number(side, rings);
-        let carries = elastic.is_none() || interval == Interval::Rest;
-        let held = &held[side.index()];
-        GrooveBodies {
-            carrier: carriers[side.index()].filter(|_| carries),
-            held: if elastic.is_none() {
-                held.clone()
-            } else {
-                Vec::new()
-            },
-            elastic,
-        }
-    })
+/// Number of the lumped body that carries a ring, among a shaft, so many balls and perhaps a sliding seat; None is at
+/// rest.
+pub(crate) fn carrier(side: Side, n_balls: usize, has_seat: bool) -> Option<usize> {
+    match side {
+        Side::Inner => Some(SHAFT),
+        Side::Outer => has_seat.then_some(FIRST_BALL + n_balls),
+    }
 }
 
 /// What holds a ring: the shaft the inner one, the housing the outer one, in which it may slide.

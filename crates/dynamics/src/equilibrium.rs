@@ -80,7 +80,7 @@ pub fn minimise(
         proximal: proximal(parts, scales),
         longest_step: scales.step,
         search: Shortening::Energy,
-        watch: &|x| check_range(system.coordinates(SHAFT, x), scales),
+        watch: &|x| check_range(parts, system.coordinates(SHAFT, x), parts.seat_end(x), scales),
         costs: &SharedLaps::default(),
     };
     let solved = system.solve(parts.unknowns(start), &policy)?;
@@ -102,7 +102,23 @@ fn largest_load(parts: &BearingParts, scales: SearchScales) -> f64 {
         .fold(f64::MIN_POSITIVE, |most, load| most.max(load.abs()))
 }
 
-fn check_range(shaft: [f64; 5], scales: SearchScales) -> Result<(), DynamicsError> {
+/// What a user should know of a sliding seat where nothing holds the axis.
+const SEAT_HINT: &str = "; the outer ring slides too: lock or prescribe shaft.z, or give \
+                         effects.spring_preload.stiffness";
+
+fn check_range(
+    parts: &BearingParts,
+    shaft: [f64; 5],
+    seat: f64,
+    scales: SearchScales,
+) -> Result<(), DynamicsError> {
+    if seat.abs() > scales.range {
+        return Err(DynamicsError::NoEquilibrium {
+            dof: "z of the outer ring's seat".to_string(),
+            limit: format!("{:.3} mm", 1e3 * scales.range),
+            hint: SEAT_HINT,
+        });
+    }
     for (i, q) in shaft.into_iter().enumerate() {
         let (limit, text) = match i {
             0..3 => (scales.range, format!("{:.3} mm", 1e3 * scales.range)),
@@ -110,12 +126,21 @@ fn check_range(shaft: [f64; 5], scales: SearchScales) -> Result<(), DynamicsErro
         };
         if q.abs() > limit {
             return Err(DynamicsError::NoEquilibrium {
-                dof: AXES[i],
+                dof: format!("{} of the shaft", AXES[i]),
                 limit: text,
+                hint: hint(parts, i),
             });
         }
     }
     Ok(())
+}
+
+fn hint(parts: &BearingParts, dof: usize) -> &'static str {
+    if parts.seat.is_some() && dof == 2 {
+        SEAT_HINT
+    } else {
+        ""
+    }
 }
 
 /// Fails when a free shaft dof has no stiffness at the solution `u`.
@@ -136,8 +161,16 @@ pub fn check_held(
             .zip(&lengths)
             .for_each(|(value, b)| *value *= a * b);
     }
+    // The load that grows with the radial displacement of a ball must hold that alone, not what carries the rings.
+    let balls = m..m + 2 * parts.balls.len();
     for i in m..n {
-        hessian[n * i + i] += proximal(parts, scales);
+        let is_radial = balls.contains(&i) && (i - m).is_multiple_of(2);
+        let of_load = if is_radial {
+            2.0 * largest_slope(parts)
+        } else {
+            0.0
+        };
+        hessian[n * i + i] += PROXIMAL * scales.stiffness + of_load;
     }
     // Condense everything but the shaft: stiffness of the shaft on its balls and rings.
     let rest = n - m;
@@ -165,6 +198,7 @@ pub fn check_held(
         if pivot < 1e3 * PROXIMAL * scale {
             return Err(DynamicsError::Unheld {
                 dof: AXES[free[i]],
+                hint: hint(parts, free[i]),
                 stiffness: (pivot / scale).max(0.0),
             });
         }
@@ -178,8 +212,12 @@ pub fn check_held(
 
 /// Proximal stiffness, N/m: a trace of the contacts' and more than what a growing ball load takes away.
 fn proximal(parts: &BearingParts, scales: SearchScales) -> f64 {
+    PROXIMAL * scales.stiffness + 2.0 * largest_slope(parts)
+}
+
+fn largest_slope(parts: &BearingParts) -> f64 {
     let slopes = parts.balls.iter().map(|ball| ball.dofs[0].load_slope);
-    PROXIMAL * scales.stiffness + 2.0 * slopes.fold(0.0, f64::max)
+    slopes.fold(0.0, f64::max)
 }
 
 fn dense_error(source: DenseError) -> DynamicsError {

@@ -40,34 +40,40 @@ pub enum DynamicsError {
     },
     /// No equilibrium near the reference position.
     #[error(
-        "no equilibrium: {dof} of the shaft runs beyond {limit}; the loads push the inner ring off the balls or \
-         a free direction is not held; lock it, add preload or reduce the load"
+        "no equilibrium: {dof} runs beyond {limit}; the loads push the inner ring off the balls or \
+         a free direction is not held; lock it, add preload or reduce the load{hint}"
     )]
     NoEquilibrium {
-        /// Shaft dof.
-        dof: &'static str,
+        /// Dof and body.
+        dof: String,
+        /// What else a user should know.
+        hint: &'static str,
         /// Limit with unit.
         limit: String,
     },
     /// A free shaft dof has no stiffness at the solution.
     #[error(
         "{dof} of the shaft is free but nothing resists it (stiffness {stiffness:.3e} of the largest): \
-         lock it in [shaft] or load the bearing so that balls touch"
+         lock it in [shaft] or load the bearing so that balls touch{hint}"
     )]
     Unheld {
         /// Shaft dof.
         dof: &'static str,
+        /// What else a user should know.
+        hint: &'static str,
         /// Stiffness over the largest.
         stiffness: f64,
     },
     /// A free shaft dof of a motion has neither inertia nor a contact that holds it.
     #[error(
         "{dof} is free, but it has no mass and no ball touches it, so nothing says where it goes: \
-         give shaft.mass, lock it in [shaft], or load the bearing so that balls touch"
+         {remedy}"
     )]
     Adrift {
         /// What it is.
         dof: String,
+        /// What would hold it.
+        remedy: &'static str,
     },
     /// A motion went where the equations do not hold.
     #[error(

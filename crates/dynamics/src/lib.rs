@@ -1,31 +1,40 @@
-//! Model, State, effects and the algorithms of the bearing: contact equilibrium, statics.
+//! A bearing: what it is, its bodies and interactions, and what is computed of it.
 //!
-//! Everything but the contact forces is linear (`design`: factor once, solve a small convex problem for the
-//! contacts). This crate does no input or output.
+//! Everything but the contact forces is linear: each ring is factored once, and the nonlinear system of contacts, balls
+//! and shaft is small. This crate does no input or output. Its modules in the order in which they are read:
 
-pub mod balls;
+// What a bearing is.
+pub mod effects;
+pub mod kinematics;
+pub mod model;
+
+// Its bodies and interactions over an interval, and the system that they make.
 pub mod bearing;
 pub mod bodies;
+pub mod interactions;
+pub mod system;
+
+// At rest.
+pub mod displacements;
+pub mod equilibrium;
+pub mod loading;
+pub mod quasi_static;
+pub mod solution;
+pub mod statics;
+
+// In motion, and about its equilibrium.
+pub mod modes;
+pub mod motion;
+
+// What they share.
+pub mod balls;
 mod compliance;
 pub mod costs;
-pub mod displacements;
-pub mod effects;
-pub mod equilibrium;
 pub mod error;
 pub mod footprint;
 pub mod frame;
-pub mod interactions;
-pub mod kinematics;
-pub mod loading;
-pub mod model;
-pub mod modes;
-pub mod motion;
 pub mod pose;
-pub mod quasi_static;
 pub mod raceway;
-pub mod solution;
-pub mod statics;
-pub mod system;
 
 pub use effects::{Effect, Loads};
 pub use error::DynamicsError;

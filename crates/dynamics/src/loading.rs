@@ -173,7 +173,7 @@ impl BearingParts {
             ball.dofs[0].load_slope = *slope;
         }
         if let Some(seat) = &mut self.seat {
-            seat.body.dofs[2].load = loads.ring_on_seat;
+            seat.body.dofs[2].load = loads.ring_on_seat + loads.seat;
         }
         self.contacts.dead.clone_from(&loads.contacts);
     }

@@ -40,8 +40,10 @@ pub struct StaticSolution {
     pub strain_energy: f64,
     /// Energy of the local contacts (2/5 K d_e^2.5 - c_s Q^2/2), J.
     pub hertz_energy: f64,
-    /// Loads times displacements, J: minus the loads' potential.
+    /// Loads times displacements, J.
     pub load_work: f64,
+    /// Potential of the loads, springs and balls' centrifugal forces among them, J.
+    pub load_potential: f64,
     /// What is missing in the virtual work of all forces through the displacements, J: zero at equilibrium.
     pub work_defect: f64,
     /// Rounds of patch placement.
@@ -104,6 +106,7 @@ impl StaticSolution {
             strain_energy,
             hertz_energy,
             load_work,
+            load_potential: following_work(parts, &u) - load_work,
             rounds,
             newton_iterations: case.newton_iterations,
             displacements: u,
@@ -147,9 +150,26 @@ impl StaticSolution {
     }
 }
 
-/// Load and spring of a seat that slides, through its displacement, J.
+/// What the virtual work of loads that follow a displacement, -k u, has more than their energy, J: half of it.
+fn following_work(parts: &BearingParts, u: &Displacements) -> f64 {
+    let balls = parts.balls.iter().zip(&u.balls);
+    let balls: f64 = balls.map(|(ball, x)| ball.dofs[0].load_slope * x[0] * x[0]).sum();
+    let spring = parts
+        .seat
+        .as_ref()
+        .map_or(0.0, |seat| seat.spring.force(u.seat) - seat.spring.force(0.0));
+    0.5 * (balls - spring * u.seat)
+}
+
+/// Load and spring of a seat that slides, and what contacts add besides their normal forces, through its
+/// displacement, J.
 fn seat_work(parts: &BearingParts, u: &Displacements) -> f64 {
-    let of_seat = |seat: &SlidingSeat| (seat.body.dofs[2].load - seat.spring.force(u.seat)) * u.seat;
+    let contacts = parts.contacts.sites.iter().zip(&parts.contacts.dead);
+    let dead: f64 = contacts
+        .filter(|(site, _)| site.side == Side::Outer)
+        .map(|(_, dead)| dead[1])
+        .sum();
+    let of_seat = |seat: &SlidingSeat| (seat.body.dofs[2].load + dead - seat.spring.force(u.seat)) * u.seat;
     parts.seat.as_ref().map_or(0.0, of_seat)
 }
 

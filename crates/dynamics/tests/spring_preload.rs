@@ -4,12 +4,12 @@ mod support;
 
 use std::f64::consts::TAU;
 
-use dynamics::effects::{RadialForce, SpringPreload};
+use dynamics::effects::{AxialForce, BallCentrifugal, Gravity, GyroscopicMoment, RadialForce, SpringPreload};
 use dynamics::interactions::seat_spring::Seat;
 use dynamics::kinematics::Speed;
 use dynamics::modes::bearing_modes;
 use dynamics::motion::{Ladder, Motion, MotionSettings, MotionState, StepCache};
-use dynamics::{Backend, ContactMode, Hold, Model, ModesSettings, ShaftDof, StaticSolution};
+use dynamics::{Backend, ContactMode, Hold, Model, ModesSettings, ShaftDof, StaticSolution, StaticSolver};
 use input::Schedule;
 use support::rings::Level;
 use support::{Case, equilibrium, relative};
@@ -188,4 +188,103 @@ fn a_heavy_seat_swings_on_spring_and_balls() {
             found.frequency
         );
     }
+}
+
+/// Wrong: what slides with a ring would have no weight, or a flexible ring its weight twice. Under 1000 g along the
+/// axis the balls carry the spring less the weight.
+#[test]
+fn what_slides_has_its_weight() {
+    let (mass, g) = (0.2, -1e4);
+    for bearing in bearings() {
+        let ring = bearing.rings[1]
+            .as_ref()
+            .map_or(0.0, |ring| ring.node_masses().unwrap().total);
+        let mut model = sprung(bearing, 1e6, mass);
+        let gravity = Gravity::new([0.0, 0.0, g], Schedule::Constant, &model.rings).unwrap();
+        model.effects.push(Box::new(gravity));
+        let found = equilibrium(&model);
+        let spring = FORCE + 1e6 * found.displacements.seat;
+        let expected = spring - (mass + ring) * g;
+        assert!(
+            relative(on_outer(&found), expected) < 1e-9,
+            "{} {expected}",
+            on_outer(&found)
+        );
+        assert!(found.work_defect.abs() < 1e-9 * found.load_work.abs());
+        let motion = Motion::new(&model, MotionSettings::conserving(1e-5, Speed::constant(0.0))).unwrap();
+        let (start, seat) = (motion.start(&found), found.displacements.seat);
+        let still = run(&motion, start, 10).seat.unwrap();
+        assert!((still[0] - seat).abs() < 1e-6 * seat.abs(), "{still:?} {seat}");
+    }
+}
+
+/// Wrong: friction that carries a gyroscopic moment would work on the seat and not be counted.
+#[test]
+fn forces_across_the_contacts_are_in_the_balance() {
+    let speed = Speed::constant(2000.0);
+    for bearing in bearings() {
+        let mut model = sprung(bearing, 1e6, 0.0);
+        model.effects.push(Box::new(BallCentrifugal {
+            speed: speed.clone(),
+            slip: Default::default(),
+            ball_speeds: Default::default(),
+        }));
+        model.effects.push(Box::new(GyroscopicMoment {
+            speed: speed.clone(),
+            slip: Default::default(),
+            shares: [0.0, 2.0],
+            ball_speeds: Default::default(),
+        }));
+        let found = equilibrium(&model);
+        let scale = found.load_work.abs();
+        assert!(
+            found.work_defect.abs() < 1e-8 * scale,
+            "{:e} of {scale:e}",
+            found.work_defect
+        );
+    }
+}
+
+/// Wrong: a bearing that slides as a whole would be taken as held, or the cause not be named.
+#[test]
+fn nothing_that_holds_the_axis_is_said() {
+    let mut model = sprung(Case::axial(FORCE).rigid(), 0.0, 0.0);
+    model.shaft[2] = ShaftDof::Free;
+    model.effects.push(Box::new(BallCentrifugal {
+        speed: Speed::constant(2000.0),
+        slip: Default::default(),
+        ball_speeds: Default::default(),
+    }));
+    let hint =
+        "the outer ring slides too: lock or prescribe shaft.z, or give effects.spring_preload.stiffness";
+    let solve = |model: &Model| StaticSolver::new(model).unwrap().solve(model, None);
+    let error = solve(&model).err().unwrap().to_string();
+    assert!(error.contains(hint), "{error}");
+    model.effects.push(Box::new(AxialForce {
+        value: FORCE,
+        schedule: Schedule::Constant,
+    }));
+    let error = solve(&model).err().unwrap().to_string();
+    assert!(
+        error.contains("z of the shaft is free but nothing resists it"),
+        "{error}"
+    );
+    assert!(error.contains(hint), "{error}");
+}
+
+/// Wrong: a seat without mass whose balls do not touch yet would be told to give the shaft a mass.
+#[test]
+fn a_seat_that_nothing_places_has_its_own_remedy() {
+    let model = sprung(Case::axial(FORCE).rigid(), 0.0, 0.0);
+    let motion = Motion::new(&model, MotionSettings::conserving(1e-5, Speed::constant(0.0))).unwrap();
+    let start = motion.rest([0.0; 5], [0.0; 5]);
+    let error = motion
+        .step(&start, &mut StepCache::default())
+        .unwrap_err()
+        .to_string();
+    let expected = "give effects.spring_preload its mass or a stiffness, or start from equilibrium";
+    assert!(
+        error.contains("z of the outer ring's seat is free") && error.contains(expected),
+        "{error}"
+    );
 }

@@ -26,7 +26,7 @@ impl Snapshot {
     /// An equilibrium, of a bearing that rolls or stands. `total` is the potential energy that it minimises; `defect`
     /// is what is missing in the virtual work of all forces through the displacements, zero at equilibrium.
     pub fn of_equilibrium(solution: &StaticSolution, rolling: Option<&Rolling>) -> Snapshot {
-        let total = solution.strain_energy + solution.hertz_energy - solution.load_work;
+        let total = solution.strain_energy + solution.hertz_energy + solution.load_potential;
         Snapshot {
             balls: solution.balls.clone(),
             spin: rolling.map(|r| r.spin(solution.pose.now.time)),
@@ -36,7 +36,7 @@ impl Snapshot {
             energies: vec![
                 ("strain", solution.strain_energy),
                 ("hertz", solution.hertz_energy),
-                ("load_potential", -solution.load_work),
+                ("load_potential", solution.load_potential),
                 ("total", total),
                 ("defect", solution.work_defect),
             ],

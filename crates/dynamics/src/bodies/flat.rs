@@ -92,6 +92,14 @@ impl<const N: usize> Lumped for FlatBody<N> {
         tangent
     }
 
+    fn remedy(&self) -> &'static str {
+        match self.name {
+            Name::Shaft => "give shaft.mass, lock it in [shaft], or load the bearing so that balls touch",
+            Name::Seat => "give effects.spring_preload its mass or a stiffness, or start from equilibrium",
+            Name::Ball(_) => "give the balls a density",
+        }
+    }
+
     fn name(&self, unknown: usize) -> String {
         let i = self.free().nth(unknown).unwrap_or_default();
         match self.name {

@@ -59,7 +59,7 @@ impl table::Table for Table {
     fn peak_load(&self, _speed: f64) -> PeakLoad {
         PeakLoad {
             axial: self.value.si().abs() * self.schedule().peak(),
-            radial: 0.0,
+            ..PeakLoad::default()
         }
     }
 

@@ -164,6 +164,7 @@ impl Effect for Gravity {
             load[1] += mass * g[2];
         }
         loads.add_shaft_force(model, g.map(|a| model.shaft_mass * a));
+        loads.seat += model.seat().map_or(0.0, |seat| seat.mass * g[2]);
         for side in Side::BOTH {
             let (Some(ring), Some(of_ring)) = (model.ring(side), &self.node_masses[side.index()]) else {
                 continue;

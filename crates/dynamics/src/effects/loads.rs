@@ -22,6 +22,8 @@ pub struct Loads {
     pub ring_on_shaft: [f64; 5],
     /// Force along z of the body loads of a flexible outer ring, which its seat carries, N.
     pub ring_on_seat: f64,
+    /// Force along z on what slides with the seat of the outer ring besides a flexible ring, N.
+    pub seat: f64,
     /// Force on each ball [radial, axial] at its just-touching position, N.
     pub balls: Vec<[f64; 2]>,
     /// Growth of the radial force on each ball with its radial displacement, N/m.
@@ -44,6 +46,7 @@ impl Loads {
             shaft: [0.0; 5],
             ring_on_shaft: [0.0; 5],
             ring_on_seat: 0.0,
+            seat: 0.0,
             ball_slopes: vec![0.0; model.geometry.n_balls],
             follows_angles: false,
             balls: vec![[0.0; 2]; model.geometry.n_balls],

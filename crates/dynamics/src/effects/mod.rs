@@ -155,13 +155,18 @@ impl Effects {
 
     /// Largest forces on the shaft at a speed in rad/s.
     pub fn peak_load(&self, speed: f64) -> PeakLoad {
-        self.on().fold(PeakLoad::default(), |sum, (_, table)| {
-            let PeakLoad { axial, radial } = table.peak_load(speed);
+        let sum = self.on().fold(PeakLoad::default(), |sum, (_, table)| {
+            let load = table.peak_load(speed);
             PeakLoad {
-                axial: sum.axial + axial,
-                radial: sum.radial + radial,
+                axial: sum.axial + load.axial,
+                radial: sum.radial + load.radial,
+                spring: sum.spring + load.spring,
             }
-        })
+        });
+        PeakLoad {
+            axial: sum.axial.max(sum.spring),
+            ..sum
+        }
     }
 
     /// Whether a load changes in time by a schedule.

@@ -62,8 +62,8 @@ impl table::Table for Table {
 
     fn peak_load(&self, _speed: f64) -> PeakLoad {
         PeakLoad {
-            axial: 0.0,
             radial: self.value.si().abs() * self.schedule().peak(),
+            ..PeakLoad::default()
         }
     }
 

@@ -32,6 +32,8 @@ pub struct PeakLoad {
     pub axial: f64,
     /// Across it.
     pub radial: f64,
+    /// Along the axis, by a spring on the outer ring: balls carry the larger of both, not the sum.
+    pub spring: f64,
 }
 
 /// What a scene is judged by.
@@ -62,7 +64,7 @@ impl Case<'_> {
     /// Load of a ball, N; 0 when no load is given: modes and imposed displacements alone have none to compare with.
     pub fn ball_load(&self) -> f64 {
         let (sin, cos) = self.contact_angle().sin_cos();
-        let PeakLoad { axial, radial } = self.load;
+        let PeakLoad { axial, radial, .. } = self.load;
         let z = self.n_balls();
         axial / (z * sin.max(f64::MIN_POSITIVE)) + STRIBECK * radial / (z * cos)
     }

@@ -9,7 +9,10 @@
 //! In balance the axial force of the balls on the outer ring is F, whatever the position of the shaft: a bearing with a
 //! soft spring keeps its preload when the shaft grows. The seat slides without friction and does not tilt. A flexible
 //! outer ring brings its own mass; that of a rigid one, and of a sleeve or washer that slides with the ring, is `mass`.
-//! Without any the seat has no inertia and follows the forces at once.
+//! Without any the seat has no inertia and follows the forces at once. Gravity acts on `mass` as on a flexible ring.
+//!
+//! Something must hold the axis: a shaft whose z is locked or prescribed, or a spring with stiffness against a load on
+//! the shaft. Two forces alone, F0 and an axial force on a free shaft, leave its place open, which is an error.
 //!
 //! Ledger: the spring is a load, its work -V stands in `load_work`. Output: `shaft.csv` has u as `outer_seat_z_m`.
 
@@ -94,8 +97,8 @@ impl table::Table for Table {
 
     fn peak_load(&self, _speed: f64) -> PeakLoad {
         PeakLoad {
-            axial: self.force.si(),
-            radial: 0.0,
+            spring: self.force.si(),
+            ..PeakLoad::default()
         }
     }
 }

@@ -130,8 +130,8 @@ impl table::Table for Table {
 
     fn peak_load(&self, speed: f64) -> PeakLoad {
         PeakLoad {
-            axial: 0.0,
             radial: self.moment() * speed * speed,
+            ..PeakLoad::default()
         }
     }
 }

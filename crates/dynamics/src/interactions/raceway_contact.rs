@@ -186,25 +186,17 @@ pub struct RacewayContacts {
 }
 
 impl RacewayContacts {
-    /// Contacts of balls, which are lumped bodies from `first_ball` on, with rings, inner first.
-    pub fn new(
-        sites: Vec<Site>,
-        first_ball: usize,
-        rings: &[GrooveBodies; 2],
-        dead: Vec<[f64; 2]>,
-        means: Option<Means>,
-    ) -> RacewayContacts {
-        let mut contacts = RacewayContacts {
+    /// Contacts that are not connected yet.
+    pub fn new(sites: Vec<Site>, dead: Vec<[f64; 2]>, means: Option<Means>) -> RacewayContacts {
+        RacewayContacts {
             links: Vec::new(),
             sites,
             dead,
             means,
-        };
-        contacts.connect(first_ball, rings);
-        contacts
+        }
     }
 
-    /// Connects balls and rings anew.
+    /// Connects balls, which are lumped bodies from `first_ball` on, and rings, inner first.
     pub fn connect(&mut self, first_ball: usize, rings: &[GrooveBodies; 2]) {
         let link = |site: &Site| {
             link(

@@ -40,7 +40,7 @@ use crate::solution::StaticSolution;
 use crate::system::{Body, Lengths, Link};
 use columns::{LengthGrowth, LinkTangent};
 use ring::{Backend, Partner, RingModel, VibratingRing};
-use system::VibratingBearing;
+use system::{BearingDofs, VibratingBearing};
 
 pub use shape::{Mode, Shape};
 
@@ -153,14 +153,16 @@ pub fn bearing_modes(
         places.push((body, 2, small_mass.len()));
         small_mass.push(seat_mass);
     }
+    let seat = places.iter().find(|place| place.0 != SHAFT).map(|place| place.2);
     let link_tangents = link_tangents(equilibrium, &rings, &places);
     let block = model.geometry.n_balls.clamp(RING_BLOCK, LARGEST_BLOCK);
     let mut system = VibratingBearing::new(rings, small_mass, link_tangents, shift)?;
-    system.set_bearing(
-        model.geometry.n_balls,
+    system.set_bearing(BearingDofs {
+        n_balls: model.geometry.n_balls,
         shaft,
-        model.geometry.centre_radius(Side::Inner),
-    );
+        seat,
+        tilt_arm: model.geometry.centre_radius(Side::Inner),
+    });
     search(&system, settings, block, clock, progress)
 }
 

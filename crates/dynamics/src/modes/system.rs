@@ -30,6 +30,8 @@ pub(super) struct BearingDofs {
     pub n_balls: usize,
     /// Shaft dof and place among the small dofs, of a rigid inner ring.
     pub shaft: Vec<(usize, usize)>,
+    /// Place of the seat of a rigid outer ring that slides.
+    pub seat: Option<usize>,
     /// Radius at which tilts count as displacements, m.
     pub tilt_arm: f64,
 }
@@ -93,12 +95,8 @@ impl VibratingBearing {
     }
 
     /// Says which small dofs are balls and shaft.
-    pub fn set_bearing(&mut self, n_balls: usize, shaft: Vec<(usize, usize)>, tilt_arm: f64) {
-        self.dofs = BearingDofs {
-            n_balls,
-            shaft,
-            tilt_arm,
-        };
+    pub(super) fn set_bearing(&mut self, dofs: BearingDofs) {
+        self.dofs = dofs;
     }
 
     /// First unknowns of the rings, of the small dofs, and their number.
@@ -121,13 +119,19 @@ impl VibratingBearing {
                 let y = self.part(y, i);
                 parts[i] = dot(y, &ring.mass(y, 1));
                 for (load, mass) in &ring.lumps {
-                    parts[3] += mass * sparse_dot(load, y).powi(2);
+                    // The shaft carries the inner ring; what slides with the outer one counts as that ring.
+                    parts[if i == 0 { 3 } else { 1 }] += mass * sparse_dot(load, y).powi(2);
                 }
             }
         }
         let small = self.part(y, 2).iter().zip(&self.small_mass);
         for (k, (x, mass)) in small.enumerate() {
-            parts[if k < 2 * self.dofs.n_balls { 2 } else { 3 }] += mass * x * x;
+            let owner = match k {
+                _ if k < 2 * self.dofs.n_balls => 2,
+                _ if Some(k) == self.dofs.seat => 1,
+                _ => 3,
+            };
+            parts[owner] += mass * x * x;
         }
         parts
     }

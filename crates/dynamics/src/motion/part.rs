@@ -8,7 +8,7 @@ use super::run::Motion;
 use super::solve::StepSolution;
 use super::span::Span;
 use super::state::MotionState;
-use crate::bearing::{BearingParts, ContactList, FIRST_BALL, SHAFT, SeatStep};
+use crate::bearing::{BearingParts, ContactList, SeatStep, carrier};
 use crate::bodies::{FlatBody, Inertia, Name};
 use crate::compliance;
 use crate::effects::{self, Loads, Now};
@@ -119,18 +119,13 @@ impl Motion<'_> {
 
     fn seat(&self, state: &MotionState, loads: &Loads) -> Option<SeatStep> {
         let (seat, start) = (self.model.seat()?, state.seat?);
-        // A flexible ring carries its own loads to the seat.
-        let load = if self.rings[1].is_some() {
-            0.0
-        } else {
-            loads.ring_on_seat
-        };
         Some(SeatStep {
             seat,
             axial: Inertia {
                 mass: seat.mass,
                 start,
-                load,
+                // A flexible ring brings its own loads to the seat.
+                load: loads.seat,
                 load_slope: 0.0,
             },
             weight: self.settings.integrator.alpha_f,
@@ -149,19 +144,11 @@ impl Motion<'_> {
             at_forces: Vec::new(),
             stiffness: compliance::inverse(side, n, n_balls, &answer.compliance)?,
             n_moving: 2 * n_balls,
-            follow: self.carrier(side).map(|body| Follow {
+            follow: carrier(side, n_balls, self.model.seat().is_some()).map(|body| Follow {
                 body,
                 frame: [angle(1.0 - self.settings.integrator.alpha_f), angle(1.0)],
             }),
         })
-    }
-
-    /// Number of the lumped body that a ring's mount follows; None: it is held.
-    fn carrier(&self, side: Side) -> Option<usize> {
-        match side {
-            Side::Inner => Some(SHAFT),
-            Side::Outer => self.model.seat().map(|_| FIRST_BALL + self.n_balls()),
-        }
     }
 
     fn ball(&self, state: &MotionState, ball: usize, loads: &Loads) -> FlatBody<2> {
@@ -203,10 +190,13 @@ impl Motion<'_> {
             let add = |sum: [f64; 3], f: &[f64; 3]| [0, 1, 2].map(|i| sum[i] + f[i]);
             load.as_chunks().0.iter().fold([0.0; 3], add)
         });
+        let seat = self.model.seat().zip(state.seat);
+        let seat = seat.map(|(seat, [z, ..])| [loads.seat, seat.force + seat.stiffness * z]);
         forces
             .chain(loads.shaft[..3].iter().copied())
             .chain(moments)
             .chain(rings)
+            .chain(seat.into_iter().flatten())
             .fold(LEAST_FORCE, |m, f| m.max(f.abs()))
     }
 }

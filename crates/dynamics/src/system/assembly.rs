@@ -103,6 +103,13 @@ impl<'a> System<'a> {
         })
     }
 
+    /// What gives an unknown of a lumped body a place that nothing resists, for messages.
+    pub fn remedy(&self, unknown: usize) -> &'static str {
+        let mut lumped = self.lumped.iter().enumerate();
+        let owner = lumped.find(|(i, _)| self.unknowns(Body::Lumped(*i)).contains(&unknown));
+        owner.map_or("check the compliance of the rings", |(_, body)| body.remedy())
+    }
+
     /// Coordinates of a lumped body at the end for the unknowns `x`.
     pub fn coordinates<const N: usize>(&self, body: usize, x: &[f64]) -> [f64; N] {
         let mut end = [0.0; N];

@@ -47,6 +47,9 @@ pub trait Lumped: Send + Sync {
     /// Growth of these with the unknowns, row-major; constant over an interval.
     fn tangent(&self, interval: Interval) -> Vec<f64>;
 
+    /// What gives an unknown a place that nothing resists, for messages.
+    fn remedy(&self) -> &'static str;
+
     /// What an unknown is, for messages.
     fn name(&self, unknown: usize) -> String;
 }

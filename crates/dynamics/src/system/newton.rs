@@ -156,6 +156,7 @@ impl System<'_> {
         match adrift.max_by(|a, b| a.1.1.abs().total_cmp(&b.1.1.abs())) {
             Some((unknown, _)) => Err(DynamicsError::Adrift {
                 dof: self.name(unknown),
+                remedy: self.remedy(unknown),
             }),
             None => Ok(()),
         }

@@ -63,6 +63,10 @@ impl Lumped for Sprung {
             .collect()
     }
 
+    fn remedy(&self) -> &'static str {
+        "hold it"
+    }
+
     fn name(&self, unknown: usize) -> String {
         format!("sprung {unknown}")
     }
@@ -109,6 +113,10 @@ impl Lumped for Pendulum {
 
     fn tangent(&self, _interval: Interval) -> Vec<f64> {
         vec![0.0]
+    }
+
+    fn remedy(&self) -> &'static str {
+        "hold it"
     }
 
     fn name(&self, _unknown: usize) -> String {

@@ -66,7 +66,8 @@ fn every_effect_of_speed_needs_one() {
 /// Wrong: the remedy of an idle speed would leave out an effect that uses it, or name one that does not.
 #[test]
 fn an_idle_speed_is_refused_with_every_effect_that_would_use_it() {
-    let idle = replace_line(&at_rest("inner = \"1800 rpm\""), "[effects.ball_centrifugal]", "");
+    let still = replace_line(&at_rest("inner = \"1800 rpm\""), "[effects.ball_centrifugal]", "");
+    let idle = replace_line(&still, "[effects.frame_rotation]", "");
     let message = message_of(&idle, &[]);
     let remedy = "; add one, compute motion with [dynamic], or remove [speed]";
     assert!(message.contains(remedy), "{message}");
