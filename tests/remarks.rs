@@ -178,8 +178,8 @@ fn a_shaft_locked_at_zero_is_told_where_the_middle_is() {
     let dir = Dir::with_scene(SCENE);
     let check = [&["check", "scene.toml"], &RIGID[..], &["--set", "shaft.z=locked"]].concat();
     let outcome = dir.raceway(&check);
-    let part = "advice   shaft.z is \"locked\" at 0, where all balls just touch at the free contact angle of 14.93 deg; \
-                with the grooves opposite each other, as in a deep groove bearing without thrust, it is \
+    let part = "advice   shaft.z is \"locked\" at 0, where all balls just touch at the free contact angle of 14.93 \
+                deg; with the grooves opposite each other, as in a deep groove bearing without thrust, it is \
                 shaft.z = \"-103.";
     assert!(outcome.stdout.contains(part), "{}", outcome.stdout);
     let outcome = dir.raceway(&check[..check.len() - 2]);

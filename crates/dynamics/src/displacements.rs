@@ -3,8 +3,8 @@
 use contact::Side;
 
 use crate::bearing::{BearingParts, FIRST_BALL, SHAFT};
-use crate::interactions::raceway_contact::SiteState;
-use crate::system::Body;
+use crate::interactions::raceway_contact::{SiteState, on_rings};
+use crate::system::{Body, System};
 
 /// Displacements of everything small: m, rad.
 #[derive(Clone, Debug, PartialEq)]
@@ -58,14 +58,14 @@ impl BearingParts {
                 .map(|ball| system.coordinates(FIRST_BALL + ball, x))
                 .collect(),
             grooves: Side::BOTH.map(grooves),
-            seat: self.seat_end(x),
+            seat: self.seat_end(&system, x),
         }
     }
 
-    /// Displacement of the outer ring's seat along z for the unknowns `x`, m; 0 unless it slides.
-    pub fn seat_end(&self, x: &[f64]) -> f64 {
+    /// Displacement of the outer ring's seat along z for the unknowns `x` of the system, m; 0 unless it slides.
+    pub fn seat_end(&self, system: &System, x: &[f64]) -> f64 {
         let carrier = self.carrier(Side::Outer);
-        carrier.map_or(0.0, |body| self.system().coordinates::<5>(body, x)[2])
+        carrier.map_or(0.0, |body| system.coordinates::<5>(body, x)[2])
     }
 
     /// All contacts at given displacements.
@@ -75,6 +75,6 @@ impl BearingParts {
 
     /// Force on the ring of every site [radial, axial], N.
     pub fn forces_at(&self, u: &Displacements) -> Vec<[f64; 2]> {
-        self.states_at(u).iter().map(SiteState::on_ring).collect()
+        on_rings(&self.states_at(u))
     }
 }

@@ -13,8 +13,9 @@ use crate::bodies::AXES;
 use crate::displacements::Displacements;
 use crate::error::DynamicsError;
 use crate::footprint::loaded;
+use crate::interactions::raceway_contact::on_rings;
 use crate::model::MAX_TILT;
-use crate::system::newton::{Policy, RoundOff, Shortening};
+use crate::system::newton::{Policy, RoundOff, Shortening, scale_tangent};
 
 /// Largest residual over the force scale at which Newton may stop; it goes on to round-off while it improves.
 const RESIDUAL_LIMIT: f64 = 1e-10;
@@ -80,7 +81,14 @@ pub fn minimise(
         proximal: proximal(parts, scales),
         longest_step: scales.step,
         search: Shortening::Energy,
-        watch: &|x| check_range(parts, system.coordinates(SHAFT, x), parts.seat_end(x), scales),
+        watch: &|x| {
+            check_range(
+                parts,
+                system.coordinates(SHAFT, x),
+                parts.seat_end(&system, x),
+                scales,
+            )
+        },
         costs: &SharedLaps::default(),
     };
     let solved = system.solve(parts.unknowns(start), &policy)?;
@@ -155,12 +163,7 @@ pub fn check_held(
     let at = system.evaluate(&x, &SharedLaps::default());
     let mut hessian = system.body_tangent(&x);
     system.add_link_tangents(&x, &at.links, &mut hessian);
-    let lengths = scales.of_unknowns(parts);
-    for (row, a) in hessian.chunks_exact_mut(n).zip(&lengths) {
-        row.iter_mut()
-            .zip(&lengths)
-            .for_each(|(value, b)| *value *= a * b);
-    }
+    scale_tangent(n, &scales.of_unknowns(parts), &mut hessian);
     // The load that grows with the radial displacement of a ball must hold that alone, not what carries the rings.
     let balls = m..m + 2 * parts.balls.len();
     for i in m..n {
@@ -233,8 +236,8 @@ pub fn centre_unloaded(parts: &BearingParts, u: &mut Displacements) {
         .collect();
     // The weight of a ball across its meridian plane leaves round-off in that plane.
     let weightless = 4.0 * f64::EPSILON * loads.iter().copied().fold(0.0, f64::max);
-    let loaded = loaded(&parts.forces_at(u));
     let states = parts.states_at(u);
+    let loaded = loaded(&on_rings(&states));
     let pairs = parts.contacts.sites.chunks_exact(2).zip(states.chunks_exact(2));
     for ((pair, states), loaded) in pairs.zip(loaded.chunks_exact(2)) {
         let ball = pair[0].ball;

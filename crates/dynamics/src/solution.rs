@@ -9,7 +9,7 @@ use crate::displacements::Displacements;
 use crate::effects::Loads;
 use crate::equilibrium::centre_unloaded;
 use crate::footprint::{Footprint, loaded};
-use crate::interactions::raceway_contact::{Site, SiteState};
+use crate::interactions::raceway_contact::{Site, SiteState, on_rings};
 use crate::loading::LoadCase;
 use crate::model::Model;
 use crate::pose::Pose;
@@ -72,7 +72,7 @@ impl StaticSolution {
         centre_unloaded(parts, &mut u);
         let states = parts.states_at(&u);
         let (residual, reaction) = shaft_balance(parts, &states);
-        let forces: Vec<[f64; 2]> = states.iter().map(SiteState::on_ring).collect();
+        let forces = on_rings(&states);
         // Loads on the rings, through their elastic motion: on their bodies and, besides the normal forces, at
         // contacts.
         let ring_load_work = body_work(&case.loads, &rings) + ring_contact_work(&rings, &case.loads.contacts);
@@ -85,7 +85,7 @@ impl StaticSolution {
         let ball_work: f64 = ball_work
             .map(|((f, slope), x)| dot(&[f[0] + slope * x[0], f[1]], x))
             .sum();
-        let balls = ball_results(model, parts, &u);
+        let balls = ball_results(model, parts, &states, &u);
         let load_work =
             ball_work + dot(&parts.shaft_load(), &u.shaft) + ring_load_work + seat_work(parts, &u);
         StaticSolution {
@@ -286,9 +286,14 @@ fn edge_warnings(footprints: &[Vec<Footprint>; 2], forces: &[[f64; 2]]) -> Vec<S
     warnings
 }
 
-/// Results of all balls at given displacements.
-fn ball_results(model: &Model, parts: &BearingParts, u: &Displacements) -> Vec<BallResult> {
-    let (sites, states) = (&parts.contacts.sites, parts.states_at(u));
+/// Results of all balls at given displacements, where their contacts have these states.
+fn ball_results(
+    model: &Model,
+    parts: &BearingParts,
+    states: &[SiteState],
+    u: &Displacements,
+) -> Vec<BallResult> {
+    let sites = &parts.contacts.sites;
     let contact = |i: usize| {
         let (site, state) = (&sites[i], &states[i]);
         let hertz = &model.hertz[site.side.index()];

@@ -26,6 +26,7 @@ use crate::effects::Loads;
 use crate::equilibrium::{SearchScales, check_held, minimise, round_off};
 use crate::error::DynamicsError;
 use crate::footprint::{Footprint, check_in_grooves, check_on_groove, place};
+use crate::interactions::raceway_contact::on_rings;
 use crate::loading::{LoadCase, largest_change, largest_force, not_settled};
 use crate::model::{ContactMode, Model};
 use crate::pose::Pose;
@@ -149,8 +150,8 @@ impl StaticSolver {
         if self.rings.iter().any(Option::is_some) {
             return self.rounds(case, u);
         }
-        let sites = &case.parts.contacts.sites;
-        check_in_grooves(sites, &case.parts.states_at(&u), &case.parts.forces_at(&u))?;
+        let states = case.parts.states_at(&u);
+        check_in_grooves(&case.parts.contacts.sites, &states, &on_rings(&states))?;
         check_held(&case.parts, &u, case.scales)?;
         let rings = RingFields {
             elastic: [None, None],

@@ -25,13 +25,6 @@ pub struct Table {
     schedule: Option<RawSchedule>,
 }
 
-impl Table {
-    /// Its factor over time.
-    pub fn schedule(&self) -> Schedule {
-        schedule_of(self.schedule.as_ref())
-    }
-}
-
 impl table::Table for Table {
     fn about() -> About {
         About {
@@ -52,19 +45,19 @@ impl table::Table for Table {
     fn load(&self, _setting: Setting<'_>) -> Result<Option<Box<dyn Effect>>, DynamicsError> {
         Ok(Some(Box::new(AxialForce {
             value: self.value.si(),
-            schedule: self.schedule(),
+            schedule: table::Table::schedule(self),
         })))
     }
 
     fn peak_load(&self, _speed: f64) -> PeakLoad {
         PeakLoad {
-            axial: self.value.si().abs() * self.schedule().peak(),
+            axial: self.value.si().abs() * table::Table::schedule(self).peak(),
             ..PeakLoad::default()
         }
     }
 
     fn schedule(&self) -> Schedule {
-        self.schedule()
+        schedule_of(self.schedule.as_ref())
     }
 }
 

@@ -109,8 +109,8 @@ impl Effect for BallCentrifugal {
             let degrees = [balls[ball].inner, balls[ball].outer].map(|c| c.contact_angle_rad.to_degrees());
             format!(
                 "ball {ball} rolls at contact angles of {:.1} deg inside and {:.1} deg outside, which would change its \
-                 centrifugal force by {:+.1} %, or {:.1} % of its contact force: the cage has the speed of the free contact angle; \
-                 speed.ball_speeds = \"outer_control\" gives each ball that of its own angles",
+                 centrifugal force by {:+.1} %, or {:.1} % of its contact force: the cage has the speed of the free \
+                 contact angle; speed.ball_speeds = \"outer_control\" gives each ball that of its own angles",
                 degrees[0],
                 degrees[1],
                 100.0 * change,

@@ -48,11 +48,6 @@ impl Table {
         self.direction.map(|d| g * d / length)
     }
 
-    /// Its factor over time.
-    pub fn schedule(&self) -> Schedule {
-        schedule_of(self.schedule.as_ref())
-    }
-
     /// Length of the direction.
     fn length(&self) -> f64 {
         self.direction.iter().map(|d| d * d).sum::<f64>().sqrt()
@@ -107,12 +102,12 @@ impl table::Table for Table {
     }
 
     fn load(&self, setting: Setting<'_>) -> Result<Option<Box<dyn Effect>>, DynamicsError> {
-        let gravity = Gravity::new(self.acceleration(), self.schedule(), setting.rings)?;
+        let gravity = Gravity::new(self.acceleration(), table::Table::schedule(self), setting.rings)?;
         Ok(Some(Box::new(gravity)))
     }
 
     fn schedule(&self) -> Schedule {
-        self.schedule()
+        schedule_of(self.schedule.as_ref())
     }
 }
 

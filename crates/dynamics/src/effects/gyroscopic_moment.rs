@@ -130,8 +130,8 @@ impl table::Table for Table {
         }
         if (inner + outer - SUM).abs() > ROUND_OFF {
             problems.add(format!(
-                "[effects.gyroscopic_moment] has inner_share {inner} and outer_share {outer}; their sum must be 2, or the \
-                 moment is not balanced"
+                "[effects.gyroscopic_moment] has inner_share {inner} and outer_share {outer}; their sum must be 2, or \
+                 the moment is not balanced"
             ));
         }
     }

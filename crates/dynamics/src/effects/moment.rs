@@ -25,13 +25,6 @@ pub struct Table {
     schedule: Option<RawSchedule>,
 }
 
-impl Table {
-    /// Its factor over time.
-    pub fn schedule(&self) -> Schedule {
-        schedule_of(self.schedule.as_ref())
-    }
-}
-
 impl table::Table for Table {
     fn about() -> About {
         About {
@@ -53,12 +46,12 @@ impl table::Table for Table {
     fn load(&self, _setting: Setting<'_>) -> Result<Option<Box<dyn Effect>>, DynamicsError> {
         Ok(Some(Box::new(Moment {
             value: [self.x.si(), self.y.si()],
-            schedule: self.schedule(),
+            schedule: table::Table::schedule(self),
         })))
     }
 
     fn schedule(&self) -> Schedule {
-        self.schedule()
+        schedule_of(self.schedule.as_ref())
     }
 }
 

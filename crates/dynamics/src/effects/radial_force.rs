@@ -28,13 +28,6 @@ pub struct Table {
     schedule: Option<RawSchedule>,
 }
 
-impl Table {
-    /// Its factor over time.
-    pub fn schedule(&self) -> Schedule {
-        schedule_of(self.schedule.as_ref())
-    }
-}
-
 impl table::Table for Table {
     fn about() -> About {
         About {
@@ -56,19 +49,19 @@ impl table::Table for Table {
         Ok(Some(Box::new(RadialForce {
             value: self.value.si(),
             direction: self.direction.si(),
-            schedule: self.schedule(),
+            schedule: table::Table::schedule(self),
         })))
     }
 
     fn peak_load(&self, _speed: f64) -> PeakLoad {
         PeakLoad {
-            radial: self.value.si().abs() * self.schedule().peak(),
+            radial: self.value.si().abs() * table::Table::schedule(self).peak(),
             ..PeakLoad::default()
         }
     }
 
     fn schedule(&self) -> Schedule {
-        self.schedule()
+        schedule_of(self.schedule.as_ref())
     }
 }
 

@@ -220,13 +220,13 @@ mod tests {
         for (values, expected) in [
             (
                 ["0 g", "5 mm", "0 mm"],
-                "effects.unbalance.mass is 0 g; expected more than 0 and at most 1000 kg; without an unbalance leave the \
-                 table out",
+                "effects.unbalance.mass is 0 g; expected more than 0 and at most 1000 kg; without an unbalance leave \
+                 the table out",
             ),
             (
                 ["10 g", "-5 mm", "0 mm"],
-                "effects.unbalance.eccentricity is -5 mm; expected more than 0 and at most 10 m; the side of the axis is \
-                 the key angle",
+                "effects.unbalance.eccentricity is -5 mm; expected more than 0 and at most 10 m; the side of the axis \
+                 is the key angle",
             ),
             (
                 ["10 g", "5 mm", "11 m"],

@@ -148,6 +148,11 @@ impl SiteState {
     }
 }
 
+/// Force on the ring of every contact [radial, axial], N.
+pub fn on_rings(states: &[SiteState]) -> Vec<[f64; 2]> {
+    states.iter().map(SiteState::on_ring).collect()
+}
+
 /// Means over a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Means {

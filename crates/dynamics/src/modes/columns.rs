@@ -21,6 +21,15 @@ pub struct LengthGrowth {
     pub small: SparseLoad,
 }
 
+impl LengthGrowth {
+    /// Adds `factor` times a growth with the coordinates of a ring; a length sees one ring.
+    pub fn add_ring(&mut self, ring: usize, load: &SparseLoad, factor: f64) {
+        let (of, sum) = self.ring.get_or_insert_with(|| (ring, SparseLoad::new()));
+        debug_assert_eq!(*of, ring, "a length of a link sees one ring");
+        sum.extend(load.iter().map(|&(k, w)| (k, factor * w)));
+    }
+}
+
 /// What a column does.
 #[derive(Clone, Copy)]
 pub enum Role {

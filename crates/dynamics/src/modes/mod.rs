@@ -32,12 +32,12 @@ use contact::Side;
 use dense::{LanczosSettings, Searched, lowest_pairs};
 use timer::{Laps, SharedLaps, Stopwatch};
 
-use crate::bearing::{FIRST_BALL, SHAFT};
+use crate::bearing::{FIRST_BALL, SHAFT, lengths};
 use crate::costs::{FACTOR, SEARCH};
 use crate::error::DynamicsError;
 use crate::model::{ContactMode, Model, ShaftDof};
 use crate::solution::StaticSolution;
-use crate::system::{Body, Lengths, Link};
+use crate::system::{Body, Link};
 use columns::{LengthGrowth, LinkTangent};
 use ring::{Backend, Partner, RingModel, VibratingRing};
 use system::{BearingDofs, VibratingBearing};
@@ -205,14 +205,11 @@ fn link_tangents(
 ) -> Vec<LinkTangent> {
     let parts = &equilibrium.parts;
     let x = parts.unknowns(&equilibrium.displacements);
+    let system = parts.system();
     let mut link_tangents = Vec::new();
     for (number, family) in parts.interactions().into_iter().enumerate() {
-        let [start, end] = parts.system().lengths_at(number, &x);
-        let lengths = Lengths {
-            start: &start,
-            end: &end,
-        };
-        let tangents = family.evaluate(lengths, &SharedLaps::default()).tangents;
+        let found = system.lengths_at(number, &x);
+        let tangents = family.evaluate(lengths(&found), &SharedLaps::default()).tangents;
         let n = family.n_rows();
         for (link, tangent) in family.links().iter().zip(tangents.chunks_exact(n * n)) {
             link_tangents.push(LinkTangent {
@@ -240,38 +237,44 @@ fn growth(
         .terms
         .iter()
         .any(|term| matches!(term.body, Body::Elastic(_)));
+    let carried = |body: usize| {
+        Side::BOTH
+            .into_iter()
+            .find(|side| parts.carrier(*side) == Some(body))
+    };
     let mut growth = LengthGrowth::default();
     for term in link.terms.iter().filter(|term| term.rows[row] != 0.0) {
         let value = term.rows[row];
         match term.body {
-            Body::Lumped(body) if Side::BOTH.map(|side| parts.carrier(side)).contains(&Some(body)) => {
+            Body::Lumped(body) => {
+                let Some(side) = carried(body) else {
+                    growth
+                        .small
+                        .push((2 * (body - FIRST_BALL) + term.coordinate, value));
+                    continue;
+                };
                 let mut places = places
                     .iter()
                     .filter(|(of, dof, _)| (*of, *dof) == (body, term.coordinate));
                 growth
                     .small
                     .extend(places.next().map(|(_, _, place)| (*place, value)));
-                let side = Side::BOTH[usize::from(body != SHAFT)];
                 let ring = rings[side.index()].as_ref().filter(|_| !is_ring);
                 if let Some(load) = ring.and_then(|ring| ring.partner_load(term.coordinate)) {
-                    growth.ring = Some((side.index(), load.iter().map(|&(k, w)| (k, value * w)).collect()));
+                    growth.add_ring(side.index(), load, value);
                 }
             }
-            Body::Lumped(body) => growth
-                .small
-                .push((2 * (body - FIRST_BALL) + term.coordinate, value)),
             Body::Elastic(body) => {
                 let found = Side::BOTH
                     .into_iter()
-                    .find(|side| equilibrium.parts.elastic(*side) == Some(body));
+                    .find(|side| parts.elastic(*side) == Some(body));
                 let Some((side, ring)) = found.and_then(|side| Some((side, rings[side.index()].as_ref()?)))
                 else {
                     continue;
                 };
                 let foot = &equilibrium.footprints(side)[term.coordinate / 2];
                 let weights = ring.held().coordinates.reduce_weights(&foot.weights);
-                let load = weights[term.coordinate % 2].iter().map(|&(k, w)| (k, value * w));
-                growth.ring = Some((side.index(), load.collect()));
+                growth.add_ring(side.index(), &weights[term.coordinate % 2], value);
             }
         }
     }

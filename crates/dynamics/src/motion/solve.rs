@@ -77,7 +77,7 @@ impl BearingParts {
             balls: (0..self.balls.len())
                 .map(|ball| system.coordinates(FIRST_BALL + ball, x))
                 .collect(),
-            seat: self.seat_end(x),
+            seat: self.seat_end(&system, x),
             forces: forces.unwrap_or_default(),
             reaches,
             mounts: Side::BOTH.map(mount),

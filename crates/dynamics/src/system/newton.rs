@@ -64,8 +64,6 @@ pub struct Policy<'p> {
 pub struct NewtonSolution {
     /// The unknowns.
     pub unknowns: Vec<f64>,
-    /// Forces of the links, by family.
-    pub links: Vec<LinkForces>,
     /// Newton iterations.
     pub iterations: usize,
 }
@@ -101,7 +99,6 @@ impl System<'_> {
             if is_solved {
                 return Ok(NewtonSolution {
                     unknowns: x,
-                    links: at.links,
                     iterations: iteration,
                 });
             }
@@ -188,20 +185,22 @@ impl Policy<'_> {
 
     /// Makes a tangent that of scaled unknowns, with the proximal stiffness.
     fn scale(&self, n: usize, tangent: &mut [f64]) {
-        let scales = self.scales.unwrap_or_default().iter().enumerate();
-        for (i, scale) in scales.filter(|(_, scale)| **scale != 1.0) {
-            tangent[n * i..n * (i + 1)]
-                .iter_mut()
-                .for_each(|value| *value *= scale);
-            tangent[i..]
-                .iter_mut()
-                .step_by(n)
-                .for_each(|value| *value *= scale);
-        }
+        scale_tangent(n, self.scales.unwrap_or_default(), tangent);
         tangent
             .iter_mut()
             .step_by(n + 1)
             .for_each(|diagonal| *diagonal += self.proximal);
+    }
+}
+
+/// Makes a tangent over `n` unknowns, row-major, that of unknowns scaled by `scales`; none are ones.
+pub fn scale_tangent(n: usize, scales: &[f64], tangent: &mut [f64]) {
+    let scales = scales.iter().enumerate();
+    for (i, scale) in scales.filter(|(_, scale)| **scale != 1.0) {
+        let row = tangent[n * i..n * (i + 1)].iter_mut();
+        row.for_each(|value| *value *= scale);
+        let column = tangent[i..].iter_mut().step_by(n);
+        column.for_each(|value| *value *= scale);
     }
 }
 

@@ -13,6 +13,7 @@ mod quasi_static;
 mod schedules;
 mod sweeps;
 
+use dynamics::effects::Table as _;
 use std::path::Path;
 
 use input::Schedule;
