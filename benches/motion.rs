@@ -73,7 +73,7 @@ fn bearing(level: Level, frame_rotation: bool) -> Model {
     let mut model = case.flexible(ContactMode::Patch, level, Hold::Clamped);
     if frame_rotation {
         model.effects.push(Box::new(FrameRotation {
-            speed: Speed::constant(SPEED),
+            speeds: Speed::constant(SPEED).into(),
         }));
     }
     model

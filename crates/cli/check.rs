@@ -103,25 +103,28 @@ pub fn check(path: &Path, overrides: &[String]) -> Result<(), Failure> {
 }
 
 /// Prints how cage and balls roll at the largest speed of the scene, and how often balls pass a point of each raceway
-/// (Harris, 4th ed., chapter 8): n |omega_c| / (2 pi) on the outer ring, n |omega_i - omega_c| / (2 pi) on the inner
-/// one. A point of a ball meets each raceway once per turn about its own axis.
+/// (Harris, 4th ed., chapter 8): n |omega_c - omega_o| / (2 pi) on the outer ring, n |omega_i - omega_c| / (2 pi) on
+/// the inner one. A point of a ball meets each raceway once per turn about its own axis.
 fn print_rolling(scene: &Scene, geometry: &BearingGeometry) {
-    let speeds = scene.speed.iter().flat_map(|speed| &speed.values);
-    let Some(&inner) = speeds.max_by(|a, b| a.abs().total_cmp(&b.abs())) else {
-        return;
-    };
+    let Some(speeds) = &scene.speed else { return };
+    let [inner, outer] = speeds.at_largest(|[inner, outer]| (inner - outer).abs());
     let turning = Kinematics::new(geometry, scene.effects.slip());
     let rpm = |speed: f64| speed * 30.0 / PI;
     let hertz = |speed: f64| speed.abs() / (2.0 * PI);
     let n = geometry.n_balls as f64;
+    let outside = match outer {
+        0.0 => String::new(),
+        _ => format!(" and {:.2} rpm outside", rpm(outer)),
+    };
+    let cage = turning.of_cage([inner, outer]);
     print::line(format_args!(
-        "rolling  at {:.2} rpm inside: cage {:.2} rpm, balls {:.2} rpm about their axes; passing balls {:.3} \
+        "rolling  at {:.2} rpm inside{outside}: cage {:.2} rpm, balls {:.2} rpm about their axes; passing balls {:.3} \
          per second inside, {:.3} per second outside",
         rpm(inner),
-        rpm(turning.cage * inner),
-        rpm(turning.ball * inner.abs()),
-        n * hertz((1.0 - turning.cage) * inner),
-        n * hertz(turning.cage * inner),
+        rpm(cage),
+        rpm(turning.ball * (inner - outer).abs()),
+        n * hertz(inner - cage),
+        n * hertz(cage - outer),
     ));
 }
 

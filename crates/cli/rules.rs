@@ -12,24 +12,25 @@
 use dynamics::Model;
 use dynamics::effects::rules::{Case, MATTERS, percent};
 use results::failure::Failure;
-use scene::{Analysis, Motion, Scene, material};
+use scene::{Analysis, Motion, Scene, material, speeds};
 
 /// What the rules of thumb say about the effects of a scene: a sentence each, with estimate and formula.
 pub fn advice(scene: &Scene, model: &Model) -> Result<Vec<String>, Failure> {
     let effects = &scene.effects;
-    let speeds = scene.speed.iter().flat_map(|s| &s.values);
-    let speed = speeds.fold(0.0f64, |m, w| w.abs().max(m));
+    let speeds = &speeds(scene);
+    let [inner, _] = speeds.at_largest(|[inner, _]| inner.abs());
     let case = Case {
         model,
-        load: effects.peak_load(speed),
-        speed,
+        load: effects.peak_load(inner),
+        speeds,
         slip: effects.slip(),
         ring_steel: material(&scene.materials.rings)?,
         bore_diameter: scene.bearing.bore_diameter,
+        outside_diameter: scene.bearing.outside_diameter,
         width: scene.bearing.width,
         has_inertia: matches!(scene.analysis, Analysis::Dynamic(_)),
         is_damped: effects.contact_damping().is_some() || effects.ring_damping().is_some(),
-        changes_in_time: effects.are_scheduled() || scene.speed.as_ref().is_some_and(|s| s.values.len() > 1),
+        changes_in_time: effects.are_scheduled() || speeds.changes(),
     };
     let mut lines = effects.advice(&case);
     lines.extend(flexibility(scene, &case));

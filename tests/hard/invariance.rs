@@ -196,7 +196,7 @@ fn mirrored_motion(record: &mut Record) {
         }));
         let start = equilibrium_at(&model, 0.0).unwrap();
         let settings = MotionSettings {
-            speed: Speed::constant(sign * 6000.0 * RPM),
+            speeds: Speed::constant(sign * 6000.0 * RPM).into(),
             ..conserving(5e-6)
         };
         let course = from_equilibrium(&model, &start, settings, 400);
@@ -227,7 +227,7 @@ fn threads(record: &mut Record) {
                 &model,
                 &start,
                 MotionSettings {
-                    speed,
+                    speeds: speed.into(),
                     ..conserving(5e-6)
                 },
                 60,

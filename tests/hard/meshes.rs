@@ -193,7 +193,7 @@ fn crossing(record: &mut Record) {
     let motion = Motion::new(
         &model,
         MotionSettings {
-            speed,
+            speeds: speed.into(),
             ..conserving(5e-6)
         },
     )

@@ -90,7 +90,7 @@ fn late_turning(record: &mut Record) {
     let motion = Motion::new(
         &model,
         MotionSettings {
-            speed,
+            speeds: speed.into(),
             ..conserving(1e-6)
         },
     )

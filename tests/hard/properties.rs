@@ -252,7 +252,7 @@ fn motions(record: &mut Record, cases: u32) {
         let stiffness = 1.5 * jumped.hertz[1].stiffness.powf(2.0 / 3.0) * force.cbrt();
         let period = std::f64::consts::TAU * (jumped.ball_mass() / (2.0 * stiffness)).sqrt();
         let settings = MotionSettings {
-            speed: Speed::constant(random.rpm * RPM),
+            speeds: Speed::constant(random.rpm * RPM).into(),
             ..conserving(random.step * period)
         };
         let course = from_equilibrium(&jumped, &start, settings, 200);

@@ -93,7 +93,7 @@ fn gyroscopic_alone(record: &mut Record) {
     for radial in [0.0, 100.0, 400.0] {
         let mut model = rigid(Load::dead(500.0), Load::dead(radial));
         model.effects.push(Box::new(GyroscopicMoment {
-            speed: Speed::constant(40_000.0 * RPM),
+            speeds: Speed::constant(40_000.0 * RPM).into(),
             slip: [0.0; 2],
             shares: [0.0, 2.0],
             ball_speeds: BallSpeeds::FreeAngle,
@@ -141,14 +141,14 @@ fn gyroscopic_alone(record: &mut Record) {
 /// The turning bearing's settings at constant or changing speed, rpm.
 fn turning(speed: Speed, dt: f64) -> MotionSettings {
     MotionSettings {
-        speed,
+        speeds: speed.into(),
         ..conserving(dt)
     }
 }
 
 fn add_centrifugal(model: &mut Model, speed: &Speed) {
     model.effects.push(Box::new(BallCentrifugal {
-        speed: speed.clone(),
+        speeds: speed.clone().into(),
         slip: [0.0; 2],
         ball_speeds: BallSpeeds::FreeAngle,
     }));
@@ -199,11 +199,11 @@ fn run_up_flexible(record: &mut Record) {
     let speed = speeds([1800.0, 18_000.0], 1e-3);
     let mut model = flexible(Load::dead(2e3), Load::dead(0.0));
     add_centrifugal(&mut model, &speed);
-    model
-        .effects
-        .push(Box::new(FrameRotation { speed: speed.clone() }));
+    model.effects.push(Box::new(FrameRotation {
+        speeds: speed.clone().into(),
+    }));
     model.effects.push(Box::new(GyroscopicMoment {
-        speed: speed.clone(),
+        speeds: speed.clone().into(),
         slip: [0.0; 2],
         shares: [0.0, 2.0],
         ball_speeds: BallSpeeds::FreeAngle,
@@ -221,7 +221,7 @@ fn light(gyroscopic: bool) -> (Model, StaticSolution, MotionSettings) {
         add_centrifugal(&mut model, &speed);
         if gyroscopic {
             model.effects.push(Box::new(GyroscopicMoment {
-                speed: speed.clone(),
+                speeds: speed.clone().into(),
                 slip: [0.0; 2],
                 shares: [0.0, 2.0],
                 ball_speeds: BallSpeeds::FreeAngle,

@@ -212,7 +212,7 @@ fn swing_table(record: &mut Record, model: &Model, steps: &[f64]) {
 
 fn compare(record: &mut Record, model: &Model, (steps, measure): (&[f64], Measure), rpm: f64) {
     let with = |dt: f64| MotionSettings {
-        speed: dynamics::kinematics::Speed::constant(rpm * RPM),
+        speeds: dynamics::kinematics::Speed::constant(rpm * RPM).into(),
         ..conserving(1e-6 * dt)
     };
     let reference = transient(model, with(1.0), DURATION);

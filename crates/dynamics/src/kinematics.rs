@@ -1,8 +1,14 @@
-//! Kinematics of cage, balls and inner ring.
+//! Kinematics of rings, cage and balls.
 //!
-//! The inner ring turns by the prescribed theta_i(t). Pure rolling gives the cage (Harris, 4th ed., eq. 8.24; the
-//! paper's eq. 10): omega_c = omega_i / 2 (1 - (D_w / D_m) cos a0), with slip ratios the share of the inner and outer
-//! rolling motion that is lost.
+//! The rings turn by the prescribed theta_i(t) and theta_o(t). Pure rolling gives the cage (Harris, 4th ed., eq.
+//! 8.24; the paper's eq. 10):
+//!
+//! ```text
+//! omega_c = omega_i / 2 (1 - (D_w / D_m) cos a0) + omega_o / 2 (1 + (D_w / D_m) cos a0)
+//! ```
+//!
+//! Slip ratios are the share of the inner and outer rolling motion that is lost. Rings of equal speed carry cage and
+//! balls round with them, and nothing rolls.
 
 use contact::{BearingGeometry, Side};
 use input::schedule::piecewise_linear;
@@ -12,13 +18,13 @@ use crate::effects::Now;
 use crate::model::Model;
 use crate::pose::Pose;
 
-/// Inner ring speed as a piecewise linear function of time.
+/// Speed of a ring as a piecewise linear function of time.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Speed {
-    /// Times, s, growing; constant speed before the first and after the last.
-    times: Vec<f64>,
-    /// Speeds, rad/s.
-    speeds: Vec<f64>,
+    /// Times, s, growing, `[n]`, n at least 1; constant speed before the first and after the last.
+    pub times: Vec<f64>,
+    /// Speeds, rad/s, `[n]`.
+    pub values: Vec<f64>,
 }
 
 impl Speed {
@@ -26,32 +32,32 @@ impl Speed {
     pub fn constant(speed: f64) -> Speed {
         Speed {
             times: vec![0.0],
-            speeds: vec![speed],
+            values: vec![speed],
         }
     }
 
     /// Linear between the given times (s, growing) and speeds (rad/s).
-    pub fn table(times: Vec<f64>, speeds: Vec<f64>) -> Speed {
+    pub fn table(times: Vec<f64>, values: Vec<f64>) -> Speed {
         assert!(
-            !times.is_empty() && times.len() == speeds.len(),
+            !times.is_empty() && times.len() == values.len(),
             "a speed table has as many speeds as times"
         );
-        Speed { times, speeds }
+        Speed { times, values }
     }
 
     /// Whether it is 0 at all times.
     pub fn is_zero(&self) -> bool {
-        self.speeds.iter().all(|speed| *speed == 0.0)
+        self.values.iter().all(|speed| *speed == 0.0)
     }
 
     /// Speed, rad/s.
     pub fn at(&self, t: f64) -> f64 {
-        piecewise_linear(&self.times, &self.speeds, t)[0]
+        piecewise_linear(&self.times, &self.values, t)[0]
     }
 
     /// Angular acceleration, rad/s^2.
     pub fn rate(&self, t: f64) -> f64 {
-        piecewise_linear(&self.times, &self.speeds, t)[1]
+        piecewise_linear(&self.times, &self.values, t)[1]
     }
 
     /// Angle turned since t = 0, rad: the exact integral.
@@ -66,10 +72,71 @@ impl Speed {
     }
 }
 
-/// Share of the rolling motion that is lost at the inner and at the outer raceway, 0 to below 1; 0 is pure rolling.
-pub type SlipRatios = [f64; 2];
+/// Speeds of both rings.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RingSpeeds {
+    /// Of the inner ring.
+    pub inner: Speed,
+    /// Of the outer ring.
+    pub outer: Speed,
+}
 
-/// Turning of cage and balls per turn of the inner ring.
+/// The inner ring turns, the outer one stands.
+impl From<Speed> for RingSpeeds {
+    fn from(inner: Speed) -> RingSpeeds {
+        let outer = Speed::constant(0.0);
+        RingSpeeds { inner, outer }
+    }
+}
+
+/// Both rings stand.
+impl Default for RingSpeeds {
+    fn default() -> RingSpeeds {
+        Speed::constant(0.0).into()
+    }
+}
+
+impl RingSpeeds {
+    /// Of one ring.
+    pub fn of(&self, side: Side) -> &Speed {
+        match side {
+            Side::Inner => &self.inner,
+            Side::Outer => &self.outer,
+        }
+    }
+
+    /// Whether both rings stand at all times.
+    pub fn is_zero(&self) -> bool {
+        self.inner.is_zero() && self.outer.is_zero()
+    }
+
+    /// Whether a ring changes its speed.
+    pub fn changes(&self) -> bool {
+        Side::BOTH.iter().any(|side| self.of(*side).values.len() > 1)
+    }
+
+    /// Speed of the inner ring seen from the outer one, rad/s.
+    pub fn relative(&self, t: f64) -> f64 {
+        self.inner.at(t) - self.outer.at(t)
+    }
+
+    /// The speeds `[inner, outer]`, rad/s, at the time at which a size of them is largest. Speeds are linear between
+    /// their times, so that sums and differences of them are largest at one of these.
+    pub fn at_largest(&self, size: impl Fn(BothRings) -> f64) -> BothRings {
+        let times = self.inner.times.iter().chain(&self.outer.times);
+        let speeds = times.map(|t| Side::BOTH.map(|side| self.of(side).at(*t)));
+        let largest = speeds.reduce(|a, b| if size(b) > size(a) { b } else { a });
+        largest.unwrap_or_default()
+    }
+}
+
+/// A number of each ring, the inner one first.
+pub type BothRings = [f64; 2];
+
+/// Share of the rolling motion that is lost at the inner and at the outer raceway, 0 to below 1; 0 is pure rolling.
+pub type SlipRatios = BothRings;
+
+/// Turning of cage and balls per turn of the inner ring, seen from the outer ring.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Kinematics {
     /// Cage speed over inner ring speed.
@@ -80,7 +147,7 @@ pub struct Kinematics {
 
 impl Kinematics {
     /// Rolling with slip ratios at the inner and outer raceway, both in 0..1; 0 is pure rolling.
-    pub fn new(geometry: &BearingGeometry, [inner_slip, outer_slip]: [f64; 2]) -> Kinematics {
+    pub fn new(geometry: &BearingGeometry, [inner_slip, outer_slip]: SlipRatios) -> Kinematics {
         let ratio = geometry.ball_diameter / geometry.pitch_diameter();
         let gamma = ratio * geometry.free_contact_angle().cos();
         // Rolling: the raceway speeds relative to the cage drive the ball's surface with what slip leaves of them.
@@ -95,10 +162,31 @@ impl Kinematics {
         }
     }
 
+    /// What the cage has of both rings: of their speeds its own, of their angles the angle it has turned.
+    pub fn of_cage(&self, [inner, outer]: BothRings) -> f64 {
+        self.cage * inner + (1.0 - self.cage) * outer
+    }
+
+    /// Speed of the cage at a time, rad/s.
+    pub fn cage_speed(&self, speeds: &RingSpeeds, time: f64) -> f64 {
+        self.of_cage(Side::BOTH.map(|side| speeds.of(side).at(time)))
+    }
+
+    /// Angle the cage has turned since t = 0, rad.
+    pub fn cage_angle(&self, speeds: &RingSpeeds, time: f64) -> f64 {
+        self.of_cage(Side::BOTH.map(|side| speeds.of(side).angle(time)))
+    }
+
+    /// Speed of a ball's rotation about its own axis relative to the cage at a time, rad/s (Harris, 4th ed., eq.
+    /// 8.25). It turns against the inner ring, and + goes with that ring's positive speed relative to the outer one.
+    pub fn spin(&self, speeds: &RingSpeeds, time: f64) -> f64 {
+        self.ball * speeds.relative(time)
+    }
+
     /// Rolling at the contact angles `[inner, outer]`, rad, about an axis pitched by beta (`pitch_angle`): the
     /// surface of the ball has cos(a - beta) of its largest speed at a contact (Harris, 4th ed., chapter 8; Jones
     /// 1959). Without slip omega_c = omega_i (1 - D_w / D_m cos a_i) / (1 + cos(a_i - a_o)).
-    pub fn outer_control(geometry: &BearingGeometry, slip: [f64; 2], angles: [f64; 2]) -> Kinematics {
+    pub fn outer_control(geometry: &BearingGeometry, slip: SlipRatios, angles: BothRings) -> Kinematics {
         let ratio = geometry.ball_diameter / geometry.pitch_diameter();
         let pitch = pitch_angle(geometry, angles[1]);
         let rolling = |side: Side| {
@@ -135,7 +223,7 @@ pub enum BallSpeeds {
 
 impl BallSpeeds {
     /// Turning of one ball at an instant, with slip ratios at the inner and outer raceway.
-    pub fn of_ball(self, model: &Model, now: &Now, slip: [f64; 2], ball: usize) -> Kinematics {
+    pub fn of_ball(self, model: &Model, now: &Now, slip: SlipRatios, ball: usize) -> Kinematics {
         match self {
             BallSpeeds::FreeAngle => Kinematics::new(&model.geometry, slip),
             BallSpeeds::OuterControl => {
@@ -146,42 +234,40 @@ impl BallSpeeds {
     }
 }
 
-/// Turning of all parts over time: a speed of the inner ring and the rolling it drives.
+/// Turning of all parts over time: speeds of the rings and the rolling they drive.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Rolling {
-    /// Speed of the inner ring.
-    pub speed: Speed,
-    /// What follows from it.
+    /// Speeds of the rings.
+    pub speeds: RingSpeeds,
+    /// What follows from them.
     pub kinematics: Kinematics,
 }
 
 impl Rolling {
     /// Rolling in a bearing with slip ratios at the inner and outer raceway.
-    pub fn new(geometry: &BearingGeometry, speed: Speed, slip: [f64; 2]) -> Rolling {
+    pub fn new(geometry: &BearingGeometry, speeds: impl Into<RingSpeeds>, slip: SlipRatios) -> Rolling {
         Rolling {
-            speed,
+            speeds: speeds.into(),
             kinematics: Kinematics::new(geometry, slip),
         }
     }
 
     /// Where the parts stand at a time, s.
     pub fn pose(&self, time: f64) -> Pose {
-        let inner_angle = self.speed.angle(time);
         Pose {
             now: Now {
                 time,
                 width: 0.0,
-                cage_angle: self.kinematics.cage * inner_angle,
+                cage_angle: self.kinematics.cage_angle(&self.speeds, time),
                 angles: None,
             },
-            inner_angle,
+            ring_angles: Side::BOTH.map(|side| self.speeds.of(side).angle(time)),
         }
     }
 
-    /// Speed of a ball's rotation about its own axis relative to the cage at a time, rad/s (Harris, 4th ed., eq.
-    /// 8.25). It turns against the inner ring, and + goes with a positive speed of that ring.
+    /// Speed of a ball's rotation about its own axis relative to the cage at a time, rad/s.
     pub fn spin(&self, time: f64) -> f64 {
-        self.kinematics.ball * self.speed.at(time)
+        self.kinematics.spin(&self.speeds, time)
     }
 }
 
@@ -201,6 +287,30 @@ mod tests {
         assert!((outer - 234.0).abs() < 1.0, "{outer}");
         assert!((inner - 306.0).abs() < 1.0, "{inner}");
         assert!((outer + inner - 540.0).abs() < 1e-9);
+    }
+
+    /// Wrong: what an outer ring does to cage and balls. Both rings superpose; the frequencies of a point of each ring
+    /// change places when the other ring turns; rings of equal speed carry all with them.
+    #[test]
+    fn both_rings_drive_the_cage() {
+        let turning = Kinematics::new(&BearingGeometry::reference_7010c(), [0.0; 2]);
+        let passing = |speeds: [f64; 2]| {
+            let cage = turning.of_cage(speeds);
+            [(speeds[0] - cage).abs(), (cage - speeds[1]).abs()]
+        };
+        let ([inner, outer], [mirrored, seen]) = (passing([30.0, 0.0]), passing([0.0, 30.0]));
+        assert!((inner - mirrored).abs() < 1e-13 && (outer - seen).abs() < 1e-13);
+        assert!((turning.of_cage([0.0, 30.0]) - 30.0 * (1.0 - turning.cage)).abs() < 1e-13);
+        assert!((turning.of_cage([30.0, 30.0]) - 30.0).abs() < 1e-13);
+        let speeds = RingSpeeds {
+            inner: Speed::table(vec![0.0, 1.0], vec![0.0, 30.0]),
+            outer: Speed::table(vec![0.5, 2.0], vec![-40.0, 10.0]),
+        };
+        assert_eq!(
+            speeds.at_largest(|[inner, outer]| (inner - outer).abs()),
+            [15.0, -40.0]
+        );
+        assert_eq!(speeds.at_largest(|[inner, _]| inner.abs())[0], 30.0);
     }
 
     /// Wrong: the spin of balls. Pure rolling: the ball's surface moves with both raceways, seen from the cage, and

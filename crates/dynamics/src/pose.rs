@@ -1,8 +1,8 @@
 //! Where the parts of a bearing stand at an instant: what an equilibrium depends on besides its loads.
 //!
-//! The cage has carried the balls round by its angle. The inner ring has turned by its own: its mesh is turned with
-//! it, so a ball at azimuth psi in space touches the mesh at psi minus that angle, and loads that are fixed in space
-//! turn backwards on it. Shaft, balls and groove motions are measured in space, in the meridian planes of the balls.
+//! The cage has carried the balls round by its angle. Each ring has turned by its own: its mesh is turned with it, so
+//! a ball at azimuth psi in space touches the mesh at psi minus that angle, and loads that are fixed in space turn
+//! backwards on it. Shaft, balls and groove motions are measured in space, in the meridian planes of the balls.
 
 use contact::Side;
 
@@ -16,43 +16,39 @@ use crate::model::Model;
 pub struct Pose {
     /// Time, s, and angle the cage has turned, rad.
     pub now: Now<'static>,
-    /// Angle the inner ring has turned since the start, rad.
-    pub inner_angle: f64,
+    /// Angles the rings have turned since the start, inner first, rad.
+    pub ring_angles: [f64; 2],
 }
 
 impl Pose {
     /// Angle by which the mesh of a ring is turned in space, rad.
     pub fn frame_angle(&self, side: Side) -> f64 {
-        match side {
-            Side::Inner => self.inner_angle,
-            Side::Outer => 0.0,
-        }
+        self.ring_angles[side.index()]
     }
 
-    /// Loads of which those on the nodes of a flexible inner ring are given in its own frame, and the shaft carries
-    /// their resultant where the turned nodes stand. `inertia` is a load in that frame, N, `[n_nodes][3]` flat.
-    /// Collective.
+    /// Loads of which those on the nodes of flexible rings are given in the rings' own frames, and the shaft carries
+    /// the resultant on the inner ring where the turned nodes stand. `inertia` are loads in these frames, inner first,
+    /// N, `[n_nodes][3]` flat; they have no force along z. Collective.
     pub(crate) fn in_frames(
         &self,
         model: &Model,
         mut loads: Loads,
-        inertia: Option<Vec<f64>>,
+        inertia: [Option<Vec<f64>>; 2],
     ) -> Result<Loads, DynamicsError> {
-        let Some(ring) = model.ring(Side::Inner) else {
-            return Ok(loads);
-        };
-        let in_space = loads.rings[Side::Inner.index()].take();
-        let turned = in_space.map(|load| turn_nodal(&load, -self.inner_angle));
-        let load = match (turned, inertia) {
-            (Some(load), Some(inertia)) => Some(load.iter().zip(&inertia).map(|(a, b)| a + b).collect()),
-            (load, inertia) => load.or(inertia),
-        };
-        if let Some(load) = &load {
+        for (side, inertia) in Side::BOTH.into_iter().zip(inertia) {
+            let in_space = loads.rings[side.index()].take();
+            let turned = in_space.map(|load| turn_nodal(&load, -self.frame_angle(side)));
+            loads.rings[side.index()] = match (turned, inertia) {
+                (Some(load), Some(inertia)) => Some(load.iter().zip(&inertia).map(|(a, b)| a + b).collect()),
+                (load, inertia) => load.or(inertia),
+            };
+        }
+        let inner = model.ring(Side::Inner).zip(loads.rings[0].as_ref());
+        if let Some((ring, load)) = inner {
             let places = ring.places(Side::Inner.name(), model.backend)?;
             let resultant = resultant(&places, ring.groove.centre_z, load);
-            loads.ring_on_shaft = turn(resultant, self.inner_angle);
+            loads.ring_on_shaft = turn(resultant, self.frame_angle(Side::Inner));
         }
-        loads.rings[Side::Inner.index()] = load;
         Ok(loads)
     }
 }

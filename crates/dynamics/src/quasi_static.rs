@@ -1,6 +1,6 @@
 //! A bearing that turns without inertia: every instant is an equilibrium, started from the one before.
 //!
-//! Cage and balls move round as rolling says, the inner ring turns by its speed, loads follow their time; velocities
+//! Cage and balls move round as rolling says, the rings turn by their speeds, loads follow their time; velocities
 //! and accelerations are taken as zero, so nothing rings and steps may be as long as the pose allows. Centrifugal
 //! force of the balls is a load like others. Damping and the inertia of rings and shaft have no part in it.
 //!

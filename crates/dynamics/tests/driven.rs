@@ -22,7 +22,7 @@ fn settings(dt: f64, speed: f64) -> MotionSettings {
 fn spinning(mut model: Model, shares: [f64; 2]) -> Model {
     let (speed, slip) = (Speed::constant(FAST), [0.0; 2]);
     model.effects.push(Box::new(BallCentrifugal {
-        speed: speed.clone(),
+        speeds: speed.clone().into(),
         slip,
         ball_speeds: BallSpeeds::FreeAngle,
     }));
@@ -130,7 +130,7 @@ fn a_driven_shaft_moves_the_balls() {
             };
             let pose = Pose {
                 now,
-                inner_angle: 0.0,
+                ring_angles: [0.0, 0.0],
             };
             let statics = solver.solve_at(&model, &pose, None).unwrap();
             let (force, still) = (

@@ -55,14 +55,16 @@ fn free_flight(speed: Speed, dt: f64, n: usize, v: f64) -> [f64; 2] {
     model.rings[1] = None;
     // Room for the ring: a large clearance.
     model.geometry.outer_raceway_diameter += 0.1e-3;
-    model.effects = vec![Box::new(FrameRotation { speed: speed.clone() })];
+    model.effects = vec![Box::new(FrameRotation {
+        speeds: speed.clone().into(),
+    })];
     // A shaft that flies beside its ring.
     model.shaft[2] = ShaftDof::Free;
     model.shaft_mass = 1.0;
     let motion = Motion::new(
         &model,
         MotionSettings {
-            speed: speed.clone(),
+            speeds: speed.clone().into(),
             ..settings(dt)
         },
     )
@@ -131,7 +133,7 @@ fn a_locked_direction_stays_locked_in_space() {
     model.shaft[1] = ShaftDof::Prescribed(0.0);
     let start = equilibrium(&model);
     let turning = MotionSettings {
-        speed: Speed::constant(2000.0),
+        speeds: Speed::constant(2000.0).into(),
         ..settings(1e-5)
     };
     let states = run(&model, &start, turning, 60);
@@ -181,9 +183,9 @@ fn a_spinning_ring_rests_in_its_static_expansion() {
     let speed = Speed::constant(30_000.0 * std::f64::consts::PI / 30.0);
     let mut model = Case::axial(1000.0).flexible(ContactMode::Patch, SMALL, Hold::MeanMotion);
     let still = equilibrium(&model);
-    model
-        .effects
-        .push(Box::new(FrameRotation { speed: speed.clone() }));
+    model.effects.push(Box::new(FrameRotation {
+        speeds: speed.clone().into(),
+    }));
     let start = equilibrium(&model);
     // The expansion of the ring closes the clearance: less axial approach under the same thrust.
     assert!(still.displacements.shaft[2] - start.displacements.shaft[2] > 1e-6);
@@ -191,7 +193,7 @@ fn a_spinning_ring_rests_in_its_static_expansion() {
         &model,
         &start,
         MotionSettings {
-            speed,
+            speeds: speed.into(),
             ..settings(5e-6)
         },
         100,
@@ -216,7 +218,7 @@ fn cyclic_sparse_and_sector_steps_agree() {
     for hold in [Hold::Clamped, Hold::MeanMotion] {
         let (mut model, start) = radial_step(1500.0, hold, false);
         model.effects.push(Box::new(FrameRotation {
-            speed: Speed::constant(1000.0),
+            speeds: Speed::constant(1000.0).into(),
         }));
         let mut ends = Vec::new();
         let backends = [
@@ -227,7 +229,7 @@ fn cyclic_sparse_and_sector_steps_agree() {
         for (backend, name) in backends {
             model.backend = backend;
             let turning = MotionSettings {
-                speed: Speed::constant(1000.0),
+                speeds: Speed::constant(1000.0).into(),
                 ..settings(1e-5)
             };
             let motion = Motion::new(&model, turning.clone()).unwrap();

@@ -24,7 +24,7 @@ fn spinning(model: Model, omega: f64, shares: Option<[f64; 2]>) -> Model {
 fn spinning_by(ball_speeds: BallSpeeds, mut model: Model, omega: f64, shares: Option<[f64; 2]>) -> Model {
     let (speed, slip) = (Speed::constant(omega), [0.0; 2]);
     model.effects.push(Box::new(BallCentrifugal {
-        speed: speed.clone(),
+        speeds: speed.clone().into(),
         slip,
         ball_speeds,
     }));
@@ -255,7 +255,7 @@ fn friction_of_the_balls_is_balanced_by_the_shaft() {
         let solution = equilibrium(&model);
         let g = &model.geometry;
         let effect = GyroscopicMoment {
-            speed: Speed::constant(FAST),
+            speeds: Speed::constant(FAST).into(),
             slip: [0.0; 2],
             shares,
             ball_speeds: BallSpeeds::FreeAngle,

@@ -228,7 +228,7 @@ fn rigid_rings_carry_the_centrifugal_force_of_the_balls() {
     model.shaft_mass = 1.0;
     let speed = Speed::constant(3000.0);
     let effect = dynamics::effects::BallCentrifugal {
-        speed: speed.clone(),
+        speeds: speed.clone().into(),
         slip: [0.0; 2],
         ball_speeds: dynamics::kinematics::BallSpeeds::FreeAngle,
     };

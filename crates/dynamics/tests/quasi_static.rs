@@ -107,7 +107,7 @@ fn forces_repeat_when_every_ball_stands_where_the_next_one_stood() {
             cage_angle: 2.0 * PI / 18.0,
             ..Now::default()
         },
-        inner_angle: 2.0 * PI / 18.0 * 2.0,
+        ring_angles: [2.0 * PI / 18.0 * 2.0, 0.0],
     };
     let mut solver = StaticSolver::new(&model).unwrap();
     let exact = solver.solve_at(&model, &turned, Some(first)).unwrap();
@@ -146,7 +146,7 @@ fn a_turned_bearing_under_turned_loads_is_the_same_bearing() {
                 cage_angle: angle,
                 ..Now::default()
             },
-            inner_angle: angle,
+            ring_angles: [angle, 0.0],
         };
         let model = model_at(angle);
         let mut solver = StaticSolver::new(&model).unwrap();
@@ -170,7 +170,7 @@ fn a_turned_bearing_under_turned_loads_is_the_same_bearing() {
 fn slow_motion_follows_the_quasi_static_run() {
     let mut model = combined().flexible(ContactMode::Patch, SMALL, Hold::Clamped);
     model.effects.push(Box::new(BallCentrifugal {
-        speed: Speed::constant(SPEED),
+        speeds: Speed::constant(SPEED).into(),
         slip: [0.0; 2],
         ball_speeds: BallSpeeds::FreeAngle,
     }));

@@ -68,7 +68,7 @@ impl Run {
                 coefficient: 50.0,
                 full_approach: 1e-6,
             }),
-            ..MotionSettings::conserving(self.dt, self.rolling.speed.clone())
+            ..MotionSettings::conserving(self.dt, self.rolling.speeds.clone())
         };
         let motion = Motion::new(&self.model, settings).unwrap();
         let mut state = motion.start(&start);
@@ -201,7 +201,7 @@ fn balls_do_not_feel_the_elements() {
             for ball in 0..z {
                 let azimuth = TAU * ball as f64 / z as f64 + pose.now.cage_angle;
                 rest.push(seen.forces[side][ball] - smooth(azimuth - start));
-                angles[0].push(MESH.sectors as f64 * (azimuth - pose.inner_angle));
+                angles[0].push(MESH.sectors as f64 * (azimuth - pose.ring_angles[0]));
                 angles[1].push(MESH.sectors as f64 * azimuth);
             }
         }
@@ -292,7 +292,7 @@ fn rolling_without_friction_needs_no_drive() {
     let rolling = Rolling::new(&model.geometry, Speed::constant(SPEED), [0.0; 2]);
     let pitch = TAU / (model.geometry.n_balls as f64 * rolling.kinematics.cage * SPEED);
     let dt = pitch / PITCH_STEPS as f64;
-    let motion = Motion::new(&model, MotionSettings::conserving(dt, rolling.speed.clone())).unwrap();
+    let motion = Motion::new(&model, MotionSettings::conserving(dt, rolling.speeds.clone())).unwrap();
     let mut state = motion.start(&support::equilibrium(&model));
     let mut drive = Vec::new();
     for _ in 0..3 {

@@ -49,7 +49,7 @@ fn solve(model: &Model, time: f64) -> StaticSolution {
     };
     let pose = Pose {
         now,
-        inner_angle: 0.0,
+        ring_angles: [0.0, 0.0],
     };
     StaticSolver::new(model)
         .unwrap()

@@ -225,12 +225,12 @@ fn forces_across_the_contacts_are_in_the_balance() {
     for bearing in bearings() {
         let mut model = sprung(bearing, 1e6, 0.0);
         model.effects.push(Box::new(BallCentrifugal {
-            speed: speed.clone(),
+            speeds: speed.clone().into(),
             slip: Default::default(),
             ball_speeds: Default::default(),
         }));
         model.effects.push(Box::new(GyroscopicMoment {
-            speed: speed.clone(),
+            speeds: speed.clone().into(),
             slip: Default::default(),
             shares: [0.0, 2.0],
             ball_speeds: Default::default(),
@@ -251,7 +251,7 @@ fn nothing_that_holds_the_axis_is_said() {
     let mut model = sprung(Case::axial(FORCE).rigid(), 0.0, 0.0);
     model.shaft[2] = ShaftDof::Free;
     model.effects.push(Box::new(BallCentrifugal {
-        speed: Speed::constant(2000.0),
+        speeds: Speed::constant(2000.0).into(),
         slip: Default::default(),
         ball_speeds: Default::default(),
     }));

@@ -7,7 +7,7 @@ use contact::{BearingGeometry, Side};
 use dynamics::balls::{BallResult, ContactResult};
 use dynamics::{Model, StaticSolution};
 use fem::stress::von_mises;
-use scene::{InnerRingFrame, Scene};
+use scene::{RingFrame, Scene};
 
 use super::ring_stress::{Basis, Gathered, RingStress, ShownRing, StressFields};
 use super::shown::{Shown, Turn};
@@ -71,7 +71,7 @@ pub struct Places {
 }
 
 impl Places {
-    /// Places of rings and balls, the inner ring as it stands in space or in its own frame, and the stress that ranks
+    /// Places of rings and balls, rings as they stand in space or in their own frames, and the stress that ranks
     /// have `gathered`.
     pub fn new(shown: &Shown<'_>, mut gathered: Gathered, scene: &Scene) -> Result<Places, Failure> {
         let (mut displacement, mut rings) = (Vec::new(), [None, None]);
@@ -82,7 +82,7 @@ impl Places {
             if let Some(places) = gathered.places[side.index()].take() {
                 ring.places = places;
             }
-            if side == Side::Inner && scene.output.inner_ring == InnerRingFrame::OwnFrame {
+            if scene.output.rings[side.index()] == RingFrame::OwnFrame {
                 ring.turn = Turn::new(0.0);
             }
             displacement.extend(ring.shown_displacements());

@@ -17,7 +17,7 @@ use mesh::{Coverage, Cylinder, Mesh, Torus};
 use crate::error::BuildError;
 use crate::resolution::require_resolvable;
 use crate::section_record::{require_fresh, with_command};
-use crate::settings::speed;
+use crate::settings::speeds;
 use crate::tables::{self, FlexibleRing, Scene};
 
 /// Deviation of raceway nodes from the scene's torus that is taken for round-off of a file, over the groove
@@ -47,8 +47,8 @@ pub fn build_model(scene: &Scene) -> Result<(Model, NodeTags), BuildError> {
 
 /// How balls and cage roll; None when the scene has no speed.
 pub fn rolling(scene: &Scene) -> Option<Rolling> {
-    let speed = scene.speed.as_ref().map(|_| speed(scene));
-    speed.map(|speed| Rolling::new(&geometry(scene), speed, scene.effects.slip()))
+    let speeds = scene.speed.clone();
+    speeds.map(|speeds| Rolling::new(&geometry(scene), speeds, scene.effects.slip()))
 }
 
 /// The model of a scene with rings that were read before: the points of a sweep share them.
@@ -64,7 +64,7 @@ pub fn model_with_rings(scene: &Scene, rings: [Option<Arc<RingModel>>; 2]) -> Re
         given[side.index()].map_or(exact, |k| exact.with_stiffness(k))
     });
     let effects = scene.effects.loads(Setting {
-        speed: &speed(scene),
+        speeds: &speeds(scene),
         slip: scene.effects.slip(),
         ball_speeds: scene.ball_speeds,
         rings: &rings,

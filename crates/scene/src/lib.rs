@@ -17,6 +17,6 @@ pub use build::{NodeTags, build_model, geometry, material, model_with_rings, rin
 pub use doubts::doubts;
 pub use error::BuildError;
 pub use meshing::{build_meshes, build_missing};
-pub use settings::{effects_context, settings, speed};
+pub use settings::{effects_context, settings, speeds};
 pub use tables::*;
 pub use toml_text::{read_tables, title};

@@ -11,8 +11,8 @@
 
 use std::f64::consts::TAU;
 
-use contact::BearingGeometry;
-use dynamics::kinematics::Kinematics;
+use contact::{BearingGeometry, Side};
+use dynamics::kinematics::{BothRings, Kinematics};
 use input::{Quantity, Schedule, TIME};
 
 use crate::error::BuildError;
@@ -115,24 +115,41 @@ impl TimeSteps {
 
 /// Balls that pass a point of a raceway, at the largest speed.
 fn judge_passing(scene: &Scene, geometry: &BearingGeometry, steps: &TimeSteps, said: &mut Said) {
-    let speeds = scene.speed.iter().flat_map(|speed| &speed.values);
-    let speed = speeds.fold(0.0, |largest: f64, speed| largest.max(speed.abs()));
-    if speed == 0.0 {
+    let turning = Kinematics::new(geometry, scene.effects.slip());
+    // Equilibria in time are seen from the housing, in which the loads stand.
+    let has_inertia = steps.table == "dynamic";
+    let passing = |speeds: BothRings| {
+        let cage = turning.of_cage(speeds);
+        let rates = match has_inertia {
+            true => [
+                ("inner raceway", speeds[0] - cage),
+                ("outer raceway", cage - speeds[1]),
+            ],
+            false if speeds[1] == 0.0 => [("outer raceway", cage); 2],
+            false => [("housing", cage); 2],
+        };
+        let rates = rates.map(|(what, rate)| (what, scene.bearing.balls as f64 * rate.abs() / TAU));
+        if rates[0].1 > rates[1].1 {
+            rates[0]
+        } else {
+            rates[1]
+        }
+    };
+    let Some(speeds) = &scene.speed else { return };
+    let largest = speeds.at_largest(|speeds| passing(speeds).1);
+    let (what, rate) = passing(largest);
+    if rate == 0.0 {
         return;
     }
-    let cage = Kinematics::new(geometry, scene.effects.slip()).cage;
-    let per_turn = scene.bearing.balls as f64 * speed / TAU;
-    let [inner, outer] = [per_turn * (1.0 - cage).abs(), per_turn * cage.abs()];
-    // Equilibria in time are seen from the housing, in which the loads stand.
-    let (name, rate) = match inner > outer && steps.table == "dynamic" {
-        true => ("inner", inner),
-        false => ("outer", outer),
+    let turns = largest.map(|speed: f64| {
+        let turns = speed.abs() / TAU;
+        format!("{:.1} rpm ({:.3} turns a step)", 60.0 * turns, turns * steps.step)
+    });
+    let turns = match largest {
+        [_, 0.0] => turns[0].clone(),
+        _ => format!("{} inside and {} outside", turns[0], turns[1]),
     };
-    let turns = speed / TAU * steps.step;
-    let what = format!(
-        "at {:.1} rpm ({turns:.3} turns a step) balls pass a point of the {name} raceway {rate:.1} times per second",
-        speed / TAU * 60.0
-    );
+    let what = format!("at {turns} balls pass a point of the {what} {rate:.1} times per second");
     steps.judge_rate(&what, rate, said);
 }
 
@@ -218,8 +235,10 @@ fn judge_schedule(key: &str, schedule: &Schedule, steps: &TimeSteps, said: &mut 
 /// A speed that changes within a step.
 fn judge_speed(scene: &Scene, steps: &TimeSteps, said: &mut Said) {
     if let Some(speed) = &scene.speed {
-        let mut warn = |text: String| said.warnings.push(format!("speed.inner: {text}"));
-        warn_of_table(&speed.times, steps, &mut warn);
+        for side in Side::BOTH {
+            let mut warn = |text: String| said.warnings.push(format!("speed.{}: {text}", side.name()));
+            warn_of_table(&speed.of(side).times, steps, &mut warn);
+        }
     }
 }
 

@@ -2,7 +2,7 @@
 
 use dynamics::effects::Context;
 use dynamics::interactions::discrete_gradient::ContactScheme;
-use dynamics::kinematics::Speed;
+use dynamics::kinematics::RingSpeeds;
 use dynamics::motion::{Integrator, Ladder, MotionSettings};
 use input::Clock;
 
@@ -31,7 +31,7 @@ pub fn settings(scene: &Scene, dynamic: &Dynamic) -> MotionSettings {
             tables::ContactScheme::DiscreteGradient => ContactScheme::DiscreteGradient,
             tables::ContactScheme::Pointwise => ContactScheme::Pointwise,
         },
-        speed: speed(scene),
+        speeds: speeds(scene),
         slip: scene.effects.slip(),
         contact_damping: scene.effects.contact_damping(),
         rayleigh: scene
@@ -51,15 +51,12 @@ pub fn effects_context(scene: &Scene) -> Context {
     Context {
         is_without_inertia: !matches!(analysis, Analysis::Dynamic(_)),
         clock: if is_at_rest { Clock::AtRest } else { Clock::Running },
-        has_speed: scene.speed.is_some(),
-        has_flexible_inner: scene.inner.body.is_some(),
+        has_speed: scene.has_speed,
+        is_flexible: [scene.inner.body.is_some(), scene.outer.body.is_some()],
     }
 }
 
-/// Speed of the inner ring; at rest when the scene names none.
-pub fn speed(scene: &Scene) -> Speed {
-    match &scene.speed {
-        Some(table) => Speed::table(table.times.clone(), table.values.clone()),
-        None => Speed::constant(0.0),
-    }
+/// Speeds of the rings; at rest when the scene names none.
+pub fn speeds(scene: &Scene) -> RingSpeeds {
+    scene.speed.clone().unwrap_or_default()
 }

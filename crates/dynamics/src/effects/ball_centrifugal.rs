@@ -13,7 +13,7 @@ use super::rules::{Case, judge, percent};
 use super::table::{self, About, Setting, SpeedRole, Trial};
 use crate::balls::BallResult;
 use crate::error::DynamicsError;
-use crate::kinematics::{BallSpeeds, Kinematics, Speed};
+use crate::kinematics::{BallSpeeds, Kinematics, RingSpeeds};
 use crate::model::Model;
 
 const EXAMPLE: &str = "[effects.ball_centrifugal]      # needs [speed]\n";
@@ -53,7 +53,7 @@ impl table::Table for Table {
 
     fn load(&self, setting: Setting<'_>) -> Result<Option<Box<dyn Effect>>, DynamicsError> {
         Ok(Some(Box::new(BallCentrifugal {
-            speed: setting.speed.clone(),
+            speeds: setting.speeds.clone(),
             slip: setting.slip,
             ball_speeds: setting.ball_speeds,
         })))
@@ -62,8 +62,8 @@ impl table::Table for Table {
 
 /// Centrifugal force of the balls.
 pub struct BallCentrifugal {
-    /// Speed of the inner ring.
-    pub speed: Speed,
+    /// Speeds of the rings.
+    pub speeds: RingSpeeds,
     /// Slip ratios at the inner and outer raceway.
     pub slip: [f64; 2],
     /// Contact angles that the speeds follow.
@@ -79,7 +79,7 @@ impl Effect for BallCentrifugal {
         let radius = model.geometry.ball_centre()[0];
         for ball in 0..model.geometry.n_balls {
             let turning = self.ball_speeds.of_ball(model, now, self.slip, ball);
-            let cage = turning.cage * self.speed.at(now.time);
+            let cage = turning.cage_speed(&self.speeds, now.time);
             let slope = model.ball_mass() * cage * cage;
             loads.balls[ball][0] += slope * radius;
             loads.ball_slopes[ball] += slope;
@@ -92,14 +92,15 @@ impl Effect for BallCentrifugal {
         if self.ball_speeds == BallSpeeds::OuterControl {
             return None;
         }
-        let free = Kinematics::new(&model.geometry, self.slip).cage;
-        let slope = model.ball_mass() * (free * self.speed.at(now.time)).powi(2);
+        let cage = |kinematics: Kinematics| kinematics.cage_speed(&self.speeds, now.time);
+        let free = cage(Kinematics::new(&model.geometry, self.slip));
+        let slope = model.ball_mass() * free.powi(2);
         let force = slope * model.geometry.ball_centre()[0];
         // By what share of the force its angles change that of a ball, over its contact force.
         let error = |ball: &BallResult| {
             let angles = [ball.inner.contact_angle_rad, ball.outer.contact_angle_rad];
-            let change =
-                (Kinematics::outer_control(&model.geometry, self.slip, angles).cage / free).powi(2) - 1.0;
+            let own = cage(Kinematics::outer_control(&model.geometry, self.slip, angles));
+            let change = (own / free).powi(2) - 1.0;
             [change, change.abs() * force / ball.outer.force_n]
         };
         let loaded = balls.iter().enumerate().filter(|(_, b)| b.inner.force_n > 0.0);

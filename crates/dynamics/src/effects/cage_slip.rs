@@ -46,7 +46,7 @@ impl table::Table for Table {
     fn advice(table: Option<&Self>, case: &Case<'_>) -> Vec<String> {
         let (force, axial) = (case.centrifugal_force(), case.load.axial / case.n_balls());
         let is_rolling = axial > HIRANO * force;
-        if case.ball_load() == 0.0 || case.speed == 0.0 || is_rolling || table.is_some() {
+        if case.ball_load() == 0.0 || case.speeds.is_zero() || is_rolling || table.is_some() {
             return Vec::new();
         }
         vec![format!(

@@ -45,7 +45,7 @@ use super::loads::{Effect, Loads, Now};
 use super::rules::{Case, judge, percent};
 use super::table::{self, About, Context, Setting, SpeedRole, Trial};
 use crate::error::DynamicsError;
-use crate::kinematics::{BallSpeeds, Speed, pitch_angle};
+use crate::kinematics::{BallSpeeds, RingSpeeds, pitch_angle};
 use crate::model::Model;
 
 const EXAMPLE: &str = "[effects.gyroscopic_moment]     # needs [speed]
@@ -97,10 +97,8 @@ impl table::Table for Table {
             return Vec::new();
         }
         let diameter = case.model.geometry.ball_diameter;
-        let turning = case.kinematics();
         let inertia = case.model.ball_mass() * diameter * diameter / 10.0;
-        let moment =
-            inertia * turning.ball * turning.cage * case.speed * case.speed * case.contact_angle().sin();
+        let moment = inertia * case.gyroscopic_rate() * case.contact_angle().sin();
         let ratio = 2.0 * moment / (diameter * load);
         let estimate = format!(
             "the gyroscopic moment of a ball, J omega_b omega_c sin a = {moment:.2e} N m, asks for 2 M_g / D_w = {} of \
@@ -138,7 +136,7 @@ impl table::Table for Table {
 
     fn load(&self, setting: Setting<'_>) -> Result<Option<Box<dyn Effect>>, DynamicsError> {
         Ok(Some(Box::new(GyroscopicMoment {
-            speed: setting.speed.clone(),
+            speeds: setting.speeds.clone(),
             slip: setting.slip,
             shares: self.shares(),
             ball_speeds: setting.ball_speeds,
@@ -148,8 +146,8 @@ impl table::Table for Table {
 
 /// Gyroscopic moment of the balls.
 pub struct GyroscopicMoment {
-    /// Speed of the inner ring.
-    pub speed: Speed,
+    /// Speeds of the rings.
+    pub speeds: RingSpeeds,
     /// Slip ratios at the inner and outer raceway.
     pub slip: [f64; 2],
     /// Shares lambda of the inner and the outer raceway; their sum is 2.
@@ -163,10 +161,11 @@ impl GyroscopicMoment {
     pub fn moment(&self, model: &Model, now: &Now, ball: usize) -> f64 {
         let geometry = &model.geometry;
         let kinematics = self.ball_speeds.of_ball(model, now, self.slip, ball);
-        let speed = self.speed.at(now.time);
+        let spin = kinematics.spin(&self.speeds, now.time);
+        let cage = kinematics.cage_speed(&self.speeds, now.time);
         let pitch = pitch_angle(geometry, now.contact_angle(model, ball, Side::Outer));
         let inertia = model.ball_mass() * geometry.ball_diameter.powi(2) / 10.0;
-        inertia * (kinematics.ball * speed) * (kinematics.cage * speed) * pitch.sin()
+        inertia * spin * cage * pitch.sin()
     }
 }
 

@@ -35,8 +35,8 @@ pub struct Loads {
     /// Force on the ring at each contact [radial, axial] besides the normal one, N, by site (2 ball + side), acting
     /// at the groove centre; the ball gets its negative. Empty: no effect adds any.
     pub contacts: Vec<[f64; 2]>,
-    /// Turning of the inner ring's frame, when its inertia is called for.
-    pub frame: Option<FrameTurn>,
+    /// Turning of the rings' frames, inner first, where their inertia is called for.
+    pub frames: [Option<FrameTurn>; 2],
 }
 
 impl Loads {
@@ -52,7 +52,7 @@ impl Loads {
             balls: vec![[0.0; 2]; model.geometry.n_balls],
             rings: [None, None],
             contacts: Vec::new(),
-            frame: None,
+            frames: [None, None],
         }
     }
 
@@ -146,8 +146,8 @@ pub trait Effect: Send + Sync {
     /// Adds its loads at an instant.
     fn add_loads(&self, model: &Model, now: &Now, loads: &mut Loads) -> Result<(), DynamicsError>;
 
-    /// Whether it is the inertia of the inner ring's turning frame.
-    fn turns_frame(&self) -> bool {
+    /// Whether it is the inertia of a ring's turning frame.
+    fn turns_frame(&self, _side: Side) -> bool {
         false
     }
 

@@ -15,7 +15,7 @@
 use contact::Side;
 use fem::Material;
 
-use crate::kinematics::{Kinematics, SlipRatios};
+use crate::kinematics::{BothRings, Kinematics, RingSpeeds, SlipRatios};
 use crate::model::Model;
 
 /// Ratio from which an effect that is off is pointed out.
@@ -42,14 +42,16 @@ pub struct Case<'a> {
     pub model: &'a Model,
     /// Loads on the shaft at their peaks.
     pub load: PeakLoad,
-    /// Largest speed of the inner ring, rad/s.
-    pub speed: f64,
+    /// Speeds of the rings.
+    pub speeds: &'a RingSpeeds,
     /// Slip ratios at the inner and outer raceway.
     pub slip: SlipRatios,
     /// What rings are made of.
     pub ring_steel: Material,
     /// Bore of the inner ring, m.
     pub bore_diameter: f64,
+    /// Outside of the outer ring, m.
+    pub outside_diameter: f64,
     /// Width of the rings, m.
     pub width: f64,
     /// Whether it is a motion with inertia.
@@ -92,21 +94,41 @@ impl Case<'_> {
         Kinematics::new(&self.model.geometry, self.slip)
     }
 
-    /// Centrifugal force of a ball, N.
+    /// Largest speed of a ring, rad/s.
+    pub fn speed(&self, side: Side) -> f64 {
+        let size = |speeds: BothRings| speeds[side.index()].abs();
+        size(self.speeds.at_largest(size))
+    }
+
+    /// Largest spin of a ball about its own axis times the speed of the cage, rad^2/s^2.
+    pub fn gyroscopic_rate(&self) -> f64 {
+        let turning = self.kinematics();
+        let size =
+            |speeds: BothRings| (turning.ball * (speeds[0] - speeds[1]) * turning.of_cage(speeds)).abs();
+        size(self.speeds.at_largest(size))
+    }
+
+    /// Largest centrifugal force of a ball, N.
     pub fn centrifugal_force(&self) -> f64 {
-        let cage = self.kinematics().cage * self.speed;
+        let turning = self.kinematics();
+        let size = |speeds: BothRings| turning.of_cage(speeds).abs();
+        let cage = size(self.speeds.at_largest(size));
         self.model.ball_mass() * self.model.geometry.ball_centre()[0] * cage * cage
     }
 
-    /// Radius of the bottom of the inner groove, m.
-    pub fn inner_radius(&self) -> f64 {
-        0.5 * self.model.geometry.inner_raceway_diameter
+    /// Radii of the bottom of a ring's groove and of its seat, m.
+    pub fn radii(&self, side: Side) -> (f64, f64) {
+        let geometry = &self.model.geometry;
+        match side {
+            Side::Inner => (0.5 * geometry.inner_raceway_diameter, 0.5 * self.bore_diameter),
+            Side::Outer => (0.5 * geometry.outer_raceway_diameter, 0.5 * self.outside_diameter),
+        }
     }
 
     /// Mass of the inner ring, about, kg.
     pub fn inner_ring_mass(&self) -> f64 {
-        let radius = self.inner_radius();
-        let area = std::f64::consts::PI * (radius * radius - 0.25 * self.bore_diameter * self.bore_diameter);
+        let (radius, bore) = self.radii(Side::Inner);
+        let area = std::f64::consts::PI * (radius * radius - bore * bore);
         self.ring_steel.density * area * self.width
     }
 }

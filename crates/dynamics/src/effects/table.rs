@@ -20,7 +20,7 @@ use super::loads::Effect;
 use super::rules::{Case, PeakLoad};
 use crate::error::DynamicsError;
 use crate::interactions::discrete_gradient::ContactDamping;
-use crate::kinematics::{BallSpeeds, SlipRatios, Speed};
+use crate::kinematics::{BallSpeeds, RingSpeeds, SlipRatios};
 
 /// A load beyond this is a slip of the unit, N and N m.
 const MAX_LOAD: f64 = 1e9;
@@ -32,7 +32,7 @@ pub struct About {
     pub name: &'static str,
     /// The table as a scene has it, header and all, with every key.
     pub example: &'static str,
-    /// What it takes from the speed of the inner ring.
+    /// What it takes from the speeds of the rings.
     pub speed: SpeedRole,
     /// What else a scene must have.
     pub needs: &'static [Need],
@@ -40,7 +40,7 @@ pub struct About {
     pub trial: Option<Trial>,
 }
 
-/// What an effect takes from the speed of the inner ring.
+/// What an effect takes from the speeds of the rings.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SpeedRole {
     /// Nothing.
@@ -58,8 +58,10 @@ pub enum SpeedRole {
 pub enum Need {
     /// Inertia: motion in time.
     Inertia,
-    /// A finite-element inner ring.
-    FlexibleInner,
+    /// A finite-element ring that turns.
+    FlexibleTurning,
+    /// An inner ring that turns.
+    TurningInner,
 }
 
 /// Values with which `raceway prices` turns an effect on.
@@ -78,17 +80,30 @@ pub struct Context {
     pub is_without_inertia: bool,
     /// Whether loads may change in time.
     pub clock: Clock,
-    /// Whether the scene has the table `[speed]`.
-    pub has_speed: bool,
-    /// Whether the inner ring is a finite-element body.
-    pub has_flexible_inner: bool,
+    /// Whether the table `[speed]` of the scene names a ring, inner first.
+    pub has_speed: [bool; 2],
+    /// Whether a ring is a finite-element body, inner first.
+    pub is_flexible: [bool; 2],
+}
+
+impl Context {
+    /// The rings that turn, in words, if none of them is flexible.
+    fn rigid_that_turn(&self) -> Option<&'static str> {
+        let [inner, outer] = [0, 1].map(|i| self.has_speed[i].then_some(self.is_flexible[i]));
+        match (inner, outer) {
+            (Some(true), _) | (_, Some(true)) | (None, None) => None,
+            (Some(false), None) => Some("the inner ring is rigid"),
+            (None, Some(false)) => Some("the outer ring is rigid"),
+            (Some(false), Some(false)) => Some("both rings are rigid"),
+        }
+    }
 }
 
 /// What loads are made with.
 #[derive(Clone, Copy)]
 pub struct Setting<'a> {
-    /// Speed of the inner ring.
-    pub speed: &'a Speed,
+    /// Speeds of the rings.
+    pub speeds: &'a RingSpeeds,
     /// Slip ratios at the inner and outer raceway.
     pub slip: SlipRatios,
     /// Contact angles that the speeds of balls follow.
@@ -192,22 +207,30 @@ impl About {
     /// Reports what the scene lacks for the effect to do something.
     pub fn check_needs(&self, context: Context, problems: &mut Problems) {
         let name = self.name;
-        if self.speed != SpeedRole::None && !context.has_speed {
+        if self.speed != SpeedRole::None && context.has_speed == [false; 2] {
             problems.add(format!(
-                "[effects.{name}] needs the speed of the inner ring; add [speed] with inner = \"1800 rpm\" or \
+                "[effects.{name}] needs the speed of a ring; add [speed] with inner = \"1800 rpm\" or \
                  remove the effect"
             ));
         }
         for need in self.needs {
             match need {
-                Need::FlexibleInner if !context.has_flexible_inner => problems.add(format!(
-                    "[effects.{name}] is the inertia of a flexible inner ring, but the inner ring is rigid; remove it"
+                Need::FlexibleTurning => {
+                    if let Some(rigid) = context.rigid_that_turn() {
+                        problems.add(format!(
+                            "[effects.{name}] is the inertia of a flexible ring that turns, but {rigid}; remove it"
+                        ));
+                    }
+                }
+                Need::TurningInner if context.has_speed == [false, true] => problems.add(format!(
+                    "[effects.{name}] turns with the inner ring, but [speed] has outer alone; add inner, or remove \
+                     the effect"
                 )),
                 Need::Inertia if context.is_without_inertia => problems.add(format!(
                     "[effects.{name}] does nothing in a scene without inertia; remove it, or compute motion with \
                      [dynamic]"
                 )),
-                Need::FlexibleInner | Need::Inertia => {}
+                Need::TurningInner | Need::Inertia => {}
             }
         }
     }

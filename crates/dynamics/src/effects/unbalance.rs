@@ -18,12 +18,13 @@
 //! spindles of machine tools), M (e Omega) Omega, over the load; of an unbalance that is given, its own force m e
 //! Omega^2.
 
+use contact::Side;
 use input::{ANGLE, LENGTH, MASS, Problems, Quantity};
 use serde::Deserialize;
 
 use super::loads::{Effect, Loads, Now};
 use super::rules::{Case, PeakLoad, judge, percent};
-use super::table::{self, About, Context, Setting, SpeedRole, Trial};
+use super::table::{self, About, Context, Need, Setting, SpeedRole, Trial};
 use crate::error::DynamicsError;
 use crate::kinematics::Speed;
 use crate::model::Model;
@@ -65,7 +66,7 @@ impl table::Table for Table {
             name: "unbalance",
             example: EXAMPLE,
             speed: SpeedRole::Force,
-            needs: &[],
+            needs: &[Need::TurningInner],
             trial: Some(Trial {
                 what: "10 g mm",
                 keys: &[("mass", "10 g"), ("eccentricity", "1 mm")],
@@ -75,17 +76,18 @@ impl table::Table for Table {
 
     fn advice(table: Option<&Self>, case: &Case<'_>) -> Vec<String> {
         let load = case.load.axial.max(case.load.radial);
-        if load == 0.0 || case.speed == 0.0 {
+        let speed = case.speed(Side::Inner);
+        if load == 0.0 || speed == 0.0 {
             return Vec::new();
         }
         let rotor = case.model.shaft_mass + case.inner_ring_mass();
         let (force, formula) = match table {
             Some(table) => (
-                table.moment() * case.speed * case.speed,
+                table.moment() * speed * speed,
                 "the unbalance pulls with m e Omega^2 =",
             ),
             None => (
-                rotor * QUALITY * case.speed,
+                rotor * QUALITY * speed,
                 "shaft and inner ring balanced to G 2.5 pull with M (e Omega) Omega =",
             ),
         };
@@ -121,7 +123,7 @@ impl table::Table for Table {
 
     fn load(&self, setting: Setting<'_>) -> Result<Option<Box<dyn Effect>>, DynamicsError> {
         Ok(Some(Box::new(Unbalance {
-            speed: setting.speed.clone(),
+            speed: setting.speeds.inner.clone(),
             moment: self.moment(),
             angle: self.angle.as_ref().map_or(0.0, Quantity::si),
             position: self.position.as_ref().map_or(0.0, Quantity::si),
@@ -202,8 +204,8 @@ mod tests {
         let context = Context {
             is_without_inertia: false,
             clock: input::Clock::Running,
-            has_speed: true,
-            has_flexible_inner: false,
+            has_speed: [true, false],
+            is_flexible: [false; 2],
         };
         let messages = |mass: &str, eccentricity: &str, position: &str| {
             let table = Table {

@@ -7,7 +7,7 @@
 use std::sync::Arc;
 
 use contact::Side;
-use ring::{FrameTurn, Known, KnownLoad};
+use ring::{Known, KnownLoad};
 
 use super::run::Motion;
 use super::span::Span;
@@ -83,8 +83,8 @@ impl Motion<'_> {
         }
     }
 
-    /// What acts on a ring in a part of a step and does not wait for its contacts. Loads are fixed in space: those of
-    /// the inner ring are turned into its frame.
+    /// What acts on a ring in a part of a step and does not wait for its contacts. Loads are fixed in space and
+    /// are turned into the frame of the ring.
     pub(super) fn known_load(&self, side: Side, expected: &ExpectedLoads) -> KnownLoad {
         let loads = &expected.loads;
         let back = -self.frame_angle(side, self.weighted_time(expected.span));
@@ -92,12 +92,7 @@ impl Motion<'_> {
         let load = moving.zip(loads.rings[side.index()].as_ref());
         KnownLoad {
             load: load.map(|(moving, load)| moving.body.load(&turn_nodal(load, back))),
-            turn: frame_turn(side, loads),
+            turn: loads.frames[side.index()],
         }
     }
-}
-
-/// Turning of a ring's frame, when its inertia is called for.
-fn frame_turn(side: Side, loads: &Loads) -> Option<FrameTurn> {
-    loads.frame.filter(|_| side == Side::Inner)
 }

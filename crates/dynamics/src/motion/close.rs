@@ -4,7 +4,7 @@
 use std::sync::Arc;
 
 use contact::Side;
-use ring::{ElasticStep, End, Ended, Settling};
+use ring::{ElasticStep, End, Ended, FrameTurn, Settling};
 
 use super::cache::{Ahead, ExpectedLoads};
 use super::place::expected;
@@ -39,7 +39,7 @@ impl Motion<'_> {
     ) -> Result<Option<RingEnds>, DynamicsError> {
         let forces = Side::BOTH.map(|side| part.parts.forces_at_ports(side, solution));
         let scale = part.scale;
-        if part.expected.loads.frame.is_some() {
+        if part.expected.loads.frames.iter().any(Option::is_some) {
             let settle = |(step, forces): (&mut Box<dyn ElasticStep + '_>, &super::part::RingForces)| {
                 step.settle(forces.at_ports(), scale)
             };
@@ -108,7 +108,7 @@ impl Motion<'_> {
         if part.report.frame_rounds > MAX_FRAME_ROUNDS {
             return Err(DynamicsError::FrameNotSettled {
                 rounds: MAX_FRAME_ROUNDS,
-                speed: part.expected.loads.frame.map_or(0.0, |turn| turn.speed),
+                speed: fastest(&part.expected.loads.frames),
             });
         }
         for (ports, step) in part.parts.rings.iter_mut().zip(&part.rings) {
@@ -118,6 +118,12 @@ impl Motion<'_> {
         }
         Ok(())
     }
+}
+
+/// Speed of the frame that turns fastest, rad/s.
+fn fastest(frames: &[Option<FrameTurn>; 2]) -> f64 {
+    let speeds = frames.iter().flatten().map(|turn| turn.speed);
+    speeds.fold(0.0, |a, b| if b.abs() > a.abs() { b } else { a })
 }
 
 /// Settled if both are.

@@ -132,7 +132,7 @@ impl Motion<'_> {
     /// Speed of every ball's rotation about its own axis relative to the cage, rad/s; None when the bearing never
     /// turns.
     pub fn spin(&self, state: &MotionState) -> Option<f64> {
-        let speed = &self.settings.speed;
-        (!speed.is_zero()).then(|| self.kinematics.ball * speed.at(self.time(state.step)))
+        let speeds = &self.settings.speeds;
+        (!speeds.is_zero()).then(|| self.kinematics.spin(speeds, self.time(state.step)))
     }
 }

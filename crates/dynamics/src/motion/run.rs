@@ -1,7 +1,7 @@
 //! The time loop's step: from one State to the next, in parts on the ladder dt 2^-k if need be.
 //!
-//! The outer ring lives in space, the inner in a frame turned by theta_i(t): its contacts stand at azimuth minus
-//! theta_i, loads that are fixed in space are turned into it. Contacts of a step are placed at the azimuths of its
+//! Each ring lives in a frame turned by its theta(t): its contacts stand at azimuth minus theta, loads that are fixed
+//! in space are turned into it. Contacts of a step are placed at the azimuths of its
 //! weighted time. Factors of a rung are made when it is first used, and kept.
 
 use std::sync::{Arc, OnceLock};
@@ -49,11 +49,8 @@ impl<'a> Motion<'a> {
     /// Assembles both rings and factors them for the full step.
     pub fn new(model: &'a Model, settings: MotionSettings) -> Result<Motion<'a>, DynamicsError> {
         check_supported(model)?;
-        let turns = model.effects.iter().any(|effect| effect.turns_frame());
-        let frame = |side: Side| match side {
-            Side::Inner if turns => Frame::Turning,
-            _ => Frame::Still,
-        };
+        let turns = |side: Side| model.effects.iter().any(|effect| effect.turns_frame(side));
+        let frame = |side: Side| if turns(side) { Frame::Turning } else { Frame::Still };
         let build = |side: Side| {
             let moving = |ring| -> Result<MovingRing, DynamicsError> {
                 let settings = BodySettings {
@@ -187,15 +184,12 @@ impl<'a> Motion<'a> {
 
     /// Angle by which the frame of a ring is turned in space, rad.
     pub(super) fn frame_angle(&self, side: Side, time: f64) -> f64 {
-        match side {
-            Side::Inner => self.settings.speed.angle(time),
-            Side::Outer => 0.0,
-        }
+        self.settings.speeds.of(side).angle(time)
     }
 
     /// Angle the cage has turned since the start, rad.
     pub(super) fn cage_angle(&self, time: f64) -> f64 {
-        self.kinematics.cage * self.settings.speed.angle(time)
+        self.kinematics.cage_angle(&self.settings.speeds, time)
     }
 }
 

@@ -1,4 +1,4 @@
-//! The start of a motion: static equilibrium, at rest but for the turning of the inner ring.
+//! The start of a motion: static equilibrium, at rest but for the turning of the rings.
 
 use contact::Side;
 
@@ -14,11 +14,10 @@ use crate::interactions::raceway_contact::Site;
 use crate::solution::StaticSolution;
 
 impl Motion<'_> {
-    /// The state at static equilibrium, at rest but for the turning of the inner ring and what drives the shaft.
+    /// The state at static equilibrium, at rest but for the turning of the rings and what drives the shaft.
     pub fn start(&self, solution: &StaticSolution) -> MotionState {
         let model = self.model;
         let q = solution.displacements.shaft;
-        let omega = self.settings.speed.at(0.0);
         // A driven shaft moves already.
         let velocity = [0, 1, 2, 3, 4].map(|dof| model.prescribed_rate(dof, 0.0).unwrap_or(0.0));
         let seat = [0.0, 0.0, solution.displacements.seat, 0.0, 0.0];
@@ -30,7 +29,7 @@ impl Motion<'_> {
                 elastic,
                 if side == Side::Inner { q } else { seat },
                 if side == Side::Inner { velocity } else { [0.0; 5] },
-                if side == Side::Inner { omega } else { 0.0 },
+                self.settings.speeds.of(side).at(0.0),
             ))
         };
         let places = solution
@@ -85,8 +84,8 @@ impl Motion<'_> {
             q[dof] = self.model.prescribed(dof, 0.0).unwrap_or(q[dof]);
             velocity[dof] = self.model.prescribed_rate(dof, 0.0).unwrap_or(velocity[dof]);
         }
-        let omega = self.settings.speed.at(0.0);
         let ring = |side: Side| {
+            let omega = self.settings.speeds.of(side).at(0.0);
             let body = &*self.rings[side.index()].as_ref()?.body;
             let none = vec![0.0; body.held().coordinates.expanded()];
             let (q, v) = match side {

@@ -2,7 +2,7 @@
 
 use super::ledger::Ledger;
 use crate::interactions::discrete_gradient::{ContactDamping, ContactScheme};
-use crate::kinematics::Speed;
+use crate::kinematics::RingSpeeds;
 use ring::Integrator;
 use ring::RingState;
 use timer::Laps;
@@ -18,8 +18,8 @@ pub struct MotionSettings {
     pub integrator: Integrator,
     /// Scheme of the contacts.
     pub scheme: ContactScheme,
-    /// Inner ring speed.
-    pub speed: Speed,
+    /// Speeds of the rings.
+    pub speeds: RingSpeeds,
     /// Slip ratios at the inner and outer raceway.
     pub slip: [f64; 2],
     /// Contact damping, when the scene calls for it.
@@ -30,13 +30,13 @@ pub struct MotionSettings {
 
 impl MotionSettings {
     /// Equal steps of `dt` seconds that conserve energy, without slip and damping.
-    pub fn conserving(dt: f64, speed: Speed) -> MotionSettings {
+    pub fn conserving(dt: f64, speeds: impl Into<RingSpeeds>) -> MotionSettings {
         MotionSettings {
             dt,
             ladder: Ladder::default(),
             integrator: Integrator::average_acceleration(),
             scheme: ContactScheme::DiscreteGradient,
-            speed,
+            speeds: speeds.into(),
             slip: [0.0; 2],
             contact_damping: None,
             rayleigh: [0.0; 2],

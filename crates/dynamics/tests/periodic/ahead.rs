@@ -45,7 +45,7 @@ fn a_step_from_its_state_alone_has_the_same_bits() {
             MotionSettings {
                 dt: 4e-5,
                 ladder: adaptive,
-                speed: Speed::table(vec![0.0, 1e-3], vec![SPEED, 2.0 * SPEED]),
+                speeds: Speed::table(vec![0.0, 1e-3], vec![SPEED, 2.0 * SPEED]).into(),
                 ..conserving
             },
         ),
@@ -55,7 +55,7 @@ fn a_step_from_its_state_alone_has_the_same_bits() {
         let gravity = Gravity::new([0.0, -9.81, 0.0], Schedule::Constant, &model.rings).unwrap();
         model.effects.push(Box::new(gravity));
         model.effects.push(Box::new(FrameRotation {
-            speed: settings.speed.clone(),
+            speeds: settings.speeds.clone(),
         }));
         let start = statics(&model, "cyclic");
         let motion = Motion::new(&model, settings).unwrap();

@@ -182,7 +182,7 @@ fn rolling(level: Level, backend: Backend, steps: usize) -> End {
 fn motion(build: impl Fn() -> Model, steps: usize) -> End {
     let mut model = build();
     model.effects.push(Box::new(FrameRotation {
-        speed: Speed::constant(SPEED),
+        speeds: Speed::constant(SPEED).into(),
     }));
     motion_of(&model, &build(), steps)
 }

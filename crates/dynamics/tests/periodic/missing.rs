@@ -223,9 +223,9 @@ fn a_step_of_rings_with_a_keyway_has_the_same_bits_from_its_state_alone() {
         ),
     ] {
         let mut model = with_meshes(HEX8, hold, Backend::Auto, keyway);
-        model
-            .effects
-            .push(Box::new(FrameRotation { speed: speed.clone() }));
+        model.effects.push(Box::new(FrameRotation {
+            speeds: speed.clone().into(),
+        }));
         let gravity = Gravity::new([0.0, -9.81, 0.0], Schedule::Constant, &model.rings).unwrap();
         model.effects.push(Box::new(gravity));
         let settings = MotionSettings {

@@ -7,7 +7,7 @@ use toml_edit::DocumentMut;
 use super::RawScene;
 use super::modes::ModesContext;
 use super::shaft::Shaft;
-use super::speed::{SpeedUse, makes_force};
+use super::speed::{RawSpeed, SpeedUse, makes_force};
 use super::sweep::{Analysis, RawStatic};
 
 impl RawScene {
@@ -79,13 +79,18 @@ impl RawScene {
         self.is_at_rest() || (self.dynamic.is_none() && self.quasi_static.is_some())
     }
 
-    pub(super) fn effects_context(&self, has_flexible_inner: bool) -> Context {
+    pub(super) fn effects_context(&self, is_flexible: [bool; 2]) -> Context {
         Context {
             is_without_inertia: self.is_without_inertia(),
             clock: self.clock(),
-            has_speed: self.speed.is_some(),
-            has_flexible_inner,
+            has_speed: self.has_speed(),
+            is_flexible,
         }
+    }
+
+    /// Whether the scene names the speed of a ring, inner first.
+    pub(super) fn has_speed(&self) -> [bool; 2] {
+        self.speed.as_ref().map_or([false; 2], RawSpeed::has)
     }
 
     pub(super) fn speed_use(&self) -> SpeedUse {

@@ -63,7 +63,7 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use dynamics::effects::Effects;
-use dynamics::kinematics::BallSpeeds;
+use dynamics::kinematics::{BallSpeeds, RingSpeeds};
 use serde::Deserialize;
 use toml_edit::DocumentMut;
 
@@ -76,14 +76,13 @@ pub use self::error::SceneError;
 pub use self::locate::locate;
 pub use self::materials::{Material, Materials};
 pub use self::modes::{ModeBody, ModeSupport, Modes};
-pub use self::output::{InnerRingFrame, Output, Precision, StressOutput};
+pub use self::output::{Output, Precision, RingFrame, StressOutput};
 pub use self::probes::{Axes, ContactProbe, NodeProbe, Probes, SectionPoint};
 pub use self::quasi_static::QuasiStatic;
 pub use self::ring::{FlexibleRing, MeshFiles, Ring, RingName, Support};
 pub use self::section::{Section, SectionElement};
 pub use self::shaft::{Motion, Shaft};
 pub use self::solver::{Backend, Solver};
-pub use self::speed::SpeedTable;
 pub use self::start::Start;
 pub use self::stress::Stress;
 pub use self::stress_probes::StressLine;
@@ -159,8 +158,10 @@ pub struct Scene {
     pub outer: Ring,
     /// Freedoms of the shaft.
     pub shaft: Shaft,
-    /// Speed of the inner ring; it does not turn when `None`.
-    pub speed: Option<SpeedTable>,
+    /// Speeds of the rings; none turns when `None`.
+    pub speed: Option<RingSpeeds>,
+    /// Whether the table `[speed]` names a ring, inner first.
+    pub has_speed: [bool; 2],
     /// Contact angles that the speeds of balls follow.
     pub ball_speeds: BallSpeeds,
     /// Loads and other effects.
@@ -305,10 +306,14 @@ impl Source<'_> {
         }
         let shaft = raw.shaft.check(bearing.as_ref(), raw.clock(), &mut problems);
         let effects = &raw.effects;
-        effects.check(raw.effects_context(inner.body.is_some()), &mut problems);
+        effects.check(
+            raw.effects_context([inner.body.is_some(), outer.body.is_some()]),
+            &mut problems,
+        );
         let speed = raw.speed.as_ref();
         let ball_speeds = speed.map_or(BallSpeeds::default(), |s| s.ball_speeds(effects, &mut problems));
         let speed = speed.and_then(|s| s.check(raw.speed_use(), &mut problems));
+        let has_speed = raw.has_speed();
         let solver = raw.solver.check(&mut problems);
         let has_steps = raw.dynamic.is_some() || raw.quasi_static.is_some();
         let output = raw.output.check(has_steps, &mut problems);
@@ -341,6 +346,7 @@ impl Source<'_> {
                 outer,
                 shaft,
                 speed,
+                has_speed,
                 ball_speeds,
                 effects: raw.effects,
                 solver,

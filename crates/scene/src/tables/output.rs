@@ -11,7 +11,7 @@ pub struct RawOutput {
     precision: Option<Precision>,
     compression: Option<i64>,
     tables_every: Option<i64>,
-    inner_ring: Option<InnerRingFrame>,
+    inner_ring: Option<RingFrame>,
 }
 
 /// Stress fields that are written.
@@ -36,10 +36,10 @@ pub enum Precision {
     F64,
 }
 
-/// Frame in which a turning inner ring is shown.
+/// Frame in which a turning ring is shown.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq)]
 #[serde(rename_all = "snake_case")]
-pub enum InnerRingFrame {
+pub enum RingFrame {
     /// As it stands in space: it turns, and the balls roll on it.
     Space,
     /// In its own frame: it stands still, so that its small displacements can be seen; the contacts run round it.
@@ -57,8 +57,8 @@ pub struct Output {
     pub compression: u8,
     /// Steps from one row of the tables to the next, at least 1; steps with fields have theirs besides.
     pub tables_every: u64,
-    /// Where a turning inner ring is shown.
-    pub inner_ring: InnerRingFrame,
+    /// Where turning rings are shown, inner first.
+    pub rings: [RingFrame; 2],
 }
 
 /// No run has more steps.
@@ -79,7 +79,7 @@ impl RawOutput {
             precision: self.precision.unwrap_or(Precision::F32),
             compression: level as u8,
             tables_every: problems.whole(tables_every, "output.tables_every", 1, MAX_EVERY) as u64,
-            inner_ring: self.inner_ring.unwrap_or(InnerRingFrame::Space),
+            rings: [self.inner_ring, None].map(|frame| frame.unwrap_or(RingFrame::Space)),
         }
     }
 }

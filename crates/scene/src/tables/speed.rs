@@ -6,7 +6,7 @@
 use std::fmt;
 
 use dynamics::effects::{self, Effects, SpeedRole};
-use dynamics::kinematics::BallSpeeds;
+use dynamics::kinematics::{BallSpeeds, RingSpeeds, Speed};
 use input::{ANGULAR_SPEED, Problems, Quantity, TIME, bare_number, require_growing};
 use serde::Deserialize;
 use serde::de::value::MapAccessDeserializer;
@@ -16,7 +16,7 @@ use serde::de::{Deserializer, Error, MapAccess, Visitor};
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields, expecting = "the table [speed]")]
 pub struct RawSpeed {
-    inner: RawRingSpeed,
+    inner: Option<RawRingSpeed>,
     ball_speeds: Option<BallSpeeds>,
 }
 
@@ -29,7 +29,7 @@ enum RawRingSpeed {
 
 /// As typed.
 #[derive(Debug, Deserialize)]
-#[serde(deny_unknown_fields, expecting = "the table [speed.inner]")]
+#[serde(deny_unknown_fields, expecting = "a speed over time")]
 struct RawSpeedTable {
     times: Option<Vec<Quantity<TIME>>>,
     values: Option<Vec<Quantity<ANGULAR_SPEED>>>,
@@ -38,7 +38,7 @@ struct RawSpeedTable {
 
 /// As typed.
 #[derive(Debug, Deserialize)]
-#[serde(deny_unknown_fields, expecting = "the table [speed.inner.ramp]")]
+#[serde(deny_unknown_fields, expecting = "a ramp of speed")]
 struct RawSpeedRamp {
     from: Quantity<ANGULAR_SPEED>,
     to: Quantity<ANGULAR_SPEED>,
@@ -57,15 +57,6 @@ pub enum SpeedUse {
     Nothing,
     /// Natural modes, which are those of a bearing at rest.
     Modes,
-}
-
-/// Angular speed over time: linear between the entries, constant outside; one entry is a constant speed.
-#[derive(Clone, Debug, PartialEq)]
-pub struct SpeedTable {
-    /// Times, s, strictly growing, `[n]`, n at least 1.
-    pub times: Vec<f64>,
-    /// Angular speeds, rad/s, `[n]`.
-    pub values: Vec<f64>,
 }
 
 /// No ring turns faster: a slip of the unit, rad/s (almost a million revolutions per minute).
@@ -94,7 +85,7 @@ impl RawSpeed {
     }
 
     /// Checks sizes and the order of times; `None` when there are problems.
-    pub fn check(&self, speed_use: SpeedUse, problems: &mut Problems) -> Option<SpeedTable> {
+    pub fn check(&self, speed_use: SpeedUse, problems: &mut Problems) -> Option<RingSpeeds> {
         let before = problems.len();
         if speed_use == SpeedUse::Nothing {
             problems.add(format!(
@@ -111,79 +102,93 @@ impl RawSpeed {
             );
             return None;
         }
-        let table = match &self.inner {
-            RawRingSpeed::Constant(value) => {
-                require_plausible(value, "speed.inner", problems);
-                SpeedTable {
-                    times: vec![0.0],
-                    values: vec![value.si()],
-                }
-            }
-            RawRingSpeed::Table(table) => {
-                if speed_use == SpeedUse::ForceAtRest {
-                    problems.add(
-                        "speed.inner is a table over time, but a scene at rest has no time; expected one speed such as \
-                         \"1800 rpm\"",
-                    );
-                    return None;
-                }
-                table.check(problems)?
-            }
+        if self.inner.is_none() {
+            problems.add("[speed] needs inner, such as inner = \"1800 rpm\"");
+        }
+        let is_at_rest = speed_use == SpeedUse::ForceAtRest;
+        let mut of = |key: &str, speed: &Option<RawRingSpeed>| match speed {
+            Some(speed) => speed.check(key, is_at_rest, problems),
+            None => Speed::constant(0.0),
         };
-        (problems.len() == before).then_some(table)
+        let (inner, outer) = (of("speed.inner", &self.inner), Speed::constant(0.0));
+        (problems.len() == before).then_some(RingSpeeds { inner, outer })
+    }
+
+    /// Whether it names a ring, inner first.
+    pub fn has(&self) -> [bool; 2] {
+        [true, false]
+    }
+}
+
+impl RawRingSpeed {
+    /// The speed under a key; any if it has problems.
+    fn check(&self, key: &str, is_at_rest: bool, problems: &mut Problems) -> Speed {
+        match self {
+            RawRingSpeed::Constant(value) => {
+                require_plausible(value, key, problems);
+                Speed::constant(value.si())
+            }
+            RawRingSpeed::Table(_) if is_at_rest => {
+                problems.add(format!(
+                    "{key} is a table over time, but a scene at rest has no time; expected one speed such as \
+                     \"1800 rpm\""
+                ));
+                Speed::constant(0.0)
+            }
+            RawRingSpeed::Table(table) => table.check(key, problems),
+        }
     }
 }
 
 impl RawSpeedTable {
-    fn check(&self, problems: &mut Problems) -> Option<SpeedTable> {
+    fn check(&self, key: &str, problems: &mut Problems) -> Speed {
         match (&self.times, &self.values, &self.ramp) {
-            (Some(times), Some(values), None) => Some(check_table(times, values, problems)),
-            (None, None, Some(ramp)) => Some(ramp.check(problems)),
+            (Some(times), Some(values), None) => check_table(key, times, values, problems),
+            (None, None, Some(ramp)) => ramp.check(key, problems),
             _ => {
-                problems.add("speed.inner needs either both times and values, or ramp");
-                None
+                problems.add(format!("{key} needs either both times and values, or ramp"));
+                Speed::constant(0.0)
             }
         }
     }
 }
 
 fn check_table(
+    key: &str,
     times: &[Quantity<TIME>],
     values: &[Quantity<ANGULAR_SPEED>],
     problems: &mut Problems,
-) -> SpeedTable {
+) -> Speed {
     let (n_times, n_values) = (times.len(), values.len());
+    require_growing(times, key, problems);
+    for (i, value) in values.iter().enumerate() {
+        require_plausible(value, &format!("{key}.values[{i}]"), problems);
+    }
     if n_times == 0 || n_times != n_values {
         problems.add(format!(
-            "speed.inner has {n_times} times and {n_values} values; expected as many of both, at least one"
+            "{key} has {n_times} times and {n_values} values; expected as many of both, at least one"
         ));
+        return Speed::constant(0.0);
     }
-    require_growing(times, "speed.inner", problems);
-    for (i, value) in values.iter().enumerate() {
-        require_plausible(value, &format!("speed.inner.values[{i}]"), problems);
-    }
-    SpeedTable {
-        times: times.iter().map(Quantity::si).collect(),
-        values: values.iter().map(Quantity::si).collect(),
-    }
+    Speed::table(
+        times.iter().map(Quantity::si).collect(),
+        values.iter().map(Quantity::si).collect(),
+    )
 }
 
 impl RawSpeedRamp {
-    fn check(&self, problems: &mut Problems) -> SpeedTable {
-        require_plausible(&self.from, "speed.inner.ramp.from", problems);
-        require_plausible(&self.to, "speed.inner.ramp.to", problems);
+    fn check(&self, key: &str, problems: &mut Problems) -> Speed {
+        require_plausible(&self.from, &format!("{key}.ramp.from"), problems);
+        require_plausible(&self.to, &format!("{key}.ramp.to"), problems);
         let (start, duration) = (self.start.si(), self.duration.si());
         // A duration that is lost in the round-off of the start takes no time either.
         problems.require(
             start + duration > start,
-            "speed.inner.ramp.duration",
+            &format!("{key}.ramp.duration"),
             &self.duration,
             "a duration must be positive; a ring cannot change its speed in no time",
         );
-        SpeedTable {
-            times: vec![start, start + duration],
-            values: vec![self.from.si(), self.to.si()],
-        }
+        Speed::table(vec![start, start + duration], vec![self.from.si(), self.to.si()])
     }
 }
 

@@ -1,6 +1,6 @@
 //! Scenes that differ from a given one in a single effect.
 
-use dynamics::effects::{About, Entry, Need, SpeedRole};
+use dynamics::effects::{About, Context, Entry, SpeedRole};
 use scene::{Analysis, ContactMode, FlexibleRing, Ring, Scene, StressOutput, Support};
 
 /// Name and `--set` arguments of a variant.
@@ -53,18 +53,17 @@ fn unused_speed(scene: &Scene, off: About) -> Option<String> {
     (is_at_rest && is_user(off) && is_last).then(|| "speed=none".to_string())
 }
 
-/// Takes out the effects that the scene has and that need something it loses.
-fn without(scene: &Scene, need: Need) -> Vec<String> {
+/// Takes out the effects that the scene has and that do nothing once `change` has changed what they go with.
+fn idle(scene: &Scene, change: impl Fn(&mut Context)) -> Vec<String> {
+    let mut context = scene::effects_context(scene);
+    change(&mut context);
     let entries = scene.effects.list().into_iter().filter(|e| e.table().is_some());
-    let abouts = entries
-        .map(|e| e.about())
-        .filter(|about| about.needs.contains(&need));
-    abouts
-        .flat_map(|about| {
-            let off = format!("effects.{}=none", about.name);
-            [Some(off), unused_speed(scene, about)].into_iter().flatten()
-        })
-        .collect()
+    let idle = entries.map(|e| e.about()).filter(|about| !about.fits(context));
+    idle.flat_map(|about| {
+        let off = format!("effects.{}=none", about.name);
+        [Some(off), unused_speed(scene, about)].into_iter().flatten()
+    })
+    .collect()
 }
 
 /// A flexible ring made rigid, and held the other way.
@@ -73,9 +72,9 @@ fn ring_variants(scene: &Scene, name: &str, ring: &Ring) -> Vec<Variant> {
         return Vec::new();
     };
     let mut rigid = vec![format!("{name}.flexible=false")];
-    if name == "inner" {
-        rigid.extend(without(scene, Need::FlexibleInner));
-    }
+    rigid.extend(idle(scene, |context| {
+        context.is_flexible[usize::from(name == "outer")] = false;
+    }));
     // Probes of a ring without a mesh are refused.
     let probes = scene.probes.nodes.iter().filter(|p| p.ring.key() == name);
     rigid.extend(probes.map(|p| format!("probes.node.{}=none", p.name)));
@@ -135,7 +134,7 @@ fn without_inertia(scene: &Scene) -> Option<Variant> {
         format!("quasi_static.step={:?} s", dynamic.step),
         format!("quasi_static.output_every={}", dynamic.output_every),
     ];
-    set.extend(without(scene, Need::Inertia));
+    set.extend(idle(scene, |context| context.is_without_inertia = true));
     Some(("inertia off (quasi-static)".to_string(), set))
 }
 

@@ -179,7 +179,7 @@ const INVALID: [Case; 46] = [
     (
         "inner = {",
         "",
-        &["[speed] has no key \"inner\", which is required"],
+        &["[speed] needs inner, such as inner = \"1800 rpm\""],
     ),
     (
         "inner = {",
@@ -342,7 +342,7 @@ fn effects_without_anything_to_do_are_refused() {
     };
     let needs = |name: &str| {
         format!(
-            "[effects.{name}] needs the speed of the inner ring; add [speed] with inner = \"1800 rpm\" or remove the effect"
+            "[effects.{name}] needs the speed of a ring; add [speed] with inner = \"1800 rpm\" or remove the effect"
         )
     };
     let nothing = |name: &str| {
@@ -365,7 +365,7 @@ fn effects_without_anything_to_do_are_refused() {
         ),
         (
             turning.replace("mesh = \"../meshes/7010c_inner.msh\"", "flexible = false"),
-            "[effects.frame_rotation] is the inertia of a flexible inner ring, but the inner ring is rigid; remove it"
+            "[effects.frame_rotation] is the inertia of a flexible ring that turns, but the inner ring is rigid; remove it"
                 .to_string(),
         ),
         (constant.replace("[static]", contact), nothing("contact_damping")),

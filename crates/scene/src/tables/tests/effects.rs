@@ -52,10 +52,7 @@ fn every_effect_of_speed_needs_one() {
     let (_, tail) = tail.split_once("[dynamic]").unwrap();
     for about in all() {
         let result = parse(&format!("{head}{}\n[dynamic]{tail}", about.example), &[]);
-        let expected = format!(
-            "[effects.{}] needs the speed of the inner ring; add [speed]",
-            about.name
-        );
+        let expected = format!("[effects.{}] needs the speed of a ring; add [speed]", about.name);
         match result {
             Ok(_) => assert_eq!(about.speed, SpeedRole::None, "{}", about.name),
             Err(error) => assert!(error.to_string().contains(&expected), "{error}"),

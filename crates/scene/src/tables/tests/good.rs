@@ -194,7 +194,11 @@ fn the_delivered_motions_are_valid() {
         };
         assert_eq!((dynamic.n_steps, dynamic.step), (n_steps, step), "{name}");
         assert_eq!(dynamic.contact, ContactScheme::DiscreteGradient, "{name}");
-        assert_eq!(scene.speed.as_ref().map(|s| &s.times), Some(&vec![0.0]), "{name}");
+        assert_eq!(
+            scene.speed.as_ref().map(|s| &s.inner.times),
+            Some(&vec![0.0]),
+            "{name}"
+        );
         assert_eq!(axial_of(&scene), Some((2e3, Schedule::Constant)), "{name}");
         assert_eq!(radial_of(&scene), Some(1e3), "{name}");
         assert_eq!(

@@ -36,9 +36,9 @@ fn the_example_of_motion_reads_as_it_says() {
     };
     assert_eq!(scene.analysis, Analysis::Dynamic(expected));
     let speed = scene.speed.as_ref().unwrap();
-    assert_eq!(speed.times, [0.0, 1e-3]);
+    assert_eq!(speed.inner.times, [0.0, 1e-3]);
     // One rounding of pi/30, one of the product.
-    for (value, exact) in speed.values.iter().zip([SPEED, 10.0 * SPEED]) {
+    for (value, exact) in speed.inner.values.iter().zip([SPEED, 10.0 * SPEED]) {
         assert!((value / exact - 1.0).abs() < 4e-16, "{value} instead of {exact}");
     }
     let effects = &scene.effects;
@@ -170,14 +170,17 @@ fn a_scene_at_rest_may_have_a_constant_speed_for_the_centrifugal_force() {
     let scene = parse(&text, &[]).unwrap_or_else(|e| panic!("{e}"));
     assert_eq!(scene.analysis, Analysis::Static);
     let speed = scene.speed.unwrap();
-    assert_eq!((speed.times.as_slice(), speed.values.len()), (&[0.0][..], 1));
+    assert_eq!(
+        (speed.inner.times.as_slice(), speed.inner.values.len()),
+        (&[0.0][..], 1)
+    );
     let sweep = "[sweep]\nkey = \"speed.inner\"\nvalues = [\"0 rpm\", \"10 rad/s\"]\n";
     let scene = parse(&text.replace("[static]\n", sweep), &[]).unwrap_or_else(|e| panic!("{e}"));
     let speeds: Vec<_> = scene
         .sweep_scenes()
         .unwrap()
         .into_iter()
-        .map(|s| s.speed.unwrap().values)
+        .map(|s| s.speed.unwrap().inner.values)
         .collect();
     assert_eq!(speeds, [[0.0], [10.0]]);
 }

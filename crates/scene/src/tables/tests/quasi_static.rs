@@ -20,7 +20,7 @@ fn a_quasi_static_scene_reads_as_it_says() {
         output_every: 10,
     };
     assert_eq!(scene.analysis, Analysis::QuasiStatic(expected));
-    assert_eq!(scene.speed.unwrap().times, [0.0, 1e-3]);
+    assert_eq!(scene.speed.unwrap().inner.times, [0.0, 1e-3]);
     let short = with_keys("duration = \"1 ms\"\nstep = \"1 ms\"");
     let Analysis::QuasiStatic(short) = parse(&short, &[]).unwrap().analysis else {
         panic!("no quasi-static run")

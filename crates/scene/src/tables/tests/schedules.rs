@@ -142,7 +142,10 @@ fn a_speed_ramp_is_linear_between_its_ends() {
         "inner = { ramp = { from = \"1 rad/s\", to = \"3 rad/s\", start = \"1 s\", duration = \"2 s\" } }";
     let scene = parse(&replace_line(DYNAMIC, "inner = {", ramp), &[]).unwrap_or_else(|e| panic!("{e}"));
     let speed = scene.speed.unwrap();
-    assert_eq!((speed.times, speed.values), (vec![1.0, 3.0], vec![1.0, 3.0]));
+    assert_eq!(
+        (speed.inner.times, speed.inner.values),
+        (vec![1.0, 3.0], vec![1.0, 3.0])
+    );
 }
 
 /// If this failed, the shares of the gyroscopic moment would not be those of the scene, or not balance it.
@@ -345,7 +348,7 @@ fn a_scene_at_rest_has_no_schedules() {
     assert!(parse(&gyroscopic, &[]).is_ok(), "the speed has something to do");
     let text = replace_line(&gyroscopic, "[speed]", "");
     let message = message_of(&replace_line(&text, "inner = \"1800 rpm\"", ""), &[]);
-    let expected = "[effects.gyroscopic_moment] needs the speed of the inner ring; add [speed]";
+    let expected = "[effects.gyroscopic_moment] needs the speed of a ring; add [speed]";
     assert!(message.contains(expected), "{message}");
 }
 
@@ -395,7 +398,7 @@ fn the_delivered_transients_are_valid() {
     assert_eq!(impact.effects.radial_force.unwrap().schedule(), schedule);
     let change = load("7010c_speed_change");
     let speed = change.speed.unwrap();
-    assert_eq!(speed.times, [1e-3, 2e-3]);
-    assert!((speed.values[1] / speed.values[0] - 2.0).abs() < 1e-15);
+    assert_eq!(speed.inner.times, [1e-3, 2e-3]);
+    assert!((speed.inner.values[1] / speed.inner.values[0] - 2.0).abs() < 1e-15);
     assert!(change.effects.ball_centrifugal.is_some());
 }
