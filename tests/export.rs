@@ -202,7 +202,7 @@ fn decode(text: &str) -> Vec<u8> {
 
 /// Wrong: in its own frame the inner ring would still turn, or the choice would touch the motion.
 #[test]
-fn the_inner_ring_is_shown_in_space_or_in_its_own_frame() {
+fn a_turning_ring_is_shown_in_space_or_in_its_own_frame() {
     let dir = moved();
     let own = [
         "--set",
@@ -234,4 +234,31 @@ fn the_inner_ring_is_shown_in_space_or_in_its_own_frame() {
         space.points.displacement[n_inner..],
         own.points.displacement[n_inner..]
     );
+}
+
+/// Wrong: an outer ring that turns would be shown standing, or could not be shown standing.
+#[test]
+fn a_turning_outer_ring_is_shown_like_an_inner_one() {
+    let dir = moved();
+    let set = [
+        "dynamic.duration=0.2 ms",
+        "speed.inner=0 rpm",
+        "speed.outer=12000 rpm",
+    ];
+    let set = set.map(|value| ["--set", value]).concat();
+    dir.run("space", &set);
+    dir.run(
+        "own",
+        &[&set[..], &["--set", "output.outer_ring=own_frame"]].concat(),
+    );
+    let [turned, still] = ["space", "own"].map(|folder| {
+        let step = read_step(&dir.path(&format!("{folder}/step_000010.hdf"))).unwrap();
+        let grid = read_mesh(&dir.path(folder)).unwrap();
+        let outer = grid.body.iter().position(|body| *body == 1).unwrap();
+        let node = grid.connectivity[8 * outer] as usize;
+        step.points.displacement[node]
+            .iter()
+            .fold(0.0, |m: f64, x| m.max(x.abs()))
+    });
+    assert!(turned > 5e-3 && still < 1e-3, "{turned} {still}");
 }

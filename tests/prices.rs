@@ -62,6 +62,20 @@ fn the_check_says_how_cage_and_balls_roll() {
         270.0 * (1.0 - gamma),
         2e-4,
     );
+    // The mirror: an outer ring that turns the other way, seen from it.
+    let outer = ["speed.inner=0 rpm", "speed.outer=1800 rpm"];
+    let mirrored = checked(&turning("-1800 rpm"), &outer, "rolling");
+    let (_, passing) = line.split_once("; ").unwrap();
+    assert!(mirrored.ends_with(passing), "{mirrored} {passing}");
+    assert!(
+        mirrored.contains("at 0.00 rpm inside and 1800.00 rpm outside: cage "),
+        "{mirrored}"
+    );
+    let together = ["speed.inner=1800 rpm", "speed.outer=1800 rpm"];
+    let line = checked(&turning("-1800 rpm"), &together, "rolling");
+    let still =
+        "cage 1800.00 rpm, balls 0.00 rpm about their axes; passing balls 0.000 per second inside, 0.000";
+    assert!(line.contains(still), "{line}");
     let at_rest = Dir::with_scene(&with_line("[static]", "[static]", "[static]"));
     assert_eq!(checked(&at_rest, &[], "rolling"), "");
 }

@@ -1,4 +1,4 @@
-//! Turning shaft dofs and nodal vectors about z, between space and the frame of the inner ring.
+//! Turning shaft dofs and nodal vectors about z, between space and the frame of a ring.
 
 /// Shaft dofs seen from a frame turned by `angle` the other way: the pairs (x, y) and (tilt x, tilt y) turn.
 pub fn turn(q: [f64; 5], angle: f64) -> [f64; 5] {

@@ -12,6 +12,7 @@ pub struct RawOutput {
     compression: Option<i64>,
     tables_every: Option<i64>,
     inner_ring: Option<RingFrame>,
+    outer_ring: Option<RingFrame>,
 }
 
 /// Stress fields that are written.
@@ -79,7 +80,7 @@ impl RawOutput {
             precision: self.precision.unwrap_or(Precision::F32),
             compression: level as u8,
             tables_every: problems.whole(tables_every, "output.tables_every", 1, MAX_EVERY) as u64,
-            rings: [self.inner_ring, None].map(|frame| frame.unwrap_or(RingFrame::Space)),
+            rings: [self.inner_ring, self.outer_ring].map(|frame| frame.unwrap_or(RingFrame::Space)),
         }
     }
 }

@@ -1,4 +1,4 @@
-//! `[speed]`: how fast the inner ring turns.
+//! `[speed]`: how fast the rings turn.
 //!
 //! A constant, a ramp from one speed to another, or a table that is linear between its times and constant before the
 //! first and after the last. Positive from +x towards +y.
@@ -17,6 +17,7 @@ use serde::de::{Deserializer, Error, MapAccess, Visitor};
 #[serde(deny_unknown_fields, expecting = "the table [speed]")]
 pub struct RawSpeed {
     inner: Option<RawRingSpeed>,
+    outer: Option<RawRingSpeed>,
     ball_speeds: Option<BallSpeeds>,
 }
 
@@ -102,21 +103,21 @@ impl RawSpeed {
             );
             return None;
         }
-        if self.inner.is_none() {
-            problems.add("[speed] needs inner, such as inner = \"1800 rpm\"");
+        if self.inner.is_none() && self.outer.is_none() {
+            problems.add("[speed] needs inner, outer, or both, such as inner = \"1800 rpm\"");
         }
         let is_at_rest = speed_use == SpeedUse::ForceAtRest;
         let mut of = |key: &str, speed: &Option<RawRingSpeed>| match speed {
             Some(speed) => speed.check(key, is_at_rest, problems),
             None => Speed::constant(0.0),
         };
-        let (inner, outer) = (of("speed.inner", &self.inner), Speed::constant(0.0));
+        let (inner, outer) = (of("speed.inner", &self.inner), of("speed.outer", &self.outer));
         (problems.len() == before).then_some(RingSpeeds { inner, outer })
     }
 
-    /// Whether it names a ring, inner first.
+    /// Whether it names a ring, inner first; one that names none is taken to lack the inner.
     pub fn has(&self) -> [bool; 2] {
-        [true, false]
+        [self.inner.is_some() || self.outer.is_none(), self.outer.is_some()]
     }
 }
 

@@ -3,7 +3,7 @@
 use super::*;
 
 /// Texts that must be refused: what is wrong with a line of the example of motion.
-const INVALID: [Case; 46] = [
+const INVALID: [Case; 50] = [
     (
         "halvings",
         "halvings = 17",
@@ -178,8 +178,28 @@ const INVALID: [Case; 46] = [
     ),
     (
         "inner = {",
+        "outer = \"2e6 rpm\"",
+        &["speed.outer is 2e6 rpm; that is more than 1e5 rad/s (955 000 rpm), check its unit"],
+    ),
+    (
+        "inner = {",
+        "outer = { times = [\"0 s\"], values = [] }",
+        &["speed.outer has 1 times and 0 values; expected as many of both, at least one"],
+    ),
+    (
+        "inner = {",
+        "outer = { ramp = { from = \"0 rpm\", to = \"1 rpm\", start = \"1 s\", duration = \"0 s\" } }",
+        &["speed.outer.ramp.duration is 0 s; a duration must be positive"],
+    ),
+    (
+        "inner = {",
+        "outer = 1800",
+        &["speed.outer: 1800 is a number without a unit; expected an angular speed such as \"1800 rpm\""],
+    ),
+    (
+        "inner = {",
         "",
-        &["[speed] needs inner, such as inner = \"1800 rpm\""],
+        &["[speed] needs inner, outer, or both, such as inner = \"1800 rpm\""],
     ),
     (
         "inner = {",
@@ -366,6 +386,20 @@ fn effects_without_anything_to_do_are_refused() {
         (
             turning.replace("mesh = \"../meshes/7010c_inner.msh\"", "flexible = false"),
             "[effects.frame_rotation] is the inertia of a flexible ring that turns, but the inner ring is rigid; remove it"
+                .to_string(),
+        ),
+        (
+            at_rest("outer = \"1800 rpm\"").replace("mesh = \"../meshes/7010c_outer.msh\"", "flexible = false"),
+            "[effects.frame_rotation] is the inertia of a flexible ring that turns, but the outer ring is rigid; remove it"
+                .to_string(),
+        ),
+        (
+            at_rest("outer = \"1800 rpm\"").replace(
+                "[static]",
+                "[effects.unbalance]\nmass = \"1 g\"\neccentricity = \"1 mm\"\n[static]",
+            ),
+            "[effects.unbalance] turns with the inner ring, but [speed] has outer alone; add inner, or remove the \
+             effect"
                 .to_string(),
         ),
         (constant.replace("[static]", contact), nothing("contact_damping")),

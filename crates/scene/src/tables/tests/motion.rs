@@ -41,6 +41,7 @@ fn the_example_of_motion_reads_as_it_says() {
     for (value, exact) in speed.inner.values.iter().zip([SPEED, 10.0 * SPEED]) {
         assert!((value / exact - 1.0).abs() < 4e-16, "{value} instead of {exact}");
     }
+    assert!(speed.outer.is_zero());
     let effects = &scene.effects;
     assert!(effects.ball_centrifugal.is_some() && effects.frame_rotation.is_some());
     assert_eq!(effects.slip(), [0.0, 0.01]);
@@ -161,6 +162,21 @@ fn a_duration_fits_its_step_up_to_round_off_only() {
         message.contains("the nearest duration that fits is 77 ms"),
         "{message}"
     );
+}
+
+/// If this failed, the outer ring would not turn, or a scene would have to give a speed to a ring that stands.
+#[test]
+fn each_ring_has_its_own_speed() {
+    let of = |speed: &str| {
+        let scene = parse(&replace_line(DYNAMIC, "inner = {", speed), &[]).unwrap_or_else(|e| panic!("{e}"));
+        (scene.speed.unwrap(), scene.has_speed)
+    };
+    let ramp = "{ ramp = { from = \"0 rad/s\", to = \"5 rad/s\", start = \"1 ms\", duration = \"1 ms\" } }";
+    let (alone, has) = of(&format!("outer = {ramp}"));
+    assert!(alone.inner.is_zero() && has == [false, true]);
+    assert_eq!((alone.outer.at(1.5e-3), alone.outer.at(1.0)), (2.5, 5.0));
+    let (both, has) = of("inner = \"3 rad/s\"\nouter = \"-2 rad/s\"");
+    assert_eq!((both.relative(0.0), has), (5.0, [true, true]));
 }
 
 /// If this failed, the centrifugal force of balls could not be studied without motion.
