@@ -116,8 +116,8 @@ fn the_gyroscopic_moment_needs_spin_and_cage() {
     assert!(relative(outer, -inner * (1.0 - turning.cage) / turning.cage) < 1e-13);
 }
 
-/// Wrong: contacts would run along the wrong ring, or at a wrong speed. The mirror of an inner ring that turns by -omega
-/// is an outer ring that turns by omega, seen from that ring: without a direction in space (thrust alone) and without
+/// Wrong: contacts would run along the wrong ring, or at a wrong speed. The mirror of an inner ring that turns by
+/// -omega is an outer ring that turns by omega, seen from that ring: without a direction in space (thrust alone) and without
 /// inertia of frames every contact meets the same nodes of both meshes, step by step.
 #[test]
 fn an_outer_ring_is_the_mirror_of_an_inner_ring() {

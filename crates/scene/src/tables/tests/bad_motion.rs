@@ -385,12 +385,14 @@ fn effects_without_anything_to_do_are_refused() {
         ),
         (
             turning.replace("mesh = \"../meshes/7010c_inner.msh\"", "flexible = false"),
-            "[effects.frame_rotation] is the inertia of a flexible ring that turns, but the inner ring is rigid; remove it"
+            "[effects.frame_rotation] is the inertia of a flexible ring that turns, but the inner ring is rigid; \
+             remove it"
                 .to_string(),
         ),
         (
             at_rest("outer = \"1800 rpm\"").replace("mesh = \"../meshes/7010c_outer.msh\"", "flexible = false"),
-            "[effects.frame_rotation] is the inertia of a flexible ring that turns, but the outer ring is rigid; remove it"
+            "[effects.frame_rotation] is the inertia of a flexible ring that turns, but the outer ring is rigid; \
+             remove it"
                 .to_string(),
         ),
         (
