@@ -27,7 +27,7 @@ fn spinning(mut model: Model, shares: [f64; 2]) -> Model {
         ball_speeds: BallSpeeds::FreeAngle,
     }));
     model.effects.push(Box::new(GyroscopicMoment {
-        speed,
+        speeds: speed.into(),
         slip,
         shares,
         ball_speeds: BallSpeeds::FreeAngle,

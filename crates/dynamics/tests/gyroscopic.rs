@@ -30,7 +30,7 @@ fn spinning_by(ball_speeds: BallSpeeds, mut model: Model, omega: f64, shares: Op
     }));
     if let Some(shares) = shares {
         model.effects.push(Box::new(GyroscopicMoment {
-            speed,
+            speeds: speed.into(),
             slip,
             shares,
             ball_speeds,

@@ -109,7 +109,7 @@ fn slow_rolling_follows_the_static_forces() {
     let motion = Motion::new(
         &model,
         MotionSettings {
-            speed,
+            speeds: speed.into(),
             ..settings(1e-5)
         },
     )
@@ -210,7 +210,7 @@ fn motion_has_the_same_bits_on_any_number_of_threads() {
                 &model,
                 &solution,
                 MotionSettings {
-                    speed,
+                    speeds: speed.into(),
                     ..settings(1e-5)
                 },
                 5,
@@ -246,7 +246,7 @@ fn rigid_rings_carry_the_centrifugal_force_of_the_balls() {
         &model,
         &solution,
         MotionSettings {
-            speed,
+            speeds: speed.into(),
             ..settings(1e-5)
         },
         50,

@@ -19,6 +19,7 @@ mod mount;
 mod nodal;
 pub mod pool;
 pub mod rank_memory;
+pub mod rigid;
 mod settling;
 pub mod sparse;
 pub mod state;

@@ -1,5 +1,6 @@
 //! A lumped body whose coordinates are its own displacements, each free or imposed: shaft, ball.
 
+use super::frame_inertia::FrameInertia;
 use super::inertia::Inertia;
 use crate::system::{Interval, Lumped};
 
@@ -25,6 +26,8 @@ pub struct FlatBody<const N: usize> {
     pub dofs: [Inertia; N],
     /// Displacements at the end that are imposed; None is free.
     pub imposed: [Option<f64>; N],
+    /// Of a shaft, the inertia of a ring that turns with it.
+    pub turning: Option<Box<FrameInertia>>,
     start: [f64; N],
 }
 
@@ -36,7 +39,25 @@ impl<const N: usize> FlatBody<N> {
             start: dofs.map(|dof| dof.start[0]),
             dofs,
             imposed,
+            turning: None,
         }
+    }
+
+    /// Forces that keep it on its course when it ends at `end`, less its loads: of its own inertia and of what turns
+    /// with it.
+    pub fn forces(&self, interval: Interval, end: &[f64]) -> [f64; N] {
+        let mut forces = [0.0; N];
+        for (i, (force, dof)) in forces.iter_mut().zip(&self.dofs).enumerate() {
+            *force = dof.residual(interval, end[i])[0];
+        }
+        if let Some(turning) = &self.turning {
+            let more = turning.forces(five(end));
+            forces
+                .iter_mut()
+                .zip(more)
+                .for_each(|(force, more)| *force += more);
+        }
+        forces
     }
 
     /// Numbers of the free coordinates, ascending: those of the unknowns.
@@ -78,8 +99,11 @@ impl<const N: usize> Lumped for FlatBody<N> {
     }
 
     fn balance(&self, interval: Interval, x: &[f64], residual: &mut [f64]) {
-        for ((residual, i), x) in residual.iter_mut().zip(self.free()).zip(x) {
-            *residual = self.dofs[i].residual(interval, *x)[0];
+        let mut end = [0.0; N];
+        self.place(x, &mut end);
+        let forces = self.forces(interval, &end);
+        for (residual, i) in residual.iter_mut().zip(self.free()) {
+            *residual = forces[i];
         }
     }
 
@@ -88,6 +112,14 @@ impl<const N: usize> Lumped for FlatBody<N> {
         let mut tangent = vec![0.0; n * n];
         for (k, i) in self.free().enumerate() {
             tangent[(n + 1) * k] = self.dofs[i].residual(interval, self.start[i])[1];
+        }
+        if let Some(turning) = &self.turning {
+            let slopes = turning.slopes();
+            for (row, i) in self.free().enumerate() {
+                for (column, k) in self.free().enumerate() {
+                    tangent[n * row + column] += slopes[k][i];
+                }
+            }
         }
         tangent
     }
@@ -108,4 +140,9 @@ impl<const N: usize> Lumped for FlatBody<N> {
             Name::Ball(ball) => format!("ball {ball}, {}", ["radial", "axial"][i]),
         }
     }
+}
+
+/// Coordinates as those of a shaft.
+fn five(x: &[f64]) -> [f64; 5] {
+    [0, 1, 2, 3, 4].map(|i| x.get(i).copied().unwrap_or_default())
 }

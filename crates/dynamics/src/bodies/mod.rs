@@ -1,7 +1,9 @@
 //! Lumped bodies of a bearing: shaft and balls.
 
 mod flat;
+mod frame_inertia;
 mod inertia;
 
 pub use flat::{AXES, FlatBody, Name};
+pub use frame_inertia::{FrameInertia, StepTakes};
 pub use inertia::Inertia;

@@ -194,6 +194,9 @@ fn finish_shaft(next: &mut MotionState, parts: &BearingParts, solution: &StepSol
         let change = solution.shaft[dof] - parts.shaft.dofs[dof].start[0];
         next.ledger.imposed_work += reactions[dof] * change;
     }
+    if let Some(turning) = &parts.shaft.turning {
+        next.ledger.frame_work -= turning.work(solution.shaft);
+    }
     next.shaft = solution.shaft;
     [next.shaft_velocity, next.shaft_acceleration] =
         finish_body(&parts.shaft, step, solution.shaft, &mut next.ledger);
@@ -242,11 +245,7 @@ fn finish_contacts(next: &mut MotionState, parts: &BearingParts, solution: &Step
 impl BearingParts {
     /// Forces that hold or drive the shaft's dofs, N and N m; zero to round-off for free ones.
     fn shaft_reactions(&self, solution: &StepSolution, step: StepScheme) -> [f64; 5] {
-        let dofs = self.shaft.dofs.iter().zip(solution.shaft);
-        let mut reactions = [0.0; 5];
-        for (reaction, (dof, end)) in reactions.iter_mut().zip(dofs) {
-            *reaction = dof.residual(Interval::Step(step), end)[0];
-        }
+        let mut reactions = self.shaft.forces(Interval::Step(step), &solution.shaft);
         if let Some(follow) = self.rings[0].as_ref().and_then(|ports| ports.follow) {
             let force = follow.in_space(&solution.mounts[0]);
             (0..5).for_each(|i| reactions[i] += force[i]);

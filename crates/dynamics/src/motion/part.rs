@@ -9,7 +9,7 @@ use super::solve::StepSolution;
 use super::span::Span;
 use super::state::MotionState;
 use crate::bearing::{BearingParts, ContactList, SeatStep, carrier};
-use crate::bodies::{FlatBody, Inertia, Name};
+use crate::bodies::{FlatBody, FrameInertia, Inertia, Name, StepTakes};
 use crate::compliance;
 use crate::effects::{self, Loads, Now};
 use crate::error::DynamicsError;
@@ -126,7 +126,7 @@ impl Motion<'_> {
                 start,
                 // A flexible ring brings its own loads to the seat.
                 load: loads.seat,
-                load_slope: 0.0,
+                ..Inertia::default()
             },
             weight: self.settings.integrator.alpha_f,
         })
@@ -177,7 +177,36 @@ impl Motion<'_> {
             load_slope: 0.0,
         });
         let imposed = [0, 1, 2, 3, 4].map(|i| self.model.prescribed(i, span.at(1.0)));
-        FlatBody::new(Name::Shaft, dofs, imposed)
+        let mut shaft = FlatBody::new(Name::Shaft, dofs, imposed);
+        shaft.turning = self.frame_inertia(state, span).map(Box::new);
+        shaft
+    }
+
+    /// Rigid inertia of a turning inner ring that its own step does not take.
+    fn frame_inertia(&self, state: &MotionState, span: Span) -> Option<FrameInertia> {
+        let inertia = self.turning?;
+        let has_frame = self
+            .model
+            .effects
+            .iter()
+            .any(|effect| effect.turns_frame(Side::Inner));
+        let integrator = self.settings.integrator;
+        Some(FrameInertia {
+            inertia,
+            takes: if has_frame {
+                StepTakes::Turning
+            } else {
+                StepTakes::Still
+            },
+            start: state.shaft,
+            scheme: StepScheme {
+                integrator,
+                dt: span.dt,
+            },
+            angles: [0.0, 1.0 - integrator.alpha_f, 1.0]
+                .map(|share| self.frame_angle(Side::Inner, span.at(share))),
+            speeds: [0.0, 1.0].map(|share| self.settings.speeds.inner.at(span.at(share))),
+        })
     }
 
     /// Largest force that acts at the start of a part, N: of the contacts, on shaft, balls and rings.

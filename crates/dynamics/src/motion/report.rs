@@ -9,6 +9,7 @@ use crate::balls::{BallDisplacement, BallResult, ContactResult};
 use crate::error::DynamicsError;
 use crate::footprint::on_groove;
 use ring::RingState;
+use ring::rigid::RigidInertia;
 
 impl Motion<'_> {
     /// Results of every ball: mean forces of the last step, angles and approaches at its end.
@@ -127,6 +128,12 @@ impl Motion<'_> {
         let measure = |ring: &RingState| feet[i][ball].measure(&moving.body.nodal(ring.displacement()));
         let (a, b) = (measure(old), measure(new));
         Ok([0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1])])
+    }
+
+    /// Inertia of a flexible ring as a rigid body about the centre of its groove circle; None for a rigid one.
+    /// Collective.
+    pub fn rigid_inertia(&self, side: Side) -> Option<RigidInertia> {
+        Some(self.rings[side.index()].as_ref()?.body.rigid_inertia())
     }
 
     /// Speed of every ball's rotation about its own axis relative to the cage, rad/s; None when the bearing never

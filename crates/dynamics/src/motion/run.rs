@@ -9,16 +9,17 @@ use std::sync::{Arc, OnceLock};
 use contact::Side;
 use timer::SharedLaps;
 
-use crate::kinematics::Kinematics;
+use crate::kinematics::{Kinematics, RingSpeeds};
 use ring::memory::forecast_motion_peak;
+use ring::rigid::RigidInertia;
 use ring::statics::iterations_note;
-use ring::{BodySettings, ElasticBody, Frame, Inventory, StepFactor, StepScheme, elastic_body};
+use ring::{BodySettings, ElasticBody, Frame, Hold, Inventory, StepFactor, StepScheme, elastic_body};
 
 use super::state::MotionSettings;
 use crate::bearing::partner;
 use crate::costs;
 use crate::error::DynamicsError;
-use crate::model::{ContactMode, Model};
+use crate::model::{ContactMode, Model, ShaftDof};
 use crate::raceway::Raceway;
 
 /// Factors of both rings at one step size.
@@ -38,6 +39,8 @@ pub struct Motion<'a> {
     pub(super) settings: MotionSettings,
     pub(super) kinematics: Kinematics,
     pub(super) rings: [Option<MovingRing>; 2],
+    /// Rigid inertia of a flexible inner ring that turns with a shaft which may move across its axis.
+    pub(super) turning: Option<RigidInertia>,
     /// Tells this motion from others.
     pub(super) token: Arc<()>,
     rungs: Vec<OnceLock<Rung>>,
@@ -69,12 +72,15 @@ impl<'a> Motion<'a> {
         let (inner, outer) = model
             .backend
             .try_both(|| build(Side::Inner), || build(Side::Outer))?;
+        let turning = inner.as_ref().filter(|_| wobbles(model, &settings.speeds));
+        let turning = turning.map(|ring| ring.body.rigid_inertia());
         let kinematics = Kinematics::new(&model.geometry, settings.slip);
         let rungs = (0..=settings.ladder.halvings).map(|_| OnceLock::new()).collect();
         let motion = Motion {
             model,
             kinematics,
             rings: [inner, outer],
+            turning,
             settings,
             token: Arc::new(()),
             rungs,
@@ -191,6 +197,15 @@ impl<'a> Motion<'a> {
     pub(super) fn cage_angle(&self, time: f64) -> f64 {
         self.kinematics.cage_angle(&self.settings.speeds, time)
     }
+}
+
+/// Whether a flexible inner ring turns with a shaft that may move across the axis or tilt.
+fn wobbles(model: &Model, speeds: &RingSpeeds) -> bool {
+    let moves = |dof: usize| model.shaft[dof] != ShaftDof::Prescribed(0.0);
+    let is_held = model
+        .ring(Side::Inner)
+        .is_some_and(|ring| ring.hold != Hold::Free);
+    is_held && !speeds.inner.is_zero() && [0, 1, 3, 4].into_iter().any(moves)
 }
 
 /// Refuses what statics knows and motion does not.

@@ -1,0 +1,227 @@
+//! Rigid inertia of a ring that turns with the shaft: what the ring's own step in its turning frame leaves out.
+//!
+//! A flexible ring moves by total displacements in a frame that turns by theta(t), with the speed W. Of its rigid
+//! motion there, position x and tilts t of the shaft seen from the frame, a rigid body of revolution asks for
+//!
+//! ```text
+//! force   m D x + S (D t_y, -D t_x)                          D x = x'' + 2 W J x' - W^2 x + W' J x
+//! moment  I t'' + (2 I - I_p) W J t' + (I_p - I) W^2 t + (I - I_p) W' J t + S (-D y, D x)
+//! ```
+//!
+//! with J a = (-a_y, a_x), linear in the tilts: the inertia in space of a free rotor (e.g. Genta, Dynamics of Rotating
+//! Systems, ch. 2), seen from its frame. The step of the ring takes the second derivatives alone, so that a shaft at
+//! rest in space would be pulled outwards; the rest acts on the shaft here ([`StepTakes::Still`]).
+//!
+//! Where the effect `frame_rotation` gives the whole ring the inertia of its frame, it does so on linear displacements:
+//! the ring lacks W^2 I_p t / 2 - W' I_p J t / 2 of the moment, because a tilt moves nodes towards the axis to second
+//! order, and the centrifugal force works on that. That moment is what acts here then ([`StepTakes::Turning`]).
+//!
+//! Velocities are means over the step: no state of its own, and of second order with the conserving scheme. Bodies are
+//! taken as bodies of revolution: the unbalance of a ring with a cut comes with `frame_rotation`. Forces act on the
+//! shaft, not over the ring. What its elasticity makes of that is (W / first natural frequency w_1)^2 of them; the shaft
+//! of a ring that touches nothing feels it as a negative stiffness of the size m W^4 / w_1^2, which contacts exceed by
+//! far.
+
+use ring::StepScheme;
+use ring::rigid::RigidInertia;
+
+use crate::frame::turn;
+
+/// What the ring's own step takes as the inertia of its rigid motion.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum StepTakes {
+    /// That of a frame that stands.
+    Still,
+    /// That of the turning frame, on linear displacements.
+    Turning,
+}
+
+/// Rigid inertia of a turning ring over a step, beyond what the ring's step takes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FrameInertia {
+    /// Of the ring about the origin of the shaft's tilts.
+    pub inertia: RigidInertia,
+    /// What the step of the ring takes.
+    pub takes: StepTakes,
+    /// Displacement of the shaft in space at the start, m and rad.
+    pub start: [f64; 5],
+    /// The step.
+    pub scheme: StepScheme,
+    /// Angle of the frame at the start, at the weighted time and at the end of the step, rad.
+    pub angles: [f64; 3],
+    /// Speed of the frame at the start and at the end, rad/s.
+    pub speeds: [f64; 2],
+}
+
+impl FrameInertia {
+    /// Forces and moments on the shaft that the inertia asks for when it ends at `q`, N and N m. Linear in `q` but for a
+    /// constant.
+    pub fn forces(&self, q: [f64; 5]) -> [f64; 5] {
+        let [from, at, to] = self.angles;
+        let (start, end) = (turn(self.start, -from), turn(q, -to));
+        let dt = self.scheme.dt;
+        let pairs = [0, 1, 2, 3, 4].map(|i| [start[i], end[i]]);
+        let (x, v) = (
+            pairs.map(|pair| self.weighted(pair)),
+            pairs.map(|[a, b]| (b - a) / dt),
+        );
+        turn(self.in_frame(x, v), at)
+    }
+
+    /// Growth of the forces with `q`, by columns.
+    pub fn slopes(&self) -> [[f64; 5]; 5] {
+        let still = self.forces([0.0; 5]);
+        [0, 1, 2, 3, 4].map(|k| {
+            let mut q = [0.0; 5];
+            q[k] = 1.0;
+            let moved = self.forces(q);
+            [0, 1, 2, 3, 4].map(|i| moved[i] - still[i])
+        })
+    }
+
+    /// Work of the forces on the shaft over the step, J.
+    pub fn work(&self, q: [f64; 5]) -> f64 {
+        let forces = self.forces(q);
+        (0..5).map(|i| forces[i] * (q[i] - self.start[i])).sum()
+    }
+
+    /// The forces in the frame at the displacement `x` and the velocity `v` seen from it.
+    fn in_frame(&self, x: [f64; 5], v: [f64; 5]) -> [f64; 5] {
+        let speed = self.weighted(self.speeds);
+        let rate = (self.speeds[1] - self.speeds[0]) / self.scheme.dt;
+        let (jx, jv) = (across(x), across(v));
+        let polar = self.inertia.polar;
+        // Terms with the speed, its square and its rate of a coordinate.
+        let sum = |i: usize, [of_speed, of_square, of_rate]: [f64; 3]| {
+            of_speed * speed * jv[i] + of_square * speed * speed * x[i] + of_rate * rate * jx[i]
+        };
+        match self.takes {
+            StepTakes::Still => {
+                let along = [0, 1, 2, 3, 4].map(|i| if i == 2 { 0.0 } else { sum(i, [2.0, -1.0, 1.0]) });
+                let mut forces = self.inertia.times(along);
+                for i in [3, 4] {
+                    forces[i] += sum(i, [-polar, polar, -polar]);
+                }
+                forces
+            }
+            StepTakes::Turning => {
+                let moment = |i: usize| sum(i, [0.0, 0.5 * polar, -0.5 * polar]);
+                [0.0, 0.0, 0.0, moment(3), moment(4)]
+            }
+        }
+    }
+
+    fn weighted(&self, [start, end]: [f64; 2]) -> f64 {
+        let s = self.scheme.integrator.alpha_f;
+        s * start + (1.0 - s) * end
+    }
+}
+
+/// J of both pairs of coordinates.
+fn across(x: [f64; 5]) -> [f64; 5] {
+    [-x[1], x[0], 0.0, -x[4], x[3]]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use ring::Integrator;
+
+    const RING: RigidInertia = RigidInertia {
+        mass: 0.3,
+        first_moment: 2e-3,
+        transverse: 2e-4,
+        polar: 3e-4,
+    };
+    /// Growth of the speed, rad/s^2.
+    const GROWTH: f64 = 4e4;
+
+    /// A smooth motion of the shaft in space: displacement, velocity, acceleration at a time.
+    fn motion(t: f64) -> [[f64; 5]; 3] {
+        let wave = |i: usize| {
+            let (w, p) = (300.0 + 40.0 * i as f64, 0.3 + i as f64);
+            let (sin, cos) = (w * t + p).sin_cos();
+            [1e-5 * sin, 1e-5 * w * cos, -1e-5 * w * w * sin]
+        };
+        let waves = [0, 1, 2, 3, 4].map(wave);
+        [0, 1, 2].map(|d| waves.map(|x| x[d]))
+    }
+
+    fn speed(t: f64) -> f64 {
+        900.0 + GROWTH * t
+    }
+
+    fn angle(t: f64) -> f64 {
+        900.0 * t + 0.5 * GROWTH * t * t
+    }
+
+    fn over(dt: f64, takes: StepTakes) -> FrameInertia {
+        FrameInertia {
+            inertia: RING,
+            takes,
+            start: motion(0.0)[0],
+            scheme: StepScheme {
+                integrator: Integrator::average_acceleration(),
+                dt,
+            },
+            angles: [0.0, 0.5 * dt, dt].map(angle),
+            speeds: [speed(0.0), speed(dt)],
+        }
+    }
+
+    /// What the step of the ring does not take, by the rotor's equations in space.
+    fn expected(t: f64, takes: StepTakes) -> [f64; 5] {
+        let ([q, v, a], w, p) = (motion(t), speed(t), RING.polar);
+        match takes {
+            StepTakes::Still => {
+                // The second derivative of R^T q, turned back into space.
+                let (jq, jv) = (across(q), across(v));
+                let seen = [0, 1, 2, 3, 4].map(|i| {
+                    let plain = if i == 2 { 0.0 } else { w * w * q[i] };
+                    a[i] - 2.0 * w * jv[i] - plain - GROWTH * jq[i]
+                });
+                let (space, frame) = (RING.times(a), RING.times(seen));
+                let mut forces = [0, 1, 2, 3, 4].map(|i| space[i] - frame[i]);
+                // d/dt [ I_p W (t_y, -t_x) ]
+                forces[3] += p * (w * v[4] + GROWTH * q[4]);
+                forces[4] -= p * (w * v[3] + GROWTH * q[3]);
+                forces
+            }
+            StepTakes::Turning => {
+                let half = 0.5 * p;
+                let moment = [w * w * q[3] + GROWTH * q[4], w * w * q[4] - GROWTH * q[3]];
+                [0.0, 0.0, 0.0, half * moment[0], half * moment[1]]
+            }
+        }
+    }
+
+    /// Wrong: Coriolis, centrifugal, Euler or gyroscopic terms have a wrong sign or size. Against the rotor's equations
+    /// in space, at the middle of a step: second order in its size.
+    #[test]
+    fn the_forces_are_those_of_the_rotors_equations() {
+        for takes in [StepTakes::Still, StepTakes::Turning] {
+            let error = |dt: f64| {
+                let found = over(dt, takes).forces(motion(dt)[0]);
+                let exact = expected(0.5 * dt, takes);
+                (0..5).map(|i| (found[i] - exact[i]).abs()).fold(0.0, f64::max)
+            };
+            let size = expected(0.0, takes).iter().fold(0.0, |m: f64, x| m.max(x.abs()));
+            let (coarse, fine) = (error(2e-5), error(1e-5));
+            assert!(coarse < 1e-3 * size, "{coarse} of {size}");
+            let order = (coarse / fine).log2();
+            assert!((order - 2.0).abs() < 0.1, "order {order}");
+        }
+    }
+
+    /// Wrong: Newton's tangent is not the derivative.
+    #[test]
+    fn the_slopes_are_the_derivative() {
+        let of = over(1e-5, StepTakes::Still);
+        let [from, to] = [motion(0.0)[0], motion(1e-5)[0]];
+        let (a, b, slopes) = (of.forces(from), of.forces(to), of.slopes());
+        for i in 0..5 {
+            let linear: f64 = (0..5).map(|k| slopes[k][i] * (to[k] - from[k])).sum();
+            assert!((b[i] - a[i] - linear).abs() < 1e-9 * (1.0 + b[i].abs()), "{i}");
+        }
+    }
+}
