@@ -53,6 +53,9 @@ struct Arguments {
     command: Command,
 }
 
+#[global_allocator]
+static ALLOCATOR: allocator::Ending = allocator::Ending;
+
 /// Most threads that can be asked for: more than any machine has cores.
 const MOST_THREADS: usize = 4096;
 
@@ -160,6 +163,26 @@ fn require_one_task(command: &Command) -> Result<(), Failure> {
     )))
 }
 
+/// Starts the threads that share the work; all cores have one unless a number is given.
+fn start_threads(threads: Option<usize>) -> Result<(), Failure> {
+    if let Some(threads) = threads.filter(|threads| !(1..=MOST_THREADS).contains(threads)) {
+        let expected = match threads {
+            0 => "at least 1".to_string(),
+            _ => format!("at most {MOST_THREADS}"),
+        };
+        return Err(Failure::User(anyhow::anyhow!(
+            "--threads is {threads}; expected {expected}"
+        )));
+    }
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.unwrap_or(0));
+    agree(pool.build_global().map_err(|error| {
+        let remedy = "use fewer with --threads, or allow more address space or processes (ulimit -v, -u)";
+        Failure::User(anyhow::anyhow!(
+            "the system gives too few threads ({error}); {remedy}"
+        ))
+    }))
+}
+
 /// Says what each of several ranks has needed.
 fn say_memory_of_ranks() {
     let comm = Communicator::world();
@@ -175,21 +198,17 @@ fn execute(arguments: Arguments) -> Result<(), Failure> {
     require_one_task(&arguments.command)?;
     require_address_space()?;
     arguments.parent.map_or(Ok(()), results::stop::end_with)?;
-    if let Some(threads) = arguments.threads {
-        if !(1..=MOST_THREADS).contains(&threads) {
-            let expected = if threads == 0 {
-                "at least 1".to_string()
-            } else {
-                format!("at most {MOST_THREADS}")
-            };
-            return Err(Failure::User(anyhow::anyhow!(
-                "--threads is {threads}; expected {expected}"
-            )));
-        }
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
-        agree(pool.build_global().map_err(Failure::from))?;
-    }
     let ranks = Communicator::world().size();
+    if ranks == 1 {
+        allocator::end_when_empty();
+    }
+    let shares = matches!(
+        arguments.command,
+        Command::Run { .. } | Command::Resume(_) | Command::Check { .. }
+    );
+    if shares || arguments.threads.is_some() {
+        start_threads(arguments.threads)?;
+    }
     if ranks > 1 {
         let threads = rayon::current_num_threads();
         print::note(format_args!("{ranks} ranks, {threads} threads on rank 0"));
@@ -234,7 +253,12 @@ fn execute(arguments: Arguments) -> Result<(), Failure> {
             } else {
                 Overwrite::Refuse
             };
-            Ok(scene::build_meshes(&scene, &overrides, overwrite)?)
+            Ok(scene::build_meshes(
+                &scene,
+                &overrides,
+                overwrite,
+                &results::stop::gmsh,
+            )?)
         }
     }
 }
