@@ -2,6 +2,8 @@
 
 use std::os::unix::fs::symlink;
 
+use crate::resume::{moved, refused};
+use crate::study::inputs;
 use crate::util::{Dir, RIGID, SCENE};
 
 /// Wrong: a report, a figure, a count of cycles or an export would replace a file of the user's, or one that
@@ -102,4 +104,69 @@ fn a_full_disk_leaves_the_old_file() {
             .find(|path| path.extension().is_some_and(|e| e == "tmp"));
         assert_eq!(hidden, None);
     }
+}
+
+/// Wrong: figures or an export would land in a folder elsewhere that a link leads to. One that a user names may be a
+/// link.
+#[test]
+fn a_folder_in_the_results_that_is_a_link_is_not_followed() {
+    let dir = Dir::with_scene(SCENE);
+    dir.run("out", &RIGID);
+    std::fs::create_dir(dir.path("elsewhere")).unwrap();
+    for (command, name) in [
+        (&["plot", "out"][..], "figures"),
+        (&["export", "out", "--to", "vtu"], "export"),
+    ] {
+        let link = dir.path(&format!("out/{name}"));
+        symlink(dir.path("elsewhere"), &link).unwrap();
+        let outcome = dir.raceway(command);
+        assert_eq!(outcome.code, Some(2), "{}", outcome.stderr);
+        let said = format!(
+            "error: out/{name} is a link or a file; expected a folder or nothing there, remove it or choose another \
+             --out"
+        );
+        assert!(outcome.stderr.contains(&said), "{}", outcome.stderr);
+        assert_eq!(std::fs::read_dir(dir.path("elsewhere")).unwrap().count(), 0);
+        std::fs::remove_file(&link).unwrap();
+        let named = format!("named_{name}");
+        symlink(dir.path("elsewhere"), dir.path(&named)).unwrap();
+        let named = [command, &["--out", &named]].concat();
+        assert_eq!(dir.raceway(&named).code, Some(0));
+        assert!(std::fs::read_dir(dir.path("elsewhere")).unwrap().count() > 0);
+        std::fs::remove_dir_all(dir.path("elsewhere")).unwrap();
+        std::fs::create_dir(dir.path("elsewhere")).unwrap();
+    }
+}
+
+/// Wrong: a study would empty the file that a link in the place of its lock leads to, or run in a folder elsewhere.
+#[test]
+fn a_study_writes_through_no_link() {
+    let dir = inputs();
+    dir.write("precious", "precious");
+    std::fs::create_dir(dir.path("elsewhere")).unwrap();
+    std::fs::create_dir_all(dir.path("out/points/0000")).unwrap();
+    std::fs::create_dir_all(dir.path("out/points/0003")).unwrap();
+    symlink(dir.path("precious"), dir.path("out/points/0000/.lock")).unwrap();
+    symlink(dir.path("elsewhere"), dir.path("out/points/0001")).unwrap();
+    for (point, said) in [
+        ("0", "cannot open the lock "),
+        ("1", "out/points/0001 is a link or a file; expected a folder"),
+    ] {
+        let outcome = dir.raceway(&["study", "study.toml", "--out", "out", "--point", point]);
+        assert_eq!(outcome.code, Some(2), "{}", outcome.stderr);
+        assert!(outcome.stderr.contains(said), "{}", outcome.stderr);
+    }
+    assert_eq!(dir.text("precious"), "precious");
+    assert_eq!(std::fs::read_dir(dir.path("elsewhere")).unwrap().count(), 0);
+}
+
+/// Wrong: a run that goes on would cut and continue a table elsewhere.
+#[test]
+fn a_run_goes_on_in_no_table_that_is_a_link() {
+    let dir = moved();
+    std::fs::rename(dir.path("whole/balls.csv"), dir.path("table")).unwrap();
+    symlink(dir.path("table"), dir.path("whole/balls.csv")).unwrap();
+    let said =
+        "whole/balls.csv: it is a link, and nothing is written through one; put the file itself in its place";
+    refused(&dir, &["whole", "--step", "0"], &[said]);
 }

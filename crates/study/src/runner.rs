@@ -14,9 +14,11 @@ use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 use anyhow::{Context, anyhow};
+use checkpoint::open_lock;
 use comm::print;
 use results::failure::Failure;
 use results::stop::Stop;
+use results::whole::make_folder;
 use scene::{MeshFiles, Scene};
 use signal_hook::consts::{SIGINT, SIGTERM};
 use wait4::Wait4;
@@ -68,9 +70,10 @@ pub fn run(plan: &Plan, points: &[Point], out: &Path, jobs: usize) -> Result<(),
 /// Runs one point and records what became of it. A failed run is a result; an error is one of the study itself.
 fn run_point(plan: &Plan, point: &Point, out: &Path) -> Result<(), Failure> {
     let dir = record::folder(out, point.index);
-    std::fs::create_dir_all(&dir).with_context(|| format!("cannot create {}", dir.display()))?;
+    dir.parent().map_or(Ok(()), make_folder)?;
+    make_folder(&dir)?;
     let path = dir.join(".lock");
-    let lock = File::create(&path).with_context(|| format!("cannot write {}", path.display()))?;
+    let lock = open_lock(&path)?;
     match try_lock(&lock) {
         Ok(()) => {}
         Err(TryLockError::WouldBlock) => {
@@ -137,7 +140,7 @@ fn try_lock(lock: &File) -> Result<(), TryLockError> {
 fn build_meshes(plan: &Plan, set: &[String], out: &Path) -> Result<(), Failure> {
     let scene = Scene::parse(&plan.scene_text, &plan.scene, set, MeshFiles::MayBeMissing)?;
     let path = out.join(".meshes.lock");
-    let lock = File::create(&path).with_context(|| format!("cannot write {}", path.display()))?;
+    let lock = open_lock(&path)?;
     lock.lock()
         .with_context(|| format!("cannot lock {}", path.display()))?;
     Ok(scene::build_missing(&scene)?)
