@@ -2,9 +2,10 @@
 
 use std::os::unix::fs::symlink;
 
+use crate::remarks::SECTION;
 use crate::resume::{moved, refused};
 use crate::study::inputs;
-use crate::util::{Dir, RIGID, SCENE};
+use crate::util::{Dir, RIGID, SCENE, with_line};
 
 /// Wrong: a report, a figure, a count of cycles or an export would replace a file of the user's, or one that
 /// a link leads to.
@@ -169,4 +170,24 @@ fn a_run_goes_on_in_no_table_that_is_a_link() {
     let said =
         "whole/balls.csv: it is a link, and nothing is written through one; put the file itself in its place";
     refused(&dir, &["whole", "--step", "0"], &[said]);
+}
+
+/// Wrong: Gmsh would write through a link in the place of its file, or `--force` replace a file that is no mesh.
+#[test]
+fn the_meshing_writes_over_meshes_only() {
+    let dir = Dir::with_scene(&with_line("[outer]", "[outer]", SECTION));
+    dir.write("precious", "precious");
+    symlink(dir.path("precious"), dir.path("inner.section.new.msh")).unwrap();
+    let path = dir.program("gmsh", "for last; do true; done\necho '$MeshFormat' > \"$last\"");
+    let mesh = || dir.raceway_with(&[("PATH", &path)], &["mesh", "scene.toml"]);
+    let outcome = mesh();
+    assert_eq!(outcome.code, Some(2), "{}", outcome.stderr);
+    assert!(outcome.stderr.contains("inner.section.msh"), "{}", outcome.stderr);
+    assert_eq!(dir.text("inner.section.msh"), "$MeshFormat\n");
+    assert_eq!(dir.text("precious"), "precious");
+    // A section that was there without its geometry is the user's.
+    std::fs::remove_file(dir.path("inner.geo")).unwrap();
+    let outcome = mesh();
+    let said = "cannot write inner.section.msh: it was not written by raceway mesh; move it away";
+    assert!(outcome.stderr.contains(said), "{}", outcome.stderr);
 }

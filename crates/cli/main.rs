@@ -20,6 +20,8 @@ mod rules;
 mod run;
 mod start;
 
+use std::ffi::OsString;
+use std::os::unix::process::CommandExt;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -111,6 +113,13 @@ enum Command {
     Advise(study::Question),
     /// Turns every effect of a scene off or on and tables what that changes and costs.
     Prices(study::prices::Request),
+    /// Becomes Gmsh, which then ends with the process that started this one.
+    #[command(hide = true)]
+    Gmsh {
+        /// Arguments of Gmsh.
+        #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
+        arguments: Vec<OsString>,
+    },
     /// Builds the ring meshes that a scene describes; needs Gmsh.
     Mesh {
         /// Scene file.
@@ -126,6 +135,9 @@ enum Command {
 
 fn main() -> ExitCode {
     let arguments = Arguments::parse();
+    if let Command::Gmsh { arguments: given } = &arguments.command {
+        return become_gmsh(arguments.parent, given);
+    }
     let environment = match Environment::start() {
         Ok(environment) => environment,
         Err(error) => {
@@ -149,6 +161,21 @@ fn main() -> ExitCode {
         false => print::note(format_args!("{}: {}", failure.kind(), failure.text())),
     }
     ExitCode::from(failure.number())
+}
+
+/// Runs Gmsh in the place of this program; returns only if it cannot.
+fn become_gmsh(parent: Option<i32>, arguments: &[OsString]) -> ExitCode {
+    let failed = match parent.map_or(Ok(()), results::stop::end_with) {
+        Ok(()) => anyhow::Error::from(std::process::Command::new("gmsh").args(arguments).exec()),
+        Err(error) => error,
+    };
+    match failed.downcast_ref::<std::io::Error>().map(std::io::Error::kind) {
+        Some(std::io::ErrorKind::NotFound) => ExitCode::from(mesh::NO_GMSH),
+        _ => {
+            print::from_any_rank(format_args!("{failed:#}"));
+            ExitCode::FAILURE
+        }
+    }
 }
 
 /// Several ranks only do runs together.
@@ -231,6 +258,7 @@ fn execute(arguments: Arguments) -> Result<(), Failure> {
             say_memory_of_ranks();
             Ok(())
         }
+        Command::Gmsh { .. } => unreachable!("the program has become Gmsh"),
         Command::Info { path, verify } => {
             info::info(&path, if verify { Depth::Bytes } else { Depth::Structure })
         }

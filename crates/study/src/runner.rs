@@ -8,7 +8,6 @@
 use std::fs::{File, TryLockError};
 use std::os::unix::process::ExitStatusExt;
 use std::path::Path;
-use std::process::Command;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
@@ -17,7 +16,7 @@ use anyhow::{Context, anyhow};
 use checkpoint::open_lock;
 use comm::print;
 use results::failure::Failure;
-use results::stop::Stop;
+use results::stop::{Stop, child, gmsh};
 use results::whole::make_folder;
 use scene::{MeshFiles, Scene};
 use signal_hook::consts::{SIGINT, SIGTERM};
@@ -143,7 +142,7 @@ fn build_meshes(plan: &Plan, set: &[String], out: &Path) -> Result<(), Failure> 
     let lock = open_lock(&path)?;
     lock.lock()
         .with_context(|| format!("cannot lock {}", path.display()))?;
-    Ok(scene::build_missing(&scene)?)
+    Ok(scene::build_missing(&scene, &gmsh)?)
 }
 
 /// Runs the program once: the cost, or why there are no results. Results of repeats are not kept: they are the same.
@@ -163,10 +162,9 @@ fn run_once(
     // The log of an earlier try goes, also a link; it is gone if there was none.
     let _ = std::fs::remove_file(&log_path);
     let log = File::create_new(&log_path).with_context(|| format!("cannot write {}", log_path.display()))?;
-    let mut command = Command::new(std::env::current_exe().context("cannot find this program")?);
+    let mut command = child();
     command
-        .args(["--threads", &plan.threads.to_string()])
-        .args(["--parent", &std::process::id().to_string(), "run"])
+        .args(["--threads", &plan.threads.to_string(), "run"])
         .arg(&plan.scene)
         .arg("--out")
         .arg(&out)
