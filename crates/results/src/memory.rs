@@ -62,8 +62,8 @@ pub fn forecast(
     (forecast_peak(rings, rings_at_once()), steps)
 }
 
-/// More memory than a ring takes for each of its nodes, bytes: a factor of some 1000 rows below each row.
-const MOST_PER_NODE: u64 = 100_000;
+/// More memory than a ring takes for each of its nodes, bytes: five times that of a sparse factor of 17 k nodes.
+const MOST_PER_NODE: u64 = 50_000;
 
 /// Fails if a run of this model, of which nothing is factored yet, needs more memory than there is for it by its
 /// forecast. That is made only where memory may be short: it costs the analysis of the matrices.
