@@ -180,6 +180,7 @@ link() {
     dir=${dir%/}
     log=$dir.links
     mkdir -p "$(dirname "$log")" || exit 2
+    [ ! -L "$log" ] || { say "$log is a link, and nothing is written through one; remove it"; exit 2; }
     begun=$(newest_step "$dir")
     continues || echo "chain of job ${SLURM_JOB_ID:-none}" >> "$log"
     if is_stalled "$log" "$begun"; then

@@ -170,3 +170,19 @@ fn links_without_progress_are_not_followed_by_another() {
     // A chain that a user submits anew may try again.
     assert_eq!(end(start(&dir, 0)).0, Some(75));
 }
+
+/// Wrong: a job would add its lines to the file that a link in the place of its log leads to.
+#[test]
+fn a_job_writes_through_no_link() {
+    let dir = job("exit 0");
+    dir.write("precious", "precious");
+    std::os::unix::fs::symlink(dir.path("precious"), dir.path("out.links")).unwrap();
+    let (code, said) = end(start(&dir, 0));
+    assert_eq!(code, Some(2), "{said}");
+    assert!(
+        said.contains("out.links is a link, and nothing is written through one; remove it"),
+        "{said}"
+    );
+    assert_eq!(dir.text("precious"), "precious");
+    assert!(!dir.path("calls").exists(), "the run was started");
+}

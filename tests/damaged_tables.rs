@@ -47,6 +47,14 @@ fn a_damaged_table_is_not_used_in_silence() {
     let table = dir.text("whole/balls.csv");
     for (what, damaged) in damages(&table) {
         dir.write("whole/balls.csv", &damaged);
+        // Also a run that has nothing left to do looks at its tables.
+        let finished = dir.raceway(&["resume", "whole"]);
+        assert_eq!(finished.code, Some(2), "{what}: {}", finished.stdout);
+        assert!(
+            finished.stderr.contains("step_000020.hdf "),
+            "{what}: {}",
+            finished.stderr
+        );
         let outcome = dir.raceway(&["resume", "whole", "--step", "15"]);
         assert_eq!(outcome.code, Some(2), "{what}: {}", outcome.stderr);
         for part in [
@@ -88,6 +96,11 @@ fn a_damaged_table_is_not_used_in_silence() {
     let outcome = dir.raceway(&["resume", "cut", "--step", "1"]);
     assert_eq!(outcome.code, Some(0), "{}", outcome.stderr);
     assert_same_run(&dir, "whole", "cut");
+    // Rows behind the last step are cut off.
+    dir.write("whole/balls.csv", format!("{table}21,1.0\n"));
+    let outcome = dir.raceway(&["resume", "whole"]);
+    assert_eq!(outcome.code, Some(0), "{}", outcome.stderr);
+    assert_eq!(dir.text("whole/balls.csv"), table);
 }
 
 /// Wrong: rows that somebody added, or a table that is gone, would pass.

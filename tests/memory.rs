@@ -135,3 +135,73 @@ fn check_prints_the_forecast_of_the_run() {
         checked.stdout
     );
 }
+
+/// Wrong: a run that outgrows a limit of its memory would abort, which tells a user nothing, or spoil what it saved.
+#[test]
+fn a_run_short_of_memory_ends_with_a_message() {
+    let dir = rings(180, ElementKind::Hex8);
+    let motion =
+        "[dynamic]\nduration = \"0.1 ms\"\nstep = \"20 us\"\noutput_every = 1\nledger_tolerance = 1e-3";
+    dir.write("scene.toml", SCENE.replace("[static]", motion));
+    let options = |backend: &str| format!("solver.backend={backend}");
+    let cyclic = options("cyclic");
+    dir.run("whole", &["--threads", "2", "--set", &cyclic]);
+    let before = dir.snapshot();
+    let outcome = dir.raceway_after(
+        "ulimit -v 330000",
+        &["resume", "whole", "--step", "2", "--threads", "2"],
+    );
+    assert_eq!(outcome.code, Some(2), "{}", outcome.stderr);
+    assert!(dir.raceway(&["info", "whole", "--verify"]).code == Some(0));
+    let outcome = dir.raceway(&["resume", "whole", "--step", "2"]);
+    assert_eq!(outcome.code, Some(0), "{}", outcome.stderr);
+    let step = std::path::Path::new("whole/step_000005.hdf");
+    assert!(dir.snapshot()[step] == before[step]);
+    let (mut forecast, mut ended, mut finished) = (0, 0, 0);
+    for (backend, kilobytes) in [330_000, 360_000, 400_000, 440_000, 480_000, 600_000, 2_000_000]
+        .into_iter()
+        .flat_map(|limit| [("cyclic", limit), ("sparse", limit)])
+    {
+        let out = format!("{backend}_{kilobytes}");
+        let run = [
+            "run",
+            "scene.toml",
+            "--out",
+            &out,
+            "--threads",
+            "2",
+            "--set",
+            &options(backend),
+        ];
+        let outcome = dir.raceway_after(&format!("ulimit -v {kilobytes}; export RUST_BACKTRACE=1"), &run);
+        let last = outcome.stderr.lines().last().unwrap();
+        assert!(
+            !outcome.stderr.contains("panicked") && !outcome.stderr.contains("backtrace"),
+            "{last}"
+        );
+        match outcome.code {
+            Some(0) => finished += 1,
+            Some(2) if last.starts_with("error: the run needs about ") => {
+                let limit = format!(
+                    "expected at most {} MB, the limit of the address space",
+                    1024 * kilobytes / 1_000_000
+                );
+                assert!(
+                    last.contains(&limit) && last.contains("use a coarser mesh"),
+                    "{last}"
+                );
+                assert!(!dir.path(&out).exists());
+                forecast += 1;
+            }
+            _ => {
+                assert_eq!(outcome.code, Some(2), "{out}: {last}");
+                assert!(last.starts_with("error: "), "{last}");
+                ended += usize::from(last.starts_with("error: out of memory: "));
+            }
+        }
+    }
+    assert!(
+        forecast > 0 && ended > 0 && finished > 2,
+        "{forecast} {ended} {finished}"
+    );
+}

@@ -384,7 +384,7 @@ fn a_group_that_is_a_part_of_its_surface_is_refused_unless_it_is_meant() {
 }
 
 /// The section of the tiny mesh in a scene, and what `raceway mesh` writes into its file.
-const SECTION: &str = "[inner.section]\nshoulder_diameters = [\"60.4 mm\", \"60.4 mm\"]\nelement = \"hex8\"\n\
+pub const SECTION: &str = "[inner.section]\nshoulder_diameters = [\"60.4 mm\", \"60.4 mm\"]\nelement = \"hex8\"\n\
                        sectors = 18\ngroove_elements = 4\nthickness_elements = 1\nshoulder_elements = 1\n\n[outer]";
 const RECORD: &str = "bearing.bore_diameter = 50 mm; bearing.inner_raceway_diameter = 56.01 mm; \
                       bearing.inner_groove_radius = 4.65 mm; bearing.width = 16 mm; inner.groove_z = 0 mm; \
@@ -423,6 +423,41 @@ fn a_mesh_of_another_section_is_refused_with_the_command_that_builds_it() {
         let run = ["run", "scene.toml", "--out", "out", "--set", set];
         assert_refused(&dir, &run, &[&difference, &command]);
     }
+}
+
+/// Wrong: a mesh that was built before meshes had a record would be solved under any section without a word.
+#[test]
+fn a_mesh_without_a_record_of_its_section_is_said() {
+    let dir = tiny();
+    let said = "mesh inner.msh does not say from which section it was made, so that it may be another one than \
+                [inner.section]; if raceway mesh made it, build it anew: raceway mesh scene.toml --force, which needs \
+                Gmsh";
+    // The outer ring has no section to compare with.
+    assert!(
+        !dir.raceway(&["check", "scene.toml"])
+            .stdout
+            .contains("does not say")
+    );
+    dir.write("scene.toml", with_line("[outer]", "[outer]", SECTION));
+    let outcome = dir.raceway(&["check", "scene.toml"]);
+    assert!(
+        outcome.stdout.contains(&format!("advice   {said}")),
+        "{}",
+        outcome.stdout
+    );
+    assert_eq!(
+        outcome.stdout.matches("does not say").count(),
+        1,
+        "{}",
+        outcome.stdout
+    );
+    let outcome = dir.run("out", &[]);
+    assert!(
+        outcome.stderr.contains(&format!("warning: {said}")),
+        "{}",
+        outcome.stderr
+    );
+    assert!(texts(&dir, "warnings").contains(&said.to_string()));
 }
 
 /// Wrong: `info` would call a mesh a damaged step file, or not say what it was made from.

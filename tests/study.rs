@@ -2,9 +2,11 @@
 //! is refused.
 
 use std::sync::OnceLock;
+use std::time::Duration;
 
 use serde_json::Value;
 
+use crate::remarks::SECTION;
 use crate::util::tables::{Table, number};
 use crate::util::{Dir, Files, assert_within, with_line};
 
@@ -382,20 +384,71 @@ fn a_killed_study_takes_its_run_with_it() {
         let mut child = dir.start(&["study", "study.toml", "--out", "out"]);
         while !table.exists() {
             assert!(child.try_wait().unwrap().is_none(), "the study ended");
-            std::thread::sleep(std::time::Duration::from_millis(20));
+            std::thread::sleep(Duration::from_millis(20));
         }
         child.kill().unwrap();
         child.wait().unwrap();
         // At once: the run is gone, or its folder is locked until it is.
         std::fs::remove_file(&table).unwrap();
     }
-    std::thread::sleep(std::time::Duration::from_millis(500));
+    std::thread::sleep(Duration::from_millis(500));
     let size = |name: &str| {
         std::fs::metadata(dir.path(&format!("out/points/0000/run/{name}")))
             .unwrap()
             .len()
     };
     let before = size("shaft.csv");
-    std::thread::sleep(std::time::Duration::from_millis(500));
+    std::thread::sleep(Duration::from_millis(500));
     assert_eq!(size("shaft.csv"), before, "a run still writes");
 }
+
+/// Wrong: Gmsh would go on after the command that started it was killed, and write beside that of the next try.
+#[test]
+fn a_killed_command_takes_gmsh_with_it() {
+    let dir = inputs();
+    dir.write("scene.toml", with_line("[outer]", "[outer]", SECTION));
+    dir.write("study.toml", BUILDING);
+    let path = dir.program("gmsh", "echo $$ > pid.new\nmv pid.new pid\nexec sleep 60");
+    for command in [
+        &["mesh", "scene.toml"][..],
+        &["study", "study.toml", "--out", "out"],
+    ] {
+        let mut child = dir
+            .shell(&format!("export PATH='{path}'"), command)
+            .stderr(std::process::Stdio::null())
+            .spawn()
+            .unwrap();
+        while !dir.path("pid").exists() {
+            assert!(child.try_wait().unwrap().is_none(), "{command:?} ended");
+            std::thread::sleep(Duration::from_millis(20));
+        }
+        child.kill().unwrap();
+        child.wait().unwrap();
+        let gmsh = dir.text("pid");
+        // The system shows no words of a process that has ended.
+        let words = std::path::Path::new("/proc").join(gmsh.trim()).join("cmdline");
+        let runs = || std::fs::read_to_string(&words).is_ok_and(|words| words.starts_with("sleep"));
+        for _ in 0..100 {
+            if runs() {
+                std::thread::sleep(Duration::from_millis(20));
+            }
+        }
+        assert!(!runs(), "{command:?}");
+        std::fs::remove_file(dir.path("pid")).unwrap();
+    }
+}
+
+/// A study of one point that builds its meshes.
+const BUILDING: &str = r#"
+scene = "scene.toml"
+meshes = "build"
+
+[[axes]]
+name = "step"
+values = [{ name = "a" }]
+
+[[quantities]]
+name = "final"
+unit = "m"
+summary = "/shaft/displacement_m/0"
+"#;

@@ -9,20 +9,14 @@ use crate::study::inputs;
 fn an_array_of_jobs_runs_every_point_and_one_more_makes_the_tables() {
     let dir = inputs();
     // Stands for Slurm: runs what it is given, a task after the other, and prints the number of a job.
-    let sbatch = "#!/usr/bin/env bash\n\
-        echo \"$@\" >> sbatch.txt\n\
+    let sbatch = "echo \"$@\" >> sbatch.txt\n\
         for a in \"$@\"; do\n\
             case \"$a\" in --array=0-*) last=${a#--array=0-} ;; --wrap=*) run=${a#--wrap=} ;; esac\n\
         done\n\
         for i in $(seq 0 \"${last:-0}\"); do SLURM_ARRAY_TASK_ID=$i bash -c \"$run\" >> jobs.txt 2>&1; done\n\
         echo 42\n";
-    std::fs::create_dir(dir.path("bin")).unwrap();
-    dir.write("bin/sbatch", sbatch);
-    let program = dir.path("bin/sbatch");
-    let executable = std::os::unix::fs::PermissionsExt::from_mode(0o755);
-    std::fs::set_permissions(&program, executable).unwrap();
+    let path = dir.program("sbatch", sbatch);
     let script = concat!(env!("CARGO_MANIFEST_DIR"), "/slurm/study");
-    let path = format!("{}:{}", dir.path("bin").display(), std::env::var("PATH").unwrap());
     let output = std::process::Command::new(script)
         .args(["study.toml", "my out", "--", "--exclusive"])
         .current_dir(dir.path("."))

@@ -135,6 +135,19 @@ impl Dir {
         Outcome::of(child.wait_with_output().unwrap())
     }
 
+    /// Puts a shell script in front of the programs on the PATH and returns that PATH.
+    pub fn program(&self, name: &str, script: &str) -> String {
+        std::fs::create_dir_all(self.path("bin")).unwrap();
+        self.write(&format!("bin/{name}"), format!("#!/usr/bin/env bash\n{script}\n"));
+        let executable = std::os::unix::fs::PermissionsExt::from_mode(0o755);
+        std::fs::set_permissions(self.path(&format!("bin/{name}")), executable).unwrap();
+        format!(
+            "{}:{}",
+            self.path("bin").display(),
+            std::env::var("PATH").unwrap()
+        )
+    }
+
     /// Starts the program here and leaves it running, with its progress to be read.
     pub fn start(&self, arguments: &[&str]) -> Child {
         let mut command = self.command(arguments);

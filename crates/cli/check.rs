@@ -7,12 +7,10 @@ use comm::print;
 use contact::{BearingGeometry, Side};
 use dynamics::kinematics::Kinematics;
 use dynamics::statics::settings;
-use dynamics::{
-    Model, MotionSizes, Numbers, Prepared, RingMemory, Substructures, forecast_motion_peak, forecast_peak,
-};
+use dynamics::{Model, MotionSizes, Numbers, Prepared, RingMemory, Substructures};
 use results::disk::{self, Forecast};
 use results::failure::Failure;
-use results::memory::queued_steps;
+use results::memory::{bound, forecast};
 use results::probes::Probes;
 use scene::{Analysis, Scene, build_model, doubts};
 
@@ -137,10 +135,9 @@ fn print_memory(
     motion: [Option<Option<MotionSizes>>; 2],
 ) {
     let n_threads = rayon::current_num_threads();
-    let start = forecast_peak(memory, n_threads);
-    let (peak, note) = match (&scene.analysis, motion) {
-        (Analysis::Dynamic(dynamic), [Some(inner), Some(outer)]) => {
-            let steps = forecast_motion_peak([inner, outer], queued_steps(dynamic));
+    let (start, steps) = forecast(&scene.analysis, memory, motion);
+    let (peak, note) = match (&scene.analysis, steps) {
+        (Analysis::Dynamic(_), Some(steps)) => {
             let note = format!(" ({:.0} MB for the static start)", start as f64 / 1e6);
             (steps.max(start), note)
         }
@@ -162,6 +159,11 @@ fn print_memory(
         "memory   peak about {:.0} MB with {n_threads} threads{note}",
         peak as f64 / 1e6
     ));
+    if let Some(bound) = bound().filter(|bound| bound.bytes < peak as u64) {
+        print::line(format_args!(
+            "         more than {bound}, so that a run would be refused here"
+        ));
+    }
 }
 
 /// Prints where the probes of a scene lie.

@@ -3,13 +3,13 @@
 use std::ops::RangeInclusive;
 use std::path::PathBuf;
 
-use anyhow::{Context, anyhow};
+use anyhow::anyhow;
 use checkpoint::{Grid, StepRecord, all_steps, read_any_step, read_mesh};
 use clap::{Args, ValueEnum};
 use comm::print;
 use results::export::{csv, integration_points, vtu};
 use results::failure::Failure;
-use results::whole::write_new;
+use results::whole::{make_output_folder, write_new};
 
 /// What the command line asks for.
 #[derive(Debug, Args)]
@@ -42,7 +42,7 @@ pub fn export(request: &Export) -> Result<(), Failure> {
     let steps = chosen(&all_steps(dir)?, request)?;
     let grid = read_mesh(dir)?;
     let out = request.out.clone().unwrap_or_else(|| dir.join("export"));
-    std::fs::create_dir_all(&out).with_context(|| format!("cannot create folder {}", out.display()))?;
+    make_output_folder(request.out.as_deref(), &out)?;
     let extension = match request.to {
         Form::Csv => "csv",
         Form::Vtu => "vtu",

@@ -20,6 +20,8 @@ mod rules;
 mod run;
 mod start;
 
+use std::ffi::OsString;
+use std::os::unix::process::CommandExt;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -52,6 +54,9 @@ struct Arguments {
     #[command(subcommand)]
     command: Command,
 }
+
+#[global_allocator]
+static ALLOCATOR: allocator::Ending = allocator::Ending;
 
 /// Most threads that can be asked for: more than any machine has cores.
 const MOST_THREADS: usize = 4096;
@@ -108,6 +113,13 @@ enum Command {
     Advise(study::Question),
     /// Turns every effect of a scene off or on and tables what that changes and costs.
     Prices(study::prices::Request),
+    /// Becomes Gmsh, which then ends with the process that started this one.
+    #[command(hide = true)]
+    Gmsh {
+        /// Arguments of Gmsh.
+        #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
+        arguments: Vec<OsString>,
+    },
     /// Builds the ring meshes that a scene describes; needs Gmsh.
     Mesh {
         /// Scene file.
@@ -123,6 +135,9 @@ enum Command {
 
 fn main() -> ExitCode {
     let arguments = Arguments::parse();
+    if let Command::Gmsh { arguments: given } = &arguments.command {
+        return become_gmsh(arguments.parent, given);
+    }
     let environment = match Environment::start() {
         Ok(environment) => environment,
         Err(error) => {
@@ -148,6 +163,21 @@ fn main() -> ExitCode {
     ExitCode::from(failure.number())
 }
 
+/// Runs Gmsh in the place of this program; returns only if it cannot.
+fn become_gmsh(parent: Option<i32>, arguments: &[OsString]) -> ExitCode {
+    let failed = match parent.map_or(Ok(()), results::stop::end_with) {
+        Ok(()) => anyhow::Error::from(std::process::Command::new("gmsh").args(arguments).exec()),
+        Err(error) => error,
+    };
+    match failed.downcast_ref::<std::io::Error>().map(std::io::Error::kind) {
+        Some(std::io::ErrorKind::NotFound) => ExitCode::from(mesh::NO_GMSH),
+        _ => {
+            print::from_any_rank(format_args!("{failed:#}"));
+            ExitCode::FAILURE
+        }
+    }
+}
+
 /// Several ranks only do runs together.
 fn require_one_task(command: &Command) -> Result<(), Failure> {
     let ranks = Communicator::world().size();
@@ -158,6 +188,26 @@ fn require_one_task(command: &Command) -> Result<(), Failure> {
     Err(Failure::User(anyhow::anyhow!(
         "the launcher started {ranks} tasks, but only raceway run and raceway resume are shared by several; start one task"
     )))
+}
+
+/// Starts the threads that share the work; all cores have one unless a number is given.
+fn start_threads(threads: Option<usize>) -> Result<(), Failure> {
+    if let Some(threads) = threads.filter(|threads| !(1..=MOST_THREADS).contains(threads)) {
+        let expected = match threads {
+            0 => "at least 1".to_string(),
+            _ => format!("at most {MOST_THREADS}"),
+        };
+        return Err(Failure::User(anyhow::anyhow!(
+            "--threads is {threads}; expected {expected}"
+        )));
+    }
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.unwrap_or(0));
+    agree(pool.build_global().map_err(|error| {
+        let remedy = "use fewer with --threads, or allow more address space or processes (ulimit -v, -u)";
+        Failure::User(anyhow::anyhow!(
+            "the system gives too few threads ({error}); {remedy}"
+        ))
+    }))
 }
 
 /// Says what each of several ranks has needed.
@@ -175,21 +225,17 @@ fn execute(arguments: Arguments) -> Result<(), Failure> {
     require_one_task(&arguments.command)?;
     require_address_space()?;
     arguments.parent.map_or(Ok(()), results::stop::end_with)?;
-    if let Some(threads) = arguments.threads {
-        if !(1..=MOST_THREADS).contains(&threads) {
-            let expected = if threads == 0 {
-                "at least 1".to_string()
-            } else {
-                format!("at most {MOST_THREADS}")
-            };
-            return Err(Failure::User(anyhow::anyhow!(
-                "--threads is {threads}; expected {expected}"
-            )));
-        }
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
-        agree(pool.build_global().map_err(Failure::from))?;
-    }
     let ranks = Communicator::world().size();
+    if ranks == 1 {
+        allocator::end_when_empty();
+    }
+    let shares = matches!(
+        arguments.command,
+        Command::Run { .. } | Command::Resume(_) | Command::Check { .. }
+    );
+    if shares || arguments.threads.is_some() {
+        start_threads(arguments.threads)?;
+    }
     if ranks > 1 {
         let threads = rayon::current_num_threads();
         print::note(format_args!("{ranks} ranks, {threads} threads on rank 0"));
@@ -212,6 +258,7 @@ fn execute(arguments: Arguments) -> Result<(), Failure> {
             say_memory_of_ranks();
             Ok(())
         }
+        Command::Gmsh { .. } => unreachable!("the program has become Gmsh"),
         Command::Info { path, verify } => {
             info::info(&path, if verify { Depth::Bytes } else { Depth::Structure })
         }
@@ -234,7 +281,12 @@ fn execute(arguments: Arguments) -> Result<(), Failure> {
             } else {
                 Overwrite::Refuse
             };
-            Ok(scene::build_meshes(&scene, &overrides, overwrite)?)
+            Ok(scene::build_meshes(
+                &scene,
+                &overrides,
+                overwrite,
+                &results::stop::gmsh,
+            )?)
         }
     }
 }

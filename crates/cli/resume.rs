@@ -18,6 +18,7 @@ use dynamics::motion::{Motion, MotionState};
 use results::about::{MAY_CHANGE, OVERRIDES, SCENE_FILE, WARNINGS, require_same_meshes, scene_file};
 use results::failure::{Failure, agree};
 use results::files::note_dead_owner;
+use results::integrity::doubts;
 use results::state_arrays;
 use results::summary::read_summary;
 use results::watch::Watch;
@@ -124,8 +125,8 @@ pub fn resume(request: &Request) -> Result<(), Failure> {
     let n_steps = dynamic.n_steps;
     if is_finished {
         print::line(format_args!(
-            "nothing to do: {} has finished with step {step} of {n_steps}, t = {} s; a longer duration goes on from \
-             there, --set dynamic.duration=...",
+            "nothing to do: {} has finished with step {step} of {n_steps}, t = {:.6e} s; a longer duration goes on \
+             from there, --set dynamic.duration=...",
             dir.display(),
             record.time
         ));
@@ -367,7 +368,9 @@ fn is_finished(dir: &Path, step: u64) -> Result<bool, Failure> {
     let newest = checkpoint::committed_steps(dir)?.last() == Some(&step);
     let summary = read_summary(dir);
     let finished = summary.is_some_and(|summary| summary["status"] == "finished");
-    Ok(newest && finished && dir.join("run.vtkhdf").exists() && checkpoint::read_mesh(dir).is_ok())
+    let is_whole = dir.join("run.vtkhdf").exists() && checkpoint::read_mesh(dir).is_ok();
+    // Tables that are not as written are refused, or cut, where a run goes on.
+    Ok(newest && finished && is_whole && doubts(dir)?.is_empty())
 }
 
 fn lines(text: &str) -> Vec<String> {

@@ -51,14 +51,19 @@ pub struct Written {
 impl BackgroundOutput {
     /// Starts the thread. `queue_length` steps may wait besides the one being written; memory is
     /// `queue_length + 2` records at most, the caller's included.
-    pub fn start(output: Output, queue_length: usize, companions: Vec<Companion>) -> BackgroundOutput {
+    pub fn start(
+        output: Output,
+        queue_length: usize,
+        companions: Vec<Companion>,
+    ) -> Result<BackgroundOutput, CheckpointError> {
         let (queue, waiting) = sync_channel::<Maker>(queue_length);
-        let writer = thread::spawn(move || write_all(output, &waiting, &companions));
-        BackgroundOutput {
+        let dir = output.dir().to_path_buf();
+        let writer = thread::Builder::new().spawn(move || write_all(output, &waiting, &companions));
+        Ok(BackgroundOutput {
             queue: Some(queue),
-            writer: Some(writer),
+            writer: Some(writer.map_err(CheckpointError::io("start a thread that writes to", &dir))?),
             waited: Duration::ZERO,
-        }
+        })
     }
 
     /// Hands over a step, waiting while the queue is full. An error of an earlier step is returned by the first

@@ -50,7 +50,7 @@ impl GrowingFile {
     /// Goes on behind the start of a file that `start` tells of; what follows it is cut off.
     pub fn reopen(path: &Path, start: FileStamp) -> Result<GrowingFile, CheckpointError> {
         let open = || {
-            regular::open(path)?;
+            regular::require_no_link(path)?;
             let file = OpenOptions::new().append(true).open(path)?;
             if file.metadata()?.len() > start.length {
                 file.set_len(start.length)?;
@@ -169,6 +169,12 @@ mod tests {
         std::os::unix::fs::symlink(&other, &link).unwrap();
         let text = GrowingFile::create(&link).unwrap_err().to_string();
         assert!(text.starts_with("cannot create "), "{text}");
+        let start = start_of(&other, 2).unwrap();
+        let text = format!("{:?}", GrowingFile::reopen(&link, start).unwrap_err());
+        assert!(
+            text.contains("it is a link, and nothing is written through one"),
+            "{text}"
+        );
         assert_eq!(std::fs::read(&other).unwrap(), b"mine");
     }
 }

@@ -60,11 +60,11 @@ pub use folder::{
 pub use grid::Grid;
 pub use growing::{FileStamp, GrowingFile, Stamps, start_of};
 pub use index::{Views, rebuild_index};
-pub use lock::FolderLock;
+pub use lock::{FolderLock, open_lock};
 pub use mesh_file::{MeshFile, read_mesh};
 pub use output::{Output, Resumed};
 pub use pack::{all_steps, pack_steps, packs, read_any_step, unpack_steps};
 pub use record::{PointFields, StateArray, StepRecord};
-pub use regular::open_regular;
+pub use regular::{open_own, open_regular};
 pub use step::{read_about, read_stamps, read_step, read_step_time};
 pub use storage::{Compression, Precision, Storage};

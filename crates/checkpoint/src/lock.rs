@@ -26,14 +26,7 @@ impl FolderLock {
     /// Takes the lock of the folder `dir`, or says who has it.
     pub fn acquire(dir: &Path) -> Result<FolderLock, CheckpointError> {
         let path = dir.join(LOCK_FILE);
-        require_plain(&path)?;
-        let mut file = OpenOptions::new()
-            .read(true)
-            .write(true)
-            .create(true)
-            .truncate(false)
-            .open(&path)
-            .map_err(CheckpointError::io("open the lock", &path))?;
+        let mut file = open_lock(&path)?;
         let locked = file.try_lock();
         let mut owner = String::new();
         file.read_to_string(&mut owner)
@@ -65,6 +58,16 @@ impl FolderLock {
     pub fn dead_owner(&self) -> Option<&str> {
         self.dead_owner.as_deref()
     }
+}
+
+/// Opens a file that is locked, or makes it. A link is not followed.
+pub fn open_lock(path: &Path) -> Result<File, CheckpointError> {
+    require_plain(path)?;
+    let mut options = OpenOptions::new();
+    let opened = options.read(true).write(true).create(true).truncate(false);
+    opened
+        .open(path)
+        .map_err(CheckpointError::io("open the lock", path))
 }
 
 /// Fails if the lock is a link or a pipe: what is written into it would go elsewhere.

@@ -5,32 +5,33 @@ use std::process::Command;
 
 use crate::error::MeshError;
 
+/// Makes the command that starts Gmsh; arguments are added to it.
+pub type Gmsh<'a> = &'a dyn Fn() -> Command;
+
+/// Exit code of a command that did not find Gmsh, as shells have it; without a word, as Gmsh itself is not.
+pub const NO_GMSH: u8 = 127;
+
 /// Meshes the section in `geo_path` (see [`crate::ring_geo`]) with quadrangles: `gmsh -2`.
 pub fn mesh_section_with_gmsh(
+    gmsh: Gmsh<'_>,
     geo_path: impl AsRef<Path>,
     msh_path: impl AsRef<Path>,
 ) -> Result<(), MeshError> {
-    run(
-        "gmsh".as_ref(),
-        &["-2", "-order", "1"],
-        geo_path.as_ref(),
-        msh_path.as_ref(),
-    )
+    run(gmsh, &["-2", "-order", "1"], geo_path.as_ref(), msh_path.as_ref())
 }
 
 /// Meshes the ring in `geo_path` (see [`crate::ring_tet_geo`]) with quadratic tetrahedra: `gmsh -3 -order 2`.
-pub fn mesh_tets_with_gmsh(geo_path: impl AsRef<Path>, msh_path: impl AsRef<Path>) -> Result<(), MeshError> {
-    run(
-        "gmsh".as_ref(),
-        &["-3", "-order", "2"],
-        geo_path.as_ref(),
-        msh_path.as_ref(),
-    )
+pub fn mesh_tets_with_gmsh(
+    gmsh: Gmsh<'_>,
+    geo_path: impl AsRef<Path>,
+    msh_path: impl AsRef<Path>,
+) -> Result<(), MeshError> {
+    run(gmsh, &["-3", "-order", "2"], geo_path.as_ref(), msh_path.as_ref())
 }
 
-/// Runs `program` and checks that it left a file. Gmsh exits 0 after some errors, so an old file is moved out of
-/// the way by writing to a new name first.
-fn run(program: &Path, arguments: &[&str], geo: &Path, msh: &Path) -> Result<(), MeshError> {
+/// Runs Gmsh and checks that it left a file. Gmsh exits 0 after some errors, and writes through links, so that it
+/// writes to a new name first.
+fn run(gmsh: Gmsh<'_>, arguments: &[&str], geo: &Path, msh: &Path) -> Result<(), MeshError> {
     // Gmsh would mesh a file that is not there as an empty model.
     std::fs::metadata(geo).map_err(|source| MeshError::Io {
         action: "read",
@@ -38,24 +39,30 @@ fn run(program: &Path, arguments: &[&str], geo: &Path, msh: &Path) -> Result<(),
         source,
     })?;
     let fresh = msh.with_extension("new.msh");
-    let mut command = Command::new(program);
+    // What a killed run left under this name goes, also a link; it is gone if there was none.
+    let _ = std::fs::remove_file(&fresh);
+    let mut command = gmsh();
     command
         .arg(geo)
         .args(arguments)
         .args(["-format", "msh41", "-v", "2", "-o"])
         .arg(&fresh);
+    let no_gmsh = || MeshError::NoGmsh {
+        path: geo.to_path_buf(),
+    };
     let output = command.output().map_err(|source| match source.kind() {
-        std::io::ErrorKind::NotFound => MeshError::NoGmsh {
-            path: geo.to_path_buf(),
-        },
+        std::io::ErrorKind::NotFound => no_gmsh(),
         _ => MeshError::Io {
             action: "run gmsh on",
             path: geo.to_path_buf(),
             source,
         },
     })?;
+    let text = [output.stdout, output.stderr].concat();
+    if text.is_empty() && output.status.code() == Some(NO_GMSH.into()) {
+        return Err(no_gmsh());
+    }
     if !output.status.success() || !fresh.exists() {
-        let text = [output.stdout, output.stderr].concat();
         let text = String::from_utf8_lossy(&text);
         let lines: Vec<&str> = text
             .lines()
@@ -76,7 +83,9 @@ fn run(program: &Path, arguments: &[&str], geo: &Path, msh: &Path) -> Result<(),
             output: output_text,
         });
     }
-    std::fs::rename(&fresh, msh).map_err(|source| MeshError::Io {
+    let whole = std::fs::File::open(&fresh).and_then(|file| file.sync_all());
+    let written = whole.and_then(|()| std::fs::rename(&fresh, msh));
+    written.map_err(|source| MeshError::Io {
         action: "write",
         path: msh.to_path_buf(),
         source,
@@ -94,7 +103,7 @@ mod tests {
         let geo = folder.path().join("a.geo");
         std::fs::write(&geo, "Point(1) = {0, 0, 0};").unwrap();
         let error = run(
-            "no-such-mesher-anywhere".as_ref(),
+            &|| Command::new("no-such-mesher-anywhere"),
             &["-2"],
             &geo,
             &folder.path().join("a.msh"),
@@ -112,7 +121,12 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let geo = folder.path().join("a.geo");
         std::fs::write(&geo, "Point(1) = {0, 0, 0};").unwrap();
-        let error = run("echo".as_ref(), &["-2"], &geo, &folder.path().join("a.msh"));
+        let error = run(
+            &|| Command::new("echo"),
+            &["-2"],
+            &geo,
+            &folder.path().join("a.msh"),
+        );
         let text = error.unwrap_err().to_string();
         assert!(
             text.contains("could not mesh") && text.contains("a.geo"),
@@ -123,7 +137,7 @@ mod tests {
     /// If this failed, a mistyped file name would be meshed as an empty geometry.
     #[test]
     fn a_missing_geometry_is_named() {
-        let error = mesh_section_with_gmsh("nowhere/a.geo", "nowhere/a.msh")
+        let error = mesh_section_with_gmsh(&|| Command::new("echo"), "nowhere/a.geo", "nowhere/a.msh")
             .unwrap_err()
             .to_string();
         assert!(error.starts_with("cannot read nowhere/a.geo"), "{error}");

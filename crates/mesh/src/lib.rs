@@ -25,7 +25,7 @@ pub use check::{
 pub use element::{ElementKind, FacetKind};
 pub use error::{MeshError, Place};
 pub use geometry::volume;
-pub use gmsh::{mesh_section_with_gmsh, mesh_tets_with_gmsh};
+pub use gmsh::{Gmsh, NO_GMSH, mesh_section_with_gmsh, mesh_tets_with_gmsh};
 pub use mesh::{Facet, Mesh};
 pub use msh::record::read_record;
 pub use msh::write::{MshFormat, Overwrite, write_msh, write_msh_with_record};

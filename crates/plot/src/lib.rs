@@ -18,14 +18,14 @@ mod surface;
 
 use std::path::{Path, PathBuf};
 
-use anyhow::{Context, anyhow};
+use anyhow::anyhow;
 use clap::Args;
 use comm::print;
 use figure::Figure;
 use results::failure::Failure;
 use results::folder::say_later;
 use results::integrity::warn_of_doubts;
-use results::whole::{require_own_picture, write_picture};
+use results::whole::{make_output_folder, require_own_picture, write_picture};
 
 pub use quantity::Unit;
 pub use run::{Results, Steps};
@@ -83,7 +83,7 @@ pub fn plot(request: &Plot) -> Result<(), Failure> {
     images
         .iter()
         .try_for_each(|(path, _)| require_own_picture(path))?;
-    std::fs::create_dir_all(&out).with_context(|| format!("cannot create folder {}", out.display()))?;
+    make_output_folder(request.out.as_deref(), &out)?;
     for (path, images) in &images {
         write_picture(path, &images.svg, &images.png)?;
     }

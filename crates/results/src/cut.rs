@@ -8,7 +8,7 @@ use std::io::{BufRead, BufReader, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, anyhow};
-use checkpoint::{FileStamp, GrowingFile, open_regular, start_of};
+use checkpoint::{FileStamp, GrowingFile, open_own, start_of};
 
 use crate::integrity::{doubt, newest_agreeing};
 
@@ -41,7 +41,7 @@ impl Cut {
             };
             return Err(anyhow!("{doubt}; {advice}"));
         }
-        let file = open_regular(&path)?;
+        let file = open_own(&path)?;
         let length = file.metadata().map_or(0, |data| data.len());
         let mut lines = Lines {
             reader: BufReader::new(file),
@@ -59,7 +59,7 @@ impl Cut {
     /// The same for a step of a version that kept no checksums of tables: there must be rows up to step `last`.
     pub fn find(dir: &Path, name: &str, header: &str, last: u64) -> anyhow::Result<Cut> {
         let path = dir.join(name);
-        let file = open_regular(&path)?;
+        let file = open_own(&path)?;
         let length = file.metadata().map_or(0, |data| data.len());
         let mut lines = Lines {
             reader: BufReader::new(file),
@@ -108,7 +108,7 @@ impl Cut {
 
     fn copy_rows(&self, aside: &Path) -> anyhow::Result<()> {
         let name = self.path.file_name().expect("a table has a name");
-        let mut rows = open_regular(&self.path)?;
+        let mut rows = open_own(&self.path)?;
         rows.seek(SeekFrom::Start(self.keep.length))?;
         let mut copy = File::create_new(aside.join(name))?;
         writeln!(copy, "{}", self.header)?;

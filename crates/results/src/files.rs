@@ -305,7 +305,7 @@ impl Open {
     fn new(output: Output, tables: Tables, probes: Option<Probes>) -> Result<Open, Failure> {
         let companions = tables.companions()?;
         Ok(Open {
-            output: BackgroundOutput::start(output, QUEUE, companions),
+            output: BackgroundOutput::start(output, QUEUE, companions)?,
             tables,
             probes,
         })

@@ -137,8 +137,8 @@ fn require_writable(dir: &Path) -> Result<(), Failure> {
         )));
     }
     let probe = above.join(format!(".raceway-{}", std::process::id()));
-    std::fs::write(&probe, b"")
-        .and_then(|()| std::fs::remove_file(&probe))
+    std::fs::File::create_new(&probe)
+        .and_then(|_| std::fs::remove_file(&probe))
         .with_context(|| format!("cannot write results to {}; choose another --out", dir.display()))?;
     Ok(())
 }

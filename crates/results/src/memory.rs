@@ -1,11 +1,16 @@
-//! Forecasts of the memory of a run, known before its first step.
+//! Forecasts of the memory of a run, known before its first step, and what bounds it.
+
+use std::fmt;
+use std::path::Path;
 
 use anyhow::anyhow;
 use comm::Communicator;
+use contact::Side;
 use dynamics::motion::Motion;
-use dynamics::{RingMemory, forecast_peak};
+use dynamics::statics::settings;
+use dynamics::{Model, MotionSizes, Numbers, Prepared, RingMemory, forecast_motion_peak, forecast_peak};
 use rustix::process::{Resource, getrlimit};
-use scene::Dynamic;
+use scene::{Analysis, Dynamic};
 
 use crate::failure::Failure;
 
@@ -41,6 +46,106 @@ impl Forecasts {
     }
 }
 
+/// Forecast of the largest resident memory until there is an equilibrium, and in the steps of a motion, bytes. Of each
+/// ring `motion` has Some(None) when it is rigid and None when its steps are not forecast.
+pub fn forecast(
+    analysis: &Analysis,
+    rings: [Option<RingMemory>; 2],
+    motion: [Option<Option<MotionSizes>>; 2],
+) -> (usize, Option<usize>) {
+    let steps = match (analysis, motion) {
+        (Analysis::Dynamic(dynamic), [Some(inner), Some(outer)]) => {
+            Some(forecast_motion_peak([inner, outer], queued_steps(dynamic)))
+        }
+        _ => None,
+    };
+    (forecast_peak(rings, rings_at_once()), steps)
+}
+
+/// More memory than a ring takes for each of its nodes, bytes: five times that of a sparse factor of 17 k nodes.
+const MOST_PER_NODE: u64 = 50_000;
+
+/// Fails if a run of this model, of which nothing is factored yet, needs more memory than there is for it by its
+/// forecast. That is made only where memory may be short: it costs the analysis of the matrices.
+pub fn require_memory(analysis: &Analysis, model: &Model) -> Result<(), Failure> {
+    let n_nodes: usize = model.rings.iter().flatten().map(|ring| ring.mesh.n_nodes()).sum();
+    let short = bound().filter(|bound| bound.bytes < MOST_PER_NODE * n_nodes as u64);
+    let Some(bound) = short.filter(|_| Communicator::world().size() == 1) else {
+        return Ok(());
+    };
+    let (mut statics, mut motion) = ([None; 2], [Some(None); 2]);
+    for side in Side::BOTH {
+        let Some(ring) = model.ring(side) else { continue };
+        let prepared = Prepared::new(ring, settings(model, side), Numbers::Pattern);
+        let stiffness = prepared.map_err(Failure::solving)?.stiffness;
+        statics[side.index()] = Some(stiffness.memory());
+        motion[side.index()] = stiffness.motion().map(Some);
+    }
+    let (start, steps) = forecast(analysis, statics, motion);
+    let peak = steps.unwrap_or(0).max(start) as u64;
+    allocator::expect(peak);
+    if peak <= bound.bytes {
+        return Ok(());
+    }
+    Err(Failure::User(anyhow!(
+        "the run needs about {} MB of memory with --threads {} by its forecast; expected at most {bound}; use a \
+         coarser mesh, fewer --threads or more memory",
+        peak / 1_000_000,
+        rayon::current_num_threads()
+    )))
+}
+
+/// What bounds the memory of this process.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Bound {
+    /// Memory, bytes.
+    pub bytes: u64,
+    /// What has so much.
+    pub of: &'static str,
+}
+
+impl fmt::Display for Bound {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} MB, {}", self.bytes / 1_000_000, self.of)
+    }
+}
+
+/// The least of the limit of the address space, that of the control groups (version 2) and the machine's memory.
+pub fn bound() -> Option<Bound> {
+    let read = |path: &str| std::fs::read_to_string(path).unwrap_or_default();
+    let groups = || of_groups(Path::new("/sys/fs/cgroup"), &read("/proc/self/cgroup"));
+    let address_space = getrlimit(Resource::As).current;
+    let machine = of_machine(&read("/proc/meminfo"));
+    let bounds = [
+        (address_space, "the limit of the address space (ulimit -v)"),
+        (groups(), "the limit of the control group (container or job)"),
+        (machine, "the memory of this machine"),
+    ];
+    let bounds = bounds.map(|(bytes, of)| bytes.map(|bytes| Bound { bytes, of }));
+    bounds.into_iter().flatten().min_by_key(|bound| bound.bytes)
+}
+
+/// The least limit of a group, as `/proc/self/cgroup` names it, and of those above it.
+fn of_groups(root: &Path, named: &str) -> Option<u64> {
+    let path = named.lines().find_map(|line| line.strip_prefix("0::/"))?;
+    let folder = root.join(path);
+    let above = folder.ancestors().take_while(|folder| folder.starts_with(root));
+    let limit = |folder: &Path| {
+        let text = std::fs::read_to_string(folder.join("memory.max")).ok()?;
+        text.trim().parse().ok()
+    };
+    above.filter_map(limit).min()
+}
+
+/// Memory and swap of the machine, as `/proc/meminfo` lists them in kB.
+fn of_machine(listed: &str) -> Option<u64> {
+    let kilobytes = |key: &str| {
+        let value = listed.lines().find_map(|line| line.strip_prefix(key))?;
+        value.split_whitespace().next()?.parse::<u64>().ok()
+    };
+    Some(1024 * (kilobytes("MemTotal:")? + kilobytes("SwapTotal:").unwrap_or(0)))
+}
+
 /// Steps of a motion that wait to be written at a time.
 pub fn queued_steps(dynamic: &Dynamic) -> usize {
     if dynamic.output_every <= OFTEN { 2 } else { 0 }
@@ -69,5 +174,30 @@ pub fn require_address_space() -> Result<(), Failure> {
             limit / 1_000_000,
             LEAST_ADDRESS_SPACE / 1_000_000
         ))),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Wrong: a job whose group has less memory than the machine would be killed without a word.
+    #[test]
+    fn the_least_limit_of_the_groups_counts() {
+        let root = tempfile::tempdir().unwrap();
+        let job = root.path().join("job/step");
+        std::fs::create_dir_all(&job).unwrap();
+        std::fs::write(job.join("memory.max"), "max\n").unwrap();
+        let limit = || of_groups(root.path(), "1:name=systemd:/other\n0::/job/step\n");
+        assert_eq!(limit(), None);
+        std::fs::write(root.path().join("job/memory.max"), "4096\n").unwrap();
+        std::fs::write(root.path().join("memory.max"), "8192\n").unwrap();
+        assert_eq!(limit(), Some(4096));
+        assert_eq!(of_groups(root.path(), "4:memory:/job\n"), None);
+        assert_eq!(
+            of_machine("MemTotal: 3 kB\nMemFree: 1 kB\nSwapTotal: 2 kB\n"),
+            Some(5120)
+        );
+        assert_eq!(of_machine(""), None);
     }
 }

@@ -4,6 +4,7 @@
 //! leaves a note; the run looks at it between two steps, never within one, so the state it saves is that of a
 //! finished step. A second SIGINT ends the program at once.
 
+use std::process::Command;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
@@ -108,6 +109,20 @@ pub fn end_with(pid: i32) -> anyhow::Result<()> {
         "the process {pid} that started this one has ended"
     );
     Ok(())
+}
+
+/// This program as a child that ends with this process; its command is still to be said.
+pub fn child() -> Command {
+    let mut command = Command::new(std::env::current_exe().unwrap_or_else(|_| "raceway".into()));
+    command.args(["--parent", &std::process::id().to_string()]);
+    command
+}
+
+/// Gmsh as a child that ends with this process: this program, which becomes Gmsh.
+pub fn gmsh() -> Command {
+    let mut command = child();
+    command.arg("gmsh");
+    command
 }
 
 /// Reads hh:mm:ss, as batch systems write it.

@@ -17,6 +17,7 @@ use scene::{Scene, build_model, difference, doubts, material, model_with_rings, 
 use crate::about::identity;
 use crate::failure::{Failure, agree};
 use crate::fields;
+use crate::memory::require_memory;
 use crate::probes::Probes;
 
 /// What only whole meshes tell of a run.
@@ -64,6 +65,7 @@ fn whole(
     say_doubts(&doubts);
     let probes = Probes::new(scene, &model, &tags)?;
     test(&model)?;
+    require_memory(&scene.analysis, &model)?;
     let survey = Survey {
         probes,
         doubts,

@@ -62,6 +62,29 @@ pub fn write_picture(path: &Path, svg: &str, png: &[u8]) -> anyhow::Result<()> {
     write(&path.with_added_extension("png"), png, |_| true)
 }
 
+/// Makes a folder in one that is there. A link in its place is not followed.
+pub fn make_folder(path: &Path) -> anyhow::Result<()> {
+    match path.symlink_metadata() {
+        Ok(data) if data.is_dir() => Ok(()),
+        Ok(_) => Err(anyhow!(
+            "{} is a link or a file; expected a folder or nothing there, remove it or choose another --out",
+            path.display()
+        )),
+        Err(_) => {
+            std::fs::create_dir(path).with_context(|| format!("cannot create folder {}", path.display()))
+        }
+    }
+}
+
+/// Makes the folder that a command writes to: the one asked for, which may be a link, or `path` in the results.
+pub fn make_output_folder(asked: Option<&Path>, path: &Path) -> anyhow::Result<()> {
+    match asked {
+        Some(asked) => std::fs::create_dir_all(asked)
+            .with_context(|| format!("cannot create folder {}", asked.display())),
+        None => make_folder(path),
+    }
+}
+
 /// Whether a file holds a text.
 pub fn holds(content: &[u8], text: &str) -> bool {
     content

@@ -13,6 +13,7 @@ use input::{DENSITY, LENGTH, Quantity, STRESS};
 
 use crate::build::{coverages, torus};
 use crate::resolution::unresolved;
+use crate::section_record::unrecorded;
 use crate::tables::{Material, Scene, unusual_stiffnesses};
 
 /// Young's modulus of what rings and balls are made of, Pa: from soft plastics to diamond.
@@ -29,10 +30,11 @@ pub fn doubts(scene: &Scene, model: &Model) -> Vec<String> {
     let mut lines = Vec::new();
     doubt_material("materials.rings", &materials.rings, &mut lines);
     doubt_material("materials.balls", &materials.balls, &mut lines);
-    for (side, body) in Side::BOTH.into_iter().zip([&scene.inner.body, &scene.outer.body]) {
-        if let (Some(ring), Some(body)) = (&model.rings[side.index()], body) {
+    for (side, table) in Side::BOTH.into_iter().zip([&scene.inner, &scene.outer]) {
+        if let (Some(ring), Some(body)) = (&model.rings[side.index()], &table.body) {
             let path = body.mesh.display().to_string();
             doubt_size(scene, side, ring, &path, &mut lines);
+            lines.extend(unrecorded(scene, side, body, table.section.as_ref()));
             if body.is_partial {
                 say_parts(ring, &path, &mut lines);
             }

@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 
 use comm::print;
 use contact::Side;
-use mesh::{ElementKind, Mesh, Overwrite, RingSection, RingSide};
+use mesh::{ElementKind, Gmsh, Mesh, Overwrite, RingSection, RingSide};
 
 use crate::error::BuildError;
 use crate::section_record::record;
@@ -18,7 +18,12 @@ use crate::tables::{FlexibleRing, MeshFiles, Ring, Scene, Section, SectionElemen
 const GMSH_UNIT: f64 = 1e-3;
 
 /// Builds the meshes of a scene; `overwrite` replaces existing files.
-pub fn build_meshes(path: &Path, overrides: &[String], overwrite: Overwrite) -> Result<(), BuildError> {
+pub fn build_meshes(
+    path: &Path,
+    overrides: &[String],
+    overwrite: Overwrite,
+    gmsh: Gmsh<'_>,
+) -> Result<(), BuildError> {
     let scene = Scene::load_with(path, overrides, MeshFiles::MayBeMissing)?;
     let rings = [(RingSide::Inner, &scene.inner), (RingSide::Outer, &scene.outer)];
     let jobs: Vec<_> = rings
@@ -38,18 +43,18 @@ pub fn build_meshes(path: &Path, overrides: &[String], overwrite: Overwrite) -> 
         }
     }
     for (side, (body, section)) in jobs {
-        build_file(&scene, side, body, section, overwrite)?;
+        build_file(&scene, side, (body, section), overwrite, gmsh)?;
     }
     Ok(())
 }
 
 /// Builds those meshes of a scene that it describes and that do not exist.
-pub fn build_missing(scene: &Scene) -> Result<(), BuildError> {
+pub fn build_missing(scene: &Scene, gmsh: Gmsh<'_>) -> Result<(), BuildError> {
     for (side, ring) in [(RingSide::Inner, &scene.inner), (RingSide::Outer, &scene.outer)] {
         if let Some((body, section)) = job(ring)
             && !body.mesh.exists()
         {
-            build_file(scene, side, body, section, Overwrite::Refuse)?;
+            build_file(scene, side, (body, section), Overwrite::Refuse, gmsh)?;
         }
     }
     Ok(())
@@ -58,11 +63,11 @@ pub fn build_missing(scene: &Scene) -> Result<(), BuildError> {
 fn build_file(
     scene: &Scene,
     side: RingSide,
-    body: &FlexibleRing,
-    section: &Section,
+    (body, section): (&FlexibleRing, &Section),
     overwrite: Overwrite,
+    gmsh: Gmsh<'_>,
 ) -> Result<(), BuildError> {
-    let mesh = build_ring(scene, side, body, section)?;
+    let mesh = build_ring(scene, side, (body, section), gmsh)?;
     let record = record(scene, Side::BOTH[side as usize], body, section);
     mesh::write_msh_with_record(&body.mesh, &mesh, body.mesh_unit, overwrite, &record)?;
     print::line(format_args!(
@@ -83,8 +88,8 @@ fn job(ring: &Ring) -> Option<(&FlexibleRing, &Section)> {
 fn build_ring(
     scene: &Scene,
     side: RingSide,
-    body: &FlexibleRing,
-    section: &Section,
+    (body, section): (&FlexibleRing, &Section),
+    gmsh: Gmsh<'_>,
 ) -> Result<Mesh, BuildError> {
     let measures = measures(scene, side, section);
     if let Some(folder) = body.mesh.parent() {
@@ -94,15 +99,15 @@ fn build_ring(
     let mut mesh = match section.element {
         SectionElement::Tet10 => {
             let size = measures.width / (2 * section.shoulder_elements + section.groove_elements) as f64;
-            write_text(&geo, &mesh::ring_tet_geo(&measures, size)?)?;
             let msh = beside(&body.mesh, "gmsh.msh");
-            mesh::mesh_tets_with_gmsh(&geo, &msh)?;
+            write_geo(&geo, &msh, &mesh::ring_tet_geo(&measures, size)?)?;
+            mesh::mesh_tets_with_gmsh(gmsh, &geo, &msh)?;
             let mesh = mesh::read_msh(&msh, GMSH_UNIT)?;
             std::fs::remove_file(&msh).map_err(file_error("remove", &msh))?;
             mesh
         }
-        SectionElement::Hex8 => revolved(&measures, &geo, body, section, ElementKind::Hex8)?,
-        SectionElement::Hex20 => revolved(&measures, &geo, body, section, ElementKind::Hex20)?,
+        SectionElement::Hex8 => revolved(&measures, &geo, (body, section), gmsh, ElementKind::Hex8)?,
+        SectionElement::Hex20 => revolved(&measures, &geo, (body, section), gmsh, ElementKind::Hex20)?,
     };
     mesh.nodes.iter_mut().for_each(|x| x[2] += body.groove_z);
     Ok(mesh)
@@ -111,13 +116,13 @@ fn build_ring(
 fn revolved(
     measures: &RingSection,
     geo: &Path,
-    body: &FlexibleRing,
-    section: &Section,
+    (body, section): (&FlexibleRing, &Section),
+    gmsh: Gmsh<'_>,
     kind: ElementKind,
 ) -> Result<Mesh, BuildError> {
-    write_text(geo, &mesh::ring_geo(measures)?)?;
     let msh = beside(&body.mesh, "section.msh");
-    mesh::mesh_section_with_gmsh(geo, &msh)?;
+    write_geo(geo, &msh, &mesh::ring_geo(measures)?)?;
+    mesh::mesh_section_with_gmsh(gmsh, geo, &msh)?;
     let flat = mesh::read_section(&msh, GMSH_UNIT)?;
     Ok(mesh::revolve(
         &flat,
@@ -157,10 +162,17 @@ fn beside(mesh: &Path, ending: &str) -> PathBuf {
     mesh.with_extension(ending)
 }
 
-/// Writes the geometry of a ring: whole or not at all, and only over one that was written here.
-fn write_text(path: &Path, text: &str) -> Result<(), BuildError> {
+/// Writes the geometry of a ring: whole or not at all, and only over one that was written here. What Gmsh makes of it
+/// has no place for a mark; it is known by the geometry beside it.
+fn write_geo(path: &Path, msh: &Path, text: &str) -> Result<(), BuildError> {
+    require_own(path).map_err(file_error("write", path))?;
+    let is_own = msh
+        .symlink_metadata()
+        .map_or(true, |data| data.is_file() && path.exists());
+    if !is_own {
+        return Err(file_error("write", msh)(foreign()));
+    }
     let write = || {
-        require_own(path)?;
         let hidden = path.with_extension("geo.tmp");
         // What a killed process left; it is gone if there was none.
         let _ = std::fs::remove_file(&hidden);
@@ -180,8 +192,12 @@ fn require_own(path: &Path) -> std::io::Result<()> {
     if data.is_file() && String::from_utf8_lossy(&std::fs::read(path)?).contains(OWN) {
         return Ok(());
     }
+    Err(foreign())
+}
+
+fn foreign() -> std::io::Error {
     let what = "it was not written by raceway mesh; move it away";
-    Err(std::io::Error::new(std::io::ErrorKind::AlreadyExists, what))
+    std::io::Error::new(std::io::ErrorKind::AlreadyExists, what)
 }
 
 fn file_error(action: &'static str, path: &Path) -> impl Fn(std::io::Error) -> BuildError {
@@ -203,14 +219,24 @@ mod tests {
         let dir = tempfile::tempdir().unwrap();
         let path = dir.path().join("inner.geo");
         let text = format!("// inner{OWN}\n");
-        (0..2).for_each(|_| write_text(&path, &text).unwrap());
+        let msh = dir.path().join("inner.section.msh");
+        (0..2).for_each(|_| write_geo(&path, &msh, &text).unwrap());
         std::fs::write(&path, "Point(1) = {0, 0, 0};").unwrap();
-        let said = with_cause(&write_text(&path, &text).unwrap_err());
+        let said = with_cause(&write_geo(&path, &msh, &text).unwrap_err());
         assert!(
             said.contains("it was not written by raceway mesh; move it away"),
             "{said}"
         );
         assert_eq!(std::fs::read_to_string(&path).unwrap(), "Point(1) = {0, 0, 0};");
+        // A section of the user's, without a geometry beside it.
+        std::fs::remove_file(&path).unwrap();
+        std::fs::write(&msh, "$MeshFormat").unwrap();
+        let said = with_cause(&write_geo(&path, &msh, &text).unwrap_err());
+        assert!(
+            said.contains("inner.section.msh") && said.contains("not written by raceway mesh"),
+            "{said}"
+        );
+        assert!(!path.exists());
     }
 
     /// A message with its cause.

@@ -44,6 +44,28 @@ pub fn require_fresh(
     })
 }
 
+/// A sentence on a ring's mesh that cannot be compared with the section of its scene; None where it can, or where the
+/// scene has none.
+pub fn unrecorded(
+    scene: &Scene,
+    side: Side,
+    body: &FlexibleRing,
+    section: Option<&Section>,
+) -> Option<String> {
+    section?;
+    // A file that cannot be read was refused before.
+    if mesh::read_record(&body.mesh).ok()?.is_some() {
+        return None;
+    }
+    Some(format!(
+        "mesh {} does not say from which section it was made, so that it may be another one than [{}.section]; if \
+         raceway mesh made it, build it anew: {}, which needs Gmsh",
+        body.mesh.display(),
+        side.name(),
+        build_command(scene)
+    ))
+}
+
 /// The command that builds the meshes of a scene anew.
 pub fn build_command(scene: &Scene) -> String {
     let set = |argument: &String| format!(" --set '{argument}'");

@@ -3,9 +3,8 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-use anyhow::Context;
 use figure::{Axis, Figure, Series};
-use results::whole::write_picture;
+use results::whole::{make_folder, write_picture};
 
 use super::format::CostKind;
 use super::report::{PointReport, QuantityReport, Report};
@@ -21,7 +20,7 @@ pub fn write(report: &Report, out: &Path) -> anyhow::Result<Vec<PathBuf>> {
         let Some(figure) = work_precision(report, quantity) else {
             continue;
         };
-        std::fs::create_dir_all(&dir).with_context(|| format!("cannot create {}", dir.display()))?;
+        make_folder(&dir)?;
         let path = dir.join(file_name(&quantity.name));
         let images = figure.images()?;
         write_picture(&path, &images.svg, &images.png)?;

@@ -8,15 +8,16 @@
 use std::fs::{File, TryLockError};
 use std::os::unix::process::ExitStatusExt;
 use std::path::Path;
-use std::process::Command;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 use anyhow::{Context, anyhow};
+use checkpoint::open_lock;
 use comm::print;
 use results::failure::Failure;
-use results::stop::Stop;
+use results::stop::{Stop, child, gmsh};
+use results::whole::make_folder;
 use scene::{MeshFiles, Scene};
 use signal_hook::consts::{SIGINT, SIGTERM};
 use wait4::Wait4;
@@ -68,9 +69,10 @@ pub fn run(plan: &Plan, points: &[Point], out: &Path, jobs: usize) -> Result<(),
 /// Runs one point and records what became of it. A failed run is a result; an error is one of the study itself.
 fn run_point(plan: &Plan, point: &Point, out: &Path) -> Result<(), Failure> {
     let dir = record::folder(out, point.index);
-    std::fs::create_dir_all(&dir).with_context(|| format!("cannot create {}", dir.display()))?;
+    dir.parent().map_or(Ok(()), make_folder)?;
+    make_folder(&dir)?;
     let path = dir.join(".lock");
-    let lock = File::create(&path).with_context(|| format!("cannot write {}", path.display()))?;
+    let lock = open_lock(&path)?;
     match try_lock(&lock) {
         Ok(()) => {}
         Err(TryLockError::WouldBlock) => {
@@ -137,10 +139,10 @@ fn try_lock(lock: &File) -> Result<(), TryLockError> {
 fn build_meshes(plan: &Plan, set: &[String], out: &Path) -> Result<(), Failure> {
     let scene = Scene::parse(&plan.scene_text, &plan.scene, set, MeshFiles::MayBeMissing)?;
     let path = out.join(".meshes.lock");
-    let lock = File::create(&path).with_context(|| format!("cannot write {}", path.display()))?;
+    let lock = open_lock(&path)?;
     lock.lock()
         .with_context(|| format!("cannot lock {}", path.display()))?;
-    Ok(scene::build_missing(&scene)?)
+    Ok(scene::build_missing(&scene, &gmsh)?)
 }
 
 /// Runs the program once: the cost, or why there are no results. Results of repeats are not kept: they are the same.
@@ -160,10 +162,9 @@ fn run_once(
     // The log of an earlier try goes, also a link; it is gone if there was none.
     let _ = std::fs::remove_file(&log_path);
     let log = File::create_new(&log_path).with_context(|| format!("cannot write {}", log_path.display()))?;
-    let mut command = Command::new(std::env::current_exe().context("cannot find this program")?);
+    let mut command = child();
     command
-        .args(["--threads", &plan.threads.to_string()])
-        .args(["--parent", &std::process::id().to_string(), "run"])
+        .args(["--threads", &plan.threads.to_string(), "run"])
         .arg(&plan.scene)
         .arg("--out")
         .arg(&out)

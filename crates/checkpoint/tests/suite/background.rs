@@ -12,7 +12,7 @@ fn the_thread_writes_the_same_files() {
     let (direct, queued) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
     let mut output = Output::create(direct.path(), &bodies(), Storage::default()).unwrap();
     let other = Output::create(queued.path(), &bodies(), Storage::default()).unwrap();
-    let mut background = BackgroundOutput::start(other, 2, Vec::new());
+    let mut background = BackgroundOutput::start(other, 2, Vec::new()).unwrap();
     for step in 0..10 {
         output.write_step(&record(step)).unwrap();
         background.write_step(record(step)).unwrap();
@@ -36,7 +36,7 @@ fn the_thread_writes_the_same_files() {
 fn an_error_on_the_thread_reaches_the_run() {
     let dir = tempfile::tempdir().unwrap();
     let output = Output::create(dir.path(), &bodies(), Storage::default()).unwrap();
-    let mut background = BackgroundOutput::start(output, 1, Vec::new());
+    let mut background = BackgroundOutput::start(output, 1, Vec::new()).unwrap();
     background.write_step(record(5)).unwrap();
     // The second write of step 5 fails on the thread; one of the next calls must say so.
     let error = (0..1000)
@@ -59,7 +59,7 @@ fn an_error_on_the_thread_reaches_the_run() {
 fn steps_handed_over_are_written_without_finish() {
     let dir = tempfile::tempdir().unwrap();
     let output = Output::create(dir.path(), &bodies(), Storage::default()).unwrap();
-    let mut background = BackgroundOutput::start(output, 8, Vec::new());
+    let mut background = BackgroundOutput::start(output, 8, Vec::new()).unwrap();
     for step in 0..8 {
         background.write_step(record(step)).unwrap();
     }

@@ -5,13 +5,16 @@
 //! agrees to one unit in the last place, exactly when the unit is 1.
 
 use std::collections::BTreeMap;
-use std::io::{BufWriter, Write};
+use std::io::{BufWriter, Read, Write};
 use std::path::Path;
 
 use super::record::section;
 use super::{BODY, check_scale};
 use crate::error::MeshError;
 use crate::mesh::{Facet, Mesh};
+
+/// What every mesh file begins with.
+const HEAD: [u8; 11] = *b"$MeshFormat";
 
 /// The form of the file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -76,6 +79,7 @@ fn write(
             path: path.to_path_buf(),
         });
     }
+    require_mesh(path)?;
     let mut temporary = path.as_os_str().to_owned();
     temporary.push(".tmp");
     let temporary = Path::new(&temporary);
@@ -97,6 +101,24 @@ fn write(
         action: "rename the finished file to",
         path: path.to_path_buf(),
         source,
+    })
+}
+
+/// Fails if there is something at `path` that is no mesh file: it is not replaced.
+fn require_mesh(path: &Path) -> Result<(), MeshError> {
+    let Ok(data) = path.metadata() else {
+        return Ok(());
+    };
+    let mut head = [0; HEAD.len()];
+    let mut read = || std::fs::File::open(path)?.read_exact(&mut head);
+    if data.is_file() && read().is_ok() && head == HEAD {
+        return Ok(());
+    }
+    let what = "it is no mesh, so it is not written over; move it away or choose another name";
+    Err(MeshError::Io {
+        action: "write",
+        path: path.to_path_buf(),
+        source: std::io::Error::new(std::io::ErrorKind::AlreadyExists, what),
     })
 }
 

@@ -103,12 +103,12 @@ fn a_file_is_replaced_only_when_asked() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("m.msh");
     let mesh = read_msh(data("box_hex8.msh"), 1.0).unwrap();
-    std::fs::write(&path, "precious").unwrap();
+    std::fs::write(&path, "$MeshFormat precious").unwrap();
     let error = write_msh(&path, &mesh, 1.0, MshFormat::Ascii, Overwrite::Refuse)
         .unwrap_err()
         .to_string();
     assert!(error.contains("exists already and is not overwritten"), "{error}");
-    assert_eq!(std::fs::read_to_string(&path).unwrap(), "precious");
+    assert_eq!(std::fs::read_to_string(&path).unwrap(), "$MeshFormat precious");
     write_msh(&path, &mesh, 1.0, MshFormat::Ascii, Overwrite::Replace).unwrap();
     assert_eq!(read_msh(&path, 1.0).unwrap(), mesh);
     let left: Vec<_> = std::fs::read_dir(folder.path()).unwrap().collect();
@@ -141,4 +141,23 @@ fn overlapping_groups_are_refused() {
         error.contains("does not fit the format") && !path.exists(),
         "{error}"
     );
+}
+
+/// If this failed, `raceway mesh --force` would replace a scene that stands in the place of a mesh by a slip.
+#[test]
+fn only_a_mesh_is_replaced() {
+    let folder = tempfile::tempdir().unwrap();
+    let mesh = revolved(RingSide::Outer, 12, ElementKind::Hex8);
+    let path = folder.path().join("scene.toml");
+    for content in ["[static]", "", "$MeshForma"] {
+        std::fs::write(&path, content).unwrap();
+        let error = write_msh(&path, &mesh, 1.0, MshFormat::Ascii, Overwrite::Replace).unwrap_err();
+        let cause = std::error::Error::source(&error).unwrap().to_string();
+        assert!(error.to_string().starts_with("cannot write "), "{error}");
+        assert_eq!(
+            cause,
+            "it is no mesh, so it is not written over; move it away or choose another name"
+        );
+        assert_eq!(std::fs::read_to_string(&path).unwrap(), content);
+    }
 }
