@@ -116,8 +116,8 @@ fn the_nutation_of_a_free_ring_does_not_grow() {
     assert!(states[n].ledger.relative_defect().abs() < 1e-9);
 }
 
-/// Wrong: a ring whose frame turns without the effect would be thrown outwards, as a displacement at rest in space turns
-/// in its frame. It flies straight and turns on its circle over thousands of steps, whatever their size.
+/// Wrong: a ring whose frame turns without the effect would be thrown outwards, as a displacement at rest in space
+/// turns in its frame. It flies straight and turns on its circle over thousands of steps, whatever their size.
 #[test]
 fn a_free_ring_without_the_effect_flies_straight() {
     let speed = Speed::constant(18e3 * std::f64::consts::PI / 30.0);

@@ -18,9 +18,10 @@
 //!
 //! Velocities are means over the step: no state of its own, and of second order with the conserving scheme. Bodies are
 //! taken as bodies of revolution: the unbalance of a ring with a cut comes with `frame_rotation`. Forces act on the
-//! shaft, not over the ring. What its elasticity makes of that is (W / first natural frequency w_1)^2 of them; the shaft
-//! of a ring that touches nothing feels it as a negative stiffness of the size m W^4 / w_1^2, which contacts exceed by
-//! far.
+//! shaft, not over the ring. What its elasticity makes of that is (W / first natural frequency w_1)^2 of them; the
+//! shaft of a ring that touches nothing feels it as a negative stiffness of the size m W^4 / w_1^2, which contacts
+//! exceed by far. What the elastic part of a tilt would add (centrifugal stiffening) is left out: 0.3 % of the tilt of
+//! a 7010C with a clamped bore at 40 000 rpm.
 
 use ring::StepScheme;
 use ring::rigid::RigidInertia;
@@ -54,8 +55,8 @@ pub struct FrameInertia {
 }
 
 impl FrameInertia {
-    /// Forces and moments on the shaft that the inertia asks for when it ends at `q`, N and N m. Linear in `q` but for a
-    /// constant.
+    /// Forces and moments on the shaft that the inertia asks for when it ends at `q`, N and N m. Linear in `q` but for
+    /// a constant.
     pub fn forces(&self, q: [f64; 5]) -> [f64; 5] {
         let [from, at, to] = self.angles;
         let (start, end) = (turn(self.start, -from), turn(q, -to));

@@ -185,11 +185,8 @@ impl Motion<'_> {
     /// Rigid inertia of a turning inner ring that its own step does not take.
     fn frame_inertia(&self, state: &MotionState, span: Span) -> Option<FrameInertia> {
         let inertia = self.turning?;
-        let has_frame = self
-            .model
-            .effects
-            .iter()
-            .any(|effect| effect.turns_frame(Side::Inner));
+        let inner = Side::Inner;
+        let has_frame = self.model.effects.iter().any(|effect| effect.turns_frame(inner));
         let integrator = self.settings.integrator;
         Some(FrameInertia {
             inertia,
@@ -203,8 +200,7 @@ impl Motion<'_> {
                 integrator,
                 dt: span.dt,
             },
-            angles: [0.0, 1.0 - integrator.alpha_f, 1.0]
-                .map(|share| self.frame_angle(Side::Inner, span.at(share))),
+            angles: [0.0, 1.0 - integrator.alpha_f, 1.0].map(|share| self.frame_angle(inner, span.at(share))),
             speeds: [0.0, 1.0].map(|share| self.settings.speeds.inner.at(span.at(share))),
         })
     }
