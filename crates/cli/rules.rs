@@ -9,6 +9,7 @@
 //!
 //! Q is the load of a ball, d its Hertz approach and a the free contact angle ([`dynamics::effects::rules`]).
 
+use contact::Side;
 use dynamics::Model;
 use dynamics::effects::rules::{Case, MATTERS, percent};
 use results::failure::Failure;
@@ -35,6 +36,7 @@ pub fn advice(scene: &Scene, model: &Model) -> Result<Vec<String>, Failure> {
     let mut lines = effects.advice(&case);
     lines.extend(flexibility(scene, &case));
     zero_of_the_shaft(scene, model, &mut lines);
+    lines.extend(rigid_ring_without_inertia(scene, &case));
     Ok(lines)
 }
 
@@ -52,6 +54,34 @@ fn zero_of_the_shaft(scene: &Scene, model: &Model, lines: &mut Vec<String>) {
         angle.to_degrees(),
         -1e6 * play
     ));
+}
+
+/// A rigid inner ring has the inertia that the scene gives the shaft; what a tube of its size has is said where there
+/// is none: m = rho pi (R^2 - r^2) b, I_p = m (R^2 + r^2) / 2, I = I_p / 2 + m b^2 / 12.
+fn rigid_ring_without_inertia(scene: &Scene, case: &Case<'_>) -> Option<String> {
+    let shaft = &scene.shaft;
+    let has_inertia = matches!(scene.analysis, Analysis::Dynamic(_) | Analysis::Modes(_));
+    if !has_inertia || scene.inner.body.is_some() {
+        return None;
+    }
+    let is_free = |motions: &[Motion]| motions.contains(&Motion::Free);
+    let of_mass = is_free(&[shaft.x, shaft.y, shaft.z]) && shaft.mass == 0.0;
+    let of_tilt = is_free(&[shaft.tilt_x, shaft.tilt_y]) && shaft.inertia.transverse == 0.0;
+    let missing = match (of_mass, of_tilt) {
+        (false, false) => return None,
+        (true, false) => "shaft.mass is",
+        (false, true) => "shaft.transverse_inertia is",
+        (true, true) => "shaft.mass and shaft.transverse_inertia are",
+    };
+    let (radius, bore) = case.radii(Side::Inner);
+    let mass = case.inner_ring_mass();
+    let polar = 0.5 * mass * (radius * radius + bore * bore);
+    Some(format!(
+        "{missing} 0 and the inner ring is rigid: what is free there follows the forces without inertia; a tube of \
+         the ring's size has {mass:.3} kg, across the axis {:.2e} kg m2 and about it {polar:.2e} kg m2 \
+         (shaft.polar_inertia)",
+        0.5 * polar + mass * case.width * case.width / 12.0
+    ))
 }
 
 fn flexibility(scene: &Scene, case: &Case<'_>) -> Vec<String> {
@@ -85,8 +115,8 @@ fn flexibility(scene: &Scene, case: &Case<'_>) -> Vec<String> {
         let ratio = stretch / case.approach();
         if ring.body.is_none() && ratio >= MATTERS {
             lines.push(format!(
-                "{name}.flexible is false, but a ring that nothing holds stretches by Z Q cos a r / (2 pi E A) = {:.2} um, {} \
-                 of the Hertz approach; less on a solid shaft or in a solid housing",
+                "{name}.flexible is false, but a ring that nothing holds stretches by Z Q cos a r / (2 pi E A) = {:.2} \
+                 um, {} of the Hertz approach; less on a solid shaft or in a solid housing",
                 1e6 * stretch,
                 percent(ratio)
             ));

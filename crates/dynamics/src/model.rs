@@ -28,6 +28,16 @@ pub enum ShaftDof {
     Prescribed(f64),
 }
 
+/// Moments of inertia of what turns with a rigid shaft, about the axis point in the plane of the inner groove centres,
+/// in which its centre of mass lies, kg m^2.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct ShaftInertia {
+    /// About x and y.
+    pub transverse: f64,
+    /// About z; at speed it makes the gyroscopic moment.
+    pub polar: f64,
+}
+
 /// How balls meet raceways.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ContactMode {
@@ -82,6 +92,8 @@ pub struct Model {
     pub shaft_schedules: [Schedule; 5],
     /// Mass carried by the shaft besides a flexible inner ring, kg.
     pub shaft_mass: f64,
+    /// Moments of inertia of the shaft, and of a rigid inner ring on it.
+    pub shaft_inertia: ShaftInertia,
     /// Axial distance of the load point from the plane of the inner groove centres, m.
     pub load_point: f64,
     /// Contact choices.
@@ -121,6 +133,12 @@ impl Model {
             ShaftDof::Free => None,
             ShaftDof::Prescribed(value) => Some(value * factor(&self.shaft_schedules[dof])),
         }
+    }
+
+    /// Mass of each dof of the shaft: of x, y, z in kg, of the tilts in kg m^2.
+    pub fn shaft_masses(&self) -> [f64; 5] {
+        let (m, i) = (self.shaft_mass, self.shaft_inertia.transverse);
+        [m, m, m, i, i]
     }
 
     /// The seat of the outer ring, if it slides along the axis.

@@ -361,6 +361,40 @@ fn a_heavy_shaft_swings_on_the_static_stiffness() {
     }
 }
 
+/// Wrong: a shaft would tilt without inertia, or a rigid ring's would differ from a flexible one's. A rotor of much
+/// inertia on the bearing: omega^2 = (dM/dt)/I, with the slope of the static tilt under the moment.
+#[test]
+fn a_heavy_rotor_tilts_on_the_static_stiffness() {
+    let inertia = 1e2;
+    for hold in [None, Some(Hold::Clamped), Some(Hold::MeanMotion)] {
+        let build = |moment: f64| {
+            let case = Case {
+                moment,
+                free_tilt: true,
+                ..Case::axial(2000.0)
+            };
+            let mut model = match hold {
+                Some(hold) => case.flexible(ContactMode::Patch, SMALL, hold),
+                None => case.rigid(),
+            };
+            for dof in 0..3 {
+                model.shaft[dof] = dynamics::ShaftDof::Prescribed(if dof == 2 { 10e-6 } else { 0.0 });
+            }
+            model.shaft_inertia.transverse = inertia;
+            let solution = equilibrium(&model);
+            (model, solution)
+        };
+        let (model, solution) = build(0.0);
+        let set = loaded(&model, &solution, 2);
+        let tilt = |moment: f64| build(moment).1.displacements.shaft[3];
+        let expected = (2.0 / (tilt(1.0) - tilt(-1.0)) / inertia).sqrt() / TAU;
+        println!("{hold:?}: {:?}, static {expected}", frequencies(&set));
+        // Patches that move with the load change the static slope of a floating bore by 2e-3.
+        assert!(largest_difference(&frequencies(&set), &[expected; 2]) < 3e-3);
+        assert!(set.modes.iter().all(|m| m.kinetic[3] > 0.999));
+    }
+}
+
 /// Wrong: shapes or frequencies would depend on the number of threads.
 #[test]
 fn modes_have_the_same_bits_on_any_number_of_threads() {

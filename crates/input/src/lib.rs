@@ -21,6 +21,6 @@ pub use schedule::Schedule;
 pub use schedule_table::{Clock, RawSchedule, check_schedule, require_growing, schedule_of};
 pub use units::{
     ACCELERATION, ANGLE, ANGULAR_SPEED, AnyQuantity, DAMPING, DENSITY, Dimension, FORCE, HERTZ_STIFFNESS,
-    KINDS, Kind, LENGTH, MASS, MOMENT, Quantity, RATE, SPEED, STIFFNESS, STRESS, TIME, UnitError,
+    INERTIA, KINDS, Kind, LENGTH, MASS, MOMENT, Quantity, RATE, SPEED, STIFFNESS, STRESS, TIME, UnitError,
     bare_number, kind_of_dimension, parse_unit, ten_digits,
 };

@@ -21,7 +21,7 @@ pub struct VibratingRing {
     factor: Box<dyn LinearSolver>,
     /// Held motions of a mean-motion hold, as generalised loads.
     pub constraints: Vec<SparseLoad>,
-    /// Masses of the partner: generalised load of the motion that one follows, and kg.
+    /// Masses of the partner: generalised load of the motion that one follows, and kg or kg m^2.
     pub lumps: Vec<(SparseLoad, f64)>,
     /// Motions x, y, z, tilt x, tilt y of the partner, where the ring knows them.
     partner: [Option<SparseLoad>; 5],
@@ -33,12 +33,12 @@ impl VibratingRing {
     pub fn new(
         name: &'static str,
         ring: &RingModel,
-        partner: Option<(Partner, f64)>,
+        partner: Option<(Partner, [f64; 5])>,
         shift: f64,
         backend: Backend,
     ) -> Result<VibratingRing, RingError> {
         let hold = partner.map_or(Hold::Free, |_| ring.hold);
-        let (of, mass) = partner.unwrap_or((Partner::AT_REST, 0.0));
+        let (of, masses) = partner.unwrap_or((Partner::AT_REST, [0.0; 5]));
         let held = HeldRing::new(name, ring, Held { hold, partner: of }, backend)?;
         let error = |source| RingError::Solver { side: name, source };
         let coefficients = [shift, 1.0];
@@ -76,10 +76,10 @@ impl VibratingRing {
                 .collect(),
             Hold::Clamped | Hold::Free => Vec::new(),
         };
-        let carries = |dof: &usize| mass > 0.0 && of.moves[*dof];
-        let lumps = (0..3)
+        let carries = |dof: &usize| masses[*dof] > 0.0 && of.moves[*dof];
+        let lumps = (0..5)
             .filter(carries)
-            .filter_map(|dof| Some((motions[dof].clone()?, mass)));
+            .filter_map(|dof| Some((motions[dof].clone()?, masses[dof])));
         Ok(VibratingRing {
             lumps: lumps.collect(),
             constraints,

@@ -83,6 +83,7 @@ pub fn model_with_rings(scene: &Scene, rings: [Option<Arc<RingModel>>; 2]) -> Re
         shaft: dofs,
         shaft_schedules: shaft.schedules.clone(),
         shaft_mass: shaft.mass,
+        shaft_inertia: shaft.inertia,
         load_point: shaft.load_point,
         contact: ContactSettings {
             mode: match scene.contact.mode {

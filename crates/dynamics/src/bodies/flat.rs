@@ -126,7 +126,10 @@ impl<const N: usize> Lumped for FlatBody<N> {
 
     fn remedy(&self) -> &'static str {
         match self.name {
-            Name::Shaft => "give shaft.mass, lock it in [shaft], or load the bearing so that balls touch",
+            Name::Shaft => {
+                "give shaft.mass, of a tilt shaft.transverse_inertia, lock it in [shaft], or load the bearing so that \
+                 balls touch"
+            }
             Name::Seat => "give effects.spring_preload its mass or a stiffness, or start from equilibrium",
             Name::Ball(_) => "give the balls a density",
         }

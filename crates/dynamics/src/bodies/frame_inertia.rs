@@ -16,6 +16,8 @@
 //! the ring lacks W^2 I_p t / 2 - W' I_p J t / 2 of the moment, because a tilt moves nodes towards the axis to second
 //! order, and the centrifugal force works on that. That moment is what acts here then ([`StepTakes::Turning`]).
 //!
+//! The shaft's own inertia is that of its dofs in space. Of its spin there is the moment - d/dt [ I_p W J t ].
+//!
 //! Velocities are means over the step: no state of its own, and of second order with the conserving scheme. Bodies are
 //! taken as bodies of revolution: the unbalance of a ring with a cut comes with `frame_rotation`. Forces act on the
 //! shaft, not over the ring. What its elasticity makes of that is (W / first natural frequency w_1)^2 of them; the
@@ -40,8 +42,10 @@ pub enum StepTakes {
 /// Rigid inertia of a turning ring over a step, beyond what the ring's step takes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FrameInertia {
-    /// Of the ring about the origin of the shaft's tilts.
+    /// Of the ring about the origin of the shaft's tilts; zero of a rigid one.
     pub inertia: RigidInertia,
+    /// Polar moment of inertia of the shaft, kg m^2.
+    pub shaft_polar: f64,
     /// What the step of the ring takes.
     pub takes: StepTakes,
     /// Displacement of the shaft in space at the start, m and rad.
@@ -66,7 +70,19 @@ impl FrameInertia {
             pairs.map(|pair| self.weighted(pair)),
             pairs.map(|[a, b]| (b - a) / dt),
         );
-        turn(self.in_frame(x, v), at)
+        let mut forces = turn(self.in_frame(x, v), at);
+        let spin = self.shaft_spin(q);
+        (forces[3], forces[4]) = (forces[3] + spin[0], forces[4] + spin[1]);
+        forces
+    }
+
+    /// Moment about x and y that the spin of the shaft asks for, N m: the change of its momentum over the step.
+    fn shaft_spin(&self, q: [f64; 5]) -> [f64; 2] {
+        let rate = |i: usize| {
+            let change = self.speeds[1] * q[i] - self.speeds[0] * self.start[i];
+            self.shaft_polar * change / self.scheme.dt
+        };
+        [rate(4), -rate(3)]
     }
 
     /// Growth of the forces with `q`, by columns.
@@ -159,6 +175,7 @@ mod tests {
     fn over(dt: f64, takes: StepTakes) -> FrameInertia {
         FrameInertia {
             inertia: RING,
+            shaft_polar: 1e-4,
             takes,
             start: motion(0.0)[0],
             scheme: StepScheme {
@@ -173,7 +190,7 @@ mod tests {
     /// What the step of the ring does not take, by the rotor's equations in space.
     fn expected(t: f64, takes: StepTakes) -> [f64; 5] {
         let ([q, v, a], w, p) = (motion(t), speed(t), RING.polar);
-        match takes {
+        let mut forces = match takes {
             StepTakes::Still => {
                 // The second derivative of R^T q, turned back into space.
                 let (jq, jv) = (across(q), across(v));
@@ -193,7 +210,11 @@ mod tests {
                 let moment = [w * w * q[3] + GROWTH * q[4], w * w * q[4] - GROWTH * q[3]];
                 [0.0, 0.0, 0.0, half * moment[0], half * moment[1]]
             }
-        }
+        };
+        // The shaft's own spin.
+        forces[3] += 1e-4 * (w * v[4] + GROWTH * q[4]);
+        forces[4] -= 1e-4 * (w * v[3] + GROWTH * q[3]);
+        forces
     }
 
     /// Wrong: Coriolis, centrifugal, Euler or gyroscopic terms have a wrong sign or size. Against the rotor's equations

@@ -16,7 +16,7 @@
 //! - **Free** ring: six rigid motions at zero, then elastic modes, most of them double.
 //! - **Held** ring: its bore or seat is clamped or held in its mean motion, as the scene has it, by a partner at rest.
 //! - **Bearing**: the outer ring is held by the housing, which is at rest; the inner ring by the shaft, whose free
-//!   dofs move and carry `shaft_mass` (translations only: the shaft has no rotary inertia of its own). The rotation
+//!   dofs move and carry its mass and moment of inertia. The rotation
 //!   of the shaft about z is held. A rigid inner ring has the mass of the shaft and no other; dofs of the shaft
 //!   without mass follow quasi-statically.
 //!
@@ -100,7 +100,7 @@ pub fn ring_modes(
     let shift = shift(settings, speed / ring.groove.centre_radius);
     let partner = match support {
         RingSupport::Free => None,
-        RingSupport::AsHeld => Some((Partner::AT_REST, 0.0)),
+        RingSupport::AsHeld => Some((Partner::AT_REST, [0.0; 5])),
     };
     let body = VibratingRing::new(side.name(), ring, partner, shift, settings.backend)?;
     let mut rings = [None, None];
@@ -131,8 +131,8 @@ pub fn bearing_modes(
     let seat_mass = model.seat().map_or(0.0, |seat| seat.mass);
     let build = |side: Side| {
         let partner = match side {
-            Side::Inner => (shaft, model.shaft_mass),
-            Side::Outer => (housing, seat_mass),
+            Side::Inner => (shaft, model.shaft_masses()),
+            Side::Outer => (housing, [0.0, 0.0, seat_mass, 0.0, 0.0]),
         };
         let ring = model.ring(side);
         ring.map(|ring| VibratingRing::new(side.name(), ring, Some(partner), shift, settings.backend))
@@ -145,7 +145,7 @@ pub fn bearing_modes(
     if rings[0].is_none() {
         for &dof in &free {
             places.push((SHAFT, dof, small_mass.len()));
-            small_mass.push(if dof < 3 { model.shaft_mass } else { 0.0 });
+            small_mass.push(model.shaft_masses()[dof]);
         }
     }
     let shaft = places.iter().map(|&(_, dof, place)| (dof, place)).collect();

@@ -124,10 +124,8 @@ impl Motion<'_> {
             .flatten()
             .map(|v| kinetic(mass, v))
             .sum();
-        let shaft: f64 = state.shaft_velocity[..3]
-            .iter()
-            .map(|v| kinetic(self.model.shaft_mass, v))
-            .sum();
+        let shaft = self.model.shaft_masses().into_iter().zip(&state.shaft_velocity);
+        let shaft: f64 = shaft.map(|(mass, v)| kinetic(mass, v)).sum();
         let seat = state.seat.zip(self.model.seat());
         let outer_kinetic = match seat {
             Some((seat, of)) => outer[0] + kinetic(of.mass, &seat[1]),

@@ -166,8 +166,9 @@ impl Motion<'_> {
     }
 
     fn shaft(&self, state: &MotionState, span: Span, loads: &Loads) -> FlatBody<5> {
+        let masses = self.model.shaft_masses();
         let dofs = [0, 1, 2, 3, 4].map(|i| Inertia {
-            mass: if i < 3 { self.model.shaft_mass } else { 0.0 },
+            mass: masses[i],
             start: [
                 state.shaft[i],
                 state.shaft_velocity[i],
@@ -182,7 +183,7 @@ impl Motion<'_> {
         shaft
     }
 
-    /// Rigid inertia of a turning inner ring that its own step does not take.
+    /// Rigid inertia of what turns with the shaft that neither its dofs nor the step of the ring take.
     fn frame_inertia(&self, state: &MotionState, span: Span) -> Option<FrameInertia> {
         let inertia = self.turning?;
         let inner = Side::Inner;
@@ -190,6 +191,7 @@ impl Motion<'_> {
         let integrator = self.settings.integrator;
         Some(FrameInertia {
             inertia,
+            shaft_polar: self.model.shaft_inertia.polar,
             takes: if has_frame {
                 StepTakes::Turning
             } else {

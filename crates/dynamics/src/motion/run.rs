@@ -39,7 +39,8 @@ pub struct Motion<'a> {
     pub(super) settings: MotionSettings,
     pub(super) kinematics: Kinematics,
     pub(super) rings: [Option<MovingRing>; 2],
-    /// Rigid inertia of a flexible inner ring that turns with a shaft which may move across its axis.
+    /// Rigid inertia of a flexible inner ring, zero of a rigid one, where ring or shaft turns and may move across its
+    /// axis.
     pub(super) turning: Option<RigidInertia>,
     /// Tells this motion from others.
     pub(super) token: Arc<()>,
@@ -72,8 +73,10 @@ impl<'a> Motion<'a> {
         let (inner, outer) = model
             .backend
             .try_both(|| build(Side::Inner), || build(Side::Outer))?;
-        let turning = inner.as_ref().filter(|_| wobbles(model, &settings.speeds));
-        let turning = turning.map(|ring| ring.body.rigid_inertia());
+        let turning = wobbles(model, &settings.speeds).then(|| {
+            let ring = inner.as_ref().map(|ring| ring.body.rigid_inertia());
+            ring.unwrap_or_default()
+        });
         let kinematics = Kinematics::new(&model.geometry, settings.slip);
         let rungs = (0..=settings.ladder.halvings).map(|_| OnceLock::new()).collect();
         let motion = Motion {
@@ -199,13 +202,14 @@ impl<'a> Motion<'a> {
     }
 }
 
-/// Whether a flexible inner ring turns with a shaft that may move across the axis or tilt.
+/// Whether inertia turns with a shaft that may move across its axis or tilt.
 fn wobbles(model: &Model, speeds: &RingSpeeds) -> bool {
     let moves = |dof: usize| model.shaft[dof] != ShaftDof::Prescribed(0.0);
     let is_held = model
         .ring(Side::Inner)
         .is_some_and(|ring| ring.hold != Hold::Free);
-    is_held && !speeds.inner.is_zero() && [0, 1, 3, 4].into_iter().any(moves)
+    let has_inertia = is_held || model.shaft_inertia.polar > 0.0;
+    has_inertia && !speeds.inner.is_zero() && [0, 1, 3, 4].into_iter().any(moves)
 }
 
 /// Refuses what statics knows and motion does not.

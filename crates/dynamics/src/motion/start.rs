@@ -150,8 +150,8 @@ impl Motion<'_> {
         {
             seat[2] = mean(moved[1], seat[1]);
         }
-        for dof in 0..3 {
-            if self.model.shaft_mass > 0.0 {
+        for (dof, mass) in self.model.shaft_masses().into_iter().enumerate() {
+            if mass > 0.0 {
                 state.shaft_acceleration[dof] = mean(next.shaft_velocity[dof], state.shaft_velocity[dof]);
             }
         }

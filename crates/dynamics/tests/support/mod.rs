@@ -4,6 +4,7 @@
 
 use contact::{BearingGeometry, HertzContact, Side};
 use dynamics::effects::{AxialForce, Effect, Moment, RadialForce};
+use dynamics::model::ShaftInertia;
 use dynamics::{ContactMode, ContactSettings, Model, ShaftDof, StaticSolution, StaticSolver, Tolerances};
 use fem::Material;
 use input::Schedule;
@@ -79,6 +80,7 @@ impl Case {
             ],
             shaft_schedules: Default::default(),
             shaft_mass: 0.0,
+            shaft_inertia: ShaftInertia::default(),
             load_point: self.load_point,
             contact: ContactSettings {
                 mode: ContactMode::Rigid,

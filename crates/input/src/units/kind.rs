@@ -47,9 +47,11 @@ pub const MASS: usize = 12;
 pub const STIFFNESS: usize = 13;
 /// Index of speeds, m/s.
 pub const SPEED: usize = 14;
+/// Index of moments of inertia, kg m2.
+pub const INERTIA: usize = 15;
 
 /// All kinds: those a scene uses first, at the index of their constant, then those only named in messages.
-pub static KINDS: [Kind; 17] = [
+pub static KINDS: [Kind; 18] = [
     kind("a length", [0.0, 1.0, 0.0, 0.0], "m", "9 mm", "_m"),
     kind("an angle", [0.0, 0.0, 0.0, 1.0], "rad", "15 deg", "_rad"),
     kind("a force", [1.0, 1.0, -2.0, 0.0], "N", "2 kN", "_n"),
@@ -101,6 +103,13 @@ pub static KINDS: [Kind; 17] = [
         "_n_per_m",
     ),
     kind("a speed", [0.0, 1.0, -1.0, 0.0], "m/s", "3 m/s", "_m_per_s"),
+    kind(
+        "a moment of inertia",
+        [1.0, 2.0, 0.0, 0.0],
+        "kg m2",
+        "2e-4 kg m2",
+        "_kg_m2",
+    ),
     kind("a power", [1.0, 2.0, -3.0, 0.0], "W", "5 W", "_w"),
     kind("a pure number", [0.0, 0.0, 0.0, 0.0], "", "2", ""),
 ];

@@ -4,7 +4,7 @@ use super::kind::KINDS;
 use super::*;
 
 /// Text, value in SI, kind.
-const VALUES: [(&str, f64, usize); 51] = [
+const VALUES: [(&str, f64, usize); 52] = [
     ("9 mm", 9e-3, LENGTH),
     ("9mm", 9e-3, LENGTH),
     ("+9.0e0 mm", 9e-3, LENGTH),
@@ -57,6 +57,7 @@ const VALUES: [(&str, f64, usize); 51] = [
     ("10 1/s", 10.0, RATE),
     ("5e-2 N s/mm", 50.0, DAMPING),
     ("250 g", 0.25, MASS),
+    ("200 kg mm2", 2e-4, INERTIA),
 ];
 
 /// If this failed, a scene would be solved with other numbers than its author typed. The tolerance is four

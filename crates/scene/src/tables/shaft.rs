@@ -16,13 +16,16 @@
 //! integrator: with average acceleration they alternate about the right ones from step to step after a corner (ramp,
 //! step, impact), with an integrator that has damping they settle.
 //!
-//! In motion the shaft carries `mass`. A free translation without any mass (rigid inner ring, `mass` 0) is
-//! quasi-static: it follows from equilibrium at every instant.
+//! In motion the shaft carries `mass` and, about the axis point, `transverse_inertia` and `polar_inertia`, which makes
+//! the gyroscopic moment of a turning shaft. They are those of a rigid inner ring too. A free motion without any of
+//! its own (rigid inner ring, 0) is quasi-static: it follows from equilibrium at every instant.
 
 use std::fmt;
 
+use dynamics::model::ShaftInertia;
 use input::{
-    ANGLE, Clock, LENGTH, MASS, Problems, Quantity, RawSchedule, Schedule, bare_number, check_schedule,
+    ANGLE, Clock, INERTIA, LENGTH, MASS, Problems, Quantity, RawSchedule, Schedule, bare_number,
+    check_schedule,
 };
 use serde::Deserialize;
 use serde::de::value::MapAccessDeserializer;
@@ -41,6 +44,8 @@ pub struct RawShaft {
     tilt_y: RawMotion<ANGLE>,
     load_point: Quantity<LENGTH>,
     mass: Option<Quantity<MASS>>,
+    transverse_inertia: Option<Quantity<INERTIA>>,
+    polar_inertia: Option<Quantity<INERTIA>>,
 }
 
 /// As typed: `"free"`, `"locked"`, a value, or a table with a value and its schedule.
@@ -89,6 +94,8 @@ pub struct Shaft {
     pub load_point: f64,
     /// Mass carried by the shaft besides a flexible inner ring, kg; its weight acts at the load point.
     pub mass: f64,
+    /// Moments of inertia of the same.
+    pub inertia: ShaftInertia,
 }
 
 /// Rotations are small: beyond this the linear kinematics of the shaft is off by more than 0.2 %, rad.
@@ -97,6 +104,8 @@ const MAX_TILT: f64 = 0.05;
 const MAX_LOAD_POINT: f64 = 100.0;
 /// A shaft beyond this is a slip of the unit, kg.
 const MAX_MASS: f64 = 1e6;
+/// The same of moments of inertia, kg m^2.
+const MAX_INERTIA: f64 = 1e6;
 
 impl RawShaft {
     /// Checks prescribed values, against the size of the bearing when that is sound.
@@ -139,7 +148,33 @@ impl RawShaft {
             schedules,
             load_point: self.load_point.si(),
             mass: self.mass.as_ref().map_or(0.0, Quantity::si),
+            inertia: self.inertia(problems),
         }
+    }
+
+    /// Moments of inertia of a body: none is negative, and the polar one is at most twice the other.
+    fn inertia(&self, problems: &mut Problems) -> ShaftInertia {
+        let [transverse, polar] = [&self.transverse_inertia, &self.polar_inertia];
+        let keys = ["shaft.transverse_inertia", "shaft.polar_inertia"];
+        for (key, value) in keys.into_iter().zip([transverse, polar]) {
+            if let Some(value) = value {
+                let rule =
+                    "expected 0 to 1e6 kg m2, about the axis point in the plane of the inner groove centres";
+                problems.require((0.0..=MAX_INERTIA).contains(&value.si()), key, value, rule);
+            }
+        }
+        let inertia = ShaftInertia {
+            transverse: transverse.as_ref().map_or(0.0, Quantity::si),
+            polar: polar.as_ref().map_or(0.0, Quantity::si),
+        };
+        if inertia.transverse >= 0.0 && inertia.polar > 2.0 * inertia.transverse {
+            problems.add(format!(
+                "shaft.polar_inertia is {} kg m2 and shaft.transverse_inertia {} kg m2; no body has more than twice as \
+                 much about its axis as across it",
+                inertia.polar, inertia.transverse
+            ));
+        }
+        inertia
     }
 }
 

@@ -3,7 +3,7 @@
 use super::*;
 
 /// Texts that must be refused: what is wrong with a line of the example of motion.
-const INVALID: [Case; 50] = [
+const INVALID: [Case; 53] = [
     (
         "halvings",
         "halvings = 17",
@@ -154,6 +154,26 @@ const INVALID: [Case; 50] = [
         "mass = \"2 kg\"",
         "mass = \"-2 kg\"",
         &["shaft.mass is -2 kg; expected 0 to 1e6 kg"],
+    ),
+    (
+        "transverse_inertia",
+        "transverse_inertia = \"-3e-4 kg m2\"",
+        &["shaft.transverse_inertia is -3e-4 kg m2; expected 0 to 1e6 kg m2, about the axis point"],
+    ),
+    (
+        "transverse_inertia",
+        "transverse_inertia = \"3e-4 kg\"",
+        &[
+            "shaft.transverse_inertia: \"3e-4 kg\" is a mass; expected a moment of inertia such as \"2e-4 kg m2\"",
+        ],
+    ),
+    (
+        "transverse_inertia",
+        "transverse_inertia = \"2e-4 kg m2\"",
+        &[
+            "shaft.polar_inertia is 0.0005 kg m2 and shaft.transverse_inertia 0.0002 kg m2; no body has more than",
+            "twice as much about its axis as across it",
+        ],
     ),
     (
         "mass = \"2 kg\"",

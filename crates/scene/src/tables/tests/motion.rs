@@ -56,6 +56,8 @@ fn the_example_of_motion_reads_as_it_says() {
     };
     assert_eq!(effects.ring_damping(), Some(ring_damping));
     assert_eq!(scene.shaft.mass, 2.0);
+    let inertia = scene.shaft.inertia;
+    assert_eq!((inertia.transverse, inertia.polar), (3e-4, 5e-4));
     assert_eq!(scene.sweep_scenes().unwrap(), []);
 }
 
