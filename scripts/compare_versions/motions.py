@@ -109,7 +109,7 @@ COURSES = [
     ),
     motion("started_free", dynamic("start.free = {}", step=5), MASS),
     motion("started_given", dynamic('start.given = { z = "10 um", velocity_x = "1 mm/s" }', step=5), MASS),
-    motion("broken_ledger", dynamic().replace("1e-2", "1e-14"), code=3),
+    motion("broken_ledger", dynamic('contact = "pointwise"').replace("1e-2", "1e-14"), code=3),
     motion("off_groove", None, *FREE_TILT, *THROWN_OFF, code=3),
     motion("failed_step", dynamic("halvings = 1\nadaptive = { tolerance = 1e-9 }", step=50), code=3),
 ]
