@@ -11,7 +11,7 @@
 //! The names are dofs per ring; without names 57k. With more than one the growth of the cost of a step from the first
 //! to the last is printed as an exponent. `paper` rolls 2 x 410 k dofs for a hundredth of a ball's revolution, 77
 //! steps of 1e-5 s, each with the stress of all nodes and a step file, and says what the whole would take. Results:
-//! docs/performance.md.
+//! docs/dev/performance.md.
 
 #[path = "../crates/dynamics/tests/support/mod.rs"]
 mod support;

@@ -1,4 +1,4 @@
-//! Hard cases: what breaks contact dynamics, and what must hold there. `docs/stability.md` is their page.
+//! Hard cases: what breaks contact dynamics, and what must hold there. `docs/dev/stability.md` is their page.
 //!
 //! Every case says why it is hard, what is set, and what must hold; it runs the crates of the program, or the program
 //! itself. The fast ones are tests like others. `scripts/hard-cases` runs all and writes the page's tables and plots.
