@@ -51,7 +51,11 @@ impl FinishedRun {
         if let Some(doubt) = doubts(dir)?.first() {
             return Err(anyhow!("{doubt}; life is counted from whole results only").into());
         }
-        if let Some(other) = overrides.iter().find(|o| !o.trim().starts_with("life.")) {
+        let is_life = |argument: &&String| {
+            let key = argument.split('=').next().unwrap_or_default().trim();
+            key == "life" || key.starts_with("life.")
+        };
+        if let Some(other) = overrides.iter().find(|argument| !is_life(argument)) {
             let said =
                 format!("--set {other}: a finished run keeps its scene; only life.* may be changed here");
             return Err(anyhow!(said).into());
