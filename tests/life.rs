@@ -91,6 +91,14 @@ fn an_equilibrium_has_its_life() {
     }
     let svg = dir.text("out/figures/life_round.svg");
     assert_eq!(figure::clashes(&svg).unwrap(), Vec::<String>::new());
+    // What the run itself found, and its page.
+    let summary = crate::util::tables::summary(&dir, "out");
+    for key in ["/l10r_revolutions", "/inner/q_e_n", "/l_nmr_revolutions"] {
+        assert_eq!(number(&summary["life"], key), number(&found, key), "{key}");
+    }
+    assert_eq!(dir.raceway(&["report", "out"]).code, Some(0));
+    let page = dir.text("out/report.html");
+    assert!(page.contains("<h2>Life</h2>") && page.contains("P_ref, ISO 16281"));
     // Other life, same run.
     life(&dir, &["out", "--set", "life.reliability=95"]);
     let other = life_file(&dir, "out");
@@ -144,8 +152,8 @@ fn a_sweep_has_a_life_at_every_point() {
     }
 }
 
-/// Wrong: counting passes through the whole program would differ from the static formula: under preload alone not at all,
-/// under a radial force by how finely balls sample the raceway.
+/// Wrong: counting passes through the whole program would differ from the static formula: under preload alone not at
+/// all, under a radial force by how finely balls sample the raceway.
 #[test]
 fn a_turning_bearing_lives_as_the_one_at_rest() {
     let life_table = LIFE
@@ -196,8 +204,8 @@ fn the_ring_that_turns_spreads_its_damage() {
     );
 }
 
-/// Wrong: a load spectrum would not add damage by shares of turns. Rigid rings under preload alone have equal forces, so
-/// 1/L is the sum of share over life.
+/// Wrong: a load spectrum would not add damage by shares of turns. Rigid rings under preload alone have equal forces,
+/// so 1/L is the sum of share over life.
 #[test]
 fn a_load_spectrum_adds_damage() {
     let dir = Dir::with_scene(&with_line("[static]", "[static]", LIFE));
@@ -371,8 +379,8 @@ fn a_rating_needs_no_run() {
     );
 }
 
-/// Wrong: a life would be counted from results that are damaged, unfinished or of something else, or a file of the user's
-/// be lost.
+/// Wrong: a life would be counted from results that are damaged, unfinished or of something else, or a file of the
+/// user's be lost.
 #[test]
 fn results_that_cannot_be_trusted_have_no_life() {
     let dir = scene(LIFE);
@@ -421,8 +429,14 @@ fn results_that_cannot_be_trusted_have_no_life() {
 /// Wrong: a history in which nothing rolls would have a life.
 #[test]
 fn nothing_rolls_without_a_speed() {
-    let still = "[quasi_static]\nduration = \"1 ms\"\nstep = \"0.1 ms\"";
+    let still = "[life]\n\n[quasi_static]\nduration = \"1 ms\"\nstep = \"0.1 ms\"";
     let dir = scene(still);
+    let summary = crate::util::tables::summary(&dir, "out");
+    let notes = summary["life"]["notes"].to_string();
+    assert!(
+        notes.contains("no life: the rings do not turn against each other"),
+        "{notes}"
+    );
     refused(
         &dir,
         &["out"],

@@ -10,6 +10,9 @@ use crate::run::SweepLife;
 /// What lives are shown in.
 const UNIT: &str = "million revolutions";
 
+/// One of the lives of an assessment, revolutions.
+type LifeOf = fn(&Assessment) -> Option<f64>;
+
 fn life_axis(name: &str) -> Axis {
     Axis::logarithmic(name, UNIT)
 }
@@ -38,7 +41,7 @@ fn places(ring: &RacewayLife) -> Vec<[f64; 2]> {
 /// Lives over the swept value; `x` has a place on the axis for each point.
 pub fn over_sweep(axis: Axis, x: &[f64], points: &[(SweepLife, Assessment)]) -> Named {
     let mut figure = Figure::new("Life", axis, life_axis("life"));
-    let curves: [(&str, fn(&Assessment) -> Option<f64>); 3] = [
+    let curves: [(&str, LifeOf); 3] = [
         ("L_10r, ISO 16281", |found| found.l10r_revolutions),
         ("L_10, ISO 281", |found| found.catalogue.l10_revolutions),
         ("L_nmr, ISO 16281", |found| found.l_nmr_revolutions),

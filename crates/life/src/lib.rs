@@ -22,7 +22,7 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, anyhow};
 use clap::Args;
-use comm::print;
+use comm::{Communicator, print};
 use plot::{Named, Results};
 use results::failure::Failure;
 use results::folder::say_later;
@@ -100,6 +100,21 @@ pub fn life(command: &LifeCommand) -> Result<(), Failure> {
         (.., Some(file)) => life_of_spectrum(file, command),
         _ => Err(anyhow!("expected a result folder, --rating SCENE or --spectrum FILE").into()),
     }
+}
+
+/// Life for the summary of a run that has written its tables; none where its scene has no `[life]`. Rank 0 writes, so
+/// that it alone has tables.
+pub fn of_run(scene: &Scene, dir: &Path) -> Option<serde_json::Value> {
+    if scene.life.is_none() || !Communicator::world().is_root() {
+        return None;
+    }
+    let found = FinishedRun::ending(scene, dir).and_then(|run| Ok(assess(&run.last()?)));
+    let value = found.and_then(|found| Ok(serde_json::to_value(found.without_positions())?));
+    // A run is worth its results without a life.
+    Some(value.unwrap_or_else(|failure| {
+        let note = format!("no life: {}", failure.text());
+        serde_json::json!({ "notes": [note] })
+    }))
 }
 
 fn life_of_run(dir: &Path, command: &LifeCommand) -> Result<(), Failure> {

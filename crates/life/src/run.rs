@@ -78,6 +78,31 @@ impl FinishedRun {
         Ok(FinishedRun::new(scenes, table, dir)?)
     }
 
+    /// The run of a scene whose tables in `dir` are whole, at its end.
+    pub fn ending(scene: &Scene, dir: &Path) -> Result<FinishedRun, Failure> {
+        let table = balls(dir)?;
+        let mut steps: Vec<usize> = table.column("step")?.iter().map(|step| *step as usize).collect();
+        steps.dedup();
+        let scenes = match &scene.analysis {
+            // A run may have solved some points only.
+            Analysis::Sweep(_) => {
+                let all = scene.sweep_scenes()?;
+                steps.iter().filter_map(|step| all.get(*step).cloned()).collect()
+            }
+            _ => vec![scene.clone()],
+        };
+        Ok(FinishedRun::new(scenes, table, dir)?)
+    }
+
+    /// The life at the end of a run: of a history, or of its last point.
+    pub fn last(&self) -> Result<Exposure, Failure> {
+        if self.is_history() {
+            return self.history();
+        }
+        let last = self.scenes.len() - 1;
+        self.point(&self.scenes[last], last)
+    }
+
     /// The run of these scenes, one of each point of a sweep, with its table.
     fn new(scenes: Vec<Scene>, table: Table, dir: &Path) -> anyhow::Result<FinishedRun> {
         let is_modes = scenes

@@ -166,8 +166,8 @@ fn two_levels_add_by_their_turns() {
     );
 }
 
-/// Wrong: an oscillating bearing would live as one that turns. Each ball goes to and fro over its own arc; with the share s
-/// of the raceway that the arcs cover, 1/L = q / s on them and L = s^(1/10) / q (weakest link of the covered part).
+/// Wrong: an oscillating bearing would live as one that turns. Each ball goes to and fro over its own arc; with the
+/// share s of the raceway that the arcs cover, 1/L = q / s on them and L = s^(1/10) / q (weakest link of the covered part).
 #[test]
 fn oscillation_lives_by_the_arcs_that_are_passed() {
     // The cage swings by 8 degrees on the outer ring, by 10 on the inner one: balls stand 20 degrees apart.

@@ -126,8 +126,8 @@ fn uneven() -> Vec<f64> {
         .collect()
 }
 
-/// Wrong: the life would not be the formula of ISO 16281 for a turning and a standing ring, or the number of a ball would
-/// matter.
+/// Wrong: the life would not be the formula of ISO 16281 for a turning and a standing ring, or the number of a ball
+/// would matter.
 #[test]
 fn the_life_is_the_formula_and_knows_no_order_of_balls() {
     let bearing = reference_7010c();
