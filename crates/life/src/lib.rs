@@ -3,7 +3,7 @@
 //! - [`rating`], [`equivalent`]: ISO 281 and ISO 76 from the dimensions, as in a catalogue.
 //! - [`damage`]: ISO 16281 from the forces of the balls, in equilibria and, by counting passes, in any history.
 //! - [`lubrication`]: reliability, viscosity and dirt.
-//! - [`spectrum`]: conditions with their shares of time.
+//! - Load spectra: conditions with their shares of time.
 //!
 //! It reads tables and scene of a finished run, and nothing of the solver. Cost: that of reading the tables.
 
