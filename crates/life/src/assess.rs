@@ -300,10 +300,12 @@ fn raceway(rated: &Rated, side: Side, damage: &[f64]) -> RacewayLife {
 
 /// Factor a_ISO of a load, N; says why there is none.
 pub fn modification(rated: &Rated, kappa: &Result<f64, String>, load: f64) -> Result<f64, String> {
-    let Some(contamination) = rated.life.contamination else {
-        return Err("no contamination factor: life.contamination".to_string());
+    let contamination = rated.life.contamination;
+    let contamination = contamination.ok_or("no contamination factor: life.contamination".to_string());
+    let (contamination, kappa) = match (contamination, kappa.clone()) {
+        (Err(one), Err(other)) => return Err(format!("{one}; {other}")),
+        (contamination, kappa) => (contamination?, kappa?),
     };
-    let kappa = kappa.clone()?;
     life_factor(kappa, contamination * rated.fatigue_limit / load)
 }
 
