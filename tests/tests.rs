@@ -10,6 +10,7 @@ mod export;
 mod hard;
 mod integration_points;
 mod interruption;
+mod life;
 mod limits;
 mod memory;
 mod modes;

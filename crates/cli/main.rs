@@ -27,6 +27,7 @@ use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
 use comm::{Communicator, End, Environment, print};
+use life::LifeCommand;
 use mesh::Overwrite;
 use plot::Plot;
 use report::Report;
@@ -99,6 +100,8 @@ enum Command {
     Plot(Plot),
     /// Writes one HTML page of a run: scene, numbers, figures, energy, cost, warnings.
     Report(Report),
+    /// Ratings of a bearing, and its life under the forces of a run or of a load spectrum.
+    Life(LifeCommand),
     /// Builds everything a run needs but solves nothing: effects, sizes, memory, output.
     Check {
         /// Scene file.
@@ -270,6 +273,7 @@ fn execute(arguments: Arguments) -> Result<(), Failure> {
         Command::Advise(question) => study::advise(&question),
         Command::Plot(request) => plot::plot(&request),
         Command::Report(request) => report::report(&request),
+        Command::Life(request) => life::life(&request),
         Command::Check { scene, overrides } => check::check(&scene, &overrides),
         Command::Mesh {
             scene,

@@ -231,7 +231,8 @@ impl March<'_> {
             warnings,
             advice: remarks.advice,
         };
-        let summary = Summary::new(self.scene, self.model, findings, &costs);
+        let summary = Summary::new(self.scene, self.model, findings, &costs)
+            .with_life(life::of_run(self.scene, self.dir));
         agree(summary.write(self.dir).map_err(Failure::from))?;
         ended?;
         console::print_snapshot(&Snapshot::of_motion(motion, state));

@@ -83,7 +83,7 @@ pub fn run(
         (Err(_), Err(_)) => return ended,
         (costs, _) => costs?,
     };
-    let summary = Summary::new(scene, &model, findings, &costs);
+    let summary = Summary::new(scene, &model, findings, &costs).with_life(life::of_run(scene, dir));
     agree(summary.write(dir).map_err(Failure::from))?;
     ended?;
     console::print_snapshot(&snapshot);

@@ -41,7 +41,7 @@ pub struct Request {
     /// Step to go on from; default: the newest whole one. Later steps are moved aside.
     #[arg(long)]
     step: Option<u64>,
-    /// Changes how long the run goes or what it writes: dynamic.duration, dynamic.output_every, output.*.
+    /// Changes how long the run goes or what it writes: dynamic.duration, dynamic.output_every, output.*, life.*.
     #[arg(long = "set", value_name = "PATH=VALUE")]
     overrides: Vec<String>,
     /// Scene file of the run, when it is not where it was.

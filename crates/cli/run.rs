@@ -137,7 +137,7 @@ pub fn run(
     if let Some(files) = results {
         let costs = agree(files.finish(read, Forecasts::at_rest(forecast), solver.laps(), start))?;
         let findings = findings(&scene, &solutions, &failure, remarks);
-        let summary = Summary::new(&scene, &model, findings, &costs);
+        let summary = Summary::new(&scene, &model, findings, &costs).with_life(life::of_run(&scene, &dir));
         agree(summary.write(&dir).map_err(Failure::from))?;
         if failure.is_none() {
             print_results(&scene, &solutions, &summary);

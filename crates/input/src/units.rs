@@ -29,7 +29,7 @@ use thiserror::Error;
 use self::expression::Unit;
 pub use self::kind::{
     ACCELERATION, ANGLE, ANGULAR_SPEED, DAMPING, DENSITY, FORCE, HERTZ_STIFFNESS, INERTIA, KINDS, Kind,
-    LENGTH, MASS, MOMENT, RATE, SPEED, STIFFNESS, STRESS, TIME, kind_of_dimension,
+    LENGTH, MASS, MOMENT, RATE, SPEED, STIFFNESS, STRESS, TIME, VISCOSITY, kind_of_dimension,
 };
 use self::number::Decimal;
 

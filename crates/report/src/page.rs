@@ -20,6 +20,7 @@ pub fn page(source: &Source, numbers: &[Number], pictures: &[(String, String)]) 
         warnings(source),
         modes(summary),
         key_numbers(numbers, summary),
+        life(summary),
         figures(pictures),
         energy(summary),
         cost(summary, &source.files),
@@ -78,6 +79,64 @@ fn warnings(source: &Source) -> String {
             items.join("\n")
         ),
     }
+}
+
+/// Rows of the table of lives: name, keys from the summary, factor to the unit shown, and the unit.
+const LIFE: [(&str, &str, f64, &str); 12] = [
+    ("dynamic rating C_r", "/c_r_n", 1e-3, "kN"),
+    ("static rating C_0r", "/c_0r_n", 1e-3, "kN"),
+    ("equivalent load P, ISO 281", "/p_n", 1e-3, "kN"),
+    (
+        "life L_10, ISO 281",
+        "/l10_revolutions",
+        1e-6,
+        "million revolutions",
+    ),
+    ("reference load P_ref, ISO 16281", "/p_ref_n", 1e-3, "kN"),
+    (
+        "life of the inner ring",
+        "/inner/l10r_revolutions",
+        1e-6,
+        "million revolutions",
+    ),
+    (
+        "life of the outer ring",
+        "/outer/l10r_revolutions",
+        1e-6,
+        "million revolutions",
+    ),
+    (
+        "life L_10r, ISO 16281",
+        "/l10r_revolutions",
+        1e-6,
+        "million revolutions",
+    ),
+    ("life L_10r, ISO 16281", "/l10r_hours", 1.0, "h"),
+    ("factor a_ISO", "/a_iso", 1.0, "1"),
+    ("life L_nmr", "/l_nmr_revolutions", 1e-6, "million revolutions"),
+    ("life L_nmr", "/l_nmr_hours", 1.0, "h"),
+];
+
+/// Ratings and life of the run, of a sweep those of its last point.
+fn life(summary: &Value) -> String {
+    let Some(life) = summary.get("life") else {
+        return String::new();
+    };
+    let rows = LIFE.iter().filter_map(|(name, key, factor, unit)| {
+        let value = life.pointer(key)?.as_f64()?;
+        Some(row(
+            name,
+            &[digits(factor * value), unit.to_string()],
+            Cells::Numbers,
+        ))
+    });
+    let notes: Vec<String> = list(life, "notes")
+        .iter()
+        .map(|note| format!("<p>{}</p>", encode_text(note)))
+        .collect();
+    let head = ["quantity", "value", "unit"];
+    let table = table("numbers", Some(&head), rows);
+    format!("<h2>Life</h2>\n{table}\n{}", notes.join("\n"))
 }
 
 /// Natural frequencies of each body with the largest errors that they can have.

@@ -68,6 +68,9 @@ pub struct Summary {
     iterations: BTreeMap<&'static str, usize>,
     #[serde(skip_serializing_if = "Option::is_none")]
     sweep: Option<SweepSummary>,
+    /// Ratings and life; absent where the scene does not ask for them.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    life: Option<serde_json::Value>,
     warnings: Vec<String>,
     /// What rules of thumb say about its effects.
     advice: Vec<String>,
@@ -213,6 +216,7 @@ impl Summary {
             energy_j: last.energies.iter().copied().collect(),
             iterations: findings.iterations,
             sweep,
+            life: None,
             warnings,
             advice: findings.advice,
             probes: costs.probes.clone(),
@@ -221,6 +225,11 @@ impl Summary {
             peak_memory_forecast_bytes: costs.forecast.peak,
             peak_memory_bytes: peak_memory(),
         }
+    }
+
+    /// The same with ratings and life.
+    pub fn with_life(self, life: Option<serde_json::Value>) -> Summary {
+        Summary { life, ..self }
     }
 
     /// Prints warnings, then where the time went.

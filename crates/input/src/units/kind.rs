@@ -49,9 +49,11 @@ pub const STIFFNESS: usize = 13;
 pub const SPEED: usize = 14;
 /// Index of moments of inertia, kg m2.
 pub const INERTIA: usize = 15;
+/// Index of kinematic viscosities, m2/s.
+pub const VISCOSITY: usize = 16;
 
 /// All kinds: those a scene uses first, at the index of their constant, then those only named in messages.
-pub static KINDS: [Kind; 18] = [
+pub static KINDS: [Kind; 19] = [
     kind("a length", [0.0, 1.0, 0.0, 0.0], "m", "9 mm", "_m"),
     kind("an angle", [0.0, 0.0, 0.0, 1.0], "rad", "15 deg", "_rad"),
     kind("a force", [1.0, 1.0, -2.0, 0.0], "N", "2 kN", "_n"),
@@ -109,6 +111,13 @@ pub static KINDS: [Kind; 18] = [
         "kg m2",
         "2e-4 kg m2",
         "_kg_m2",
+    ),
+    kind(
+        "a kinematic viscosity",
+        [0.0, 2.0, -1.0, 0.0],
+        "m2/s",
+        "12 mm2/s",
+        "_m2_per_s",
     ),
     kind("a power", [1.0, 2.0, -3.0, 0.0], "W", "5 W", "_w"),
     kind("a pure number", [0.0, 0.0, 0.0, 0.0], "", "2", ""),

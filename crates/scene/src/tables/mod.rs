@@ -29,8 +29,8 @@
 #![doc = include_str!("example_modes.toml")]
 //! ```
 //!
-//! Any scene may have tables `[stress]` and `[probes.*]`, and motion without inertia is a table of its own, `[quasi_static]`: see the files of
-//! these names.
+//! Any scene may have tables `[stress]`, `[probes.*]` and `[life]`, and motion without inertia is a table of its own,
+//! `[quasi_static]`: see the files of these names.
 
 mod analysis;
 mod bearing;
@@ -40,6 +40,7 @@ mod difference;
 mod dynamic;
 mod edit;
 mod error;
+mod life;
 mod locate;
 mod materials;
 mod modes;
@@ -73,6 +74,7 @@ pub use self::contact::{Contact, ContactMode};
 pub use self::difference::difference;
 pub use self::dynamic::{ContactScheme, Dynamic, IntegratorChoice};
 pub use self::error::SceneError;
+pub use self::life::{Life, LifeGrooves, Oil};
 pub use self::locate::locate;
 pub use self::materials::{Material, Materials};
 pub use self::modes::{ModeBody, ModeSupport, Modes};
@@ -91,6 +93,7 @@ pub use self::sweep::{Analysis, SweepPoint};
 use self::bearing::RawBearing;
 use self::contact::RawContact;
 use self::dynamic::RawDynamic;
+use self::life::RawLife;
 use self::materials::RawMaterials;
 use self::modes::{ModesContext, RawModes};
 use self::output::RawOutput;
@@ -128,6 +131,7 @@ struct RawScene {
     stress: RawStress,
     #[serde(default)]
     probes: RawProbes,
+    life: Option<RawLife>,
     r#static: Option<RawStatic>,
     sweep: Option<RawSweep>,
     quasi_static: Option<RawQuasiStatic>,
@@ -174,6 +178,8 @@ pub struct Scene {
     pub stress: Stress,
     /// Single numbers that are written at every step.
     pub probes: Probes,
+    /// What a life needs besides loads.
+    pub life: Option<Life>,
     /// What is computed.
     pub analysis: Analysis,
 }
@@ -327,6 +333,10 @@ impl Source<'_> {
             rigid: [raw.inner.is_rigid(), raw.outer.is_rigid()],
         };
         let probes = raw.probes.check(probes, &mut problems);
+        let life = raw
+            .life
+            .as_ref()
+            .map(|life| life.check(raw.speed.is_some(), &mut problems));
         let modes = ModesContext {
             flexible: [inner.body.is_some(), outer.body.is_some()],
             contact: contact.mode,
@@ -353,6 +363,7 @@ impl Source<'_> {
                 output,
                 stress,
                 probes,
+                life,
                 analysis,
             }),
             (.., texts) => Err(self.invalid(texts)),

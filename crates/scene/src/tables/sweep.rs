@@ -105,6 +105,7 @@ impl RawSweep {
                 | "output"
                 | "stress"
                 | "probes"
+                | "life"
                 | ""
         ) || !self.key.contains('.')
         {

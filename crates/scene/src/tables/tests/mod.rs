@@ -5,6 +5,7 @@ mod bad_motion;
 mod bad_values;
 mod effects;
 mod good;
+mod life;
 mod modes;
 mod motion;
 mod overrides;
