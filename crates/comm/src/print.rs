@@ -21,9 +21,10 @@ pub fn note(text: Arguments<'_>) {
     }
 }
 
-/// A line to standard error from whatever rank this is.
+/// A line to standard error from whatever rank this is: in one write, or the lines of several ranks mix.
 pub fn from_any_rank(text: Arguments<'_>) {
-    let _ = writeln!(std::io::stderr().lock(), "{}", harmless(text.to_string()));
+    let line = harmless(text.to_string()) + "\n";
+    let _ = std::io::stderr().lock().write_all(line.as_bytes());
 }
 
 /// Most characters of a line that are shown: texts may come from files.
