@@ -141,6 +141,11 @@ impl Model {
         [m, m, m, i, i]
     }
 
+    /// Whether a ring has the inertia of its turning frame.
+    pub fn turns_frame(&self, side: Side) -> bool {
+        self.effects.iter().any(|effect| effect.turns_frame(side))
+    }
+
     /// The seat of the outer ring, if it slides along the axis.
     pub fn seat(&self) -> Option<Seat> {
         self.effects.iter().find_map(|effect| effect.seat())

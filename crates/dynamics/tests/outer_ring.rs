@@ -117,8 +117,8 @@ fn the_gyroscopic_moment_needs_spin_and_cage() {
 }
 
 /// Wrong: contacts would run along the wrong ring, or at a wrong speed. The mirror of an inner ring that turns by
-/// -omega is an outer ring that turns by omega, seen from that ring: without a direction in space (thrust alone) and without
-/// inertia of frames every contact meets the same nodes of both meshes, step by step.
+/// -omega is an outer ring that turns by omega, seen from that ring. Without a direction in space (thrust alone)
+/// and without inertia of frames every contact meets the same nodes of both meshes, step by step.
 #[test]
 fn an_outer_ring_is_the_mirror_of_an_inner_ring() {
     let model = Case::axial(1000.0).flexible(ContactMode::Patch, SMALL, Hold::Clamped);

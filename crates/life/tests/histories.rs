@@ -1,10 +1,14 @@
 //! Lives of histories by counting passes, against the static formula and closed forms.
 
+mod support;
+
 use std::f64::consts::TAU;
 
 use contact::Side;
 use dynamics::kinematics::BothRings;
 use life::damage::{History, bearing_life, even_life, ring_life};
+
+use support::assert_close;
 
 /// Number of balls of all tests.
 const BALLS: usize = 18;
@@ -51,15 +55,6 @@ impl Rolling {
 fn even_turns([inner, outer]: BothRings, n: usize) -> Vec<BothRings> {
     let at = |i: usize| i as f64 / n as f64 * TAU;
     (0..=n).map(|i| [inner * at(i), outer * at(i)]).collect()
-}
-
-#[track_caller]
-fn assert_close(what: &str, found: f64, expected: f64, tolerance: f64) {
-    let error = (found - expected).abs() / expected.abs();
-    assert!(
-        error <= tolerance,
-        "{what}: {found} instead of {expected}, off by {error:.2e}"
-    );
 }
 
 /// Force of a ball whose place counts.
@@ -167,7 +162,8 @@ fn two_levels_add_by_their_turns() {
 }
 
 /// Wrong: an oscillating bearing would live as one that turns. Each ball goes to and fro over its own arc; with the
-/// share s of the raceway that the arcs cover, 1/L = q / s on them and L = s^(1/10) / q (weakest link of the covered part).
+/// share s of the raceway that the arcs cover, 1/L = q / s on them and L = s^(1/10) / q (weakest link of the covered
+/// part).
 #[test]
 fn oscillation_lives_by_the_arcs_that_are_passed() {
     // The cage swings by 8 degrees on the outer ring, by 10 on the inner one: balls stand 20 degrees apart.

@@ -1,6 +1,8 @@
 //! Ratings of ISO 281 and ISO 76 and the static form of ISO 16281, against the tables of the standards, catalogues and
 //! closed forms.
 
+mod support;
+
 use life::damage::{RingMotion, at_rest, bearing_life, ring_life};
 use life::equivalent::BearingLoad;
 use life::lubrication::{
@@ -8,6 +10,8 @@ use life::lubrication::{
 };
 use life::rating::{CatalogueBearing, REFERENCE_GROOVES, rating_factor};
 use scene::Oil;
+
+use support::assert_close;
 
 /// A bearing with the reference grooves; lengths in mm, angle in degrees.
 fn bearing(n_balls: usize, ball: f64, pitch: f64, angle: f64) -> CatalogueBearing {
@@ -23,15 +27,6 @@ fn bearing(n_balls: usize, ball: f64, pitch: f64, angle: f64) -> CatalogueBearin
 /// The 7010C of the paper, at its nominal angle.
 fn reference_7010c() -> CatalogueBearing {
     bearing(18, 9.0, 65.0235, 15.0)
-}
-
-#[track_caller]
-fn assert_close(what: &str, found: f64, expected: f64, tolerance: f64) {
-    let error = (found - expected).abs() / expected.abs();
-    assert!(
-        error <= tolerance,
-        "{what}: {found} instead of {expected}, off by {error:.2e}"
-    );
 }
 
 /// Wrong: the factor would not be that of ISO 281:2007, table 2, to its last digit.

@@ -187,12 +187,11 @@ impl Motion<'_> {
     fn frame_inertia(&self, state: &MotionState, span: Span) -> Option<FrameInertia> {
         let inertia = self.turning?;
         let inner = Side::Inner;
-        let has_frame = self.model.effects.iter().any(|effect| effect.turns_frame(inner));
         let integrator = self.settings.integrator;
         Some(FrameInertia {
             inertia,
             shaft_polar: self.model.shaft_inertia.polar,
-            takes: if has_frame {
+            takes: if self.model.turns_frame(inner) {
                 StepTakes::Turning
             } else {
                 StepTakes::Still

@@ -53,8 +53,13 @@ impl<'a> Motion<'a> {
     /// Assembles both rings and factors them for the full step.
     pub fn new(model: &'a Model, settings: MotionSettings) -> Result<Motion<'a>, DynamicsError> {
         check_supported(model)?;
-        let turns = |side: Side| model.effects.iter().any(|effect| effect.turns_frame(side));
-        let frame = |side: Side| if turns(side) { Frame::Turning } else { Frame::Still };
+        let frame = |side: Side| {
+            if model.turns_frame(side) {
+                Frame::Turning
+            } else {
+                Frame::Still
+            }
+        };
         let build = |side: Side| {
             let moving = |ring| -> Result<MovingRing, DynamicsError> {
                 let settings = BodySettings {
