@@ -257,7 +257,7 @@ fn tilt(record: &mut Record) {
     record.that("the program ends with code 2", outcome.code == Some(2));
     record.says(
         outcome.stderr.trim(),
-        "a prescribed tilt must be small, at most 50 mrad",
+        "a prescribed tilt must be small, at most 55 mrad",
     );
     let case = Case {
         moment: 1e7,

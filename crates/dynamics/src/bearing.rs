@@ -8,11 +8,12 @@
 use contact::Side;
 use ring::Partner;
 
-use crate::bodies::{FlatBody, Inertia, Name};
+use crate::bodies::{FlatBody, Inertia, Name, TiltedLoads};
+use crate::effects::Loads;
 use crate::interactions::raceway_contact::{GrooveBodies, Means, RacewayContacts, Site, SiteState};
 use crate::interactions::seat_spring::{Seat, SeatSpring};
 use crate::model::Model;
-use crate::system::{ElasticPorts, Interaction, Interval, Lengths, Lumped, System};
+use crate::system::{ElasticPorts, FiniteMotion, Interaction, Interval, Lengths, Lumped, System};
 
 /// Number of the shaft among the lumped bodies.
 pub const SHAFT: usize = 0;
@@ -103,6 +104,7 @@ impl BearingParts {
             let carries = elastic.is_none() || self.interval == Interval::Rest;
             GrooveBodies {
                 carrier: self.carrier(side).filter(|_| carries),
+                tilting: (side == Side::Inner).then_some(SHAFT),
                 held: match elastic {
                     Some(_) => Vec::new(),
                     None => held[side.index()].clone(),
@@ -111,6 +113,12 @@ impl BearingParts {
             }
         });
         self.contacts.connect(FIRST_BALL, &grooves);
+    }
+
+    /// Loads whose moments change with the tilt of the shaft, if it may tilt.
+    pub fn tilted_loads(&self, loads: &Loads) -> Option<TiltedLoads> {
+        let may = [3, 4].iter().any(|&dof| self.shaft.imposed[dof] != Some(0.0));
+        TiltedLoads::new(&loads.shaft, loads.lever).filter(|_| may)
     }
 
     /// Their system.
@@ -148,6 +156,11 @@ impl BearingParts {
     /// l of every contact at start and end, `[2 n_sites]`.
     pub fn reaches(&self, x: &[f64]) -> [Vec<f64>; 2] {
         self.system().lengths_at(CONTACTS, x)
+    }
+
+    /// Finite motions of the grooves, by contact.
+    pub fn finite_motions(&self, x: &[f64]) -> Vec<Option<FiniteMotion>> {
+        self.system().finite_motions(CONTACTS, x)
     }
 
     /// Contacts at the end.

@@ -164,6 +164,7 @@ impl BearingParts {
         for (i, dof) in self.shaft.dofs.iter_mut().enumerate() {
             dof.load = loads.shaft[i] + loads.ring_on_shaft[i];
         }
+        self.shaft.tilted = self.tilted_loads(loads);
         for (ball, (load, slope)) in self
             .balls
             .iter_mut()

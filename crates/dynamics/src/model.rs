@@ -2,8 +2,9 @@
 //!
 //! Frames: the outer ring's mesh is placed with its groove centres at z = 0; the inner ring's with its groove
 //! centres at z = A sin a0 (the just-touching position). The shaft's origin is the axis point in the plane of the
-//! inner groove centres. A rigid motion is u(x) = t + phi x (x - origin), linear in the tilts phi: consistent with
-//! small strain, and the reason why statics is a convex problem.
+//! inner groove centres. A ring of finite elements moves by u(x) = t + phi x (x - origin), linear in the tilts phi:
+//! consistent with small strain. What the finite rotation of shaft and inner ring adds to that acts in the contacts
+//! ([`crate::system::Circle`]) and in the loads ([`crate::bodies::TiltedLoads`]).
 
 use std::sync::Arc;
 
@@ -16,8 +17,9 @@ use ring::{Backend, RingModel};
 use crate::effects::Effect;
 use crate::interactions::seat_spring::Seat;
 
-/// Largest tilt for which small rotations hold, rad (about 3 deg).
-pub const MAX_TILT: f64 = 0.05;
+/// Largest tilt of the shaft, rad: a little more than 3 deg. Contacts take it exactly; the inertia of tilts is off by
+/// its square.
+pub const MAX_TILT: f64 = 0.055;
 
 /// One degree of freedom of the shaft.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -4,7 +4,7 @@ use contact::{LoadedPatch, Side};
 use ring::vectors::dot;
 
 use crate::balls::{BallDisplacement, BallResult, ContactResult};
-use crate::bearing::{BearingParts, SlidingSeat};
+use crate::bearing::{BearingParts, CONTACTS, SHAFT, SlidingSeat};
 use crate::displacements::Displacements;
 use crate::effects::Loads;
 use crate::equilibrium::centre_unloaded;
@@ -13,6 +13,7 @@ use crate::interactions::raceway_contact::{Site, SiteState, on_rings};
 use crate::loading::LoadCase;
 use crate::model::Model;
 use crate::pose::Pose;
+use crate::system::{FiniteMotion, Interval};
 
 /// Peak pressure that leaves a permanent indentation of 1e-4 of the ball diameter in bearing steel, Pa: ISO 76, for
 /// ball bearings.
@@ -71,23 +72,32 @@ impl StaticSolution {
         let (model, parts) = (case.model, &case.parts);
         centre_unloaded(parts, &mut u);
         let states = parts.states_at(&u);
-        let (residual, reaction) = shaft_balance(parts, &states);
         let forces = on_rings(&states);
+        let (residual, reaction) = shaft_balance(parts, &u, &forces);
+        let finite = parts.finite_motions(&parts.unknowns(&u));
         // Loads on the rings, through their elastic motion: on their bodies and, besides the normal forces, at
         // contacts.
         let ring_load_work = body_work(&case.loads, &rings) + ring_contact_work(&rings, &case.loads.contacts);
         let strain_energy = 0.5 * (ring_contact_work(&rings, &forces) + ring_load_work);
         let hertz_energy = states.iter().map(|state| state.force.energy).sum();
         let contact_work: f64 = parts.contacts.sites.iter().zip(&states).map(contact_work).sum();
+        let [finite_work, finite_load] = finite_work(parts, &finite, &forces);
         let slopes = parts.balls.iter().map(|ball| ball.dofs[0].load_slope);
         let loads = (0..parts.balls.len()).map(|ball| parts.ball_load(ball));
         let ball_work = loads.zip(slopes).zip(&u.balls);
         let ball_work: f64 = ball_work
             .map(|((f, slope), x)| dot(&[f[0] + slope * x[0], f[1]], x))
             .sum();
-        let balls = ball_results(model, parts, &states, &u);
-        let load_work =
-            ball_work + dot(&parts.shaft_load(), &u.shaft) + ring_load_work + seat_work(parts, &u);
+        let balls = ball_results(model, (parts, &finite), &states, &u);
+        let load_work = ball_work
+            + dot(&parts.shaft_load(), &u.shaft)
+            + dot(
+                &parts.shaft.tilted_moments(Interval::Rest, &u.shaft),
+                &u.shaft[3..],
+            )
+            + ring_load_work
+            + seat_work(parts, &u)
+            + finite_load;
         StaticSolution {
             warnings: warnings(&rings.footprints, &forces, &balls)
                 .into_iter()
@@ -100,7 +110,10 @@ impl StaticSolution {
                 )
                 .collect(),
             balls,
-            work_defect: load_work + dot(&reaction, &u.shaft) - 2.0 * strain_energy - contact_work,
+            work_defect: load_work + dot(&reaction, &u.shaft)
+                - 2.0 * strain_energy
+                - contact_work
+                - finite_work,
             shaft_residual: residual,
             shaft_reaction: reaction,
             strain_energy,
@@ -125,11 +138,13 @@ impl StaticSolution {
     /// Contact forces on the ring of one side and the patches over which they are spread, by ball; empty for a rigid
     /// ring or facets.
     pub fn patches(&self, side: Side) -> Vec<LoadedPatch> {
+        let states = self.parts.states_at(&self.displacements);
         let patch = |(ball, foot): (usize, &Footprint)| {
             let contact = self.balls[ball].contact(side);
-            let angle = contact.contact_angle_rad;
+            let site = 2 * ball + side.index();
+            let angle = states[site].angle;
             Some(LoadedPatch {
-                azimuth: self.parts.contacts.sites[2 * ball + side.index()].ring_azimuth,
+                azimuth: self.parts.contacts.sites[site].ring_azimuth,
                 force: contact.force_n,
                 angle,
                 semi_axes: contact.semi_axes_m,
@@ -158,7 +173,9 @@ fn following_work(parts: &BearingParts, u: &Displacements) -> f64 {
         .seat
         .as_ref()
         .map_or(0.0, |seat| seat.spring.force(u.seat) - seat.spring.force(0.0));
-    0.5 * (balls - spring * u.seat)
+    let tilt = [u.shaft[3], u.shaft[4]];
+    let tilted = parts.shaft.tilted.map_or(0.0, |loads| loads.virtual_excess(tilt));
+    0.5 * (balls - spring * u.seat) + tilted
 }
 
 /// Load and spring of a seat that slides, and what contacts add besides their normal forces, through its
@@ -203,15 +220,36 @@ fn body_work(loads: &Loads, rings: &RingFields) -> f64 {
         .sum()
 }
 
-/// Sum of contact and applied loads on the shaft: on free dofs a residual, on the others minus the reaction.
-fn shaft_balance(parts: &BearingParts, states: &[SiteState]) -> ([f64; 5], [f64; 5]) {
-    let mut sum = parts.shaft_load();
-    let contacts = parts.contacts.sites.iter().zip(states);
-    for (site, state) in contacts.filter(|(site, _)| site.side == Side::Inner) {
-        for (total, row) in sum.iter_mut().zip(site.carrier_rows()) {
-            *total += state.force.force * dot(&row, &state.normal);
+/// What finite motions add to the virtual work through the displacements, J: of the normal forces, and of what contacts
+/// add besides them, as a load.
+fn finite_work(parts: &BearingParts, finite: &[Option<FiniteMotion>], forces: &[[f64; 2]]) -> [f64; 2] {
+    let mut work = [0.0; 2];
+    for (site, (finite, force)) in finite.iter().zip(forces).enumerate() {
+        let Some(finite) = finite else { continue };
+        let (lengths, rows) = (finite.lengths(), finite.rows());
+        let virtual_growth =
+            [0, 1].map(|i| rows.iter().zip(finite.at).map(|(row, x)| row[i] * x).sum::<f64>());
+        work[0] += (0..2)
+            .map(|i| force[i] * (virtual_growth[i] - lengths[i]))
+            .sum::<f64>();
+        if let Some(dead) = parts.contacts.dead.get(site) {
+            work[1] -= dot(dead, &virtual_growth);
         }
     }
+    work
+}
+
+/// Sum of contact and applied loads on the shaft under the normal forces on the rings: on free dofs a residual, on the
+/// others minus the reaction.
+fn shaft_balance(parts: &BearingParts, u: &Displacements, forces: &[[f64; 2]]) -> ([f64; 5], [f64; 5]) {
+    let mut all = forces.as_flattened().to_vec();
+    let dead = parts.contacts.dead.as_flattened();
+    all.iter_mut().zip(dead).for_each(|(force, dead)| *force += dead);
+    let taken = parts
+        .system()
+        .forces_on::<5>(SHAFT, CONTACTS, &parts.unknowns(u), &all);
+    let own = parts.shaft.forces(Interval::Rest, &u.shaft);
+    let sum: [f64; 5] = std::array::from_fn(|i| -own[i] - taken[i]);
     let pick = |free: bool| {
         [0, 1, 2, 3, 4].map(|i| {
             if parts.shaft.imposed[i].is_none() == free {
@@ -234,8 +272,8 @@ fn warnings(footprints: &[Vec<Footprint>; 2], forces: &[[f64; 2]], balls: &[Ball
         .fold((0, 0.0), |most, (i, p)| if p > most.1 { (i, p) } else { most });
     if highest > STATIC_LIMIT {
         warnings.push(format!(
-            "the peak pressure at ball {}, {} raceway, is {:.2} GPa, above the static limit of bearing steel of {:.1} GPa \
-             (ISO 76): there it yields, which this model does not know",
+            "the peak pressure at ball {}, {} raceway, is {:.2} GPa, above the static limit of bearing steel of {:.1} \
+             GPa (ISO 76): there it yields, which this model does not know",
             place / 2,
             Side::BOTH[place % 2].name(),
             1e-9 * highest,
@@ -255,9 +293,9 @@ fn friction_warning(forces: &[[f64; 2]], across: &[[f64; 2]]) -> Option<String> 
         .fold((0, 0.0), |most, (i, c)| if c > most.1 { (i, c) } else { most });
     (most > MOST_FRICTION).then(|| {
         format!(
-            "the gyroscopic moment of ball {} asks for a friction coefficient of {most:.2} on the {} raceway, more than steel has \
-             ({MOST_FRICTION}): the ball would pivot there, which this model does not know; more preload or the centrifugal force of \
-             the balls may be missing",
+            "the gyroscopic moment of ball {} asks for a friction coefficient of {most:.2} on the {} raceway, more \
+             than steel has ({MOST_FRICTION}): the ball would pivot there, which this model does not know; more \
+             preload or the centrifugal force of the balls may be missing",
             place / 2,
             Side::BOTH[place % 2].name()
         )
@@ -289,7 +327,7 @@ fn edge_warnings(footprints: &[Vec<Footprint>; 2], forces: &[[f64; 2]]) -> Vec<S
 /// Results of all balls at given displacements, where their contacts have these states.
 fn ball_results(
     model: &Model,
-    parts: &BearingParts,
+    (parts, finite): (&BearingParts, &[Option<FiniteMotion>]),
     states: &[SiteState],
     u: &Displacements,
 ) -> Vec<BallResult> {
@@ -299,7 +337,7 @@ fn ball_results(
         let hertz = &model.hertz[site.side.index()];
         ContactResult {
             force_n: state.force.force,
-            contact_angle_rad: state.angle,
+            contact_angle_rad: site.angle_in_space(state.angle, finite[i]),
             approach_m: state.force.approach,
             semi_axes_m: hertz.semi_axes(state.force.force),
             peak_pressure_pa: hertz.peak_pressure(state.force.force),

@@ -2,11 +2,12 @@
 
 mod support;
 
-use contact::{BearingGeometry, Side};
+use contact::BearingGeometry;
 use dynamics::effects::Gravity;
 use dynamics::{DynamicsError, ShaftDof, StaticSolver};
 use input::Schedule;
 
+use support::finite::{InnerContact, cross, on_tilts, rotation, times};
 use support::{Case, equilibrium, relative};
 
 /// Wrong: the thrust equilibrium. Harris (4th ed.), eq. 7.30-7.33: F = Z K A^1.5 sin a (cos a0/cos a - 1)^1.5, with
@@ -65,22 +66,21 @@ fn forces_and_moments_balance() {
         (case.radial, case.moment, case.load_point, case.free_tilt) = (radial, moment, 1e-3, free_tilt);
         let model = case.rigid();
         let solution = equilibrium(&model);
-        let mut sum = [0.0, 0.0, 0.0, 0.0, 0.0];
-        for b in &solution.balls {
-            let (f, a, psi) = (b.inner.force_n, b.inner.contact_angle_rad, b.azimuth_rad);
-            // The ball presses the inner ring inwards and along -z at the groove centre circle.
-            let (radial, axial) = (-f * a.cos(), -f * a.sin());
-            let r = model.geometry.centre_radius(Side::Inner);
-            sum[0] += radial * psi.cos();
-            sum[1] += radial * psi.sin();
-            sum[2] += axial;
-            sum[3] += r * psi.sin() * axial;
-            sum[4] -= r * psi.cos() * axial;
+        let [.., tilt_x, tilt_y] = solution.displacements.shaft;
+        let lever = times(&rotation([tilt_x, tilt_y]), [0.0, 0.0, 1e-3]);
+        let mut force = [radial, 0.0, axial];
+        let mut total = cross(lever, force);
+        total[0] += moment;
+        for (ball, b) in solution.balls.iter().enumerate() {
+            // The ball presses the inner ring along the normal through its centre.
+            let at = InnerContact::new(&model, &solution, ball);
+            let arm = cross(at.ball, at.normal);
+            for i in 0..3 {
+                force[i] += b.inner.force_n * at.normal[i];
+                total[i] += b.inner.force_n * arm[i];
+            }
         }
-        sum[0] += radial;
-        sum[2] += axial;
-        sum[3] += moment;
-        sum[4] += 1e-3 * radial;
+        let sum = [force.as_slice(), &on_tilts([tilt_x, tilt_y], total)].concat();
         let free = if free_tilt { 5 } else { 3 };
         for (i, s) in sum.iter().enumerate() {
             let rest = s + solution.shaft_reaction[i];
@@ -91,6 +91,37 @@ fn forces_and_moments_balance() {
             );
         }
     }
+}
+
+/// Wrong: at large tilts forces and moments would be those of small ones. A bearing that is held tilted by 3 deg, whose
+/// reactions hold what balls press on the ring in space. 1e-9 of the forces.
+#[test]
+fn a_bearing_tilted_by_three_degrees_balances_where_it_stands() {
+    let mut model = Case::axial(2000.0).rigid();
+    let tilt: [f64; 2] = [0.03, 0.0428];
+    (model.shaft[3], model.shaft[4]) = (ShaftDof::Prescribed(tilt[0]), ShaftDof::Prescribed(tilt[1]));
+    let solution = equilibrium(&model);
+    let (mut force, mut moment, mut largest) = ([0.0, 0.0, 2000.0], [0.0; 3], 0.0f64);
+    for (ball, b) in solution.balls.iter().enumerate() {
+        let at = InnerContact::new(&model, &solution, ball);
+        let arm = cross(at.ball, at.normal);
+        for i in 0..3 {
+            force[i] += b.inner.force_n * at.normal[i];
+            moment[i] += b.inner.force_n * arm[i];
+        }
+        largest = largest.max(b.inner.force_n);
+    }
+    assert!(largest > 2000.0, "{largest}");
+    assert!(force.iter().all(|f| f.abs() < 1e-9 * largest), "{force:?}");
+    for (i, m) in on_tilts(tilt, moment).into_iter().enumerate() {
+        let reaction = solution.shaft_reaction[3 + i];
+        assert!((reaction + m).abs() < 1e-9 * reaction.abs(), "{m} {reaction}");
+    }
+    assert!(
+        solution.work_defect.abs() < 1e-9 * solution.hertz_energy,
+        "{}",
+        solution.work_defect
+    );
 }
 
 /// Wrong: unloaded balls would carry force, break the search, or lie somewhere arbitrary.

@@ -59,8 +59,10 @@ fn off_the_groove_plane_it_tilts_as_a_force_there_does() {
     for (a, b) in found.shaft.iter().zip(expected) {
         assert!((a - b).abs() < 1e-15, "{:?}", found.shaft);
     }
+    assert_eq!(found.lever, [0.04 * force[0], 0.04 * force[1], 0.0]);
     let rest = effects::Loads {
         shaft: [0.0; 5],
+        lever: [0.0; 3],
         ..found
     };
     assert_eq!(rest, bare);

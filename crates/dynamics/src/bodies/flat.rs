@@ -2,6 +2,7 @@
 
 use super::frame_inertia::FrameInertia;
 use super::inertia::Inertia;
+use super::tilted_loads::TiltedLoads;
 use crate::system::{Interval, Lumped};
 
 /// Names of the coordinates of a shaft, as in the scene.
@@ -28,6 +29,8 @@ pub struct FlatBody<const N: usize> {
     pub imposed: [Option<f64>; N],
     /// Of a shaft, the inertia of a ring that turns with it.
     pub turning: Option<Box<FrameInertia>>,
+    /// Of a shaft that may tilt, loads whose moments change with that.
+    pub tilted: Option<TiltedLoads>,
     start: [f64; N],
 }
 
@@ -40,6 +43,7 @@ impl<const N: usize> FlatBody<N> {
             dofs,
             imposed,
             turning: None,
+            tilted: None,
         }
     }
 
@@ -57,7 +61,18 @@ impl<const N: usize> FlatBody<N> {
                 .zip(more)
                 .for_each(|(force, more)| *force += more);
         }
+        let moments = forces.iter_mut().skip(3);
+        moments
+            .zip(self.tilted_moments(interval, end))
+            .for_each(|(force, more)| *force -= more);
         forces
+    }
+
+    /// Moments of its loads beyond those of the straight shaft when it ends at `end`, N m.
+    pub fn tilted_moments(&self, interval: Interval, end: &[f64]) -> [f64; 2] {
+        let tilts = [&self.start, end].map(|x| [five(x)[3], five(x)[4]]);
+        self.tilted
+            .map_or([0.0; 2], |loads| loads.moments(interval, tilts))
     }
 
     /// Numbers of the free coordinates, ascending: those of the unknowns.

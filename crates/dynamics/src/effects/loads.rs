@@ -18,6 +18,8 @@ use ring::division::NodePlaces;
 pub struct Loads {
     /// Generalised shaft loads: force x, y, z in N, moment x, y in N m about the shaft's origin.
     pub shaft: [f64; 5],
+    /// Forces on the shaft times their distances from its origin, N m; their moments are in `shaft`.
+    pub lever: [f64; 3],
     /// What the body loads of a flexible inner ring add to them, N and N m.
     pub ring_on_shaft: [f64; 5],
     /// Force along z of the body loads of a flexible outer ring, which its seat carries, N.
@@ -33,7 +35,7 @@ pub struct Loads {
     /// Body loads on the nodes of a flexible ring, N, `[n_nodes][3]` flat; None: no such load.
     pub rings: [Option<Vec<f64>>; 2],
     /// Force on the ring at each contact [radial, axial] besides the normal one, N, by site (2 ball + side), acting
-    /// at the groove centre; the ball gets its negative. Empty: no effect adds any.
+    /// at the centre of the ball, which gets its negative. Empty: no effect adds any.
     pub contacts: Vec<[f64; 2]>,
     /// Turning of the rings' frames, inner first, where their inertia is called for.
     pub frames: [Option<FrameTurn>; 2],
@@ -44,6 +46,7 @@ impl Loads {
     pub fn none(model: &Model) -> Loads {
         Loads {
             shaft: [0.0; 5],
+            lever: [0.0; 3],
             ring_on_shaft: [0.0; 5],
             ring_on_seat: 0.0,
             seat: 0.0,
@@ -65,6 +68,7 @@ impl Loads {
     pub fn add_shaft_force_at(&mut self, distance: f64, force: [f64; 3]) {
         for i in 0..3 {
             self.shaft[i] += force[i];
+            self.lever[i] += distance * force[i];
         }
         // Moment of a force at distance L along the axis: L e_z x F.
         self.shaft[3] -= distance * force[1];

@@ -1,9 +1,10 @@
 //! The contacts of balls on raceways.
 //!
-//! With l the vector from groove centre to ball centre, the geometric approach is g = |l| + D_w/2 - R. |l| is convex in
-//! all displacements and the contact energy V(g) convex and increasing, so the energy of a contact is convex. At rest
-//! its force is Q n, with n = l/|l| and Q = dV/dg; over a step it is a mean (see [`super::discrete_gradient`]). On
-//! faceted raceways, at rest only, g has a part of its own from the facets, and the forces have no energy.
+//! With l the vector from groove centre to ball centre in the meridian plane of the ring, which may be tilted, the
+//! geometric approach is g = |l| + D_w/2 - R. |l| is convex in l and the contact energy V(g) convex and increasing, so
+//! the energy of a contact is convex in small displacements; finite ones bend l ([`crate::system::Circle`]). At rest its
+//! force is Q n, with n = l/|l| and Q = dV/dg; over a step it is a mean (see [`super::discrete_gradient`]). On faceted
+//! raceways, at rest only, g has a part of its own from the facets, and the forces have no energy.
 
 use std::sync::Arc;
 
@@ -13,7 +14,10 @@ use timer::SharedLaps;
 
 use super::discrete_gradient::{ContactDamping, ContactScheme, MeanForce, mean_force, viscous};
 use crate::model::Model;
-use crate::system::{Body, Character, Interaction, Lengths, Link, LinkForces, LinkRows, LinkTerm};
+use crate::system::{
+    Body, CarriedCircle, Character, Circle, FiniteMotion, Interaction, Lengths, Link, LinkForces, LinkRows,
+    LinkTerm,
+};
 
 /// One ball on one raceway.
 #[derive(Clone, Debug, PartialEq)]
@@ -49,7 +53,7 @@ pub struct SiteState {
     pub slope: [f64; 2],
     /// Force, tangent and energy.
     pub force: ContactForce,
-    /// Contact angle, rad.
+    /// Contact angle on the ring, rad.
     pub angle: f64,
 }
 
@@ -86,10 +90,37 @@ impl Site {
         ]
     }
 
-    /// Contact angle at l, rad.
+    /// The circle of groove centres and the ball that meets it.
+    pub fn circle(&self) -> Circle {
+        let (sin, cos) = self.azimuth.sin_cos();
+        Circle {
+            azimuth: [cos, sin],
+            radius: self.lever,
+            reach: self.reach,
+        }
+    }
+
+    /// The same with the groove on a shaft and the ball at these displacements, m and rad.
+    pub fn finite_motion(&self, shaft: [f64; 5], ball: [f64; 2]) -> FiniteMotion {
+        FiniteMotion {
+            circle: self.circle(),
+            at: std::array::from_fn(|k| if k < 5 { shaft[k] } else { ball[k - 5] }),
+        }
+    }
+
+    /// Contact angle on the ring at l, rad.
     pub fn angle(&self, l: [f64; 2]) -> f64 {
         let sign = self.side.sign();
         (sign * l[1]).atan2(sign * l[0])
+    }
+
+    /// Contact angle in space, rad, of one on the ring, whose groove has this finite motion: with it the force has its
+    /// components radial and axial.
+    pub fn angle_in_space(&self, angle: f64, finite: Option<FiniteMotion>) -> f64 {
+        let Some(finite) = finite else { return angle };
+        let (n, rows) = ([angle.cos(), angle.sin()], finite.rows());
+        let along = |i: usize| n[i] + rows[5 + i][0] * n[0] + rows[5 + i][1] * n[1];
+        along(1).atan2(along(0))
     }
 
     /// The contact at l.
@@ -173,6 +204,8 @@ pub struct GrooveBodies {
     pub elastic: Option<usize>,
     /// The lumped body that carries the ring, where its motion is not in that of the ports.
     pub carrier: Option<usize>,
+    /// The lumped body with which the groove turns and tilts, if it may: its motion is finite.
+    pub tilting: Option<usize>,
     /// Motion of the groove centres that stays [radial, axial], m, by ball; empty is none.
     pub held: Vec<[f64; 2]>,
 }
@@ -203,13 +236,7 @@ impl RacewayContacts {
 
     /// Connects balls, which are lumped bodies from `first_ball` on, and rings, inner first.
     pub fn connect(&mut self, first_ball: usize, rings: &[GrooveBodies; 2]) {
-        let link = |site: &Site| {
-            link(
-                site,
-                Body::Lumped(first_ball + site.ball),
-                &rings[site.side.index()],
-            )
-        };
+        let link = |site: &Site| link(site, first_ball + site.ball, &rings[site.side.index()]);
         self.links = self.sites.iter().map(link).collect();
     }
 
@@ -243,10 +270,11 @@ impl RacewayContacts {
 }
 
 /// A contact as a link: l = reach + ball - groove centre.
-fn link(site: &Site, ball: Body, ring: &GrooveBodies) -> Link {
+fn link(site: &Site, ball: usize, ring: &GrooveBodies) -> Link {
+    let body = Body::Lumped(ball);
     let mut terms = vec![
-        LinkTerm::new(ball, 0, [1.0, 0.0]),
-        LinkTerm::new(ball, 1, [0.0, 1.0]),
+        LinkTerm::new(body, 0, [1.0, 0.0]),
+        LinkTerm::new(body, 1, [0.0, 1.0]),
     ];
     if let Some(elastic) = ring.elastic {
         let body = Body::Elastic(elastic);
@@ -260,7 +288,12 @@ fn link(site: &Site, ball: Body, ring: &GrooveBodies) -> Link {
     let mut reach: LinkRows = LinkRows::default();
     let held = ring.held.get(site.ball).copied().unwrap_or_default();
     (reach[0], reach[1]) = (site.reach[0] - held[0], site.reach[1] - held[1]);
-    Link { reach, terms }
+    let finite = ring.tilting.map(|carrier| CarriedCircle {
+        carrier,
+        point: ball,
+        circle: site.circle(),
+    });
+    Link { reach, terms, finite }
 }
 
 impl Interaction for RacewayContacts {

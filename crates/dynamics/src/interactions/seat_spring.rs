@@ -36,10 +36,7 @@ impl SeatSpring {
         SeatSpring {
             seat,
             weight,
-            links: [Link {
-                reach: [0.0; 6],
-                terms,
-            }],
+            links: [Link::linear([0.0; 6], terms)],
         }
     }
 

@@ -11,7 +11,8 @@
 //!
 //! spread over the ring by the weights of its patch. The second term is the geometric stiffness of the contact force:
 //! all that holds a ball across the contact normals. A contact without load has none, so unloaded balls have modes at
-//! zero.
+//! zero. Levers are those of the deformed state, and the finite motion of the shaft adds the stiffness that its
+//! curvature gives the contact forces ([`crate::system::Circle`]).
 //!
 //! - **Free** ring: six rigid motions at zero, then elastic modes, most of them double.
 //! - **Held** ring: its bore or seat is clamped or held in its mean motion, as the scene has it, by a partner at rest.
@@ -37,7 +38,7 @@ use crate::costs::{FACTOR, SEARCH};
 use crate::error::DynamicsError;
 use crate::model::{ContactMode, Model, ShaftDof};
 use crate::solution::StaticSolution;
-use crate::system::{Body, Link};
+use crate::system::{Body, FiniteMotion, Link, LinkTerm};
 use columns::{LengthGrowth, LinkTangent};
 use ring::{Backend, Partner, RingModel, VibratingRing};
 use system::{BearingDofs, VibratingBearing};
@@ -206,79 +207,148 @@ fn link_tangents(
     let parts = &equilibrium.parts;
     let x = parts.unknowns(&equilibrium.displacements);
     let system = parts.system();
+    let vibrating = Vibrating {
+        equilibrium,
+        rings,
+        places,
+    };
     let mut link_tangents = Vec::new();
     for (number, family) in parts.interactions().into_iter().enumerate() {
         let found = system.lengths_at(number, &x);
-        let tangents = family.evaluate(lengths(&found), &SharedLaps::default()).tangents;
+        let at = family.evaluate(lengths(&found), &SharedLaps::default());
+        let finite = system.finite_motions(number, &x);
         let n = family.n_rows();
-        for (link, tangent) in family.links().iter().zip(tangents.chunks_exact(n * n)) {
+        let tangents = at.tangents.chunks_exact(n * n);
+        for ((link, tangent), finite) in family.links().iter().zip(tangents).zip(&finite) {
             link_tangents.push(LinkTangent {
                 tangent: tangent.to_vec(),
-                lengths: (0..n)
-                    .map(|row| growth(link, row, equilibrium, rings, places))
-                    .collect(),
+                lengths: (0..n).map(|row| vibrating.growth(link, row, finite)).collect(),
             });
+        }
+        if system.has_curvature() {
+            link_tangents.extend(vibrating.curvature(family.links(), &finite, &at.forces));
         }
     }
     link_tangents
 }
 
-/// What moves one length of a link. What carries a ring has its dofs by body among the small ones, at `places`, or in
-/// the motion of a flexible ring, which has that of its partner in it.
-fn growth(
-    link: &Link,
-    row: usize,
-    equilibrium: &StaticSolution,
-    rings: &[Option<VibratingRing>; 2],
-    places: &[(usize, usize, usize)],
-) -> LengthGrowth {
-    let parts = &equilibrium.parts;
-    let is_ring = link
-        .terms
-        .iter()
-        .any(|term| matches!(term.body, Body::Elastic(_)));
-    let carried = |body: usize| {
-        Side::BOTH
-            .into_iter()
-            .find(|side| parts.carrier(*side) == Some(body))
-    };
-    let mut growth = LengthGrowth::default();
-    for term in link.terms.iter().filter(|term| term.rows[row] != 0.0) {
-        let value = term.rows[row];
-        match term.body {
-            Body::Lumped(body) => {
-                let Some(side) = carried(body) else {
-                    growth
-                        .small
-                        .push((2 * (body - FIRST_BALL) + term.coordinate, value));
-                    continue;
+/// What moves the coordinates of a bearing that vibrates.
+struct Vibrating<'v> {
+    equilibrium: &'v StaticSolution,
+    rings: &'v [Option<VibratingRing>; 2],
+    /// Body, its coordinate and its place among the small dofs, of what carries rigid rings.
+    places: &'v [(usize, usize, usize)],
+}
+
+impl Vibrating<'_> {
+    /// What moves one length of a link. What carries a ring has its dofs by body among the small ones, or in the motion
+    /// of a flexible ring, which has that of its partner in it.
+    fn growth(&self, link: &Link, row: usize, finite: &Option<FiniteMotion>) -> LengthGrowth {
+        let is_elastic = |term: &LinkTerm| matches!(term.body, Body::Elastic(_));
+        let is_ring = link.terms.iter().any(is_elastic);
+        let mut growth = LengthGrowth::default();
+        for term in link.terms.iter().filter(|term| term.rows[row] != 0.0) {
+            let follows = is_ring && matches!(term.body, Body::Lumped(body) if self.carried(body).is_some());
+            if !follows {
+                self.add(&mut growth, (term.body, term.coordinate), term.rows[row]);
+            }
+        }
+        if let (Some(carried), Some(finite)) = (link.finite, finite) {
+            for (coordinate, row_of) in carried.coordinates().into_iter().zip(finite.rows()) {
+                self.add(&mut growth, coordinate, row_of[row]);
+            }
+        }
+        growth
+    }
+
+    /// What finite motions add to the stiffness under the forces of the links: between the coordinates of the shaft and
+    /// of all balls.
+    fn curvature(
+        &self,
+        links: &[Link],
+        finite: &[Option<FiniteMotion>],
+        forces: &[f64],
+    ) -> Option<LinkTangent> {
+        let n = 5 + 2 * self.equilibrium.parts.balls.len();
+        let mut tangent = vec![0.0; n * n];
+        let of_family = links.iter().zip(finite).zip(forces.as_chunks().0);
+        let mut any = false;
+        for ((link, finite), force) in of_family {
+            let (Some(carried), Some(finite)) = (link.finite, finite) else {
+                continue;
+            };
+            any = true;
+            let curvature = finite.circle.curvature(finite.at, *force);
+            let ball = 2 * (carried.point - FIRST_BALL);
+            let place = |k: usize| if k < 5 { k } else { ball + k };
+            for (i, row) in curvature.iter().enumerate() {
+                for (k, value) in row.iter().enumerate() {
+                    tangent[n * place(i) + place(k)] += value;
+                }
+            }
+        }
+        if !any {
+            return None;
+        }
+        let [.., tilt_x, tilt_y] = self.equilibrium.displacements.shaft;
+        let tilted = self.equilibrium.parts.shaft.tilted;
+        let slopes = tilted.map_or([[0.0; 2]; 2], |loads| loads.slopes([tilt_x, tilt_y]));
+        for (i, row) in slopes.iter().enumerate() {
+            for (k, slope) in row.iter().enumerate() {
+                tangent[n * (3 + i) + 3 + k] -= slope;
+            }
+        }
+        let coordinate = |k: usize| match k {
+            0..5 => (Body::Lumped(SHAFT), k),
+            _ => (Body::Lumped(FIRST_BALL + (k - 5) / 2), (k - 5) % 2),
+        };
+        let growth = |k: usize| {
+            let mut growth = LengthGrowth::default();
+            self.add(&mut growth, coordinate(k), 1.0);
+            growth
+        };
+        Some(LinkTangent {
+            tangent,
+            lengths: (0..n).map(growth).collect(),
+        })
+    }
+
+    /// Side of the ring that a lumped body carries.
+    fn carried(&self, body: usize) -> Option<Side> {
+        let carrier = |side: &Side| self.equilibrium.parts.carrier(*side) == Some(body);
+        Side::BOTH.into_iter().find(carrier)
+    }
+
+    /// Adds `value` times the motion of a coordinate.
+    fn add(&self, growth: &mut LengthGrowth, (body, coordinate): (Body, usize), value: f64) {
+        match body {
+            Body::Lumped(number) => {
+                let Some(side) = self.carried(number) else {
+                    let place = 2 * (number - FIRST_BALL) + coordinate;
+                    return growth.small.push((place, value));
                 };
-                let mut places = places
-                    .iter()
-                    .filter(|(of, dof, _)| (*of, *dof) == (body, term.coordinate));
-                growth
-                    .small
-                    .extend(places.next().map(|(_, _, place)| (*place, value)));
-                let ring = rings[side.index()].as_ref().filter(|_| !is_ring);
-                if let Some(load) = ring.and_then(|ring| ring.partner_load(term.coordinate)) {
+                let mut places = self.places.iter();
+                if let Some((_, _, place)) = places.find(|(of, dof, _)| (*of, *dof) == (number, coordinate)) {
+                    growth.small.push((*place, value));
+                }
+                let ring = self.rings[side.index()].as_ref();
+                if let Some(load) = ring.and_then(|ring| ring.partner_load(coordinate)) {
                     growth.add_ring(side.index(), load, value);
                 }
             }
-            Body::Elastic(body) => {
-                let found = Side::BOTH
-                    .into_iter()
-                    .find(|side| parts.elastic(*side) == Some(body));
-                let Some((side, ring)) = found.and_then(|side| Some((side, rings[side.index()].as_ref()?)))
+            Body::Elastic(number) => {
+                let of = |side: &Side| self.equilibrium.parts.elastic(*side) == Some(number);
+                let found = Side::BOTH.into_iter().find(of);
+                let Some((side, ring)) = found.and_then(|s| Some((s, self.rings[s.index()].as_ref()?)))
                 else {
-                    continue;
+                    return;
                 };
-                let foot = &equilibrium.footprints(side)[term.coordinate / 2];
+                let foot = &self.equilibrium.footprints(side)[coordinate / 2];
                 let weights = ring.held().coordinates.reduce_weights(&foot.weights);
-                growth.add_ring(side.index(), &weights[term.coordinate % 2], value);
+                growth.add_ring(side.index(), &weights[coordinate % 2], value);
             }
         }
     }
-    growth
 }
 
 fn search(

@@ -195,6 +195,10 @@ fn finish_shaft(next: &mut MotionState, parts: &BearingParts, solution: &StepSol
     if let Some(turning) = &parts.shaft.turning {
         next.ledger.frame_work -= turning.work(solution.shaft);
     }
+    let moments = parts.shaft.tilted_moments(Interval::Step(step), &solution.shaft);
+    for (i, moment) in [3, 4].into_iter().zip(moments) {
+        next.ledger.load_work += moment * (solution.shaft[i] - parts.shaft.dofs[i].start[0]);
+    }
     next.shaft = solution.shaft;
     [next.shaft_velocity, next.shaft_acceleration] =
         finish_body(&parts.shaft, step, solution.shaft, &mut next.ledger);
@@ -244,18 +248,9 @@ impl BearingParts {
     /// Forces that hold or drive the shaft's dofs, N and N m; zero to round-off for free ones.
     fn shaft_reactions(&self, solution: &StepSolution, step: StepScheme) -> [f64; 5] {
         let mut reactions = self.shaft.forces(Interval::Step(step), &solution.shaft);
-        if let Some(follow) = self.rings[0].as_ref().and_then(|ports| ports.follow) {
-            let force = follow.in_space(&solution.mounts[0]);
-            (0..5).for_each(|i| reactions[i] += force[i]);
-            return reactions;
-        }
-        let loads = self.ring_loads(Side::Inner, solution);
-        for site in self.contacts.sites.iter().filter(|s| s.side == Side::Inner) {
-            let force = &loads[2 * site.ball..2 * site.ball + 2];
-            for (reaction, row) in reactions.iter_mut().zip(site.carrier_rows()) {
-                *reaction -= row[0] * force[0] + row[1] * force[1];
-            }
-        }
+        let mount = self.rings[0].as_ref().and_then(|ports| ports.follow);
+        let mount = mount.map_or([0.0; 5], |follow| follow.in_space(&solution.mounts[0]));
+        (0..5).for_each(|i| reactions[i] += mount[i] + solution.on_shaft[i]);
         reactions
     }
 }

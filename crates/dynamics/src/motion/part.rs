@@ -13,6 +13,7 @@ use crate::bodies::{FlatBody, FrameInertia, Inertia, Name, StepTakes};
 use crate::compliance;
 use crate::effects::{self, Loads, Now};
 use crate::error::DynamicsError;
+use crate::interactions::discrete_gradient::MeanForce;
 use crate::interactions::raceway_contact::{Means, Site};
 use crate::system::{ElasticPorts, Follow, Interval};
 
@@ -105,7 +106,7 @@ impl Motion<'_> {
                 damping: self.settings.contact_damping,
             }),
         };
-        Ok(BearingParts::new(
+        let mut parts = BearingParts::new(
             Interval::Step(StepScheme { integrator, dt }),
             self.shaft(state, span, loads),
             (0..self.n_balls())
@@ -114,7 +115,9 @@ impl Motion<'_> {
             [ports(Side::Inner)?, ports(Side::Outer)?],
             contacts,
             self.seat(state, loads),
-        ))
+        );
+        parts.shaft.tilted = parts.tilted_loads(loads);
+        Ok(parts)
     }
 
     fn seat(&self, state: &MotionState, loads: &Loads) -> Option<SeatStep> {
@@ -238,12 +241,20 @@ impl BearingParts {
 
     /// Forces on a ring's contacts, `[2 n_balls]`, N.
     pub(super) fn ring_loads(&self, side: Side, solution: &StepSolution) -> Vec<f64> {
+        let all = self.with_dead(&solution.forces);
         let of_ball = |ball: usize| {
             let site = 2 * ball + side.index();
-            let dead = self.contacts.dead.get(site).copied().unwrap_or_default();
-            let force = solution.forces[site].force;
-            [force[0] + dead[0], force[1] + dead[1]]
+            [all[2 * site], all[2 * site + 1]]
         };
         (0..self.balls.len()).flat_map(of_ball).collect()
+    }
+
+    /// Forces on the rings at all contacts, the dead ones with them, `[2 n_sites]`, N.
+    pub(super) fn with_dead(&self, forces: &[MeanForce]) -> Vec<f64> {
+        let of_site = |(site, force): (usize, &MeanForce)| {
+            let dead = self.contacts.dead.get(site).copied().unwrap_or_default();
+            [force.force[0] + dead[0], force.force[1] + dead[1]]
+        };
+        forces.iter().enumerate().flat_map(of_site).collect()
     }
 }

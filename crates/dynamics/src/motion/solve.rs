@@ -6,7 +6,7 @@
 use contact::Side;
 use timer::SharedLaps;
 
-use crate::bearing::{BearingParts, FIRST_BALL, SHAFT, lengths};
+use crate::bearing::{BearingParts, CONTACTS, FIRST_BALL, SHAFT, lengths};
 use crate::bodies::AXES;
 use crate::error::DynamicsError;
 use crate::footprint::require_in_groove;
@@ -34,6 +34,8 @@ pub struct StepSolution {
     reaches: [Vec<f64>; 2],
     /// Mean forces, by site, without the dead ones.
     pub forces: Vec<MeanForce>,
+    /// Forces that the contacts ask of the shaft, but for those that its ring hands on, N and N m.
+    pub on_shaft: [f64; 5],
     /// Forces of the partners on the mounts of inner and outer ring, in the ring's frame.
     pub mounts: [Vec<f64>; 2],
     /// Newton iterations.
@@ -67,6 +69,8 @@ impl BearingParts {
         let (x, reaches) = (&solved.unknowns, self.reaches(&solved.unknowns));
         let means = self.contacts.means;
         let forces = means.map(|means| self.contacts.mean_forces(lengths(&reaches), means, costs));
+        let forces = forces.unwrap_or_default();
+        let on_shaft = system.forces_on(SHAFT, CONTACTS, x, &self.with_dead(&forces));
         let n_moving = 2 * self.balls.len();
         let mount = |side: Side| match self.elastic(side) {
             Some(body) => system.port_forces(body, x)[n_moving..].to_vec(),
@@ -78,7 +82,8 @@ impl BearingParts {
                 .map(|ball| system.coordinates(FIRST_BALL + ball, x))
                 .collect(),
             seat: self.seat_end(&system, x),
-            forces: forces.unwrap_or_default(),
+            forces,
+            on_shaft,
             reaches,
             mounts: Side::BOTH.map(mount),
             iterations: solved.iterations,

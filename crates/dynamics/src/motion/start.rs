@@ -10,7 +10,7 @@ use super::run::Motion;
 use super::state::{Ladder, MotionSettings, MotionState};
 use crate::error::DynamicsError;
 use crate::interactions::discrete_gradient::ContactScheme;
-use crate::interactions::raceway_contact::Site;
+use crate::interactions::raceway_contact::{Site, on_rings};
 use crate::solution::StaticSolution;
 
 impl Motion<'_> {
@@ -32,21 +32,8 @@ impl Motion<'_> {
                 self.settings.speeds.of(side).at(0.0),
             ))
         };
-        let places = solution
-            .balls
-            .iter()
-            .flat_map(|b| [&b.inner, &b.outer].map(|c| [c.contact_angle_rad, c.force_n]));
-        let places: Vec<[f64; 2]> = places.collect();
-        let forces = solution.balls.iter().flat_map(|b| {
-            [(Side::Inner, &b.inner), (Side::Outer, &b.outer)].map(|(side, c)| {
-                let (sin, cos) = c.contact_angle_rad.sin_cos();
-                [side.sign() * c.force_n * cos, side.sign() * c.force_n * sin]
-            })
-        });
-        let angles = solution
-            .balls
-            .iter()
-            .flat_map(|b| [b.inner.contact_angle_rad, b.outer.contact_angle_rad]);
+        let contacts = solution.parts.states_at(&solution.displacements);
+        let places: Vec<[f64; 2]> = contacts.iter().map(|c| [c.angle, c.force.force]).collect();
         let mut state = MotionState {
             step: 0,
             rung: 0,
@@ -59,14 +46,10 @@ impl Motion<'_> {
             shaft_acceleration: [0.0; 5],
             seat: model.seat().map(|_| [solution.displacements.seat, 0.0, 0.0]),
             trend: vec![[0.0; 2]; 3 * model.geometry.n_balls],
-            forces: forces.collect(),
+            forces: on_rings(&contacts),
             places: [(); 3].map(|()| places.clone()),
-            angles: angles.collect(),
-            approaches: solution
-                .balls
-                .iter()
-                .flat_map(|b| [b.inner.approach_m, b.outer.approach_m])
-                .collect(),
+            angles: contacts.iter().map(|c| c.angle).collect(),
+            approaches: contacts.iter().map(|c| c.force.approach).collect(),
             ledger: Ledger::default(),
         };
         state.ledger.hertz = solution.hertz_energy;
@@ -184,6 +167,10 @@ impl Motion<'_> {
                         .map(|dof| site.carrier_rows()[dof][i] * state.shaft[dof])
                         .sum::<f64>();
                 }
+            }
+            if side == Side::Inner {
+                let more = site.finite_motion(state.shaft, state.balls[ball]).lengths();
+                l.iter_mut().zip(more).for_each(|(l, more)| *l += more);
             }
             let length = l[0].hypot(l[1]);
             let at = site.law.evaluate(length - site.touching);

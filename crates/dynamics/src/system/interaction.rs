@@ -2,6 +2,7 @@
 
 use timer::SharedLaps;
 
+use super::finite::CarriedCircle;
 use super::lumped::Body;
 
 /// Most lengths of a link: three displacements and three rotations.
@@ -33,13 +34,26 @@ impl LinkTerm {
     }
 }
 
-/// A link: its lengths are `reach` plus what its terms add.
+/// A link: its lengths are `reach` plus what its terms add, and what its finite motion does.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Link {
     /// Lengths when all coordinates are zero, m.
     pub reach: LinkRows,
     /// The coordinates that it sees.
     pub terms: Vec<LinkTerm>,
+    /// What its first two lengths have beyond the terms, which are those of small motions; None: nothing.
+    pub finite: Option<CarriedCircle>,
+}
+
+impl Link {
+    /// A link that is linear in its coordinates.
+    pub fn linear(reach: LinkRows, terms: Vec<LinkTerm>) -> Link {
+        Link {
+            reach,
+            terms,
+            finite: None,
+        }
+    }
 }
 
 /// Lengths of all links of a family, one after the other.

@@ -6,10 +6,12 @@
 //!
 //! ```text
 //! coordinates  q = place(x)                          by body
-//! lengths      l = reach + sum of rows q             by link
+//! lengths      l = reach + sum of rows q + c(q)      by link; c of a finite motion only
 //! residual     balance(x) + K (g - offset) + (dl/dx)^T F(l)
 //! tangent      its derivative, of which bodies give the constant part
 //! ```
+//!
+//! Over a step dl/dx are mean slopes, with which forces do the work of the lengths they belong to.
 //!
 //! At rest forces are those of the instant, and the residual is the gradient of the energy if all interactions have
 //! one. Over a step they are means over it. This module knows no bearing: statics, motion and equilibria in time
@@ -19,13 +21,16 @@
 
 mod assembly;
 mod elastic;
+mod finite;
 mod interaction;
 mod lumped;
+mod moves;
 pub mod newton;
 #[cfg(test)]
 mod tests;
 
 pub use assembly::{Evaluated, System};
 pub use elastic::{ElasticPorts, Follow};
+pub use finite::{CarriedCircle, Circle, Curvature, FiniteMotion, FiniteRows, N_FINITE, angle_functions};
 pub use interaction::{Character, Interaction, Lengths, Link, LinkForces, LinkRows, LinkTerm, MOST_ROWS};
 pub use lumped::{Body, Interval, Lumped};

@@ -11,6 +11,7 @@ use timer::SharedLaps;
 
 use super::assembly::{Evaluated, System};
 use super::interaction::LinkForces;
+use super::lumped::Interval;
 use crate::error::DynamicsError;
 
 /// Residual over the force scale that counts as round-off.
@@ -71,10 +72,14 @@ pub struct NewtonSolution {
 impl System<'_> {
     /// Solves the system from the unknowns `x`. Fails with the residual history and the place of the largest residual.
     pub fn solve(&self, mut x: Vec<f64>, policy: &Policy) -> Result<NewtonSolution, DynamicsError> {
-        let bodies = self.body_tangent(&x);
-        let mut tangent = bodies.clone();
+        let mut bodies = self.body_tangent(&x);
         let (mut history, mut best, mut stalled) = (Vec::new(), f64::INFINITY, 0);
         let mut at = self.evaluate(&x, policy.costs);
+        if self.has_curvature() && self.interval() != Interval::Rest {
+            // It hardly changes over a step.
+            self.add_curvatures(&x, &at.links, &mut bodies);
+        }
+        let mut tangent = bodies.clone();
         let (mut worst, mut limit) = (0, 0.0);
         for iteration in 0..policy.most_iterations {
             let (place, now) = largest(&policy.scaled(&at.residual));
@@ -102,7 +107,7 @@ impl System<'_> {
                     iterations: iteration,
                 });
             }
-            let step = self.direction(&mut tangent, &at.residual, policy)?;
+            let step = self.direction(&x, &at, &mut tangent, policy)?;
             (x, at) = self.search(x, at, &step, policy);
             (policy.watch)(&x)?;
         }
@@ -116,30 +121,50 @@ impl System<'_> {
         })
     }
 
-    /// Newton's step.
+    /// Newton's step. Where curvatures of finite motions make an energy's tangent indefinite, they are left out: the step
+    /// still goes downhill.
     fn direction(
         &self,
+        x: &[f64],
+        at: &Evaluated,
         matrix: &mut [f64],
-        residual: &[f64],
         policy: &Policy,
     ) -> Result<Vec<f64>, DynamicsError> {
-        self.check_held(matrix, residual, policy)?;
-        let n = self.n();
-        let mut step: Vec<f64> = policy.scaled(residual).iter().map(|r| -r).collect();
-        policy.scale(n, matrix);
-        let error = |source: DenseError| DynamicsError::ContactSystem { source };
-        if self.has_energy() {
-            DenseCholesky::factor(n, matrix)
-                .map_err(error)?
-                .solve(&mut step, 1);
-        } else {
-            DenseLu::factor(n, matrix).map_err(error)?.solve(&mut step, 1);
-        }
+        self.check_held(matrix, &at.residual, policy)?;
+        let right: Vec<f64> = policy.scaled(&at.residual).iter().map(|r| -r).collect();
+        let is_rest = self.interval() == Interval::Rest;
+        let curved = (is_rest && self.has_curvature()).then(|| {
+            let mut curved = matrix.to_vec();
+            self.add_curvatures(x, &at.links, &mut curved);
+            self.scaled_step(&mut curved, &right, policy)
+        });
+        let step = match curved {
+            Some(Ok(step)) => Ok(step),
+            _ => self.scaled_step(matrix, &right, policy),
+        };
+        let mut step = step.map_err(|source| DynamicsError::ContactSystem { source })?;
         let length = step.iter().fold(0.0, |most: f64, s| most.max(s.abs()));
         if length > policy.longest_step {
             step.iter_mut().for_each(|s| *s *= policy.longest_step / length);
         }
         Ok(policy.scaled(&step))
+    }
+
+    /// Solution of the scaled system with this tangent.
+    fn scaled_step(
+        &self,
+        matrix: &mut [f64],
+        right: &[f64],
+        policy: &Policy,
+    ) -> Result<Vec<f64>, DenseError> {
+        let (n, mut step) = (self.n(), right.to_vec());
+        policy.scale(n, matrix);
+        if self.has_energy() {
+            DenseCholesky::factor(n, matrix)?.solve(&mut step, 1);
+        } else {
+            DenseLu::factor(n, matrix)?.solve(&mut step, 1);
+        }
+        Ok(step)
     }
 
     /// Fails when an unknown has neither inertia nor stiffness: its row of the tangent is empty. Names the one that the

@@ -107,6 +107,7 @@ pub fn relative(a: f64, b: f64) -> f64 {
     (a - b).abs() / a.abs().max(b.abs())
 }
 
+pub mod finite;
 pub mod graded;
 pub mod harris;
 pub mod rings;

@@ -22,7 +22,7 @@
 
 use std::fmt;
 
-use dynamics::model::ShaftInertia;
+use dynamics::model::{MAX_TILT, ShaftInertia};
 use input::{
     ANGLE, Clock, INERTIA, LENGTH, MASS, Problems, Quantity, RawSchedule, Schedule, bare_number,
     check_schedule,
@@ -98,8 +98,6 @@ pub struct Shaft {
     pub inertia: ShaftInertia,
 }
 
-/// Rotations are small: beyond this the linear kinematics of the shaft is off by more than 0.2 %, rad.
-const MAX_TILT: f64 = 0.05;
 /// Load points farther away than this many outside diameters are slips of the unit.
 const MAX_LOAD_POINT: f64 = 100.0;
 /// A shaft beyond this is a slip of the unit, kg.
@@ -126,7 +124,7 @@ impl RawShaft {
         }
         let tilts = [("shaft.tilt_x", &self.tilt_x), ("shaft.tilt_y", &self.tilt_y)];
         for ((key, motion), schedule) in tilts.into_iter().zip(&schedules[3..]) {
-            let rule = "a prescribed tilt must be small, at most 50 mrad";
+            let rule = "a prescribed tilt must be small, at most 55 mrad";
             motion.require_small(MAX_TILT, key, schedule, rule, problems);
         }
         problems.require(

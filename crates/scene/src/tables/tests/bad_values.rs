@@ -245,7 +245,7 @@ const INVALID: [Case; 53] = [
     (
         "tilt_y",
         "tilt_y = \"5 deg\"",
-        &["shaft.tilt_y is 5 deg; a prescribed tilt must be small, at most 50 mrad"],
+        &["shaft.tilt_y is 5 deg; a prescribed tilt must be small, at most 55 mrad"],
     ),
     (
         "load_point",

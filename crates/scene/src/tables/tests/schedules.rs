@@ -261,7 +261,7 @@ fn motions_speeds_and_shares_that_make_no_sense_are_refused() {
             "tilt_x",
             "tilt_x = { value = \"30 mrad\", schedule.harmonic = { frequency = \"1 Hz\", mean = 1 } }",
             &[
-                "shaft.tilt_x is 30 mrad; a prescribed tilt must be small, at most 50 mrad, at the peak of its schedule too",
+                "shaft.tilt_x is 30 mrad; a prescribed tilt must be small, at most 55 mrad, at the peak of its schedule too",
             ],
         ),
         (

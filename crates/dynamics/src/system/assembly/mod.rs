@@ -1,12 +1,16 @@
 //! The assembly of a system: lengths, residual and tangent from its lists.
 
+mod finite;
+
 use std::ops::Range;
 
 use timer::SharedLaps;
 
 use super::elastic::{ElasticPorts, Follow};
+use super::finite::{CarriedCircle, FiniteRows};
 use super::interaction::{Character, Interaction, Lengths, Link, LinkForces, LinkRows};
 use super::lumped::{Body, Interval, Lumped};
+use super::moves::Moves;
 
 /// Bodies and interactions over an interval.
 pub struct System<'a> {
@@ -16,7 +20,9 @@ pub struct System<'a> {
     interactions: Vec<&'a dyn Interaction>,
     /// First unknown and first coordinate of every body, lumped ones first, and their numbers.
     first: Vec<[usize; 2]>,
-    /// Lengths of all links at the start of the interval, by family.
+    /// All coordinates at the start of the interval.
+    start: Vec<f64>,
+    /// Lengths of all links there, by family.
     starts: Vec<Vec<f64>>,
 }
 
@@ -51,12 +57,20 @@ impl<'a> System<'a> {
             elastic,
             interactions,
             first,
+            start: Vec::new(),
             starts: Vec::new(),
         };
-        let start = system.start();
+        system.start = system.at_start();
         let families = 0..system.interactions.len();
-        system.starts = families.map(|family| system.lengths(family, &start)).collect();
+        system.starts = families
+            .map(|family| system.lengths(family, &system.start))
+            .collect();
         system
+    }
+
+    /// The interval.
+    pub fn interval(&self) -> Interval {
+        self.interval
     }
 
     /// Number of unknowns.
@@ -167,13 +181,39 @@ impl<'a> System<'a> {
                 .iter()
                 .zip(found.forces.chunks_exact(family.n_rows()))
             {
-                self.moved_by(link, &moves, &mut moved);
+                let finite = link.finite.map(|finite| (finite, self.mean_rows(&finite, &end)));
+                self.moved_by(link, finite, &moves, &mut moved);
                 for (a, row) in &moved {
                     residual[*a] += product(row, force);
                 }
             }
         }
         Evaluated { links, residual }
+    }
+
+    /// Forces of a family's links on the coordinates of a lumped body, imposed ones among them, N and N m, when
+    /// `forces` act on their lengths.
+    pub fn forces_on<const N: usize>(
+        &self,
+        body: usize,
+        family: usize,
+        x: &[f64],
+        forces: &[f64],
+    ) -> [f64; N] {
+        let (end, mut sum) = (self.end(x), [0.0; N]);
+        let family = self.interactions[family];
+        for (link, force) in family.links().iter().zip(forces.chunks_exact(family.n_rows())) {
+            let own = link.terms.iter().filter(|term| term.body == Body::Lumped(body));
+            own.for_each(|term| sum[term.coordinate] += product(&term.rows, force));
+            let Some(finite) = link.finite else { continue };
+            let rows = self.mean_rows(&finite, &end);
+            for ((of, coordinate), row) in finite.coordinates().into_iter().zip(rows) {
+                if of == Body::Lumped(body) {
+                    sum[coordinate] += product(&row, force);
+                }
+            }
+        }
+        sum
     }
 
     /// What bodies put into the tangent, row-major: the same for all unknowns.
@@ -198,13 +238,18 @@ impl<'a> System<'a> {
 
     /// Adds what the links put into it.
     pub fn add_link_tangents(&self, x: &[f64], links: &[LinkForces], tangent: &mut [f64]) {
-        let (n, moves, mut moved) = (self.n(), self.moves(x), Vec::new());
+        let (n, moves, end) = (self.n(), self.moves(x), self.end(x));
+        let (mut moved, mut at_end) = (Vec::new(), Vec::new());
         for (family, found) in self.interactions.iter().zip(links) {
             let m = family.n_rows();
             for (link, t) in family.links().iter().zip(found.tangents.chunks_exact(m * m)) {
-                self.moved_by(link, &moves, &mut moved);
+                let finite = link.finite.map(|finite| (finite, self.mean_rows(&finite, &end)));
+                self.moved_by(link, finite, &moves, &mut moved);
+                let at = |finite: &CarriedCircle| finite.circle.rows(self.finite_coordinates(finite, &end));
+                let finite = link.finite.map(|finite| (finite, at(&finite)));
+                self.moved_by(link, finite, &moves, &mut at_end);
                 for (a, row_a) in &moved {
-                    for (b, row_b) in &moved {
+                    for (b, row_b) in &at_end {
                         let terms = row_a.iter().zip(t.chunks_exact(m));
                         tangent[n * a + b] += terms.map(|(r, t)| r * product(t, row_b)).sum::<f64>();
                     }
@@ -231,7 +276,7 @@ impl<'a> System<'a> {
     }
 
     /// All coordinates at the start.
-    fn start(&self) -> Vec<f64> {
+    fn at_start(&self) -> Vec<f64> {
         let lumped = self.lumped.iter().flat_map(|body| body.start());
         let elastic = self.elastic.iter().flat_map(|body| &body.start[..body.n_moving]);
         lumped.chain(elastic).copied().collect()
@@ -264,8 +309,19 @@ impl<'a> System<'a> {
                     *l += row * q;
                 }
             }
+            if let Some(finite) = &link.finite {
+                let more = finite
+                    .circle
+                    .lengths(self.finite_coordinates(finite, coordinates));
+                lengths.iter_mut().zip(more).for_each(|(l, more)| *l += more);
+            }
         }
         lengths
+    }
+
+    /// Place of a coordinate among all of them.
+    fn coordinate(&self, body: Body, coordinate: usize) -> usize {
+        self.first[self.number(body)][1] + coordinate
     }
 
     /// What moves the coordinates at `x`.
@@ -288,13 +344,31 @@ impl<'a> System<'a> {
         moves
     }
 
-    /// Unknowns that move a link, and the growth of its lengths with each.
-    fn moved_by(&self, link: &Link, moves: &Moves, moved: &mut Vec<(usize, LinkRows)>) {
+    /// Unknowns that move a link, and the growth of its lengths with each; of a finite motion with the rows given.
+    fn moved_by(
+        &self,
+        link: &Link,
+        finite: Option<(CarriedCircle, FiniteRows)>,
+        moves: &Moves,
+        moved: &mut Vec<(usize, LinkRows)>,
+    ) {
         moved.clear();
         for term in &link.terms {
-            let coordinate = self.first[self.number(term.body)][1] + term.coordinate;
-            let of = moves.of(coordinate).iter();
+            let of = moves.of(self.coordinate(term.body, term.coordinate)).iter();
             moved.extend(of.map(|(unknown, slope)| (*unknown, term.rows.map(|r| r * slope))));
+        }
+        let Some((finite, rows)) = finite else { return };
+        for ((body, k), row) in finite.coordinates().into_iter().zip(rows) {
+            for (unknown, slope) in moves.of(self.coordinate(body, k)) {
+                let sum = match moved.iter().position(|(of, _)| of == unknown) {
+                    Some(place) => &mut moved[place].1,
+                    None => {
+                        moved.push((*unknown, LinkRows::default()));
+                        &mut moved.last_mut().expect("just added").1
+                    }
+                };
+                sum.iter_mut().zip(row).for_each(|(sum, row)| *sum += slope * row);
+            }
         }
     }
 
@@ -362,26 +436,6 @@ impl<'a> System<'a> {
             }
         }
         found
-    }
-}
-
-/// By coordinate: the unknowns that move it, and by how much.
-#[derive(Default)]
-struct Moves {
-    /// Where the list of each coordinate begins.
-    first: Vec<usize>,
-    list: Vec<(usize, f64)>,
-}
-
-impl Moves {
-    fn of(&self, coordinate: usize) -> &[(usize, f64)] {
-        let end = self.first.get(coordinate + 1).copied().unwrap_or(self.list.len());
-        &self.list[self.first[coordinate]..end]
-    }
-
-    /// What is added next belongs to `coordinate`.
-    fn begin(&mut self, coordinate: usize) {
-        self.first.resize(coordinate + 1, self.list.len());
     }
 }
 

@@ -1,0 +1,89 @@
+//! The inner contact of a ball in space, by matrices: written anew, without what the program uses.
+
+use contact::Side;
+use dynamics::{Model, StaticSolution};
+
+/// Rotation matrix of the rotation vector (x, y, 0), row by row: Rodrigues.
+pub fn rotation([x, y]: [f64; 2]) -> [[f64; 3]; 3] {
+    let angle = x.hypot(y);
+    let scale = |f: f64, n: i32| if angle > 0.0 { f / angle.powi(n) } else { 0.0 };
+    let (s, c) = (scale(angle.sin(), 1), scale(1.0 - angle.cos(), 2));
+    let k = [[0.0, 0.0, y], [0.0, 0.0, -x], [-y, x, 0.0]];
+    let mut r = [[0.0; 3]; 3];
+    for i in 0..3 {
+        for j in 0..3 {
+            let square: f64 = (0..3).map(|l| k[i][l] * k[l][j]).sum();
+            r[i][j] = f64::from(i == j) + s * k[i][j] + c * square;
+        }
+    }
+    r
+}
+
+/// Matrix times vector.
+pub fn times(r: &[[f64; 3]; 3], v: [f64; 3]) -> [f64; 3] {
+    [0, 1, 2].map(|i| (0..3).map(|j| r[i][j] * v[j]).sum())
+}
+
+/// Vector product.
+pub fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
+    [
+        a[1] * b[2] - a[2] * b[1],
+        a[2] * b[0] - a[0] * b[2],
+        a[0] * b[1] - a[1] * b[0],
+    ]
+}
+
+/// What a moment in space does on the components x and y of the rotation vector: m . J e_k, J = I + c K + e K^2.
+pub fn on_tilts(tilt: [f64; 2], m: [f64; 3]) -> [f64; 2] {
+    let angle = tilt[0].hypot(tilt[1]);
+    let (c, e) = if angle > 0.0 {
+        (
+            (1.0 - angle.cos()) / angle.powi(2),
+            (angle - angle.sin()) / angle.powi(3),
+        )
+    } else {
+        (0.5, 1.0 / 6.0)
+    };
+    let phi = [tilt[0], tilt[1], 0.0];
+    [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]].map(|axis| {
+        let once = cross(phi, axis);
+        let twice = cross(phi, once);
+        (0..3)
+            .map(|i| m[i] * (axis[i] + c * once[i] + e * twice[i]))
+            .sum()
+    })
+}
+
+/// A contact of a ball with the inner ring, under a shaft that may tilt.
+pub struct InnerContact {
+    /// From the shaft's origin to the ball, m, in space.
+    pub ball: [f64; 3],
+    /// Direction of the force on the ring, in space.
+    pub normal: [f64; 3],
+    /// Direction of falling contact angle on the ring, in space.
+    pub along: [f64; 3],
+}
+
+impl InnerContact {
+    pub fn new(model: &Model, solution: &StaticSolution, ball: usize) -> InnerContact {
+        let g = &model.geometry;
+        let (q, u) = (solution.displacements.shaft, solution.displacements.balls[ball]);
+        let (sin, cos) = g.azimuth(ball).sin_cos();
+        let (centre, place) = (g.groove_centre(Side::Inner), g.ball_centre());
+        let (radial, axial) = (place[0] + u[0], place[1] + u[1] - centre[1]);
+        let p = [radial * cos - q[0], radial * sin - q[1], axial - q[2]];
+        let r = rotation([q[3], q[4]]);
+        let back = [0, 1, 2].map(|i| [0, 1, 2].map(|j| r[j][i]));
+        let [x, y, z] = times(&back, p);
+        let distance = x.hypot(y);
+        let l = [distance - centre[0], z];
+        let length = l[0].hypot(l[1]);
+        let at = |v: [f64; 2]| times(&r, [v[0] * x / distance, v[0] * y / distance, v[1]]);
+        let n = [l[0] / length, l[1] / length];
+        InnerContact {
+            ball: p,
+            normal: at(n),
+            along: at([-n[1], n[0]]),
+        }
+    }
+}
