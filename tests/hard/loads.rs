@@ -1,6 +1,6 @@
 //! Loads and clearances of a bearing: jumps, reversals, impacts, balls that unload.
 
-use dynamics::interactions::discrete_gradient::ContactDamping;
+use dynamics::interactions::contact_damping::ContactDamping;
 use dynamics::motion::{Integrator, Motion, MotionSettings};
 use dynamics::{Model, ShaftDof};
 use input::Schedule;

@@ -137,6 +137,7 @@ impl Rod {
         let law = ContactLaw {
             stiffness: scale / (self.softness * self.length).powf(1.5),
             patch_compliance: 0.0,
+            ball_compliance: 0.0,
         };
         let touching = 10.0 * self.length;
         let mass = self.wall * self.mass();
@@ -153,7 +154,15 @@ impl Rod {
             touching,
             lever: 0.0,
             law,
+            across: 0.0,
             unevenness: None,
+        };
+        // The other contact of the ball is out of reach.
+        let far = Site {
+            side: Side::Inner,
+            touching: 1e6,
+            lever: 1.0,
+            ..site.clone()
         };
         for step in 0..n {
             let load = KnownLoad {
@@ -178,7 +187,7 @@ impl Rod {
                 ..ElasticPorts::default()
             };
             let contacts = ContactList {
-                sites: vec![site.clone()],
+                sites: vec![far.clone(), site.clone()],
                 dead: Vec::new(),
                 means: Some(Means {
                     dt,
@@ -196,7 +205,7 @@ impl Rod {
                 None,
             );
             let solution = parts.solve_step(scale, &costs).unwrap();
-            let contact = solution.forces[0];
+            let contact = solution.forces[1];
             let forces = PortForces {
                 contacts: &contact.force,
                 mount: &[],
@@ -215,7 +224,7 @@ impl Rod {
                 *place = [x, v, a];
             }
             state = next;
-            let [_, end] = solution.reach(0);
+            let [_, end] = solution.reach(1);
             let stored = law.evaluate(end[0].hypot(end[1]) - touching).energy;
             let energy =
                 body.energies(&state).iter().sum::<f64>() + stored + 0.5 * mass * wall[1][1] * wall[1][1];

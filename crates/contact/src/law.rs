@@ -1,12 +1,18 @@
-//! The force of one contact from its geometric approach, with the patch's own compliance taken out.
+//! Forces of contacts from their geometric approaches, with what bodies yield besides Hertz's half-spaces.
 //!
 //! K is a two-body Hertz stiffness: Q = K d_e^1.5. The finite-element ring already yields locally by c_s Q
-//! under the spread patch, so the geometric approach is g = d_e - c_s Q(d_e). The map d_e -> g increases as
+//! under the spread patch, and the ball, a sphere, yields by c_b Q less than a half-space, so the geometric approach is
+//! g = d_e - (c_s + c_b) Q(d_e). The map d_e -> g increases as
 //! long as the patch is not smaller than the Hertz ellipse of the load; beyond the point where its slope falls
 //! to [`MIN_SLOPE`] it is continued as a straight line, which keeps the energy convex for any trial position. A
 //! solution there is not valid: see [`ContactForce::beyond_limit`].
 //!
-//! Energy: V(g) = 2/5 K d_e^2.5 - c_s Q^2 / 2, dV/dg = Q.
+//! Energy: V(g) = 2/5 K d_e^2.5 - (c_s + c_b) Q^2 / 2, dV/dg = Q.
+//!
+//! **Both contacts of a ball.** Each yields by x times the force of the other ([`crate::sphere`]): g_i = h_i(Q_i) +
+//! x Q_o, g_o = h_o(Q_o) + x Q_i. The forces are those of the law at g_i - x Q_o and g_o - x Q_i, found in turns that contract
+//! by x^2 dQ_i/dg dQ_o/dg, 3e-4 under 330 N. They are the gradient of V_i + V_o + x Q_i Q_o, convex where that product
+//! is below 1: the Hessian of the complementary energy, ((dh_i, x), (x, dh_o)), is positive definite then.
 
 /// Slope of g(d_e) below which the law is continued linearly.
 pub const MIN_SLOPE: f64 = 0.1;
@@ -18,6 +24,62 @@ pub struct ContactLaw {
     pub stiffness: f64,
     /// Half-space compliance of the patch c_s, m/N; 0 for a rigid ring.
     pub patch_compliance: f64,
+    /// By how much less than a half-space the ball yields c_b, m/N; 0: it is one.
+    pub ball_compliance: f64,
+}
+
+/// The laws of both contacts of a ball, inner first.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BallLaws {
+    /// Each on its own.
+    pub laws: [ContactLaw; 2],
+    /// By how much a contact yields under the force of the other one x, m/N.
+    pub across: f64,
+}
+
+/// Both contacts of a ball.
+#[derive(Clone, Copy, Debug, PartialEq, Default)]
+pub struct BallForces {
+    /// Each contact; of the energy x Q_i Q_o either has half. Tangents are those of its own law.
+    pub contacts: [ContactForce; 2],
+    /// dQ/dg, N/m, by rows of forces.
+    pub tangent: [[f64; 2]; 2],
+}
+
+/// Turns after which both forces of a ball stay as they are.
+const MOST_TURNS: usize = 60;
+
+impl BallLaws {
+    /// Forces, tangent and energies at the geometric approaches `g`, m.
+    pub fn evaluate(&self, g: [f64; 2]) -> BallForces {
+        let mut contacts = [self.laws[0].evaluate(g[0]), self.laws[1].evaluate(g[1])];
+        let x = self.across;
+        if x == 0.0 || contacts.iter().any(|contact| contact.force == 0.0) {
+            let [inner, outer] = contacts.map(|contact| contact.tangent);
+            return BallForces {
+                contacts,
+                tangent: [[inner, 0.0], [0.0, outer]],
+            };
+        }
+        for _ in 0..MOST_TURNS {
+            let before = contacts.map(|contact| contact.force);
+            contacts[0] = self.laws[0].evaluate(g[0] - x * before[1]);
+            contacts[1] = self.laws[1].evaluate(g[1] - x * contacts[0].force);
+            let still = |i: usize| (contacts[i].force - before[i]).abs() <= 2.0 * f64::EPSILON * before[i];
+            if still(0) && still(1) {
+                break;
+            }
+        }
+        let [inner, outer] = contacts.map(|contact| contact.tangent);
+        let shared = 1.0 / (1.0 - (x * x * inner * outer).min(0.5));
+        let cross = -x * inner * outer * shared;
+        let energy = 0.5 * x * contacts[0].force * contacts[1].force;
+        contacts.iter_mut().for_each(|contact| contact.energy += energy);
+        BallForces {
+            contacts,
+            tangent: [[inner * shared, cross], [cross, outer * shared]],
+        }
+    }
 }
 
 /// State of one contact at a geometric approach g.
@@ -44,7 +106,7 @@ impl ContactLaw {
                 ..ContactForce::default()
             };
         }
-        let kappa = self.patch_compliance * self.stiffness;
+        let kappa = (self.patch_compliance + self.ball_compliance) * self.stiffness;
         let root_limit = if kappa > 0.0 {
             (1.0 - MIN_SLOPE) / (1.5 * kappa)
         } else {
@@ -70,7 +132,8 @@ impl ContactLaw {
         ContactForce {
             force,
             tangent: 1.5 * self.stiffness * root / slope,
-            energy: 0.4 * force * approach - 0.5 * self.patch_compliance * force * force,
+            energy: 0.4 * force * approach
+                - 0.5 * (self.patch_compliance + self.ball_compliance) * force * force,
             approach,
             beyond_limit: false,
         }
@@ -111,6 +174,7 @@ mod tests {
     const LAW: ContactLaw = ContactLaw {
         stiffness: 2.9e10,
         patch_compliance: 3e-9,
+        ball_compliance: 0.0,
     };
 
     /// Wrong: without a patch the law would not be Hertz's.
@@ -119,6 +183,7 @@ mod tests {
         let law = ContactLaw {
             stiffness: 2.9e10,
             patch_compliance: 0.0,
+            ball_compliance: 0.0,
         };
         let at = law.evaluate(5e-6);
         assert!((at.force / (2.9e10 * 5e-6f64.powf(1.5)) - 1.0).abs() < 1e-14);
@@ -166,5 +231,67 @@ mod tests {
             }
         }
         assert!(beyond > 50, "the sweep must reach the continuation, {beyond}");
+    }
+
+    const BALL: BallLaws = BallLaws {
+        laws: [
+            ContactLaw {
+                ball_compliance: 4e-10,
+                ..LAW
+            },
+            ContactLaw {
+                stiffness: 2.5e10,
+                patch_compliance: 0.0,
+                ball_compliance: 3e-10,
+            },
+        ],
+        across: 1.8e-10,
+    };
+
+    /// Wrong: a contact would not feel the force of the other one of its ball, or too much. Both equations of the ball.
+    #[test]
+    fn both_contacts_of_a_ball_meet_their_equations() {
+        for g in [[5e-6, 4e-6], [1.2e-5, 1e-5], [1e-7, 5e-6]] {
+            let found = BALL.evaluate(g).contacts;
+            for i in 0..2 {
+                let law = &BALL.laws[i];
+                let (q, other) = (found[i].force, found[1 - i].force);
+                let taken = law.patch_compliance + law.ball_compliance;
+                let met = (q / law.stiffness).powf(2.0 / 3.0) - taken * q + BALL.across * other;
+                assert!(
+                    q > 0.0 && (met - g[i]).abs() < 1e-15 * 1e-2 + 1e-12 * g[i],
+                    "{g:?} {i}"
+                );
+            }
+        }
+    }
+
+    /// Wrong: forces without an energy, so that motion would make some. Difference quotients of energy and forces; one
+    /// contact may come off.
+    #[test]
+    fn forces_of_a_ball_are_the_gradient_of_its_energy() {
+        let energy = |g: [f64; 2]| BALL.evaluate(g).contacts.iter().map(|c| c.energy).sum::<f64>();
+        for g in [[5e-6, 4e-6], [2e-5, 1e-5], [1e-9, 5e-6], [-1e-6, 5e-6]] {
+            let at = BALL.evaluate(g);
+            for k in 0..2 {
+                let h = 1e-11;
+                let (mut low, mut high) = (g, g);
+                (low[k], high[k]) = (low[k] - h, high[k] + h);
+                let slope = (energy(high) - energy(low)) / (2.0 * h);
+                assert!(
+                    (slope - at.contacts[k].force).abs() < 1e-4 * (1.0 + slope.abs()),
+                    "{g:?} {k}: {slope}"
+                );
+                let (low, high) = (BALL.evaluate(low), BALL.evaluate(high));
+                for i in 0..2 {
+                    let slope = (high.contacts[i].force - low.contacts[i].force) / (2.0 * h);
+                    let size = at.tangent[k][k].max(1e6);
+                    assert!(
+                        (slope - at.tangent[i][k]).abs() < 2e-4 * size,
+                        "{g:?} {i} {k}: {slope}"
+                    );
+                }
+            }
+        }
     }
 }

@@ -158,7 +158,7 @@ impl BearingParts {
         self.system().lengths_at(CONTACTS, x)
     }
 
-    /// Finite motions of the grooves, by contact.
+    /// Finite motions of the inner grooves, by ball.
     pub fn finite_motions(&self, x: &[f64]) -> Vec<Option<FiniteMotion>> {
         self.system().finite_motions(CONTACTS, x)
     }

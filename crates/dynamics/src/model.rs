@@ -9,7 +9,7 @@
 use std::sync::Arc;
 
 use contact::hertz::Elastic;
-use contact::{BearingGeometry, HertzContact, Side};
+use contact::{BearingGeometry, HertzContact, Side, SphereCompliance};
 use fem::Material;
 use input::Schedule;
 use ring::{Backend, RingModel};
@@ -84,6 +84,8 @@ pub struct Model {
     pub geometry: BearingGeometry,
     /// Hertz contact of each side, inner first.
     pub hertz: [HertzContact; 2],
+    /// What the balls yield as spheres, beyond the half-spaces of Hertz's law; zero: nothing.
+    pub sphere: SphereCompliance,
     /// Flexible rings, inner first; None is a rigid ring and costs nothing.
     pub rings: [Option<Arc<RingModel>>; 2],
     /// Ball steel.

@@ -224,7 +224,8 @@ fn body_work(loads: &Loads, rings: &RingFields) -> f64 {
 /// add besides them, as a load.
 fn finite_work(parts: &BearingParts, finite: &[Option<FiniteMotion>], forces: &[[f64; 2]]) -> [f64; 2] {
     let mut work = [0.0; 2];
-    for (site, (finite, force)) in finite.iter().zip(forces).enumerate() {
+    let inner = forces.iter().step_by(2);
+    for (ball, (finite, force)) in finite.iter().zip(inner).enumerate() {
         let Some(finite) = finite else { continue };
         let (lengths, rows) = (finite.lengths(), finite.rows());
         let virtual_growth =
@@ -232,7 +233,7 @@ fn finite_work(parts: &BearingParts, finite: &[Option<FiniteMotion>], forces: &[
         work[0] += (0..2)
             .map(|i| force[i] * (virtual_growth[i] - lengths[i]))
             .sum::<f64>();
-        if let Some(dead) = parts.contacts.dead.get(site) {
+        if let Some(dead) = parts.contacts.dead.get(2 * ball) {
             work[1] -= dot(dead, &virtual_growth);
         }
     }
@@ -337,7 +338,10 @@ fn ball_results(
         let hertz = &model.hertz[site.side.index()];
         ContactResult {
             force_n: state.force.force,
-            contact_angle_rad: site.angle_in_space(state.angle, finite[i]),
+            contact_angle_rad: match site.side {
+                Side::Inner => site.angle_in_space(state.angle, finite[site.ball]),
+                Side::Outer => state.angle,
+            },
             approach_m: state.force.approach,
             semi_axes_m: hertz.semi_axes(state.force.force),
             peak_pressure_pa: hertz.peak_pressure(state.force.force),

@@ -5,7 +5,7 @@ mod support;
 use contact::Side;
 use dynamics::costs::of_effects;
 use dynamics::effects::{self, AxialForce, Effect, Gravity, Now};
-use dynamics::interactions::discrete_gradient::ContactDamping;
+use dynamics::interactions::contact_damping::ContactDamping;
 use dynamics::kinematics::Speed;
 use dynamics::motion::{Motion, MotionSettings, StepCache};
 use dynamics::{ContactMode, Hold, Inventory, Model, StaticSolver};

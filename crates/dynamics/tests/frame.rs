@@ -36,7 +36,7 @@ fn radial_step(radial: f64, hold: Hold, free_tilt: bool) -> (Model, StaticSoluti
     let model = before.flexible(ContactMode::Patch, SMALL, hold);
     let mut loaded = Model {
         rings: model.rings.clone(),
-        ..Case { radial, ..before }.rigid()
+        ..Case { radial, ..before }.spheres()
     };
     loaded.contact.mode = ContactMode::Patch;
     (loaded, equilibrium(&model))

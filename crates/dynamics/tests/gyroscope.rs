@@ -215,7 +215,7 @@ fn a_stiff_ring_moves_as_a_rigid_one() {
         of.first_moment.abs() < 1e-9 * of.mass,
         "the ring is symmetric: {of:?}"
     );
-    let mut rigid = case.rigid();
+    let mut rigid = case.spheres();
     rigid.shaft_mass = of.mass;
     rigid.shaft_inertia = ShaftInertia {
         transverse: of.transverse,

@@ -309,6 +309,8 @@ fn unloaded_balls_have_modes_at_zero() {
 #[test]
 fn stiff_rings_have_the_modes_of_rigid_ones() {
     let mut model = Case::axial(2000.0).flexible(ContactMode::Patch, SMALL, Hold::Clamped);
+    // Contacts that know nothing of each other: the expected tangents are those.
+    model.sphere = Default::default();
     model.shaft_mass = 0.5;
     for ring in &mut model.rings {
         let ring = std::sync::Arc::get_mut(ring.as_mut().unwrap()).unwrap();

@@ -2,7 +2,8 @@
 
 mod support;
 
-use dynamics::interactions::discrete_gradient::{ContactDamping, ContactScheme};
+use dynamics::interactions::contact_damping::ContactDamping;
+use dynamics::interactions::discrete_gradient::ContactScheme;
 use dynamics::kinematics::Speed;
 use dynamics::motion::{Motion, MotionSettings, MotionState, StepCache};
 use dynamics::{ContactMode, Hold, Model, StaticSolution};
@@ -19,7 +20,7 @@ const SMALL: Level = Level::hex8(54, 6, 1, 2);
 fn reloaded(model: &Model, case: &Case) -> Model {
     let mut other = Model {
         rings: model.rings.clone(),
-        ..case.rigid()
+        ..case.spheres()
     };
     other.contact.mode = model.contact.mode;
     other.shaft_mass = model.shaft_mass;

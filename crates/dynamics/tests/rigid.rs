@@ -52,6 +52,50 @@ fn pure_thrust_has_harris_closed_form() {
     }
 }
 
+/// Wrong: what a ball yields as a sphere would come in with a wrong sign, or the other contact's share not at all.
+/// Thrust: both contacts carry Q, each is (Q/K)^(2/3) - own Q + across Q nearer, and together they take up the stretch.
+#[test]
+fn thrust_on_spheres_has_its_closed_form() {
+    let model = Case::axial(2000.0).spheres();
+    let solution = equilibrium(&model);
+    let (g, sphere) = (&model.geometry, model.sphere);
+    let free = g.free_contact_angle();
+    let yields = |q: f64| {
+        let hertz: f64 = model
+            .hertz
+            .iter()
+            .map(|h| (q / h.stiffness).powf(2.0 / 3.0))
+            .sum();
+        hertz + (2.0 * sphere.across - sphere.own[0] - sphere.own[1]) * q
+    };
+    let (mut low, mut high) = (free, 1.0);
+    for _ in 0..100 {
+        let middle: f64 = 0.5 * (low + high);
+        let stretch = g.groove_distance() * (free.cos() / middle.cos() - 1.0);
+        let q = 2000.0 / (g.n_balls as f64 * middle.sin());
+        if yields(q) > stretch {
+            low = middle
+        } else {
+            high = middle
+        }
+    }
+    let q = 2000.0 / (g.n_balls as f64 * low.sin());
+    for ball in &solution.balls {
+        for contact in [&ball.inner, &ball.outer] {
+            assert!(relative(contact.force_n, q) < 1e-9, "{} {q}", contact.force_n);
+            assert!(relative(contact.contact_angle_rad, low) < 1e-9);
+        }
+    }
+    assert!(
+        solution.work_defect.abs() < 1e-9 * solution.hertz_energy,
+        "{}",
+        solution.work_defect
+    );
+    let bare = equilibrium(&Case::axial(2000.0).rigid()).displacements.shaft[2];
+    let stiffer = 1.0 - solution.displacements.shaft[2] / bare;
+    assert!((0.005..0.02).contains(&stiffer), "{stiffer}");
+}
+
 /// Wrong: forces and moments on the shaft would not balance, or would not be the scene's. From 3 kN radial on half the
 /// balls unload. 1e-9 of the load, as the issue asks; also from a moment and a load point off the plane.
 #[test]

@@ -7,7 +7,7 @@ use std::sync::LazyLock;
 
 use contact::Side;
 use dynamics::balls::BallResult;
-use dynamics::interactions::discrete_gradient::ContactDamping;
+use dynamics::interactions::contact_damping::ContactDamping;
 use dynamics::kinematics::{Rolling, Speed};
 use dynamics::motion::{Motion, MotionSettings, MotionState, StepCache};
 use dynamics::{ContactMode, Hold, Model, QuasiStatic};

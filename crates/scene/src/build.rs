@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use comm::Communicator;
-use contact::{BearingGeometry, Groove, HertzContact, Side};
+use contact::{BearingGeometry, Groove, HertzContact, Side, SphereCompliance};
 use dynamics::RACEWAY_GROUP;
 use dynamics::effects::Setting;
 use dynamics::kinematics::Rolling;
@@ -63,6 +63,12 @@ pub fn model_with_rings(scene: &Scene, rings: [Option<Arc<RingModel>>; 2]) -> Re
         let exact = HertzContact::new(&geometry, side, elastic(&ball_steel), elastic(&ring_steel));
         given[side.index()].map_or(exact, |k| exact.with_stiffness(k))
     });
+    let sphere = match scene.contact.ball {
+        tables::BallElasticity::Sphere => {
+            SphereCompliance::new(elastic(&ball_steel), geometry.ball_diameter, &hertz)
+        }
+        tables::BallElasticity::HalfSpace => SphereCompliance::default(),
+    };
     let effects = scene.effects.loads(Setting {
         speeds: &speeds(scene),
         slip: scene.effects.slip(),
@@ -78,6 +84,7 @@ pub fn model_with_rings(scene: &Scene, rings: [Option<Arc<RingModel>>; 2]) -> Re
     Ok(Model {
         geometry,
         hertz,
+        sphere,
         rings,
         ball_material: ball_steel,
         shaft: dofs,

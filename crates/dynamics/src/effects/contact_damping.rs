@@ -10,7 +10,7 @@ use serde::Deserialize;
 
 use super::rules::Case;
 use super::table::{self, About, Context, Need, SpeedRole, Trial};
-use crate::interactions::discrete_gradient::ContactDamping;
+use crate::interactions::contact_damping::ContactDamping;
 
 const EXAMPLE: &str = r#"[effects.contact_damping]       # needs [dynamic]
 coefficient = "5e-2 N s/mm"     # largest coefficient

@@ -36,7 +36,7 @@ use input::{Problems, Schedule};
 use serde::Deserialize;
 
 use crate::error::DynamicsError;
-use crate::interactions::discrete_gradient::ContactDamping;
+use crate::interactions::contact_damping::ContactDamping;
 use crate::kinematics::SlipRatios;
 use rules::{Case, PeakLoad};
 

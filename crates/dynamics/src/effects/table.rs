@@ -19,7 +19,7 @@ use ring::RingModel;
 use super::loads::Effect;
 use super::rules::{Case, PeakLoad};
 use crate::error::DynamicsError;
-use crate::interactions::discrete_gradient::ContactDamping;
+use crate::interactions::contact_damping::ContactDamping;
 use crate::kinematics::{BallSpeeds, RingSpeeds, SlipRatios};
 
 /// A load beyond this is a slip of the unit, N and N m.

@@ -1,5 +1,6 @@
 //! Interactions of a bearing's bodies.
 
+pub mod contact_damping;
 pub mod discrete_gradient;
 pub mod raceway_contact;
 pub mod seat_spring;

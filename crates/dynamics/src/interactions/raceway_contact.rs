@@ -2,17 +2,19 @@
 //!
 //! With l the vector from groove centre to ball centre in the meridian plane of the ring, which may be tilted, the
 //! geometric approach is g = |l| + D_w/2 - R. |l| is convex in l and the contact energy V(g) convex and increasing, so
-//! the energy of a contact is convex in small displacements; finite ones bend l ([`crate::system::Circle`]). At rest its
-//! force is Q n, with n = l/|l| and Q = dV/dg; over a step it is a mean (see [`super::discrete_gradient`]). On faceted
-//! raceways, at rest only, g has a part of its own from the facets, and the forces have no energy.
+//! the energy of a contact is convex in small displacements; finite ones bend l ([`crate::system::Circle`]). At rest
+//! its force is Q n, with n = l/|l| and Q = dV/dg; over a step it is a mean (see [`super::discrete_gradient`]). Both
+//! contacts of a ball have one energy, because the ball yields as a sphere ([`BallLaws`]). On faceted raceways, at rest
+//! only, g has a part of its own from the facets, and the forces have no energy.
 
 use std::sync::Arc;
 
 use contact::law::ContactForce;
-use contact::{ContactLaw, Side, Unevenness};
+use contact::{BallLaws, ContactLaw, Side, Unevenness};
 use timer::SharedLaps;
 
-use super::discrete_gradient::{ContactDamping, ContactScheme, MeanForce, mean_force, viscous};
+use super::contact_damping::{ContactDamping, viscous};
+use super::discrete_gradient::{BallLengths, BallMeans, ContactScheme, mean_forces};
 use crate::model::Model;
 use crate::system::{
     Body, CarriedCircle, Character, Circle, FiniteMotion, Interaction, Lengths, Link, LinkForces, LinkRows,
@@ -38,6 +40,8 @@ pub struct Site {
     pub lever: f64,
     /// Force law.
     pub law: ContactLaw,
+    /// By how much it yields under the force of the ball's other contact, m/N.
+    pub across: f64,
     /// How far the facets lie inside the torus; None on an exact torus.
     pub unevenness: Option<Arc<Unevenness>>,
 }
@@ -51,7 +55,7 @@ pub struct SiteState {
     pub length: f64,
     /// Change of the approach per unit of l besides |l|, from the facets.
     pub slope: [f64; 2],
-    /// Force, tangent and energy.
+    /// Force, its tangent over the contact's own approach, and energy.
     pub force: ContactForce,
     /// Contact angle on the ring, rad.
     pub angle: f64,
@@ -73,7 +77,9 @@ impl Site {
             law: ContactLaw {
                 stiffness: model.hertz[side.index()].stiffness,
                 patch_compliance: 0.0,
+                ball_compliance: model.sphere.own[side.index()],
             },
+            across: model.sphere.across,
             unevenness: None,
         }
     }
@@ -114,6 +120,20 @@ impl Site {
         (sign * l[1]).atan2(sign * l[0])
     }
 
+    /// l of a ball between rings that do not deform, the inner one on a shaft at these displacements, m and rad.
+    pub fn reach_of_rigid(&self, shaft: [f64; 5], ball: [f64; 2]) -> [f64; 2] {
+        let mut l = [0, 1].map(|i| self.reach[i] + ball[i]);
+        if self.side == Side::Inner {
+            let more = self.finite_motion(shaft, ball).lengths();
+            let rows = self.carrier_rows();
+            for (i, l) in l.iter_mut().enumerate() {
+                let of_shaft: f64 = rows.iter().zip(shaft).map(|(row, q)| row[i] * q).sum();
+                *l += more[i] - of_shaft;
+            }
+        }
+        l
+    }
+
     /// Contact angle in space, rad, of one on the ring, whose groove has this finite motion: with it the force has its
     /// components radial and axial.
     pub fn angle_in_space(&self, angle: f64, finite: Option<FiniteMotion>) -> f64 {
@@ -123,8 +143,8 @@ impl Site {
         along(1).atan2(along(0))
     }
 
-    /// The contact at l.
-    pub fn at(&self, l: [f64; 2]) -> SiteState {
+    /// The contact at l, still without its force, and its approach, m.
+    fn place(&self, l: [f64; 2]) -> (SiteState, f64) {
         let length = l[0].hypot(l[1]);
         let normal = if length > 0.0 {
             [l[0] / length, l[1] / length]
@@ -145,9 +165,31 @@ impl Site {
             // d angle / dl = (-n_axial, n_radial) / |l|.
             state.slope = [-derivative * normal[1] / length, derivative * normal[0] / length];
         }
-        state.force = self.law.evaluate(approach);
-        state
+        (state, approach)
     }
+}
+
+/// Both contacts of a ball.
+type BallSites = [Site; 2];
+
+fn laws([inner, outer]: &BallSites) -> BallLaws {
+    BallLaws {
+        laws: [inner.law, outer.law],
+        across: inner.across,
+    }
+}
+
+/// Both contacts of a ball at l, and the growth of their forces with both approaches, N/m.
+fn ball_states(sites: &BallSites, l: [[f64; 2]; 2]) -> ([SiteState; 2], [[f64; 2]; 2]) {
+    let placed = [0, 1].map(|k| sites[k].place(l[k]));
+    let found = laws(sites).evaluate(placed.map(|(_, approach)| approach));
+    let state = |k: usize| {
+        let mut state = placed[k].0;
+        state.force = found.contacts[k];
+        state.force.tangent = found.tangent[k][k];
+        state
+    };
+    ([state(0), state(1)], found.tangent)
 }
 
 impl SiteState {
@@ -169,13 +211,18 @@ impl SiteState {
         } else {
             0.0
         };
-        let gap = [0, 1].map(|i| n[i] + self.slope[i]);
+        let gap = self.gap_slope();
         [0, 1].map(|i| {
             [0, 1].map(|j| {
                 let identity = if i == j { 1.0 } else { 0.0 };
                 self.force.tangent * n[i] * gap[j] + across * (identity - n[i] * n[j])
             })
         })
+    }
+
+    /// Growth of the approach with l.
+    fn gap_slope(&self) -> [f64; 2] {
+        [0, 1].map(|i| self.normal[i] + self.slope[i])
     }
 }
 
@@ -210,6 +257,23 @@ pub struct GrooveBodies {
     pub held: Vec<[f64; 2]>,
 }
 
+/// Lengths of a ball's contacts: l of the inner one, then of the outer one.
+const N_ROWS: usize = 4;
+
+/// Tangent over all lengths of a ball, row-major, from that of each contact and of each force over the other's length.
+fn tangent_of_ball(own: [[[f64; 2]; 2]; 2], across: [[[f64; 2]; 2]; 2]) -> [f64; N_ROWS * N_ROWS] {
+    std::array::from_fn(|i| {
+        let (row, column) = (i / N_ROWS, i % N_ROWS);
+        let (force, length) = (row / 2, column / 2);
+        let block = if force == length {
+            &own[force]
+        } else {
+            &across[force]
+        };
+        block[row % 2][column % 2]
+    })
+}
+
 /// All contacts of a bearing: ball 0 inner, ball 0 outer, ball 1 inner, ...
 #[derive(Clone, Debug)]
 pub struct RacewayContacts {
@@ -236,62 +300,79 @@ impl RacewayContacts {
 
     /// Connects balls, which are lumped bodies from `first_ball` on, and rings, inner first.
     pub fn connect(&mut self, first_ball: usize, rings: &[GrooveBodies; 2]) {
-        let link = |site: &Site| link(site, first_ball + site.ball, &rings[site.side.index()]);
-        self.links = self.sites.iter().map(link).collect();
+        let link = |sites: &BallSites| link(sites, first_ball + sites[0].ball, rings);
+        self.links = self.balls().map(link).collect();
     }
 
-    /// Contacts at an instant.
+    fn balls(&self) -> impl Iterator<Item = &BallSites> {
+        self.sites.as_chunks().0.iter()
+    }
+
+    /// Contacts at an instant, by site.
     pub fn states(&self, lengths: &[f64]) -> Vec<SiteState> {
-        let l = lengths.as_chunks().0;
-        self.sites.iter().zip(l).map(|(site, l)| site.at(*l)).collect()
+        self.ball_states(lengths).flat_map(|(states, _)| states).collect()
+    }
+
+    fn ball_states(&self, lengths: &[f64]) -> impl Iterator<Item = ([SiteState; 2], [[f64; 2]; 2])> {
+        let l = lengths.as_chunks::<2>().0.as_chunks::<2>().0;
+        self.balls().zip(l).map(|(sites, l)| ball_states(sites, *l))
     }
 
     /// Mean forces over a step without the dead ones; `costs` gets the time of the damping.
-    pub fn mean_forces(&self, lengths: Lengths, means: Means, costs: &SharedLaps) -> Vec<MeanForce> {
-        let places = || {
-            self.sites
-                .iter()
-                .enumerate()
-                .map(|(i, site)| (site, lengths.of::<2>(i)))
+    pub fn mean_forces(&self, lengths: Lengths, means: Means, costs: &SharedLaps) -> Vec<BallMeans> {
+        let at = |(ball, sites): (usize, &BallSites)| BallLengths {
+            touching: [sites[0].touching, sites[1].touching],
+            l: [0, 1].map(|k| lengths.of::<2>(2 * ball + k)),
         };
+        let places: Vec<BallLengths> = self.balls().enumerate().map(at).collect();
         let damping = means.damping.as_ref().map(|damping| {
             costs.time("contact_damping", || {
-                let at = |(s, l): (&Site, _)| viscous(damping, means.dt, s.touching, l);
-                places().map(at).collect::<Vec<_>>()
+                let of_ball =
+                    |at: &BallLengths| [0, 1].map(|k| viscous(damping, means.dt, at.touching[k], at.l[k]));
+                places.iter().map(of_ball).collect::<Vec<_>>()
             })
         });
         let scheme = (means.scheme, means.weight);
-        let viscous = |index: usize| damping.as_ref().map(|terms| terms[index]);
-        places()
-            .enumerate()
-            .map(|(index, (s, l))| mean_force(&s.law, s.touching, l, scheme, viscous(index)))
+        let viscous = |ball: usize| damping.as_ref().map(|terms| terms[ball]);
+        let balls = self.balls().zip(&places).enumerate();
+        balls
+            .map(|(ball, (sites, at))| mean_forces(&laws(sites), at, scheme, viscous(ball)))
             .collect()
     }
 }
 
-/// A contact as a link: l = reach + ball - groove centre.
-fn link(site: &Site, ball: usize, ring: &GrooveBodies) -> Link {
+/// The contacts of a ball as a link with their lengths, inner first: l = reach + ball - groove centre.
+fn link(sites: &BallSites, ball: usize, rings: &[GrooveBodies; 2]) -> Link {
     let body = Body::Lumped(ball);
     let mut terms = vec![
-        LinkTerm::new(body, 0, [1.0, 0.0]),
-        LinkTerm::new(body, 1, [0.0, 1.0]),
+        LinkTerm::new(body, 0, [1.0, 0.0, 1.0, 0.0]),
+        LinkTerm::new(body, 1, [0.0, 1.0, 0.0, 1.0]),
     ];
-    if let Some(elastic) = ring.elastic {
-        let body = Body::Elastic(elastic);
-        terms.push(LinkTerm::new(body, 2 * site.ball, [-1.0, 0.0]));
-        terms.push(LinkTerm::new(body, 2 * site.ball + 1, [0.0, -1.0]));
+    let mut reach = LinkRows::default();
+    for (site, ring) in sites.iter().zip(rings) {
+        let of_side = |[radial, axial]: [f64; 2]| match site.side {
+            Side::Inner => [radial, axial, 0.0, 0.0],
+            Side::Outer => [0.0, 0.0, radial, axial],
+        };
+        if let Some(elastic) = ring.elastic {
+            let body = Body::Elastic(elastic);
+            terms.push(LinkTerm::new(body, 2 * site.ball, of_side([-1.0, 0.0])));
+            terms.push(LinkTerm::new(body, 2 * site.ball + 1, of_side([0.0, -1.0])));
+        }
+        if let Some(carrier) = ring.carrier {
+            let rows = site.carrier_rows().into_iter().enumerate();
+            terms.extend(
+                rows.map(|(dof, row)| LinkTerm::new(Body::Lumped(carrier), dof, of_side(row.map(|r| -r)))),
+            );
+        }
+        let held = ring.held.get(site.ball).copied().unwrap_or_default();
+        let first = of_side([site.reach[0] - held[0], site.reach[1] - held[1]]);
+        reach.iter_mut().zip(first).for_each(|(sum, r)| *sum += r);
     }
-    if let Some(carrier) = ring.carrier {
-        let rows = site.carrier_rows().into_iter().enumerate();
-        terms.extend(rows.map(|(dof, row)| LinkTerm::new(Body::Lumped(carrier), dof, row.map(|r| -r))));
-    }
-    let mut reach: LinkRows = LinkRows::default();
-    let held = ring.held.get(site.ball).copied().unwrap_or_default();
-    (reach[0], reach[1]) = (site.reach[0] - held[0], site.reach[1] - held[1]);
-    let finite = ring.tilting.map(|carrier| CarriedCircle {
+    let finite = rings[Side::Inner.index()].tilting.map(|carrier| CarriedCircle {
         carrier,
         point: ball,
-        circle: site.circle(),
+        circle: sites[Side::Inner.index()].circle(),
     });
     Link { reach, terms, finite }
 }
@@ -302,7 +383,7 @@ impl Interaction for RacewayContacts {
     }
 
     fn n_rows(&self) -> usize {
-        2
+        N_ROWS
     }
 
     fn character(&self) -> Character {
@@ -315,21 +396,26 @@ impl Interaction for RacewayContacts {
 
     fn evaluate(&self, lengths: Lengths, costs: &SharedLaps) -> LinkForces {
         let n = self.sites.len();
-        let (mut forces, mut tangents) = (Vec::with_capacity(2 * n), Vec::with_capacity(4 * n));
-        let mut add = |force: [f64; 2], tangent: [[f64; 2]; 2]| {
-            forces.extend(force);
-            tangents.extend(tangent.into_iter().flatten());
-        };
+        let (mut forces, mut tangents) = (Vec::with_capacity(2 * n), Vec::with_capacity(8 * n));
         match self.means {
             Some(means) => {
-                let found = self.mean_forces(lengths, means, costs);
-                found.iter().for_each(|mean| add(mean.force, mean.tangent));
+                for found in self.mean_forces(lengths, means, costs) {
+                    forces.extend(found.contacts.iter().flat_map(|mean| mean.force));
+                    let own = found.contacts.map(|mean| mean.tangent);
+                    tangents.extend(tangent_of_ball(own, found.across));
+                }
             }
             None => {
-                let found = self.states(lengths.end);
-                found
-                    .iter()
-                    .for_each(|state| add(state.on_ring(), state.tangent()));
+                for (states, growth) in self.ball_states(lengths.end) {
+                    forces.extend(states.iter().flat_map(SiteState::on_ring));
+                    let gaps = states.map(|state| state.gap_slope());
+                    let across = |k: usize| {
+                        let row = states[k].normal.map(|n| growth[k][1 - k] * n);
+                        row.map(|r| gaps[1 - k].map(|gap| r * gap))
+                    };
+                    let own = states.map(|state| state.tangent());
+                    tangents.extend(tangent_of_ball(own, [across(0), across(1)]));
+                }
             }
         }
         for (force, dead) in forces.iter_mut().zip(self.dead.as_flattened()) {

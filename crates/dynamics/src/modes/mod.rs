@@ -255,7 +255,10 @@ impl Vibrating<'_> {
         }
         if let (Some(carried), Some(finite)) = (link.finite, finite) {
             for (coordinate, row_of) in carried.coordinates().into_iter().zip(finite.rows()) {
-                self.add(&mut growth, coordinate, row_of[row]);
+                row_of
+                    .get(row)
+                    .into_iter()
+                    .for_each(|value| self.add(&mut growth, coordinate, *value));
             }
         }
         growth
@@ -271,14 +274,15 @@ impl Vibrating<'_> {
     ) -> Option<LinkTangent> {
         let n = 5 + 2 * self.equilibrium.parts.balls.len();
         let mut tangent = vec![0.0; n * n];
-        let of_family = links.iter().zip(finite).zip(forces.as_chunks().0);
+        let forces = forces.chunks_exact(forces.len() / links.len().max(1));
+        let of_family = links.iter().zip(finite).zip(forces);
         let mut any = false;
         for ((link, finite), force) in of_family {
             let (Some(carried), Some(finite)) = (link.finite, finite) else {
                 continue;
             };
             any = true;
-            let curvature = finite.circle.curvature(finite.at, *force);
+            let curvature = finite.circle.curvature(finite.at, [force[0], force[1]]);
             let ball = 2 * (carried.point - FIRST_BALL);
             let place = |k: usize| if k < 5 { k } else { ball + k };
             for (i, row) in curvature.iter().enumerate() {

@@ -224,14 +224,13 @@ fn finish_seat(next: &mut MotionState, parts: &BearingParts, solution: &StepSolu
 
 fn finish_contacts(next: &mut MotionState, parts: &BearingParts, solution: &StepSolution) {
     let (mut start, mut end) = (0.0, 0.0);
-    for (index, site) in parts.contacts.sites.iter().enumerate() {
+    let states = [0, 1].map(|end| solution.states(parts, end));
+    for (index, (first, last)) in states[0].iter().zip(&states[1]).enumerate() {
         let [l0, l1] = solution.reach(index);
-        let at = |l: [f64; 2]| site.law.evaluate(l[0].hypot(l[1]) - site.touching);
-        let last = at(l1);
-        start += at(l0).energy;
-        end += last.energy;
-        next.approaches[index] = last.approach;
-        next.angles[index] = site.angle(l1);
+        start += first.force.energy;
+        end += last.force.energy;
+        next.approaches[index] = last.force.approach;
+        next.angles[index] = last.angle;
         next.forces[index] = solution.forces[index].force;
         next.ledger.contact_loss += solution.forces[index].loss;
         next.ledger.numerical_loss += solution.forces[index].numerical_loss;

@@ -11,7 +11,7 @@ use crate::bodies::AXES;
 use crate::error::DynamicsError;
 use crate::footprint::require_in_groove;
 use crate::interactions::discrete_gradient::MeanForce;
-use crate::interactions::raceway_contact::Site;
+use crate::interactions::raceway_contact::SiteState;
 use crate::model::{MAX_TILT, Model};
 use crate::system::newton::{Policy, RoundOff, Shortening};
 
@@ -47,6 +47,11 @@ impl StepSolution {
     pub fn reach(&self, site: usize) -> [[f64; 2]; 2] {
         lengths(&self.reaches).of(site)
     }
+
+    /// Contacts at the start, 0, or at the end, 1, of the part.
+    pub fn states(&self, parts: &BearingParts, end: usize) -> Vec<SiteState> {
+        parts.contacts.states(&self.reaches[end])
+    }
 }
 
 impl BearingParts {
@@ -68,8 +73,9 @@ impl BearingParts {
         let solved = system.solve(system.guess(), &policy)?;
         let (x, reaches) = (&solved.unknowns, self.reaches(&solved.unknowns));
         let means = self.contacts.means;
-        let forces = means.map(|means| self.contacts.mean_forces(lengths(&reaches), means, costs));
-        let forces = forces.unwrap_or_default();
+        let balls = means.map(|means| self.contacts.mean_forces(lengths(&reaches), means, costs));
+        let balls = balls.unwrap_or_default();
+        let forces: Vec<MeanForce> = balls.iter().flat_map(|ball| ball.contacts).collect();
         let on_shaft = system.forces_on(SHAFT, CONTACTS, x, &self.with_dead(&forces));
         let n_moving = 2 * self.balls.len();
         let mount = |side: Side| match self.elastic(side) {
@@ -135,10 +141,9 @@ fn left(what: String, value: String, limit: String) -> DynamicsError {
 
 /// Fails when a contact is beyond what its patch leaves of Hertz's law.
 pub(super) fn check_patches(parts: &BearingParts, solution: &StepSolution) -> Result<(), DynamicsError> {
-    let contacts = parts.contacts.sites.iter().zip(&solution.forces).enumerate();
-    for (index, (site, force)) in contacts {
-        let [_, end] = solution.reach(index);
-        if beyond_limit(site, end) {
+    let contacts = parts.contacts.sites.iter().zip(&solution.forces);
+    for ((site, force), state) in contacts.zip(solution.states(parts, 1)) {
+        if state.force.beyond_limit {
             return Err(DynamicsError::PatchTooSmall {
                 ball: site.ball,
                 side: site.side.name(),
@@ -147,8 +152,4 @@ pub(super) fn check_patches(parts: &BearingParts, solution: &StepSolution) -> Re
         }
     }
     Ok(())
-}
-
-fn beyond_limit(site: &Site, l: [f64; 2]) -> bool {
-    site.law.evaluate(l[0].hypot(l[1]) - site.touching).beyond_limit
 }

@@ -10,7 +10,7 @@ use super::run::Motion;
 use super::state::{Ladder, MotionSettings, MotionState};
 use crate::error::DynamicsError;
 use crate::interactions::discrete_gradient::ContactScheme;
-use crate::interactions::raceway_contact::{Site, on_rings};
+use crate::interactions::raceway_contact::{RacewayContacts, Site, on_rings};
 use crate::solution::StaticSolution;
 
 impl Motion<'_> {
@@ -156,32 +156,22 @@ impl Motion<'_> {
 
     /// Contacts of rigid bodies at the state's displacements: angles, approaches, forces and their energy.
     fn note_contacts(&self, state: &mut MotionState) {
-        for index in 0..state.forces.len() {
+        let n_contacts = state.forces.len();
+        let site = |index: usize| {
             let (ball, side) = (index / 2, Side::BOTH[index % 2]);
-            let site = Site::new(self.model, ball, side, self.ball_azimuth(ball, 0.0));
-            let mut l = site.reach;
-            for (i, l) in l.iter_mut().enumerate() {
-                *l += state.balls[ball][i];
-                if side == Side::Inner {
-                    *l -= (0..5)
-                        .map(|dof| site.carrier_rows()[dof][i] * state.shaft[dof])
-                        .sum::<f64>();
-                }
-            }
-            if side == Side::Inner {
-                let more = site.finite_motion(state.shaft, state.balls[ball]).lengths();
-                l.iter_mut().zip(more).for_each(|(l, more)| *l += more);
-            }
-            let length = l[0].hypot(l[1]);
-            let at = site.law.evaluate(length - site.touching);
-            let sign = side.sign();
-            state.approaches[index] = at.approach;
-            state.angles[index] = (sign * l[1]).atan2(sign * l[0]);
-            state.forces[index] = l.map(|x| at.force * x / length);
+            Site::new(self.model, ball, side, self.ball_azimuth(ball, 0.0))
+        };
+        let contacts = RacewayContacts::new((0..n_contacts).map(site).collect(), Vec::new(), None);
+        let reach = |site: &Site| site.reach_of_rigid(state.shaft, state.balls[site.ball]);
+        let lengths: Vec<f64> = contacts.sites.iter().flat_map(reach).collect();
+        for (index, contact) in contacts.states(&lengths).into_iter().enumerate() {
+            state.approaches[index] = contact.force.approach;
+            state.angles[index] = contact.angle;
+            state.forces[index] = contact.on_ring();
             for places in &mut state.places {
-                places[index] = [state.angles[index], at.force];
+                places[index] = [contact.angle, contact.force.force];
             }
-            state.ledger.hertz += at.energy;
+            state.ledger.hertz += contact.force.energy;
         }
     }
 }

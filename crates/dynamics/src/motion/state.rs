@@ -1,7 +1,8 @@
 //! Choices of a motion, all that evolves in it, and what a step reports.
 
 use super::ledger::Ledger;
-use crate::interactions::discrete_gradient::{ContactDamping, ContactScheme};
+use crate::interactions::contact_damping::ContactDamping;
+use crate::interactions::discrete_gradient::ContactScheme;
 use crate::kinematics::RingSpeeds;
 use ring::Integrator;
 use ring::RingState;

@@ -2,7 +2,7 @@
 
 #![allow(dead_code)]
 
-use contact::{BearingGeometry, HertzContact, Side};
+use contact::{BearingGeometry, HertzContact, Side, SphereCompliance};
 use dynamics::effects::{AxialForce, Effect, Moment, RadialForce};
 use dynamics::model::ShaftInertia;
 use dynamics::{ContactMode, ContactSettings, Model, ShaftDof, StaticSolution, StaticSolver, Tolerances};
@@ -68,6 +68,7 @@ impl Case {
         };
         Model {
             hertz: Side::BOTH.map(|side| HertzContact::new(&geometry, side, elastic, elastic)),
+            sphere: SphereCompliance::default(),
             geometry,
             rings: [None, None],
             ball_material: steel,
@@ -116,9 +117,20 @@ use dynamics::Hold;
 use rings::{Level, ring};
 
 impl Case {
-    /// The model with both rings flexible.
-    pub fn flexible(&self, mode: ContactMode, level: Level, hold: Hold) -> Model {
+    /// The model with rigid rings and balls that yield as spheres.
+    pub fn spheres(&self) -> Model {
         let mut model = self.rigid();
+        let elastic = dynamics::model::elastic(&model.ball_material);
+        model.sphere = SphereCompliance::new(elastic, model.geometry.ball_diameter, &model.hertz);
+        model
+    }
+
+    /// The model with both rings flexible, on spheres but for facets.
+    pub fn flexible(&self, mode: ContactMode, level: Level, hold: Hold) -> Model {
+        let mut model = match mode {
+            ContactMode::Facet => self.rigid(),
+            ContactMode::Patch | ContactMode::Rigid => self.spheres(),
+        };
         model.contact.mode = mode;
         model.rings = Side::BOTH.map(|side| Some(std::sync::Arc::new(ring(side, level, hold))));
         model

@@ -14,6 +14,17 @@ pub struct RawContact {
     inner_stiffness: Option<Quantity<HERTZ_STIFFNESS>>,
     outer_stiffness: Option<Quantity<HERTZ_STIFFNESS>>,
     patch_elements: Option<f64>,
+    ball: Option<BallElasticity>,
+}
+
+/// What a ball yields besides its Hertz contacts.
+#[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq)]
+#[serde(rename_all = "snake_case")]
+pub enum BallElasticity {
+    /// What a solid sphere between both contacts yields less than two half-spaces.
+    Sphere,
+    /// Nothing: Hertz's law alone.
+    HalfSpace,
 }
 
 /// How the raceways' shape, the forces on the rings and the local compliance are represented.
@@ -39,6 +50,9 @@ pub struct Contact {
     pub outer_stiffness: Option<f64>,
     /// Least semi-axis of a contact patch, in element sizes.
     pub patch_elements: f64,
+    /// What balls yield. By default spheres, but half-spaces with rigid rings (the Jones-Harris limit), with facets
+    /// (the paper's way) and where a stiffness is given.
+    pub ball: BallElasticity,
 }
 
 /// Smaller patches see single elements (design number: the structural compliance is then mesh-independent).
@@ -107,7 +121,13 @@ impl RawContact {
                 ),
             );
         }
+        let is_hertz = self.inner_stiffness.is_none() && self.outer_stiffness.is_none();
+        let usual = match self.mode {
+            ContactMode::Patch if is_hertz => BallElasticity::Sphere,
+            _ => BallElasticity::HalfSpace,
+        };
         Contact {
+            ball: self.ball.unwrap_or(usual),
             mode: self.mode,
             inner_stiffness: self.inner_stiffness.as_ref().map(Quantity::si),
             outer_stiffness: self.outer_stiffness.as_ref().map(Quantity::si),

@@ -70,7 +70,7 @@ use toml_edit::DocumentMut;
 
 pub use self::bearing::Bearing;
 pub(crate) use self::contact::unusual_stiffnesses;
-pub use self::contact::{Contact, ContactMode};
+pub use self::contact::{BallElasticity, Contact, ContactMode};
 pub use self::difference::difference;
 pub use self::dynamic::{ContactScheme, Dynamic, IntegratorChoice};
 pub use self::error::SceneError;

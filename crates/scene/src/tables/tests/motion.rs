@@ -1,7 +1,7 @@
 //! Scenes of motion in time, and what they say.
 
 use dynamics::effects::RingDamping;
-use dynamics::interactions::discrete_gradient::ContactDamping;
+use dynamics::interactions::contact_damping::ContactDamping;
 
 use super::*;
 
