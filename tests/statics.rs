@@ -32,29 +32,37 @@ pub fn reference() -> Dir {
 }
 
 /// Sum over the balls of the force between ball and ring: [x, y, z], N, on the inner ring with the sign of what the
-/// balls take from it; and its moment about x and y, N m, with the lever of the groove centres.
-fn resultant(balls: &Table, side: &str) -> ([f64; 3], [f64; 2]) {
+/// balls take from it; and its moment about x and y, N m, with the lever of the groove centres at these tilts, rad.
+fn resultant(balls: &Table, side: &str, tilt: [f64; 2]) -> ([f64; 3], [f64; 2]) {
     let force = balls.column(&format!("{side}_force_n"));
     let angle = balls.column(&format!("{side}_contact_angle_rad"));
     let azimuth = balls.column("azimuth_rad");
     let (mut sum, mut moment) = ([0.0; 3], [0.0; 2]);
     for i in 0..force.len() {
         let ((sin_a, cos_a), (sin, cos)) = (angle[i].sin_cos(), azimuth[i].sin_cos());
-        let axial = force[i] * sin_a;
-        sum[0] += force[i] * cos_a * cos;
-        sum[1] += force[i] * cos_a * sin;
+        let (radial, axial) = (force[i] * cos_a, force[i] * sin_a);
+        sum[0] += radial * cos;
+        sum[1] += radial * sin;
         sum[2] += axial;
-        moment[0] += INNER_LEVER * sin * axial;
-        moment[1] -= INNER_LEVER * cos * axial;
+        let lever = turned([cos, sin, 0.0], tilt).map(|x| INNER_LEVER * x);
+        moment[0] += lever[1] * axial - lever[2] * radial * sin;
+        moment[1] += lever[2] * radial * cos - lever[0] * axial;
     }
     (sum, moment)
+}
+
+/// A vector turned by the rotation vector [x, y, 0], to third order in it.
+fn turned(v: [f64; 3], [x, y]: [f64; 2]) -> [f64; 3] {
+    let cross = |a: [f64; 3]| [y * a[2], -x * a[2], x * a[1] - y * a[0]];
+    let [once, twice, thrice] = [cross(v), cross(cross(v)), cross(cross(cross(v)))];
+    [0, 1, 2].map(|i| v[i] + once[i] + twice[i] / 2.0 + thrice[i] / 6.0)
 }
 
 #[track_caller]
 fn assert_balanced(balls: &Table, [x, y, z]: [f64; 3]) {
     let scale = x.hypot(y).hypot(z);
     for side in ["inner", "outer"] {
-        let (sum, _) = resultant(balls, side);
+        let (sum, _) = resultant(balls, side, [0.0; 2]);
         for (sum, load) in sum.into_iter().zip([x, y, z]) {
             assert_within(side, sum, load, BALANCE * scale);
         }
@@ -77,7 +85,7 @@ fn ball_forces_balance_the_load() {
 #[test]
 fn the_reaction_of_a_locked_tilt_balances_the_moment_of_the_balls() {
     let dir = reference();
-    let (_, moment) = resultant(&Table::read(&dir, "out/balls.csv"), "inner");
+    let (_, moment) = resultant(&Table::read(&dir, "out/balls.csv"), "inner", [0.0; 2]);
     let shaft = Table::read(&dir, "out/shaft.csv");
     let scale = AXIAL * INNER_LEVER;
     for (name, moment) in ["reaction_tilt_x_n_m", "reaction_tilt_y_n_m"]
@@ -113,7 +121,9 @@ fn free_tilt_and_mean_motion_are_solved() {
         let balls = Table::read(&dir, &format!("{out}/balls.csv"));
         assert_balanced(&balls, [RADIAL, 0.0, AXIAL]);
         if out != "mean" {
-            let (_, moment) = resultant(&balls, "inner");
+            let shaft = Table::read(&dir, &format!("{out}/shaft.csv"));
+            let tilt = ["tilt_x_rad", "tilt_y_rad"].map(|name| shaft.column(name)[0]);
+            let (_, moment) = resultant(&balls, "inner", tilt);
             moment
                 .iter()
                 .for_each(|m| assert_within("moment", *m, 0.0, BALANCE * AXIAL * INNER_LEVER));

@@ -10,9 +10,10 @@
 //! Energy: V(g) = 2/5 K d_e^2.5 - (c_s + c_b) Q^2 / 2, dV/dg = Q.
 //!
 //! **Both contacts of a ball.** Each yields by x times the force of the other ([`crate::sphere`]): g_i = h_i(Q_i) +
-//! x Q_o, g_o = h_o(Q_o) + x Q_i. The forces are those of the law at g_i - x Q_o and g_o - x Q_i, found in turns that contract
-//! by x^2 dQ_i/dg dQ_o/dg, 3e-4 under 330 N. They are the gradient of V_i + V_o + x Q_i Q_o, convex where that product
-//! is below 1: the Hessian of the complementary energy, ((dh_i, x), (x, dh_o)), is positive definite then.
+//! x Q_o, g_o = h_o(Q_o) + x Q_i. The forces are those of the law at g_i - x Q_o and g_o - x Q_i, found in turns that
+//! contract by x^2 dQ_i/dg dQ_o/dg, 3e-4 under 330 N. They are the gradient of V_i + V_o + x Q_i Q_o, convex where that
+//! product is below 1: the Hessian of the complementary energy, ((dh_i, x), (x, dh_o)), is positive definite then. Far
+//! beyond any load a law is continued as a straight line, so that the product is at most 1/4.
 
 /// Slope of g(d_e) below which the law is continued linearly.
 pub const MIN_SLOPE: f64 = 0.1;
@@ -49,29 +50,44 @@ pub struct BallForces {
 /// Turns after which both forces of a ball stay as they are.
 const MOST_TURNS: usize = 60;
 
+/// Largest tangent of a contact times what it yields under the force of the other: beyond it the law is a straight
+/// line, so that the energy of both stays convex for any trial position.
+const SHARE: f64 = 0.5;
+
+impl BallForces {
+    /// Contacts that know nothing of each other.
+    fn apart(contacts: [ContactForce; 2]) -> BallForces {
+        let [inner, outer] = contacts.map(|contact| contact.tangent);
+        BallForces {
+            contacts,
+            tangent: [[inner, 0.0], [0.0, outer]],
+        }
+    }
+}
+
 impl BallLaws {
     /// Forces, tangent and energies at the geometric approaches `g`, m.
     pub fn evaluate(&self, g: [f64; 2]) -> BallForces {
-        let mut contacts = [self.laws[0].evaluate(g[0]), self.laws[1].evaluate(g[1])];
         let x = self.across;
-        if x == 0.0 || contacts.iter().any(|contact| contact.force == 0.0) {
-            let [inner, outer] = contacts.map(|contact| contact.tangent);
-            return BallForces {
-                contacts,
-                tangent: [[inner, 0.0], [0.0, outer]],
-            };
+        if x == 0.0 {
+            return BallForces::apart([0, 1].map(|k| self.laws[k].evaluate(g[k])));
+        }
+        let law = |k: usize, g: f64| self.laws[k].capped(g, SHARE / x);
+        let mut contacts = [law(0, g[0]), law(1, g[1])];
+        if contacts.iter().any(|contact| contact.force == 0.0) {
+            return BallForces::apart(contacts);
         }
         for _ in 0..MOST_TURNS {
             let before = contacts.map(|contact| contact.force);
-            contacts[0] = self.laws[0].evaluate(g[0] - x * before[1]);
-            contacts[1] = self.laws[1].evaluate(g[1] - x * contacts[0].force);
+            contacts[0] = law(0, g[0] - x * before[1]);
+            contacts[1] = law(1, g[1] - x * contacts[0].force);
             let still = |i: usize| (contacts[i].force - before[i]).abs() <= 2.0 * f64::EPSILON * before[i];
             if still(0) && still(1) {
                 break;
             }
         }
         let [inner, outer] = contacts.map(|contact| contact.tangent);
-        let shared = 1.0 / (1.0 - (x * x * inner * outer).min(0.5));
+        let shared = 1.0 / (1.0 - x * x * inner * outer);
         let cross = -x * inner * outer * shared;
         let energy = 0.5 * x * contacts[0].force * contacts[1].force;
         contacts.iter_mut().for_each(|contact| contact.energy += energy);
@@ -124,6 +140,34 @@ impl ContactLaw {
         state.energy = limit.energy + MIN_SLOPE * stored;
         state.beyond_limit = true;
         state
+    }
+
+    /// The law, continued as a straight line from where its tangent is `most`, N/m.
+    fn capped(&self, g: f64, most: f64) -> ContactForce {
+        let at = self.evaluate(g);
+        if at.tangent <= most {
+            return at;
+        }
+        let kappa = (self.patch_compliance + self.ball_compliance) * self.stiffness;
+        let root = most / (1.5 * (self.stiffness + kappa * most));
+        let slope = 1.0 - 1.5 * kappa * root;
+        let (corner, start) = if slope >= MIN_SLOPE {
+            (self.at_root(root, slope), geometric(root, kappa))
+        } else {
+            // The tangent passes `most` where the map to g is a straight line.
+            let root_limit = (1.0 - MIN_SLOPE) / (1.5 * kappa);
+            let approach = (most * MIN_SLOPE / (1.5 * self.stiffness)).powi(2);
+            let start = geometric(root_limit, kappa) + MIN_SLOPE * (approach - root_limit * root_limit);
+            (self.evaluate(start), start)
+        };
+        let more = g - start;
+        ContactForce {
+            force: corner.force + most * more,
+            tangent: most,
+            energy: corner.energy + (corner.force + 0.5 * most * more) * more,
+            approach: corner.approach + more,
+            beyond_limit: true,
+        }
     }
 
     fn at_root(&self, root: f64, slope: f64) -> ContactForce {

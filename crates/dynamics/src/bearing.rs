@@ -104,7 +104,7 @@ impl BearingParts {
             let carries = elastic.is_none() || self.interval == Interval::Rest;
             GrooveBodies {
                 carrier: self.carrier(side).filter(|_| carries),
-                tilting: (side == Side::Inner).then_some(SHAFT),
+                tilting: (side == Side::Inner && self.tilts()).then_some(SHAFT),
                 held: match elastic {
                     Some(_) => Vec::new(),
                     None => held[side.index()].clone(),
@@ -117,8 +117,12 @@ impl BearingParts {
 
     /// Loads whose moments change with the tilt of the shaft, if it may tilt.
     pub fn tilted_loads(&self, loads: &Loads) -> Option<TiltedLoads> {
-        let may = [3, 4].iter().any(|&dof| self.shaft.imposed[dof] != Some(0.0));
-        TiltedLoads::new(&loads.shaft, loads.lever).filter(|_| may)
+        TiltedLoads::new(&loads.shaft, loads.lever).filter(|_| self.tilts())
+    }
+
+    /// Whether the shaft may tilt.
+    fn tilts(&self) -> bool {
+        [3, 4].iter().any(|&dof| self.shaft.imposed[dof] != Some(0.0))
     }
 
     /// Their system.

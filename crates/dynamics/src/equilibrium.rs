@@ -26,9 +26,6 @@ const MOST_ITERATIONS: usize = 2000;
 /// Proximal stiffness over the contact stiffness scale.
 const PROXIMAL: f64 = 1e-9;
 
-/// Rounds that place a ball midway between its raceways; each gains the digits of the tilt.
-const MIDWAY_ROUNDS: usize = 6;
-
 /// Limits and scales of the search.
 #[derive(Clone, Copy, Debug)]
 pub struct SearchScales {
@@ -240,25 +237,20 @@ pub fn centre_unloaded(parts: &BearingParts, u: &mut Displacements) {
         .collect();
     // The weight of a ball across its meridian plane leaves round-off in that plane.
     let weightless = 4.0 * f64::EPSILON * loads.iter().copied().fold(0.0, f64::max);
-    let loaded = loaded(&on_rings(&parts.states_at(u)));
-    let is_free = |ball: usize| loaded[2 * ball..][..2] != [true, true] && loads[ball] <= weightless;
-    let free: Vec<usize> = (0..parts.balls.len()).filter(|&ball| is_free(ball)).collect();
-    // Once, and again because a ball sees a tilted ring otherwise from its new place.
-    for _ in 0..MIDWAY_ROUNDS {
-        let states = if free.is_empty() {
-            break;
-        } else {
-            parts.states_at(u)
-        };
-        for &ball in &free {
-            let pair = &parts.contacts.sites[2 * ball..][..2];
-            debug_assert!(pair[0].side == Side::Inner && pair[1].side == Side::Outer);
-            // Groove centres seen from the ball, then the point of equal gap on their line.
-            let [inner, outer] = [0, 1].map(|i| states[2 * ball + i].reach().map(|l| -l));
-            let shift = contact::geometry::midway(inner, outer, pair[0].touching, pair[1].touching);
-            u.balls[ball][0] += shift[0];
-            u.balls[ball][1] += shift[1];
+    let states = parts.states_at(u);
+    let loaded = loaded(&on_rings(&states));
+    let pairs = parts.contacts.sites.chunks_exact(2).zip(states.chunks_exact(2));
+    for ((pair, states), loaded) in pairs.zip(loaded.chunks_exact(2)) {
+        let ball = pair[0].ball;
+        if loaded == [true, true] || loads[ball] > weightless {
+            continue;
         }
+        debug_assert!(pair[0].side == Side::Inner && pair[1].side == Side::Outer);
+        // Groove centres seen from the ball, then the point of equal gap on their line.
+        let [centre_inner, centre_outer] = [0, 1].map(|i| states[i].reach().map(|l| -l));
+        let shift = contact::geometry::midway(centre_inner, centre_outer, pair[0].touching, pair[1].touching);
+        u.balls[ball][0] += shift[0];
+        u.balls[ball][1] += shift[1];
     }
 }
 

@@ -88,7 +88,7 @@ impl StaticSolution {
         let ball_work: f64 = ball_work
             .map(|((f, slope), x)| dot(&[f[0] + slope * x[0], f[1]], x))
             .sum();
-        let balls = ball_results(model, (parts, &finite), &states, &u);
+        let balls = ball_results(model, parts, &states, &u);
         let load_work = ball_work
             + dot(&parts.shaft_load(), &u.shaft)
             + dot(
@@ -138,11 +138,10 @@ impl StaticSolution {
     /// Contact forces on the ring of one side and the patches over which they are spread, by ball; empty for a rigid
     /// ring or facets.
     pub fn patches(&self, side: Side) -> Vec<LoadedPatch> {
-        let states = self.parts.states_at(&self.displacements);
         let patch = |(ball, foot): (usize, &Footprint)| {
             let contact = self.balls[ball].contact(side);
             let site = 2 * ball + side.index();
-            let angle = states[site].angle;
+            let angle = contact.contact_angle_rad;
             Some(LoadedPatch {
                 azimuth: self.parts.contacts.sites[site].ring_azimuth,
                 force: contact.force_n,
@@ -328,7 +327,7 @@ fn edge_warnings(footprints: &[Vec<Footprint>; 2], forces: &[[f64; 2]]) -> Vec<S
 /// Results of all balls at given displacements, where their contacts have these states.
 fn ball_results(
     model: &Model,
-    (parts, finite): (&BearingParts, &[Option<FiniteMotion>]),
+    parts: &BearingParts,
     states: &[SiteState],
     u: &Displacements,
 ) -> Vec<BallResult> {
@@ -338,10 +337,7 @@ fn ball_results(
         let hertz = &model.hertz[site.side.index()];
         ContactResult {
             force_n: state.force.force,
-            contact_angle_rad: match site.side {
-                Side::Inner => site.angle_in_space(state.angle, finite[site.ball]),
-                Side::Outer => state.angle,
-            },
+            contact_angle_rad: state.angle,
             approach_m: state.force.approach,
             semi_axes_m: hertz.semi_axes(state.force.force),
             peak_pressure_pa: hertz.peak_pressure(state.force.force),

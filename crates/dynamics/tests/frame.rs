@@ -148,7 +148,8 @@ fn a_locked_direction_stays_locked_in_space() {
 }
 
 /// Wrong: numerical dissipation would not be in the ledger, or a setting would gain energy. The unloading case under
-/// every setting of the family: the ledger closes, and what the integrator takes it never gives back.
+/// every setting of the family, in steps of 10 us, where the stability page shows all of them to lose energy: the
+/// ledger closes, and what the integrator takes it does not give back.
 #[test]
 fn every_integrator_closes_the_ledger() {
     let (model, start) = radial_step(5000.0, Hold::Clamped, false);
@@ -161,9 +162,9 @@ fn every_integrator_closes_the_ledger() {
     for (name, integrator) in family {
         let choices = MotionSettings {
             integrator,
-            ..settings(2e-5)
+            ..settings(1e-5)
         };
-        let states = run(&model, &start, choices, 50);
+        let states = run(&model, &start, choices, 100);
         let last = states.last().unwrap().ledger;
         println!(
             "{name}: defect {:.1e}, lost {:.2e} of {:.2e} J",

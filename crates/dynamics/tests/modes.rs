@@ -231,20 +231,13 @@ fn thrust_frequencies(model: &Model, solution: &StaticSolution, shaft: f64) -> V
     let ball = [0, 1].map(|i| [0, 1].map(|j| inner[i][j] + outer[i][j]));
     let (z, m) = (model.geometry.n_balls, model.ball_mass());
     // Coordinates of a wave: balls radial and axial with norm 1, shaft.
-    // Across its radius a groove of radius rho that moves by d is d^2 / (2 rho) farther from a ball: a stiffness of the
-    // radial force over the distance of the ball from the axis.
-    let ball_at = &solution.displacements.balls[0];
-    let contact = &solution.balls[0].inner;
-    let pull = -contact.force_n * contact.contact_angle_rad.cos();
-    let across = 0.5 * z as f64 * pull / (model.geometry.ball_centre()[0] + ball_at[0]);
     let with_shaft = |direction: usize, share: f64| {
-        let more = if direction == 0 { across } else { 0.0 };
         let (r, a) = (-share * inner[0][direction], -share * inner[1][direction]);
         small_frequencies(
             &[
                 &[ball[0][0], ball[0][1], r],
                 &[ball[1][0], ball[1][1], a],
-                &[r, a, share * share * inner[direction][direction] + more],
+                &[r, a, share * share * inner[direction][direction]],
             ],
             &[m, m, shaft],
         )

@@ -86,7 +86,6 @@ impl System<f64, DVector<f64>> for Bearing {
         let at = |i: usize| unit(i) * y[i];
         let (place, tilt) = ([at(0), at(1), at(2)], [at(3), at(4)]);
         let turned = rotation(tilt);
-        let back = [0, 1, 2].map(|i| [0, 1, 2].map(|j| turned[j][i]));
         let mut force = [pulse(1e-6 * t), 0.0, AXIAL];
         let mut moment = cross(times(&turned, [0.0, 0.0, LOAD_POINT]), force);
         let mut acceleration = vec![0.0; n];
@@ -98,28 +97,18 @@ impl System<f64, DVector<f64>> for Bearing {
             );
             for side in 0..2 {
                 let [radius, groove_z, touching] = self.grooves[side];
-                let mut from = [r * cos, r * sin, z - groove_z];
+                let (mut arm, mut moved) = ([radius * cos, radius * sin, 0.0], [0.0; 3]);
                 if side == 0 {
-                    from = times(&back, [0, 1, 2].map(|i| from[i] - place[i]));
+                    (arm, moved) = (times(&turned, arm), place);
                 }
-                let distance = from[0].hypot(from[1]);
-                let l = [distance - radius, from[2]];
+                let centre = [0, 1, 2].map(|i| arm[i] + moved[i]);
+                let l = [r - centre[0] * cos - centre[1] * sin, z - groove_z - centre[2]];
                 let length = l[0].hypot(l[1]);
                 let size = self.stiffness[side] * (length - touching).max(0.0).powf(1.5) / length;
-                let on_ring = [
-                    size * l[0] * from[0] / distance,
-                    size * l[0] * from[1] / distance,
-                    size * l[1],
-                ];
-                let on_ring = if side == 0 {
-                    times(&turned, on_ring)
-                } else {
-                    on_ring
-                };
-                acceleration[N_SHAFT + 2 * b] -= (on_ring[0] * cos + on_ring[1] * sin) / self.ball_mass;
-                acceleration[N_SHAFT + 1 + 2 * b] -= on_ring[2] / self.ball_mass;
+                acceleration[N_SHAFT + 2 * b] -= size * l[0] / self.ball_mass;
+                acceleration[N_SHAFT + 1 + 2 * b] -= size * l[1] / self.ball_mass;
                 if side == 0 {
-                    let arm = [r * cos - place[0], r * sin - place[1], z - groove_z - place[2]];
+                    let on_ring = [size * l[0] * cos, size * l[0] * sin, size * l[1]];
                     let about = cross(arm, on_ring);
                     (0..3)
                         .for_each(|i| (force[i], moment[i]) = (force[i] + on_ring[i], moment[i] + about[i]));

@@ -116,9 +116,9 @@ fn forces_and_moments_balance() {
         let mut total = cross(lever, force);
         total[0] += moment;
         for (ball, b) in solution.balls.iter().enumerate() {
-            // The ball presses the inner ring along the normal through its centre.
+            // The ball presses the inner ring along the normal at the centre of its groove.
             let at = InnerContact::new(&model, &solution, ball);
-            let arm = cross(at.ball, at.normal);
+            let arm = cross(at.centre, at.normal);
             for i in 0..3 {
                 force[i] += b.inner.force_n * at.normal[i];
                 total[i] += b.inner.force_n * arm[i];
@@ -148,7 +148,7 @@ fn a_bearing_tilted_by_three_degrees_balances_where_it_stands() {
     let (mut force, mut moment, mut largest) = ([0.0, 0.0, 2000.0], [0.0; 3], 0.0f64);
     for (ball, b) in solution.balls.iter().enumerate() {
         let at = InnerContact::new(&model, &solution, ball);
-        let arm = cross(at.ball, at.normal);
+        let arm = cross(at.centre, at.normal);
         for i in 0..3 {
             force[i] += b.inner.force_n * at.normal[i];
             moment[i] += b.inner.force_n * arm[i];

@@ -29,7 +29,7 @@
 //! each at D_w / 2 from the ball's centre, so that with lambda_i + lambda_o = 2 their couple is M_g. On the outer
 //! raceway the force helps to push the ball back along -z: the outer contact angle falls further than from the
 //! centrifugal force alone. A reversed speed changes no sign (omega_b and omega_c both reverse). The rings get the
-//! opposite forces at the centres of the balls and the shaft the couple of moving them there from the inner contacts;
+//! opposite forces at their groove centres and the shaft the couple of moving them there from the inner contacts;
 //! the local twist of a flexible ring by that couple is left out. Friction is not limited, but statics warns where
 //! lambda M_g / D_w is more than 0.15 times the contact force.
 //!
@@ -185,8 +185,8 @@ impl Effect for GyroscopicMoment {
                 let sign = side.sign();
                 loads.add_contact_force(ball, side, [-sign * size * sin, sign * size * cos]);
                 if side == Side::Inner {
-                    // From the contact to the centre of the ball, its radius away.
-                    let couple = -0.5 * model.geometry.ball_diameter * size;
+                    // From the contact to the groove centre, a groove radius away.
+                    let couple = -model.geometry.groove_radius(side) * size;
                     let (sin, cos) = (model.geometry.azimuth(ball) + now.cage_angle).sin_cos();
                     loads.shaft[3] -= couple * sin;
                     loads.shaft[4] += couple * cos;

@@ -35,7 +35,7 @@ pub struct Loads {
     /// Body loads on the nodes of a flexible ring, N, `[n_nodes][3]` flat; None: no such load.
     pub rings: [Option<Vec<f64>>; 2],
     /// Force on the ring at each contact [radial, axial] besides the normal one, N, by site (2 ball + side), acting
-    /// at the centre of the ball, which gets its negative. Empty: no effect adds any.
+    /// at the groove centre; the ball gets its negative. Empty: no effect adds any.
     pub contacts: Vec<[f64; 2]>,
     /// Turning of the rings' frames, inner first, where their inertia is called for.
     pub frames: [Option<FrameTurn>; 2],

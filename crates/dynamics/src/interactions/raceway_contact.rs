@@ -1,11 +1,11 @@
 //! The contacts of balls on raceways.
 //!
-//! With l the vector from groove centre to ball centre in the meridian plane of the ring, which may be tilted, the
-//! geometric approach is g = |l| + D_w/2 - R. |l| is convex in l and the contact energy V(g) convex and increasing, so
-//! the energy of a contact is convex in small displacements; finite ones bend l ([`crate::system::Circle`]). At rest
-//! its force is Q n, with n = l/|l| and Q = dV/dg; over a step it is a mean (see [`super::discrete_gradient`]). Both
-//! contacts of a ball have one energy, because the ball yields as a sphere ([`BallLaws`]). On faceted raceways, at rest
-//! only, g has a part of its own from the facets, and the forces have no energy.
+//! With l the vector from groove centre to ball centre in the meridian plane of the ball, the geometric approach is g =
+//! |l| + D_w/2 - R. |l| is convex in l and the contact energy V(g) convex and increasing, so the energy of a contact is
+//! convex in small displacements; finite ones bend l ([`crate::system::Circle`]). At rest its force is Q n, with n =
+//! l/|l| and Q = dV/dg; over a step it is a mean (see [`super::discrete_gradient`]). Both contacts of a ball have one
+//! energy, because the ball yields as a sphere ([`BallLaws`]). On faceted raceways, at rest only, g has a part of its
+//! own from the facets, and the forces have no energy.
 
 use std::sync::Arc;
 
@@ -17,8 +17,7 @@ use super::contact_damping::{ContactDamping, viscous};
 use super::discrete_gradient::{BallLengths, BallMeans, ContactScheme, mean_forces};
 use crate::model::Model;
 use crate::system::{
-    Body, CarriedCircle, Character, Circle, FiniteMotion, Interaction, Lengths, Link, LinkForces, LinkRows,
-    LinkTerm,
+    Body, CarriedCircle, Character, Circle, Interaction, Lengths, Link, LinkForces, LinkRows, LinkTerm,
 };
 
 /// One ball on one raceway.
@@ -57,7 +56,7 @@ pub struct SiteState {
     pub slope: [f64; 2],
     /// Force, its tangent over the contact's own approach, and energy.
     pub force: ContactForce,
-    /// Contact angle on the ring, rad.
+    /// Contact angle, rad.
     pub angle: f64,
 }
 
@@ -96,25 +95,16 @@ impl Site {
         ]
     }
 
-    /// The circle of groove centres and the ball that meets it.
+    /// The circle of groove centres.
     pub fn circle(&self) -> Circle {
         let (sin, cos) = self.azimuth.sin_cos();
         Circle {
             azimuth: [cos, sin],
             radius: self.lever,
-            reach: self.reach,
         }
     }
 
-    /// The same with the groove on a shaft and the ball at these displacements, m and rad.
-    pub fn finite_motion(&self, shaft: [f64; 5], ball: [f64; 2]) -> FiniteMotion {
-        FiniteMotion {
-            circle: self.circle(),
-            at: std::array::from_fn(|k| if k < 5 { shaft[k] } else { ball[k - 5] }),
-        }
-    }
-
-    /// Contact angle on the ring at l, rad.
+    /// Contact angle at l, rad.
     pub fn angle(&self, l: [f64; 2]) -> f64 {
         let sign = self.side.sign();
         (sign * l[1]).atan2(sign * l[0])
@@ -124,7 +114,7 @@ impl Site {
     pub fn reach_of_rigid(&self, shaft: [f64; 5], ball: [f64; 2]) -> [f64; 2] {
         let mut l = [0, 1].map(|i| self.reach[i] + ball[i]);
         if self.side == Side::Inner {
-            let more = self.finite_motion(shaft, ball).lengths();
+            let more = self.circle().lengths([shaft[3], shaft[4]]);
             let rows = self.carrier_rows();
             for (i, l) in l.iter_mut().enumerate() {
                 let of_shaft: f64 = rows.iter().zip(shaft).map(|(row, q)| row[i] * q).sum();
@@ -132,15 +122,6 @@ impl Site {
             }
         }
         l
-    }
-
-    /// Contact angle in space, rad, of one on the ring, whose groove has this finite motion: with it the force has its
-    /// components radial and axial.
-    pub fn angle_in_space(&self, angle: f64, finite: Option<FiniteMotion>) -> f64 {
-        let Some(finite) = finite else { return angle };
-        let (n, rows) = ([angle.cos(), angle.sin()], finite.rows());
-        let along = |i: usize| n[i] + rows[5 + i][0] * n[0] + rows[5 + i][1] * n[1];
-        along(1).atan2(along(0))
     }
 
     /// The contact at l, still without its force, and its approach, m.
@@ -251,7 +232,7 @@ pub struct GrooveBodies {
     pub elastic: Option<usize>,
     /// The lumped body that carries the ring, where its motion is not in that of the ports.
     pub carrier: Option<usize>,
-    /// The lumped body with which the groove turns and tilts, if it may: its motion is finite.
+    /// The lumped body with which the groove tilts, if it may: that is finite.
     pub tilting: Option<usize>,
     /// Motion of the groove centres that stays [radial, axial], m, by ball; empty is none.
     pub held: Vec<[f64; 2]>,
@@ -371,7 +352,6 @@ fn link(sites: &BallSites, ball: usize, rings: &[GrooveBodies; 2]) -> Link {
     }
     let finite = rings[Side::Inner.index()].tilting.map(|carrier| CarriedCircle {
         carrier,
-        point: ball,
         circle: sites[Side::Inner.index()].circle(),
     });
     Link { reach, terms, finite }

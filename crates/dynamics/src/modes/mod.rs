@@ -38,7 +38,7 @@ use crate::costs::{FACTOR, SEARCH};
 use crate::error::DynamicsError;
 use crate::model::{ContactMode, Model, ShaftDof};
 use crate::solution::StaticSolution;
-use crate::system::{Body, FiniteMotion, Link, LinkTerm};
+use crate::system::{Body, FiniteMotion, Link, LinkTerm, N_FINITE};
 use columns::{LengthGrowth, LinkTangent};
 use ring::{Backend, Partner, RingModel, VibratingRing};
 use system::{BearingDofs, VibratingBearing};
@@ -264,56 +264,39 @@ impl Vibrating<'_> {
         growth
     }
 
-    /// What finite motions add to the stiffness under the forces of the links: between the coordinates of the shaft and
-    /// of all balls.
+    /// What finite motions and the loads that follow them add to the stiffness of the tilts under the forces of the
+    /// links.
     fn curvature(
         &self,
         links: &[Link],
         finite: &[Option<FiniteMotion>],
         forces: &[f64],
     ) -> Option<LinkTangent> {
-        let n = 5 + 2 * self.equilibrium.parts.balls.len();
-        let mut tangent = vec![0.0; n * n];
-        let forces = forces.chunks_exact(forces.len() / links.len().max(1));
-        let of_family = links.iter().zip(finite).zip(forces);
-        let mut any = false;
-        for ((link, finite), force) in of_family {
-            let (Some(carried), Some(finite)) = (link.finite, finite) else {
-                continue;
-            };
-            any = true;
-            let curvature = finite.circle.curvature(finite.at, [force[0], force[1]]);
-            let ball = 2 * (carried.point - FIRST_BALL);
-            let place = |k: usize| if k < 5 { k } else { ball + k };
-            for (i, row) in curvature.iter().enumerate() {
-                for (k, value) in row.iter().enumerate() {
-                    tangent[n * place(i) + place(k)] += value;
-                }
+        let carrier = links.iter().find_map(|link| link.finite)?;
+        let mut tangent = [[0.0; N_FINITE]; N_FINITE];
+        let mut add = |sign: f64, values: [[f64; N_FINITE]; N_FINITE]| {
+            let sums = tangent.as_flattened_mut().iter_mut();
+            sums.zip(values.as_flattened())
+                .for_each(|(sum, value)| *sum += sign * value);
+        };
+        let forces = forces.chunks_exact(forces.len() / links.len());
+        for (finite, force) in finite.iter().zip(forces) {
+            if let Some(finite) = finite {
+                add(1.0, finite.circle.curvature(finite.at, [force[0], force[1]]));
             }
-        }
-        if !any {
-            return None;
         }
         let [.., tilt_x, tilt_y] = self.equilibrium.displacements.shaft;
-        let tilted = self.equilibrium.parts.shaft.tilted;
-        let slopes = tilted.map_or([[0.0; 2]; 2], |loads| loads.slopes([tilt_x, tilt_y]));
-        for (i, row) in slopes.iter().enumerate() {
-            for (k, slope) in row.iter().enumerate() {
-                tangent[n * (3 + i) + 3 + k] -= slope;
-            }
+        if let Some(loads) = self.equilibrium.parts.shaft.tilted {
+            add(-1.0, loads.slopes([tilt_x, tilt_y]));
         }
-        let coordinate = |k: usize| match k {
-            0..5 => (Body::Lumped(SHAFT), k),
-            _ => (Body::Lumped(FIRST_BALL + (k - 5) / 2), (k - 5) % 2),
-        };
-        let growth = |k: usize| {
+        let growth = |coordinate: (Body, usize)| {
             let mut growth = LengthGrowth::default();
-            self.add(&mut growth, coordinate(k), 1.0);
+            self.add(&mut growth, coordinate, 1.0);
             growth
         };
         Some(LinkTangent {
-            tangent,
-            lengths: (0..n).map(growth).collect(),
+            tangent: tangent.as_flattened().to_vec(),
+            lengths: carrier.coordinates().map(growth).to_vec(),
         })
     }
 

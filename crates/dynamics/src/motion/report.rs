@@ -8,7 +8,6 @@ use super::state::MotionState;
 use crate::balls::{BallDisplacement, BallResult, ContactResult};
 use crate::error::DynamicsError;
 use crate::footprint::on_groove;
-use crate::interactions::raceway_contact::Site;
 use ring::RingState;
 use ring::rigid::RigidInertia;
 
@@ -21,7 +20,7 @@ impl Motion<'_> {
             let hertz = &self.model.hertz[side.index()];
             ContactResult {
                 force_n: force,
-                contact_angle_rad: self.angle_in_space(state, ball, side),
+                contact_angle_rad: state.angles[index],
                 approach_m: state.approaches[index],
                 semi_axes_m: hertz.semi_axes(force),
                 peak_pressure_pa: hertz.peak_pressure(force),
@@ -38,18 +37,6 @@ impl Motion<'_> {
             },
         };
         (0..self.model.geometry.n_balls).map(ball).collect()
-    }
-
-    /// Contact angle in space at the end of the last step, rad.
-    fn angle_in_space(&self, state: &MotionState, ball: usize, side: Side) -> f64 {
-        let site = Site::new(
-            self.model,
-            ball,
-            side,
-            self.ball_azimuth(ball, self.time(state.step)),
-        );
-        let finite = (side == Side::Inner).then(|| site.finite_motion(state.shaft, state.balls[ball]));
-        site.angle_in_space(state.angles[2 * ball + side.index()], finite)
     }
 
     /// Contact forces on a flexible ring at the end of the last step, and the patches over which they are spread, by

@@ -56,11 +56,11 @@ pub fn on_tilts(tilt: [f64; 2], m: [f64; 3]) -> [f64; 2] {
 
 /// A contact of a ball with the inner ring, under a shaft that may tilt.
 pub struct InnerContact {
-    /// From the shaft's origin to the ball, m, in space.
-    pub ball: [f64; 3],
+    /// From the shaft's origin to the centre of the groove at the ball, m, in space.
+    pub centre: [f64; 3],
     /// Direction of the force on the ring, in space.
     pub normal: [f64; 3],
-    /// Direction of falling contact angle on the ring, in space.
+    /// Direction of falling contact angle, in space.
     pub along: [f64; 3],
 }
 
@@ -69,21 +69,19 @@ impl InnerContact {
         let g = &model.geometry;
         let (q, u) = (solution.displacements.shaft, solution.displacements.balls[ball]);
         let (sin, cos) = g.azimuth(ball).sin_cos();
-        let (centre, place) = (g.groove_centre(Side::Inner), g.ball_centre());
-        let (radial, axial) = (place[0] + u[0], place[1] + u[1] - centre[1]);
-        let p = [radial * cos - q[0], radial * sin - q[1], axial - q[2]];
-        let r = rotation([q[3], q[4]]);
-        let back = [0, 1, 2].map(|i| [0, 1, 2].map(|j| r[j][i]));
-        let [x, y, z] = times(&back, p);
-        let distance = x.hypot(y);
-        let l = [distance - centre[0], z];
+        let (groove, place) = (g.groove_centre(Side::Inner), g.ball_centre());
+        let centre = times(&rotation([q[3], q[4]]), [groove[0] * cos, groove[0] * sin, 0.0]);
+        let moved = [0, 1, 2].map(|i| q[i] + centre[i]);
+        let l = [
+            place[0] + u[0] - moved[0] * cos - moved[1] * sin,
+            place[1] + u[1] - groove[1] - moved[2],
+        ];
         let length = l[0].hypot(l[1]);
-        let at = |v: [f64; 2]| times(&r, [v[0] * x / distance, v[0] * y / distance, v[1]]);
-        let n = [l[0] / length, l[1] / length];
+        let space = |v: [f64; 2]| [v[0] * cos, v[0] * sin, v[1]];
         InnerContact {
-            ball: p,
-            normal: at(n),
-            along: at([-n[1], n[0]]),
+            centre,
+            normal: space([l[0] / length, l[1] / length]),
+            along: space([-l[1] / length, l[0] / length]),
         }
     }
 }
