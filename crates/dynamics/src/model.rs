@@ -15,6 +15,7 @@ use ring::{Backend, RingModel};
 
 use crate::effects::Effect;
 use crate::interactions::seat_spring::Seat;
+use crate::interactions::traction::Traction;
 
 /// Largest tilt for which small rotations hold, rad (about 3 deg).
 pub const MAX_TILT: f64 = 0.05;
@@ -149,6 +150,11 @@ impl Model {
     /// The seat of the outer ring, if it slides along the axis.
     pub fn seat(&self) -> Option<Seat> {
         self.effects.iter().find_map(|effect| effect.seat())
+    }
+
+    /// Traction of the balls, if they are free.
+    pub fn traction(&self) -> Option<&Traction> {
+        self.effects.iter().find_map(|effect| effect.traction())
     }
 
     /// Mass of one ball, kg.

@@ -2,8 +2,10 @@
 
 mod flat;
 mod frame_inertia;
+mod free_ball;
 mod inertia;
 
 pub use flat::{AXES, FlatBody, Name};
 pub use frame_inertia::{FrameInertia, StepTakes};
+pub use free_ball::FreeBall;
 pub use inertia::Inertia;

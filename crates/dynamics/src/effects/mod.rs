@@ -18,6 +18,7 @@ pub mod rayleigh_damping;
 pub mod rules;
 pub mod spring_preload;
 mod table;
+pub mod traction;
 pub mod unbalance;
 
 pub use axial_force::AxialForce;
@@ -31,6 +32,7 @@ pub use moment::Moment;
 pub use radial_force::RadialForce;
 pub use spring_preload::SpringPreload;
 pub use table::{About, Context, Entry, Need, RingDamping, Setting, SpeedRole, Table, Trial};
+pub use traction::FreeBalls;
 
 use input::{Problems, Schedule};
 use serde::Deserialize;
@@ -68,6 +70,8 @@ pub struct Effects {
     pub spring_preload: Option<spring_preload::Table>,
     /// A mass off the axis of shaft and inner ring.
     pub unbalance: Option<unbalance::Table>,
+    /// Traction of free balls.
+    pub traction: Option<traction::Table>,
 }
 
 impl Effects {
@@ -87,6 +91,7 @@ impl Effects {
             rayleigh_damping,
             spring_preload,
             unbalance,
+            traction,
         } = self;
         vec![
             axial_force,
@@ -101,6 +106,7 @@ impl Effects {
             rayleigh_damping,
             spring_preload,
             unbalance,
+            traction,
         ]
     }
 

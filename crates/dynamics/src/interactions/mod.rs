@@ -1,5 +1,7 @@
 //! Interactions of a bearing's bodies.
 
 pub mod discrete_gradient;
+pub mod free_contact;
 pub mod raceway_contact;
 pub mod seat_spring;
+pub mod traction;

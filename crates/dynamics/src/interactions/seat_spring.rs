@@ -7,7 +7,7 @@
 
 use timer::SharedLaps;
 
-use crate::system::{Body, Character, Interaction, Lengths, Link, LinkForces, LinkTerm};
+use crate::system::{Body, Character, Interaction, Lengths, Link, LinkForces, LinkRows, LinkTerm};
 
 /// A seat of the outer ring that slides along the axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -37,7 +37,7 @@ impl SeatSpring {
             seat,
             weight,
             links: [Link {
-                reach: [0.0; 6],
+                reach: LinkRows::default(),
                 terms,
             }],
         }

@@ -105,16 +105,19 @@ impl Motion<'_> {
                 damping: self.settings.contact_damping,
             }),
         };
-        Ok(BearingParts::new(
+        let free = self.free_parts(state, span, &contacts.sites, rings);
+        let n_kinematic = if free.is_some() { 0 } else { self.n_balls() };
+        let parts = BearingParts::new(
             Interval::Step(StepScheme { integrator, dt }),
             self.shaft(state, span, loads),
-            (0..self.n_balls())
+            (0..n_kinematic)
                 .map(|ball| self.ball(state, ball, loads))
                 .collect(),
             [ports(Side::Inner)?, ports(Side::Outer)?],
             contacts,
             self.seat(state, loads),
-        ))
+        );
+        Ok(parts.with_free(free))
     }
 
     fn seat(&self, state: &MotionState, loads: &Loads) -> Option<SeatStep> {
@@ -130,6 +133,17 @@ impl Motion<'_> {
             },
             weight: self.settings.integrator.alpha_f,
         })
+    }
+
+    /// The middle of a part.
+    pub(super) fn now(&self, span: Span) -> Now<'static> {
+        let time = self.weighted_time(span);
+        Now {
+            time,
+            width: span.dt,
+            cage_angle: self.cage_angle(time),
+            angles: None,
+        }
     }
 
     /// A flexible ring by its ports: contacts move freely, the mount follows its partner.
@@ -244,6 +258,6 @@ impl BearingParts {
             let force = solution.forces[site].force;
             [force[0] + dead[0], force[1] + dead[1]]
         };
-        (0..self.balls.len()).flat_map(of_ball).collect()
+        (0..self.n_balls()).flat_map(of_ball).collect()
     }
 }

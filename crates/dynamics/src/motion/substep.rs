@@ -9,6 +9,7 @@ use timer::{Laps, Stopwatch};
 
 use super::cache::{Ahead, ExpectedLoads, StepCache};
 use super::finite::require_finite;
+use super::free::check_apart;
 use super::part::RingSteps;
 use super::place::Placing;
 use super::run::Motion;
@@ -55,6 +56,7 @@ impl Motion<'_> {
         };
         check_patches(&part.parts, &solution)?;
         check_range(self.model, &part.parts, &solution)?;
+        check_apart(self.model, &part.parts, &solution.free_ends)?;
         let places = part.parts.places(&solution);
         self.check_on_grooves(&places)?;
         let (mut next, error) = self.finish(state, (&part.parts, span.dt), &solution, part.rings, ends.rings);
@@ -115,7 +117,10 @@ impl Motion<'_> {
         part: &mut Part<'_>,
     ) -> Result<StepSolution, DynamicsError> {
         for _ in 0..=MAX_PLACE_ROUNDS {
-            let solution = part.parts.solve_step(part.scale, &self.costs)?;
+            let solution = match part.parts.free {
+                Some(_) => part.parts.solve_free(self.model, part.scale, &self.costs)?,
+                None => part.parts.solve_step(part.scale, &self.costs)?,
+            };
             part.report.newton_iterations += solution.iterations;
             part.report.laps.add(NEWTON, part.clock.lap());
             let met = part.parts.places(&solution);

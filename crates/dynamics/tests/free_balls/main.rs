@@ -1,0 +1,9 @@
+//! Free balls on rigid rings against closed forms: rolling, sliding, driven and thrown balls, thrust, ledgers.
+
+#[path = "../support/mod.rs"]
+mod support;
+
+mod bearings;
+mod closed_forms;
+mod ledger;
+mod thrust;
