@@ -24,8 +24,8 @@ use super::loads::{Effect, Loads, Now};
 use super::rules::Case;
 use super::table::{self, About, Context, Need, Setting, SpeedRole};
 use crate::error::DynamicsError;
-use crate::interactions::traction::law::{CurvePoints, Table as LawTable};
-use crate::interactions::traction::{Creep, Curve, Places, Traction, TractionLaw};
+use crate::interactions::traction::law::{CurvePoints, SlipTable};
+use crate::interactions::traction::{Creep, Curve, PatchPoints, Traction, TractionLaw};
 use crate::kinematics::BallSpeeds;
 use crate::model::Model;
 
@@ -40,7 +40,7 @@ points = [3, 15]                # optional: places over the ellipse, along the r
 const MOST_FRICTION: f64 = 2.0;
 /// Most places in a direction: the error is below that of the law itself long before.
 const MOST_PLACES: usize = 63;
-/// Places without the key.
+/// PatchPoints without the key.
 const DEFAULT_PLACES: [usize; 2] = [3, 15];
 /// Axial load per ball over its centrifugal force below which balls skid (Hirano).
 const HIRANO: f64 = 10.0;
@@ -248,7 +248,7 @@ impl Table {
                 slip_of_most: self.slip_of_most.as_ref().map_or(1.0, Quantity::si),
                 at_large: self.at_large.unwrap_or_default(),
             })),
-            (Law::Curve, None, Some(slips)) => TractionLaw::Table(LawTable::new(
+            (Law::Curve, None, Some(slips)) => TractionLaw::Table(SlipTable::new(
                 slips.iter().map(Quantity::si).collect(),
                 self.coefficients.clone().unwrap_or_default(),
             )),
@@ -260,7 +260,7 @@ impl Table {
                 Some(RawCreep::Ratio(ratio)) => Creep::Ratio(ratio),
                 Some(RawCreep::Name(CreepName::Elastic)) | None => Creep::Elastic,
             },
-            places: Places::new(self.points.unwrap_or(DEFAULT_PLACES)),
+            places: PatchPoints::new(self.points.unwrap_or(DEFAULT_PLACES)),
         }
     }
 }

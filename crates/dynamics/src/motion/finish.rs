@@ -39,7 +39,7 @@ impl Motion<'_> {
                 if let Some(trend) = &mut trend {
                     let mean = mean_acceleration(&*step, [old, &end.state], dt);
                     let first = parts.n_balls() + i;
-                    for (ball, a) in mean.chunks_exact(2).enumerate() {
+                    for (ball, a) in mean.chunks_exact(2).take(parts.n_balls()).enumerate() {
                         trend[first + 2 * ball] = [a[0], a[1]];
                     }
                 }
@@ -93,7 +93,9 @@ impl Motion<'_> {
         if let Some(follow) = follow.filter(|follow| follow.body == SHAFT) {
             // What the shaft gives in space and what the ring gets in its frame differ by the work of the turning.
             let mount = &solution.mounts[side.index()];
-            let n = 2 * parts.n_balls();
+            let n = parts.rings[side.index()]
+                .as_ref()
+                .map_or(0, |ports| ports.n_moving);
             let (start, end) = (&step.answer().start[n..], follow.in_frame(solution.shaft));
             let in_frame: f64 = (0..mount.len().min(5))
                 .map(|i| mount[i] * (end[i] - start[i]))

@@ -2,12 +2,15 @@
 
 use std::sync::Arc;
 
-use contact::Side;
+use contact::patch::{PatchShape, slope_weights, traction_weights};
+use contact::{NodalWeights, Side};
+use rayon::prelude::*;
 use ring::ElasticStep;
 
 use super::free_state::{ContactTraction, FreeState};
 use super::ledger::FrictionLedger;
 use super::part::RingSteps;
+use super::place::Course;
 use super::run::Motion;
 use super::solve::StepSolution;
 use super::span::Span;
@@ -15,15 +18,20 @@ use super::state::MotionState;
 use crate::bearing::{BearingParts, FreeParts};
 use crate::bodies::FreeBall;
 use crate::error::DynamicsError;
-use crate::interactions::free_contact::place::Groove;
-use crate::interactions::free_contact::{ContactStep, FreeContacts, RingStep};
+use crate::footprint::{loaded, on_groove};
+use crate::interactions::free_contact::place::GrooveCircle;
+use crate::interactions::free_contact::{ContactStep, FreeContacts, RingStep, elastic_ports};
 use crate::interactions::raceway_contact::Site;
-use crate::interactions::traction::creep::Rolling;
+use crate::interactions::traction::creep::RollingContact;
 use crate::interactions::traction::{Ellipse, Traction};
-use crate::model::Model;
+use crate::model::{Model, elastic};
 
 /// Acceleration by which the least force of a contact is a weight, m/s^2: what opens has no size of its own.
 const EARTH: f64 = 9.81;
+
+/// Least half of the angle between the patches whose difference is a slope, rad: a ball that does not move along its
+/// ring.
+const LEAST_TRAVEL: f64 = 1e-5;
 
 /// Moment of inertia of a ball over its mass and the square of its diameter.
 const SPHERE: f64 = 0.1;
@@ -102,6 +110,77 @@ impl Motion<'_> {
         })
     }
 
+    /// Ports of a flexible ring that move freely: of each ball its groove, and of a free one patch and slope too.
+    pub(super) fn n_moving(&self) -> usize {
+        match self.model.traction() {
+            Some(_) => 6 * self.n_balls(),
+            None => 2 * self.n_balls(),
+        }
+    }
+
+    /// Where balls are in the middle of a part. A free ball is expected on the orbit that it has at the start: wrong by
+    /// dt^2/8 times its angular acceleration, 1e-4 of a patch where all friction speeds it up.
+    pub(super) fn course(&self, state: &MotionState, span: Span) -> Course {
+        let time = self.weighted_time(span);
+        let balls = 0..self.n_balls();
+        let Some(free) = &state.free else {
+            return Course {
+                time,
+                azimuths: balls.map(|ball| self.ball_azimuth(ball, time)).collect(),
+                travel: Vec::new(),
+            };
+        };
+        let half = 0.5 * span.dt;
+        let speeds = Side::BOTH.map(|side| self.settings.speeds.of(side).at(time));
+        Course {
+            time,
+            azimuths: balls
+                .clone()
+                .map(|ball| free.azimuth(ball) + half * free.orbit(ball))
+                .collect(),
+            travel: balls
+                .map(|ball| speeds.map(|speed| half * (free.orbit(ball) - speed)))
+                .collect(),
+        }
+    }
+
+    /// Weights of tractions, then of slopes, of all balls on a flexible ring.
+    pub(super) fn free_feet(
+        &self,
+        side: Side,
+        sites: &[Site],
+        places: &[[f64; 2]],
+        course: &Course,
+    ) -> Result<Vec<NodalWeights>, DynamicsError> {
+        let (Some(ring), Some(moving)) = (self.model.ring(side), &self.rings[side.index()]) else {
+            return Ok(Vec::new());
+        };
+        let forces: Vec<[f64; 2]> = places.iter().map(|p| [p[1], 0.0]).collect();
+        let loaded = loaded(&forces);
+        let raceway = &moving.raceway;
+        let of_ball = |ball: usize| {
+            let index = 2 * ball + side.index();
+            let [angle, force] = places[index];
+            let shape = PatchShape::new(
+                &raceway.surface,
+                sites[index].azimuth - self.frame_angle(side, course.time),
+                on_groove(&raceway.surface, angle, loaded[index]),
+                self.model.hertz[side.index()].semi_axes(force),
+                self.model.contact.patch_spacings,
+            )?;
+            let (surface, nodes, rule) = (&raceway.surface, &ring.mesh.nodes, &raceway.rule);
+            let half = course.travel[ball][side.index()].abs().max(LEAST_TRAVEL);
+            Ok([
+                traction_weights(surface, nodes, rule, shape)?,
+                slope_weights(surface, nodes, rule, (shape, half), elastic(&ring.material))?,
+            ])
+        };
+        let pairs: Result<Vec<[NodalWeights; 2]>, DynamicsError> =
+            (0..self.n_balls()).into_par_iter().map(of_ball).collect();
+        let (tractions, slopes): (Vec<_>, Vec<_>) = pairs?.into_iter().map(|[a, b]| (a, b)).unzip();
+        Ok(tractions.into_iter().chain(slopes).collect())
+    }
+
     fn free_ball(&self, free: &FreeState, span: Span, ball: usize) -> FreeBall {
         let inertia = self.ball_inertia();
         let now = self.now(span);
@@ -132,8 +211,14 @@ impl Motion<'_> {
         let turned = speed.angle(span.at(1.0)) - speed.angle(span.start);
         let spin = [turned / span.dt, speed.at(span.at(1.0))];
         let n_balls = self.n_balls();
-        if step.is_some() {
-            unreachable!("free balls on elastic rings are refused before");
+        if let Some(step) = step {
+            let at_start = |ball: usize| elastic_ports(ball, n_balls).map(|port| step.answer().start[port]);
+            let of_ball = |ball: usize| RingStep {
+                elastic: Some(at_start(ball)),
+                spin,
+                ..RingStep::default()
+            };
+            return (0..n_balls).map(of_ball).collect();
         }
         let (carrier, masses) = match (side, state.seat) {
             (Side::Inner, _) => ([state.shaft, state.shaft_velocity], self.model.shaft_masses()),
@@ -162,7 +247,7 @@ impl Motion<'_> {
         let (ball, geometry) = (site.ball, &self.model.geometry);
         let radius = 0.5 * geometry.ball_diameter;
         let groove_radius = geometry.groove_radius(site.side);
-        let groove = Groove {
+        let groove = GrooveCircle {
             radius: geometry.centre_radius(site.side),
             height: geometry.groove_centre(site.side)[1],
             lever: radius - 0.5 * state.approaches[index].max(0.0),
@@ -170,7 +255,7 @@ impl Motion<'_> {
         let [f_r, f_z] = state.forces[index];
         let force = f_r.hypot(f_z).max(EARTH * self.model.ball_mass());
         let semi_axes = self.model.hertz[site.side.index()].semi_axes(force);
-        let rolling = Rolling {
+        let rolling = RollingContact {
             speed: rolling_speed(
                 free,
                 ball,
@@ -215,7 +300,11 @@ impl Motion<'_> {
         for (contact, found) in free.contacts.contacts.iter().zip(&solution.free_contacts) {
             friction.loss -= found.work;
             friction.integrator_share += found.work_at_slip - found.work;
-            friction.drive_work += found.torque * contact.ring.spin[0] * contact.dt;
+            let turned = contact.ring.spin[0] * contact.dt;
+            friction.drive_work += found.torque * turned;
+            // What the slope force takes from a patch that moves on, ball and drive have.
+            friction.drive_work += found.slope.torque * turned;
+            next.ledger.patch_work += found.slope.work - found.slope.torque * turned;
             state.contacts.push(ContactTraction {
                 slip: found.slip.centre,
                 spin: found.slip.turning[2],

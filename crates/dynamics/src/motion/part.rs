@@ -24,7 +24,7 @@ pub(super) type RingSteps<'m> = [Option<Box<dyn ElasticStep + 'm>>; 2];
 
 /// Forces on a ring.
 pub(super) struct RingForces {
-    /// On its contacts, `[2 n_balls]`, N.
+    /// On its contacts, patches and slopes, N.
     contacts: Vec<f64>,
     /// On its mount, N and N m.
     mount: Vec<f64>,
@@ -157,7 +157,7 @@ impl Motion<'_> {
             offset: answer.predicted.clone(),
             at_forces: Vec::new(),
             stiffness: compliance::inverse(side, n, n_balls, &answer.compliance)?,
-            n_moving: 2 * n_balls,
+            n_moving: self.n_moving(),
             follow: carrier(side, n_balls, self.model.seat().is_some()).map(|body| Follow {
                 body,
                 frame: [angle(1.0 - self.settings.integrator.alpha_f), angle(1.0)],
@@ -250,7 +250,7 @@ impl BearingParts {
         }
     }
 
-    /// Forces on a ring's contacts, `[2 n_balls]`, N.
+    /// Forces on a ring's contacts, `[2 n_balls]`, N; with free balls those on patches and slopes follow.
     pub(super) fn ring_loads(&self, side: Side, solution: &StepSolution) -> Vec<f64> {
         let of_ball = |ball: usize| {
             let site = 2 * ball + side.index();
@@ -258,6 +258,13 @@ impl BearingParts {
             let force = solution.forces[site].force;
             [force[0] + dead[0], force[1] + dead[1]]
         };
-        (0..self.n_balls()).flat_map(of_ball).collect()
+        let mut loads: Vec<f64> = (0..self.n_balls()).flat_map(of_ball).collect();
+        if self.free.is_some() {
+            let on_patches = solution.free_contacts.iter().skip(side.index()).step_by(2);
+            loads.extend(on_patches.flat_map(|found| [0, 1].map(|i| -found.traction.action[i])));
+            // Slopes carry no force.
+            loads.resize(6 * self.n_balls(), 0.0);
+        }
+        loads
     }
 }

@@ -4,6 +4,7 @@ use contact::patch::PatchShape;
 use contact::{LoadedPatch, Side};
 
 use super::free_state::FreeState;
+use super::place::Course;
 use super::run::Motion;
 use super::state::MotionState;
 use crate::balls::{BallDisplacement, BallResult, ContactResult, FreeBallResult, Friction, TractionResult};
@@ -143,7 +144,14 @@ impl Motion<'_> {
     ) -> Result<[f64; 2], DynamicsError> {
         let share = 1.0 - self.settings.integrator.alpha_f;
         let time = self.time(from.step) + share * self.settings.dt;
-        let feet = self.place(&to.places[0], time)?.feet;
+        let course = Course {
+            time,
+            azimuths: (0..self.n_balls())
+                .map(|ball| self.ball_azimuth(ball, time))
+                .collect(),
+            travel: Vec::new(),
+        };
+        let feet = self.place(&to.places[0], &course)?.feet;
         let i = side.index();
         let (Some(moving), Some(old), Some(new)) = (&self.rings[i], &from.rings[i], &to.rings[i]) else {
             return Ok([0.0; 2]);

@@ -229,11 +229,6 @@ fn check_free(model: &Model, settings: &MotionSettings) -> Result<(), DynamicsEr
             "balls.motion = \"free\" with an integrator that dissipates; use integrator = \"average_acceleration\"",
         );
     }
-    if model.rings.iter().any(Option::is_some) {
-        return refuse(
-            "balls.motion = \"free\" on flexible rings; use inner.flexible = false and outer.flexible = false",
-        );
-    }
     Ok(())
 }
 

@@ -85,7 +85,7 @@ impl Motion<'_> {
         let expected = ahead.loads.clone();
         report.laps.add(LOADS, clock.lap());
         let places = expected.places.clone();
-        let placing = self.place(&places, self.weighted_time(span))?;
+        let placing = self.place(&places, &self.course(state, span))?;
         report.laps.add(PATCHES, clock.lap());
         let rings = self.begin_rings(state, ahead, &placing.feet)?;
         let known = longest(rings.iter().flatten().map(|step| step.laps()));
@@ -128,7 +128,7 @@ impl Motion<'_> {
                 return Ok(solution);
             }
             part.report.place_rounds += 1;
-            part.placing = self.place(&met, self.weighted_time(part.span))?;
+            part.placing = self.place(&met, &self.course(state, part.span))?;
             part.places = met;
             part.report.laps.add(PATCHES, part.clock.lap());
             self.move_contacts(part);

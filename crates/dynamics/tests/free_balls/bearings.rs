@@ -3,7 +3,7 @@
 use contact::{BearingGeometry, HertzContact, Side};
 use dynamics::effects::ball_centrifugal::BallCentrifugal;
 use dynamics::effects::traction::FreeBalls;
-use dynamics::interactions::traction::{Creep, Places, Traction, TractionLaw};
+use dynamics::interactions::traction::{Creep, PatchPoints, Traction, TractionLaw};
 use dynamics::kinematics::{BallSpeeds, RingSpeeds};
 use dynamics::motion::{Motion, MotionSettings, MotionState, StepCache};
 use dynamics::{Model, ShaftDof};
@@ -15,7 +15,7 @@ pub fn coulomb(mu: f64, creep: Creep) -> Traction {
     Traction {
         law: TractionLaw::Coulomb(mu),
         creep,
-        places: Places::new([3, 15]),
+        places: PatchPoints::new([3, 15]),
     }
 }
 

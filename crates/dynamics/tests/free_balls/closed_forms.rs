@@ -60,8 +60,8 @@ fn thrown(mu: f64, dt: f64, duration: f64) -> (Vec<(f64, MotionState)>, f64, [f6
 }
 
 /// Wrong: a thrown ball would not end in rolling with 5/7 of its speed and 5/7 of its energy, or not at any friction.
-/// In a groove the force is m v^2/R, so that v = v0/(1 + mu v0 t/R) while it slides. The lever is short of the radius by
-/// half of the approach, 3e-6 of it; the rest is the slip of creep and what differential slip goes on to take.
+/// In a groove the force is m v^2/R, so that v = v0/(1 + mu v0 t/R) while it slides. The lever is short of the radius
+/// by half of the approach, 3e-6 of it; the rest is the slip of creep and what differential slip goes on to take.
 #[test]
 fn a_thrown_ball_ends_in_rolling_with_five_sevenths_of_its_speed() {
     for mu in [0.05, 0.2] {

@@ -5,5 +5,6 @@ mod support;
 
 mod bearings;
 mod closed_forms;
+mod flexible;
 mod ledger;
 mod thrust;

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use contact::ContactLaw;
 
 use super::jet::{Jet, N_LENGTHS, Vector, cross, dot, fixed, minus, plus, scaled, times};
-use super::place::{Bodies, Frame, Groove, SlipJets, Standing, frame, standing};
+use super::place::{Bodies, ContactFrame, GrooveCircle, SlipJets, Standing, frame, standing};
 use crate::interactions::discrete_gradient::{ContactDamping, ContactScheme, MeanForce, mean_force, viscous};
 use crate::interactions::traction::{Ellipse, Resultant, Slip, Traction};
 
@@ -26,8 +26,9 @@ pub struct RingStep {
     pub carrier: [[f64; 5]; 2],
     /// Whether a dof of the carrier has inertia: else its velocity is the mean over the step.
     pub has_inertia: [bool; 5],
-    /// Of an elastic ring, motion of groove (r, z) and patch (t, q) at the start, and velocity; None: the ring is rigid.
-    pub elastic: Option<[[f64; 4]; 2]>,
+    /// Of an elastic ring, motion of groove (r, z), patch (t, q) and slope (r, z) at the start; None: the ring is
+    /// rigid.
+    pub elastic: Option<[f64; 6]>,
     /// Mean speed of the ring over the step, and that at its end, rad/s.
     pub spin: [f64; 2],
 }
@@ -40,7 +41,7 @@ pub struct ContactStep {
     /// Place, velocity and angular velocity of the ball at the start.
     pub ball: [[f64; 3]; 3],
     /// The groove.
-    pub groove: Groove,
+    pub groove: GrooveCircle,
     /// Force law.
     pub law: ContactLaw,
     /// |l| at which ball and groove touch, m.
@@ -80,6 +81,19 @@ pub struct FoundContact {
     pub work_at_slip: f64,
     /// Torque about the ring's axis with which traction turns the ball, N m: the drive of the ring works against it.
     pub torque: f64,
+    /// The slope force.
+    pub slope: SlopeForce,
+}
+
+/// The slope force of an elastic ring on a ball over a step.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct SlopeForce {
+    /// Along the rolling direction, N.
+    pub force: f64,
+    /// Its work on the ball, J.
+    pub work: f64,
+    /// Its torque about the axis, N m.
+    pub torque: f64,
 }
 
 impl ContactStep {
@@ -107,6 +121,7 @@ impl ContactStep {
         let mut resists = [Jet::default(); N_LENGTHS];
         self.add_normal(&mid, (&start, &last), load, &mut resists);
         let torque = self.add_traction(&mid, action, &mut resists);
+        let slope = self.add_slope(&mid, load, &x, &mut resists);
         let mean = mid.slip.slip.map(|s| s.value);
         // Place by place where it is the slip of the middle, so that no round-off makes it positive.
         let work_at_slip = self.dt * traction.power;
@@ -123,6 +138,7 @@ impl ContactStep {
             work,
             work_at_slip,
             torque,
+            slope,
         }
     }
 
@@ -137,7 +153,7 @@ impl ContactStep {
 
     fn start(&self) -> Standing {
         let carrier = self.ring.carrier[0].map(Jet::constant);
-        let motion = self.ring.elastic.map_or([0.0; 2], |[at, _]| [at[0], at[1]]);
+        let motion = self.ring.elastic.map_or([0.0; 2], |at| [at[0], at[1]]);
         standing(
             &self.groove,
             fixed(self.ball[0]),
@@ -165,6 +181,12 @@ impl ContactStep {
         }
     }
 
+    /// Mean velocity of the elastic patch along t and q.
+    fn patch_velocity(&self, x: &[Jet; N_LENGTHS]) -> [Jet; 2] {
+        let of = |at: [f64; 6]| [2, 3].map(|i| (x[6 + i] + -at[i]) * (1.0 / self.dt));
+        self.ring.elastic.map_or([Jet::default(); 2], of)
+    }
+
     fn normal_force(&self, start: &Standing, end: &Standing) -> MeanForce {
         let reach = [start.reach, end.reach].map(|l| l.map(|x| x.value));
         let damping = self
@@ -188,9 +210,7 @@ impl ContactStep {
                 (None, false) => change * (1.0 / self.dt),
             }
         });
-        let patch = self.ring.elastic.map_or([Jet::default(); 2], |[at, velocity]| {
-            [2, 3].map(|i| last(x[6 + i] + -at[i], velocity[i]))
-        });
+        let patch = self.patch_velocity(x);
         let bodies = Bodies {
             ball: [
                 plus(fixed(self.ball[0]), [x[0], x[1], x[2]]),
@@ -220,9 +240,7 @@ impl ContactStep {
         };
         let carrier: [Jet; 5] = std::array::from_fn(|i| change[i] * 0.5 + from[i]);
         let rate = change.map(|x| x * (1.0 / self.dt));
-        let patch = self.ring.elastic.map_or([Jet::default(); 2], |[at, _]| {
-            [2, 3].map(|i| (x[6 + i] + -at[i]) * (1.0 / self.dt))
-        });
+        let patch = self.patch_velocity(x);
         let motion = [x[0], x[1], x[2]];
         let place = plus(fixed(self.ball[0]), scaled(0.5, motion));
         let bodies = Bodies {
@@ -275,7 +293,7 @@ impl ContactStep {
 
     /// Adds the traction on the ball, `action` in (t, q) and about (t, q, n); returns its torque about the ring's axis.
     fn add_traction(&self, mid: &Middle, action: [Jet; 5], resists: &mut [Jet; N_LENGTHS]) -> f64 {
-        let Frame {
+        let ContactFrame {
             rolling,
             lateral,
             normal,
@@ -303,6 +321,31 @@ impl ContactStep {
         dot(about_ring, columns[2]).value
     }
 
+    /// Adds the slope force of an elastic ring.
+    fn add_slope(
+        &self,
+        mid: &Middle,
+        load: [Jet; 2],
+        x: &[Jet; N_LENGTHS],
+        resists: &mut [Jet; N_LENGTHS],
+    ) -> SlopeForce {
+        let Some(at) = self.ring.elastic else {
+            return SlopeForce::default();
+        };
+        let mean = [0, 1].map(|i| (x[10 + i] + at[4 + i]) * 0.5);
+        let out = (mid.arm[0] * mid.arm[0] + mid.arm[1] * mid.arm[1]).sqrt();
+        let along = (load[0] * mean[0] + load[1] * mean[1]) * out.recip();
+        let force = times(along, mid.frame.rolling);
+        for i in 0..3 {
+            resists[i] = resists[i] - force[i];
+        }
+        SlopeForce {
+            force: along.value,
+            work: (0..3).map(|i| force[i].value * x[i].value).sum(),
+            torque: cross(mid.arm, force)[2].value,
+        }
+    }
+
     fn slip_of(&self, number: [f64; 5]) -> Slip {
         Slip {
             centre: [number[0], number[1]],
@@ -320,7 +363,7 @@ impl ContactStep {
 
 /// The middle of a step.
 struct Middle {
-    frame: Frame,
+    frame: ContactFrame,
     /// From the ring's centre to the ball's, m.
     arm: Vector,
     /// Slip there.

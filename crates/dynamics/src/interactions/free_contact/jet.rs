@@ -6,7 +6,7 @@
 use std::ops::{Add, Mul, Neg, Sub};
 
 /// Lengths of a link of a free ball.
-pub const N_LENGTHS: usize = 11;
+pub const N_LENGTHS: usize = 12;
 
 /// A number and its growth with each length.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -93,7 +93,7 @@ impl Mul for Jet {
     fn mul(self, other: Jet) -> Jet {
         Jet {
             value: self.value * other.value,
-            slope: std::array::from_fn(|i| self.slope[i] * other.value + self.value * other.slope[i]),
+            slope: product_rule(&self, &other),
         }
     }
 }
@@ -115,6 +115,10 @@ impl Mul<f64> for Jet {
     fn mul(self, factor: f64) -> Jet {
         self.map(self.value * factor, factor)
     }
+}
+
+fn product_rule(a: &Jet, b: &Jet) -> [f64; N_LENGTHS] {
+    std::array::from_fn(|i| a.slope[i] * b.value + a.value * b.slope[i])
 }
 
 /// A vector that does not change.

@@ -4,18 +4,30 @@
 //! along (l1 + l0)/(|l1| + |l0|), [radial, axial]. The radial part acts in space along (b'_0 + b'_1)/(r_0 + r_1) across
 //! the ring's axis: its work is exactly F_r (r_1 - r_0), and it has no moment about that axis at the mean place.
 //!
-//! **Traction** ([`super::traction`]) follows the slip of the *end* of the step, in the frame of the end; its components
-//! act in the frame of the *middle*, at the mean place of the ball. The midpoint rule would let slip alternate from
-//! step to step; end velocities in the frame of the middle would be of first order. The work on both bodies is h f(s_1)
-//! . s_mean: h f(s_1) . s_1, which is never positive, and h/2 f(s_1) . (s_0 - s_1), the integrator's share. Where that
-//! sum comes out positive, a slip that reverses within the step, the contact takes the slip of the middle
-//! ([`SlipAt::Middle`]), for which it cannot.
+//! **Traction** ([`super::traction`]) follows the slip of the *end* of the step, in the frame of the end; its
+//! components act in the frame of the *middle*, at the mean place of the ball. The midpoint rule would let slip
+//! alternate from step to step; end velocities in the frame of the middle would be of first order. The work on both
+//! bodies is h f(s_1) . s_mean: h f(s_1) . s_1, which is never positive, and h/2 f(s_1) . (s_0 - s_1), the
+//! integrator's share. Where that sum comes out positive, a slip that reverses within the step, the contact takes the
+//! slip of the middle ([`SlipAt::Middle`]), for which it cannot.
 //!
 //! Ellipse, lever and the slip of creep are those of the start of the step. The ring gets the opposite force and moment
 //! at the same place; an elastic ring the force alone, along t and q of its patch, without the moment on its section.
+//! The elastic velocity of the patch is the mean over the step: modes of a ring that the step does not resolve
+//! alternate from step to step, and the slip would follow them.
+//!
+//! **Slope force**: a ball that moves along an elastic ring which its neighbours have bent climbs or falls. With
+//! u_c(psi) the motion of the groove centre and F the normal force on the ring, the ball gets
+//!
+//! ```text
+//! T = F . (du_c/dpsi) / r      along e_psi, at the mean motion of the ring over the step
+//! ```
+//!
+//! which is the energy that the contact gives as its patch moves on, per length of its course: what the patch loses,
+//! the ball and the drive of the ring gain. Where a ring is rigid the exact lengths have this force in them.
 //!
 //! Lengths of a link: displacement and rotation vector of the ball since the start (3 + 3), then either displacement of
-//! what carries the ring (5) or motion of an elastic ring at the ball (groove r, z; patch t, q; one unused).
+//! what carries the ring (5) or motion of an elastic ring at the ball (groove r, z; patch t, q; du_c/dpsi r, z).
 
 pub mod contact;
 pub mod jet;
@@ -33,7 +45,7 @@ use crate::system::{Body, Character, Interaction, Lengths, Link, LinkForces, Lin
 pub enum Carrier {
     /// A lumped body.
     Lumped(usize),
-    /// The ports of an elastic ring: grooves first, then patches.
+    /// The ports of an elastic ring: two of each groove, then of each patch, then of each slope.
     Elastic(usize),
     /// Nothing.
     AtRest,
@@ -67,9 +79,7 @@ impl FreeContacts {
             match rings[side] {
                 Carrier::Lumped(body) => terms.extend((0..5).map(|c| unit(Body::Lumped(body), c, 6 + c))),
                 Carrier::Elastic(body) => {
-                    let ports = [2 * ball, 2 * ball + 1].into_iter();
-                    let patch = [2 * (n_balls + ball), 2 * (n_balls + ball) + 1];
-                    let ports = ports.chain(patch).enumerate();
+                    let ports = elastic_ports(ball, n_balls).into_iter().enumerate();
                     terms.extend(ports.map(|(i, port)| unit(Body::Elastic(body), port, 6 + i)));
                 }
                 Carrier::AtRest => {}
@@ -87,6 +97,11 @@ impl FreeContacts {
         let at = |(i, contact): (usize, &ContactStep)| contact.evaluate(lengths.of(i));
         self.contacts.iter().enumerate().map(at).collect()
     }
+}
+
+/// Ports of an elastic ring at a ball: groove r, z; patch t, q; slope r, z.
+pub fn elastic_ports(ball: usize, n_balls: usize) -> [usize; 6] {
+    [0, 1, 2, 3, 4, 5].map(|i| 2 * ((i / 2) * n_balls + ball) + i % 2)
 }
 
 /// A coordinate that is a length of its own.

@@ -18,7 +18,7 @@ use super::jet::{Jet, Vector, cross, dot, fixed, minus, plus, scaled, times, val
 
 /// The groove circle and the lever of a contact.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Groove {
+pub struct GrooveCircle {
     /// Radius rho of the circle of groove centres, m.
     pub radius: f64,
     /// Height of its centre o on the axis, m.
@@ -55,7 +55,7 @@ pub struct Standing {
 
 /// Directions of a contact in space.
 #[derive(Clone, Copy, Debug)]
-pub struct Frame {
+pub struct ContactFrame {
     /// Rotation of the ring, by columns.
     pub columns: [Vector; 3],
     /// Turning of the ring by unit rates of its tilts.
@@ -76,7 +76,7 @@ pub struct SlipJets {
 }
 
 /// Where a ball at `ball` stands to a ring carried to `carrier`.
-pub fn standing(groove: &Groove, ball: Vector, carrier: [Jet; 5], motion: [Jet; 2]) -> Standing {
+pub fn standing(groove: &GrooveCircle, ball: Vector, carrier: [Jet; 5], motion: [Jet; 2]) -> Standing {
     let columns = rotation([carrier[3], carrier[4]]);
     let y = minus(
         minus(ball, fixed([0.0, 0.0, groove.height])),
@@ -93,7 +93,7 @@ pub fn standing(groove: &Groove, ball: Vector, carrier: [Jet; 5], motion: [Jet; 
 
 /// Directions of a contact whose ball is seen at `seen` (its length does not matter across the axis) with l along
 /// `reach`, on a ring with these tilts.
-pub fn frame(seen: Vector, reach: [Jet; 2], tilts: [Jet; 2]) -> Frame {
+pub fn frame(seen: Vector, reach: [Jet; 2], tilts: [Jet; 2]) -> ContactFrame {
     let columns = rotation(tilts);
     let out = (seen[0] * seen[0] + seen[1] * seen[1]).sqrt().recip();
     let (cos, sin) = (seen[0] * out, seen[1] * out);
@@ -105,7 +105,7 @@ pub fn frame(seen: Vector, reach: [Jet; 2], tilts: [Jet; 2]) -> Frame {
     };
     let rolling = in_space([-sin, cos, Jet::default()]);
     let normal = in_space([radial * cos, radial * sin, axial]);
-    Frame {
+    ContactFrame {
         columns,
         tilts: turnings(tilts),
         rolling,
@@ -114,9 +114,9 @@ pub fn frame(seen: Vector, reach: [Jet; 2], tilts: [Jet; 2]) -> Frame {
     }
 }
 
-impl Frame {
+impl ContactFrame {
     /// Slip of a ball and a ring in this frame.
-    pub fn slip(&self, groove: &Groove, bodies: &Bodies) -> SlipJets {
+    pub fn slip(&self, groove: &GrooveCircle, bodies: &Bodies) -> SlipJets {
         let [place, velocity, turning] = bodies.ball;
         let [at, rate] = bodies.carrier;
         let ring = plus(

@@ -27,7 +27,7 @@ const C_11: [[f64; 2]; 5] = [[0.1, 3.31], [0.2, 3.37], [0.3, 3.44], [0.5, 3.62],
 
 /// What creep depends on.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Rolling {
+pub struct RollingContact {
     /// Speed with which material runs through the contact, m/s.
     pub speed: f64,
     /// Force, N.
@@ -40,7 +40,7 @@ pub struct Rolling {
 
 impl Creep {
     /// s_v for the coefficient `mu` at small slip, m/s.
-    pub fn slip(&self, mu: f64, rolling: &Rolling) -> f64 {
+    pub fn slip(&self, mu: f64, rolling: &RollingContact) -> f64 {
         let ratio = match self {
             Creep::Ratio(ratio) => *ratio,
             Creep::Elastic => {
@@ -81,7 +81,7 @@ mod tests {
         };
         let geometry = BearingGeometry::reference_7010c();
         for (side, expected) in [(Side::Inner, 8.4e-4), (Side::Outer, 8.2e-4)] {
-            let rolling = Rolling {
+            let rolling = RollingContact {
                 speed: 3.0,
                 force: 332.0,
                 semi_axes: HertzContact::new(&geometry, side, steel, steel).semi_axes(332.0),
@@ -95,7 +95,7 @@ mod tests {
     /// Wrong: a ratio given by the user would be scaled by load or material, or a bearing at rest divide by zero.
     #[test]
     fn a_given_ratio_is_taken_as_it_is() {
-        let mut rolling = Rolling {
+        let mut rolling = RollingContact {
             speed: -2.0,
             force: 1.0,
             semi_axes: [1e-3, 1e-4],

@@ -19,7 +19,7 @@ pub enum TractionLaw {
     /// Gupta's four parameters.
     Curve(Curve),
     /// A table, cubic and monotone between its places.
-    Table(Table),
+    Table(SlipTable),
 }
 
 /// Gupta's law.
@@ -46,7 +46,7 @@ pub struct CurvePoints {
 
 /// A table of coefficients over slip.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Table {
+pub struct SlipTable {
     /// Slip, m/s, growing from 0, `[n]`.
     slips: Vec<f64>,
     /// Coefficients, `[n]`.
@@ -108,10 +108,10 @@ impl Curve {
     }
 }
 
-impl Table {
-    /// Through these places: at least two, slips growing from 0. Slopes are those of Fritsch and Carlson (SIAM J. Numer.
-    /// Anal. 17 (1980) 238), in the form of the harmonic mean: nothing overshoots.
-    pub fn new(slips: Vec<f64>, coefficients: Vec<f64>) -> Table {
+impl SlipTable {
+    /// Through these places: at least two, slips growing from 0. Slopes are those of Fritsch and Carlson (SIAM J.
+    /// Numer. Anal. 17 (1980) 238), in the form of the harmonic mean: nothing overshoots.
+    pub fn new(slips: Vec<f64>, coefficients: Vec<f64>) -> SlipTable {
         let n = slips.len();
         let chord = |i: usize| (coefficients[i + 1] - coefficients[i]) / (slips[i + 1] - slips[i]);
         let slope = |i: usize| {
@@ -129,7 +129,7 @@ impl Table {
             let (w0, w1) = (2.0 * h1 + h0, h1 + 2.0 * h0);
             (w0 + w1) / (w0 / left + w1 / right)
         };
-        Table {
+        SlipTable {
             slopes: (0..n).map(slope).collect(),
             slips,
             coefficients,
@@ -185,7 +185,7 @@ mod tests {
     #[test]
     fn a_table_is_met_at_its_places_and_monotone_between() {
         let (slips, values) = (vec![0.0, 0.1, 0.5, 2.0], vec![0.0, 0.08, 0.07, 0.02]);
-        let law = TractionLaw::Table(Table::new(slips.clone(), values.clone()));
+        let law = TractionLaw::Table(SlipTable::new(slips.clone(), values.clone()));
         for (s, mu) in slips.iter().zip(&values) {
             assert!((law.at(*s)[0] - mu).abs() < 1e-15);
         }

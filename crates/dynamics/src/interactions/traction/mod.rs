@@ -24,7 +24,7 @@ pub mod patch;
 
 pub use creep::Creep;
 pub use law::{Curve, TractionLaw};
-pub use patch::{Ellipse, Places, Resultant, Slip};
+pub use patch::{Ellipse, PatchPoints, Resultant, Slip};
 
 /// What a scene says of traction.
 #[derive(Clone, Debug, PartialEq)]
@@ -33,6 +33,6 @@ pub struct Traction {
     pub law: TractionLaw,
     /// Slope at small slip.
     pub creep: Creep,
-    /// Places over the ellipse.
-    pub places: Places,
+    /// PatchPoints over the ellipse.
+    pub places: PatchPoints,
 }

@@ -1,8 +1,8 @@
 //! Force and moment of traction over the ellipse of a contact.
 //!
 //! Quadrature: Gauss-Legendre in y/a with the weight 3/4 (1 - (y/a)^2), which is the ellipse's load per length; on each
-//! of these lines Chebyshev's of the second kind in x, for the pressure along it. The moment of pure spin is good to 0.8
-//! % with 3 x 15 places at a/b = 9.9, to 0.2 % with 3 x 31.
+//! of these lines Chebyshev's of the second kind in x, for the pressure along it. The moment of pure spin is good to
+//! 0.8 % with 3 x 15 places at a/b = 9.9, to 0.2 % with 3 x 31.
 
 use super::law::TractionLaw;
 
@@ -26,16 +26,16 @@ pub struct Ellipse {
 
 /// A place of the unit ellipse and its share of the load.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Place {
+struct PatchPoint {
     x: f64,
     y: f64,
     share: f64,
 }
 
-/// Places over an ellipse.
+/// PatchPoints over an ellipse.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Places {
-    places: Vec<Place>,
+pub struct PatchPoints {
+    places: Vec<PatchPoint>,
 }
 
 /// Traction on the ball about the centre of the contact, in the frame (t, q, n): two forces, N, and three moments, N m.
@@ -52,9 +52,9 @@ pub struct Resultant {
     pub severity: f64,
 }
 
-impl Places {
+impl PatchPoints {
     /// `along` places in each line along t, on `lines` lines across.
-    pub fn new([along, lines]: [usize; 2]) -> Places {
+    pub fn new([along, lines]: [usize; 2]) -> PatchPoints {
         let n = (along + 1) as f64;
         let mut places = Vec::with_capacity(along * lines);
         for [y, weight] in gauss_legendre(lines) {
@@ -62,14 +62,14 @@ impl Places {
             let load = 0.75 * (1.0 - y * y) * weight;
             for k in 1..=along {
                 let (sin, cos) = (k as f64 * std::f64::consts::PI / n).sin_cos();
-                places.push(Place {
+                places.push(PatchPoint {
                     x: half * cos,
                     y,
                     share: load * 2.0 / n * sin * sin,
                 });
             }
         }
-        Places { places }
+        PatchPoints { places }
     }
 
     /// Traction under a force of `force` N; `small` is the slip s_v, m/s.
@@ -118,7 +118,7 @@ impl Places {
     }
 }
 
-/// Places on -1..1 and weights of Gauss and Legendre's rule, ascending: the roots of P_n by Newton's iteration.
+/// PatchPoints on -1..1 and weights of Gauss and Legendre's rule, ascending: the roots of P_n by Newton's iteration.
 fn gauss_legendre(n: usize) -> Vec<[f64; 2]> {
     let root = |i: usize| {
         // Tricomi's first guess is good to 1e-3.
@@ -201,7 +201,7 @@ mod tests {
                     semi_axes,
                     radius: FLAT,
                 };
-                let found = Places::new(points).traction(
+                let found = PatchPoints::new(points).traction(
                     &TractionLaw::Coulomb(mu),
                     &ellipse,
                     &turning(100.0),
@@ -224,7 +224,7 @@ mod tests {
             semi_axes: [a, b],
             radius: 4.57e-3,
         };
-        let places = Places::new([3, 63]);
+        let places = PatchPoints::new([3, 63]);
         let at = |s: f64| {
             let slip = Slip {
                 centre: [s, 0.0],
@@ -257,7 +257,7 @@ mod tests {
             semi_axes: [a, 0.101 * a],
             radius: FLAT,
         };
-        let places = Places::new([15, 63]);
+        let places = PatchPoints::new([15, 63]);
         for (centre, share, moment) in [([w * a, 0.0], 0.998, 0.0037), ([0.0, w * a], 0.922, 0.169)] {
             let slip = Slip { centre, ..turning(w) };
             let found = places.traction(&TractionLaw::Coulomb(mu), &ellipse, &slip, (force, 1e-9));
@@ -281,7 +281,7 @@ mod tests {
             slip_of_most: 0.05,
             at_large: 0.03,
         });
-        let places = Places::new([3, 15]);
+        let places = PatchPoints::new([3, 15]);
         let slip = [0.02, -0.01, 30.0, 500.0, 120.0];
         let at = |law: &TractionLaw, s: [f64; 5]| {
             let slip = Slip {
