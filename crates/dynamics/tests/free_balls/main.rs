@@ -6,5 +6,6 @@ mod support;
 mod bearings;
 mod closed_forms;
 mod flexible;
+mod hard;
 mod ledger;
 mod thrust;
