@@ -66,6 +66,7 @@ fn ledger_terms(ledger: &Ledger) -> Vec<(&'static str, f64)> {
             ("drive_work", friction.drive_work),
             ("friction_loss", friction.loss),
             ("friction_integrator_share", friction.integrator_share),
+            ("drag_loss", friction.drag_loss),
         ]
     });
     let mut terms = vec![

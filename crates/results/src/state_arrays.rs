@@ -120,8 +120,9 @@ fn exchange_friction(friction: &mut FrictionLedger, port: &mut Port<'_>) -> anyh
         loss,
         integrator_share,
         drive_work,
+        drag_loss,
     } = friction;
-    port.scalars("ledger_friction", [loss, integrator_share, drive_work])
+    port.scalars("ledger_friction", [loss, integrator_share, drive_work, drag_loss])
 }
 
 /// Kinds of the vectors of a ring and how the names of their arrays end; the last one is of earlier versions.
@@ -347,6 +348,7 @@ mod tests {
                     loss: number(),
                     integrator_share: number(),
                     drive_work: number(),
+                    drag_loss: number(),
                 }),
             },
             free: Some(FreeState {

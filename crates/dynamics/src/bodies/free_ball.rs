@@ -8,6 +8,8 @@
 //! omega1)/2, so that nothing is lost to the size of the orbit. The inertia of a sphere is the same about all axes: in
 //! space there is no gyroscopic term, and centrifugal force is the inertia of a straight course. m v_mean . (v1 - v0)
 //! and J omega_mean . (omega1 - omega0) are exactly the changes of kinetic energy.
+//!
+//! Drag -c |v| v takes the mean velocity, u/h. Newton's tangent leaves it out: c |v| h / m is below 1e-3.
 
 use crate::system::{Interval, Lumped};
 
@@ -26,6 +28,8 @@ pub struct FreeBall {
     pub turning: [f64; 3],
     /// Mean load, N.
     pub load: [f64; 3],
+    /// Drag over the square of the speed, N s^2/m^2.
+    pub drag: f64,
     /// Step size, s.
     pub dt: f64,
 }
@@ -44,6 +48,19 @@ impl FreeBall {
     /// Place at the end for the coordinates `x`.
     pub fn end(&self, x: &[f64]) -> [f64; 3] {
         [0, 1, 2].map(|i| self.place[i] + x[i])
+    }
+
+    /// Energy that drag takes for the coordinates `x`, J.
+    pub fn drag_loss(&self, x: &[f64]) -> f64 {
+        let drag = self.drag_force(x);
+        drag.iter().zip(x).map(|(f, u)| f * u).sum()
+    }
+
+    /// Force that drag asks for, N.
+    fn drag_force(&self, x: &[f64]) -> [f64; 3] {
+        let mean = [0, 1, 2].map(|i| x[i] / self.dt);
+        let speed = mean.iter().map(|v| v * v).sum::<f64>().sqrt();
+        mean.map(|v| self.drag * speed * v)
     }
 
     /// Work of its load for the coordinates `x`, J.
@@ -92,9 +109,9 @@ impl Lumped for FreeBall {
 
     fn balance(&self, _interval: Interval, x: &[f64], residual: &mut [f64]) {
         let [velocity, turning] = self.velocities(x);
-        let [mass, moment] = self.inertia;
+        let ([mass, moment], drag) = (self.inertia, self.drag_force(x));
         for i in 0..3 {
-            residual[i] = mass * (velocity[i] - self.velocity[i]) / self.dt - self.load[i];
+            residual[i] = mass * (velocity[i] - self.velocity[i]) / self.dt - self.load[i] + drag[i];
             residual[3 + i] = moment * (turning[i] - self.turning[i]) / self.dt;
         }
     }
@@ -129,7 +146,7 @@ mod tests {
     use super::*;
 
     /// Wrong: a step would make or lose kinetic energy, or forget a load. Force and moment of the balance times the
-    /// motion are the change of kinetic energy less the work of the load.
+    /// motion are the change of kinetic energy less the work of the load and of drag.
     #[test]
     fn forces_over_a_step_are_its_change_of_energy() {
         let ball = FreeBall {
@@ -139,6 +156,7 @@ mod tests {
             velocity: [0.7, -2.0, 0.1],
             turning: [100.0, -20.0, 600.0],
             load: [0.2, -0.4, 0.1],
+            drag: 0.03,
             dt: 1e-5,
         };
         let x = [7.1e-6, -1.9e-5, 1.3e-6, 1.1e-3, -2e-4, 5.9e-3];
@@ -151,6 +169,6 @@ mod tests {
         };
         let [v, w] = ball.velocities(&x);
         let gain = energy(v, w) - energy(ball.velocity, ball.turning);
-        assert!((work + ball.load_work(&x) - gain).abs() < 1e-12 * energy(v, w));
+        assert!((work + ball.load_work(&x) - ball.drag_loss(&x) - gain).abs() < 1e-12 * energy(v, w));
     }
 }

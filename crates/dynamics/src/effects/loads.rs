@@ -167,6 +167,11 @@ pub trait Effect: Send + Sync {
         None
     }
 
+    /// Drag on a free ball over the square of its speed, N s^2/m^2.
+    fn drag(&self, _model: &Model) -> f64 {
+        0.0
+    }
+
     /// What a reader of an equilibrium should know: where the effect is beyond what it assumes.
     fn warning(&self, _model: &Model, _now: &Now, _balls: &[BallResult]) -> Option<String> {
         None

@@ -6,6 +6,7 @@
 
 pub mod axial_force;
 pub mod ball_centrifugal;
+pub mod ball_drag;
 pub mod cage_slip;
 pub mod contact_damping;
 pub mod frame_rotation;
@@ -72,6 +73,8 @@ pub struct Effects {
     pub unbalance: Option<unbalance::Table>,
     /// Traction of free balls.
     pub traction: Option<traction::Table>,
+    /// Drag on free balls.
+    pub ball_drag: Option<ball_drag::Table>,
 }
 
 impl Effects {
@@ -92,6 +95,7 @@ impl Effects {
             spring_preload,
             unbalance,
             traction,
+            ball_drag,
         } = self;
         vec![
             axial_force,
@@ -107,6 +111,7 @@ impl Effects {
             spring_preload,
             unbalance,
             traction,
+            ball_drag,
         ]
     }
 

@@ -17,7 +17,11 @@ pub(super) fn require_finite(state: &MotionState) -> Result<(), DynamicsError> {
     let of_contacts = [&state.angles, &state.approaches];
     let balls = of_balls.into_iter().flat_map(|x| x.as_flattened()).sum::<f64>();
     let free = state.free.iter().map(FreeState::sum).sum::<f64>();
-    let friction: f64 = ledger.friction.iter().map(|f| f.loss + f.drive_work).sum();
+    let friction: f64 = ledger
+        .friction
+        .iter()
+        .map(|f| f.loss + f.drive_work + f.drag_loss)
+        .sum();
     let contacts = of_contacts
         .into_iter()
         .flatten()

@@ -195,6 +195,12 @@ impl Motion<'_> {
             velocity: free.velocities[ball],
             turning: free.turnings[ball],
             load: fall.map(|a| inertia[0] * a),
+            drag: self
+                .model
+                .effects
+                .iter()
+                .map(|effect| effect.drag(self.model))
+                .sum(),
             dt: span.dt,
         }
     }
@@ -289,14 +295,15 @@ impl Motion<'_> {
     pub(super) fn finish_free(&self, next: &mut MotionState, parts: &BearingParts, solution: &StepSolution) {
         let Some(free) = &parts.free else { return };
         let mut state = FreeState::default();
+        let mut friction = next.ledger.friction.unwrap_or_default();
         for (ball, x) in free.balls.iter().zip(&solution.free_ends) {
             let [velocity, turning] = ball.velocities(x);
             state.places.push(ball.end(x));
             state.velocities.push(velocity);
             state.turnings.push(turning);
             next.ledger.load_work += ball.load_work(x);
+            friction.drag_loss += ball.drag_loss(x);
         }
-        let mut friction = next.ledger.friction.unwrap_or_default();
         for (contact, found) in free.contacts.contacts.iter().zip(&solution.free_contacts) {
             friction.loss -= found.work;
             friction.integrator_share += found.work_at_slip - found.work;

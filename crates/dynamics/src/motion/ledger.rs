@@ -46,6 +46,8 @@ pub struct FrictionLedger {
     pub integrator_share: f64,
     /// Work of the drives that keep both rings at their speeds against friction.
     pub drive_work: f64,
+    /// Energy lost to the drag of balls: never falls.
+    pub drag_loss: f64,
 }
 
 /// Share of the largest energy above which a user should know what the integrator took.
@@ -87,7 +89,7 @@ impl Ledger {
         let losses: f64 = self.losses().iter().sum();
         let defect = self.total() - self.initial - works + losses;
         match self.friction {
-            Some(friction) => defect - friction.drive_work + friction.loss,
+            Some(friction) => defect - friction.drive_work + friction.loss + friction.drag_loss,
             None => defect,
         }
     }
@@ -95,7 +97,10 @@ impl Ledger {
     /// Notes the present energies as a candidate for the scale.
     pub fn note_scale(&mut self) {
         let entries = self.works().into_iter().chain(self.losses());
-        let friction = self.friction.iter().flat_map(|f| [f.loss, f.drive_work]);
+        let friction = self
+            .friction
+            .iter()
+            .flat_map(|f| [f.loss, f.drive_work, f.drag_loss]);
         let largest = entries
             .chain(friction)
             .fold(self.total().abs(), |m, w| m.max(w.abs()));

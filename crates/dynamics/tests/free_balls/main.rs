@@ -8,4 +8,5 @@ mod closed_forms;
 mod flexible;
 mod hard;
 mod ledger;
+mod skid;
 mod thrust;

@@ -69,6 +69,12 @@ impl RawBalls {
                      [balls] with motion = \"free\", or remove it",
                 );
             }
+            if names.contains(&"ball_drag") {
+                problems.add(
+                    "[effects.ball_drag] needs free balls: nothing slows down balls whose motion is kinematic; write \
+                     [balls] with motion = \"free\", or remove it",
+                );
+            }
             return self.motion;
         }
         if !has_traction {

@@ -70,6 +70,16 @@ fn free_balls_and_traction_need_each_other() {
     let expected = "[effects.traction] needs free balls: balls whose motion is kinematic roll without friction; write \
                     [balls] with motion = \"free\", or remove it";
     assert!(alone.contains(expected), "{alone}");
+    let drag = message_of(
+        &free(
+            COULOMB,
+            "[effects.ball_drag]\ncoefficient = 0.5\ndensity = \"20 kg/m3\"",
+        ),
+        &["balls.motion=\"kinematic\""],
+    );
+    let expected = "[effects.ball_drag] needs free balls: nothing slows down balls whose motion is kinematic; write \
+                    [balls] with motion = \"free\", or remove it";
+    assert!(drag.contains(expected), "{drag}");
     let without = text.replace(&format!("[effects.traction]\n{COULOMB}"), "");
     let expected = "balls.motion is \"free\", but nothing carries the balls round; add [effects.traction] with law = \
                     \"coulomb\" and friction (0 is frictionless)";
@@ -96,6 +106,24 @@ fn free_balls_are_refused_where_they_are_not_computed() {
     let expected = "balls.motion is \"free\", which needs the energy of the balls to be kept; use dynamic.integrator = \
                     \"average_acceleration\"";
     assert!(message.contains(expected), "{message}");
+}
+
+/// Wrong: a drag that drives balls on would be computed.
+#[test]
+fn drags_that_cannot_be_are_refused() {
+    for (lines, expected) in [
+        (
+            "coefficient = -0.5\ndensity = \"20 kg/m3\"",
+            "effects.ball_drag.coefficient is -0.5; expected 0 to 1000, a ball has 0.4 to 1",
+        ),
+        (
+            "coefficient = 0.5\ndensity = \"-20 kg/m3\"",
+            "effects.ball_drag.density is -20 kg/m3; a density cannot be negative",
+        ),
+    ] {
+        let message = message_of(&free(COULOMB, &format!("[effects.ball_drag]\n{lines}")), &[]);
+        assert!(message.contains(expected), "{message}");
+    }
 }
 
 /// Wrong: a law that lacks a number, or has one too many or a wrong one, would be computed with another.
