@@ -105,6 +105,54 @@ impl Patch {
     }
 }
 
+/// Weights of a traction on the patch `shape`: mean motion of the patch along the rolling direction t and along q = n x
+/// t, n the normal into the ring. They spread forces by the same pressure.
+pub fn traction_weights(
+    surface: &RacewaySurface,
+    nodes: &NodePositions,
+    rule: &PressureRule,
+    shape: PatchShape,
+) -> Result<NodalWeights, ContactError> {
+    let sums = NodeSums::new(surface, nodes, rule, shape)?;
+    let ((sin, cos), (across, along)) = (shape.azimuth.sin_cos(), shape.angle.sin_cos());
+    let sign = surface.groove.side.sign();
+    let rolling = [-sin, cos, 0.0];
+    let lateral = [-sign * across * cos, -sign * across * sin, sign * along];
+    let scaled = |w: &f64| [rolling, lateral].map(|e| e.map(|x| w * x));
+    Ok(NodalWeights {
+        coefficients: sums.weights.iter().map(scaled).collect(),
+        nodes: sums.nodes,
+    })
+}
+
+/// Weights of the growth of the groove centre's motion [radial, axial] with the azimuth, 1/rad: those of patches half
+/// an angle `half`, rad, ahead and behind.
+pub fn slope_weights(
+    surface: &RacewaySurface,
+    nodes: &NodePositions,
+    rule: &PressureRule,
+    (shape, half): (PatchShape, f64),
+    elastic: Elastic,
+) -> Result<NodalWeights, ContactError> {
+    let at = |azimuth: f64| {
+        let shape = PatchShape { azimuth, ..shape };
+        Ok::<_, ContactError>(Patch::new(surface, nodes, rule, shape, elastic)?.weights)
+    };
+    let (ahead, behind) = (at(shape.azimuth + half)?, at(shape.azimuth - half)?);
+    let factor = 0.5 / half;
+    let mut sums = std::collections::BTreeMap::new();
+    for (weights, factor) in [(&ahead, factor), (&behind, -factor)] {
+        for (node, coefficients) in weights.nodes.iter().zip(&weights.coefficients) {
+            let sum: &mut [[f64; 3]; 2] = sums.entry(*node).or_default();
+            for i in 0..2 {
+                (0..3).for_each(|k| sum[i][k] += factor * coefficients[i][k]);
+            }
+        }
+    }
+    let (nodes, coefficients) = sums.into_iter().unzip();
+    Ok(NodalWeights { nodes, coefficients })
+}
+
 /// a + s b.
 fn axpy(a: [f64; 3], s: f64, b: [f64; 3]) -> [f64; 3] {
     [a[0] + s * b[0], a[1] + s * b[1], a[2] + s * b[2]]

@@ -38,6 +38,46 @@ pub struct BallResult {
     pub outer: ContactResult,
     /// Displacement.
     pub displacement_m: BallDisplacement,
+    /// Of a free ball, its turning and its traction.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub free: Option<FreeBallResult>,
+}
+
+/// Traction at one contact of a free ball.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct TractionResult {
+    /// Slip of the ball on the ring along the rolling direction and across it, m/s.
+    pub slip_m_per_s: [f64; 2],
+    /// Relative turning about the normal, rad/s.
+    pub spin_rad_per_s: f64,
+    /// Force on the ball along the rolling direction and across it, N.
+    pub traction_n: [f64; 2],
+    /// Power lost, W.
+    pub friction_power_w: f64,
+}
+
+/// What a free ball has besides.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct FreeBallResult {
+    /// Traction at the inner contact.
+    pub inner: TractionResult,
+    /// Traction at the outer contact.
+    pub outer: TractionResult,
+    /// Angular velocity in space, rad/s.
+    pub omega_rad_per_s: [f64; 3],
+    /// Speed round the axis, rad/s.
+    pub orbit_rad_per_s: f64,
+}
+
+/// Friction of all free balls.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Friction {
+    /// Torque that brakes the inner ring, N m.
+    pub torque_n_m: f64,
+    /// Power lost at all contacts, W.
+    pub power_w: f64,
+    /// Mean speed of the balls round the axis, rad/s.
+    pub cage_speed_rad_per_s: f64,
 }
 
 impl BallResult {

@@ -8,8 +8,9 @@
 use contact::Side;
 use ring::Partner;
 
-use crate::bodies::{FlatBody, Inertia, Name, TiltedLoads};
+use crate::bodies::{FlatBody, FreeBall, Inertia, Name, TiltedLoads};
 use crate::effects::Loads;
+use crate::interactions::free_contact::{Carrier, FreeContacts};
 use crate::interactions::raceway_contact::{GrooveBodies, Means, RacewayContacts, Site, SiteState};
 use crate::interactions::seat_spring::{Seat, SeatSpring};
 use crate::model::Model;
@@ -36,6 +37,16 @@ pub struct BearingParts {
     pub contacts: RacewayContacts,
     /// The seat of the outer ring and its spring, if it slides along the axis.
     pub seat: Option<SlidingSeat>,
+    /// Free balls and their contacts, in the place of `balls` and of the links of `contacts`.
+    pub free: Option<FreeParts>,
+}
+
+/// Free balls and their contacts.
+pub struct FreeParts {
+    /// The balls.
+    pub balls: Vec<FreeBall>,
+    /// Their contacts.
+    pub contacts: FreeContacts,
 }
 
 /// The seat of the outer ring along the axis.
@@ -77,16 +88,37 @@ impl BearingParts {
         seat: Option<SeatStep>,
     ) -> BearingParts {
         let ContactList { sites, dead, means } = contacts;
+        let n_balls = sites.len() / 2;
         let mut parts = BearingParts {
             interval,
             shaft,
             rings,
             contacts: RacewayContacts::new(sites, dead, means),
-            seat: seat.map(|step| SlidingSeat::new(step, FIRST_BALL + balls.len())),
+            seat: seat.map(|step| SlidingSeat::new(step, FIRST_BALL + n_balls)),
             balls,
+            free: None,
         };
         parts.connect(&[Vec::new(), Vec::new()]);
         parts
+    }
+
+    /// Puts free balls in the place of others; connects their contacts.
+    pub fn with_free(mut self, free: Option<FreeParts>) -> BearingParts {
+        let carriers = Side::BOTH.map(|side| match (self.elastic(side), self.carrier(side)) {
+            (Some(ring), _) => Carrier::Elastic(ring),
+            (None, Some(body)) => Carrier::Lumped(body),
+            (None, None) => Carrier::AtRest,
+        });
+        self.free = free;
+        if let Some(free) = &mut self.free {
+            free.contacts.connect(FIRST_BALL, carriers);
+        }
+        self
+    }
+
+    /// Number of balls.
+    pub fn n_balls(&self) -> usize {
+        self.contacts.sites.len() / 2
     }
 
     /// Puts flexible rings in the place of those before. Grooves of a ring that is None here stay at `held`, m, by
@@ -129,6 +161,8 @@ impl BearingParts {
     pub fn system(&self) -> System<'_> {
         let mut lumped: Vec<&dyn Lumped> = vec![&self.shaft];
         lumped.extend(self.balls.iter().map(|ball| ball as &dyn Lumped));
+        let free = self.free.iter().flat_map(|free| &free.balls);
+        lumped.extend(free.map(|ball| ball as &dyn Lumped));
         lumped.extend(self.seat.iter().map(|seat| &seat.body as &dyn Lumped));
         System::new(
             self.interval,
@@ -141,14 +175,16 @@ impl BearingParts {
     /// The interactions of its bodies.
     pub fn interactions(&self) -> Vec<&dyn Interaction> {
         let seat = self.seat.iter().map(|seat| &seat.spring as &dyn Interaction);
-        std::iter::once(&self.contacts as &dyn Interaction)
-            .chain(seat)
-            .collect()
+        let contacts: &dyn Interaction = match &self.free {
+            Some(free) => &free.contacts,
+            None => &self.contacts,
+        };
+        std::iter::once(contacts).chain(seat).collect()
     }
 
     /// Number of the lumped body that carries a ring; None is at rest.
     pub fn carrier(&self, side: Side) -> Option<usize> {
-        carrier(side, self.balls.len(), self.seat.is_some())
+        carrier(side, self.n_balls(), self.seat.is_some())
     }
 
     /// Number of a flexible ring among the elastic bodies.

@@ -88,6 +88,17 @@ pub enum DynamicsError {
         /// Its limit, with unit.
         limit: String,
     },
+    /// Two free balls run into each other.
+    #[error(
+        "balls {ball} and {other} run into each other: free balls have no cage in this version, and orbits that differ \
+         bring them together; shorten the run, or load the bearing so that all balls roll alike"
+    )]
+    BallsTouch {
+        /// A ball.
+        ball: usize,
+        /// The one after it.
+        other: usize,
+    },
     /// Contacts of a ring share so few nodes that they are not independent.
     #[error(
         "the mesh of the {side} ring has too few nodes on its raceway to tell {n_balls} balls apart: the compliance of its \

@@ -16,6 +16,7 @@ use ring::{Backend, RingModel};
 
 use crate::effects::Effect;
 use crate::interactions::seat_spring::Seat;
+use crate::interactions::traction::Traction;
 
 /// Largest tilt of the shaft, rad: a little more than 3 deg. Contacts take it exactly; the inertia of tilts is off by
 /// its square.
@@ -153,6 +154,11 @@ impl Model {
     /// The seat of the outer ring, if it slides along the axis.
     pub fn seat(&self) -> Option<Seat> {
         self.effects.iter().find_map(|effect| effect.seat())
+    }
+
+    /// Traction of the balls, if they are free.
+    pub fn traction(&self) -> Option<&Traction> {
+        self.effects.iter().find_map(|effect| effect.traction())
     }
 
     /// Mass of one ball, kg.

@@ -352,6 +352,7 @@ fn ball_results(
                 radial: u.balls[ball][0],
                 axial: u.balls[ball][1],
             },
+            free: None,
         })
         .collect()
 }

@@ -1,7 +1,7 @@
 //! One instant of a run as every kind of result shows it.
 
 use dynamics::StaticSolution;
-use dynamics::balls::BallResult;
+use dynamics::balls::{BallResult, Friction};
 use dynamics::kinematics::Rolling;
 use dynamics::motion::{Ledger, Motion, MotionState};
 
@@ -18,6 +18,8 @@ pub struct Snapshot {
     pub seat: Option<f64>,
     /// Force and moment that hold prescribed dofs, N and N m; None where it is not known (motion).
     pub reaction: Option<[f64; 5]>,
+    /// Friction of free balls; None where balls are not free.
+    pub friction: Option<Friction>,
     /// Energy terms, J, by name: the columns of `energy.csv`.
     pub energies: Vec<(&'static str, f64)>,
 }
@@ -33,6 +35,7 @@ impl Snapshot {
             shaft: solution.displacements.shaft,
             seat: solution.parts.seat.as_ref().map(|_| solution.displacements.seat),
             reaction: Some(solution.shaft_reaction),
+            friction: None,
             energies: vec![
                 ("strain", solution.strain_energy),
                 ("hertz", solution.hertz_energy),
@@ -51,13 +54,22 @@ impl Snapshot {
             shaft: state.shaft,
             seat: state.seat.map(|seat| seat[0]),
             reaction: None,
+            friction: motion.friction(state),
             energies: ledger_terms(&state.ledger),
         }
     }
 }
 
 fn ledger_terms(ledger: &Ledger) -> Vec<(&'static str, f64)> {
-    vec![
+    let friction = ledger.friction.into_iter().flat_map(|friction| {
+        [
+            ("drive_work", friction.drive_work),
+            ("friction_loss", friction.loss),
+            ("friction_integrator_share", friction.integrator_share),
+            ("drag_loss", friction.drag_loss),
+        ]
+    });
+    let mut terms = vec![
         ("kinetic_inner", ledger.kinetic[0]),
         ("kinetic_outer", ledger.kinetic[1]),
         ("kinetic_balls", ledger.kinetic[2]),
@@ -71,7 +83,8 @@ fn ledger_terms(ledger: &Ledger) -> Vec<(&'static str, f64)> {
         ("contact_loss", ledger.contact_loss),
         ("rayleigh_loss", ledger.rayleigh_loss),
         ("numerical_loss", ledger.numerical_loss),
-        ("total", ledger.total()),
-        ("defect", ledger.defect()),
-    ]
+    ];
+    terms.extend(friction);
+    terms.extend([("total", ledger.total()), ("defect", ledger.defect())]);
+    terms
 }

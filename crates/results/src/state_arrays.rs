@@ -9,7 +9,9 @@ use anyhow::{anyhow, ensure};
 use checkpoint::StateArray;
 use contact::Side;
 use dynamics::motion::RingState;
-use dynamics::motion::{Ledger, MotionState, RingShape, StateShape};
+use dynamics::motion::{
+    ContactTraction, FreeState, FrictionLedger, Ledger, MotionState, RingShape, StateShape,
+};
 
 /// Arrays by name.
 pub type Arrays = BTreeMap<String, StateArray>;
@@ -62,6 +64,7 @@ fn exchange(state: &mut MotionState, shape: &StateShape, port: &mut Port<'_>) ->
         angles,
         approaches,
         places,
+        free,
         ledger,
     } = state;
     let n_sites = 2 * shape.n_balls;
@@ -83,6 +86,10 @@ fn exchange(state: &mut MotionState, shape: &StateShape, port: &mut Port<'_>) ->
     for (part, places) in places.iter_mut().enumerate() {
         port.rows(&format!("places_{part}"), places, n_sites)?;
     }
+    if shape.has_free_balls {
+        exchange_free(free.get_or_insert_default(), shape.n_balls, port)?;
+        exchange_friction(ledger.friction.get_or_insert_default(), port)?;
+    }
     exchange_ledger(ledger, port)?;
     for (side, ring) in Side::BOTH.into_iter().zip(rings) {
         if let Some(shape) = shape.rings[side.index()] {
@@ -90,6 +97,32 @@ fn exchange(state: &mut MotionState, shape: &StateShape, port: &mut Port<'_>) ->
         }
     }
     Ok(())
+}
+
+fn exchange_free(free: &mut FreeState, n_balls: usize, port: &mut Port<'_>) -> anyhow::Result<()> {
+    let FreeState {
+        places,
+        velocities,
+        turnings,
+        contacts,
+    } = free;
+    port.rows("free_balls", places, n_balls)?;
+    port.rows("free_ball_velocities", velocities, n_balls)?;
+    port.rows("free_ball_turnings", turnings, n_balls)?;
+    let mut rows: Vec<[f64; 7]> = contacts.iter().map(|contact| contact.to_row()).collect();
+    port.rows("free_ball_contacts", &mut rows, 2 * n_balls)?;
+    *contacts = rows.into_iter().map(ContactTraction::from_row).collect();
+    Ok(())
+}
+
+fn exchange_friction(friction: &mut FrictionLedger, port: &mut Port<'_>) -> anyhow::Result<()> {
+    let FrictionLedger {
+        loss,
+        integrator_share,
+        drive_work,
+        drag_loss,
+    } = friction;
+    port.scalars("ledger_friction", [loss, integrator_share, drive_work, drag_loss])
 }
 
 /// Kinds of the vectors of a ring and how the names of their arrays end; the last one is of earlier versions.
@@ -152,6 +185,7 @@ fn exchange_ledger(ledger: &mut Ledger, port: &mut Port<'_>) -> anyhow::Result<(
         numerical_loss,
         initial,
         largest,
+        friction: _,
     } = ledger;
     port.values("ledger_kinetic", kinetic)?;
     port.values("ledger_strain", strain)?;
@@ -266,6 +300,7 @@ mod tests {
             None,
         ],
         has_seat: true,
+        has_free_balls: true,
     };
 
     /// A state in which every number is another one, with a NaN and a negative zero.
@@ -309,7 +344,21 @@ mod tests {
                 numerical_loss: number(),
                 initial: number(),
                 largest: number(),
+                friction: Some(FrictionLedger {
+                    loss: number(),
+                    integrator_share: number(),
+                    drive_work: number(),
+                    drag_loss: number(),
+                }),
             },
+            free: Some(FreeState {
+                places: (0..2).map(|_| [0, 1, 2].map(|_| number())).collect(),
+                velocities: (0..2).map(|_| [0, 1, 2].map(|_| number())).collect(),
+                turnings: (0..2).map(|_| [0, 1, 2].map(|_| number())).collect(),
+                contacts: (0..4)
+                    .map(|_| ContactTraction::from_row([(); 7].map(|()| number())))
+                    .collect(),
+            }),
         }
     }
 

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, anyhow};
 use checkpoint::{Companion, GrowingFile, Stamps};
-use dynamics::balls::{BallResult, ContactResult};
+use dynamics::balls::{BallResult, ContactResult, FreeBallResult, Friction};
 
 use super::cut::Cut;
 use super::probes::ProfileRow;
@@ -165,14 +165,16 @@ impl Tables {
             .into_iter()
             .collect();
         let shaft = snapshot.shaft.iter().chain(snapshot.reaction.iter().flatten());
-        let shaft = shaft.chain(&snapshot.seat);
+        let shaft = shaft.chain(&snapshot.seat).copied();
+        let friction = snapshot.friction.iter().flat_map(friction_cells);
+        let shaft = shaft.chain(friction);
         let energies = snapshot.energies.iter();
         append(
             &mut self.balls,
             BALLS,
             balls.map(|(i, ball)| row([ball_cells(i, ball), spin.clone()].concat())),
         )?;
-        append(&mut self.shaft, SHAFT, [row(shaft.map(|x| number(*x)).collect())])?;
+        append(&mut self.shaft, SHAFT, [row(shaft.map(number).collect())])?;
         append(
             &mut self.energy,
             ENERGY,
@@ -263,7 +265,57 @@ fn ball_cells(index: usize, ball: &BallResult) -> Vec<String> {
         cells.extend(rest_of(contact).map(number));
     }
     cells.extend([ball.displacement_m.radial, ball.displacement_m.axial].map(number));
+    if let Some(free) = &ball.free {
+        cells.extend(free_cells(free).map(number));
+    }
     cells
+}
+
+const TRACTION_COLUMNS: [&str; 6] = [
+    "slip_rolling_m_per_s",
+    "slip_lateral_m_per_s",
+    "spin_rad_per_s",
+    "traction_rolling_n",
+    "traction_lateral_n",
+    "friction_power_w",
+];
+
+const FREE_BALL_COLUMNS: [&str; 4] = [
+    "omega_x_rad_per_s",
+    "omega_y_rad_per_s",
+    "omega_z_rad_per_s",
+    "orbit_rad_per_s",
+];
+
+const FRICTION_COLUMNS: [&str; 3] = ["friction_torque_n_m", "friction_power_w", "cage_speed_rad_per_s"];
+
+/// Cells of a free ball: both contacts, then its turning.
+fn free_cells(ball: &FreeBallResult) -> [f64; 16] {
+    let [inner, outer] = [&ball.inner, &ball.outer].map(|contact| {
+        let ([s_t, s_q], [f_t, f_q]) = (contact.slip_m_per_s, contact.traction_n);
+        [
+            s_t,
+            s_q,
+            contact.spin_rad_per_s,
+            f_t,
+            f_q,
+            contact.friction_power_w,
+        ]
+    });
+    let [x, y, z] = ball.omega_rad_per_s;
+    let turning = [x, y, z, ball.orbit_rad_per_s];
+    let mut cells = [0.0; 16];
+    let all = inner.into_iter().chain(outer).chain(turning);
+    cells.iter_mut().zip(all).for_each(|(cell, value)| *cell = value);
+    cells
+}
+
+fn friction_cells(friction: &Friction) -> [f64; 3] {
+    [
+        friction.torque_n_m,
+        friction.power_w,
+        friction.cage_speed_rad_per_s,
+    ]
 }
 
 fn rest_of(contact: &ContactResult) -> [f64; 4] {
@@ -296,6 +348,12 @@ fn columns(swept: Option<&str>, first: &Snapshot) -> [Vec<String>; 3] {
         balls.extend(CONTACT_COLUMNS[2..].iter().map(|c| format!("{side}_{c}")));
     }
     balls.extend(names(&["displacement_radial_m", "displacement_axial_m"]));
+    if first.friction.is_some() {
+        for side in ["inner", "outer"] {
+            balls.extend(TRACTION_COLUMNS.iter().map(|c| format!("{side}_{c}")));
+        }
+        balls.extend(names(&FREE_BALL_COLUMNS));
+    }
     if first.spin.is_some() {
         balls.push("spin_rad_per_s".to_string());
     }
@@ -305,6 +363,9 @@ fn columns(swept: Option<&str>, first: &Snapshot) -> [Vec<String>; 3] {
     }
     if first.seat.is_some() {
         shaft.push("outer_seat_z_m".to_string());
+    }
+    if first.friction.is_some() {
+        shaft.extend(names(&FRICTION_COLUMNS));
     }
     let terms = first.energies.iter();
     let energy: Vec<String> = terms.map(|(term, _)| format!("{term}_j")).collect();

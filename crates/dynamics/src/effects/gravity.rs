@@ -149,9 +149,13 @@ impl Effect for Gravity {
         "gravity"
     }
 
-    fn add_loads(&self, model: &Model, now: &Now, loads: &mut Loads) -> Result<(), DynamicsError> {
+    fn acceleration(&self, now: &Now) -> [f64; 3] {
         let factor = now.factor(&self.schedule);
-        let g = self.acceleration.map(|a| factor * a);
+        self.acceleration.map(|a| factor * a)
+    }
+
+    fn add_loads(&self, model: &Model, now: &Now, loads: &mut Loads) -> Result<(), DynamicsError> {
+        let g = self.acceleration(now);
         let mass = model.ball_mass();
         for (ball, load) in loads.balls.iter_mut().enumerate() {
             let (sin, cos) = (model.geometry.azimuth(ball) + now.cage_angle).sin_cos();

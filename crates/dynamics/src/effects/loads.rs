@@ -10,6 +10,7 @@ use timer::SharedLaps;
 use crate::balls::BallResult;
 use crate::error::DynamicsError;
 use crate::interactions::seat_spring::Seat;
+use crate::interactions::traction::Traction;
 use crate::model::Model;
 use ring::division::NodePlaces;
 
@@ -158,6 +159,21 @@ pub trait Effect: Send + Sync {
     /// Slot of interactions: the spring that holds the outer ring along the axis, whose seat then slides.
     fn seat(&self) -> Option<Seat> {
         None
+    }
+
+    /// Uniform acceleration that acts on every mass at an instant, m/s^2: the load of a free ball, in space.
+    fn acceleration(&self, _now: &Now) -> [f64; 3] {
+        [0.0; 3]
+    }
+
+    /// Slot of free balls: their traction; balls are free where there is one.
+    fn traction(&self) -> Option<&Traction> {
+        None
+    }
+
+    /// Drag on a free ball over the square of its speed, N s^2/m^2.
+    fn drag(&self, _model: &Model) -> f64 {
+        0.0
     }
 
     /// What a reader of an equilibrium should know: where the effect is beyond what it assumes.

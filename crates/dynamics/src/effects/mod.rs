@@ -6,6 +6,7 @@
 
 pub mod axial_force;
 pub mod ball_centrifugal;
+pub mod ball_drag;
 pub mod cage_slip;
 pub mod contact_damping;
 pub mod frame_rotation;
@@ -18,6 +19,7 @@ pub mod rayleigh_damping;
 pub mod rules;
 pub mod spring_preload;
 mod table;
+pub mod traction;
 pub mod unbalance;
 
 pub use axial_force::AxialForce;
@@ -31,6 +33,7 @@ pub use moment::Moment;
 pub use radial_force::RadialForce;
 pub use spring_preload::SpringPreload;
 pub use table::{About, Context, Entry, Need, RingDamping, Setting, SpeedRole, Table, Trial};
+pub use traction::FreeBalls;
 
 use input::{Problems, Schedule};
 use serde::Deserialize;
@@ -68,6 +71,10 @@ pub struct Effects {
     pub spring_preload: Option<spring_preload::Table>,
     /// A mass off the axis of shaft and inner ring.
     pub unbalance: Option<unbalance::Table>,
+    /// Traction of free balls.
+    pub traction: Option<traction::Table>,
+    /// Drag on free balls.
+    pub ball_drag: Option<ball_drag::Table>,
 }
 
 impl Effects {
@@ -87,6 +94,8 @@ impl Effects {
             rayleigh_damping,
             spring_preload,
             unbalance,
+            traction,
+            ball_drag,
         } = self;
         vec![
             axial_force,
@@ -101,6 +110,8 @@ impl Effects {
             rayleigh_damping,
             spring_preload,
             unbalance,
+            traction,
+            ball_drag,
         ]
     }
 

@@ -2,5 +2,7 @@
 
 pub mod contact_damping;
 pub mod discrete_gradient;
+pub mod free_contact;
 pub mod raceway_contact;
 pub mod seat_spring;
+pub mod traction;

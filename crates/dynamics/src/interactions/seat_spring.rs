@@ -7,7 +7,7 @@
 
 use timer::SharedLaps;
 
-use crate::system::{Body, Character, Interaction, Lengths, Link, LinkForces, LinkTerm};
+use crate::system::{Body, Character, Interaction, Lengths, Link, LinkForces, LinkRows, LinkTerm};
 
 /// A seat of the outer ring that slides along the axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -36,7 +36,7 @@ impl SeatSpring {
         SeatSpring {
             seat,
             weight,
-            links: [Link::linear([0.0; 6], terms)],
+            links: [Link::linear(LinkRows::default(), terms)],
         }
     }
 

@@ -27,7 +27,7 @@ impl Motion<'_> {
             .settings
             .ladder
             .tolerance
-            .map(|_| vec![[0.0; 2]; 3 * parts.balls.len()]);
+            .map(|_| vec![[0.0; 2]; 3 * parts.n_balls()]);
         let energies = ends
             .each_ref()
             .map(|end| end.as_ref().map_or([0.0; 2], |end| end.energies));
@@ -38,8 +38,8 @@ impl Motion<'_> {
                 self.finish_ring(&mut next, side, (parts, solution), works, [old, &end.state]);
                 if let Some(trend) = &mut trend {
                     let mean = mean_acceleration(&*step, [old, &end.state], dt);
-                    let first = parts.balls.len() + i;
-                    for (ball, a) in mean.chunks_exact(2).enumerate() {
+                    let first = parts.n_balls() + i;
+                    for (ball, a) in mean.chunks_exact(2).take(parts.n_balls()).enumerate() {
                         trend[first + 2 * ball] = [a[0], a[1]];
                     }
                 }
@@ -52,6 +52,7 @@ impl Motion<'_> {
         };
         finish_shaft(&mut next, parts, solution, step);
         finish_balls(&mut next, parts, solution, step);
+        self.finish_free(&mut next, parts, solution);
         finish_seat(&mut next, parts, solution, step);
         finish_contacts(&mut next, parts, solution);
         self.note_energies(&mut next, energies);
@@ -59,7 +60,7 @@ impl Motion<'_> {
         let Some(mut trend) = trend else {
             return (next, 0.0);
         };
-        for (b, mean) in trend.iter_mut().take(parts.balls.len()).enumerate() {
+        for (b, mean) in trend.iter_mut().take(parts.n_balls()).enumerate() {
             *mean = [0, 1].map(|i| (next.ball_velocities[b][i] - state.ball_velocities[b][i]) / dt);
         }
         let error = local_error(&trend, &state.trend, dt, &next.approaches);
@@ -92,7 +93,9 @@ impl Motion<'_> {
         if let Some(follow) = follow.filter(|follow| follow.body == SHAFT) {
             // What the shaft gives in space and what the ring gets in its frame differ by the work of the turning.
             let mount = &solution.mounts[side.index()];
-            let n = 2 * parts.balls.len();
+            let n = parts.rings[side.index()]
+                .as_ref()
+                .map_or(0, |ports| ports.n_moving);
             let (start, end) = (&step.answer().start[n..], follow.in_frame(solution.shaft));
             let in_frame: f64 = (0..mount.len().min(5))
                 .map(|i| mount[i] * (end[i] - start[i]))
@@ -124,6 +127,10 @@ impl Motion<'_> {
             .flatten()
             .map(|v| kinetic(mass, v))
             .sum();
+        let balls = match &state.free {
+            Some(free) => free.kinetic(self.ball_inertia()),
+            None => balls,
+        };
         let shaft = self.model.shaft_masses().into_iter().zip(&state.shaft_velocity);
         let shaft: f64 = shaft.map(|(mass, v)| kinetic(mass, v)).sum();
         let seat = state.seat.zip(self.model.seat());
@@ -250,6 +257,10 @@ impl BearingParts {
         let mount = self.rings[0].as_ref().and_then(|ports| ports.follow);
         let mount = mount.map_or([0.0; 5], |follow| follow.in_space(&solution.mounts[0]));
         (0..5).for_each(|i| reactions[i] += mount[i] + solution.on_shaft[i]);
+        if self.free.is_some() && self.rings[0].is_none() {
+            let asked = self.free_reactions(Side::Inner, solution);
+            (0..5).for_each(|i| reactions[i] += asked[i]);
+        }
         reactions
     }
 }

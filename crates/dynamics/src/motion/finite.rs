@@ -6,6 +6,7 @@
 
 use contact::Side;
 
+use super::free_state::FreeState;
 use super::state::MotionState;
 use crate::error::DynamicsError;
 
@@ -15,6 +16,12 @@ pub(super) fn require_finite(state: &MotionState) -> Result<(), DynamicsError> {
     let of_balls = [&state.balls, &state.ball_velocities, &state.ball_accelerations];
     let of_contacts = [&state.angles, &state.approaches];
     let balls = of_balls.into_iter().flat_map(|x| x.as_flattened()).sum::<f64>();
+    let free = state.free.iter().map(FreeState::sum).sum::<f64>();
+    let friction: f64 = ledger
+        .friction
+        .iter()
+        .map(|f| f.loss + f.drive_work + f.drag_loss)
+        .sum();
     let contacts = of_contacts
         .into_iter()
         .flatten()
@@ -30,7 +37,7 @@ pub(super) fn require_finite(state: &MotionState) -> Result<(), DynamicsError> {
         ("the energy of the outer ring at the end of a step", outer),
         (
             "the motion of the balls at the end of a step",
-            balls + ledger.kinetic[2],
+            balls + free + ledger.kinetic[2],
         ),
         (
             "the motion of the shaft at the end of a step",
@@ -41,7 +48,7 @@ pub(super) fn require_finite(state: &MotionState) -> Result<(), DynamicsError> {
             state.seat.iter().flatten().sum(),
         ),
         ("the contacts at the end of a step", contacts + ledger.hertz),
-        ("the work of a step", works),
+        ("the work of a step", works + friction),
     ];
     match sums.into_iter().find(|(_, sum)| !sum.is_finite()) {
         Some((what, _)) => Err(DynamicsError::NotFinite { what }),

@@ -33,6 +33,21 @@ pub struct Ledger {
     pub initial: f64,
     /// Largest energy or work so far: the scale of the defect.
     pub largest: f64,
+    /// Friction of free balls; None: balls are not free.
+    pub friction: Option<FrictionLedger>,
+}
+
+/// What friction does where balls are free, J, since the start.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct FrictionLedger {
+    /// Energy lost to friction: never falls.
+    pub loss: f64,
+    /// Part of it that the integrator adds, of the first order in the step where slip changes, and of either sign.
+    pub integrator_share: f64,
+    /// Work of the drives that keep both rings at their speeds against friction.
+    pub drive_work: f64,
+    /// Energy lost to the drag of balls: never falls.
+    pub drag_loss: f64,
 }
 
 /// Share of the largest energy above which a user should know what the integrator took.
@@ -72,13 +87,23 @@ impl Ledger {
     pub fn defect(&self) -> f64 {
         let works: f64 = self.works().iter().sum();
         let losses: f64 = self.losses().iter().sum();
-        self.total() - self.initial - works + losses
+        let defect = self.total() - self.initial - works + losses;
+        match self.friction {
+            Some(friction) => defect - friction.drive_work + friction.loss + friction.drag_loss,
+            None => defect,
+        }
     }
 
     /// Notes the present energies as a candidate for the scale.
     pub fn note_scale(&mut self) {
         let entries = self.works().into_iter().chain(self.losses());
-        let largest = entries.fold(self.total().abs(), |m, w| m.max(w.abs()));
+        let friction = self
+            .friction
+            .iter()
+            .flat_map(|f| [f.loss, f.drive_work, f.drag_loss]);
+        let largest = entries
+            .chain(friction)
+            .fold(self.total().abs(), |m, w| m.max(w.abs()));
         self.largest = self.largest.max(largest);
     }
 

@@ -25,7 +25,7 @@ pub(super) type RingSteps<'m> = [Option<Box<dyn ElasticStep + 'm>>; 2];
 
 /// Forces on a ring.
 pub(super) struct RingForces {
-    /// On its contacts, `[2 n_balls]`, N.
+    /// On its contacts, patches and slopes, N.
     contacts: Vec<f64>,
     /// On its mount, N and N m.
     mount: Vec<f64>,
@@ -106,10 +106,12 @@ impl Motion<'_> {
                 damping: self.settings.contact_damping,
             }),
         };
+        let free = self.free_parts(state, span, &contacts.sites, rings);
+        let n_kinematic = if free.is_some() { 0 } else { self.n_balls() };
         let mut parts = BearingParts::new(
             Interval::Step(StepScheme { integrator, dt }),
             self.shaft(state, span, loads),
-            (0..self.n_balls())
+            (0..n_kinematic)
                 .map(|ball| self.ball(state, ball, loads))
                 .collect(),
             [ports(Side::Inner)?, ports(Side::Outer)?],
@@ -117,7 +119,7 @@ impl Motion<'_> {
             self.seat(state, loads),
         );
         parts.shaft.tilted = parts.tilted_loads(loads);
-        Ok(parts)
+        Ok(parts.with_free(free))
     }
 
     fn seat(&self, state: &MotionState, loads: &Loads) -> Option<SeatStep> {
@@ -135,6 +137,17 @@ impl Motion<'_> {
         })
     }
 
+    /// The middle of a part.
+    pub(super) fn now(&self, span: Span) -> Now<'static> {
+        let time = self.weighted_time(span);
+        Now {
+            time,
+            width: span.dt,
+            cage_angle: self.cage_angle(time),
+            angles: None,
+        }
+    }
+
     /// A flexible ring by its ports: contacts move freely, the mount follows its partner.
     fn ports(&self, span: Span, side: Side, step: &dyn ElasticStep) -> Result<ElasticPorts, DynamicsError> {
         let (answer, n_balls) = (step.answer(), self.n_balls());
@@ -146,7 +159,7 @@ impl Motion<'_> {
             offset: answer.predicted.clone(),
             at_forces: Vec::new(),
             stiffness: compliance::inverse(side, n, n_balls, &answer.compliance)?,
-            n_moving: 2 * n_balls,
+            n_moving: self.n_moving(),
             follow: carrier(side, n_balls, self.model.seat().is_some()).map(|body| Follow {
                 body,
                 frame: [angle(1.0 - self.settings.integrator.alpha_f), angle(1.0)],
@@ -239,14 +252,21 @@ impl BearingParts {
         }
     }
 
-    /// Forces on a ring's contacts, `[2 n_balls]`, N.
+    /// Forces on a ring's contacts, `[2 n_balls]`, N; with free balls those on patches and slopes follow.
     pub(super) fn ring_loads(&self, side: Side, solution: &StepSolution) -> Vec<f64> {
         let all = self.with_dead(&solution.forces);
         let of_ball = |ball: usize| {
             let site = 2 * ball + side.index();
             [all[2 * site], all[2 * site + 1]]
         };
-        (0..self.balls.len()).flat_map(of_ball).collect()
+        let mut loads: Vec<f64> = (0..self.n_balls()).flat_map(of_ball).collect();
+        if self.free.is_some() {
+            let on_patches = solution.free_contacts.iter().skip(side.index()).step_by(2);
+            loads.extend(on_patches.flat_map(|found| [0, 1].map(|i| -found.traction.action[i])));
+            // Slopes carry no force.
+            loads.resize(6 * self.n_balls(), 0.0);
+        }
+        loads
     }
 
     /// Forces on the rings at all contacts, the dead ones with them, `[2 n_sites]`, N.

@@ -38,6 +38,17 @@ struct Placed {
     half_angle: f64,
 }
 
+/// Where balls are in the middle of a part.
+pub(super) struct Course {
+    /// Weighted time of the part, s.
+    pub time: f64,
+    /// Azimuths, rad, by ball.
+    pub azimuths: Vec<f64>,
+    /// Half of the angle by which each free ball moves along a ring in the part, rad, `[inner, outer]`; empty where
+    /// balls are not free.
+    pub travel: Vec<[f64; 2]>,
+}
+
 /// All contacts as they are placed.
 pub(super) struct Placing {
     pub sites: Vec<Site>,
@@ -98,14 +109,14 @@ impl BearingParts {
 }
 
 impl Motion<'_> {
-    /// Contacts at a time, at contact angles, rad, and with forces, N, by site.
-    pub(super) fn place(&self, places: &[[f64; 2]], time: f64) -> Result<Placing, DynamicsError> {
+    /// Contacts in the middle of a part, at contact angles, rad, and with forces, N, by site.
+    pub(super) fn place(&self, places: &[[f64; 2]], course: &Course) -> Result<Placing, DynamicsError> {
         let forces: Vec<[f64; 2]> = places.iter().map(|p| [p[1], 0.0]).collect();
         let placed: Result<Vec<_>, DynamicsError> = loaded(&forces)
             .into_par_iter()
             .zip(places)
             .enumerate()
-            .map(|(index, (loaded, place))| self.place_contact(index, *place, loaded, time))
+            .map(|(index, (loaded, place))| self.place_contact(index, *place, loaded, course))
             .collect();
         let mut placing = Placing {
             sites: Vec::new(),
@@ -117,6 +128,11 @@ impl Motion<'_> {
             placing.sites.push(placed.site);
             placing.half_angles.push(placed.half_angle);
         }
+        for (side, feet) in Side::BOTH.into_iter().zip(&mut placing.feet) {
+            if !feet.is_empty() && !course.travel.is_empty() {
+                feet.extend(self.free_feet(side, &placing.sites, places, course)?);
+            }
+        }
         Ok(placing)
     }
 
@@ -126,11 +142,11 @@ impl Motion<'_> {
         index: usize,
         [angle, force]: [f64; 2],
         loaded: bool,
-        time: f64,
+        course: &Course,
     ) -> Result<Placed, DynamicsError> {
         let model = self.model;
         let (ball, side) = (index / 2, Side::BOTH[index % 2]);
-        let azimuth = self.ball_azimuth(ball, time);
+        let azimuth = course.azimuths[ball];
         let mut site = Site::new(model, ball, side, azimuth);
         let (Some(ring), Some(moving)) = (model.ring(side), &self.rings[side.index()]) else {
             return Ok(Placed {
@@ -141,7 +157,7 @@ impl Motion<'_> {
         };
         let shape = PatchShape::new(
             &moving.raceway.surface,
-            azimuth - self.frame_angle(side, time),
+            azimuth - self.frame_angle(side, course.time),
             on_groove(&moving.raceway.surface, angle, loaded),
             model.hertz[side.index()].semi_axes(force),
             model.contact.patch_spacings,

@@ -3,9 +3,11 @@
 use contact::patch::PatchShape;
 use contact::{LoadedPatch, Side};
 
+use super::free_state::FreeState;
+use super::place::Course;
 use super::run::Motion;
 use super::state::MotionState;
-use crate::balls::{BallDisplacement, BallResult, ContactResult};
+use crate::balls::{BallDisplacement, BallResult, ContactResult, FreeBallResult, Friction, TractionResult};
 use crate::error::DynamicsError;
 use crate::footprint::on_groove;
 use ring::RingState;
@@ -28,15 +30,37 @@ impl Motion<'_> {
         };
         let turn = 2.0 * std::f64::consts::PI;
         let ball = |b: usize| BallResult {
-            azimuth_rad: self.ball_azimuth(b, self.time(state.step)).rem_euclid(turn),
+            azimuth_rad: self.azimuth_now(state, b).rem_euclid(turn),
             inner: contact(b, Side::Inner),
             outer: contact(b, Side::Outer),
             displacement_m: BallDisplacement {
                 radial: state.balls[b][0],
                 axial: state.balls[b][1],
             },
+            free: state.free.as_ref().map(|free| free_ball(free, b)),
         };
         (0..self.model.geometry.n_balls).map(ball).collect()
+    }
+
+    /// Azimuth of a ball in a state, rad.
+    fn azimuth_now(&self, state: &MotionState, ball: usize) -> f64 {
+        match &state.free {
+            Some(free) => free.azimuth(ball),
+            None => self.ball_azimuth(ball, self.time(state.step)),
+        }
+    }
+
+    /// Torque with which all balls brake the inner ring, N m, positive against a ring that turns positively; power lost
+    /// at all contacts, W; mean speed of the balls round the axis, rad/s. None where balls are not free.
+    pub fn friction(&self, state: &MotionState) -> Option<Friction> {
+        let free = state.free.as_ref()?;
+        let n = free.places.len();
+        let inner = free.contacts.iter().step_by(2);
+        Some(Friction {
+            torque_n_m: inner.map(|contact| contact.torque).sum(),
+            power_w: free.contacts.iter().map(|contact| contact.power).sum(),
+            cage_speed_rad_per_s: (0..n).map(|ball| free.orbit(ball)).sum::<f64>() / n as f64,
+        })
     }
 
     /// Contact forces on a flexible ring at the end of the last step, and the patches over which they are spread, by
@@ -49,7 +73,7 @@ impl Motion<'_> {
         let patch = |ball: usize| {
             let index = 2 * ball + side.index();
             let force = state.forces[index][0].hypot(state.forces[index][1]);
-            let azimuth = self.ball_azimuth(ball, time) - self.frame_angle(side, time);
+            let azimuth = self.azimuth_now(state, ball) - self.frame_angle(side, time);
             let [patch_angle, load] = state.places[0][index];
             let spacings = self.model.contact.patch_spacings;
             let patch_angle = on_groove(&moving.raceway.surface, patch_angle, force > 0.0);
@@ -120,7 +144,14 @@ impl Motion<'_> {
     ) -> Result<[f64; 2], DynamicsError> {
         let share = 1.0 - self.settings.integrator.alpha_f;
         let time = self.time(from.step) + share * self.settings.dt;
-        let feet = self.place(&to.places[0], time)?.feet;
+        let course = Course {
+            time,
+            azimuths: (0..self.n_balls())
+                .map(|ball| self.ball_azimuth(ball, time))
+                .collect(),
+            travel: Vec::new(),
+        };
+        let feet = self.place(&to.places[0], &course)?.feet;
         let i = side.index();
         let (Some(moving), Some(old), Some(new)) = (&self.rings[i], &from.rings[i], &to.rings[i]) else {
             return Ok([0.0; 2]);
@@ -137,9 +168,29 @@ impl Motion<'_> {
     }
 
     /// Speed of every ball's rotation about its own axis relative to the cage, rad/s; None when the bearing never
-    /// turns.
+    /// turns, and where each ball has its own.
     pub fn spin(&self, state: &MotionState) -> Option<f64> {
         let speeds = &self.settings.speeds;
-        (!speeds.is_zero()).then(|| self.kinematics.spin(speeds, self.time(state.step)))
+        (!speeds.is_zero() && state.free.is_none())
+            .then(|| self.kinematics.spin(speeds, self.time(state.step)))
+    }
+}
+
+/// What a free ball has besides.
+fn free_ball(free: &FreeState, ball: usize) -> FreeBallResult {
+    let contact = |side: Side| {
+        let of = free.contacts[2 * ball + side.index()];
+        TractionResult {
+            slip_m_per_s: of.slip,
+            spin_rad_per_s: of.spin,
+            traction_n: of.force,
+            friction_power_w: of.power,
+        }
+    };
+    FreeBallResult {
+        inner: contact(Side::Inner),
+        outer: contact(Side::Outer),
+        omega_rad_per_s: free.turnings[ball],
+        orbit_rad_per_s: free.orbit(ball),
     }
 }

@@ -53,6 +53,7 @@ impl<'a> Motion<'a> {
     /// Assembles both rings and factors them for the full step.
     pub fn new(model: &'a Model, settings: MotionSettings) -> Result<Motion<'a>, DynamicsError> {
         check_supported(model)?;
+        check_free(model, &settings)?;
         let frame = |side: Side| {
             if model.turns_frame(side) {
                 Frame::Turning
@@ -215,6 +216,20 @@ fn wobbles(model: &Model, speeds: &RingSpeeds) -> bool {
         .is_some_and(|ring| ring.hold != Hold::Free);
     let has_inertia = is_held || model.shaft_inertia.polar > 0.0;
     has_inertia && !speeds.inner.is_zero() && [0, 1, 3, 4].into_iter().any(moves)
+}
+
+/// Refuses what kinematic balls know and free ones do not.
+fn check_free(model: &Model, settings: &MotionSettings) -> Result<(), DynamicsError> {
+    let refuse = |what: &'static str| Err(DynamicsError::NotInMotion { what });
+    if model.traction().is_none() {
+        return Ok(());
+    }
+    if !settings.integrator.is_conserving() {
+        return refuse(
+            "balls.motion = \"free\" with an integrator that dissipates; use integrator = \"average_acceleration\"",
+        );
+    }
+    Ok(())
 }
 
 /// Refuses what statics knows and motion does not.

@@ -11,8 +11,10 @@ use crate::bodies::AXES;
 use crate::error::DynamicsError;
 use crate::footprint::require_in_groove;
 use crate::interactions::discrete_gradient::MeanForce;
+use crate::interactions::free_contact::FoundContact;
 use crate::interactions::raceway_contact::SiteState;
 use crate::model::{MAX_TILT, Model};
+use crate::system::System;
 use crate::system::newton::{Policy, RoundOff, Shortening};
 
 /// Newton iterations before a step counts as failed.
@@ -31,13 +33,17 @@ pub struct StepSolution {
     /// The seat of the outer ring along z at the end, m; 0 unless it slides.
     pub seat: f64,
     /// l of every contact at start and end, `[2 n_sites]`, m.
-    reaches: [Vec<f64>; 2],
+    pub(super) reaches: [Vec<f64>; 2],
     /// Mean forces, by site, without the dead ones.
     pub forces: Vec<MeanForce>,
     /// Forces that the contacts ask of the shaft, but for those that its ring hands on, N and N m.
     pub on_shaft: [f64; 5],
     /// Forces of the partners on the mounts of inner and outer ring, in the ring's frame.
     pub mounts: [Vec<f64>; 2],
+    /// Displacement and rotation of free balls over the part, m and rad.
+    pub free_ends: Vec<[f64; 6]>,
+    /// Contacts of free balls, by site.
+    pub free_contacts: Vec<FoundContact>,
     /// Newton iterations.
     pub iterations: usize,
 }
@@ -58,30 +64,13 @@ impl BearingParts {
     /// Solves the part; `scale` is the largest force that acts at its start, N.
     pub fn solve_step(&self, scale: f64, costs: &SharedLaps) -> Result<StepSolution, DynamicsError> {
         let system = self.system();
-        let policy = Policy {
-            most_iterations: MOST_ITERATIONS,
-            residual_limit: RESIDUAL_LIMIT,
-            force_scale: scale,
-            round_off: RoundOff::Unknowns,
-            scales: None,
-            proximal: 0.0,
-            longest_step: f64::INFINITY,
-            search: Shortening::Residual(HALVINGS),
-            watch: &|_| Ok(()),
-            costs,
-        };
-        let solved = system.solve(system.guess(), &policy)?;
+        let solved = system.solve(system.guess(), &policy(scale, None, costs))?;
         let (x, reaches) = (&solved.unknowns, self.reaches(&solved.unknowns));
         let means = self.contacts.means;
         let balls = means.map(|means| self.contacts.mean_forces(lengths(&reaches), means, costs));
         let balls = balls.unwrap_or_default();
         let forces: Vec<MeanForce> = balls.iter().flat_map(|ball| ball.contacts).collect();
         let on_shaft = system.forces_on(SHAFT, CONTACTS, x, &self.with_dead(&forces));
-        let n_moving = 2 * self.balls.len();
-        let mount = |side: Side| match self.elastic(side) {
-            Some(body) => system.port_forces(body, x)[n_moving..].to_vec(),
-            None => Vec::new(),
-        };
         Ok(StepSolution {
             shaft: system.coordinates(SHAFT, x),
             balls: (0..self.balls.len())
@@ -91,9 +80,35 @@ impl BearingParts {
             forces,
             on_shaft,
             reaches,
-            mounts: Side::BOTH.map(mount),
+            mounts: Side::BOTH.map(|side| self.mount(&system, side, x)),
+            free_ends: Vec::new(),
+            free_contacts: Vec::new(),
             iterations: solved.iterations,
         })
+    }
+
+    /// Forces of the partner on the mount of a ring for the unknowns `x`, in the ring's frame.
+    pub(super) fn mount(&self, system: &System<'_>, side: Side, x: &[f64]) -> Vec<f64> {
+        let elastic = self.elastic(side).zip(self.rings[side.index()].as_ref());
+        elastic.map_or_else(Vec::new, |(body, ports)| {
+            system.port_forces(body, x)[ports.n_moving..].to_vec()
+        })
+    }
+}
+
+/// What a part asks of Newton; `scale` is the largest force that acts at its start, N.
+pub(super) fn policy<'p>(scale: f64, scales: Option<&'p [f64]>, costs: &'p SharedLaps) -> Policy<'p> {
+    Policy {
+        most_iterations: MOST_ITERATIONS,
+        residual_limit: RESIDUAL_LIMIT,
+        force_scale: scale,
+        round_off: RoundOff::Unknowns,
+        scales,
+        proximal: 0.0,
+        longest_step: f64::INFINITY,
+        search: Shortening::Residual(HALVINGS),
+        watch: &|_| Ok(()),
+        costs,
     }
 }
 

@@ -5,6 +5,7 @@ use contact::Side;
 use ring::{ElasticBody, Integrator, RingState};
 
 use super::cache::StepCache;
+use super::free::friction_at_start;
 use super::ledger::Ledger;
 use super::run::Motion;
 use super::state::{Ladder, MotionSettings, MotionState};
@@ -50,9 +51,11 @@ impl Motion<'_> {
             places: [(); 3].map(|()| places.clone()),
             angles: contacts.iter().map(|c| c.angle).collect(),
             approaches: contacts.iter().map(|c| c.force.approach).collect(),
+            free: None,
             ledger: Ledger::default(),
         };
         state.ledger.hertz = solution.hertz_energy;
+        state.free = self.free_start(&state);
         self.with_energies(state)
     }
 }
@@ -94,9 +97,11 @@ impl Motion<'_> {
             places: [(); 3].map(|()| vec![[self.model.geometry.free_contact_angle(), 0.0]; 2 * n]),
             angles: vec![self.model.geometry.free_contact_angle(); 2 * n],
             approaches: vec![0.0; 2 * n],
+            free: None,
             ledger: Ledger::default(),
         };
         self.note_contacts(&mut state);
+        state.free = self.free_start(&state);
         self.with_energies(state)
     }
 
@@ -146,6 +151,7 @@ impl Motion<'_> {
         let hertz = state.ledger.hertz;
         state.ledger = Ledger {
             hertz,
+            friction: friction_at_start(self.model),
             ..Ledger::default()
         };
         self.measure_energies(&mut state);

@@ -1,5 +1,6 @@
 //! Choices of a motion, all that evolves in it, and what a step reports.
 
+use super::free_state::FreeState;
 use super::ledger::Ledger;
 use crate::interactions::contact_damping::ContactDamping;
 use crate::interactions::discrete_gradient::ContactScheme;
@@ -90,6 +91,8 @@ pub struct MotionState {
     /// Contact angle, rad, and force, N, in the middle of the last three parts of a step, the last first, by site:
     /// where their patches lay.
     pub places: [Vec<[f64; 2]>; 3],
+    /// Free balls; None: they are kinematic. `balls` and `ball_velocities` then follow from these.
+    pub free: Option<FreeState>,
     /// Energy ledger.
     pub ledger: Ledger,
 }
@@ -113,6 +116,7 @@ impl MotionState {
             angles: self.angles.clone(),
             approaches: self.approaches.clone(),
             places: self.places.clone(),
+            free: self.free.clone(),
             ledger: self.ledger,
         }
     }

@@ -9,6 +9,7 @@ use timer::{Laps, Stopwatch};
 
 use super::cache::{Ahead, ExpectedLoads, StepCache};
 use super::finite::require_finite;
+use super::free::check_apart;
 use super::part::RingSteps;
 use super::place::Placing;
 use super::run::Motion;
@@ -55,6 +56,7 @@ impl Motion<'_> {
         };
         check_patches(&part.parts, &solution)?;
         check_range(self.model, &part.parts, &solution)?;
+        check_apart(self.model, &part.parts, &solution.free_ends)?;
         let places = part.parts.places(&solution);
         self.check_on_grooves(&places)?;
         let (mut next, error) = self.finish(state, (&part.parts, span.dt), &solution, part.rings, ends.rings);
@@ -83,7 +85,7 @@ impl Motion<'_> {
         let expected = ahead.loads.clone();
         report.laps.add(LOADS, clock.lap());
         let places = expected.places.clone();
-        let placing = self.place(&places, self.weighted_time(span))?;
+        let placing = self.place(&places, &self.course(state, span))?;
         report.laps.add(PATCHES, clock.lap());
         let rings = self.begin_rings(state, ahead, &placing.feet)?;
         let known = longest(rings.iter().flatten().map(|step| step.laps()));
@@ -115,7 +117,10 @@ impl Motion<'_> {
         part: &mut Part<'_>,
     ) -> Result<StepSolution, DynamicsError> {
         for _ in 0..=MAX_PLACE_ROUNDS {
-            let solution = part.parts.solve_step(part.scale, &self.costs)?;
+            let solution = match part.parts.free {
+                Some(_) => part.parts.solve_free(self.model, part.scale, &self.costs)?,
+                None => part.parts.solve_step(part.scale, &self.costs)?,
+            };
             part.report.newton_iterations += solution.iterations;
             part.report.laps.add(NEWTON, part.clock.lap());
             let met = part.parts.places(&solution);
@@ -123,7 +128,7 @@ impl Motion<'_> {
                 return Ok(solution);
             }
             part.report.place_rounds += 1;
-            part.placing = self.place(&met, self.weighted_time(part.span))?;
+            part.placing = self.place(&met, &self.course(state, part.span))?;
             part.places = met;
             part.report.laps.add(PATCHES, part.clock.lap());
             self.move_contacts(part);

@@ -5,8 +5,8 @@ use timer::SharedLaps;
 use super::finite::CarriedCircle;
 use super::lumped::Body;
 
-/// Most lengths of a link: three displacements and three rotations.
-pub const MOST_ROWS: usize = 6;
+/// Most lengths of a link: three displacements and three rotations of one body, six lengths of another.
+pub const MOST_ROWS: usize = 12;
 
 /// A value for each length of a link; those beyond its number are zero.
 pub type LinkRows = [f64; MOST_ROWS];

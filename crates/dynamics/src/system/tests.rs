@@ -212,7 +212,7 @@ fn a_family_with_memory_and_without_symmetry_meets_a_port_of_three_directions() 
     };
     let terms = [three(Body::Lumped(0), 0, 1.0), three(Body::Elastic(0), 0, -1.0)].concat();
     let links = Matrix {
-        links: vec![Link::linear([0.0; 6], terms)],
+        links: vec![Link::linear(LinkRows::default(), terms)],
         matrix: SKEW,
         memory: vec![[0.05, -0.1, 0.2]],
     };
@@ -246,7 +246,10 @@ fn a_body_may_place_itself_by_an_angle() {
     };
     let terms = [0, 1].map(|i| LinkTerm::new(Body::Lumped(0), i, [f64::from(i == 0), f64::from(i == 1)]));
     let spring = Matrix {
-        links: vec![Link::linear([0.0, s, 0.0, 0.0, 0.0, 0.0], terms.to_vec())],
+        links: vec![Link::linear(
+            LinkTerm::new(Body::Lumped(0), 0, [0.0, s]).rows,
+            terms.to_vec(),
+        )],
         matrix: [[4.0, 0.0, 0.0], [0.0, 4.0, 0.0], [0.0; 3]],
         memory: vec![[0.0; 3]],
     };
@@ -323,7 +326,7 @@ fn the_tangent_is_the_derivative_of_the_residual() {
     }
     let links = Matrix {
         links: vec![Link::linear(
-            [0.0; 6],
+            LinkRows::default(),
             [three(Body::Lumped(0), 2, 0.5), three(Body::Elastic(0), 0, -1.0)].concat(),
         )],
         matrix: SKEW,

@@ -5,6 +5,8 @@ use input::{Clock, Problems};
 use toml_edit::DocumentMut;
 
 use super::RawScene;
+use super::balls::BallsContext;
+use super::dynamic::RawDynamic;
 use super::modes::ModesContext;
 use super::shaft::Shaft;
 use super::speed::{RawSpeed, SpeedUse, makes_force};
@@ -85,6 +87,15 @@ impl RawScene {
             clock: self.clock(),
             has_speed: self.has_speed(),
             is_flexible,
+        }
+    }
+
+    pub(super) fn balls_context(&self) -> BallsContext<'_> {
+        BallsContext {
+            effects: &self.effects,
+            has_ball_speeds: self.speed.as_ref().is_some_and(RawSpeed::has_ball_speeds),
+            is_dynamic: self.dynamic.is_some(),
+            conserves: self.dynamic.as_ref().is_some_and(RawDynamic::conserves),
         }
     }
 

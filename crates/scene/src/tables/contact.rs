@@ -3,6 +3,7 @@
 use input::{HERTZ_STIFFNESS, Problems, Quantity};
 use serde::Deserialize;
 
+use super::balls::BallMotion;
 use super::bearing::Bearing;
 use super::materials::{Material, Materials};
 
@@ -51,7 +52,7 @@ pub struct Contact {
     /// Least semi-axis of a contact patch, in element sizes.
     pub patch_elements: f64,
     /// What balls yield. By default spheres, but half-spaces with rigid rings (the Jones-Harris limit), with facets
-    /// (the paper's way) and where a stiffness is given.
+    /// (the paper's way), where a stiffness is given and where balls are free.
     pub ball: BallElasticity,
 }
 
@@ -92,8 +93,15 @@ impl RawContact {
         &self,
         bearing: Option<&Bearing>,
         materials: Option<&Materials>,
+        balls: BallMotion,
         problems: &mut Problems,
     ) -> Contact {
+        if balls == BallMotion::Free && self.ball == Some(BallElasticity::Sphere) {
+            problems.add(
+                "contact.ball is \"sphere\", but free balls yield as half-spaces: remove it, or use balls.motion = \
+                 \"kinematic\"",
+            );
+        }
         let patch_elements = self.patch_elements.unwrap_or(DEFAULT_PATCH_ELEMENTS);
         problems.require(
             (0.5..=20.0).contains(&patch_elements),
@@ -123,7 +131,7 @@ impl RawContact {
         }
         let is_hertz = self.inner_stiffness.is_none() && self.outer_stiffness.is_none();
         let usual = match self.mode {
-            ContactMode::Patch if is_hertz => BallElasticity::Sphere,
+            ContactMode::Patch if is_hertz && balls == BallMotion::Kinematic => BallElasticity::Sphere,
             _ => BallElasticity::HalfSpace,
         };
         Contact {

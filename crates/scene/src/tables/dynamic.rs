@@ -119,6 +119,11 @@ const ROUND_OFF: f64 = 1e-9;
 const DEFAULT_GAMMA: f64 = 0.5;
 
 impl RawDynamic {
+    /// Whether its integrator conserves energy.
+    pub fn conserves(&self) -> bool {
+        matches!(self.integrator, None | Some(IntegratorName::AverageAcceleration))
+    }
+
     /// Checks ranges, that the step fits the duration, and that the integrator has the numbers it needs; `None` when
     /// there are problems.
     pub fn check(&self, shaft: &Shaft, problems: &mut Problems) -> Option<Dynamic> {

@@ -33,6 +33,7 @@
 //! `[quasi_static]`: see the files of these names.
 
 mod analysis;
+mod balls;
 mod bearing;
 mod contact;
 mod cut;
@@ -68,6 +69,7 @@ use dynamics::kinematics::{BallSpeeds, RingSpeeds};
 use serde::Deserialize;
 use toml_edit::DocumentMut;
 
+pub use self::balls::BallMotion;
 pub use self::bearing::Bearing;
 pub(crate) use self::contact::unusual_stiffnesses;
 pub use self::contact::{BallElasticity, Contact, ContactMode};
@@ -90,6 +92,7 @@ pub use self::stress::Stress;
 pub use self::stress_probes::StressLine;
 pub use self::sweep::{Analysis, SweepPoint};
 
+use self::balls::RawBalls;
 use self::bearing::RawBearing;
 use self::contact::RawContact;
 use self::dynamic::RawDynamic;
@@ -120,6 +123,8 @@ struct RawScene {
     #[serde(default)]
     outer: RawRing,
     shaft: RawShaft,
+    #[serde(default)]
+    balls: RawBalls,
     speed: Option<RawSpeed>,
     #[serde(default)]
     effects: Effects,
@@ -162,6 +167,8 @@ pub struct Scene {
     pub outer: Ring,
     /// Freedoms of the shaft.
     pub shaft: Shaft,
+    /// How the balls move.
+    pub balls: BallMotion,
     /// Speeds of the rings; none turns when `None`.
     pub speed: Option<RingSpeeds>,
     /// Whether the table `[speed]` names a ring, inner first.
@@ -295,9 +302,12 @@ impl Source<'_> {
         let mut problems = Problems::default();
         let bearing = raw.bearing.check(&mut problems);
         let materials = raw.materials.check(&mut problems);
-        let contact = raw
-            .contact
-            .check(bearing.as_ref(), materials.as_ref(), &mut problems);
+        let contact = raw.contact.check(
+            bearing.as_ref(),
+            materials.as_ref(),
+            raw.balls.motion(),
+            &mut problems,
+        );
         let context = RingContext {
             bearing: bearing.as_ref(),
             mode: contact.mode,
@@ -316,6 +326,7 @@ impl Source<'_> {
             raw.effects_context([inner.body.is_some(), outer.body.is_some()]),
             &mut problems,
         );
+        let balls = raw.balls.check(raw.balls_context(), &mut problems);
         let speed = raw.speed.as_ref();
         let ball_speeds = speed.map_or(BallSpeeds::default(), |s| s.ball_speeds(effects, &mut problems));
         let speed = speed.and_then(|s| s.check(raw.speed_use(), &mut problems));
@@ -355,6 +366,7 @@ impl Source<'_> {
                 inner,
                 outer,
                 shaft,
+                balls,
                 speed,
                 has_speed,
                 ball_speeds,

@@ -85,6 +85,11 @@ impl RawSpeed {
         self.ball_speeds.unwrap_or_default()
     }
 
+    /// Whether it says which contact angles the speeds of balls follow.
+    pub fn has_ball_speeds(&self) -> bool {
+        self.ball_speeds.is_some()
+    }
+
     /// Checks sizes and the order of times; `None` when there are problems.
     pub fn check(&self, speed_use: SpeedUse, problems: &mut Problems) -> Option<RingSpeeds> {
         let before = problems.len();

@@ -1,0 +1,417 @@
+//! One contact of a free ball over a step.
+
+use std::sync::Arc;
+
+use contact::ContactLaw;
+
+use super::jet::{Jet, N_LENGTHS, Vector, cross, dot, fixed, minus, plus, scaled, times};
+use super::place::{Bodies, ContactFrame, GrooveCircle, SlipJets, Standing, frame, standing};
+use crate::interactions::contact_damping::{ContactDamping, viscous};
+use crate::interactions::discrete_gradient::{ContactScheme, MeanForce, mean_force};
+use crate::interactions::traction::{Ellipse, Resultant, Slip, Traction};
+
+/// The slip that traction follows.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum SlipAt {
+    /// That of the end of the step.
+    #[default]
+    End,
+    /// That of its middle.
+    Middle,
+}
+
+/// The ring's side of a contact over a step.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct RingStep {
+    /// What carries the ring at the start: displacement and velocity; zero of an elastic ring.
+    pub carrier: [[f64; 5]; 2],
+    /// Whether a dof of the carrier has inertia: else its velocity is the mean over the step.
+    pub has_inertia: [bool; 5],
+    /// Of an elastic ring, motion of groove (r, z), patch (t, q) and slope (r, z) at the start; None: the ring is
+    /// rigid.
+    pub elastic: Option<[f64; 6]>,
+    /// Mean speed of the ring over the step, and that at its end, rad/s.
+    pub spin: [f64; 2],
+}
+
+/// A contact over a step.
+#[derive(Clone, Debug)]
+pub struct ContactStep {
+    /// Step size, s.
+    pub dt: f64,
+    /// Place, velocity and angular velocity of the ball at the start.
+    pub ball: [[f64; 3]; 3],
+    /// The groove.
+    pub groove: GrooveCircle,
+    /// Force law.
+    pub law: ContactLaw,
+    /// |l| at which ball and groove touch, m.
+    pub touching: f64,
+    /// How normal forces are evaluated.
+    pub scheme: ContactScheme,
+    /// Damping along the normal.
+    pub damping: Option<ContactDamping>,
+    /// The ring.
+    pub ring: RingStep,
+    /// Traction.
+    pub traction: Arc<Traction>,
+    /// The contact's ellipse.
+    pub ellipse: Ellipse,
+    /// Slip s_v, m/s.
+    pub small_slip: f64,
+    /// Which slip traction follows.
+    pub slip_at: SlipAt,
+}
+
+/// Forces and slips of a contact over a step.
+#[derive(Clone, Debug)]
+pub struct FoundContact {
+    /// What resists the growth of the lengths, N and N m.
+    pub resists: [Jet; N_LENGTHS],
+    /// l at start and end, m.
+    pub reach: [[f64; 2]; 2],
+    /// Normal force on the ring.
+    pub normal: MeanForce,
+    /// Traction on the ball.
+    pub traction: Resultant,
+    /// The slip that it follows.
+    pub slip: Slip,
+    /// Work of traction on both bodies and on the drive of the ring, J.
+    pub work: f64,
+    /// Part of it at the slip that traction follows, never positive, J.
+    pub work_at_slip: f64,
+    /// Torque about the ring's axis with which traction turns the ball, N m: the drive of the ring works against it.
+    pub torque: f64,
+    /// The slope force.
+    pub slope: SlopeForce,
+}
+
+/// The slope force of an elastic ring on a ball over a step.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct SlopeForce {
+    /// Along the rolling direction, N.
+    pub force: f64,
+    /// Its work on the ball, J.
+    pub work: f64,
+    /// Its torque about the axis, N m.
+    pub torque: f64,
+}
+
+impl ContactStep {
+    /// The contact at lengths at start and end.
+    pub fn evaluate(&self, [_, end]: [[f64; N_LENGTHS]; 2]) -> FoundContact {
+        let x: [Jet; N_LENGTHS] = std::array::from_fn(|i| Jet::length(i, end[i]));
+        let [start, last] = [self.start(), self.standing_at_end(&x)];
+        let normal = self.normal_force(&start, &last);
+        let mid = self.middle(&start, &last, &x);
+        let slip = match self.slip_at {
+            SlipAt::End => self.slip_at_end(&last, &x),
+            SlipAt::Middle => mid.slip,
+        };
+        let force = size(normal.force);
+        let number = slip.slip.map(|s| s.value);
+        let slipping = self.slip_of(number);
+        let traction = self.traction.places.traction(
+            &self.traction.law,
+            &self.ellipse,
+            &slipping,
+            (force, self.small_slip),
+        );
+        let load = [0, 1].map(|i| chain(normal.force[i], normal.tangent[i], last.reach));
+        let action = actions(&traction, &slip, (force, load));
+        let mut resists = [Jet::default(); N_LENGTHS];
+        self.add_normal(&mid, (&start, &last), load, &mut resists);
+        let torque = self.add_traction(&mid, action, &mut resists);
+        let slope = self.add_slope(&mid, load, &x, &mut resists);
+        let mean = mid.slip.slip.map(|s| s.value);
+        // Place by place where it is the slip of the middle, so that no round-off makes it positive.
+        let work_at_slip = self.dt * traction.power;
+        let work = match self.slip_at {
+            SlipAt::End => self.dt * (0..5).map(|i| traction.action[i] * mean[i]).sum::<f64>(),
+            SlipAt::Middle => work_at_slip,
+        };
+        FoundContact {
+            resists,
+            reach: [start.reach, last.reach].map(|l| l.map(|x| x.value)),
+            normal,
+            traction,
+            slip: slipping,
+            work,
+            work_at_slip,
+            torque,
+            slope,
+        }
+    }
+
+    /// Force, N, that the round-off of the lengths makes.
+    pub fn round_off(&self, [_, end]: [[f64; N_LENGTHS]; 2]) -> f64 {
+        let x: [Jet; N_LENGTHS] = std::array::from_fn(|i| Jet::constant(end[i]));
+        let last = self.standing_at_end(&x);
+        let place = 2.0 * f64::EPSILON * last.radius.value;
+        let length = size(last.reach.map(|l| l.value));
+        (place * self.law.evaluate(length - self.touching).tangent).max(self.law.evaluate(place).force)
+    }
+
+    fn start(&self) -> Standing {
+        let carrier = self.ring.carrier[0].map(Jet::constant);
+        let motion = self.ring.elastic.map_or([0.0; 2], |at| [at[0], at[1]]);
+        standing(
+            &self.groove,
+            fixed(self.ball[0]),
+            carrier,
+            motion.map(Jet::constant),
+        )
+    }
+
+    fn standing_at_end(&self, x: &[Jet; N_LENGTHS]) -> Standing {
+        let place = plus(fixed(self.ball[0]), [x[0], x[1], x[2]]);
+        standing(&self.groove, place, self.carrier_at_end(x), self.groove_motion(x))
+    }
+
+    fn carrier_at_end(&self, x: &[Jet; N_LENGTHS]) -> [Jet; 5] {
+        match self.ring.elastic {
+            Some(_) => [Jet::default(); 5],
+            None => std::array::from_fn(|i| x[6 + i]),
+        }
+    }
+
+    fn groove_motion(&self, x: &[Jet; N_LENGTHS]) -> [Jet; 2] {
+        match self.ring.elastic {
+            Some(_) => [x[6], x[7]],
+            None => [Jet::default(); 2],
+        }
+    }
+
+    /// Mean velocity of the elastic patch along t and q.
+    fn patch_velocity(&self, x: &[Jet; N_LENGTHS]) -> [Jet; 2] {
+        let of = |at: [f64; 6]| [2, 3].map(|i| (x[6 + i] + -at[i]) * (1.0 / self.dt));
+        self.ring.elastic.map_or([Jet::default(); 2], of)
+    }
+
+    fn normal_force(&self, start: &Standing, end: &Standing) -> MeanForce {
+        let reach = [start.reach, end.reach].map(|l| l.map(|x| x.value));
+        let damping = self
+            .damping
+            .as_ref()
+            .map(|damping| viscous(damping, self.dt, self.touching, reach));
+        mean_force(&self.law, self.touching, reach, self.scheme, damping)
+    }
+
+    /// Slip at the end of the step in the frame of the end.
+    fn slip_at_end(&self, end: &Standing, x: &[Jet; N_LENGTHS]) -> SlipJets {
+        let last = |change: Jet, before: f64| change * (2.0 / self.dt) + -before;
+        let ball = |first: usize, before: [f64; 3]| [0, 1, 2].map(|i| last(x[first + i], before[i]));
+        let [from, velocity] = self.ring.carrier;
+        let carrier = self.carrier_at_end(x);
+        let rate = std::array::from_fn(|i| {
+            let change = carrier[i] + -from[i];
+            match (self.ring.elastic, self.ring.has_inertia[i]) {
+                (Some(_), _) => Jet::default(),
+                (None, true) => last(change, velocity[i]),
+                (None, false) => change * (1.0 / self.dt),
+            }
+        });
+        let patch = self.patch_velocity(x);
+        let bodies = Bodies {
+            ball: [
+                plus(fixed(self.ball[0]), [x[0], x[1], x[2]]),
+                ball(0, self.ball[1]),
+                ball(3, self.ball[2]),
+            ],
+            carrier: [carrier, rate],
+            groove: self.groove_motion(x),
+            patch,
+            spin: self.ring.spin[1],
+        };
+        let tilts = [carrier[3], carrier[4]];
+        frame(end.seen, end.reach, tilts).slip(&self.groove, &bodies)
+    }
+
+    /// The middle of the step: where forces act.
+    fn middle(&self, start: &Standing, end: &Standing, x: &[Jet; N_LENGTHS]) -> Middle {
+        let from = self.ring.carrier[0];
+        let change: [Jet; 5] = {
+            let carrier = self.carrier_at_end(x);
+            std::array::from_fn(|i| carrier[i] + -from[i])
+        };
+        let change = if self.ring.elastic.is_some() {
+            [Jet::default(); 5]
+        } else {
+            change
+        };
+        let carrier: [Jet; 5] = std::array::from_fn(|i| change[i] * 0.5 + from[i]);
+        let rate = change.map(|x| x * (1.0 / self.dt));
+        let patch = self.patch_velocity(x);
+        let motion = [x[0], x[1], x[2]];
+        let place = plus(fixed(self.ball[0]), scaled(0.5, motion));
+        let bodies = Bodies {
+            ball: [
+                place,
+                scaled(1.0 / self.dt, motion),
+                scaled(1.0 / self.dt, [x[3], x[4], x[5]]),
+            ],
+            carrier: [carrier, rate],
+            groove: self.groove_motion(x),
+            patch,
+            spin: self.ring.spin[0],
+        };
+        let reach = [0, 1].map(|i| start.reach[i] + end.reach[i]);
+        let frame = frame(plus(start.seen, end.seen), reach, [carrier[3], carrier[4]]);
+        let origin = plus(
+            fixed([0.0, 0.0, self.groove.height]),
+            [carrier[0], carrier[1], carrier[2]],
+        );
+        Middle {
+            arm: minus(place, origin),
+            slip: frame.slip(&self.groove, &bodies),
+            frame,
+        }
+    }
+
+    /// Adds the normal force on the ring along l, `load`.
+    fn add_normal(
+        &self,
+        mid: &Middle,
+        (start, end): (&Standing, &Standing),
+        load: [Jet; 2],
+        resists: &mut [Jet; N_LENGTHS],
+    ) {
+        let across = load[0] * (start.radius + end.radius).recip();
+        let [x, y] = [0, 1].map(|i| (start.seen[i] + end.seen[i]) * across);
+        let [e_x, e_y, e_z] = mid.frame.columns;
+        let on_ring = plus(plus(times(x, e_x), times(y, e_y)), times(load[1], e_z));
+        for i in 0..3 {
+            resists[i] = resists[i] + on_ring[i];
+        }
+        if self.ring.elastic.is_some() {
+            for i in 0..2 {
+                resists[6 + i] = resists[6 + i] - load[i];
+            }
+            return;
+        }
+        mid.add_to_ring(on_ring, cross(mid.arm, on_ring), resists);
+    }
+
+    /// Adds the traction on the ball, `action` in (t, q) and about (t, q, n); returns its torque about the ring's axis.
+    fn add_traction(&self, mid: &Middle, action: [Jet; 5], resists: &mut [Jet; N_LENGTHS]) -> f64 {
+        let ContactFrame {
+            rolling,
+            lateral,
+            normal,
+            columns,
+            ..
+        } = mid.frame;
+        let force = plus(times(action[0], rolling), times(action[1], lateral));
+        let moment = plus(
+            plus(times(action[2], rolling), times(action[3], lateral)),
+            times(action[4], normal),
+        );
+        let lever = scaled(self.groove.lever, normal);
+        let about_ball = plus(moment, cross(lever, force));
+        let about_ring = plus(moment, cross(plus(mid.arm, lever), force));
+        for i in 0..3 {
+            resists[i] = resists[i] - force[i];
+            resists[3 + i] = resists[3 + i] - about_ball[i];
+        }
+        if self.ring.elastic.is_some() {
+            resists[8] = resists[8] + action[0];
+            resists[9] = resists[9] + action[1];
+        } else {
+            mid.add_to_ring(scaled(-1.0, force), scaled(-1.0, about_ring), resists);
+        }
+        dot(about_ring, columns[2]).value
+    }
+
+    /// Adds the slope force of an elastic ring.
+    fn add_slope(
+        &self,
+        mid: &Middle,
+        load: [Jet; 2],
+        x: &[Jet; N_LENGTHS],
+        resists: &mut [Jet; N_LENGTHS],
+    ) -> SlopeForce {
+        let Some(at) = self.ring.elastic else {
+            return SlopeForce::default();
+        };
+        let mean = [0, 1].map(|i| (x[10 + i] + at[4 + i]) * 0.5);
+        let out = (mid.arm[0] * mid.arm[0] + mid.arm[1] * mid.arm[1]).sqrt();
+        let along = (load[0] * mean[0] + load[1] * mean[1]) * out.recip();
+        let force = times(along, mid.frame.rolling);
+        for i in 0..3 {
+            resists[i] = resists[i] - force[i];
+        }
+        SlopeForce {
+            force: along.value,
+            work: (0..3).map(|i| force[i].value * x[i].value).sum(),
+            torque: cross(mid.arm, force)[2].value,
+        }
+    }
+
+    fn slip_of(&self, number: [f64; 5]) -> Slip {
+        Slip {
+            centre: [number[0], number[1]],
+            turning: [number[2], number[3], number[4]],
+        }
+    }
+
+    /// Directions t, q, n of the middle of the step, in space.
+    pub fn directions(&self, [_, end]: [[f64; N_LENGTHS]; 2]) -> [[f64; 3]; 3] {
+        let x: [Jet; N_LENGTHS] = std::array::from_fn(|i| Jet::constant(end[i]));
+        let [start, last] = [self.start(), self.standing_at_end(&x)];
+        self.middle(&start, &last, &x).frame.directions()
+    }
+}
+
+/// The middle of a step.
+struct Middle {
+    frame: ContactFrame,
+    /// From the ring's centre to the ball's, m.
+    arm: Vector,
+    /// Slip there.
+    slip: SlipJets,
+}
+
+impl Middle {
+    /// Adds a force and a moment about the ring's centre, both on the ring, to what resists the carrier's motion.
+    fn add_to_ring(&self, force: Vector, moment: Vector, resists: &mut [Jet; N_LENGTHS]) {
+        for i in 0..3 {
+            resists[6 + i] = resists[6 + i] - force[i];
+        }
+        for (i, turning) in self.frame.tilts.into_iter().enumerate() {
+            resists[9 + i] = resists[9 + i] - dot(turning, moment);
+        }
+    }
+}
+
+/// A component of the normal force as it grows with l at the end.
+fn chain(value: f64, tangent: [f64; 2], reach: [Jet; 2]) -> Jet {
+    let mut jet = reach[0] * tangent[0] + reach[1] * tangent[1];
+    jet.value = value;
+    jet
+}
+
+/// Traction as it grows with slip and normal force.
+fn actions(traction: &Resultant, slip: &SlipJets, (force, load): (f64, [Jet; 2])) -> [Jet; 5] {
+    let grown = if force > 0.0 {
+        load[0] * (load[0].value / force) + load[1] * (load[1].value / force)
+    } else {
+        Jet::default()
+    };
+    std::array::from_fn(|i| {
+        let by_load = if force > 0.0 {
+            traction.action[i] / force
+        } else {
+            0.0
+        };
+        let mut jet = grown * by_load;
+        for (s, slope) in slip.slip.iter().zip(traction.slope[i]) {
+            jet = jet + *s * slope;
+        }
+        jet.value = traction.action[i];
+        jet
+    })
+}
+
+fn size(v: [f64; 2]) -> f64 {
+    v[0].hypot(v[1])
+}

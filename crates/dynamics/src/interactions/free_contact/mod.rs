@@ -1,0 +1,145 @@
+//! The contacts of free balls on raceways: normal force and traction over a step, on ball and ring.
+//!
+//! **Normal force**: the discrete gradient as of any ball ([`super::discrete_gradient`]), F = [V(d1) - V(d0)]/(d1 - d0)
+//! along (l1 + l0)/(|l1| + |l0|), [radial, axial]. The radial part acts in space along (b'_0 + b'_1)/(r_0 + r_1) across
+//! the ring's axis: its work is exactly F_r (r_1 - r_0), and it has no moment about that axis at the mean place.
+//!
+//! **Traction** ([`super::traction`]) follows the slip of the *end* of the step, in the frame of the end; its
+//! components act in the frame of the *middle*, at the mean place of the ball. The midpoint rule would let slip
+//! alternate from step to step; end velocities in the frame of the middle would be of first order. The work on both
+//! bodies is h f(s_1) . s_mean: h f(s_1) . s_1, which is never positive, and h/2 f(s_1) . (s_0 - s_1), the
+//! integrator's share. Where that sum comes out positive, a slip that reverses within the step, the contact takes the
+//! slip of the middle ([`SlipAt::Middle`]), for which it cannot.
+//!
+//! Ellipse, lever and the slip of creep are those of the start of the step. The ring gets the opposite force and moment
+//! at the same place; an elastic ring the force alone, along t and q of its patch, without the moment on its section.
+//! The elastic velocity of the patch is the mean over the step: modes of a ring that the step does not resolve
+//! alternate from step to step, and the slip would follow them.
+//!
+//! **Slope force**: a ball that moves along an elastic ring which its neighbours have bent climbs or falls. With
+//! u_c(psi) the motion of the groove centre and F the normal force on the ring, the ball gets
+//!
+//! ```text
+//! T = F . (du_c/dpsi) / r      along e_psi, at the mean motion of the ring over the step
+//! ```
+//!
+//! which is the energy that the contact gives as its patch moves on, per length of its course: what the patch loses,
+//! the ball and the drive of the ring gain. Where a ring is rigid the exact lengths have this force in them.
+//!
+//! Lengths of a link: displacement and rotation vector of the ball since the start (3 + 3), then either displacement of
+//! what carries the ring (5) or motion of an elastic ring at the ball (groove r, z; patch t, q; du_c/dpsi r, z).
+
+pub mod contact;
+pub mod jet;
+pub mod place;
+
+use timer::SharedLaps;
+
+pub use contact::{ContactStep, FoundContact, RingStep, SlipAt};
+pub use jet::N_LENGTHS;
+
+use crate::system::{Body, Character, Interaction, Lengths, Link, LinkForces, LinkRows, LinkTerm};
+
+/// What moves a ring's side of the contacts.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Carrier {
+    /// A lumped body.
+    Lumped(usize),
+    /// The ports of an elastic ring: two of each groove, then of each patch, then of each slope.
+    Elastic(usize),
+    /// Nothing.
+    AtRest,
+}
+
+/// All contacts of free balls: ball 0 inner, ball 0 outer, ball 1 inner, ...
+#[derive(Clone, Debug, Default)]
+pub struct FreeContacts {
+    /// The contacts over a step.
+    pub contacts: Vec<ContactStep>,
+    links: Vec<Link>,
+}
+
+impl FreeContacts {
+    /// Contacts that are not connected yet.
+    pub fn new(contacts: Vec<ContactStep>) -> FreeContacts {
+        FreeContacts {
+            contacts,
+            links: Vec::new(),
+        }
+    }
+
+    /// Connects balls, which are lumped bodies from `first_ball` on, and rings, inner first.
+    pub fn connect(&mut self, first_ball: usize, rings: [Carrier; 2]) {
+        let n_balls = self.contacts.len() / 2;
+        let link = |(index, _): (usize, &ContactStep)| {
+            let (ball, side) = (index / 2, index % 2);
+            let mut terms: Vec<LinkTerm> = (0..6)
+                .map(|c| unit(Body::Lumped(first_ball + ball), c, c))
+                .collect();
+            match rings[side] {
+                Carrier::Lumped(body) => terms.extend((0..5).map(|c| unit(Body::Lumped(body), c, 6 + c))),
+                Carrier::Elastic(body) => {
+                    let ports = elastic_ports(ball, n_balls).into_iter().enumerate();
+                    terms.extend(ports.map(|(i, port)| unit(Body::Elastic(body), port, 6 + i)));
+                }
+                Carrier::AtRest => {}
+            }
+            Link::linear(LinkRows::default(), terms)
+        };
+        self.links = self.contacts.iter().enumerate().map(link).collect();
+    }
+
+    /// Forces and slips of all contacts at these lengths.
+    pub fn found(&self, lengths: Lengths) -> Vec<FoundContact> {
+        let at = |(i, contact): (usize, &ContactStep)| contact.evaluate(lengths.of(i));
+        self.contacts.iter().enumerate().map(at).collect()
+    }
+}
+
+/// Ports of an elastic ring at a ball: groove r, z; patch t, q; slope r, z.
+pub fn elastic_ports(ball: usize, n_balls: usize) -> [usize; 6] {
+    [0, 1, 2, 3, 4, 5].map(|i| 2 * ((i / 2) * n_balls + ball) + i % 2)
+}
+
+/// A coordinate that is a length of its own.
+fn unit(body: Body, coordinate: usize, row: usize) -> LinkTerm {
+    let mut rows = LinkRows::default();
+    rows[row] = 1.0;
+    LinkTerm {
+        body,
+        coordinate,
+        rows,
+    }
+}
+
+impl Interaction for FreeContacts {
+    fn links(&self) -> &[Link] {
+        &self.links
+    }
+
+    fn n_rows(&self) -> usize {
+        N_LENGTHS
+    }
+
+    fn character(&self) -> Character {
+        Character::General
+    }
+
+    fn evaluate(&self, lengths: Lengths, costs: &SharedLaps) -> LinkForces {
+        costs.time("traction", || {
+            let mut found = LinkForces::default();
+            for contact in self.found(lengths) {
+                for force in contact.resists {
+                    found.forces.push(force.value);
+                    found.tangents.extend(force.slope);
+                }
+            }
+            found
+        })
+    }
+
+    fn round_off(&self, lengths: Lengths) -> f64 {
+        let of = |(i, contact): (usize, &ContactStep)| contact.round_off(lengths.of(i));
+        self.contacts.iter().enumerate().map(of).sum()
+    }
+}

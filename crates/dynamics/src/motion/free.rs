@@ -1,0 +1,430 @@
+//! Free balls in motion: how they start, their bodies and contacts over a part of a step, and its end.
+
+use std::sync::Arc;
+
+use contact::patch::{PatchShape, slope_weights, traction_weights};
+use contact::{NodalWeights, Side};
+use rayon::prelude::*;
+use ring::ElasticStep;
+
+use super::free_state::{ContactTraction, FreeState};
+use super::ledger::FrictionLedger;
+use super::part::RingSteps;
+use super::place::Course;
+use super::run::Motion;
+use super::solve::StepSolution;
+use super::span::Span;
+use super::state::MotionState;
+use crate::bearing::{BearingParts, FreeParts};
+use crate::bodies::FreeBall;
+use crate::error::DynamicsError;
+use crate::footprint::{loaded, on_groove};
+use crate::interactions::free_contact::place::GrooveCircle;
+use crate::interactions::free_contact::{ContactStep, FreeContacts, RingStep, elastic_ports};
+use crate::interactions::raceway_contact::Site;
+use crate::interactions::traction::creep::RollingContact;
+use crate::interactions::traction::{Ellipse, Traction};
+use crate::model::{Model, elastic};
+
+/// Acceleration by which the least force of a contact is a weight, m/s^2: what opens has no size of its own.
+const EARTH: f64 = 9.81;
+
+/// Least half of the angle between the patches whose difference is a slope, rad: a ball that does not move along its
+/// ring.
+const LEAST_TRAVEL: f64 = 1e-5;
+
+/// Moment of inertia of a ball over its mass and the square of its diameter.
+const SPHERE: f64 = 0.1;
+
+impl Motion<'_> {
+    /// Mass, kg, and moment of inertia, kg m^2, of a ball.
+    pub(super) fn ball_inertia(&self) -> [f64; 2] {
+        let mass = self.model.ball_mass();
+        [mass, SPHERE * mass * self.model.geometry.ball_diameter.powi(2)]
+    }
+
+    /// Balls that roll from the displacements and contact angles of a state; None where balls are not free.
+    pub(super) fn free_start(&self, state: &MotionState) -> Option<FreeState> {
+        self.model.traction()?;
+        let mut free = FreeState::default();
+        let [radius, height] = self.model.geometry.ball_centre();
+        for (ball, displacement) in state.balls.iter().enumerate() {
+            let (sin, cos) = self.model.geometry.azimuth(ball).sin_cos();
+            let out = radius + displacement[0];
+            let angles = [state.angles[2 * ball], state.angles[2 * ball + 1]];
+            let Rolls { orbit, turning } = self.rolls(out, angles);
+            free.places.push([out * cos, out * sin, height + displacement[1]]);
+            free.velocities.push([-orbit * out * sin, orbit * out * cos, 0.0]);
+            free.turnings
+                .push([turning[0] * cos, turning[0] * sin, turning[1]]);
+        }
+        free.contacts = vec![ContactTraction::default(); 2 * free.places.len()];
+        Some(free)
+    }
+
+    /// Rolling without slip at the centres of both contacts, with spin shared half and half, of a ball at a distance
+    /// from the axis, m, with contact angles, rad, on rings that turn as at the start.
+    fn rolls(&self, out: f64, angles: [f64; 2]) -> Rolls {
+        let lever = 0.5 * self.model.geometry.ball_diameter;
+        let speeds = Side::BOTH.map(|side| self.settings.speeds.of(side).at(0.0));
+        let normal = Side::BOTH.map(|side| {
+            let (sin, cos) = angles[side.index()].sin_cos();
+            [side.sign() * cos, side.sign() * sin]
+        });
+        // Unknowns: orbit, turning about e_r and about e_z.
+        let slip = |k: usize| {
+            let [n_r, n_z] = normal[k];
+            ([out, -lever * n_z, lever * n_r], speeds[k] * (out + lever * n_r))
+        };
+        let ((a, p), (b, q)) = (slip(0), slip(1));
+        let c = [0.0, normal[0][0] - normal[1][0], normal[0][1] - normal[1][1]];
+        let r = speeds[0] * normal[0][1] - speeds[1] * normal[1][1];
+        let [orbit, radial, axial] = solve([a, b, c], [p, q, r]);
+        Rolls {
+            orbit,
+            turning: [radial, axial],
+        }
+    }
+
+    /// Free balls and their contacts over a part; None where balls are not free.
+    pub(super) fn free_parts(
+        &self,
+        state: &MotionState,
+        span: Span,
+        sites: &[Site],
+        rings: &RingSteps<'_>,
+    ) -> Option<FreeParts> {
+        let (traction, free) = (self.model.traction()?, state.free.as_ref()?);
+        let traction = Arc::new(traction.clone());
+        let rings = Side::BOTH.map(|side| self.ring_steps(state, span, side, rings[side.index()].as_deref()));
+        let contact = |(index, site): (usize, &Site)| {
+            let ring = rings[index % 2][index / 2];
+            self.contact_step((state, free), span, (index, site), (ring, &traction))
+        };
+        let contacts = sites.iter().enumerate().map(contact).collect();
+        Some(FreeParts {
+            balls: (0..free.places.len())
+                .map(|ball| self.free_ball(free, span, ball))
+                .collect(),
+            contacts: FreeContacts::new(contacts),
+        })
+    }
+
+    /// Ports of a flexible ring that move freely: of each ball its groove, and of a free one patch and slope too.
+    pub(super) fn n_moving(&self) -> usize {
+        match self.model.traction() {
+            Some(_) => 6 * self.n_balls(),
+            None => 2 * self.n_balls(),
+        }
+    }
+
+    /// Where balls are in the middle of a part. A free ball is expected on the orbit that it has at the start: wrong by
+    /// dt^2/8 times its angular acceleration, 1e-4 of a patch where all friction speeds it up.
+    pub(super) fn course(&self, state: &MotionState, span: Span) -> Course {
+        let time = self.weighted_time(span);
+        let balls = 0..self.n_balls();
+        let Some(free) = &state.free else {
+            return Course {
+                time,
+                azimuths: balls.map(|ball| self.ball_azimuth(ball, time)).collect(),
+                travel: Vec::new(),
+            };
+        };
+        let half = 0.5 * span.dt;
+        let speeds = Side::BOTH.map(|side| self.settings.speeds.of(side).at(time));
+        Course {
+            time,
+            azimuths: balls
+                .clone()
+                .map(|ball| free.azimuth(ball) + half * free.orbit(ball))
+                .collect(),
+            travel: balls
+                .map(|ball| speeds.map(|speed| half * (free.orbit(ball) - speed)))
+                .collect(),
+        }
+    }
+
+    /// Weights of tractions, then of slopes, of all balls on a flexible ring.
+    pub(super) fn free_feet(
+        &self,
+        side: Side,
+        sites: &[Site],
+        places: &[[f64; 2]],
+        course: &Course,
+    ) -> Result<Vec<NodalWeights>, DynamicsError> {
+        let (Some(ring), Some(moving)) = (self.model.ring(side), &self.rings[side.index()]) else {
+            return Ok(Vec::new());
+        };
+        let forces: Vec<[f64; 2]> = places.iter().map(|p| [p[1], 0.0]).collect();
+        let loaded = loaded(&forces);
+        let raceway = &moving.raceway;
+        let of_ball = |ball: usize| {
+            let index = 2 * ball + side.index();
+            let [angle, force] = places[index];
+            let shape = PatchShape::new(
+                &raceway.surface,
+                sites[index].azimuth - self.frame_angle(side, course.time),
+                on_groove(&raceway.surface, angle, loaded[index]),
+                self.model.hertz[side.index()].semi_axes(force),
+                self.model.contact.patch_spacings,
+            )?;
+            let (surface, nodes, rule) = (&raceway.surface, &ring.mesh.nodes, &raceway.rule);
+            let half = course.travel[ball][side.index()].abs().max(LEAST_TRAVEL);
+            Ok([
+                traction_weights(surface, nodes, rule, shape)?,
+                slope_weights(surface, nodes, rule, (shape, half), elastic(&ring.material))?,
+            ])
+        };
+        let pairs: Result<Vec<[NodalWeights; 2]>, DynamicsError> =
+            (0..self.n_balls()).into_par_iter().map(of_ball).collect();
+        let (tractions, slopes): (Vec<_>, Vec<_>) = pairs?.into_iter().map(|[a, b]| (a, b)).unzip();
+        Ok(tractions.into_iter().chain(slopes).collect())
+    }
+
+    fn free_ball(&self, free: &FreeState, span: Span, ball: usize) -> FreeBall {
+        let inertia = self.ball_inertia();
+        let now = self.now(span);
+        let fall = self.model.effects.iter().fold([0.0; 3], |sum, effect| {
+            let a = effect.acceleration(&now);
+            [0, 1, 2].map(|i| sum[i] + a[i])
+        });
+        FreeBall {
+            ball,
+            inertia,
+            place: free.places[ball],
+            velocity: free.velocities[ball],
+            turning: free.turnings[ball],
+            load: fall.map(|a| inertia[0] * a),
+            drag: self
+                .model
+                .effects
+                .iter()
+                .map(|effect| effect.drag(self.model))
+                .sum(),
+            dt: span.dt,
+        }
+    }
+
+    /// A ring's side of its contacts, by ball.
+    fn ring_steps(
+        &self,
+        state: &MotionState,
+        span: Span,
+        side: Side,
+        step: Option<&(dyn ElasticStep + '_)>,
+    ) -> Vec<RingStep> {
+        let speed = self.settings.speeds.of(side);
+        let turned = speed.angle(span.at(1.0)) - speed.angle(span.start);
+        let spin = [turned / span.dt, speed.at(span.at(1.0))];
+        let n_balls = self.n_balls();
+        if let Some(step) = step {
+            let at_start = |ball: usize| elastic_ports(ball, n_balls).map(|port| step.answer().start[port]);
+            let of_ball = |ball: usize| RingStep {
+                elastic: Some(at_start(ball)),
+                spin,
+                ..RingStep::default()
+            };
+            return (0..n_balls).map(of_ball).collect();
+        }
+        let (carrier, masses) = match (side, state.seat) {
+            (Side::Inner, _) => ([state.shaft, state.shaft_velocity], self.model.shaft_masses()),
+            (Side::Outer, Some([z, v, _])) => {
+                let mass = self.model.seat().map_or(0.0, |seat| seat.mass);
+                ([[0.0, 0.0, z, 0.0, 0.0], [0.0, 0.0, v, 0.0, 0.0]], [mass; 5])
+            }
+            (Side::Outer, None) => ([[0.0; 5]; 2], [0.0; 5]),
+        };
+        let ring = RingStep {
+            carrier,
+            has_inertia: masses.map(|mass| mass > 0.0),
+            elastic: None,
+            spin,
+        };
+        vec![ring; n_balls]
+    }
+
+    fn contact_step(
+        &self,
+        (state, free): (&MotionState, &FreeState),
+        span: Span,
+        (index, site): (usize, &Site),
+        (ring, traction): (RingStep, &Arc<Traction>),
+    ) -> ContactStep {
+        let (ball, geometry) = (site.ball, &self.model.geometry);
+        let radius = 0.5 * geometry.ball_diameter;
+        let groove_radius = geometry.groove_radius(site.side);
+        let groove = GrooveCircle {
+            radius: geometry.centre_radius(site.side),
+            height: geometry.groove_centre(site.side)[1],
+            lever: radius - 0.5 * state.approaches[index].max(0.0),
+        };
+        let [f_r, f_z] = state.forces[index];
+        let force = f_r.hypot(f_z).max(EARTH * self.model.ball_mass());
+        let semi_axes = self.model.hertz[site.side.index()].semi_axes(force);
+        let rolling = RollingContact {
+            speed: rolling_speed(
+                free,
+                ball,
+                (site.side, state.angles[index]),
+                (groove.lever, ring.spin[0]),
+            ),
+            force,
+            semi_axes,
+            shear_modulus: shear_modulus(self.model, site.side),
+        };
+        ContactStep {
+            dt: span.dt,
+            ball: [free.places[ball], free.velocities[ball], free.turnings[ball]],
+            groove,
+            law: site.law,
+            touching: site.touching,
+            scheme: self.settings.scheme,
+            damping: self.settings.contact_damping,
+            ring,
+            traction: traction.clone(),
+            ellipse: Ellipse {
+                semi_axes,
+                radius: 2.0 * groove_radius * radius / (groove_radius + radius),
+            },
+            small_slip: traction.creep.slip(traction.law.at(0.0)[0], &rolling),
+            slip_at: Default::default(),
+        }
+    }
+
+    /// New state and works of free balls.
+    pub(super) fn finish_free(&self, next: &mut MotionState, parts: &BearingParts, solution: &StepSolution) {
+        let Some(free) = &parts.free else { return };
+        let mut state = FreeState::default();
+        let mut friction = next.ledger.friction.unwrap_or_default();
+        for (ball, x) in free.balls.iter().zip(&solution.free_ends) {
+            let [velocity, turning] = ball.velocities(x);
+            state.places.push(ball.end(x));
+            state.velocities.push(velocity);
+            state.turnings.push(turning);
+            next.ledger.load_work += ball.load_work(x);
+            friction.drag_loss += ball.drag_loss(x);
+        }
+        for (contact, found) in free.contacts.contacts.iter().zip(&solution.free_contacts) {
+            friction.loss -= found.work;
+            friction.integrator_share += found.work_at_slip - found.work;
+            let turned = contact.ring.spin[0] * contact.dt;
+            friction.drive_work += found.torque * turned;
+            // What the slope force takes from a patch that moves on, ball and drive have.
+            friction.drive_work += found.slope.torque * turned;
+            next.ledger.patch_work += found.slope.work - found.slope.torque * turned;
+            state.contacts.push(ContactTraction {
+                slip: found.slip.centre,
+                spin: found.slip.turning[2],
+                force: [found.traction.action[0], found.traction.action[1]],
+                power: -found.work / contact.dt,
+                torque: found.torque,
+            });
+        }
+        next.ledger.friction = Some(friction);
+        for ball in 0..state.places.len() {
+            next.balls[ball] = solution.balls[ball];
+            next.ball_velocities[ball] = state.meridian_velocity(ball);
+        }
+        next.free = Some(state);
+    }
+}
+
+impl BearingParts {
+    /// Displacements [radial, axial] of free balls from the just-touching position, m.
+    pub(super) fn free_displacements(&self, model: &Model, ends: &[[f64; 6]]) -> Vec<[f64; 2]> {
+        let [radius, height] = model.geometry.ball_centre();
+        let balls = self.free.iter().flat_map(|free| &free.balls).zip(ends);
+        balls
+            .map(|(ball, x)| {
+                let [x, y, z] = ball.end(x);
+                [x.hypot(y) - radius, z - height]
+            })
+            .collect()
+    }
+
+    /// What all contacts of free balls ask of the carrier of a rigid ring, N and N m.
+    pub(super) fn free_reactions(&self, side: Side, solution: &StepSolution) -> [f64; 5] {
+        let mut sum = [0.0; 5];
+        for found in solution.free_contacts.iter().skip(side.index()).step_by(2) {
+            for (sum, force) in sum.iter_mut().zip(&found.resists[6..]) {
+                *sum += force.value;
+            }
+        }
+        sum
+    }
+}
+
+/// Fails where two balls have run into each other.
+pub(super) fn check_apart(
+    model: &Model,
+    parts: &BearingParts,
+    ends: &[[f64; 6]],
+) -> Result<(), DynamicsError> {
+    let Some(free) = &parts.free else { return Ok(()) };
+    let n = free.balls.len();
+    let place = |ball: usize| free.balls[ball].end(&ends[ball]);
+    for ball in 0..n {
+        let (a, b) = (place(ball), place((ball + 1) % n));
+        let square: f64 = (0..3).map(|i| (a[i] - b[i]).powi(2)).sum();
+        if square < model.geometry.ball_diameter.powi(2) {
+            return Err(DynamicsError::BallsTouch {
+                ball,
+                other: (ball + 1) % n,
+            });
+        }
+    }
+    Ok(())
+}
+
+/// A ball that rolls: speed round the axis and turning about e_r and e_z, rad/s.
+struct Rolls {
+    orbit: f64,
+    turning: [f64; 2],
+}
+
+/// Speed with which material runs through a contact, m/s: mean of both surfaces, seen from the contact.
+fn rolling_speed(
+    free: &FreeState,
+    ball: usize,
+    (side, angle): (Side, f64),
+    (lever, spin): (f64, f64),
+) -> f64 {
+    let ([x, y, _], w) = (free.places[ball], free.turnings[ball]);
+    let (out, orbit) = (x.hypot(y), free.orbit(ball));
+    let (sin, cos) = angle.sin_cos();
+    let [n_r, n_z] = [side.sign() * cos, side.sign() * sin];
+    let turning = (w[0] * x + w[1] * y) / out;
+    let at = out + lever * n_r;
+    let of_ball = orbit * out + lever * (w[2] * n_r - turning * n_z) - orbit * at;
+    0.5 * (of_ball + (spin - orbit) * at)
+}
+
+/// Combined shear modulus of a ball and a ring, 2/G = 1/G_1 + 1/G_2, Pa; a rigid ring has that of the balls.
+fn shear_modulus(model: &Model, side: Side) -> f64 {
+    let ball = model.ball_material.shear_modulus();
+    let ring = model
+        .ring(side)
+        .map_or(ball, |ring| ring.material.shear_modulus());
+    2.0 / (1.0 / ball + 1.0 / ring)
+}
+
+/// Solves three equations by Cramer's rule.
+fn solve(rows: [[f64; 3]; 3], right: [f64; 3]) -> [f64; 3] {
+    let det = |m: [[f64; 3]; 3]| {
+        m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) - m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0])
+            + m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0])
+    };
+    let all = det(rows);
+    [0, 1, 2].map(|column| {
+        let mut with = rows;
+        for (row, value) in with.iter_mut().zip(right) {
+            row[column] = value;
+        }
+        det(with) / all
+    })
+}
+
+/// The ledger of friction where balls are free.
+pub(super) fn friction_at_start(model: &Model) -> Option<FrictionLedger> {
+    model.traction().map(|_| FrictionLedger::default())
+}

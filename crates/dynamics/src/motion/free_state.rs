@@ -1,0 +1,101 @@
+//! What evolves of free balls.
+
+/// Free balls: places, velocities and angular velocities in space, and what their contacts report.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct FreeState {
+    /// Places of the centres, m.
+    pub places: Vec<[f64; 3]>,
+    /// Velocities, m/s.
+    pub velocities: Vec<[f64; 3]>,
+    /// Angular velocities, rad/s.
+    pub turnings: Vec<[f64; 3]>,
+    /// Traction in the last step, by site.
+    pub contacts: Vec<ContactTraction>,
+}
+
+/// Traction of a contact in a step. Slips are those that the force follows: at the end of the step, as a rule.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct ContactTraction {
+    /// Slip of the ball on the ring along the rolling direction and across it, m/s.
+    pub slip: [f64; 2],
+    /// Relative turning about the normal, from the ball's centre to the raceway, rad/s.
+    pub spin: f64,
+    /// Force on the ball along the rolling direction and across it, N.
+    pub force: [f64; 2],
+    /// Power lost over the step, W.
+    pub power: f64,
+    /// Torque on the ball about the ring's axis, N m.
+    pub torque: f64,
+}
+
+impl ContactTraction {
+    /// As a row of numbers, for files.
+    pub fn to_row(self) -> [f64; 7] {
+        let ContactTraction {
+            slip,
+            spin,
+            force,
+            power,
+            torque,
+        } = self;
+        [slip[0], slip[1], spin, force[0], force[1], power, torque]
+    }
+
+    /// From a row of numbers.
+    pub fn from_row(row: [f64; 7]) -> ContactTraction {
+        ContactTraction {
+            slip: [row[0], row[1]],
+            spin: row[2],
+            force: [row[3], row[4]],
+            power: row[5],
+            torque: row[6],
+        }
+    }
+}
+
+impl FreeState {
+    /// Azimuth of a ball, rad.
+    pub fn azimuth(&self, ball: usize) -> f64 {
+        let [x, y, _] = self.places[ball];
+        y.atan2(x)
+    }
+
+    /// Speed of a ball round the axis, rad/s.
+    pub fn orbit(&self, ball: usize) -> f64 {
+        let ([x, y, _], [u, v, _]) = (self.places[ball], self.velocities[ball]);
+        let square = x * x + y * y;
+        if square > 0.0 {
+            (x * v - y * u) / square
+        } else {
+            0.0
+        }
+    }
+
+    /// Velocity [radial, axial] of a ball, m/s.
+    pub fn meridian_velocity(&self, ball: usize) -> [f64; 2] {
+        let ([x, y, _], [u, v, w]) = (self.places[ball], self.velocities[ball]);
+        let radius = x.hypot(y);
+        let radial = if radius > 0.0 {
+            (x * u + y * v) / radius
+        } else {
+            0.0
+        };
+        [radial, w]
+    }
+
+    /// Sum of all its numbers: not finite if one is not.
+    pub(super) fn sum(&self) -> f64 {
+        let vectors = [&self.places, &self.velocities, &self.turnings];
+        let vectors = vectors.into_iter().flat_map(|v| v.as_flattened()).sum::<f64>();
+        vectors + self.contacts.iter().flat_map(|c| c.to_row()).sum::<f64>()
+    }
+
+    /// Kinetic energy of all balls of this mass and moment of inertia, J.
+    pub fn kinetic(&self, [mass, moment]: [f64; 2]) -> f64 {
+        let square = |v: &[f64; 3]| v.iter().map(|x| x * x).sum::<f64>();
+        let pairs = self.velocities.iter().zip(&self.turnings);
+        pairs
+            .map(|(v, w)| 0.5 * (mass * square(v) + moment * square(w)))
+            .sum()
+    }
+}

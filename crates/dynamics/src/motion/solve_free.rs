@@ -1,0 +1,136 @@
+//! The forces of one part of a step with free balls.
+//!
+//! Traction makes the system non-symmetric and stiff: Newton starts from the course that goes on round the axis. Where
+//! it stalls, it is led there by creep that is 100 and 10 times softer. A contact whose friction would do work over the
+//! part takes the slip of the middle, and the part is solved again: dissipation is never negative.
+
+use contact::Side;
+use timer::SharedLaps;
+
+use super::solve::{StepSolution, policy};
+use crate::bearing::{BearingParts, CONTACTS, FIRST_BALL, SHAFT};
+use crate::error::DynamicsError;
+use crate::interactions::free_contact::{FoundContact, SlipAt};
+use crate::model::Model;
+use crate::system::newton::NewtonSolution;
+use crate::system::{Body, Lengths, System};
+
+/// Factors of the slip of creep that lead a Newton that stalls to the solution.
+const SOFTER: [f64; 3] = [100.0, 10.0, 1.0];
+
+impl BearingParts {
+    /// Solves a part with free balls; `scale` is the largest force that acts at its start, N.
+    pub(super) fn solve_free(
+        &mut self,
+        model: &Model,
+        scale: f64,
+        costs: &SharedLaps,
+    ) -> Result<StepSolution, DynamicsError> {
+        let mut iterations = 0;
+        loop {
+            let solved = self.with_friction(model, scale, costs)?;
+            iterations += solved.iterations;
+            let found = self.found_free(&solved.unknowns);
+            let contacts = self.free.iter_mut().flat_map(|free| &mut free.contacts.contacts);
+            let mut is_again = false;
+            for (contact, found) in contacts.zip(&found) {
+                if found.work > 0.0 && contact.slip_at == SlipAt::End {
+                    contact.slip_at = SlipAt::Middle;
+                    is_again = true;
+                }
+            }
+            if !is_again {
+                return Ok(self.free_solution(model, &solved.unknowns, found, iterations));
+            }
+        }
+    }
+
+    /// Newton, led by softer creep where it stalls.
+    fn with_friction(
+        &mut self,
+        model: &Model,
+        scale: f64,
+        costs: &SharedLaps,
+    ) -> Result<NewtonSolution, DynamicsError> {
+        let scales = self.lengths_per_unknown(model);
+        let policy = policy(scale, Some(&scales), costs);
+        let guess = self.system().guess();
+        let stalled = match self.system().solve(guess.clone(), &policy) {
+            Err(error @ (DynamicsError::NewtonStalled { .. } | DynamicsError::NotFinite { .. })) => error,
+            other => return other,
+        };
+        let own: Vec<f64> = self.small_slips().map(|slip| *slip).collect();
+        let mut solved = Err(stalled);
+        let (mut x, mut iterations) = (guess, 0);
+        for factor in SOFTER {
+            self.small_slips()
+                .zip(&own)
+                .for_each(|(slip, own)| *slip = factor * own);
+            solved = self.system().solve(x.clone(), &policy);
+            if let Ok(found) = &solved {
+                x.clone_from(&found.unknowns);
+                iterations += found.iterations;
+            }
+        }
+        solved.map(|found| NewtonSolution { iterations, ..found })
+    }
+
+    fn small_slips(&mut self) -> impl Iterator<Item = &mut f64> {
+        let contacts = self.free.iter_mut().flat_map(|free| &mut free.contacts.contacts);
+        contacts.map(|contact| &mut contact.small_slip)
+    }
+
+    /// What makes lengths of all unknowns: rotations of balls at their surface, tilts at the grooves.
+    fn lengths_per_unknown(&self, model: &Model) -> Vec<f64> {
+        let system = self.system();
+        let mut scales = vec![1.0; system.n()];
+        let tilts = self.shaft.free().zip(system.unknowns(Body::Lumped(SHAFT)));
+        for (dof, unknown) in tilts.filter(|(dof, _)| *dof >= 3) {
+            scales[unknown] = 1.0 / model.geometry.centre_radius(Side::Inner);
+            debug_assert!(dof < 5, "a shaft has five dofs");
+        }
+        for ball in 0..self.n_balls() {
+            let own = system.unknowns(Body::Lumped(FIRST_BALL + ball));
+            scales[own][3..].fill(2.0 / model.geometry.ball_diameter);
+        }
+        scales
+    }
+
+    /// Contacts of free balls at the solution `x`.
+    fn found_free(&self, x: &[f64]) -> Vec<FoundContact> {
+        let [start, end] = self.system().lengths_at(CONTACTS, x);
+        let lengths = Lengths {
+            start: &start,
+            end: &end,
+        };
+        self.free
+            .as_ref()
+            .map_or_else(Vec::new, |free| free.contacts.found(lengths))
+    }
+
+    fn free_solution(
+        &self,
+        model: &Model,
+        x: &[f64],
+        found: Vec<FoundContact>,
+        iterations: usize,
+    ) -> StepSolution {
+        let system: System<'_> = self.system();
+        let ends: Vec<[f64; 6]> = (0..self.n_balls())
+            .map(|ball| system.coordinates(FIRST_BALL + ball, x))
+            .collect();
+        let reach = |i: usize| found.iter().flat_map(|found| found.reach[i]).collect();
+        StepSolution {
+            shaft: system.coordinates(SHAFT, x),
+            balls: self.free_displacements(model, &ends),
+            seat: self.seat_end(&system, x),
+            reaches: [reach(0), reach(1)],
+            forces: found.iter().map(|found| found.normal).collect(),
+            on_shaft: [0.0; 5],
+            mounts: Side::BOTH.map(|side| self.mount(&system, side, x)),
+            free_ends: ends,
+            free_contacts: found,
+            iterations,
+        }
+    }
+}

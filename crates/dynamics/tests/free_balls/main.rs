@@ -1,0 +1,12 @@
+//! Free balls on rigid rings against closed forms: rolling, sliding, driven and thrown balls, thrust, ledgers.
+
+#[path = "../support/mod.rs"]
+mod support;
+
+mod bearings;
+mod closed_forms;
+mod flexible;
+mod hard;
+mod ledger;
+mod skid;
+mod thrust;

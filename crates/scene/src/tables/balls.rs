@@ -1,0 +1,115 @@
+//! `[balls]`: how the balls move.
+//!
+//! ```toml
+//! [balls]
+//! motion = "free"     # "kinematic" (default): the cage turns as pure rolling has it; "free": six dofs for each ball
+//! ```
+//!
+//! Free balls need [`[effects.traction]`](dynamics::effects::traction), which needs them. What prescribes their motion
+//! or forces that come with their inertia is refused beside them: it would not be redundant but wrong.
+
+use dynamics::effects::Effects;
+use input::Problems;
+use serde::Deserialize;
+
+/// How the balls move.
+#[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Eq)]
+#[serde(rename_all = "snake_case")]
+pub enum BallMotion {
+    /// Azimuth and turning follow the rings in pure rolling; two dofs in the meridian plane are free.
+    #[default]
+    Kinematic,
+    /// All six dofs are free.
+    Free,
+}
+
+/// As typed.
+#[derive(Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields, expecting = "the table [balls]")]
+pub struct RawBalls {
+    #[serde(default)]
+    motion: BallMotion,
+}
+
+/// What the balls have to go with.
+#[derive(Clone, Copy, Debug)]
+pub struct BallsContext<'a> {
+    /// Loads and other effects.
+    pub effects: &'a Effects,
+    /// Whether `speed.ball_speeds` is given.
+    pub has_ball_speeds: bool,
+    /// Whether motion in time is computed.
+    pub is_dynamic: bool,
+    /// Whether the integrator conserves energy.
+    pub conserves: bool,
+}
+
+/// Effects that free balls make wrong, and why.
+const REPLACED: [(&str, &str); 3] = [
+    (
+        "ball_centrifugal",
+        "the centrifugal force of a free ball is its inertia, it would act twice",
+    ),
+    (
+        "gyroscopic_moment",
+        "traction carries the gyroscopic moment of a free ball, it would act twice",
+    ),
+    ("cage_slip", "the slip of a free ball is a result, not given"),
+];
+
+impl RawBalls {
+    /// What the scene asks for.
+    pub fn motion(&self) -> BallMotion {
+        self.motion
+    }
+
+    /// Checks what stands beside free balls.
+    pub fn check(&self, context: BallsContext<'_>, problems: &mut Problems) -> BallMotion {
+        let names = context.effects.names();
+        let has_traction = names.contains(&"traction");
+        if self.motion == BallMotion::Kinematic {
+            if has_traction {
+                problems.add(
+                    "[effects.traction] needs free balls: balls whose motion is kinematic roll without friction; write \
+                     [balls] with motion = \"free\", or remove it",
+                );
+            }
+            if names.contains(&"ball_drag") {
+                problems.add(
+                    "[effects.ball_drag] needs free balls: nothing slows down balls whose motion is kinematic; write \
+                     [balls] with motion = \"free\", or remove it",
+                );
+            }
+            return self.motion;
+        }
+        if !has_traction {
+            problems.add(
+                "balls.motion is \"free\", but nothing carries the balls round; add [effects.traction] with law = \
+                 \"coulomb\" and friction (0 is frictionless)",
+            );
+        }
+        if !context.is_dynamic {
+            problems.add(
+                "balls.motion is \"free\", which this version computes in motion alone; use [dynamic], or motion = \
+                 \"kinematic\" in equilibria and modes",
+            );
+        } else if !context.conserves {
+            problems.add(
+                "balls.motion is \"free\", which needs the energy of the balls to be kept; use dynamic.integrator = \
+                 \"average_acceleration\"",
+            );
+        }
+        for (name, why) in REPLACED.iter().filter(|(name, _)| names.contains(name)) {
+            problems.add(format!(
+                "[effects.{name}] stands beside balls.motion = \"free\", but {why}; remove it"
+            ));
+        }
+        if context.has_ball_speeds {
+            problems.add(
+                "speed.ball_speeds stands beside balls.motion = \"free\", but the speeds of free balls are results; \
+                 remove it",
+            );
+        }
+        self.motion
+    }
+}
