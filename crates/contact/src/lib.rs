@@ -25,7 +25,7 @@ pub mod weights;
 
 pub use error::ContactError;
 pub use facets::FacetSurface;
-pub use geometry::{BearingGeometry, Side};
+pub use geometry::{BearingGeometry, BySide, Meridian, Side};
 pub use hertz::{Elastic, HertzContact};
 pub use law::ContactLaw;
 pub use near_field::{LoadedPatch, NearField, RingPoint};

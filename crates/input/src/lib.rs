@@ -11,12 +11,14 @@
 //! # Ok::<(), input::UnitError>(())
 //! ```
 
+mod expansion;
 mod problems;
 pub mod schedule;
 mod schedule_table;
 mod temperature;
 pub mod units;
 
+pub use expansion::Expansion;
 pub use problems::Problems;
 pub use schedule::Schedule;
 pub use schedule_table::{Clock, RawSchedule, check_schedule, require_growing, schedule_of};

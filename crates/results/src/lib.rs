@@ -16,6 +16,7 @@ pub mod integrity;
 pub mod memory;
 pub mod modes;
 pub mod motion_fields;
+pub mod mounting;
 mod probe_places;
 pub mod probes;
 pub mod rainflow;

@@ -15,6 +15,7 @@ use serde::Serialize;
 use timer::Laps;
 
 use super::memory::Forecasts;
+use super::mounting::{ClearanceSummary, FitSummary, fits};
 use super::probe_places::NodePlace;
 use super::snapshot::Snapshot;
 use super::subsurface::{self, ContactSubsurface};
@@ -65,6 +66,11 @@ pub struct Summary {
     effects: Vec<&'static str>,
     dofs: BTreeMap<&'static str, usize>,
     energy_j: BTreeMap<&'static str, f64>,
+    /// Radial clearance, mounted and warm; absent without fits, temperatures and seat forms, as the fits.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    clearance: Option<ClearanceSummary>,
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+    fits: BTreeMap<&'static str, FitSummary>,
     iterations: BTreeMap<&'static str, usize>,
     #[serde(skip_serializing_if = "Option::is_none")]
     sweep: Option<SweepSummary>,
@@ -214,6 +220,8 @@ impl Summary {
             effects: scene.effects.names(),
             dofs: sides(|i| model.rings[i].as_ref().map_or(0, |r| r.mesh.n_dofs())),
             energy_j: last.energies.iter().copied().collect(),
+            clearance: model.mounting.report.as_ref().map(ClearanceSummary::new),
+            fits: fits(model.mounting.report.as_ref()),
             iterations: findings.iterations,
             sweep,
             life: None,

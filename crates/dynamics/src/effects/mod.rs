@@ -8,6 +8,7 @@ pub mod axial_force;
 pub mod ball_centrifugal;
 pub mod cage_slip;
 pub mod contact_damping;
+pub mod fit;
 pub mod frame_rotation;
 pub mod gravity;
 pub mod gyroscopic_moment;
@@ -16,8 +17,10 @@ pub mod moment;
 pub mod radial_force;
 pub mod rayleigh_damping;
 pub mod rules;
+pub mod seat_form;
 pub mod spring_preload;
 mod table;
+pub mod temperature;
 pub mod unbalance;
 
 pub use axial_force::AxialForce;
@@ -38,6 +41,7 @@ use serde::Deserialize;
 use crate::error::DynamicsError;
 use crate::interactions::discrete_gradient::ContactDamping;
 use crate::kinematics::SlipRatios;
+use crate::mounting::Conditions;
 use rules::{Case, PeakLoad};
 
 /// The tables `[effects.*]` of a scene.
@@ -68,6 +72,12 @@ pub struct Effects {
     pub spring_preload: Option<spring_preload::Table>,
     /// A mass off the axis of shaft and inner ring.
     pub unbalance: Option<unbalance::Table>,
+    /// Interference of the rings with shaft and housing.
+    pub fit: Option<fit::Table>,
+    /// Temperatures of all bodies.
+    pub temperature: Option<temperature::Table>,
+    /// Seats that are not round.
+    pub seat_form: Option<seat_form::Table>,
 }
 
 impl Effects {
@@ -87,6 +97,9 @@ impl Effects {
             rayleigh_damping,
             spring_preload,
             unbalance,
+            fit,
+            temperature,
+            seat_form,
         } = self;
         vec![
             axial_force,
@@ -101,6 +114,9 @@ impl Effects {
             rayleigh_damping,
             spring_preload,
             unbalance,
+            fit,
+            temperature,
+            seat_form,
         ]
     }
 
@@ -136,6 +152,13 @@ impl Effects {
         let mut loads = found.collect::<Result<Vec<_>, _>>()?;
         loads.sort_by_key(|load| load.name());
         Ok(loads)
+    }
+
+    /// How the bearing is mounted and how warm it is.
+    pub fn conditions(&self) -> Conditions {
+        let mut conditions = Conditions::default();
+        self.on().for_each(|(_, table)| table.mount(&mut conditions));
+        conditions
     }
 
     /// Slip ratios at the inner and outer raceway.

@@ -70,6 +70,7 @@ impl Case {
             hertz: Side::BOTH.map(|side| HertzContact::new(&geometry, side, elastic, elastic)),
             geometry,
             rings: [None, None],
+            mounting: Default::default(),
             ball_material: steel,
             shaft: [
                 dof(true),
@@ -109,6 +110,7 @@ pub fn relative(a: f64, b: f64) -> f64 {
 
 pub mod graded;
 pub mod harris;
+pub mod mounting;
 pub mod rings;
 
 use dynamics::Hold;

@@ -5,6 +5,8 @@ use input::{Clock, Problems};
 use toml_edit::DocumentMut;
 
 use super::RawScene;
+use super::bearing::Bearing;
+use super::materials::Materials;
 use super::modes::ModesContext;
 use super::shaft::Shaft;
 use super::speed::{RawSpeed, SpeedUse, makes_force};
@@ -79,12 +81,21 @@ impl RawScene {
         self.is_at_rest() || (self.dynamic.is_none() && self.quasi_static.is_some())
     }
 
-    pub(super) fn effects_context(&self, is_flexible: [bool; 2]) -> Context {
+    pub(super) fn effects_context(
+        &self,
+        is_flexible: [bool; 2],
+        bearing: Option<&Bearing>,
+        materials: Option<&Materials>,
+    ) -> Context {
+        let seats = bearing.map(|b| [b.bore_diameter, b.outside_diameter]);
         Context {
             is_without_inertia: self.is_without_inertia(),
             clock: self.clock(),
             has_speed: self.has_speed(),
             is_flexible,
+            seat_diameters: [0, 1].map(|i| seats.map(|d| d[i])),
+            // Materials that are wrong are reported themselves.
+            has_expansion: materials.map_or([true; 2], Materials::has_expansion),
         }
     }
 

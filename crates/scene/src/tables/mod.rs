@@ -313,7 +313,11 @@ impl Source<'_> {
         let shaft = raw.shaft.check(bearing.as_ref(), raw.clock(), &mut problems);
         let effects = &raw.effects;
         effects.check(
-            raw.effects_context([inner.body.is_some(), outer.body.is_some()]),
+            raw.effects_context(
+                [inner.body.is_some(), outer.body.is_some()],
+                bearing.as_ref(),
+                materials.as_ref(),
+            ),
             &mut problems,
         );
         let speed = raw.speed.as_ref();

@@ -24,8 +24,9 @@ fn the_example_of_every_effect_is_its_table() {
     for about in all() {
         let scene = parse(&with_effects(about.example), &[]).unwrap_or_else(|e| panic!("{e}"));
         assert_eq!(scene.effects.names(), [about.name]);
-        let header = format!("[effects.{}]", about.name);
-        assert!(about.example.starts_with(&header), "{}", about.example);
+        let header = format!("effects.{}]", about.name);
+        let start = about.example.trim_start_matches('[');
+        assert!(start.starts_with(&header), "{}", about.example);
     }
 }
 

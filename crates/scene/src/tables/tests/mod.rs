@@ -8,6 +8,7 @@ mod good;
 mod life;
 mod modes;
 mod motion;
+mod mounting;
 mod overrides;
 mod probes;
 mod quasi_static;
