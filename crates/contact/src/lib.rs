@@ -9,6 +9,7 @@ pub mod elliptic;
 pub mod error;
 mod facet_map;
 pub mod facets;
+pub mod film;
 pub mod geometry;
 pub mod halfspace;
 pub mod hertz;

@@ -11,6 +11,7 @@ pub mod export;
 pub mod failure;
 pub mod fields;
 pub mod files;
+pub mod film;
 pub mod folder;
 pub mod integrity;
 pub mod memory;

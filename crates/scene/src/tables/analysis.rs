@@ -108,7 +108,8 @@ impl RawScene {
         if self.dynamic.is_none() && self.modes.is_some() {
             return SpeedUse::Modes;
         }
-        match (self.is_at_rest(), self.effects.use_speed(makes_force)) {
+        let is_used = self.effects.use_speed(makes_force) || self.lubricant.is_some();
+        match (self.is_at_rest(), is_used) {
             (false, _) => SpeedUse::Motion,
             (true, true) => SpeedUse::ForceAtRest,
             (true, false) => SpeedUse::Nothing,

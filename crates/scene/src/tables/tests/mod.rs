@@ -6,6 +6,7 @@ mod bad_values;
 mod effects;
 mod good;
 mod life;
+mod lubricant;
 mod modes;
 mod motion;
 mod mounting;
