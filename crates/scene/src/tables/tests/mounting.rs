@@ -181,6 +181,19 @@ fn a_bearing_is_the_same_by_its_diameters_clearance_or_contact_angle() {
     );
 }
 
+/// Wrong: a run without its seat forms could not be asked for on the command line.
+#[test]
+fn none_takes_out_a_list_of_tables() {
+    let form = "[[effects.seat_form]]\nring = \"inner\"\norder = 2\namplitude = \"1 um\"\n";
+    let text = format!("{EXAMPLE}\n{form}");
+    assert_eq!(
+        parse(&text, &[]).unwrap().effects.conditions().seat_forms.len(),
+        1
+    );
+    let plain = parse(&text, &["effects.seat_form=none"]).unwrap();
+    assert!(plain.effects.seat_form.is_none());
+}
+
 /// Wrong: keys of fits and temperatures would be lost on the way to the bearing.
 #[test]
 fn fits_and_temperatures_reach_the_conditions() {
