@@ -68,6 +68,9 @@ pub fn check(path: &Path, overrides: &[String]) -> Result<(), Failure> {
         1e3 * geometry.groove_distance(),
         geometry.free_contact_angle().to_degrees()
     ));
+    for line in model.mounting.report.iter().flat_map(results::mounting::lines) {
+        print::line(format_args!("mounted  {line}"));
+    }
     print_rolling(&scene, geometry);
     print_probes(&scene, probes.as_ref());
     let (mut memory, mut motion) = ([None, None], [Some(None), Some(None)]);

@@ -4,6 +4,7 @@
 use comm::print;
 use dynamics::Model;
 use results::failure::Failure;
+use results::mounting;
 use scene::Scene;
 
 use crate::rules;
@@ -19,6 +20,9 @@ pub struct Remarks {
 impl Remarks {
     /// Those on a scene and its model, of which `doubts` are known. Says the advice.
     pub fn on(scene: &Scene, model: &Model, doubts: Vec<String>) -> Result<Remarks, Failure> {
+        for line in model.mounting.report.iter().flat_map(mounting::lines) {
+            print::note(format_args!("{line}"));
+        }
         let advice = rules::advice(scene, model)?;
         for line in &advice {
             print::note(format_args!("advice: {line}"));

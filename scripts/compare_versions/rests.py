@@ -7,6 +7,9 @@ SWEEP = '[sweep]\nkey = "effects.radial_force.value"\nvalues = ["0 kN", "0.5 kN"
 QUASI = '[quasi_static]\nduration = "1 ms"\nstep = "0.25 ms"\noutput_every = 2\n[speed]\ninner = "1800 rpm"\n'
 SPINNING = '[speed]\ninner = "30000 rpm"\n[effects.ball_centrifugal]\n[effects.gyroscopic_moment]\n[static]\n'
 ALL_BODIES = '[modes]\nnumber = 9\nbodies = ["inner", "outer", "bearing"]\n'
+FITTED = ('[effects.fit.inner]\ninterference = "10 um"\n'
+          '[effects.fit.outer]\ninterference = "5 um"\nhousing_diameter = "160 mm"\n'
+          '[[effects.seat_form]]\nring = "inner"\norder = 3\namplitude = "1 um"\n')
 SPARSE = "solver.backend=sparse"
 MASS = "shaft.mass=2 kg"
 
@@ -30,6 +33,7 @@ REST = [
     Case("static_spinning", STATIC, SPINNING),
     Case("static_gravity", STATIC, '[effects.gravity]\nacceleration = "9.81 m/s2"\ndirection = [0, -1, 0]\n'
          '[effects.moment]\nx = "1 N m"\ny = "3 N m"\n[static]\n', FREE_TILT),
+    Case("static_fitted", STATIC, FITTED + "[static]\n"),
     Case("sweep", STATIC, SWEEP + NODE_PROBES),
     Case("sweep_sparse", STATIC, SWEEP, (SPARSE,), edits=MEAN),
     Case("quasi_static", STATIC, QUASI + NODE_PROBES + STRESS_PROBES, threads=True),

@@ -42,6 +42,12 @@ impl Side {
     }
 }
 
+/// A value of each side, inner first.
+pub type BySide<T> = [T; 2];
+
+/// A vector in a meridian plane [radial, axial].
+pub type Meridian = [f64; 2];
+
 /// Dimensions of the bearing, m.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BearingGeometry {

@@ -9,6 +9,7 @@ pub mod elliptic;
 pub mod error;
 mod facet_map;
 pub mod facets;
+pub mod film;
 pub mod geometry;
 pub mod halfspace;
 pub mod hertz;
@@ -26,7 +27,7 @@ pub mod weights;
 
 pub use error::ContactError;
 pub use facets::FacetSurface;
-pub use geometry::{BearingGeometry, Side};
+pub use geometry::{BearingGeometry, BySide, Meridian, Side};
 pub use hertz::{Elastic, HertzContact};
 pub use law::{BallLaws, ContactLaw};
 pub use near_field::{LoadedPatch, NearField, RingPoint};

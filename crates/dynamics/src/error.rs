@@ -210,6 +210,79 @@ pub enum DynamicsError {
         /// Cause.
         source: DenseError,
     },
+    /// A clamped ring that its fit does not press on its partner.
+    #[error(
+        "the {side} ring has {clearance_um:.2} um of clearance on its partner, warm as it is, but {side}.support = \
+         \"clamped\" keeps it on it; use \"mean_motion\", which lets a loose ring keep its size, or more \
+         interference in [effects.fit.{side}]"
+    )]
+    LooseFit {
+        /// `inner` or `outer`.
+        side: &'static str,
+        /// Diametral clearance, um; negative where the seat pulls in spite of interference.
+        clearance_um: f64,
+    },
+    /// A ring that speed lifts off its partner.
+    #[error(
+        "the {side} ring lets go of its partner at {limit_rpm:.0} rpm, with its {interference_um:.2} um of \
+         interference, but [speed] reaches {speed_rpm:.0} rpm; a seat that lets go is not computed: lower the speed \
+         or give [effects.fit.{side}] more interference"
+    )]
+    FitLetsGo {
+        /// `inner` or `outer`.
+        side: &'static str,
+        /// Largest speed, rpm.
+        speed_rpm: f64,
+        /// Speed at which the pressure vanishes, rpm.
+        limit_rpm: f64,
+        /// Diametral interference, um.
+        interference_um: f64,
+    },
+    /// A fit beyond yield.
+    #[error(
+        "the fit of the {side} ring presses with {pressure_mpa:.1} MPa, which stresses it by {stress_mpa:.0} MPa \
+         (Tresca, as a tube to the groove bottom), beyond materials.rings.yield_strength of {limit_mpa:.0} MPa; \
+         rings are elastic here: use less interference"
+    )]
+    FitYields {
+        /// `inner` or `outer`.
+        side: &'static str,
+        /// Mean pressure, MPa.
+        pressure_mpa: f64,
+        /// Difference of the principal stresses, MPa.
+        stress_mpa: f64,
+        /// Yield strength, MPa.
+        limit_mpa: f64,
+    },
+    /// A seat whose waves lift the ring off it.
+    #[error(
+        "the waves of [[effects.seat_form]] lift the {side} ring off {percent:.0} % of its seat; a seat that lets go \
+         is not computed: use smaller amplitudes or more interference in [effects.fit.{side}]"
+    )]
+    SeatLifts {
+        /// `inner` or `outer`.
+        side: &'static str,
+        /// Share of the circumference, per cent.
+        percent: f64,
+    },
+    /// A seat form on a ring that does not follow it.
+    #[error(
+        "[[effects.seat_form]] gives the {side} ring the form of its seat, which only a flexible ring with \
+         {side}.support = \"clamped\" takes; give it a mesh and this support, or remove the form"
+    )]
+    SeatFormNotClamped {
+        /// `inner` or `outer`.
+        side: &'static str,
+    },
+    /// Fields of seats on several ranks.
+    #[error(
+        "fits, temperatures and seat forms of the flexible {side} ring need its whole mesh on one rank; start the \
+         program without MPI"
+    )]
+    MountedOnRanks {
+        /// `inner` or `outer`.
+        side: &'static str,
+    },
     /// A number became NaN or infinite.
     #[error("{what} is not finite; check the loads and material of the scene")]
     NotFinite {
@@ -226,6 +299,12 @@ impl DynamicsError {
             DynamicsError::Ring(error) => error.is_of_input(),
             DynamicsError::Unheld { .. }
             | DynamicsError::NotInMotion { .. }
+            | DynamicsError::LooseFit { .. }
+            | DynamicsError::FitLetsGo { .. }
+            | DynamicsError::FitYields { .. }
+            | DynamicsError::SeatLifts { .. }
+            | DynamicsError::SeatFormNotClamped { .. }
+            | DynamicsError::MountedOnRanks { .. }
             | DynamicsError::Contact(ContactError::Hole { .. }) => true,
             _ => false,
         }

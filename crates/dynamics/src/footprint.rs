@@ -82,6 +82,7 @@ fn place_patch(
         elastic(&ring.material),
     )?;
     site.law.patch_compliance = patch.compliance;
+    site.reach = model.reach(site.side, Some(&patch.weights));
     Ok(Footprint {
         weights: patch.weights,
         semi_axes: Some(shape.semi_axes),
@@ -182,6 +183,7 @@ fn place_facet(
     let contact = search.foot(on_groove(&raceway.surface, angle, false))?;
     let hertz = model.hertz[site.side.index()].semi_axes(force[0].hypot(force[1]));
     let weights = NodalWeights::interpolation(contact.nodes, &contact.weights, site.ring_azimuth);
+    site.reach = model.reach(site.side, Some(&weights));
     Ok(Footprint {
         weights,
         semi_axes: None,

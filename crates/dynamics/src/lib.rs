@@ -7,6 +7,7 @@
 pub mod effects;
 pub mod kinematics;
 pub mod model;
+pub mod mounting;
 
 // Its bodies and interactions over an interval, and the system that they make.
 pub mod bearing;
@@ -40,6 +41,7 @@ pub use effects::{Effect, Loads};
 pub use error::DynamicsError;
 pub use model::{ContactMode, ContactSettings, Model, ShaftDof, Tolerances};
 pub use modes::{Mode, ModeSet, ModesSettings, RingSupport};
+pub use mounting::Mounting;
 pub use pose::Pose;
 pub use quasi_static::QuasiStatic;
 pub use solution::StaticSolution;

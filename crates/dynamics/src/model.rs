@@ -9,7 +9,7 @@
 use std::sync::Arc;
 
 use contact::hertz::Elastic;
-use contact::{BearingGeometry, HertzContact, Side, SphereCompliance};
+use contact::{BearingGeometry, HertzContact, Meridian, NodalWeights, Side, SphereCompliance};
 use fem::Material;
 use input::Schedule;
 use ring::{Backend, RingModel};
@@ -17,6 +17,7 @@ use ring::{Backend, RingModel};
 use crate::effects::Effect;
 use crate::interactions::seat_spring::Seat;
 use crate::interactions::traction::Traction;
+use crate::mounting::Mounting;
 
 /// Largest tilt of the shaft, rad: a little more than 3 deg. Contacts take it exactly; the inertia of tilts is off by
 /// its square.
@@ -89,6 +90,8 @@ pub struct Model {
     pub sphere: SphereCompliance,
     /// Flexible rings, inner first; None is a rigid ring and costs nothing.
     pub rings: [Option<Arc<RingModel>>; 2],
+    /// What fits and temperatures do to rings and balls.
+    pub mounting: Mounting,
     /// Ball steel.
     pub ball_material: Material,
     /// Shaft dofs x, y, z, tilt about x, tilt about y.
@@ -121,6 +124,19 @@ impl Model {
     pub fn ring_shift(&self, side: Side) -> f64 {
         let centre_z = self.ring(side).map_or(0.0, |r| r.groove.centre_z);
         self.geometry.groove_centre(side)[1] - centre_z
+    }
+
+    /// Groove centre to ball centre at zero displacement of the mounted bearing [radial, axial], m; measured by the
+    /// weights of the contact where they are known.
+    pub fn reach(&self, side: Side, weights: Option<&NodalWeights>) -> Meridian {
+        let (centre, ball) = (self.geometry.groove_centre(side), self.geometry.ball_centre());
+        let moved = self.mounting.groove_motion(side, weights);
+        [0, 1].map(|i| ball[i] - centre[i] - moved[i])
+    }
+
+    /// Distance of the centres of groove and touching ball in the mounted bearing, m.
+    pub fn touching_distance(&self, side: Side) -> f64 {
+        self.geometry.touching_distance(side) + self.mounting.touching_growth(side)
     }
 
     /// Imposed displacement of a shaft dof (0..5) at a time in s, m or rad; None: it is free.

@@ -43,6 +43,6 @@ pub use material::Material;
 pub use pattern::Pattern;
 pub use rigid::{Inertia, inertia, rigid_modes, volume};
 pub use sector::{SectorCoupling, SectorMatrices, assemble_sector, azimuth_directions};
-pub use stiffness::{assemble_stiffness, assemble_stiffness_into};
+pub use stiffness::{assemble_stiffness, assemble_stiffness_into, stiffness_product};
 pub use stress::{SectorStress, StressRecovery, StressWorkspace, principal, von_mises};
 pub use surface::{area, facet_node_weights, pressure_load, traction_load};

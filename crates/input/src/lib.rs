@@ -11,18 +11,20 @@
 //! # Ok::<(), input::UnitError>(())
 //! ```
 
+mod expansion;
 mod problems;
 pub mod schedule;
 mod schedule_table;
 mod temperature;
 pub mod units;
 
+pub use expansion::Expansion;
 pub use problems::Problems;
 pub use schedule::Schedule;
 pub use schedule_table::{Clock, RawSchedule, check_schedule, require_growing, schedule_of};
 pub use temperature::Temperature;
 pub use units::{
-    ACCELERATION, ANGLE, ANGULAR_SPEED, AnyQuantity, DAMPING, DENSITY, Dimension, FORCE, HERTZ_STIFFNESS,
-    INERTIA, KINDS, Kind, LENGTH, MASS, MOMENT, Quantity, RATE, SPEED, STIFFNESS, STRESS, TIME, UnitError,
-    VISCOSITY, bare_number, kind_of_dimension, parse_unit, ten_digits,
+    ACCELERATION, ANGLE, ANGULAR_SPEED, AnyQuantity, DAMPING, DENSITY, DYNAMIC_VISCOSITY, Dimension, FORCE,
+    HERTZ_STIFFNESS, INERTIA, KINDS, Kind, LENGTH, MASS, MOMENT, PRESSURE_COEFFICIENT, Quantity, RATE, SPEED,
+    STIFFNESS, STRESS, TIME, UnitError, VISCOSITY, bare_number, kind_of_dimension, parse_unit, ten_digits,
 };

@@ -11,11 +11,9 @@
 
 use std::f64::consts::PI;
 
+pub use contact::film::walther;
 use scene::Oil;
 
-/// Temperatures of the two viscosities of a class, K.
-const FORTY: f64 = 313.15;
-const HUNDRED: f64 = 373.15;
 /// Range of kappa of ISO 281.
 const KAPPA: [f64; 2] = [0.1, 4.0];
 /// Largest a_ISO.
@@ -46,29 +44,14 @@ pub fn reference_viscosity(speed: f64, pitch_diameter: f64) -> f64 {
     1e-6 * speed_term * pitch.powf(-0.5)
 }
 
-/// Kinematic viscosity, m2/s, of an oil with two known viscosities, m2/s, at 40 and 100 degC, at a temperature, K.
-pub fn walther(at_40: f64, at_100: f64, temperature: f64) -> f64 {
-    let double_log = |viscosity: f64| (1e6 * viscosity + 0.7).log10().log10();
-    let slope = (double_log(at_40) - double_log(at_100)) / (HUNDRED / FORTY).log10();
-    let value = double_log(at_40) - slope * (temperature / FORTY).log10();
-    1e-6 * (10f64.powf(10f64.powf(value)) - 0.7)
-}
-
 /// Viscosity ratio kappa, at most 4, of an oil; `speed` in rad/s, `pitch_diameter` in m. Says why there is none.
 pub fn viscosity_ratio(oil: Option<&Oil>, speed: Option<f64>, pitch_diameter: f64) -> Result<f64, String> {
-    let viscosity = match oil {
-        None => {
-            return Err(
-                "no viscosity: life.viscosity_ratio, life.viscosity or life.viscosity_class".to_string(),
-            );
-        }
-        Some(Oil::Ratio(ratio)) => return Ok(ratio.min(KAPPA[1])),
-        Some(Oil::Viscosity(viscosity)) => *viscosity,
-        Some(Oil::Class {
-            at_40,
-            at_100,
-            temperature,
-        }) => at_100.map_or(*at_40, |at_100| walther(*at_40, at_100, *temperature)),
+    let Some(oil) = oil else {
+        return Err("no viscosity: life.viscosity_ratio, life.viscosity or life.viscosity_class".to_string());
+    };
+    let viscosity = match (oil, oil.viscosity()) {
+        (Oil::Ratio(ratio), _) => return Ok(ratio.min(KAPPA[1])),
+        (_, viscosity) => viscosity.expect("an oil that is no ratio has a viscosity"),
     };
     let Some(speed) = speed else {
         return Err("no speed, on which the viscosity ratio depends: life.speed".to_string());

@@ -18,6 +18,7 @@ use timer::{Laps, Stopwatch};
 
 use super::about::{about, identity};
 use super::fields;
+use super::film::FilmLaw;
 use super::folder;
 use super::memory::Forecasts;
 use super::probes::Probes;
@@ -81,7 +82,12 @@ impl Files {
         let mut output = Output::create_in(lock, &mesh, storage(scene))?;
         drop(mesh);
         output.describe(about(scene, dir, warnings)?)?;
-        let tables = Tables::create(dir, swept_column(scene), first, &own_columns(probes.as_ref()))?;
+        let tables = Tables::create(
+            dir,
+            swept_column(scene),
+            first,
+            &own_columns(scene, model, probes.as_ref()),
+        )?;
         let mut files = Files::new(Some(Open::new(output, tables, probes)?), ring_stress);
         files.laps.add(OUTPUT, clock.lap());
         Ok(files)
@@ -106,7 +112,7 @@ impl Files {
         let texts = about(scene, &dir, resumed.warnings)?;
         // The tables tell whether the step can be resumed from; nothing is changed before all is known to fit.
         let Survey { probes, mesh, .. } = survey;
-        let columns = own_columns(probes.as_ref());
+        let columns = own_columns(scene, model, probes.as_ref());
         let cuts = Tables::cuts(&dir, first, &columns, (last, resumed.tables))?;
         let mesh = mesh.map_or_else(|| mesh_file(scene, model), Ok)?;
         let opened = Output::resume_of(lock, &mesh, storage(scene), last)?;
@@ -312,9 +318,10 @@ impl Open {
     }
 }
 
-/// Columns of the tables that probes need.
-fn own_columns(probes: Option<&Probes>) -> OwnColumns {
+/// Columns of the tables that probes and films need.
+fn own_columns(scene: &Scene, model: &Model, probes: Option<&Probes>) -> OwnColumns {
     OwnColumns {
+        film: FilmLaw::new(scene, model),
         probes: probes.and_then(Probes::columns),
         profiles: probes.and_then(Probes::profile_columns),
     }

@@ -21,6 +21,7 @@ use timer::Laps;
 use super::fields;
 use super::files::{mesh_file, storage};
 use super::folder;
+use super::mounting::{ClearanceSummary, FitSummary, fits};
 use super::ring_stress::{Basis, RingStress, ShownRing};
 use super::shown::Turn;
 use super::snapshot::Snapshot;
@@ -189,6 +190,10 @@ pub struct ModesSummary {
     shaft: Option<ShaftSummary>,
     #[serde(skip_serializing_if = "Option::is_none")]
     balls: Option<Vec<BallResult>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    clearance: Option<ClearanceSummary>,
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+    fits: BTreeMap<&'static str, FitSummary>,
     warnings: Vec<String>,
     advice: Vec<String>,
     timing_s: BTreeMap<&'static str, f64>,
@@ -237,6 +242,8 @@ impl ModesSummary {
             modes: sets.iter().map(|(b, set)| (b.typed(), body(set))).collect(),
             shaft: equilibrium.map(ShaftSummary::new),
             balls: equilibrium.map(|e| e.balls.clone()),
+            clearance: model.mounting.report.as_ref().map(ClearanceSummary::new),
+            fits: fits(model.mounting.report.as_ref()),
             warnings,
             advice,
             timing_s: [FACTOR, SEARCH, TOTAL].map(|lap| (lap, laps.seconds(lap))).into(),

@@ -42,8 +42,10 @@ pub struct RingField<'a> {
     centre_z: f64,
     /// Where its nodes are in the mesh; of a ring that ranks share at first those that this rank keeps.
     pub places: NodePositions,
-    /// Displacement up to a rigid motion, in the ring's frame, m, `[n_nodes][3]` flat.
+    /// Displacement by mounting and loads up to a rigid motion, in the ring's frame, m, `[n_nodes][3]` flat.
     pub strained: Cow<'a, [f64]>,
+    /// Free thermal strain, without stress: not in `strained`.
+    expansion: f64,
     /// That rigid motion: shaft dofs in the ring's frame, m and rad; None when it is contained or zero.
     rigid: Option<[f64; 5]>,
     /// From the ring's frame to space.
@@ -102,6 +104,15 @@ impl<'a> Shown<'a> {
         moved: impl FnOnce(&Motion<'_>, &MotionState) -> Option<(Vec<f64>, f64)>,
     ) -> Option<RingField<'a>> {
         let ring = self.model().ring(side)?;
+        let mounted = &self.model().mounting.rings[side.index()];
+        let (centre_z, expansion) = (ring.groove.centre_z, mounted.expansion);
+        let mount = |mut field: Cow<'a, [f64]>| {
+            if let Some(mounted) = &mounted.field {
+                let sum = field.to_mut().iter_mut().zip(mounted.iter());
+                sum.for_each(|(u, w)| *u += w);
+            }
+            field
+        };
         match self {
             Shown::Equilibrium {
                 model,
@@ -122,9 +133,10 @@ impl<'a> Shown<'a> {
                     }
                 };
                 Some(RingField {
-                    centre_z: ring.groove.centre_z,
+                    centre_z,
+                    expansion,
                     places: ring.mesh.nodes.clone(),
-                    strained: Cow::Borrowed(strained),
+                    strained: mount(Cow::Borrowed(strained)),
                     rigid,
                     turn: Turn::new(angle),
                 })
@@ -132,9 +144,10 @@ impl<'a> Shown<'a> {
             Shown::Motion { motion, state, .. } => {
                 let (field, angle) = moved(motion, state)?;
                 Some(RingField {
-                    centre_z: ring.groove.centre_z,
+                    centre_z,
+                    expansion,
                     places: ring.mesh.nodes.clone(),
-                    strained: Cow::Owned(field),
+                    strained: mount(Cow::Owned(field)),
                     rigid: None,
                     turn: Turn::new(angle),
                 })
@@ -154,6 +167,12 @@ impl RingField<'_> {
             u[0] += x + tilt_y * arm;
             u[1] += y - tilt_x * arm;
             u[2] += z + tilt_x * node_y - tilt_y * node_x;
+        }
+        if self.expansion != 0.0 {
+            let [node_x, node_y, node_z] = self.places[node];
+            u[0] += self.expansion * node_x;
+            u[1] += self.expansion * node_y;
+            u[2] += self.expansion * (node_z - self.centre_z);
         }
         u
     }
@@ -180,7 +199,7 @@ impl RingField<'_> {
 
     /// Whether displacements as they are shown depend on where the nodes are.
     pub fn needs_places(&self) -> bool {
-        self.rigid.is_some() || !self.turn.is_none()
+        self.rigid.is_some() || !self.turn.is_none() || self.expansion != 0.0
     }
 }
 

@@ -14,7 +14,9 @@ use scene::{Analysis, Scene};
 use serde::Serialize;
 use timer::Laps;
 
+use super::film::{FilmLaw, FilmSummary};
 use super::memory::Forecasts;
+use super::mounting::{ClearanceSummary, FitSummary, fits};
 use super::probe_places::NodePlace;
 use super::snapshot::Snapshot;
 use super::subsurface::{self, ContactSubsurface};
@@ -65,6 +67,14 @@ pub struct Summary {
     effects: Vec<&'static str>,
     dofs: BTreeMap<&'static str, usize>,
     energy_j: BTreeMap<&'static str, f64>,
+    /// Radial clearance, mounted and warm; absent without fits, temperatures and seat forms, as the fits.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    clearance: Option<ClearanceSummary>,
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+    fits: BTreeMap<&'static str, FitSummary>,
+    /// Thinnest film of each raceway at the end; absent without lubricant and speed.
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+    film: BTreeMap<&'static str, FilmSummary>,
     iterations: BTreeMap<&'static str, usize>,
     #[serde(skip_serializing_if = "Option::is_none")]
     sweep: Option<SweepSummary>,
@@ -193,7 +203,9 @@ impl Summary {
                 ("sweep", Some(summary))
             }
         };
+        let film = thinnest(scene, model, last);
         let mut warnings = findings.warnings;
+        warnings.extend(film.iter().filter_map(|(side, film)| film.warning(side)));
         warnings.dedup();
         Summary {
             schema: 1,
@@ -214,6 +226,9 @@ impl Summary {
             effects: scene.effects.names(),
             dofs: sides(|i| model.rings[i].as_ref().map_or(0, |r| r.mesh.n_dofs())),
             energy_j: last.energies.iter().copied().collect(),
+            clearance: model.mounting.report.as_ref().map(ClearanceSummary::new),
+            fits: fits(model.mounting.report.as_ref()),
+            film,
             iterations: findings.iterations,
             sweep,
             life: None,
@@ -305,6 +320,15 @@ pub fn mode_name(model: &Model) -> &'static str {
         dynamics::ContactMode::Facet => "facet",
         dynamics::ContactMode::Rigid => "rigid",
     }
+}
+
+/// Thinnest film of each raceway at an instant.
+fn thinnest(scene: &Scene, model: &Model, snapshot: &Snapshot) -> BTreeMap<&'static str, FilmSummary> {
+    let Some((law, spin)) = FilmLaw::new(scene, model).zip(snapshot.spin) else {
+        return BTreeMap::new();
+    };
+    let film = |side: Side| Some((side.name(), law.thinnest(side, &snapshot.balls, spin)?));
+    Side::BOTH.into_iter().filter_map(film).collect()
 }
 
 /// All balls of an instant.

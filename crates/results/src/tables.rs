@@ -8,6 +8,7 @@ use checkpoint::{Companion, GrowingFile, Stamps};
 use dynamics::balls::{BallResult, ContactResult, FreeBallResult, Friction};
 
 use super::cut::Cut;
+use super::film::FilmLaw;
 use super::probes::ProfileRow;
 use super::snapshot::Snapshot;
 
@@ -22,6 +23,8 @@ pub struct Tables {
     profiles: Option<csv::Writer<GrowingFile>>,
     /// Whether balls have a spin.
     with_spin: bool,
+    /// Films, of balls with a spin and a lubricant.
+    film: Option<FilmLaw>,
 }
 
 const BALLS: &str = "balls.csv";
@@ -56,7 +59,7 @@ impl Tables {
         first: &Snapshot,
         own: &OwnColumns,
     ) -> anyhow::Result<Tables> {
-        let [balls, shaft, energy] = columns(swept, first);
+        let [balls, shaft, energy] = columns(swept, first, own);
         let make = |name: &str, columns: &Option<Vec<String>>| {
             let columns = columns.as_ref().map(|own| head(swept, own));
             columns.map(|columns| create(dir, name, &columns)).transpose()
@@ -68,6 +71,7 @@ impl Tables {
             probes: make(PROBES, &own.probes)?,
             profiles: make(PROFILES, &own.profiles)?,
             with_spin: first.spin.is_some(),
+            film: own.film.clone(),
         })
     }
 
@@ -79,7 +83,7 @@ impl Tables {
         own: &OwnColumns,
         (last, stamps): (u64, Option<&Stamps>),
     ) -> anyhow::Result<Vec<Cut>> {
-        let [balls, shaft, energy] = columns(None, first);
+        let [balls, shaft, energy] = columns(None, first, own);
         let find = |name: &str, columns: &[String]| {
             let header = columns.join(",");
             let Some(stamps) = stamps else {
@@ -121,6 +125,7 @@ impl Tables {
             probes: next(&own.probes)?,
             profiles: next(&own.profiles)?,
             with_spin: first.spin.is_some(),
+            film: own.film.clone(),
         })
     }
 
@@ -158,12 +163,12 @@ impl Tables {
         let head = place_of(step, time, swept);
         let row = |cells: Vec<String>| [head.clone(), cells].concat();
         let balls = snapshot.balls.iter().enumerate();
-        let spin: Vec<String> = snapshot
-            .spin
-            .filter(|_| self.with_spin)
-            .map(number)
-            .into_iter()
-            .collect();
+        let spin = snapshot.spin.filter(|_| self.with_spin);
+        let film = self.film.as_ref().zip(spin);
+        let rolling = |ball: &BallResult| -> Vec<String> {
+            let films = film.map_or(Vec::new(), |(film, spin)| film.cells(ball, spin));
+            spin.into_iter().chain(films).map(number).collect()
+        };
         let shaft = snapshot.shaft.iter().chain(snapshot.reaction.iter().flatten());
         let shaft = shaft.chain(&snapshot.seat).copied();
         let friction = snapshot.friction.iter().flat_map(friction_cells);
@@ -172,7 +177,7 @@ impl Tables {
         append(
             &mut self.balls,
             BALLS,
-            balls.map(|(i, ball)| row([ball_cells(i, ball), spin.clone()].concat())),
+            balls.map(|(i, ball)| row([ball_cells(i, ball), rolling(ball)].concat())),
         )?;
         append(&mut self.shaft, SHAFT, [row(shaft.map(number).collect())])?;
         append(
@@ -225,6 +230,8 @@ pub struct OwnColumns {
     pub probes: Option<Vec<String>>,
     /// Of `profiles.csv`.
     pub profiles: Option<Vec<String>>,
+    /// Films in `balls.csv`.
+    pub film: Option<FilmLaw>,
 }
 
 /// Header line: step, time, a swept value, and the rest.
@@ -333,7 +340,7 @@ fn number(x: f64) -> String {
 }
 
 /// Columns of the three tables.
-fn columns(swept: Option<&str>, first: &Snapshot) -> [Vec<String>; 3] {
+fn columns(swept: Option<&str>, first: &Snapshot, own: &OwnColumns) -> [Vec<String>; 3] {
     let head = |rest: &[String]| head(swept, rest);
     let names = |list: &[&str]| list.iter().map(|s| s.to_string()).collect::<Vec<_>>();
     let mut balls = names(&[
@@ -356,6 +363,7 @@ fn columns(swept: Option<&str>, first: &Snapshot) -> [Vec<String>; 3] {
     }
     if first.spin.is_some() {
         balls.push("spin_rad_per_s".to_string());
+        balls.extend(own.film.iter().flat_map(FilmLaw::columns));
     }
     let mut shaft = names(&["x_m", "y_m", "z_m", "tilt_x_rad", "tilt_y_rad"]);
     if first.reaction.is_some() {

@@ -20,6 +20,7 @@ mod nodal;
 pub mod pool;
 pub mod rank_memory;
 pub mod rigid;
+pub mod seat;
 mod settling;
 pub mod sparse;
 pub mod state;
@@ -37,6 +38,7 @@ pub use integrator::{Integrator, StepScheme};
 pub use inventory::Inventory;
 pub use make::{BodySettings, elastic_body};
 pub use model::{Backend, Hold, NodeMasses, RACEWAY_GROUP, RingModel, Sectors};
+pub use seat::{SeatAction, SeatField};
 pub use solver::SolverError;
 pub use state::RingState;
 pub use step::{

@@ -1,6 +1,6 @@
 //! The model of one flexible ring: mesh, material, how it is held, and the linear solver that a scene asks for.
 
-use std::sync::{Arc, OnceLock};
+use std::sync::{Arc, Mutex, OnceLock};
 
 use comm::Communicator;
 use contact::Groove;
@@ -12,6 +12,7 @@ use mesh::{
 use serde::{Deserialize, Serialize};
 
 use crate::division::known::Division;
+use crate::seat::{SeatAction, SeatField};
 
 /// Name of the facet group on which balls run.
 pub const RACEWAY_GROUP: &str = "raceway";
@@ -49,6 +50,7 @@ pub struct FoundSectors {
     equal: OnceLock<Result<Periodicity, NotPeriodic>>,
     nearly: OnceLock<Result<NearlyPeriodic, NotNearlyPeriodic>>,
     node_masses: OnceLock<Arc<NodeMasses>>,
+    pub(crate) seat_fields: Mutex<Vec<(SeatAction, Arc<SeatField>)>>,
     pub(crate) division: Option<Division>,
 }
 

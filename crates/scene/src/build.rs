@@ -8,6 +8,7 @@ use dynamics::RACEWAY_GROUP;
 use dynamics::effects::Setting;
 use dynamics::kinematics::Rolling;
 use dynamics::model::elastic;
+use dynamics::mounting::{Mounting, Unmounted};
 use dynamics::{
     Backend, ContactMode, ContactSettings, Hold, Model, RingModel, Sectors, ShaftDof, Tolerances,
 };
@@ -75,6 +76,7 @@ pub fn model_with_rings(scene: &Scene, rings: [Option<Arc<RingModel>>; 2]) -> Re
         ball_speeds: scene.ball_speeds,
         rings: &rings,
     })?;
+    let mounting = mounting(scene, &geometry, &rings)?;
     let shaft = &scene.shaft;
     let dofs = [shaft.x, shaft.y, shaft.z, shaft.tilt_x, shaft.tilt_y].map(|motion| match motion {
         tables::Motion::Free => ShaftDof::Free,
@@ -86,6 +88,7 @@ pub fn model_with_rings(scene: &Scene, rings: [Option<Arc<RingModel>>; 2]) -> Re
         hertz,
         sphere,
         rings,
+        mounting,
         ball_material: ball_steel,
         shaft: dofs,
         shaft_schedules: shaft.schedules.clone(),
@@ -101,20 +104,53 @@ pub fn model_with_rings(scene: &Scene, rings: [Option<Arc<RingModel>>; 2]) -> Re
             patch_spacings: scene.contact.patch_elements,
         },
         effects,
-        backend: match scene.solver.backend {
-            tables::Backend::Auto => Backend::Auto,
-            tables::Backend::Cyclic => Backend::Cyclic,
-            tables::Backend::Sparse => Backend::Sparse,
-            tables::Backend::Sector => Backend::Sector(Sectors {
-                n_sectors: scene.solver.sectors,
-                comm: Communicator::world(),
-            }),
-        },
+        backend: backend(scene),
         tolerances: Tolerances {
             force: scene.solver.tolerance,
             max_rounds: scene.solver.max_iterations,
         },
     })
+}
+
+/// What fits and temperatures do to the bearing.
+fn mounting(
+    scene: &Scene,
+    geometry: &BearingGeometry,
+    rings: &[Option<Arc<RingModel>>; 2],
+) -> Result<Mounting, BuildError> {
+    let materials = &scene.materials;
+    let speeds = speeds(scene);
+    let largest = |side: Side| {
+        speeds
+            .of(side)
+            .values
+            .iter()
+            .fold(0.0, |most: f64, v| most.max(v.abs()))
+    };
+    let bearing = Unmounted {
+        geometry,
+        seat_diameters: [scene.bearing.bore_diameter, scene.bearing.outside_diameter],
+        rings,
+        ring_material: material(&materials.rings)?,
+        expansion: [materials.rings, materials.balls].map(|m| m.expansion.unwrap_or(0.0)),
+        yield_strength: materials.rings.yield_strength,
+        speeds: Side::BOTH.map(largest),
+        backend: backend(scene),
+    };
+    Ok(Mounting::new(&bearing, &scene.effects.conditions())?)
+}
+
+/// Linear solver of the rings.
+fn backend(scene: &Scene) -> Backend {
+    match scene.solver.backend {
+        tables::Backend::Auto => Backend::Auto,
+        tables::Backend::Cyclic => Backend::Cyclic,
+        tables::Backend::Sparse => Backend::Sparse,
+        tables::Backend::Sector => Backend::Sector(Sectors {
+            n_sectors: scene.solver.sectors,
+            comm: Communicator::world(),
+        }),
+    }
 }
 
 /// Dimensions of the bearing, for the contacts.

@@ -42,6 +42,8 @@ pub fn doubts(scene: &Scene, model: &Model) -> Vec<String> {
     }
     lines.extend(unusual_stiffnesses(&scene.contact, &scene.bearing, materials));
     lines.extend(unresolved(scene, &model.geometry));
+    let mounted = model.mounting.report.iter();
+    lines.extend(mounted.flat_map(|report| report.warnings.clone()));
     lines
 }
 

@@ -53,6 +53,8 @@ pub fn effects_context(scene: &Scene) -> Context {
         clock: if is_at_rest { Clock::AtRest } else { Clock::Running },
         has_speed: scene.has_speed,
         is_flexible: [scene.inner.body.is_some(), scene.outer.body.is_some()],
+        seat_diameters: [scene.bearing.bore_diameter, scene.bearing.outside_diameter].map(Some),
+        has_expansion: scene.materials.has_expansion(),
     }
 }
 

@@ -9,6 +9,7 @@ pub mod ball_centrifugal;
 pub mod ball_drag;
 pub mod cage_slip;
 pub mod contact_damping;
+pub mod fit;
 pub mod frame_rotation;
 pub mod gravity;
 pub mod gyroscopic_moment;
@@ -17,8 +18,10 @@ pub mod moment;
 pub mod radial_force;
 pub mod rayleigh_damping;
 pub mod rules;
+pub mod seat_form;
 pub mod spring_preload;
 mod table;
+pub mod temperature;
 pub mod traction;
 pub mod unbalance;
 
@@ -41,6 +44,7 @@ use serde::Deserialize;
 use crate::error::DynamicsError;
 use crate::interactions::contact_damping::ContactDamping;
 use crate::kinematics::SlipRatios;
+use crate::mounting::Conditions;
 use rules::{Case, PeakLoad};
 
 /// The tables `[effects.*]` of a scene.
@@ -75,6 +79,12 @@ pub struct Effects {
     pub traction: Option<traction::Table>,
     /// Drag on free balls.
     pub ball_drag: Option<ball_drag::Table>,
+    /// Interference of the rings with shaft and housing.
+    pub fit: Option<fit::Table>,
+    /// Temperatures of all bodies.
+    pub temperature: Option<temperature::Table>,
+    /// Seats that are not round.
+    pub seat_form: Option<seat_form::Table>,
 }
 
 impl Effects {
@@ -96,6 +106,9 @@ impl Effects {
             unbalance,
             traction,
             ball_drag,
+            fit,
+            temperature,
+            seat_form,
         } = self;
         vec![
             axial_force,
@@ -112,6 +125,9 @@ impl Effects {
             unbalance,
             traction,
             ball_drag,
+            fit,
+            temperature,
+            seat_form,
         ]
     }
 
@@ -147,6 +163,13 @@ impl Effects {
         let mut loads = found.collect::<Result<Vec<_>, _>>()?;
         loads.sort_by_key(|load| load.name());
         Ok(loads)
+    }
+
+    /// How the bearing is mounted and how warm it is.
+    pub fn conditions(&self) -> Conditions {
+        let mut conditions = Conditions::default();
+        self.on().for_each(|(_, table)| table.mount(&mut conditions));
+        conditions
     }
 
     /// Slip ratios at the inner and outer raceway.

@@ -10,6 +10,7 @@
 //! | kinematics of the cage | `slip` | [`crate::kinematics`] |
 //! | terms of the raceway contact | `contact_damping` | [`crate::interactions::discrete_gradient`] |
 //! | damping of rings | `ring_damping` | the elastic bodies |
+//! | fits and temperatures | `mount` | [`crate::mounting`] |
 
 use std::sync::Arc;
 
@@ -21,6 +22,7 @@ use super::rules::{Case, PeakLoad};
 use crate::error::DynamicsError;
 use crate::interactions::contact_damping::ContactDamping;
 use crate::kinematics::{BallSpeeds, RingSpeeds, SlipRatios};
+use crate::mounting::Conditions;
 
 /// A load beyond this is a slip of the unit, N and N m.
 const MAX_LOAD: f64 = 1e9;
@@ -62,6 +64,8 @@ pub enum Need {
     FlexibleTurning,
     /// An inner ring that turns.
     TurningInner,
+    /// Thermal expansion of rings and balls.
+    Expansion,
 }
 
 /// Values with which `raceway prices` turns an effect on.
@@ -84,6 +88,10 @@ pub struct Context {
     pub has_speed: [bool; 2],
     /// Whether a ring is a finite-element body, inner first.
     pub is_flexible: [bool; 2],
+    /// Diameters of bore and seat, m; None where the scene has no sane ones.
+    pub seat_diameters: [Option<f64>; 2],
+    /// Whether the scene has the thermal expansion of rings and balls.
+    pub has_expansion: [bool; 2],
 }
 
 impl Context {
@@ -159,6 +167,9 @@ pub trait Table {
         None
     }
 
+    /// Slot of mounting: interference, temperatures, forms of seats.
+    fn mount(&self, _conditions: &mut Conditions) {}
+
     /// Largest forces on the shaft at a speed in rad/s: what rules of thumb compare with.
     fn peak_load(&self, _speed: f64) -> PeakLoad {
         PeakLoad::default()
@@ -230,6 +241,16 @@ impl About {
                     "[effects.{name}] does nothing in a scene without inertia; remove it, or compute motion with \
                      [dynamic]"
                 )),
+                Need::Expansion => {
+                    for (body, is_known) in ["rings", "balls"].into_iter().zip(context.has_expansion) {
+                        if !is_known {
+                            problems.add(format!(
+                                "[effects.{name}] needs the thermal expansion of the {body}; add \
+                                 materials.{body}.expansion, such as \"11.5e-6 /K\" of bearing steel"
+                            ));
+                        }
+                    }
+                }
                 Need::TurningInner | Need::Inertia => {}
             }
         }

@@ -206,6 +206,8 @@ mod tests {
             clock: input::Clock::Running,
             has_speed: [true, false],
             is_flexible: [false; 2],
+            seat_diameters: [None; 2],
+            has_expansion: [false; 2],
         };
         let messages = |mass: &str, eccentricity: &str, position: &str| {
             let table = Table {

@@ -63,16 +63,14 @@ pub struct SiteState {
 impl Site {
     /// A ball at an azimuth on an exact, rigid groove that has not turned, with the model's Hertz stiffness.
     pub fn new(model: &Model, ball: usize, side: Side, azimuth: f64) -> Site {
-        let geometry = &model.geometry;
-        let (centre, ball_centre) = (geometry.groove_centre(side), geometry.ball_centre());
         Site {
             ball,
             side,
             azimuth,
             ring_azimuth: azimuth,
-            reach: [ball_centre[0] - centre[0], ball_centre[1] - centre[1]],
-            touching: geometry.touching_distance(side),
-            lever: geometry.centre_radius(side),
+            reach: model.reach(side, None),
+            touching: model.touching_distance(side),
+            lever: model.geometry.centre_radius(side),
             law: ContactLaw {
                 stiffness: model.hertz[side.index()].stiffness,
                 patch_compliance: 0.0,

@@ -170,6 +170,7 @@ impl Motion<'_> {
             elastic(&ring.material),
         )?;
         site.law.patch_compliance = patch.compliance;
+        site.reach = model.reach(side, Some(&patch.weights));
         Ok(Placed {
             site,
             weights: Some(patch.weights),

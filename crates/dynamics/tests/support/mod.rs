@@ -71,6 +71,7 @@ impl Case {
             sphere: SphereCompliance::default(),
             geometry,
             rings: [None, None],
+            mounting: Default::default(),
             ball_material: steel,
             shaft: [
                 dof(true),
@@ -111,6 +112,7 @@ pub fn relative(a: f64, b: f64) -> f64 {
 pub mod finite;
 pub mod graded;
 pub mod harris;
+pub mod mounting;
 pub mod rings;
 
 use dynamics::Hold;

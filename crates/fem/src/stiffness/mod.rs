@@ -15,7 +15,9 @@ use mesh::{ElementKind, Mesh};
 use sprs::CsMat;
 
 use crate::chunks::for_each_element;
+use crate::element::MAX_NODES;
 use crate::error::FemError;
+use crate::geometry::check_connectivity;
 use crate::material::Material;
 use crate::pattern::Pattern;
 use crate::quadrature;
@@ -57,6 +59,44 @@ pub fn assemble_stiffness_into(
     for_each_element(mesh.n_elements(), n * n, compute, |e, matrix| {
         pattern.add_blocks(e, mesh.element(e), matrix, values);
     })
+}
+
+/// Nodal forces that hold the displacements `u`, m, `[3 n_nodes]`: K u, N, in the same layout, without the matrix.
+///
+/// Cost: the stiffness of every element once, and memory for the forces alone.
+///
+/// # Panics
+/// If `u` has another length.
+pub fn stiffness_product(mesh: &Mesh, material: &Material, u: &[f64]) -> Result<Vec<f64>, FemError> {
+    assert_eq!(
+        u.len(),
+        mesh.n_dofs(),
+        "a displacement of every degree of freedom"
+    );
+    check_connectivity(mesh)?;
+    material.validate()?;
+    let kernel = ElementStiffness::new(mesh.kind, material);
+    let n = 3 * mesh.kind.n_nodes();
+    let compute = |e: usize, forces: &mut [f64]| {
+        let mut matrix = [0.0; 9 * MAX_NODES * MAX_NODES];
+        kernel.compute(mesh, e, &mut matrix[..n * n])?;
+        let nodes = mesh.element(e);
+        for (force, row) in forces.iter_mut().zip(matrix.chunks_exact(n)) {
+            let terms = row
+                .iter()
+                .enumerate()
+                .map(|(j, k)| k * u[3 * nodes[j / 3] + j % 3]);
+            *force = terms.sum();
+        }
+        Ok(())
+    };
+    let mut product = vec![0.0; mesh.n_dofs()];
+    for_each_element(mesh.n_elements(), n, compute, |e, forces| {
+        for (&node, force) in mesh.element(e).iter().zip(forces.chunks_exact(3)) {
+            (0..3).for_each(|i| product[3 * node + i] += force[i]);
+        }
+    })?;
+    Ok(product)
 }
 
 /// What all elements of a kind and material share.

@@ -1,6 +1,6 @@
 //! Stiffness and mass: symmetry, zero-energy motions, total mass, same bits.
 
-use fem::{Pattern, assemble_mass, assemble_node_mass, assemble_stiffness};
+use fem::{Pattern, assemble_mass, assemble_node_mass, assemble_stiffness, stiffness_product};
 use mesh::{ElementKind, Mesh};
 use sprs::CsMat;
 
@@ -73,6 +73,22 @@ fn stiffness_and_mass_are_exactly_symmetric() {
             for (&value, (r, c)) in matrix.iter() {
                 assert_eq!(Some(&value), matrix.get(c, r), "{} ({r}, {c})", kind.name());
             }
+        }
+    }
+}
+
+/// Otherwise the reaction of a moved surface would not be that of the matrix that is factored.
+#[test]
+fn the_product_without_a_matrix_is_that_of_the_matrix() {
+    for kind in ElementKind::ALL {
+        let mesh = crooked_cube(kind, 3);
+        let u: Vec<f64> = (0..mesh.n_dofs()).map(|i| (0.7 * i as f64).sin()).collect();
+        let matrix = assemble_stiffness(&mesh, &steel()).unwrap();
+        let expected = multiply(&matrix, &u);
+        let found = stiffness_product(&mesh, &steel(), &u).unwrap();
+        let largest = expected.iter().fold(0.0, |m: f64, f| m.max(f.abs()));
+        for (a, b) in found.iter().zip(expected.iter()) {
+            assert!((a - b).abs() < 1e-13 * largest, "{}: {a} {b}", kind.name());
         }
     }
 }

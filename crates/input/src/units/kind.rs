@@ -52,8 +52,13 @@ pub const INERTIA: usize = 15;
 /// Index of kinematic viscosities, m2/s.
 pub const VISCOSITY: usize = 16;
 
+/// Index of dynamic viscosities, Pa s.
+pub const DYNAMIC_VISCOSITY: usize = 17;
+/// Index of coefficients of growth with pressure, 1/Pa.
+pub const PRESSURE_COEFFICIENT: usize = 18;
+
 /// All kinds: those a scene uses first, at the index of their constant, then those only named in messages.
-pub static KINDS: [Kind; 19] = [
+pub static KINDS: [Kind; 21] = [
     kind("a length", [0.0, 1.0, 0.0, 0.0], "m", "9 mm", "_m"),
     kind("an angle", [0.0, 0.0, 0.0, 1.0], "rad", "15 deg", "_rad"),
     kind("a force", [1.0, 1.0, -2.0, 0.0], "N", "2 kN", "_n"),
@@ -118,6 +123,20 @@ pub static KINDS: [Kind; 19] = [
         "m2/s",
         "12 mm2/s",
         "_m2_per_s",
+    ),
+    kind(
+        "a dynamic viscosity",
+        [1.0, -1.0, -1.0, 0.0],
+        "Pa s",
+        "40 mPa s",
+        "_pa_s",
+    ),
+    kind(
+        "a pressure coefficient",
+        [-1.0, 1.0, 2.0, 0.0],
+        "1/Pa",
+        "22 1/GPa",
+        "_per_pa",
     ),
     kind("a power", [1.0, 2.0, -3.0, 0.0], "W", "5 W", "_w"),
     kind("a pure number", [0.0, 0.0, 0.0, 0.0], "", "2", ""),

@@ -6,6 +6,7 @@
 
 mod harmonic;
 mod prepared;
+mod seat;
 mod sector;
 mod solver;
 mod sparse;

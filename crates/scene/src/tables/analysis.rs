@@ -6,7 +6,9 @@ use toml_edit::DocumentMut;
 
 use super::RawScene;
 use super::balls::BallsContext;
+use super::bearing::Bearing;
 use super::dynamic::RawDynamic;
+use super::materials::Materials;
 use super::modes::ModesContext;
 use super::shaft::Shaft;
 use super::speed::{RawSpeed, SpeedUse, makes_force};
@@ -81,12 +83,21 @@ impl RawScene {
         self.is_at_rest() || (self.dynamic.is_none() && self.quasi_static.is_some())
     }
 
-    pub(super) fn effects_context(&self, is_flexible: [bool; 2]) -> Context {
+    pub(super) fn effects_context(
+        &self,
+        is_flexible: [bool; 2],
+        bearing: Option<&Bearing>,
+        materials: Option<&Materials>,
+    ) -> Context {
+        let seats = bearing.map(|b| [b.bore_diameter, b.outside_diameter]);
         Context {
             is_without_inertia: self.is_without_inertia(),
             clock: self.clock(),
             has_speed: self.has_speed(),
             is_flexible,
+            seat_diameters: [0, 1].map(|i| seats.map(|d| d[i])),
+            // Materials that are wrong are reported themselves.
+            has_expansion: materials.map_or([true; 2], Materials::has_expansion),
         }
     }
 
@@ -94,6 +105,7 @@ impl RawScene {
         BallsContext {
             effects: &self.effects,
             has_ball_speeds: self.speed.as_ref().is_some_and(RawSpeed::has_ball_speeds),
+            has_lubricant: self.lubricant.is_some(),
             is_dynamic: self.dynamic.is_some(),
             conserves: self.dynamic.as_ref().is_some_and(RawDynamic::conserves),
         }
@@ -108,7 +120,8 @@ impl RawScene {
         if self.dynamic.is_none() && self.modes.is_some() {
             return SpeedUse::Modes;
         }
-        match (self.is_at_rest(), self.effects.use_speed(makes_force)) {
+        let is_used = self.effects.use_speed(makes_force) || self.lubricant.is_some();
+        match (self.is_at_rest(), is_used) {
             (false, _) => SpeedUse::Motion,
             (true, true) => SpeedUse::ForceAtRest,
             (true, false) => SpeedUse::Nothing,

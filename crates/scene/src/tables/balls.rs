@@ -38,6 +38,8 @@ pub struct BallsContext<'a> {
     pub effects: &'a Effects,
     /// Whether `speed.ball_speeds` is given.
     pub has_ball_speeds: bool,
+    /// Whether films are asked for.
+    pub has_lubricant: bool,
     /// Whether motion in time is computed.
     pub is_dynamic: bool,
     /// Whether the integrator conserves energy.
@@ -56,6 +58,9 @@ const REPLACED: [(&str, &str); 3] = [
     ),
     ("cage_slip", "the slip of a free ball is a result, not given"),
 ];
+
+/// Effects that free balls do not know yet: they move grooves and change the balls.
+const NOT_BESIDE: [&str; 3] = ["fit", "temperature", "seat_form"];
 
 impl RawBalls {
     /// What the scene asks for.
@@ -103,6 +108,18 @@ impl RawBalls {
             problems.add(format!(
                 "[effects.{name}] stands beside balls.motion = \"free\", but {why}; remove it"
             ));
+        }
+        for name in NOT_BESIDE.iter().filter(|name| names.contains(name)) {
+            problems.add(format!(
+                "[effects.{name}] stands beside balls.motion = \"free\", which is not computed; remove it, or use \
+                 balls.motion = \"kinematic\""
+            ));
+        }
+        if context.has_lubricant {
+            problems.add(
+                "[lubricant] stands beside balls.motion = \"free\", whose films are not computed; remove it, or use \
+                 balls.motion = \"kinematic\"",
+            );
         }
         if context.has_ball_speeds {
             problems.add(

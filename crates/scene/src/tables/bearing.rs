@@ -5,7 +5,11 @@
 //!
 //! - diametral clearance P_d = D_e - d_i - 2 D_w,
 //! - groove distance A = R_i + R_o - D_w,
-//! - free contact angle a0 from cos a0 = 1 - P_d / (2 A).
+//! - free contact angle a0 from cos a0 = 1 - P_d / (2 A),
+//! - axial clearance P_e = 2 A sin a0, from one stop to the other.
+//!
+//! One of `outer_raceway_diameter`, `radial_clearance` (P_d), `axial_clearance` and `free_contact_angle` is given;
+//! they are those of the unmounted bearing.
 //!
 //! Reference: Harris and Kotzalas, Essential Concepts of Bearing Technology, 5th ed. 2006, chapter 2.
 
@@ -21,7 +25,10 @@ pub struct RawBearing {
     balls: i64,
     ball_diameter: Quantity<LENGTH>,
     inner_raceway_diameter: Quantity<LENGTH>,
-    outer_raceway_diameter: Quantity<LENGTH>,
+    outer_raceway_diameter: Option<Quantity<LENGTH>>,
+    radial_clearance: Option<Quantity<LENGTH>>,
+    axial_clearance: Option<Quantity<LENGTH>>,
+    free_contact_angle: Option<Quantity<ANGLE>>,
     inner_groove_radius: Quantity<LENGTH>,
     outer_groove_radius: Quantity<LENGTH>,
     bore_diameter: Quantity<LENGTH>,
@@ -68,12 +75,13 @@ impl RawBearing {
     pub fn check(&self, problems: &mut Problems) -> Option<Bearing> {
         let before = problems.len();
         let balls = problems.whole(self.balls, "bearing.balls", 3, MAX_BALLS);
-        self.check_lengths(problems);
+        let outer_raceway = self.outer_raceway(problems)?;
+        self.check_lengths(&outer_raceway, problems);
         let bearing = Bearing {
             balls,
             ball_diameter: self.ball_diameter.si(),
             inner_raceway_diameter: self.inner_raceway_diameter.si(),
-            outer_raceway_diameter: self.outer_raceway_diameter.si(),
+            outer_raceway_diameter: outer_raceway.si(),
             inner_groove_radius: self.inner_groove_radius.si(),
             outer_groove_radius: self.outer_groove_radius.si(),
             bore_diameter: self.bore_diameter.si(),
@@ -82,7 +90,7 @@ impl RawBearing {
             first_ball_azimuth: self.first_ball_azimuth.as_ref().map_or(0.0, Quantity::si),
         };
         if problems.len() == before {
-            self.check_diameters(problems);
+            self.check_diameters(&outer_raceway, problems);
             self.check_grooves(problems);
         }
         if problems.len() == before {
@@ -92,7 +100,64 @@ impl RawBearing {
         (problems.len() == before).then_some(bearing)
     }
 
-    fn check_lengths(&self, problems: &mut Problems) {
+    /// Diameter of the outer groove's bottom, given or from the clearance; None where it is not said, or twice.
+    fn outer_raceway(&self, problems: &mut Problems) -> Option<Quantity<LENGTH>> {
+        let given = [
+            ("outer_raceway_diameter", self.outer_raceway_diameter.is_some()),
+            ("radial_clearance", self.radial_clearance.is_some()),
+            ("axial_clearance", self.axial_clearance.is_some()),
+            ("free_contact_angle", self.free_contact_angle.is_some()),
+        ];
+        let given: Vec<&str> = given.iter().filter(|(_, is)| *is).map(|(key, _)| *key).collect();
+        match given[..] {
+            [_] => {}
+            [] => {
+                problems.add(
+                    "[bearing] has no outer_raceway_diameter; add it, or what it follows from: radial_clearance, \
+                     axial_clearance or free_contact_angle of the unmounted bearing",
+                );
+                return None;
+            }
+            [first, second, ..] => {
+                problems.add(format!(
+                    "bearing.{first} and bearing.{second} both say how much clearance there is; keep one of them"
+                ));
+                return None;
+            }
+        }
+        if let Some(diameter) = &self.outer_raceway_diameter {
+            return Some(diameter.clone());
+        }
+        let twice =
+            2.0 * (self.inner_groove_radius.si() + self.outer_groove_radius.si() - self.ball_diameter.si());
+        let clearance = self.clearance(twice, problems)?;
+        let inner = self.inner_raceway_diameter.si() + 2.0 * self.ball_diameter.si();
+        Some(Quantity::from_si(inner + clearance))
+    }
+
+    /// Radial clearance, m, as it is given; `twice` is twice the groove distance.
+    fn clearance(&self, twice: f64, problems: &mut Problems) -> Option<f64> {
+        if let Some(radial) = &self.radial_clearance {
+            return Some(radial.si());
+        }
+        if let Some(axial) = &self.axial_clearance {
+            let share = axial.si() / twice;
+            let holds = (0.0..1.0).contains(&share);
+            let most = Quantity::<LENGTH>::about(twice);
+            let rule = format!(
+                "expected 0 mm to less than 2 (inner_groove_radius + outer_groove_radius - ball_diameter), {most}"
+            );
+            problems.require(holds, "bearing.axial_clearance", axial, rule);
+            return holds.then(|| twice * (1.0 - (1.0 - share * share).sqrt()));
+        }
+        let angle = self.free_contact_angle.as_ref()?;
+        let holds = (0.0..0.5 * PI).contains(&angle.si());
+        let rule = "expected 0 deg to below 90 deg";
+        problems.require(holds, "bearing.free_contact_angle", angle, rule);
+        holds.then(|| twice * (1.0 - angle.si().cos()))
+    }
+
+    fn check_lengths(&self, outer_raceway: &Quantity<LENGTH>, problems: &mut Problems) {
         let lengths = [
             (&self.ball_diameter, "bearing.ball_diameter", "a diameter"),
             (
@@ -100,11 +165,7 @@ impl RawBearing {
                 "bearing.inner_raceway_diameter",
                 "a diameter",
             ),
-            (
-                &self.outer_raceway_diameter,
-                "bearing.outer_raceway_diameter",
-                "a diameter",
-            ),
+            (outer_raceway, "bearing.outer_raceway_diameter", "a diameter"),
             (
                 &self.inner_groove_radius,
                 "bearing.inner_groove_radius",
@@ -126,11 +187,11 @@ impl RawBearing {
         }
     }
 
-    fn check_diameters(&self, problems: &mut Problems) {
+    fn check_diameters(&self, outer_raceway: &Quantity<LENGTH>, problems: &mut Problems) {
         let rising = [
             ("bearing.bore_diameter", &self.bore_diameter),
             ("bearing.inner_raceway_diameter", &self.inner_raceway_diameter),
-            ("bearing.outer_raceway_diameter", &self.outer_raceway_diameter),
+            ("bearing.outer_raceway_diameter", outer_raceway),
             ("bearing.outside_diameter", &self.outside_diameter),
         ];
         for pair in rising.windows(2) {

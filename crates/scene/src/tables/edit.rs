@@ -44,7 +44,8 @@ fn remove_table(document: &mut DocumentMut, path: &str) -> bool {
             None => return false,
         }
     }
-    let is_table = table.get(last.get()).is_some_and(Item::is_table_like);
+    let is_table = |item: &Item| item.is_table_like() || item.is_array_of_tables();
+    let is_table = table.get(last.get()).is_some_and(is_table);
     is_table && table.remove(last.get()).is_some()
 }
 

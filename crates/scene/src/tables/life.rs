@@ -20,6 +20,8 @@
 use input::{ANGLE, ANGULAR_SPEED, FORCE, Problems, Quantity, Temperature, VISCOSITY};
 use serde::Deserialize;
 
+use super::oil::{ClassKeys, Oil};
+
 /// As typed.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields, expecting = "the table [life]")]
@@ -49,24 +51,6 @@ pub enum LifeGrooves {
     Own,
     /// 0.52 and 0.53 of the ball diameter, inside and outside: the reference of ISO 16281.
     Reference,
-}
-
-/// What is known of the lubricant.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Oil {
-    /// Viscosity ratio kappa, dimensionless.
-    Ratio(f64),
-    /// Kinematic viscosity at the temperature of the contacts, m2/s.
-    Viscosity(f64),
-    /// A class of ISO 3448 at a temperature.
-    Class {
-        /// Kinematic viscosity at 40 degC, m2/s.
-        at_40: f64,
-        /// At 100 degC, m2/s; None at 40 degC, where it is not needed.
-        at_100: Option<f64>,
-        /// Temperature of the contacts, K.
-        temperature: f64,
-    },
 }
 
 /// What a life needs besides loads.
@@ -111,36 +95,8 @@ impl Default for Life {
 /// Reliabilities for which ISO 281:2007, table 12, has the factor a_1, per cent.
 const RELIABILITIES: [f64; 6] = [90.0, 95.0, 96.0, 97.0, 98.0, 99.0];
 
-/// Viscosity classes of ISO 3448:1992 and their mid-point viscosities at 40 degC, mm2/s.
-const CLASSES: [[f64; 2]; 20] = [
-    [2.0, 2.2],
-    [3.0, 3.2],
-    [5.0, 4.6],
-    [7.0, 6.8],
-    [10.0, 10.0],
-    [15.0, 15.0],
-    [22.0, 22.0],
-    [32.0, 32.0],
-    [46.0, 46.0],
-    [68.0, 68.0],
-    [100.0, 100.0],
-    [150.0, 150.0],
-    [220.0, 220.0],
-    [320.0, 320.0],
-    [460.0, 460.0],
-    [680.0, 680.0],
-    [1000.0, 1000.0],
-    [1500.0, 1500.0],
-    [2200.0, 2200.0],
-    [3200.0, 3200.0],
-];
-
 /// Largest nominal contact angle of a radial bearing (ISO 281, clause 3), rad, with round-off.
 const MAX_CONTACT_ANGLE: f64 = std::f64::consts::FRAC_PI_4 * (1.0 + 1e-12);
-/// Oils are liquid and bearing steel keeps its hardness between these, degC.
-const PLAUSIBLE_CELSIUS: std::ops::RangeInclusive<f64> = -60.0..=300.0;
-/// Below 2 mm2/s the equation of Walther needs further terms (ASTM D341), m2/s.
-const MIN_WALTHER: f64 = 2e-6;
 /// Largest plausible speed, rad/s, as in `[speed]`.
 const MAX_SPEED: f64 = 1e5;
 
@@ -225,18 +181,13 @@ impl RawLife {
             ));
             return None;
         }
-        if self.viscosity_class.is_none() {
-            for (key, is_given) in [
-                ("temperature", self.temperature.is_some()),
-                ("viscosity_at_100", self.viscosity_at_100.is_some()),
-            ] {
-                if is_given {
-                    problems.add(format!(
-                        "life.{key} does nothing without life.viscosity_class; add the class, or remove it"
-                    ));
-                }
-            }
-        }
+        let keys = ClassKeys {
+            table: "life",
+            class: self.viscosity_class,
+            at_100: self.viscosity_at_100.as_ref(),
+            temperature: self.temperature.as_ref(),
+        };
+        keys.check_idle(problems);
         match (self.viscosity_ratio, &self.viscosity, self.viscosity_class) {
             (Some(ratio), ..) => {
                 problems.require(
@@ -251,58 +202,8 @@ impl RawLife {
                 problems.require_positive(viscosity, "life.viscosity", "a viscosity");
                 Some(Oil::Viscosity(viscosity.si()))
             }
-            (.., Some(class)) => self.class(class, problems),
+            (.., Some(class)) => keys.oil(class, problems),
             _ => None,
         }
-    }
-
-    /// An oil by its class and temperature.
-    fn class(&self, class: f64, problems: &mut Problems) -> Option<Oil> {
-        let Some([_, at_40]) = CLASSES.iter().find(|[name, _]| *name == class) else {
-            let names: Vec<String> = CLASSES.iter().map(|[name, _]| name.to_string()).collect();
-            problems.require(
-                false,
-                "life.viscosity_class",
-                class,
-                format!("expected a class of ISO 3448: {}", names.join(", ")),
-            );
-            return None;
-        };
-        let at_40 = at_40 * 1e-6;
-        let Some(temperature) = &self.temperature else {
-            problems.add(format!(
-                "life.viscosity_class is {class}, the viscosity at 40 degC; add life.temperature of the oil in the \
-                 contacts, or give life.viscosity at that temperature"
-            ));
-            return None;
-        };
-        problems.require(
-            PLAUSIBLE_CELSIUS.contains(&temperature.celsius()),
-            "life.temperature",
-            temperature,
-            "expected -60 degC to 300 degC",
-        );
-        if let Some(at_100) = &self.viscosity_at_100 {
-            problems.require(
-                (MIN_WALTHER..at_40).contains(&at_100.si()),
-                "life.viscosity_at_100",
-                at_100,
-                format!(
-                    "expected 2 mm2/s to less than the {} mm2/s at 40 degC",
-                    1e6 * at_40
-                ),
-            );
-        } else if (temperature.celsius() - 40.0).abs() > 1e-9 {
-            problems.add(format!(
-                "life.temperature is {temperature}; how an oil thins from 40 degC takes a second viscosity: add \
-                 life.viscosity_at_100 from its data sheet, or give life.viscosity at that temperature"
-            ));
-            return None;
-        }
-        Some(Oil::Class {
-            at_40,
-            at_100: self.viscosity_at_100.as_ref().map(Quantity::si),
-            temperature: temperature.kelvin(),
-        })
     }
 }

@@ -1,6 +1,6 @@
 //! `[materials.rings]` and `[materials.balls]`: linear elastic, isotropic.
 
-use input::{DENSITY, Problems, Quantity, STRESS};
+use input::{DENSITY, Expansion, Problems, Quantity, STRESS};
 use serde::Deserialize;
 
 /// As typed.
@@ -24,6 +24,8 @@ struct RawMaterial {
     young_modulus: Quantity<STRESS>,
     poisson_ratio: f64,
     density: Quantity<DENSITY>,
+    expansion: Option<Expansion>,
+    yield_strength: Option<Quantity<STRESS>>,
 }
 
 /// What the bodies are made of.
@@ -44,6 +46,17 @@ pub struct Material {
     pub poisson_ratio: f64,
     /// Density rho, kg/m3.
     pub density: f64,
+    /// Thermal expansion alpha, 1/K; None: not given.
+    pub expansion: Option<f64>,
+    /// Yield strength, Pa; None: not given, and nothing is compared with it.
+    pub yield_strength: Option<f64>,
+}
+
+impl Materials {
+    /// Whether the thermal expansion of rings and balls is given.
+    pub fn has_expansion(&self) -> [bool; 2] {
+        [self.rings, self.balls].map(|material| material.expansion.is_some())
+    }
 }
 
 /// Softer or stiffer than any solid: a slip of the unit, Pa.
@@ -96,10 +109,18 @@ impl RawMaterial {
             &self.density,
             "expected 1 kg/m3 to 1e5 kg/m3, steel has 7800 kg/m3",
         );
+        if let Some(expansion) = &self.expansion {
+            expansion.check(&format!("{table}.expansion"), problems);
+        }
+        if let Some(strength) = &self.yield_strength {
+            problems.require_positive(strength, &format!("{table}.yield_strength"), "a strength");
+        }
         Material {
             young_modulus: modulus,
             poisson_ratio: nu,
             density,
+            expansion: self.expansion.as_ref().map(Expansion::per_kelvin),
+            yield_strength: self.yield_strength.as_ref().map(Quantity::si),
         }
     }
 }

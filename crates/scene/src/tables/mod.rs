@@ -29,8 +29,8 @@
 #![doc = include_str!("example_modes.toml")]
 //! ```
 //!
-//! Any scene may have tables `[stress]`, `[probes.*]` and `[life]`, and motion without inertia is a table of its own,
-//! `[quasi_static]`: see the files of these names.
+//! Any scene may have tables `[stress]`, `[probes.*]`, `[life]` and `[lubricant]`, and motion without inertia is a
+//! table of its own, `[quasi_static]`: see the files of these names.
 
 mod analysis;
 mod balls;
@@ -43,8 +43,10 @@ mod edit;
 mod error;
 mod life;
 mod locate;
+mod lubricant;
 mod materials;
 mod modes;
+mod oil;
 mod output;
 mod probes;
 mod quasi_static;
@@ -76,10 +78,12 @@ pub use self::contact::{BallElasticity, Contact, ContactMode};
 pub use self::difference::difference;
 pub use self::dynamic::{ContactScheme, Dynamic, IntegratorChoice};
 pub use self::error::SceneError;
-pub use self::life::{Life, LifeGrooves, Oil};
+pub use self::life::{Life, LifeGrooves};
 pub use self::locate::locate;
+pub use self::lubricant::{Lubrication, Roughness};
 pub use self::materials::{Material, Materials};
 pub use self::modes::{ModeBody, ModeSupport, Modes};
+pub use self::oil::Oil;
 pub use self::output::{Output, Precision, RingFrame, StressOutput};
 pub use self::probes::{Axes, ContactProbe, NodeProbe, Probes, SectionPoint};
 pub use self::quasi_static::QuasiStatic;
@@ -97,6 +101,7 @@ use self::bearing::RawBearing;
 use self::contact::RawContact;
 use self::dynamic::RawDynamic;
 use self::life::RawLife;
+use self::lubricant::RawLubricant;
 use self::materials::RawMaterials;
 use self::modes::{ModesContext, RawModes};
 use self::output::RawOutput;
@@ -137,6 +142,7 @@ struct RawScene {
     #[serde(default)]
     probes: RawProbes,
     life: Option<RawLife>,
+    lubricant: Option<RawLubricant>,
     r#static: Option<RawStatic>,
     sweep: Option<RawSweep>,
     quasi_static: Option<RawQuasiStatic>,
@@ -187,6 +193,8 @@ pub struct Scene {
     pub probes: Probes,
     /// What a life needs besides loads.
     pub life: Option<Life>,
+    /// What lubricates the contacts.
+    pub lubricant: Option<Lubrication>,
     /// What is computed.
     pub analysis: Analysis,
 }
@@ -323,7 +331,11 @@ impl Source<'_> {
         let shaft = raw.shaft.check(bearing.as_ref(), raw.clock(), &mut problems);
         let effects = &raw.effects;
         effects.check(
-            raw.effects_context([inner.body.is_some(), outer.body.is_some()]),
+            raw.effects_context(
+                [inner.body.is_some(), outer.body.is_some()],
+                bearing.as_ref(),
+                materials.as_ref(),
+            ),
             &mut problems,
         );
         let balls = raw.balls.check(raw.balls_context(), &mut problems);
@@ -344,6 +356,9 @@ impl Source<'_> {
             rigid: [raw.inner.is_rigid(), raw.outer.is_rigid()],
         };
         let probes = raw.probes.check(probes, &mut problems);
+        let turns = raw.speed.is_some() && raw.modes.is_none();
+        let lubricant = raw.lubricant.as_ref();
+        let lubricant = lubricant.and_then(|lubricant| lubricant.check(turns, &mut problems));
         let life = raw
             .life
             .as_ref()
@@ -376,6 +391,7 @@ impl Source<'_> {
                 stress,
                 probes,
                 life,
+                lubricant,
                 analysis,
             }),
             (.., texts) => Err(self.invalid(texts)),

@@ -48,8 +48,9 @@ fn the_example_of_every_effect_is_its_table() {
         let own: Vec<&str> = names.into_iter().filter(|name| *name != "traction").collect();
         let expected = Some(about.name).filter(|name| *name != "traction");
         assert_eq!(own, Vec::from_iter(expected));
-        let header = format!("[effects.{}]", about.name);
-        assert!(about.example.starts_with(&header), "{}", about.example);
+        let header = format!("effects.{}]", about.name);
+        let start = about.example.trim_start_matches('[');
+        assert!(start.starts_with(&header), "{}", about.example);
     }
 }
 

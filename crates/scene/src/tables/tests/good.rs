@@ -23,6 +23,8 @@ fn the_example_of_the_documentation_reads_as_it_says() {
         young_modulus: 207e9,
         poisson_ratio: 0.3,
         density: 7800.0,
+        expansion: Some(11.5e-6),
+        yield_strength: None,
     };
     assert_eq!(
         scene.materials,

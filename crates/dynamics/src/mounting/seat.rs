@@ -1,0 +1,374 @@
+//! A ring on its seat: pressure, and what the ring does, from interference and temperature.
+//!
+//! ```text
+//! delta = I/2 + s e d/2      s = 1 for shafts, -1 for housings; e the strain of the partner less that of the ring
+//! clamped       u = delta - c_p p,  p = k_r u + k_z e     ->  u = (delta - c_p k_z e) / (1 + c_p k_r)
+//! mean motion   p = delta / (c + c_p),   rigid: the same with the tube from seat to groove bottom;  p >= 0
+//! lets go       p(omega) = 0:   delta + s P omega^2 = (s G) omega^2
+//! ```
+//!
+//! c_p is the give of the partner per pressure ([`super::tube`]); without a fit it is 0 and the partner keeps the
+//! round form of a clamped seat at its own temperature. P and G are the growth of the partner's and the ring's seat
+//! per square of the speed; only the mean pressure moves the partner.
+
+use std::f64::consts::TAU;
+use std::sync::Arc;
+
+use comm::Communicator;
+use contact::{Meridian, Side};
+use fem::Material;
+use ring::{Hold, RingModel, SeatAction, SeatField};
+
+use super::conditions::{Conditions, Fit, SeatForm};
+use super::tube::Tube;
+use super::unmounted::Unmounted;
+use crate::error::DynamicsError;
+
+/// Places round the circumference at which the pressure of a seat is looked at.
+const PLACES: usize = 720;
+
+/// What is known of a fit.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SeatReport {
+    /// Diametral interference at the bearing's temperatures, m; negative is clearance.
+    pub interference: f64,
+    /// Mean pressure, Pa.
+    pub pressure: f64,
+    /// Growth of the radius of the groove bottom, m.
+    pub groove_growth: f64,
+    /// Speed at which the ring lets go of its partner, rad/s; None: at no speed.
+    pub loosening_speed: Option<f64>,
+}
+
+/// A ring on its seat, mounted.
+pub struct MountedSeat {
+    /// Mean motion of the groove [radial, axial], m.
+    pub groove: Meridian,
+    /// Displacement of a flexible ring; None: none.
+    pub field: Option<Arc<Vec<f64>>>,
+    /// What is known of its fit, if there is one.
+    pub report: Option<SeatReport>,
+    /// What a user should know.
+    pub warnings: Vec<String>,
+}
+
+/// A ring and its partner.
+pub struct RingSeat<'a> {
+    bearing: &'a Unmounted<'a>,
+    side: Side,
+    /// Tube from seat to groove bottom.
+    tube: Tube,
+    fit: Option<(Fit, Tube)>,
+    answer: SeatAnswer,
+    forms: Vec<Wave>,
+}
+
+/// How a ring answers its partner.
+enum SeatAnswer {
+    /// As a tube.
+    Rigid,
+    /// A clamped seat: moved into the ring, and stretched along the axis.
+    Clamped([Arc<SeatField>; 2]),
+    /// A seat in its mean motion, pressed; None without a fit.
+    Pressed(Option<Arc<SeatField>>),
+}
+
+/// A form of the seat, and what 1 m of it does.
+type Wave = (SeatForm, Arc<SeatField>);
+
+/// Pressure of a seat, and the fields that it is made of.
+struct Equilibrium {
+    pressure: f64,
+    parts: Vec<(Arc<SeatField>, f64)>,
+}
+
+impl<'a> RingSeat<'a> {
+    /// The seat of a ring; a flexible one finds its fields.
+    pub fn new(
+        bearing: &'a Unmounted,
+        conditions: &Conditions,
+        side: Side,
+    ) -> Result<RingSeat<'a>, DynamicsError> {
+        let i = side.index();
+        let forms: Vec<SeatForm> = conditions
+            .seat_forms
+            .iter()
+            .copied()
+            .filter(|f| f.side == side)
+            .collect();
+        let fit = conditions.fits[i];
+        let is_clamped = |ring: &RingModel| ring.hold == Hold::Clamped;
+        let (answer, forms) = match bearing.rings[i].as_deref() {
+            Some(ring) if is_clamped(ring) => {
+                let needs = fit.is_some() || conditions.temperatures.is_some() || !forms.is_empty();
+                match needs {
+                    true => clamped(bearing, side, ring, forms)?,
+                    false => (SeatAnswer::Rigid, Vec::new()),
+                }
+            }
+            _ if !forms.is_empty() => return Err(DynamicsError::SeatFormNotClamped { side: side.name() }),
+            Some(ring) => {
+                let fields = match fit {
+                    Some(_) => fields(bearing, side, ring, &[SeatAction::Pressure])?,
+                    None => Vec::new(),
+                };
+                (SeatAnswer::Pressed(fields.into_iter().next()), Vec::new())
+            }
+            None => (SeatAnswer::Rigid, Vec::new()),
+        };
+        Ok(RingSeat {
+            bearing,
+            side,
+            tube: ring_tube(bearing, side),
+            fit: fit.map(|fit| (fit, partner_tube(bearing, side, fit))),
+            answer,
+            forms,
+        })
+    }
+
+    /// The seat mounted, with the strain of the partner less that of the ring.
+    pub fn mounted(&self, strain: f64) -> Result<MountedSeat, DynamicsError> {
+        let mut mounted = self.equilibrium(strain)?;
+        let groove = match &self.answer {
+            SeatAnswer::Rigid => [mounted.pressure * self.tube.growth(), 0.0],
+            _ => [0, 1].map(|c| {
+                mounted
+                    .parts
+                    .iter()
+                    .map(|(field, size)| size * field.groove[c])
+                    .sum()
+            }),
+        };
+        self.check_stress(mounted.pressure)?;
+        self.check_waves(mounted.pressure)?;
+        let waves = self
+            .forms
+            .iter()
+            .map(|(form, field)| (field.clone(), form.amplitude));
+        mounted.parts.extend(waves);
+        let report = self.fit.as_ref().map(|_| SeatReport {
+            interference: 2.0 * self.interference(strain),
+            pressure: mounted.pressure,
+            groove_growth: groove[0],
+            loosening_speed: self.loosening_speed(strain),
+        });
+        if let Some(report) = &report {
+            self.check_speed(report)?;
+        }
+        Ok(MountedSeat {
+            groove,
+            field: sum(&mounted.parts),
+            warnings: self.warnings(mounted.pressure, strain),
+            report,
+        })
+    }
+
+    /// Half of the interference of free bodies, m.
+    fn interference(&self, strain: f64) -> f64 {
+        let given = self.fit.as_ref().map_or(0.0, |(fit, _)| fit.interference);
+        0.5 * (given - self.side.sign() * strain * self.bearing.seat_diameters[self.side.index()])
+    }
+
+    /// Give of the partner per pressure, m/Pa.
+    fn give(&self) -> f64 {
+        self.fit.as_ref().map_or(0.0, |(_, partner)| partner.give())
+    }
+
+    fn equilibrium(&self, strain: f64) -> Result<Equilibrium, DynamicsError> {
+        let (delta, give) = (self.interference(strain), self.give());
+        match &self.answer {
+            SeatAnswer::Clamped([radial, stretch]) => {
+                let moved = (delta - give * stretch.pressure * strain) / (1.0 + give * radial.pressure);
+                let pressure = radial.pressure * moved + stretch.pressure * strain;
+                if self.fit.is_some() && pressure <= 0.0 {
+                    return Err(DynamicsError::LooseFit {
+                        side: self.side.name(),
+                        clearance_um: -2e6 * delta,
+                    });
+                }
+                let parts = [(radial, moved), (stretch, strain)];
+                let parts = parts.into_iter().filter(|(_, size)| *size != 0.0);
+                Ok(Equilibrium {
+                    pressure,
+                    parts: parts.map(|(field, size)| (field.clone(), size)).collect(),
+                })
+            }
+            SeatAnswer::Rigid | SeatAnswer::Pressed(_) => {
+                let field = match &self.answer {
+                    SeatAnswer::Pressed(field) => field.as_ref(),
+                    _ => None,
+                };
+                let give = give + field.map_or(self.tube.give(), |field| field.into_ring);
+                let pressure = match self.fit {
+                    Some(_) => (delta / give).max(0.0),
+                    None => 0.0,
+                };
+                Ok(Equilibrium {
+                    pressure,
+                    parts: field.map(|field| (field.clone(), pressure)).into_iter().collect(),
+                })
+            }
+        }
+    }
+
+    /// Speed at which the mean pressure vanishes, rad/s.
+    fn loosening_speed(&self, strain: f64) -> Option<f64> {
+        let (_, partner) = self.fit.as_ref()?;
+        // Growth into the ring.
+        let sign = -self.side.sign();
+        let partner_growth = sign * partner.spun();
+        let delta = self.interference(strain);
+        // What the pressure without speed would move the seat by, and the growth of the ring per square of the speed.
+        let (delta, growth) = match &self.answer {
+            SeatAnswer::Clamped([radial, stretch]) => (
+                delta + stretch.pressure * strain / radial.pressure,
+                radial.spin / radial.pressure,
+            ),
+            SeatAnswer::Pressed(Some(field)) => (delta, field.spin),
+            SeatAnswer::Rigid | SeatAnswer::Pressed(None) => (delta, sign * self.tube.spun()),
+        };
+        let square = delta / (growth - partner_growth);
+        (square > 0.0).then(|| square.sqrt())
+    }
+
+    fn check_speed(&self, report: &SeatReport) -> Result<(), DynamicsError> {
+        let speed = self.bearing.speeds[self.side.index()];
+        match report.loosening_speed {
+            Some(limit) if speed >= limit && report.pressure > 0.0 => Err(DynamicsError::FitLetsGo {
+                side: self.side.name(),
+                speed_rpm: speed * 60.0 / TAU,
+                limit_rpm: limit * 60.0 / TAU,
+                interference_um: 1e6 * report.interference,
+            }),
+            _ => Ok(()),
+        }
+    }
+
+    /// Fails where the pressure of a fit makes the ring yield, as a tube.
+    fn check_stress(&self, pressure: f64) -> Result<(), DynamicsError> {
+        let (Some(_), Some(limit)) = (&self.fit, self.bearing.yield_strength) else {
+            return Ok(());
+        };
+        let stress = pressure * self.tube.tresca();
+        match stress > limit {
+            true => Err(DynamicsError::FitYields {
+                side: self.side.name(),
+                pressure_mpa: 1e-6 * pressure,
+                stress_mpa: 1e-6 * stress,
+                limit_mpa: 1e-6 * limit,
+            }),
+            false => Ok(()),
+        }
+    }
+
+    /// Fails where waves of the seat lift the ring off it.
+    fn check_waves(&self, mean: f64) -> Result<(), DynamicsError> {
+        if self.fit.is_none() || self.forms.is_empty() {
+            return Ok(());
+        }
+        let pressure = |place: usize| {
+            let azimuth = TAU * place as f64 / PLACES as f64;
+            let waves = self.forms.iter().map(|(form, field)| {
+                let phase = form.order as f64 * (azimuth - form.azimuth);
+                form.amplitude * field.pressure * phase.cos()
+            });
+            mean + waves.sum::<f64>()
+        };
+        let lifted = (0..PLACES).filter(|&place| pressure(place) < 0.0).count();
+        match lifted {
+            0 => Ok(()),
+            _ => Err(DynamicsError::SeatLifts {
+                side: self.side.name(),
+                percent: 100.0 * lifted as f64 / PLACES as f64,
+            }),
+        }
+    }
+
+    fn warnings(&self, pressure: f64, strain: f64) -> Vec<String> {
+        let side = self.side.name();
+        let clearance = -2e6 * self.interference(strain);
+        if self.fit.is_some() && pressure == 0.0 && clearance >= 0.0 {
+            return vec![format!(
+                "the {side} ring has a clearance of {clearance:.2} um on its seat: nothing presses it there, and it is \
+                 held as if it could not move in it"
+            )];
+        }
+        if self.fit.is_none() && pressure < 0.0 {
+            return vec![format!(
+                "temperature pulls the clamped seat of the {side} ring with {:.1} MPa: a real one lets go unless its \
+                 interference is larger; say how large it is by [effects.fit.{side}]",
+                -1e-6 * pressure
+            )];
+        }
+        Vec::new()
+    }
+}
+
+/// Fields of a clamped ring.
+fn clamped(
+    bearing: &Unmounted,
+    side: Side,
+    ring: &RingModel,
+    forms: Vec<SeatForm>,
+) -> Result<(SeatAnswer, Vec<Wave>), DynamicsError> {
+    let mut actions = vec![SeatAction::Radial, SeatAction::Stretch];
+    actions.extend(forms.iter().map(|form| SeatAction::Wave {
+        order: form.order,
+        high: form.azimuth,
+    }));
+    let mut fields = fields(bearing, side, ring, &actions)?;
+    let waves = fields.split_off(2);
+    let [radial, stretch] = [fields[0].clone(), fields[1].clone()];
+    Ok((
+        SeatAnswer::Clamped([radial, stretch]),
+        forms.into_iter().zip(waves).collect(),
+    ))
+}
+
+fn fields(
+    bearing: &Unmounted,
+    side: Side,
+    ring: &RingModel,
+    actions: &[SeatAction],
+) -> Result<Vec<Arc<SeatField>>, DynamicsError> {
+    if Communicator::world().size() > 1 {
+        return Err(DynamicsError::MountedOnRanks { side: side.name() });
+    }
+    Ok(ring.seat_fields(bearing.settings(side), actions)?)
+}
+
+/// The ring as a tube from its seat to the bottom of its groove.
+fn ring_tube(bearing: &Unmounted, side: Side) -> Tube {
+    let geometry = bearing.geometry;
+    let bottoms = [geometry.inner_raceway_diameter, geometry.outer_raceway_diameter];
+    Tube {
+        seat: 0.5 * bearing.seat_diameters[side.index()],
+        other: 0.5 * bottoms[side.index()],
+        material: bearing.ring_material,
+    }
+}
+
+/// Shaft or housing.
+fn partner_tube(bearing: &Unmounted, side: Side, fit: Fit) -> Tube {
+    let steel = bearing.ring_material;
+    Tube {
+        seat: 0.5 * bearing.seat_diameters[side.index()],
+        other: 0.5 * fit.partner_diameter,
+        material: Material {
+            young_modulus: fit.young_modulus.unwrap_or(steel.young_modulus),
+            poisson_ratio: fit.poisson_ratio.unwrap_or(steel.poisson_ratio),
+            density: steel.density,
+        },
+    }
+}
+
+/// Sum of fields; None of none.
+fn sum(parts: &[(Arc<SeatField>, f64)]) -> Option<Arc<Vec<f64>>> {
+    let n = parts.first()?.0.displacement.len();
+    let mut sum = vec![0.0; n];
+    for (field, size) in parts {
+        let terms = sum.iter_mut().zip(field.displacement.iter());
+        terms.for_each(|(sum, w)| *sum += size * w);
+    }
+    Some(Arc::new(sum))
+}

@@ -1,0 +1,182 @@
+//! The fields of [`crate::seat`], found with the factor of a ring at rest.
+
+use std::sync::Arc;
+
+use mesh::Mesh;
+
+use super::prepared::StaticSettings;
+use super::solver::RingSolver;
+use crate::error::RingError;
+use crate::model::{Hold, RACEWAY_GROUP, RingModel};
+use crate::seat::{SeatAction, SeatField};
+use crate::vectors::dot;
+
+impl RingModel {
+    /// Fields of some actions, in their order. Those that were asked for before are kept. Collective.
+    pub fn seat_fields(
+        &self,
+        settings: StaticSettings,
+        actions: &[SeatAction],
+    ) -> Result<Vec<Arc<SeatField>>, RingError> {
+        let known = |action: &SeatAction| {
+            let fields = self.sectors.seat_fields.lock();
+            let fields = fields.expect("no field is found while another is kept");
+            fields
+                .iter()
+                .find(|(of, _)| of == action)
+                .map(|(_, field)| field.clone())
+        };
+        let missing: Vec<SeatAction> = actions.iter().copied().filter(|a| known(a).is_none()).collect();
+        if !missing.is_empty() {
+            let solver = RingSolver::new(self, settings)?;
+            for action in missing {
+                let field = Arc::new(self.seat_field(settings.name, &solver, action)?);
+                let fields = self.sectors.seat_fields.lock();
+                fields
+                    .expect("no field is found while another is kept")
+                    .push((action, field));
+            }
+        }
+        let found = actions
+            .iter()
+            .map(|action| known(action).expect("missing fields were found"));
+        Ok(found.collect())
+    }
+
+    /// Field of one action.
+    fn seat_field(
+        &self,
+        side: &'static str,
+        solver: &RingSolver,
+        action: SeatAction,
+    ) -> Result<SeatField, RingError> {
+        assert_eq!(
+            action == SeatAction::Pressure,
+            self.hold == Hold::MeanMotion,
+            "a surface in its mean motion is pressed, a clamped one moved"
+        );
+        let fem = |source| RingError::Fem { side, source };
+        let mesh = &self.mesh;
+        let surface = HeldSurface::new(self);
+        let (displacement, reaction) = match action {
+            SeatAction::Pressure => (solver.solve(surface.normals.clone(), 1), surface.normals.clone()),
+            _ => {
+                let moved = surface.motion(mesh, action, self.groove.centre_z);
+                let product = |u: &[f64]| fem::stiffness_product(mesh, &self.material, u).map_err(fem);
+                let load: Vec<f64> = product(&moved)?.into_iter().map(|f| -f).collect();
+                let mut field = solver.solve(load, 1);
+                field.iter_mut().zip(&moved).for_each(|(w, u)| *w += u);
+                let reaction = product(&field)?;
+                (field, reaction)
+            }
+        };
+        let spin = fem::centrifugal_load(mesh, self.material.density, 1.0).map_err(fem)?;
+        let mean = |a: &[f64], b: &[f64]| dot(a, b) / surface.area;
+        let shares = surface.shares(mesh, action);
+        Ok(SeatField {
+            pressure: surface.pressure(&reaction, &shares),
+            into_ring: mean(&surface.normals, &displacement),
+            groove: self.groove_motion(&displacement),
+            spin: mean(&spin, &displacement),
+            displacement: Arc::new(displacement),
+        })
+    }
+
+    /// Motion of the bottom of the groove [radial, axial], m; see [`SeatField::groove`].
+    pub fn groove_motion(&self, displacement: &[f64]) -> [f64; 2] {
+        let weights = fem::facet_node_weights(&self.mesh, self.mesh.group(RACEWAY_GROUP));
+        // Sums of w, w z, w z^2, w u and w z u.
+        let (mut moments, mut sums) = ([0.0; 3], [[0.0; 2]; 2]);
+        for (node, weight) in weights {
+            let [x, y, z] = self.mesh.nodes[node];
+            let (arm, r) = (z - self.groove.centre_z, x.hypot(y));
+            let u = &displacement[3 * node..3 * node + 3];
+            let motion = [(x * u[0] + y * u[1]) / r, u[2]];
+            for (power, moment) in [1.0, arm, arm * arm].into_iter().zip(&mut moments) {
+                *moment += weight * power;
+            }
+            for (sum, u) in sums.iter_mut().zip(motion) {
+                *sum = [sum[0] + weight * u, sum[1] + weight * arm * u];
+            }
+        }
+        let [one, first, second] = moments;
+        sums.map(|[mean, slope]| (second * mean - first * slope) / (one * second - first * first))
+    }
+}
+
+/// The bore or seat of a ring.
+struct HeldSurface {
+    /// Its nodes.
+    nodes: Vec<usize>,
+    /// Unit vectors e at its nodes, 0 elsewhere, `[n_nodes][3]` flat.
+    into_ring: Vec<f64>,
+    /// Nodal forces of a pressure of 1 Pa, m^2, `[n_nodes][3]` flat.
+    normals: Vec<f64>,
+    /// Their sum along e, m^2.
+    area: f64,
+}
+
+impl HeldSurface {
+    fn new(ring: &RingModel) -> HeldSurface {
+        let mesh = &ring.mesh;
+        let nodes = mesh.group_nodes(ring.held_group);
+        let normals = fem::pressure_load(mesh, mesh.group(ring.held_group), 1.0);
+        let mut into_ring = vec![0.0; mesh.n_dofs()];
+        for &node in &nodes {
+            let [x, y, _] = mesh.nodes[node];
+            let inwards = -ring.groove.side.sign() / x.hypot(y);
+            into_ring[3 * node] = inwards * x;
+            into_ring[3 * node + 1] = inwards * y;
+        }
+        HeldSurface {
+            area: dot(&normals, &into_ring),
+            nodes,
+            into_ring,
+            normals,
+        }
+    }
+
+    /// Displacements of a clamped surface, 0 elsewhere.
+    fn motion(&self, mesh: &Mesh, action: SeatAction, centre_z: f64) -> Vec<f64> {
+        let mut moved = vec![0.0; mesh.n_dofs()];
+        for &node in &self.nodes {
+            let [x, y, z] = mesh.nodes[node];
+            let e = &self.into_ring[3 * node..3 * node + 3];
+            let u = match action {
+                SeatAction::Radial => [e[0], e[1], 0.0],
+                SeatAction::Stretch => [0.0, 0.0, z - centre_z],
+                SeatAction::Wave { order, high } => {
+                    let size = (order as f64 * (y.atan2(x) - high)).cos() / x.hypot(y);
+                    [size * x, size * y, 0.0]
+                }
+                SeatAction::Pressure => [0.0; 3],
+            };
+            moved[3 * node..3 * node + 3].copy_from_slice(&u);
+        }
+        moved
+    }
+
+    /// How far the pressure of an action belongs to a node: 1 or, of a wave, its cosine.
+    fn shares(&self, mesh: &Mesh, action: SeatAction) -> Vec<f64> {
+        let share = |&node: &usize| match action {
+            SeatAction::Wave { order, high } => {
+                let [x, y, _] = mesh.nodes[node];
+                (order as f64 * (y.atan2(x) - high)).cos()
+            }
+            _ => 1.0,
+        };
+        self.nodes.iter().map(share).collect()
+    }
+
+    /// The pressure p c, c the `shares`, that works on e c as the partner's forces do, Pa.
+    fn pressure(&self, forces: &[f64], shares: &[f64]) -> f64 {
+        let (mut work, mut unit) = (0.0, 0.0);
+        for (&node, share) in self.nodes.iter().zip(shares) {
+            let at = 3 * node..3 * node + 3;
+            let e = &self.into_ring[at.clone()];
+            work += share * dot(&forces[at.clone()], e);
+            unit += share * share * dot(&self.normals[at], e);
+        }
+        work / unit
+    }
+}
