@@ -2,7 +2,7 @@
 //!
 //! A quantity is a decimal number followed by a unit expression:
 //!
-//! - symbols `m g t s min h rad deg ° rev rpm Hz N Pa bar J W`;
+//! - symbols `m in ft g t lb s min h rad deg ° rev rpm Hz N lbf Pa bar psi ksi Msi J W`;
 //! - prefixes `T G M k d c m u µ n p f` before `m g s rad Hz N Pa bar J W`;
 //! - products by a space, `*`, `.` or `·`; quotients by `/`, whose right side is one symbol or a parenthesis
 //!   (`kg/m s` is refused as ambiguous);

@@ -73,9 +73,22 @@ pub fn line_of(text: &str, problem: &str) -> Option<usize> {
     Some(1 + text[..floor_boundary(text, place.start)].matches('\n').count())
 }
 
-/// The place of a key in its table, and its value.
+/// Short names of keys.
+const SHORT: [(&str, &str); 2] = [("bore_diameter", "bore"), ("outside_diameter", "outside")];
+
+/// The other name of a key that has two.
+pub fn other_name(name: &str) -> Option<&'static str> {
+    SHORT.iter().find_map(|&(long, short)| match name {
+        _ if name == long => Some(short),
+        _ if name == short => Some(long),
+        _ => None,
+    })
+}
+
+/// The place of a key in its table, and its value; the key may have its other name there.
 fn entry<'a, 'i>(table: &'a DeTable<'i>, name: &str) -> Option<(Range<usize>, &'a DeValue<'i>)> {
-    let (key, value) = table.iter().find(|(key, _)| key.get_ref() == name)?;
+    let find = |name: &str| table.iter().find(|(key, _)| key.get_ref() == name);
+    let (key, value) = find(name).or_else(|| find(other_name(name)?))?;
     Some((key.span(), value.get_ref()))
 }
 

@@ -29,6 +29,9 @@
 #![doc = include_str!("example_modes.toml")]
 //! ```
 //!
+//! A bearing may be given as catalogues give it, and materials by name: see the files of these tables, `bearing.rs`
+//! and `materials.rs`.
+//!
 //! Any scene may have tables `[stress]`, `[probes.*]` and `[life]`, and motion without inertia is a table of its own,
 //! `[quasi_static]`: see the files of these names.
 
@@ -37,6 +40,7 @@ mod bearing;
 mod contact;
 mod cut;
 mod difference;
+mod dimensions;
 mod dynamic;
 mod edit;
 mod error;
@@ -182,6 +186,8 @@ pub struct Scene {
     pub life: Option<Life>,
     /// What is computed.
     pub analysis: Analysis,
+    /// What the scene leaves open and the program has filled in: a sentence each.
+    pub assumed: Vec<String>,
 }
 
 impl Scene {
@@ -293,8 +299,9 @@ impl Source<'_> {
         let raw: RawScene = toml::from_str(&text)
             .map_err(|e: toml::de::Error| self.format_error(&text, e.span(), e.message()))?;
         let mut problems = Problems::default();
-        let bearing = raw.bearing.check(&mut problems);
-        let materials = raw.materials.check(&mut problems);
+        let mut assumed = Vec::new();
+        let bearing = raw.bearing.check(&mut problems, &mut assumed);
+        let materials = raw.materials.check(&mut problems, &mut assumed);
         let contact = raw
             .contact
             .check(bearing.as_ref(), materials.as_ref(), &mut problems);
@@ -305,8 +312,12 @@ impl Source<'_> {
             overridden: !self.overrides.is_empty(),
             mesh_files: self.mesh_files,
         };
-        let inner = raw.inner.check(RingName::Inner, context, &mut problems);
-        let outer = raw.outer.check(RingName::Outer, context, &mut problems);
+        let inner = raw
+            .inner
+            .check(RingName::Inner, context, &mut problems, &mut assumed);
+        let outer = raw
+            .outer
+            .check(RingName::Outer, context, &mut problems, &mut assumed);
         if let (Some(inner), Some(outer)) = (&inner.section, &outer.section) {
             section::check_gap(inner, outer, &mut problems);
         }
@@ -365,6 +376,7 @@ impl Source<'_> {
                 probes,
                 life,
                 analysis,
+                assumed,
             }),
             (.., texts) => Err(self.invalid(texts)),
         }

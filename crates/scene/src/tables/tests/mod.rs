@@ -3,6 +3,7 @@
 mod bad_format;
 mod bad_motion;
 mod bad_values;
+mod catalogue;
 mod effects;
 mod good;
 mod life;
