@@ -6,6 +6,7 @@
 mod check;
 mod cycles;
 mod export;
+mod help;
 mod info;
 mod modes;
 mod motion;
@@ -25,7 +26,7 @@ use std::os::unix::process::CommandExt;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use clap::{Parser, Subcommand};
+use clap::{CommandFactory, Parser, Subcommand};
 use comm::{Communicator, End, Environment, print};
 use life::LifeCommand;
 use mesh::Overwrite;
@@ -44,7 +45,12 @@ use crate::resume::Request;
 
 /// Simulates angular contact ball bearings with fully flexible rings.
 #[derive(Debug, Parser)]
-#[command(name = "raceway", version, arg_required_else_help = true)]
+#[command(
+    name = "raceway",
+    version,
+    arg_required_else_help = true,
+    disable_help_subcommand = true
+)]
 struct Arguments {
     /// Number of threads; default: all cores. Results do not depend on it.
     #[arg(long, global = true)]
@@ -123,6 +129,11 @@ enum Command {
         #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
         arguments: Vec<OsString>,
     },
+    /// Says more of a command; `help scene` has every table and key of scenes, `help scene KEY` some of them.
+    Help {
+        /// A command, or scene and a table or key, such as bearing, shaft.z or contact_angle.
+        topic: Vec<String>,
+    },
     /// Builds the ring meshes that a scene describes; needs Gmsh.
     Mesh {
         /// Scene file.
@@ -140,6 +151,9 @@ fn main() -> ExitCode {
     let arguments = Arguments::parse();
     if let Command::Gmsh { arguments: given } = &arguments.command {
         return become_gmsh(arguments.parent, given);
+    }
+    if let Command::Help { topic } = &arguments.command {
+        return help::help(topic, Arguments::command());
     }
     let environment = match Environment::start() {
         Ok(environment) => environment,
@@ -261,7 +275,7 @@ fn execute(arguments: Arguments) -> Result<(), Failure> {
             say_memory_of_ranks();
             Ok(())
         }
-        Command::Gmsh { .. } => unreachable!("the program has become Gmsh"),
+        Command::Gmsh { .. } | Command::Help { .. } => unreachable!("they need no ranks and threads"),
         Command::Info { path, verify } => {
             info::info(&path, if verify { Depth::Bytes } else { Depth::Structure })
         }

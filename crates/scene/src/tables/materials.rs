@@ -1,9 +1,7 @@
 //! `[materials.rings]` and `[materials.balls]`: linear elastic, isotropic, by numbers or by name.
 //!
 //! ```toml
-//! [materials]
-//! rings = "bearing steel"
-//! balls = "silicon nitride"
+#![doc = include_str!("example_materials.toml")]
 //! ```
 //!
 //! | name | Young's modulus | Poisson's ratio | density | source |

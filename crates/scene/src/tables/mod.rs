@@ -44,6 +44,8 @@ mod dimensions;
 mod dynamic;
 mod edit;
 mod error;
+mod gather;
+mod hints;
 mod life;
 mod locate;
 mod materials;
@@ -51,6 +53,7 @@ mod modes;
 mod output;
 mod probes;
 mod quasi_static;
+pub mod reference;
 mod ring;
 mod section;
 mod shaft;
@@ -97,6 +100,7 @@ pub use self::sweep::{Analysis, SweepPoint};
 use self::bearing::RawBearing;
 use self::contact::RawContact;
 use self::dynamic::RawDynamic;
+use self::gather::Finding;
 use self::life::RawLife;
 use self::materials::RawMaterials;
 use self::modes::{ModesContext, RawModes};
@@ -269,6 +273,25 @@ impl Source<'_> {
         keys.into_iter().any(|(key, _)| problem.starts_with(key.trim()))
     }
 
+    /// One error with its place, or a list of several.
+    fn format_errors(&self, text: &str, found: &[Finding]) -> SceneError {
+        if let [one] = found {
+            return self.format_error(text, one.span.clone(), &one.message);
+        }
+        let problem = |finding: &Finding| {
+            let located = locate::locate(text, finding.span.clone(), &finding.message);
+            match located.is_of_whole_file || !self.overrides.is_empty() {
+                true => located.message,
+                false => format!("{} (line {})", located.message, located.line),
+            }
+        };
+        SceneError::Invalid {
+            path: self.path.to_path_buf(),
+            overrides: self.overrides.to_vec(),
+            problems: found.iter().map(problem).collect(),
+        }
+    }
+
     fn format_error(&self, text: &str, span: Option<Range<usize>>, message: &str) -> SceneError {
         let located = locate::locate(text, span, message);
         SceneError::Format {
@@ -296,8 +319,7 @@ impl Source<'_> {
     }
 
     fn check(&self, text: String, document: &DocumentMut) -> Result<Scene, SceneError> {
-        let raw: RawScene = toml::from_str(&text)
-            .map_err(|e: toml::de::Error| self.format_error(&text, e.span(), e.message()))?;
+        let raw: RawScene = gather::read(&text).map_err(|found| self.format_errors(&text, &found))?;
         let mut problems = Problems::default();
         let mut assumed = Vec::new();
         let bearing = raw.bearing.check(&mut problems, &mut assumed);

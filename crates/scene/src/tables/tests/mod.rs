@@ -12,7 +12,9 @@ mod motion;
 mod overrides;
 mod probes;
 mod quasi_static;
+mod reference;
 mod schedules;
+mod slips;
 mod sweeps;
 
 use dynamics::effects::Table as _;
