@@ -8,6 +8,7 @@ mod cycles;
 mod export;
 mod help;
 mod info;
+mod init;
 mod modes;
 mod motion;
 mod options;
@@ -39,6 +40,7 @@ use results::summary::peak_memory;
 use crate::cycles::Cycles;
 use crate::export::Export;
 use crate::info::Depth;
+use crate::init::Init;
 use crate::options::{Limits, Part, parse_part};
 use crate::pack::Pack;
 use crate::resume::Request;
@@ -70,6 +72,8 @@ const MOST_THREADS: usize = 4096;
 
 #[derive(Debug, Subcommand)]
 enum Command {
+    /// Writes a commented scene of a bearing to start from: a designation, or its main dimensions.
+    Init(Init),
     /// Runs a scene and writes its results.
     Run {
         /// Scene file.
@@ -279,6 +283,7 @@ fn execute(arguments: Arguments) -> Result<(), Failure> {
         Command::Info { path, verify } => {
             info::info(&path, if verify { Depth::Bytes } else { Depth::Structure })
         }
+        Command::Init(request) => init::init(&request),
         Command::Pack(request) => pack::pack(&request),
         Command::Cycles(request) => cycles::cycles(&request),
         Command::Export(request) => export::export(&request),

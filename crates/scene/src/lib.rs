@@ -10,6 +10,7 @@ mod meshing;
 mod resolution;
 mod section_record;
 mod settings;
+mod starter;
 pub mod tables;
 mod toml_text;
 
@@ -18,5 +19,6 @@ pub use doubts::doubts;
 pub use error::BuildError;
 pub use meshing::{build_meshes, build_missing};
 pub use settings::{effects_context, settings, speeds};
+pub use starter::{Wanted, file_name, scene_text};
 pub use tables::*;
 pub use toml_text::{read_tables, title};
