@@ -52,8 +52,9 @@ fn a_designation_leads_to_meshes_results_figures_and_a_page() {
         let dir = Dir::empty();
         let said = done(&dir, &format!("init {designation}"));
         let expected = format!(
-            "{designation}.toml is written\n3 of its numbers are estimates, marked ESTIMATE: replace them by those of a \
-             catalogue or a drawing\nnext: raceway mesh {designation}.toml, which needs Gmsh; then raceway run \
+            "{designation}.toml is written\n3 of its numbers are estimates, marked ESTIMATE: replace them by \
+             those of a catalogue or a drawing\nnext: raceway mesh {designation}.toml, which needs Gmsh; then \
+             raceway run \
              {designation}.toml\n"
         );
         assert_eq!(said, expected);
@@ -186,4 +187,43 @@ fn help_has_commands_and_keys_of_scenes() {
             outcome.stderr
         );
     }
+}
+
+/// Wrong: a package would have no man page and no completions, or they would lack a command.
+#[test]
+fn completions_and_the_man_page_know_the_commands() {
+    let dir = Dir::empty();
+    let man = done(&dir, "man");
+    assert!(
+        man.contains(".TH raceway 1") && man.contains("\\-\\-threads"),
+        "{man}"
+    );
+    let words = [
+        done(&dir, "completions bash"),
+        done(&dir, "completions fish"),
+        man,
+    ];
+    for text in words {
+        for command in ["init", "run", "resume", "mesh", "report"] {
+            assert!(text.contains(command), "no {command} in\n{text}");
+        }
+    }
+}
+
+/// Wrong: a cluster could not set the number of threads for all commands, or a wrong number would be taken.
+#[test]
+fn the_environment_sets_the_number_of_threads() {
+    let dir = Dir::with_scene(crate::util::SCENE);
+    let run = [&["run", "scene.toml", "--out", "out"][..], &RIGID].concat();
+    let outcome = dir.raceway_with(&[("RACEWAY_THREADS", "0")], &run);
+    assert_eq!(outcome.code, Some(2));
+    assert!(
+        outcome
+            .stderr
+            .contains("error: --threads is 0; expected at least 1"),
+        "{}",
+        outcome.stderr
+    );
+    let outcome = dir.raceway_with(&[("RACEWAY_THREADS", "1")], &run);
+    assert_eq!(outcome.code, Some(0), "{}", outcome.stderr);
 }

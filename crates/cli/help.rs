@@ -1,4 +1,4 @@
-//! `raceway help`: of the program, of a command, and the reference of scenes.
+//! `raceway help`, of the program, of a command, and the reference of scenes; completions and the man page.
 
 use std::io::Write;
 use std::process::ExitCode;
@@ -20,17 +20,39 @@ pub fn help(topic: &[String], mut program: clap::Command) -> ExitCode {
         )),
     };
     match text {
-        Ok(text) => {
-            // A reader that has seen enough, such as head, is no error.
-            let _ = writeln!(std::io::stdout(), "{}", text.trim_end());
-            ExitCode::SUCCESS
-        }
+        Ok(text) => print_all(text.trim_end().as_bytes()),
         Err(problem) => {
             let failure = Failure::User(anyhow::anyhow!(problem));
             print::note(format_args!("{}: {}", failure.kind(), failure.text()));
             ExitCode::from(failure.number())
         }
     }
+}
+
+/// Prints the completions of a shell.
+pub fn completions(shell: clap_complete::Shell, mut program: clap::Command) -> ExitCode {
+    let mut text = Vec::new();
+    clap_complete::generate(shell, &mut program, "raceway", &mut text);
+    print_all(&text)
+}
+
+/// Prints the man page.
+pub fn man(program: clap::Command) -> ExitCode {
+    let mut text = Vec::new();
+    match clap_mangen::Man::new(program).render(&mut text) {
+        Ok(()) => print_all(&text),
+        Err(error) => {
+            print::note(format_args!("error: cannot make the man page: {error}"));
+            ExitCode::FAILURE
+        }
+    }
+}
+
+/// A reader that has seen enough, such as head, is no error.
+fn print_all(text: &[u8]) -> ExitCode {
+    let mut out = std::io::stdout();
+    let _ = out.write_all(text).and_then(|()| out.write_all(b"\n"));
+    ExitCode::SUCCESS
 }
 
 fn of_key(key: &str) -> Result<String, String> {

@@ -8,7 +8,7 @@ use clap::Args;
 use comm::print;
 use input::{ANGLE, LENGTH, Quantity};
 use results::failure::Failure;
-use scene::{MeshFiles, Scene, Wanted, file_name, scene_text};
+use scene::{MeshFiles, Scene, StarterRequest, file_name, scene_text};
 
 /// What the command line asks for.
 #[derive(Debug, Args)]
@@ -51,7 +51,7 @@ fn quantity<const KIND: usize>(text: &str) -> Result<Quantity<KIND>, String> {
 
 /// Writes the scene and says what comes next.
 pub fn init(request: &Init) -> Result<(), Failure> {
-    let wanted = Wanted {
+    let wanted = StarterRequest {
         designation: request.designation.clone(),
         bore: request.bore.clone(),
         outside: request.outside.clone(),

@@ -55,7 +55,7 @@ use crate::resume::Request;
 )]
 struct Arguments {
     /// Number of threads; default: all cores. Results do not depend on it.
-    #[arg(long, global = true)]
+    #[arg(long, global = true, env = "RACEWAY_THREADS")]
     threads: Option<usize>,
     /// Ends with the process of this number, which started this one.
     #[arg(long, global = true, hide = true)]
@@ -138,6 +138,13 @@ enum Command {
         /// A command, or scene and a table or key, such as bearing, shaft.z or contact_angle.
         topic: Vec<String>,
     },
+    /// Prints completions of a shell: bash, zsh, fish, elvish or powershell.
+    Completions {
+        /// The shell; its manual says where completions are put.
+        shell: clap_complete::Shell,
+    },
+    /// Prints the man page: raceway man > raceway.1.
+    Man,
     /// Builds the ring meshes that a scene describes; needs Gmsh.
     Mesh {
         /// Scene file.
@@ -156,8 +163,11 @@ fn main() -> ExitCode {
     if let Command::Gmsh { arguments: given } = &arguments.command {
         return become_gmsh(arguments.parent, given);
     }
-    if let Command::Help { topic } = &arguments.command {
-        return help::help(topic, Arguments::command());
+    match &arguments.command {
+        Command::Help { topic } => return help::help(topic, Arguments::command()),
+        Command::Completions { shell } => return help::completions(*shell, Arguments::command()),
+        Command::Man => return help::man(Arguments::command()),
+        _ => {}
     }
     let environment = match Environment::start() {
         Ok(environment) => environment,
@@ -279,7 +289,9 @@ fn execute(arguments: Arguments) -> Result<(), Failure> {
             say_memory_of_ranks();
             Ok(())
         }
-        Command::Gmsh { .. } | Command::Help { .. } => unreachable!("they need no ranks and threads"),
+        Command::Gmsh { .. } | Command::Help { .. } | Command::Completions { .. } | Command::Man => {
+            unreachable!("they need no ranks and threads")
+        }
         Command::Info { path, verify } => {
             info::info(&path, if verify { Depth::Bytes } else { Depth::Structure })
         }

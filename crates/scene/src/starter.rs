@@ -1,7 +1,6 @@
 //! A commented scene to start from, of a designation or of main dimensions: what `raceway init` writes.
 //!
-//! Bore, outside diameter and width are those of ISO 15, dimension series 10, 02 and 03, which catalogues print for the
-//! deep groove bearings 60, 62, 63 and the angular contact bearings 70, 72, 73. What is inside a bearing is the maker's:
+//! Bore, outside diameter and width are those of ISO 15 ([`crate::designations`]). What is inside is the maker's:
 //! unless they are given, balls are estimated, and the scene says so where they stand:
 //!
 //! - ball diameter 0.3 (D - d), pitch diameter (d + D) / 2;
@@ -15,9 +14,11 @@ use std::f64::consts::PI;
 
 use input::{ANGLE, FORCE, LENGTH, Quantity, ten_digits};
 
+use crate::designations::{DESIGNATIONS, clearance_of, listed};
+
 /// What is known of the bearing.
 #[derive(Clone, Debug, Default)]
-pub struct Wanted {
+pub struct StarterRequest {
     /// Such as `7208` or `6206`; suffixes C, AC and B say the contact angle.
     pub designation: Option<String>,
     /// Bore diameter.
@@ -26,7 +27,7 @@ pub struct Wanted {
     pub outside: Option<Quantity<LENGTH>>,
     /// Width.
     pub width: Option<Quantity<LENGTH>>,
-    /// Number of balls.
+    /// SketchNumber of balls.
     pub balls: Option<usize>,
     /// Ball diameter.
     pub ball_diameter: Option<Quantity<LENGTH>>,
@@ -38,69 +39,24 @@ pub struct Wanted {
     pub radial_clearance: Option<Quantity<LENGTH>>,
 }
 
-/// Outside diameter and width, mm, for the bore codes 00 to 20.
-type Sizes = [(f64, f64); 21];
-
-/// Bores of the codes 00 to 20, mm.
-const BORES: [f64; 21] = [
-    10., 12., 15., 17., 20., 25., 30., 35., 40., 45., 50., 55., 60., 65., 70., 75., 80., 85., 90., 95., 100.,
-];
-/// Dimension series 10.
-#[rustfmt::skip]
-const SERIES_10: Sizes = [
-    (26., 8.), (28., 8.), (32., 9.), (35., 10.), (42., 12.), (47., 12.), (55., 13.), (62., 14.), (68., 15.),
-    (75., 16.), (80., 16.), (90., 18.), (95., 18.), (100., 18.), (110., 20.), (115., 20.), (125., 22.),
-    (130., 22.), (140., 24.), (145., 24.), (150., 24.),
-];
-/// Dimension series 02.
-#[rustfmt::skip]
-const SERIES_02: Sizes = [
-    (30., 9.), (32., 10.), (35., 11.), (40., 12.), (47., 14.), (52., 15.), (62., 16.), (72., 17.), (80., 18.),
-    (85., 19.), (90., 20.), (100., 21.), (110., 22.), (120., 23.), (125., 24.), (130., 25.), (140., 26.),
-    (150., 28.), (160., 30.), (170., 32.), (180., 34.),
-];
-/// Dimension series 03.
-#[rustfmt::skip]
-const SERIES_03: Sizes = [
-    (35., 11.), (37., 12.), (42., 13.), (47., 14.), (52., 15.), (62., 17.), (72., 19.), (80., 21.), (90., 23.),
-    (100., 25.), (110., 27.), (120., 29.), (130., 31.), (140., 33.), (150., 35.), (160., 37.), (170., 39.),
-    (180., 41.), (190., 43.), (200., 45.), (215., 47.),
-];
-/// Radial clearance of group N, um, of deep groove bearings with bores up to the first number, mm: ISO 5753-1.
-const CLEARANCES: [(f64, f64, f64); 9] = [
-    (10., 2., 13.),
-    (18., 3., 18.),
-    (24., 5., 20.),
-    (30., 5., 20.),
-    (40., 6., 20.),
-    (50., 6., 23.),
-    (65., 8., 28.),
-    (80., 10., 30.),
-    (100., 12., 36.),
-];
-/// What a designation looks like, for messages.
-const DESIGNATIONS: &str = "expected a series 60, 62, 63, 70, 72 or 73 with a bore code 00 to 20, such as 6206, 7208 or \
-                            7010C, or the dimensions: --bore, --outside, --width and --contact-angle or \
-                            --radial-clearance";
-
-/// How the balls touch.
-enum Kind {
+/// Whether the bearing has a contact angle of its own.
+enum BearingKind {
     Angular(f64),
     /// Radial clearance, mm.
     Deep(f64),
 }
 
 /// A number of the scene, and why it has this value.
-struct Value {
+struct SketchNumber {
     size: f64,
     note: &'static str,
 }
 
-impl Value {
-    fn new(given: Option<f64>, otherwise: f64, note: &'static str) -> Value {
+impl SketchNumber {
+    fn new(given: Option<f64>, otherwise: f64, note: &'static str) -> SketchNumber {
         match given {
-            Some(size) => Value { size, note: "given" },
-            None => Value {
+            Some(size) => SketchNumber { size, note: "given" },
+            None => SketchNumber {
                 size: ten_digits(otherwise),
                 note,
             },
@@ -109,20 +65,20 @@ impl Value {
 }
 
 /// Lengths in mm.
-struct Bearing {
+struct Sketch {
     name: String,
     bore: f64,
     outside: f64,
     width: f64,
-    balls: Value,
-    ball: Value,
-    pitch: Value,
-    kind: Kind,
+    balls: SketchNumber,
+    ball: SketchNumber,
+    pitch: SketchNumber,
+    kind: BearingKind,
     angle_note: &'static str,
 }
 
 /// Name of the file: that of the bearing, without what file names do not have.
-pub fn file_name(wanted: &Wanted) -> String {
+pub fn file_name(wanted: &StarterRequest) -> String {
     let name = wanted.designation.as_deref().unwrap_or("bearing").to_lowercase();
     let kept = name.chars().map(|c| {
         if c.is_ascii_alphanumeric() || c == '-' {
@@ -135,7 +91,7 @@ pub fn file_name(wanted: &Wanted) -> String {
 }
 
 /// The text of a scene; meshes are named after `stem` and stand beside it. Fails with what is missing.
-pub fn scene_text(wanted: &Wanted, stem: &str) -> Result<String, String> {
+pub fn scene_text(wanted: &StarterRequest, stem: &str) -> Result<String, String> {
     let bearing = find(wanted)?;
     let loads = loads(&bearing);
     Ok([
@@ -147,7 +103,7 @@ pub fn scene_text(wanted: &Wanted, stem: &str) -> Result<String, String> {
     .join("\n"))
 }
 
-fn find(wanted: &Wanted) -> Result<Bearing, String> {
+fn find(wanted: &StarterRequest) -> Result<Sketch, String> {
     let listed = wanted.designation.as_deref().map(listed).transpose()?;
     let mm = |length: &Option<Quantity<LENGTH>>| length.as_ref().map(|length| ten_digits(1e3 * length.si()));
     let main = |given: &Option<Quantity<LENGTH>>, of_list: Option<f64>, flag: &str| {
@@ -160,8 +116,8 @@ fn find(wanted: &Wanted) -> Result<Bearing, String> {
     let width = main(&wanted.width, listed.as_ref().map(|l| l.width), "--width")?;
     if !(0.0 < bore && bore < outside && width > 0.0) {
         return Err(format!(
-            "bore {bore} mm, outside diameter {outside} mm and width {width} mm are no bearing; expected lengths above 0 \
-             and a bore smaller than the outside diameter"
+            "bore {bore} mm, outside diameter {outside} mm and width {width} mm are no bearing; expected lengths above \
+             0 and a bore smaller than the outside diameter"
         ));
     }
     let degrees = wanted
@@ -171,33 +127,33 @@ fn find(wanted: &Wanted) -> Result<Bearing, String> {
     let clearance = mm(&wanted.radial_clearance);
     let of_list = listed.as_ref().and_then(|l| l.degrees);
     let (kind, angle_note) = match (degrees, clearance, &listed) {
-        (Some(degrees), _, _) => (Kind::Angular(degrees), "given"),
-        (None, Some(clearance), _) => (Kind::Deep(clearance), "given"),
+        (Some(degrees), _, _) => (BearingKind::Angular(degrees), "given"),
+        (None, Some(clearance), _) => (BearingKind::Deep(clearance), "given"),
         (None, None, None) => return Err(format!("--contact-angle is missing; {DESIGNATIONS}")),
         (None, None, Some(listed)) => match of_list {
-            Some(degrees) => (Kind::Angular(degrees), listed.angle_note),
+            Some(degrees) => (BearingKind::Angular(degrees), listed.angle_note),
             None => (
-                Kind::Deep(clearance_of(bore)),
+                BearingKind::Deep(clearance_of(bore)),
                 "the middle of group N, ISO 5753-1",
             ),
         },
     };
-    let ball = Value::new(
+    let ball = SketchNumber::new(
         mm(&wanted.ball_diameter),
         0.3 * (outside - bore),
         "ESTIMATE, 0.3 (D - d)",
     );
-    let pitch = Value::new(
+    let pitch = SketchNumber::new(
         mm(&wanted.pitch_diameter),
         0.5 * (bore + outside),
         "ESTIMATE, (d + D) / 2",
     );
     let half = (ball.size / pitch.size).clamp(0.0, 1.0).asin();
     let balls = match kind {
-        Kind::Angular(_) => (0.88 * PI / half).round(),
-        Kind::Deep(_) => 1.0 + (195f64.to_radians() / (2.0 * half)).floor(),
+        BearingKind::Angular(_) => (0.88 * PI / half).round(),
+        BearingKind::Deep(_) => 1.0 + (195f64.to_radians() / (2.0 * half)).floor(),
     };
-    Ok(Bearing {
+    Ok(Sketch {
         name: wanted
             .designation
             .clone()
@@ -205,7 +161,7 @@ fn find(wanted: &Wanted) -> Result<Bearing, String> {
         bore,
         outside,
         width,
-        balls: Value::new(wanted.balls.map(|n| n as f64), balls.max(3.0), "ESTIMATE"),
+        balls: SketchNumber::new(wanted.balls.map(|n| n as f64), balls.max(3.0), "ESTIMATE"),
         ball,
         pitch,
         kind,
@@ -213,74 +169,22 @@ fn find(wanted: &Wanted) -> Result<Bearing, String> {
     })
 }
 
-/// What a designation says.
-struct Listed {
-    bore: f64,
-    outside: f64,
-    width: f64,
-    degrees: Option<f64>,
-    angle_note: &'static str,
-}
-
-fn listed(designation: &str) -> Result<Listed, String> {
-    let unknown = || format!("{designation:?} is no bearing that is known here; {DESIGNATIONS}");
-    let text = designation.trim().to_uppercase();
-    let (digits, suffix) = match text.find(|c: char| !c.is_ascii_digit()) {
-        Some(end) => text.split_at(end),
-        None => (text.as_str(), ""),
-    };
-    if digits.len() != 4 {
-        return Err(unknown());
-    }
-    let (series, code) = digits.split_at(2);
-    let sizes = match series {
-        "60" | "70" => &SERIES_10,
-        "62" | "72" => &SERIES_02,
-        "63" | "73" => &SERIES_03,
-        _ => return Err(unknown()),
-    };
-    let code: usize = code.parse().map_err(|_| unknown())?;
-    let (outside, width) = *sizes.get(code).ok_or_else(unknown)?;
-    let first = suffix
-        .split(|c: char| !c.is_ascii_alphabetic())
-        .next()
-        .unwrap_or_default();
-    let (degrees, angle_note) = match (series.starts_with('7'), first) {
-        (false, _) => (None, ""),
-        (true, "C") => (Some(15.0), "suffix C"),
-        (true, "AC") => (Some(25.0), "suffix AC"),
-        (true, "B") => (Some(40.0), "suffix B"),
-        (true, _) => (Some(40.0), "usual without a suffix; C is 15, AC 25, B 40 deg"),
-    };
-    Ok(Listed {
-        bore: BORES[code],
-        outside,
-        width,
-        degrees,
-        angle_note,
-    })
-}
-
-/// Middle of group N, mm.
-fn clearance_of(bore: f64) -> f64 {
-    let row = CLEARANCES
-        .iter()
-        .find(|(most, ..)| bore <= *most)
-        .unwrap_or(&CLEARANCES[8]);
-    ten_digits(1e-3 * 0.5 * (row.1 + row.2))
-}
-
-fn heading(bearing: &Bearing) -> String {
+fn heading(bearing: &Sketch) -> String {
+    let name = &bearing.name;
     format!(
-        "# {name}, at rest under one load. Written by raceway init.\n#\n# Replace what is marked ESTIMATE by the numbers of a \
-         catalogue or a drawing, then:\n#   raceway mesh FILE      builds the meshes of both rings (needs Gmsh)\n#   raceway \
-         run FILE       solves; figures: raceway plot DIR, all on one page: raceway report DIR\n# All keys: raceway help \
-         scene. A key that this file lacks has its default.\n\ntitle = \"{name}\"\n",
-        name = bearing.name
+        r#"# {name}, at rest under one load. Written by raceway init.
+#
+# Replace what is marked ESTIMATE by the numbers of a catalogue or a drawing, then:
+#   raceway mesh FILE      builds the meshes of both rings (needs Gmsh)
+#   raceway run FILE       solves; figures: raceway plot DIR, all on one page: raceway report DIR
+# All keys: raceway help scene. A key that this file lacks has its default.
+
+title = "{name}"
+"#
     )
 }
 
-fn table_of_bearing(b: &Bearing) -> String {
+fn table_of_bearing(b: &Sketch) -> String {
     let line = |key: &str, value: String, note: &str| {
         let text = format!("{key} = {value}");
         match note {
@@ -290,12 +194,12 @@ fn table_of_bearing(b: &Bearing) -> String {
     };
     let mm = |size: f64| format!("\"{size} mm\"");
     let place = match b.kind {
-        Kind::Angular(degrees) => line(
+        BearingKind::Angular(degrees) => line(
             "contact_angle",
             format!("\"{degrees} deg\""),
             &format!("free of load: {}", b.angle_note),
         ),
-        Kind::Deep(clearance) => line(
+        BearingKind::Deep(clearance) => line(
             "radial_clearance",
             format!("\"{} um\"", ten_digits(1e3 * clearance)),
             &format!("from one extreme to the other: {}", b.angle_note),
@@ -337,18 +241,27 @@ fn table_of_bearing(b: &Bearing) -> String {
     .concat()
 }
 
-fn tables_of_rings(b: &Bearing, stem: &str) -> String {
+fn tables_of_rings(b: &Sketch, stem: &str) -> String {
+    let sectors = 6.0 * b.balls.size;
     let ring = |name: &str, on: &str, held: &str| {
         let mesh = format!("mesh = \"{stem}_{name}.msh\"");
+        let table = format!("[{name}]");
+        let section = format!("[{name}.section]");
+        let sectors = format!("sectors = {sectors}");
         format!(
-            "[{name}]                              # the ring {on}, a finite-element body\n{mesh:<37}# \
-             raceway mesh builds it from the section below\nmesh_unit = \"mm\"\nsupport = \"clamped\"                  # a stiff \
-             {held} holds every node; \"mean_motion\": only the mean\n\n[{name}.section]                      # shoulders: by \
-             rule, or shoulder_diameters = [\"... mm\", \"... mm\"]\nelement = \"hex8\"\nsectors = {}                         # \
-             elements round the ring, a multiple of the balls\ngroove_elements = 12                 # across the \
-             groove\nthickness_elements = 3\nshoulder_elements = 2\ngrading = 1.2                        # finer towards the \
-             groove\n",
-            6.0 * b.balls.size
+            r#"{table:<37}# the ring {on}, a finite-element body
+{mesh:<37}# raceway mesh builds it from the section below
+mesh_unit = "mm"
+support = "clamped"                  # a stiff {held} holds every node; "mean_motion": only the mean
+
+{section:<37}# shoulders: by rule, or shoulder_diameters = ["... mm", "... mm"]
+element = "hex8"
+{sectors:<37}# elements round the ring, a multiple of the balls
+groove_elements = 12                 # across the groove
+thickness_elements = 3
+shoulder_elements = 2
+grading = 1.2                        # finer towards the groove
+"#
         )
     };
     [
@@ -359,50 +272,60 @@ fn tables_of_rings(b: &Bearing, stem: &str) -> String {
 }
 
 /// Shaft and load: thrust on an angular contact bearing, a radial force on a deep groove bearing.
-fn loads(b: &Bearing) -> String {
+fn loads(b: &Sketch) -> String {
     let size = b.balls.size * b.ball.size * b.ball.size;
-    let force = |factor: f64| {
+    let value = |factor: f64| {
         let digits: f64 = format!("{:.0e}", factor * size).parse().unwrap_or(1000.0);
-        Quantity::<FORCE>::from_si(digits)
+        format!("value = \"{}\"", Quantity::<FORCE>::from_si(digits))
     };
-    let shaft = |z: &str, note: &str| {
-        let z = format!("z = {z}");
-        format!(
-            "[shaft]                              # motions from the state where all balls just touch both raceways\nx = \
-             \"free\"                           # \"free\", \"locked\" or a value\ny = \"free\"\n{z:<37}# {note}\ntilt_x = \
-             \"locked\"                    # a stiff shaft in two bearings; \"free\": it may tilt\ntilt_y = \
-             \"locked\"\nload_point = \"0 mm\"\n"
-        )
-    };
-    let (shaft, load) = match b.kind {
-        Kind::Angular(_) => (
-            shaft(
-                "\"free\"",
-                "the axial force sets it; + is the direction of preload",
-            ),
+    let (z, note, load) = match b.kind {
+        BearingKind::Angular(_) => (
+            "z = \"free\"".to_string(),
+            "the axial force sets it; + is the direction of preload",
             format!(
-                "[effects.axial_force]\nvalue = \"{}\"                       # EXAMPLE: put in your load\n\n# \
-                 [effects.radial_force]\n# value = \"1 kN\"\n# direction = \"0 deg\"\n",
-                force(1.5)
+                r#"[effects.axial_force]
+{:<37}# EXAMPLE: put in your load
+
+# [effects.radial_force]
+# value = "1 kN"
+# direction = "0 deg"
+"#,
+                value(1.5)
             ),
         ),
-        Kind::Deep(clearance) => {
+        BearingKind::Deep(clearance) => {
             let distance = 0.05 * b.ball.size;
             let cos = 1.0 - clearance.max(0.0) / (2.0 * distance);
-            let play = -1e3 * distance * (1.0 - cos * cos).max(0.0).sqrt();
-            let z = format!("\"{} um\"", (play * 1e3).round() / 1e3 + 0.0);
+            let play = 1e3 * distance * (1.0 - cos * cos).max(0.0).sqrt();
             (
-                shaft(&z, "grooves opposite each other: no thrust; A sin a0 from zero"),
+                format!("z = \"{} um\"", (-play * 1e3).round() / 1e3 + 0.0),
+                "grooves opposite each other: no thrust; A sin a0 from zero",
                 format!(
-                    "[effects.radial_force]\nvalue = \"{}\"                       # EXAMPLE: put in your load\ndirection = \
-                     \"0 deg\"                  # azimuth, from +x towards +y\n",
-                    force(2.0)
+                    r#"[effects.radial_force]
+{:<37}# EXAMPLE: put in your load
+direction = "0 deg"                  # azimuth, from +x towards +y
+"#,
+                    value(2.0)
                 ),
             )
         }
     };
-    let stress = "[stress]\nnear_field = true                    # stress under the balls is that of the Hertz ellipses\n";
-    format!("{shaft}\n{load}\n{stress}\n[static]                             # one equilibrium\n")
+    format!(
+        r#"[shaft]                              # motions from the state where all balls just touch both raceways
+x = "free"                           # "free", "locked" or a value
+y = "free"
+{z:<37}# {note}
+tilt_x = "locked"                    # a stiff shaft in two bearings; "free": it may tilt
+tilt_y = "locked"
+load_point = "0 mm"
+
+{load}
+[stress]
+near_field = true                    # stress under the balls is that of the Hertz ellipses
+
+[static]                             # one equilibrium
+"#
+    )
 }
 
 #[cfg(test)]
@@ -412,14 +335,14 @@ mod tests {
     use super::*;
     use crate::tables::{MeshFiles, Scene};
 
-    fn named(designation: &str) -> Wanted {
-        Wanted {
+    fn named(designation: &str) -> StarterRequest {
+        StarterRequest {
             designation: Some(designation.into()),
-            ..Wanted::default()
+            ..StarterRequest::default()
         }
     }
 
-    fn read(wanted: &Wanted) -> Scene {
+    fn read(wanted: &StarterRequest) -> Scene {
         let text = scene_text(wanted, "test").unwrap();
         Scene::parse(&text, Path::new("test.toml"), &[], MeshFiles::MayBeMissing)
             .unwrap_or_else(|error| panic!("{error}\n{text}"))
@@ -492,7 +415,7 @@ mod tests {
     /// Wrong: given numbers would be called estimates, or suffixes be read as other angles.
     #[test]
     fn given_numbers_are_used_as_they_are() {
-        let wanted = Wanted {
+        let wanted = StarterRequest {
             balls: Some(15),
             ball_diameter: Some("11.906 mm".parse().unwrap()),
             pitch_diameter: Some("60 mm".parse().unwrap()),
@@ -526,7 +449,7 @@ mod tests {
     /// Wrong: a user without a listed bearing would not learn what to give.
     #[test]
     fn what_is_missing_is_named() {
-        let message = |wanted: &Wanted| scene_text(wanted, "test").unwrap_err();
+        let message = |wanted: &StarterRequest| scene_text(wanted, "test").unwrap_err();
         assert_eq!(
             message(&named("NU206")),
             format!("\"NU206\" is no bearing that is known here; {DESIGNATIONS}")
@@ -536,20 +459,20 @@ mod tests {
             format!("\"6225\" is no bearing that is known here; {DESIGNATIONS}")
         );
         assert_eq!(
-            message(&Wanted::default()),
+            message(&StarterRequest::default()),
             format!("--bore is missing; {DESIGNATIONS}")
         );
-        let lengths = Wanted {
+        let lengths = StarterRequest {
             bore: Some("25 mm".parse().unwrap()),
             outside: Some("52 mm".parse().unwrap()),
             width: Some("15 mm".parse().unwrap()),
-            ..Wanted::default()
+            ..StarterRequest::default()
         };
         assert_eq!(
             message(&lengths),
             format!("--contact-angle is missing; {DESIGNATIONS}")
         );
-        let wrong = Wanted {
+        let wrong = StarterRequest {
             bore: Some("62 mm".parse().unwrap()),
             ..named("6206")
         };

@@ -121,7 +121,8 @@ const WORDS: [(&str, &str); 17] = [
     ("RPM", "rpm"),
 ];
 
-/// The unit that was probably meant: a word for it, two units run together (`Nm`), other capitals (`KN`), or one letter off.
+/// The unit that was probably meant: a word for it, two units run together (`Nm`), other capitals (`KN`), or one letter
+/// off.
 pub fn suggest(name: &str) -> Option<String> {
     if let Some((_, unit)) = WORDS.iter().find(|(word, _)| *word == name) {
         return Some(unit.to_string());

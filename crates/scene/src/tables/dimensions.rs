@@ -138,7 +138,7 @@ impl RacewayKeys<'_> {
         if problems.len() > before {
             return None;
         }
-        let Some((diameters, used)) = self.from_two(grooves) else {
+        let Some((diameters, used)) = self.of_two(grooves) else {
             problems.add(self.missing());
             return None;
         };
@@ -154,7 +154,7 @@ impl RacewayKeys<'_> {
         })
     }
 
-    fn from_two(&self, grooves: &Grooves) -> Option<(Diameters, [&'static str; 2])> {
+    fn of_two(&self, grooves: &Grooves) -> Option<(Diameters, [&'static str; 2])> {
         let clearance = self.clearance(grooves);
         let si = |length: &Quantity<LENGTH>| length.si();
         let (inner, outer, pitch) = (self.inner.map(si), self.outer.map(si), self.pitch.map(si));

@@ -52,6 +52,14 @@ pub fn locate(text: &str, span: Option<Range<usize>>, message: &str) -> Located 
     }
 }
 
+/// A file without a bearing is no scene yet.
+fn missing_table(name: &str) -> String {
+    match name {
+        "bearing" => format!("{NO_TABLE}{name}] is missing; \"raceway init\" writes a scene to start from"),
+        _ => format!("{NO_TABLE}{name}] is missing"),
+    }
+}
+
 /// Start of the message on a table that the file lacks.
 const NO_TABLE: &str = "the table [";
 
@@ -147,10 +155,8 @@ fn describe(text: &str, span: Range<usize>, message: &str) -> String {
         let first = document.get_ref().get(path.as_str());
         let table = path.as_str();
         return match table {
-            _ if first.is_some_and(|first| is_value(first.get_ref())) => {
-                format!("{NO_TABLE}{name}] is missing")
-            }
-            "" => format!("{NO_TABLE}{name}] is missing"),
+            _ if first.is_some_and(|first| is_value(first.get_ref())) => missing_table(name),
+            "" => missing_table(name),
             table => format!("[{table}] has no key {name:?}, which is required"),
         };
     }

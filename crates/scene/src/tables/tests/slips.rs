@@ -242,7 +242,7 @@ fn tables_that_a_scene_lacks_are_not_keys_of_its_first_table() {
     let message = message_of("[title]\ntext = \"x\"\n", &[]);
     for part in [
         "title: invalid type: map, expected a string (line 1)",
-        "the table [bearing] is missing\n",
+        "the table [bearing] is missing; \"raceway init\" writes a scene to start from\n",
         "the table [shaft] is missing",
     ] {
         assert!(message.contains(part), "{message}");
