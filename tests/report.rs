@@ -18,6 +18,14 @@ fn the_page_of_a_run_stands_alone() {
         "Scene",
         "Warnings",
         "[effects.axial_force]",
+        "<h2>Bearing</h2>",
+        "<tr><th>radial clearance</th><td>27.000 um</td></tr>",
+        "<tr><th>free contact angle</th><td>14.928 deg</td></tr>",
+        "<h2>Balls at the end</h2>",
+        "<tr><th>17</th>",
+        "<tr><th>meshes</th><td>inner ring ",
+        ", commit ",
+        " UTC</td>",
     ] {
         assert!(page.contains(part), "{part}");
     }
@@ -51,4 +59,26 @@ fn a_folder_without_a_summary_is_refused() {
     assert_eq!(outcome.code, Some(2));
     let expected = "sweep has no summary.json; expected the results of a run that has ended";
     assert!(outcome.stderr.contains(expected), "{}", outcome.stderr);
+}
+
+/// Wrong: what could not be drawn would take the page and all other figures with it, or be missing without a word.
+#[test]
+fn a_figure_that_cannot_be_made_does_not_stop_the_others() {
+    let dir = plotted();
+    std::fs::remove_file(dir.path("sweep/mesh.hdf")).unwrap();
+    let _ = std::fs::remove_dir_all(dir.path("sweep/figures"));
+    let outcome = dir.raceway(&["plot", "sweep"]);
+    assert_eq!(outcome.code, Some(2), "{}", outcome.stderr);
+    let expected = "error: some figures could not be made: figures of raceways: ";
+    assert!(
+        outcome.stderr.contains(expected) && outcome.stderr.contains("mesh.hdf"),
+        "{}",
+        outcome.stderr
+    );
+    assert!(dir.path("sweep/figures/ball_force.svg").is_file());
+    assert!(!dir.path("sweep/figures/raceway_inner.svg").exists());
+    let outcome = dir.raceway(&["report", "sweep"]);
+    assert_eq!(outcome.code, Some(0), "{}", outcome.stderr);
+    let page = dir.text("sweep/report.html");
+    assert!(page.contains("<li>figures of raceways: ") && page.contains("aria-label=\"ball force\""));
 }

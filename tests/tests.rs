@@ -7,6 +7,7 @@ mod cuts;
 mod damaged_tables;
 mod examples;
 mod export;
+mod first_hour;
 mod fits;
 mod hard;
 mod integration_points;

@@ -94,6 +94,9 @@ pub fn check(path: &Path, overrides: &[String]) -> Result<(), Failure> {
         forecast.n_files,
         disk::size(forecast.total)
     ));
+    for line in &scene.assumed {
+        print::line(format_args!("assumed  {line}"));
+    }
     for line in doubts(&scene, &model)
         .iter()
         .chain(&rules::advice(&scene, &model)?)

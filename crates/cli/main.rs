@@ -6,7 +6,9 @@
 mod check;
 mod cycles;
 mod export;
+mod help;
 mod info;
+mod init;
 mod modes;
 mod motion;
 mod options;
@@ -25,7 +27,7 @@ use std::os::unix::process::CommandExt;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use clap::{Parser, Subcommand};
+use clap::{CommandFactory, Parser, Subcommand};
 use comm::{Communicator, End, Environment, print};
 use life::LifeCommand;
 use mesh::Overwrite;
@@ -38,16 +40,22 @@ use results::summary::peak_memory;
 use crate::cycles::Cycles;
 use crate::export::Export;
 use crate::info::Depth;
+use crate::init::Init;
 use crate::options::{Limits, Part, parse_part};
 use crate::pack::Pack;
 use crate::resume::Request;
 
 /// Simulates angular contact ball bearings with fully flexible rings.
 #[derive(Debug, Parser)]
-#[command(name = "raceway", version, arg_required_else_help = true)]
+#[command(
+    name = "raceway",
+    version,
+    arg_required_else_help = true,
+    disable_help_subcommand = true
+)]
 struct Arguments {
     /// Number of threads; default: all cores. Results do not depend on it.
-    #[arg(long, global = true)]
+    #[arg(long, global = true, env = "RACEWAY_THREADS")]
     threads: Option<usize>,
     /// Ends with the process of this number, which started this one.
     #[arg(long, global = true, hide = true)]
@@ -64,6 +72,8 @@ const MOST_THREADS: usize = 4096;
 
 #[derive(Debug, Subcommand)]
 enum Command {
+    /// Writes a commented scene of a bearing to start from: a designation, or its main dimensions.
+    Init(Init),
     /// Runs a scene and writes its results.
     Run {
         /// Scene file.
@@ -123,6 +133,18 @@ enum Command {
         #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
         arguments: Vec<OsString>,
     },
+    /// Says more of a command; `help scene` has every table and key of scenes, `help scene KEY` some of them.
+    Help {
+        /// A command, or scene and a table or key, such as bearing, shaft.z or contact_angle.
+        topic: Vec<String>,
+    },
+    /// Prints completions of a shell: bash, zsh, fish, elvish or powershell.
+    Completions {
+        /// The shell; its manual says where completions are put.
+        shell: clap_complete::Shell,
+    },
+    /// Prints the man page: raceway man > raceway.1.
+    Man,
     /// Builds the ring meshes that a scene describes; needs Gmsh.
     Mesh {
         /// Scene file.
@@ -140,6 +162,12 @@ fn main() -> ExitCode {
     let arguments = Arguments::parse();
     if let Command::Gmsh { arguments: given } = &arguments.command {
         return become_gmsh(arguments.parent, given);
+    }
+    match &arguments.command {
+        Command::Help { topic } => return help::help(topic, Arguments::command()),
+        Command::Completions { shell } => return help::completions(*shell, Arguments::command()),
+        Command::Man => return help::man(Arguments::command()),
+        _ => {}
     }
     let environment = match Environment::start() {
         Ok(environment) => environment,
@@ -261,10 +289,13 @@ fn execute(arguments: Arguments) -> Result<(), Failure> {
             say_memory_of_ranks();
             Ok(())
         }
-        Command::Gmsh { .. } => unreachable!("the program has become Gmsh"),
+        Command::Gmsh { .. } | Command::Help { .. } | Command::Completions { .. } | Command::Man => {
+            unreachable!("they need no ranks and threads")
+        }
         Command::Info { path, verify } => {
             info::info(&path, if verify { Depth::Bytes } else { Depth::Structure })
         }
+        Command::Init(request) => init::init(&request),
         Command::Pack(request) => pack::pack(&request),
         Command::Cycles(request) => cycles::cycles(&request),
         Command::Export(request) => export::export(&request),

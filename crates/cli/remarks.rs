@@ -18,10 +18,13 @@ pub struct Remarks {
 }
 
 impl Remarks {
-    /// Those on a scene and its model, of which `doubts` are known. Says the advice.
+    /// Those on a scene and its model, of which `doubts` are known. Says the advice, and what the scene leaves open.
     pub fn on(scene: &Scene, model: &Model, doubts: Vec<String>) -> Result<Remarks, Failure> {
         for line in model.mounting.report.iter().flat_map(mounting::lines) {
             print::note(format_args!("{line}"));
+        }
+        for line in &scene.assumed {
+            print::note(format_args!("assumed: {line}"));
         }
         let advice = rules::advice(scene, model)?;
         for line in &advice {

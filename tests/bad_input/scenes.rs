@@ -216,7 +216,7 @@ fn files_that_are_no_scenes_are_refused() {
         (
             "empty",
             b"",
-            "error: scene.toml:1:1: the table [bearing] is missing",
+            "the table [bearing] is missing; \"raceway init\" writes a scene to start from",
         ),
         (
             "cut off",

@@ -2,7 +2,7 @@
 //!
 //! A quantity is a decimal number followed by a unit expression:
 //!
-//! - symbols `m g t s min h rad deg ° rev rpm Hz N Pa bar J W`;
+//! - symbols `m in ft g t lb s min h rad deg ° rev rpm Hz N kgf lbf Pa bar psi ksi Msi J W`;
 //! - prefixes `T G M k d c m u µ n p f` before `m g s rad Hz N Pa bar J W`;
 //! - products by a space, `*`, `.` or `·`; quotients by `/`, whose right side is one symbol or a parenthesis
 //!   (`kg/m s` is refused as ambiguous);
@@ -79,8 +79,8 @@ pub enum UnitError {
         /// What would be right, with an example.
         expected: String,
     },
-    /// The unit expression is not well formed.
-    #[error("{text:?} has a unit that cannot be read: {reason}; expected {expected}")]
+    /// Number or unit expression are not well formed.
+    #[error("{text:?} cannot be read: {reason}; expected {expected}")]
     Malformed {
         /// As typed.
         text: String,
@@ -247,6 +247,14 @@ fn parse(text: &str, expected: &str) -> Result<AnyQuantity, UnitError> {
     if rest.trim().is_empty() {
         let (text, expected) = owned();
         return Err(UnitError::NoUnit { text, expected });
+    }
+    if let Some(reason) = number::way_of_writing(trimmed, rest) {
+        let (text, expected) = owned();
+        return Err(UnitError::Malformed {
+            text,
+            reason,
+            expected,
+        });
     }
     let unit = Unit::parse(rest.trim()).map_err(|e| e.into_error(text, expected))?;
     let si = unit.apply(&decimal);

@@ -71,50 +71,82 @@ impl Named {
     }
 }
 
-/// Writes the figures of a run as SVG and PNG.
+/// The figures of a run, and why others could not be made: a sentence each.
+pub struct Figures {
+    /// Those that could be made.
+    pub drawn: Vec<Named>,
+    /// Those that could not.
+    pub problems: Vec<String>,
+}
+
+/// Writes the figures of a run as SVG and PNG. A figure that cannot be made does not stop the others; the command then
+/// ends with an error.
 pub fn plot(request: &Plot) -> Result<(), Failure> {
-    let figures = figures(&request.dir, &request.choice)?;
+    let mut figures = figures(&request.dir, &request.choice)?;
     warn_of_doubts(&request.dir)?;
     say_later(&request.dir);
     let out = request.out.clone().unwrap_or_else(|| request.dir.join("figures"));
     // All are drawn, and all places looked at, before the first is written.
-    let drawn = |named: &Named| Ok((out.join(&named.name), named.figure.images()?));
-    let images = figures.iter().map(drawn).collect::<Result<Vec<_>, Failure>>()?;
+    let mut images = Vec::new();
+    for named in &figures.drawn {
+        match named.figure.images() {
+            Ok(drawn) => images.push((named.name.as_str(), out.join(&named.name), drawn)),
+            Err(error) => figures.problems.push(format!("figure {}: {error}", named.name)),
+        }
+    }
     images
         .iter()
-        .try_for_each(|(path, _)| require_own_picture(path))?;
+        .try_for_each(|(_, path, _)| require_own_picture(path))?;
     make_output_folder(request.out.as_deref(), &out)?;
-    for (path, images) in &images {
+    for (_, path, images) in &images {
         write_picture(path, &images.svg, &images.png)?;
     }
-    let names: Vec<&str> = figures.iter().map(|named| named.name.as_str()).collect();
+    let names: Vec<&str> = images.iter().map(|(name, ..)| *name).collect();
     print::line(format_args!(
         "{} figures as svg and png in {}: {}",
-        figures.len(),
+        names.len(),
         out.display(),
         names.join(", ")
     ));
-    Ok(())
+    match figures.problems.as_slice() {
+        [] => Ok(()),
+        problems => Err(anyhow!("some figures could not be made: {}", problems.join("; ")).into()),
+    }
 }
 
-/// The figures of the run in `dir`; at least one.
-pub fn figures(dir: &Path, choice: &Choice) -> Result<Vec<Named>, Failure> {
+/// The figures of the run in `dir`; at least one. Where none can be made, or what was chosen is not there, that is the
+/// error.
+pub fn figures(dir: &Path, choice: &Choice) -> Result<Figures, Failure> {
     let results = Results::read(dir)?;
-    let mut figures = Vec::new();
-    figures.extend(balls::figures(&results, choice)?);
-    figures.extend(shaft::figures(&results)?);
-    figures.extend(probes::figures(&results)?);
-    figures.extend(profiles::figures(&results, choice)?);
-    figures.extend(energy::figures(&results)?);
-    figures.extend(modes::figures(dir)?);
-    figures.extend(surface::figures(&results, choice)?);
-    figures.extend(section::figures(&results, choice)?);
-    if figures.is_empty() {
-        return Err(anyhow!(
+    let groups = [
+        ("balls", balls::figures(&results, choice)),
+        ("shaft", shaft::figures(&results)),
+        ("probes", probes::figures(&results)),
+        ("profiles", profiles::figures(&results, choice)),
+        ("energy", energy::figures(&results)),
+        ("modes", modes::figures(dir)),
+        ("raceways", surface::figures(&results, choice)),
+        ("sections", section::figures(&results, choice)),
+    ];
+    let is_chosen = choice.ball != 0 || choice.step.is_some();
+    let (mut drawn, mut problems, mut first) = (Vec::new(), Vec::new(), None);
+    for (group, made) in groups {
+        match made {
+            Ok(made) => drawn.extend(made),
+            Err(error) if is_chosen => return Err(error.into()),
+            Err(error) => {
+                problems.push(format!("figures of {group}: {error:#}"));
+                first.get_or_insert(error);
+            }
+        }
+    }
+    match (drawn.is_empty(), first) {
+        (true, Some(error)) => Err(error.into()),
+        (true, None) => Err(anyhow!(
             "{} has nothing to plot; expected the tables or step files of a run, such as balls.csv",
             dir.display()
         )
-        .into());
+        .into()),
+        _ => Ok(Figures { drawn, problems }),
     }
-    Ok(figures)
 }

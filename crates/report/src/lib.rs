@@ -1,6 +1,8 @@
 //! `raceway report`: one HTML page of a finished run that needs no other file: what was run, what came out, what it
 //! cost and what a reader should know before believing it.
 
+mod bearing;
+mod html;
 mod numbers;
 mod page;
 mod source;
@@ -28,17 +30,24 @@ pub struct Report {
 
 /// Writes the page of a run.
 pub fn report(request: &Report) -> Result<(), Failure> {
-    let source = source::read(&request.dir)?;
+    let mut source = source::read(&request.dir)?;
     say_later(&request.dir);
     for doubt in &source.doubts {
         print::note(format_args!("warning: {doubt}"));
     }
-    let figures = plot::figures(&request.dir, &request.choice)?;
+    let mut figures = plot::figures(&request.dir, &request.choice)?;
     let numbers = numbers::numbers(&Results::read(&request.dir)?)?;
-    let pictures = figures
-        .iter()
-        .map(|named| Ok((named.name.clone(), named.figure.svg()?)))
-        .collect::<Result<Vec<_>, Failure>>()?;
+    let mut pictures = Vec::new();
+    for named in &figures.drawn {
+        match named.figure.svg() {
+            Ok(svg) => pictures.push((named.name.clone(), svg)),
+            Err(error) => figures.problems.push(format!("figure {}: {error}", named.name)),
+        }
+    }
+    for problem in &figures.problems {
+        print::note(format_args!("warning: {problem}"));
+    }
+    source.doubts.extend(figures.problems);
     let page = page::page(&source, &numbers, &pictures);
     let path = request
         .out

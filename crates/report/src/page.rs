@@ -4,10 +4,15 @@ use html_escape::{encode_double_quoted_attribute, encode_text};
 use results::whole;
 use serde_json::Value;
 
+use super::bearing;
+use super::html::{Cells, digits, row, table};
 use super::numbers::Number;
 use super::source::Source;
 
 const STYLE: &str = include_str!("style.css");
+
+/// Key numbers below this are round-off in their units: um, mrad, deg, N, GPa.
+const ROUND_OFF: f64 = 1e-9;
 
 /// The HTML of a run. Pictures are names and SVG documents.
 pub fn page(source: &Source, numbers: &[Number], pictures: &[(String, String)]) -> String {
@@ -16,10 +21,14 @@ pub fn page(source: &Source, numbers: &[Number], pictures: &[(String, String)]) 
     let title = encode_text(&title);
     let parts = [
         format!("<h1>{title}</h1>"),
-        about(summary),
+        about(source),
         warnings(source),
+        remarks("Advice", &list(summary, "advice")),
+        remarks("Filled in where the scene is open", &list(summary, "assumed")),
+        bearing::bearing(source.scene.as_deref()),
         modes(summary),
         key_numbers(numbers, summary),
+        bearing::balls(summary),
         life(summary),
         figures(pictures),
         energy(summary),
@@ -42,7 +51,14 @@ pub fn is_page(content: &[u8]) -> bool {
 }
 
 /// What was run, by which program, and how it ended.
-fn about(summary: &Value) -> String {
+fn about(source: &Source) -> String {
+    let summary = &source.summary;
+    let dofs = summary
+        .get("dofs")
+        .and_then(Value::as_object)
+        .into_iter()
+        .flatten();
+    let dofs: Vec<String> = dofs.map(|(ring, n)| format!("{ring} ring {n} dofs")).collect();
     let effects = list(summary, "effects").join(", ").replace('_', " ");
     let rows = [
         ("status", text(summary, "status")),
@@ -57,11 +73,38 @@ fn about(summary: &Value) -> String {
                 effects
             },
         ),
-        ("program", format!("raceway {}", text(summary, "version"))),
+        ("meshes", dofs.join(", ")),
+        ("stress", bearing::stress(source.scene.as_deref())),
+        ("program", program(summary, &source.commit)),
+        ("ended", source.ended.clone()),
     ];
     let rows = rows.iter().filter(|(_, value)| !value.is_empty());
     let rows = rows.map(|(name, value)| row(name, std::slice::from_ref(value), Cells::Text));
     table("about", None, rows)
+}
+
+/// Name, version and commit of the program.
+fn program(summary: &Value, commit: &str) -> String {
+    let version = format!("raceway {}", text(summary, "version"));
+    match commit {
+        "" => version,
+        commit => format!("{version}, commit {commit}"),
+    }
+}
+
+/// A list under its heading; nothing where there is nothing to say.
+fn remarks(heading: &str, lines: &[String]) -> String {
+    let items: Vec<String> = lines
+        .iter()
+        .map(|line| format!("<li>{}</li>", encode_text(line)))
+        .collect();
+    match items.is_empty() {
+        true => String::new(),
+        false => format!(
+            "<h2>{heading}</h2>\n<ul class=\"remarks\">\n{}\n</ul>",
+            items.join("\n")
+        ),
+    }
 }
 
 fn warnings(source: &Source) -> String {
@@ -180,6 +223,7 @@ fn key_numbers(numbers: &[Number], summary: &Value) -> String {
         return "<h2>Key numbers</h2>\n<p>The run has no tables of balls or shaft.</p>".into();
     }
     let rows = numbers.iter().map(|n| {
+        let digits = |value: f64| digits(if value.abs() < ROUND_OFF { 0.0 } else { value });
         let rms = n.rms.map_or(String::new(), digits);
         let cells = [
             digits(n.smallest),
@@ -266,35 +310,7 @@ fn scene(scene: Option<&str>) -> String {
     scene.map_or(String::new(), pre)
 }
 
-/// What the cells of a row hold.
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum Cells {
-    Text,
-    Numbers,
-}
-
-fn row(name: &str, cells: &[String], kind: Cells) -> String {
-    let class = if kind == Cells::Numbers {
-        " class=\"number\""
-    } else {
-        ""
-    };
-    let cells: Vec<String> = cells
-        .iter()
-        .map(|c| format!("<td{class}>{}</td>", encode_text(c)))
-        .collect();
-    format!("<tr><th>{}</th>{}</tr>", encode_text(name), cells.concat())
-}
-
-fn table(class: &str, head: Option<&[&str]>, rows: impl Iterator<Item = String>) -> String {
-    let head = head.map_or(String::new(), |names| {
-        let cells: Vec<String> = names.iter().map(|name| format!("<th>{name}</th>")).collect();
-        format!("<tr>{}</tr>\n", cells.concat())
-    });
-    let rows: Vec<String> = rows.collect();
-    format!("<table class=\"{class}\">\n{head}{}\n</table>", rows.join("\n"))
-}
-
+/// A text of the summary; empty where it has none.
 fn text(summary: &Value, key: &str) -> String {
     summary
         .get(key)
@@ -310,18 +326,6 @@ fn list(summary: &Value, key: &str) -> Vec<String> {
         .collect()
 }
 
-/// Five digits, plain where that is short.
-fn digits(value: f64) -> String {
-    match value.abs() {
-        0.0 => "0".into(),
-        size if (1e-3..1e6).contains(&size) => {
-            let decimals = (4 - size.log10().floor() as i32).clamp(0, 7) as usize;
-            format!("{value:.decimals$}")
-        }
-        _ => format!("{value:.4e}"),
-    }
-}
-
 fn megabytes(bytes: f64) -> String {
     match bytes {
         b if b >= 1e6 => format!("{:.1} MB", b / 1e6),
@@ -332,21 +336,6 @@ fn megabytes(bytes: f64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    /// Wrong: numbers would carry too few digits, or more than anyone reads.
-    #[test]
-    fn numbers_have_five_digits() {
-        let pairs = [
-            (331.783_2, "331.78"),
-            (0.0, "0"),
-            (-0.012_345_6, "-0.012346"),
-            (1.23456e-9, "1.2346e-9"),
-            (12345.6, "12346"),
-        ];
-        for (value, text) in pairs {
-            assert_eq!(digits(value), text);
-        }
-    }
 
     /// Wrong: the page of a search for modes would not tell a frequency.
     #[test]
@@ -378,6 +367,8 @@ mod tests {
             summary,
             doubts: vec![],
             scene: Some("# <pre>".into()),
+            commit: "a<b".into(),
+            ended: String::new(),
             files: vec![],
         };
         let page = page(&source, &[], &[]);
@@ -386,7 +377,7 @@ mod tests {
             "{page}"
         );
         assert!(
-            page.contains("x &gt; y") && page.contains("# &lt;pre&gt;"),
+            page.contains("commit a&lt;b") && page.contains("x &gt; y") && page.contains("# &lt;pre&gt;"),
             "{page}"
         );
     }

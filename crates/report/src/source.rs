@@ -3,7 +3,8 @@
 use std::path::Path;
 
 use anyhow::{Context, anyhow};
-use checkpoint::{all_steps, open_regular, read_any_step};
+use checkpoint::{all_steps, open_regular, read_about, read_any_step, step_file_name};
+use results::about::COMMIT;
 use results::failure::Failure;
 use results::integrity::doubts;
 use results::summary::SUMMARY_FILE;
@@ -17,6 +18,10 @@ pub struct Source {
     pub doubts: Vec<String>,
     /// Text of the scene with its overrides; none if no step was kept.
     pub scene: Option<String>,
+    /// Commit of the source of the program; empty if no step file has it.
+    pub commit: String,
+    /// When the run ended, UTC; empty if the system does not tell.
+    pub ended: String,
     /// Name and size of the files of the run, bytes.
     pub files: Vec<(String, u64)>,
 }
@@ -34,15 +39,34 @@ pub fn read(dir: &Path) -> Result<Source, Failure> {
     let file = open_regular(&path)?;
     let text = std::io::read_to_string(file).with_context(|| format!("cannot read {}", path.display()))?;
     let summary = serde_json::from_str(&text).with_context(|| format!("{} is damaged", path.display()))?;
-    let scene = match all_steps(dir)?.last() {
-        Some(&step) => Some(read_any_step(dir, step)?.scene),
-        None => None,
+    let (scene, commit) = match all_steps(dir)?.last() {
+        Some(&step) => {
+            let record = read_any_step(dir, step)?;
+            // A step in a pack has no file of its own.
+            let about = read_about(&dir.join(step_file_name(step))).unwrap_or_default();
+            let commit = about.get(COMMIT).cloned().unwrap_or_default();
+            (Some(record.scene), commit)
+        }
+        None => (None, String::new()),
     };
     Ok(Source {
         summary,
         doubts: doubts(dir)?,
         scene,
+        commit,
+        ended: ended(&path),
         files: files(dir)?,
+    })
+}
+
+/// When a file was written, such as `2026-11-23 09:15`.
+fn ended(path: &Path) -> String {
+    let time = std::fs::metadata(path).and_then(|data| data.modified()).ok();
+    let time = time.and_then(|time| jiff::Timestamp::try_from(time).ok());
+    time.map_or(String::new(), |time| {
+        time.to_zoned(jiff::tz::TimeZone::UTC)
+            .strftime("%Y-%m-%d %H:%M UTC")
+            .to_string()
     })
 }
 

@@ -84,6 +84,9 @@ pub struct Summary {
     warnings: Vec<String>,
     /// What rules of thumb say about its effects.
     advice: Vec<String>,
+    /// What the scene leaves open and the program has filled in; absent where it leaves nothing open.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    assumed: Vec<String>,
     /// Nodes that are probed; absent when there are none.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     probes: Vec<NodePlace>,
@@ -234,6 +237,7 @@ impl Summary {
             life: None,
             warnings,
             advice: findings.advice,
+            assumed: scene.assumed.clone(),
             probes: costs.probes.clone(),
             timing_s: timing(&costs.laps),
             factor_bytes_forecast: sides(|i| costs.forecast.rings[i].map_or(0, |ring| ring.factorisation)),

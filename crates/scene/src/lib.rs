@@ -4,12 +4,14 @@
 //! constructs the model; [`build_meshes`] makes meshes that it describes. It is the only crate that names TOML.
 
 mod build;
+mod designations;
 mod doubts;
 mod error;
 mod meshing;
 mod resolution;
 mod section_record;
 mod settings;
+mod starter;
 pub mod tables;
 mod toml_text;
 
@@ -18,5 +20,6 @@ pub use doubts::doubts;
 pub use error::BuildError;
 pub use meshing::{build_meshes, build_missing};
 pub use settings::{effects_context, settings, speeds};
+pub use starter::{StarterRequest, file_name, scene_text};
 pub use tables::*;
 pub use toml_text::{read_tables, title};

@@ -25,6 +25,9 @@ pub fn build_meshes(
     gmsh: Gmsh<'_>,
 ) -> Result<(), BuildError> {
     let scene = Scene::load_with(path, overrides, MeshFiles::MayBeMissing)?;
+    for line in &scene.assumed {
+        print::note(format_args!("assumed: {line}"));
+    }
     let rings = [(RingSide::Inner, &scene.inner), (RingSide::Outer, &scene.outer)];
     let jobs: Vec<_> = rings
         .into_iter()

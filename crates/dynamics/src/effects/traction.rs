@@ -32,6 +32,12 @@ use crate::model::Model;
 const EXAMPLE: &str = r#"[effects.traction]              # needs [balls] with motion = "free", and [dynamic]
 law = "coulomb"                 # or "curve"
 friction = 0.07                 # coefficient of friction: 0.07 to 0.15 dry or with boundary lubrication
+# at_rest = 0.0                 # of "curve": coefficient without slip,
+# most = 0.07                   # the largest one,
+# slip_of_most = "0.1 m/s"      # the slip that has it,
+# at_large = 0.03               # and that of large slip; or a table over slips:
+# slips = ["0 m/s", "0.1 m/s"]
+# coefficients = [0.0, 0.07]
 creep = "elastic"               # optional: force at small slip by elastic creep, or a slip ratio such as 1e-3
 points = [3, 15]                # optional: places over the ellipse, along the rolling direction and across it
 "#;

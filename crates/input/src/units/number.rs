@@ -9,6 +9,28 @@ pub struct Decimal<'a> {
     exponent: i64,
 }
 
+/// What is wrong with a number of which `rest` could not be read: a decimal comma, a fraction, spaces or signs between
+/// thousands.
+pub fn way_of_writing(text: &str, rest: &str) -> Option<String> {
+    let whole = &text[..text.len() - rest.len()];
+    let digits = |rest: &str| rest.chars().take_while(char::is_ascii_digit).collect::<String>();
+    if let Some(after) = rest.strip_prefix(',') {
+        let fraction = digits(after);
+        return (!fraction.is_empty()).then(|| format!("numbers have a decimal point, {whole}.{fraction}"));
+    }
+    if let Some(after) = rest.strip_prefix('/') {
+        let parts = whole.parse::<f64>().ok().zip(digits(after).parse::<f64>().ok());
+        return parts.map(|(a, b)| format!("a fraction is written as a decimal number, {}", a / b));
+    }
+    let after = rest.strip_prefix([' ', '\u{a0}', '\u{202f}', '\''])?;
+    let thousands = digits(after);
+    let ends = after[thousands.len()..]
+        .chars()
+        .next()
+        .is_none_or(|c| !"/^0123456789".contains(c));
+    (thousands.len() == 3 && ends).then(|| format!("digits stand together, {whole}{thousands}"))
+}
+
 impl<'a> Decimal<'a> {
     /// The number one.
     pub const ONE: Decimal<'static> = Decimal {

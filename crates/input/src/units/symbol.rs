@@ -30,12 +30,19 @@ const fn symbol(
     }
 }
 
+/// Pound-force, N, exact: 0.45359237 kg under 9.80665 m/s2.
+const LBF: f64 = 4.448_221_615_260_5;
+/// Pound-force per square inch, Pa.
+const PSI: f64 = LBF / (0.0254 * 0.0254);
+
 /// All symbols. A whole symbol wins over a prefix and a symbol: `min` is a minute.
-static SYMBOLS: [Symbol; 18] = [
+static SYMBOLS: [Symbol; 25] = [
     symbol("m", 1.0, 0.0, [0.0, 1.0, 0.0, 0.0], true),
     symbol("in", 0.0254, 0.0, [0.0, 1.0, 0.0, 0.0], false),
+    symbol("ft", 0.3048, 0.0, [0.0, 1.0, 0.0, 0.0], false),
     symbol("g", 1.0, -3.0, [1.0, 0.0, 0.0, 0.0], true),
     symbol("t", 1.0, 3.0, [1.0, 0.0, 0.0, 0.0], false),
+    symbol("lb", 0.45359237, 0.0, [1.0, 0.0, 0.0, 0.0], false),
     symbol("s", 1.0, 0.0, [0.0, 0.0, 1.0, 0.0], true),
     symbol("min", 60.0, 0.0, [0.0, 0.0, 1.0, 0.0], false),
     symbol("h", 3600.0, 0.0, [0.0, 0.0, 1.0, 0.0], false),
@@ -46,7 +53,12 @@ static SYMBOLS: [Symbol; 18] = [
     symbol("rpm", PI / 30.0, 0.0, [0.0, 0.0, -1.0, 1.0], false),
     symbol("Hz", 1.0, 0.0, [0.0, 0.0, -1.0, 0.0], true),
     symbol("N", 1.0, 0.0, [1.0, 1.0, -2.0, 0.0], true),
+    symbol("kgf", 9.80665, 0.0, [1.0, 1.0, -2.0, 0.0], false),
+    symbol("lbf", LBF, 0.0, [1.0, 1.0, -2.0, 0.0], false),
     symbol("Pa", 1.0, 0.0, [1.0, -1.0, -2.0, 0.0], true),
+    symbol("psi", PSI, 0.0, [1.0, -1.0, -2.0, 0.0], false),
+    symbol("ksi", PSI, 3.0, [1.0, -1.0, -2.0, 0.0], false),
+    symbol("Msi", PSI, 6.0, [1.0, -1.0, -2.0, 0.0], false),
     symbol("bar", 1.0, 5.0, [1.0, -1.0, -2.0, 0.0], true),
     symbol("J", 1.0, 0.0, [1.0, 2.0, -2.0, 0.0], true),
     symbol("W", 1.0, 0.0, [1.0, 2.0, -3.0, 0.0], true),
@@ -88,8 +100,33 @@ pub fn find(name: &str) -> Option<Unit> {
     })
 }
 
-/// The unit that was probably meant: two units run together (`Nm`), other capitals (`KN`), or one letter off.
+/// Words for units, and units without a symbol here: what to write.
+const WORDS: [(&str, &str); 17] = [
+    ("degree", "deg"),
+    ("degrees", "deg"),
+    ("grad", "deg"),
+    ("micron", "um"),
+    ("microns", "um"),
+    ("micrometer", "um"),
+    ("millimeter", "mm"),
+    ("millimetre", "mm"),
+    ("inch", "in"),
+    ("inches", "in"),
+    ("newton", "N"),
+    ("lbs", "lb"),
+    ("sec", "s"),
+    ("U", "rev"),
+    ("r", "rev"),
+    ("upm", "rpm"),
+    ("RPM", "rpm"),
+];
+
+/// The unit that was probably meant: a word for it, two units run together (`Nm`), other capitals (`KN`), or one letter
+/// off.
 pub fn suggest(name: &str) -> Option<String> {
+    if let Some((_, unit)) = WORDS.iter().find(|(word, _)| *word == name) {
+        return Some(unit.to_string());
+    }
     let split = name.char_indices().skip(1).map(|(i, _)| name.split_at(i));
     let together = split
         .filter(|(a, b)| find(a).is_some() && find(b).is_some())

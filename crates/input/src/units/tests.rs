@@ -4,7 +4,7 @@ use super::kind::KINDS;
 use super::*;
 
 /// Text, value in SI, kind.
-const VALUES: [(&str, f64, usize); 52] = [
+const VALUES: [(&str, f64, usize); 60] = [
     ("9 mm", 9e-3, LENGTH),
     ("9mm", 9e-3, LENGTH),
     ("+9.0e0 mm", 9e-3, LENGTH),
@@ -58,6 +58,15 @@ const VALUES: [(&str, f64, usize); 52] = [
     ("5e-2 N s/mm", 50.0, DAMPING),
     ("250 g", 0.25, MASS),
     ("200 kg mm2", 2e-4, INERTIA),
+    // Exact by the international pound and inch: 0.45359237 kg, 9.80665 m/s2, 25.4 mm.
+    ("500 lbf", 2_224.110_807_630_25, FORCE),
+    ("100 kgf", 980.665, FORCE),
+    ("12 lbf in", 1.355_817_948_331_400_4, MOMENT),
+    ("1 psi", 6_894.757_293_168_361, STRESS),
+    ("30e3 ksi", 2.068_427_187_950_508_3e11, STRESS),
+    ("30 Msi", 2.068_427_187_950_508_3e11, STRESS),
+    ("2 lb", 0.907_184_74, MASS),
+    ("0.5 ft", 0.1524, LENGTH),
 ];
 
 /// If this failed, a scene would be solved with other numbers than its author typed. The tolerance is four
@@ -141,7 +150,7 @@ fn wrong_texts_are_refused_with_the_text_and_an_example() {
         ),
         (
             "9,5 mm",
-            "\"9,5 mm\" has a unit that cannot be read: unexpected ','; ",
+            "\"9,5 mm\" cannot be read: numbers have a decimal point, 9.5; ",
         ),
         (
             "9 kg/m s",

@@ -1,8 +1,7 @@
 //! `[balls]`: how the balls move.
 //!
 //! ```toml
-//! [balls]
-//! motion = "free"     # "kinematic" (default): the cage turns as pure rolling has it; "free": six dofs for each ball
+#![doc = include_str!("example_balls.toml")]
 //! ```
 //!
 //! Free balls need [`[effects.traction]`](dynamics::effects::traction), which needs them. What prescribes their motion

@@ -1,15 +1,17 @@
 //! `[bearing]`: the macro-geometry of the bearing.
 //!
-//! Diameters are catalogue values. With ball diameter D_w, raceway (groove-bottom) diameters d_i and D_e and
+//! The raceways are given by their diameters and groove radii, or as a catalogue gives them ([`super::dimensions`]):
+//!
+//! ```toml
+#![doc = include_str!("example_catalogue.toml")]
+//! ```
+//!
+//! With ball diameter D_w, raceway (groove-bottom) diameters d_i and D_e and
 //! groove radii R_i and R_o:
 //!
 //! - diametral clearance P_d = D_e - d_i - 2 D_w,
 //! - groove distance A = R_i + R_o - D_w,
-//! - free contact angle a0 from cos a0 = 1 - P_d / (2 A),
-//! - axial clearance P_e = 2 A sin a0, from one stop to the other.
-//!
-//! One of `outer_raceway_diameter`, `radial_clearance` (P_d), `axial_clearance` and `free_contact_angle` is given;
-//! they are those of the unmounted bearing.
+//! - free contact angle a0 from cos a0 = 1 - P_d / (2 A).
 //!
 //! Reference: Harris and Kotzalas, Essential Concepts of Bearing Technology, 5th ed. 2006, chapter 2.
 
@@ -18,23 +20,44 @@ use std::f64::consts::PI;
 use input::{ANGLE, LENGTH, Problems, Quantity};
 use serde::Deserialize;
 
+use super::dimensions::{DEFAULT_INNER_RATIO, DEFAULT_OUTER_RATIO, Diameters, Grooves, RacewayKeys};
+
 /// As typed.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields, expecting = "the table [bearing]")]
 pub struct RawBearing {
     balls: i64,
     ball_diameter: Quantity<LENGTH>,
-    inner_raceway_diameter: Quantity<LENGTH>,
+    inner_raceway_diameter: Option<Quantity<LENGTH>>,
     outer_raceway_diameter: Option<Quantity<LENGTH>>,
+    pitch_diameter: Option<Quantity<LENGTH>>,
+    #[serde(alias = "free_contact_angle")]
+    contact_angle: Option<Quantity<ANGLE>>,
     radial_clearance: Option<Quantity<LENGTH>>,
     axial_clearance: Option<Quantity<LENGTH>>,
-    free_contact_angle: Option<Quantity<ANGLE>>,
-    inner_groove_radius: Quantity<LENGTH>,
-    outer_groove_radius: Quantity<LENGTH>,
+    inner_groove_radius: Option<Quantity<LENGTH>>,
+    outer_groove_radius: Option<Quantity<LENGTH>>,
+    inner_curvature_ratio: Option<f64>,
+    outer_curvature_ratio: Option<f64>,
+    #[serde(alias = "bore")]
     bore_diameter: Quantity<LENGTH>,
+    #[serde(alias = "outside")]
     outside_diameter: Quantity<LENGTH>,
     width: Quantity<LENGTH>,
     first_ball_azimuth: Option<Quantity<ANGLE>>,
+}
+
+/// A length of the bearing, typed or computed.
+struct Length {
+    /// For messages, with what it was computed from.
+    key: String,
+    value: Quantity<LENGTH>,
+}
+
+/// The raceways: diameters and groove radii, inner first.
+struct RacewayLengths {
+    diameters: [Length; 2],
+    groove_radii: [Length; 2],
 }
 
 /// The macro-geometry of the bearing.
@@ -71,27 +94,31 @@ const MAX_BALLS: i64 = 1000;
 
 impl RawBearing {
     /// Checks every value, then, when all are sane, how they fit together; `None` when there are problems, so
-    /// that nothing else is compared with a bearing that cannot be.
-    pub fn check(&self, problems: &mut Problems) -> Option<Bearing> {
+    /// that nothing else is compared with a bearing that cannot be. `assumed` is told what the scene leaves open.
+    pub fn check(&self, problems: &mut Problems, assumed: &mut Vec<String>) -> Option<Bearing> {
         let before = problems.len();
         let balls = problems.whole(self.balls, "bearing.balls", 3, MAX_BALLS);
-        let outer_raceway = self.outer_raceway(problems)?;
-        self.check_lengths(&outer_raceway, problems);
+        self.check_lengths(problems);
+        let raceways = self.raceways(problems.len() == before, problems, assumed)?;
+        let [inner_raceway_diameter, outer_raceway_diameter] =
+            [0, 1].map(|side| raceways.diameters[side].value.si());
+        let [inner_groove_radius, outer_groove_radius] =
+            [0, 1].map(|side| raceways.groove_radii[side].value.si());
         let bearing = Bearing {
             balls,
             ball_diameter: self.ball_diameter.si(),
-            inner_raceway_diameter: self.inner_raceway_diameter.si(),
-            outer_raceway_diameter: outer_raceway.si(),
-            inner_groove_radius: self.inner_groove_radius.si(),
-            outer_groove_radius: self.outer_groove_radius.si(),
+            inner_raceway_diameter,
+            outer_raceway_diameter,
+            inner_groove_radius,
+            outer_groove_radius,
             bore_diameter: self.bore_diameter.si(),
             outside_diameter: self.outside_diameter.si(),
             width: self.width.si(),
             first_ball_azimuth: self.first_ball_azimuth.as_ref().map_or(0.0, Quantity::si),
         };
         if problems.len() == before {
-            self.check_diameters(&outer_raceway, problems);
-            self.check_grooves(problems);
+            self.check_diameters(&raceways, problems);
+            self.check_grooves(&raceways, problems);
         }
         if problems.len() == before {
             bearing.check_contact_angle(problems);
@@ -100,98 +127,174 @@ impl RawBearing {
         (problems.len() == before).then_some(bearing)
     }
 
-    /// Diameter of the outer groove's bottom, given or from the clearance; None where it is not said, or twice.
-    fn outer_raceway(&self, problems: &mut Problems) -> Option<Quantity<LENGTH>> {
-        let given = [
-            ("outer_raceway_diameter", self.outer_raceway_diameter.is_some()),
-            ("radial_clearance", self.radial_clearance.is_some()),
-            ("axial_clearance", self.axial_clearance.is_some()),
-            ("free_contact_angle", self.free_contact_angle.is_some()),
-        ];
-        let given: Vec<&str> = given.iter().filter(|(_, is)| *is).map(|(key, _)| *key).collect();
-        match given[..] {
-            [_] => {}
-            [] => {
-                problems.add(
-                    "[bearing] has no outer_raceway_diameter; add it, or what it follows from: radial_clearance, \
-                     axial_clearance or free_contact_angle of the unmounted bearing",
-                );
-                return None;
-            }
-            [first, second, ..] => {
-                problems.add(format!(
-                    "bearing.{first} and bearing.{second} both say how much clearance there is; keep one of them"
-                ));
-                return None;
-            }
+    /// The raceways; `None` where they do not follow from the scene. They are searched where lengths are sane.
+    fn raceways(
+        &self,
+        is_sane: bool,
+        problems: &mut Problems,
+        assumed: &mut Vec<String>,
+    ) -> Option<RacewayLengths> {
+        let groove_radii = self.groove_radii(problems, assumed)?;
+        let given = RacewayKeys {
+            inner: self.inner_raceway_diameter.as_ref(),
+            outer: self.outer_raceway_diameter.as_ref(),
+            pitch: self.pitch_diameter.as_ref(),
+            angle: self.contact_angle.as_ref(),
+            radial: self.radial_clearance.as_ref(),
+            axial: self.axial_clearance.as_ref(),
+        };
+        let grooves = Grooves {
+            ball: self.ball_diameter.si(),
+            inner: groove_radii[0].value.si(),
+            outer: groove_radii[1].value.si(),
+        };
+        let has_both = given.inner.is_some() && given.outer.is_some();
+        let has_distance = 2.0 * grooves.inner.min(grooves.outer) > grooves.ball;
+        if !has_both && !has_distance {
+            // Without room between ball and grooves no clearance says anything.
+            self.check_groove(&groove_radii[0], problems);
+            self.check_groove(&groove_radii[1], problems);
         }
-        if let Some(diameter) = &self.outer_raceway_diameter {
-            return Some(diameter.clone());
+        if !is_sane || !has_distance {
+            return self.typed_raceways(groove_radii);
         }
-        let twice =
-            2.0 * (self.inner_groove_radius.si() + self.outer_groove_radius.si() - self.ball_diameter.si());
-        let clearance = self.clearance(twice, problems)?;
-        let inner = self.inner_raceway_diameter.si() + 2.0 * self.ball_diameter.si();
-        Some(Quantity::from_si(inner + clearance))
+        let found = given.resolve(&grooves, problems)?;
+        let length = |key: &str, typed: &Option<Quantity<LENGTH>>, value: f64| Length {
+            key: match &found.computed_from {
+                Some(keys) if typed.is_none() => format!("bearing.{key} (from {keys})"),
+                _ => format!("bearing.{key}"),
+            },
+            value: typed.clone().unwrap_or_else(|| Quantity::about(value)),
+        };
+        let Diameters { inner, outer } = found.diameters;
+        if let Some(keys) = &found.computed_from {
+            let radial = outer - inner - 2.0 * grooves.ball;
+            assumed.push(format!(
+                "bearing: {keys} place the raceways at {:.4} mm and {:.4} mm; radial clearance {:.1} um, free contact \
+                 angle {:.3} deg",
+                1e3 * inner,
+                1e3 * outer,
+                1e6 * radial,
+                (1.0 - radial.max(0.0) / (2.0 * grooves.distance())).acos().to_degrees(),
+            ));
+        }
+        Some(RacewayLengths {
+            diameters: [
+                length("inner_raceway_diameter", &self.inner_raceway_diameter, inner),
+                length("outer_raceway_diameter", &self.outer_raceway_diameter, outer),
+            ],
+            groove_radii,
+        })
     }
 
-    /// Radial clearance, m, as it is given; `twice` is twice the groove distance.
-    fn clearance(&self, twice: f64, problems: &mut Problems) -> Option<f64> {
-        if let Some(radial) = &self.radial_clearance {
-            return Some(radial.si());
-        }
-        if let Some(axial) = &self.axial_clearance {
-            let share = axial.si() / twice;
-            let holds = (0.0..1.0).contains(&share);
-            let most = Quantity::<LENGTH>::about(twice);
-            let rule = format!(
-                "expected 0 mm to less than 2 (inner_groove_radius + outer_groove_radius - ball_diameter), {most}"
-            );
-            problems.require(holds, "bearing.axial_clearance", axial, rule);
-            return holds.then(|| twice * (1.0 - (1.0 - share * share).sqrt()));
-        }
-        let angle = self.free_contact_angle.as_ref()?;
-        let holds = (0.0..0.5 * PI).contains(&angle.si());
-        let rule = "expected 0 deg to below 90 deg";
-        problems.require(holds, "bearing.free_contact_angle", angle, rule);
-        holds.then(|| twice * (1.0 - angle.si().cos()))
+    /// The raceways as typed, where both diameters are, to be checked further.
+    fn typed_raceways(&self, groove_radii: [Length; 2]) -> Option<RacewayLengths> {
+        let length = |key: &str, typed: &Option<Quantity<LENGTH>>| {
+            Some(Length {
+                key: format!("bearing.{key}"),
+                value: typed.clone()?,
+            })
+        };
+        Some(RacewayLengths {
+            diameters: [
+                length("inner_raceway_diameter", &self.inner_raceway_diameter)?,
+                length("outer_raceway_diameter", &self.outer_raceway_diameter)?,
+            ],
+            groove_radii,
+        })
     }
 
-    fn check_lengths(&self, outer_raceway: &Quantity<LENGTH>, problems: &mut Problems) {
-        let lengths = [
-            (&self.ball_diameter, "bearing.ball_diameter", "a diameter"),
+    /// Groove radii: typed, by their ratio to the ball diameter, or by the usual ratio.
+    fn groove_radii(&self, problems: &mut Problems, assumed: &mut Vec<String>) -> Option<[Length; 2]> {
+        let typed = [&self.inner_groove_radius, &self.outer_groove_radius];
+        let ratios = [self.inner_curvature_ratio, self.outer_curvature_ratio];
+        let mut radii = Vec::new();
+        for (side, name) in ["inner", "outer"].into_iter().enumerate() {
+            let [radius_key, ratio_key] =
+                ["groove_radius", "curvature_ratio"].map(|key| format!("bearing.{name}_{key}"));
+            radii.push(match (typed[side], ratios[side]) {
+                (Some(_), Some(_)) => {
+                    problems.add(format!(
+                        "{radius_key} and {ratio_key} are the same length twice; leave one out"
+                    ));
+                    return None;
+                }
+                (Some(radius), None) => Length {
+                    key: radius_key,
+                    value: radius.clone(),
+                },
+                (None, given) => {
+                    let ratio = given.unwrap_or([DEFAULT_INNER_RATIO, DEFAULT_OUTER_RATIO][side]);
+                    let rule = format!("expected more than 0.5 and at most {MAX_CONFORMITY}; 0.515 to 0.53 is usual");
+                    problems.require(ratio > 0.5 && ratio <= MAX_CONFORMITY, &ratio_key, ratio, rule);
+                    let value = Quantity::from_si(ratio * self.ball_diameter.si());
+                    if given.is_none() {
+                        assumed.push(format!(
+                            "{radius_key} is {ratio} of the ball diameter, {:.4} mm, as in the ratings of ISO 281; \
+                             {ratio_key} changes it",
+                            1e3 * value.si()
+                        ));
+                    }
+                    Length {
+                        key: format!("{radius_key} (from {name}_curvature_ratio)"),
+                        value,
+                    }
+                }
+            });
+        }
+        radii.try_into().ok()
+    }
+
+    fn check_lengths(&self, problems: &mut Problems) {
+        let typed = [
+            (Some(&self.ball_diameter), "bearing.ball_diameter", "a diameter"),
             (
-                &self.inner_raceway_diameter,
+                self.inner_raceway_diameter.as_ref(),
                 "bearing.inner_raceway_diameter",
                 "a diameter",
             ),
-            (outer_raceway, "bearing.outer_raceway_diameter", "a diameter"),
             (
-                &self.inner_groove_radius,
+                self.outer_raceway_diameter.as_ref(),
+                "bearing.outer_raceway_diameter",
+                "a diameter",
+            ),
+            (
+                self.pitch_diameter.as_ref(),
+                "bearing.pitch_diameter",
+                "a diameter",
+            ),
+            (
+                self.inner_groove_radius.as_ref(),
                 "bearing.inner_groove_radius",
                 "a radius",
             ),
             (
-                &self.outer_groove_radius,
+                self.outer_groove_radius.as_ref(),
                 "bearing.outer_groove_radius",
                 "a radius",
             ),
-            (&self.bore_diameter, "bearing.bore_diameter", "a diameter"),
-            (&self.outside_diameter, "bearing.outside_diameter", "a diameter"),
-            (&self.width, "bearing.width", "a width"),
+            (Some(&self.bore_diameter), "bearing.bore_diameter", "a diameter"),
+            (
+                Some(&self.outside_diameter),
+                "bearing.outside_diameter",
+                "a diameter",
+            ),
+            (Some(&self.width), "bearing.width", "a width"),
         ];
-        for (length, key, noun) in lengths {
+        for (length, key, noun) in typed {
+            let Some(length) = length else { continue };
             problems.require_positive(length, key, noun);
             let plausible = length.si() <= 0.0 || PLAUSIBLE_LENGTH.contains(&length.si());
             problems.require(plausible, key, length, "check its unit, expected 10 um to 100 m");
         }
     }
 
-    fn check_diameters(&self, outer_raceway: &Quantity<LENGTH>, problems: &mut Problems) {
+    fn check_diameters(&self, raceways: &RacewayLengths, problems: &mut Problems) {
+        let [inner, outer] = &raceways.diameters;
         let rising = [
             ("bearing.bore_diameter", &self.bore_diameter),
-            ("bearing.inner_raceway_diameter", &self.inner_raceway_diameter),
-            ("bearing.outer_raceway_diameter", outer_raceway),
+            (inner.key.as_str(), &inner.value),
+            (outer.key.as_str(), &outer.value),
             ("bearing.outside_diameter", &self.outside_diameter),
         ];
         for pair in rising.windows(2) {
@@ -211,22 +314,23 @@ impl RawBearing {
         );
     }
 
-    fn check_grooves(&self, problems: &mut Problems) {
-        let ball_radius = 0.5 * self.ball_diameter.si();
-        let grooves = [
-            ("bearing.inner_groove_radius", &self.inner_groove_radius),
-            ("bearing.outer_groove_radius", &self.outer_groove_radius),
-        ];
-        for (key, groove) in grooves {
-            let usual = "0.515 to 0.53 of the ball diameter is usual";
-            let ball = Quantity::<LENGTH>::about(ball_radius);
-            let rule = format!("it must be more than the ball radius {ball}, {usual}");
-            problems.require(groove.si() > ball_radius, key, groove, rule);
-            let conformity = groove.si() / self.ball_diameter.si();
-            let rule =
-                format!("that is {conformity:.3} of the ball diameter, more than {MAX_CONFORMITY}; {usual}");
-            problems.require(conformity <= MAX_CONFORMITY, key, groove, rule);
+    fn check_grooves(&self, raceways: &RacewayLengths, problems: &mut Problems) {
+        for groove in &raceways.groove_radii {
+            self.check_groove(groove, problems);
         }
+    }
+
+    fn check_groove(&self, groove: &Length, problems: &mut Problems) {
+        let ball_radius = 0.5 * self.ball_diameter.si();
+        let usual = "0.515 to 0.53 of the ball diameter is usual";
+        let ball = Quantity::<LENGTH>::about(ball_radius);
+        let (key, radius) = (groove.key.as_str(), &groove.value);
+        let rule = format!("it must be more than the ball radius {ball}, {usual}");
+        problems.require(radius.si() > ball_radius, key, radius, rule);
+        let conformity = radius.si() / self.ball_diameter.si();
+        let rule =
+            format!("that is {conformity:.3} of the ball diameter, more than {MAX_CONFORMITY}; {usual}");
+        problems.require(conformity <= MAX_CONFORMITY, key, radius, rule);
     }
 
     /// The balls must fit side by side on the pitch circle and between the grooves.
@@ -254,6 +358,12 @@ impl Bearing {
     /// Distance of the groove centres when the balls just touch, A, m.
     pub fn groove_distance(&self) -> f64 {
         self.inner_groove_radius + self.outer_groove_radius - self.ball_diameter
+    }
+
+    /// Free contact angle a0, rad; 0 with interference.
+    pub fn free_contact_angle(&self) -> f64 {
+        let cos = 1.0 - self.clearance() / (2.0 * self.groove_distance());
+        cos.clamp(-1.0, 1.0).acos()
     }
 
     fn check_contact_angle(&self, problems: &mut Problems) {

@@ -3,6 +3,7 @@
 //! The text is edited in place, so that comments and line numbers stay as the user knows them. A path that is
 //! not in the scene is added; whether such a key exists is then checked with all others.
 
+use super::locate::other_name;
 use toml_edit::{DocumentMut, Item, Key, Table, TableLike, Value};
 
 /// The value that takes a table out, `--set effects.gravity=none`.
@@ -70,14 +71,19 @@ fn set(document: &mut DocumentMut, path: &str, mut value: Value) -> Result<(), S
             .and_then(Item::as_table_like_mut)
             .ok_or_else(|| format!("{walked} is a value, so it has no key {:?}", last.get()))?;
     }
-    match table.get_mut(last.get()) {
+    // A key that has two names keeps the one it has.
+    let name = match other_name(last.get()) {
+        Some(other) if table.contains_key(other) => other,
+        _ => last.get(),
+    };
+    match table.get_mut(name) {
         Some(Item::Value(old)) => {
             // Keep the comment behind the value.
             *value.decor_mut() = old.decor().clone();
             *old = value;
         }
         _ => {
-            table.insert(last.get(), Item::Value(value));
+            table.insert(name, Item::Value(value));
         }
     }
     Ok(())

@@ -1,18 +1,5 @@
 //! ```toml
-//! [life]                            # optional, as all its keys; it changes nothing that a run computes
-//! contact_angle = "15 deg"          # nominal, of the ratings; default: the free contact angle of [bearing]
-//! rating = "26.5 kN"                # dynamic rating C_r of a catalogue; default: that of ISO 281 from [bearing]
-//! static_rating = "18.6 kN"         # static rating C_0r; default: that of ISO 76
-//! fatigue_limit = "0.85 kN"         # fatigue load limit C_u; default: that of ISO 281, annex B
-//! grooves = "own"                   # "own" (default) or "reference" (0.52 and 0.53 of the ball): shares of raceways
-//! reliability = 90                  # 90 (default), 95, 96, 97, 98 or 99 per cent
-//! speed = "1800 rpm"                # inner ring against outer ring, for results without [speed]
-//! viscosity_ratio = 2.0             # kappa; or viscosity = "24 mm2/s" of the warm oil;
-//!                                   # or viscosity_class with temperature:
-//! viscosity_class = 68              # ISO VG, the viscosity at 40 degC
-//! temperature = "70 degC"           # of the oil in the contacts
-//! viscosity_at_100 = "8.7 mm2/s"    # of the same oil at 100 degC; not needed at 40 degC
-//! contamination = 0.6               # factor e_C of ISO 281, above 0, at most 1
+#![doc = include_str!("example_life.toml")]
 //! ```
 //! What `raceway life` needs besides a run: ratings of a catalogue, reliability and lubrication. Nothing is guessed:
 //! without viscosity or contamination there is no life with the factor a_ISO, and the command says so.

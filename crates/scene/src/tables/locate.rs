@@ -5,6 +5,8 @@ use std::ops::Range;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
+use super::hints;
+
 /// Where and what, in the words of a scene.
 #[derive(Debug)]
 pub struct Located {
@@ -16,6 +18,8 @@ pub struct Located {
     pub message: String,
     /// The line itself with a mark below.
     pub excerpt: String,
+    /// Whether it is about a table that the file lacks: no line has it.
+    pub is_of_whole_file: bool,
 }
 
 /// Locates the reader's `message` about a stretch of the text, in bytes.
@@ -38,13 +42,26 @@ pub fn locate(text: &str, span: Option<Range<usize>>, message: &str) -> Located 
         " ".repeat(column - 1),
         "^".repeat(marks)
     );
+    let message = describe(text, span, message);
     Located {
         line,
         column,
-        message: describe(text, span, message),
+        is_of_whole_file: message.starts_with(NO_TABLE),
+        message,
         excerpt,
     }
 }
+
+/// A file without a bearing is no scene yet.
+fn missing_table(name: &str) -> String {
+    match name {
+        "bearing" => format!("{NO_TABLE}{name}] is missing; \"raceway init\" writes a scene to start from"),
+        _ => format!("{NO_TABLE}{name}] is missing"),
+    }
+}
+
+/// Start of the message on a table that the file lacks.
+const NO_TABLE: &str = "the table [";
 
 fn floor_boundary(text: &str, mut index: usize) -> usize {
     index = index.min(text.len());
@@ -73,9 +90,26 @@ pub fn line_of(text: &str, problem: &str) -> Option<usize> {
     Some(1 + text[..floor_boundary(text, place.start)].matches('\n').count())
 }
 
-/// The place of a key in its table, and its value.
+/// Short names of keys.
+const SHORT: [(&str, &str); 3] = [
+    ("bore_diameter", "bore"),
+    ("outside_diameter", "outside"),
+    ("contact_angle", "free_contact_angle"),
+];
+
+/// The other name of a key that has two.
+pub fn other_name(name: &str) -> Option<&'static str> {
+    SHORT.iter().find_map(|&(long, short)| match name {
+        _ if name == long => Some(short),
+        _ if name == short => Some(long),
+        _ => None,
+    })
+}
+
+/// The place of a key in its table, and its value; the key may have its other name there.
 fn entry<'a, 'i>(table: &'a DeTable<'i>, name: &str) -> Option<(Range<usize>, &'a DeValue<'i>)> {
-    let (key, value) = table.iter().find(|(key, _)| key.get_ref() == name)?;
+    let find = |name: &str| table.iter().find(|(key, _)| key.get_ref() == name);
+    let (key, value) = find(name).or_else(|| find(other_name(name)?))?;
     Some((key.span(), value.get_ref()))
 }
 
@@ -87,9 +121,21 @@ fn describe(text: &str, span: Range<usize>, message: &str) -> String {
         .replace("integer number overflowed", WHOLE_RANGE)
         .replace("wanted string or table", "expected a string");
     let Ok(document) = DeTable::parse(text) else {
-        return format!("this is not TOML: {message}");
+        let line = text[..floor_boundary(text, span.start)].matches('\n').count();
+        let hint = text.lines().nth(line).and_then(hints::of_syntax);
+        let repeated = hints::first_of(text, line + 1).filter(|_| message.contains("duplicate key"));
+        return match hint {
+            _ if let Some(first) = repeated => {
+                format!("this is not TOML: {message}; it stands in line {first} too")
+            }
+            Some(hint) => format!("this is not TOML: {message}; {hint}"),
+            None => format!("this is not TOML: {message}"),
+        };
     };
-    let path = path_at(document.get_ref(), &span);
+    let path = match span == document.span() {
+        true => String::new(),
+        false => path_at(document.get_ref(), &span),
+    };
     let message = message
         .replace("expected i64", "expected a whole number")
         .replace("expected f64", "expected a number");
@@ -113,10 +159,8 @@ fn describe(text: &str, span: Range<usize>, message: &str) -> String {
         let first = document.get_ref().get(path.as_str());
         let table = path.as_str();
         return match table {
-            _ if first.is_some_and(|first| is_value(first.get_ref())) => {
-                format!("the table [{name}] is missing")
-            }
-            "" => format!("the table [{name}] is missing"),
+            _ if first.is_some_and(|first| is_value(first.get_ref())) => missing_table(name),
+            "" => missing_table(name),
             table => format!("[{table}] has no key {name:?}, which is required"),
         };
     }
@@ -127,19 +171,17 @@ fn describe(text: &str, span: Range<usize>, message: &str) -> String {
     }
 }
 
-/// `; did you mean ...? valid keys are ...`
+/// `; did you mean ...? valid keys are ...`, or the tables that have the key.
 fn advice(what: &str, name: &str, valid: &[&str]) -> String {
-    let list: Vec<String> = valid.iter().map(|v| format!("{v:?}")).collect();
-    let near = valid
-        .iter()
-        .map(|v| (strsim::osa_distance(v, name), v))
-        .min_by_key(|(distance, _)| *distance);
-    let meant = match near {
-        Some((distance, v)) if distance <= 1 + name.chars().count() / 4 => format!("did you mean {v:?}? "),
-        _ => String::new(),
+    let quote = |names: &[&str]| -> Vec<String> { names.iter().map(|v| format!("{v:?}")).collect() };
+    let list = quote(valid);
+    let meant = match hints::meant(name, valid).as_slice() {
+        [] if what == "keys" => hints::elsewhere(name).map_or(String::new(), |place| format!("{place}; ")),
+        [] => String::new(),
+        names => format!("did you mean {}? ", quote(names).join(" or ")),
     };
     match list.as_slice() {
-        [] => format!("; this table has no {what}"),
+        [] => format!("; {meant}this table has no {what}"),
         [only] => format!("; {meant}the only valid {} is {only}", what.trim_end_matches('s')),
         _ => format!("; {meant}valid {what} are {}", list.join(", ")),
     }

@@ -1,14 +1,8 @@
-//! ```toml
-//! [lubricant]                       # optional: films of the contacts, in tables and summary
-//! viscosity = "40 mPa s"            # dynamic, of the warm oil; or viscosity_class with temperature and density:
-//! viscosity_class = 68              # ISO VG, the kinematic viscosity at 40 degC
-//! temperature = "70 degC"           # of the oil in the contacts
-//! viscosity_at_100 = "8.7 mm2/s"    # of the same oil at 100 degC; not needed at 40 degC
-//! density = "870 kg/m3"             # of the oil, with a class
-//! pressure_coefficient = "22 1/GPa" # growth of the viscosity with pressure; mineral oils have 15 to 30 1/GPa
-//! roughness = { inner = "0.05 um", outer = "0.05 um", balls = "0.02 um" }   # root mean square; for lambda alone
-//! ```
 //! What lubricates the contacts. It changes nothing that a run computes.
+//!
+//! ```toml
+#![doc = include_str!("example_lubricant.toml")]
+//! ```
 
 use contact::BySide;
 use contact::film::Lubricant;

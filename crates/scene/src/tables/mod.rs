@@ -29,6 +29,9 @@
 #![doc = include_str!("example_modes.toml")]
 //! ```
 //!
+//! A bearing may be given as catalogues give it, and materials by name: see the files of these tables, `bearing.rs`
+//! and `materials.rs`.
+//!
 //! Any scene may have tables `[stress]`, `[probes.*]`, `[life]` and `[lubricant]`, and motion without inertia is a
 //! table of its own, `[quasi_static]`: see the files of these names.
 
@@ -38,9 +41,12 @@ mod bearing;
 mod contact;
 mod cut;
 mod difference;
+mod dimensions;
 mod dynamic;
 mod edit;
 mod error;
+mod gather;
+mod hints;
 mod life;
 mod locate;
 mod lubricant;
@@ -50,6 +56,7 @@ mod oil;
 mod output;
 mod probes;
 mod quasi_static;
+pub mod reference;
 mod ring;
 mod section;
 mod shaft;
@@ -100,6 +107,7 @@ use self::balls::RawBalls;
 use self::bearing::RawBearing;
 use self::contact::RawContact;
 use self::dynamic::RawDynamic;
+use self::gather::Finding;
 use self::life::RawLife;
 use self::lubricant::RawLubricant;
 use self::materials::RawMaterials;
@@ -197,6 +205,8 @@ pub struct Scene {
     pub lubricant: Option<Lubrication>,
     /// What is computed.
     pub analysis: Analysis,
+    /// What the scene leaves open and the program has filled in: a sentence each.
+    pub assumed: Vec<String>,
 }
 
 impl Scene {
@@ -278,6 +288,25 @@ impl Source<'_> {
         keys.into_iter().any(|(key, _)| problem.starts_with(key.trim()))
     }
 
+    /// One error with its place, or a list of several.
+    fn format_errors(&self, text: &str, found: &[Finding]) -> SceneError {
+        if let [one] = found {
+            return self.format_error(text, one.span.clone(), &one.message);
+        }
+        let problem = |finding: &Finding| {
+            let located = locate::locate(text, finding.span.clone(), &finding.message);
+            match located.is_of_whole_file || !self.overrides.is_empty() {
+                true => located.message,
+                false => format!("{} (line {})", located.message, located.line),
+            }
+        };
+        SceneError::Invalid {
+            path: self.path.to_path_buf(),
+            overrides: self.overrides.to_vec(),
+            problems: found.iter().map(problem).collect(),
+        }
+    }
+
     fn format_error(&self, text: &str, span: Option<Range<usize>>, message: &str) -> SceneError {
         let located = locate::locate(text, span, message);
         SceneError::Format {
@@ -305,11 +334,11 @@ impl Source<'_> {
     }
 
     fn check(&self, text: String, document: &DocumentMut) -> Result<Scene, SceneError> {
-        let raw: RawScene = toml::from_str(&text)
-            .map_err(|e: toml::de::Error| self.format_error(&text, e.span(), e.message()))?;
+        let raw: RawScene = gather::read(&text).map_err(|found| self.format_errors(&text, &found))?;
         let mut problems = Problems::default();
-        let bearing = raw.bearing.check(&mut problems);
-        let materials = raw.materials.check(&mut problems);
+        let mut assumed = Vec::new();
+        let bearing = raw.bearing.check(&mut problems, &mut assumed);
+        let materials = raw.materials.check(&mut problems, &mut assumed);
         let contact = raw.contact.check(
             bearing.as_ref(),
             materials.as_ref(),
@@ -323,8 +352,12 @@ impl Source<'_> {
             overridden: !self.overrides.is_empty(),
             mesh_files: self.mesh_files,
         };
-        let inner = raw.inner.check(RingName::Inner, context, &mut problems);
-        let outer = raw.outer.check(RingName::Outer, context, &mut problems);
+        let inner = raw
+            .inner
+            .check(RingName::Inner, context, &mut problems, &mut assumed);
+        let outer = raw
+            .outer
+            .check(RingName::Outer, context, &mut problems, &mut assumed);
         if let (Some(inner), Some(outer)) = (&inner.section, &outer.section) {
             section::check_gap(inner, outer, &mut problems);
         }
@@ -393,6 +426,7 @@ impl Source<'_> {
                 life,
                 lubricant,
                 analysis,
+                assumed,
             }),
             (.., texts) => Err(self.invalid(texts)),
         }

@@ -1,17 +1,5 @@
 //! ```toml
-//! [probes.node.po2]                 # stress and displacement of a node of a ring; po2 is a name of your choice
-//! ring = "outer"                    # a flexible ring
-//! azimuth = "20 deg"                # of the point, on the inner ring at t = 0: the node turns with its ring
-//! groove_angle = "15 deg"           # on the raceway: 0 in the bottom of the groove, + as contact angles are
-//! # r = "38 mm"                     # or anywhere: distance from the axis, and
-//! # z = "2 mm"                      # axial distance from the plane of the ring's groove centres
-//! axes = "cylindrical"              # of the components: "cylindrical" (default) or "cartesian"
-//!
-//! [probes.contact.ball_1_inner]     # force and moment of a contact
-//! ball = 1                          # from 0
-//! ring = "inner"
-//! about = ["0 mm", "0 mm", "0 mm"]  # optional: point of the moment, default the axis point in the plane of the outer
-//!                                   # groove centres
+#![doc = include_str!("example_probes.toml")]
 //! ```
 //! Single numbers of a run, written to `probes.csv` at every step of a motion or quasi-static run and at every point of
 //! a sweep, whatever `output_every` says. Without a table there is no file and no cost.

@@ -1,8 +1,5 @@
 //! ```toml
-//! [quasi_static]
-//! duration = "77 ms"
-//! step = "0.1 ms"
-//! output_every = 10
+#![doc = include_str!("example_quasi_static.toml")]
 //! ```
 //! Equilibria in time, without inertia: the balls move round with the cage, the inner ring turns, loads follow their
 //! time, and every instant is in equilibrium. Times are 0, step, 2 step, ... duration; fields are written every

@@ -122,12 +122,18 @@ impl RawRing {
     }
 
     /// Checks the ring. A rigid ring may keep the other keys, unused, so that one `--set` switches it.
-    pub fn check(&self, ring: RingName, context: RingContext<'_>, problems: &mut Problems) -> Ring {
+    pub fn check(
+        &self,
+        ring: RingName,
+        context: RingContext<'_>,
+        problems: &mut Problems,
+        assumed: &mut Vec<String>,
+    ) -> Ring {
         let key = ring.key();
         let section = self
             .section
             .as_ref()
-            .map(|s| s.check(ring, context.bearing, problems));
+            .map(|s| s.check(ring, context.bearing, problems, assumed));
         if self.is_rigid() {
             return Ring { body: None, section };
         }

@@ -1,6 +1,11 @@
 //! `[inner.section]` and `[outer.section]`: the meshes that `raceway mesh` builds.
+//!
+//! Shoulders that a scene does not give are alike on both sides of the groove. Each stands h above its bottom,
+//! h = max(0.2 D_w, R (1 - cos(a0 + 20 deg))) with groove radius R and free contact angle a0: the height of deep groove
+//! bearings, or more, so that the edge of the groove is 20 degrees beyond the contact. It is a rule of this program; a
+//! low shoulder or a counterbore has to be given.
 
-use input::{LENGTH, Problems, Quantity};
+use input::{LENGTH, Problems, Quantity, ten_digits};
 use serde::Deserialize;
 
 use super::bearing::Bearing;
@@ -10,7 +15,7 @@ use super::ring::RingName;
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields, expecting = "a table of a ring's section")]
 pub struct RawSection {
-    shoulder_diameters: [Quantity<LENGTH>; 2],
+    shoulder_diameters: Option<[Quantity<LENGTH>; 2]>,
     element: SectionElement,
     sectors: i64,
     groove_elements: i64,
@@ -50,14 +55,25 @@ pub struct Section {
     pub grading: f64,
 }
 
+/// Least height of a shoulder without a given diameter, over the ball diameter.
+const SHOULDER_HEIGHT: f64 = 0.2;
+/// Angle from the free contact to the edge of such a shoulder, rad: 20 degrees.
+const BEYOND_CONTACT: f64 = std::f64::consts::PI / 9.0;
 /// More elements than this in one direction is a slip of the keyboard.
 const MAX_ELEMENTS: i64 = 1000;
 /// The same round the ring.
 const MAX_SECTORS: i64 = 100_000;
 
 impl RawSection {
-    /// Checks the section of `ring`; the bearing is there when it is sound.
-    pub fn check(&self, ring: RingName, bearing: Option<&Bearing>, problems: &mut Problems) -> Section {
+    /// Checks the section of `ring`; the bearing is there when it is sound. `assumed` is told shoulders that are not
+    /// given.
+    pub fn check(
+        &self,
+        ring: RingName,
+        bearing: Option<&Bearing>,
+        problems: &mut Problems,
+        assumed: &mut Vec<String>,
+    ) -> Section {
         let table = format!("{}.section", ring.key());
         let whole = |problems: &mut Problems, value, name: &str, min, max| {
             problems.whole(value, &format!("{table}.{name}"), min, max)
@@ -91,7 +107,7 @@ impl RawSection {
             "expected 1 (uniform) to 3",
         );
         Section {
-            shoulder_diameters: [self.shoulder_diameters[0].si(), self.shoulder_diameters[1].si()],
+            shoulder_diameters: self.shoulders(ring, bearing, assumed),
             element: self.element,
             sectors,
             groove_elements,
@@ -99,6 +115,29 @@ impl RawSection {
             shoulder_elements,
             grading,
         }
+    }
+
+    /// Diameters of the shoulders, m: typed, or by the rule above.
+    fn shoulders(&self, ring: RingName, bearing: Option<&Bearing>, assumed: &mut Vec<String>) -> [f64; 2] {
+        let Some(bearing) = bearing else { return [0.0; 2] };
+        if let Some(typed) = &self.shoulder_diameters {
+            return [typed[0].si(), typed[1].si()];
+        }
+        let (bottom, groove, inwards) = match ring {
+            RingName::Inner => (bearing.inner_raceway_diameter, bearing.inner_groove_radius, 1.0),
+            RingName::Outer => (bearing.outer_raceway_diameter, bearing.outer_groove_radius, -1.0),
+        };
+        let edge = bearing.free_contact_angle() + BEYOND_CONTACT;
+        let height = (groove * (1.0 - edge.cos())).max(SHOULDER_HEIGHT * bearing.ball_diameter);
+        let diameter = ten_digits(bottom + inwards * 2.0 * height);
+        assumed.push(format!(
+            "{}.section.shoulder_diameters are {:.4} mm on both sides, {:.2} ball diameters above the groove; a \
+             catalogue or a drawing may give others",
+            ring.key(),
+            1e3 * diameter,
+            height / bearing.ball_diameter
+        ));
+        [diameter; 2]
     }
 
     /// The mesh must repeat from ball to ball.
@@ -135,7 +174,7 @@ impl RawSection {
                 (bottom - 2.0 * bearing.outer_groove_radius, bottom)
             }
         };
-        for (i, diameter) in self.shoulder_diameters.iter().enumerate() {
+        for (i, diameter) in self.shoulder_diameters.iter().flatten().enumerate() {
             problems.require(
                 low < diameter.si() && diameter.si() < high,
                 &format!("{}.section.shoulder_diameters[{i}]", ring.key()),

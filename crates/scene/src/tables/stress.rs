@@ -1,7 +1,5 @@
 //! ```toml
-//! [stress]                          # optional, as all its keys
-//! near_field = true                 # stress near contacts is that of the Hertz ellipse, not of the spread patch; default false
-//! near_field_reach = 4.0            # how far from a contact, in larger semi-axes of its patch; default 4
+#![doc = include_str!("example_stress.toml")]
 //! ```
 //! How stress is computed, wherever it is written: step files, probes, profiles. [`contact::near_field`] says what
 //! the near field is. Without it there is no cost, and stress within about two patches of a contact is that of a

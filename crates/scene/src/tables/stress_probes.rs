@@ -1,16 +1,5 @@
 //! ```toml
-//! [probes.point.under_ball]         # stress at any point of a ring, at every step; under_ball is a name of your choice
-//! ring = "outer"                    # a flexible ring
-//! azimuth = "20 deg"                # on the inner ring at t = 0: the point turns with its ring
-//! groove_angle = "15 deg"           # 0 in the bottom of the groove, + as contact angles are
-//! depth = "0.1 mm"                  # optional: below the raceway; default 0, the raceway itself
-//!
-//! [probes.profile.section]          # stress along a line, written whenever fields are
-//! ring = "outer"
-//! azimuth = "20 deg"                # azimuth, groove_angle and depth are a value or [first, last]
-//! groove_angle = ["-40 deg", "50 deg"]
-//! depth = "0 mm"
-//! points = 181                      # evenly along the line, 2 to 10000
+#![doc = include_str!("example_stress_probes.toml")]
 //! ```
 //! Points in ring coordinates. Their stress is that of the finite elements, interpolated from the nodal averages,
 //! plus, with `stress.near_field`, the near field at the point itself, which is not interpolated. Components are in

@@ -126,7 +126,10 @@ const INVALID: [Case; 53] = [
     (
         "contact = ",
         "contact = \"gradient\"",
-        &["dynamic.contact is \"gradient\"; valid values are \"discrete_gradient\", \"pointwise\""],
+        &[
+            "dynamic.contact is \"gradient\"; did you mean \"discrete_gradient\"? valid \
+             values are \"discrete_gradient\", \"pointwise\"",
+        ],
     ),
     (
         "ledger_tolerance",
@@ -309,7 +312,10 @@ const INVALID: [Case; 53] = [
     (
         "[effects.ball_centrifugal]",
         "[effects.ball_centrifugal]\nspeed = 1",
-        &["unknown key \"speed\" in [effects.ball_centrifugal]; this table has no keys"],
+        &[
+            "unknown key \"speed\" in [effects.ball_centrifugal]; speed belongs to [speed], \
+             [life]; this table has no keys",
+        ],
     ),
 ];
 

@@ -64,7 +64,8 @@ fn what_free_balls_replace_is_refused_with_the_reason() {
     assert!(message.contains(expected), "{message}");
     let oil = "[lubricant]\nviscosity = \"0.03 Pa s\"\npressure_coefficient = \"2e-8 1/Pa\"";
     let message = message_of(&free(COULOMB, oil), &[]);
-    let expected = "[lubricant] stands beside balls.motion = \"free\", whose films are not computed; remove it";
+    let expected =
+        "[lubricant] stands beside balls.motion = \"free\", whose films are not computed; remove it";
     assert!(message.contains(expected), "{message}");
     let message = message_of(&free(COULOMB, ""), &["contact.ball=\"sphere\""]);
     let expected = "contact.ball is \"sphere\", but free balls yield as half-spaces: remove it, or use balls.motion = \

@@ -4,6 +4,7 @@ mod bad_format;
 mod bad_motion;
 mod bad_values;
 mod balls;
+mod catalogue;
 mod effects;
 mod good;
 mod life;
@@ -14,7 +15,9 @@ mod mounting;
 mod overrides;
 mod probes;
 mod quasi_static;
+mod reference;
 mod schedules;
+mod slips;
 mod sweeps;
 
 use dynamics::effects::Table as _;

@@ -51,7 +51,8 @@ fn wrong_quasi_static_scenes_are_refused() {
         ),
         (
             with_keys(&format!("{good}\nintegrator = \"hht\"")),
-            "unknown key \"integrator\" in [quasi_static]; valid keys are \"duration\", \"step\", \"output_every\"",
+            "unknown key \"integrator\" in [quasi_static]; integrator belongs to \
+             [dynamic]; valid keys are \"duration\", \"step\", \"output_every\"",
         ),
         (
             with_keys(&format!("{good}\n[static]")),

@@ -312,7 +312,8 @@ fn motions_speeds_and_shares_that_make_no_sense_are_refused() {
             "[effects.axial_force]",
             "[effects.gyroscopic_moment]\nshare = 2\n[effects.axial_force]",
             &[
-                "unknown key \"share\" in [effects.gyroscopic_moment]; valid keys are \"inner_share\", \"outer_share\"",
+                "unknown key \"share\" in [effects.gyroscopic_moment]; did you mean \"inner_share\" or \
+             \"outer_share\"? valid keys are \"inner_share\", \"outer_share\"",
             ],
         ),
     ];

@@ -1,0 +1,83 @@
+//! `raceway help`, of the program, of a command, and the reference of scenes; completions and the man page.
+
+use std::io::Write;
+use std::process::ExitCode;
+
+use comm::print;
+use results::failure::Failure;
+use scene::reference;
+
+/// Prints help on a topic, or says which topics there are.
+pub fn help(topic: &[String], mut program: clap::Command) -> ExitCode {
+    let topic: Vec<&str> = topic.iter().map(String::as_str).collect();
+    let text = match topic.as_slice() {
+        [] => Ok(program.render_long_help().to_string()),
+        ["scene"] => Ok(reference::whole_page()),
+        ["scene", key] => of_key(key),
+        [command] => of_command(command, &mut program),
+        [first, ..] => Err(format!(
+            "help takes a command, or scene and a key, not all of {first:?} and the rest"
+        )),
+    };
+    match text {
+        Ok(text) => print_all(text.trim_end().as_bytes()),
+        Err(problem) => {
+            let failure = Failure::User(anyhow::anyhow!(problem));
+            print::note(format_args!("{}: {}", failure.kind(), failure.text()));
+            ExitCode::from(failure.number())
+        }
+    }
+}
+
+/// Prints the completions of a shell.
+pub fn completions(shell: clap_complete::Shell, mut program: clap::Command) -> ExitCode {
+    let mut text = Vec::new();
+    clap_complete::generate(shell, &mut program, "raceway", &mut text);
+    print_all(&text)
+}
+
+/// Prints the man page.
+pub fn man(program: clap::Command) -> ExitCode {
+    let mut text = Vec::new();
+    match clap_mangen::Man::new(program).render(&mut text) {
+        Ok(()) => print_all(&text),
+        Err(error) => {
+            print::note(format_args!("error: cannot make the man page: {error}"));
+            ExitCode::FAILURE
+        }
+    }
+}
+
+/// A reader that has seen enough, such as head, is no error.
+fn print_all(text: &[u8]) -> ExitCode {
+    let mut out = std::io::stdout();
+    let _ = out.write_all(text).and_then(|()| out.write_all(b"\n"));
+    ExitCode::SUCCESS
+}
+
+fn of_key(key: &str) -> Result<String, String> {
+    match reference::about(key).as_slice() {
+        [] => Err(format!(
+            "no table and no key of a scene has the name {key:?}; expected one such as bearing, shaft.z or \
+             contact_angle, and raceway help scene lists all"
+        )),
+        blocks => Ok(blocks.iter().map(|block| format!("{}\n\n", block.text)).collect()),
+    }
+}
+
+fn of_command(name: &str, program: &mut clap::Command) -> Result<String, String> {
+    let names: Vec<String> = program
+        .get_subcommands()
+        .filter(|command| !command.is_hide_set())
+        .map(|command| command.get_name().to_string())
+        .collect();
+    // Options that all commands share are known to a command once the program is built.
+    program.build();
+    let command = program.find_subcommand_mut(name).ok_or_else(|| {
+        format!(
+            "there is no command {name:?}; commands are {}, and help scene has the keys of scenes",
+            names.join(", ")
+        )
+    })?;
+    Ok(command.render_long_help().to_string())
+}
