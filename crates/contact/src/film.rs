@@ -29,7 +29,7 @@ pub struct Lubricant {
 
 /// Two bodies that roll on each other.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct RollingContact {
+pub struct FilmContact {
     /// R_x, m.
     pub radius: f64,
     /// E', Pa.
@@ -47,11 +47,11 @@ pub struct Film {
     pub minimum: f64,
 }
 
-impl RollingContact {
+impl FilmContact {
     /// Contact of bodies with the relative curvature `rolling` in the rolling direction, 1/m, and ellipticity k.
-    pub fn new(rolling: f64, ellipticity: f64, bodies: [Elastic; 2]) -> RollingContact {
+    pub fn new(rolling: f64, ellipticity: f64, bodies: [Elastic; 2]) -> FilmContact {
         let compliance: f64 = bodies.iter().map(|body| body.plane_compliance()).sum();
-        RollingContact {
+        FilmContact {
             radius: 1.0 / rolling,
             modulus: 2.0 / compliance,
             ellipticity,
@@ -111,7 +111,7 @@ mod tests {
         Side::BOTH.map(|side| {
             let [a, b] = HertzContact::new(&geometry, side, steel, steel).semi_axes(1.0);
             let rolling = 2.0 / geometry.ball_diameter + geometry.rolling_curvature(side);
-            let contact = RollingContact::new(rolling, a / b, [steel; 2]);
+            let contact = FilmContact::new(rolling, a / b, [steel; 2]);
             let oil = Lubricant {
                 viscosity: 0.04,
                 pressure_coefficient: 2.2e-8,
@@ -141,7 +141,7 @@ mod tests {
             assert!((loaded[i].central / base.central - 2f64.powf(-0.067)).abs() < 1e-12);
             assert!((base.ratio([3e-8, 4e-8]) - base.central / 5e-8).abs() < 1e-12);
         }
-        let contact = RollingContact {
+        let contact = FilmContact {
             radius: 4e-3,
             modulus: 227e9,
             ellipticity: 9.0,

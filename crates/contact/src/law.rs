@@ -15,6 +15,8 @@
 //! product is below 1: the Hessian of the complementary energy, ((dh_i, x), (x, dh_o)), is positive definite then. Far
 //! beyond any load a law is continued as a straight line, so that the product is at most 1/4.
 
+use crate::geometry::BySide;
+
 /// Slope of g(d_e) below which the law is continued linearly.
 pub const MIN_SLOPE: f64 = 0.1;
 
@@ -44,7 +46,7 @@ pub struct BallForces {
     /// Each contact; of the energy x Q_i Q_o either has half. Tangents are those of its own law.
     pub contacts: [ContactForce; 2],
     /// dQ/dg, N/m, by rows of forces.
-    pub tangent: [[f64; 2]; 2],
+    pub tangent: BySide<BySide<f64>>,
 }
 
 /// Turns after which both forces of a ball stay as they are.
@@ -67,7 +69,7 @@ impl BallForces {
 
 impl BallLaws {
     /// Forces, tangent and energies at the geometric approaches `g`, m.
-    pub fn evaluate(&self, g: [f64; 2]) -> BallForces {
+    pub fn evaluate(&self, g: BySide<f64>) -> BallForces {
         let x = self.across;
         if x == 0.0 {
             return BallForces::apart([0, 1].map(|k| self.laws[k].evaluate(g[k])));
@@ -314,7 +316,7 @@ mod tests {
     /// contact may come off.
     #[test]
     fn forces_of_a_ball_are_the_gradient_of_its_energy() {
-        let energy = |g: [f64; 2]| BALL.evaluate(g).contacts.iter().map(|c| c.energy).sum::<f64>();
+        let energy = |g: BySide<f64>| BALL.evaluate(g).contacts.iter().map(|c| c.energy).sum::<f64>();
         for g in [[5e-6, 4e-6], [2e-5, 1e-5], [1e-9, 5e-6], [-1e-6, 5e-6]] {
             let at = BALL.evaluate(g);
             for k in 0..2 {

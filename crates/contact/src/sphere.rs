@@ -26,6 +26,7 @@
 //! are taken as opposite; at 150 deg `across` is a quarter less. Valid for small ellipses, where the pressure stays
 //! Hertz's.
 
+use crate::geometry::BySide;
 use crate::hertz::{Elastic, HertzContact};
 
 /// Terms of the series; what is left falls with their square.
@@ -42,7 +43,7 @@ const GROWTH: f64 = 1.0 / 6.0;
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SphereCompliance {
     /// By how much less than a half-space a contact yields under its own force, inner first.
-    pub own: [f64; 2],
+    pub own: BySide<f64>,
     /// By how much a contact yields under the force of the opposite one.
     pub across: f64,
 }
@@ -50,7 +51,7 @@ pub struct SphereCompliance {
 impl SphereCompliance {
     /// Of a solid ball with its contacts on both raceways.
     pub fn new(ball: Elastic, diameter: f64, contacts: &[HertzContact; 2]) -> SphereCompliance {
-        let series = Series::new(ball, 0.5 * diameter);
+        let series = LegendreSeries::new(ball, 0.5 * diameter);
         SphereCompliance {
             own: contacts.map(|hertz| series.own(&hertz)),
             across: series.at_angle(std::f64::consts::PI),
@@ -59,7 +60,7 @@ impl SphereCompliance {
 }
 
 /// The series of one ball.
-struct Series {
+struct LegendreSeries {
     /// Radius, m.
     radius: f64,
     /// h, 1/Pa, and e.
@@ -69,8 +70,8 @@ struct Series {
     rest: Vec<f64>,
 }
 
-impl Series {
-    fn new(ball: Elastic, radius: f64) -> Series {
+impl LegendreSeries {
+    fn new(ball: Elastic, radius: f64) -> LegendreSeries {
         let nu = ball.poisson_ratio;
         let shear = 0.5 * ball.young_modulus / (1.0 + nu);
         let half_space = 2.0 * (1.0 - nu) / shear;
@@ -89,7 +90,7 @@ impl Series {
             let log_part = if n == 0 { 0.0 } else { logarithm / n_f };
             weight * f - half_space * (1.0 + log_part)
         };
-        Series {
+        LegendreSeries {
             radius,
             half_space,
             logarithm,
@@ -134,7 +135,7 @@ mod tests {
     /// Wrong: a term of the series. Uniform pressure squeezes a sphere by (1 - 2 nu)/E p a.
     #[test]
     fn uniform_pressure_squeezes_a_sphere_by_its_bulk_modulus() {
-        let series = Series::new(STEEL, 4.5e-3);
+        let series = LegendreSeries::new(STEEL, 4.5e-3);
         let f_0 = series.rest[0] + series.half_space;
         let expected = (1.0 - 2.0 * STEEL.poisson_ratio) / STEEL.young_modulus;
         assert!((f_0 / expected - 1.0).abs() < 1e-12);
@@ -143,7 +144,7 @@ mod tests {
     /// Wrong: the series does not reach its sum. Twice as many terms change less than 1e-4 of it, at both ends.
     #[test]
     fn the_series_has_converged() {
-        let mut series = Series::new(STEEL, 4.5e-3);
+        let mut series = LegendreSeries::new(STEEL, 4.5e-3);
         let whole = (series.rest.iter().sum::<f64>(), series.at_angle(3.0));
         series.rest.truncate(TERMS as usize / 2);
         let half = (series.rest.iter().sum::<f64>(), series.at_angle(3.0));
@@ -157,7 +158,7 @@ mod tests {
     #[test]
     fn the_volume_shrinks_as_betti_says() {
         let radius = 4.5e-3;
-        let series = Series::new(STEEL, radius);
+        let series = LegendreSeries::new(STEEL, radius);
         // Both forces, at 0 and pi, where w is singular as 1/t: midpoint rule.
         let (n, pi) = (400, std::f64::consts::PI);
         let ring = |i: i32| {

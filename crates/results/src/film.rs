@@ -4,7 +4,7 @@
 //! relative to the cage: that of kinematic balls, at the free contact angle. Thickness: [`contact::film`]. Films change
 //! no gap and no force.
 
-use contact::film::{Film, Lubricant, RollingContact};
+use contact::film::{Film, FilmContact, Lubricant};
 use contact::{BySide, Side};
 use dynamics::Model;
 use dynamics::balls::BallResult;
@@ -15,7 +15,7 @@ use serde::Serialize;
 /// What films of a bearing take besides its state.
 #[derive(Clone, Debug)]
 pub struct FilmLaw {
-    contacts: BySide<RollingContact>,
+    contacts: BySide<FilmContact>,
     lubricant: Lubricant,
     /// None: there is no lambda.
     roughness: Option<Roughness>,
@@ -44,7 +44,7 @@ impl FilmLaw {
         let contact = |side: Side| {
             let [a, b] = model.hertz[side.index()].semi_axes(1.0);
             let rolling = 2.0 / geometry.ball_diameter + geometry.rolling_curvature(side);
-            RollingContact::new(rolling, a / b, bodies)
+            FilmContact::new(rolling, a / b, bodies)
         };
         Some(FilmLaw {
             contacts: Side::BOTH.map(contact),

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use contact::ContactLaw;
+use contact::{ContactLaw, Meridian};
 
 use super::jet::{Jet, N_LENGTHS, Vector, cross, dot, fixed, minus, plus, scaled, times};
 use super::place::{Bodies, ContactFrame, GrooveCircle, SlipJets, Standing, frame, standing};
@@ -69,7 +69,7 @@ pub struct FoundContact {
     /// What resists the growth of the lengths, N and N m.
     pub resists: [Jet; N_LENGTHS],
     /// l at start and end, m.
-    pub reach: [[f64; 2]; 2],
+    pub reach: [Meridian; 2],
     /// Normal force on the ring.
     pub normal: MeanForce,
     /// Traction on the ball.
@@ -384,7 +384,7 @@ impl Middle {
 }
 
 /// A component of the normal force as it grows with l at the end.
-fn chain(value: f64, tangent: [f64; 2], reach: [Jet; 2]) -> Jet {
+fn chain(value: f64, tangent: Meridian, reach: [Jet; 2]) -> Jet {
     let mut jet = reach[0] * tangent[0] + reach[1] * tangent[1];
     jet.value = value;
     jet
@@ -412,6 +412,6 @@ fn actions(traction: &Resultant, slip: &SlipJets, (force, load): (f64, [Jet; 2])
     })
 }
 
-fn size(v: [f64; 2]) -> f64 {
+fn size(v: Meridian) -> f64 {
     v[0].hypot(v[1])
 }

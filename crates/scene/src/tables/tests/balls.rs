@@ -59,8 +59,8 @@ fn what_free_balls_replace_is_refused_with_the_reason() {
     }
     let temperature = "[effects.temperature]\ninner = \"60 degC\"\nouter = \"45 degC\"\nballs = \"65 degC\"";
     let message = message_of(&free(COULOMB, temperature), &[]);
-    let expected = "[effects.temperature] stands beside balls.motion = \"free\", which is not computed; remove it, or use \
-                    balls.motion = \"kinematic\"";
+    let expected = "[effects.temperature] stands beside balls.motion = \"free\", which is not computed; remove it, or \
+                    use balls.motion = \"kinematic\"";
     assert!(message.contains(expected), "{message}");
     let oil = "[lubricant]\nviscosity = \"0.03 Pa s\"\npressure_coefficient = \"2e-8 1/Pa\"";
     let message = message_of(&free(COULOMB, oil), &[]);
