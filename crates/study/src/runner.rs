@@ -28,7 +28,7 @@ use super::plan::{Plan, Point, arguments};
 use super::record::{self, Cost, LOG, RUN, Record};
 
 /// How often a lock is tried, and how long to wait between.
-const LOCK_TRIES: usize = 10;
+const LOCK_TRIES: usize = 30;
 const LOCK_WAIT: Duration = Duration::from_millis(100);
 /// Exit code of a run that was asked to stop.
 const STOPPED: i32 = 75;

@@ -167,8 +167,11 @@ impl RawMaterial {
             RawMaterial::Numbers(numbers) => return numbers.check(table, problems),
         };
         let m = named.material;
+        let expansion = m
+            .expansion
+            .map_or(String::new(), |alpha| format!(", expansion {alpha:e} /K"));
         assumed.push(format!(
-            "{table} is {}: Young's modulus {} GPa, Poisson's ratio {}, density {} kg/m3 ({})",
+            "{table} is {}: Young's modulus {} GPa, Poisson's ratio {}, density {} kg/m3{expansion} ({})",
             named.names[0],
             1e-9 * m.young_modulus,
             m.poisson_ratio,

@@ -191,10 +191,10 @@ fn what_is_filled_in_is_said() {
          bearing.inner_curvature_ratio changes it",
         "bearing: pitch_diameter and contact_angle place the raceways at 47.9826 mm and 72.0731 mm; radial clearance \
          278.5 um, free contact angle 40.000 deg",
-        "materials.rings is bearing steel: Young's modulus 207 GPa, Poisson's ratio 0.3, density 7800 kg/m3 (Harris, \
-         Rolling Bearing Analysis)",
-        "materials.balls is silicon nitride: Young's modulus 310 GPa, Poisson's ratio 0.26, density 3200 kg/m3 (SKF, \
-         Super-precision bearings; Harris)",
+        "materials.rings is bearing steel: Young's modulus 207 GPa, Poisson's ratio 0.3, density 7800 kg/m3, \
+         expansion 1.2e-5 /K (Harris, Rolling Bearing Analysis)",
+        "materials.balls is silicon nitride: Young's modulus 310 GPa, Poisson's ratio 0.26, density 3200 kg/m3, \
+         expansion 3e-6 /K (SKF, Super-precision bearings; Harris)",
         "outer.section.shoulder_diameters are 65.7629 mm on both sides, 0.26 ball diameters above the groove; a \
          catalogue \
          or a drawing may give others",
