@@ -29,6 +29,7 @@ mod results;
 mod resume;
 mod schedules;
 mod sectors;
+mod small_files;
 mod statics;
 mod stress;
 mod stress_histories;

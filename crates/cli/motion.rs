@@ -256,11 +256,12 @@ impl March<'_> {
         let n_steps = self.dynamic.n_steps;
         let first = self.state.step + 1;
         for n in first..=n_steps {
-            // A step whose file is there without its state is not one to stop at: the next one is.
-            if let Some(reason) = stop.reason()
+            let reason = stop.reason();
+            // A step whose file is there without its state is not one to stop at: the next one will be.
+            if let Some(reason) = &reason
                 && (self.last_file != Some(n - 1) || self.last_state == Some(n - 1))
             {
-                return Err(self.stopped(&reason));
+                return Err(self.stopped(reason));
             }
             if n == first || n % PROGRESS_STEPS == 1 {
                 progress.stage(&format!(
@@ -288,7 +289,10 @@ impl March<'_> {
                 agree(self.write_tables())?;
             }
             if n == n_steps || n.is_multiple_of(self.dynamic.output_every) {
-                let restart = self.restart_at(n);
+                let restart = match reason {
+                    Some(_) => RestartState::Stored,
+                    None => self.restart_at(n),
+                };
                 agree(self.write_fields(restart))?;
             }
             progress.advance();

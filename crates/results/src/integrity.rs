@@ -88,8 +88,7 @@ pub fn doubt(path: &Path, stamp: FileStamp, step: u64) -> anyhow::Result<Option<
 }
 
 /// The newest step before `step` that a run can go on from and of which all tables are as written. What a table lost
-/// at one step it lacks
-/// at all later ones.
+/// at one step it lacks at all later ones.
 pub fn newest_agreeing(dir: &Path, step: u64) -> Option<u64> {
     let mut steps = committed_steps(dir).ok()?;
     steps.retain(|&n| n < step);
