@@ -23,7 +23,8 @@ const ROUNDED_LEVEL: u8 = 1;
 const ERROR_BOUND: &str = "error_bound";
 /// The field that every step has.
 const DISPLACEMENT: &str = "/VTKHDF/PointData/displacement";
-/// Rows of a chunk of vectors that are mostly zero: more than most bearings have balls.
+/// Rows of a chunk of vectors that are mostly zero: more than most bearings have balls. An index of chunks takes 2.6 kB,
+/// so fewer rows are stored as others are.
 const SPARSE_ROWS: usize = 128;
 /// Bytes that a byte of deflated data can stand for at most (zlib, "Technical Details": 1032).
 const MOST_DEFLATED: u64 = 1032;
@@ -112,6 +113,9 @@ pub(crate) fn write_field(
             let bound_of = file.dataset(below(path))?.new_attr::<f64>();
             bound_of.create(ERROR_BOUND)?.write_scalar(&bound.bound())
         }
+        Coding::MostlyZero if rows <= SPARSE_ROWS => {
+            write_values(file, path, &shape, field.values, Precision::F64, compression)
+        }
         Coding::MostlyZero => write_mostly_zero(file, path, field.values.as_chunks::<VECTOR>().0),
     }
 }
@@ -137,10 +141,8 @@ fn write_values(
 /// there, which is zero.
 fn write_mostly_zero(file: &Group, path: &str, vectors: &[[f64; VECTOR]]) -> hdf5::Result<()> {
     let shape = [vectors.len(), VECTOR];
-    let mut builder = file.new_dataset::<f64>().obj_track_times(false);
-    if !vectors.is_empty() {
-        builder = builder.chunk([vectors.len().min(SPARSE_ROWS), VECTOR]);
-    }
+    let builder = file.new_dataset::<f64>().obj_track_times(false);
+    let builder = builder.chunk([SPARSE_ROWS, VECTOR]);
     let dataset = builder.shape(shape).create(below(path))?;
     for (i, chunk) in vectors.chunks(SPARSE_ROWS).enumerate() {
         let first = i * SPARSE_ROWS;

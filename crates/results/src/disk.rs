@@ -18,8 +18,10 @@ const VECTOR: u64 = 3;
 /// What rounded stress shrinks to at least, as 100 divided by this: measured 2.1 times at 1 kPa, 3.2 at 10 kPa; the
 /// forecast counts on 2.
 const ROUNDED_GAIN: u64 = 2;
-/// Bytes of forces on balls: four chunks of 128 rows, two of each array, and their index.
-const FORCE_BYTES: u64 = 4 * 128 * 3 * 8 + 8_000;
+/// Points up to which forces on balls are stored in full; beyond, chunks of so many of which at most two hold balls.
+const FORCE_CHUNK: u64 = 128;
+/// Bytes of the index of such chunks.
+const FORCE_INDEX: u64 = 2_600;
 /// Numbers of a stress tensor.
 const TENSOR: u64 = 6;
 /// Bytes of one ball in the state of a motion: position, velocity, and force, angle and approach of two contacts.
@@ -52,7 +54,7 @@ impl Forecast {
         let n_points = rows(&fields::bodies(model), |body| body.points.len());
         let state = state_bytes(scene, model);
         let step = n_points * VECTOR * bytes_of(scene.output.displacement)
-            + FORCE_BYTES
+            + force_bytes(n_points)
             + stress_bytes(scene, model)
             + state
             + FRAME_BYTES
@@ -124,6 +126,15 @@ fn files_and_rows(every: u64, n: u64, done: u64) -> (u64, u64) {
 fn n_states(dynamic: &Dynamic, restart_every: u64, done: u64) -> u64 {
     let every = dynamic.output_every.saturating_mul(restart_every);
     files_and_rows(every, dynamic.n_steps, done).0
+}
+
+/// Bytes of the forces of both rings on the balls.
+fn force_bytes(n_points: u64) -> u64 {
+    let (rows, index) = match n_points <= FORCE_CHUNK {
+        true => (n_points, 0),
+        false => (2 * FORCE_CHUNK, FORCE_INDEX),
+    };
+    2 * (rows * VECTOR * 8 + index)
 }
 
 /// Bytes of a number.
