@@ -89,8 +89,8 @@ fn small_files_hold_the_same_run() {
     }
 }
 
-/// Wrong: a kill would lose more than the steps since the last state, a resumed run would come to other bits or not say
-/// where it starts.
+/// Wrong: a kill would lose more than the steps since the last state, a resumed run would come to other bits, or would
+/// not say where it starts.
 #[test]
 fn a_kill_between_states_repeats_the_steps_to_the_same_bits() {
     let dir = small();
