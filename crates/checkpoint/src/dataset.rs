@@ -23,8 +23,8 @@ const ROUNDED_LEVEL: u8 = 1;
 const ERROR_BOUND: &str = "error_bound";
 /// The field that every step has.
 const DISPLACEMENT: &str = "/VTKHDF/PointData/displacement";
-/// Rows of a chunk of vectors that are mostly zero: more than most bearings have balls. An index of chunks takes 2.6 kB,
-/// so fewer rows are stored as others are.
+/// Rows of a chunk of vectors that are mostly zero: more than most bearings have balls. An index of chunks takes 2.6
+/// kB, so fewer rows are stored as others are.
 const SPARSE_ROWS: usize = 128;
 /// Bytes that a byte of deflated data can stand for at most (zlib, "Technical Details": 1032).
 const MOST_DEFLATED: u64 = 1032;
