@@ -28,7 +28,7 @@ impl Random {
     }
 }
 
-fn signal(child: &Child, name: &str) {
+pub fn signal(child: &Child, name: &str) {
     let kill = Command::new("kill")
         .args([&format!("-{name}"), &child.id().to_string()])
         .status();
@@ -36,7 +36,7 @@ fn signal(child: &Child, name: &str) {
 }
 
 /// Waits until the run takes steps or ends; returns the rest of its messages.
-fn wait_for_steps(child: &mut Child) -> impl Read + use<> {
+pub fn wait_for_steps(child: &mut Child) -> impl Read + use<> {
     let mut lines = BufReader::new(child.stderr.take().unwrap());
     let mut line = "the start".to_string();
     // Progress is "[time] done/all what", with the number of the step when it takes steps.
@@ -49,7 +49,7 @@ fn wait_for_steps(child: &mut Child) -> impl Read + use<> {
     lines
 }
 
-fn outcome_of(mut child: Child, mut messages: impl Read) -> Outcome {
+pub fn outcome_of(mut child: Child, mut messages: impl Read) -> Outcome {
     let mut stderr = String::new();
     messages.read_to_string(&mut stderr).unwrap();
     Outcome {

@@ -31,6 +31,7 @@ mod results;
 mod resume;
 mod schedules;
 mod sectors;
+mod small_files;
 mod statics;
 mod stress;
 mod stress_histories;

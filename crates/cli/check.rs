@@ -88,8 +88,12 @@ pub fn check(path: &Path, overrides: &[String]) -> Result<(), Failure> {
     let free = disk::free_bytes(Path::new(".")).map_or(String::new(), |free| {
         format!("; the disk of this folder has {} free", disk::size(free))
     });
+    let states = match forecast.n_states < forecast.n_files {
+        true => format!(" ({} with a restart state)", forecast.n_states),
+        false => String::new(),
+    };
     print::line(format_args!(
-        "output   about {} per step file, {} step files, {} in all{free}",
+        "output   about {} per step file, {} step files{states}, {} in all{free}",
         disk::size(forecast.step),
         forecast.n_files,
         disk::size(forecast.total)

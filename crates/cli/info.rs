@@ -5,8 +5,8 @@ use std::path::Path;
 
 use anyhow::{Context, anyhow};
 use checkpoint::{
-    FileDescription, committed_steps, describe, open_regular, read_mesh, read_step, read_step_time,
-    require_run, run_of, step_file_name,
+    FileDescription, committed_steps, describe, has_state, open_regular, read_mesh, read_step,
+    read_step_time, require_run, run_of, step_file_name,
 };
 use comm::print;
 use results::disk::size;
@@ -99,7 +99,7 @@ fn line(name: &str, text: &str) {
 fn folder(dir: &Path, depth: Depth) -> Result<(), Failure> {
     let steps = committed_steps(dir)?;
     line("folder", &dir.display().to_string());
-    let (mut damaged, mut sound, mut bytes) = (Vec::new(), Vec::new(), 0);
+    let (mut damaged, mut sound, mut states, mut bytes) = (Vec::new(), Vec::new(), Vec::new(), 0);
     let run = run_of(dir)?;
     for &step in &steps {
         let path = dir.join(step_file_name(step));
@@ -109,7 +109,10 @@ fn folder(dir: &Path, depth: Depth) -> Result<(), Failure> {
             Depth::Bytes => read_step(&path).map(|record| record.time),
         };
         match require_run(&path, run.as_deref()).and_then(|()| time()) {
-            Ok(time) => sound.push((step, time)),
+            Ok(time) => {
+                sound.push((step, time));
+                states.extend(has_state(&path)?.then_some(step));
+            }
             Err(error) => damaged.push(error.to_string()),
         }
     }
@@ -133,6 +136,9 @@ fn folder(dir: &Path, depth: Depth) -> Result<(), Failure> {
                 ),
             );
         }
+    }
+    if states.len() < sound.len() {
+        line("restart", &restart_text(&states));
     }
     match read_mesh(dir) {
         Ok(grid) => line(
@@ -164,6 +170,20 @@ fn folder(dir: &Path, depth: Depth) -> Result<(), Failure> {
     }
 }
 
+/// Steps that a run can go on from, where others cannot.
+fn restart_text(states: &[u64]) -> String {
+    const MOST: usize = 8;
+    let names = |steps: &[u64]| steps.iter().map(u64::to_string).collect::<Vec<_>>().join(", ");
+    match states.split_last_chunk::<2>() {
+        _ if states.is_empty() => "no step holds a state; nothing can be resumed".to_string(),
+        Some((_, last)) if states.len() > MOST => {
+            let (first, n) = (names(&states[..MOST - 2]), states.len());
+            format!("steps {first}, ... {} ({n} in all) hold a state", names(last))
+        }
+        _ => format!("steps {} hold a state", names(states)),
+    }
+}
+
 /// How the run ended, who writes, what was moved aside.
 fn folder_state(dir: &Path) -> Result<(), Failure> {
     if let Ok(text) = std::fs::read_to_string(dir.join(SUMMARY_FILE)) {
@@ -191,6 +211,9 @@ fn file(path: &Path) -> Result<(), Failure> {
     line("file", &format!("{}, {}", path.display(), size(found.bytes)));
     if let Some((step, time)) = found.step {
         line("step", &format!("{step}, t = {time:?} s"));
+        if !has_state(path)? {
+            line("restart", "no state; a run goes on from an earlier step");
+        }
     }
     about(&found);
     for array in &found.arrays {

@@ -16,7 +16,7 @@ use results::disk::Forecast;
 use results::failure::{Failure, agree, of_all};
 use results::files::{Files, ResumedFrom};
 use results::memory::Forecasts;
-use results::motion_fields::Recorded;
+use results::motion_fields::{Recorded, RestartState};
 use results::shown::Shown;
 use results::snapshot::Snapshot;
 use results::stop::Stop;
@@ -77,11 +77,12 @@ pub fn run(
         laps,
         watch: Watch::new(model.geometry.n_balls),
         last_file: None,
+        last_state: None,
         last_row: None,
         dir,
     };
     agree(march.write_tables())?;
-    agree(march.write_fields())?;
+    agree(march.write_fields(RestartState::Stored))?;
     let costs = StartCosts {
         read,
         forecast: Forecasts::of_motion(settled.forecast, &motion, dynamic),
@@ -126,6 +127,7 @@ pub fn resume(
         motion: &motion,
         files,
         last_file: Some(state.step),
+        last_state: Some(state.step),
         last_row: Some(state.step),
         state,
         cache: StepCache::default(),
@@ -187,6 +189,8 @@ struct March<'a> {
     watch: Watch,
     /// The last step handed over to be written.
     last_file: Option<u64>,
+    /// The last step handed over with its restart state.
+    last_state: Option<u64>,
     /// The last step with rows in the tables.
     last_row: Option<u64>,
     dir: &'a Path,
@@ -252,8 +256,12 @@ impl March<'_> {
         let n_steps = self.dynamic.n_steps;
         let first = self.state.step + 1;
         for n in first..=n_steps {
-            if let Some(reason) = stop.reason() {
-                return Err(self.stopped(&reason));
+            let reason = stop.reason();
+            // A step whose file is there without its state is not one to stop at: the next one will be.
+            if let Some(reason) = &reason
+                && (self.last_file != Some(n - 1) || self.last_state == Some(n - 1))
+            {
+                return Err(self.stopped(reason));
             }
             if n == first || n % PROGRESS_STEPS == 1 {
                 progress.stage(&format!(
@@ -281,16 +289,33 @@ impl March<'_> {
                 agree(self.write_tables())?;
             }
             if n == n_steps || n.is_multiple_of(self.dynamic.output_every) {
-                agree(self.write_fields())?;
+                let restart = match reason {
+                    Some(_) => RestartState::Stored,
+                    None => self.restart_at(n),
+                };
+                agree(self.write_fields(restart))?;
             }
             progress.advance();
         }
         Ok(())
     }
 
+    /// Whether the file of a step that is written as the scene asks has the state: every
+    /// `output.restart_every`-th of them, and that of the end.
+    fn restart_at(&self, step: u64) -> RestartState {
+        let every = self
+            .dynamic
+            .output_every
+            .saturating_mul(self.scene.output.restart_every);
+        match step == self.dynamic.n_steps || step.is_multiple_of(every) {
+            true => RestartState::Stored,
+            false => RestartState::Left,
+        }
+    }
+
     /// Saves the state and says that the run can be resumed.
     fn stopped(&mut self, reason: &str) -> Failure {
-        if let Err(error) = agree(self.write_fields()) {
+        if let Err(error) = agree(self.write_fields(RestartState::Stored)) {
             return error.context(format!("{reason}, but the state could not be saved"));
         }
         let n = self.state.step;
@@ -305,12 +330,13 @@ impl March<'_> {
     /// Saves the last good state and says where the failed step was.
     fn failed(&mut self, error: DynamicsError) -> Failure {
         let failure = of_all(Failure::solving(error));
-        let saved = self.write_fields();
+        let saved = self.write_fields(RestartState::Stored);
         let n = self.state.step + 1;
         let place = format!("step {n}, t = {:.6e} s", self.motion.time(n));
         match saved {
             Ok(()) => failure.context(format!(
-                "{place}; the last good state is in {}",
+                "{place}; the last good state{} is in {}",
+                self.earlier_state(),
                 self.dir.display()
             )),
             Err(unsaved) => failure.context(format!(
@@ -320,10 +346,19 @@ impl March<'_> {
         }
     }
 
+    /// Which step has the last state in a file, if it is an earlier one: the file of the last good step was written
+    /// without.
+    fn earlier_state(&self) -> String {
+        match self.last_state {
+            Some(step) if step < self.state.step => format!(" that is stored, that of step {step},"),
+            _ => String::new(),
+        }
+    }
+
     /// Saves the last good state. The tables get a line of the state that was rejected, but it gets no step file.
     fn rejected(&mut self, state: MotionState, failure: Failure) -> Failure {
         let failure = of_all(failure);
-        let saved = self.write_fields();
+        let saved = self.write_fields(RestartState::Stored);
         self.state = state;
         match saved.and_then(|()| self.write_tables()) {
             Ok(()) => failure,
@@ -334,11 +369,14 @@ impl March<'_> {
         }
     }
 
-    /// Hands over the state to be written as a step file, unless it was; ranks recover its stress first. To be called
+    /// Hands over the step to be written as a file, unless it was; ranks recover its stress first. To be called
     /// by all ranks or none: they must have agreed on what was written before.
-    fn write_fields(&mut self) -> Result<(), Failure> {
+    fn write_fields(&mut self, restart: RestartState) -> Result<(), Failure> {
         if self.last_file == Some(self.state.step) {
             return Ok(());
+        }
+        if restart == RestartState::Stored {
+            self.last_state = Some(self.state.step);
         }
         if self.last_row != Some(self.state.step) {
             // A step file vouches for the tables up to its step.
@@ -353,11 +391,13 @@ impl March<'_> {
         }
         let time = motion.time(state.step);
         self.files.write_profiles(state.step, time, None, &shown)?;
-        let shown = Recorded::new(model, motion, state, gathered, self.scene)?;
+        let shown = Recorded::new(model, motion, state, gathered, self.scene, restart)?;
         let (newton, watch) = (self.newton, self.watch.to_numbers());
         self.files.write_fields_later(move |stress| {
             let mut record = shown.record(stress);
-            Stored::add_counts(&mut record, newton, watch);
+            if restart == RestartState::Stored {
+                Stored::add_counts(&mut record, newton, watch);
+            }
             record
         })?;
         self.last_file = Some(self.state.step);

@@ -10,7 +10,8 @@ use std::time::Instant;
 
 use anyhow::{Context, anyhow};
 use checkpoint::{
-    FolderLock, Stamps, StateArray, StepRecord, newest_step, read_about, read_any_step, step_file_name,
+    FolderLock, Stamps, StateArray, StepRecord, has_state, newest_step, read_about, read_any_step,
+    step_file_name,
 };
 use clap::Args;
 use comm::{Communicator, print};
@@ -38,7 +39,7 @@ const WATCH: &str = "contacts_beyond_limits";
 pub struct Request {
     /// Folder of the results.
     dir: PathBuf,
-    /// Step to go on from; default: the newest whole one. Later steps are moved aside.
+    /// Step to go on from; default: the newest whole one with a restart state. Later steps are moved aside.
     #[arg(long)]
     step: Option<u64>,
     /// Changes how long the run goes or what it writes: dynamic.duration, dynamic.output_every, output.*, life.*.
@@ -222,7 +223,7 @@ fn acquire(dir: &Path) -> Result<Option<FolderLock>, Failure> {
     Ok(Some(lock))
 }
 
-/// The step asked for, or the newest whole one, with a warning for every newer one that is damaged.
+/// The step asked for, or the newest whole one with a state, with a warning for every newer one that is damaged.
 fn choose_step(dir: &Path, step: Option<u64>) -> Result<u64, Failure> {
     if checkpoint::is_unfinished_start(dir)? {
         return Err(anyhow!(
@@ -234,9 +235,12 @@ fn choose_step(dir: &Path, step: Option<u64>) -> Result<u64, Failure> {
         .into());
     }
     let Some(step) = step else {
+        let mut damaged = 0;
         let newest = newest_step(dir, |error| {
             print::note(format_args!("warning: {error}; falling back to the step before"));
+            damaged += 1;
         })?;
+        note_repeated(dir, newest.step, damaged)?;
         return Ok(newest.step);
     };
     let steps = checkpoint::committed_steps(dir)?;
@@ -266,7 +270,46 @@ fn choose_step(dir: &Path, step: Option<u64>) -> Result<u64, Failure> {
         }
         .into());
     }
+    require_state(dir, step, &steps)?;
     Ok(step)
+}
+
+/// Says which steps are computed again because they hold no state; `damaged` newer ones have been told of.
+fn note_repeated(dir: &Path, from: u64, damaged: usize) -> Result<(), Failure> {
+    let mut later = checkpoint::committed_steps(dir)?;
+    later.retain(|&step| step > from);
+    if let [.., last] = later[..]
+        && later.len() > damaged
+    {
+        print::note(format_args!(
+            "the newest restart state is that of step {from}; the steps after it, to {last}, are computed again"
+        ));
+    }
+    Ok(())
+}
+
+/// Fails unless the file of a step holds a state. One that is damaged says so when it is read.
+fn require_state(dir: &Path, step: u64, steps: &[u64]) -> Result<(), Failure> {
+    let has_state = |step: u64| has_state(&dir.join(step_file_name(step)));
+    if has_state(step).unwrap_or(true) {
+        return Ok(());
+    }
+    let with_state = |n: &&u64| has_state(**n).unwrap_or(false);
+    let (before, after) = steps.split_at(steps.partition_point(|&n| n <= step));
+    let near = [
+        before.iter().rev().find(with_state),
+        after.iter().find(with_state),
+    ];
+    let near: Vec<String> = near.into_iter().flatten().map(u64::to_string).collect();
+    let expected = match near.is_empty() {
+        true => "no step does; run the scene again".to_string(),
+        false => format!("the nearest that do are {}", near.join(" and ")),
+    };
+    Err(anyhow!(
+        "step {step} of {} holds no restart state (output.restart_every); {expected}",
+        dir.display()
+    )
+    .into())
 }
 
 fn note_version(about: &BTreeMap<String, String>) {

@@ -134,5 +134,7 @@ OUTPUTS = [
     motion("own_frame_points", dynamic(every=10)
            + '[output]\nstress = "integration_points"\ninner_ring = "own_frame"\nprecision = "f64"\n'),
     motion("compressed", dynamic(every=10) + "[output]\ncompression = 4\n"),
+    motion("small_files", dynamic(every=2)
+           + '[output]\ndisplacement = "f32"\nrestart_every = 3\nstress_error = "10 kPa"\n'),
 ]
 CASES = SUPPORTS + RINGS + INTEGRATORS + COURSES + RUNGS + OUTPUTS

@@ -1,5 +1,5 @@
-"""Reads every time step of a file as a user of VTK or ParaView does, and prints what it sees as JSON: the stress at a
-node and in the first cell, where the file has them.
+"""Reads every time step of a file as a user of VTK or ParaView does, and prints what it sees as JSON: stress and
+displacement at a node, stress in the first cell, and forces that are not zero, where the file has them.
 
     python3 read_steps.py vtk FILE NODE          VTK's own readers: .vtkhdf, .vtu
     pvpython read_steps.py paraview FILE NODE    what ParaView opens: .hdf.series, .pvd, .vtkhdf
@@ -22,8 +22,18 @@ def seen(data, time, node):
         "cells": data.GetNumberOfCells(),
         "bodies": sorted({int(body.GetTuple1(i)) for i in range(body.GetNumberOfTuples())}),
         "stress": None if stress is None else list(stress.GetTuple(node)),
+        "displacement": list(data.GetPointData().GetArray("displacement").GetTuple(node)),
+        "forces": [loaded(data.GetPointData().GetArray(name)) for name in ("force_inner", "force_outer")],
         "first_cell": None if cells is None else [cells.GetComponent(0, i) for i in range(cells.GetNumberOfComponents())],
     }
+
+
+def loaded(force):
+    """Points with a force, and the force."""
+    if force is None:
+        return None
+    rows = (force.GetTuple(i) for i in range(force.GetNumberOfTuples()))
+    return [[i, *row] for i, row in enumerate(rows) if any(row)]
 
 
 def with_vtk(path, node):

@@ -50,7 +50,7 @@ impl CellFields {
             name,
             n_components,
             values,
-            precision: storage.stress,
+            coding: storage.stress_coding(),
         };
         let stress = self.stress_integration_points.as_ref();
         let stress = stress.map(|s| derived("stress_integration_points", s.n_components(), &s.values[..]));

@@ -11,11 +11,21 @@ use hdf5::{Dataset, File, Group, Location};
 
 use crate::checksum::{CHECKSUM_ATTRIBUTE, Element, checksum};
 use crate::error::CheckpointError;
+use crate::record::{Field, VECTOR};
 use crate::regular::open_regular;
-use crate::storage::{Compression, Precision};
+use crate::storage::{Coding, Compression, ErrorBound, Precision};
 
 /// Size of a compressed chunk, bytes: large enough for the filters, small enough for their caches.
 const CHUNK_BYTES: usize = 1 << 18;
+/// Level of deflate for stress with an error bound where the scene asks for no other.
+const ROUNDED_LEVEL: u8 = 1;
+/// Attribute of such an array: the bound, Pa.
+const ERROR_BOUND: &str = "error_bound";
+/// The field that every step has.
+const DISPLACEMENT: &str = "/VTKHDF/PointData/displacement";
+/// Rows of a chunk of vectors that are mostly zero: more than most bearings have balls. An index of chunks takes 2.6
+/// kB, so fewer rows are stored as others are.
+const SPARSE_ROWS: usize = 128;
 /// Bytes that a byte of deflated data can stand for at most (zlib, "Technical Details": 1032).
 const MOST_DEFLATED: u64 = 1032;
 
@@ -79,28 +89,68 @@ pub(crate) fn write_array<T: Element>(
     write_checksum(&dataset, checksum(path, shape, values))
 }
 
-/// Writes an array over points or cells, `[n_rows][n_components]` or `[n_rows]` for one component, in a precision.
+/// Writes an array over points or cells, `[n_rows][n_components]` or `[n_rows]` for one component.
 pub(crate) fn write_field(
     file: &Group,
     path: &str,
-    n_components: usize,
+    field: &Field<'_>,
+    compression: Compression,
+) -> hdf5::Result<()> {
+    let rows = field.values.len() / field.n_components;
+    let shape = match field.n_components {
+        1 => vec![rows],
+        n => vec![rows, n],
+    };
+    match field.coding {
+        Coding::Full(precision) => write_values(file, path, &shape, field.values, precision, compression),
+        Coding::Rounded(precision, bound) => {
+            let level = match compression {
+                Compression::None => Compression::Deflate(ROUNDED_LEVEL),
+                chosen => chosen,
+            };
+            let rounded = bound.round(field.values);
+            write_values(file, path, &shape, &rounded, precision, level)?;
+            let bound_of = file.dataset(below(path))?.new_attr::<f64>();
+            bound_of.create(ERROR_BOUND)?.write_scalar(&bound.bound())
+        }
+        Coding::MostlyZero if rows <= SPARSE_ROWS => {
+            write_values(file, path, &shape, field.values, Precision::F64, compression)
+        }
+        Coding::MostlyZero => write_mostly_zero(file, path, field.values.as_chunks::<VECTOR>().0),
+    }
+}
+
+fn write_values(
+    file: &Group,
+    path: &str,
+    shape: &[usize],
     values: &[f64],
     precision: Precision,
     compression: Compression,
 ) -> hdf5::Result<()> {
-    let rows = values.len() / n_components;
-    let shape = if n_components == 1 {
-        vec![rows]
-    } else {
-        vec![rows, n_components]
-    };
     match precision {
-        Precision::F64 => write_array(file, path, &shape, values, compression),
+        Precision::F64 => write_array(file, path, shape, values, compression),
         Precision::F32 => {
             let rounded: Vec<f32> = values.iter().map(|&value| value as f32).collect();
-            write_array(file, path, &shape, &rounded, compression)
+            write_array(file, path, shape, &rounded, compression)
         }
     }
+}
+
+/// Writes vectors with their checksum. Chunks in which every bit is zero are not allocated: readers find the fill value
+/// there, which is zero.
+fn write_mostly_zero(file: &Group, path: &str, vectors: &[[f64; VECTOR]]) -> hdf5::Result<()> {
+    let shape = [vectors.len(), VECTOR];
+    let builder = file.new_dataset::<f64>().obj_track_times(false);
+    let builder = builder.chunk([SPARSE_ROWS, VECTOR]);
+    let dataset = builder.shape(shape).create(below(path))?;
+    for (i, chunk) in vectors.chunks(SPARSE_ROWS).enumerate() {
+        let first = i * SPARSE_ROWS;
+        if chunk.as_flattened().iter().any(|value| value.to_bits() != 0) {
+            dataset.write_slice::<_, f64, _, _>(chunk, (first..first + chunk.len(), ..))?;
+        }
+    }
+    write_checksum(&dataset, checksum(path, &shape, vectors.as_flattened()))
 }
 
 /// Writes a text as an attribute of its group or data set, with its checksum beside it. As a data set it would cost 2
@@ -221,7 +271,10 @@ impl<'a> CheckedFile<'a> {
         let bytes = bytes_of(&shape);
         // A chunk is unpacked as a whole.
         let chunk = stored.chunk().map_or(Some(0), |chunk| bytes_of(&chunk));
+        let is_sparse = stored.is_chunked() && bytes.is_some_and(|bytes| bytes > in_file);
         let most = match stored.filters().is_empty() {
+            // Zeros are not in the file; displacement, which all steps have in full, has as many rows.
+            true if is_sparse => self.most_sparse(dataset)?,
             true => in_file,
             false => in_file.saturating_mul(MOST_DEFLATED),
         };
@@ -237,6 +290,38 @@ impl<'a> CheckedFile<'a> {
             self.length
         );
         Err(CheckpointError::malformed(self.path, what))
+    }
+
+    /// Bytes that vectors of which most are zero can have: those of a displacement in f64.
+    fn most_sparse(&self, dataset: &str) -> Result<u64, CheckpointError> {
+        let dense = |stored: &Dataset| !(stored.is_chunked() && stored.filters().is_empty());
+        let stored = self.file.dataset(below(DISPLACEMENT));
+        let stored = stored.ok().filter(dense).ok_or_else(|| {
+            let what = format!("data set {dataset} is sparse beside no {DISPLACEMENT} that is not");
+            CheckpointError::malformed(self.path, what)
+        })?;
+        self.require_size(DISPLACEMENT, &stored)?;
+        Ok((stored.size() * size_of::<f64>()) as u64)
+    }
+
+    /// Bound of the errors of an array; None where it was written as it was.
+    pub fn error_bound(&self, dataset: &str) -> Result<Option<ErrorBound>, CheckpointError> {
+        let read = || {
+            let stored = self.file.dataset(below(dataset))?;
+            match stored.attr_names()?.iter().any(|name| name == ERROR_BOUND) {
+                true => stored.attr(ERROR_BOUND)?.read_scalar::<f64>().map(Some),
+                false => Ok(None),
+            }
+        };
+        let bound = read().map_err(CheckpointError::hdf("read", self.path))?;
+        match bound.map(|bound| (bound, ErrorBound::new(bound))) {
+            None => Ok(None),
+            Some((_, Some(bound))) => Ok(Some(bound)),
+            Some((bound, None)) => Err(CheckpointError::malformed(
+                self.path,
+                format!("data set {dataset} has the error bound {bound}, expected a positive number"),
+            )),
+        }
     }
 
     /// Shape and row-major values of a floating-point array of either precision.

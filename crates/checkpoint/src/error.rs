@@ -23,6 +23,12 @@ pub enum CheckpointError {
         /// The folder.
         path: PathBuf,
     },
+    /// The folder to resume holds steps, but no state.
+    #[error("no step in folder {} holds a restart state; run the scene again", path.display())]
+    NoState {
+        /// The folder.
+        path: PathBuf,
+    },
     /// The step asked for is not there.
     #[error("folder {} has no step {step}; committed steps are {first} to {last}", path.display())]
     UnknownStep {

@@ -13,7 +13,7 @@ use crate::pack::pack_range;
 use crate::record::StepRecord;
 use crate::seal::verify_structure;
 use crate::series::{SERIES_FILE, write_series};
-use crate::step::{read_step, read_step_number, read_step_time, require_run_in, run_of_file};
+use crate::step::{has_state, read_step, read_step_number, read_step_time, require_run_in, run_of_file};
 
 /// File name of a step: `step_000042.hdf`; more than six digits when needed.
 pub fn step_file_name(step: u64) -> String {
@@ -74,18 +74,27 @@ pub(crate) fn sound_steps(dir: &Path, steps: &[u64]) -> (Vec<(u64, f64)>, Vec<Ch
     (sound, damaged)
 }
 
-/// The newest step that is whole, every byte verified. `skipped` hears of newer ones that are not.
+/// The newest step that a run can go on from: whole, every byte verified, and with a state. `skipped` hears of newer
+/// ones that are damaged.
 pub fn newest_step(
     dir: &Path,
     mut skipped: impl FnMut(&CheckpointError),
 ) -> Result<StepRecord, CheckpointError> {
     let path = dir.to_path_buf();
-    let mut error = CheckpointError::NoSteps { path };
-    let run = run_of(dir)?;
-    for &step in committed_steps(dir)?.iter().rev() {
+    let (steps, run) = (committed_steps(dir)?, run_of(dir)?);
+    let mut error = match steps.is_empty() {
+        true => CheckpointError::NoSteps { path },
+        false => CheckpointError::NoState { path },
+    };
+    for &step in steps.iter().rev() {
         let path = dir.join(step_file_name(step));
-        match require_run(&path, run.as_deref()).and_then(|()| read_step(&path)) {
-            Ok(record) => return Ok(record),
+        let read = || match has_state(&path)? {
+            true => read_step(&path).map(Some),
+            false => Ok(None),
+        };
+        match require_run(&path, run.as_deref()).and_then(|()| read()) {
+            Ok(Some(record)) => return Ok(record),
+            Ok(None) => {}
             Err(damage) => {
                 skipped(&damage);
                 error = damage;

@@ -66,5 +66,5 @@ pub use output::{Output, Resumed};
 pub use pack::{all_steps, pack_steps, packs, read_any_step, unpack_steps};
 pub use record::{PointFields, StateArray, StepRecord};
 pub use regular::{open_own, open_regular};
-pub use step::{read_about, read_stamps, read_step, read_step_time};
-pub use storage::{Compression, Precision, Storage};
+pub use step::{has_state, read_about, read_stamps, read_step, read_step_time};
+pub use storage::{Compression, ErrorBound, Precision, Storage};

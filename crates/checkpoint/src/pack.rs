@@ -20,8 +20,8 @@ use crate::lock::FolderLock;
 use crate::record::StepRecord;
 use crate::seal::{verify_seal, verify_structure};
 use crate::step::{
-    Origin, fill_step, read_mesh_hash, read_record, read_step, read_storage, read_texts, read_time,
-    read_version, require_run_in, run_of_file, write_step_file,
+    Origin, fill_step, has_state, read_mesh_hash, read_record, read_step, read_storage, read_texts,
+    read_time, read_version, require_run_in, run_of_file, write_step_file,
 };
 use crate::storage::Storage;
 
@@ -163,12 +163,14 @@ pub(crate) fn sound_places(dir: &Path) -> Result<SoundPlaces, CheckpointError> {
     Ok((sound, damaged))
 }
 
-/// Puts all committed steps but the newest `keep` (at least one) into packs of `per_file` steps. Returns how many steps
-/// were packed. The run that writes them must have ended: the lock says so.
+/// Puts all committed steps but the newest `keep` (at least one) into packs of `per_file` steps; the newest step with a
+/// state and all after it stay besides, so that the run can go on. Returns how many steps were packed. The run that
+/// writes them must have ended: the lock says so.
 pub fn pack_steps(lock: &FolderLock, keep: usize, per_file: usize) -> Result<usize, CheckpointError> {
     let dir = lock.dir();
     let mut steps = committed_steps(dir)?;
-    steps.truncate(steps.len().saturating_sub(keep.max(1)));
+    let most = steps.len().saturating_sub(keep.max(1));
+    steps.truncate(most.min(newest_state(dir, &steps).unwrap_or(most)));
     let mut packed = BTreeMap::new();
     for (path, known) in packs(dir)? {
         packed.extend(known.into_iter().map(|step| (step, path.clone())));
@@ -198,6 +200,12 @@ pub fn pack_steps(lock: &FolderLock, keep: usize, per_file: usize) -> Result<usi
     }
     atomic::sync_dir(dir)?;
     Ok(steps.len())
+}
+
+/// Place among `steps` of the newest with a state. A damaged one has none to go on from.
+fn newest_state(dir: &Path, steps: &[u64]) -> Option<usize> {
+    let has_state = |&step: &u64| has_state(&dir.join(step_file_name(step))).unwrap_or(false);
+    steps.iter().rposition(has_state)
 }
 
 /// Writes a new pack of these steps, every byte of which is verified before and after.

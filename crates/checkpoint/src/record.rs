@@ -5,7 +5,10 @@ use std::collections::BTreeMap;
 use crate::cells::CellFields;
 use crate::error::CheckpointError;
 use crate::growing::Stamps;
-use crate::storage::{Precision, Storage};
+use crate::storage::{Coding, Precision, Storage};
+
+/// Components of a vector.
+pub(crate) const VECTOR: usize = 3;
 
 /// Everything written for one step.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -20,7 +23,8 @@ pub struct StepRecord {
     pub cells: CellFields,
     /// Text of the scene the run was started with, so that a step file alone can be resumed.
     pub scene: String,
-    /// Everything else that evolves, by name (letters, digits, `_`). Never shown by viewers.
+    /// Everything else that evolves, by name (letters, digits, `_`). Never shown by viewers. Empty in a step that
+    /// nothing can go on from.
     pub state: BTreeMap<String, StateArray>,
     /// The tables of the run up to this step; None where the version that wrote the step kept no stamps.
     pub tables: Option<Stamps>,
@@ -31,7 +35,7 @@ pub struct StepRecord {
 /// statistics in a viewer stay finite: stress on balls, ball forces on rings.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct PointFields {
-    /// Displacement, m, `[n_points][3]`, f64.
+    /// Displacement, m, `[n_points][3]`, in the precision of [`Storage::displacement`].
     pub displacement: Vec<[f64; 3]>,
     /// Velocity, m/s, `[n_points][3]`, f64.
     pub velocity: Option<Vec<[f64; 3]>>,
@@ -41,9 +45,9 @@ pub struct PointFields {
     pub stress: Option<Vec<[f64; 6]>>,
     /// Von Mises stress, Pa, `[n_points]`, in the precision of [`Storage::stress`].
     pub von_mises: Option<Vec<f64>>,
-    /// Force of the inner ring on each ball, N, `[n_points][3]`, zero on points of rings, f64.
+    /// Force of the inner ring on each ball, N, `[n_points][3]`, zero on points of rings, f64; zeros take no place.
     pub force_inner: Option<Vec<[f64; 3]>>,
-    /// Force of the outer ring on each ball, N, `[n_points][3]`, zero on points of rings, f64.
+    /// Force of the outer ring on each ball, N, `[n_points][3]`, zero on points of rings, f64; zeros take no place.
     pub force_outer: Option<Vec<[f64; 3]>>,
 }
 
@@ -62,7 +66,7 @@ pub(crate) struct Field<'a> {
     pub n_components: usize,
     /// Row-major values, `[n_rows][n_components]`, flat; a row is a point or a cell.
     pub values: &'a [f64],
-    pub precision: Precision,
+    pub coding: Coding,
 }
 
 /// Name, components per row, and row-major values of fields.
@@ -85,18 +89,19 @@ impl PointFields {
             name,
             n_components,
             values,
-            precision: storage.stress,
+            coding: storage.stress_coding(),
         };
-        let mut fields = vec![exact_vector("displacement", &self.displacement)];
+        let (exact, displacement) = (Coding::Full(Precision::F64), Coding::Full(storage.displacement));
+        let mut fields = vec![vector("displacement", &self.displacement, displacement)];
         fields.extend(
             self.velocity
                 .as_deref()
-                .map(|rows| exact_vector("velocity", rows)),
+                .map(|rows| vector("velocity", rows, exact)),
         );
         fields.extend(
             self.acceleration
                 .as_deref()
-                .map(|rows| exact_vector("acceleration", rows)),
+                .map(|rows| vector("acceleration", rows, exact)),
         );
         fields.extend(
             self.stress
@@ -111,23 +116,23 @@ impl PointFields {
         fields.extend(
             self.force_inner
                 .as_deref()
-                .map(|rows| exact_vector("force_inner", rows)),
+                .map(|rows| vector("force_inner", rows, Coding::MostlyZero)),
         );
         fields.extend(
             self.force_outer
                 .as_deref()
-                .map(|rows| exact_vector("force_outer", rows)),
+                .map(|rows| vector("force_outer", rows, Coding::MostlyZero)),
         );
         fields
     }
 }
 
-fn exact_vector<'a>(name: &'static str, rows: &'a [[f64; 3]]) -> Field<'a> {
+fn vector<'a>(name: &'static str, rows: &'a [[f64; 3]], coding: Coding) -> Field<'a> {
     Field {
         name,
-        n_components: 3,
+        n_components: VECTOR,
         values: rows.as_flattened(),
-        precision: Precision::F64,
+        coding,
     }
 }
 

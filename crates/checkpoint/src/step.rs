@@ -12,7 +12,7 @@
 //!                         tables: a line `CRC LENGTH NAME` for each table of the run, of its start up to this step;
 //!                         absent in files of earlier versions
 //!   step                  [1], i64
-//!   state/NAME            the arrays of the state, [n], f64 or i64
+//!   state/NAME            the arrays of the state, [n], f64 or i64; none in a step that no run goes on from
 //!   about                 texts about the run as attributes, the same in every step
 //! ```
 //! `contents` makes the loss of a whole data set an error instead of a field that is silently absent.
@@ -92,8 +92,7 @@ pub(crate) fn fill_step(
     for (folder, fields) in fields {
         for field in fields {
             let path = format!("{folder}/{}", field.name);
-            let (n, compression) = (field.n_components, storage.compression);
-            write_field(group, &path, n, field.values, field.precision, compression)?;
+            write_field(group, &path, &field, storage.compression)?;
             contents.push(path);
         }
     }
@@ -133,7 +132,8 @@ fn write_state<T: Element>(file: &hdf5::Group, path: &str, values: &[T]) -> hdf5
 }
 
 /// Reads a step file, verifying its seal and the checksum of every data set. Stress comes back as it was stored:
-/// rounded to f32 unless the run chose f64; everything else bit for bit.
+/// rounded to f32 unless the run chose f64, and to the run's error bound; displacement
+/// is rounded if the run chose f32. Everything else comes back bit for bit.
 pub fn read_step(path: &Path) -> Result<StepRecord, CheckpointError> {
     verify_seal(path)?;
     read_record(&CheckedFile::open(path)?, path)
@@ -175,6 +175,13 @@ pub(crate) fn read_record(file: &CheckedFile, path: &Path) -> Result<StepRecord,
 pub fn read_step_time(path: &Path) -> Result<f64, CheckpointError> {
     verify_structure(path)?;
     CheckedFile::open(path)?.scalar(TIME)
+}
+
+/// Whether a step file holds a state, from which a run can go on. The file's structure is verified.
+pub fn has_state(path: &Path) -> Result<bool, CheckpointError> {
+    verify_structure(path)?;
+    let contents = CheckedFile::open(path)?.text(CONTENTS)?;
+    Ok(contents.lines().any(|dataset| dataset.starts_with(STATE)))
 }
 
 /// What a step file says about its run, by name; see [`crate::Output::describe`].
@@ -251,9 +258,12 @@ pub(crate) fn read_storage(file: &CheckedFile) -> Result<Storage, CheckpointErro
         format!("{CELL_DATA}/von_mises_largest"),
     ];
     let stress = stress.iter().find(|path| file.has(path));
+    let displacement = format!("{POINT_DATA}/displacement");
     Ok(Storage {
         stress: stress.map_or(Ok(Precision::default()), |path| file.precision(path))?,
-        compression: file.compression(&format!("{POINT_DATA}/displacement"))?,
+        stress_error: stress.map_or(Ok(None), |path| file.error_bound(path))?,
+        displacement: file.precision(&displacement)?,
+        compression: file.compression(&displacement)?,
     })
 }
 

@@ -74,6 +74,10 @@ pub fn about(scene: &Scene, dir: &Path, warnings: &[String]) -> anyhow::Result<B
 
 /// Where stress lives and whether it contains the near field.
 fn stress_text(scene: &Scene) -> String {
+    let rounded = scene
+        .output
+        .stress_error
+        .map_or(String::new(), |error| format!("; rounded, by at most {error} Pa"));
     let place = match scene.output.stress {
         StressOutput::None => return "none".to_string(),
         StressOutput::Nodal => {
@@ -83,9 +87,9 @@ fn stress_text(scene: &Scene) -> String {
     };
     match scene.stress.near_field_reach {
         Some(reach) => format!(
-            "{place}; with the near field of contacts within {reach} larger semi-axes of their patches"
+            "{place}; with the near field of contacts within {reach} larger semi-axes of their patches{rounded}"
         ),
-        None => format!("{place}; near contacts that of the spread patch, not of the Hertz ellipse"),
+        None => format!("{place}; near contacts that of the spread patch, not of the Hertz ellipse{rounded}"),
     }
 }
 

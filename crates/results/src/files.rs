@@ -8,8 +8,8 @@ use std::time::{Duration, Instant};
 
 use anyhow::anyhow;
 use checkpoint::{
-    BackgroundOutput, CheckpointError, Compression, FolderLock, MeshFile, Output, Precision, Stamps,
-    StepRecord, Storage,
+    BackgroundOutput, CheckpointError, Compression, ErrorBound, FolderLock, MeshFile, Output, Precision,
+    Stamps, StepRecord, Storage,
 };
 use comm::{Communicator, print};
 use dynamics::Model;
@@ -360,11 +360,14 @@ pub fn mesh_file(scene: &Scene, model: &Model) -> anyhow::Result<MeshFile> {
 
 /// How fields are stored.
 pub fn storage(scene: &Scene) -> Storage {
+    let precision = |asked| match asked {
+        scene::Precision::F32 => Precision::F32,
+        scene::Precision::F64 => Precision::F64,
+    };
     Storage {
-        stress: match scene.output.precision {
-            scene::Precision::F32 => Precision::F32,
-            scene::Precision::F64 => Precision::F64,
-        },
+        stress: precision(scene.output.precision),
+        stress_error: scene.output.stress_error.and_then(ErrorBound::new),
+        displacement: precision(scene.output.displacement),
         compression: match scene.output.compression {
             0 => Compression::None,
             level => Compression::Deflate(level),

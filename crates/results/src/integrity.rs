@@ -4,7 +4,7 @@
 use std::path::Path;
 
 use checkpoint::{
-    FileStamp, Stamps, committed_steps, read_stamps, require_run, run_of, start_of, step_file_name,
+    FileStamp, Stamps, committed_steps, has_state, read_stamps, require_run, run_of, start_of, step_file_name,
 };
 use comm::print;
 
@@ -87,8 +87,8 @@ pub fn doubt(path: &Path, stamp: FileStamp, step: u64) -> anyhow::Result<Option<
     }))
 }
 
-/// The newest step before `step` of which all tables are as written. What a table lost at one step it lacks
-/// at all later ones.
+/// The newest step before `step` that a run can go on from and of which all tables are as written. What a table lost
+/// at one step it lacks at all later ones.
 pub fn newest_agreeing(dir: &Path, step: u64) -> Option<u64> {
     let mut steps = committed_steps(dir).ok()?;
     steps.retain(|&n| n < step);
@@ -100,5 +100,6 @@ pub fn newest_agreeing(dir: &Path, step: u64) -> Option<u64> {
         stamps.is_ok_and(|stamps| stamps.is_some_and(|stamps| stamps.iter().all(fits)))
     };
     let n = steps.partition_point(agrees);
-    steps[..n].last().copied()
+    let has_state = |n: &&u64| has_state(&dir.join(step_file_name(**n))).unwrap_or(false);
+    steps[..n].iter().rev().find(has_state).copied()
 }

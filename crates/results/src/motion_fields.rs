@@ -16,25 +16,40 @@ pub struct Recorded {
     step: u64,
     time: f64,
     places: Places,
+    /// Empty where the run does not go on from this step.
     state: Arrays,
     scene: String,
 }
 
+/// Whether a step file holds all that a run needs to go on from it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum RestartState {
+    /// It does.
+    Stored,
+    /// It holds fields only: a run goes on from an earlier step, to the same bits.
+    Left,
+}
+
 impl Recorded {
-    /// Places of rings and balls at one instant, the stress that ranks have `gathered`, and the state.
+    /// Places of rings and balls at one instant, the stress that ranks have `gathered`, and the state if it is to be
+    /// stored.
     pub fn new(
         model: &Model,
         motion: &Motion<'_>,
         state: &MotionState,
         gathered: Gathered,
         scene: &Scene,
+        restart: RestartState,
     ) -> Result<Recorded, Failure> {
         let shown = Shown::Motion { model, motion, state };
         Ok(Recorded {
             step: state.step,
             time: motion.time(state.step),
             places: Places::new(&shown, gathered, scene)?,
-            state: state_arrays::store(state, &motion.shape()),
+            state: match restart {
+                RestartState::Stored => state_arrays::store(state, &motion.shape()),
+                RestartState::Left => Arrays::new(),
+            },
             scene: scene.text.clone(),
         })
     }

@@ -3,12 +3,14 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use checkpoint::{CheckpointError, Output, Precision, Storage, read_step};
+use checkpoint::{CheckpointError, FolderLock, Output, Precision, Storage, read_step};
 
 use crate::fixture::{bodies, record};
 
 const EXACT: Storage = Storage {
     stress: Precision::F64,
+    stress_error: None,
+    displacement: Precision::F64,
     compression: checkpoint::Compression::None,
 };
 
@@ -127,11 +129,13 @@ fn a_wrong_byte_in_each_data_set_names_it() {
     );
     for array in &arrays {
         fs::write(&path, &good).unwrap();
-        let at = hdf5::File::open(&path)
-            .unwrap()
-            .dataset(&array.path)
-            .unwrap()
-            .offset();
+        let stored = hdf5::File::open(&path).unwrap().dataset(&array.path).unwrap();
+        let at = match stored.is_chunked() {
+            true => (array.bytes > 0).then(|| stored.chunk_info(0).unwrap().addr),
+            false => stored.offset(),
+        };
+        // While it is open, the library would not look at the file again.
+        drop(stored);
         let Some(at) = at else {
             assert_eq!(array.bytes, 0, "{array:?} lies nowhere");
             continue;
@@ -270,6 +274,55 @@ fn a_size_that_the_file_cannot_hold_is_refused_before_memory_is_taken() {
             .unwrap();
     });
     assert!(text.contains("has shape [], which"), "{text}");
+    // Zeros that are not stored: as many as a displacement has, not more.
+    let text = forge(&|file| {
+        let chunks = file.new_dataset::<f64>().chunk([128]);
+        chunks.shape([TERABYTES]).create(path_of).unwrap();
+    });
+    assert!(
+        text.contains("has shape [600000000000], which its 0 bytes of"),
+        "{text}"
+    );
+}
+
+/// Wrong: a displacement that is not stored would be read as zero, or bound nothing.
+#[test]
+fn a_displacement_that_is_not_in_the_file_is_refused() {
+    let path_of = "VTKHDF/PointData/displacement";
+    let dir = tempfile::tempdir().unwrap();
+    let path = forged(dir.path(), |file| {
+        file.unlink(path_of).unwrap();
+        let chunks = file.new_dataset::<f64>().chunk([128, 3]);
+        let displacement = chunks.shape([1 << 40, 3]).create(path_of).unwrap();
+        let crc = displacement.new_attr::<u32>().create("crc32").unwrap();
+        crc.write_scalar(&0u32).unwrap();
+    });
+    let text = read_step(&path).unwrap_err().to_string();
+    assert!(
+        text.contains(
+            "data set /VTKHDF/PointData/displacement is sparse beside no /VTKHDF/PointData/displacement"
+        ),
+        "{text}"
+    );
+}
+
+/// Wrong: a bound that is none would be taken for one when a pack is undone.
+#[test]
+fn an_error_bound_that_is_none_is_refused() {
+    let dir = tempfile::tempdir().unwrap();
+    let path = forged(dir.path(), |file| {
+        let stress = file.dataset("VTKHDF/PointData/stress").unwrap();
+        let bound = stress.new_attr::<f64>().create("error_bound").unwrap();
+        bound.write_scalar(&-1.0).unwrap();
+    });
+    let newer = dir.path().join("step_000009.hdf");
+    fs::copy(&path, newer).unwrap();
+    let lock = FolderLock::acquire(dir.path()).unwrap();
+    let text = checkpoint::pack_steps(&lock, 1, 9).unwrap_err().to_string();
+    assert!(
+        text.contains("data set /VTKHDF/PointData/stress has the error bound -1, expected a positive number"),
+        "{text}"
+    );
 }
 
 /// Wrong: a text of hundreds of megabytes would be read, at several times its size.

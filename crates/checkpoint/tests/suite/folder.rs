@@ -256,11 +256,23 @@ fn a_folder_has_one_writer_and_outlives_it() {
     Output::resume(taken, &bodies(), Storage::default(), 0).unwrap();
 }
 
+/// A step that a run can go on from, or not.
+fn with_state(step: u64, has_state: bool) -> checkpoint::StepRecord {
+    let state = has_state.then(|| ("x".to_string(), checkpoint::StateArray::Real(vec![0.5])));
+    checkpoint::StepRecord {
+        state: state.into_iter().collect(),
+        ..bare_record(step)
+    }
+}
+
 /// Wrong if a damaged newest step were taken to resume from, or if nobody heard of it.
 #[test]
 fn the_newest_whole_step_is_found_below_damaged_ones() {
     let dir = tempfile::tempdir().unwrap();
-    write_steps(dir.path(), 0..4);
+    let mut output = Output::create(dir.path(), &bodies(), Storage::default()).unwrap();
+    for n in 0..4 {
+        output.write_step(&with_state(n, true)).unwrap();
+    }
     let step = |n: u64| dir.path().join(checkpoint::step_file_name(n));
     fs::write(step(3), &fs::read(step(3)).unwrap()[..1000]).unwrap();
     let mut bytes = fs::read(step(2)).unwrap();
@@ -269,7 +281,7 @@ fn the_newest_whole_step_is_found_below_damaged_ones() {
     fs::write(step(2), bytes).unwrap();
     let mut skipped = Vec::new();
     let newest = newest_step(dir.path(), |error| skipped.push(error.to_string())).unwrap();
-    assert_eq!(newest, bare_record(1));
+    assert_eq!(newest, with_state(1, true));
     assert!(
         skipped[0].contains("step_000003.hdf") && skipped[1].contains("step_000002.hdf"),
         "{skipped:?}"
@@ -279,6 +291,35 @@ fn the_newest_whole_step_is_found_below_damaged_ones() {
     }
     let text = newest_step(dir.path(), |_| {}).unwrap_err().to_string();
     assert!(text.contains("step_000000.hdf"), "{text}");
+}
+
+/// Wrong: a run would go on from a step that does not hold what it needs, or steps without a state would count as
+/// damaged, or packing would leave no step to go on from.
+#[test]
+fn a_step_without_a_state_is_none_to_go_on_from() {
+    let dir = tempfile::tempdir().unwrap();
+    let mut output = Output::create(dir.path(), &bodies(), Storage::default()).unwrap();
+    for n in 0..9 {
+        let path = output.write_step(&with_state(n, n % 3 == 0 && n < 6)).unwrap();
+        assert_eq!(checkpoint::has_state(&path).unwrap(), n == 0 || n == 3);
+    }
+    drop(output);
+    let newest = || newest_step(dir.path(), |error| panic!("{error}"));
+    assert_eq!(newest().unwrap(), with_state(3, true));
+    let lock = FolderLock::acquire(dir.path()).unwrap();
+    assert_eq!(checkpoint::pack_steps(&lock, 1, 100).unwrap(), 3);
+    assert_eq!(committed_steps(dir.path()).unwrap(), (3..9).collect::<Vec<_>>());
+    assert_eq!(newest().unwrap(), with_state(3, true));
+    for n in 3..6 {
+        fs::remove_file(dir.path().join(checkpoint::step_file_name(n))).unwrap();
+    }
+    let text = newest().unwrap_err().to_string();
+    assert!(
+        text.starts_with("no step in folder ")
+            && text.ends_with(" holds a restart state; run the scene again")
+    );
+    // Where no step has one, there is nothing to keep it for.
+    assert_eq!(checkpoint::pack_steps(&lock, 1, 100).unwrap(), 2);
 }
 
 /// Wrong if one damaged step made all others unusable, or if the library opened it: its structure alone is wrong here.

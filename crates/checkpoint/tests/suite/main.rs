@@ -7,3 +7,4 @@ mod folder;
 mod mesh_and_views;
 mod pack;
 mod round_trip;
+mod storage;

@@ -9,6 +9,8 @@ use crate::fixture::{N_POINTS, bare_record, bodies, record};
 
 const EXACT: Storage = Storage {
     stress: Precision::F64,
+    stress_error: None,
+    displacement: Precision::F64,
     compression: checkpoint::Compression::None,
 };
 

@@ -5,8 +5,8 @@ use std::fs;
 use std::path::Path;
 
 use checkpoint::{
-    Compression, FolderLock, Output, Precision, Storage, all_steps, committed_steps, pack_steps, packs,
-    read_any_step, unpack_steps,
+    Compression, ErrorBound, FolderLock, Output, Precision, Storage, all_steps, committed_steps, pack_steps,
+    packs, read_any_step, unpack_steps,
 };
 
 use crate::fixture::{bodies, record};
@@ -59,13 +59,22 @@ fn shown(dir: &Path, field: &str) -> Vec<f64> {
 fn packing_keeps_the_view_and_unpacking_the_bytes() {
     let exact = Storage {
         stress: Precision::F64,
-        compression: Compression::None,
+        ..Storage::default()
     };
     let small = Storage {
-        stress: Precision::F32,
         compression: Compression::Deflate(4),
+        ..Storage::default()
     };
-    for storage in [exact, small, Storage::default()] {
+    let rounded = Storage {
+        stress_error: ErrorBound::new(700.0),
+        displacement: Precision::F32,
+        ..Storage::default()
+    };
+    let both = Storage {
+        compression: Compression::Deflate(4),
+        ..rounded
+    };
+    for storage in [exact, small, rounded, both, Storage::default()] {
         let dir = tempfile::tempdir().unwrap();
         run(dir.path(), storage);
         let fields = ["PointData/stress", "CellData/stress_integration_points"];

@@ -23,7 +23,7 @@ fn a_step_reads_back_as_it_was_written() {
     let dir = tempfile::tempdir().unwrap();
     let storage = Storage {
         stress: Precision::F64,
-        compression: Compression::None,
+        ..Storage::default()
     };
     assert_eq!(write_one(dir.path(), &record(7), storage), record(7));
     assert_eq!(
@@ -106,8 +106,8 @@ fn compression_changes_the_size_and_not_the_values() {
     let size = |compression| {
         let dir = tempfile::tempdir().unwrap();
         let storage = Storage {
-            stress: Precision::F32,
             compression,
+            ..Storage::default()
         };
         let mut output = Output::create(dir.path(), std::slice::from_ref(&cage), storage).unwrap();
         let path = output.write_step(&original).unwrap();

@@ -112,7 +112,7 @@ use self::life::RawLife;
 use self::lubricant::RawLubricant;
 use self::materials::RawMaterials;
 use self::modes::{ModesContext, RawModes};
-use self::output::RawOutput;
+use self::output::{OutputContext, RawOutput};
 use self::probes::{ProbesContext, RawProbes};
 use self::quasi_static::RawQuasiStatic;
 use self::ring::{RawRing, RingContext};
@@ -377,8 +377,11 @@ impl Source<'_> {
         let speed = speed.and_then(|s| s.check(raw.speed_use(), &mut problems));
         let has_speed = raw.has_speed();
         let solver = raw.solver.check(&mut problems);
-        let has_steps = raw.dynamic.is_some() || raw.quasi_static.is_some();
-        let output = raw.output.check(has_steps, &mut problems);
+        let output = OutputContext {
+            has_steps: raw.dynamic.is_some() || raw.quasi_static.is_some(),
+            is_motion: raw.dynamic.is_some(),
+        };
+        let output = raw.output.check(output, &mut problems);
         let stress = StressContext {
             contact: contact.mode,
             is_modes: raw.modes.is_some(),

@@ -1,6 +1,6 @@
 //! `[output]`: what is written, and how exactly.
 
-use input::Problems;
+use input::{Problems, Quantity, STRESS};
 use serde::Deserialize;
 
 /// As typed.
@@ -9,6 +9,9 @@ use serde::Deserialize;
 pub struct RawOutput {
     stress: Option<StressOutput>,
     precision: Option<Precision>,
+    stress_error: Option<Quantity<STRESS>>,
+    displacement: Option<Precision>,
+    restart_every: Option<i64>,
     compression: Option<i64>,
     tables_every: Option<i64>,
     inner_ring: Option<RingFrame>,
@@ -48,12 +51,18 @@ pub enum RingFrame {
 }
 
 /// What is written, and how exactly.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Output {
     /// Stress fields.
     pub stress: StressOutput,
-    /// Size of derived fields; the state itself is always written in 64 bits.
+    /// Size of stress; the state itself is always written in 64 bits.
     pub precision: Precision,
+    /// Largest error with which stress may be written, Pa; None writes it as its precision has it.
+    pub stress_error: Option<f64>,
+    /// Size of displacements.
+    pub displacement: Precision,
+    /// Step files from one with a restart state to the next, at least 1; the first and the last one have it besides.
+    pub restart_every: u64,
     /// Level of deflate, 0 (none) to 9.
     pub compression: u8,
     /// Steps from one row of the tables to the next, at least 1; steps with fields have theirs besides.
@@ -62,25 +71,81 @@ pub struct Output {
     pub rings: [RingFrame; 2],
 }
 
+/// Least error of stress, Pa, by precision: with f32, stress up to 17 GPa is rounded by this alone.
+const LEAST_ERROR: [(Precision, f64, &str); 2] = [
+    (
+        Precision::F32,
+        1e3,
+        "expected at least 1 kPa; precision = \"f64\" allows 1 Pa",
+    ),
+    (Precision::F64, 1.0, "expected at least 1 Pa"),
+];
+
+/// What a scene computes, as far as output depends on it.
+#[derive(Clone, Copy, Debug)]
+pub struct OutputContext {
+    /// Whether it has steps in time.
+    pub has_steps: bool,
+    /// Whether it is a motion, whose step files hold a state to go on from.
+    pub is_motion: bool,
+}
+
 /// No run has more steps.
 const MAX_EVERY: i64 = 100_000_000;
 
 impl RawOutput {
-    /// Checks ranges and fills in defaults; `has_steps` says whether the scene has steps in time.
-    pub fn check(&self, has_steps: bool, problems: &mut Problems) -> Output {
-        if self.tables_every.is_some() && !has_steps {
-            problems.add(
-                "output.tables_every does nothing without steps in time, [dynamic] or [quasi_static]; remove it",
-            );
-        }
+    /// Checks ranges and fills in defaults.
+    pub fn check(&self, context: OutputContext, problems: &mut Problems) -> Output {
+        self.require_use(context, problems);
         let tables_every = self.tables_every.unwrap_or(1);
         let level = problems.whole(self.compression.unwrap_or(0), "output.compression", 0, 9);
+        let restart_every = self.restart_every.unwrap_or(1);
+        let precision = self.precision.unwrap_or(Precision::F32);
         Output {
             stress: self.stress.unwrap_or(StressOutput::Nodal),
-            precision: self.precision.unwrap_or(Precision::F32),
+            precision,
+            stress_error: self.check_stress_error(precision, problems),
+            displacement: self.displacement.unwrap_or(Precision::F64),
+            restart_every: problems.whole(restart_every, "output.restart_every", 1, MAX_EVERY) as u64,
             compression: level as u8,
             tables_every: problems.whole(tables_every, "output.tables_every", 1, MAX_EVERY) as u64,
             rings: [self.inner_ring, self.outer_ring].map(|frame| frame.unwrap_or(RingFrame::Space)),
         }
     }
+
+    /// Refuses keys that would do nothing, or lose what nothing else keeps.
+    fn require_use(&self, context: OutputContext, problems: &mut Problems) {
+        if self.tables_every.is_some() && !context.has_steps {
+            problems.add(
+                "output.tables_every does nothing without steps in time, [dynamic] or [quasi_static]; remove it",
+            );
+        }
+        if self.restart_every.is_some() && !context.is_motion {
+            problems.add(
+                "output.restart_every does nothing without a motion, [dynamic]: nothing else can be resumed; remove it",
+            );
+        }
+        if self.displacement == Some(Precision::F32) && !context.is_motion {
+            problems.add(
+                "output.displacement is \"f32\"; expected \"f64\" without a motion, [dynamic], whose state holds it \
+                 exactly",
+            );
+        }
+    }
+
+    fn check_stress_error(&self, precision: Precision, problems: &mut Problems) -> Option<f64> {
+        const KEY: &str = "output.stress_error";
+        let error = self.stress_error.as_ref()?;
+        if self.stress == Some(StressOutput::None) {
+            problems.add("output.stress_error does nothing with output.stress = \"none\"; remove it");
+        }
+        let least = LEAST_ERROR.iter().find(|(known, ..)| *known == precision);
+        let &(_, least, rule) = least.expect("every precision has its least error");
+        problems.require(error.si() >= least, KEY, error, rule);
+        problems.require(error.si() <= MOST_ERROR, KEY, error, "expected at most 100 MPa");
+        Some(error.si())
+    }
 }
+
+/// A larger error of stress, Pa, leaves nothing to look at.
+const MOST_ERROR: f64 = 1e8;

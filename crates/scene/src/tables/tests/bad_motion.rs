@@ -3,7 +3,7 @@
 use super::*;
 
 /// Texts that must be refused: what is wrong with a line of the example of motion.
-const INVALID: [Case; 53] = [
+const INVALID: [Case; 55] = [
     (
         "halvings",
         "halvings = 17",
@@ -74,6 +74,16 @@ const INVALID: [Case; 53] = [
         "output_every",
         "output_every = 0",
         &["dynamic.output_every is 0; expected a whole number from 1 to 100000000"],
+    ),
+    (
+        "restart_every",
+        "restart_every = 0",
+        &["output.restart_every is 0; expected a whole number from 1 to 100000000"],
+    ),
+    (
+        "displacement",
+        "displacement = \"f16\"",
+        &["output.displacement is \"f16\"; valid values are \"f32\", \"f64\""],
     ),
     (
         "integrator",

@@ -3,7 +3,7 @@
 use super::{Case, EXAMPLE, Scene, assert_messages, message_of, with_line};
 
 /// Values that make no sense.
-const INVALID: [Case; 53] = [
+const INVALID: [Case; 59] = [
     (
         "cut",
         "cut = [{ azimuth = [\"96 deg\", \"84 deg\"] }]",
@@ -283,6 +283,41 @@ const INVALID: [Case; 53] = [
         "compression",
         "compression = 12",
         &["output.compression is 12; expected a whole number from 0 to 9"],
+    ),
+    (
+        "compression",
+        "stress_error = \"0.5 kPa\"",
+        &["output.stress_error is 0.5 kPa; expected at least 1 kPa; precision = \"f64\" allows 1 Pa"],
+    ),
+    (
+        "precision",
+        "precision = \"f64\"\nstress_error = \"0.5 Pa\"",
+        &["output.stress_error is 0.5 Pa; expected at least 1 Pa"],
+    ),
+    (
+        "compression",
+        "stress_error = \"1 GPa\"",
+        &["output.stress_error is 1 GPa; expected at most 100 MPa"],
+    ),
+    (
+        "stress =",
+        "stress = \"none\"\nstress_error = \"10 kPa\"",
+        &["output.stress_error does nothing with output.stress = \"none\"; remove it"],
+    ),
+    (
+        "compression",
+        "displacement = \"f32\"",
+        &[
+            "output.displacement is \"f32\"; expected \"f64\" without a motion, [dynamic], whose state \
+             holds it exactly",
+        ],
+    ),
+    (
+        "compression",
+        "restart_every = 2",
+        &[
+            "output.restart_every does nothing without a motion, [dynamic]: nothing else can be resumed; remove it",
+        ],
     ),
     (
         "[sweep]",
