@@ -23,6 +23,7 @@ pub const FIRST_BALL: usize = 1;
 pub const CONTACTS: usize = 0;
 
 /// Bodies and interactions of a bearing over an interval.
+#[derive(Clone)]
 pub struct BearingParts {
     /// The interval.
     pub interval: Interval,
@@ -39,6 +40,7 @@ pub struct BearingParts {
 }
 
 /// The seat of the outer ring along the axis.
+#[derive(Clone)]
 pub struct SlidingSeat {
     /// The seat; only z is free.
     pub body: FlatBody<5>,

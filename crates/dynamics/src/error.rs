@@ -193,6 +193,12 @@ pub enum DynamicsError {
         /// The choice and its replacement.
         what: &'static str,
     },
+    /// A choice that a stiffness does not know.
+    #[error("a stiffness cannot be had with {what}")]
+    NotInStiffness {
+        /// The choice and its replacement.
+        what: &'static str,
+    },
     /// The search for modes failed.
     #[error("natural modes: {source}")]
     Modes {
