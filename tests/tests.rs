@@ -30,6 +30,7 @@ mod resume;
 mod schedules;
 mod sectors;
 mod statics;
+mod stiffness;
 mod stress;
 mod stress_histories;
 mod study;

@@ -199,6 +199,16 @@ pub enum DynamicsError {
         /// The choice and its replacement.
         what: &'static str,
     },
+    /// A free dof of the shaft that nothing gives inertia.
+    #[error(
+        "{dof} of the shaft is free and has no inertia, so it has no modes at speed; give {key}, or lock it in [shaft]"
+    )]
+    NoInertia {
+        /// The dof.
+        dof: &'static str,
+        /// The key that gives it some.
+        key: &'static str,
+    },
     /// The search for modes failed.
     #[error("natural modes: {source}")]
     Modes {

@@ -26,6 +26,7 @@ pub mod statics;
 pub mod modes;
 pub mod motion;
 pub mod stiffness;
+pub mod whirl;
 
 // What they share.
 pub mod balls;

@@ -219,8 +219,7 @@ fn load_stiffness(parts: &BearingParts, shaft: &[f64; N_SHAFT]) -> ShaftMatrix {
         .tilted
         .map_or([[0.0; 2]; 2], |loads| loads.slopes([shaft[3], shaft[4]]));
     for (row, slopes) in matrix[3..].iter_mut().zip(slopes) {
-        row[3] = -slopes[0];
-        row[4] = -slopes[1];
+        (row[3], row[4]) = (0.0 - slopes[0], 0.0 - slopes[1]);
     }
     matrix
 }
@@ -343,4 +342,33 @@ fn contact_damping(parts: &BearingParts, system: &System, x: &[f64], law: Contac
             forces
         })
         .collect()
+}
+
+/// Where a stiffness is least.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Softest {
+    /// Lowest eigenvalue of the symmetric part, N/m.
+    pub lowest: f64,
+    /// Largest eigenvalue, N/m.
+    pub largest: f64,
+    /// The dof that moves most at the lowest.
+    pub dof: usize,
+}
+
+/// The softest motion of a shaft on a stiffness, of which tilts count by `arm`, m.
+pub fn softest(matrix: &ShaftMatrix, arm: f64) -> Result<Softest, DynamicsError> {
+    let scale = |i: usize| if i < 3 { 1.0 } else { 1.0 / arm };
+    let entry = |i: usize, j: usize| 0.5 * (matrix[i][j] + matrix[j][i]) * scale(i) * scale(j);
+    let symmetric: Vec<f64> = (0..N_SHAFT * N_SHAFT)
+        .map(|k| entry(k / N_SHAFT, k % N_SHAFT))
+        .collect();
+    let (values, vectors) =
+        dense::symmetric_eigen(N_SHAFT, &symmetric).map_err(|source| not_solved(&source))?;
+    let softest = &vectors[..N_SHAFT];
+    let most = (0..N_SHAFT).max_by(|a, b| softest[*a].abs().total_cmp(&softest[*b].abs()));
+    Ok(Softest {
+        lowest: values[0],
+        largest: values[N_SHAFT - 1],
+        dof: most.unwrap_or_default(),
+    })
 }

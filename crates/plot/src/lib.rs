@@ -5,6 +5,7 @@
 //! Fields of the raceways come from the step files.
 
 mod balls;
+mod campbell;
 mod energy;
 mod modes;
 mod probes;
@@ -14,6 +15,7 @@ mod raceways;
 mod run;
 mod section;
 mod shaft;
+mod stiffness;
 mod surface;
 
 use std::path::{Path, PathBuf};
@@ -97,6 +99,14 @@ pub fn plot(request: &Plot) -> Result<(), Failure> {
     Ok(())
 }
 
+/// The figures of `raceway stiffness` and `raceway campbell` in `dir`.
+pub fn linear_figures(dir: &Path) -> anyhow::Result<Vec<Named>> {
+    let found = stiffness::figures(dir)?
+        .into_iter()
+        .chain(campbell::figures(dir)?);
+    Ok(found.map(|(name, figure)| Named::new(name, figure)).collect())
+}
+
 /// The figures of the run in `dir`; at least one.
 pub fn figures(dir: &Path, choice: &Choice) -> Result<Vec<Named>, Failure> {
     let results = Results::read(dir)?;
@@ -107,6 +117,7 @@ pub fn figures(dir: &Path, choice: &Choice) -> Result<Vec<Named>, Failure> {
     figures.extend(profiles::figures(&results, choice)?);
     figures.extend(energy::figures(&results)?);
     figures.extend(modes::figures(dir)?);
+    figures.extend(linear_figures(dir)?);
     figures.extend(surface::figures(&results, choice)?);
     figures.extend(section::figures(&results, choice)?);
     if figures.is_empty() {
