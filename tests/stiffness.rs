@@ -73,7 +73,7 @@ fn a_run_under_more_load_moves_as_the_stiffness_says() {
     assert!(
         outcome
             .stdout
-            .contains("damping: none: the scene has no law of it"),
+            .contains("damping: none: the scene has neither contact_damping nor rayleigh_damping"),
         "{}",
         outcome.stdout
     );

@@ -148,7 +148,7 @@ fn diagram(
     }
     progress.stage("factoring the stiffness of the rings");
     let mut solver = StaticSolver::new(&model).map_err(Failure::solving)?;
-    let (mut found, mut before) = (Vec::new(), None);
+    let (mut found, mut before, mut is_warned) = (Vec::new(), None, false);
     for rpm in speeds {
         let at = |failure: Failure| failure.context(format!("{rpm} rpm"));
         progress.stage(&format!("{rpm} rpm"));
@@ -168,7 +168,16 @@ fn diagram(
         modes.truncate(number);
         let growing = modes.iter().position(|mode| mode.damping_ratio < GROWS);
         warnings.extend(growing.map(|i| format!("{rpm} rpm: mode {} grows by itself", i + 1)));
-        warnings.extend(solution.warnings.iter().map(|w| format!("{rpm} rpm: {w}")));
+        // What is wrong at a speed is more so at the next.
+        if !is_warned {
+            warnings.extend(
+                solution
+                    .warnings
+                    .iter()
+                    .map(|w| format!("from {rpm} rpm on: {w}")),
+            );
+            is_warned = !solution.warnings.is_empty();
+        }
         found.push(ModesAtSpeed { speeds, modes });
         before = Some(solution);
         progress.advance();

@@ -186,7 +186,9 @@ fn damping_note(scene: &Scene, model: &Model) -> String {
         _ => "",
     };
     match parts.is_empty() {
-        true => format!("none: the scene has no law of it that acts without inertia{left_out}"),
+        true => format!(
+            "none: the scene has neither contact_damping nor rayleigh_damping, which take [dynamic]{left_out}"
+        ),
         false => format!("{}, of slow motions{left_out}", parts.join(" and ")),
     }
 }

@@ -103,7 +103,8 @@ pub fn print_campbell(found: &[ModesAtSpeed]) {
                 i + 1,
                 mode.frequency,
                 mode.whirl.name(),
-                mode.damping_ratio,
+                // Without the sign of round-off.
+                (1e6 * mode.damping_ratio).round() / 1e6 + 0.0,
                 mode.shaft_share
             ));
         }
