@@ -5,7 +5,7 @@ mod support;
 use dynamics::effects::{BallCentrifugal, GyroscopicMoment, RingDamping, SpringPreload};
 use dynamics::interactions::contact_damping::ContactDamping;
 use dynamics::kinematics::{BallSpeeds, RingSpeeds, Speed};
-use dynamics::stiffness::{N_SHAFT, ShaftMatrix};
+use dynamics::stiffness::{N_SHAFT, ShaftMatrix, softest};
 use dynamics::{
     ContactMode, DampingLaws, Hold, Linearisation, Model, ShaftDof, StaticSolution, StaticSolver,
 };
@@ -329,4 +329,21 @@ fn facets_are_refused() {
         "a stiffness cannot be had with contact.mode = \"facet\", whose contacts jump from facet to facet; use \
          \"patch\""
     );
+}
+
+/// Wrong: an unstable direction would not be found, or lengths and angles be compared as they are.
+#[test]
+fn the_softest_motion_is_found_with_tilts_as_lengths() {
+    let mut matrix = [[0.0; N_SHAFT]; N_SHAFT];
+    for (i, k) in [3e8, 2e8, 1e8, 5e4, -2e4].into_iter().enumerate() {
+        matrix[i][i] = k;
+    }
+    // A skew part has no energy.
+    (matrix[0][1], matrix[1][0]) = (1e9, -1e9);
+    let found = softest(&matrix, 0.01).unwrap();
+    assert!(
+        relative(found.lowest, -2e8) < 1e-12 && relative(found.largest, 5e8) < 1e-12,
+        "{found:?}"
+    );
+    assert_eq!(found.dof, 4);
 }
