@@ -12,7 +12,7 @@
 //! moment about x:  I t_x'' + I_p W t_y' ...          moment about y:  I t_y'' - I_p W t_x' ...
 //! ```
 //!
-//! as in [`crate::bodies::ShaftInertia`]'s motion in time (e.g. Genta, Dynamics of Rotating Systems, ch. 2).
+//! as in motion ([`crate::model::ShaftInertia`]; e.g. Genta, Dynamics of Rotating Systems, ch. 2).
 //!
 //! **Left out.** Rings yield without inertia of their own: a frequency f is off by the order of (f/f_r)^2 of the share
 //! of the rings in the compliance, with f_r the first mode of a ring as it is held (`tests/whirl.rs` has numbers).
