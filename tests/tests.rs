@@ -33,6 +33,7 @@ mod schedules;
 mod sectors;
 mod small_files;
 mod statics;
+mod stiffness;
 mod stress;
 mod stress_histories;
 mod study;

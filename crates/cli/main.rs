@@ -3,6 +3,7 @@
 //! Exit codes: 0 finished, 2 wrong input, 3 no solution found, 75 stopped early with a step to resume
 //! from.
 
+mod campbell;
 mod check;
 mod cycles;
 mod export;
@@ -21,6 +22,7 @@ mod resume;
 mod rules;
 mod run;
 mod start;
+mod stiffness;
 
 use std::ffi::OsString;
 use std::os::unix::process::CommandExt;
@@ -37,6 +39,7 @@ use results::failure::{Failure, agree, say_of_rank};
 use results::memory::require_address_space;
 use results::summary::peak_memory;
 
+use crate::campbell::CampbellCommand;
 use crate::cycles::Cycles;
 use crate::export::Export;
 use crate::info::Depth;
@@ -44,6 +47,7 @@ use crate::init::Init;
 use crate::options::{Limits, Part, parse_part};
 use crate::pack::Pack;
 use crate::resume::Request;
+use crate::stiffness::StiffnessCommand;
 
 /// Simulates angular contact ball bearings with fully flexible rings.
 #[derive(Debug, Parser)]
@@ -112,6 +116,10 @@ enum Command {
     Report(Report),
     /// Ratings of a bearing, and its life under the forces of a run or of a load spectrum.
     Life(LifeCommand),
+    /// Stiffness and damping of the shaft on its bearing, at the operating point or at every point of a sweep.
+    Stiffness(StiffnessCommand),
+    /// Modes of the shaft on its bearing over its speed, forward and backward, with damping: Campbell diagram.
+    Campbell(CampbellCommand),
     /// Builds everything a run needs but solves nothing: effects, sizes, memory, output.
     Check {
         /// Scene file.
@@ -262,7 +270,11 @@ fn execute(arguments: Arguments) -> Result<(), Failure> {
     }
     let shares = matches!(
         arguments.command,
-        Command::Run { .. } | Command::Resume(_) | Command::Check { .. }
+        Command::Run { .. }
+            | Command::Resume(_)
+            | Command::Check { .. }
+            | Command::Stiffness(_)
+            | Command::Campbell(_)
     );
     if shares || arguments.threads.is_some() {
         start_threads(arguments.threads)?;
@@ -305,6 +317,8 @@ fn execute(arguments: Arguments) -> Result<(), Failure> {
         Command::Plot(request) => plot::plot(&request),
         Command::Report(request) => report::report(&request),
         Command::Life(request) => life::life(&request),
+        Command::Stiffness(command) => stiffness::stiffness(&command),
+        Command::Campbell(command) => campbell::campbell(&command),
         Command::Check { scene, overrides } => check::check(&scene, &overrides),
         Command::Mesh {
             scene,

@@ -27,7 +27,7 @@ use crate::quasi_static;
 use crate::remarks::Remarks;
 
 /// One load case of a run: the swept value (None for a static scene) and its scene.
-type Point = (Option<f64>, Scene);
+pub type Point = (Option<f64>, Scene);
 
 /// A finished point.
 struct Solved {
@@ -211,7 +211,7 @@ fn warnings(scene: &Scene, Solved { value, solution, .. }: &Solved) -> Vec<Strin
 }
 
 /// The load cases of a scene: one, or those of its sweep.
-fn points(scene: &Scene) -> Result<Vec<Point>, Failure> {
+pub fn points(scene: &Scene) -> Result<Vec<Point>, Failure> {
     let Analysis::Sweep(sweep) = &scene.analysis else {
         return Ok(vec![(None, scene.clone())]);
     };
@@ -255,7 +255,8 @@ fn same_rings(a: &Scene, b: &Scene) -> bool {
         && (rigid || (a.materials.rings == b.materials.rings && grooves(a) == grooves(b)))
 }
 
-fn stage_text(scene: &Scene, value: Option<f64>) -> String {
+/// What is computed at a point, for progress.
+pub fn stage_text(scene: &Scene, value: Option<f64>) -> String {
     match (&scene.analysis, value) {
         (Analysis::Sweep(sweep), Some(value)) => format!("contacts at {} = {value}", sweep.column),
         _ => "contacts".to_string(),

@@ -17,7 +17,8 @@ mod factors;
 mod forms;
 
 pub use eigen::{
-    EigenProblem, Eigenpairs, LanczosSettings, Searched, dense_lowest, lanczos, lowest_pairs, symmetric_eigen,
+    ComplexNumber, ComplexPair, EigenProblem, Eigenpairs, LanczosSettings, Searched, dense_lowest,
+    general_eigen, lanczos, lowest_pairs, symmetric_eigen,
 };
 pub use error::DenseError;
 pub use factors::{DenseCholesky, DenseLu, cholesky_in_place};

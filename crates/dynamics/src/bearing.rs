@@ -24,6 +24,7 @@ pub const FIRST_BALL: usize = 1;
 pub const CONTACTS: usize = 0;
 
 /// Bodies and interactions of a bearing over an interval.
+#[derive(Clone)]
 pub struct BearingParts {
     /// The interval.
     pub interval: Interval,
@@ -42,6 +43,7 @@ pub struct BearingParts {
 }
 
 /// Free balls and their contacts.
+#[derive(Clone)]
 pub struct FreeParts {
     /// The balls.
     pub balls: Vec<FreeBall>,
@@ -50,6 +52,7 @@ pub struct FreeParts {
 }
 
 /// The seat of the outer ring along the axis.
+#[derive(Clone)]
 pub struct SlidingSeat {
     /// The seat; only z is free.
     pub body: FlatBody<5>,

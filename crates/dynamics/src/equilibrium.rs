@@ -5,11 +5,12 @@
 //! load, unloaded balls. Cost: one dense factorisation of 2 n_balls (1 + rings) + 5 unknowns per iteration.
 
 use contact::{BearingGeometry, Side};
-use dense::{DenseError, DenseLu};
+use dense::DenseError;
 use timer::SharedLaps;
 
 use crate::bearing::{BearingParts, SHAFT};
 use crate::bodies::AXES;
+use crate::condensation::Condensation;
 use crate::displacements::Displacements;
 use crate::error::DynamicsError;
 use crate::footprint::loaded;
@@ -176,25 +177,9 @@ pub fn check_held(
         };
         hessian[n * i + i] += PROXIMAL * scales.stiffness + of_load;
     }
-    // Condense everything but the shaft: stiffness of the shaft on its balls and rings.
-    let rest = n - m;
-    let block: Vec<f64> = (m..n)
-        .flat_map(|i| hessian[n * i + m..n * (i + 1)].to_vec())
-        .collect();
-    let factor = DenseLu::factor(rest, &block).map_err(dense_error)?;
-    let mut columns: Vec<f64> = (0..m)
-        .flat_map(|j| (m..n).map(|i| hessian[n * i + j]).collect::<Vec<_>>())
-        .collect();
-    factor.solve(&mut columns, m);
-    let mut stiffness = vec![0.0; m * m];
-    for i in 0..m {
-        for j in 0..m {
-            let taken: f64 = (0..rest)
-                .map(|k| hessian[n * i + m + k] * columns[rest * j + k])
-                .sum();
-            stiffness[m * i + j] = hessian[n * i + j] - taken;
-        }
-    }
+    // Stiffness of the shaft on its balls and rings.
+    let condensation = Condensation::new(n, m, &hessian).map_err(dense_error)?;
+    let mut stiffness = condensation.apply(&hessian);
     let scale = scales.stiffness;
     for i in 0..m {
         // A dof counts as unheld when its pivot, after elimination of those before it, vanishes.

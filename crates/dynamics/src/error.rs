@@ -204,6 +204,22 @@ pub enum DynamicsError {
         /// The choice and its replacement.
         what: &'static str,
     },
+    /// A choice that a stiffness does not know.
+    #[error("a stiffness cannot be had with {what}")]
+    NotInStiffness {
+        /// The choice and its replacement.
+        what: &'static str,
+    },
+    /// A free dof of the shaft that nothing gives inertia.
+    #[error(
+        "{dof} of the shaft is free and has no inertia, so it has no modes at speed; give {key}, or lock it in [shaft]"
+    )]
+    NoInertia {
+        /// The dof.
+        dof: &'static str,
+        /// The key that gives it some.
+        key: &'static str,
+    },
     /// The search for modes failed.
     #[error("natural modes: {source}")]
     Modes {
@@ -299,6 +315,7 @@ impl DynamicsError {
             DynamicsError::Ring(error) => error.is_of_input(),
             DynamicsError::Unheld { .. }
             | DynamicsError::NotInMotion { .. }
+            | DynamicsError::NotInStiffness { .. }
             | DynamicsError::LooseFit { .. }
             | DynamicsError::FitLetsGo { .. }
             | DynamicsError::FitYields { .. }

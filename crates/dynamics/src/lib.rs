@@ -26,10 +26,13 @@ pub mod statics;
 // In motion, and about its equilibrium.
 pub mod modes;
 pub mod motion;
+pub mod stiffness;
+pub mod whirl;
 
 // What they share.
 pub mod balls;
 mod compliance;
+mod condensation;
 pub mod costs;
 pub mod error;
 pub mod footprint;
@@ -46,6 +49,7 @@ pub use pose::Pose;
 pub use quasi_static::QuasiStatic;
 pub use solution::StaticSolution;
 pub use statics::StaticSolver;
+pub use stiffness::{DampingLaws, Linearisation};
 
 // A model and its results are made of rings.
 pub use ring::memory::{MotionSizes, RingMemory, forecast_motion_peak, forecast_peak};

@@ -5,6 +5,7 @@
 //! Fields of the raceways come from the step files.
 
 mod balls;
+mod campbell;
 mod energy;
 mod modes;
 mod probes;
@@ -14,6 +15,7 @@ mod raceways;
 mod run;
 mod section;
 mod shaft;
+mod stiffness;
 mod surface;
 
 use std::path::{Path, PathBuf};
@@ -114,6 +116,14 @@ pub fn plot(request: &Plot) -> Result<(), Failure> {
     }
 }
 
+/// The figures of `raceway stiffness` and `raceway campbell` in `dir`.
+pub fn linear_figures(dir: &Path) -> anyhow::Result<Vec<Named>> {
+    let found = stiffness::figures(dir)?
+        .into_iter()
+        .chain(campbell::figures(dir)?);
+    Ok(found.map(|(name, figure)| Named::new(name, figure)).collect())
+}
+
 /// The figures of the run in `dir`; at least one. Where none can be made, or what was chosen is not there, that is the
 /// error.
 pub fn figures(dir: &Path, choice: &Choice) -> Result<Figures, Failure> {
@@ -125,6 +135,7 @@ pub fn figures(dir: &Path, choice: &Choice) -> Result<Figures, Failure> {
         ("profiles", profiles::figures(&results, choice)),
         ("energy", energy::figures(&results)),
         ("modes", modes::figures(dir)),
+        ("stiffness", linear_figures(dir)),
         ("raceways", surface::figures(&results, choice)),
         ("sections", section::figures(&results, choice)),
     ];

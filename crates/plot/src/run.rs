@@ -65,16 +65,7 @@ impl Results {
                 let times = MILLISECOND.of(table.column("time_s")?);
                 Ok(Some((MILLISECOND.axis("time").tight(), times)))
             }
-            Steps::Sweep(column) => {
-                let (name, unit) = quantity::split(column);
-                let values = unit.of(table.column(column)?);
-                if values.iter().all(|v| v.is_nan()) {
-                    // Words have no place on an axis; the points have their numbers.
-                    let axis = Axis::linear(format!("point of the sweep of {name}"), "1").ticks_every(1.0);
-                    return Ok(Some((axis, table.column("step")?.to_vec())));
-                }
-                Ok(Some((unit.axis(readable(name)), values)))
-            }
+            Steps::Sweep(column) => axis_of(table, column, "step").map(Some),
         }
     }
 
@@ -89,6 +80,18 @@ impl Results {
             Some((axis, values)) => row.map_or_else(|| format!("step {step}"), |row| axis.value(values[row])),
         })
     }
+}
+
+/// The axis of the swept values in a column of a table, and the places of its rows on it. Words have no place on an
+/// axis; then the points have their numbers, from the column `number`.
+pub fn axis_of(table: &Table, column: &str, number: &str) -> anyhow::Result<(Axis, Vec<f64>)> {
+    let (name, unit) = quantity::split(column);
+    let values = unit.of(table.column(column)?);
+    if values.iter().all(|v| v.is_nan()) {
+        let axis = Axis::linear(format!("point of the sweep of {name}"), "1").ticks_every(1.0);
+        return Ok((axis, table.column(number)?.to_vec()));
+    }
+    Ok((unit.axis(readable(name)), values))
 }
 
 /// The key of a scene without what a reader can tell from its other parts.

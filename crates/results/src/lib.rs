@@ -4,6 +4,7 @@
 //! meshes tell, before ranks divide them. A command that does not end well is a [`failure::Failure`].
 
 pub mod about;
+pub mod campbell;
 pub mod console;
 mod cut;
 pub mod disk;
@@ -25,6 +26,7 @@ mod ring_stress;
 pub mod shown;
 pub mod snapshot;
 pub mod state_arrays;
+pub mod stiffness;
 pub mod stop;
 mod stress_points;
 mod subsurface;

@@ -6,7 +6,7 @@ use anyhow::{Context, anyhow, ensure};
 use checkpoint::open_regular;
 
 /// Columns of texts. All others hold numbers.
-const TEXTS: [&str; 2] = ["profile", "body"];
+const TEXTS: [&str; 3] = ["profile", "body", "whirl"];
 /// Columns that must not fall from row to row.
 const STEP: &str = "step";
 const TIME: &str = "time_s";

@@ -1,11 +1,13 @@
-//! Eigenpairs: all of a dense symmetric matrix, or the lowest of K x = lambda M x, whose K and M only act.
+//! Eigenpairs: all of a dense matrix, symmetric or not, or the lowest of K x = lambda M x, whose K and M only act.
 
 mod basis;
+mod general;
 mod lanczos;
 mod problem;
 mod symmetric;
 mod whole;
 
+pub use general::{ComplexNumber, ComplexPair, general_eigen};
 pub use lanczos::{LanczosSettings, Searched, lanczos, lowest_pairs};
 pub use problem::{EigenProblem, Eigenpairs};
 pub use symmetric::symmetric_eigen;

@@ -142,8 +142,8 @@ impl BallLengths {
     }
 }
 
-/// Mean forces over a step. `weight` is that of the start, the integrator's alpha_f; `viscous` what [`viscous`] gives
-/// for each contact, if there is damping.
+/// Mean forces over a step. `weight` is that of the start, the integrator's alpha_f; `viscous` what
+/// [`viscous`](super::contact_damping::viscous) gives for each contact, if there is damping.
 pub fn mean_forces(
     laws: &BallLaws,
     lengths: &BallLengths,

@@ -7,7 +7,7 @@ use dynamics::effects::Effects;
 
 /// Scenes at rest, with the tables of most scenes.
 pub const REST: &str = include_str!("example.toml");
-/// Motion, of which the tables of [`OF_MOTION`] are shown.
+/// Motion, of which the tables that say more than those at rest are shown.
 pub const MOTION: &str = include_str!("example_dynamic.toml");
 /// All other tables.
 pub const OTHERS: [&str; 11] = [

@@ -1,0 +1,226 @@
+//! `raceway campbell`: modes of the shaft on its bearing over the speed.
+//!
+//! At every speed the equilibrium is found anew, with what the scene makes of the speed, such as the centrifugal force
+//! of the balls. A scene without such effects keeps its stiffness; only the gyroscopic moment of the shaft grows.
+
+use std::f64::consts::PI;
+use std::ops::Range;
+use std::path::PathBuf;
+
+use anyhow::anyhow;
+use clap::Args;
+use comm::print;
+use contact::Side;
+use dynamics::kinematics::Speed;
+use dynamics::whirl::{TurningShaft, turning_inertia};
+use dynamics::{Linearisation, Model, ShaftDof, StaticSolver};
+use results::campbell::{CAMPBELL_LINES, CAMPBELL_TABLE, ModesAtSpeed, print_campbell, write_campbell};
+use results::failure::Failure;
+use results::stiffness::require_free;
+use results::survey::say_doubts;
+use scene::{Analysis, Scene, build_model, doubts, model_with_rings};
+
+use crate::progress::Progress;
+use crate::stiffness::{draw, instant, laws, pose_at, require_load};
+
+/// Most speeds of a diagram.
+const MOST_SPEEDS: usize = 1000;
+/// Largest speed, rpm: that of scenes.
+const LARGEST_SPEED: f64 = 9.5e5;
+/// Damping ratio below which a mode counts as one that grows: far beyond round-off.
+const GROWS: f64 = -1e-8;
+
+/// What the command line asks for.
+#[derive(Debug, Args)]
+pub struct CampbellCommand {
+    /// Scene file of one operating point.
+    scene: PathBuf,
+    /// Speeds of the shaft, rpm: first..last:step.
+    #[arg(long, value_name = "FIRST..LAST:STEP", value_parser = parse_speeds)]
+    speeds: SpeedRange,
+    /// Folder of campbell.csv, campbell_lines.csv and the figure; nothing in it is replaced.
+    #[arg(long)]
+    out: PathBuf,
+    /// Number of modes, from the lowest; default: as many as the shaft has free dofs.
+    #[arg(long)]
+    number: Option<usize>,
+    /// Changes a value of the scene: path=value, such as shaft.mass="2 kg".
+    #[arg(long = "set", value_name = "PATH=VALUE")]
+    overrides: Vec<String>,
+}
+
+/// Speeds, rpm.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SpeedRange {
+    range: [f64; 2],
+    step: f64,
+}
+
+impl SpeedRange {
+    /// The speeds, rpm; the last is among them if steps lead to it.
+    fn values(self) -> Vec<f64> {
+        let [first, last] = self.range;
+        let n = ((last - first) / self.step * (1.0 + 4.0 * f64::EPSILON)).floor() as usize;
+        (0..=n).map(|i| first + i as f64 * self.step).collect()
+    }
+}
+
+/// Reads speeds such as 0..40000:2000.
+fn parse_speeds(text: &str) -> Result<SpeedRange, String> {
+    let expected =
+        || format!("{text:?} names no speeds; expected first..last:step in rpm, such as 0..40000:2000");
+    let number = |part: &str| part.trim().parse::<f64>().ok().filter(|x| x.is_finite());
+    let (range, step) = text.split_once(':').ok_or_else(expected)?;
+    let (first, last) = range.split_once("..").ok_or_else(expected)?;
+    let [Some(first), Some(last), Some(step)] = [first, last, step].map(number) else {
+        return Err(expected());
+    };
+    let Range { start, end } = 0.0..LARGEST_SPEED;
+    if first < start || last < first || last > end {
+        return Err(format!(
+            "the speeds go from {first} to {last}; expected 0 <= first <= last <= {end} rpm"
+        ));
+    }
+    if step <= 0.0 || (last - first) / step >= MOST_SPEEDS as f64 {
+        return Err(format!(
+            "the step is {step} rpm; expected more than 0 and at most {MOST_SPEEDS} speeds"
+        ));
+    }
+    Ok(SpeedRange {
+        range: [first, last],
+        step,
+    })
+}
+
+/// Computes the modes and writes them.
+pub fn campbell(command: &CampbellCommand) -> Result<(), Failure> {
+    let scene = Scene::load(&command.scene, &command.overrides)?;
+    if let Analysis::Sweep(sweep) = &scene.analysis {
+        return Err(Failure::User(anyhow!(
+            "{} has a [sweep] of {}; expected one operating point, so replace [sweep] by [static]",
+            scene.path.display(),
+            sweep.key
+        )));
+    }
+    let time = instant(&scene, None)?;
+    require_free(&command.out, &[CAMPBELL_TABLE, CAMPBELL_LINES])?;
+    let (found, model, warnings) = diagram(scene.clone(), time, command)?;
+    std::fs::create_dir_all(&command.out)
+        .map_err(|error| anyhow!("cannot create folder {}: {error}", command.out.display()))?;
+    write_campbell(&command.out, &found, &model.geometry, scene.effects.slip())?;
+    print_campbell(&found);
+    for warning in &warnings {
+        print::line(format_args!("warning: {warning}"));
+    }
+    let figures = draw(&command.out)?;
+    print::line(format_args!(
+        "{CAMPBELL_TABLE}, {CAMPBELL_LINES}, {} in {}",
+        figures.join(", "),
+        command.out.display()
+    ));
+    Ok(())
+}
+
+/// Modes at all speeds.
+fn diagram(
+    mut scene: Scene,
+    time: f64,
+    command: &CampbellCommand,
+) -> Result<(Vec<ModesAtSpeed>, Model, Vec<String>), Failure> {
+    let speeds = command.speeds.values();
+    let mut progress = Progress::new(speeds.len() as u64);
+    progress.stage("reading meshes");
+    let (mut model, _) = build_model(&scene)?;
+    let mut warnings = doubts(&scene, &model);
+    say_doubts(&warnings);
+    let n_free = model.shaft.iter().filter(|dof| **dof == ShaftDof::Free).count();
+    let number = command.number.unwrap_or(n_free);
+    if number == 0 {
+        let problem = match command.number {
+            Some(_) => "--number is 0; expected at least 1",
+            None => "no dof of the shaft is free, so it has no modes; free some in [shaft], or give --number",
+        };
+        return Err(Failure::User(anyhow!("{problem}")));
+    }
+    let inertia = turning_inertia(&model).map_err(Failure::solving)?;
+    if inertia.polar == 0.0 && model.shaft[3..].contains(&ShaftDof::Free) {
+        warnings.push("shaft.polar_inertia is 0, so the speed splits no modes".to_string());
+    }
+    progress.stage("factoring the stiffness of the rings");
+    let mut solver = StaticSolver::new(&model).map_err(Failure::solving)?;
+    let (mut found, mut before, mut is_warned) = (Vec::new(), None, false);
+    for rpm in speeds {
+        let at = |failure: Failure| failure.context(format!("{rpm} rpm"));
+        progress.stage(&format!("{rpm} rpm"));
+        let mut rings = scene.speed.clone().unwrap_or_default();
+        rings.inner = Speed::constant(rpm * PI / 30.0);
+        let speeds = Side::BOTH.map(|side| rings.of(side).at(time));
+        scene.speed = Some(rings);
+        model = model_with_rings(&scene, model.rings)?;
+        let solution = solver.solve_at(&model, &pose_at(&scene, time), before.as_ref());
+        let solution = solution.map_err(Failure::solving).map_err(at)?;
+        require_load(&solution).map_err(at)?;
+        let modes = Linearisation::new(&model, &solver, &solution, laws(&scene))
+            .and_then(|bearing| TurningShaft::new(&model, &bearing, inertia, speeds[0])?.modes());
+        let mut modes = modes.map_err(Failure::solving).map_err(at)?;
+        // Balls that creep back have no frequency.
+        modes.retain(|mode| mode.frequency > 0.0 || mode.damping_ratio < GROWS);
+        modes.truncate(number);
+        let growing = modes.iter().position(|mode| mode.damping_ratio < GROWS);
+        warnings.extend(growing.map(|i| format!("{rpm} rpm: mode {} grows by itself", i + 1)));
+        // What is wrong at a speed is more so at the next.
+        if !is_warned {
+            warnings.extend(
+                solution
+                    .warnings
+                    .iter()
+                    .map(|w| format!("from {rpm} rpm on: {w}")),
+            );
+            is_warned = !solution.warnings.is_empty();
+        }
+        found.push(ModesAtSpeed { speeds, modes });
+        before = Some(solution);
+        progress.advance();
+    }
+    progress.finish();
+    Ok((found, model, warnings))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Wrong: the last speed would be missing, or speeds be taken that nobody asked for.
+    #[test]
+    fn speeds_go_from_the_first_to_the_last() {
+        assert_eq!(parse_speeds("0..6:2").unwrap().values(), [0.0, 2.0, 4.0, 6.0]);
+        assert_eq!(
+            parse_speeds("1000 .. 1500 : 400").unwrap().values(),
+            [1000.0, 1400.0]
+        );
+        assert_eq!(parse_speeds("5..5:1").unwrap().values(), [5.0]);
+        assert_eq!(parse_speeds("0..0.3:0.1").unwrap().values().len(), 4);
+        for bad in ["", "0..5", "0-5:1", "a..5:1", "0..5:", "0..nan:1"] {
+            let text = parse_speeds(bad).unwrap_err();
+            assert!(
+                text.contains("names no speeds; expected first..last:step in rpm"),
+                "{text}"
+            );
+        }
+        for (bad, expected) in [
+            (
+                "-5..5:1",
+                "the speeds go from -5 to 5; expected 0 <= first <= last <= 950000 rpm",
+            ),
+            ("6..5:1", "the speeds go from 6 to 5"),
+            (
+                "0..5:0",
+                "the step is 0 rpm; expected more than 0 and at most 1000 speeds",
+            ),
+            ("0..5e5:1", "the step is 1 rpm"),
+        ] {
+            let text = parse_speeds(bad).unwrap_err();
+            assert!(text.starts_with(expected), "{text}");
+        }
+    }
+}

@@ -1,0 +1,295 @@
+//! `raceway stiffness`: the stiffness and damping of the shaft on its bearing, at the operating point of a scene or at
+//! every point of its sweep.
+//!
+//! A scene that runs in time is linearised about the equilibrium of one instant: loads, prescribed displacements and
+//! places of the balls of that time, without inertia.
+
+use std::f64::consts::TAU;
+use std::path::{Path, PathBuf};
+
+use anyhow::anyhow;
+use clap::Args;
+use comm::print;
+use contact::Side;
+use dynamics::bodies::AXES;
+use dynamics::stiffness::{ShaftMatrix, softest};
+use dynamics::{DampingLaws, Linearisation, Model, Pose, StaticSolution, StaticSolver};
+use results::failure::Failure;
+use results::stiffness::{
+    OperatingPoint, ROSS_TABLE, Ripple, STIFFNESS_FILE, STIFFNESS_TABLE, StiffnessAt, StiffnessResults,
+    require_free,
+};
+use results::survey::say_doubts;
+use results::whole::write_picture;
+use scene::{Analysis, Scene, build_model, doubts, model_with_rings, rolling};
+
+use crate::progress::Progress;
+use crate::run::{Point, points, stage_text};
+
+/// Most positions of a ripple: far more than one can be resolved with.
+const MOST_POSITIONS: usize = 1000;
+/// Lowest eigenvalue over the largest at which a matrix counts as not positive: far above its round-off.
+const NOT_POSITIVE: f64 = 1e-9;
+
+/// What the command line asks for.
+#[derive(Debug, Args)]
+pub struct StiffnessCommand {
+    /// Scene file; of a sweep every point is linearised.
+    scene: PathBuf,
+    /// Changes a value of the scene: path=value, such as effects.axial_force.value="3 kN".
+    #[arg(long = "set", value_name = "PATH=VALUE")]
+    overrides: Vec<String>,
+    /// Folder of stiffness.json, stiffness.csv, ross.csv and figures; nothing in it is replaced.
+    #[arg(long)]
+    out: PathBuf,
+    /// Ball-pass ripple: balls at so many places of a pitch; smallest, mean and largest of every entry.
+    #[arg(long, value_name = "N")]
+    ripple: Option<usize>,
+    /// Instant of a scene that runs in time, s; default: its start.
+    #[arg(long, value_name = "SECONDS")]
+    time: Option<f64>,
+}
+
+/// Linearises and writes.
+pub fn stiffness(command: &StiffnessCommand) -> Result<(), Failure> {
+    let scene = Scene::load(&command.scene, &command.overrides)?;
+    let time = instant(&scene, command.time)?;
+    check_positions(command.ripple)?;
+    require_free(&command.out, &[STIFFNESS_FILE, STIFFNESS_TABLE, ROSS_TABLE])?;
+    let results = linearise(&scene, time, command.ripple)?;
+    std::fs::create_dir_all(&command.out)
+        .map_err(|error| anyhow!("cannot create folder {}: {error}", command.out.display()))?;
+    let names = results.write(&command.out)?;
+    results.print();
+    let mut names: Vec<String> = names.into_iter().map(str::to_string).collect();
+    names.extend(draw(&command.out)?);
+    if !results.suits_ross() {
+        print::line(format_args!(
+            "no {ROSS_TABLE}: the speeds of the points do not grow from one to the next; sweep a speed"
+        ));
+    }
+    print::line(format_args!("{} in {}", names.join(", "), command.out.display()));
+    Ok(())
+}
+
+/// The instant that is linearised, s.
+pub fn instant(scene: &Scene, asked: Option<f64>) -> Result<f64, Failure> {
+    let duration = match &scene.analysis {
+        Analysis::Dynamic(dynamic) => dynamic.n_steps as f64 * dynamic.step,
+        Analysis::QuasiStatic(settings) => settings.n_steps as f64 * settings.step,
+        Analysis::Static | Analysis::Sweep(_) | Analysis::Modes(_) => {
+            return match asked {
+                None => Ok(0.0),
+                Some(_) => Err(Failure::User(anyhow!(
+                    "--time is for scenes that run in time, and {} does not; leave it out",
+                    scene.path.display()
+                ))),
+            };
+        }
+    };
+    let time = asked.unwrap_or(0.0);
+    if !(0.0..=duration).contains(&time) {
+        return Err(Failure::User(anyhow!(
+            "--time is {time}; expected 0 to {duration} s, the time that {} runs",
+            scene.path.display()
+        )));
+    }
+    print::note(format_args!(
+        "note: {} runs in time; it is linearised about the equilibrium at {time} s, without inertia",
+        scene.path.display()
+    ));
+    Ok(time)
+}
+
+fn check_positions(ripple: Option<usize>) -> Result<(), Failure> {
+    match ripple {
+        Some(n) if !(2..=MOST_POSITIONS).contains(&n) => Err(Failure::User(anyhow!(
+            "--ripple is {n}; expected 2 to {MOST_POSITIONS} places of the balls in a pitch"
+        ))),
+        _ => Ok(()),
+    }
+}
+
+/// Where the parts of a scene stand at an instant.
+pub fn pose_at(scene: &Scene, time: f64) -> Pose {
+    let at_rest = || {
+        let mut pose = Pose::default();
+        pose.now.time = time;
+        pose
+    };
+    rolling(scene).map_or_else(at_rest, |rolling| rolling.pose(time))
+}
+
+/// Damping laws of a scene.
+pub fn laws(scene: &Scene) -> DampingLaws {
+    DampingLaws {
+        contacts: scene.effects.contact_damping(),
+        rings: scene.effects.ring_damping(),
+    }
+}
+
+fn linearise(scene: &Scene, time: f64, ripple: Option<usize>) -> Result<StiffnessResults, Failure> {
+    let points = points(scene)?;
+    let mut progress = Progress::new(points.len() as u64);
+    progress.stage("reading meshes");
+    let (mut model, _) = build_model(&points[0].1)?;
+    let doubts = doubts(scene, &model);
+    say_doubts(&doubts);
+    progress.stage("factoring the stiffness of the rings");
+    let mut solver = StaticSolver::new(&model).map_err(Failure::solving)?;
+    let mut results = StiffnessResults {
+        source: scene.path.display().to_string(),
+        column: match &scene.analysis {
+            Analysis::Sweep(sweep) => Some(sweep.column.clone()),
+            _ => None,
+        },
+        points: Vec::new(),
+        damping_note: String::new(),
+        warnings: doubts,
+    };
+    let mut before = None;
+    for point in &points {
+        progress.stage(&stage_text(scene, point.0));
+        model = model_with_rings(&point.1, model.rings)?;
+        let found = PointOfScene { point, time, ripple }.linearise(&model, &mut solver, before.as_ref());
+        let at = results.column.as_ref().zip(point.0);
+        let at = at.map(|(column, value)| format!("{column} = {value}"));
+        let (found, solution, warnings) = found.map_err(|failure| match &at {
+            Some(at) => failure.context(at.clone()),
+            None => failure,
+        })?;
+        let at = at.map_or(String::new(), |at| format!("{at}: "));
+        results
+            .warnings
+            .extend(warnings.iter().map(|w| format!("{at}{w}")));
+        results.points.push(found);
+        before = Some(solution);
+        progress.advance();
+    }
+    progress.finish();
+    results.damping_note = damping_note(scene, &model);
+    Ok(results)
+}
+
+/// What the damping has in it, or why there is none.
+fn damping_note(scene: &Scene, model: &Model) -> String {
+    let laws = laws(scene);
+    let has_rings = Side::BOTH.iter().any(|side| model.ring(*side).is_some());
+    let of_contacts = laws.contacts.map(|_| "contacts along their normal");
+    let of_rings = laws.rings.filter(|rings| has_rings && rings.stiffness > 0.0);
+    let of_rings = of_rings.map(|_| "rings in proportion to their stiffness");
+    let parts: Vec<&str> = of_contacts.into_iter().chain(of_rings).collect();
+    let left_out = match laws.rings {
+        Some(rings) if has_rings && rings.mass > 0.0 => {
+            "; the part of the rings in proportion to mass is left out"
+        }
+        _ => "",
+    };
+    match parts.is_empty() {
+        true => format!(
+            "none: the scene has neither contact_damping nor rayleigh_damping, which take [dynamic]{left_out}"
+        ),
+        false => format!("{}, of slow motions{left_out}", parts.join(" and ")),
+    }
+}
+
+/// A point of a scene and what is asked of it.
+struct PointOfScene<'a> {
+    point: &'a Point,
+    time: f64,
+    ripple: Option<usize>,
+}
+
+impl PointOfScene<'_> {
+    fn linearise(
+        &self,
+        model: &Model,
+        solver: &mut StaticSolver,
+        before: Option<&StaticSolution>,
+    ) -> Result<(StiffnessAt, StaticSolution, Vec<String>), Failure> {
+        let (value, scene) = self.point;
+        let pose = pose_at(scene, self.time);
+        let solution = solver.solve_at(model, &pose, before).map_err(Failure::solving)?;
+        require_load(&solution)?;
+        let found = Linearisation::new(model, solver, &solution, laws(scene)).map_err(Failure::solving)?;
+        let (stiffness, damping) = found.of_shaft().map_err(Failure::solving)?;
+        let mut warnings = solution.warnings.clone();
+        warnings.extend(not_positive(&stiffness, model)?);
+        let speeds = scene.speed.clone().unwrap_or_default();
+        let at = StiffnessAt {
+            value: *value,
+            stiffness,
+            damping,
+            load_stiffness: found.load_stiffness,
+            operating_point: OperatingPoint::new(
+                &solution,
+                Side::BOTH.map(|side| speeds.of(side).at(self.time)),
+            ),
+            ripple: self.ripple(model, solver, &solution)?,
+        };
+        Ok((at, solution, warnings))
+    }
+
+    /// The matrices with the balls at places of one pitch; the rings stay where they are.
+    fn ripple(
+        &self,
+        model: &Model,
+        solver: &mut StaticSolver,
+        first: &StaticSolution,
+    ) -> Result<Option<Ripple>, Failure> {
+        let Some(n) = self.ripple else { return Ok(None) };
+        let pitch = TAU / model.geometry.n_balls as f64;
+        let mut matrices: Vec<ShaftMatrix> = Vec::with_capacity(n);
+        for i in 0..n {
+            let mut pose = first.pose;
+            pose.now.cage_angle += pitch * i as f64 / n as f64;
+            let solution = solver
+                .solve_at(model, &pose, Some(first))
+                .map_err(Failure::solving)?;
+            let found = Linearisation::new(model, solver, &solution, DampingLaws::default());
+            matrices.push(
+                found
+                    .and_then(|found| found.stiffness())
+                    .map_err(Failure::solving)?,
+            );
+        }
+        Ok(Some(Ripple::of(&matrices)))
+    }
+}
+
+/// Refuses an equilibrium in which no ball carries anything.
+pub fn require_load(solution: &StaticSolution) -> Result<(), Failure> {
+    if solution.balls.iter().any(|ball| ball.inner.force_n > 0.0) {
+        return Ok(());
+    }
+    Err(Failure::User(anyhow!(
+        "no ball is in contact with the inner ring, so the shaft has no stiffness there; expected a preload, such as \
+         [effects.axial_force] or a prescribed shaft.z"
+    )))
+}
+
+/// Says where a matrix is not positive definite.
+fn not_positive(stiffness: &ShaftMatrix, model: &Model) -> Result<Option<String>, Failure> {
+    let arm = model.geometry.centre_radius(Side::Inner);
+    let found = softest(stiffness, arm).map_err(Failure::solving)?;
+    let lowest = found.lowest;
+    Ok((lowest <= NOT_POSITIVE * found.largest).then(|| {
+        format!(
+            "the stiffness is not positive definite: its lowest eigenvalue is {lowest:.3e} N/m (tilts times {:.2} mm), \
+             in which {} moves most; a shaft that is free to do so would leave this place",
+            1e3 * arm,
+            AXES[found.dof]
+        )
+    }))
+}
+
+/// Draws what tables in a folder hold, and returns the names of the SVG files.
+pub fn draw(dir: &Path) -> Result<Vec<String>, Failure> {
+    let mut names = Vec::new();
+    for named in plot::linear_figures(dir)? {
+        let images = named.figure.images()?;
+        write_picture(&dir.join(&named.name), &images.svg, &images.png)?;
+        names.push(format!("{}.svg", named.name));
+    }
+    Ok(names)
+}

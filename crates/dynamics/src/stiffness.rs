@@ -1,0 +1,378 @@
+//! A bearing about an equilibrium, to first order: stiffness and damping that its shaft feels.
+//!
+//! All five dofs of the shaft move, free in the equilibrium or not. The matrix is Newton's tangent at the equilibrium:
+//! contacts with the geometric stiffness of their forces and the balls' own elasticity, the finite rotation of the
+//! shaft, the seat of the outer ring, loads that grow with the radius of a ball, and flexible rings by the inverse
+//! compliance of their contacts, found anew where these stand. To it comes what Newton leaves to its rounds: loads that
+//! follow the contact angles, such as the gyroscopic moment. Those make the matrix unsymmetric.
+//!
+//! ```text
+//! K = condensed on the shaft (x, y, z, tilt_x, tilt_y):   d(restoring loads) = K d(shaft)
+//! ```
+//!
+//! Signs: K d is the load that has to be put on the shaft to move it by d. Tilts are the components of the rotation
+//! vector; moments are those that do work on them, which are moments about the axes while the shaft is straight.
+//! Forces on the shaft whose moments change as it tilts are no part of the bearing: their negative stiffness is apart
+//! ([`Linearisation::load_stiffness`]).
+//!
+//! **Frozen.** Patches keep place and size while the bearing moves, as in a step of Newton. A motion takes them along,
+//! which changes the compliance of a ring; against differences of whole equilibria that makes up to some 1e-4 of an
+//! entry on a coarse mesh (`tests/stiffness.rs`).
+//!
+//! **Damping** of slow motions, whose frequency is low beside those of balls and rings:
+//!
+//! - Contacts: c(d) along the normal, with the approach d of the equilibrium.
+//! - Rings: the part in proportion to stiffness, which is that multiple of the inverse compliance. The part in
+//!   proportion to mass is left out ([`Linearisation::leaves_out_mass_damping`]), and so is the circulatory stiffness
+//!   of a ring that deforms while it turns, below `stiffness` x speed of its own share of K.
+//!
+//! Cost: the compliance of the contacts, one block solve per ring, and dense factors of 5 + 2 n_balls (1 + rings) rows.
+
+use contact::Side;
+use dense::DenseError;
+use timer::SharedLaps;
+
+use crate::bearing::{BearingParts, CONTACTS, lengths};
+use crate::compliance;
+use crate::condensation::Condensation;
+use crate::effects::{self, Loads, Now, RingDamping};
+use crate::error::DynamicsError;
+use crate::interactions::contact_damping::{ContactDamping, coefficient};
+use crate::loading::LoadCase;
+use crate::model::{ContactMode, Model};
+use crate::solution::StaticSolution;
+use crate::statics::StaticSolver;
+use crate::system::{Body, ElasticPorts, LinkForces, System};
+
+/// Step of a contact angle in a difference quotient of loads, rad: their relative error is its square.
+const ANGLE_STEP: f64 = 1e-5;
+/// Step of an unknown in a difference quotient of contact angles, over the distance of the centres.
+const LENGTH_STEP: f64 = 1e-5;
+/// Dofs of the shaft.
+pub const N_SHAFT: usize = 5;
+/// Lengths of a ball's contacts.
+const N_ROWS: usize = 4;
+
+/// A matrix over the shaft's dofs, N/m, N/rad, N m/m and N m/rad, or the same times s.
+pub type ShaftMatrix = [[f64; N_SHAFT]; N_SHAFT];
+
+/// Damping laws of a bearing that moves.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct DampingLaws {
+    /// Of contacts, along their normal.
+    pub contacts: Option<ContactDamping>,
+    /// Of the rings.
+    pub rings: Option<RingDamping>,
+}
+
+/// Stiffness and damping over the shaft, the balls and what else moves; see the module.
+pub struct Linearisation {
+    n: usize,
+    /// Over shaft, balls, seat and ports of the rings, row-major.
+    stiffness: Vec<f64>,
+    damping: Option<Vec<f64>>,
+    n_balls: usize,
+    /// What loads on the shaft add to its stiffness because their moments change as it tilts.
+    pub load_stiffness: ShaftMatrix,
+    /// Whether the rings have damping in proportion to mass, which no matrix here has.
+    pub leaves_out_mass_damping: bool,
+}
+
+/// Matrices over the dofs of the shaft, then [radial, axial] of each ball, row-major.
+pub struct ShaftAndBalls {
+    /// Number of rows, 5 + 2 n_balls.
+    pub n: usize,
+    /// Stiffness.
+    pub stiffness: Vec<f64>,
+    /// Damping, if there is any.
+    pub damping: Option<Vec<f64>>,
+}
+
+impl Linearisation {
+    /// Of the bearing about an equilibrium that `solver` found of `model`.
+    pub fn new(
+        model: &Model,
+        solver: &StaticSolver,
+        solution: &StaticSolution,
+        laws: DampingLaws,
+    ) -> Result<Linearisation, DynamicsError> {
+        if model.contact.mode == ContactMode::Facet {
+            let what = "contact.mode = \"facet\", whose contacts jump from facet to facet; use \"patch\"";
+            return Err(DynamicsError::NotInStiffness { what });
+        }
+        if model.traction().is_some() {
+            let what = "balls.motion = \"free\", whose traction is not linearised; use \"kinematic\"";
+            return Err(DynamicsError::NotInStiffness { what });
+        }
+        let case = released(model, solver, solution)?;
+        let parts = &case.parts;
+        let (system, x) = (parts.system(), parts.unknowns(&solution.displacements));
+        let at = system.evaluate(&x, &SharedLaps::default());
+        let mut stiffness = system.body_tangent(&x);
+        system.add_link_tangents(&x, &at.links, &mut stiffness);
+        system.add_curvatures(&x, &at.links, &mut stiffness);
+        if case.loads.follows_angles {
+            add_following_loads(model, solution, &case, &x, &mut stiffness)?;
+        }
+        let damping = damping_of(parts, &system, &x, laws);
+        let n = system.n();
+        hold_unloaded(parts, n, &mut stiffness);
+        Ok(Linearisation {
+            n,
+            stiffness,
+            damping,
+            n_balls: parts.balls.len(),
+            load_stiffness: load_stiffness(parts, &solution.displacements.shaft),
+            leaves_out_mass_damping: laws.rings.is_some_and(|rings| rings.mass > 0.0),
+        })
+    }
+
+    /// Stiffness of the shaft on its bearing.
+    pub fn stiffness(&self) -> Result<ShaftMatrix, DynamicsError> {
+        Ok(self.of_shaft()?.0)
+    }
+
+    /// Stiffness and damping of the shaft on its bearing.
+    pub fn of_shaft(&self) -> Result<(ShaftMatrix, Option<ShaftMatrix>), DynamicsError> {
+        let [stiffness, damping] = self.condensed(N_SHAFT)?;
+        let square = |m: Vec<f64>| std::array::from_fn(|i| std::array::from_fn(|j| m[N_SHAFT * i + j]));
+        Ok((square(stiffness.unwrap_or_default()), damping.map(square)))
+    }
+
+    /// The same with the balls, which rings and seat follow.
+    pub fn of_shaft_and_balls(&self) -> Result<ShaftAndBalls, DynamicsError> {
+        let n = N_SHAFT + 2 * self.n_balls;
+        let [stiffness, damping] = self.condensed(n)?;
+        Ok(ShaftAndBalls {
+            n,
+            stiffness: stiffness.unwrap_or_default(),
+            damping,
+        })
+    }
+
+    fn condensed(&self, kept: usize) -> Result<[Option<Vec<f64>>; 2], DynamicsError> {
+        let condensation =
+            Condensation::new(self.n, kept, &self.stiffness).map_err(|source| not_solved(&source))?;
+        let apply = |matrix: &Vec<f64>| condensation.apply(matrix);
+        Ok([Some(apply(&self.stiffness)), self.damping.as_ref().map(apply)])
+    }
+}
+
+fn not_solved(source: &DenseError) -> DynamicsError {
+    DynamicsError::ContactSystem {
+        source: source.clone(),
+    }
+}
+
+/// Bodies and contacts of a solution whose shaft may move in all its dofs, on rings with the compliance of their
+/// contacts where these stand.
+fn released<'m>(
+    model: &'m Model,
+    solver: &StaticSolver,
+    solution: &StaticSolution,
+) -> Result<LoadCase<'m>, DynamicsError> {
+    let u = &solution.displacements;
+    let mut case = LoadCase::new(model, solution.pose, &SharedLaps::default(), u)?;
+    case.parts
+        .contacts
+        .sites
+        .clone_from(&solution.parts.contacts.sites);
+    case.parts.shaft.imposed = [None; N_SHAFT];
+    let mut rings = [None, None];
+    for side in Side::BOTH {
+        let (i, found) = (side.index(), solution.parts.rings[side.index()].as_ref());
+        let (Some(ports), Some(ring)) = (found, solver.ring(side)) else {
+            continue;
+        };
+        let weights: Vec<_> = solution
+            .footprints(side)
+            .iter()
+            .map(|f| f.weights.clone())
+            .collect();
+        let n = 2 * weights.len();
+        let columns = ring.solver.compliance(&weights);
+        rings[i] = Some(ElasticPorts {
+            stiffness: compliance::inverse(side, n, weights.len(), &columns)?,
+            ..ports.clone()
+        });
+    }
+    case.parts.set_rings(rings, &u.grooves);
+    // The tilts are free now, so loads on the shaft may change with them.
+    case.parts.set_loads(&case.loads);
+    Ok(case)
+}
+
+/// Holds balls that nothing touches: they have no stiffness, and pass nothing on.
+fn hold_unloaded(parts: &BearingParts, n: usize, stiffness: &mut [f64]) {
+    let scale = stiffness
+        .iter()
+        .fold(f64::MIN_POSITIVE, |most, k| most.max(k.abs()));
+    let balls = N_SHAFT..N_SHAFT + 2 * parts.balls.len();
+    for i in balls {
+        if stiffness[n * i..n * (i + 1)].iter().all(|k| *k == 0.0) {
+            stiffness[n * i + i] = scale;
+        }
+    }
+}
+
+/// Negative growth of the moments of loads on the shaft with its tilts.
+fn load_stiffness(parts: &BearingParts, shaft: &[f64; N_SHAFT]) -> ShaftMatrix {
+    let mut matrix = [[0.0; N_SHAFT]; N_SHAFT];
+    let slopes = parts
+        .shaft
+        .tilted
+        .map_or([[0.0; 2]; 2], |loads| loads.slopes([shaft[3], shaft[4]]));
+    for (row, slopes) in matrix[3..].iter_mut().zip(slopes) {
+        (row[3], row[4]) = (0.0 - slopes[0], 0.0 - slopes[1]);
+    }
+    matrix
+}
+
+/// Adds the growth of loads that follow the contact angles: d residual/d angle, of each site, times d angle/dx.
+fn add_following_loads(
+    model: &Model,
+    solution: &StaticSolution,
+    case: &LoadCase,
+    x: &[f64],
+    stiffness: &mut [f64],
+) -> Result<(), DynamicsError> {
+    let states = case.parts.states(x);
+    let angles: Vec<f64> = states.iter().map(|state| state.angle).collect();
+    let mut parts = case.parts.clone();
+    let mut residual = |angles: &[f64]| -> Result<Vec<f64>, DynamicsError> {
+        let now = Now {
+            angles: Some(angles),
+            ..solution.pose.now
+        };
+        let found = effects::loads(model, &now)?;
+        parts.set_loads(&Loads {
+            ring_on_shaft: case.loads.ring_on_shaft,
+            ring_on_seat: case.loads.ring_on_seat,
+            ..found
+        });
+        Ok(parts.system().evaluate(x, &SharedLaps::default()).residual)
+    };
+    let mut of_angles = Vec::with_capacity(angles.len());
+    for site in 0..angles.len() {
+        let mut at = |sign: f64| {
+            let mut moved = angles.clone();
+            moved[site] += sign * ANGLE_STEP;
+            residual(&moved)
+        };
+        let (low, high) = (at(-1.0)?, at(1.0)?);
+        let change = low
+            .iter()
+            .zip(&high)
+            .map(|(low, high)| (high - low) / (2.0 * ANGLE_STEP));
+        of_angles.push(change.collect::<Vec<f64>>());
+    }
+    let n = x.len();
+    for column in 0..n {
+        for (growth, of_angle) in angle_growth(case, x, column).iter().zip(&of_angles) {
+            if *growth != 0.0 {
+                let rows = stiffness.iter_mut().skip(column).step_by(n);
+                rows.zip(of_angle).for_each(|(k, change)| *k += change * growth);
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Growth of all contact angles with an unknown.
+fn angle_growth(case: &LoadCase, x: &[f64], unknown: usize) -> Vec<f64> {
+    let scale = case.model.geometry.groove_distance();
+    let is_tilt = (3..N_SHAFT).contains(&unknown);
+    let step = LENGTH_STEP
+        * if is_tilt {
+            scale / case.scales.tilt_arm
+        } else {
+            scale
+        };
+    let angles = |sign: f64| {
+        let mut moved = x.to_vec();
+        moved[unknown] += sign * step;
+        case.parts.states(&moved)
+    };
+    let (low, high) = (angles(-1.0), angles(1.0));
+    low.iter()
+        .zip(&high)
+        .map(|(low, high)| (high.angle - low.angle) / (2.0 * step))
+        .collect()
+}
+
+/// Damping over all unknowns, row-major; None where no law gives any.
+fn damping_of(parts: &BearingParts, system: &System, x: &[f64], laws: DampingLaws) -> Option<Vec<f64>> {
+    let n = system.n();
+    let stiffness_factor = laws.rings.map_or(0.0, |rings| rings.stiffness);
+    let has_rings = parts.rings.iter().any(Option::is_some) && stiffness_factor > 0.0;
+    if laws.contacts.is_none() && !has_rings {
+        return None;
+    }
+    let mut damping = vec![0.0; n * n];
+    if let Some(law) = laws.contacts {
+        system.add_link_tangents(x, &contact_damping(parts, system, x, law), &mut damping);
+    }
+    for (number, ports) in parts.rings.iter().flatten().enumerate() {
+        let own = system.unknowns(Body::Elastic(number));
+        for (i, row) in own.clone().zip(ports.stiffness.chunks_exact(own.len())) {
+            for (j, k) in own.clone().zip(row) {
+                damping[n * i + j] += stiffness_factor * k;
+            }
+        }
+    }
+    Some(damping)
+}
+
+/// The damping of all contacts as tangents of their links, c n n^T each; other families have none.
+fn contact_damping(parts: &BearingParts, system: &System, x: &[f64], law: ContactDamping) -> Vec<LinkForces> {
+    let families = parts.interactions().into_iter().enumerate();
+    families
+        .map(|(number, family)| {
+            let found = system.lengths_at(number, x);
+            let mut forces = family.evaluate(lengths(&found), &SharedLaps::default());
+            forces.tangents.iter_mut().for_each(|t| *t = 0.0);
+            if number == CONTACTS {
+                let states = parts.contacts.states(&found[1]);
+                for (site, state) in states.iter().enumerate() {
+                    let touching = parts.contacts.sites[site].touching;
+                    let [c, _] = coefficient(&law, state.length - touching);
+                    let (first, n) = (N_ROWS * N_ROWS * (site / 2), state.normal);
+                    for (i, k) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
+                        let (row, column) = (2 * (site % 2) + i, 2 * (site % 2) + k);
+                        forces.tangents[first + N_ROWS * row + column] = c * n[i] * n[k];
+                    }
+                }
+            }
+            forces
+        })
+        .collect()
+}
+
+/// Where a stiffness is least.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Softest {
+    /// Lowest eigenvalue of the symmetric part, N/m.
+    pub lowest: f64,
+    /// Largest eigenvalue, N/m.
+    pub largest: f64,
+    /// The dof that moves most at the lowest.
+    pub dof: usize,
+}
+
+/// The softest motion of a shaft on a stiffness, of which tilts count by `arm`, m.
+pub fn softest(matrix: &ShaftMatrix, arm: f64) -> Result<Softest, DynamicsError> {
+    let scale = |i: usize| if i < 3 { 1.0 } else { 1.0 / arm };
+    let entry = |i: usize, j: usize| 0.5 * (matrix[i][j] + matrix[j][i]) * scale(i) * scale(j);
+    let symmetric: Vec<f64> = (0..N_SHAFT * N_SHAFT)
+        .map(|k| entry(k / N_SHAFT, k % N_SHAFT))
+        .collect();
+    let (values, vectors) =
+        dense::symmetric_eigen(N_SHAFT, &symmetric).map_err(|source| not_solved(&source))?;
+    let softest = &vectors[..N_SHAFT];
+    let most = (0..N_SHAFT).max_by(|a, b| softest[*a].abs().total_cmp(&softest[*b].abs()));
+    Ok(Softest {
+        lowest: values[0],
+        largest: values[N_SHAFT - 1],
+        dof: most.unwrap_or_default(),
+    })
+}

@@ -1,0 +1,66 @@
+//! Stiffness over the points of a sweep, from `stiffness.csv`.
+
+use std::path::Path;
+
+use figure::{Axis, Figure, Series};
+use results::stiffness::STIFFNESS_TABLE;
+use results::table::Table;
+
+use super::quantity::{Unit, points};
+use super::run::axis_of;
+
+/// Newtons per micrometre.
+const NEWTON_PER_MICROMETRE: Unit = Unit {
+    sign: "N/µm",
+    factor: 1e-6,
+};
+/// Newton metres per milliradian.
+const MOMENT_PER_MILLIRADIAN: Unit = Unit {
+    sign: "N m/mrad",
+    factor: 1e-3,
+};
+/// Columns before the swept values, and what stands there without them.
+const FIRST_COLUMNS: usize = 2;
+const SPEED: &str = "speed_rad_per_s";
+
+/// Stiffness against displacement and against tilt over the swept value, with the names of their files; none of a
+/// single point.
+pub fn figures(dir: &Path) -> anyhow::Result<Vec<(&'static str, Figure)>> {
+    let Some(table) = Table::read(dir, STIFFNESS_TABLE)? else {
+        return Ok(Vec::new());
+    };
+    let swept = table.names().get(FIRST_COLUMNS).filter(|name| *name != SPEED);
+    let Some(column) = swept.filter(|_| table.n_rows() > 1) else {
+        return Ok(Vec::new());
+    };
+    let (axis, x) = axis_of(&table, column, "point")?;
+    let of = |unit: Unit, names: &[&str], title: &str| -> anyhow::Result<Figure> {
+        let figure = Figure::new(title, axis.clone(), stiffness_axis(unit));
+        names.iter().try_fold(figure, |figure, name| {
+            let k = unit.of(table.column(&format!("k_{name}_{name}"))?);
+            Ok(figure.series(Series::line_and_marks(name.replace('_', " "), points(&x, &k))))
+        })
+    };
+    Ok(vec![
+        (
+            "stiffness",
+            of(
+                NEWTON_PER_MICROMETRE,
+                &["x", "y", "z"],
+                "Stiffness of the bearing",
+            )?,
+        ),
+        (
+            "stiffness_tilt",
+            of(
+                MOMENT_PER_MILLIRADIAN,
+                &["tilt_x", "tilt_y"],
+                "Stiffness against tilt",
+            )?,
+        ),
+    ])
+}
+
+fn stiffness_axis(unit: Unit) -> Axis {
+    unit.axis("stiffness").including(0.0)
+}

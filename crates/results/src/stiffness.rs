@@ -1,0 +1,331 @@
+//! Results of `raceway stiffness`: `stiffness.json`, `stiffness.csv`, `ross.csv`, and a table on the screen.
+//!
+//! Matrices are over x, y, z, tilt_x, tilt_y of the shaft; entry (i, j) is the load i that a displacement j asks for.
+//! `ross.csv` has what the rotor dynamics program ROSS asks of a bearing: speed in rad/s and the entries of x and y.
+
+use std::path::Path;
+
+use anyhow::anyhow;
+use comm::print;
+use dynamics::StaticSolution;
+use dynamics::bodies::AXES;
+use dynamics::kinematics::BothRings;
+use dynamics::stiffness::{N_SHAFT, ShaftMatrix};
+use dynamics::system::Interval;
+use serde::Serialize;
+
+use crate::failure::Failure;
+use crate::whole;
+
+/// The matrices and where they hold.
+pub const STIFFNESS_FILE: &str = "stiffness.json";
+/// The table of all entries.
+pub const STIFFNESS_TABLE: &str = "stiffness.csv";
+/// The table for ROSS.
+pub const ROSS_TABLE: &str = "ross.csv";
+/// Version of the keys.
+const SCHEMA: u32 = 1;
+/// What stands in the table before the swept value, and after it before the entries.
+const FIRST_COLUMNS: [&str; 2] = ["point", "time_s"];
+const SPEED: &str = "speed_rad_per_s";
+
+/// Force of a ball on its raceways.
+#[derive(Clone, Debug, Serialize)]
+struct ForcesOfBall {
+    azimuth_rad: f64,
+    inner_force_n: f64,
+    outer_force_n: f64,
+    inner_contact_angle_rad: f64,
+    outer_contact_angle_rad: f64,
+}
+
+/// The equilibrium about which a bearing is linearised.
+#[derive(Clone, Debug, Serialize)]
+pub struct OperatingPoint {
+    /// Instant of loads and prescribed displacements, s.
+    pub time_s: f64,
+    /// Speeds of the rings, inner first, rad/s.
+    pub speed_rad_per_s: BothRings,
+    /// Angle by which the cage has carried the balls, rad.
+    pub cage_angle_rad: f64,
+    /// x, y, z in m, tilts in rad.
+    shaft_displacement: [f64; N_SHAFT],
+    /// Loads on the shaft, N and N m.
+    loads: [f64; N_SHAFT],
+    /// What holds its locked dofs, N and N m.
+    reactions: [f64; N_SHAFT],
+    balls: Vec<ForcesOfBall>,
+}
+
+impl OperatingPoint {
+    /// That of a solution at these speeds of the rings, rad/s.
+    pub fn new(solution: &StaticSolution, speed_rad_per_s: BothRings) -> OperatingPoint {
+        let (shaft, q) = (&solution.parts.shaft, solution.displacements.shaft);
+        let mut loads = shaft.dofs.map(|dof| dof.load);
+        let moments = shaft.tilted_moments(Interval::Rest, &q);
+        (0..2).for_each(|i| loads[3 + i] += moments[i]);
+        let of_ball = |ball: &dynamics::balls::BallResult| ForcesOfBall {
+            azimuth_rad: ball.azimuth_rad,
+            inner_force_n: ball.inner.force_n,
+            outer_force_n: ball.outer.force_n,
+            inner_contact_angle_rad: ball.inner.contact_angle_rad,
+            outer_contact_angle_rad: ball.outer.contact_angle_rad,
+        };
+        OperatingPoint {
+            time_s: solution.pose.now.time,
+            speed_rad_per_s,
+            cage_angle_rad: solution.pose.now.cage_angle,
+            shaft_displacement: q,
+            loads,
+            reactions: solution.shaft_reaction,
+            balls: solution.balls.iter().map(of_ball).collect(),
+        }
+    }
+
+    /// Largest force on the inner raceway, N.
+    fn largest_force(&self) -> f64 {
+        self.balls
+            .iter()
+            .fold(0.0, |most, ball| ball.inner_force_n.max(most))
+    }
+}
+
+/// How the entries change while the balls pass through one pitch.
+#[derive(Clone, Debug, Serialize)]
+pub struct Ripple {
+    /// Positions of the balls, evenly from 0 to below one pitch.
+    pub positions: usize,
+    /// Smallest of every entry.
+    pub minimum: ShaftMatrix,
+    /// Mean of every entry.
+    pub mean: ShaftMatrix,
+    /// Largest of every entry.
+    pub maximum: ShaftMatrix,
+}
+
+impl Ripple {
+    /// Of the matrices at all positions; at least one.
+    pub fn of(matrices: &[ShaftMatrix]) -> Ripple {
+        let each = |f: &dyn Fn(&mut dyn Iterator<Item = f64>) -> f64| -> ShaftMatrix {
+            std::array::from_fn(|i| std::array::from_fn(|j| f(&mut matrices.iter().map(|m| m[i][j]))))
+        };
+        Ripple {
+            positions: matrices.len(),
+            minimum: each(&|x| x.fold(f64::INFINITY, f64::min)),
+            mean: each(&|x| x.sum::<f64>() / matrices.len() as f64),
+            maximum: each(&|x| x.fold(f64::NEG_INFINITY, f64::max)),
+        }
+    }
+}
+
+/// Stiffness and damping at one operating point.
+#[derive(Clone, Debug, Serialize)]
+pub struct StiffnessAt {
+    /// The swept value; absent without a sweep.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub value: Option<f64>,
+    /// The stiffness of the bearing.
+    pub stiffness: ShaftMatrix,
+    /// Its damping; null where the scene has no damping law.
+    pub damping: Option<ShaftMatrix>,
+    /// What loads on the shaft add to the stiffness, because their moments change as it tilts.
+    pub load_stiffness: ShaftMatrix,
+    /// The equilibrium.
+    pub operating_point: OperatingPoint,
+    /// Ball-pass ripple, if it was asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub ripple: Option<Ripple>,
+}
+
+/// Everything that is written.
+#[derive(Debug)]
+pub struct StiffnessResults {
+    /// The scene.
+    pub source: String,
+    /// Column of the swept values, with its unit.
+    pub column: Option<String>,
+    /// Operating points; one without a sweep.
+    pub points: Vec<StiffnessAt>,
+    /// What the damping is, or why there is none.
+    pub damping_note: String,
+    /// Warnings a user should read.
+    pub warnings: Vec<String>,
+}
+
+/// The file.
+#[derive(Serialize)]
+struct StiffnessFile<'a> {
+    stiffness_schema: u32,
+    source: &'a str,
+    order: [&'static str; N_SHAFT],
+    units: &'static str,
+    damping_note: &'a str,
+    warnings: &'a [String],
+    #[serde(flatten)]
+    single: Option<&'a StiffnessAt>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    sweep: Option<SweptStiffness<'a>>,
+}
+
+/// All points of a sweep.
+#[derive(Serialize)]
+struct SweptStiffness<'a> {
+    column: &'a str,
+    points: &'a [StiffnessAt],
+}
+
+/// Fails if a folder holds any of the files: nothing is written over.
+pub fn require_free(dir: &Path, names: &[&str]) -> Result<(), Failure> {
+    let found = names
+        .iter()
+        .find(|name| dir.join(name).symlink_metadata().is_ok());
+    match found {
+        None => Ok(()),
+        Some(name) => Err(Failure::User(anyhow!(
+            "{} already holds {name}; choose another --out or remove it",
+            dir.display()
+        ))),
+    }
+}
+
+impl StiffnessResults {
+    /// Writes the files into a folder, each whole or not at all, and returns their names.
+    pub fn write(&self, dir: &Path) -> Result<Vec<&'static str>, Failure> {
+        let mut names = vec![STIFFNESS_FILE, STIFFNESS_TABLE];
+        let mut text = serde_json::to_vec_pretty(&self.file())?;
+        text.push(b'\n');
+        whole::write_new(&dir.join(STIFFNESS_FILE), |file| file.write_all(&text))?;
+        let table = self.table()?;
+        whole::write_new(&dir.join(STIFFNESS_TABLE), |file| file.write_all(&table))?;
+        if self.suits_ross() {
+            let table = self.ross()?;
+            whole::write_new(&dir.join(ROSS_TABLE), |file| file.write_all(&table))?;
+            names.push(ROSS_TABLE);
+        }
+        Ok(names)
+    }
+
+    fn file(&self) -> StiffnessFile<'_> {
+        let sweep = self.column.as_deref().map(|column| SweptStiffness {
+            column,
+            points: &self.points,
+        });
+        StiffnessFile {
+            stiffness_schema: SCHEMA,
+            source: &self.source,
+            order: AXES,
+            units: "stiffness N/m, N/rad, N m/m, N m/rad; damping the same times s; displacements m, rad; loads N, N m",
+            damping_note: &self.damping_note,
+            warnings: &self.warnings,
+            single: self.points.first().filter(|_| sweep.is_none()),
+            sweep,
+        }
+    }
+
+    /// Whether the points are those of one bearing over its speed, or one point.
+    pub fn suits_ross(&self) -> bool {
+        self.points
+            .windows(2)
+            .all(|pair| speed(&pair[0]) < speed(&pair[1]))
+    }
+
+    /// All entries, a line per point.
+    fn table(&self) -> anyhow::Result<Vec<u8>> {
+        let mut writer = csv::Writer::from_writer(Vec::new());
+        let has_damping = self.points.iter().all(|point| point.damping.is_some());
+        let mut names: Vec<String> = FIRST_COLUMNS.map(str::to_string).to_vec();
+        names.extend(self.column.clone());
+        names.push(SPEED.to_string());
+        names.extend(entry_names("k"));
+        names.extend(has_damping.then(|| entry_names("c")).into_iter().flatten());
+        writer.write_record(&names)?;
+        for (i, point) in self.points.iter().enumerate() {
+            let mut cells = vec![i.to_string()];
+            let numbers = std::iter::once(point.operating_point.time_s);
+            let numbers = numbers.chain(self.column.as_ref().and(point.value));
+            let numbers = numbers.chain([speed(point)]);
+            let numbers = numbers.chain(point.stiffness.as_flattened().iter().copied());
+            let damping = point.damping.iter().flat_map(|c| c.as_flattened().to_vec());
+            cells.extend(numbers.chain(damping).map(|x| format!("{x:?}")));
+            writer.write_record(&cells)?;
+        }
+        Ok(writer.into_inner()?)
+    }
+
+    /// The entries of x and y over the speed.
+    fn ross(&self) -> anyhow::Result<Vec<u8>> {
+        let mut writer = csv::Writer::from_writer(Vec::new());
+        let has_damping = self.points.iter().all(|point| point.damping.is_some());
+        let names = ["speed", "kxx", "kxy", "kyx", "kyy", "cxx", "cxy", "cyx", "cyy"];
+        writer.write_record(&names[..if has_damping { 9 } else { 5 }])?;
+        for point in &self.points {
+            let of = |m: &ShaftMatrix| [m[0][0], m[0][1], m[1][0], m[1][1]];
+            let damping = point.damping.iter().flat_map(of);
+            let cells = std::iter::once(speed(point)).chain(of(&point.stiffness));
+            writer.write_record(cells.chain(damping).map(|x| format!("{x:?}")))?;
+        }
+        Ok(writer.into_inner()?)
+    }
+
+    /// Prints the diagonal at every point, and the whole matrix of a single one.
+    pub fn print(&self) {
+        let name = self.column.as_deref().unwrap_or("point");
+        let width = name.len().max(12);
+        print::line(format_args!(
+            "{name:>width$}   k_x N/um   k_y N/um   k_z N/um  k_tilt_x, k_tilt_y N m/mrad   largest ball force N"
+        ));
+        for (i, point) in self.points.iter().enumerate() {
+            let k = |i: usize| point.stiffness[i][i] * if i < 3 { 1e-6 } else { 1e-3 };
+            let force = point.operating_point.largest_force();
+            let value = point.value.unwrap_or(i as f64);
+            print::line(format_args!(
+                "{value:>width$} {:10.3} {:10.3} {:10.3} {:12.4} {:12.4} {force:21.2}",
+                k(0),
+                k(1),
+                k(2),
+                k(3),
+                k(4)
+            ));
+        }
+        if let [point] = self.points.as_slice() {
+            print_matrix("stiffness, N/m, N/rad, N m/m, N m/rad", &point.stiffness);
+            let damping = point.damping.iter();
+            damping.for_each(|damping| print_matrix("damping, N s/m and so on", damping));
+        }
+        for (i, point) in self.points.iter().enumerate() {
+            let Some(ripple) = &point.ripple else { continue };
+            let share = |i: usize| 50.0 * (ripple.maximum[i][i] - ripple.minimum[i][i]) / ripple.mean[i][i];
+            let cells: Vec<String> = (0..N_SHAFT)
+                .map(|i| format!("{} {:.4}", AXES[i], share(i)))
+                .collect();
+            print::line(format_args!(
+                "point {i}: ball-pass ripple, +- % of the mean over {} positions: {}",
+                ripple.positions,
+                cells.join(", ")
+            ));
+        }
+        print::line(format_args!("damping: {}", self.damping_note));
+        for warning in &self.warnings {
+            print::line(format_args!("warning: {warning}"));
+        }
+    }
+}
+
+/// Speed of the shaft, rad/s.
+fn speed(point: &StiffnessAt) -> f64 {
+    point.operating_point.speed_rad_per_s[0]
+}
+
+/// Names of the entries of a matrix, by rows.
+fn entry_names(of: &str) -> Vec<String> {
+    let row = |i: &str| AXES.map(|j| format!("{of}_{i}_{j}"));
+    AXES.iter().flat_map(|i| row(i)).collect()
+}
+
+fn print_matrix(title: &str, matrix: &ShaftMatrix) {
+    print::line(format_args!("{title}"));
+    for (axis, row) in AXES.iter().zip(matrix) {
+        let cells: Vec<String> = row.iter().map(|x| format!("{x:13.5e}")).collect();
+        print::line(format_args!("{axis:>8} {}", cells.concat()));
+    }
+}
