@@ -89,12 +89,14 @@ pub struct StripSurface {
 
 /// Pieces into which a ramp is cut across the track: the envelope bends there.
 const RAMP_PIECES: usize = 8;
+/// Largest piece of a floor, rad: the curvature of the track, and with it the sag of the ball, changes along it.
+const FLOOR_PIECE: f64 = 0.1;
 /// Width of an edge without a ramp, over the width of its spall.
 const SHARP: f64 = 1e-6;
 /// Grid spacings in the length of a spall.
-const SPACINGS_PER_SPALL: f64 = 100.0;
+const SPACINGS_PER_SPALL: f64 = 400.0;
 /// Largest grid spacing beside a spall, m.
-const SPALL_SPACING: f64 = 10e-6;
+const SPALL_SPACING: f64 = 5e-6;
 /// Grid spacings in a wave.
 const SPACINGS_PER_WAVE: f64 = 64.0;
 /// Grid spacings between azimuths of a table.
@@ -319,6 +321,10 @@ fn corners([low, high]: [f64; 2], groove_radius: f64, profiles: &Profiles) -> Ve
     let mut angles = vec![low, high];
     for spall in &profiles.spalls {
         let edge = spall.edge.max(SHARP * spall.width);
+        let floor = (0.5 * spall.width - edge) / groove_radius;
+        let pieces = (2.0 * floor / FLOOR_PIECE).ceil().max(1.0);
+        let step = 2.0 * floor / pieces;
+        angles.extend((1..pieces as usize).map(|i| spall.groove_angle - floor + step * i as f64));
         for sign in [-1.0, 1.0] {
             for piece in 0..=RAMP_PIECES {
                 let inside = edge * piece as f64 / RAMP_PIECES as f64;

@@ -35,6 +35,8 @@ pub mod footprint;
 pub mod frame;
 pub mod pose;
 pub mod raceway;
+pub mod surface_equilibrium;
+pub mod surfaces;
 
 pub use effects::{Effect, Loads};
 pub use error::DynamicsError;
@@ -44,6 +46,7 @@ pub use pose::Pose;
 pub use quasi_static::QuasiStatic;
 pub use solution::StaticSolution;
 pub use statics::StaticSolver;
+pub use surfaces::Surfaces;
 
 // A model and its results are made of rings.
 pub use ring::memory::{MotionSizes, RingMemory, forecast_motion_peak, forecast_peak};

@@ -193,7 +193,10 @@ fn seat_work(parts: &BearingParts, u: &Displacements) -> f64 {
 fn contact_work((site, state): (&Site, &SiteState)) -> f64 {
     let (l, n) = (state.reach(), state.normal);
     let moved = [0, 1].map(|i| l[i] - site.reach[i]);
-    state.force.force * (n[0] * moved[0] + n[1] * moved[1])
+    let across = state
+        .lateral
+        .map_or([0.0; 2], |lateral| lateral.force(n, state.length));
+    state.force.force * (n[0] * moved[0] + n[1] * moved[1]) + across[0] * moved[0] + across[1] * moved[1]
 }
 
 /// Forces at the contacts, by site or none at all, times the elastic motion of the groove centres, J.

@@ -51,13 +51,13 @@ impl Snapshot {
             shaft: state.shaft,
             seat: state.seat.map(|seat| seat[0]),
             reaction: None,
-            energies: ledger_terms(&state.ledger),
+            energies: ledger_terms(&state.ledger, motion.has_strips()),
         }
     }
 }
 
-fn ledger_terms(ledger: &Ledger) -> Vec<(&'static str, f64)> {
-    vec![
+fn ledger_terms(ledger: &Ledger, has_strips: bool) -> Vec<(&'static str, f64)> {
+    let mut terms = vec![
         ("kinetic_inner", ledger.kinetic[0]),
         ("kinetic_outer", ledger.kinetic[1]),
         ("kinetic_balls", ledger.kinetic[2]),
@@ -73,5 +73,13 @@ fn ledger_terms(ledger: &Ledger) -> Vec<(&'static str, f64)> {
         ("numerical_loss", ledger.numerical_loss),
         ("total", ledger.total()),
         ("defect", ledger.defect()),
-    ]
+    ];
+    if has_strips {
+        let losses = terms.iter().position(|(name, _)| *name == "contact_loss");
+        terms.insert(
+            losses.unwrap_or(terms.len()),
+            ("profile_work", ledger.profile_work),
+        );
+    }
+    terms
 }

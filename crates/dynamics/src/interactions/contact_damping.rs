@@ -21,7 +21,7 @@ pub fn viscous(damping: &ContactDamping, dt: f64, touching: f64, [l0, l1]: [[f64
 }
 
 /// Damping coefficient at an approach and its derivative.
-fn coefficient(damping: &ContactDamping, d: f64) -> [f64; 2] {
+pub(super) fn coefficient(damping: &ContactDamping, d: f64) -> [f64; 2] {
     let x = (d / damping.full_approach).clamp(0.0, 1.0);
     let slope = 6.0 * x * (1.0 - x) / damping.full_approach;
     [

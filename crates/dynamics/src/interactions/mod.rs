@@ -4,3 +4,4 @@ pub mod contact_damping;
 pub mod discrete_gradient;
 pub mod raceway_contact;
 pub mod seat_spring;
+pub mod strip_contact;

@@ -32,6 +32,7 @@ mod span;
 pub mod start;
 pub mod state;
 mod substep;
+mod surfaces;
 
 pub use cache::StepCache;
 pub use ledger::Ledger;

@@ -13,6 +13,8 @@ pub struct StateShape {
     pub rings: [Option<RingShape>; 2],
     /// Whether the seat of the outer ring slides.
     pub has_seat: bool,
+    /// Whether surfaces have a line in the ledger.
+    pub has_profiles: bool,
 }
 
 impl Motion<'_> {
@@ -22,6 +24,7 @@ impl Motion<'_> {
             n_balls: self.model.geometry.n_balls,
             rings: [0, 1].map(|i| self.rings[i].as_ref().map(|ring| ring.body.shape())),
             has_seat: self.model.seat().is_some(),
+            has_profiles: self.has_strips(),
         }
     }
 }
