@@ -201,13 +201,21 @@ impl StripLaw {
 
     fn integrals(&self, line: StripLine, d: f64, angle: f64) -> Integrals {
         let mut sum = Integrals::default();
-        let corners = line.angles.windows(2).zip(line.missing.windows(2));
-        for (angles, missing) in corners {
-            if d <= missing[0].min(missing[1]) {
-                continue;
+        let mut first = 0;
+        while first + 1 < line.angles.len() {
+            let mut last = first + 1;
+            // Level pieces are one piece.
+            let level = line.missing[first];
+            while last + 1 < line.angles.len() && [last, last + 1].iter().all(|&k| line.missing[k] == level) {
+                last += 1;
             }
-            let y = [0, 1].map(|k| self.groove_radius * (angles[k] - angle));
-            self.add_piece(y, [missing[0], missing[1]], d, &mut sum);
+            let ends = [first, last];
+            first = last;
+            let missing = ends.map(|corner| line.missing[corner]);
+            if d > missing[0].min(missing[1]) {
+                let y = ends.map(|corner| self.groove_radius * (line.angles[corner] - angle));
+                self.add_piece(y, missing, d, &mut sum);
+            }
         }
         sum.energy *= self.density;
         sum.force *= self.density;

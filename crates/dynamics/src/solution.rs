@@ -318,7 +318,7 @@ fn edge_warnings(footprints: &[Vec<Footprint>; 2], forces: &[[f64; 2]]) -> Vec<S
         if !truncated.is_empty() {
             warnings.push(format!(
                 "edge contact on the {} raceway, balls {}: the Hertz ellipse reaches beyond the groove; \
-                 forces and pressures there are not valid",
+                 pressures there are not valid, and forces only with contact.edges = true",
                 side.name(),
                 truncated.join(", ")
             ));

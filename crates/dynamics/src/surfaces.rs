@@ -54,8 +54,8 @@ pub struct Strips {
 
 impl Strips {
     /// The same over a step that begins and ends at these azimuths of the ring, rad.
-    pub fn between(self, azimuths: [f64; 2]) -> Strips {
-        let ends = azimuths.map(|azimuth| self.surface.missing_at(azimuth).into());
+    pub fn between(self, start: f64, end: f64) -> Strips {
+        let ends = [start, end].map(|azimuth| self.surface.missing_at(azimuth).into());
         Strips {
             ends: Some(ends),
             ..self

@@ -17,7 +17,12 @@ const SMALL: Level = Level::hex8(54, 6, 1, 2);
 /// 1800 rpm, rad/s.
 const SPEED: f64 = 60.0 * PI;
 
-fn with_strips(mut model: Model, side: Side, shoulders: Option<[f64; 2]>, profiles: &Profiles) -> Model {
+fn with_strips(
+    mut model: Model,
+    side: Side,
+    shoulders: Option<std::ops::RangeInclusive<f64>>,
+    profiles: &Profiles,
+) -> Model {
     let law = StripLaw::new(&model.hertz[side.index()], model.geometry.groove_radius(side));
     let surface = StripSurface::new(law, (&model.geometry, side), shoulders, profiles).unwrap();
     model.surfaces.strips[side.index()] = Some(Arc::new(surface));
@@ -157,11 +162,11 @@ fn the_ledger_closes_on_flexible_rings() {
         amplitude: 0.2e-6,
         phase: 0.3,
     });
-    model = with_strips(model, Side::Outer, Some([-0.5, 0.5]), &profiles);
+    model = with_strips(model, Side::Outer, Some(-0.5..=0.5), &profiles);
     model = with_strips(
         model,
         Side::Inner,
-        Some([-0.45, 0.45]),
+        Some(-0.45..=0.45),
         &Profiles {
             spalls: Vec::new(),
             ..profiles

@@ -10,7 +10,12 @@ use dynamics::{Model, Pose, StaticSolver, Surfaces};
 use support::{Case, equilibrium, relative};
 
 /// Puts strips on one raceway of a model.
-fn with_strips(mut model: Model, side: Side, shoulders: Option<[f64; 2]>, profiles: &Profiles) -> Model {
+fn with_strips(
+    mut model: Model,
+    side: Side,
+    shoulders: Option<std::ops::RangeInclusive<f64>>,
+    profiles: &Profiles,
+) -> Model {
     let law = StripLaw::new(&model.hertz[side.index()], model.geometry.groove_radius(side));
     let surface = StripSurface::new(law, (&model.geometry, side), shoulders, profiles).unwrap();
     model.surfaces.strips[side.index()] = Some(Arc::new(surface));
@@ -61,7 +66,7 @@ fn truncated_ellipses_carry_the_load_by_their_closed_forms() {
     let model = with_strips(
         case.rigid(),
         Side::Outer,
-        Some([-0.6, shoulder]),
+        Some(-0.6..=shoulder),
         &Profiles::default(),
     );
     let found = equilibrium(&model);

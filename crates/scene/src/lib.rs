@@ -10,6 +10,7 @@ mod meshing;
 mod resolution;
 mod section_record;
 mod settings;
+mod surfaces;
 pub mod tables;
 mod toml_text;
 

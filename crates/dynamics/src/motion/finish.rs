@@ -242,7 +242,7 @@ fn finish_contacts(next: &mut MotionState, parts: &BearingParts, solution: &Step
     }
     next.ledger.patch_work += start - next.ledger.hertz;
     next.ledger.hertz = end;
-    note_profile_work(&mut next.ledger, parts, solution, [start, end]);
+    note_profile_work(&mut next.ledger, parts, solution, (start, end));
 }
 
 impl BearingParts {

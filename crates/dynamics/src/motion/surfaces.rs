@@ -29,8 +29,8 @@ impl Motion<'_> {
                 .model
                 .surfaces
                 .at(site.side, azimuth(self.weighted_time(span)));
-            let ends = [0.0, 1.0].map(|share| azimuth(span.at(share)));
-            site.strips = strips.map(|strips| strips.between(ends));
+            let (start, end) = (azimuth(span.at(0.0)), azimuth(span.at(1.0)));
+            site.strips = strips.map(|strips| strips.between(start, end));
         }
         sites
     }
@@ -42,7 +42,7 @@ pub(super) fn note_profile_work(
     ledger: &mut Ledger,
     parts: &BearingParts,
     solution: &StepSolution,
-    [start, end]: [f64; 2],
+    (start, end): (f64, f64),
 ) {
     if let Some(own) = parts.contacts.energies_on_surfaces(solution.lengths()) {
         let [first, last] = [start - own[0], own[1] - end];

@@ -14,6 +14,8 @@ use std::f64::consts::PI;
 use input::{ANGLE, LENGTH, Problems, Quantity};
 use serde::Deserialize;
 
+use super::ball_diameters::RawBallDiameters;
+
 /// As typed.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields, expecting = "the table [bearing]")]
@@ -28,6 +30,7 @@ pub struct RawBearing {
     outside_diameter: Quantity<LENGTH>,
     width: Quantity<LENGTH>,
     first_ball_azimuth: Option<Quantity<ANGLE>>,
+    pub(super) ball_diameters: Option<RawBallDiameters>,
 }
 
 /// The macro-geometry of the bearing.

@@ -33,6 +33,7 @@
 //! `[quasi_static]`: see the files of these names.
 
 mod analysis;
+mod ball_diameters;
 mod bearing;
 mod contact;
 mod cut;
@@ -46,7 +47,9 @@ mod materials;
 mod modes;
 mod output;
 mod probes;
+mod profiles;
 mod quasi_static;
+mod random;
 mod ring;
 mod section;
 mod shaft;
@@ -80,6 +83,7 @@ pub use self::materials::{Material, Materials};
 pub use self::modes::{ModeBody, ModeSupport, Modes};
 pub use self::output::{Output, Precision, RingFrame, StressOutput};
 pub use self::probes::{Axes, ContactProbe, NodeProbe, Probes, SectionPoint};
+pub use self::profiles::SurfaceProfiles;
 pub use self::quasi_static::QuasiStatic;
 pub use self::ring::{FlexibleRing, MeshFiles, Ring, RingName, Support};
 pub use self::section::{Section, SectionElement};
@@ -98,6 +102,7 @@ use self::materials::RawMaterials;
 use self::modes::{ModesContext, RawModes};
 use self::output::RawOutput;
 use self::probes::{ProbesContext, RawProbes};
+use self::profiles::{ProfilesContext, RawProfiles};
 use self::quasi_static::RawQuasiStatic;
 use self::ring::{RawRing, RingContext};
 use self::shaft::RawShaft;
@@ -115,6 +120,8 @@ struct RawScene {
     bearing: RawBearing,
     materials: RawMaterials,
     contact: RawContact,
+    #[serde(default)]
+    profiles: RawProfiles,
     #[serde(default)]
     inner: RawRing,
     #[serde(default)]
@@ -156,6 +163,8 @@ pub struct Scene {
     pub materials: Materials,
     /// How balls and raceways push on each other.
     pub contact: Contact,
+    /// By what raceways and balls differ from smooth grooves and equal spheres.
+    pub profiles: SurfaceProfiles,
     /// The ring on the shaft.
     pub inner: Ring,
     /// The ring in the housing.
@@ -295,9 +304,20 @@ impl Source<'_> {
         let mut problems = Problems::default();
         let bearing = raw.bearing.check(&mut problems);
         let materials = raw.materials.check(&mut problems);
-        let contact = raw
+        let mut contact = raw
             .contact
             .check(bearing.as_ref(), materials.as_ref(), &mut problems);
+        let surfaces = ProfilesContext {
+            bearing: bearing.as_ref(),
+            scene: self.path,
+            files: self.mesh_files,
+            ball: raw.contact.ball,
+            is_modes: raw.modes.is_some(),
+        };
+        let diameters = raw.bearing.ball_diameters.as_ref();
+        let profiles = raw
+            .profiles
+            .check(diameters, surfaces, &mut contact, &mut problems);
         let context = RingContext {
             bearing: bearing.as_ref(),
             mode: contact.mode,
@@ -352,6 +372,7 @@ impl Source<'_> {
                 bearing,
                 materials,
                 contact,
+                profiles,
                 inner,
                 outer,
                 shaft,

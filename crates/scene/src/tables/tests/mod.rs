@@ -10,6 +10,7 @@ mod modes;
 mod motion;
 mod overrides;
 mod probes;
+mod profiles;
 mod quasi_static;
 mod schedules;
 mod sweeps;
