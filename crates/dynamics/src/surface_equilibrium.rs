@@ -1,7 +1,7 @@
 //! Equilibrium on real surfaces: that of smooth grooves first, whose energy is convex, then that of the surfaces.
 //!
-//! The energy of a contact at an edge or over a profile is not convex in the contact angle, so that Newton may stall from
-//! far away. Where it does, the profiles grow in stages.
+//! The energy of a contact at an edge or over a profile is not convex in the contact angle, so that Newton may stall
+//! from far away. Where it does, the profiles grow in stages.
 
 use crate::bearing::BearingParts;
 use crate::displacements::Displacements;

@@ -54,9 +54,9 @@ fn a_smooth_groove_of_strips_has_the_equilibrium_of_hertz() {
     }
 }
 
-/// Wrong: an edge would not be felt by an equilibrium, or by another force than that of the truncated ellipse. The balls
-/// of a bearing whose outer shoulder cuts all ellipses carry the load by closed forms: along the normal 1/2 + 3/4 tau -
-/// tau^3/4 of Hertz's force, across it -c d a^2 R_g/(R' |l|) (1 - tau^2)^2/4.
+/// Wrong: an edge would not be felt by an equilibrium, or by another force than that of the truncated ellipse. The
+/// balls of a bearing whose outer shoulder cuts all ellipses carry the load by closed forms: along the normal 1/2 +
+/// 3/4 tau - tau^3/4 of Hertz's force, across it -c d a^2 R_g/(R' |l|) (1 - tau^2)^2/4.
 #[test]
 fn truncated_ellipses_carry_the_load_by_their_closed_forms() {
     let case = Case::axial(2000.0);
@@ -125,8 +125,8 @@ fn waves(order: usize, amplitude: f64) -> Profiles {
 }
 
 /// Wrong: waves of as many as balls would not lift all of them at once. In closed form for small waves: with the groove
-/// centres l apart at the contact angle a, total approach d, the axial displacement is 2 A / [sin a + (2 d/3) cos^2 a/(l
-/// sin a)] from crest to trough. Grid and amplitude leave 1e-4.
+/// centres l apart at the contact angle a, total approach d, the axial displacement is 2 A / [sin a +
+/// (2 d/3) cos^2 a/(l sin a)] from crest to trough. Grid and amplitude leave 1e-4.
 #[test]
 fn waves_of_the_number_of_balls_move_a_rigid_bearing_along_its_axis() {
     let amplitude = 10e-9;
@@ -157,8 +157,8 @@ fn waves_of_the_number_of_balls_move_a_rigid_bearing_along_its_axis() {
 }
 
 /// Wrong: waves would move a rigid bearing under thrust that must not, or not those that must (Wardle 1988): orders kZ
-/// along the axis, kZ +- 1 across it, all others not at all, to the round-off of the equilibrium and the second order of
-/// the amplitude.
+/// along the axis, kZ +- 1 across it, all others not at all, to the round-off of the equilibrium and the second order
+/// of the amplitude.
 #[test]
 fn orders_of_waves_move_a_rigid_bearing_as_they_must() {
     let case = Case::axial(2000.0);

@@ -3,8 +3,8 @@
 //! total = kinetic + strain + Hertz energy, each body in its own frame. It may change only by work of loads (ball
 //! centrifugal force is one), of imposed shaft displacements, of the turning frame (its inertia forces, and what the
 //! drive gives because loads fixed in space turn against the ring), of patches that move and change size with the
-//! contacts, of surfaces that move under them, and by dissipation. What is left is the defect: the error of the scheme. A run whose defect exceeds its
-//! tolerance stops.
+//! contacts, of surfaces that move under them, and by dissipation. What is left is the defect: the error of the
+//! scheme. A run whose defect exceeds its tolerance stops.
 
 /// Energies and works, J, at the end of a step; works and losses are sums since the start.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

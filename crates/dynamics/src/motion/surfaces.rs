@@ -36,8 +36,8 @@ impl Motion<'_> {
     }
 }
 
-/// Takes what surfaces do out of the ledger's work of patches, which has the energies `start` and `end` of a part in the
-/// middle of its surfaces.
+/// Takes what surfaces do out of the ledger's work of patches, which has the energies `start` and `end` of a part on
+/// the surfaces of its middle.
 pub(super) fn note_profile_work(
     ledger: &mut Ledger,
     parts: &BearingParts,
