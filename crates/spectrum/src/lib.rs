@@ -348,7 +348,7 @@ fn draw(named: &Titled, marks: &[Line], upto: Option<f64>) -> anyhow::Result<Fig
     Ok(figure.series(Series::line("", points)))
 }
 
-fn write_table(path: &PathBuf, named: &Titled) -> anyhow::Result<()> {
+fn write_table(path: &Path, named: &Titled) -> anyhow::Result<()> {
     let head = format!("{FREQUENCY},{}\n", named.column);
     let rows = named.spectrum.values.iter().enumerate();
     let row = |(k, value): (usize, &f64)| format!("{:?},{value:?}\n", k as f64 * named.spectrum.resolution);

@@ -375,7 +375,9 @@ fn heights(text: &str) -> Result<Heights, String> {
         let [Some(azimuth), Some(angle), Some(height)] = cells[..] else {
             return Err(format!("line {number} is {line:?}; expected three numbers"));
         };
-        if !(0.0..360.0).contains(&azimuth) || angle.abs() >= 90.0 || !(height.abs() <= 1e6 * MAX_HEIGHT) {
+        let most = 1e6 * MAX_HEIGHT;
+        let is_sane = (0.0..360.0).contains(&azimuth) && angle.abs() < 90.0 && height.abs() <= most;
+        if !is_sane {
             return Err(format!(
                 "line {number} is {line:?}; expected an azimuth from 0 to below 360 deg, a groove angle between -90 \
                  and 90 deg and a height of at most 100 um"

@@ -133,10 +133,6 @@ fn what_makes_no_sense_in_profiles_is_refused() {
             balls("spread = \"1 mm\"\nseed = 1"),
             "bearing.ball_diameters.spread is 1 mm; expected at most a thousandth of the ball diameter, 9 um",
         ),
-        (
-            with("[[profiles.table]]\nring = \"outer\"\nfile = \"\""),
-            "profiles.table 1: cannot read scenes",
-        ),
         (with("[[profiles.dent]]\nring = \"outer\""), "dent"),
         (
             replace_line(&with(SPALL), "mode = \"patch\"", "mode = \"facet\""),
@@ -175,6 +171,12 @@ fn tables_of_heights_are_read_and_checked() {
         let text = with("[[profiles.table]]\nring = \"outer\"\nfile = \"roundness.csv\"");
         Scene::parse(&text, &scene, &[], MeshFiles::MayBeMissing)
     };
+    let missing = with("[[profiles.table]]\nring = \"outer\"\nfile = \"none.csv\"");
+    let error = Scene::parse(&missing, &scene, &[], MeshFiles::MustExist).unwrap_err();
+    assert!(
+        error.to_string().contains("profiles.table 1: cannot read "),
+        "{error}"
+    );
     let good = "# measured\nazimuth_deg, groove_angle_deg, height_um\n180, -5, 1\n0, -5, 0.5\n\
                 180, 20, 2\n0, 20, -0.25\n";
     let found = parse_with(good).unwrap().profiles;
