@@ -113,9 +113,9 @@ fn the_ledger_closes_through_a_spall() {
     }
 }
 
-/// Wrong: the force of a ball would fall or come back at another time than its contact passes the spall. It falls at the
-/// leading edge; the ball meets the far edge L / (2 v) later, where its path rises again, v the contact's speed along the
-/// raceway; for the 7010C at 1800 rpm 165 us for 1 mm, 330 us for the passage.
+/// Wrong: the force of a ball would fall or come back at another time than its contact passes the spall. It falls at
+/// the leading edge; the ball meets the far edge L / (2 v) later, where its path rises again, v the contact's speed
+/// along the raceway; for the 7010C at 1800 rpm 165 us for 1 mm, 330 us for the passage.
 #[test]
 fn the_force_falls_at_the_leading_edge_and_the_ball_meets_the_other_half_way() {
     let smooth = heavy();
