@@ -38,5 +38,6 @@ mod stress;
 mod stress_histories;
 mod study;
 mod study_jobs;
+mod surfaces;
 mod sweeps;
 mod util;

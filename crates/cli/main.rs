@@ -38,6 +38,7 @@ use report::Report;
 use results::failure::{Failure, agree, say_of_rank};
 use results::memory::require_address_space;
 use results::summary::peak_memory;
+use spectrum::SpectrumCommand;
 
 use crate::campbell::CampbellCommand;
 use crate::cycles::Cycles;
@@ -114,6 +115,8 @@ enum Command {
     Plot(Plot),
     /// Writes one HTML page of a run: scene, numbers, figures, energy, cost, warnings.
     Report(Report),
+    /// Spectrum of a signal of a motion, with the lines of the bearing: amplitudes, power density or envelope.
+    Spectrum(SpectrumCommand),
     /// Ratings of a bearing, and its life under the forces of a run or of a load spectrum.
     Life(LifeCommand),
     /// Stiffness and damping of the shaft on its bearing, at the operating point or at every point of a sweep.
@@ -316,6 +319,7 @@ fn execute(arguments: Arguments) -> Result<(), Failure> {
         Command::Advise(question) => study::advise(&question),
         Command::Plot(request) => plot::plot(&request),
         Command::Report(request) => report::report(&request),
+        Command::Spectrum(request) => spectrum::spectrum(&request),
         Command::Life(request) => life::life(&request),
         Command::Stiffness(command) => stiffness::stiffness(&command),
         Command::Campbell(command) => campbell::campbell(&command),

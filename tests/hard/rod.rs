@@ -156,6 +156,7 @@ impl Rod {
             law,
             across: 0.0,
             unevenness: None,
+            strips: None,
         };
         // The other contact of the ball is out of reach.
         let far = Site {

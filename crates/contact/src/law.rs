@@ -116,6 +116,11 @@ pub struct ContactForce {
 }
 
 impl ContactLaw {
+    /// What patch and ball yield besides Hertz's law together, m/N.
+    pub fn compliance(&self) -> f64 {
+        self.patch_compliance + self.ball_compliance
+    }
+
     /// Force, tangent and energy at the geometric approach `g`, m.
     pub fn evaluate(&self, g: f64) -> ContactForce {
         if g <= 0.0 {

@@ -39,6 +39,8 @@ pub mod footprint;
 pub mod frame;
 pub mod pose;
 pub mod raceway;
+pub mod surface_equilibrium;
+pub mod surfaces;
 
 pub use effects::{Effect, Loads};
 pub use error::DynamicsError;
@@ -50,6 +52,7 @@ pub use quasi_static::QuasiStatic;
 pub use solution::StaticSolution;
 pub use statics::StaticSolver;
 pub use stiffness::{DampingLaws, Linearisation};
+pub use surfaces::Surfaces;
 
 // A model and its results are made of rings.
 pub use ring::memory::{MotionSizes, RingMemory, forecast_motion_peak, forecast_peak};

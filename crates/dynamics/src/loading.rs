@@ -16,11 +16,12 @@ use crate::bearing::{BearingParts, ContactList, SeatStep};
 use crate::bodies::{FlatBody, Inertia, Name};
 use crate::displacements::Displacements;
 use crate::effects::{self, Loads, Now};
-use crate::equilibrium::{SearchScales, minimise};
+use crate::equilibrium::SearchScales;
 use crate::error::DynamicsError;
 use crate::interactions::raceway_contact::Site;
 use crate::model::Model;
 use crate::pose::Pose;
+use crate::surface_equilibrium::settle_on_surfaces;
 use crate::system::Interval;
 
 /// Bodies and contacts of a model at an instant, with their loads.
@@ -77,7 +78,7 @@ impl<'a> LoadCase<'a> {
 
     /// Newton on bodies and contacts as they are.
     pub fn minimise(&mut self, start: &Displacements) -> Result<Displacements, DynamicsError> {
-        let (u, iterations) = minimise(&self.parts, start, self.scales)?;
+        let (u, iterations) = settle_on_surfaces(&mut self.parts, start, self.scales)?;
         self.newton_iterations += iterations;
         Ok(u)
     }
@@ -135,6 +136,7 @@ fn parts_at(pose: &Pose, model: &Model) -> BearingParts {
         let azimuth = geometry.azimuth(ball) + pose.now.cage_angle;
         let mut site = Site::new(model, ball, side, azimuth);
         site.ring_azimuth -= pose.frame_angle(side);
+        site.strips = model.surfaces.at(side, site.ring_azimuth);
         site
     };
     let sites = (0..geometry.n_balls).flat_map(|ball| Side::BOTH.map(|side| site(ball, side)));

@@ -18,6 +18,7 @@ use crate::effects::Effect;
 use crate::interactions::seat_spring::Seat;
 use crate::interactions::traction::Traction;
 use crate::mounting::Mounting;
+use crate::surfaces::Surfaces;
 
 /// Largest tilt of the shaft, rad: a little more than 3 deg. Contacts take it exactly; the inertia of tilts is off by
 /// its square.
@@ -88,6 +89,8 @@ pub struct Model {
     pub hertz: [HertzContact; 2],
     /// What the balls yield as spheres, beyond the half-spaces of Hertz's law; zero: nothing.
     pub sphere: SphereCompliance,
+    /// Real surfaces; the default costs nothing.
+    pub surfaces: Surfaces,
     /// Flexible rings, inner first; None is a rigid ring and costs nothing.
     pub rings: [Option<Arc<RingModel>>; 2],
     /// What fits and temperatures do to rings and balls.

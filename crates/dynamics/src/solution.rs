@@ -193,7 +193,10 @@ fn seat_work(parts: &BearingParts, u: &Displacements) -> f64 {
 fn contact_work((site, state): (&Site, &SiteState)) -> f64 {
     let (l, n) = (state.reach(), state.normal);
     let moved = [0, 1].map(|i| l[i] - site.reach[i]);
-    state.force.force * (n[0] * moved[0] + n[1] * moved[1])
+    let across = state
+        .lateral
+        .map_or([0.0; 2], |lateral| lateral.force(n, state.length));
+    state.force.force * (n[0] * moved[0] + n[1] * moved[1]) + across[0] * moved[0] + across[1] * moved[1]
 }
 
 /// Forces at the contacts, by site or none at all, times the elastic motion of the groove centres, J.
@@ -315,7 +318,7 @@ fn edge_warnings(footprints: &[Vec<Footprint>; 2], forces: &[[f64; 2]]) -> Vec<S
         if !truncated.is_empty() {
             warnings.push(format!(
                 "edge contact on the {} raceway, balls {}: the Hertz ellipse reaches beyond the groove; \
-                 forces and pressures there are not valid",
+                 pressures there are not valid, and forces only with contact.edges = true",
                 side.name(),
                 truncated.join(", ")
             ));

@@ -324,7 +324,8 @@ fn approach_facets(
     mut u: Displacements,
     scales: SearchScales,
 ) -> Result<Displacements, DynamicsError> {
-    if parts.system().has_energy() {
+    let exact = parts.contacts.sites.iter().all(|site| site.unevenness.is_none());
+    if exact {
         return Ok(u);
     }
     let full: Vec<_> = parts

@@ -100,6 +100,11 @@ impl Linearisation {
             let what = "contact.mode = \"facet\", whose contacts jump from facet to facet; use \"patch\"";
             return Err(DynamicsError::NotInStiffness { what });
         }
+        if model.surfaces.has_strips() {
+            let what =
+                "real surfaces ([[profiles.*]], contact.edges), whose tangent changes wherever a ball stands";
+            return Err(DynamicsError::NotInStiffness { what });
+        }
         if model.traction().is_some() {
             let what = "balls.motion = \"free\", whose traction is not linearised; use \"kinematic\"";
             return Err(DynamicsError::NotInStiffness { what });

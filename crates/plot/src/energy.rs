@@ -17,7 +17,13 @@ const LINES: [(&str, &[&str]); 5] = [
     ("Hertz contacts", &["hertz"]),
     (
         "work of loads, drives, frame, patches",
-        &["load_work", "imposed_work", "frame_work", "patch_work"],
+        &[
+            "load_work",
+            "imposed_work",
+            "frame_work",
+            "patch_work",
+            "profile_work",
+        ],
     ),
     ("losses", &["contact_loss", "rayleigh_loss", "numerical_loss"]),
 ];

@@ -38,6 +38,10 @@ pub fn identity(scene: &Scene) -> anyhow::Result<String> {
         let mesh = flexible(scene, side).map(mesh_text).transpose()?;
         lines.push(format!("{} {}", side.name(), mesh.unwrap_or_default()));
     }
+    let numbers: Vec<u8> = scene.profiles.from_files().flat_map(f64::to_le_bytes).collect();
+    if !numbers.is_empty() {
+        lines.push(format!("profiles {:016x}", fingerprint(&numbers)));
+    }
     Ok(format!("{:016x}", fingerprint(lines.join("\n").as_bytes())))
 }
 

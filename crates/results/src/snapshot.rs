@@ -55,12 +55,12 @@ impl Snapshot {
             seat: state.seat.map(|seat| seat[0]),
             reaction: None,
             friction: motion.friction(state),
-            energies: ledger_terms(&state.ledger),
+            energies: ledger_terms(&state.ledger, motion.has_strips()),
         }
     }
 }
 
-fn ledger_terms(ledger: &Ledger) -> Vec<(&'static str, f64)> {
+fn ledger_terms(ledger: &Ledger, has_strips: bool) -> Vec<(&'static str, f64)> {
     let friction = ledger.friction.into_iter().flat_map(|friction| {
         [
             ("drive_work", friction.drive_work),
@@ -86,5 +86,12 @@ fn ledger_terms(ledger: &Ledger) -> Vec<(&'static str, f64)> {
     ];
     terms.extend(friction);
     terms.extend([("total", ledger.total()), ("defect", ledger.defect())]);
+    if has_strips {
+        let losses = terms.iter().position(|(name, _)| *name == "contact_loss");
+        terms.insert(
+            losses.unwrap_or(terms.len()),
+            ("profile_work", ledger.profile_work),
+        );
+    }
     terms
 }

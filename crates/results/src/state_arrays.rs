@@ -90,7 +90,7 @@ fn exchange(state: &mut MotionState, shape: &StateShape, port: &mut Port<'_>) ->
         exchange_free(free.get_or_insert_default(), shape.n_balls, port)?;
         exchange_friction(ledger.friction.get_or_insert_default(), port)?;
     }
-    exchange_ledger(ledger, port)?;
+    exchange_ledger(ledger, shape, port)?;
     for (side, ring) in Side::BOTH.into_iter().zip(rings) {
         if let Some(shape) = shape.rings[side.index()] {
             exchange_ring(ring.get_or_insert_default(), side.name(), shape, port)?;
@@ -171,7 +171,7 @@ fn require_kind(arrays: &Arrays, side: &str, ring: Option<RingShape>) -> anyhow:
     Ok(())
 }
 
-fn exchange_ledger(ledger: &mut Ledger, port: &mut Port<'_>) -> anyhow::Result<()> {
+fn exchange_ledger(ledger: &mut Ledger, shape: &StateShape, port: &mut Port<'_>) -> anyhow::Result<()> {
     let Ledger {
         kinetic,
         strain,
@@ -180,6 +180,7 @@ fn exchange_ledger(ledger: &mut Ledger, port: &mut Port<'_>) -> anyhow::Result<(
         imposed_work,
         frame_work,
         patch_work,
+        profile_work,
         contact_loss,
         rayleigh_loss,
         numerical_loss,
@@ -190,6 +191,9 @@ fn exchange_ledger(ledger: &mut Ledger, port: &mut Port<'_>) -> anyhow::Result<(
     port.values("ledger_kinetic", kinetic)?;
     port.values("ledger_strain", strain)?;
     port.scalars("ledger_works", [load_work, imposed_work, frame_work, patch_work])?;
+    if shape.has_profiles {
+        port.scalars("ledger_profiles", [profile_work])?;
+    }
     port.scalars("ledger_losses", [contact_loss, rayleigh_loss, numerical_loss])?;
     port.scalars("ledger_scale", [initial, largest, hertz])
 }
@@ -301,6 +305,7 @@ mod tests {
         ],
         has_seat: true,
         has_free_balls: true,
+        has_profiles: true,
     };
 
     /// A state in which every number is another one, with a NaN and a negative zero.
@@ -339,6 +344,7 @@ mod tests {
                 imposed_work: number(),
                 frame_work: number(),
                 patch_work: number(),
+                profile_work: number(),
                 contact_loss: number(),
                 rayleigh_loss: number(),
                 numerical_loss: number(),

@@ -109,7 +109,8 @@ fn event(limit: ContactLimit, ball: usize, side: Side, pressure: Option<f64>) ->
 fn meaning(limit: ContactLimit) -> &'static str {
     match limit {
         ContactLimit::Edge => {
-            "the Hertz ellipse reaches beyond the groove: forces and pressures there are not valid"
+            "the Hertz ellipse reaches beyond the groove: pressures there are not valid, and forces only with \
+             contact.edges = true"
         }
         ContactLimit::StaticPressure => "there it yields (ISO 76), which this model does not know",
     }

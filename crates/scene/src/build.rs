@@ -19,6 +19,7 @@ use crate::error::BuildError;
 use crate::resolution::require_resolvable;
 use crate::section_record::{require_fresh, with_command};
 use crate::settings::speeds;
+use crate::surfaces::surfaces;
 use crate::tables::{self, FlexibleRing, Scene};
 
 /// Deviation of raceway nodes from the scene's torus that is taken for round-off of a file, over the groove
@@ -70,6 +71,7 @@ pub fn model_with_rings(scene: &Scene, rings: [Option<Arc<RingModel>>; 2]) -> Re
         }
         tables::BallElasticity::HalfSpace => SphereCompliance::default(),
     };
+    let surfaces = surfaces(scene, &geometry, &hertz, &rings)?;
     let effects = scene.effects.loads(Setting {
         speeds: &speeds(scene),
         slip: scene.effects.slip(),
@@ -87,6 +89,7 @@ pub fn model_with_rings(scene: &Scene, rings: [Option<Arc<RingModel>>; 2]) -> Re
         geometry,
         hertz,
         sphere,
+        surfaces,
         rings,
         mounting,
         ball_material: ball_steel,

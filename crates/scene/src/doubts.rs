@@ -24,6 +24,11 @@ const DENSITIES: RangeInclusive<f64> = 500.0..=25_000.0;
 const OTHER_DIAMETER: f64 = 2e-3;
 const OTHER_WIDTH: f64 = 2e-2;
 
+/// What real surfaces do not change.
+const WHOLE_ELLIPSES: &str = "contacts on real surfaces have their forces by strips; ellipses, peak pressures and near \
+                              field are still those of Hertz's whole ellipse under these forces: at edges stress is \
+                              higher";
+
 /// A sentence for each slip; `model` has whole meshes.
 pub fn doubts(scene: &Scene, model: &Model) -> Vec<String> {
     let materials = &scene.materials;
@@ -44,6 +49,9 @@ pub fn doubts(scene: &Scene, model: &Model) -> Vec<String> {
     lines.extend(unresolved(scene, &model.geometry));
     let mounted = model.mounting.report.iter();
     lines.extend(mounted.flat_map(|report| report.warnings.clone()));
+    if model.surfaces.has_strips() {
+        lines.push(WHOLE_ELLIPSES.to_string());
+    }
     lines
 }
 

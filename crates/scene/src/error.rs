@@ -28,6 +28,14 @@ pub enum BuildError {
     /// An effect cannot be constructed.
     #[error(transparent)]
     Dynamics(#[from] DynamicsError),
+    /// Profiles do not fit the rings.
+    #[error("scene {}: {problem}", path.display())]
+    Surface {
+        /// The scene file.
+        path: PathBuf,
+        /// What is wrong, and what was expected.
+        problem: String,
+    },
     /// The cuts of a ring do not fit its mesh.
     #[error("mesh {}: {problem}", path.display())]
     Cut {

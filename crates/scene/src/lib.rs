@@ -12,6 +12,7 @@ mod resolution;
 mod section_record;
 mod settings;
 mod starter;
+mod surfaces;
 pub mod tables;
 mod toml_text;
 

@@ -5,3 +5,4 @@ mod extremes;
 mod halfspace;
 mod near_field;
 mod quadrature;
+mod strips;

@@ -15,7 +15,7 @@ use contact::{BallLaws, ContactLaw};
 /// would lose digits, and three Gauss points are exact to round-off there.
 const SMALL_CHANGE: f64 = 1e-2;
 /// Gauss points and weights on 0..1.
-const GAUSS: [(f64, f64); 3] = [
+pub(super) const GAUSS: [(f64, f64); 3] = [
     (0.112_701_665_379_258_3, 5.0 / 18.0),
     (0.5, 8.0 / 18.0),
     (0.887_298_334_620_741_7, 5.0 / 18.0),
@@ -239,17 +239,17 @@ fn along_lengths(
     (result, pulls)
 }
 
-fn size(l: [f64; 2]) -> f64 {
+pub(super) fn size(l: [f64; 2]) -> f64 {
     l[0].hypot(l[1])
 }
 
-fn unit(l: [f64; 2]) -> [f64; 2] {
+pub(super) fn unit(l: [f64; 2]) -> [f64; 2] {
     let size = size(l);
     [l[0] / size, l[1] / size]
 }
 
 /// (l1 + l0)/(|l1| + |l0|).
-fn mean_direction([l0, l1]: [[f64; 2]; 2]) -> [f64; 2] {
+pub(super) fn mean_direction([l0, l1]: [[f64; 2]; 2]) -> [f64; 2] {
     let total = size(l0) + size(l1);
     [(l0[0] + l1[0]) / total, (l0[1] + l1[1]) / total]
 }
@@ -261,7 +261,7 @@ fn outer(factor: f64, a: [f64; 2], b: [f64; 2]) -> [[f64; 2]; 2] {
 
 /// Takes away the part of a force that pulls along the direction of `along`, which grows with l1, and keeps the part
 /// across it: so the force stays continuous.
-fn drop_pull(along: [f64; 2], result: &mut MeanForce) {
+pub(super) fn drop_pull(along: [f64; 2], result: &mut MeanForce) {
     let length = along[0].hypot(along[1]);
     let e = along.map(|x| x / length);
     let pull = result.force[0] * e[0] + result.force[1] * e[1];

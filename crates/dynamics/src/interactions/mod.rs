@@ -5,4 +5,5 @@ pub mod discrete_gradient;
 pub mod free_contact;
 pub mod raceway_contact;
 pub mod seat_spring;
+pub mod strip_contact;
 pub mod traction;

@@ -15,7 +15,9 @@ use timer::SharedLaps;
 
 use super::contact_damping::{ContactDamping, viscous};
 use super::discrete_gradient::{BallLengths, BallMeans, ContactScheme, mean_forces};
+use super::strip_contact::{Lateral, StripSite};
 use crate::model::Model;
+use crate::surfaces::Strips;
 use crate::system::{
     Body, CarriedCircle, Character, Circle, Interaction, Lengths, Link, LinkForces, LinkRows, LinkTerm,
 };
@@ -43,6 +45,8 @@ pub struct Site {
     pub across: f64,
     /// How far the facets lie inside the torus; None on an exact torus.
     pub unevenness: Option<Arc<Unevenness>>,
+    /// Its strips, where the scene asks for them; the law then brings only its compliances.
+    pub strips: Option<Strips>,
 }
 
 /// A contact at an instant.
@@ -56,6 +60,8 @@ pub struct SiteState {
     pub slope: [f64; 2],
     /// Force, its tangent over the contact's own approach, and energy.
     pub force: ContactForce,
+    /// The force across the normal, of strips only.
+    pub lateral: Option<Lateral>,
     /// Contact angle, rad.
     pub angle: f64,
 }
@@ -69,7 +75,7 @@ impl Site {
             azimuth,
             ring_azimuth: azimuth,
             reach: model.reach(side, None),
-            touching: model.touching_distance(side),
+            touching: model.touching_distance(side) - model.surfaces.larger_radius(ball),
             lever: model.geometry.centre_radius(side),
             law: ContactLaw {
                 stiffness: model.hertz[side.index()].stiffness,
@@ -78,6 +84,7 @@ impl Site {
             },
             across: model.sphere.across,
             unevenness: None,
+            strips: model.surfaces.at(side, azimuth),
         }
     }
 
@@ -122,6 +129,12 @@ impl Site {
         l
     }
 
+    /// The contact as one of strips, if it has them.
+    fn strip_site(&self) -> Option<StripSite<'_>> {
+        let strips = self.strips.as_ref()?;
+        Some(StripSite::new(strips, &self.law, self.touching, self.side.sign()))
+    }
+
     /// The contact at l, still without its force, and its approach, m.
     fn place(&self, l: [f64; 2]) -> (SiteState, f64) {
         let length = l[0].hypot(l[1]);
@@ -135,6 +148,7 @@ impl Site {
             length,
             slope: [0.0; 2],
             force: ContactForce::default(),
+            lateral: None,
             angle: self.angle(normal),
         };
         let mut approach = length - self.touching;
@@ -163,9 +177,13 @@ fn ball_states(sites: &BallSites, l: [[f64; 2]; 2]) -> ([SiteState; 2], [[f64; 2
     let placed = [0, 1].map(|k| sites[k].place(l[k]));
     let found = laws(sites).evaluate(placed.map(|(_, approach)| approach));
     let state = |k: usize| {
-        let mut state = placed[k].0;
+        let (mut state, approach) = placed[k];
         state.force = found.contacts[k];
         state.force.tangent = found.tangent[k][k];
+        if let Some(strips) = sites[k].strip_site() {
+            let (force, lateral) = strips.state(approach, state.angle);
+            (state.force, state.lateral) = (force, Some(lateral));
+        }
         state
     };
     ([state(0), state(1)], found.tangent)
@@ -174,7 +192,14 @@ fn ball_states(sites: &BallSites, l: [[f64; 2]; 2]) -> ([SiteState; 2], [[f64; 2
 impl SiteState {
     /// Force on the ring [radial, axial], N.
     pub fn on_ring(&self) -> [f64; 2] {
-        self.normal.map(|n| self.force.force * n)
+        let normal = self.normal.map(|n| self.force.force * n);
+        match self.lateral.filter(|_| self.length > 0.0) {
+            Some(lateral) => {
+                let force = lateral.force(self.normal, self.length);
+                [normal[0] + force[0], normal[1] + force[1]]
+            }
+            None => normal,
+        }
     }
 
     /// l, m.
@@ -191,12 +216,18 @@ impl SiteState {
             0.0
         };
         let gap = self.gap_slope();
-        [0, 1].map(|i| {
+        let mut tangent = [0, 1].map(|i| {
             [0, 1].map(|j| {
                 let identity = if i == j { 1.0 } else { 0.0 };
                 self.force.tangent * n[i] * gap[j] + across * (identity - n[i] * n[j])
             })
-        })
+        });
+        if let Some(lateral) = self.lateral.filter(|_| self.length > 0.0) {
+            let more = lateral.tangent(n, self.length);
+            let sums = tangent.as_flattened_mut().iter_mut();
+            sums.zip(more.as_flattened()).for_each(|(sum, t)| *sum += t);
+        }
+        tangent
     }
 
     /// Growth of the approach with l.
@@ -315,8 +346,33 @@ impl RacewayContacts {
         let viscous = |ball: usize| damping.as_ref().map(|terms| terms[ball]);
         let balls = self.balls().zip(&places).enumerate();
         balls
-            .map(|(ball, (sites, at))| mean_forces(&laws(sites), at, scheme, viscous(ball)))
+            .map(|(ball, (sites, at))| {
+                let mut found = mean_forces(&laws(sites), at, scheme, viscous(ball));
+                for (k, site) in sites.iter().enumerate() {
+                    if let Some(strips) = site.strip_site() {
+                        let damping = means.damping.as_ref().map(|damping| (damping, means.dt));
+                        found.contacts[k] = strips.mean_force(at.l[k], scheme, damping);
+                    }
+                }
+                found
+            })
             .collect()
+    }
+
+    /// Energies of the contacts at the start and at the end of a step, J, each on the surfaces of its own instant; None
+    /// where no contact has strips.
+    pub fn energies_on_surfaces(&self, lengths: Lengths) -> Option<[f64; 2]> {
+        self.sites.iter().find(|site| site.strips.is_some())?;
+        let smooth = [lengths.start, lengths.end].map(|l| self.states(l));
+        let mut sum = [0.0; 2];
+        for (index, site) in self.sites.iter().enumerate() {
+            let energies = match site.strip_site() {
+                Some(strips) => strips.energies_at_ends(lengths.of::<2>(index)),
+                None => [0, 1].map(|end: usize| smooth[end][index].force.energy),
+            };
+            (0..2).for_each(|end| sum[end] += energies[end]);
+        }
+        Some(sum)
     }
 }
 
@@ -365,7 +421,8 @@ impl Interaction for RacewayContacts {
     }
 
     fn character(&self) -> Character {
-        if self.sites.iter().all(|site| site.unevenness.is_none()) {
+        let is_convex = |site: &Site| site.unevenness.is_none() && site.strips.is_none();
+        if self.sites.iter().all(is_convex) {
             Character::Potential
         } else {
             Character::General

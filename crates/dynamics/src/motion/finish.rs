@@ -8,6 +8,7 @@ use super::part::RingSteps;
 use super::run::{Motion, MovingRing};
 use super::solve::StepSolution;
 use super::state::MotionState;
+use super::surfaces::note_profile_work;
 use crate::bearing::{BearingParts, SHAFT};
 use crate::bodies::FlatBody;
 use crate::system::{Interval, Lumped};
@@ -248,6 +249,7 @@ fn finish_contacts(next: &mut MotionState, parts: &BearingParts, solution: &Step
     }
     next.ledger.patch_work += start - next.ledger.hertz;
     next.ledger.hertz = end;
+    note_profile_work(&mut next.ledger, parts, solution, (start, end));
 }
 
 impl BearingParts {

@@ -3,8 +3,8 @@
 //! total = kinetic + strain + Hertz energy, each body in its own frame. It may change only by work of loads (ball
 //! centrifugal force is one), of imposed shaft displacements, of the turning frame (its inertia forces, and what the
 //! drive gives because loads fixed in space turn against the ring), of patches that move and change size with the
-//! contacts, and by dissipation. What is left is the defect: the error of the scheme. A run whose defect exceeds its
-//! tolerance stops.
+//! contacts, of surfaces that move under them, and by dissipation. What is left is the defect: the error of the
+//! scheme. A run whose defect exceeds its tolerance stops.
 
 /// Energies and works, J, at the end of a step; works and losses are sums since the start.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -23,6 +23,8 @@ pub struct Ledger {
     pub frame_work: f64,
     /// Work of moving and resized patches.
     pub patch_work: f64,
+    /// Work of surfaces that move under the contacts; 0 on smooth grooves.
+    pub profile_work: f64,
     /// Energy lost to contact damping.
     pub contact_loss: f64,
     /// Energy lost to Rayleigh damping.
@@ -68,13 +70,14 @@ impl Ledger {
         self.kinetic.iter().chain(&self.strain).sum::<f64>() + self.hertz
     }
 
-    /// Works since the start: of loads, imposed displacements, frame, patches.
-    pub fn works(&self) -> [f64; 4] {
+    /// Works since the start: of loads, imposed displacements, frame, patches, profiles.
+    pub fn works(&self) -> [f64; 5] {
         [
             self.load_work,
             self.imposed_work,
             self.frame_work,
             self.patch_work,
+            self.profile_work,
         ]
     }
 

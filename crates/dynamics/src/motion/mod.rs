@@ -35,6 +35,7 @@ mod span;
 pub mod start;
 pub mod state;
 mod substep;
+mod surfaces;
 
 pub use cache::StepCache;
 pub use free_state::{ContactTraction, FreeState};

@@ -97,7 +97,7 @@ impl Motion<'_> {
         };
         let (integrator, dt) = (self.settings.integrator, span.dt);
         let contacts = ContactList {
-            sites,
+            sites: self.on_surfaces(span, sites),
             dead: loads.contacts.clone(),
             means: Some(Means {
                 dt,

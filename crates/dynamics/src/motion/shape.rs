@@ -15,6 +15,8 @@ pub struct StateShape {
     pub has_seat: bool,
     /// Whether balls are free.
     pub has_free_balls: bool,
+    /// Whether surfaces have a line in the ledger.
+    pub has_profiles: bool,
 }
 
 impl Motion<'_> {
@@ -25,6 +27,7 @@ impl Motion<'_> {
             rings: [0, 1].map(|i| self.rings[i].as_ref().map(|ring| ring.body.shape())),
             has_seat: self.model.seat().is_some(),
             has_free_balls: self.model.traction().is_some(),
+            has_profiles: self.has_strips(),
         }
     }
 }

@@ -14,8 +14,8 @@ use crate::interactions::discrete_gradient::MeanForce;
 use crate::interactions::free_contact::FoundContact;
 use crate::interactions::raceway_contact::SiteState;
 use crate::model::{MAX_TILT, Model};
-use crate::system::System;
 use crate::system::newton::{Policy, RoundOff, Shortening};
+use crate::system::{Lengths, System};
 
 /// Newton iterations before a step counts as failed.
 const MOST_ITERATIONS: usize = 40;
@@ -52,6 +52,11 @@ impl StepSolution {
     /// l of a contact at the start and at the end of the part, m.
     pub fn reach(&self, site: usize) -> [[f64; 2]; 2] {
         lengths(&self.reaches).of(site)
+    }
+
+    /// l of all contacts at start and end.
+    pub(super) fn lengths(&self) -> Lengths<'_> {
+        lengths(&self.reaches)
     }
 
     /// Contacts at the start, 0, or at the end, 1, of the part.

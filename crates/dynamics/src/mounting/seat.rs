@@ -60,7 +60,7 @@ pub struct RingSeat<'a> {
     tube: Tube,
     fit: Option<(Fit, Tube)>,
     answer: SeatAnswer,
-    forms: Vec<Wave>,
+    forms: Vec<FormField>,
 }
 
 /// How a ring answers its partner.
@@ -74,7 +74,7 @@ enum SeatAnswer {
 }
 
 /// A form of the seat, and what 1 m of it does.
-type Wave = (SeatForm, Arc<SeatField>);
+type FormField = (SeatForm, Arc<SeatField>);
 
 /// Pressure of a seat, and the fields that it is made of.
 struct Equilibrium {
@@ -310,7 +310,7 @@ fn clamped(
     side: Side,
     ring: &RingModel,
     forms: Vec<SeatForm>,
-) -> Result<(SeatAnswer, Vec<Wave>), DynamicsError> {
+) -> Result<(SeatAnswer, Vec<FormField>), DynamicsError> {
     let mut actions = vec![SeatAction::Radial, SeatAction::Stretch];
     actions.extend(forms.iter().map(|form| SeatAction::Wave {
         order: form.order,

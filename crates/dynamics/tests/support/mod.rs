@@ -69,6 +69,7 @@ impl Case {
         Model {
             hertz: Side::BOTH.map(|side| HertzContact::new(&geometry, side, elastic, elastic)),
             sphere: SphereCompliance::default(),
+            surfaces: Default::default(),
             geometry,
             rings: [None, None],
             mounting: Default::default(),

@@ -1,5 +1,7 @@
 //! Which analysis a scene asks for, and what that means for its other tables.
 
+use std::path::Path;
+
 use dynamics::effects::Context;
 use input::{Clock, Problems};
 use toml_edit::DocumentMut;
@@ -10,6 +12,8 @@ use super::bearing::Bearing;
 use super::dynamic::RawDynamic;
 use super::materials::Materials;
 use super::modes::ModesContext;
+use super::profiles::ProfilesContext;
+use super::ring::MeshFiles;
 use super::shaft::Shaft;
 use super::speed::{RawSpeed, SpeedUse, makes_force};
 use super::sweep::{Analysis, RawStatic};
@@ -98,6 +102,22 @@ impl RawScene {
             seat_diameters: [0, 1].map(|i| seats.map(|d| d[i])),
             // Materials that are wrong are reported themselves.
             has_expansion: materials.map_or([true; 2], Materials::has_expansion),
+        }
+    }
+
+    pub(super) fn surfaces_context<'a>(
+        &self,
+        bearing: Option<&'a Bearing>,
+        scene: &'a Path,
+        files: MeshFiles,
+    ) -> ProfilesContext<'a> {
+        ProfilesContext {
+            bearing,
+            scene,
+            files,
+            ball: self.contact.ball,
+            is_modes: self.modes.is_some(),
+            balls: self.balls.motion(),
         }
     }
 

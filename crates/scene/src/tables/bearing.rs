@@ -20,6 +20,7 @@ use std::f64::consts::PI;
 use input::{ANGLE, LENGTH, Problems, Quantity};
 use serde::Deserialize;
 
+use super::ball_diameters::RawBallDiameters;
 use super::dimensions::{DEFAULT_INNER_RATIO, DEFAULT_OUTER_RATIO, Diameters, Grooves, RacewayKeys};
 
 /// As typed.
@@ -45,6 +46,7 @@ pub struct RawBearing {
     outside_diameter: Quantity<LENGTH>,
     width: Quantity<LENGTH>,
     first_ball_azimuth: Option<Quantity<ANGLE>>,
+    pub(super) ball_diameters: Option<RawBallDiameters>,
 }
 
 /// A length of the bearing, typed or computed.

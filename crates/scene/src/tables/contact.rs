@@ -15,7 +15,8 @@ pub struct RawContact {
     inner_stiffness: Option<Quantity<HERTZ_STIFFNESS>>,
     outer_stiffness: Option<Quantity<HERTZ_STIFFNESS>>,
     patch_elements: Option<f64>,
-    ball: Option<BallElasticity>,
+    pub(super) ball: Option<BallElasticity>,
+    edges: Option<bool>,
 }
 
 /// What a ball yields besides its Hertz contacts.
@@ -54,6 +55,8 @@ pub struct Contact {
     /// What balls yield. By default spheres, but half-spaces with rigid rings (the Jones-Harris limit), with facets
     /// (the paper's way), where a stiffness is given and where balls are free.
     pub ball: BallElasticity,
+    /// Whether grooves end at their shoulders.
+    pub edges: bool,
 }
 
 /// Smaller patches see single elements (design number: the structural compliance is then mesh-independent).
@@ -137,6 +140,7 @@ impl RawContact {
         Contact {
             ball: self.ball.unwrap_or(usual),
             mode: self.mode,
+            edges: self.edges.unwrap_or(false),
             inner_stiffness: self.inner_stiffness.as_ref().map(Quantity::si),
             outer_stiffness: self.outer_stiffness.as_ref().map(Quantity::si),
             patch_elements,

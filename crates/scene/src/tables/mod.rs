@@ -36,6 +36,7 @@
 //! table of its own, `[quasi_static]`: see the files of these names.
 
 mod analysis;
+mod ball_diameters;
 mod balls;
 mod bearing;
 mod contact;
@@ -55,7 +56,9 @@ mod modes;
 mod oil;
 mod output;
 mod probes;
+mod profiles;
 mod quasi_static;
+mod random;
 pub mod reference;
 mod ring;
 mod section;
@@ -93,6 +96,7 @@ pub use self::modes::{ModeBody, ModeSupport, Modes};
 pub use self::oil::Oil;
 pub use self::output::{Output, Precision, RingFrame, StressOutput};
 pub use self::probes::{Axes, ContactProbe, NodeProbe, Probes, SectionPoint};
+pub use self::profiles::SurfaceProfiles;
 pub use self::quasi_static::QuasiStatic;
 pub use self::ring::{FlexibleRing, MeshFiles, Ring, RingName, Support};
 pub use self::section::{Section, SectionElement};
@@ -114,6 +118,7 @@ use self::materials::RawMaterials;
 use self::modes::{ModesContext, RawModes};
 use self::output::{OutputContext, RawOutput};
 use self::probes::{ProbesContext, RawProbes};
+use self::profiles::RawProfiles;
 use self::quasi_static::RawQuasiStatic;
 use self::ring::{RawRing, RingContext};
 use self::shaft::RawShaft;
@@ -131,6 +136,8 @@ struct RawScene {
     bearing: RawBearing,
     materials: RawMaterials,
     contact: RawContact,
+    #[serde(default)]
+    profiles: RawProfiles,
     #[serde(default)]
     inner: RawRing,
     #[serde(default)]
@@ -175,6 +182,8 @@ pub struct Scene {
     pub materials: Materials,
     /// How balls and raceways push on each other.
     pub contact: Contact,
+    /// By what raceways and balls differ from smooth grooves and equal spheres.
+    pub profiles: SurfaceProfiles,
     /// The ring on the shaft.
     pub inner: Ring,
     /// The ring in the housing.
@@ -339,12 +348,17 @@ impl Source<'_> {
         let mut assumed = Vec::new();
         let bearing = raw.bearing.check(&mut problems, &mut assumed);
         let materials = raw.materials.check(&mut problems, &mut assumed);
-        let contact = raw.contact.check(
+        let mut contact = raw.contact.check(
             bearing.as_ref(),
             materials.as_ref(),
             raw.balls.motion(),
             &mut problems,
         );
+        let surfaces = raw.surfaces_context(bearing.as_ref(), self.path, self.mesh_files);
+        let diameters = raw.bearing.ball_diameters.as_ref();
+        let profiles = raw
+            .profiles
+            .check(diameters, surfaces, &mut contact, &mut problems);
         let context = RingContext {
             bearing: bearing.as_ref(),
             mode: contact.mode,
@@ -414,6 +428,7 @@ impl Source<'_> {
                 bearing,
                 materials,
                 contact,
+                profiles,
                 inner,
                 outer,
                 shaft,

@@ -27,6 +27,13 @@ pub enum Backend {
     Sector,
 }
 
+impl Backend {
+    /// Whether a rank may hold a part of a ring only.
+    pub fn divides_rings(self) -> bool {
+        self == Backend::Sector
+    }
+}
+
 /// How the equations are solved.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Solver {

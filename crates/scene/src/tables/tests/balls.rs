@@ -62,6 +62,11 @@ fn what_free_balls_replace_is_refused_with_the_reason() {
     let expected = "[effects.temperature] stands beside balls.motion = \"free\", which is not computed; remove it, or \
                     use balls.motion = \"kinematic\"";
     assert!(message.contains(expected), "{message}");
+    let waves = "[[profiles.waviness]]\nring = \"inner\"\norder = 19\namplitude = \"0.5 um\"";
+    let message = message_of(&free(COULOMB, waves), &[]);
+    let expected =
+        "profiles stands beside balls.motion = \"free\", which is not computed; use balls.motion = ";
+    assert!(message.contains(expected), "{message}");
     let oil = "[lubricant]\nviscosity = \"0.03 Pa s\"\npressure_coefficient = \"2e-8 1/Pa\"";
     let message = message_of(&free(COULOMB, oil), &[]);
     let expected =

@@ -14,6 +14,7 @@ mod motion;
 mod mounting;
 mod overrides;
 mod probes;
+mod profiles;
 mod quasi_static;
 mod reference;
 mod schedules;

@@ -9,6 +9,7 @@ fn taken(table: &str) -> Vec<String> {
     let header = match table {
         "" => "no_such_key = 1\n".to_string(),
         "inner.cut" | "effects.seat_form" => format!("[[{table}]]\nno_such_key = 1\n"),
+        _ if table.starts_with("profiles.") => format!("[[{table}]]\nno_such_key = 1\n"),
         _ => format!("[{table}]\nno_such_key = 1\n"),
     };
     let found = gather::read::<RawScene>(&header).unwrap_err();

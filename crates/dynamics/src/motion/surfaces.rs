@@ -1,0 +1,53 @@
+//! Real surfaces over a part of a step.
+//!
+//! A contact keeps the surface of the part's weighted time, so that its forces have a potential. What the surface gives
+//! to or takes from the contact as it moves on is work of profiles: over the first share of the part with the lengths
+//! of its start, over the rest with those of its end. The sum of all parts telescopes: it is the change of the contact
+//! energies that the contacts' forces did not make.
+
+use super::ledger::Ledger;
+use super::run::Motion;
+use super::solve::StepSolution;
+use super::span::Span;
+use crate::bearing::BearingParts;
+use crate::interactions::raceway_contact::Site;
+
+impl Motion<'_> {
+    /// Whether contacts of a raceway are strips: their surfaces then have a line in the ledger.
+    pub fn has_strips(&self) -> bool {
+        self.model.surfaces.has_strips()
+    }
+
+    /// Contacts on the surfaces over which they roll in a part.
+    pub(super) fn on_surfaces(&self, span: Span, mut sites: Vec<Site>) -> Vec<Site> {
+        if !self.model.surfaces.has_strips() {
+            return sites;
+        }
+        for site in &mut sites {
+            let azimuth = |time: f64| self.ball_azimuth(site.ball, time) - self.frame_angle(site.side, time);
+            let strips = self
+                .model
+                .surfaces
+                .at(site.side, azimuth(self.weighted_time(span)));
+            let (start, end) = (azimuth(span.at(0.0)), azimuth(span.at(1.0)));
+            site.strips = strips.map(|strips| strips.between(start, end));
+        }
+        sites
+    }
+}
+
+/// Takes what surfaces do out of the ledger's work of patches, which has the energies `start` and `end` of a part on
+/// the surfaces of its middle.
+pub(super) fn note_profile_work(
+    ledger: &mut Ledger,
+    parts: &BearingParts,
+    solution: &StepSolution,
+    (start, end): (f64, f64),
+) {
+    if let Some(own) = parts.contacts.energies_on_surfaces(solution.lengths()) {
+        let [first, last] = [start - own[0], own[1] - end];
+        ledger.profile_work += first + last;
+        ledger.patch_work -= first;
+        ledger.hertz = own[1];
+    }
+}

@@ -1,0 +1,264 @@
+//! Real surfaces at rest and without inertia, on rigid rings: against Hertz's law and closed forms.
+
+mod support;
+
+use std::sync::Arc;
+
+use contact::surface::{Spall, Wave};
+use contact::{Profiles, Side, StripLaw, StripSurface};
+use dynamics::{Model, Pose, StaticSolver, Surfaces};
+use support::{Case, equilibrium, relative};
+
+/// Puts strips on one raceway of a model.
+fn with_strips(
+    mut model: Model,
+    side: Side,
+    shoulders: Option<std::ops::RangeInclusive<f64>>,
+    profiles: &Profiles,
+) -> Model {
+    let law = StripLaw::new(&model.hertz[side.index()], model.geometry.groove_radius(side));
+    let surface = StripSurface::new(law, (&model.geometry, side), shoulders, profiles).unwrap();
+    model.surfaces.strips[side.index()] = Some(Arc::new(surface));
+    model
+}
+
+fn combined() -> Case {
+    Case {
+        radial: 1500.0,
+        moment: 5.0,
+        free_tilt: true,
+        ..Case::axial(2000.0)
+    }
+}
+
+/// Wrong: strips on smooth grooves would have another equilibrium than Hertz's law. Both to the 1e-10 at which Newton
+/// stops; the strips' tangent is taken as one without an energy.
+#[test]
+fn a_smooth_groove_of_strips_has_the_equilibrium_of_hertz() {
+    for case in [Case::axial(2000.0), combined()] {
+        let hertz = equilibrium(&case.rigid());
+        let mut model = case.rigid();
+        for side in Side::BOTH {
+            model = with_strips(model, side, None, &Profiles::default());
+        }
+        let strips = equilibrium(&model);
+        let (a, b) = (&hertz.displacements.shaft, &strips.displacements.shaft);
+        for i in 0..5 {
+            let scale = a.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
+            assert!((a[i] - b[i]).abs() < 1e-10 * scale, "{i}: {} {}", a[i], b[i]);
+        }
+        for (a, b) in hertz.balls.iter().zip(&strips.balls) {
+            assert!((a.outer.force_n - b.outer.force_n).abs() < 1e-10 * 2000.0);
+            assert!((a.inner.contact_angle_rad - b.inner.contact_angle_rad).abs() < 1e-10);
+        }
+    }
+}
+
+/// Wrong: an edge would not be felt by an equilibrium, or by another force than that of the truncated ellipse. The
+/// balls of a bearing whose outer shoulder cuts all ellipses carry the load by closed forms: along the normal 1/2 +
+/// 3/4 tau - tau^3/4 of Hertz's force, across it -c d a^2 R_g/(R' |l|) (1 - tau^2)^2/4.
+#[test]
+fn truncated_ellipses_carry_the_load_by_their_closed_forms() {
+    let case = Case::axial(2000.0);
+    let smooth = equilibrium(&case.rigid());
+    let before = &smooth.balls[0].outer;
+    let shoulder = before.contact_angle_rad + 0.8 * before.semi_axes_m[0] / 4.725e-3;
+    let model = with_strips(
+        case.rigid(),
+        Side::Outer,
+        Some(-0.6..=shoulder),
+        &Profiles::default(),
+    );
+    let found = equilibrium(&model);
+    let (inner, outer) = (&found.balls[0].inner, &found.balls[0].outer);
+    let law = StripLaw::new(&model.hertz[1], model.geometry.groove_radius(Side::Outer));
+    let (d, angle) = (outer.approach_m, outer.contact_angle_rad);
+    let a = (2.0 * law.parabola_radius * d).sqrt();
+    let tau = (shoulder - angle) * law.groove_radius / a;
+    assert!(tau > 0.0 && tau < 0.9, "{tau}");
+    let normal = law.stiffness * d.powf(1.5) * (0.5 + 0.75 * tau - 0.25 * tau.powi(3));
+    let length = model.geometry.touching_distance(Side::Outer) + d;
+    let moment =
+        -law.density * d * a * a * law.groove_radius / law.parabola_radius * (1.0 - tau * tau).powi(2) / 4.0;
+    let across = moment / length;
+    let of_outer = [
+        normal * angle.cos() - across * angle.sin(),
+        normal * angle.sin() + across * angle.cos(),
+    ];
+    let n = model.geometry.n_balls as f64;
+    assert!(relative(n * of_outer[1], 2000.0) < 1e-9, "{of_outer:?}");
+    let inner_angle = inner.contact_angle_rad;
+    let of_inner = [
+        inner.force_n * inner_angle.cos(),
+        inner.force_n * inner_angle.sin(),
+    ];
+    assert!(
+        relative(of_inner[0], of_outer[0]) < 1e-9,
+        "{of_inner:?} {of_outer:?}"
+    );
+    assert!(
+        across < 0.0 && inner_angle < angle,
+        "the shoulder pushes the ball into the groove"
+    );
+    assert!(found.displacements.shaft[2] > smooth.displacements.shaft[2]);
+}
+
+/// Equilibrium of a bearing that has turned: the cage by `cage`, the inner ring by `inner`, rad.
+fn turned(model: &Model, solver: &mut StaticSolver, cage: f64, inner: f64) -> [f64; 5] {
+    let mut pose = Pose {
+        ring_angles: [inner, 0.0],
+        ..Pose::default()
+    };
+    pose.now.cage_angle = cage;
+    solver.solve_at(model, &pose, None).unwrap().displacements.shaft
+}
+
+fn waves(order: usize, amplitude: f64) -> Profiles {
+    Profiles {
+        waves: vec![Wave {
+            order,
+            amplitude,
+            phase: 0.0,
+        }],
+        ..Profiles::default()
+    }
+}
+
+/// Wrong: waves of as many as balls would not lift all of them at once. In closed form for small waves: with the groove
+/// centres l apart at the contact angle a, total approach d, the axial displacement is 2 A / [sin a +
+/// (2 d/3) cos^2 a/(l sin a)] from crest to trough. Grid and amplitude leave 1e-4.
+#[test]
+fn waves_of_the_number_of_balls_move_a_rigid_bearing_along_its_axis() {
+    let amplitude = 10e-9;
+    let case = Case::axial(2000.0);
+    let smooth = equilibrium(&case.rigid());
+    let ball = &smooth.balls[0];
+    let (a, total) = (
+        ball.outer.contact_angle_rad,
+        ball.inner.approach_m + ball.outer.approach_m,
+    );
+    let l = case.rigid().geometry.groove_distance() + total;
+    let expected = amplitude / (a.sin() + 2.0 * total / 3.0 * a.cos().powi(2) / (l * a.sin()));
+    assert!(relative(expected / amplitude, 2.617) < 1e-3);
+    let n = case.rigid().geometry.n_balls;
+    for side in Side::BOTH {
+        let model = with_strips(case.rigid(), side, None, &waves(n, amplitude));
+        let mut solver = StaticSolver::new(&model).unwrap();
+        let half = std::f64::consts::PI / n as f64;
+        let [crest, trough] = [0.0, half].map(|turn| turned(&model, &mut solver, turn, 0.0));
+        let found = 0.5 * (trough[2] - crest[2]);
+        assert!(
+            relative(found, expected) < 2e-3,
+            "{side:?}: {found} {expected} {}",
+            expected / amplitude
+        );
+        assert!(crest[0].abs() < 1e-4 * found && crest[1].abs() < 1e-4 * found);
+    }
+}
+
+/// Wrong: waves would move a rigid bearing under thrust that must not, or not those that must (Wardle 1988): orders kZ
+/// along the axis, kZ +- 1 across it, all others not at all, to the round-off of the equilibrium and the second order
+/// of the amplitude.
+#[test]
+fn orders_of_waves_move_a_rigid_bearing_as_they_must() {
+    let case = Case::axial(2000.0);
+    let smooth = equilibrium(&case.rigid()).displacements.shaft;
+    let n = case.rigid().geometry.n_balls;
+    let amplitude = 1e-9;
+    for side in Side::BOTH {
+        for order in [2, 5, n - 2, n - 1, n, n + 1, n + 2, 2 * n, 2 * n + 1] {
+            let model = with_strips(case.rigid(), side, None, &waves(order, amplitude));
+            let mut solver = StaticSolver::new(&model).unwrap();
+            let (mut axial, mut radial) = (0.0f64, 0.0f64);
+            for k in 0..5 {
+                let turn = 0.09 * k as f64;
+                let q = turned(&model, &mut solver, turn, 2.3 * turn);
+                axial = axial.max((q[2] - smooth[2]).abs() / amplitude);
+                radial = radial.max(q[0].hypot(q[1]) / amplitude);
+            }
+            let (is_axial, is_radial) = (order % n == 0, (order + 1) % n == 0 || (order - 1) % n == 0);
+            assert_eq!(axial > 0.5, is_axial, "{side:?} {order}: axial {axial}");
+            assert_eq!(radial > 0.2, is_radial, "{side:?} {order}: radial {radial}");
+            let quiet = 2e-3;
+            assert!(is_axial || axial < quiet, "{side:?} {order}: axial {axial}");
+            assert!(is_radial || radial < quiet, "{side:?} {order}: radial {radial}");
+        }
+    }
+}
+
+/// Wrong: a ball over a wide spall deeper than its sag would sink by anything else than k_t L^2/8. The approach of a
+/// bearing whose only balls are over spalls follows: every ball over its own, so that all stay equal.
+#[test]
+fn balls_over_spalls_sink_by_their_sag() {
+    let case = Case::axial(2000.0);
+    let mut model = case.rigid();
+    let n = model.geometry.n_balls;
+    let length = 0.5e-3;
+    let spalls = (0..n).map(|ball| Spall {
+        azimuth: model.geometry.azimuth(ball),
+        groove_angle: 0.35,
+        length,
+        width: 8e-3,
+        depth: 1e-3,
+        edge: 0.0,
+    });
+    let profiles = Profiles {
+        spalls: spalls.collect(),
+        ..Profiles::default()
+    };
+    let smooth = equilibrium(&model);
+    let sag = contact::surface::sag(&model.geometry, Side::Outer, 0.35, length);
+    assert!((sag / 6.1e-6 - 1.0).abs() < 1e-2, "{sag}");
+    // The same as a raceway that is wider everywhere by the sag of its groove angle.
+    let angles: Vec<f64> = (0..40).map(|i| -0.2 + 0.03 * i as f64).collect();
+    let sags = angles
+        .iter()
+        .map(|&angle| -contact::surface::sag(&model.geometry, Side::Outer, angle, length));
+    let wider = Profiles {
+        tables: vec![contact::surface::Heights {
+            azimuths: vec![0.0],
+            heights: sags.collect(),
+            angles,
+        }],
+        ..Profiles::default()
+    };
+    let reference = equilibrium(&with_strips(case.rigid(), Side::Outer, None, &wider));
+    model = with_strips(model, Side::Outer, None, &profiles);
+    let found = equilibrium(&model);
+    let moved = |q: &dynamics::StaticSolution| q.displacements.shaft[2] - smooth.displacements.shaft[2];
+    assert!(moved(&found) > 2.0 * sag, "{}", moved(&found));
+    assert!(
+        relative(moved(&found), moved(&reference)) < 1e-2,
+        "{} {}",
+        moved(&found),
+        moved(&reference)
+    );
+}
+
+/// Wrong: a larger ball would not carry more, or the others not less. Its extra load against the difference of two
+/// equilibria is that of its extra approach: on a bearing held everywhere the approach of both contacts grows by half
+/// of the extra diameter each, to the second order.
+#[test]
+fn a_larger_ball_carries_more() {
+    let case = Case::axial(2000.0);
+    let smooth = equilibrium(&case.rigid());
+    let mut model = case.rigid();
+    for (dof, q) in model.shaft.iter_mut().zip(smooth.displacements.shaft) {
+        *dof = dynamics::ShaftDof::Prescribed(q);
+    }
+    let oversize = 1e-8;
+    model.surfaces = Surfaces {
+        oversizes: (0..model.geometry.n_balls)
+            .map(|ball| if ball == 3 { oversize } else { 0.0 })
+            .collect(),
+        ..Surfaces::default()
+    };
+    let found = equilibrium(&model);
+    for ball in 0..model.geometry.n_balls {
+        let (a, b) = (&smooth.balls[ball], &found.balls[ball]);
+        let grown = b.inner.approach_m + b.outer.approach_m - a.inner.approach_m - a.outer.approach_m;
+        let expected = if ball == 3 { oversize } else { 0.0 };
+        assert!((grown - expected).abs() < 1e-3 * oversize, "{ball}: {grown}");
+        assert_eq!(b.outer.force_n > a.outer.force_n + 0.1, ball == 3);
+    }
+}

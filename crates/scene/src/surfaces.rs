@@ -1,0 +1,162 @@
+//! Real surfaces of a scene: raceways of strips with their shoulders and profiles.
+
+use std::sync::Arc;
+
+use contact::surface::MOST_NUMBERS;
+use contact::{BearingGeometry, HertzContact, Side, StripLaw, StripSurface};
+use dynamics::{RACEWAY_GROUP, RingModel, Surfaces};
+
+use crate::error::BuildError;
+use crate::tables::{FlexibleRing, Scene};
+
+/// The surfaces that a scene asks for; nothing where it does not.
+pub fn surfaces(
+    scene: &Scene,
+    geometry: &BearingGeometry,
+    hertz: &[HertzContact; 2],
+    rings: &[Option<Arc<RingModel>>; 2],
+) -> Result<Surfaces, BuildError> {
+    let mut strips = [None, None];
+    for side in Side::BOTH {
+        let ring = rings[side.index()].as_deref();
+        strips[side.index()] = strips_of(scene, (geometry, side), &hertz[side.index()], ring)?;
+    }
+    Ok(Surfaces {
+        strips,
+        oversizes: scene.profiles.oversizes.clone(),
+    })
+}
+
+fn strips_of(
+    scene: &Scene,
+    (geometry, side): (&BearingGeometry, Side),
+    hertz: &HertzContact,
+    ring: Option<&RingModel>,
+) -> Result<Option<Arc<StripSurface>>, BuildError> {
+    let profiles = &scene.profiles.raceways[side.index()];
+    if profiles.is_empty() && !scene.contact.edges {
+        return Ok(None);
+    }
+    let refuse = |problem: String| {
+        Err(BuildError::Surface {
+            path: scene.path.clone(),
+            problem,
+        })
+    };
+    // In sectors a rank may hold a part of a ring only, which does not tell where its groove ends.
+    let is_divided = scene.solver.backend.divides_rings();
+    if is_divided && scene.contact.edges {
+        return refuse(
+            "contact.edges is true and solver.backend is \"sector\"; grooves that are divided into sectors have no \
+             edges yet, use \"auto\", \"cyclic\" or \"sparse\""
+                .to_string(),
+        );
+    }
+    let ring = ring.filter(|_| !is_divided);
+    let shoulders = shoulders(scene, (geometry, side), ring);
+    if shoulders.is_none() && scene.contact.edges {
+        return refuse(format!(
+            "contact.edges is true, but nothing says where the groove of the rigid {0} ring ends; expected \
+             [{0}.section] with its shoulder_diameters",
+            side.name()
+        ));
+    }
+    if let (Some([low, high]), radius) = (shoulders, geometry.groove_radius(side)) {
+        for (spall, number) in profiles.spalls.iter().zip(1..) {
+            let half = 0.5 * spall.width / radius;
+            if spall.groove_angle + half <= low || spall.groove_angle - half >= high {
+                return refuse(format!(
+                    "spall {number} of the {} ring lies at the groove angle {:.2} deg beyond the groove, which goes \
+                     from {:.2} to {:.2} deg",
+                    side.name(),
+                    spall.groove_angle.to_degrees(),
+                    low.to_degrees(),
+                    high.to_degrees()
+                ));
+            }
+        }
+    }
+    if let Some(number) = ring.and_then(|ring| over_missing_facets(ring, geometry, side, scene)) {
+        return refuse(format!(
+            "spall {number} of the {0} ring lies where its mesh has no raceway: it would count twice; leave out the \
+             [[{0}.cut]] or the [[profiles.spall]]",
+            side.name()
+        ));
+    }
+    let law = StripLaw::new(hertz, geometry.groove_radius(side));
+    let edges = shoulders
+        .filter(|_| scene.contact.edges)
+        .map(|[low, high]| low..=high);
+    match StripSurface::new(law, (geometry, side), edges, profiles) {
+        Some(surface) => Ok(Some(Arc::new(surface))),
+        None => refuse(format!(
+            "the profiles of the {} ring need a grid of more than {} million points; use a longer spall, a longer edge \
+             or lower orders",
+            side.name(),
+            MOST_NUMBERS / 1_000_000
+        )),
+    }
+}
+
+/// Groove angles where a groove ends, rad: those of its mesh, else of its section; None where neither is there.
+fn shoulders(
+    scene: &Scene,
+    (geometry, side): (&BearingGeometry, Side),
+    ring: Option<&RingModel>,
+) -> Option<[f64; 2]> {
+    if let Some(ring) = ring {
+        let nodes = ring.mesh.group_nodes(RACEWAY_GROUP);
+        let angles = nodes
+            .iter()
+            .map(|&node| ring.groove.coordinates(ring.mesh.nodes[node])[1]);
+        let range = |r: [f64; 2], a: f64| [r[0].min(a), r[1].max(a)];
+        let found = angles.fold([f64::INFINITY, f64::NEG_INFINITY], range);
+        if found[0] < found[1] {
+            return Some(found);
+        }
+    }
+    let table = [&scene.inner, &scene.outer][side.index()];
+    let section = table.section?;
+    // The groove meets its shoulder where its distance from the axis is that of the shoulder.
+    let angle = |diameter: f64| {
+        let height = side.sign() * (0.5 * diameter - geometry.centre_radius(side));
+        (height / geometry.groove_radius(side)).acos()
+    };
+    let [at_low_z, at_high_z] = section.shoulder_diameters.map(angle);
+    // A positive groove angle points outwards along +z, on the inner ring along -z.
+    Some(if side.sign() > 0.0 {
+        [-at_low_z, at_high_z]
+    } else {
+        [-at_high_z, at_low_z]
+    })
+}
+
+/// The first spall, from 1, in which the raceway of a mesh with cuts has a gap; None: there is none.
+fn over_missing_facets(
+    ring: &RingModel,
+    geometry: &BearingGeometry,
+    side: Side,
+    scene: &Scene,
+) -> Option<usize> {
+    let table = [&scene.inner, &scene.outer][side.index()];
+    let is_whole = |body: &FlexibleRing| body.cuts.is_empty() && !body.is_partial;
+    if table.body.as_ref().is_none_or(is_whole) {
+        return None;
+    }
+    let surface = contact::RacewaySurface::new(&ring.mesh, ring.mesh.group(RACEWAY_GROUP), ring.groove);
+    let [low, high] = surface.angle_range;
+    let spalls = &scene.profiles.raceways[side.index()].spalls;
+    let is_gap = |spall: &contact::surface::Spall| {
+        let places = |half: f64| [-1.0, -0.5, 0.0, 0.5, 1.0].map(|share| share * half);
+        let radius = geometry.centre_radius(side) + side.sign() * geometry.groove_radius(side);
+        places(0.5 * spall.length / radius).iter().any(|azimuth| {
+            places(0.5 * spall.width / geometry.groove_radius(side))
+                .iter()
+                .any(|angle| {
+                    let angle = (spall.groove_angle + angle).clamp(low, high);
+                    surface.locate(spall.azimuth + azimuth, angle).is_err()
+                })
+        })
+    };
+    spalls.iter().position(is_gap).map(|place| place + 1)
+}

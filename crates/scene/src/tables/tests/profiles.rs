@@ -1,0 +1,217 @@
+//! `[[profiles.*]]`, `[bearing.ball_diameters]` and `contact.edges`: what they read as, and what they refuse.
+
+use super::*;
+
+/// The example without given stiffnesses and spheres, with tables after its head.
+fn with(tables: &str) -> String {
+    let text = replace_line(EXAMPLE, "ball = \"sphere\"", "");
+    text.replacen("[solver]", &format!("{tables}\n\n[solver]"), 1)
+}
+
+const SPALL: &str = "[[profiles.spall]]\nring = \"outer\"\nazimuth = \"30 deg\"\ngroove_angle = \"15 deg\"\n\
+                     length = \"1 mm\"\nwidth = \"2 mm\"\ndepth = \"50 um\"\nedge = \"0.1 mm\"";
+
+/// Wrong: a key of the documentation would be refused or read in another unit, or a scene without profiles have some.
+#[test]
+fn profiles_read_as_their_documentation_says() {
+    assert_eq!(parse(EXAMPLE, &[]).unwrap().profiles, SurfaceProfiles::default());
+    let waves =
+        "[[profiles.waviness]]\nring = \"inner\"\norder = 19\namplitude = \"0.5 um\"\nphase = \"90 deg\"";
+    let random = "[[profiles.random]]\nring = \"outer\"\norders = [2, 5]\n\
+                  amplitude = \"0.05 um\"\nslope = 2.0\nseed = 1";
+    let scene = parse(&with(&format!("{SPALL}\n{waves}\n{random}")), &[]).unwrap();
+    let [inner, outer] = &scene.profiles.raceways;
+    assert_eq!((inner.spalls.len(), inner.waves.len()), (0, 1));
+    assert_eq!(inner.waves[0].order, 19);
+    assert!((inner.waves[0].phase - 0.5 * std::f64::consts::PI).abs() < 1e-15);
+    let spall = outer.spalls[0];
+    assert_eq!([spall.length, spall.width, spall.depth], [1e-3, 2e-3, 50e-6]);
+    assert_eq!(
+        [spall.edge, spall.azimuth, spall.groove_angle],
+        [0.1e-3, 30f64.to_radians(), 15f64.to_radians()]
+    );
+    let orders: Vec<usize> = outer.waves.iter().map(|wave| wave.order).collect();
+    assert_eq!(orders, [2, 3, 4, 5]);
+    assert!((outer.waves[2].amplitude - 0.05e-6 / 4.0).abs() < 1e-20);
+    // Half-spaces are the default beside profiles.
+    assert_eq!(scene.contact.ball, BallElasticity::HalfSpace);
+    assert!(!scene.contact.edges);
+}
+
+/// Wrong: seeds would not reproduce surfaces, or all give one.
+#[test]
+fn seeds_make_surfaces_and_balls() {
+    let random = |seed: i64| {
+        let text = format!(
+            "[[profiles.random]]\nring = \"outer\"\norders = [2, 9]\n\
+             amplitude = \"0.05 um\"\nslope = 1.0\nseed = {seed}\n\
+             [bearing.ball_diameters]\nspread = \"0.2 um\"\nseed = {seed}"
+        );
+        parse(&with(&text), &[]).unwrap().profiles
+    };
+    assert_eq!(random(1), random(1));
+    assert_ne!(random(1), random(2));
+    let oversizes = random(3).oversizes;
+    assert_eq!(oversizes.len(), 18);
+    let [low, high] = oversizes
+        .iter()
+        .fold([0.0f64; 2], |[a, b], x| [a.min(*x), b.max(*x)]);
+    assert!(
+        low >= -0.1e-6 && high <= 0.1e-6 && high - low > 0.12e-6,
+        "{low} {high}"
+    );
+}
+
+/// Wrong: a slip would make a surface that nobody asked for, or what is not there would be left out in silence.
+#[test]
+fn what_makes_no_sense_in_profiles_is_refused() {
+    let spall = |line: &str, new: &str| replace_line(&with(SPALL), line, new);
+    let waves = |keys: &str| with(&format!("[[profiles.waviness]]\nring = \"inner\"\n{keys}"));
+    let balls = |keys: &str| with(&format!("[bearing.ball_diameters]\n{keys}"));
+    for (text, part) in [
+        (
+            spall("length = \"1 mm\"", "length = \"0 mm\""),
+            "profiles.spall 1: length is 0 mm; a length must be positive",
+        ),
+        (
+            spall("length = \"1 mm\"", "length = \"1 m\""),
+            "profiles.spall 1: length is 1 m; the track is only 175.96",
+        ),
+        (
+            spall("length = \"1 mm\"", "length = \"1 um\""),
+            "profiles.spall 1: length is 1 um; expected at least a thousandth of the ball diameter, 9 um",
+        ),
+        (
+            spall("depth = ", "depth = \"5 mm\""),
+            "profiles.spall 1: depth is 5 mm; expected at most the ball radius 4.5 mm",
+        ),
+        (
+            spall("edge = ", "edge = \"0.6 mm\""),
+            "profiles.spall 1: edge is 0.6 mm; the ramps lie within length and width: expected 0 to half of",
+        ),
+        (
+            spall("groove_angle = ", "groove_angle = \"95 deg\""),
+            "profiles.spall 1: groove_angle is 95 deg; expected -90 to 90 deg",
+        ),
+        (
+            spall("ring = \"outer\"", "ring = \"ball\""),
+            "profiles.spall[0].ring is \"ball\"; valid values are \"inner\", \"outer\"",
+        ),
+        (
+            waves("order = 0\namplitude = \"1 um\""),
+            "profiles.waviness 1: order is 0; expected a whole number from 1 to 20000",
+        ),
+        (
+            waves("order = 3\namplitude = \"1 mm\""),
+            "profiles.waviness 1: amplitude is 1 mm; expected more than 0 and at most 0.1 mm",
+        ),
+        (
+            with(
+                "[[profiles.random]]\nring = \"outer\"\norders = [9, 2]\namplitude = \"1 um\"\nslope = -1.0\nseed = 1",
+            ),
+            "profiles.random 1: orders is 9 to 2; expected the lower one first",
+        ),
+        (
+            with(
+                "[[profiles.random]]\nring = \"outer\"\norders = [2, 9]\namplitude = \"1 um\"\nslope = -1.0\nseed = 1",
+            ),
+            "profiles.random 1: slope is -1; expected 0 (all orders alike) to 10",
+        ),
+        (
+            balls("spread = \"0.2 um\""),
+            "bearing.ball_diameters.seed is missing; expected a whole number beside spread",
+        ),
+        (
+            balls("seed = 1"),
+            "bearing.ball_diameters needs one of spread, with a seed, and deviations",
+        ),
+        (
+            balls("deviations = [\"1 um\", \"0 um\"]"),
+            "bearing.ball_diameters.deviations is a list of 2; expected one for each of the 18 balls",
+        ),
+        (
+            balls("spread = \"1 mm\"\nseed = 1"),
+            "bearing.ball_diameters.spread is 1 mm; expected at most a thousandth of the ball diameter, 9 um",
+        ),
+        (with("[[profiles.dent]]\nring = \"outer\""), "dent"),
+        (
+            replace_line(&with(SPALL), "mode = \"patch\"", "mode = \"facet\""),
+            "contact.mode is \"facet\"; profiles needs exact grooves, use \"patch\" or \"rigid\"",
+        ),
+        (
+            replace_line(EXAMPLE, "edges = false", "edges = true"),
+            "contact.ball is \"sphere\"; beside contact.edges both contacts of a ball are on their own",
+        ),
+    ] {
+        let message = message_of(&text, &[]);
+        assert!(message.contains(part), "{message}\nhas no\n{part}");
+    }
+}
+
+/// Wrong: a bearing on real surfaces would have modes of one place of its rings.
+#[test]
+fn modes_on_real_surfaces_are_refused() {
+    let (head, _) = EXAMPLE.split_once("[sweep]").unwrap();
+    let text = replace_line(head, "ball = \"sphere\"", "");
+    let text = replace_line(&text, "edges = false", "edges = true") + "\n[modes]\nnumber = 3\n";
+    let message = message_of(&text, &[]);
+    assert!(
+        message.contains("contact.edges has no natural modes"),
+        "{message}"
+    );
+}
+
+/// Wrong: a table of measured heights would be read wrongly, or a broken one go unnoticed.
+#[test]
+fn tables_of_heights_are_read_and_checked() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = folder.path().join("scene.toml");
+    let parse_with = |csv: &str| {
+        std::fs::write(folder.path().join("roundness.csv"), csv).unwrap();
+        let text = with("[[profiles.table]]\nring = \"outer\"\nfile = \"roundness.csv\"");
+        Scene::parse(&text, &scene, &[], MeshFiles::MayBeMissing)
+    };
+    let missing = with("[[profiles.table]]\nring = \"outer\"\nfile = \"none.csv\"");
+    let error = Scene::parse(&missing, &scene, &[], MeshFiles::MustExist).unwrap_err();
+    assert!(
+        error.to_string().contains("profiles.table 1: cannot read "),
+        "{error}"
+    );
+    let good = "# measured\nazimuth_deg, groove_angle_deg, height_um\n180, -5, 1\n0, -5, 0.5\n\
+                180, 20, 2\n0, 20, -0.25\n";
+    let found = parse_with(good).unwrap().profiles;
+    let table = &found.raceways[1].tables[0];
+    assert_eq!(table.azimuths, [0.0, std::f64::consts::PI]);
+    assert_eq!(table.angles, [(-5f64).to_radians(), 20f64.to_radians()]);
+    assert_eq!(table.heights, [0.5e-6, -0.25e-6, 1e-6, 2e-6]);
+    assert_eq!(found.from_files().count(), 8);
+    for (csv, part) in [
+        (
+            "a,b\n",
+            "expected the columns azimuth_deg,groove_angle_deg,height_um",
+        ),
+        (
+            "azimuth_deg,groove_angle_deg,height_um\n",
+            "there is no line below the columns",
+        ),
+        (
+            "azimuth_deg,groove_angle_deg,height_um\n0,0,x\n",
+            "line 2 is \"0,0,x\"; expected three numbers",
+        ),
+        (
+            "azimuth_deg,groove_angle_deg,height_um\n0,0,500\n",
+            "expected an azimuth from 0 to below 360 deg",
+        ),
+        (
+            "azimuth_deg,groove_angle_deg,height_um\n0,0,1\n0,0,2\n",
+            "line 3 gives \"0,0,2\" again; expected each point once",
+        ),
+        (
+            "azimuth_deg,groove_angle_deg,height_um\n0,0,1\n90,5,2\n",
+            "the azimuth 90 deg has other groove angles than the first one; expected a full grid",
+        ),
+    ] {
+        let message = parse_with(csv).unwrap_err().to_string();
+        assert!(message.contains(part), "{message}\nhas no\n{part}");
+    }
+}
