@@ -9,6 +9,7 @@ mod examples;
 mod export;
 mod first_hour;
 mod fits;
+mod free_balls;
 mod hard;
 mod integration_points;
 mod interruption;

@@ -2,7 +2,9 @@
 
 use figure::{Axis, Figure, Series};
 
-use super::quantity::{DEGREE, GIGAPASCAL, MICROMETRE, NEWTON, Unit, azimuth_axis, points};
+use super::quantity::{
+    DEGREE, GIGAPASCAL, MICROMETRE, MILLIMETRE_PER_SECOND, NEWTON, RPM, Unit, WATT, azimuth_axis, points,
+};
 use super::run::Steps;
 use super::{Choice, Named, Results};
 use results::table::Table;
@@ -51,6 +53,42 @@ const CONTACTS: [Contact; 3] = [
     },
 ];
 
+/// What contacts of free balls have besides.
+const OF_FREE_BALLS: [Contact; 4] = [
+    Contact {
+        name: "ball_slip",
+        title: "Slip along the rolling direction",
+        axis: "slip",
+        column: "slip_rolling_m_per_s",
+        unit: MILLIMETRE_PER_SECOND,
+        resolution: 1e-6,
+    },
+    Contact {
+        name: "ball_spin",
+        title: "Spin",
+        axis: "spin",
+        column: "spin_rad_per_s",
+        unit: RPM,
+        resolution: 1e-6,
+    },
+    Contact {
+        name: "traction",
+        title: "Traction along the rolling direction",
+        axis: "traction",
+        column: "traction_rolling_n",
+        unit: NEWTON,
+        resolution: 1e-6,
+    },
+    Contact {
+        name: "friction_power",
+        title: "Friction power",
+        axis: "power",
+        column: "friction_power_w",
+        unit: WATT,
+        resolution: 1e-9,
+    },
+];
+
 const SIDES: [&str; 2] = ["inner", "outer"];
 
 /// All figures of `balls.csv`.
@@ -60,7 +98,9 @@ pub fn figures(results: &Results, choice: &Choice) -> anyhow::Result<Vec<Named>>
     };
     let steps = Rows::new(table)?;
     let mut figures = Vec::new();
-    for contact in &CONTACTS {
+    let is_free = table.find("inner_slip_rolling_m_per_s").is_some();
+    let of_free_balls = OF_FREE_BALLS.iter().filter(|_| is_free);
+    for contact in CONTACTS.iter().chain(of_free_balls) {
         match &results.steps {
             Steps::Single => figures.push(round(table, &steps.of_step(0), contact)?),
             Steps::Sweep(_) => {

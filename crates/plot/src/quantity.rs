@@ -52,15 +52,30 @@ pub const MILLIJOULE: Unit = Unit {
     factor: 1e3,
 };
 
+/// Millimetre per second.
+pub const MILLIMETRE_PER_SECOND: Unit = Unit {
+    sign: "mm/s",
+    factor: 1e3,
+};
+/// Revolutions per minute.
+pub const RPM: Unit = Unit {
+    sign: "rpm",
+    factor: 30.0 / std::f64::consts::PI,
+};
+/// Watt.
+pub const WATT: Unit = Unit {
+    sign: "W",
+    factor: 1.0,
+};
+/// Newton metre.
+pub const NEWTON_METRE: Unit = Unit {
+    sign: "N m",
+    factor: 1.0,
+};
+
 /// Endings of column names, longer ones before those that they end with, and the units that show them.
 const ENDINGS: [(&str, Unit); 12] = [
-    (
-        "_rad_per_s",
-        Unit {
-            sign: "rpm",
-            factor: 30.0 / std::f64::consts::PI,
-        },
-    ),
+    ("_rad_per_s", RPM),
     (
         "_n_s_per_m",
         Unit {
@@ -89,13 +104,7 @@ const ENDINGS: [(&str, Unit); 12] = [
             factor: 1.0,
         },
     ),
-    (
-        "_n_m",
-        Unit {
-            sign: "N m",
-            factor: 1.0,
-        },
-    ),
+    ("_n_m", NEWTON_METRE),
     ("_rad", DEGREE),
     ("_pa", MEGAPASCAL),
     (
