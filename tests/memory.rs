@@ -148,7 +148,7 @@ fn a_run_short_of_memory_ends_with_a_message() {
     dir.run("whole", &["--threads", "2", "--set", &cyclic]);
     let before = dir.snapshot();
     let outcome = dir.raceway_after(
-        "ulimit -v 330000",
+        "ulimit -v 315000",
         &["resume", "whole", "--step", "2", "--threads", "2"],
     );
     assert_eq!(outcome.code, Some(2), "{}", outcome.stderr);
