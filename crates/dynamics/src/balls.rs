@@ -80,6 +80,27 @@ pub struct Friction {
     pub cage_speed_rad_per_s: f64,
 }
 
+/// A free cage.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct CageResult {
+    /// Place of its centre, m.
+    pub position_m: [f64; 3],
+    /// Tilts about x and y, rad.
+    pub tilt_rad: [f64; 2],
+    /// Turn since the start, rad.
+    pub turn_rad: f64,
+    /// Speed about its axis, rad/s.
+    pub speed_rad_per_s: f64,
+    /// The same of pure rolling at the free contact angle, rad/s.
+    pub kinematic_speed_rad_per_s: f64,
+    /// Mean force of each pocket on its ball in the last step, along the rolling direction and along the axis, N.
+    pub pocket_forces_n: Vec<[f64; 2]>,
+    /// Mean force of the land on the ends of the cage at lower and at larger z, x and y, N; zero without a land.
+    pub land_forces_n: [[f64; 2]; 2],
+    /// Torque of friction in the pockets and of the land on the cage, N m.
+    pub torques_n_m: [f64; 2],
+}
+
 impl BallResult {
     /// The contact with the ring of one side.
     pub fn contact(&self, side: Side) -> &ContactResult {

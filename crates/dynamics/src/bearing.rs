@@ -8,8 +8,11 @@
 use contact::Side;
 use ring::Partner;
 
-use crate::bodies::{FlatBody, FreeBall, Inertia, Name, TiltedLoads};
+use crate::bodies::{CageBody, FlatBody, FreeBall, Inertia, Name, TiltedLoads};
 use crate::effects::Loads;
+use crate::interactions::cage::land::LandStep;
+use crate::interactions::cage::links::CageLinks;
+use crate::interactions::cage::pocket::PocketStep;
 use crate::interactions::free_contact::{Carrier, FreeContacts};
 use crate::interactions::raceway_contact::{GrooveBodies, Means, RacewayContacts, Site, SiteState};
 use crate::interactions::seat_spring::{Seat, SeatSpring};
@@ -49,6 +52,26 @@ pub struct FreeParts {
     pub balls: Vec<FreeBall>,
     /// Their contacts.
     pub contacts: FreeContacts,
+    /// The cage, if it is free.
+    pub cage: Option<CageParts>,
+}
+
+/// A free cage and its contacts.
+#[derive(Clone)]
+pub struct CageParts {
+    /// The cage.
+    pub body: CageBody,
+    /// Its pockets.
+    pub pockets: CageLinks<PocketStep>,
+    /// Its ends on the land that guides it.
+    pub lands: CageLinks<LandStep>,
+}
+
+impl CageParts {
+    /// Number of the cage among the lumped bodies.
+    pub fn number(n_balls: usize, has_seat: bool) -> usize {
+        FIRST_BALL + n_balls + usize::from(has_seat)
+    }
 }
 
 /// The seat of the outer ring along the axis.
@@ -167,6 +190,7 @@ impl BearingParts {
         let free = self.free.iter().flat_map(|free| &free.balls);
         lumped.extend(free.map(|ball| ball as &dyn Lumped));
         lumped.extend(self.seat.iter().map(|seat| &seat.body as &dyn Lumped));
+        lumped.extend(self.cage().map(|cage| &cage.body as &dyn Lumped));
         System::new(
             self.interval,
             lumped,
@@ -182,7 +206,19 @@ impl BearingParts {
             Some(free) => &free.contacts,
             None => &self.contacts,
         };
-        std::iter::once(contacts).chain(seat).collect()
+        let cage = self.cage().into_iter();
+        let cage = cage.flat_map(|cage| [&cage.pockets as &dyn Interaction, &cage.lands]);
+        std::iter::once(contacts).chain(seat).chain(cage).collect()
+    }
+
+    /// The cage, if it is free.
+    pub fn cage(&self) -> Option<&CageParts> {
+        self.free.as_ref()?.cage.as_ref()
+    }
+
+    /// Number of the pockets among the interactions; the ends on the land follow.
+    pub fn pockets(&self) -> usize {
+        CONTACTS + 1 + usize::from(self.seat.is_some())
     }
 
     /// Number of the lumped body that carries a ring; None is at rest.

@@ -78,6 +78,7 @@ pub fn minimise(
         residual_limit: RESIDUAL_LIMIT,
         force_scale: largest_load(parts, scales),
         round_off: RoundOff::Links,
+        ends_at_floor: false,
         scales: Some(&lengths),
         proximal: proximal(parts, scales),
         longest_step: scales.step,

@@ -90,8 +90,8 @@ pub enum DynamicsError {
     },
     /// Two free balls run into each other.
     #[error(
-        "balls {ball} and {other} run into each other: free balls have no cage in this version, and orbits that differ \
-         bring them together; shorten the run, or load the bearing so that all balls roll alike"
+        "balls {ball} and {other} run into each other: orbits that differ bring free balls together; give \
+         them a cage, [cage] with motion = \"free\", or load the bearing so that all balls roll alike"
     )]
     BallsTouch {
         /// A ball.

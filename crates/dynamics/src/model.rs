@@ -15,6 +15,7 @@ use input::Schedule;
 use ring::{Backend, RingModel};
 
 use crate::effects::Effect;
+use crate::interactions::cage::Cage;
 use crate::interactions::seat_spring::Seat;
 use crate::interactions::traction::Traction;
 use crate::mounting::Mounting;
@@ -107,6 +108,8 @@ pub struct Model {
     pub shaft_inertia: ShaftInertia,
     /// Axial distance of the load point from the plane of the inner groove centres, m.
     pub load_point: f64,
+    /// A free cage; None: it turns as pure rolling has it, or balls are free without one.
+    pub cage: Option<Cage>,
     /// Contact choices.
     pub contact: ContactSettings,
     /// Effects the scene calls for, in the order of their names.

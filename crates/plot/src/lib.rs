@@ -5,6 +5,7 @@
 //! Fields of the raceways come from the step files.
 
 mod balls;
+mod cage;
 mod campbell;
 mod energy;
 mod modes;
@@ -131,6 +132,7 @@ pub fn figures(dir: &Path, choice: &Choice) -> Result<Figures, Failure> {
     let groups = [
         ("balls", balls::figures(&results, choice)),
         ("shaft", shaft::figures(&results)),
+        ("cage", cage::figures(&results)),
         ("probes", probes::figures(&results)),
         ("profiles", profiles::figures(&results, choice)),
         ("energy", energy::figures(&results)),

@@ -16,11 +16,12 @@ use crate::summary::SUMMARY_FILE;
 const MAX_FOLDERS: usize = 10_000;
 
 /// Files that say that a folder holds results, besides those of steps.
-const RESULT_FILES: [&str; 10] = [
+const RESULT_FILES: [&str; 11] = [
     SUMMARY_FILE,
     "balls.csv",
     "shaft.csv",
     "energy.csv",
+    "cage.csv",
     "probes.csv",
     "profiles.csv",
     "modes.csv",
@@ -144,10 +145,11 @@ fn require_writable(dir: &Path) -> Result<(), Failure> {
 }
 
 /// Tables that a run may write.
-const TABLES: [&str; 6] = [
+const TABLES: [&str; 7] = [
     "balls.csv",
     "shaft.csv",
     "energy.csv",
+    "cage.csv",
     "probes.csv",
     "profiles.csv",
     "modes.csv",

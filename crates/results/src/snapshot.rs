@@ -1,7 +1,7 @@
 //! One instant of a run as every kind of result shows it.
 
 use dynamics::StaticSolution;
-use dynamics::balls::{BallResult, Friction};
+use dynamics::balls::{BallResult, CageResult, Friction};
 use dynamics::kinematics::Rolling;
 use dynamics::motion::{Ledger, Motion, MotionState};
 
@@ -20,6 +20,8 @@ pub struct Snapshot {
     pub reaction: Option<[f64; 5]>,
     /// Friction of free balls; None where balls are not free.
     pub friction: Option<Friction>,
+    /// A free cage; None where there is none.
+    pub cage: Option<CageResult>,
     /// Energy terms, J, by name: the columns of `energy.csv`.
     pub energies: Vec<(&'static str, f64)>,
 }
@@ -36,6 +38,7 @@ impl Snapshot {
             seat: solution.parts.seat.as_ref().map(|_| solution.displacements.seat),
             reaction: Some(solution.shaft_reaction),
             friction: None,
+            cage: None,
             energies: vec![
                 ("strain", solution.strain_energy),
                 ("hertz", solution.hertz_energy),
@@ -55,6 +58,7 @@ impl Snapshot {
             seat: state.seat.map(|seat| seat[0]),
             reaction: None,
             friction: motion.friction(state),
+            cage: motion.cage(state),
             energies: ledger_terms(&state.ledger, motion.has_strips()),
         }
     }
@@ -67,6 +71,17 @@ fn ledger_terms(ledger: &Ledger, has_strips: bool) -> Vec<(&'static str, f64)> {
             ("friction_loss", friction.loss),
             ("friction_integrator_share", friction.integrator_share),
             ("drag_loss", friction.drag_loss),
+        ]
+    });
+    let cage = ledger.cage.into_iter().flat_map(|cage| {
+        [
+            ("kinetic_cage", cage.kinetic),
+            ("strain_cage", cage.strain),
+            ("cage_drive_work", cage.drive_work),
+            ("cage_impact_loss", cage.impact_loss),
+            ("cage_friction_loss", cage.friction_loss),
+            ("cage_integrator_share", cage.integrator_share),
+            ("cage_drag_loss", cage.drag_loss),
         ]
     });
     let mut terms = vec![
@@ -85,6 +100,7 @@ fn ledger_terms(ledger: &Ledger, has_strips: bool) -> Vec<(&'static str, f64)> {
         ("numerical_loss", ledger.numerical_loss),
     ];
     terms.extend(friction);
+    terms.extend(cage);
     terms.extend([("total", ledger.total()), ("defect", ledger.defect())]);
     if has_strips {
         let losses = terms.iter().position(|(name, _)| *name == "contact_loss");

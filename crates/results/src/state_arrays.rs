@@ -10,7 +10,8 @@ use checkpoint::StateArray;
 use contact::Side;
 use dynamics::motion::RingState;
 use dynamics::motion::{
-    ContactTraction, FreeState, FrictionLedger, Ledger, MotionState, RingShape, StateShape,
+    CageLedger, CageState, ContactTraction, FreeState, FrictionLedger, Ledger, MotionState, RingShape,
+    StateShape,
 };
 
 /// Arrays by name.
@@ -89,6 +90,11 @@ fn exchange(state: &mut MotionState, shape: &StateShape, port: &mut Port<'_>) ->
     if shape.has_free_balls {
         exchange_free(free.get_or_insert_default(), shape.n_balls, port)?;
         exchange_friction(ledger.friction.get_or_insert_default(), port)?;
+        if let Some(ends) = shape.cage_ends {
+            let cage = free.get_or_insert_default().cage.get_or_insert_default();
+            exchange_cage(cage, (shape.n_balls, ends), port)?;
+            exchange_cage_ledger(ledger.cage.get_or_insert_default(), port)?;
+        }
     }
     exchange_ledger(ledger, shape, port)?;
     for (side, ring) in Side::BOTH.into_iter().zip(rings) {
@@ -104,11 +110,14 @@ fn exchange_free(free: &mut FreeState, n_balls: usize, port: &mut Port<'_>) -> a
         places,
         velocities,
         turnings,
+        trends,
         contacts,
+        cage: _,
     } = free;
     port.rows("free_balls", places, n_balls)?;
     port.rows("free_ball_velocities", velocities, n_balls)?;
     port.rows("free_ball_turnings", turnings, n_balls)?;
+    port.rows("free_ball_trends", trends, n_balls)?;
     let mut rows: Vec<[f64; 7]> = contacts.iter().map(|contact| contact.to_row()).collect();
     port.rows("free_ball_contacts", &mut rows, 2 * n_balls)?;
     *contacts = rows.into_iter().map(ContactTraction::from_row).collect();
@@ -123,6 +132,52 @@ fn exchange_friction(friction: &mut FrictionLedger, port: &mut Port<'_>) -> anyh
         drag_loss,
     } = friction;
     port.scalars("ledger_friction", [loss, integrator_share, drive_work, drag_loss])
+}
+
+/// `ends`: how many ends of the cage a land guides.
+fn exchange_cage(
+    cage: &mut CageState,
+    (n_balls, ends): (usize, usize),
+    port: &mut Port<'_>,
+) -> anyhow::Result<()> {
+    let CageState {
+        place,
+        rates,
+        met,
+        pockets,
+        lands,
+        torques,
+    } = cage;
+    port.values("cage", place)?;
+    port.values("cage_rates", rates)?;
+    port.list("cage_met", met, n_balls + ends)?;
+    port.rows("cage_pockets", pockets, n_balls)?;
+    port.rows("cage_lands", lands, ends)?;
+    port.values("cage_torques", torques)
+}
+
+fn exchange_cage_ledger(cage: &mut CageLedger, port: &mut Port<'_>) -> anyhow::Result<()> {
+    let CageLedger {
+        kinetic,
+        strain,
+        impact_loss,
+        friction_loss,
+        integrator_share,
+        drag_loss,
+        drive_work,
+    } = cage;
+    port.scalars(
+        "ledger_cage",
+        [
+            kinetic,
+            strain,
+            impact_loss,
+            friction_loss,
+            integrator_share,
+            drag_loss,
+            drive_work,
+        ],
+    )
 }
 
 /// Kinds of the vectors of a ring and how the names of their arrays end; the last one is of earlier versions.
@@ -187,6 +242,7 @@ fn exchange_ledger(ledger: &mut Ledger, shape: &StateShape, port: &mut Port<'_>)
         initial,
         largest,
         friction: _,
+        cage: _,
     } = ledger;
     port.values("ledger_kinetic", kinetic)?;
     port.values("ledger_strain", strain)?;
@@ -305,6 +361,7 @@ mod tests {
         ],
         has_seat: true,
         has_free_balls: true,
+        cage_ends: Some(2),
         has_profiles: true,
     };
 
@@ -356,14 +413,32 @@ mod tests {
                     drive_work: number(),
                     drag_loss: number(),
                 }),
+                cage: Some(CageLedger {
+                    kinetic: number(),
+                    strain: number(),
+                    impact_loss: number(),
+                    friction_loss: number(),
+                    integrator_share: number(),
+                    drag_loss: number(),
+                    drive_work: number(),
+                }),
             },
             free: Some(FreeState {
                 places: (0..2).map(|_| [0, 1, 2].map(|_| number())).collect(),
                 velocities: (0..2).map(|_| [0, 1, 2].map(|_| number())).collect(),
                 turnings: (0..2).map(|_| [0, 1, 2].map(|_| number())).collect(),
+                trends: (0..2).map(|_| [(); 6].map(|()| number())).collect(),
                 contacts: (0..4)
                     .map(|_| ContactTraction::from_row([(); 7].map(|()| number())))
                     .collect(),
+                cage: Some(CageState {
+                    place: [(); 6].map(|()| number()),
+                    rates: [(); 6].map(|()| number()),
+                    met: (0..4).map(|_| number()).collect(),
+                    pockets: (0..2).map(|_| [0, 1].map(|_| number())).collect(),
+                    lands: (0..2).map(|_| [0, 1].map(|_| number())).collect(),
+                    torques: [0, 1].map(|_| number()),
+                }),
             }),
         }
     }

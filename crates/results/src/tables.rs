@@ -1,11 +1,11 @@
-//! Long tables of a run: `balls.csv`, `shaft.csv`, `energy.csv`, `probes.csv`, `profiles.csv`. SI units in the column
-//! names.
+//! Long tables of a run: `balls.csv`, `shaft.csv`, `energy.csv`, `cage.csv`, `probes.csv`, `profiles.csv`. SI units in
+//! the column names.
 
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, anyhow};
 use checkpoint::{Companion, GrowingFile, Stamps};
-use dynamics::balls::{BallResult, ContactResult, FreeBallResult, Friction};
+use dynamics::balls::{BallResult, CageResult, ContactResult, FreeBallResult, Friction};
 
 use super::cut::Cut;
 use super::film::FilmLaw;
@@ -17,6 +17,8 @@ pub struct Tables {
     balls: csv::Writer<GrowingFile>,
     shaft: csv::Writer<GrowingFile>,
     energy: csv::Writer<GrowingFile>,
+    /// Only with a free cage.
+    cage: Option<csv::Writer<GrowingFile>>,
     /// Only in a scene with probes.
     probes: Option<csv::Writer<GrowingFile>>,
     /// Only in a scene with profiles.
@@ -30,6 +32,7 @@ pub struct Tables {
 const BALLS: &str = "balls.csv";
 const SHAFT: &str = "shaft.csv";
 const ENERGY: &str = "energy.csv";
+const CAGE: &str = "cage.csv";
 const PROBES: &str = "probes.csv";
 const PROFILES: &str = "profiles.csv";
 
@@ -68,6 +71,7 @@ impl Tables {
             balls: create(dir, BALLS, &balls)?,
             shaft: create(dir, SHAFT, &shaft)?,
             energy: create(dir, ENERGY, &energy)?,
+            cage: make(CAGE, &cage_columns(first))?,
             probes: make(PROBES, &own.probes)?,
             profiles: make(PROFILES, &own.profiles)?,
             with_spin: first.spin.is_some(),
@@ -95,7 +99,8 @@ impl Tables {
             Cut::at_stamp(dir, name, &header, (last, stamp))
         };
         let mut cuts = vec![find(BALLS, &balls)?, find(SHAFT, &shaft)?, find(ENERGY, &energy)?];
-        for (name, columns) in [(PROBES, &own.probes), (PROFILES, &own.profiles)] {
+        let cage = cage_columns(first);
+        for (name, columns) in [(CAGE, &cage), (PROBES, &own.probes), (PROFILES, &own.profiles)] {
             if let Some(columns) = columns {
                 cuts.push(find(name, &head(None, columns))?);
             }
@@ -122,6 +127,7 @@ impl Tables {
             balls,
             shaft,
             energy,
+            cage: next(&cage_columns(first))?,
             probes: next(&own.probes)?,
             profiles: next(&own.profiles)?,
             with_spin: first.spin.is_some(),
@@ -148,6 +154,7 @@ impl Tables {
     fn all(&self) -> impl Iterator<Item = (&'static str, &csv::Writer<GrowingFile>)> {
         [(BALLS, &self.balls), (SHAFT, &self.shaft), (ENERGY, &self.energy)]
             .into_iter()
+            .chain(self.cage.as_ref().map(|table| (CAGE, table)))
             .chain(self.probes.as_ref().map(|table| (PROBES, table)))
             .chain(self.profiles.as_ref().map(|table| (PROFILES, table)))
     }
@@ -177,8 +184,13 @@ impl Tables {
         append(
             &mut self.balls,
             BALLS,
-            balls.map(|(i, ball)| row([ball_cells(i, ball), rolling(ball)].concat())),
+            balls.map(|(i, ball)| {
+                row([ball_cells(i, ball), rolling(ball), pocket_cells(i, snapshot)].concat())
+            }),
         )?;
+        if let (Some(table), Some(cage)) = (&mut self.cage, &snapshot.cage) {
+            append(table, CAGE, [row(cage_cells(cage).map(number).to_vec())])?;
+        }
         append(&mut self.shaft, SHAFT, [row(shaft.map(number).collect())])?;
         append(
             &mut self.energy,
@@ -294,6 +306,62 @@ const FREE_BALL_COLUMNS: [&str; 4] = [
     "orbit_rad_per_s",
 ];
 
+const POCKET_COLUMNS: [&str; 2] = ["pocket_rolling_n", "pocket_axial_n"];
+
+const CAGE_COLUMNS: [&str; 15] = [
+    "x_m",
+    "y_m",
+    "z_m",
+    "tilt_x_rad",
+    "tilt_y_rad",
+    "turn_rad",
+    "speed_rad_per_s",
+    "kinematic_speed_rad_per_s",
+    "largest_pocket_force_n",
+    "lower_land_x_n",
+    "lower_land_y_n",
+    "upper_land_x_n",
+    "upper_land_y_n",
+    "pocket_torque_n_m",
+    "land_torque_n_m",
+];
+
+/// Columns of `cage.csv`, if there is a free cage.
+fn cage_columns(first: &Snapshot) -> Option<Vec<String>> {
+    let columns = || CAGE_COLUMNS.iter().map(|name| name.to_string()).collect();
+    first.cage.as_ref().map(|_| columns())
+}
+
+fn cage_cells(cage: &CageResult) -> [f64; 15] {
+    let ([x, y, z], [tilt_x, tilt_y]) = (cage.position_m, cage.tilt_rad);
+    let forces = cage.pocket_forces_n.iter().map(|f| f[0].hypot(f[1]));
+    let [[a, b], [c, d]] = cage.land_forces_n;
+    let [pockets, land] = cage.torques_n_m;
+    [
+        x,
+        y,
+        z,
+        tilt_x,
+        tilt_y,
+        cage.turn_rad,
+        cage.speed_rad_per_s,
+        cage.kinematic_speed_rad_per_s,
+        forces.fold(0.0, f64::max),
+        a,
+        b,
+        c,
+        d,
+        pockets,
+        land,
+    ]
+}
+
+/// Cells of the pocket of a ball; none without a free cage.
+fn pocket_cells(ball: usize, snapshot: &Snapshot) -> Vec<String> {
+    let forces = snapshot.cage.iter().flat_map(|cage| cage.pocket_forces_n[ball]);
+    forces.map(number).collect()
+}
+
 const FRICTION_COLUMNS: [&str; 3] = ["friction_torque_n_m", "friction_power_w", "cage_speed_rad_per_s"];
 
 /// Cells of a free ball: both contacts, then its turning.
@@ -364,6 +432,9 @@ fn columns(swept: Option<&str>, first: &Snapshot, own: &OwnColumns) -> [Vec<Stri
     if first.spin.is_some() {
         balls.push("spin_rad_per_s".to_string());
         balls.extend(own.film.iter().flat_map(FilmLaw::columns));
+    }
+    if first.cage.is_some() {
+        balls.extend(names(&POCKET_COLUMNS));
     }
     let mut shaft = names(&["x_m", "y_m", "z_m", "tilt_x_rad", "tilt_y_rad"]);
     if first.reaction.is_some() {

@@ -98,6 +98,7 @@ pub fn model_with_rings(scene: &Scene, rings: [Option<Arc<RingModel>>; 2]) -> Re
         shaft_mass: shaft.mass,
         shaft_inertia: shaft.inertia,
         load_point: shaft.load_point,
+        cage: scene.cage.clone(),
         contact: ContactSettings {
             mode: match scene.contact.mode {
                 tables::ContactMode::Patch => ContactMode::Patch,

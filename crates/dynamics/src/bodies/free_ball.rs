@@ -26,6 +26,9 @@ pub struct FreeBall {
     pub velocity: [f64; 3],
     /// Angular velocity at the start, rad/s.
     pub turning: [f64; 3],
+    /// Change of velocity and angular velocity in the last step beyond the turning round the axis, over its time, m/s^2
+    /// and rad/s^2: what the guess goes on with.
+    pub trend: [[f64; 3]; 2],
     /// Mean load, N.
     pub load: [f64; 3],
     /// Drag over the square of the speed, N s^2/m^2.
@@ -43,6 +46,25 @@ impl FreeBall {
         let at_end =
             |first: usize, start: [f64; 3]| [0, 1, 2].map(|i| 2.0 * x[first + i] / self.dt - start[i]);
         [at_end(0, self.velocity), at_end(3, self.turning)]
+    }
+
+    /// Velocity and angular velocity at the end if they only turned round the axis with the orbit.
+    fn turned(&self) -> [[f64; 3]; 2] {
+        let [x, y, _] = self.place;
+        let square = x * x + y * y;
+        let orbit = if square > 0.0 {
+            (x * self.velocity[1] - y * self.velocity[0]) / square
+        } else {
+            0.0
+        };
+        let (sin, cos) = (self.dt * orbit).sin_cos();
+        [self.velocity, self.turning].map(|v| [cos * v[0] - sin * v[1], sin * v[0] + cos * v[1], v[2]])
+    }
+
+    /// [`FreeBall::trend`] of the next step for the coordinates `x`.
+    pub fn next_trend(&self, x: &[f64]) -> [[f64; 3]; 2] {
+        let (end, turned) = (self.velocities(x), self.turned());
+        [0, 1].map(|k| [0, 1, 2].map(|i| (end[k][i] - turned[k][i]) / self.dt))
     }
 
     /// Place at the end for the coordinates `x`.
@@ -90,21 +112,13 @@ impl Lumped for FreeBall {
         (0..6).map(|i| (i, i, 1.0)).collect()
     }
 
-    /// The course goes on round the axis with the orbit's speed.
+    /// The course goes on round the axis with the orbit's speed, and changes as in the last step.
     fn guess(&self, _interval: Interval) -> Vec<f64> {
-        let [x, y, _] = self.place;
-        let square = x * x + y * y;
-        let orbit = if square > 0.0 {
-            (x * self.velocity[1] - y * self.velocity[0]) / square
-        } else {
-            0.0
+        let turned = self.turned();
+        let mean = |k: usize, v: [f64; 3]| {
+            [0, 1, 2].map(|i| 0.5 * self.dt * (v[i] + turned[k][i] + self.dt * self.trend[k][i]))
         };
-        let (sin, cos) = (self.dt * orbit).sin_cos();
-        let mean = |v: [f64; 3]| {
-            let turned = [cos * v[0] - sin * v[1], sin * v[0] + cos * v[1], v[2]];
-            [0, 1, 2].map(|i| 0.5 * self.dt * (v[i] + turned[i]))
-        };
-        [mean(self.velocity), mean(self.turning)].concat()
+        [mean(0, self.velocity), mean(1, self.turning)].concat()
     }
 
     fn balance(&self, _interval: Interval, x: &[f64], residual: &mut [f64]) {
@@ -155,6 +169,7 @@ mod tests {
             place: [0.03, 0.01, 0.0],
             velocity: [0.7, -2.0, 0.1],
             turning: [100.0, -20.0, 600.0],
+            trend: [[0.0; 3]; 2],
             load: [0.2, -0.4, 0.1],
             drag: 0.03,
             dt: 1e-5,

@@ -1,11 +1,13 @@
-//! Lumped bodies of a bearing: shaft and balls.
+//! Lumped bodies of a bearing: shaft, balls, cage.
 
+mod cage;
 mod flat;
 mod frame_inertia;
 mod free_ball;
 mod inertia;
 mod tilted_loads;
 
+pub use cage::CageBody;
 pub use flat::{AXES, FlatBody, Name};
 pub use frame_inertia::{FrameInertia, StepTakes};
 pub use free_ball::FreeBall;

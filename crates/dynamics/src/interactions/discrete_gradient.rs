@@ -201,6 +201,19 @@ pub fn mean_force(
     along_lengths(l, normal, viscous, d1 - d0).0
 }
 
+/// Mean force of a contact with a viscous force that depends on the elastic one: `viscous` gets that and its derivative
+/// with respect to |l1|, and the change of |l|, and gives the same of the viscous one.
+pub fn mean_force_with(
+    law: &ContactLaw,
+    touching: f64,
+    l: [[f64; 2]; 2],
+    viscous: impl Fn([f64; 2], f64) -> [f64; 2],
+) -> MeanForce {
+    let [d0, d1] = l.map(|l| size(l) - touching);
+    let normal = mean_normal(law, d0, d1);
+    along_lengths(l, normal, Some(viscous(normal, d1 - d0)), d1 - d0).0
+}
+
 /// The mean force of one contact along its mean direction from the normal mean and its stiffness, and whether damping
 /// would have made it pull.
 fn along_lengths(

@@ -1,5 +1,6 @@
 //! Interactions of a bearing's bodies.
 
+pub mod cage;
 pub mod contact_damping;
 pub mod discrete_gradient;
 pub mod free_contact;

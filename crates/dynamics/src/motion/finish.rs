@@ -263,6 +263,9 @@ impl BearingParts {
             let asked = self.free_reactions(Side::Inner, solution);
             (0..5).for_each(|i| reactions[i] += asked[i]);
         }
+        if let Some(cage) = &solution.cage {
+            (0..5).for_each(|i| reactions[i] += cage.on_shaft[i]);
+        }
         reactions
     }
 }

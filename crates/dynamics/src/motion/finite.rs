@@ -22,6 +22,9 @@ pub(super) fn require_finite(state: &MotionState) -> Result<(), DynamicsError> {
         .iter()
         .map(|f| f.loss + f.drive_work + f.drag_loss)
         .sum();
+    let cage = ledger.cage.map_or(0.0, |c| {
+        c.kinetic + c.strain + c.impact_loss + c.friction_loss + c.drag_loss + c.drive_work
+    });
     let contacts = of_contacts
         .into_iter()
         .flatten()
@@ -48,7 +51,7 @@ pub(super) fn require_finite(state: &MotionState) -> Result<(), DynamicsError> {
             state.seat.iter().flatten().sum(),
         ),
         ("the contacts at the end of a step", contacts + ledger.hertz),
-        ("the work of a step", works + friction),
+        ("the work of a step", works + friction + cage),
     ];
     match sums.into_iter().find(|(_, sum)| !sum.is_finite()) {
         Some((what, _)) => Err(DynamicsError::NotFinite { what }),

@@ -58,7 +58,9 @@ impl Motion<'_> {
             free.turnings
                 .push([turning[0] * cos, turning[0] * sin, turning[1]]);
         }
+        free.trends = vec![[0.0; 6]; free.places.len()];
         free.contacts = vec![ContactTraction::default(); 2 * free.places.len()];
+        free.cage = self.cage_at_start(&free, state.shaft);
         Some(free)
     }
 
@@ -96,6 +98,8 @@ impl Motion<'_> {
     ) -> Option<FreeParts> {
         let (traction, free) = (self.model.traction()?, state.free.as_ref()?);
         let traction = Arc::new(traction.clone());
+        let shaft = self.carrier_step(state, span, Side::Inner);
+        let fall = self.fall(span);
         let rings = Side::BOTH.map(|side| self.ring_steps(state, span, side, rings[side.index()].as_deref()));
         let contact = |(index, site): (usize, &Site)| {
             let ring = rings[index % 2][index / 2];
@@ -104,9 +108,10 @@ impl Motion<'_> {
         let contacts = sites.iter().enumerate().map(contact).collect();
         Some(FreeParts {
             balls: (0..free.places.len())
-                .map(|ball| self.free_ball(free, span, ball))
+                .map(|ball| self.free_ball(free, span, (ball, fall)))
                 .collect(),
             contacts: FreeContacts::new(contacts),
+            cage: self.cage_parts(free, span, fall, shaft),
         })
     }
 
@@ -181,19 +186,24 @@ impl Motion<'_> {
         Ok(tractions.into_iter().chain(slopes).collect())
     }
 
-    fn free_ball(&self, free: &FreeState, span: Span, ball: usize) -> FreeBall {
-        let inertia = self.ball_inertia();
+    /// Acceleration of all that falls, m/s^2.
+    fn fall(&self, span: Span) -> [f64; 3] {
         let now = self.now(span);
-        let fall = self.model.effects.iter().fold([0.0; 3], |sum, effect| {
+        self.model.effects.iter().fold([0.0; 3], |sum, effect| {
             let a = effect.acceleration(&now);
             [0, 1, 2].map(|i| sum[i] + a[i])
-        });
+        })
+    }
+
+    fn free_ball(&self, free: &FreeState, span: Span, (ball, fall): (usize, [f64; 3])) -> FreeBall {
+        let inertia = self.ball_inertia();
         FreeBall {
             ball,
             inertia,
             place: free.places[ball],
             velocity: free.velocities[ball],
             turning: free.turnings[ball],
+            trend: [0, 1].map(|k| std::array::from_fn(|i| free.trends[ball][3 * k + i])),
             load: fall.map(|a| inertia[0] * a),
             drag: self
                 .model
@@ -226,6 +236,13 @@ impl Motion<'_> {
             };
             return (0..n_balls).map(of_ball).collect();
         }
+        vec![self.carrier_step(state, span, side); n_balls]
+    }
+
+    /// What carries a ring, over a part.
+    pub(super) fn carrier_step(&self, state: &MotionState, span: Span, side: Side) -> RingStep {
+        let speed = self.settings.speeds.of(side);
+        let turned = speed.angle(span.at(1.0)) - speed.angle(span.start);
         let (carrier, masses) = match (side, state.seat) {
             (Side::Inner, _) => ([state.shaft, state.shaft_velocity], self.model.shaft_masses()),
             (Side::Outer, Some([z, v, _])) => {
@@ -234,13 +251,12 @@ impl Motion<'_> {
             }
             (Side::Outer, None) => ([[0.0; 5]; 2], [0.0; 5]),
         };
-        let ring = RingStep {
+        RingStep {
             carrier,
             has_inertia: masses.map(|mass| mass > 0.0),
             elastic: None,
-            spin,
-        };
-        vec![ring; n_balls]
+            spin: [turned / span.dt, speed.at(span.at(1.0))],
+        }
     }
 
     fn contact_step(
@@ -293,7 +309,9 @@ impl Motion<'_> {
 
     /// New state and works of free balls.
     pub(super) fn finish_free(&self, next: &mut MotionState, parts: &BearingParts, solution: &StepSolution) {
-        let Some(free) = &parts.free else { return };
+        let (Some(free), Some(before)) = (&parts.free, next.free.take()) else {
+            return;
+        };
         let mut state = FreeState::default();
         let mut friction = next.ledger.friction.unwrap_or_default();
         for (ball, x) in free.balls.iter().zip(&solution.free_ends) {
@@ -301,6 +319,8 @@ impl Motion<'_> {
             state.places.push(ball.end(x));
             state.velocities.push(velocity);
             state.turnings.push(turning);
+            let [a, b] = ball.next_trend(x);
+            state.trends.push([a[0], a[1], a[2], b[0], b[1], b[2]]);
             next.ledger.load_work += ball.load_work(x);
             friction.drag_loss += ball.drag_loss(x);
         }
@@ -321,6 +341,7 @@ impl Motion<'_> {
             });
         }
         next.ledger.friction = Some(friction);
+        state.cage = self.finish_cage((&before, &mut next.ledger), parts, solution);
         for ball in 0..state.places.len() {
             next.balls[ball] = solution.balls[ball];
             next.ball_velocities[ball] = state.meridian_velocity(ball);

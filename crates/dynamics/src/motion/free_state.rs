@@ -1,5 +1,7 @@
 //! What evolves of free balls.
 
+use super::cage_state::CageState;
+
 /// Free balls: places, velocities and angular velocities in space, and what their contacts report.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct FreeState {
@@ -9,8 +11,13 @@ pub struct FreeState {
     pub velocities: Vec<[f64; 3]>,
     /// Angular velocities, rad/s.
     pub turnings: Vec<[f64; 3]>,
+    /// Changes of velocity and angular velocity in the last step beyond the turning round the axis, over its time, m/s^2
+    /// and rad/s^2: the next step's guess.
+    pub trends: Vec<[f64; 6]>,
     /// Traction in the last step, by site.
     pub contacts: Vec<ContactTraction>,
+    /// The cage, if it is free.
+    pub cage: Option<CageState>,
 }
 
 /// Traction of a contact in a step. Slips are those that the force follows: at the end of the step, as a rule.
@@ -87,7 +94,8 @@ impl FreeState {
     pub(super) fn sum(&self) -> f64 {
         let vectors = [&self.places, &self.velocities, &self.turnings];
         let vectors = vectors.into_iter().flat_map(|v| v.as_flattened()).sum::<f64>();
-        vectors + self.contacts.iter().flat_map(|c| c.to_row()).sum::<f64>()
+        let cage = self.cage.iter().map(CageState::sum).sum::<f64>();
+        vectors + cage + self.contacts.iter().flat_map(|c| c.to_row()).sum::<f64>()
     }
 
     /// Kinetic energy of all balls of this mass and moment of inertia, J.

@@ -37,6 +37,8 @@ pub struct Ledger {
     pub largest: f64,
     /// Friction of free balls; None: balls are not free.
     pub friction: Option<FrictionLedger>,
+    /// A free cage; None: there is none.
+    pub cage: Option<CageLedger>,
 }
 
 /// What friction does where balls are free, J, since the start.
@@ -50,6 +52,25 @@ pub struct FrictionLedger {
     pub drive_work: f64,
     /// Energy lost to the drag of balls: never falls.
     pub drag_loss: f64,
+}
+
+/// Energies of a free cage, and what its contacts do, J, since the start.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct CageLedger {
+    /// Kinetic energy.
+    pub kinetic: f64,
+    /// Energy stored in pockets and on the land.
+    pub strain: f64,
+    /// Energy lost to impacts: never falls.
+    pub impact_loss: f64,
+    /// Energy lost to friction: never falls.
+    pub friction_loss: f64,
+    /// Part of it that the integrator adds, of either sign.
+    pub integrator_share: f64,
+    /// Energy lost to the drag of the land: never falls.
+    pub drag_loss: f64,
+    /// Work of the drive that keeps the ring of the land at its speed.
+    pub drive_work: f64,
 }
 
 /// Share of the largest energy above which a user should know what the integrator took.
@@ -67,7 +88,8 @@ impl Ledger {
 
     /// Energy in the model.
     pub fn total(&self) -> f64 {
-        self.kinetic.iter().chain(&self.strain).sum::<f64>() + self.hertz
+        let cage = self.cage.map_or(0.0, |cage| cage.kinetic + cage.strain);
+        self.kinetic.iter().chain(&self.strain).sum::<f64>() + self.hertz + cage
     }
 
     /// Works since the start: of loads, imposed displacements, frame, patches, profiles.
@@ -91,8 +113,12 @@ impl Ledger {
         let works: f64 = self.works().iter().sum();
         let losses: f64 = self.losses().iter().sum();
         let defect = self.total() - self.initial - works + losses;
-        match self.friction {
+        let defect = match self.friction {
             Some(friction) => defect - friction.drive_work + friction.loss + friction.drag_loss,
+            None => defect,
+        };
+        match self.cage {
+            Some(cage) => defect - cage.drive_work + cage.impact_loss + cage.friction_loss + cage.drag_loss,
             None => defect,
         }
     }
@@ -104,8 +130,13 @@ impl Ledger {
             .friction
             .iter()
             .flat_map(|f| [f.loss, f.drive_work, f.drag_loss]);
+        let cage = self
+            .cage
+            .iter()
+            .flat_map(|c| [c.impact_loss, c.friction_loss, c.drag_loss, c.drive_work]);
         let largest = entries
             .chain(friction)
+            .chain(cage)
             .fold(self.total().abs(), |m, w| m.max(w.abs()));
         self.largest = self.largest.max(largest);
     }

@@ -16,6 +16,8 @@
 
 mod advance;
 mod cache;
+mod cage;
+mod cage_state;
 mod close;
 mod finish;
 mod finite;
@@ -38,8 +40,9 @@ mod substep;
 mod surfaces;
 
 pub use cache::StepCache;
+pub use cage_state::CageState;
 pub use free_state::{ContactTraction, FreeState};
-pub use ledger::{FrictionLedger, Ledger};
+pub use ledger::{CageLedger, FrictionLedger, Ledger};
 pub use limits::{ContactLimit, Exceeded};
 pub use ring::{Integrator, RingState};
 pub use run::{Motion, check_supported};

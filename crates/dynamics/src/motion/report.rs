@@ -7,7 +7,9 @@ use super::free_state::FreeState;
 use super::place::Course;
 use super::run::Motion;
 use super::state::MotionState;
-use crate::balls::{BallDisplacement, BallResult, ContactResult, FreeBallResult, Friction, TractionResult};
+use crate::balls::{
+    BallDisplacement, BallResult, CageResult, ContactResult, FreeBallResult, Friction, TractionResult,
+};
 use crate::error::DynamicsError;
 use crate::footprint::on_groove;
 use ring::RingState;
@@ -60,6 +62,25 @@ impl Motion<'_> {
             torque_n_m: inner.map(|contact| contact.torque).sum(),
             power_w: free.contacts.iter().map(|contact| contact.power).sum(),
             cage_speed_rad_per_s: (0..n).map(|ball| free.orbit(ball)).sum::<f64>() / n as f64,
+        })
+    }
+
+    /// The cage; None where there is no free one.
+    pub fn cage(&self, state: &MotionState) -> Option<CageResult> {
+        let cage = state.free.as_ref()?.cage.as_ref()?;
+        let [x, y, z, tilt_x, tilt_y, turn_rad] = cage.place;
+        let land = |end: usize| cage.lands.get(end).copied().unwrap_or_default();
+        Some(CageResult {
+            position_m: [x, y, z],
+            tilt_rad: [tilt_x, tilt_y],
+            turn_rad,
+            speed_rad_per_s: cage.rates[5],
+            kinematic_speed_rad_per_s: self
+                .kinematics
+                .cage_speed(&self.settings.speeds, self.time(state.step)),
+            pocket_forces_n: cage.pockets.clone(),
+            land_forces_n: [land(0), land(1)],
+            torques_n_m: cage.torques,
         })
     }
 

@@ -15,6 +15,8 @@ pub struct StateShape {
     pub has_seat: bool,
     /// Whether balls are free.
     pub has_free_balls: bool,
+    /// How many ends of a free cage a land guides; None: there is no free cage.
+    pub cage_ends: Option<usize>,
     /// Whether surfaces have a line in the ledger.
     pub has_profiles: bool,
 }
@@ -27,6 +29,7 @@ impl Motion<'_> {
             rings: [0, 1].map(|i| self.rings[i].as_ref().map(|ring| ring.body.shape())),
             has_seat: self.model.seat().is_some(),
             has_free_balls: self.model.traction().is_some(),
+            cage_ends: self.model.cage.as_ref().map(|cage| cage.n_ends()),
             has_profiles: self.has_strips(),
         }
     }

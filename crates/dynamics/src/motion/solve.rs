@@ -6,6 +6,7 @@
 use contact::Side;
 use timer::SharedLaps;
 
+use super::cage::CageSolution;
 use crate::bearing::{BearingParts, CONTACTS, FIRST_BALL, SHAFT, lengths};
 use crate::bodies::AXES;
 use crate::error::DynamicsError;
@@ -44,6 +45,8 @@ pub struct StepSolution {
     pub free_ends: Vec<[f64; 6]>,
     /// Contacts of free balls, by site.
     pub free_contacts: Vec<FoundContact>,
+    /// The cage, if it is free.
+    pub cage: Option<CageSolution>,
     /// Newton iterations.
     pub iterations: usize,
 }
@@ -88,6 +91,7 @@ impl BearingParts {
             mounts: Side::BOTH.map(|side| self.mount(&system, side, x)),
             free_ends: Vec::new(),
             free_contacts: Vec::new(),
+            cage: None,
             iterations: solved.iterations,
         })
     }
@@ -108,6 +112,7 @@ pub(super) fn policy<'p>(scale: f64, scales: Option<&'p [f64]>, costs: &'p Share
         residual_limit: RESIDUAL_LIMIT,
         force_scale: scale,
         round_off: RoundOff::Unknowns,
+        ends_at_floor: false,
         scales,
         proximal: 0.0,
         longest_step: f64::INFINITY,

@@ -7,12 +7,15 @@
 use contact::Side;
 use timer::SharedLaps;
 
+use super::cage::CageSolution;
 use super::solve::{StepSolution, policy};
-use crate::bearing::{BearingParts, CONTACTS, FIRST_BALL, SHAFT};
+use crate::bearing::{self, BearingParts, CONTACTS, CageParts, FIRST_BALL, SHAFT};
 use crate::error::DynamicsError;
+use crate::interactions::cage::CageForce;
+use crate::interactions::cage::links::CageContact;
 use crate::interactions::free_contact::{FoundContact, SlipAt};
 use crate::model::Model;
-use crate::system::newton::NewtonSolution;
+use crate::system::newton::{NewtonSolution, Policy};
 use crate::system::{Body, Lengths, System};
 
 /// Factors of the slip of creep that lead a Newton that stalls to the solution.
@@ -39,8 +42,15 @@ impl BearingParts {
                     is_again = true;
                 }
             }
+            let cage = self.cage_solution(&solved.unknowns);
+            if let (Some(found), Some(cage)) = (&cage, self.free.as_mut().and_then(|free| free.cage.as_mut()))
+            {
+                is_again |= take_middle(&mut cage.pockets.contacts, &found.pockets);
+                is_again |= take_middle(&mut cage.lands.contacts, &found.lands);
+            }
             if !is_again {
-                return Ok(self.free_solution(model, &solved.unknowns, found, iterations));
+                let solution = self.free_solution(model, &solved.unknowns, found, iterations);
+                return Ok(StepSolution { cage, ..solution });
             }
         }
     }
@@ -53,7 +63,10 @@ impl BearingParts {
         costs: &SharedLaps,
     ) -> Result<NewtonSolution, DynamicsError> {
         let scales = self.lengths_per_unknown(model);
-        let policy = policy(scale, Some(&scales), costs);
+        let policy = Policy {
+            ends_at_floor: true,
+            ..policy(scale, Some(&scales), costs)
+        };
         let guess = self.system().guess();
         let stalled = match self.system().solve(guess.clone(), &policy) {
             Err(error @ (DynamicsError::NewtonStalled { .. } | DynamicsError::NotFinite { .. })) => error,
@@ -93,7 +106,38 @@ impl BearingParts {
             let own = system.unknowns(Body::Lumped(FIRST_BALL + ball));
             scales[own][3..].fill(2.0 / model.geometry.ball_diameter);
         }
+        if self.cage().is_some() {
+            let own = system.unknowns(Body::Lumped(self.cage_body()));
+            scales[own][3..].fill(1.0 / model.geometry.ball_centre()[0]);
+        }
         scales
+    }
+
+    fn cage_body(&self) -> usize {
+        CageParts::number(self.n_balls(), self.seat.is_some())
+    }
+
+    /// The cage at the solution `x`, if it is free.
+    fn cage_solution(&self, x: &[f64]) -> Option<CageSolution> {
+        let cage = self.cage()?;
+        let system = self.system();
+        let lengths = [0, 1].map(|family| system.lengths_at(self.pockets() + family, x));
+        let [pockets, lands] = &lengths;
+        let pockets = cage.pockets.found(bearing::lengths(pockets));
+        let on_lands = cage.lands.found(bearing::lengths(lands));
+        let mut solution = CageSolution {
+            end: system.coordinates(self.cage_body(), x),
+            pockets: pockets.into_iter().map(|(force, _)| force).collect(),
+            ..CageSolution::default()
+        };
+        for (i, (force, resists)) in on_lands.into_iter().enumerate() {
+            let [_, end] = bearing::lengths(lands).of(i);
+            let [loss, torque] = cage.lands.contacts[i].drag(end);
+            (0..5).for_each(|dof| solution.on_shaft[dof] += resists[6 + dof].value);
+            solution.drag = [solution.drag[0] + loss, solution.drag[1] + torque];
+            solution.lands.push(force);
+        }
+        Some(solution)
     }
 
     /// Contacts of free balls at the solution `x`.
@@ -130,7 +174,20 @@ impl BearingParts {
             mounts: Side::BOTH.map(|side| self.mount(&system, side, x)),
             free_ends: ends,
             free_contacts: found,
+            cage: None,
             iterations,
         }
     }
+}
+
+/// Lets contacts whose friction did work over the part take the slip of the middle; whether there are any.
+fn take_middle(contacts: &mut [impl CageContact], found: &[CageForce]) -> bool {
+    let mut is_any = false;
+    for (contact, force) in contacts.iter_mut().zip(found) {
+        if force.friction_work > 0.0 && *contact.slip_at() == SlipAt::End {
+            *contact.slip_at() = SlipAt::Middle;
+            is_any = true;
+        }
+    }
+    is_any
 }

@@ -152,6 +152,7 @@ impl Motion<'_> {
         state.ledger = Ledger {
             hertz,
             friction: friction_at_start(self.model),
+            cage: self.cage_ledger(&state),
             ..Ledger::default()
         };
         self.measure_energies(&mut state);

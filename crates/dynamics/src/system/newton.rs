@@ -47,6 +47,8 @@ pub struct Policy<'p> {
     pub force_scale: f64,
     /// Floor of the residual.
     pub round_off: RoundOff,
+    /// Whether iteration ends where the residual is what round-off makes; else it goes on while it improves.
+    pub ends_at_floor: bool,
     /// Length per unknown by which it is scaled, so that all are lengths; None: they are taken as they are.
     pub scales: Option<&'p [f64]>,
     /// Stiffness added to the diagonal, N/m.
@@ -100,6 +102,7 @@ impl System<'_> {
                 RoundOff::Unknowns => round_off(&tangent, &x),
                 RoundOff::Links => self.round_off(&x),
             };
+            let is_at_floor = policy.ends_at_floor && now <= floor();
             let is_solved = now <= RESIDUAL_TARGET * scale || (stalled >= 2 && now <= limit.max(floor()));
             if is_solved {
                 return Ok(NewtonSolution {
@@ -108,6 +111,14 @@ impl System<'_> {
                 });
             }
             let step = self.direction(&x, &at, &mut tangent, policy)?;
+            if is_at_floor {
+                // Light bodies beside heavy ones gain by the last step; its residual is round-off of the heavy ones.
+                x.iter_mut().zip(&step).for_each(|(x, s)| *x += s);
+                return Ok(NewtonSolution {
+                    unknowns: x,
+                    iterations: iteration + 1,
+                });
+            }
             (x, at) = self.search(x, at, &step, policy);
             (policy.watch)(&x)?;
         }

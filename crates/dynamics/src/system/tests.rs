@@ -169,6 +169,7 @@ fn solve(system: &System) -> Result<Vec<f64>, DynamicsError> {
         residual_limit: 1e-10,
         force_scale: 1.0,
         round_off: RoundOff::Unknowns,
+        ends_at_floor: false,
         scales: None,
         proximal: 0.0,
         longest_step: f64::INFINITY,

@@ -120,8 +120,8 @@ fn what_free_balls_cannot_do_is_said() {
         .step(&start, &mut StepCache::default())
         .unwrap_err()
         .to_string();
-    let expected = "balls 3 and 4 run into each other: free balls have no cage in this version, and orbits that differ \
-                    bring them together; shorten the run, or load the bearing so that all balls roll alike";
+    let expected = "balls 3 and 4 run into each other: orbits that differ bring free balls together; give them a \
+                    cage, [cage] with motion = \"free\", or load the bearing so that all balls roll alike";
     assert!(error.ends_with(expected), "{error}");
     let dissipating = MotionSettings {
         integrator: Integrator::chung_hulbert(0.8),

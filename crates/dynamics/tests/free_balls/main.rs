@@ -4,6 +4,7 @@
 mod support;
 
 mod bearings;
+mod cage;
 mod closed_forms;
 mod flexible;
 mod hard;

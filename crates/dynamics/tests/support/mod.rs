@@ -85,6 +85,7 @@ impl Case {
             shaft_mass: 0.0,
             shaft_inertia: ShaftInertia::default(),
             load_point: self.load_point,
+            cage: None,
             contact: ContactSettings {
                 mode: ContactMode::Rigid,
                 patch_spacings: 2.0,

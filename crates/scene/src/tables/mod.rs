@@ -39,6 +39,7 @@ mod analysis;
 mod ball_diameters;
 mod balls;
 mod bearing;
+mod cage;
 mod contact;
 mod cut;
 mod difference;
@@ -77,6 +78,7 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use dynamics::effects::Effects;
+use dynamics::interactions::cage::Cage;
 use dynamics::kinematics::{BallSpeeds, RingSpeeds};
 use serde::Deserialize;
 use toml_edit::DocumentMut;
@@ -109,6 +111,7 @@ pub use self::sweep::{Analysis, SweepPoint};
 
 use self::balls::RawBalls;
 use self::bearing::RawBearing;
+use self::cage::RawCage;
 use self::contact::RawContact;
 use self::dynamic::RawDynamic;
 use self::gather::Finding;
@@ -145,6 +148,7 @@ struct RawScene {
     shaft: RawShaft,
     #[serde(default)]
     balls: RawBalls,
+    cage: Option<RawCage>,
     speed: Option<RawSpeed>,
     #[serde(default)]
     effects: Effects,
@@ -192,6 +196,8 @@ pub struct Scene {
     pub shaft: Shaft,
     /// How the balls move.
     pub balls: BallMotion,
+    /// A free cage.
+    pub cage: Option<Cage>,
     /// Speeds of the rings; none turns when `None`.
     pub speed: Option<RingSpeeds>,
     /// Whether the table `[speed]` names a ring, inner first.
@@ -386,6 +392,8 @@ impl Source<'_> {
             &mut problems,
         );
         let balls = raw.balls.check(raw.balls_context(), &mut problems);
+        let cage = raw.cage.as_ref();
+        let cage = cage.and_then(|cage| cage.check(balls, bearing.as_ref(), &mut problems));
         let speed = raw.speed.as_ref();
         let ball_speeds = speed.map_or(BallSpeeds::default(), |s| s.ball_speeds(effects, &mut problems));
         let speed = speed.and_then(|s| s.check(raw.speed_use(), &mut problems));
@@ -433,6 +441,7 @@ impl Source<'_> {
                 outer,
                 shaft,
                 balls,
+                cage,
                 speed,
                 has_speed,
                 ball_speeds,

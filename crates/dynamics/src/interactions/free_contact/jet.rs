@@ -1,7 +1,8 @@
 //! Numbers with their derivatives: the geometry of a free ball's contact is written once, and Newton's tangent follows.
 //!
 //! Forward differentiation over the lengths of a link (e.g. Griewank and Walther, Evaluating Derivatives, 2008,
-//! chapter 3): exact to round-off. Cost: an operation costs as many multiplications as there are lengths.
+//! chapter 3): exact to round-off. Cost: an operation costs as many multiplications as there are lengths; all are
+//! inlined, so that the processor's vectors do them.
 
 use std::ops::{Add, Mul, Neg, Sub};
 
@@ -22,6 +23,7 @@ pub type Vector = [Jet; 3];
 
 impl Jet {
     /// A number that does not change.
+    #[inline(always)]
     pub fn constant(value: f64) -> Jet {
         Jet {
             value,
@@ -30,6 +32,7 @@ impl Jet {
     }
 
     /// A length itself.
+    #[inline(always)]
     pub fn length(index: usize, value: f64) -> Jet {
         let mut jet = Jet::constant(value);
         jet.slope[index] = 1.0;
@@ -37,20 +40,23 @@ impl Jet {
     }
 
     /// A function of it with this value and derivative.
+    #[inline(always)]
     pub fn map(self, value: f64, derivative: f64) -> Jet {
         Jet {
             value,
-            slope: self.slope.map(|s| derivative * s),
+            slope: std::array::from_fn(|i| derivative * self.slope[i]),
         }
     }
 
     /// Its square root.
+    #[inline(always)]
     pub fn sqrt(self) -> Jet {
         let root = self.value.sqrt();
         self.map(root, 0.5 / root)
     }
 
     /// One over it.
+    #[inline(always)]
     pub fn recip(self) -> Jet {
         let inverse = 1.0 / self.value;
         self.map(inverse, -inverse * inverse)
@@ -60,6 +66,7 @@ impl Jet {
 impl Add for Jet {
     type Output = Jet;
 
+    #[inline(always)]
     fn add(self, other: Jet) -> Jet {
         Jet {
             value: self.value + other.value,
@@ -71,6 +78,7 @@ impl Add for Jet {
 impl Sub for Jet {
     type Output = Jet;
 
+    #[inline(always)]
     fn sub(self, other: Jet) -> Jet {
         self + -other
     }
@@ -79,10 +87,11 @@ impl Sub for Jet {
 impl Neg for Jet {
     type Output = Jet;
 
+    #[inline(always)]
     fn neg(self) -> Jet {
         Jet {
             value: -self.value,
-            slope: self.slope.map(|s| -s),
+            slope: std::array::from_fn(|i| -self.slope[i]),
         }
     }
 }
@@ -90,6 +99,7 @@ impl Neg for Jet {
 impl Mul for Jet {
     type Output = Jet;
 
+    #[inline(always)]
     fn mul(self, other: Jet) -> Jet {
         Jet {
             value: self.value * other.value,
@@ -101,6 +111,7 @@ impl Mul for Jet {
 impl Add<f64> for Jet {
     type Output = Jet;
 
+    #[inline(always)]
     fn add(self, other: f64) -> Jet {
         Jet {
             value: self.value + other,
@@ -112,46 +123,55 @@ impl Add<f64> for Jet {
 impl Mul<f64> for Jet {
     type Output = Jet;
 
+    #[inline(always)]
     fn mul(self, factor: f64) -> Jet {
         self.map(self.value * factor, factor)
     }
 }
 
+#[inline(always)]
 fn product_rule(a: &Jet, b: &Jet) -> [f64; N_LENGTHS] {
     std::array::from_fn(|i| a.slope[i] * b.value + a.value * b.slope[i])
 }
 
 /// A vector that does not change.
+#[inline(always)]
 pub fn fixed(v: [f64; 3]) -> Vector {
-    v.map(Jet::constant)
+    [Jet::constant(v[0]), Jet::constant(v[1]), Jet::constant(v[2])]
 }
 
 /// a + b.
+#[inline(always)]
 pub fn plus(a: Vector, b: Vector) -> Vector {
-    [0, 1, 2].map(|i| a[i] + b[i])
+    [a[0] + b[0], a[1] + b[1], a[2] + b[2]]
 }
 
 /// a - b.
+#[inline(always)]
 pub fn minus(a: Vector, b: Vector) -> Vector {
-    [0, 1, 2].map(|i| a[i] - b[i])
+    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
 }
 
 /// s a.
+#[inline(always)]
 pub fn times(s: Jet, a: Vector) -> Vector {
-    a.map(|x| s * x)
+    [s * a[0], s * a[1], s * a[2]]
 }
 
 /// A multiple by a plain number.
+#[inline(always)]
 pub fn scaled(s: f64, a: Vector) -> Vector {
-    a.map(|x| x * s)
+    [a[0] * s, a[1] * s, a[2] * s]
 }
 
 /// a . b.
+#[inline(always)]
 pub fn dot(a: Vector, b: Vector) -> Jet {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
 /// a x b.
+#[inline(always)]
 pub fn cross(a: Vector, b: Vector) -> Vector {
     [
         a[1] * b[2] - a[2] * b[1],
@@ -161,6 +181,7 @@ pub fn cross(a: Vector, b: Vector) -> Vector {
 }
 
 /// The values alone.
+#[inline(always)]
 pub fn values(a: Vector) -> [f64; 3] {
     a.map(|x| x.value)
 }

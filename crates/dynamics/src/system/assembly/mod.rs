@@ -248,6 +248,10 @@ impl<'a> System<'a> {
                 let at = |finite: &CarriedCircle| finite.circle.rows(self.finite_coordinates(finite, &end));
                 let finite = link.finite.map(|finite| (finite, at(&finite)));
                 self.moved_by(link, finite, &moves, &mut at_end);
+                if m > FEW_ROWS {
+                    add_sparse(t, m, &moved, &at_end, (n, tangent));
+                    continue;
+                }
                 for (a, row_a) in &moved {
                     for (b, row_b) in &at_end {
                         let terms = row_a.iter().zip(t.chunks_exact(m));
@@ -436,6 +440,33 @@ impl<'a> System<'a> {
             }
         }
         found
+    }
+}
+
+/// Links with more lengths see most coordinates in one of them alone.
+const FEW_ROWS: usize = 4;
+
+/// Adds R_a^T T R_b of a link whose rows are mostly zero, for all pairs of unknowns.
+fn add_sparse(
+    t: &[f64],
+    m: usize,
+    moved: &[(usize, LinkRows)],
+    at_end: &[(usize, LinkRows)],
+    (n, tangent): (usize, &mut [f64]),
+) {
+    let entries = |rows: &[(usize, LinkRows)]| -> Vec<(usize, usize, f64)> {
+        let of = |(unknown, row): &(usize, LinkRows)| {
+            let unknown = *unknown;
+            let some = row.iter().take(m).enumerate().filter(|(_, r)| **r != 0.0);
+            some.map(|(i, r)| (unknown, i, *r)).collect::<Vec<_>>()
+        };
+        rows.iter().flat_map(of).collect()
+    };
+    let (rows, columns) = (entries(moved), entries(at_end));
+    for (a, i, r) in rows {
+        for (b, j, s) in &columns {
+            tangent[n * a + b] += r * t[m * i + j] * s;
+        }
     }
 }
 

@@ -3,7 +3,7 @@
 use super::*;
 
 /// A motion with free balls; `traction` are the lines of its table, `rest` further tables.
-fn free(traction: &str, rest: &str) -> String {
+pub fn free(traction: &str, rest: &str) -> String {
     let (head, tail) = DYNAMIC.split_once("[effects.axial_force]").unwrap();
     let (_, tail) = tail.split_once("[dynamic]").unwrap();
     let tables = format!("[balls]\nmotion = \"free\"\n[effects.traction]\n{traction}\n{rest}\n");
@@ -16,7 +16,7 @@ fn free(traction: &str, rest: &str) -> String {
     replace_line(&text, "rho = 0.8", "")
 }
 
-const COULOMB: &str = "law = \"coulomb\"\nfriction = 0.07";
+pub const COULOMB: &str = "law = \"coulomb\"\nfriction = 0.07";
 
 /// Wrong: a scene that is right would be refused.
 #[test]

@@ -1,0 +1,251 @@
+//! A free cage in motion: how it starts, its body and contacts over a part of a step, and its end.
+
+use contact::Side;
+
+use super::cage_state::CageState;
+use super::free_state::FreeState;
+use super::ledger::{CageLedger, Ledger};
+use super::run::Motion;
+use super::solve::StepSolution;
+use super::span::Span;
+use super::state::MotionState;
+use crate::bearing::{BearingParts, CageParts};
+use crate::bodies::CageBody;
+use crate::interactions::cage::land::LandStep;
+use crate::interactions::cage::links::CageLinks;
+use crate::interactions::cage::pocket::PocketStep;
+use crate::interactions::cage::{Cage, CageForce, Land, small_slip};
+use crate::interactions::free_contact::{Carrier, RingStep};
+
+/// A cage and its contacts over a part as they are solved.
+#[derive(Clone, Debug, Default)]
+pub struct CageSolution {
+    /// Displacement, tilts and turn over the part.
+    pub end: [f64; 6],
+    /// Pockets by ball.
+    pub pockets: Vec<CageForce>,
+    /// Ends on the land.
+    pub lands: Vec<CageForce>,
+    /// Energy lost to the drag of the land, J, and its torque on the cage, N m.
+    pub drag: [f64; 2],
+    /// What the land asks of the shaft, N and N m.
+    pub on_shaft: [f64; 5],
+}
+
+impl Cage {
+    /// Mass of each of its coordinates.
+    pub fn masses(&self) -> [f64; 6] {
+        let (m, t) = (self.mass, self.transverse);
+        [m, m, m, t, t, self.polar]
+    }
+
+    /// How many ends a land guides.
+    pub fn n_ends(&self) -> usize {
+        self.land.map_or(0, |_| 2)
+    }
+}
+
+impl Motion<'_> {
+    /// A cage that stands round the balls, or in the middle of an inner land, and turns with the balls; None where there
+    /// is none.
+    pub(super) fn cage_at_start(&self, free: &FreeState, shaft: [f64; 5]) -> Option<CageState> {
+        let cage = self.model.cage.as_ref()?;
+        let n = free.places.len();
+        let mean = |of: &dyn Fn(usize) -> f64| (0..n).map(of).sum::<f64>() / n as f64;
+        let mut state = CageState {
+            met: vec![0.0; n + cage.n_ends()],
+            pockets: vec![[0.0; 2]; n],
+            lands: vec![[0.0; 2]; cage.n_ends()],
+            ..CageState::default()
+        };
+        state.place[2] = mean(&|ball| free.places[ball][2]);
+        if cage.land.is_some_and(|land| land.side == Side::Inner) {
+            // In the middle of its land.
+            let height = self.cage_height();
+            state.place[0] = shaft[0] + height * shaft[4];
+            state.place[1] = shaft[1] - height * shaft[3];
+            state.place[3..5].copy_from_slice(&shaft[3..]);
+        }
+        state.rates[5] = mean(&|ball| free.orbit(ball));
+        Some(state)
+    }
+
+    /// The cage and its contacts over a part; None where there is none.
+    pub(super) fn cage_parts(
+        &self,
+        free: &FreeState,
+        span: Span,
+        fall: [f64; 3],
+        shaft: RingStep,
+    ) -> Option<CageParts> {
+        let (cage, state) = (self.model.cage.as_ref()?, free.cage.as_ref()?);
+        let n_balls = free.places.len();
+        let body = CageParts::number(n_balls, self.model.seat().is_some());
+        let pockets = (0..n_balls).map(|ball| self.pocket_step((cage, state, free), span, ball));
+        let pockets = CageLinks::pockets(pockets.collect(), crate::bearing::FIRST_BALL, body);
+        let ends = cage.land.iter().flat_map(|land| {
+            [0, 1].map(|end| self.land_step((cage, state, land), span, (n_balls, end), shaft))
+        });
+        let carrier = match cage.land.map(|land| land.side) {
+            Some(Side::Inner) => Carrier::Lumped(crate::bearing::SHAFT),
+            _ => Carrier::AtRest,
+        };
+        Some(CageParts {
+            body: CageBody {
+                masses: cage.masses(),
+                rates: state.rates,
+                load: fall.map(|a| cage.mass * a),
+                dt: span.dt,
+            },
+            pockets,
+            lands: CageLinks::lands(ends.collect(), body, carrier),
+        })
+    }
+
+    fn pocket_step(
+        &self,
+        (cage, state, free): (&Cage, &CageState, &FreeState),
+        span: Span,
+        ball: usize,
+    ) -> PocketStep {
+        let turning = free.turnings[ball];
+        let radius = 0.5 * self.model.geometry.ball_diameter;
+        let speed = radius * turning.iter().map(|w| w * w).sum::<f64>().sqrt();
+        let offset = cage.pocket_offsets.get(ball).copied().unwrap_or(0.0);
+        let mut step = PocketStep {
+            dt: span.dt,
+            ball: [free.places[ball], free.velocities[ball], turning],
+            cage: [state.place, state.rates],
+            azimuth: self.model.geometry.azimuth(ball) + offset,
+            ball_radius: radius,
+            touching: 0.5 * cage.pocket_clearance,
+            impact: cage.impact(0.0),
+            friction: cage.friction,
+            small_slip: small_slip(speed),
+            slip_at: Default::default(),
+        };
+        step.impact = cage.impact(speed_of_touch(
+            state.met[ball],
+            step.overlap_at_start(),
+            step.closing_speed(),
+        ));
+        step
+    }
+
+    fn land_step(
+        &self,
+        (cage, state, land): (&Cage, &CageState, &Land),
+        span: Span,
+        (n_balls, end): (usize, usize),
+        shaft: RingStep,
+    ) -> LandStep {
+        let speeds = self.settings.speeds.of(land.side);
+        let turned = speeds.angle(span.at(1.0)) - speeds.angle(span.start);
+        let ring = RingStep {
+            spin: [turned / span.dt, speeds.at(span.at(1.0))],
+            ..match land.side {
+                Side::Inner => shaft,
+                Side::Outer => RingStep::default(),
+            }
+        };
+        let h = land.width * (end as f64 - 0.5);
+        let mut step = LandStep {
+            dt: span.dt,
+            cage: [state.place, state.rates],
+            ring,
+            land: *land,
+            heights: [h, self.cage_height() + h],
+            impact: cage.impact(0.0),
+            friction: cage.friction,
+            small_slip: small_slip(land.radius * (state.rates[5] - ring.spin[1])),
+            slip_at: Default::default(),
+        };
+        step.impact = cage.impact(speed_of_touch(
+            state.met[n_balls + end],
+            step.overlap_at_start(),
+            step.closing_speed(),
+        ));
+        step
+    }
+
+    /// Axial distance of the middle of the cage from the origin of the shaft, m: that of the bearing at rest, because a
+    /// height that moved would change the stored energy.
+    fn cage_height(&self) -> f64 {
+        let geometry = &self.model.geometry;
+        geometry.ball_centre()[1] - geometry.groove_centre(Side::Inner)[1]
+    }
+
+    /// New state and works of the cage.
+    pub(super) fn finish_cage(
+        &self,
+        (before, next): (&FreeState, &mut Ledger),
+        parts: &BearingParts,
+        solution: &StepSolution,
+    ) -> Option<CageState> {
+        let cage = parts.free.as_ref()?.cage.as_ref()?;
+        let (found, before) = (solution.cage.as_ref()?, before.cage.as_ref()?);
+        let mut ledger = next.cage.unwrap_or_default();
+        let all = || found.pockets.iter().chain(&found.lands);
+        // Where a contact stands in a step that begins is where the last one ended, but for round-off.
+        ledger.strain = all().map(|force| force.energy[1]).sum();
+        for force in all() {
+            ledger.impact_loss += force.impact_loss;
+            ledger.friction_loss -= force.friction_work;
+            ledger.integrator_share += force.work_at_slip - force.friction_work;
+        }
+        ledger.drag_loss += found.drag[0];
+        next.load_work += cage.body.load_work(&found.end);
+        let on_land = found.lands.iter().map(|force| force.torque).sum::<f64>() + found.drag[1];
+        let turned = cage
+            .lands
+            .contacts
+            .first()
+            .map_or(0.0, |end| end.ring.spin[0] * end.dt);
+        ledger.drive_work += on_land * turned;
+        let rates = cage.body.rates_at_end(&found.end);
+        let mut place = before.place;
+        place.iter_mut().zip(found.end).for_each(|(x, u)| *x += u);
+        let mut new = CageState {
+            place,
+            rates,
+            met: Vec::new(),
+            pockets: found.pockets.iter().map(|force| force.normal).collect(),
+            lands: found.lands.iter().map(|force| force.normal).collect(),
+            torques: [found.pockets.iter().map(|force| force.torque).sum(), on_land],
+        };
+        let impacts = cage.pockets.contacts.iter().map(|contact| contact.impact);
+        let impacts = impacts.chain(cage.lands.contacts.iter().map(|contact| contact.impact));
+        new.met = all()
+            .zip(impacts)
+            .map(|(force, impact)| if force.touches { impact.speed() } else { 0.0 })
+            .collect();
+        ledger.kinetic = new.kinetic(cage.body.masses);
+        next.cage = Some(ledger);
+        Some(new)
+    }
+
+    /// Energies of a cage at the start of a motion.
+    pub(super) fn cage_ledger(&self, state: &MotionState) -> Option<CageLedger> {
+        let (cage, free) = (self.model.cage.as_ref()?, state.free.as_ref()?);
+        let cage_state = free.cage.as_ref()?;
+        let span = Span {
+            start: self.time(state.step),
+            dt: self.settings.dt,
+            rung: 0,
+        };
+        let parts = self.cage_parts(free, span, [0.0; 3], self.carrier_step(state, span, Side::Inner))?;
+        let overlaps = parts.pockets.contacts.iter().map(PocketStep::overlap_at_start);
+        let overlaps = overlaps.chain(parts.lands.contacts.iter().map(LandStep::overlap_at_start));
+        let law = cage.law();
+        Some(CageLedger {
+            kinetic: cage_state.kinetic(cage.masses()),
+            strain: overlaps.map(|overlap| law.evaluate(overlap).energy).sum(),
+            ..CageLedger::default()
+        })
+    }
+}
+
+/// Speed at which a contact was first met: it counts anew where it opens, and grows where the bodies are driven on.
+fn speed_of_touch(met: f64, overlap: f64, closing: f64) -> f64 {
+    if overlap > 0.0 { met.max(closing) } else { closing }
+}
