@@ -88,6 +88,17 @@ pub enum DynamicsError {
         /// Its limit, with unit.
         limit: String,
     },
+    /// A free ball that finds no steady rolling in an equilibrium.
+    #[error(
+        "ball {ball} does not come to roll steadily: moments of {residual:.1e} of the load times the radius stay out of \
+         balance; look at the friction and its curve, or compute motion with [dynamic]"
+    )]
+    NoSteadyRolling {
+        /// The ball.
+        ball: usize,
+        /// Largest moment out of balance over the largest force times the radius of the ball.
+        residual: f64,
+    },
     /// Two free balls run into each other.
     #[error(
         "balls {ball} and {other} run into each other: orbits that differ bring free balls together; give \

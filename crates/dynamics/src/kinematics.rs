@@ -260,6 +260,7 @@ impl Rolling {
                 width: 0.0,
                 cage_angle: self.kinematics.cage_angle(&self.speeds, time),
                 angles: None,
+                seen: None,
             },
             ring_angles: Side::BOTH.map(|side| self.speeds.of(side).angle(time)),
         }

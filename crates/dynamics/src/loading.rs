@@ -15,7 +15,8 @@ use timer::SharedLaps;
 use crate::bearing::{BearingParts, ContactList, SeatStep};
 use crate::bodies::{FlatBody, Inertia, Name};
 use crate::displacements::Displacements;
-use crate::effects::{self, Loads, Now};
+use crate::effects::steady_balls::SteadyBalls;
+use crate::effects::{self, Loads, Now, Seen};
 use crate::equilibrium::SearchScales;
 use crate::error::DynamicsError;
 use crate::interactions::raceway_contact::Site;
@@ -64,16 +65,43 @@ impl<'a> LoadCase<'a> {
         Ok(case)
     }
 
-    /// Loads at the contact angles of `u`.
+    /// Loads at the contact angles and forces of `u`.
     fn loads_at(&self, costs: &SharedLaps, u: &Displacements) -> Result<Loads, DynamicsError> {
-        let angles: Vec<f64> = self.parts.states_at(u).iter().map(|state| state.angle).collect();
+        self.with_now(u, |now| {
+            let loads = effects::timed_loads(self.model, now, costs)?;
+            let inertia = effects::static_inertia(self.model, &loads)?;
+            self.pose.in_frames(self.model, loads, inertia)
+        })
+    }
+
+    /// How free balls roll in `u`; None where they are not free, or nothing rolls.
+    pub fn steady(&self, u: &Displacements) -> Result<Option<SteadyBalls>, DynamicsError> {
+        self.with_now(u, |now| {
+            for effect in &self.model.effects {
+                if let Some(balls) = effect.steady(self.model, now)? {
+                    return Ok(Some(balls));
+                }
+            }
+            Ok(None)
+        })
+    }
+
+    /// The instant with contacts and balls as they stand in `u`.
+    fn with_now<T>(&self, u: &Displacements, see: impl FnOnce(&Now) -> T) -> T {
+        let states = self.parts.states_at(u);
+        let angles: Vec<f64> = states.iter().map(|state| state.angle).collect();
+        let forces: Vec<f64> = states.iter().map(|state| state.force.force).collect();
+        let approaches: Vec<f64> = states.iter().map(|state| state.force.approach).collect();
         let now = Now {
             angles: Some(&angles),
+            seen: Some(Seen {
+                forces: &forces,
+                approaches: &approaches,
+                balls: &u.balls,
+            }),
             ..self.pose.now
         };
-        let loads = effects::timed_loads(self.model, &now, costs)?;
-        let inertia = effects::static_inertia(self.model, &loads)?;
-        self.pose.in_frames(self.model, loads, inertia)
+        see(&now)
     }
 
     /// Newton on bodies and contacts as they are.

@@ -183,6 +183,19 @@ impl Model {
         self.effects.iter().find_map(|effect| effect.traction())
     }
 
+    /// Combined shear modulus of a ball and a ring, 2/G = 1/G_1 + 1/G_2, Pa; a rigid ring has that of the balls.
+    pub fn combined_shear_modulus(&self, side: Side) -> f64 {
+        let ball = self.ball_material.shear_modulus();
+        let ring = self.ring(side).map_or(ball, |ring| ring.material.shear_modulus());
+        2.0 / (1.0 / ball + 1.0 / ring)
+    }
+
+    /// Mass, kg, and moment of inertia, kg m^2, of a ball.
+    pub fn ball_inertia(&self) -> [f64; 2] {
+        let mass = self.ball_mass();
+        [mass, 0.1 * mass * self.geometry.ball_diameter.powi(2)]
+    }
+
     /// Mass of one ball, kg.
     pub fn ball_mass(&self) -> f64 {
         std::f64::consts::PI / 6.0 * self.geometry.ball_diameter.powi(3) * self.ball_material.density

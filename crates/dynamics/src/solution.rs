@@ -7,7 +7,9 @@ use crate::balls::{BallDisplacement, BallResult, ContactResult};
 use crate::bearing::{BearingParts, CONTACTS, SHAFT, SlidingSeat};
 use crate::displacements::Displacements;
 use crate::effects::Loads;
+use crate::effects::steady_balls::SteadyBalls;
 use crate::equilibrium::centre_unloaded;
+use crate::error::DynamicsError;
 use crate::footprint::{Footprint, loaded};
 use crate::interactions::raceway_contact::{Site, SiteState, on_rings};
 use crate::loading::LoadCase;
@@ -30,6 +32,8 @@ pub struct StaticSolution {
     pub pose: Pose,
     /// Results of every ball.
     pub balls: Vec<BallResult>,
+    /// How free balls roll.
+    pub steady: Option<SteadyBalls>,
     /// Elastic nodal displacements of flexible rings relative to shaft or housing, in the frame of the ring's mesh,
     /// which may have turned, m, `[n_nodes][3]` flat.
     pub elastic: [Option<Vec<f64>>; 2],
@@ -68,7 +72,12 @@ pub struct RingFields {
 
 impl StaticSolution {
     /// Evaluates everything at the equilibrium `u` of a load case, found in a number of rounds.
-    pub fn new(case: LoadCase, mut u: Displacements, rings: RingFields, rounds: usize) -> StaticSolution {
+    pub fn new(
+        case: LoadCase,
+        mut u: Displacements,
+        rings: RingFields,
+        rounds: usize,
+    ) -> Result<StaticSolution, DynamicsError> {
         let (model, parts) = (case.model, &case.parts);
         centre_unloaded(parts, &mut u);
         let states = parts.states_at(&u);
@@ -88,7 +97,13 @@ impl StaticSolution {
         let ball_work: f64 = ball_work
             .map(|((f, slope), x)| dot(&[f[0] + slope * x[0], f[1]], x))
             .sum();
-        let balls = ball_results(model, parts, &states, &u);
+        let mut balls = ball_results(model, parts, &states, &u);
+        let steady = case.steady(&u)?;
+        if let Some(steady) = &steady {
+            for (i, ball) in balls.iter_mut().enumerate() {
+                ball.free = Some(steady.result(i, ball.azimuth_rad));
+            }
+        }
         let load_work = ball_work
             + dot(&parts.shaft_load(), &u.shaft)
             + dot(
@@ -98,7 +113,7 @@ impl StaticSolution {
             + ring_load_work
             + seat_work(parts, &u)
             + finite_load;
-        StaticSolution {
+        Ok(StaticSolution {
             warnings: warnings(&rings.footprints, &forces, &balls)
                 .into_iter()
                 .chain(friction_warning(&forces, &case.loads.contacts))
@@ -110,6 +125,7 @@ impl StaticSolution {
                 )
                 .collect(),
             balls,
+            steady,
             work_defect: load_work + dot(&reaction, &u.shaft)
                 - 2.0 * strain_energy
                 - contact_work
@@ -127,7 +143,7 @@ impl StaticSolution {
             parts: case.parts,
             elastic: rings.elastic,
             footprints: rings.footprints,
-        }
+        })
     }
 
     /// Places of the contacts on one side, by ball; empty for a rigid ring.

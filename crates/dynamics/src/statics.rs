@@ -157,7 +157,7 @@ impl StaticSolver {
             elastic: [None, None],
             footprints: [Vec::new(), Vec::new()],
         };
-        Ok(StaticSolution::new(case, u, rings, 1))
+        StaticSolution::new(case, u, rings, 1)
     }
 
     /// Displacements to start from.
@@ -220,7 +220,7 @@ impl StaticSolver {
                     elastic: fields,
                     footprints: feet,
                 };
-                return Ok(StaticSolution::new(case, u, rings, round));
+                return StaticSolution::new(case, u, rings, round);
             }
         }
         self.check_places(&case.parts, &u, &forces)?;

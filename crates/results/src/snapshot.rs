@@ -33,11 +33,14 @@ impl Snapshot {
         let total = solution.strain_energy + solution.hertz_energy + solution.load_potential;
         Snapshot {
             balls: solution.balls.clone(),
-            spin: rolling.map(|r| r.spin(solution.pose.now.time)),
+            // Free balls have each its own.
+            spin: rolling
+                .filter(|_| solution.steady.is_none())
+                .map(|r| r.spin(solution.pose.now.time)),
             shaft: solution.displacements.shaft,
             seat: solution.parts.seat.as_ref().map(|_| solution.displacements.seat),
             reaction: Some(solution.shaft_reaction),
-            friction: None,
+            friction: solution.steady.as_ref().map(|steady| steady.friction()),
             cage: None,
             energies: vec![
                 ("strain", solution.strain_energy),

@@ -11,7 +11,7 @@ use serde::Deserialize;
 
 use super::loads::{Effect, Loads, Now};
 use super::rules::{Case, judge, percent};
-use super::table::{self, About, Context, Need, Setting, SpeedRole};
+use super::table::{self, About, Context, Setting, SpeedRole};
 use crate::error::DynamicsError;
 use crate::kinematics::BothRings;
 use crate::model::Model;
@@ -40,7 +40,7 @@ impl table::Table for Table {
             name: "ball_drag",
             example: EXAMPLE,
             speed: SpeedRole::None,
-            needs: &[Need::Inertia],
+            needs: &[],
             // It comes with another kind of balls, which is not varied.
             trial: None,
         }

@@ -7,6 +7,7 @@ use input::Schedule;
 pub use ring::FrameTurn;
 use timer::SharedLaps;
 
+use super::steady_balls::SteadyBalls;
 use crate::balls::BallResult;
 use crate::error::DynamicsError;
 use crate::interactions::seat_spring::Seat;
@@ -126,6 +127,19 @@ pub struct Now<'a> {
     /// Contact angles, rad, by site (2 ball + side), `[2 n_balls]`; None: not known yet, the free contact angle
     /// stands for them.
     pub angles: Option<&'a [f64]>,
+    /// Forces and places of an equilibrium; None: not known yet, or over a step.
+    pub seen: Option<Seen<'a>>,
+}
+
+/// Contacts and balls as an equilibrium has them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Seen<'a> {
+    /// Normal forces, N, by site.
+    pub forces: &'a [f64],
+    /// Approaches, m, by site.
+    pub approaches: &'a [f64],
+    /// Displacements of the balls [radial, axial], m.
+    pub balls: &'a [[f64; 2]],
 }
 
 impl Now<'_> {
@@ -164,6 +178,11 @@ pub trait Effect: Send + Sync {
     /// Uniform acceleration that acts on every mass at an instant, m/s^2: the load of a free ball, in space.
     fn acceleration(&self, _now: &Now) -> [f64; 3] {
         [0.0; 3]
+    }
+
+    /// Slot of free balls: how they roll in an equilibrium.
+    fn steady(&self, _model: &Model, _now: &Now) -> Result<Option<SteadyBalls>, DynamicsError> {
+        Ok(None)
     }
 
     /// Slot of free balls: their traction; balls are free where there is one.

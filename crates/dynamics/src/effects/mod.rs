@@ -20,6 +20,7 @@ pub mod rayleigh_damping;
 pub mod rules;
 pub mod seat_form;
 pub mod spring_preload;
+pub mod steady_balls;
 mod table;
 pub mod temperature;
 pub mod traction;
@@ -31,12 +32,12 @@ pub use frame_rotation::{FrameRotation, static_inertia};
 pub use gravity::Gravity;
 pub use gyroscopic_moment::GyroscopicMoment;
 pub(crate) use loads::resultant;
-pub use loads::{Effect, FrameTurn, Loads, Now, loads, timed_loads};
+pub use loads::{Effect, FrameTurn, Loads, Now, Seen, loads, timed_loads};
 pub use moment::Moment;
 pub use radial_force::RadialForce;
 pub use spring_preload::SpringPreload;
 pub use table::{About, Context, Entry, Need, RingDamping, Setting, SpeedRole, Table, Trial};
-pub use traction::FreeBalls;
+pub use traction::{FreeBalls, REPLACED_BY_FREE_BALLS};
 
 use input::{Problems, Schedule};
 use serde::Deserialize;
@@ -217,7 +218,12 @@ impl Effects {
 
     /// What the rules of thumb say: a sentence each, with estimate and formula.
     pub fn advice(&self, case: &Case<'_>) -> Vec<String> {
-        self.list().iter().flat_map(|entry| entry.advice(case)).collect()
+        let has_free_balls = self.names().contains(&"traction");
+        let is_replaced =
+            |name: &str| has_free_balls && REPLACED_BY_FREE_BALLS.iter().any(|(of, _)| *of == name);
+        let entries = self.list();
+        let asked = entries.iter().filter(|entry| !is_replaced(entry.about().name));
+        asked.flat_map(|entry| entry.advice(case)).collect()
     }
 }
 

@@ -10,8 +10,7 @@
 //! law = "curve"           slips = ["0 m/s", "0.1 m/s", "2 m/s"], coefficients = [0.0, 0.07, 0.04]   a table
 //! ```
 //!
-//! The static start of a motion has the centrifugal forces of balls that roll at their contact angles; in the motion
-//! itself these forces are inertia. Rings of no finite elements have the shear modulus of the balls.
+//! In an equilibrium every ball rolls steadily where it stands ([`super::steady_balls`]); a motion starts from there. Rings of no finite elements have the shear modulus of the balls.
 //!
 //! Rule of thumb: balls keep rolling while F_a > 10 Z F_c, F_c the centrifugal force of a ball (Hirano, ASLE Trans. 8
 //! (1965) 425).
@@ -22,14 +21,15 @@ use serde::Deserialize;
 use super::ball_centrifugal::BallCentrifugal;
 use super::loads::{Effect, Loads, Now};
 use super::rules::Case;
-use super::table::{self, About, Context, Need, Setting, SpeedRole};
+use super::steady_balls::SteadyBalls;
+use super::table::{self, About, Context, Setting, SpeedRole};
 use crate::error::DynamicsError;
 use crate::interactions::traction::law::{CurvePoints, SlipTable};
 use crate::interactions::traction::{Creep, Curve, PatchPoints, Traction, TractionLaw};
 use crate::kinematics::BallSpeeds;
 use crate::model::Model;
 
-const EXAMPLE: &str = r#"[effects.traction]              # needs [balls] with motion = "free", and [dynamic]
+const EXAMPLE: &str = r#"[effects.traction]              # needs [balls] with motion = "free"
 law = "coulomb"                 # or "curve"
 friction = 0.07                 # coefficient of friction: 0.07 to 0.15 dry or with boundary lubrication
 # at_rest = 0.0                 # of "curve": coefficient without slip,
@@ -41,6 +41,19 @@ friction = 0.07                 # coefficient of friction: 0.07 to 0.15 dry or w
 creep = "elastic"               # optional: force at small slip by elastic creep, or a slip ratio such as 1e-3
 points = [3, 15]                # optional: places over the ellipse, along the rolling direction and across it
 "#;
+
+/// Effects that free balls make wrong, and why.
+pub const REPLACED_BY_FREE_BALLS: [(&str, &str); 3] = [
+    (
+        "ball_centrifugal",
+        "the centrifugal force of a free ball is its inertia, it would act twice",
+    ),
+    (
+        "gyroscopic_moment",
+        "traction carries the gyroscopic moment of a free ball, it would act twice",
+    ),
+    ("cage_slip", "the slip of a free ball is a result, not given"),
+];
 
 /// Largest coefficient of friction that is no slip of the finger.
 const MOST_FRICTION: f64 = 2.0;
@@ -93,8 +106,8 @@ impl table::Table for Table {
         About {
             name: "traction",
             example: EXAMPLE,
-            speed: SpeedRole::None,
-            needs: &[Need::Inertia],
+            speed: SpeedRole::Force,
+            needs: &[],
             // It comes with another kind of balls, which is not varied.
             trial: None,
         }
@@ -284,7 +297,7 @@ fn require_coefficient(mu: f64, key: &str, problems: &mut Problems) {
 pub struct FreeBalls {
     /// Traction.
     pub traction: Traction,
-    /// Centrifugal forces in an equilibrium.
+    /// Centrifugal forces in an equilibrium, as long as nothing is known of the contacts.
     pub at_start: BallCentrifugal,
 }
 
@@ -295,10 +308,18 @@ impl Effect for FreeBalls {
 
     fn add_loads(&self, model: &Model, now: &Now, loads: &mut Loads) -> Result<(), DynamicsError> {
         // Over a step centrifugal force is inertia.
-        if now.width == 0.0 {
-            self.at_start.add_loads(model, now, loads)?;
+        if now.width > 0.0 {
+            return Ok(());
+        }
+        match self.steady(model, now)? {
+            Some(balls) => balls.add_loads(model, now, loads),
+            None => self.at_start.add_loads(model, now, loads)?,
         }
         Ok(())
+    }
+
+    fn steady(&self, model: &Model, now: &Now) -> Result<Option<SteadyBalls>, DynamicsError> {
+        SteadyBalls::new(model, (&self.traction, &self.at_start.speeds), now)
     }
 
     fn traction(&self) -> Option<&Traction> {

@@ -6,5 +6,6 @@ pub mod discrete_gradient;
 pub mod free_contact;
 pub mod raceway_contact;
 pub mod seat_spring;
+pub mod steady_rolling;
 pub mod strip_contact;
 pub mod traction;

@@ -129,7 +129,7 @@ impl Motion<'_> {
             .map(|v| kinetic(mass, v))
             .sum();
         let balls = match &state.free {
-            Some(free) => free.kinetic(self.ball_inertia()),
+            Some(free) => free.kinetic(self.model.ball_inertia()),
             None => balls,
         };
         let shaft = self.model.shaft_masses().into_iter().zip(&state.shaft_velocity);

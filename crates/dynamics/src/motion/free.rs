@@ -17,11 +17,13 @@ use super::span::Span;
 use super::state::MotionState;
 use crate::bearing::{BearingParts, FreeParts};
 use crate::bodies::FreeBall;
+use crate::effects::steady_balls::SteadyBalls;
 use crate::error::DynamicsError;
 use crate::footprint::{loaded, on_groove};
 use crate::interactions::free_contact::place::GrooveCircle;
 use crate::interactions::free_contact::{ContactStep, FreeContacts, RingStep, elastic_ports};
 use crate::interactions::raceway_contact::Site;
+use crate::interactions::steady_rolling::{SteadyRolling, pure_rolling};
 use crate::interactions::traction::creep::RollingContact;
 use crate::interactions::traction::{Ellipse, Traction};
 use crate::model::{Model, elastic};
@@ -33,18 +35,10 @@ const EARTH: f64 = 9.81;
 /// ring.
 const LEAST_TRAVEL: f64 = 1e-5;
 
-/// Moment of inertia of a ball over its mass and the square of its diameter.
-const SPHERE: f64 = 0.1;
-
 impl Motion<'_> {
-    /// Mass, kg, and moment of inertia, kg m^2, of a ball.
-    pub(super) fn ball_inertia(&self) -> [f64; 2] {
-        let mass = self.model.ball_mass();
-        [mass, SPHERE * mass * self.model.geometry.ball_diameter.powi(2)]
-    }
-
-    /// Balls that roll from the displacements and contact angles of a state; None where balls are not free.
-    pub(super) fn free_start(&self, state: &MotionState) -> Option<FreeState> {
+    /// Balls that roll steadily, or without slip from the displacements and contact angles of a state; None where balls
+    /// are not free.
+    pub(super) fn free_start(&self, state: &MotionState, steady: Option<&SteadyBalls>) -> Option<FreeState> {
         self.model.traction()?;
         let mut free = FreeState::default();
         let [radius, height] = self.model.geometry.ball_centre();
@@ -52,11 +46,15 @@ impl Motion<'_> {
             let (sin, cos) = self.model.geometry.azimuth(ball).sin_cos();
             let out = radius + displacement[0];
             let angles = [state.angles[2 * ball], state.angles[2 * ball + 1]];
-            let Rolls { orbit, turning } = self.rolls(out, angles);
+            let rolls = steady.and_then(|steady| steady.balls.get(ball));
+            let Rolls { orbit, turning } = rolls.map_or_else(|| self.rolls(out, angles), Rolls::steady);
             free.places.push([out * cos, out * sin, height + displacement[1]]);
             free.velocities.push([-orbit * out * sin, orbit * out * cos, 0.0]);
-            free.turnings
-                .push([turning[0] * cos, turning[0] * sin, turning[1]]);
+            free.turnings.push([
+                turning[0] * cos - turning[1] * sin,
+                turning[0] * sin + turning[1] * cos,
+                turning[2],
+            ]);
         }
         free.trends = vec![[0.0; 6]; free.places.len()];
         free.contacts = vec![ContactTraction::default(); 2 * free.places.len()];
@@ -73,18 +71,10 @@ impl Motion<'_> {
             let (sin, cos) = angles[side.index()].sin_cos();
             [side.sign() * cos, side.sign() * sin]
         });
-        // Unknowns: orbit, turning about e_r and about e_z.
-        let slip = |k: usize| {
-            let [n_r, n_z] = normal[k];
-            ([out, -lever * n_z, lever * n_r], speeds[k] * (out + lever * n_r))
-        };
-        let ((a, p), (b, q)) = (slip(0), slip(1));
-        let c = [0.0, normal[0][0] - normal[1][0], normal[0][1] - normal[1][1]];
-        let r = speeds[0] * normal[0][1] - speeds[1] * normal[1][1];
-        let [orbit, radial, axial] = solve([a, b, c], [p, q, r]);
+        let [orbit, radial, _, axial] = pure_rolling(out, [lever; 2], normal, speeds);
         Rolls {
             orbit,
-            turning: [radial, axial],
+            turning: [radial, 0.0, axial],
         }
     }
 
@@ -196,7 +186,7 @@ impl Motion<'_> {
     }
 
     fn free_ball(&self, free: &FreeState, span: Span, (ball, fall): (usize, [f64; 3])) -> FreeBall {
-        let inertia = self.ball_inertia();
+        let inertia = self.model.ball_inertia();
         FreeBall {
             ball,
             inertia,
@@ -286,7 +276,7 @@ impl Motion<'_> {
             ),
             force,
             semi_axes,
-            shear_modulus: shear_modulus(self.model, site.side),
+            shear_modulus: self.model.combined_shear_modulus(site.side),
         };
         ContactStep {
             dt: span.dt,
@@ -397,10 +387,19 @@ pub(super) fn check_apart(
     Ok(())
 }
 
-/// A ball that rolls: speed round the axis and turning about e_r and e_z, rad/s.
+/// A ball that rolls: speed round the axis and turning about e_r, e_psi and e_z, rad/s.
 struct Rolls {
     orbit: f64,
-    turning: [f64; 2],
+    turning: [f64; 3],
+}
+
+impl Rolls {
+    fn steady(ball: &SteadyRolling) -> Rolls {
+        Rolls {
+            orbit: ball.orbit,
+            turning: ball.turning,
+        }
+    }
 }
 
 /// Speed with which material runs through a contact, m/s: mean of both surfaces, seen from the contact.
@@ -418,31 +417,6 @@ fn rolling_speed(
     let at = out + lever * n_r;
     let of_ball = orbit * out + lever * (w[2] * n_r - turning * n_z) - orbit * at;
     0.5 * (of_ball + (spin - orbit) * at)
-}
-
-/// Combined shear modulus of a ball and a ring, 2/G = 1/G_1 + 1/G_2, Pa; a rigid ring has that of the balls.
-fn shear_modulus(model: &Model, side: Side) -> f64 {
-    let ball = model.ball_material.shear_modulus();
-    let ring = model
-        .ring(side)
-        .map_or(ball, |ring| ring.material.shear_modulus());
-    2.0 / (1.0 / ball + 1.0 / ring)
-}
-
-/// Solves three equations by Cramer's rule.
-fn solve(rows: [[f64; 3]; 3], right: [f64; 3]) -> [f64; 3] {
-    let det = |m: [[f64; 3]; 3]| {
-        m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) - m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0])
-            + m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0])
-    };
-    let all = det(rows);
-    [0, 1, 2].map(|column| {
-        let mut with = rows;
-        for (row, value) in with.iter_mut().zip(right) {
-            row[column] = value;
-        }
-        det(with) / all
-    })
 }
 
 /// The ledger of friction where balls are free.

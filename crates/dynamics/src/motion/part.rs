@@ -55,6 +55,7 @@ impl Motion<'_> {
             width,
             cage_angle: self.cage_angle(time),
             angles: Some(&angles),
+            seen: None,
         };
         effects::timed_loads(self.model, &now, &self.costs)
     }
@@ -145,6 +146,7 @@ impl Motion<'_> {
             width: span.dt,
             cage_angle: self.cage_angle(time),
             angles: None,
+            seen: None,
         }
     }
 

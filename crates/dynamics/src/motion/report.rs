@@ -52,17 +52,26 @@ impl Motion<'_> {
         }
     }
 
-    /// Torque with which all balls brake the inner ring, N m, positive against a ring that turns positively; power lost
-    /// at all contacts, W; mean speed of the balls round the axis, rad/s. None where balls are not free.
+    /// Torque with which all balls and a cage on its land brake the inner ring, N m, positive against a ring that turns
+    /// positively; power lost at all contacts with raceways, W; mean speed of the balls round the axis, rad/s. None where balls are not free.
     pub fn friction(&self, state: &MotionState) -> Option<Friction> {
         let free = state.free.as_ref()?;
         let n = free.places.len();
         let inner = free.contacts.iter().step_by(2);
         Some(Friction {
-            torque_n_m: inner.map(|contact| contact.torque).sum(),
+            torque_n_m: inner.map(|contact| contact.torque).sum::<f64>() + self.land_torque(free),
             power_w: free.contacts.iter().map(|contact| contact.power).sum(),
             cage_speed_rad_per_s: (0..n).map(|ball| free.orbit(ball)).sum::<f64>() / n as f64,
         })
+    }
+
+    /// Torque with which a cage brakes the inner ring on its land, N m.
+    fn land_torque(&self, free: &FreeState) -> f64 {
+        let land = self.model.cage.as_ref().and_then(|cage| cage.land);
+        match (land, &free.cage) {
+            (Some(land), Some(cage)) if land.side == Side::Inner => cage.torques[1],
+            _ => 0.0,
+        }
     }
 
     /// The cage; None where there is no free one.

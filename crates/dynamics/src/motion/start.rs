@@ -55,7 +55,7 @@ impl Motion<'_> {
             ledger: Ledger::default(),
         };
         state.ledger.hertz = solution.hertz_energy;
-        state.free = self.free_start(&state);
+        state.free = self.free_start(&state, solution.steady.as_ref());
         self.with_energies(state)
     }
 }
@@ -101,7 +101,7 @@ impl Motion<'_> {
             ledger: Ledger::default(),
         };
         self.note_contacts(&mut state);
-        state.free = self.free_start(&state);
+        state.free = self.free_start(&state, None);
         self.with_energies(state)
     }
 

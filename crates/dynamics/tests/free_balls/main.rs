@@ -10,4 +10,5 @@ mod flexible;
 mod hard;
 mod ledger;
 mod skid;
+mod steady;
 mod thrust;

@@ -7,7 +7,7 @@ use input::{Clock, Problems};
 use toml_edit::DocumentMut;
 
 use super::RawScene;
-use super::balls::BallsContext;
+use super::balls::{BallMotion, BallsContext};
 use super::bearing::Bearing;
 use super::dynamic::RawDynamic;
 use super::materials::Materials;
@@ -121,12 +121,22 @@ impl RawScene {
         }
     }
 
+    /// How balls move in time: at rest they yield as those that do not move.
+    pub(super) fn moving_balls(&self) -> BallMotion {
+        match self.dynamic {
+            Some(_) => self.balls.motion(),
+            None => BallMotion::Kinematic,
+        }
+    }
+
     pub(super) fn balls_context(&self) -> BallsContext<'_> {
         BallsContext {
             effects: &self.effects,
             has_ball_speeds: self.speed.as_ref().is_some_and(RawSpeed::has_ball_speeds),
             has_lubricant: self.lubricant.is_some(),
             is_dynamic: self.dynamic.is_some(),
+            is_modes: self.modes.is_some(),
+            has_speed: self.speed.is_some(),
             conserves: self.dynamic.as_ref().is_some_and(RawDynamic::conserves),
         }
     }

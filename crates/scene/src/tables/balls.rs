@@ -7,7 +7,7 @@
 //! Free balls need [`[effects.traction]`](dynamics::effects::traction), which needs them. What prescribes their motion
 //! or forces that come with their inertia is refused beside them: it would not be redundant but wrong.
 
-use dynamics::effects::Effects;
+use dynamics::effects::{Effects, REPLACED_BY_FREE_BALLS};
 use input::Problems;
 use serde::Deserialize;
 
@@ -41,24 +41,15 @@ pub struct BallsContext<'a> {
     pub has_lubricant: bool,
     /// Whether motion in time is computed.
     pub is_dynamic: bool,
+    /// Whether natural modes are computed.
+    pub is_modes: bool,
+    /// Whether a ring turns.
+    pub has_speed: bool,
     /// Whether the integrator conserves energy.
     pub conserves: bool,
 }
 
-/// Effects that free balls make wrong, and why.
-const REPLACED: [(&str, &str); 3] = [
-    (
-        "ball_centrifugal",
-        "the centrifugal force of a free ball is its inertia, it would act twice",
-    ),
-    (
-        "gyroscopic_moment",
-        "traction carries the gyroscopic moment of a free ball, it would act twice",
-    ),
-    ("cage_slip", "the slip of a free ball is a result, not given"),
-];
-
-/// Effects that free balls do not know yet: they move grooves and change the balls.
+/// Effects that free balls in motion do not know: they move grooves and change the balls.
 const NOT_BESIDE: [&str; 3] = ["fit", "temperature", "seat_form"];
 
 impl RawBalls {
@@ -92,23 +83,33 @@ impl RawBalls {
                  \"coulomb\" and friction (0 is frictionless)",
             );
         }
-        if !context.is_dynamic {
+        if context.is_modes {
             problems.add(
-                "balls.motion is \"free\", which this version computes in motion alone; use [dynamic], or motion = \
-                 \"kinematic\" in equilibria and modes",
+                "balls.motion is \"free\", whose traction natural modes do not know; use motion = \"kinematic\"",
             );
-        } else if !context.conserves {
+        } else if !context.is_dynamic && !context.has_speed {
+            problems.add(
+                "balls.motion is \"free\", but nothing turns: balls of an equilibrium roll; add [speed] with inner = \
+                 \"1800 rpm\", or use motion = \"kinematic\"",
+            );
+        } else if context.is_dynamic && !context.conserves {
             problems.add(
                 "balls.motion is \"free\", which needs the energy of the balls to be kept; use dynamic.integrator = \
                  \"average_acceleration\"",
             );
         }
-        for (name, why) in REPLACED.iter().filter(|(name, _)| names.contains(name)) {
+        for (name, why) in REPLACED_BY_FREE_BALLS
+            .iter()
+            .filter(|(name, _)| names.contains(name))
+        {
             problems.add(format!(
                 "[effects.{name}] stands beside balls.motion = \"free\", but {why}; remove it"
             ));
         }
-        for name in NOT_BESIDE.iter().filter(|name| names.contains(name)) {
+        let unknown = NOT_BESIDE
+            .iter()
+            .filter(|name| context.is_dynamic && names.contains(name));
+        for name in unknown {
             problems.add(format!(
                 "[effects.{name}] stands beside balls.motion = \"free\", which is not computed; remove it, or use \
                  balls.motion = \"kinematic\""

@@ -78,7 +78,7 @@ impl RawCage {
     /// Checks the cage of a bearing whose balls move in this way; None where it is not free, or wrong.
     pub fn check(
         &self,
-        balls: BallMotion,
+        (balls, is_dynamic): (BallMotion, bool),
         bearing: Option<&Bearing>,
         problems: &mut Problems,
     ) -> Option<Cage> {
@@ -95,6 +95,12 @@ impl RawCage {
             problems.add(
                 "cage.motion is \"free\", but the balls are kinematic and would not feel it; write [balls] with motion \
                  = \"free\"",
+            );
+        }
+        if !is_dynamic {
+            problems.add(
+                "cage.motion is \"free\", which only motion in time computes; use [dynamic], or remove [cage]: balls of an \
+                 equilibrium roll as if it let each go its own way",
             );
         }
         let bearing = bearing?;

@@ -80,6 +80,9 @@ pub fn elsewhere(name: &str) -> Option<String> {
             tables.push(table);
         }
     }
+    if tables == [format!("[{name}]")] {
+        return Some(format!("[{name}] is a table of its own"));
+    }
     if tables.is_empty() || tables.len() > MOST {
         return None;
     }

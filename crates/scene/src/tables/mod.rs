@@ -357,7 +357,7 @@ impl Source<'_> {
         let mut contact = raw.contact.check(
             bearing.as_ref(),
             materials.as_ref(),
-            raw.balls.motion(),
+            raw.moving_balls(),
             &mut problems,
         );
         let surfaces = raw.surfaces_context(bearing.as_ref(), self.path, self.mesh_files);
@@ -393,7 +393,8 @@ impl Source<'_> {
         );
         let balls = raw.balls.check(raw.balls_context(), &mut problems);
         let cage = raw.cage.as_ref();
-        let cage = cage.and_then(|cage| cage.check(balls, bearing.as_ref(), &mut problems));
+        let cage =
+            cage.and_then(|cage| cage.check((balls, raw.dynamic.is_some()), bearing.as_ref(), &mut problems));
         let speed = raw.speed.as_ref();
         let ball_speeds = speed.map_or(BallSpeeds::default(), |s| s.ball_speeds(effects, &mut problems));
         let speed = speed.and_then(|s| s.check(raw.speed_use(), &mut problems));

@@ -52,7 +52,9 @@ const FORMAT: [Case; 36] = [
     (
         "[materials.balls]",
         "[materials.cage]",
-        &["unknown key \"cage\" in [materials]; valid keys are \"rings\", \"balls\""],
+        &[
+            "unknown key \"cage\" in [materials]; [cage] is a table of its own; valid keys are \"rings\", \"balls\"",
+        ],
     ),
     (
         "grading",

@@ -112,13 +112,16 @@ fn free_balls_and_traction_need_each_other() {
 fn free_balls_are_refused_where_they_are_not_computed() {
     let at_rest = format!("{EXAMPLE}\n[balls]\nmotion = \"free\"\n[effects.traction]\n{COULOMB}\n");
     let message = message_of(&at_rest, &[]);
-    for expected in [
-        "balls.motion is \"free\", which this version computes in motion alone; use [dynamic], or motion = \
-         \"kinematic\" in equilibria and modes",
-        "[effects.traction] does nothing in a scene without inertia",
-    ] {
-        assert!(message.contains(expected), "{message}");
-    }
+    let expected = "balls.motion is \"free\", but nothing turns: balls of an equilibrium roll; add [speed] with inner = \
+                    \"1800 rpm\", or use motion = \"kinematic\"";
+    assert!(message.contains(expected), "{message}");
+    let turning = format!("{at_rest}[speed]\ninner = \"1800 rpm\"\n");
+    let scene = parse(&turning, &[]).unwrap_or_else(|e| panic!("{e}"));
+    assert_eq!(scene.balls, BallMotion::Free);
+    let caged = format!("{turning}[cage]\nmotion = \"free\"\n");
+    let expected =
+        "cage.motion is \"free\", which only motion in time computes; use [dynamic], or remove [cage]";
+    assert!(message_of(&caged, &[]).contains(expected));
     let message = message_of(
         &free(COULOMB, ""),
         &["dynamic.integrator=\"chung_hulbert\"", "dynamic.rho=0.8"],

@@ -158,7 +158,7 @@ fn a_cage_that_makes_no_sense_is_refused() {
         ),
         (
             &[("guidance", "\"housing\"")],
-            "expected one of `balls`, `inner_land`, `outer_land`",
+            "cage.guidance is \"housing\"; valid values are \"balls\", \"inner_land\", \"outer_land\"",
         ),
     ];
     for (changes, expected) in cases {

@@ -1,0 +1,173 @@
+//! Free balls in an equilibrium: each rolls steadily where it stands, and its tractions are loads.
+//!
+//! Lateral tractions act at the contacts, across the normal forces, and with a couple where a ring is a groove radius
+//! away; tractions round the axis and the moments of spin act on the shaft. Centrifugal force has the ball's own speed
+//! round the axis. They follow the contact angles and forces, as the loads of [`crate::loading`] do.
+
+use contact::Side;
+
+use super::loads::{Loads, Now, Seen};
+use crate::balls::{FreeBallResult, Friction, TractionResult};
+use crate::error::DynamicsError;
+use crate::interactions::steady_rolling::{SteadyBall, SteadyContact, SteadyRolling};
+use crate::interactions::traction::{Ellipse, Traction};
+use crate::kinematics::RingSpeeds;
+use crate::model::Model;
+
+/// Steadily rolling balls of an equilibrium.
+#[derive(Clone, Debug)]
+pub struct SteadyBalls {
+    /// How each ball rolls.
+    pub balls: Vec<SteadyRolling>,
+    contacts: Vec<[SteadyContact; 2]>,
+}
+
+impl SteadyBalls {
+    /// How the balls of a model roll at an instant; None where none does: nothing is known of the contacts yet, no ring
+    /// turns, there is no friction, or no ball is loaded by both rings.
+    pub fn new(
+        model: &Model,
+        (traction, speeds): (&Traction, &RingSpeeds),
+        now: &Now,
+    ) -> Result<Option<SteadyBalls>, DynamicsError> {
+        let (Some(seen), Some(angles)) = (now.seen, now.angles) else {
+            return Ok(None);
+        };
+        let speeds = Side::BOTH.map(|side| speeds.of(side).at(now.time));
+        let drag = model.effects.iter().map(|effect| effect.drag(model)).sum();
+        let balls: Vec<SteadyBall<'_>> = (0..model.geometry.n_balls)
+            .map(|ball| SteadyBall {
+                out: model.geometry.ball_centre()[0] + seen.balls[ball][0],
+                inertia: model.ball_inertia(),
+                drag,
+                contacts: Side::BOTH
+                    .map(|side| contact(model, side, speeds[side.index()], (seen, angles, ball))),
+                traction,
+            })
+            .collect();
+        let solve = |ball: usize, cage: Option<f64>| {
+            balls[ball]
+                .solve(cage)
+                .map_err(|residual| DynamicsError::NoSteadyRolling { ball, residual })
+        };
+        let mut found = Vec::new();
+        for ball in 0..balls.len() {
+            found.push(solve(ball, None)?);
+        }
+        let orbits: Vec<f64> = found.iter().flatten().map(|ball| ball.orbit).collect();
+        if orbits.is_empty() {
+            return Ok(None);
+        }
+        // The cage drives balls that one ring alone loads.
+        let cage = orbits.iter().sum::<f64>() / orbits.len() as f64;
+        let mut all = Vec::new();
+        for (ball, found) in found.into_iter().enumerate() {
+            let found = match found {
+                Some(found) => Some(found),
+                None => solve(ball, Some(cage))?,
+            };
+            all.push(found.unwrap_or(SteadyRolling {
+                orbit: cage,
+                out: balls[ball].out,
+                ..SteadyRolling::default()
+            }));
+        }
+        Ok(Some(SteadyBalls {
+            balls: all,
+            contacts: balls.iter().map(|ball| ball.contacts).collect(),
+        }))
+    }
+
+    /// Adds tractions and centrifugal forces.
+    pub fn add_loads(&self, model: &Model, now: &Now, loads: &mut Loads) {
+        let radius = model.geometry.ball_centre()[0];
+        for (ball, (rolls, contacts)) in self.balls.iter().zip(&self.contacts).enumerate() {
+            let slope = model.ball_mass() * rolls.orbit * rolls.orbit;
+            loads.balls[ball][0] += slope * radius;
+            loads.ball_slopes[ball] += slope;
+            for side in Side::BOTH {
+                let contact = &contacts[side.index()];
+                let [n_r, n_z] = contact.normal;
+                let [t, q, m_t, m_q, m_n] = rolls.tractions[side.index()].action;
+                // On the ring, along q = (-n_z, n_r).
+                loads.add_contact_force(ball, side, [q * n_z, -q * n_r]);
+                if side == Side::Outer {
+                    continue;
+                }
+                let (sin, cos) = (model.geometry.azimuth(ball) + now.cage_angle).sin_cos();
+                let height = model.geometry.ball_centre()[1] - model.geometry.groove_centre(side)[1];
+                let height = height + contact.lever * n_z;
+                loads.shaft[0] += t * sin;
+                loads.shaft[1] -= t * cos;
+                // Of -t e_psi at the contact: out e_r + height e_z.
+                let radial = height * t;
+                // Moments about e_r and e_psi on the shaft, with the couple of -q at the contact about the groove.
+                let radial = radial - (m_n * n_r - m_q * n_z);
+                let round = model.geometry.groove_radius(side) * q - m_t;
+                loads.shaft[3] += radial * cos - round * sin;
+                loads.shaft[4] += radial * sin + round * cos;
+            }
+        }
+        loads.follows_angles = true;
+    }
+
+    /// What is reported of a ball at this azimuth, rad.
+    pub fn result(&self, ball: usize, azimuth: f64) -> FreeBallResult {
+        let rolls = &self.balls[ball];
+        let contact = |side: Side| {
+            let (traction, slip) = (&rolls.tractions[side.index()], &rolls.slips[side.index()]);
+            TractionResult {
+                slip_m_per_s: slip.centre,
+                spin_rad_per_s: slip.turning[2],
+                traction_n: [traction.action[0], traction.action[1]],
+                friction_power_w: rolls.power(side.index()),
+            }
+        };
+        let (sin, cos) = azimuth.sin_cos();
+        let [r, t, z] = rolls.turning;
+        FreeBallResult {
+            inner: contact(Side::Inner),
+            outer: contact(Side::Outer),
+            omega_rad_per_s: [r * cos - t * sin, r * sin + t * cos, z],
+            orbit_rad_per_s: rolls.orbit,
+        }
+    }
+
+    /// Torque, power and cage speed.
+    pub fn friction(&self) -> Friction {
+        let pairs = || self.balls.iter().zip(&self.contacts);
+        Friction {
+            torque_n_m: pairs()
+                .map(|(rolls, contacts)| rolls.torque(&contacts[0], 0))
+                .sum(),
+            power_w: pairs().map(|(rolls, _)| rolls.power(0) + rolls.power(1)).sum(),
+            cage_speed_rad_per_s: self.balls.iter().map(|ball| ball.orbit).sum::<f64>()
+                / self.balls.len() as f64,
+        }
+    }
+}
+
+/// A contact of a ball as it stands.
+fn contact(
+    model: &Model,
+    side: Side,
+    speed: f64,
+    (seen, angles, ball): (Seen<'_>, &[f64], usize),
+) -> SteadyContact {
+    let site = 2 * ball + side.index();
+    let (sin, cos) = angles[site].sin_cos();
+    let radius = 0.5 * model.geometry.ball_diameter;
+    let groove = model.geometry.groove_radius(side);
+    let force = seen.forces[site];
+    SteadyContact {
+        normal: [side.sign() * cos, side.sign() * sin],
+        lever: radius - 0.5 * seen.approaches[site].max(0.0),
+        force,
+        ellipse: Ellipse {
+            semi_axes: model.hertz[side.index()].semi_axes(force),
+            radius: 2.0 * groove * radius / (groove + radius),
+        },
+        speed,
+        shear_modulus: model.combined_shear_modulus(side),
+    }
+}

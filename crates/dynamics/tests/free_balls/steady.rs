@@ -1,0 +1,218 @@
+//! Equilibria in which every ball rolls steadily under friction.
+
+use dynamics::effects::RadialForce;
+use dynamics::effects::ball_drag::BallDrag;
+use dynamics::interactions::traction::Creep;
+use dynamics::kinematics::{RingSpeeds, Speed};
+use dynamics::motion::Motion;
+use dynamics::{ShaftDof, StaticSolution};
+use input::Schedule;
+
+use crate::bearings::{coulomb, freed, rpm, run, settings, thrust};
+use crate::support::{equilibrium, relative};
+
+fn speeds(n: f64) -> RingSpeeds {
+    RingSpeeds::from(Speed::constant(rpm(n)))
+}
+
+fn under_thrust(axial: f64, speed: f64, mu: f64) -> StaticSolution {
+    under_thrust_with(axial, speed, mu, Creep::Elastic)
+}
+
+fn under_thrust_with(axial: f64, speed: f64, mu: f64, creep: Creep) -> StaticSolution {
+    equilibrium(&freed(thrust(axial), coulomb(mu, creep), &speeds(speed)))
+}
+
+/// Wrong: a motion would begin with a transient, or equilibrium and motion would have other equations of traction.
+/// Balls of a motion that starts from the equilibrium go on as they were.
+#[test]
+fn a_motion_stays_in_the_equilibrium_of_rolling_balls() {
+    for (axial, speed) in [(2000.0, 1800.0), (500.0, 10_000.0), (2000.0, 30_000.0)] {
+        let speeds = speeds(speed);
+        let model = freed(thrust(axial), coulomb(0.07, Creep::Elastic), &speeds);
+        let solution = equilibrium(&model);
+        let friction = solution.steady.as_ref().unwrap().friction();
+        let motion = Motion::new(&model, settings(2e-6, &speeds)).unwrap();
+        let start = motion.start(&solution);
+        let first = start.free.clone().unwrap();
+        let last = run(&motion, start, 200, |_| {});
+        let free = last.free.as_ref().unwrap();
+        let found = motion.friction(&last).unwrap();
+        let orbit = relative(free.orbit(5), first.orbit(5));
+        let spin = |index: usize| {
+            let expected = solution.balls[5].free.as_ref().unwrap();
+            let expected = [expected.inner, expected.outer][index].spin_rad_per_s;
+            (free.contacts[10 + index].spin - expected).abs() / rpm(speed)
+        };
+        let torque = relative(found.torque_n_m, friction.torque_n_m);
+        println!(
+            "{axial} {speed}: {orbit:e} {:e} {:e} {torque:e}",
+            spin(0),
+            spin(1)
+        );
+        assert!(orbit < 1e-5, "{orbit}");
+        assert!(spin(0) < 1e-4 && spin(1) < 1e-4, "{} {}", spin(0), spin(1));
+        assert!(torque < 2e-3, "{torque}");
+    }
+}
+
+/// Wrong: race control would be put in by hand, or the power would not be the torque's. Under thrust net tractions of a
+/// ball's contacts are opposite and tiny, orbits are those of rolling to 1.5e-3, torque is in proportion to friction,
+/// and both contacts spin, in shares not far from half and half.
+#[test]
+fn under_slow_thrust_both_contacts_spin_and_torque_goes_with_friction() {
+    let mut torques = Vec::new();
+    for mu in [0.01, 0.07, 0.15] {
+        let solution = under_thrust_with(2000.0, 100.0, mu, Creep::Ratio(1e-5));
+        let friction = solution.steady.as_ref().unwrap().friction();
+        let ball = solution.balls[0].free.unwrap();
+        let [inner, outer] = [ball.inner, ball.outer];
+        let share = inner.spin_rad_per_s.abs() / (inner.spin_rad_per_s.abs() + outer.spin_rad_per_s.abs());
+        println!(
+            "mu {mu}: share of the inner spin {share}, torque {}",
+            friction.torque_n_m
+        );
+        assert!((0.3..0.7).contains(&share), "{share}");
+        let net =
+            [inner, outer].map(|contact| contact.traction_n[0] / (mu * solution.balls[0].inner.force_n));
+        assert!((net[0] + net[1]).abs() < 1e-6 && net[0].abs() < 4e-3, "{net:?}");
+        let power = friction.torque_n_m * rpm(100.0);
+        assert!(
+            relative(friction.power_w, power) < 1e-6,
+            "{} {power}",
+            friction.power_w
+        );
+        let rolling = solution.steady.as_ref().unwrap().balls[0].orbit;
+        let angle =
+            0.5 * (solution.balls[0].inner.contact_angle_rad + solution.balls[0].outer.contact_angle_rad);
+        let gamma = 9e-3 * angle.cos() / 65.0235e-3;
+        assert!(
+            relative(rolling, 0.5 * rpm(100.0) * (1.0 - gamma)) < 2.5e-3,
+            "{rolling}"
+        );
+        torques.push(friction.torque_n_m / mu);
+    }
+    assert!(
+        relative(torques[0], torques[1]) < 0.05 && relative(torques[1], torques[2]) < 0.05,
+        "{torques:?}"
+    );
+}
+
+/// Wrong: lateral tractions would not carry the gyroscopic moment, J w_c x w, or a fast ball would be held by a threshold.
+#[test]
+fn lateral_tractions_balance_the_gyroscopic_moment() {
+    for speed in [3000.0, 10_000.0, 30_000.0] {
+        let solution = under_thrust(2000.0, speed, 0.07);
+        let steady = solution.steady.as_ref().unwrap();
+        let (rolls, ball) = (&steady.balls[0], &solution.balls[0]);
+        let moment = 2.0 / 5.0 * ball_mass() * 4.5e-3f64.powi(2) * rolls.orbit * rolls.turning[0];
+        let free = ball.free.unwrap();
+        let levers = [ball.inner, ball.outer].map(|contact| 4.5e-3 - 0.5 * contact.approach_m);
+        let taken = -levers[0] * free.inner.traction_n[1] - levers[1] * free.outer.traction_n[1]
+            + rolls
+                .tractions
+                .iter()
+                .map(|traction| traction.action[2])
+                .sum::<f64>();
+        println!(
+            "{speed}: {moment:e} {taken:e} slip {:?}",
+            rolls.slips.map(|slip| slip.centre[1])
+        );
+        assert!(relative(moment, taken) < 1e-6, "{moment} {taken}");
+        // Viscous through the spin: some lateral slip at any speed.
+        assert!(rolls.turning[1] != 0.0);
+    }
+}
+
+fn ball_mass() -> f64 {
+    7800.0 * std::f64::consts::PI / 6.0 * 9e-3f64.powi(3)
+}
+
+/// Wrong: drag would not be shared by both contacts, or a ball that the inner ring leaves would stop the solver. A drag
+/// brakes the orbit; a radial load unloads balls, which the cage then carries.
+#[test]
+fn drag_is_shared_and_unloaded_balls_go_with_the_others() {
+    let speeds = speeds(10_000.0);
+    let mut model = freed(thrust(500.0), coulomb(0.07, Creep::Elastic), &speeds);
+    // 1/2 rho C_d with 20 kg/m3 and 10.
+    model.effects.push(Box::new(BallDrag { pressure: 100.0 }));
+    let solution = equilibrium(&model);
+    let free = solution.balls[0].free.unwrap();
+    let speed = free.orbit_rad_per_s * solution.steady.as_ref().unwrap().balls[0].out;
+    let drag = 0.5 * 20.0 * 10.0 * std::f64::consts::PI * 4.5e-3f64.powi(2) * speed * speed;
+    let sum = free.inner.traction_n[0] + free.outer.traction_n[0];
+    println!(
+        "{drag} {:?}",
+        [free.inner.traction_n[0], free.outer.traction_n[0]]
+    );
+    assert!(relative(sum, drag) < 1e-6, "{sum} {drag}");
+    assert!(relative(free.inner.traction_n[0], 0.5 * drag) < 0.05, "{free:?}");
+
+    let mut model = freed(thrust(200.0), coulomb(0.07, Creep::Elastic), &speeds);
+    model.effects.push(Box::new(RadialForce {
+        value: 3000.0,
+        direction: 0.0,
+        schedule: Schedule::Constant,
+    }));
+    // The other side comes off where the rings can neither come closer along the axis nor tilt.
+    model.shaft[2..].fill(ShaftDof::Prescribed(0.0));
+    model.shaft[2] = ShaftDof::Prescribed(-60e-6);
+    let solution = equilibrium(&model);
+    let open = solution
+        .balls
+        .iter()
+        .filter(|ball| ball.inner.force_n == 0.0)
+        .count();
+    let orbits: Vec<f64> = solution
+        .balls
+        .iter()
+        .map(|b| b.free.unwrap().orbit_rad_per_s)
+        .collect();
+    println!(
+        "open {open} {:?} {orbits:?}",
+        solution.balls.iter().map(|b| b.inner.force_n).collect::<Vec<_>>()
+    );
+    assert!(
+        open > 0 && orbits.iter().all(|orbit| *orbit > 0.3 * rpm(10_000.0)),
+        "{orbits:?}"
+    );
+    let (a, b) = (solution.balls[1].free.unwrap(), solution.balls[17].free.unwrap());
+    assert!(
+        relative(a.orbit_rad_per_s, b.orbit_rad_per_s) < 1e-9,
+        "the load is symmetric"
+    );
+}
+
+/// Wrong: where balls skid. Under a growing drag the orbit creeps, then breaks away just below 2 mu Q_i, because spin
+/// takes a little of the grip.
+#[test]
+fn the_orbit_breaks_away_before_the_grip_of_both_contacts() {
+    let (mu, speeds) = (0.07, speeds(1000.0));
+    let free = equilibrium(&freed(thrust(200.0), coulomb(mu, Creep::Elastic), &speeds));
+    let rolling = free.steady.as_ref().unwrap().balls[0];
+    let grip = 2.0 * mu * free.balls[0].inner.force_n;
+    let orbit = |share: f64| {
+        let mut model = freed(thrust(200.0), coulomb(mu, Creep::Elastic), &speeds);
+        let unit = BallDrag { pressure: 1.0 }.coefficient(&model);
+        // A drag of this share at the speed that the ball has.
+        let mut speed = rolling.orbit * rolling.out;
+        let mut ratio = 1.0;
+        for _ in 0..60 {
+            model.effects.retain(|effect| effect.name() != "ball_drag");
+            let pressure = share * grip / (unit * speed * speed);
+            model.effects.push(Box::new(BallDrag { pressure }));
+            let found = equilibrium(&model);
+            let ball = found.steady.as_ref().unwrap().balls[0];
+            ratio = ball.orbit / rolling.orbit;
+            if ratio < 0.3 || (ball.orbit * ball.out / speed - 1.0).abs() < 1e-6 {
+                break;
+            }
+            speed = ball.orbit * ball.out;
+        }
+        ratio
+    };
+    let found = [0.5, 0.9, 0.98, 1.0].map(orbit);
+    println!("{found:?}");
+    assert!(found.windows(2).all(|pair| pair[0] > pair[1]), "{found:?}");
+    assert!(found[2] > 0.99 && found[3] < 0.95, "{found:?}");
+}
