@@ -11,11 +11,13 @@
 //! # Ok::<(), dense::DenseError>(())
 //! ```
 
+mod blocks;
 pub mod eigen;
 mod error;
 mod factors;
 mod forms;
 
+pub use blocks::solve_with_blocks;
 pub use eigen::{
     ComplexNumber, ComplexPair, EigenProblem, Eigenpairs, LanczosSettings, Searched, dense_lowest,
     general_eigen, lanczos, lowest_pairs, symmetric_eigen,

@@ -4,6 +4,8 @@
 //! it stalls, it is led there by creep that is 100 and 10 times softer. A contact whose friction would do work over the
 //! part takes the slip of the middle, and the part is solved again: dissipation is never negative.
 
+use std::ops::Range;
+
 use contact::Side;
 use timer::SharedLaps;
 
@@ -63,7 +65,9 @@ impl BearingParts {
         costs: &SharedLaps,
     ) -> Result<NewtonSolution, DynamicsError> {
         let scales = self.lengths_per_unknown(model);
+        let blocks = self.ball_blocks();
         let policy = Policy {
+            blocks: &blocks,
             ends_at_floor: true,
             ..policy(scale, Some(&scales), costs)
         };
@@ -86,6 +90,14 @@ impl BearingParts {
             }
         }
         solved.map(|found| NewtonSolution { iterations, ..found })
+    }
+
+    /// Unknowns of each ball: balls do not see each other.
+    fn ball_blocks(&self) -> Vec<Range<usize>> {
+        let system = self.system();
+        (0..self.n_balls())
+            .map(|ball| system.unknowns(Body::Lumped(FIRST_BALL + ball)))
+            .collect()
     }
 
     fn small_slips(&mut self) -> impl Iterator<Item = &mut f64> {

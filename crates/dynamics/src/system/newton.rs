@@ -6,7 +6,9 @@
 //! no digits near the solution. A small proximal stiffness makes steps of unloaded bodies zero instead of undefined and
 //! does not shift the solution. Cost: one dense factorisation of the unknowns per iteration.
 
-use dense::{DenseCholesky, DenseError, DenseLu};
+use std::ops::Range;
+
+use dense::{DenseCholesky, DenseError, solve_with_blocks};
 use timer::SharedLaps;
 
 use super::assembly::{Evaluated, System};
@@ -49,6 +51,8 @@ pub struct Policy<'p> {
     pub round_off: RoundOff,
     /// Whether iteration ends where the residual is what round-off makes; else it goes on while it improves.
     pub ends_at_floor: bool,
+    /// Unknowns of bodies that see no other block of them: eliminated first. Without an energy only.
+    pub blocks: &'p [Range<usize>],
     /// Length per unknown by which it is scaled, so that all are lengths; None: they are taken as they are.
     pub scales: Option<&'p [f64]>,
     /// Stiffness added to the diagonal, N/m.
@@ -173,7 +177,7 @@ impl System<'_> {
         if self.has_energy() {
             DenseCholesky::factor(n, matrix)?.solve(&mut step, 1);
         } else {
-            DenseLu::factor(n, matrix)?.solve(&mut step, 1);
+            solve_with_blocks(n, matrix, policy.blocks, &mut step)?;
         }
         Ok(step)
     }

@@ -170,6 +170,7 @@ fn solve(system: &System) -> Result<Vec<f64>, DynamicsError> {
         force_scale: 1.0,
         round_off: RoundOff::Unknowns,
         ends_at_floor: false,
+        blocks: &[],
         scales: None,
         proximal: 0.0,
         longest_step: f64::INFINITY,

@@ -177,10 +177,8 @@ fn drag_is_shared_and_unloaded_balls_go_with_the_others() {
         "{orbits:?}"
     );
     let (a, b) = (solution.balls[1].free.unwrap(), solution.balls[17].free.unwrap());
-    assert!(
-        relative(a.orbit_rad_per_s, b.orbit_rad_per_s) < 1e-9,
-        "the load is symmetric"
-    );
+    // Traction round the axis moves the shaft a little across the load.
+    assert!(relative(a.orbit_rad_per_s, b.orbit_rad_per_s) < 1e-5);
 }
 
 /// Wrong: where balls skid. Under a growing drag the orbit creeps, then breaks away just below 2 mu Q_i, because spin
