@@ -11,6 +11,7 @@ mod first_hour;
 mod fits;
 mod free_balls;
 mod hard;
+mod includes;
 mod integration_points;
 mod interruption;
 mod life;

@@ -7,6 +7,7 @@ mod balls;
 mod catalogue;
 mod effects;
 mod good;
+mod include;
 mod life;
 mod lubricant;
 mod modes;
