@@ -41,7 +41,7 @@ const CONTACTS: [Contact; 3] = [
         axis: "contact angle",
         column: "contact_angle_rad",
         unit: DEGREE,
-        resolution: 1e-6,
+        resolution: 1e-4,
     },
     Contact {
         name: "peak_pressure",

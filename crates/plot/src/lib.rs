@@ -6,7 +6,9 @@
 
 mod balls;
 mod campbell;
+mod cut;
 mod energy;
+mod groove;
 mod modes;
 mod probes;
 mod profiles;
@@ -124,6 +126,12 @@ pub fn linear_figures(dir: &Path) -> anyhow::Result<Vec<Named>> {
     Ok(found.map(|(name, figure)| Named::new(name, figure)).collect())
 }
 
+/// Figures with their names.
+fn named(found: anyhow::Result<Vec<(String, Figure)>>) -> anyhow::Result<Vec<Named>> {
+    let named = |(name, figure)| Named::new(name, figure);
+    Ok(found?.into_iter().map(named).collect())
+}
+
 /// The figures of the run in `dir`; at least one. Where none can be made, or what was chosen is not there, that is the
 /// error.
 pub fn figures(dir: &Path, choice: &Choice) -> Result<Figures, Failure> {
@@ -137,7 +145,8 @@ pub fn figures(dir: &Path, choice: &Choice) -> Result<Figures, Failure> {
         ("modes", modes::figures(dir)),
         ("stiffness", linear_figures(dir)),
         ("raceways", surface::figures(&results, choice)),
-        ("sections", section::figures(&results, choice)),
+        ("grooves", named(groove::figures(&results, choice.step))),
+        ("sections", named(section::figures(&results, choice.step))),
     ];
     let is_chosen = choice.ball != 0 || choice.step.is_some();
     let (mut drawn, mut problems, mut first) = (Vec::new(), Vec::new(), None);
