@@ -26,6 +26,7 @@ use anyhow::anyhow;
 use clap::Args;
 use comm::print;
 use figure::Figure;
+use results::answer;
 use results::failure::Failure;
 use results::folder::say_later;
 use results::integrity::warn_of_doubts;
@@ -106,6 +107,8 @@ pub fn plot(request: &Plot) -> Result<(), Failure> {
         write_picture(path, &images.svg, &images.png)?;
     }
     let names: Vec<&str> = images.iter().map(|(name, ..)| *name).collect();
+    answer::add("folder", &out);
+    answer::add("figures", &names);
     print::line(format_args!(
         "{} figures as svg and png in {}: {}",
         names.len(),
