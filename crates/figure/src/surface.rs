@@ -26,6 +26,8 @@ pub struct Surface {
     values: Vec<f64>,
     /// Triangles, where there is no grid.
     triangles: Vec<Triangle>,
+    /// Whether it is no area, but the colours of the shaded series.
+    pub(crate) is_of_series: bool,
 }
 
 impl Surface {
@@ -50,6 +52,7 @@ impl Surface {
             y_edges,
             values,
             triangles: Vec::new(),
+            is_of_series: false,
         })
     }
 
@@ -61,6 +64,15 @@ impl Surface {
             y_edges: Vec::new(),
             values: Vec::new(),
             triangles,
+            is_of_series: false,
+        }
+    }
+
+    /// A colour bar for the shaded series of a figure, which then have no names; the axis includes both its ends.
+    pub fn bar_of_series(value: Axis) -> Surface {
+        Surface {
+            is_of_series: true,
+            ..Surface::of_triangles(value, Vec::new())
         }
     }
 
@@ -112,16 +124,22 @@ pub(crate) fn draw_surface(surface: &Surface, bar: &(Rect, Span), pen: &Pen, can
             ))?;
         }
     }
-    draw_bar(bar, span, canvas)
+    let brightest = if surface.is_of_series {
+        palette::BRIGHTEST
+    } else {
+        1.0
+    };
+    draw_bar(bar, span, brightest, canvas)
 }
 
-fn draw_bar(bar: &Rect, span: &Span, canvas: &Canvas) -> Drawn {
+fn draw_bar(bar: &Rect, span: &Span, brightest: f64, canvas: &Canvas) -> Drawn {
     let height = bar.bottom - bar.top;
     for level in 0..LEVELS {
         let y = |l: usize| bar.bottom - height * l as f64 / LEVELS as f64;
         let below = (y(level) + 0.5).min(bar.bottom);
         let corners = [units([bar.left, y(level + 1)]), units([bar.right, below])];
-        canvas.draw(&Rectangle::new(corners, colour(level).filled()))?;
+        let part = brightest * level as f64 / (LEVELS - 1) as f64;
+        canvas.draw(&Rectangle::new(corners, palette::of_part(part).filled()))?;
     }
     let [low, high] = span.range;
     for (place, text) in &span.ticks.labelled {

@@ -7,6 +7,7 @@ use figure::{Figure, Series};
 use super::quantity::{DEGREE, MEGAPASCAL};
 use super::raceways;
 use super::run::{Results, Steps};
+use super::shades::{self, Shades};
 
 /// A figure per raceway: of a sweep a curve per point, else the chosen step.
 pub fn figures(results: &Results, step: Option<u64>) -> anyhow::Result<Vec<(String, Figure)>> {
@@ -23,6 +24,7 @@ pub fn figures(results: &Results, step: Option<u64>) -> anyhow::Result<Vec<(Stri
         return Ok(Vec::new());
     }
     let grid = read_mesh(&results.dir)?;
+    let shades = Shades::of(results, &steps)?;
     for (i, &step) in steps.iter().enumerate() {
         let record = read_any_step(&results.dir, step)?;
         let name = results.name_of(record.step)?;
@@ -48,9 +50,13 @@ pub fn figures(results: &Results, step: Option<u64>) -> anyhow::Result<Vec<(Stri
                 (1, Some(values)) => raceways::largest_of_body(&grid, values, body) * MEGAPASCAL.factor,
                 _ => 0.0,
             };
-            let empty = || along_groove(&groove, largest).note(raceways.note);
+            let empty = || {
+                let figure = along_groove(&groove, largest).note(raceways.note);
+                shades::bar(figure, shades.as_ref())
+            };
             let empty = figure.take().unwrap_or_else(empty);
-            *figure = Some(empty.series(Series::line_and_marks(label, points).shade(i, steps.len())));
+            let series = Series::line_and_marks(label, points);
+            *figure = Some(empty.series(shades::shaded(series, shades.as_ref(), i, steps.len())));
         }
     }
     let named = figures.into_iter().zip(["inner", "outer"]);

@@ -16,6 +16,7 @@ pub mod quantity;
 mod raceways;
 mod run;
 mod section;
+mod shades;
 mod shaft;
 mod stiffness;
 mod surface;

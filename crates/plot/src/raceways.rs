@@ -39,6 +39,10 @@ pub struct Raceways {
 const WITHOUT_NEAR_FIELD: &str = "Without near field: stress of forces spread over the contact patches, \
                                   far below that under a ball (see [stress])";
 
+/// Where it is, nodes alone show it.
+const AT_NODES: &str =
+    "Stress at the nodes of the mesh, that of the Hertz contacts included; its peak may lie between nodes";
+
 /// The raceways of a step.
 pub fn raceways(record: &StepRecord) -> anyhow::Result<Raceways> {
     let scene = Scene::parse(
@@ -51,7 +55,7 @@ pub fn raceways(record: &StepRecord) -> anyhow::Result<Raceways> {
     Ok(Raceways {
         grooves: Side::BOTH.map(|side| groove(&geometry, side)),
         note: match scene.stress.near_field_reach {
-            Some(_) => "",
+            Some(_) => AT_NODES,
             None => WITHOUT_NEAR_FIELD,
         },
     })
