@@ -80,7 +80,7 @@ impl Series {
 
     /// The colour of curve `i` of a family of `n`, from the first to the last shade, instead of the next of the
     /// palette.
-    pub fn shade(mut self, i: usize, n: usize) -> Series {
+    pub fn shade(self, i: usize, n: usize) -> Series {
         self.shade_at(i as f64 / n.saturating_sub(1).max(1) as f64)
     }
 

@@ -218,6 +218,12 @@ fn included(scene: &Path, typed: &str, chain: &[PathBuf]) -> Result<WholeText, N
             names.join(" > ")
         ));
     }
+    if path.exists() && !path.is_file() {
+        return here(format!(
+            "{} is no plain file; expected a file of TOML",
+            path.display()
+        ));
+    }
     let text = match std::fs::read_to_string(&path) {
         Ok(text) => text,
         Err(error) => {
@@ -239,8 +245,11 @@ fn included(scene: &Path, typed: &str, chain: &[PathBuf]) -> Result<WholeText, N
     Ok(whole)
 }
 
+/// A stretch of the text, and a path in it, or what is wrong there.
+type InPlace = (Range<usize>, String);
+
 /// The files of the statement with their places.
-fn files(value: &Spanned<DeValue<'_>>) -> Result<Vec<(Range<usize>, String)>, (Range<usize>, String)> {
+fn files(value: &Spanned<DeValue<'_>>) -> Result<Vec<InPlace>, InPlace> {
     let expected = "expected the path of a file such as \"types/7010c.toml\", or a list of such paths";
     let one = |value: &Spanned<DeValue<'_>>| match value.get_ref() {
         DeValue::String(typed) if !typed.is_empty() => Ok((value.span(), typed.to_string())),

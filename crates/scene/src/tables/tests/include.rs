@@ -255,6 +255,10 @@ fn files_include_files_and_circles_are_refused() {
             "a.toml:1:11: include: types/none.toml cannot be read: No such file",
         ),
         (
+            "include = \"types\"",
+            "a.toml:1:11: include: types is no plain file; expected a file of TOML",
+        ),
+        (
             "include = \"\"",
             "a.toml:1:11: include: this includes no file; expected the path of a file such as",
         ),
