@@ -209,21 +209,3 @@ fn completions_and_the_man_page_know_the_commands() {
         }
     }
 }
-
-/// Wrong: a cluster could not set the number of threads for all commands, or a wrong number would be taken.
-#[test]
-fn the_environment_sets_the_number_of_threads() {
-    let dir = Dir::with_scene(crate::util::SCENE);
-    let run = [&["run", "scene.toml", "--out", "out"][..], &RIGID].concat();
-    let outcome = dir.raceway_with(&[("RACEWAY_THREADS", "0")], &run);
-    assert_eq!(outcome.code, Some(2));
-    assert!(
-        outcome
-            .stderr
-            .contains("error: --threads is 0; expected at least 1"),
-        "{}",
-        outcome.stderr
-    );
-    let outcome = dir.raceway_with(&[("RACEWAY_THREADS", "1")], &run);
-    assert_eq!(outcome.code, Some(0), "{}", outcome.stderr);
-}

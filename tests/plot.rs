@@ -4,7 +4,7 @@
 use std::sync::OnceLock;
 
 use crate::util::tables::Table;
-use crate::util::{Dir, Files, RIGID, assert_within, with_line};
+use crate::util::{Dir, Files, RIGID, SCENE, assert_within, with_line};
 
 const SWEEP: &str = "[sweep]\nkey = \"effects.radial_force.value\"\nvalues = [\"0 kN\", \"1 kN\"]\n\n\
                      [probes.profile.arc]\nring = \"outer\"\nazimuth = \"0 deg\"\ngroove_angle = [\"-20 deg\", \"45 deg\"]\npoints = 66";
@@ -48,6 +48,8 @@ fn every_run_has_the_figures_of_its_kind() {
         "ball_force_round",
         "contact_angle",
         "contact_angle_round",
+        "groove_inner",
+        "groove_outer",
         "peak_pressure",
         "peak_pressure_round",
         "profile_arc_principal_stress",
@@ -67,6 +69,8 @@ fn every_run_has_the_figures_of_its_kind() {
         "contact_angle_of_all",
         "energy_defect",
         "energy_ledger",
+        "groove_inner",
+        "groove_outer",
         "peak_pressure",
         "peak_pressure_of_all",
         "probe_c_force",
@@ -114,10 +118,13 @@ fn stress_without_near_field_says_so_and_one_step_has_one_scale() {
             format!("motion/figures/section_{side}.svg"),
         ];
         let [raceway, section] = names.map(|name| dir.text(&name));
-        assert!(
-            !raceway.contains("near field") && !section.contains("near field"),
-            "{side}"
-        );
+        let at_nodes = "Stress at the nodes of the mesh, that of the Hertz contacts included";
+        for figure in [&raceway, &section] {
+            assert!(
+                !figure.contains("near field") && figure.contains(at_nodes),
+                "{side}"
+            );
+        }
         // The colour bar comes after the azimuths.
         let (raceway, section) = (numbers(&raceway), numbers(&section));
         let bar = &raceway[raceway.iter().rposition(|tick| *tick == 360.0).unwrap() + 1..];
@@ -126,6 +133,68 @@ fn stress_without_near_field_says_so_and_one_step_has_one_scale() {
             section.windows(bar.len()).any(|ticks| ticks == bar),
             "{side}: {bar:?} {section:?}"
         );
+    }
+}
+
+/// Wrong: a section would be a curve or a frame and no filled section, each ring have its own shape for an eye, or
+/// round-off choose which of equal balls is shown.
+#[test]
+fn sections_are_filled_and_to_scale_at_the_first_of_equal_balls() {
+    let dir = Dir::with_meshes();
+    dir.run("out", &["--set", "effects.radial_force=none"]);
+    assert_eq!(dir.raceway(&["plot", "out"]).code, Some(0));
+    for side in ["inner", "outer"] {
+        let svg = dir.text(&format!("out/figures/section_{side}.svg"));
+        let title = format!("Stress in the section of the {side} ring at ball 0, 0.0 deg, step 0");
+        assert!(svg.contains(&title), "{side}");
+        let filled = svg.lines().filter(|line| line.starts_with("<polygon")).count();
+        assert!(filled > 100, "{side}: {filled} polygons");
+        let [width, height] = [0, 1].map(|component| extent_of_polygons(&svg, component));
+        // The sections of the 7010C are 16 mm wide; from bore to shoulder 5.2 mm, from shoulder to seat 5.7 mm.
+        let exact = 16.0 / if side == "inner" { 5.2 } else { 5.7 };
+        assert_within(side, width / height, exact, 0.01 * exact);
+    }
+}
+
+/// Extent of all filled polygons of a picture, pixels.
+fn extent_of_polygons(svg: &str, component: usize) -> f64 {
+    let polygons = svg.lines().filter(|line| line.starts_with("<polygon"));
+    let points = polygons.filter_map(|line| line.split_once("points=\"")?.1.split('"').next());
+    let places = points.flat_map(|points| points.split_whitespace().map(str::to_string).collect::<Vec<_>>());
+    let values: Vec<f64> = places
+        .filter_map(|place| place.split(',').nth(component)?.parse().ok())
+        .collect();
+    let [low, high] = values
+        .iter()
+        .fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], &v| {
+            [a.min(v), b.max(v)]
+        });
+    high - low
+}
+
+/// Wrong: an axis would be stretched until round-off looks like a result: contact angles of a bearing without them.
+#[test]
+fn round_off_is_no_range_of_an_axis() {
+    let dir = Dir::with_scene(SCENE);
+    // All balls carry the same without a radial force.
+    dir.run(
+        "out",
+        &[&RIGID[..], &["--set", "effects.radial_force=none"]].concat(),
+    );
+    assert_eq!(dir.raceway(&["plot", "out"]).code, Some(0));
+    for name in ["ball_force", "contact_angle"] {
+        let svg = dir.text(&format!("out/figures/{name}.svg"));
+        let texts = svg.lines().map(str::trim);
+        let ticks: Vec<f64> = texts
+            .filter_map(|text| text.parse().ok())
+            .filter(|tick: &f64| tick % 45.0 != 0.0)
+            .collect();
+        let [low, high] = ticks
+            .iter()
+            .fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], &v| {
+                [a.min(v), b.max(v)]
+            });
+        assert!(ticks.len() > 2 && high - low > 0.02 * high, "{name}: {ticks:?}");
     }
 }
 
@@ -160,7 +229,7 @@ fn figures_of_runs_can_be_read() {
 /// Wrong: the figure would show other numbers than the table.
 #[test]
 fn a_figure_shows_the_numbers_of_the_table() {
-    let dir = Dir::with_scene(crate::util::SCENE);
+    let dir = Dir::with_scene(SCENE);
     dir.run("out", &RIGID);
     assert_eq!(dir.raceway(&["plot", "out", "--out", "pictures"]).code, Some(0));
     let svg = dir.text("pictures/ball_force.svg");

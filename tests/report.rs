@@ -31,8 +31,8 @@ fn the_page_of_a_run_stands_alone() {
     }
     let title = summary(&dir, "motion")["title"].as_str().unwrap().to_string();
     assert!(page.contains(&format!("<h1>{title}</h1>")), "{title}");
-    // 24 figures, each an SVG of its own.
-    assert_eq!(page.matches("<svg ").count(), 24);
+    // 26 figures, each an SVG of its own.
+    assert_eq!(page.matches("<svg ").count(), 26);
     for reference in ["src=", "href=", "url(", "@import", "<script"] {
         assert!(!page.contains(reference), "{reference}");
     }

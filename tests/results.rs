@@ -293,6 +293,7 @@ fn a_run_leaves_exactly_its_files() {
         "energy.csv",
         "mesh.hdf",
         "run.hdf.series",
+        "run.log",
         "run.vtkhdf",
         "shaft.csv",
         "step_000000.hdf",

@@ -1,6 +1,7 @@
 //! Whole-program tests: they start the program `raceway` as a user does and look at what it prints, returns and
 //! leaves behind. One binary, a file per area; `fixtures/README.md` says where the inputs come from.
 
+mod answers;
 mod bad_input;
 mod batch;
 mod cuts;
@@ -11,6 +12,7 @@ mod first_hour;
 mod fits;
 mod free_balls;
 mod hard;
+mod includes;
 mod integration_points;
 mod interruption;
 mod life;

@@ -8,6 +8,7 @@ use contact::{BearingGeometry, Side};
 use dynamics::kinematics::Kinematics;
 use dynamics::statics::settings;
 use dynamics::{Model, MotionSizes, Numbers, Prepared, RingMemory, Substructures};
+use results::answer;
 use results::disk::{self, Forecast};
 use results::failure::Failure;
 use results::memory::{bound, forecast};
@@ -101,12 +102,16 @@ pub fn check(path: &Path, overrides: &[String]) -> Result<(), Failure> {
     for line in &scene.assumed {
         print::line(format_args!("assumed  {line}"));
     }
-    for line in doubts(&scene, &model)
-        .iter()
-        .chain(&rules::advice(&scene, &model)?)
-    {
+    let advice = [doubts(&scene, &model), rules::advice(&scene, &model)?].concat();
+    for line in &advice {
         print::line(format_args!("advice   {line}"));
     }
+    answer::add("advice", &advice);
+    answer::add("assumed", &scene.assumed);
+    answer::add("clearance_m", geometry.clearance());
+    answer::add("free_contact_angle_rad", geometry.free_contact_angle());
+    answer::add("output_bytes", forecast.total);
+    answer::add("step_files", forecast.n_files);
     Ok(())
 }
 
@@ -165,6 +170,7 @@ fn print_memory(
         }
         _ => (start, String::new()),
     };
+    answer::add("peak_memory_bytes", peak);
     print::line(format_args!(
         "memory   peak about {:.0} MB with {n_threads} threads{note}",
         peak as f64 / 1e6

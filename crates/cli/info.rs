@@ -9,6 +9,7 @@ use checkpoint::{
     read_step_time, require_run, run_of, step_file_name,
 };
 use comm::print;
+use results::answer;
 use results::disk::size;
 use results::failure::Failure;
 use results::integrity::doubts;
@@ -161,6 +162,9 @@ fn folder(dir: &Path, depth: Depth) -> Result<(), Failure> {
     }
     damaged.extend(doubts(dir)?);
     folder_state(dir)?;
+    answer::add_results(dir);
+    answer::add("steps", sound.iter().map(|(step, _)| step).collect::<Vec<_>>());
+    answer::add("damaged", &damaged);
     for text in &damaged {
         line("damaged", text);
     }

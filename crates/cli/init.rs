@@ -7,6 +7,7 @@ use anyhow::{Context, anyhow};
 use clap::Args;
 use comm::print;
 use input::{ANGLE, LENGTH, Quantity};
+use results::answer;
 use results::failure::Failure;
 use scene::{MeshFiles, Scene, StarterRequest, file_name, scene_text};
 
@@ -76,6 +77,8 @@ pub fn init(request: &Init) -> Result<(), Failure> {
         .lines()
         .filter(|line| !line.starts_with('#') && line.contains("ESTIMATE"))
         .count();
+    answer::add("scene", &path);
+    answer::add("estimates", n);
     if n > 0 {
         print::line(format_args!(
             "{n} of its numbers are estimates, marked ESTIMATE: replace them by those of a catalogue or a drawing"

@@ -29,7 +29,8 @@ use std::os::unix::process::CommandExt;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use clap::{CommandFactory, Parser, Subcommand};
+use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
+use comm::print::Manner;
 use comm::{Communicator, End, Environment, print};
 use life::LifeCommand;
 use mesh::Overwrite;
@@ -38,6 +39,7 @@ use report::Report;
 use results::failure::{Failure, agree, say_of_rank};
 use results::memory::require_address_space;
 use results::summary::peak_memory;
+use results::{answer, log};
 use spectrum::SpectrumCommand;
 
 use crate::campbell::CampbellCommand;
@@ -59,9 +61,15 @@ use crate::stiffness::StiffnessCommand;
     disable_help_subcommand = true
 )]
 struct Arguments {
-    /// Number of threads; default: all cores. Results do not depend on it.
-    #[arg(long, global = true, env = "RACEWAY_THREADS")]
+    /// Number of threads; default: RACEWAY_THREADS, or all cores. Results do not depend on it.
+    #[arg(long, global = true)]
     threads: Option<usize>,
+    /// Answers with one line of JSON on standard output; all else that is said goes to standard error.
+    #[arg(long, global = true)]
+    json: bool,
+    /// Says nothing about how it goes but warnings and errors.
+    #[arg(long, global = true)]
+    quiet: bool,
     /// Ends with the process of this number, which started this one.
     #[arg(long, global = true, hide = true)]
     parent: Option<i32>,
@@ -74,6 +82,8 @@ static ALLOCATOR: allocator::Ending = allocator::Ending;
 
 /// Most threads that can be asked for: more than any machine has cores.
 const MOST_THREADS: usize = 4096;
+/// Environment variable with the number of threads.
+const THREADS: &str = "RACEWAY_THREADS";
 
 #[derive(Debug, Subcommand)]
 enum Command {
@@ -170,7 +180,9 @@ enum Command {
 }
 
 fn main() -> ExitCode {
-    let arguments = Arguments::parse();
+    let matches = Arguments::command().get_matches();
+    let name = matches.subcommand_name().unwrap_or_default().to_string();
+    let arguments = Arguments::from_arg_matches(&matches).unwrap_or_else(|error| error.exit());
     if let Command::Gmsh { arguments: given } = &arguments.command {
         return become_gmsh(arguments.parent, given);
     }
@@ -180,6 +192,11 @@ fn main() -> ExitCode {
         Command::Man => return help::man(Arguments::command()),
         _ => {}
     }
+    let is_answer_only = arguments.json;
+    print::set_manner(Manner {
+        is_answer_only,
+        is_quiet: arguments.quiet,
+    });
     let environment = match Environment::start() {
         Ok(environment) => environment,
         Err(error) => {
@@ -188,9 +205,18 @@ fn main() -> ExitCode {
             return ExitCode::from(failure.number());
         }
     };
+    if matches!(arguments.command, Command::Run { .. } | Command::Resume(_))
+        && Communicator::world().is_root()
+    {
+        log::keep(&std::env::args().collect::<Vec<_>>());
+    }
     let failure = execute(arguments).err();
     let end = environment.finish(failure.is_none());
+    if is_answer_only {
+        answer::say(&name, failure.as_ref());
+    }
     let Some(failure) = failure else {
+        log::end(None);
         return ExitCode::SUCCESS;
     };
     let comm = Communicator::world();
@@ -202,6 +228,7 @@ fn main() -> ExitCode {
         true => say_of_rank(&failure),
         false => print::note(format_args!("{}: {}", failure.kind(), failure.text())),
     }
+    log::end(Some(&failure));
     ExitCode::from(failure.number())
 }
 
@@ -232,17 +259,32 @@ fn require_one_task(command: &Command) -> Result<(), Failure> {
     )))
 }
 
+/// The number of threads that is asked for: by the command line, or else by the environment; none: all cores.
+fn wanted_threads(given: Option<usize>) -> Result<Option<usize>, Failure> {
+    let (name, threads) = match (given, std::env::var_os(THREADS)) {
+        (Some(threads), _) => ("--threads", Ok(threads)),
+        (None, Some(text)) => {
+            let text = text.to_string_lossy().into_owned();
+            (THREADS, text.trim().parse().map_err(|_| text))
+        }
+        (None, None) => return Ok(None),
+    };
+    let (shown, expected) = match threads {
+        Ok(0) => ("0".to_string(), "at least 1".to_string()),
+        Ok(threads) if threads > MOST_THREADS => (threads.to_string(), format!("at most {MOST_THREADS}")),
+        Ok(threads) => return Ok(Some(threads)),
+        Err(text) => (
+            format!("{text:?}"),
+            "a whole number of threads such as 4".to_string(),
+        ),
+    };
+    Err(Failure::User(anyhow::anyhow!(
+        "{name} is {shown}; expected {expected}"
+    )))
+}
+
 /// Starts the threads that share the work; all cores have one unless a number is given.
 fn start_threads(threads: Option<usize>) -> Result<(), Failure> {
-    if let Some(threads) = threads.filter(|threads| !(1..=MOST_THREADS).contains(threads)) {
-        let expected = match threads {
-            0 => "at least 1".to_string(),
-            _ => format!("at most {MOST_THREADS}"),
-        };
-        return Err(Failure::User(anyhow::anyhow!(
-            "--threads is {threads}; expected {expected}"
-        )));
-    }
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.unwrap_or(0));
     agree(pool.build_global().map_err(|error| {
         let remedy = "use fewer with --threads, or allow more address space or processes (ulimit -v, -u)";
@@ -279,8 +321,9 @@ fn execute(arguments: Arguments) -> Result<(), Failure> {
             | Command::Stiffness(_)
             | Command::Campbell(_)
     );
-    if shares || arguments.threads.is_some() {
-        start_threads(arguments.threads)?;
+    let threads = wanted_threads(arguments.threads)?;
+    if shares || threads.is_some() {
+        start_threads(threads)?;
     }
     if ranks > 1 {
         let threads = rayon::current_num_threads();

@@ -17,7 +17,8 @@ pub struct Progress {
 impl Progress {
     /// Progress over `total` equal parts.
     pub fn new(total: u64) -> Progress {
-        let bar = (Communicator::world().is_root() && std::io::stderr().is_terminal()).then(|| {
+        let has_bar = std::io::stderr().is_terminal() && !print::manner().is_quiet;
+        let bar = (Communicator::world().is_root() && has_bar).then(|| {
             let bar = ProgressBar::new(total);
             let style = ProgressStyle::with_template("{bar:30} {pos}/{len} {elapsed} {msg}");
             bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
@@ -42,21 +43,25 @@ impl Progress {
 
     /// Says what is done now.
     pub fn stage(&self, text: &str) {
+        let line = format!(
+            "[{:8.2} s] {}/{} {text}",
+            self.start.elapsed().as_secs_f64(),
+            self.done,
+            self.total
+        );
         match &self.bar {
-            Some(bar) => bar.set_message(text.to_string()),
-            None => print::note(format_args!(
-                "[{:8.2} s] {}/{} {text}",
-                self.start.elapsed().as_secs_f64(),
-                self.done,
-                self.total
-            )),
+            Some(bar) => {
+                bar.set_message(text.to_string());
+                print::log(format_args!("{line}"));
+            }
+            None => print::note(format_args!("{line}")),
         }
     }
 
     /// A warning that stays.
     pub fn warn(&self, text: &str) {
         match &self.bar {
-            Some(bar) => bar.println(format!("warning: {text}")),
+            Some(bar) => bar.suspend(|| print::note(format_args!("warning: {text}"))),
             None => print::note(format_args!("warning: {text}")),
         }
     }

@@ -7,7 +7,7 @@ from .difference import Difference, compare_lines
 
 HDF = {".hdf", ".vtkhdf"}
 # Files that say nothing of the result.
-LEFT_OUT = {".raceway.lock"}
+LEFT_OUT = {".raceway.lock", "run.log"}
 # Seconds, memory, room on the disk: what may differ between two runs of one program.
 VARYING = [
     (re.compile(r"^\[ *[0-9.]+ s\] "), ""),

@@ -4,7 +4,7 @@ use crate::axis::Axis;
 use crate::legend::{self, Legend};
 use crate::text::{self, LINE, Weight};
 use crate::ticks::Ticks;
-use crate::{Figure, FigureError};
+use crate::{Figure, FigureError, Surface};
 
 /// Size of running text.
 pub const TEXT: f64 = 13.0;
@@ -104,6 +104,12 @@ pub fn lay_out(figure: &Figure) -> Result<Layout, FigureError> {
         right,
         bottom,
     };
+    if figure.has_equal_scales {
+        equalise(
+            (&mut x, &figure.x, right - left),
+            (&mut y, &figure.y, bottom - top),
+        );
+    }
     let text_width = |text: &str| text::width(text, TEXT, Weight::Regular) + 10.0;
     let line_height = |_: &str| 1.15 * TEXT;
     separate(&mut x, right - left, text_width);
@@ -137,7 +143,7 @@ fn span_of(figure: &Figure, component: usize) -> Result<Span, FigureError> {
     let mut values: Vec<f64> = points.filter(shown).map(|p| p[component]).collect();
     values.extend(figure.labels.iter().map(|label| label.at[component]));
     if let Some(surface) = &figure.surface {
-        values.extend([&surface.x_edges, &surface.y_edges][component]);
+        values.extend(surface.places(component));
     }
     if component == 1 {
         let spreads = figure.series.iter().flat_map(|s| s.errors.iter().chain(&s.band));
@@ -150,8 +156,22 @@ fn span_of(figure: &Figure, component: usize) -> Result<Span, FigureError> {
     Ok(Span { range, ticks })
 }
 
+/// Widens one of the ranges so that a unit has the same length along both axes. Each axis comes with its length.
+fn equalise(a: (&mut Span, &Axis, f64), b: (&mut Span, &Axis, f64)) {
+    let density = |span: &Span, length: f64| (span.range[1] - span.range[0]) / length;
+    let wanted = density(a.0, a.2).max(density(b.0, b.2));
+    for (span, axis, length) in [a, b] {
+        let [low, high] = span.range;
+        let (middle, half) = (0.5 * (low + high), 0.5 * wanted * length);
+        if half > 0.5 * (high - low) * (1.0 + 1e-12) {
+            span.range = [middle - half, middle + half];
+            span.ticks = crate::ticks::linear(span.range[0], span.range[1], axis.step);
+        }
+    }
+}
+
 fn value_span(figure: &Figure, axis: &Axis) -> Result<Span, FigureError> {
-    let values = figure.surface.iter().flat_map(|s| s.values.iter().copied());
+    let values = figure.surface.iter().flat_map(Surface::values);
     let (range, ticks) = axis.range(values).ok_or_else(|| empty(figure))?;
     Ok(Span { range, ticks })
 }

@@ -52,7 +52,9 @@ const MOST: f64 = 0.25;
 /// the figure, only some of the shaded series are named, the first and the last among them: the shades between
 /// tell the others.
 pub fn arrange(figure: &Figure, room: f64) -> Legend {
-    let all = names(&figure.series);
+    let has_bar = figure.surface.as_ref().is_some_and(|s| s.is_of_series);
+    let mut all = names(&figure.series);
+    all.retain(|(i, _)| !has_bar || figure.series[*i].shade.is_none());
     let (mut legend, mut every) = (in_rows(&all, room), 1);
     let n_shaded = all
         .iter()

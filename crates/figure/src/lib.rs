@@ -23,12 +23,14 @@ mod text;
 mod thin;
 mod ticked;
 mod ticks;
+mod triangles;
 
 pub use axis::{Axis, Scale};
 pub use clashes::clashes;
 pub use error::FigureError;
 pub use series::{Look, Series};
 pub use surface::Surface;
+pub use triangles::Triangle;
 
 /// Width and height of a figure in SVG pixels.
 pub const SIZE: (u32, u32) = (720, 450);
@@ -44,6 +46,7 @@ pub struct Figure {
     pub(crate) surface: Option<Surface>,
     pub(crate) labels: Vec<Label>,
     pub(crate) size: (u32, u32),
+    pub(crate) has_equal_scales: bool,
 }
 
 /// A figure as two files of the same look.
@@ -74,6 +77,7 @@ impl Figure {
             surface: None,
             labels: Vec::new(),
             size: SIZE,
+            has_equal_scales: false,
         }
     }
 
@@ -107,6 +111,12 @@ impl Figure {
     /// Width and height in SVG pixels; default: [`SIZE`].
     pub fn size(mut self, width: u32, height: u32) -> Figure {
         self.size = (width, height);
+        self
+    }
+
+    /// A unit has the same length along both axes, which are linear.
+    pub fn equal_scales(mut self) -> Figure {
+        self.has_equal_scales = true;
         self
     }
 

@@ -76,8 +76,7 @@ fn colour(figure: &Figure, index: usize) -> RGBColor {
     match (series.look, series.shade) {
         (Look::Reference, _) => palette::REFERENCE,
         (Look::Rings, None) => BLACK,
-        // The lightest colours of the map would vanish on white.
-        (_, Some(part)) => palette::of_part(0.9 * part),
+        (_, Some(part)) => palette::of_part(palette::BRIGHTEST * part),
         _ => palette::of_series(style_index(&figure.series, index)),
     }
 }

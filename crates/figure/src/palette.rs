@@ -34,6 +34,9 @@ const VIRIDIS: [[f64; 3]; 9] = [
     [253.0, 231.0, 37.0],
 ];
 
+/// Part of the map that curves reach: the lightest colours would vanish on white.
+pub const BRIGHTEST: f64 = 0.9;
+
 /// Colour of the part `t` from 0 to 1 of a range.
 pub fn of_part(t: f64) -> RGBColor {
     let last = VIRIDIS.len() - 1;

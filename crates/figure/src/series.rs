@@ -80,8 +80,13 @@ impl Series {
 
     /// The colour of curve `i` of a family of `n`, from the first to the last shade, instead of the next of the
     /// palette.
-    pub fn shade(mut self, i: usize, n: usize) -> Series {
-        self.shade = Some(i as f64 / n.saturating_sub(1).max(1) as f64);
+    pub fn shade(self, i: usize, n: usize) -> Series {
+        self.shade_at(i as f64 / n.saturating_sub(1).max(1) as f64)
+    }
+
+    /// The colour at a part of the way from the first to the last shade, 0 to 1.
+    pub fn shade_at(mut self, part: f64) -> Series {
+        self.shade = Some(part);
         self
     }
 }

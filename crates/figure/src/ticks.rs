@@ -16,12 +16,12 @@ pub struct Ticks {
     pub minor: Vec<f64>,
 }
 
-/// Ticks at multiples of 1, 2 or 5 times a power of ten, in the range; or of `step`, where two of these are in it and
+/// Ticks at multiples of 1, 2 or 5 times a power of ten, in the range; or of `step`, where three of these are in it and
 /// not too many.
 pub fn linear(low: f64, high: f64, step: Option<f64>) -> Ticks {
     let step = step
         .filter(|step| (high - low) / step <= 4.0 * MOST_LINEAR)
-        .filter(|step| (high / step + 1e-9).floor() > (low / step - 1e-9).ceil())
+        .filter(|step| (high / step + 1e-9).floor() > (low / step - 1e-9).ceil() + 1.0)
         .unwrap_or_else(|| round_step((high - low) / (0.6 * MOST_LINEAR)));
     let (first, last) = ((low / step - 1e-9).ceil(), (high / step + 1e-9).floor());
     let largest = low.abs().max(high.abs());

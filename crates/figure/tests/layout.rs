@@ -276,6 +276,50 @@ fn a_figure_of_many_shaded_series_names_some_of_them() {
     assert_eq!(clashes(&svg).unwrap(), Vec::<String>::new());
 }
 
+/// Wrong: curves of a sweep of many points could not be told apart, or their names would take the room of the axes.
+#[test]
+fn many_shaded_series_have_a_colour_bar_in_the_colours_of_the_curves() {
+    let force = Axis::linear("axial force", "kN").including(2.0).including(12.0);
+    let mut figure = Figure::new(
+        "A sweep",
+        Axis::linear("angle", "deg"),
+        Axis::linear("force", "N"),
+    )
+    .surface(Surface::bar_of_series(force));
+    for i in 0..50 {
+        let points = (0..10).map(|j| [f64::from(j), f64::from(i + j)]).collect();
+        let part = f64::from(i) / 49.0;
+        figure = figure.series(Series::line(format!("curve {i}"), points).shade_at(part));
+    }
+    let svg = figure.svg().unwrap();
+    assert!(!svg.contains("curve "), "curves have no names");
+    assert!(svg.contains("axial force (kN)"));
+    for tick in ["2", "4", "6", "8", "10", "12"] {
+        assert!(
+            svg.lines().any(|line| line.trim() == tick),
+            "{tick} is not beside the bar"
+        );
+    }
+    // The ends of the bar have the colours of the first and of the last curve.
+    let colours = |element: &str, key: &str| -> Vec<String> {
+        let lines = svg.lines().filter(|line| line.starts_with(element));
+        let values = lines.filter_map(|line| line.split_once(&format!("{key}=\"")).map(|(_, rest)| rest));
+        values
+            .filter_map(|rest| rest.split('"').next().map(str::to_string))
+            .collect()
+    };
+    let (bar, curves) = (colours("<rect", "fill"), colours("<polyline", "stroke"));
+    let first = bar
+        .iter()
+        .position(|colour| *colour == "#440154")
+        .expect("the bar begins dark");
+    assert!(
+        curves.contains(&bar[first]) && curves.contains(&bar[first + 19]),
+        "{bar:?} {curves:?}"
+    );
+    assert_eq!(clashes(&svg).unwrap(), Vec::<String>::new());
+}
+
 /// The figures of these tests as files, to look at: FIGURES=DIR.
 #[test]
 fn examples_can_be_looked_at() {

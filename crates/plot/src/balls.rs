@@ -6,6 +6,7 @@ use super::quantity::{
     DEGREE, GIGAPASCAL, MICROMETRE, MILLIMETRE_PER_SECOND, NEWTON, RPM, Unit, WATT, azimuth_axis, points,
 };
 use super::run::Steps;
+use super::shades::{self, Shades};
 use super::{Choice, Named, Results};
 use results::table::Table;
 
@@ -41,7 +42,7 @@ const CONTACTS: [Contact; 3] = [
         axis: "contact angle",
         column: "contact_angle_rad",
         unit: DEGREE,
-        resolution: 1e-6,
+        resolution: 1e-4,
     },
     Contact {
         name: "peak_pressure",
@@ -187,13 +188,18 @@ fn round_each(results: &Results, table: &Table, steps: &Rows, contact: &Contact)
     let mut figure = Figure::new(title, azimuth_axis(), contact.y_axis());
     let against = results.against(table)?;
     let n = steps.n_steps();
+    let numbers = table.column("step")?;
+    let numbers: Vec<u64> = (0..n).map(|step| numbers[steps.starts[step]] as u64).collect();
+    let shades = Shades::of(results, &numbers)?;
+    figure = shades::bar(figure, shades.as_ref());
     for step in 0..n {
         let rows = steps.of_step(step);
         let places = by_azimuth(table, &rows, &values(table, contact, "inner", &rows)?)?;
         let name = against
             .as_ref()
             .map_or(String::new(), |(axis, value)| axis.value(value[rows[0]]));
-        figure = figure.series(Series::line_and_marks(name, places).shade(step, n));
+        let series = Series::line_and_marks(name, places);
+        figure = figure.series(shades::shaded(series, shades.as_ref(), step, n));
     }
     Ok(Named::new(format!("{}_round", contact.name), figure))
 }

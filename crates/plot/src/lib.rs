@@ -7,7 +7,9 @@
 mod balls;
 mod cage;
 mod campbell;
+mod cut;
 mod energy;
+mod groove;
 mod modes;
 mod probes;
 mod profiles;
@@ -15,6 +17,7 @@ pub mod quantity;
 mod raceways;
 mod run;
 mod section;
+mod shades;
 mod shaft;
 mod stiffness;
 mod surface;
@@ -25,6 +28,7 @@ use anyhow::anyhow;
 use clap::Args;
 use comm::print;
 use figure::Figure;
+use results::answer;
 use results::failure::Failure;
 use results::folder::say_later;
 use results::integrity::warn_of_doubts;
@@ -105,6 +109,8 @@ pub fn plot(request: &Plot) -> Result<(), Failure> {
         write_picture(path, &images.svg, &images.png)?;
     }
     let names: Vec<&str> = images.iter().map(|(name, ..)| *name).collect();
+    answer::add("folder", &out);
+    answer::add("figures", &names);
     print::line(format_args!(
         "{} figures as svg and png in {}: {}",
         names.len(),
@@ -125,6 +131,12 @@ pub fn linear_figures(dir: &Path) -> anyhow::Result<Vec<Named>> {
     Ok(found.map(|(name, figure)| Named::new(name, figure)).collect())
 }
 
+/// Figures with their names.
+fn named(found: anyhow::Result<Vec<(String, Figure)>>) -> anyhow::Result<Vec<Named>> {
+    let named = |(name, figure)| Named::new(name, figure);
+    Ok(found?.into_iter().map(named).collect())
+}
+
 /// The figures of the run in `dir`; at least one. Where none can be made, or what was chosen is not there, that is the
 /// error.
 pub fn figures(dir: &Path, choice: &Choice) -> Result<Figures, Failure> {
@@ -139,7 +151,8 @@ pub fn figures(dir: &Path, choice: &Choice) -> Result<Figures, Failure> {
         ("modes", modes::figures(dir)),
         ("stiffness", linear_figures(dir)),
         ("raceways", surface::figures(&results, choice)),
-        ("sections", section::figures(&results, choice)),
+        ("grooves", named(groove::figures(&results, choice.step))),
+        ("sections", named(section::figures(&results, choice.step))),
     ];
     let is_chosen = choice.ball != 0 || choice.step.is_some();
     let (mut drawn, mut problems, mut first) = (Vec::new(), Vec::new(), None);

@@ -8,6 +8,7 @@ use results::table::{Rows, read_rows};
 
 use super::quantity::{self, DEGREE, MEGAPASCAL, MICROMETRE, Unit, points};
 use super::run::Steps;
+use super::shades::{self, Shades};
 use super::{Choice, Named, Results};
 
 /// Table of all profiles.
@@ -79,9 +80,13 @@ fn over_sweep(results: &Results, profile: &str, steps: &BTreeMap<u64, Columns>) 
     let (axis, _) = along(steps.values().next().expect("a profile has rows"));
     let stress = MEGAPASCAL.axis("von Mises stress").including(0.0);
     let mut figure = Figure::new(format!("Profile {profile}: von Mises stress"), axis, stress);
+    let numbers: Vec<u64> = steps.keys().copied().collect();
+    let shades = Shades::of(results, &numbers)?;
+    figure = shades::bar(figure, shades.as_ref());
     for (i, (&step, columns)) in steps.iter().enumerate() {
         let values = points(&along(columns).1, &MEGAPASCAL.of(&columns["von_mises_pa"]));
-        figure = figure.series(Series::line(results.name_of(step)?, values).shade(i, steps.len()));
+        let series = Series::line(results.name_of(step)?, values);
+        figure = figure.series(shades::shaded(series, shades.as_ref(), i, steps.len()));
     }
     Ok(Named::new(format!("profile_{profile}_von_mises"), figure))
 }

@@ -16,6 +16,11 @@ pub const MICROMETRE: Unit = Unit {
     sign: "µm",
     factor: 1e6,
 };
+/// Millimetre.
+pub const MILLIMETRE: Unit = Unit {
+    sign: "mm",
+    factor: 1e3,
+};
 /// Degree.
 pub const DEGREE: Unit = Unit {
     sign: "deg",

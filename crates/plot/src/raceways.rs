@@ -8,7 +8,10 @@ use std::path::Path;
 
 use checkpoint::{Grid, StepRecord};
 use contact::{BearingGeometry, Groove, Side};
+use results::table::Table;
 use scene::{MeshFiles, Scene, geometry};
+
+use super::quantity::DEGREE;
 
 /// How far a node may lie off the torus, in groove radii: meshes are exact to rounding in their files.
 const ON_TORUS: f64 = 1e-4;
@@ -34,7 +37,11 @@ pub struct Raceways {
 
 /// Where the stress under a ball is not that of its contact.
 const WITHOUT_NEAR_FIELD: &str = "Without near field: stress of forces spread over the contact patches, \
-                                  far below that under a ball ([stress] near_field = true shows it)";
+                                  far below that under a ball (see [stress])";
+
+/// Where it is, nodes alone show it.
+const AT_NODES: &str =
+    "Stress at the nodes of the mesh, that of the Hertz contacts included; its peak may lie between nodes";
 
 /// The raceways of a step.
 pub fn raceways(record: &StepRecord) -> anyhow::Result<Raceways> {
@@ -48,15 +55,18 @@ pub fn raceways(record: &StepRecord) -> anyhow::Result<Raceways> {
     Ok(Raceways {
         grooves: Side::BOTH.map(|side| groove(&geometry, side)),
         note: match scene.stress.near_field_reach {
-            Some(_) => "",
+            Some(_) => AT_NODES,
             None => WITHOUT_NEAR_FIELD,
         },
     })
 }
 
-/// The largest von Mises stress of some nodes, Pa.
-pub fn largest(nodes: &[Node]) -> f64 {
-    nodes.iter().map(|node| node.von_mises).fold(0.0, f64::max)
+/// The largest of the values of the nodes of a body: one scale for all figures of a ring.
+pub fn largest_of_body(grid: &Grid, values: &[f64], body: u8) -> f64 {
+    let cells = grid.offsets.windows(2).zip(&grid.body);
+    let of_body = cells.filter(|(_, b)| **b == body).map(|(ends, _)| ends);
+    let nodes = of_body.flat_map(|ends| &grid.connectivity[ends[0] as usize..ends[1] as usize]);
+    nodes.map(|&node| values[node as usize]).fold(0.0, f64::max)
 }
 
 fn groove(geometry: &BearingGeometry, side: Side) -> Groove {
@@ -121,4 +131,29 @@ pub fn at_azimuth(row: &[Node], azimuth: f64) -> f64 {
     }
     let part = (azimuth - before.azimuth).rem_euclid(360.0) / gap;
     before.von_mises + part * (next.von_mises - before.von_mises)
+}
+
+/// Forces that differ by less, relative to the largest, are equal: round-off does not choose the ball.
+const EQUAL: f64 = 1e-6;
+
+/// The first of the balls with the largest force on a raceway in a step, and its azimuth, deg.
+pub fn most_loaded(table: &Table, step: u64, groove: &Groove) -> anyhow::Result<(usize, f64)> {
+    let force = table.column(&format!("{}_force_n", groove.side.name()))?;
+    let (steps, ball, azimuth) = (
+        table.column("step")?,
+        table.column("ball")?,
+        table.column("azimuth_rad")?,
+    );
+    let rows: Vec<usize> = (0..table.n_rows())
+        .filter(|&row| steps[row] == step as f64)
+        .collect();
+    let largest = rows.iter().map(|&row| force[row]).fold(0.0, f64::max);
+    let row = rows
+        .into_iter()
+        .find(|&row| force[row] >= largest * (1.0 - EQUAL));
+    let row = row.ok_or_else(|| anyhow::anyhow!("balls.csv has no rows of step {step}"))?;
+    Ok((
+        ball[row] as usize,
+        (azimuth[row] * DEGREE.factor).rem_euclid(360.0),
+    ))
 }

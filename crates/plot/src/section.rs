@@ -1,95 +1,85 @@
-//! Stress over the section of a raceway: along the arc of the groove at the most loaded ball.
+//! The section of each ring at its most loaded ball, filled with the stress of the mesh.
 
 use checkpoint::{all_steps, read_any_step, read_mesh};
 use contact::Groove;
-use figure::{Figure, Series};
+use figure::{Figure, Series, Surface, Triangle};
 
-use super::quantity::{DEGREE, MEGAPASCAL};
+use super::cut;
+use super::quantity::{DEGREE, MEGAPASCAL, MILLIMETRE};
 use super::raceways;
-use super::run::Steps;
-use super::{Choice, Named, Results};
+use super::run::Results;
 use results::table::Table;
 
-/// A figure per raceway: of a sweep a curve per point, else the chosen step.
-pub fn figures(results: &Results, choice: &Choice) -> anyhow::Result<Vec<Named>> {
+/// Width and height of the picture of a section.
+const SIZE: (u32, u32) = (820, 480);
+
+/// A figure per ring of the chosen step; none if it has no nodal stress.
+pub fn figures(results: &Results, step: Option<u64>) -> anyhow::Result<Vec<(String, Figure)>> {
     let Some(balls) = &results.balls else {
         return Ok(Vec::new());
     };
-    let steps = all_steps(&results.dir)?;
-    let steps: Vec<u64> = match (&results.steps, choice.step) {
-        (Steps::Sweep(_), None) => steps,
-        (_, chosen) => chosen.or(steps.last().copied()).into_iter().collect(),
-    };
-    let mut figures: [Option<Figure>; 2] = [None, None];
-    if steps.is_empty() {
+    let Some(step) = step.or(all_steps(&results.dir)?.last().copied()) else {
         return Ok(Vec::new());
-    }
+    };
+    let record = read_any_step(&results.dir, step)?;
+    let Some(von_mises) = &record.points.von_mises else {
+        return Ok(Vec::new());
+    };
     let grid = read_mesh(&results.dir)?;
-    for (i, &step) in steps.iter().enumerate() {
-        let record = read_any_step(&results.dir, step)?;
-        let name = results.name_of(record.step)?;
-        let raceways = raceways::raceways(&record)?;
-        for (figure, groove) in figures.iter_mut().zip(raceways.grooves) {
-            let nodes = raceways::nodes(&grid, &record, &groove);
-            let (ball, azimuth) = most_loaded(balls, step, &groove)?;
-            let points: Vec<[f64; 2]> = raceways::rows(&nodes)
-                .into_iter()
-                .map(|(key, row)| {
-                    [
-                        1e-3 * key as f64,
-                        raceways::at_azimuth(&row, azimuth) * MEGAPASCAL.factor,
-                    ]
-                })
-                .collect();
-            if points.len() < 2 {
-                continue;
-            }
-            let label = format!("{name}, ball {ball} at {azimuth:.0} deg");
-            // One step has the scale of the picture of its raceway.
-            let largest = match steps.len() {
-                1 => raceways::largest(&nodes) * MEGAPASCAL.factor,
-                _ => 0.0,
-            };
-            let empty = || over_section(&groove, largest).note(raceways.note);
-            let empty = figure.take().unwrap_or_else(empty);
-            *figure = Some(empty.series(Series::line_and_marks(label, points).shade(i, steps.len())));
+    let moved: Vec<[f64; 3]> = grid
+        .points
+        .iter()
+        .zip(&record.points.displacement)
+        .map(|(x, u)| [x[0] + u[0], x[1] + u[1], x[2] + u[2]])
+        .collect();
+    let raceways = raceways::raceways(&record)?;
+    let mut figures = Vec::new();
+    for (groove, body) in raceways.grooves.into_iter().zip([0, 1]) {
+        let (ball, azimuth) = raceways::most_loaded(balls, step, &groove)?;
+        let triangles = cut::at_azimuth(&grid, &moved, von_mises, body, azimuth / DEGREE.factor);
+        if triangles.is_empty() {
+            continue;
         }
-    }
-    let named = figures.into_iter().zip(["inner", "outer"]);
-    Ok(named
-        .filter_map(|(figure, side)| Some(Named::new(format!("section_{side}"), figure?)))
-        .collect())
-}
-
-/// An empty figure whose scale reaches from 0 to `largest`, MPa, at least.
-fn over_section(groove: &Groove, largest: f64) -> Figure {
-    let title = format!(
-        "Stress over the section of the {} raceway at its most loaded ball",
-        groove.side.name()
-    );
-    Figure::new(
-        title,
-        DEGREE.axis("groove angle").tight(),
-        MEGAPASCAL
+        let largest = raceways::largest_of_body(&grid, von_mises, body) * MEGAPASCAL.factor;
+        let side = groove.side.name();
+        let title =
+            format!("Stress in the section of the {side} ring at ball {ball}, {azimuth:.1} deg, step {step}");
+        let value = MEGAPASCAL
             .axis("von Mises stress")
             .including(0.0)
-            .including(largest),
-    )
+            .including(largest);
+        let figure = Figure::new(title, MILLIMETRE.axis("z"), MILLIMETRE.axis("radius"))
+            .size(SIZE.0, SIZE.1)
+            .equal_scales()
+            .note(raceways.note)
+            .surface(Surface::of_triangles(value, in_figure(&triangles)))
+            .series(contact(balls, step, ball, &groove)?);
+        figures.push((format!("section_{side}"), figure));
+    }
+    Ok(figures)
 }
 
-/// The ball with the largest force on a raceway in a step, and its azimuth, deg.
-fn most_loaded(balls: &Table, step: u64, groove: &Groove) -> anyhow::Result<(usize, f64)> {
-    let force = balls.column(&format!("{}_force_n", groove.side.name()))?;
-    let (steps, ball, azimuth) = (
-        balls.column("step")?,
-        balls.column("ball")?,
-        balls.column("azimuth_rad")?,
-    );
-    let rows = (0..balls.n_rows()).filter(|&row| steps[row] == step as f64);
-    let row = rows.max_by(|&a, &b| force[a].total_cmp(&force[b]));
-    let row = row.ok_or_else(|| anyhow::anyhow!("balls.csv has no rows of step {step}"))?;
-    Ok((
-        ball[row] as usize,
-        (azimuth[row] * DEGREE.factor).rem_euclid(360.0),
-    ))
+/// Triangles in the units of the figure.
+fn in_figure(triangles: &[Triangle]) -> Vec<Triangle> {
+    let shown = |t: &Triangle| Triangle {
+        corners: t.corners.map(|corner| corner.map(|x| x * MILLIMETRE.factor)),
+        values: t.values.map(|value| value * MEGAPASCAL.factor),
+    };
+    triangles.iter().map(shown).collect()
+}
+
+/// Where a ball touches the raceway: z and radius; none for a ball without force.
+fn contact(table: &Table, step: u64, ball: usize, groove: &Groove) -> anyhow::Result<Series> {
+    let side = groove.side.name();
+    let (steps, numbers) = (table.column("step")?, table.column("ball")?);
+    let force = table.column(&format!("{side}_force_n"))?;
+    let angle = table.column(&format!("{side}_contact_angle_rad"))?;
+    let is_it = |&row: &usize| steps[row] == step as f64 && numbers[row] == ball as f64 && force[row] > 0.0;
+    let place = |row: usize| {
+        let [_, along] = groove.direction(angle[row]);
+        let z = groove.centre_z + groove.groove_radius * along;
+        [z, groove.radius(angle[row])].map(|x| x * MILLIMETRE.factor)
+    };
+    let places = (0..table.n_rows()).filter(is_it).map(place);
+    Ok(Series::rings("contact", places.collect()))
 }

@@ -31,10 +31,11 @@ pub fn figures(results: &Results, choice: &Choice) -> anyhow::Result<Vec<Named>>
     let grid = read_mesh(&results.dir)?;
     let mut figures = Vec::new();
     let raceways = raceways::raceways(&record)?;
-    for groove in raceways.grooves {
+    for (groove, body) in raceways.grooves.into_iter().zip([0, 1]) {
         let nodes = raceways::nodes(&grid, &record, &groove);
-        if raceways::rows(&nodes).len() > 1 {
-            let mut named = unrolled(&nodes, &groove, balls, step)?;
+        if let (Some(values), true) = (&record.points.von_mises, raceways::rows(&nodes).len() > 1) {
+            let largest = raceways::largest_of_body(&grid, values, body);
+            let mut named = unrolled(&nodes, largest, &groove, (balls, step))?;
             named.figure = named.figure.note(raceways.note);
             figures.push(named);
         }
@@ -42,7 +43,13 @@ pub fn figures(results: &Results, choice: &Choice) -> anyhow::Result<Vec<Named>>
     Ok(figures)
 }
 
-fn unrolled(nodes: &[Node], groove: &Groove, balls: &Table, step: u64) -> anyhow::Result<Named> {
+/// The picture of a raceway; `largest` is the end of its scale, Pa.
+fn unrolled(
+    nodes: &[Node],
+    largest: f64,
+    groove: &Groove,
+    (balls, step): (&Table, u64),
+) -> anyhow::Result<Named> {
     let side = groove.side.name();
     let arc = |angle: f64| 1e3 * groove.groove_radius * angle.to_radians();
     let angles = nodes.iter().map(|node| node.groove_angle);
@@ -67,11 +74,10 @@ fn unrolled(nodes: &[Node], groove: &Groove, balls: &Table, step: u64) -> anyhow
             values.push(value * MEGAPASCAL.factor);
         }
     }
-    let largest = raceways::largest(nodes) * MEGAPASCAL.factor;
     let value_axis = MEGAPASCAL
         .axis("von Mises stress")
         .including(0.0)
-        .including(largest);
+        .including(largest * MEGAPASCAL.factor);
     let y_edges = y_edges.into_iter().map(arc).collect();
     let title = format!("Stress of the {side} raceway with the contact ellipses, step {step}");
     let y_axis = Axis::linear("arc of the groove from its bottom", "mm").tight();

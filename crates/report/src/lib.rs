@@ -12,6 +12,7 @@ use std::path::PathBuf;
 use clap::Args;
 use comm::print;
 use plot::{Choice, Results};
+use results::answer;
 use results::failure::Failure;
 use results::folder::say_later;
 use results::whole;
@@ -54,6 +55,7 @@ pub fn report(request: &Report) -> Result<(), Failure> {
         .clone()
         .unwrap_or_else(|| request.dir.join("report.html"));
     whole::write(&path, page.as_bytes(), page::is_page)?;
+    answer::add("page", &path);
     print::line(format_args!("report: {}", path.display()));
     Ok(())
 }

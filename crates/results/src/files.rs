@@ -17,9 +17,11 @@ use scene::{Analysis, Scene};
 use timer::{Laps, Stopwatch};
 
 use super::about::{about, identity};
+use super::answer;
 use super::fields;
 use super::film::FilmLaw;
 use super::folder;
+use super::log;
 use super::memory::Forecasts;
 use super::probes::Probes;
 use super::ring_stress::{Gathered, RingStress};
@@ -81,6 +83,7 @@ impl Files {
         note_dead_owner(&lock);
         let mut output = Output::create_in(lock, &mesh, storage(scene))?;
         drop(mesh);
+        say_folder(dir);
         output.describe(about(scene, dir, warnings)?)?;
         let tables = Tables::create(
             dir,
@@ -117,6 +120,7 @@ impl Files {
         let mesh = mesh.map_or_else(|| mesh_file(scene, model), Ok)?;
         let opened = Output::resume_of(lock, &mesh, storage(scene), last)?;
         drop(mesh);
+        say_folder(&dir);
         let (mut output, damaged, mut superseded) = (opened.output, opened.damaged, opened.superseded);
         output.describe(texts)?;
         if let Some(fault) = opened.mesh_restored {
@@ -325,6 +329,12 @@ fn own_columns(scene: &Scene, model: &Model, probes: Option<&Probes>) -> OwnColu
         probes: probes.and_then(Probes::columns),
         profiles: probes.and_then(Probes::profile_columns),
     }
+}
+
+/// Puts the log into the folder of a run, and names the folder in the answer of the command.
+pub fn say_folder(dir: &Path) {
+    log::begin(dir);
+    answer::add_results(dir);
 }
 
 /// Says that the last writer of a folder did not end well.

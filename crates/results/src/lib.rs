@@ -4,6 +4,7 @@
 //! meshes tell, before ranks divide them. A command that does not end well is a [`failure::Failure`].
 
 pub mod about;
+pub mod answer;
 pub mod campbell;
 pub mod console;
 mod cut;
@@ -15,6 +16,7 @@ pub mod files;
 pub mod film;
 pub mod folder;
 pub mod integrity;
+pub mod log;
 pub mod memory;
 pub mod modes;
 pub mod motion_fields;

@@ -19,7 +19,7 @@ use serde::Serialize;
 use timer::Laps;
 
 use super::fields;
-use super::files::{mesh_file, storage};
+use super::files::{mesh_file, say_folder, storage};
 use super::folder;
 use super::mounting::{ClearanceSummary, FitSummary, fits};
 use super::ring_stress::{Basis, RingStress, ShownRing};
@@ -62,6 +62,7 @@ impl ModeFiles {
     /// Creates the folder's files.
     pub fn create(scene: &Scene, model: &Model, dir: &Path) -> Result<ModeFiles, Failure> {
         let output = Output::create_in(folder::prepare(dir)?, &mesh_file(scene, model)?, storage(scene))?;
+        say_folder(dir);
         Ok(ModeFiles {
             output,
             table: tables::create(dir, TABLE, &COLUMNS.map(str::to_string))?,

@@ -21,8 +21,8 @@ pub fn read_tables<T: DeserializeOwned>(text: &str, path: &Path) -> Result<T, Sc
             overrides: Vec::new(),
             line: located.line,
             column: located.column,
+            excerpt: located.excerpt(located.line),
             message: located.message,
-            excerpt: located.excerpt,
         }
     })
 }

@@ -167,6 +167,11 @@ impl Plan {
         Ok(())
     }
 
+    /// The text of the scene with what it includes, where `set` may name other files to include.
+    pub fn whole_scene(&self, set: &[String]) -> anyhow::Result<String> {
+        Ok(scene::whole_text(&self.scene_text, &self.scene, set)?)
+    }
+
     /// A point in words: `mesh = 90, element = hex8`.
     pub fn name(&self, point: &Point) -> String {
         let parts: Vec<String> = self

@@ -79,7 +79,10 @@ pub fn find(plan: &Plan, point: &Point, out: &Path) -> anyhow::Result<Option<Rec
     })?;
     let changed = [
         ("other settings", record.set != point.set),
-        ("another text of the scene", record.scene != plan.scene_text),
+        (
+            "another text of the scene",
+            record.scene != plan.whole_scene(&point.set)?,
+        ),
         ("another number of threads", record.threads != plan.threads),
     ];
     if let Some((what, _)) = changed.iter().find(|(_, is)| *is) {

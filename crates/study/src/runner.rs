@@ -94,7 +94,7 @@ fn run_point(plan: &Plan, point: &Point, out: &Path) -> Result<(), Failure> {
         index: point.index,
         name: plan.name(point),
         set: point.set.clone(),
-        scene: plan.scene_text.clone(),
+        scene: plan.whole_scene(&set)?,
         threads: plan.threads,
         program: record::program(),
         failure: None,

@@ -53,6 +53,8 @@ pub enum SpeedRole {
     Force,
     /// It makes a force on balls of it, whose speeds may follow their contact angles.
     BallForce,
+    /// It makes a force of it, in an equilibrium too, and does without one.
+    Optional,
 }
 
 /// What a scene must have, or an effect does nothing.
@@ -218,7 +220,8 @@ impl About {
     /// Reports what the scene lacks for the effect to do something.
     pub fn check_needs(&self, context: Context, problems: &mut Problems) {
         let name = self.name;
-        if self.speed != SpeedRole::None && context.has_speed == [false; 2] {
+        let needs_one = !matches!(self.speed, SpeedRole::None | SpeedRole::Optional);
+        if needs_one && context.has_speed == [false; 2] {
             problems.add(format!(
                 "[effects.{name}] needs the speed of a ring; add [speed] with inner = \"1800 rpm\" or \
                  remove the effect"

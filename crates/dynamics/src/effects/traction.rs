@@ -106,7 +106,7 @@ impl table::Table for Table {
         About {
             name: "traction",
             example: EXAMPLE,
-            speed: SpeedRole::Force,
+            speed: SpeedRole::Optional,
             needs: &[],
             // It comes with another kind of balls, which is not varied.
             trial: None,

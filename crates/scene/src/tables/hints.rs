@@ -3,7 +3,9 @@
 use super::reference;
 
 /// What catalogues and other programs call a key or a word.
-const LETTERS: [(&str, &str); 22] = [
+const LETTERS: [(&str, &str); 24] = [
+    ("import", "include"),
+    ("includes", "include"),
     ("d", "bore_diameter"),
     ("D", "outside_diameter"),
     ("B", "width"),
@@ -66,11 +68,15 @@ pub fn meant<'a>(name: &str, valid: &[&'a str]) -> Vec<&'a str> {
     if parts.len() > MOST { Vec::new() } else { parts }
 }
 
-/// Where a name belongs: `write [effects.gravity]`, or `mesh belongs to [inner], [outer]`.
+/// Where a name belongs: `write [effects.gravity]`, `mesh belongs to [inner], [outer]`, or the top of the scene.
 pub fn elsewhere(name: &str) -> Option<String> {
     let is_table = |table: &str| table.contains('.') && table.rsplit('.').next() == Some(name);
     if let Some(block) = reference::all().into_iter().find(|block| is_table(&block.table)) {
         return Some(format!("write [{}]", block.table));
+    }
+    let of_scene = |block: &reference::Block| block.table.is_empty() && block.keys().contains(&name);
+    if reference::all().iter().any(of_scene) {
+        return Some(format!("{name} stands at the top, before the first table"));
     }
     let mut tables: Vec<String> = Vec::new();
     for block in reference::all() {
@@ -120,7 +126,18 @@ pub fn of_syntax(line: &str) -> Option<String> {
         let colon = code
             .split_once(':')
             .filter(|(key, value)| !key.contains(' ') && !value.is_empty());
-        return colon.map(|(key, value)| format!("write {key} = {} instead of a colon", value.trim()));
+        let bare = code.split_once(' ').map(|(key, value)| (key, value.trim()));
+        let bare = bare.filter(|(_, value)| value.starts_with(|c: char| c == '"' || c.is_ascii_digit()));
+        return match (colon, bare) {
+            (Some((key, value)), _) => Some(format!("write {key} = {} instead of a colon", value.trim())),
+            (None, Some((key, value))) => {
+                Some(format!("a key and its value have = between: {key} = {value}"))
+            }
+            (None, None) => None,
+        };
+    }
+    if key.contains(' ') && key.chars().all(|c| c.is_alphanumeric() || c == ' ') {
+        return Some(format!("a key is one word: {}", key.replace(' ', "_")));
     }
     let comma = |text: &str| {
         let (whole, rest) = text.split_once(',')?;

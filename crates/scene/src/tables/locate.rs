@@ -16,10 +16,25 @@ pub struct Located {
     pub column: usize,
     /// Key, value, what was expected.
     pub message: String,
-    /// The line itself with a mark below.
-    pub excerpt: String,
+    /// The line itself.
+    content: String,
+    /// Length of the mark below it, characters.
+    marks: usize,
     /// Whether it is about a table that the file lacks: no line has it.
     pub is_of_whole_file: bool,
+}
+
+impl Located {
+    /// The line itself with a mark below; `line` is the number that the user knows it by.
+    pub fn excerpt(&self, line: usize) -> String {
+        let gutter = " ".repeat(line.to_string().len());
+        format!(
+            "{gutter} |\n{line} | {}\n{gutter} | {}{}",
+            self.content,
+            " ".repeat(self.column - 1),
+            "^".repeat(self.marks)
+        )
+    }
 }
 
 /// Locates the reader's `message` about a stretch of the text, in bytes.
@@ -36,19 +51,14 @@ pub fn locate(text: &str, span: Option<Range<usize>>, message: &str) -> Located 
             .clamp(start, line_start.max(start).max(line_start + content.len())),
     );
     let marks = text[start..end].chars().count().max(1);
-    let gutter = " ".repeat(line.to_string().len());
-    let excerpt = format!(
-        "{gutter} |\n{line} | {content}\n{gutter} | {}{}",
-        " ".repeat(column - 1),
-        "^".repeat(marks)
-    );
     let message = describe(text, span, message);
     Located {
         line,
         column,
         is_of_whole_file: message.starts_with(NO_TABLE),
         message,
-        excerpt,
+        content: content.to_string(),
+        marks,
     }
 }
 
@@ -84,7 +94,7 @@ pub fn line_of(text: &str, problem: &str) -> Option<usize> {
     let mut table = document.get_ref();
     let (mut place, mut value) = entry(table, names.next()?)?;
     for name in names {
-        table = value.as_table()?;
+        table = value.get_ref().as_table()?;
         (place, value) = entry(table, name)?;
     }
     Some(1 + text[..floor_boundary(text, place.start)].matches('\n').count())
@@ -107,10 +117,10 @@ pub fn other_name(name: &str) -> Option<&'static str> {
 }
 
 /// The place of a key in its table, and its value; the key may have its other name there.
-fn entry<'a, 'i>(table: &'a DeTable<'i>, name: &str) -> Option<(Range<usize>, &'a DeValue<'i>)> {
+pub fn entry<'a, 'i>(table: &'a DeTable<'i>, name: &str) -> Option<(Range<usize>, &'a Spanned<DeValue<'i>>)> {
     let find = |name: &str| table.iter().find(|(key, _)| key.get_ref() == name);
     let (key, value) = find(name).or_else(|| find(other_name(name)?))?;
-    Some((key.span(), value.get_ref()))
+    Some((key.span(), value))
 }
 
 /// Adds the key's path to the reader's message, and says it in the words of a scene.

@@ -49,10 +49,12 @@ mod edit;
 mod error;
 mod gather;
 mod hints;
+mod include;
 mod life;
 mod locate;
 mod lubricant;
 mod materials;
+mod messages;
 mod modes;
 mod oil;
 mod output;
@@ -74,13 +76,13 @@ mod sweep;
 #[cfg(test)]
 mod tests;
 
-use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use dynamics::effects::Effects;
 use dynamics::interactions::cage::Cage;
 use dynamics::kinematics::{BallSpeeds, RingSpeeds};
 use serde::Deserialize;
+use serde::de::IgnoredAny;
 use toml_edit::DocumentMut;
 
 pub use self::balls::BallMotion;
@@ -114,10 +116,10 @@ use self::bearing::RawBearing;
 use self::cage::RawCage;
 use self::contact::RawContact;
 use self::dynamic::RawDynamic;
-use self::gather::Finding;
 use self::life::RawLife;
 use self::lubricant::RawLubricant;
 use self::materials::RawMaterials;
+use self::messages::Messages;
 use self::modes::{ModesContext, RawModes};
 use self::output::{OutputContext, RawOutput};
 use self::probes::{ProbesContext, RawProbes};
@@ -136,6 +138,9 @@ use input::Problems;
 #[serde(deny_unknown_fields, expecting = "the tables of a scene")]
 struct RawScene {
     title: Option<String>,
+    /// Taken out of the text before it is read; here so that messages name it.
+    #[serde(rename = "include")]
+    _include: Option<IgnoredAny>,
     bearing: RawBearing,
     materials: RawMaterials,
     contact: RawContact,
@@ -174,7 +179,8 @@ struct RawScene {
 pub struct Scene {
     /// The scene file.
     pub path: PathBuf,
-    /// Its text with the overrides applied: with the path, all that is needed to read the scene again.
+    /// Its text with all that it includes and the overrides applied: with the path, all that is needed to read the
+    /// scene again.
     pub text: String,
     /// The `--set` arguments in it.
     pub overrides: Vec<String>,
@@ -246,21 +252,26 @@ impl Scene {
         overrides: &[String],
         mesh_files: MeshFiles,
     ) -> Result<Scene, SceneError> {
+        let whole = include::whole(text, path, overrides)?;
         let source = Source {
             path,
-            original: text,
             overrides,
             mesh_files,
+            messages: Messages {
+                path,
+                whole: &whole,
+                overrides,
+            },
         };
-        let mut document = source.document(text)?;
-        for argument in overrides {
+        let mut document = source.messages.document(&whole.text)?;
+        for argument in overrides.iter().filter(|o| !include::is_of_include(o)) {
             edit::apply_override(&mut document, argument).map_err(|reason| SceneError::Override {
                 argument: argument.clone(),
                 reason,
             })?;
         }
         let text = if overrides.is_empty() {
-            text.to_string()
+            whole.text.clone()
         } else {
             document.to_string()
         };
@@ -279,77 +290,22 @@ impl Scene {
     }
 }
 
+/// The text of a scene with all that it includes; `overrides` may name other files to include.
+pub fn whole_text(text: &str, path: &Path, overrides: &[String]) -> Result<String, SceneError> {
+    Ok(include::whole(text, path, overrides)?.text)
+}
+
 /// Where a text comes from and how strictly it is checked.
 struct Source<'a> {
     path: &'a Path,
-    /// The text before overrides, whose lines are those of the file.
-    original: &'a str,
     overrides: &'a [String],
     mesh_files: MeshFiles,
+    messages: Messages<'a>,
 }
 
 impl Source<'_> {
-    fn document(&self, text: &str) -> Result<DocumentMut, SceneError> {
-        text.parse()
-            .map_err(|e: toml_edit::TomlError| self.format_error(text, e.span(), e.message()))
-    }
-
-    /// Whether the command line gives the value that a problem is about.
-    fn is_overridden(&self, problem: &str) -> bool {
-        let keys = self
-            .overrides
-            .iter()
-            .filter_map(|argument| argument.split_once('='));
-        keys.into_iter().any(|(key, _)| problem.starts_with(key.trim()))
-    }
-
-    /// One error with its place, or a list of several.
-    fn format_errors(&self, text: &str, found: &[Finding]) -> SceneError {
-        if let [one] = found {
-            return self.format_error(text, one.span.clone(), &one.message);
-        }
-        let problem = |finding: &Finding| {
-            let located = locate::locate(text, finding.span.clone(), &finding.message);
-            match located.is_of_whole_file || !self.overrides.is_empty() {
-                true => located.message,
-                false => format!("{} (line {})", located.message, located.line),
-            }
-        };
-        SceneError::Invalid {
-            path: self.path.to_path_buf(),
-            overrides: self.overrides.to_vec(),
-            problems: found.iter().map(problem).collect(),
-        }
-    }
-
-    fn format_error(&self, text: &str, span: Option<Range<usize>>, message: &str) -> SceneError {
-        let located = locate::locate(text, span, message);
-        SceneError::Format {
-            path: self.path.to_path_buf(),
-            overrides: self.overrides.to_vec(),
-            line: located.line,
-            column: located.column,
-            message: located.message,
-            excerpt: located.excerpt,
-        }
-    }
-
-    /// Problems of values, each with its line in the file where it has one.
-    fn invalid(&self, problems: Vec<String>) -> SceneError {
-        let with_line = |problem: String| match locate::line_of(self.original, &problem) {
-            Some(line) if !self.is_overridden(&problem) => format!("{problem} (line {line})"),
-            _ => problem,
-        };
-        let problems = problems.into_iter().map(with_line).collect();
-        SceneError::Invalid {
-            path: self.path.to_path_buf(),
-            overrides: self.overrides.to_vec(),
-            problems,
-        }
-    }
-
     fn check(&self, text: String, document: &DocumentMut) -> Result<Scene, SceneError> {
-        let raw: RawScene = gather::read(&text).map_err(|found| self.format_errors(&text, &found))?;
+        let raw: RawScene = self.messages.read(&text)?;
         let mut problems = Problems::default();
         let mut assumed = Vec::new();
         let bearing = raw.bearing.check(&mut problems, &mut assumed);
@@ -456,7 +412,7 @@ impl Source<'_> {
                 analysis,
                 assumed,
             }),
-            (.., texts) => Err(self.invalid(texts)),
+            (.., texts) => Err(self.messages.invalid(texts)),
         }
     }
 
@@ -485,7 +441,7 @@ impl Source<'_> {
         if problems.is_empty() {
             Ok(())
         } else {
-            Err(self.invalid(problems))
+            Err(self.messages.invalid(problems))
         }
     }
 }

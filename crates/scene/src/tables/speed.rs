@@ -65,7 +65,10 @@ const MAX_SPEED: f64 = 1e5;
 
 /// Whether an effect makes a force of the speed, in an equilibrium too.
 pub(super) fn makes_force(takes: SpeedRole) -> bool {
-    matches!(takes, SpeedRole::Force | SpeedRole::BallForce)
+    matches!(
+        takes,
+        SpeedRole::Force | SpeedRole::BallForce | SpeedRole::Optional
+    )
 }
 
 /// Whether it is a force on balls.

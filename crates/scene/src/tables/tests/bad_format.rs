@@ -24,7 +24,9 @@ const FORMAT: [Case; 36] = [
     (
         "title",
         "titel = \"x\"",
-        &["2:1: unknown key \"titel\"; did you mean \"title\"? valid keys are \"title\", \"bearing\""],
+        &[
+            "2:1: unknown key \"titel\"; did you mean \"title\"? valid keys are \"title\", \"include\", \"bearing\"",
+        ],
     ),
     (
         "[effects.gravity]",

@@ -80,7 +80,11 @@ fn every_effect_of_speed_needs_one() {
         let result = parse(&format!("{head}{}\n{balls}[dynamic]{tail}", about.example), &[]);
         let expected = format!("[effects.{}] needs the speed of a ring; add [speed]", about.name);
         match result {
-            Ok(_) => assert_eq!(about.speed, SpeedRole::None, "{}", about.name),
+            Ok(_) => assert!(
+                matches!(about.speed, SpeedRole::None | SpeedRole::Optional),
+                "{}",
+                about.name
+            ),
             Err(error) => assert!(error.to_string().contains(&expected), "{error}"),
         }
     }
@@ -95,7 +99,10 @@ fn an_idle_speed_is_refused_with_every_effect_that_would_use_it() {
     let remedy = "; add one, compute motion with [dynamic], or remove [speed]";
     assert!(message.contains(remedy), "{message}");
     for about in all() {
-        let uses_it = matches!(about.speed, SpeedRole::Force | SpeedRole::BallForce);
+        let uses_it = matches!(
+            about.speed,
+            SpeedRole::Force | SpeedRole::BallForce | SpeedRole::Optional
+        );
         let header = format!("[effects.{}]", about.name);
         assert_eq!(message.contains(&header), uses_it, "{header}: {message}");
     }

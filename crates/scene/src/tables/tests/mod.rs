@@ -8,6 +8,7 @@ mod cage;
 mod catalogue;
 mod effects;
 mod good;
+mod include;
 mod life;
 mod lubricant;
 mod modes;

@@ -3,7 +3,7 @@
 use super::*;
 
 /// A line of the example (by its start), what a person types instead, and what the message must say.
-const SLIPS: [(&str, &str, &str); 42] = [
+const SLIPS: [(&str, &str, &str); 52] = [
     (
         "ball_diameter",
         "ball_diameter = \"9,525 mm\"",
@@ -185,6 +185,56 @@ const SLIPS: [(&str, &str, &str); 42] = [
         "title",
         "title = \u{201c}x\u{201d}",
         "; the quotes are those of a text program; write \"\"",
+    ),
+    (
+        "title",
+        "include \"types/7010c.toml\"",
+        "2:9: this is not TOML: key with no value, expected `=`; a key and its value have = between: include = \"types",
+    ),
+    (
+        "title",
+        "import = \"types/7010c.toml\"",
+        "2:1: unknown key \"import\"; did you mean \"include\"?",
+    ),
+    (
+        "ball_diameter",
+        "ball diameter = \"9 mm\"",
+        "6:6: this is not TOML: key with no value, expected `=`; a key is one word: ball_diameter",
+    ),
+    (
+        "ball_diameter",
+        "ball_diameter = \"-9 mm\"",
+        "bearing.ball_diameter is -9 mm; a diameter must be positive (line 6)",
+    ),
+    (
+        "width",
+        "width = \"0.63 inch\"",
+        "unknown unit \"inch\" (did you mean \"in\"?); expected a length",
+    ),
+    (
+        "first_ball",
+        "contact_angle = \"40\"",
+        "bearing.contact_angle: \"40\" has no unit; expected an angle such as \"15 deg\"",
+    ),
+    (
+        "balls",
+        "balls = 18.0",
+        "bearing.balls: invalid type: floating point `18.0`, expected a whole number",
+    ),
+    (
+        "mode",
+        "mode = patch",
+        "; words stand in quotes: mode = \"patch\"",
+    ),
+    (
+        "value = \"1",
+        "value = \"1,5 kN\"",
+        "numbers have a decimal point, 1.5; expected a force such as \"2 kN\"",
+    ),
+    (
+        "[contact]",
+        "[Contact]",
+        "unknown key \"Contact\"; did you mean \"contact\"?",
     ),
 ];
 
