@@ -6,7 +6,7 @@ use crate::util::tables::Table;
 use crate::util::{Dir, RIGID};
 
 /// Whether Gmsh can be started here.
-fn has_gmsh() -> bool {
+pub fn has_gmsh() -> bool {
     let mut gmsh = Command::new("gmsh");
     let outcome = gmsh
         .arg("--version")

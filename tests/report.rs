@@ -33,8 +33,19 @@ fn the_page_of_a_run_stands_alone() {
     assert!(page.contains(&format!("<h1>{title}</h1>")), "{title}");
     // 26 figures, each an SVG of its own.
     assert_eq!(page.matches("<svg ").count(), 26);
-    for reference in ["src=", "href=", "url(", "@import", "<script"] {
+    for reference in ["src=", "href=", "url(", "@import", "fetch(", "import("] {
         assert!(!page.contains(reference), "{reference}");
+    }
+    // The script of the figures alone, which asks for nothing; every figure has what it reads: two axes with ticks.
+    assert_eq!(page.matches("<script").count(), 1);
+    for figure in page.split("<figure ").skip(1) {
+        let figure = figure.split("</figure>").next().unwrap();
+        assert!(figure.matches("dy=\"0.76em\"").count() >= 2, "{}", &figure[..60]);
+        assert!(
+            figure.matches("text-anchor=\"end\"").count() >= 2,
+            "{}",
+            &figure[..60]
+        );
     }
     // Every element that is opened is closed, in the text that is no SVG.
     for element in [

@@ -6,6 +6,7 @@ mod bad_input;
 mod batch;
 mod cuts;
 mod damaged_tables;
+mod documents;
 mod examples;
 mod export;
 mod first_hour;

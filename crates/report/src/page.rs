@@ -11,6 +11,9 @@ use super::source::Source;
 
 const STYLE: &str = include_str!("style.css");
 
+/// Values under the pointer and zoom in the figures.
+const SCRIPT: &str = include_str!("figures.js");
+
 /// Key numbers below this are round-off in their units: um, mrad, deg, N, GPa.
 const ROUND_OFF: f64 = 1e-9;
 
@@ -38,7 +41,8 @@ pub fn page(source: &Source, numbers: &[Number], pictures: &[(String, String)]) 
     format!(
         "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
          <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>{title}</title>\n\
-         <style>\n{STYLE}</style>\n</head>\n<body>\n{}\n</body>\n</html>\n",
+         <style>\n{STYLE}</style>\n</head>\n<body>\n{}\n\
+         <script>\n{SCRIPT}</script>\n</body>\n</html>\n",
         parts.join("\n")
     )
 }
@@ -259,7 +263,8 @@ fn figures(pictures: &[(String, String)]) -> String {
     };
     let figures: Vec<String> = pictures.iter().map(figure).collect();
     format!(
-        "<h2>Figures</h2>\n<div class=\"figures\">\n{}\n</div>",
+        "<h2>Figures</h2>\n<p class=\"note hint\">Point at a curve to read it. Drag over a part to enlarge it, along \
+         one axis to enlarge that axis; a double click shows all again.</p>\n<div class=\"figures\">\n{}\n</div>",
         figures.join("\n")
     )
 }
@@ -373,7 +378,7 @@ mod tests {
         };
         let page = page(&source, &[], &[]);
         assert!(
-            page.contains("a &lt; b &amp; &lt;script&gt;") && !page.contains("<script>"),
+            page.contains("a &lt; b &amp; &lt;script&gt;") && page.matches("<script").count() == 1,
             "{page}"
         );
         assert!(
