@@ -4,6 +4,7 @@
 //! meshes tell, before ranks divide them. A command that does not end well is a [`failure::Failure`].
 
 pub mod about;
+pub mod body_stress;
 pub mod campbell;
 pub mod console;
 mod cut;

@@ -1,6 +1,7 @@
 //! Interactions of a bearing's bodies.
 
 pub mod contact_damping;
+mod contact_ends;
 pub mod discrete_gradient;
 pub mod free_contact;
 pub mod raceway_contact;

@@ -17,6 +17,8 @@ pub struct StateShape {
     pub has_free_balls: bool,
     /// Whether surfaces have a line in the ledger.
     pub has_profiles: bool,
+    /// Whether temperatures have a line in the ledger.
+    pub has_temperature_work: bool,
 }
 
 impl Motion<'_> {
@@ -28,6 +30,7 @@ impl Motion<'_> {
             has_seat: self.model.seat().is_some(),
             has_free_balls: self.model.traction().is_some(),
             has_profiles: self.has_strips(),
+            has_temperature_work: self.model.mounting.changes(),
         }
     }
 }
