@@ -202,6 +202,39 @@ fn a_flexible_ring_grows_as_its_temperatures_say() {
     assert!(shoulder < found && found < bottom, "{shoulder} {found} {bottom}");
 }
 
+/// Wrong: elastic rings would take another clearance or contact angle from warmth than their closed forms: 10 K of inner
+/// ring and balls are those of grooves and balls that have grown, cos a0 = 1 - P_d/(2 A), to a hundredth of the change.
+#[test]
+fn a_warm_flexible_inner_ring_has_the_clearance_and_contact_angle_of_a_larger_one() {
+    let model = |conditions: &Conditions| {
+        let model = case().flexible(ContactMode::Patch, SMALL, Hold::MeanMotion);
+        mounted_model(model, conditions)
+    };
+    let warm = model(&at(30.0, 20.0, 30.0, [30.0, 20.0]));
+    let clearances = warm.mounting.report.as_ref().unwrap().clearances;
+    let loss = clearances.unmounted.radial - clearances.operating.radial;
+    assert!((loss - 10.0 * ALPHA * (56.01e-3 + 18e-3)).abs() < 1e-15, "{loss}");
+    let e = 1.0 + 10.0 * ALPHA;
+    let distance = e * (4.65e-3 - 9e-3) + 4.75e-3;
+    let angle = (1.0 - clearances.operating.radial / (2.0 * distance)).acos();
+    assert!((clearances.operating.free_contact_angle - angle).abs() < 1e-12);
+    let mut grown = model(&Conditions::default());
+    grown.geometry.inner_raceway_diameter *= e;
+    grown.geometry.inner_groove_radius *= e;
+    grown.geometry.ball_diameter *= e;
+    let cold = model(&Conditions::default());
+    let mean = |model: &Model| {
+        let balls = equilibrium(model).balls;
+        balls.iter().map(|ball| ball.inner.contact_angle_rad).sum::<f64>() / balls.len() as f64
+    };
+    let [cold, warm, grown] = [&cold, &warm, &grown].map(mean);
+    assert!(cold - warm > 0.01, "{cold} {warm}");
+    assert!(
+        (warm - grown).abs() < 0.01 * (cold - warm),
+        "{cold} {warm} {grown}"
+    );
+}
+
 /// Wrong: the stress of uneven temperatures would be missing. Free of loads it balances: over the section of a ring in
 /// its mean motion the hoop force is zero, with tension where the ring is colder than the mean.
 #[test]
