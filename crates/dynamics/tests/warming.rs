@@ -202,8 +202,9 @@ fn a_flexible_ring_grows_as_its_temperatures_say() {
     assert!(shoulder < found && found < bottom, "{shoulder} {found} {bottom}");
 }
 
-/// Wrong: elastic rings would take another clearance or contact angle from warmth than their closed forms: 10 K of inner
-/// ring and balls are those of grooves and balls that have grown, cos a0 = 1 - P_d/(2 A), to a hundredth of the change.
+/// Wrong: elastic rings would take another clearance or contact angle from warmth than their closed forms: 10 K of
+/// inner ring and balls are those of grooves and balls that have grown, cos a0 = 1 - P_d/(2 A), to a hundredth of the
+/// change.
 #[test]
 fn a_warm_flexible_inner_ring_has_the_clearance_and_contact_angle_of_a_larger_one() {
     let model = |conditions: &Conditions| {
