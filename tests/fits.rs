@@ -86,6 +86,92 @@ fn a_mounted_motion_continues_bit_for_bit() {
     assert!(forces("plain") != forces("whole"), "the fit must change forces");
 }
 
+/// Wrong: a run through a schedule of temperatures would go on with other work or another groove after a cut, or close
+/// its ledger only without it.
+#[test]
+fn a_motion_that_warms_up_continues_bit_for_bit() {
+    let dir = small_motion();
+    let warm = dir.text("scene.toml").replace(
+        "density = \"7800 kg/m3\"\n",
+        "density = \"7800 kg/m3\"\nexpansion = \"11.5e-6 /K\"\n",
+    );
+    let tables = "[effects.temperature]\nouter = \"20 degC\"\nballs = \"20 degC\"\n\
+                  inner.ramp = { from = \"20 degC\", to = \"40 degC\", start = \"0 s\", duration = \"250 us\" }\n\n\
+                  [dynamic]";
+    dir.write("scene.toml", warm.replace("[dynamic]", tables));
+    let said = dir.run("whole", &[]);
+    let clearance = "mounted 27.00 um, 14.93 deg; at the start 27.00 um, 14.93 deg; at the end";
+    assert!(
+        said.stderr.contains(clearance) || said.stdout.contains(clearance),
+        "{}",
+        said.stderr
+    );
+    copy(&dir, "whole", "cut");
+    std::fs::remove_file(dir.path("cut/summary.json")).unwrap();
+    resumed(&dir, &["cut", "--step", "7", "--threads", "2"]);
+    assert_same_run(&dir, "whole", "cut");
+    let energy = Table::read(&dir, "whole/energy.csv");
+    let (work, defect, total) = (
+        energy.column("temperature_work_j"),
+        energy.column("defect_j"),
+        energy.column("total_j"),
+    );
+    let last = work.len() - 1;
+    assert!(work[last].abs() > 1e-6, "{work:?}");
+    assert!(
+        defect[last].abs() < 1e-8 * total[last],
+        "{} of {}",
+        defect[last],
+        total[last]
+    );
+    dir.run("cold", &["--set", "effects.temperature=none"]);
+    assert!(!dir.text("cold/energy.csv").contains("temperature_work_j"));
+}
+
+/// Wrong: real surfaces would move under warm contacts without a line in the ledger for each.
+#[test]
+fn schedules_beside_real_surfaces_are_refused_in_motion() {
+    let dir = small_motion();
+    let warm = dir.text("scene.toml").replace(
+        "density = \"7800 kg/m3\"\n",
+        "density = \"7800 kg/m3\"\nexpansion = \"11.5e-6 /K\"\n",
+    );
+    dir.write("scene.toml", warm);
+    let outcome = dir.raceway(&[
+        "run",
+        "scene.toml",
+        "--set",
+        "contact.edges=true",
+        "--set",
+        "effects.temperature={outer=\"20 degC\", balls=\"20 degC\", inner={times=[\"0 s\", \"1 s\"], \
+         values=[\"20 degC\", \"30 degC\"]}}",
+    ]);
+    assert_eq!(outcome.code, Some(2), "{}", outcome.stderr);
+    let expected =
+        "a moving bearing cannot have real surfaces ([[profiles.*]], contact.edges) beside temperatures";
+    assert!(outcome.stderr.contains(expected), "{}", outcome.stderr);
+}
+
+/// Wrong: a ring whose temperature varies would show the stress of its displacement alone. Warm at the bore and cold
+/// outside it is pressed at the bore and pulled at the shoulder.
+#[test]
+fn uneven_temperatures_are_in_the_stress_that_is_shown() {
+    let dir = fitted();
+    let probe = "[probes.node.shoulder]\nring = \"inner\"\nazimuth = \"0 deg\"\nr = \"30.2 mm\"\nz = \"8 mm\"\n\n\
+                 [static]";
+    dir.write("scene.toml", dir.text("scene.toml").replace("[static]", probe));
+    let uneven =
+        "effects.temperature.inner={radii=[\"25 mm\", \"30.2 mm\"], values=[\"50 degC\", \"30 degC\"]}";
+    let settings = ["effects.fit=none", "inner.support=mean_motion", uneven];
+    let set: Vec<&str> = settings.iter().flat_map(|s| ["--set", s]).collect();
+    dir.run("out", &set);
+    let probes = Table::read(&dir, "out/probes.csv");
+    let [bore, shoulder] = ["bore", "shoulder"].map(|name| probes.column(&format!("{name}_stress_tt_pa"))[0]);
+    // E alpha (T_mean - T) is -24 and 24 MPa; the contacts of 2 kN add some MPa, and bending takes a part.
+    assert!((-45e6..-10e6).contains(&bore), "{bore}");
+    assert!((10e6..45e6).contains(&shoulder), "{shoulder}");
+}
+
 /// Wrong: a ring that its speed lifts off its shaft would be computed as one that sits, or with a code of success.
 #[test]
 fn a_fit_that_lets_go_is_refused() {

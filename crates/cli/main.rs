@@ -32,6 +32,7 @@ use std::process::ExitCode;
 use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 use comm::print::Manner;
 use comm::{Communicator, End, Environment, print};
+use heat::HeatCommand;
 use life::LifeCommand;
 use mesh::Overwrite;
 use plot::Plot;
@@ -129,6 +130,8 @@ enum Command {
     Spectrum(SpectrumCommand),
     /// Ratings of a bearing, and its life under the forces of a run or of a load spectrum.
     Life(LifeCommand),
+    /// Steady temperatures from friction and given conductances, with what they do to clearance and forces.
+    Heat(HeatCommand),
     /// Stiffness and damping of the shaft on its bearing, at the operating point or at every point of a sweep.
     Stiffness(StiffnessCommand),
     /// Modes of the shaft on its bearing over its speed, forward and backward, with damping: Campbell diagram.
@@ -364,6 +367,7 @@ fn execute(arguments: Arguments) -> Result<(), Failure> {
         Command::Report(request) => report::report(&request),
         Command::Spectrum(request) => spectrum::spectrum(&request),
         Command::Life(request) => life::life(&request),
+        Command::Heat(request) => heat::heat(&request),
         Command::Stiffness(command) => stiffness::stiffness(&command),
         Command::Campbell(command) => campbell::campbell(&command),
         Command::Check { scene, overrides } => check::check(&scene, &overrides),

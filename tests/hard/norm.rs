@@ -88,7 +88,13 @@ fn forces(model: &Model, motion: &Motion<'_>, state: &MotionState) -> (Vec<[f64;
     let (mut balls, mut shaft) = (loads.balls.clone(), loads.shaft);
     for index in 0..state.approaches.len() {
         let (ball, side) = (index / 2, Side::BOTH[index % 2]);
-        let site = Site::new(model, ball, side, motion.ball_azimuth(ball, time));
+        let site = Site::new(
+            model,
+            &model.mounting,
+            ball,
+            side,
+            motion.ball_azimuth(ball, time),
+        );
         let size =
             side.sign() * model.hertz[side.index()].stiffness * state.approaches[index].max(0.0).powf(1.5);
         let (sin, cos) = state.angles[index].sin_cos();

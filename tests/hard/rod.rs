@@ -157,6 +157,7 @@ impl Rod {
             across: 0.0,
             unevenness: None,
             strips: None,
+            ends: None,
         };
         // The other contact of the ball is out of reach.
         let far = Site {

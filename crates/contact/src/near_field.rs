@@ -76,6 +76,13 @@ pub struct NearField {
     order: Vec<u32>,
 }
 
+/// What stands in the place of a patch.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum InPlace {
+    Hertz,
+    Nothing,
+}
+
 impl RingPoint {
     /// Coordinates of a point of the mesh, m.
     pub fn of(groove: &Groove, x: [f64; 3]) -> RingPoint {
@@ -142,8 +149,22 @@ impl NearField {
     /// # Panics
     /// If `stress` has another length.
     pub fn add(&self, contacts: &[LoadedPatch], stress: &mut [[f64; 6]]) {
+        self.put(contacts, InPlace::Hertz, stress);
+    }
+
+    /// Takes the patches of all contacts out of the stress of the points, Pa, `[n_points][6]`, in the axes of the mesh,
+    /// and puts nothing there: what is left is the stress of the ring as a body.
+    ///
+    /// # Panics
+    /// If `stress` has another length.
+    pub fn take_out(&self, contacts: &[LoadedPatch], stress: &mut [[f64; 6]]) {
+        self.put(contacts, InPlace::Nothing, stress);
+    }
+
+    fn put(&self, contacts: &[LoadedPatch], instead: InPlace, stress: &mut [[f64; 6]]) {
         assert_eq!(stress.len(), self.points.len(), "one stress per point");
-        let added: Vec<Vec<(u32, [f64; 6])>> = contacts.par_iter().map(|c| self.of_contact(c)).collect();
+        let of_contact = |contact| self.of_contact(contact, instead);
+        let added: Vec<Vec<(u32, [f64; 6])>> = contacts.par_iter().map(of_contact).collect();
         for (index, tensor) in added.into_iter().flatten() {
             let sum = &mut stress[index as usize];
             for c in 0..6 {
@@ -153,7 +174,7 @@ impl NearField {
     }
 
     /// Correction of one contact at the points within its reach, in the axes of the mesh.
-    fn of_contact(&self, contact: &LoadedPatch) -> Vec<(u32, [f64; 6])> {
+    fn of_contact(&self, contact: &LoadedPatch, instead: InPlace) -> Vec<(u32, [f64; 6])> {
         let smallest = contact.semi_axes[0].min(contact.semi_axes[1]);
         if contact.force <= 0.0 || smallest <= 0.0 {
             return Vec::new();
@@ -180,7 +201,10 @@ impl NearField {
             surface.add_stresses(&pressure, hertz_peak, places, &mut stress);
             stress
         };
-        let hertz = field(contact.semi_axes, &hertz_places);
+        let hertz = match instead {
+            InPlace::Hertz => field(contact.semi_axes, &hertz_places),
+            InPlace::Nothing => vec![[0.0; 6]; hertz_places.len()],
+        };
         let patch = field(contact.patch_axes, &patch_places);
         let pairs = near.into_iter().zip(hertz.into_iter().zip(patch));
         pairs

@@ -11,6 +11,7 @@ use rayon::prelude::*;
 use crate::error::DynamicsError;
 use crate::interactions::raceway_contact::{RacewayContacts, Site, SiteState};
 use crate::model::{ContactMode, Model, elastic};
+use crate::mounting::Mounting;
 use crate::raceway::Raceway;
 use ring::RingModel;
 
@@ -35,10 +36,11 @@ pub struct Footprint {
     pub truncated: bool,
 }
 
-/// Places all contacts of one ring, which stand at `states` with these site forces, and sets the laws (patch
-/// compliance) and, for facets, the unevenness of the grooves.
+/// Places all contacts of one ring of a bearing that is mounted so, which stand at `states` with these site forces, and
+/// sets the laws (patch compliance) and, for facets, the unevenness of the grooves.
 pub fn place(
     model: &Model,
+    mounting: &Mounting,
     side: Side,
     raceway: &Raceway,
     contacts: &mut RacewayContacts,
@@ -52,10 +54,12 @@ pub fn place(
     for ball in 0..n_balls {
         let index = 2 * ball + side.index();
         let (site, angle) = (&mut contacts.sites[index], states[index].angle);
-        feet.push(match model.contact.mode {
+        let foot = match model.contact.mode {
             ContactMode::Facet => place_facet(model, ring, raceway, site, angle, forces[index])?,
             _ => place_patch(model, ring, raceway, site, angle, forces[index], loaded[index])?,
-        });
+        };
+        site.reach = model.reach(mounting, side, Some(&foot.weights));
+        feet.push(foot);
     }
     Ok(feet)
 }
@@ -82,7 +86,6 @@ fn place_patch(
         elastic(&ring.material),
     )?;
     site.law.patch_compliance = patch.compliance;
-    site.reach = model.reach(site.side, Some(&patch.weights));
     Ok(Footprint {
         weights: patch.weights,
         semi_axes: Some(shape.semi_axes),
@@ -183,7 +186,6 @@ fn place_facet(
     let contact = search.foot(on_groove(&raceway.surface, angle, false))?;
     let hertz = model.hertz[site.side.index()].semi_axes(force[0].hypot(force[1]));
     let weights = NodalWeights::interpolation(contact.nodes, &contact.weights, site.ring_azimuth);
-    site.reach = model.reach(site.side, Some(&weights));
     Ok(Footprint {
         weights,
         semi_axes: None,

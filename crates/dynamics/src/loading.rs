@@ -159,10 +159,10 @@ impl<'a> LoadCase<'a> {
 
 /// Bodies and contacts of an instant on rings that do not deform, still without loads.
 fn parts_at(pose: &Pose, model: &Model) -> BearingParts {
-    let geometry = &model.geometry;
+    let (geometry, mounting) = (&model.geometry, model.mounting.at(pose.now.time));
     let site = |ball: usize, side: Side| {
         let azimuth = geometry.azimuth(ball) + pose.now.cage_angle;
-        let mut site = Site::new(model, ball, side, azimuth);
+        let mut site = Site::new(model, &mounting, ball, side, azimuth);
         site.ring_azimuth -= pose.frame_angle(side);
         site.strips = model.surfaces.at(side, site.ring_azimuth);
         site

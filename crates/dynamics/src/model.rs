@@ -132,17 +132,18 @@ impl Model {
         self.geometry.groove_centre(side)[1] - centre_z
     }
 
-    /// Groove centre to ball centre at zero displacement of the mounted bearing [radial, axial], m; measured by the
-    /// weights of the contact where they are known.
-    pub fn reach(&self, side: Side, weights: Option<&NodalWeights>) -> Meridian {
+    /// Groove centre to ball centre at zero displacement of a bearing that is mounted so [radial, axial], m; measured
+    /// by the weights of the contact where they are known.
+    pub fn reach(&self, mounting: &Mounting, side: Side, weights: Option<&NodalWeights>) -> Meridian {
         let (centre, ball) = (self.geometry.groove_centre(side), self.geometry.ball_centre());
-        let moved = self.mounting.groove_motion(side, weights);
+        let moved = mounting.groove_motion(side, weights);
         [0, 1].map(|i| ball[i] - centre[i] - moved[i])
     }
 
-    /// Distance of the centres of groove and touching ball in the mounted bearing, m.
-    pub fn touching_distance(&self, side: Side) -> f64 {
-        self.geometry.touching_distance(side) + self.mounting.touching_growth(side)
+    /// Distance of the centres of groove and a touching ball of a bearing that is mounted so, m.
+    pub fn touching_distance(&self, mounting: &Mounting, side: Side, ball: usize) -> f64 {
+        let distance = self.geometry.touching_distance(side) + mounting.touching_growth(side);
+        distance - self.surfaces.larger_radius(ball)
     }
 
     /// Imposed displacement of a shaft dof (0..5) at a time in s, m or rad; None: it is free.

@@ -179,6 +179,7 @@ impl StaticSolver {
             ContactMode::Facet => model.tolerances.force.max(FACET_TOLERANCE),
             _ => model.tolerances.force,
         };
+        let mounting = model.mounting.at(case.pose.now.time);
         let mut forces = case.parts.forces_at(&u);
         let (mut history, mut worst) = (Vec::new(), 0);
         for round in 1..=model.tolerances.max_rounds {
@@ -188,7 +189,8 @@ impl StaticSolver {
             for side in Side::BOTH {
                 if let Some(ring) = &self.rings[side.index()] {
                     let contacts = &mut case.parts.contacts;
-                    feet[side.index()] = place(model, side, &ring.raceway, contacts, &states, &forces)?;
+                    feet[side.index()] =
+                        place(model, &mounting, side, &ring.raceway, contacts, &states, &forces)?;
                 }
             }
             self.timing.add(PATCHES, clock.lap());

@@ -11,6 +11,7 @@
 //! # Ok::<(), input::UnitError>(())
 //! ```
 
+mod conductance;
 mod expansion;
 mod problems;
 pub mod schedule;
@@ -18,6 +19,7 @@ mod schedule_table;
 mod temperature;
 pub mod units;
 
+pub use conductance::Conductance;
 pub use expansion::Expansion;
 pub use problems::Problems;
 pub use schedule::Schedule;

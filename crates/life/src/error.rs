@@ -39,4 +39,30 @@ pub enum LifeError {
         /// Nominal contact angle, deg.
         angle: f64,
     },
+    /// The scene is its own reference.
+    #[error(
+        "the scene has no [effects.fit], [effects.temperature], [[effects.seat_form]] or [speed]; --stress compares \
+         its life with that without them, expected one of them"
+    )]
+    NothingLeftOut,
+    /// A ring without stress.
+    #[error(
+        "the {side} ring has no stress below its contacts: it is rigid, or contact.mode is \"facet\"; give it a mesh"
+    )]
+    NoBody {
+        /// Which ring.
+        side: &'static str,
+    },
+    /// No ball carries anything.
+    #[error("no ball is loaded, so nothing wears the raceways out; expected a load or a preload")]
+    Unloaded,
+    /// Stress below the limit everywhere.
+    #[error(
+        "life.shear_limit of {limit_mpa:.0} MPa is above all stress below the contacts, so that nothing fails and \
+         there is no ratio; expected less"
+    )]
+    BelowLimit {
+        /// The limit, MPa.
+        limit_mpa: f64,
+    },
 }

@@ -4,8 +4,10 @@
 //! - [`damage`]: ISO 16281 from the forces of the balls, in equilibria and, by counting passes, in any history.
 //! - [`lubrication`]: reliability, viscosity and dirt.
 //! - Load spectra: conditions with their shares of time.
+//! - [`risk`]: life from the stress below the contacts, as a ratio. Research.
 //!
-//! It reads tables and scene of a finished run, and nothing of the solver. Cost: that of reading the tables.
+//! It reads tables and scene of a finished run, and nothing of the solver; a life from stress alone solves two
+//! equilibria. Cost: that of reading the tables.
 
 pub mod assess;
 pub mod damage;
@@ -14,8 +16,10 @@ mod error;
 mod figures;
 pub mod lubrication;
 pub mod rating;
+pub mod risk;
 mod run;
 mod spectrum;
+mod stress_life;
 mod table;
 
 use std::path::{Path, PathBuf};
@@ -44,7 +48,7 @@ const SCHEMA: u32 = 1;
 
 /// What the command line asks for.
 #[derive(Debug, Args)]
-#[command(group = clap::ArgGroup::new("what").required(true).args(["dir", "rating", "spectrum"]))]
+#[command(group = clap::ArgGroup::new("what").required(true).args(["dir", "rating", "spectrum", "stress"]))]
 pub struct LifeCommand {
     /// Folder of the results of a finished run.
     dir: Option<PathBuf>,
@@ -54,6 +58,10 @@ pub struct LifeCommand {
     /// Load spectrum: result folders with their shares of time.
     #[arg(long, value_name = "FILE")]
     spectrum: Option<PathBuf>,
+    /// Research: life of a scene at rest from the stress below its contacts, over that of the same bearing without
+    /// fits, temperatures, seat forms and speed. Solves both.
+    #[arg(long, value_name = "SCENE")]
+    stress: Option<PathBuf>,
     /// Changes a value: of a finished run only life.*, such as life.reliability=95.
     #[arg(long = "set", value_name = "PATH=VALUE")]
     overrides: Vec<String>,
@@ -66,7 +74,7 @@ pub struct LifeCommand {
 #[derive(Serialize)]
 struct LifeFile<'a, T: Serialize> {
     life_schema: u32,
-    /// `rating`, `static`, `sweep`, `history` or `spectrum`.
+    /// `rating`, `static`, `sweep`, `history`, `spectrum` or `stress`.
     kind: &'static str,
     /// The scene, result folder or spectrum.
     source: String,
@@ -94,11 +102,14 @@ struct PointFile {
 
 /// Prints ratings and life, and writes them.
 pub fn life(command: &LifeCommand) -> Result<(), Failure> {
-    match (&command.dir, &command.rating, &command.spectrum) {
+    match (&command.dir, &command.rating, &command.spectrum, &command.stress) {
         (Some(dir), ..) => life_of_run(dir, command),
-        (_, Some(scene), _) => rating_of_scene(scene, command),
-        (.., Some(file)) => life_of_spectrum(file, command),
-        _ => Err(anyhow!("expected a result folder, --rating SCENE or --spectrum FILE").into()),
+        (_, Some(scene), ..) => rating_of_scene(scene, command),
+        (_, _, Some(file), _) => life_of_spectrum(file, command),
+        (.., Some(scene)) => life_from_stress(scene, command),
+        _ => {
+            Err(anyhow!("expected a result folder, --rating SCENE, --spectrum FILE or --stress SCENE").into())
+        }
     }
 }
 
@@ -230,6 +241,12 @@ fn life_of_spectrum(path: &Path, command: &LifeCommand) -> Result<(), Failure> {
     content.conditions = &spectrum.conditions;
     let round = figures::round(&spectrum.whole);
     write(command.out.as_deref(), &content, &[round])
+}
+
+fn life_from_stress(path: &Path, command: &LifeCommand) -> Result<(), Failure> {
+    let found = stress_life::from_stress(path, &command.overrides)?;
+    table::print_stress_life(&found);
+    write(command.out.as_deref(), &file("stress", path, &found), &[])
 }
 
 fn file<'a, T: Serialize>(kind: &'static str, source: &Path, life: &'a T) -> LifeFile<'a, T> {

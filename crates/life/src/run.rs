@@ -283,7 +283,7 @@ fn most(values: impl Iterator<Item = f64>) -> f64 {
 }
 
 /// Which rings turn in an equilibrium; without a speed the inner one.
-fn ring_motion(scene: &Scene) -> [RingMotion; 2] {
+pub fn ring_motion(scene: &Scene) -> [RingMotion; 2] {
     let speeds = speeds(scene);
     if speeds.is_zero() {
         return [RingMotion::Turns, RingMotion::Stands];

@@ -5,6 +5,7 @@ use comm::print;
 use crate::assess::{Assessment, CatalogueLife, RacewayLife};
 use crate::run::SweepLife;
 use crate::spectrum::SpectrumLife;
+use crate::stress_life::StressLife;
 
 fn line(name: &str, value: &str) {
     print::line(format_args!("  {name:<34}{value}"));
@@ -157,4 +158,27 @@ pub fn print_spectrum(spectrum: &SpectrumLife) {
         ));
     }
     print_assessment(&spectrum.whole);
+}
+
+/// Life from stress, as a ratio.
+pub fn print_stress_life(found: &StressLife) {
+    print::line(format_args!(
+        "life from stress over that without {} (research)",
+        found.left_out.join(", ")
+    ));
+    line("by loads and stress", &digits(found.ratio));
+    line("by the loads alone", &digits(found.ratio_of_loads));
+    line("by the stress of the rings alone", &digits(found.ratio_of_stress));
+    for (name, ring) in [("inner", &found.inner), ("outer", &found.outer)] {
+        line(&format!("{name} raceway, by both"), &digits(ring.ratio));
+        line(
+            &format!("{name} hoop stress, with, without"),
+            &format!(
+                "{:.1} MPa, {:.1} MPa",
+                1e-6 * ring.hoop_stress_pa,
+                1e-6 * ring.reference_hoop_stress_pa
+            ),
+        );
+    }
+    print_notes(&found.notes);
 }

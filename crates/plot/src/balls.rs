@@ -3,7 +3,7 @@
 use figure::{Axis, Figure, Series};
 
 use super::quantity::{
-    DEGREE, GIGAPASCAL, MICROMETRE, MILLIMETRE_PER_SECOND, NEWTON, RPM, Unit, WATT, azimuth_axis, points,
+    DEGREE, GIGAPASCAL, MICROMETRE, MILLIMETRE_PER_SECOND, NEWTON, ONE, RPM, Unit, WATT, azimuth_axis, points,
 };
 use super::run::Steps;
 use super::shades::{self, Shades};
@@ -90,6 +90,26 @@ const OF_FREE_BALLS: [Contact; 4] = [
     },
 ];
 
+/// What lubricated contacts have besides.
+const OF_FILMS: [Contact; 2] = [
+    Contact {
+        name: "film_minimum",
+        title: "Least thickness of the film",
+        axis: "film",
+        column: "film_minimum_m",
+        unit: MICROMETRE,
+        resolution: 1e-9,
+    },
+    Contact {
+        name: "lambda",
+        title: "Film over roughness",
+        axis: "lambda",
+        column: "lambda",
+        unit: ONE,
+        resolution: 1e-9,
+    },
+];
+
 const SIDES: [&str; 2] = ["inner", "outer"];
 
 /// All figures of `balls.csv`.
@@ -101,7 +121,9 @@ pub fn figures(results: &Results, choice: &Choice) -> anyhow::Result<Vec<Named>>
     let mut figures = Vec::new();
     let is_free = table.find("inner_slip_rolling_m_per_s").is_some();
     let of_free_balls = OF_FREE_BALLS.iter().filter(|_| is_free);
-    for contact in CONTACTS.iter().chain(of_free_balls) {
+    let of_films = OF_FILMS.iter();
+    let of_films = of_films.filter(|film| table.find(&format!("inner_{}", film.column)).is_some());
+    for contact in CONTACTS.iter().chain(of_free_balls).chain(of_films) {
         match &results.steps {
             Steps::Single => figures.push(round(table, &steps.of_step(0), contact)?),
             Steps::Sweep(_) => {

@@ -23,6 +23,7 @@ const LINES: [(&str, &[&str]); 5] = [
             "frame_work",
             "patch_work",
             "profile_work",
+            "temperature_work",
         ],
     ),
     ("losses", &["contact_loss", "rayleigh_loss", "numerical_loss"]),

@@ -72,6 +72,11 @@ pub const WATT: Unit = Unit {
     sign: "W",
     factor: 1.0,
 };
+/// A number without unit.
+pub const ONE: Unit = Unit {
+    sign: "1",
+    factor: 1.0,
+};
 /// Newton metre.
 pub const NEWTON_METRE: Unit = Unit {
     sign: "N m",
@@ -129,13 +134,7 @@ pub fn split(column: &str) -> (&str, Unit) {
     ENDINGS
         .iter()
         .find_map(|(ending, unit)| Some((column.strip_suffix(ending)?, *unit)))
-        .unwrap_or((
-            column,
-            Unit {
-                sign: "1",
-                factor: 1.0,
-            },
-        ))
+        .unwrap_or((column, ONE))
 }
 
 impl Unit {

@@ -91,6 +91,7 @@ impl Places {
                 None => Vec::new(),
             };
             rings[side.index()] = Some(ShownRing {
+                own_stress: ring.own_stress.clone(),
                 basis: match gathered.stress[side.index()].take() {
                     Some(stress) => Basis::Stress(stress),
                     None => Basis::Displacement(ring.strained.into_owned()),

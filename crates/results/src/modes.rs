@@ -123,6 +123,7 @@ impl ModeFiles {
             };
             displacement.extend(field.chunks_exact(3).map(|u| [u[0], u[1], u[2]]));
             rings[i] = Some(ShownRing {
+                own_stress: None,
                 basis: Basis::Displacement(field),
                 turn: Turn::new(0.0),
                 patches: Vec::new(),

@@ -13,6 +13,9 @@ pub struct ClearanceSummary {
     unmounted: ClearanceState,
     mounted: ClearanceState,
     operating: ClearanceState,
+    /// At time 0; absent where temperatures do not change.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    start: Option<ClearanceState>,
 }
 
 /// Clearance in one of these states.
@@ -44,6 +47,7 @@ impl ClearanceSummary {
             unmounted: state(report.clearances.unmounted),
             mounted: state(report.clearances.mounted),
             operating: state(report.clearances.operating),
+            start: report.at_start.map(state),
         }
     }
 }
@@ -78,7 +82,14 @@ pub fn lines(report: &MountingReport) -> Vec<String> {
         "radial clearance and free contact angle: {}; {}; {}",
         of("unmounted", all.unmounted),
         of("mounted", all.mounted),
-        of("operating", all.operating),
+        match report.at_start {
+            Some(start) => format!(
+                "{}; {}",
+                of("at the start", start),
+                of("at the end", all.operating)
+            ),
+            None => of("operating", all.operating),
+        },
     )];
     for (seat, side) in report.seats.iter().zip(Side::BOTH) {
         if let Some(seat) = seat {
@@ -124,6 +135,7 @@ mod tests {
                 mounted: clearance(18e-6),
                 operating: clearance(12.5e-6),
             },
+            at_start: None,
             seats: [Some(seat), None],
             warnings: Vec::new(),
         };

@@ -8,7 +8,7 @@ use scene::{Axes, ContactProbe, NodeTags, RingName, Scene};
 
 use super::fields::force_on_ball;
 use super::probe_places::{NodePlace, place};
-use super::shown::{RingField, Shown, Turn};
+use super::shown::{RingField, Shown, Turn, add};
 use super::stress_points::{self, StressPoints};
 use super::timed_near_field::TimedNearField;
 use crate::failure::Failure;
@@ -164,6 +164,9 @@ impl Probes {
             };
             if let Some(ring) = shown.ring_at(side, recovery.nodes()) {
                 let mut stress = recovery.stress(&ring.strained);
+                if let Some(own) = &ring.own_stress {
+                    add(&mut stress, &recovery.pick(&own.nodal));
+                }
                 if let Some(near_field) = &self.near_fields[side.index()] {
                     near_field.add(&shown.patches(side).map_err(Failure::solving)?, &mut stress);
                 }

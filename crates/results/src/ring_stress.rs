@@ -1,16 +1,18 @@
 //! Stress of the rings as step files hold it: averaged at nodes, or at the integration points of the elements.
 
+use std::sync::Arc;
+
 use checkpoint::{CellFields, IntegrationPointStress};
 use comm::Communicator;
 use contact::{LoadedPatch, Side};
-use dynamics::{Backend, Model, NodalStress, PointStress, RingModel, SharedStress, StressPlaces};
+use dynamics::{Backend, Model, NodalStress, OwnStress, PointStress, RingModel, SharedStress, StressPlaces};
 use fem::quadrature::stiffness_rule;
 use fem::stress::von_mises;
 use mesh::NodePositions;
 use scene::{Scene, StressOutput};
 use timer::Laps;
 
-use super::shown::{Shown, Turn};
+use super::shown::{Shown, Turn, add};
 use super::summary::{GATHER, STRESS};
 use super::timed_near_field::TimedNearField;
 use crate::failure::Failure;
@@ -61,6 +63,8 @@ pub struct Gathered {
 pub struct ShownRing {
     /// What its stress follows from.
     pub basis: Basis,
+    /// Stress besides that of the displacement; None: none.
+    pub own_stress: Option<Arc<OwnStress>>,
     /// From the ring's frame to space.
     pub turn: Turn,
     /// Contact forces on it; empty without near field.
@@ -142,6 +146,15 @@ impl RingStress {
             Basis::Displacement(field) => recovery.source.stress(field),
             Basis::Stress(stress) => stress.clone(),
         };
+        if let Some(own) = &ring.own_stress {
+            add(
+                &mut stress,
+                match self.kind {
+                    StressOutput::IntegrationPoints => &own.points,
+                    StressOutput::Nodal | StressOutput::None => &own.nodal,
+                },
+            );
+        }
         if let Some(near_field) = &recovery.near_field {
             near_field.add(&ring.patches, &mut stress);
         }
@@ -315,6 +328,7 @@ mod tests {
         let shown = |field: Vec<f64>, angle: f64| {
             Some(ShownRing {
                 basis: Basis::Displacement(field),
+                own_stress: None,
                 turn: Turn::new(angle),
                 patches: Vec::new(),
             })

@@ -4,12 +4,13 @@
 //! stands in space: its displacement is that from the mesh, turning included, and its stress tensors are turned.
 
 use std::borrow::Cow;
+use std::sync::Arc;
 
 use contact::{BearingGeometry, LoadedPatch, Side};
 use dynamics::balls::BallResult;
 use dynamics::frame::turn;
 use dynamics::motion::{Motion, MotionState};
-use dynamics::{DynamicsError, Model, StaticSolution};
+use dynamics::{DynamicsError, Model, OwnStress, StaticSolution};
 use mesh::NodePositions;
 
 /// Bearing, kinematics and state of one instant.
@@ -42,6 +43,8 @@ pub struct RingField<'a> {
     centre_z: f64,
     /// Where its nodes are in the mesh; of a ring that ranks share at first those that this rank keeps.
     pub places: NodePositions,
+    /// Stress besides that of `strained`, from the ring's own strain; None: none.
+    pub own_stress: Option<Arc<OwnStress>>,
     /// Displacement by mounting and loads up to a rigid motion, in the ring's frame, m, `[n_nodes][3]` flat.
     pub strained: Cow<'a, [f64]>,
     /// Free thermal strain, without stress: not in `strained`.
@@ -104,7 +107,12 @@ impl<'a> Shown<'a> {
         moved: impl FnOnce(&Motion<'_>, &MotionState) -> Option<(Vec<f64>, f64)>,
     ) -> Option<RingField<'a>> {
         let ring = self.model().ring(side)?;
-        let mounted = &self.model().mounting.rings[side.index()];
+        let time = match self {
+            Shown::Equilibrium { solution, .. } => solution.pose.now.time,
+            Shown::Motion { motion, state, .. } => motion.time(state.step),
+        };
+        let mounting = self.model().mounting.at(time);
+        let mounted = &mounting.rings[side.index()];
         let (centre_z, expansion) = (ring.groove.centre_z, mounted.expansion);
         let mount = |mut field: Cow<'a, [f64]>| {
             if let Some(mounted) = &mounted.field {
@@ -135,6 +143,7 @@ impl<'a> Shown<'a> {
                 Some(RingField {
                     centre_z,
                     expansion,
+                    own_stress: mounted.own_stress.clone(),
                     places: ring.mesh.nodes.clone(),
                     strained: mount(Cow::Borrowed(strained)),
                     rigid,
@@ -146,6 +155,7 @@ impl<'a> Shown<'a> {
                 Some(RingField {
                     centre_z,
                     expansion,
+                    own_stress: mounted.own_stress.clone(),
                     places: ring.mesh.nodes.clone(),
                     strained: mount(Cow::Owned(field)),
                     rigid: None,
@@ -200,6 +210,13 @@ impl RingField<'_> {
     /// Whether displacements as they are shown depend on where the nodes are.
     pub fn needs_places(&self) -> bool {
         self.rigid.is_some() || !self.turn.is_none() || self.expansion != 0.0
+    }
+}
+
+/// Adds stress to stress, place by place.
+pub fn add(sum: &mut [[f64; 6]], more: &[[f64; 6]]) {
+    for (sum, more) in sum.as_flattened_mut().iter_mut().zip(more.as_flattened()) {
+        *sum += more;
     }
 }
 

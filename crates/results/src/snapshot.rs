@@ -3,7 +3,7 @@
 use dynamics::StaticSolution;
 use dynamics::balls::{BallResult, CageResult, Friction};
 use dynamics::kinematics::Rolling;
-use dynamics::motion::{Ledger, Motion, MotionState};
+use dynamics::motion::{Ledger, Motion, MotionState, StateShape};
 
 /// Key numbers of one instant.
 #[derive(Clone)]
@@ -62,12 +62,12 @@ impl Snapshot {
             reaction: None,
             friction: motion.friction(state),
             cage: motion.cage(state),
-            energies: ledger_terms(&state.ledger, motion.has_strips()),
+            energies: ledger_terms(&state.ledger, &motion.shape()),
         }
     }
 }
 
-fn ledger_terms(ledger: &Ledger, has_strips: bool) -> Vec<(&'static str, f64)> {
+fn ledger_terms(ledger: &Ledger, shape: &StateShape) -> Vec<(&'static str, f64)> {
     let friction = ledger.friction.into_iter().flat_map(|friction| {
         [
             ("drive_work", friction.drive_work),
@@ -105,12 +105,17 @@ fn ledger_terms(ledger: &Ledger, has_strips: bool) -> Vec<(&'static str, f64)> {
     terms.extend(friction);
     terms.extend(cage);
     terms.extend([("total", ledger.total()), ("defect", ledger.defect())]);
-    if has_strips {
+    let asked = [
+        (shape.has_profiles, "profile_work", ledger.profile_work),
+        (
+            shape.has_temperature_work,
+            "temperature_work",
+            ledger.temperature_work,
+        ),
+    ];
+    for (_, name, value) in asked.into_iter().filter(|(is_asked, ..)| *is_asked) {
         let losses = terms.iter().position(|(name, _)| *name == "contact_loss");
-        terms.insert(
-            losses.unwrap_or(terms.len()),
-            ("profile_work", ledger.profile_work),
-        );
+        terms.insert(losses.unwrap_or(terms.len()), (name, value));
     }
     terms
 }

@@ -236,6 +236,7 @@ fn exchange_ledger(ledger: &mut Ledger, shape: &StateShape, port: &mut Port<'_>)
         frame_work,
         patch_work,
         profile_work,
+        temperature_work,
         contact_loss,
         rayleigh_loss,
         numerical_loss,
@@ -249,6 +250,9 @@ fn exchange_ledger(ledger: &mut Ledger, shape: &StateShape, port: &mut Port<'_>)
     port.scalars("ledger_works", [load_work, imposed_work, frame_work, patch_work])?;
     if shape.has_profiles {
         port.scalars("ledger_profiles", [profile_work])?;
+    }
+    if shape.has_temperature_work {
+        port.scalars("ledger_temperatures", [temperature_work])?;
     }
     port.scalars("ledger_losses", [contact_loss, rayleigh_loss, numerical_loss])?;
     port.scalars("ledger_scale", [initial, largest, hertz])
@@ -363,6 +367,7 @@ mod tests {
         has_free_balls: true,
         cage_ends: Some(2),
         has_profiles: true,
+        has_temperature_work: true,
     };
 
     /// A state in which every number is another one, with a NaN and a negative zero.
@@ -402,6 +407,7 @@ mod tests {
                 frame_work: number(),
                 patch_work: number(),
                 profile_work: number(),
+                temperature_work: number(),
                 contact_loss: number(),
                 rayleigh_loss: number(),
                 numerical_loss: number(),

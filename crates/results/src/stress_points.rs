@@ -9,7 +9,7 @@ use fem::stress::{PointRecovery, principal, von_mises};
 use scene::StressLine;
 
 use super::probes::side_of;
-use super::shown::Shown;
+use super::shown::{Shown, add};
 use super::timed_near_field::TimedNearField;
 use crate::failure::Failure;
 
@@ -118,6 +118,9 @@ impl RingPoints {
             unreachable!("a ring with points has a field while it is shown")
         };
         let mut stress = self.recovery.stress(&ring.strained);
+        if let Some(own) = &ring.own_stress {
+            add(&mut stress, &self.recovery.interpolate(&own.nodal));
+        }
         if let Some(near_field) = &self.near_field {
             near_field.add(&shown.patches(side).map_err(Failure::solving)?, &mut stress);
         }

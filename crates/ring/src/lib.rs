@@ -38,7 +38,7 @@ pub use integrator::{Integrator, StepScheme};
 pub use inventory::Inventory;
 pub use make::{BodySettings, elastic_body};
 pub use model::{Backend, Hold, NodeMasses, RACEWAY_GROUP, RingModel, Sectors};
-pub use seat::{SeatAction, SeatField};
+pub use seat::{OwnStress, RadialProfile, SeatAction, SeatField};
 pub use solver::SolverError;
 pub use state::RingState;
 pub use step::{

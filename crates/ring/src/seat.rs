@@ -3,13 +3,16 @@
 //! ```text
 //! clamped       w = motion on the held surface,  K w = 0 elsewhere;   p = (K w) . n / A
 //! mean motion   K w = n (a pressure of 1 Pa);                         u = n . w / A
+//! own strain    K w = f;  clamped: w = 0 on the held surface, p = (K w - f) . n / A;   else u = n . w / A
 //! n_a = integral of N_a e dA,   A = n . e
 //! ```
 //!
 //! e is the radial direction into the ring: outwards at a bore, inwards at a seat. So p and u are conjugate means over
-//! the held surface, p u A is the work of the partner, and n is its uniform pressure. Turning at omega changes them
-//! by Betti's theorem: of a clamped ring p falls by omega^2 f . w / A, of the other u grows by as much, f the nodal
-//! forces of a rotation at 1 rad/s. Displacements are elastic, relative to the free ring, in the frame of its mesh.
+//! the held surface, p u A is the work of the partner, and n is its uniform pressure. Turning at omega changes them by
+//! Betti's theorem: of a clamped ring p falls by omega^2 f . w / A, of the other u grows by as much, f the nodal forces
+//! of a rotation at 1 rad/s. A ring strains by itself where its temperature varies with the radius: f and the stress
+//! that goes with it are those of [`fem::StressRecovery::held_stress`]. Displacements are elastic, relative to the free
+//! ring, in the frame of its mesh.
 //!
 //! Validity: small strain; the held surface neither lifts nor slips, except that in its mean motion nothing but the
 //! pressure acts on it. Cost: one factorisation and a solve per field, and a pass over the elements per field of a
@@ -18,7 +21,7 @@
 use std::sync::Arc;
 
 /// What moves or presses the held surface.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum SeatAction {
     /// A clamped surface moves into the ring by 1 m.
     Radial,
@@ -33,6 +36,63 @@ pub enum SeatAction {
     },
     /// A uniform pressure of 1 Pa on a surface that is held in its mean motion.
     Pressure,
+    /// The ring strains by itself, by this much at each radius; the held surface is not moved or pressed.
+    OwnStrain(RadialProfile),
+}
+
+/// A quantity over the radius: linear between its radii, constant inside the first and outside the last.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RadialProfile {
+    /// Radii, m, growing, `[n]`, n at least 1.
+    pub radii: Arc<[f64]>,
+    /// Values, `[n]`.
+    pub values: Arc<[f64]>,
+}
+
+/// Stress of a ring that strains by itself, besides that of its displacement.
+#[derive(Clone, Debug, PartialEq)]
+pub struct OwnStress {
+    /// At the nodes, Pa, `[n_nodes][6]`.
+    pub nodal: Vec<[f64; 6]>,
+    /// At the integration points, Pa, `[n_elements * points_per_element][6]`.
+    pub points: Vec<[f64; 6]>,
+}
+
+impl RadialProfile {
+    /// Value at a radius, m.
+    pub fn at(&self, radius: f64) -> f64 {
+        let (radii, values) = (&self.radii, &self.values);
+        match radii.partition_point(|r| *r <= radius) {
+            0 => values[0],
+            after if after == radii.len() => values[after - 1],
+            after => {
+                let share = (radius - radii[after - 1]) / (radii[after] - radii[after - 1]);
+                values[after - 1] + share * (values[after] - values[after - 1])
+            }
+        }
+    }
+
+    /// Mean over the section of a tube between two radii, m: 2 / (b^2 - a^2) times the integral of T r.
+    pub fn tube_mean(&self, radii: [f64; 2]) -> f64 {
+        let [a, b] = [radii[0].min(radii[1]), radii[0].max(radii[1])];
+        let inside = self.radii.iter().copied().filter(|r| a < *r && *r < b);
+        let places: Vec<f64> = std::iter::once(a).chain(inside).chain([b]).collect();
+        let pieces = places.windows(2).map(|piece| {
+            let ([r, s], [t, u]) = ([piece[0], piece[1]], [self.at(piece[0]), self.at(piece[1])]);
+            // Simpson's rule is exact: T r is of the second degree.
+            let middle = 0.25 * (r + s) * (t + u);
+            (s - r) / 6.0 * (t * r + 4.0 * middle + u * s)
+        });
+        2.0 * pieces.sum::<f64>() / (b * b - a * a)
+    }
+
+    /// The same profile of other values.
+    pub fn map(&self, value: impl Fn(f64) -> f64) -> RadialProfile {
+        RadialProfile {
+            radii: self.radii.clone(),
+            values: self.values.iter().map(|v| value(*v)).collect(),
+        }
+    }
 }
 
 /// What one action does, per unit of it.
@@ -47,6 +107,8 @@ pub struct SeatField {
     /// Motion of the bottom of the groove [radial, axial], m: the straight line over z that fits the raceway best, at
     /// the plane of the groove centres.
     pub groove: [f64; 2],
+    /// Of a ring that strains by itself the stress besides that of its displacement.
+    pub own_stress: Option<Arc<OwnStress>>,
     /// f . w / A: what a turning ring changes, per (rad/s)^2; see the module.
     pub spin: f64,
 }

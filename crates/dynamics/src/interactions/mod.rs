@@ -2,6 +2,7 @@
 
 pub mod cage;
 pub mod contact_damping;
+mod contact_ends;
 pub mod discrete_gradient;
 pub mod free_contact;
 pub mod raceway_contact;

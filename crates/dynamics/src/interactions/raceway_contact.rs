@@ -10,13 +10,14 @@
 use std::sync::Arc;
 
 use contact::law::ContactForce;
-use contact::{BallLaws, ContactLaw, Side, Unevenness};
+use contact::{BallLaws, ContactLaw, NodalWeights, Side, Unevenness};
 use timer::SharedLaps;
 
 use super::contact_damping::{ContactDamping, viscous};
 use super::discrete_gradient::{BallLengths, BallMeans, ContactScheme, mean_forces};
 use super::strip_contact::{Lateral, StripSite};
 use crate::model::Model;
+use crate::mounting::Mounting;
 use crate::surfaces::Strips;
 use crate::system::{
     Body, CarriedCircle, Character, Circle, Interaction, Lengths, Link, LinkForces, LinkRows, LinkTerm,
@@ -47,6 +48,17 @@ pub struct Site {
     pub unevenness: Option<Arc<Unevenness>>,
     /// Its strips, where the scene asks for them; the law then brings only its compliances.
     pub strips: Option<Strips>,
+    /// How it is mounted at the start and at the end of a step during which temperatures change; None: as it is here.
+    pub ends: Option<[MountedEnd; 2]>,
+}
+
+/// What temperature changes of a contact, at one end of a step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MountedEnd {
+    /// Groove centre to ball centre at zero displacement [radial, axial], m.
+    pub reach: [f64; 2],
+    /// |l| at which they touch, m.
+    pub touching: f64,
 }
 
 /// A contact at an instant.
@@ -68,14 +80,14 @@ pub struct SiteState {
 
 impl Site {
     /// A ball at an azimuth on an exact, rigid groove that has not turned, with the model's Hertz stiffness.
-    pub fn new(model: &Model, ball: usize, side: Side, azimuth: f64) -> Site {
+    pub fn new(model: &Model, mounting: &Mounting, ball: usize, side: Side, azimuth: f64) -> Site {
         Site {
             ball,
             side,
             azimuth,
             ring_azimuth: azimuth,
-            reach: model.reach(side, None),
-            touching: model.touching_distance(side) - model.surfaces.larger_radius(ball),
+            reach: model.reach(mounting, side, None),
+            touching: model.touching_distance(mounting, side, ball),
             lever: model.geometry.centre_radius(side),
             law: ContactLaw {
                 stiffness: model.hertz[side.index()].stiffness,
@@ -85,6 +97,20 @@ impl Site {
             across: model.sphere.across,
             unevenness: None,
             strips: model.surfaces.at(side, azimuth),
+            ends: None,
+        }
+    }
+
+    /// How the contact is mounted otherwise, measured by its weights where they are known.
+    pub fn mounted_end(
+        &self,
+        model: &Model,
+        mounting: &Mounting,
+        weights: Option<&NodalWeights>,
+    ) -> MountedEnd {
+        MountedEnd {
+            reach: model.reach(mounting, self.side, weights),
+            touching: model.touching_distance(mounting, self.side, self.ball),
         }
     }
 
@@ -130,7 +156,7 @@ impl Site {
     }
 
     /// The contact as one of strips, if it has them.
-    fn strip_site(&self) -> Option<StripSite<'_>> {
+    pub(super) fn strip_site(&self) -> Option<StripSite<'_>> {
         let strips = self.strips.as_ref()?;
         Some(StripSite::new(strips, &self.law, self.touching, self.side.sign()))
     }
@@ -357,22 +383,6 @@ impl RacewayContacts {
                 found
             })
             .collect()
-    }
-
-    /// Energies of the contacts at the start and at the end of a step, J, each on the surfaces of its own instant; None
-    /// where no contact has strips.
-    pub fn energies_on_surfaces(&self, lengths: Lengths) -> Option<[f64; 2]> {
-        self.sites.iter().find(|site| site.strips.is_some())?;
-        let smooth = [lengths.start, lengths.end].map(|l| self.states(l));
-        let mut sum = [0.0; 2];
-        for (index, site) in self.sites.iter().enumerate() {
-            let energies = match site.strip_site() {
-                Some(strips) => strips.energies_at_ends(lengths.of::<2>(index)),
-                None => [0, 1].map(|end: usize| smooth[end][index].force.energy),
-            };
-            (0..2).for_each(|end| sum[end] += energies[end]);
-        }
-        Some(sum)
     }
 }
 

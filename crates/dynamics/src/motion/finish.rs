@@ -8,7 +8,7 @@ use super::part::RingSteps;
 use super::run::{Motion, MovingRing};
 use super::solve::StepSolution;
 use super::state::MotionState;
-use super::surfaces::note_profile_work;
+use super::surfaces::{note_profile_work, note_temperature_work};
 use crate::bearing::{BearingParts, SHAFT};
 use crate::bodies::FlatBody;
 use crate::system::{Interval, Lumped};
@@ -250,6 +250,7 @@ fn finish_contacts(next: &mut MotionState, parts: &BearingParts, solution: &Step
     next.ledger.patch_work += start - next.ledger.hertz;
     next.ledger.hertz = end;
     note_profile_work(&mut next.ledger, parts, solution, (start, end));
+    note_temperature_work(&mut next.ledger, parts, solution, (start, end));
 }
 
 impl BearingParts {

@@ -123,6 +123,7 @@ impl Motion<'_> {
                 time,
                 azimuths: balls.map(|ball| self.ball_azimuth(ball, time)).collect(),
                 travel: Vec::new(),
+                ends: [span.at(0.0), span.at(1.0)],
             };
         };
         let half = 0.5 * span.dt;
@@ -136,6 +137,7 @@ impl Motion<'_> {
             travel: balls
                 .map(|ball| speeds.map(|speed| half * (free.orbit(ball) - speed)))
                 .collect(),
+            ends: [span.at(0.0), span.at(1.0)],
         }
     }
 

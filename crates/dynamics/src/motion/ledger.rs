@@ -25,6 +25,9 @@ pub struct Ledger {
     pub patch_work: f64,
     /// Work of surfaces that move under the contacts; 0 on smooth grooves.
     pub profile_work: f64,
+    /// Work of temperatures that change: grooves and balls that grow against the forces of the contacts. 0 where
+    /// temperatures are constant.
+    pub temperature_work: f64,
     /// Energy lost to contact damping.
     pub contact_loss: f64,
     /// Energy lost to Rayleigh damping.
@@ -92,14 +95,15 @@ impl Ledger {
         self.kinetic.iter().chain(&self.strain).sum::<f64>() + self.hertz + cage
     }
 
-    /// Works since the start: of loads, imposed displacements, frame, patches, profiles.
-    pub fn works(&self) -> [f64; 5] {
+    /// Works since the start: of loads, imposed displacements, frame, patches, profiles, temperatures.
+    pub fn works(&self) -> [f64; 6] {
         [
             self.load_work,
             self.imposed_work,
             self.frame_work,
             self.patch_work,
             self.profile_work,
+            self.temperature_work,
         ]
     }
 

@@ -10,6 +10,8 @@
 //! of 20 us: a lag of half a step blows up within 40 ms; play of a tenth of a patch pumps 1.2 mJ into a revolution, 4
 //! % of the energy). The middle of the part is the same seen forwards and backwards in time, so nothing is pumped.
 
+use std::borrow::Cow;
+
 use contact::patch::PatchShape;
 use contact::{NodalWeights, Patch, Side};
 use rayon::prelude::*;
@@ -22,7 +24,8 @@ use crate::error::DynamicsError;
 use crate::footprint::{loaded, on_groove, require_on_groove};
 use crate::interactions::discrete_gradient::MeanForce;
 use crate::interactions::raceway_contact::Site;
-use crate::model::elastic;
+use crate::model::{Model, elastic};
+use crate::mounting::Mounting;
 
 /// Distance of a patch from its contact at which it counts as in place, semi-axes, times the share of its force in
 /// the largest.
@@ -47,6 +50,34 @@ pub(super) struct Course {
     /// Half of the angle by which each free ball moves along a ring in the part, rad, `[inner, outer]`; empty where
     /// balls are not free.
     pub travel: Vec<[f64; 2]>,
+    /// Start and end of the part, s.
+    pub ends: [f64; 2],
+}
+
+/// The mounting in the middle of a part and, where temperatures change, at its ends.
+struct PartMounting<'m> {
+    middle: Cow<'m, Mounting>,
+    ends: Option<[Cow<'m, Mounting>; 2]>,
+}
+
+impl<'m> PartMounting<'m> {
+    fn new(mounting: &'m Mounting, course: &Course) -> PartMounting<'m> {
+        PartMounting {
+            middle: mounting.at(course.time),
+            ends: mounting
+                .changes()
+                .then(|| course.ends.map(|time| mounting.at(time))),
+        }
+    }
+
+    /// Puts a contact where it is mounted, measured by its weights where they are known.
+    fn place(&self, model: &Model, site: &mut Site, weights: Option<&NodalWeights>) {
+        if weights.is_some() {
+            site.reach = model.reach(&self.middle, site.side, weights);
+        }
+        let ends = self.ends.as_ref();
+        site.ends = ends.map(|ends| ends.each_ref().map(|end| site.mounted_end(model, end, weights)));
+    }
 }
 
 /// All contacts as they are placed.
@@ -112,11 +143,12 @@ impl Motion<'_> {
     /// Contacts in the middle of a part, at contact angles, rad, and with forces, N, by site.
     pub(super) fn place(&self, places: &[[f64; 2]], course: &Course) -> Result<Placing, DynamicsError> {
         let forces: Vec<[f64; 2]> = places.iter().map(|p| [p[1], 0.0]).collect();
+        let mounting = PartMounting::new(&self.model.mounting, course);
         let placed: Result<Vec<_>, DynamicsError> = loaded(&forces)
             .into_par_iter()
             .zip(places)
             .enumerate()
-            .map(|(index, (loaded, place))| self.place_contact(index, *place, loaded, course))
+            .map(|(index, (loaded, place))| self.place_contact(index, *place, loaded, course, &mounting))
             .collect();
         let mut placing = Placing {
             sites: Vec::new(),
@@ -143,12 +175,14 @@ impl Motion<'_> {
         [angle, force]: [f64; 2],
         loaded: bool,
         course: &Course,
+        mounting: &PartMounting<'_>,
     ) -> Result<Placed, DynamicsError> {
         let model = self.model;
         let (ball, side) = (index / 2, Side::BOTH[index % 2]);
         let azimuth = course.azimuths[ball];
-        let mut site = Site::new(model, ball, side, azimuth);
+        let mut site = Site::new(model, &mounting.middle, ball, side, azimuth);
         let (Some(ring), Some(moving)) = (model.ring(side), &self.rings[side.index()]) else {
+            mounting.place(model, &mut site, None);
             return Ok(Placed {
                 site,
                 weights: None,
@@ -170,7 +204,7 @@ impl Motion<'_> {
             elastic(&ring.material),
         )?;
         site.law.patch_compliance = patch.compliance;
-        site.reach = model.reach(side, Some(&patch.weights));
+        mounting.place(model, &mut site, Some(&patch.weights));
         Ok(Placed {
             site,
             weights: Some(patch.weights),

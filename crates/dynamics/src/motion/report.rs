@@ -180,6 +180,7 @@ impl Motion<'_> {
                 .map(|ball| self.ball_azimuth(ball, time))
                 .collect(),
             travel: Vec::new(),
+            ends: [time; 2],
         };
         let feet = self.place(&to.places[0], &course)?.feet;
         let i = side.index();

@@ -238,5 +238,11 @@ pub fn check_supported(model: &Model) -> Result<(), DynamicsError> {
     if model.contact.mode == ContactMode::Facet {
         return refuse("contact.mode = \"facet\"; use \"patch\"");
     }
+    if model.surfaces.has_strips() && model.mounting.changes() {
+        return refuse(
+            "real surfaces ([[profiles.*]], contact.edges) beside temperatures that change; keep [effects.temperature] \
+             constant",
+        );
+    }
     Ok(())
 }

@@ -19,6 +19,8 @@ pub struct StateShape {
     pub cage_ends: Option<usize>,
     /// Whether surfaces have a line in the ledger.
     pub has_profiles: bool,
+    /// Whether temperatures have a line in the ledger.
+    pub has_temperature_work: bool,
 }
 
 impl Motion<'_> {
@@ -31,6 +33,7 @@ impl Motion<'_> {
             has_free_balls: self.model.traction().is_some(),
             cage_ends: self.model.cage.as_ref().map(|cage| cage.n_ends()),
             has_profiles: self.has_strips(),
+            has_temperature_work: self.model.mounting.changes(),
         }
     }
 }

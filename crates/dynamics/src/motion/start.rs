@@ -164,9 +164,10 @@ impl Motion<'_> {
     /// Contacts of rigid bodies at the state's displacements: angles, approaches, forces and their energy.
     fn note_contacts(&self, state: &mut MotionState) {
         let n_contacts = state.forces.len();
+        let mounting = self.model.mounting.at(0.0);
         let site = |index: usize| {
             let (ball, side) = (index / 2, Side::BOTH[index % 2]);
-            Site::new(self.model, ball, side, self.ball_azimuth(ball, 0.0))
+            Site::new(self.model, &mounting, ball, side, self.ball_azimuth(ball, 0.0))
         };
         let contacts = RacewayContacts::new((0..n_contacts).map(site).collect(), Vec::new(), None);
         let reach = |site: &Site| site.reach_of_rigid(state.shaft, state.balls[site.ball]);

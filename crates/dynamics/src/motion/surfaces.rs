@@ -1,9 +1,9 @@
-//! Real surfaces over a part of a step.
+//! Real surfaces and changing temperatures over a part of a step.
 //!
 //! A contact keeps the surface of the part's weighted time, so that its forces have a potential. What the surface gives
 //! to or takes from the contact as it moves on is work of profiles: over the first share of the part with the lengths
 //! of its start, over the rest with those of its end. The sum of all parts telescopes: it is the change of the contact
-//! energies that the contacts' forces did not make.
+//! energies that the contacts' forces did not make. Temperatures are kept and accounted for in the same way.
 
 use super::ledger::Ledger;
 use super::run::Motion;
@@ -33,6 +33,22 @@ impl Motion<'_> {
             site.strips = strips.map(|strips| strips.between(start, end));
         }
         sites
+    }
+}
+
+/// Takes what temperatures do out of the ledger's work of patches, which has the energies `start` and `end` of a part
+/// as the bearing is mounted in its middle: the sum of all parts telescopes as that of surfaces does.
+pub(super) fn note_temperature_work(
+    ledger: &mut Ledger,
+    parts: &BearingParts,
+    solution: &StepSolution,
+    (start, end): (f64, f64),
+) {
+    if let Some(own) = parts.contacts.energies_as_mounted(solution.lengths()) {
+        let [first, last] = [start - own[0], own[1] - end];
+        ledger.temperature_work += first + last;
+        ledger.patch_work -= first;
+        ledger.hertz = own[1];
     }
 }
 

@@ -1,6 +1,8 @@
 //! How a bearing is mounted and how warm it is, as the effects of a scene say.
 
 use contact::{BySide, Side};
+use input::schedule::piecewise_linear;
+use ring::RadialProfile;
 
 /// What acts on rings and balls before any load.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -27,18 +29,56 @@ pub struct Fit {
 }
 
 /// Temperatures, and how partners of other materials expand.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Temperatures {
-    /// Rings, inner first, K.
-    pub rings: BySide<f64>,
-    /// Balls, K.
-    pub balls: f64,
-    /// Shaft and housing, K.
-    pub partners: BySide<f64>,
+    /// Rings, inner first.
+    pub rings: BySide<RingTemperature>,
+    /// Balls.
+    pub balls: TemperatureSchedule,
+    /// Shaft and housing; None: that of the ring at its seat.
+    pub partners: BySide<Option<TemperatureSchedule>>,
     /// At which all dimensions hold, K.
     pub reference: f64,
     /// Thermal expansion of shaft and housing, 1/K; None: that of the rings.
     pub partner_expansion: BySide<Option<f64>>,
+}
+
+/// Temperature of a ring.
+#[derive(Clone, Debug, PartialEq)]
+pub enum RingTemperature {
+    /// The same all through.
+    Uniform(TemperatureSchedule),
+    /// By radius, K, constant in time.
+    Radial(RadialProfile),
+}
+
+/// Temperature of a body over time: linear between its times, constant before the first and after the last.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TemperatureSchedule {
+    /// Times, s, growing, `[n]`, n at least 1.
+    pub times: Vec<f64>,
+    /// Temperatures, K, `[n]`.
+    pub values: Vec<f64>,
+}
+
+impl TemperatureSchedule {
+    /// One temperature at all times, K.
+    pub fn constant(kelvin: f64) -> TemperatureSchedule {
+        TemperatureSchedule {
+            times: vec![0.0],
+            values: vec![kelvin],
+        }
+    }
+
+    /// Temperature at a time in s, K.
+    pub fn at(&self, time: f64) -> f64 {
+        piecewise_linear(&self.times, &self.values, time)[0]
+    }
+
+    /// Whether it changes.
+    pub fn changes(&self) -> bool {
+        self.values.iter().any(|value| *value != self.values[0])
+    }
 }
 
 /// A wave of a seat's radius round the circumference.

@@ -14,27 +14,41 @@
 //! from that of the outer ring e_o: a change of size of the whole bearing is a change of scale, and is left out with
 //! all that it does to forces, of order e_o.
 //!
+//! A temperature that varies with the radius counts by its mean over the tube from seat to groove bottom: of a free
+//! tube both surfaces move by that (Timoshenko and Goodier, 3rd ed. 1970, art. 151). So does a rigid ring; in a
+//! flexible one the strain about the mean adds a field, and D times it is taken from the stress.
+//!
 //! Rigid rings grow as thick tubes from seat to groove bottom ([`tube`]), 8 % more than the ring of a 7010C.
 //! Energies are counted from the mounted state: w does no work on what loads add. Cost: [`ring::seat`] at the start;
 //! per contact and placing of its patch one more product with its weights. Absent: nothing.
+//!
+//! **Over time** ([`Mounting::at`]) temperatures are linear between the corners of their schedules, and so are w and
+//! the pressures of seats: what holds at all corners holds always, and is checked there. Bodies are warm at once, and
+//! their growth has no inertia. Cost: a sum of fields for every instant that is asked for.
 
 pub mod clearance;
 pub mod conditions;
+mod mounted;
 mod seat;
+mod timed;
 pub mod tube;
 mod unmounted;
 
+use std::borrow::Cow;
 use std::sync::Arc;
 
 use contact::{BySide, Meridian, NodalWeights, Side};
 
 pub use clearance::{Clearance, Clearances};
-pub use conditions::{Conditions, Fit, SeatForm, Temperatures};
+pub use conditions::{Conditions, Fit, RingTemperature, SeatForm, TemperatureSchedule, Temperatures};
+pub use mounted::MountedRing;
+pub use ring::RadialProfile;
 pub use seat::SeatReport;
 pub use unmounted::Unmounted;
 
 use crate::error::DynamicsError;
-use seat::{MountedSeat, RingSeat};
+use mounted::Grown;
+use timed::Warmed;
 
 /// Highest temperature to which every catalogue bearing keeps its size (DIN 623-1, suffix SN), K.
 const STABLE: f64 = 393.15;
@@ -50,40 +64,21 @@ pub struct Mounting {
     pub ball_radius_growth: f64,
     /// What a reader of a result sees of it; None where no effect asks for any.
     pub report: Option<MountingReport>,
-}
-
-/// What mounting does to a ring.
-#[derive(Clone, Debug, Default)]
-pub struct MountedRing {
-    /// Free thermal strain, counted from the reference temperature.
-    pub expansion: f64,
-    /// Radial growth of the circle of groove centres by temperature, m.
-    pub centre_growth: f64,
-    /// Growth of the groove's radius by temperature, m.
-    pub groove_radius_growth: f64,
-    /// Mean motion of the groove by the seat [radial, axial], m.
-    pub groove: Meridian,
-    /// Nodal displacement of a flexible ring by its seat, in the frame of its mesh, m, `[n_nodes][3]` flat; None: none.
-    pub field: Option<Arc<Vec<f64>>>,
+    /// The bearing with its schedules; None where no temperature changes. All else is that of time 0.
+    warmed: Option<Arc<Warmed>>,
 }
 
 /// Clearance, seats and warnings.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MountingReport {
-    /// Clearance before and after mounting, and warm.
+    /// Clearance before and after mounting, and warm: with schedules, at their end.
     pub clearances: Clearances,
-    /// Seats with a fit, inner first.
+    /// Clearance at time 0, where temperatures change.
+    pub at_start: Option<Clearance>,
+    /// Seats with a fit, inner first; with schedules, at their end.
     pub seats: BySide<Option<SeatReport>>,
     /// What a user should know.
     pub warnings: Vec<String>,
-}
-
-/// Thermal strains, counted from the reference temperature.
-#[derive(Clone, Copy, Debug, Default)]
-struct Strains {
-    rings: BySide<f64>,
-    balls: f64,
-    partners: BySide<f64>,
 }
 
 impl Mounting {
@@ -92,53 +87,54 @@ impl Mounting {
         if conditions.is_none() {
             return Ok(Mounting::default());
         }
-        let strains = Strains::new(bearing, conditions);
-        let mount = |strains: &Strains| -> Result<BySide<MountedSeat>, DynamicsError> {
-            let [inner, outer] = Side::BOTH.map(|side| {
-                let i = side.index();
-                let seat = RingSeat::new(bearing, conditions, side)?;
-                seat.mounted(strains.partners[i] - strains.rings[i])
-            });
-            Ok([inner?, outer?])
-        };
-        let (cold, warm) = (mount(&Strains::default())?, mount(&strains)?);
-        let grooves = |seats: &BySide<MountedSeat>| seats.each_ref().map(|seat| seat.groove[0]);
-        let common = strains.rings[1];
-        let relative = Strains {
-            rings: strains.rings.map(|e| e - common),
-            balls: strains.balls - common,
-            ..strains
-        };
-        let geometry = bearing.geometry;
-        let clearances = Clearances {
-            unmounted: Clearance::new(geometry, [0.0; 2], 0.0, [0.0; 2]),
-            mounted: Clearance::new(geometry, [0.0; 2], 0.0, grooves(&cold)),
-            operating: Clearance::new(geometry, relative.rings, relative.balls, grooves(&warm))
-                .scaled(1.0 + common),
-        };
-        let mut warnings = hot(conditions);
-        warnings.extend(warm.iter().flat_map(|seat| seat.warnings.clone()));
-        let seats = warm.each_ref().map(|seat| seat.report);
-        let ring = |side: Side| {
-            let seat = &warm[side.index()];
-            let strain = relative.rings[side.index()];
-            MountedRing {
-                expansion: strains.rings[side.index()],
-                centre_growth: strain * geometry.centre_radius(side),
-                groove_radius_growth: strain * geometry.groove_radius(side),
-                groove: seat.groove,
-                field: seat.field.clone(),
+        let warmed = Warmed::new(bearing, conditions)?;
+        let (corners, found) = (warmed.corners(), warmed.seats_at_corners()?);
+        let mut warnings = hot(conditions, &warmed);
+        for warning in found.iter().flatten().flat_map(|seat| &seat.warnings) {
+            if !warnings.contains(warning) {
+                warnings.push(warning.clone());
             }
+        }
+        let (cold, end) = (warmed.cold_seats()?, corners[corners.len() - 1]);
+        let last = &found[found.len() - 1];
+        let clearances = Clearances {
+            unmounted: Clearance::new(bearing.geometry, [0.0; 2], 0.0, [0.0; 2]),
+            mounted: Clearance::new(
+                bearing.geometry,
+                [0.0; 2],
+                0.0,
+                cold.each_ref().map(|seat| seat.groove[0]),
+            ),
+            operating: warmed.clearance(end, last),
         };
+        let start = warmed.seats_at(0.0)?;
+        let report = MountingReport {
+            clearances,
+            at_start: warmed.changes().then(|| warmed.clearance(0.0, &start)),
+            seats: last.each_ref().map(|seat| seat.report),
+            warnings,
+        };
+        let mounting = Mounting::from(warmed.grown(0.0, &start));
         Ok(Mounting {
-            rings: Side::BOTH.map(ring),
-            ball_radius_growth: 0.5 * relative.balls * geometry.ball_diameter,
-            report: Some(MountingReport {
-                clearances,
-                seats,
-                warnings,
-            }),
+            report: Some(report),
+            warmed: warmed.changes().then(|| Arc::new(warmed)),
+            ..mounting
         })
+    }
+
+    /// Whether temperatures change over time.
+    pub fn changes(&self) -> bool {
+        self.warmed.is_some()
+    }
+
+    /// The mounting at a time, s; without its report where temperatures change.
+    pub fn at(&self, time: f64) -> Cow<'_, Mounting> {
+        let Some(warmed) = &self.warmed else {
+            return Cow::Borrowed(self);
+        };
+        let seats = warmed.seats_at(time);
+        let seats = seats.expect("seats hold at all corners, so between them too");
+        Cow::Owned(Mounting::from(warmed.grown(time, &seats)))
     }
 
     /// Motion of the groove centre of a ring by mounting [radial, axial], m, measured by the weights of a contact.
@@ -157,35 +153,32 @@ impl Mounting {
     }
 }
 
-impl Strains {
-    fn new(bearing: &Unmounted, conditions: &Conditions) -> Strains {
-        let Some(warm) = &conditions.temperatures else {
-            return Strains::default();
-        };
-        let [rings, balls] = bearing.expansion;
-        let strain = |expansion: f64, temperature: f64| expansion * (temperature - warm.reference);
-        Strains {
-            rings: warm.rings.map(|t| strain(rings, t)),
-            balls: strain(balls, warm.balls),
-            partners: [0, 1].map(|i| strain(warm.partner_expansion[i].unwrap_or(rings), warm.partners[i])),
+impl From<Grown> for Mounting {
+    fn from(grown: Grown) -> Mounting {
+        Mounting {
+            rings: grown.rings,
+            ball_radius_growth: grown.ball_radius_growth,
+            report: None,
+            warmed: None,
         }
     }
 }
 
 /// Warns of rings that change their size for good.
-fn hot(conditions: &Conditions) -> Vec<String> {
-    let Some(warm) = &conditions.temperatures else {
+fn hot(conditions: &Conditions, warmed: &Warmed) -> Vec<String> {
+    if conditions.temperatures.is_none() {
         return Vec::new();
-    };
+    }
+    let warmest = warmed.warmest_rings();
     let hot = Side::BOTH
         .into_iter()
-        .filter(|side| warm.rings[side.index()] > STABLE);
+        .filter(|side| warmest[side.index()] > STABLE);
     hot.map(|side| {
         format!(
             "the {} ring is at {:.0} degC: beyond {:.0} degC a ring grows for good unless its steel is tempered for it \
              (DIN 623-1: SN to 120, S0 to 150, S1 to 200 degC); its clearance here has the elastic part alone",
             side.name(),
-            warm.rings[side.index()] - CELSIUS_ZERO,
+            warmest[side.index()] - CELSIUS_ZERO,
             STABLE - CELSIUS_ZERO,
         )
     })

@@ -2,14 +2,15 @@
 //!
 //! ```text
 //! delta = I/2 + s e d/2      s = 1 for shafts, -1 for housings; e the strain of the partner less that of the ring
-//! clamped       u = delta - c_p p,  p = k_r u + k_z e     ->  u = (delta - c_p k_z e) / (1 + c_p k_r)
-//! mean motion   p = delta / (c + c_p),   rigid: the same with the tube from seat to groove bottom;  p >= 0
+//! clamped       u = delta - c_p p,  p = k_r u + k_z e + q  ->  u = (delta - c_p (k_z e + q)) / (1 + c_p k_r)
+//! mean motion   p = (delta - v) / (c + c_p),   rigid: the same with the tube from seat to groove bottom;  p >= 0
 //! lets go       p(omega) = 0:   delta + s P omega^2 = (s G) omega^2
 //! ```
 //!
-//! c_p is the give of the partner per pressure ([`super::tube`]); without a fit it is 0 and the partner keeps the
-//! round form of a clamped seat at its own temperature. P and G are the growth of the partner's and the ring's seat
-//! per square of the speed; only the mean pressure moves the partner.
+//! c_p is the give of the partner per pressure ([`super::tube`]); without a fit it is 0 and the partner keeps the round
+//! form of a clamped seat at its own temperature. q and v are the pressure on a seat that is kept, and its motion where
+//! it is free, of a ring whose temperature varies with the radius; a tube has none about its mean. P and G are the
+//! growth of the partner's and the ring's seat per square of the speed; only the mean pressure moves the partner.
 
 use std::f64::consts::TAU;
 use std::sync::Arc;
@@ -17,7 +18,7 @@ use std::sync::Arc;
 use comm::Communicator;
 use contact::{Meridian, Side};
 use fem::Material;
-use ring::{Hold, RingModel, SeatAction, SeatField};
+use ring::{Hold, OwnStress, RadialProfile, RingModel, SeatAction, SeatField};
 
 use super::conditions::{Conditions, Fit, SeatForm};
 use super::tube::Tube;
@@ -41,11 +42,14 @@ pub struct SeatReport {
 }
 
 /// A ring on its seat, mounted.
+#[derive(Clone)]
 pub struct MountedSeat {
     /// Mean motion of the groove [radial, axial], m.
     pub groove: Meridian,
     /// Displacement of a flexible ring; None: none.
     pub field: Option<Arc<Vec<f64>>>,
+    /// Its stress besides that of the displacement; None: none.
+    pub own_stress: Option<Arc<OwnStress>>,
     /// What is known of its fit, if there is one.
     pub report: Option<SeatReport>,
     /// What a user should know.
@@ -53,17 +57,35 @@ pub struct MountedSeat {
 }
 
 /// A ring and its partner.
-pub struct RingSeat<'a> {
-    bearing: &'a Unmounted<'a>,
+#[derive(Debug)]
+pub struct RingSeat {
     side: Side,
+    /// Diameter of bore or seat, m.
+    diameter: f64,
+    /// Largest speed of the ring, rad/s.
+    speed: f64,
+    /// Yield strength, Pa; None: not compared.
+    yield_strength: Option<f64>,
     /// Tube from seat to groove bottom.
     tube: Tube,
     fit: Option<(Fit, Tube)>,
     answer: SeatAnswer,
     forms: Vec<FormField>,
+    /// What the ring does by its own strain about the mean; None: it has none.
+    own: Option<Arc<SeatField>>,
+}
+
+/// What temperatures do to a seat.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct SeatStrain {
+    /// Strain of the partner less that of the ring.
+    pub partner: f64,
+    /// Share of the ring's own strain about its mean: 1 warm, 0 at the reference temperature.
+    pub own: f64,
 }
 
 /// How a ring answers its partner.
+#[derive(Debug)]
 enum SeatAnswer {
     /// As a tube.
     Rigid,
@@ -82,13 +104,14 @@ struct Equilibrium {
     parts: Vec<(Arc<SeatField>, f64)>,
 }
 
-impl<'a> RingSeat<'a> {
-    /// The seat of a ring; a flexible one finds its fields.
+impl RingSeat {
+    /// The seat of a ring that strains by itself, if it does, by `own` about its mean; a flexible one finds its fields.
     pub fn new(
-        bearing: &'a Unmounted,
+        bearing: &Unmounted,
         conditions: &Conditions,
         side: Side,
-    ) -> Result<RingSeat<'a>, DynamicsError> {
+        own: Option<RadialProfile>,
+    ) -> Result<RingSeat, DynamicsError> {
         let i = side.index();
         let forms: Vec<SeatForm> = conditions
             .seat_forms
@@ -116,9 +139,19 @@ impl<'a> RingSeat<'a> {
             }
             None => (SeatAnswer::Rigid, Vec::new()),
         };
+        let own = match (&own, bearing.rings[i].as_deref()) {
+            (Some(strain), Some(ring)) => {
+                let action = SeatAction::OwnStrain(strain.clone());
+                fields(bearing, side, ring, &[action])?.into_iter().next()
+            }
+            _ => None,
+        };
         Ok(RingSeat {
-            bearing,
             side,
+            diameter: bearing.seat_diameters[i],
+            speed: bearing.speeds[i],
+            yield_strength: bearing.yield_strength,
+            own,
             tube: ring_tube(bearing, side),
             fit: fit.map(|fit| (fit, partner_tube(bearing, side, fit))),
             answer,
@@ -126,8 +159,8 @@ impl<'a> RingSeat<'a> {
         })
     }
 
-    /// The seat mounted, with the strain of the partner less that of the ring.
-    pub fn mounted(&self, strain: f64) -> Result<MountedSeat, DynamicsError> {
+    /// The seat mounted.
+    pub fn mounted(&self, strain: SeatStrain) -> Result<MountedSeat, DynamicsError> {
         let mut mounted = self.equilibrium(strain)?;
         let groove = match &self.answer {
             SeatAnswer::Rigid => [mounted.pressure * self.tube.growth(), 0.0],
@@ -158,15 +191,29 @@ impl<'a> RingSeat<'a> {
         Ok(MountedSeat {
             groove,
             field: sum(&mounted.parts),
+            own_stress: self.own.as_ref().and_then(|own| own.own_stress.clone()),
             warnings: self.warnings(mounted.pressure, strain),
             report,
         })
     }
 
     /// Half of the interference of free bodies, m.
-    fn interference(&self, strain: f64) -> f64 {
+    fn interference(&self, strain: SeatStrain) -> f64 {
         let given = self.fit.as_ref().map_or(0.0, |(fit, _)| fit.interference);
-        0.5 * (given - self.side.sign() * strain * self.bearing.seat_diameters[self.side.index()])
+        let free = 0.5 * (given - self.side.sign() * strain.partner * self.diameter);
+        match &self.own {
+            Some(own) => free - strain.own * own.into_ring,
+            None => free,
+        }
+    }
+
+    /// Pressure on a clamped seat that stays where it is, Pa.
+    fn kept_pressure(&self, stretch: &SeatField, strain: SeatStrain) -> f64 {
+        let along = stretch.pressure * strain.partner;
+        match &self.own {
+            Some(own) => along + strain.own * own.pressure,
+            None => along,
+        }
     }
 
     /// Give of the partner per pressure, m/Pa.
@@ -174,23 +221,27 @@ impl<'a> RingSeat<'a> {
         self.fit.as_ref().map_or(0.0, |(_, partner)| partner.give())
     }
 
-    fn equilibrium(&self, strain: f64) -> Result<Equilibrium, DynamicsError> {
+    fn equilibrium(&self, strain: SeatStrain) -> Result<Equilibrium, DynamicsError> {
         let (delta, give) = (self.interference(strain), self.give());
+        let own = self.own.iter().map(|own| (own.clone(), strain.own));
+        let own = own.filter(|(_, size)| *size != 0.0);
         match &self.answer {
             SeatAnswer::Clamped([radial, stretch]) => {
-                let moved = (delta - give * stretch.pressure * strain) / (1.0 + give * radial.pressure);
-                let pressure = radial.pressure * moved + stretch.pressure * strain;
+                let kept = self.kept_pressure(stretch, strain);
+                let moved = (delta - give * kept) / (1.0 + give * radial.pressure);
+                let pressure = radial.pressure * moved + kept;
                 if self.fit.is_some() && pressure <= 0.0 {
                     return Err(DynamicsError::LooseFit {
                         side: self.side.name(),
                         clearance_um: -2e6 * delta,
                     });
                 }
-                let parts = [(radial, moved), (stretch, strain)];
+                let parts = [(radial, moved), (stretch, strain.partner)];
                 let parts = parts.into_iter().filter(|(_, size)| *size != 0.0);
+                let parts = parts.map(|(field, size)| (field.clone(), size));
                 Ok(Equilibrium {
                     pressure,
-                    parts: parts.map(|(field, size)| (field.clone(), size)).collect(),
+                    parts: parts.chain(own).collect(),
                 })
             }
             SeatAnswer::Rigid | SeatAnswer::Pressed(_) => {
@@ -205,14 +256,18 @@ impl<'a> RingSeat<'a> {
                 };
                 Ok(Equilibrium {
                     pressure,
-                    parts: field.map(|field| (field.clone(), pressure)).into_iter().collect(),
+                    parts: field
+                        .map(|field| (field.clone(), pressure))
+                        .into_iter()
+                        .chain(own)
+                        .collect(),
                 })
             }
         }
     }
 
     /// Speed at which the mean pressure vanishes, rad/s.
-    fn loosening_speed(&self, strain: f64) -> Option<f64> {
+    fn loosening_speed(&self, strain: SeatStrain) -> Option<f64> {
         let (_, partner) = self.fit.as_ref()?;
         // Growth into the ring.
         let sign = -self.side.sign();
@@ -221,7 +276,7 @@ impl<'a> RingSeat<'a> {
         // What the pressure without speed would move the seat by, and the growth of the ring per square of the speed.
         let (delta, growth) = match &self.answer {
             SeatAnswer::Clamped([radial, stretch]) => (
-                delta + stretch.pressure * strain / radial.pressure,
+                delta + self.kept_pressure(stretch, strain) / radial.pressure,
                 radial.spin / radial.pressure,
             ),
             SeatAnswer::Pressed(Some(field)) => (delta, field.spin),
@@ -231,22 +286,33 @@ impl<'a> RingSeat<'a> {
         (square > 0.0).then(|| square.sqrt())
     }
 
+    /// Fails where the ring turns, which lets go at any speed.
+    pub fn check_turning(&self, report: &SeatReport) -> Result<(), DynamicsError> {
+        match self.speed > 0.0 {
+            true => Err(self.lets_go(report, 0.0)),
+            false => Ok(()),
+        }
+    }
+
+    fn lets_go(&self, report: &SeatReport, limit: f64) -> DynamicsError {
+        DynamicsError::FitLetsGo {
+            side: self.side.name(),
+            speed_rpm: self.speed * 60.0 / TAU,
+            limit_rpm: limit * 60.0 / TAU,
+            interference_um: 1e6 * report.interference,
+        }
+    }
+
     fn check_speed(&self, report: &SeatReport) -> Result<(), DynamicsError> {
-        let speed = self.bearing.speeds[self.side.index()];
         match report.loosening_speed {
-            Some(limit) if speed >= limit && report.pressure > 0.0 => Err(DynamicsError::FitLetsGo {
-                side: self.side.name(),
-                speed_rpm: speed * 60.0 / TAU,
-                limit_rpm: limit * 60.0 / TAU,
-                interference_um: 1e6 * report.interference,
-            }),
+            Some(limit) if self.speed >= limit && report.pressure > 0.0 => Err(self.lets_go(report, limit)),
             _ => Ok(()),
         }
     }
 
     /// Fails where the pressure of a fit makes the ring yield, as a tube.
     fn check_stress(&self, pressure: f64) -> Result<(), DynamicsError> {
-        let (Some(_), Some(limit)) = (&self.fit, self.bearing.yield_strength) else {
+        let (Some(_), Some(limit)) = (&self.fit, self.yield_strength) else {
             return Ok(());
         };
         let stress = pressure * self.tube.tresca();
@@ -284,7 +350,7 @@ impl<'a> RingSeat<'a> {
         }
     }
 
-    fn warnings(&self, pressure: f64, strain: f64) -> Vec<String> {
+    fn warnings(&self, pressure: f64, strain: SeatStrain) -> Vec<String> {
         let side = self.side.name();
         let clearance = -2e6 * self.interference(strain);
         if self.fit.is_some() && pressure == 0.0 && clearance >= 0.0 {
@@ -339,11 +405,10 @@ fn fields(
 
 /// The ring as a tube from its seat to the bottom of its groove.
 fn ring_tube(bearing: &Unmounted, side: Side) -> Tube {
-    let geometry = bearing.geometry;
-    let bottoms = [geometry.inner_raceway_diameter, geometry.outer_raceway_diameter];
+    let [seat, other] = bearing.tube_radii(side);
     Tube {
-        seat: 0.5 * bearing.seat_diameters[side.index()],
-        other: 0.5 * bottoms[side.index()],
+        seat,
+        other,
         material: bearing.ring_material,
     }
 }

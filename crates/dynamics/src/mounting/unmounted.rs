@@ -28,6 +28,13 @@ pub struct Unmounted<'a> {
 }
 
 impl Unmounted<'_> {
+    /// Radii of a ring's seat and of the bottom of its groove, m.
+    pub fn tube_radii(&self, side: Side) -> [f64; 2] {
+        let geometry = self.geometry;
+        let bottoms = [geometry.inner_raceway_diameter, geometry.outer_raceway_diameter];
+        [self.seat_diameters[side.index()], bottoms[side.index()]].map(|d| 0.5 * d)
+    }
+
     /// What a ring is solved with at rest.
     pub fn settings(&self, side: Side) -> StaticSettings {
         StaticSettings {

@@ -3,7 +3,9 @@
 use std::sync::Arc;
 
 use contact::{BearingGeometry, Side};
-use dynamics::mounting::{Conditions, Fit, Mounting, Temperatures, Unmounted};
+use dynamics::mounting::{
+    Conditions, Fit, Mounting, RingTemperature, TemperatureSchedule, Temperatures, Unmounted,
+};
 use dynamics::{Backend, Hold, Model, RingModel};
 
 use super::rings::{Level, ring};
@@ -46,13 +48,13 @@ pub fn fitted() -> Conditions {
 }
 
 pub fn at(inner: f64, outer: f64, balls: f64, [shaft, housing]: [f64; 2]) -> Conditions {
-    let kelvin = |celsius: f64| celsius + 273.15;
+    let kelvin = |celsius: f64| TemperatureSchedule::constant(celsius + 273.15);
     Conditions {
         temperatures: Some(Temperatures {
-            rings: [kelvin(inner), kelvin(outer)],
+            rings: [kelvin(inner), kelvin(outer)].map(RingTemperature::Uniform),
             balls: kelvin(balls),
-            partners: [kelvin(shaft), kelvin(housing)],
-            reference: kelvin(20.0),
+            partners: [Some(kelvin(shaft)), Some(kelvin(housing))],
+            reference: 293.15,
             partner_expansion: [None; 2],
         }),
         ..Conditions::default()

@@ -3,6 +3,7 @@
 //! **Order of the six components, here and everywhere: xx, yy, zz, xy, yz, xz** (that of VTK's symmetric tensors).
 //! Strain has engineering shear, `gamma_xy = du_x/dy + du_y/dx`; stress is in Pa, tension positive.
 
+mod initial;
 mod invariants;
 pub(crate) mod kernel;
 mod nodes;

@@ -59,6 +59,11 @@ impl NodeRecovery {
         self.recovery.n_elements()
     }
 
+    /// Values at the chosen nodes of what is known at all nodes of the mesh, `[n][6]`.
+    pub fn pick(&self, nodal: &[[f64; 6]]) -> Vec<[f64; 6]> {
+        self.chosen.iter().map(|&own| nodal[self.gathered[own]]).collect()
+    }
+
     /// Stress at the chosen nodes, Pa, `[n][6]`, from the displacements of all nodes of the mesh, m, `[3 n_nodes]`.
     ///
     /// # Panics

@@ -71,7 +71,16 @@ impl PointRecovery {
 
     /// Stress at the points, Pa, `[n][6]`, from displacements of all nodes of the mesh, m, `[3 n_nodes]`.
     pub fn stress(&self, u: &[f64]) -> Vec<[f64; 6]> {
-        let nodal = self.nodes.stress(u);
+        self.mixed(&self.nodes.stress(u))
+    }
+
+    /// Values at the points of what is known at all nodes of the mesh, `[n][6]`.
+    pub fn interpolate(&self, nodal: &[[f64; 6]]) -> Vec<[f64; 6]> {
+        self.mixed(&self.nodes.pick(nodal))
+    }
+
+    /// Mixes of values at the chosen nodes.
+    fn mixed(&self, nodal: &[[f64; 6]]) -> Vec<[f64; 6]> {
         let mix = |terms: &Vec<(usize, f64)>| {
             let mut sum = [0.0; 6];
             for &(own, value) in terms {

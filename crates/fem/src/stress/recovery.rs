@@ -204,8 +204,23 @@ impl StressRecovery {
         self.connectivity.len() / self.table.kind.n_nodes()
     }
 
+    /// Node coordinates, m.
+    pub(super) fn positions(&self) -> &[[f64; 3]] {
+        &self.positions
+    }
+
+    /// Shape functions at the stress points.
+    pub(super) fn table(&self) -> &Table {
+        &self.table
+    }
+
+    /// Lamé's constants, Pa.
+    pub(super) fn lame(&self) -> [f64; 2] {
+        self.lame
+    }
+
     /// Nodes of element `e`.
-    fn element(&self, e: usize) -> &[usize] {
+    pub(super) fn element(&self, e: usize) -> &[usize] {
         let n = self.table.kind.n_nodes();
         &self.connectivity[n * e..n * (e + 1)]
     }
@@ -243,7 +258,7 @@ impl StressRecovery {
     }
 
     /// Corner stresses times the volume from those at the stress points.
-    fn project(&self, (points, volume): ([[f64; 6]; MAX_POINTS], f64), corners: &mut [[f64; 6]]) {
+    pub(super) fn project(&self, (points, volume): ([[f64; 6]; MAX_POINTS], f64), corners: &mut [[f64; 6]]) {
         for (corner, factors) in corners.iter_mut().zip(&self.projection) {
             let mut sum = [0.0; 6];
             for (point, factor) in points.iter().zip(factors) {
@@ -253,6 +268,12 @@ impl StressRecovery {
             }
             *corner = sum.map(|s| volume * s);
         }
+    }
+
+    /// Stress at the nodes, Pa, from corner stresses times element volumes, `[n_elements][n_corners]` flat.
+    pub(super) fn average(&self, corners: &[[f64; 6]]) -> Vec<[f64; 6]> {
+        let of_node = |(node, &volume): (usize, &f64)| self.sum(node, corners).map(|s| s * inverse(volume));
+        self.volumes.iter().enumerate().map(of_node).collect()
     }
 
     /// Sum over the elements of a node, N m.

@@ -3,8 +3,8 @@
 use fem::{StressRecovery, assemble_stiffness};
 use mesh::ElementKind;
 
-use crate::support::grids::crooked_cube;
-use crate::support::{assert_close, clamp, max_difference, nodal_field, solve, steel};
+use crate::support::grids::{Ends, crooked_cube, mapped_grid};
+use crate::support::{assert_close, clamp, max_abs, max_difference, nodal_field, solve, steel};
 
 /// A displacement of order 1e-3 m with constant strain and a rotation, not aligned with anything.
 fn linear(x: [f64; 3]) -> [f64; 3] {
@@ -105,4 +105,38 @@ fn one_layer_of_hex8_bends_as_a_beam() {
         .find(|&n| mesh.nodes[n] == [10.0, 0.0, 0.0])
         .unwrap();
     assert_close(u[3 * tip + 2].abs(), 50.0, 1e-9, "tip deflection");
+}
+
+/// Otherwise a warm body would be stressed that is free to grow. A strain by itself that is linear in space stresses no
+/// free body (Boley and Weiner, Theory of Thermal Stresses, 1960, section 3.8): e = c + g x bends it by
+/// u = c x + g (x^2 - y^2 - z^2)/2 and so on. Forces and stresses cancel to round-off; 8-node elements take the bending
+/// by their modes, if they are rectangular.
+#[test]
+fn a_linear_temperature_bends_a_free_body_without_stress() {
+    let (c, g) = (2e-4, [3e-4, -1e-4, 2e-4]);
+    let own = |x: [f64; 3]| c + (0..3).map(|i| g[i] * x[i]).sum::<f64>();
+    let square = |x: [f64; 3]| x.iter().map(|x| x * x).sum::<f64>();
+    let free = |x: [f64; 3]| {
+        let along: f64 = (0..3).map(|i| g[i] * x[i]).sum();
+        std::array::from_fn(|i| c * x[i] + along * x[i] - 0.5 * g[i] * square(x))
+    };
+    for kind in ElementKind::ALL {
+        let mesh = mapped_grid(kind, [3, 2, 2], Ends::Free, |x| x);
+        let recovery = StressRecovery::new(&mesh, &steel()).unwrap();
+        let held = recovery.held_stress(own);
+        let u = nodal_field(&mesh, free);
+        let largest = held.iter().flatten().fold(0.0, |m: f64, s| m.max(s.abs()));
+        for (moved, held) in recovery.integration_points(&u).iter().zip(&held) {
+            for i in 0..6 {
+                assert_close(moved[i] + held[i], 0.0, 1e-11 * largest, kind.name());
+            }
+        }
+        let forces = fem::stiffness_product(&mesh, &steel(), &u).unwrap();
+        let load = recovery.released_load(&held);
+        assert!(
+            max_difference(&forces, &load) < 1e-11 * max_abs(&load),
+            "{}",
+            kind.name()
+        );
+    }
 }

@@ -2,13 +2,14 @@
 
 use std::sync::Arc;
 
+use fem::{FemError, StressRecovery};
 use mesh::Mesh;
 
 use super::prepared::StaticSettings;
 use super::solver::RingSolver;
 use crate::error::RingError;
 use crate::model::{Hold, RACEWAY_GROUP, RingModel};
-use crate::seat::{SeatAction, SeatField};
+use crate::seat::{OwnStress, RadialProfile, SeatAction, SeatField};
 use crate::vectors::dot;
 
 impl RingModel {
@@ -26,11 +27,11 @@ impl RingModel {
                 .find(|(of, _)| of == action)
                 .map(|(_, field)| field.clone())
         };
-        let missing: Vec<SeatAction> = actions.iter().copied().filter(|a| known(a).is_none()).collect();
+        let missing: Vec<SeatAction> = actions.iter().filter(|a| known(a).is_none()).cloned().collect();
         if !missing.is_empty() {
             let solver = RingSolver::new(self, settings)?;
             for action in missing {
-                let field = Arc::new(self.seat_field(settings.name, &solver, action)?);
+                let field = Arc::new(self.seat_field(settings.name, &solver, &action)?);
                 let fields = self.sectors.seat_fields.lock();
                 fields
                     .expect("no field is found while another is kept")
@@ -48,18 +49,30 @@ impl RingModel {
         &self,
         side: &'static str,
         solver: &RingSolver,
-        action: SeatAction,
+        action: &SeatAction,
     ) -> Result<SeatField, RingError> {
-        assert_eq!(
-            action == SeatAction::Pressure,
-            self.hold == Hold::MeanMotion,
+        assert!(
+            matches!(action, SeatAction::OwnStrain(_))
+                || (*action == SeatAction::Pressure) == (self.hold == Hold::MeanMotion),
             "a surface in its mean motion is pressed, a clamped one moved"
         );
         let fem = |source| RingError::Fem { side, source };
         let mesh = &self.mesh;
         let surface = HeldSurface::new(self);
+        let mut own_stress = None;
         let (displacement, reaction) = match action {
             SeatAction::Pressure => (solver.solve(surface.normals.clone(), 1), surface.normals.clone()),
+            SeatAction::OwnStrain(strain) => {
+                let (stress, load) = self.strained(strain).map_err(fem)?;
+                own_stress = Some(Arc::new(stress));
+                let field = solver.solve(load.clone(), 1);
+                let mut reaction = vec![0.0; load.len()];
+                if self.hold == Hold::Clamped {
+                    reaction = fem::stiffness_product(mesh, &self.material, &field).map_err(fem)?;
+                    reaction.iter_mut().zip(&load).for_each(|(r, f)| *r -= f);
+                }
+                (field, reaction)
+            }
             _ => {
                 let moved = surface.motion(mesh, action, self.groove.centre_z);
                 let product = |u: &[f64]| fem::stiffness_product(mesh, &self.material, u).map_err(fem);
@@ -79,7 +92,17 @@ impl RingModel {
             groove: self.groove_motion(&displacement),
             spin: mean(&spin, &displacement),
             displacement: Arc::new(displacement),
+            own_stress,
         })
+    }
+
+    /// Stress of the ring held still while it strains by itself, and the forces that move it then, N.
+    fn strained(&self, strain: &RadialProfile) -> Result<(OwnStress, Vec<f64>), FemError> {
+        let recovery = StressRecovery::new(&self.mesh, &self.material)?;
+        let points = recovery.held_stress(|[x, y, _]| strain.at(x.hypot(y)));
+        let load = recovery.released_load(&points);
+        let nodal = recovery.nodal_of_points(&points);
+        Ok((OwnStress { nodal, points }, load))
     }
 
     /// Motion of the bottom of the groove [radial, axial], m; see [`SeatField::groove`].
@@ -137,19 +160,19 @@ impl HeldSurface {
     }
 
     /// Displacements of a clamped surface, 0 elsewhere.
-    fn motion(&self, mesh: &Mesh, action: SeatAction, centre_z: f64) -> Vec<f64> {
+    fn motion(&self, mesh: &Mesh, action: &SeatAction, centre_z: f64) -> Vec<f64> {
         let mut moved = vec![0.0; mesh.n_dofs()];
         for &node in &self.nodes {
             let [x, y, z] = mesh.nodes[node];
             let e = &self.into_ring[3 * node..3 * node + 3];
-            let u = match action {
+            let u = match *action {
                 SeatAction::Radial => [e[0], e[1], 0.0],
                 SeatAction::Stretch => [0.0, 0.0, z - centre_z],
                 SeatAction::Wave { order, high } => {
                     let size = (order as f64 * (y.atan2(x) - high)).cos() / x.hypot(y);
                     [size * x, size * y, 0.0]
                 }
-                SeatAction::Pressure => [0.0; 3],
+                SeatAction::Pressure | SeatAction::OwnStrain(_) => [0.0; 3],
             };
             moved[3 * node..3 * node + 3].copy_from_slice(&u);
         }
@@ -157,8 +180,8 @@ impl HeldSurface {
     }
 
     /// How far the pressure of an action belongs to a node: 1 or, of a wave, its cosine.
-    fn shares(&self, mesh: &Mesh, action: SeatAction) -> Vec<f64> {
-        let share = |&node: &usize| match action {
+    fn shares(&self, mesh: &Mesh, action: &SeatAction) -> Vec<f64> {
+        let share = |&node: &usize| match *action {
             SeatAction::Wave { order, high } => {
                 let [x, y, _] = mesh.nodes[node];
                 (order as f64 * (y.atan2(x) - high)).cos()

@@ -4,7 +4,7 @@
 //! What `raceway life` needs besides a run: ratings of a catalogue, reliability and lubrication. Nothing is guessed:
 //! without viscosity or contamination there is no life with the factor a_ISO, and the command says so.
 
-use input::{ANGLE, ANGULAR_SPEED, FORCE, Problems, Quantity, Temperature, VISCOSITY};
+use input::{ANGLE, ANGULAR_SPEED, FORCE, Problems, Quantity, STRESS, Temperature, VISCOSITY};
 use serde::Deserialize;
 
 use super::oil::{ClassKeys, Oil};
@@ -27,6 +27,7 @@ pub struct RawLife {
     viscosity_at_100: Option<Quantity<VISCOSITY>>,
     temperature: Option<Temperature>,
     contamination: Option<f64>,
+    shear_limit: Option<Quantity<STRESS>>,
 }
 
 /// Groove radii by which the rating is shared between the raceways.
@@ -61,6 +62,8 @@ pub struct Life {
     pub oil: Option<Oil>,
     /// Contamination factor e_C, above 0 to 1.
     pub contamination: Option<f64>,
+    /// Shear stress below which a life from stress has no damage, Pa; None: 0.
+    pub shear_limit: Option<f64>,
 }
 
 impl Default for Life {
@@ -75,6 +78,7 @@ impl Default for Life {
             speed: None,
             oil: None,
             contamination: None,
+            shear_limit: None,
         }
     }
 }
@@ -84,6 +88,8 @@ const RELIABILITIES: [f64; 6] = [90.0, 95.0, 96.0, 97.0, 98.0, 99.0];
 
 /// Largest nominal contact angle of a radial bearing (ISO 281, clause 3), rad, with round-off.
 const MAX_CONTACT_ANGLE: f64 = std::f64::consts::FRAC_PI_4 * (1.0 + 1e-12);
+/// No steel endures more shear, Pa.
+const MOST_SHEAR: f64 = 2e9;
 /// Largest plausible speed, rad/s, as in `[speed]`.
 const MAX_SPEED: f64 = 1e5;
 
@@ -122,6 +128,14 @@ impl RawLife {
                 "the factor e_C is above 0 (much dirt) and at most 1 (clean)",
             );
         }
+        if let Some(limit) = &self.shear_limit {
+            problems.require(
+                (0.0..=MOST_SHEAR).contains(&limit.si()),
+                "life.shear_limit",
+                limit,
+                "expected 0 to 2 GPa; hardened steel endures some hundred MPa of shear",
+            );
+        }
         self.check_speed(has_speed, problems);
         Life {
             contact_angle: self.contact_angle.as_ref().map(Quantity::si),
@@ -133,6 +147,7 @@ impl RawLife {
             speed: self.speed.as_ref().map(Quantity::si),
             oil: self.oil(problems),
             contamination: self.contamination,
+            shear_limit: self.shear_limit.as_ref().map(Quantity::si),
         }
     }
 

@@ -32,8 +32,8 @@
 //! A bearing may be given as catalogues give it, and materials by name: see the files of these tables, `bearing.rs`
 //! and `materials.rs`.
 //!
-//! Any scene may have tables `[stress]`, `[probes.*]`, `[life]` and `[lubricant]`, and motion without inertia is a
-//! table of its own, `[quasi_static]`: see the files of these names.
+//! Any scene may have tables `[stress]`, `[probes.*]`, `[life]`, `[heat]` and `[lubricant]`, and motion without inertia
+//! is a table of its own, `[quasi_static]`: see the files of these names.
 
 mod analysis;
 mod ball_diameters;
@@ -48,6 +48,7 @@ mod dynamic;
 mod edit;
 mod error;
 mod gather;
+mod heat;
 mod hints;
 mod include;
 mod life;
@@ -57,6 +58,7 @@ mod materials;
 mod messages;
 mod modes;
 mod oil;
+mod optional;
 mod output;
 mod probes;
 mod profiles;
@@ -92,6 +94,7 @@ pub use self::contact::{BallElasticity, Contact, ContactMode};
 pub use self::difference::difference;
 pub use self::dynamic::{ContactScheme, Dynamic, IntegratorChoice};
 pub use self::error::SceneError;
+pub use self::heat::{BODIES, FrictionLaw, Heat, SURROUNDINGS};
 pub use self::life::{Life, LifeGrooves};
 pub use self::locate::locate;
 pub use self::lubricant::{Lubrication, Roughness};
@@ -116,6 +119,7 @@ use self::bearing::RawBearing;
 use self::cage::RawCage;
 use self::contact::RawContact;
 use self::dynamic::RawDynamic;
+use self::heat::RawHeat;
 use self::life::RawLife;
 use self::lubricant::RawLubricant;
 use self::materials::RawMaterials;
@@ -166,6 +170,7 @@ struct RawScene {
     #[serde(default)]
     probes: RawProbes,
     life: Option<RawLife>,
+    heat: Option<RawHeat>,
     lubricant: Option<RawLubricant>,
     r#static: Option<RawStatic>,
     sweep: Option<RawSweep>,
@@ -222,6 +227,8 @@ pub struct Scene {
     pub probes: Probes,
     /// What a life needs besides loads.
     pub life: Option<Life>,
+    /// What a heat balance needs besides the bearing.
+    pub heat: Option<Heat>,
     /// What lubricates the contacts.
     pub lubricant: Option<Lubrication>,
     /// What is computed.
@@ -372,12 +379,9 @@ impl Source<'_> {
         };
         let probes = raw.probes.check(probes, &mut problems);
         let turns = raw.speed.is_some() && raw.modes.is_none();
-        let lubricant = raw.lubricant.as_ref();
-        let lubricant = lubricant.and_then(|lubricant| lubricant.check(turns, &mut problems));
-        let life = raw
-            .life
-            .as_ref()
-            .map(|life| life.check(raw.speed.is_some(), &mut problems));
+        let lubricant = raw.lubricant(turns, &mut problems);
+        let life = raw.life(&mut problems);
+        let heat = raw.heat(&mut problems);
         let modes = ModesContext {
             flexible: [inner.body.is_some(), outer.body.is_some()],
             contact: contact.mode,
@@ -408,6 +412,7 @@ impl Source<'_> {
                 stress,
                 probes,
                 life,
+                heat,
                 lubricant,
                 analysis,
                 assumed,

@@ -33,6 +33,7 @@ fn life_reads_as_its_documentation_says() {
             temperature: 343.15,
         }),
         contamination: Some(0.6),
+        shear_limit: None,
     };
     assert_eq!(parse(&with_life(keys), &[]).unwrap().life, Some(expected));
     let oil = |keys: &str| parse(&with_life(keys), &[]).unwrap().life.unwrap().oil;

@@ -1,9 +1,83 @@
 //! Fits, temperatures and seat forms: values that make no sense, and their messages.
 
+use dynamics::mounting::{RingTemperature, TemperatureSchedule};
+
 use super::{EXAMPLE, message_of, parse, replace_line};
 
 /// Settings of a scene and the essential part of the message.
-const REFUSED: [(&[&str], &str); 22] = [
+const REFUSED: [(&[&str], &str); 33] = [
+    (
+        &[
+            "effects.temperature={inner={times=[\"0 s\"], values=[\"20 degC\"]}, outer=\"20 degC\", balls=\"20 degC\"}",
+        ],
+        "effects.temperature.inner changes over time, but a scene at rest has no time; give one temperature",
+    ),
+    (
+        &[
+            "effects.temperature={inner=\"20 degC\", outer=\"20 degC\", balls={radii=[\"1 mm\"], values=[\"20 \
+             degC\"]}}",
+        ],
+        "effects.temperature.balls is given by radius, which only rings are; give one temperature, or one over time",
+    ),
+    (
+        &[
+            "effects.temperature={inner={radii=[\"25 mm\", \"28 mm\"], values=[\"20 degC\"]}, outer=\"20 degC\", \
+             balls=\"20 degC\"}",
+        ],
+        "effects.temperature.inner has 2 radii and 1 values; expected as many of both, at least one",
+    ),
+    (
+        &[
+            "effects.temperature={inner={radii=[\"28 mm\", \"25 mm\"], values=[\"20 degC\", \"30 degC\"]}, \
+             outer=\"20 degC\", \
+             balls=\"20 degC\"}",
+        ],
+        "effects.temperature.inner.radii[1] is 25 mm; radii must grow, the one before is 28 mm",
+    ),
+    (
+        &[
+            "effects.temperature={inner={radii=[\"0 mm\"], values=[\"20 degC\"]}, outer=\"20 degC\", balls=\"20 \
+             degC\"}",
+        ],
+        "effects.temperature.inner.radii[0] is 0 mm; a radius must be positive",
+    ),
+    (
+        &[
+            "effects.temperature={inner={radii=[\"25 mm\"], values=[\"400 degC\"]}, outer=\"20 degC\", \
+             balls=\"20 degC\"}",
+        ],
+        "effects.temperature.inner.values[0] is 400 degC; expected -200 degC to 350 degC",
+    ),
+    (
+        &["effects.temperature={inner={values=[\"20 degC\"]}, outer=\"20 degC\", balls=\"20 degC\"}"],
+        "effects.temperature.inner needs a temperature, or times and values, or ramp, or of a ring radii and values",
+    ),
+    (
+        &[
+            "effects.temperature={inner={ramp={from=\"20 degC\", to=\"500 degC\", start=\"0 s\", duration=\"0 s\"}}, \
+             outer=\"20 degC\", balls=\"20 degC\"}",
+        ],
+        "effects.temperature.inner.ramp.duration is 0 s; a duration must be positive",
+    ),
+    (
+        &[
+            "effects.temperature={inner={ramp={from=\"20 degC\", to=\"500 degC\", start=\"0 s\", duration=\"1 s\"}}, \
+             outer=\"20 degC\", balls=\"20 degC\"}",
+        ],
+        "effects.temperature.inner.ramp.to is 500 degC; expected -200 degC to 350 degC",
+    ),
+    (
+        &[
+            "effects.temperature={inner={times=[\"1 s\", \"0 s\"], values=[\"20 degC\", \"30 degC\"]}, \
+             outer=\"20 degC\", \
+             balls=\"20 degC\"}",
+        ],
+        "effects.temperature.inner.times[1] is 0 s; times must grow, the one before is 1 s",
+    ),
+    (
+        &["effects.temperature={inner=60, outer=\"20 degC\", balls=\"20 degC\"}"],
+        "expected a temperature such as \"70 degC\" or a table over time or radius",
+    ),
     (
         &["effects.fit={}"],
         "[effects.fit] has no ring; add [effects.fit.inner] or [effects.fit.outer], or remove it",
@@ -193,10 +267,14 @@ fn fits_and_temperatures_reach_the_conditions() {
     );
     assert!(conditions.fits[0].is_none());
     let warm = conditions.temperatures.unwrap();
-    assert_eq!(warm.rings, [333.15, 323.15]);
+    let of = TemperatureSchedule::constant;
+    assert_eq!(
+        warm.rings,
+        [333.15, 323.15].map(|kelvin| RingTemperature::Uniform(of(kelvin)))
+    );
     assert_eq!(
         (warm.balls, warm.partners, warm.reference),
-        (338.15, [333.15, 313.15], 293.15)
+        (of(338.15), [None, Some(of(313.15))], 293.15)
     );
     let form = conditions.seat_forms[0];
     assert_eq!(
