@@ -324,7 +324,7 @@ const INVALID: [Case; 55] = [
         "[effects.ball_centrifugal]\nspeed = 1",
         &[
             "unknown key \"speed\" in [effects.ball_centrifugal]; speed belongs to [speed], \
-             [life]; this table has no keys",
+             [life], [heat]; this table has no keys",
         ],
     ),
 ];
