@@ -16,7 +16,7 @@ use crate::bearing::{BearingParts, ContactList, SeatStep};
 use crate::bodies::{FlatBody, Inertia, Name};
 use crate::displacements::Displacements;
 use crate::effects::steady_balls::SteadyBalls;
-use crate::effects::{self, Loads, Now, Seen};
+use crate::effects::{self, AtEquilibrium, Loads, Now};
 use crate::equilibrium::SearchScales;
 use crate::error::DynamicsError;
 use crate::interactions::raceway_contact::Site;
@@ -76,14 +76,7 @@ impl<'a> LoadCase<'a> {
 
     /// How free balls roll in `u`; None where they are not free, or nothing rolls.
     pub fn steady(&self, u: &Displacements) -> Result<Option<SteadyBalls>, DynamicsError> {
-        self.with_now(u, |now| {
-            for effect in &self.model.effects {
-                if let Some(balls) = effect.steady(self.model, now)? {
-                    return Ok(Some(balls));
-                }
-            }
-            Ok(None)
-        })
+        self.with_now(u, |now| SteadyBalls::of(self.model, now))
     }
 
     /// The instant with contacts and balls as they stand in `u`.
@@ -94,7 +87,7 @@ impl<'a> LoadCase<'a> {
         let approaches: Vec<f64> = states.iter().map(|state| state.force.approach).collect();
         let now = Now {
             angles: Some(&angles),
-            seen: Some(Seen {
+            seen: Some(AtEquilibrium {
                 forces: &forces,
                 approaches: &approaches,
                 balls: &u.balls,

@@ -15,7 +15,7 @@ use input::Schedule;
 use ring::{Backend, RingModel};
 
 use crate::effects::Effect;
-use crate::interactions::cage::Cage;
+use crate::interactions::cage::design::Cage;
 use crate::interactions::seat_spring::Seat;
 use crate::interactions::traction::Traction;
 use crate::mounting::Mounting;

@@ -7,11 +7,11 @@ use input::Schedule;
 pub use ring::FrameTurn;
 use timer::SharedLaps;
 
-use super::steady_balls::SteadyBalls;
 use crate::balls::BallResult;
 use crate::error::DynamicsError;
 use crate::interactions::seat_spring::Seat;
 use crate::interactions::traction::Traction;
+use crate::kinematics::RingSpeeds;
 use crate::model::Model;
 use ring::division::NodePlaces;
 
@@ -128,12 +128,12 @@ pub struct Now<'a> {
     /// stands for them.
     pub angles: Option<&'a [f64]>,
     /// Forces and places of an equilibrium; None: not known yet, or over a step.
-    pub seen: Option<Seen<'a>>,
+    pub seen: Option<AtEquilibrium<'a>>,
 }
 
 /// Contacts and balls as an equilibrium has them.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Seen<'a> {
+pub struct AtEquilibrium<'a> {
     /// Normal forces, N, by site.
     pub forces: &'a [f64],
     /// Approaches, m, by site.
@@ -180,9 +180,9 @@ pub trait Effect: Send + Sync {
         [0.0; 3]
     }
 
-    /// Slot of free balls: how they roll in an equilibrium.
-    fn steady(&self, _model: &Model, _now: &Now) -> Result<Option<SteadyBalls>, DynamicsError> {
-        Ok(None)
+    /// Slot of free balls: speeds of the rings between which they roll in an equilibrium.
+    fn rolling_speeds(&self) -> Option<&RingSpeeds> {
+        None
     }
 
     /// Slot of free balls: their traction; balls are free where there is one.

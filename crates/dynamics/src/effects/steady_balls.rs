@@ -6,12 +6,11 @@
 
 use contact::Side;
 
-use super::loads::{Loads, Now, Seen};
+use super::loads::{AtEquilibrium, Loads, Now};
 use crate::balls::{FreeBallResult, Friction, TractionResult};
 use crate::error::DynamicsError;
 use crate::interactions::steady_rolling::{SteadyBall, SteadyContact, SteadyRolling};
-use crate::interactions::traction::{Ellipse, Traction};
-use crate::kinematics::RingSpeeds;
+use crate::interactions::traction::Ellipse;
 use crate::model::Model;
 
 /// Steadily rolling balls of an equilibrium.
@@ -23,14 +22,13 @@ pub struct SteadyBalls {
 }
 
 impl SteadyBalls {
-    /// How the balls of a model roll at an instant; None where none does: nothing is known of the contacts yet, no ring
-    /// turns, there is no friction, or no ball is loaded by both rings.
-    pub fn new(
-        model: &Model,
-        (traction, speeds): (&Traction, &RingSpeeds),
-        now: &Now,
-    ) -> Result<Option<SteadyBalls>, DynamicsError> {
-        let (Some(seen), Some(angles)) = (now.seen, now.angles) else {
+    /// How the balls of a model roll at an instant; None where none does: they are not free, nothing is known of the
+    /// contacts yet, no ring turns, there is no friction, or no ball is loaded by both rings.
+    pub fn of(model: &Model, now: &Now) -> Result<Option<SteadyBalls>, DynamicsError> {
+        let speeds = model.effects.iter().find_map(|effect| effect.rolling_speeds());
+        let (Some(seen), Some(angles), Some(speeds), Some(traction)) =
+            (now.seen, now.angles, speeds, model.traction())
+        else {
             return Ok(None);
         };
         let speeds = Side::BOTH.map(|side| speeds.of(side).at(now.time));
@@ -152,7 +150,7 @@ fn contact(
     model: &Model,
     side: Side,
     speed: f64,
-    (seen, angles, ball): (Seen<'_>, &[f64], usize),
+    (seen, angles, ball): (AtEquilibrium<'_>, &[f64], usize),
 ) -> SteadyContact {
     let site = 2 * ball + side.index();
     let (sin, cos) = angles[site].sin_cos();

@@ -10,7 +10,8 @@
 //! law = "curve"           slips = ["0 m/s", "0.1 m/s", "2 m/s"], coefficients = [0.0, 0.07, 0.04]   a table
 //! ```
 //!
-//! In an equilibrium every ball rolls steadily where it stands ([`super::steady_balls`]); a motion starts from there. Rings of no finite elements have the shear modulus of the balls.
+//! In an equilibrium every ball rolls steadily where it stands ([`super::steady_balls`]); a motion starts from there.
+//! Rings of no finite elements have the shear modulus of the balls.
 //!
 //! Rule of thumb: balls keep rolling while F_a > 10 Z F_c, F_c the centrifugal force of a ball (Hirano, ASLE Trans. 8
 //! (1965) 425).
@@ -26,7 +27,7 @@ use super::table::{self, About, Context, Setting, SpeedRole};
 use crate::error::DynamicsError;
 use crate::interactions::traction::law::{CurvePoints, SlipTable};
 use crate::interactions::traction::{Creep, Curve, PatchPoints, Traction, TractionLaw};
-use crate::kinematics::BallSpeeds;
+use crate::kinematics::{BallSpeeds, RingSpeeds};
 use crate::model::Model;
 
 const EXAMPLE: &str = r#"[effects.traction]              # needs [balls] with motion = "free"
@@ -311,15 +312,15 @@ impl Effect for FreeBalls {
         if now.width > 0.0 {
             return Ok(());
         }
-        match self.steady(model, now)? {
+        match SteadyBalls::of(model, now)? {
             Some(balls) => balls.add_loads(model, now, loads),
             None => self.at_start.add_loads(model, now, loads)?,
         }
         Ok(())
     }
 
-    fn steady(&self, model: &Model, now: &Now) -> Result<Option<SteadyBalls>, DynamicsError> {
-        SteadyBalls::new(model, (&self.traction, &self.at_start.speeds), now)
+    fn rolling_speeds(&self) -> Option<&RingSpeeds> {
+        Some(&self.at_start.speeds)
     }
 
     fn traction(&self) -> Option<&Traction> {

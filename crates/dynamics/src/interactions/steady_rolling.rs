@@ -1,8 +1,8 @@
 //! A ball that rolls steadily under friction: what bearing engineers call a quasi-dynamic equilibrium.
 //!
-//! In the meridian frame (e_r, t = e_psi, e_z) that goes round with the ball, place, velocity and angular velocity of the
-//! ball stand. Unknowns are the speed w_c round the axis and the turning (w_r, w_t, w_z). With n_k the normal of contact
-//! k, from the ball's centre to the raceway, q_k = n_k x t, c_k the lever, and d the distance from the axis,
+//! In the meridian frame (e_r, t = e_psi, e_z) that goes round with the ball, place, velocity and angular velocity of
+//! the ball stand. Unknowns are the speed w_c round the axis and the turning (w_r, w_t, w_z). With n_k the normal of
+//! contact k, from the ball's centre to the raceway, q_k = n_k x t, c_k the lever, and d the distance from the axis,
 //!
 //! ```text
 //! slip           s_t = w_c d + c (w_z n_r - w_r n_z) - W_k (d + c n_r),   s_q = -c w_t
@@ -337,8 +337,8 @@ fn implicit_step(
     Some(step)
 }
 
-/// Speed round the axis and turning about e_r, e_psi, e_z, rad/s, of a ball at a distance `out` from the axis that rolls
-/// without slip at the centres of both contacts and spins as much on either.
+/// Speed round the axis and turning about e_r, e_psi, e_z, rad/s, of a ball at a distance `out` from the axis that
+/// rolls without slip at the centres of both contacts and spins as much on either.
 pub fn pure_rolling(out: f64, levers: [f64; 2], normals: [[f64; 2]; 2], speeds: [f64; 2]) -> [f64; N] {
     let slip = |k: usize| {
         let [n_r, n_z] = normals[k];

@@ -14,40 +14,12 @@ use crate::bodies::CageBody;
 use crate::interactions::cage::land::LandStep;
 use crate::interactions::cage::links::CageLinks;
 use crate::interactions::cage::pocket::PocketStep;
-use crate::interactions::cage::{Cage, CageForce, Land, small_slip};
+use crate::interactions::cage::{Cage, Land, small_slip};
 use crate::interactions::free_contact::{Carrier, RingStep};
 
-/// A cage and its contacts over a part as they are solved.
-#[derive(Clone, Debug, Default)]
-pub struct CageSolution {
-    /// Displacement, tilts and turn over the part.
-    pub end: [f64; 6],
-    /// Pockets by ball.
-    pub pockets: Vec<CageForce>,
-    /// Ends on the land.
-    pub lands: Vec<CageForce>,
-    /// Energy lost to the drag of the land, J, and its torque on the cage, N m.
-    pub drag: [f64; 2],
-    /// What the land asks of the shaft, N and N m.
-    pub on_shaft: [f64; 5],
-}
-
-impl Cage {
-    /// Mass of each of its coordinates.
-    pub fn masses(&self) -> [f64; 6] {
-        let (m, t) = (self.mass, self.transverse);
-        [m, m, m, t, t, self.polar]
-    }
-
-    /// How many ends a land guides.
-    pub fn n_ends(&self) -> usize {
-        self.land.map_or(0, |_| 2)
-    }
-}
-
 impl Motion<'_> {
-    /// A cage that stands round the balls, or in the middle of an inner land, and turns with the balls; None where there
-    /// is none.
+    /// A cage that stands round the balls, or in the middle of an inner land, and turns with the balls; None where
+    /// there is none.
     pub(super) fn cage_at_start(&self, free: &FreeState, shaft: [f64; 5]) -> Option<CageState> {
         let cage = self.model.cage.as_ref()?;
         let n = free.places.len();

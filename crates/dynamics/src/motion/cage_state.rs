@@ -1,4 +1,6 @@
-//! What evolves of a cage.
+//! What evolves of a cage, and what a part of a step finds of it.
+
+use crate::interactions::cage::CageForce;
 
 /// A cage: place and rates in space, and what its contacts remember and report.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -36,4 +38,19 @@ impl CageState {
             .chain(&self.torques);
         forces.chain(rest).sum()
     }
+}
+
+/// A cage and its contacts over a part as they are solved.
+#[derive(Clone, Debug, Default)]
+pub struct CageSolution {
+    /// Displacement, tilts and turn over the part.
+    pub end: [f64; 6],
+    /// Pockets by ball.
+    pub pockets: Vec<CageForce>,
+    /// Ends on the land.
+    pub lands: Vec<CageForce>,
+    /// Energy lost to the drag of the land, J, and its torque on the cage, N m.
+    pub drag: [f64; 2],
+    /// What the land asks of the shaft, N and N m.
+    pub on_shaft: [f64; 5],
 }

@@ -11,8 +11,8 @@ pub struct FreeState {
     pub velocities: Vec<[f64; 3]>,
     /// Angular velocities, rad/s.
     pub turnings: Vec<[f64; 3]>,
-    /// Changes of velocity and angular velocity in the last step beyond the turning round the axis, over its time, m/s^2
-    /// and rad/s^2: the next step's guess.
+    /// Changes of velocity and angular velocity in the last step beyond the turning round the axis, over its time,
+    /// m/s^2 and rad/s^2: the next step's guess.
     pub trends: Vec<[f64; 6]>,
     /// Traction in the last step, by site.
     pub contacts: Vec<ContactTraction>,

@@ -53,7 +53,8 @@ impl Motion<'_> {
     }
 
     /// Torque with which all balls and a cage on its land brake the inner ring, N m, positive against a ring that turns
-    /// positively; power lost at all contacts with raceways, W; mean speed of the balls round the axis, rad/s. None where balls are not free.
+    /// positively; power lost at all contacts with raceways, W; mean speed of the balls round the axis, rad/s. None
+    /// where balls are not free.
     pub fn friction(&self, state: &MotionState) -> Option<Friction> {
         let free = state.free.as_ref()?;
         let n = free.places.len();

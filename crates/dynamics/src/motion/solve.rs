@@ -6,7 +6,7 @@
 use contact::Side;
 use timer::SharedLaps;
 
-use super::cage::CageSolution;
+use super::cage_state::CageSolution;
 use crate::bearing::{BearingParts, CONTACTS, FIRST_BALL, SHAFT, lengths};
 use crate::bodies::AXES;
 use crate::error::DynamicsError;

@@ -9,7 +9,7 @@ use std::ops::Range;
 use contact::Side;
 use timer::SharedLaps;
 
-use super::cage::CageSolution;
+use super::cage_state::CageSolution;
 use super::solve::{StepSolution, policy};
 use crate::bearing::{self, BearingParts, CONTACTS, CageParts, FIRST_BALL, SHAFT};
 use crate::error::DynamicsError;

@@ -98,7 +98,8 @@ fn under_slow_thrust_both_contacts_spin_and_torque_goes_with_friction() {
     );
 }
 
-/// Wrong: lateral tractions would not carry the gyroscopic moment, J w_c x w, or a fast ball would be held by a threshold.
+/// Wrong: lateral tractions would not carry the gyroscopic moment, J w_c x w, or a fast ball would be held by a
+/// threshold.
 #[test]
 fn lateral_tractions_balance_the_gyroscopic_moment() {
     for speed in [3000.0, 10_000.0, 30_000.0] {

@@ -61,7 +61,7 @@ pub struct RawCage {
 
 /// Diameters of bore and outside, and width of a cage, m.
 #[derive(Clone, Copy)]
-struct Tube {
+struct CageTube {
     bore: f64,
     outside: f64,
     width: f64,
@@ -72,7 +72,7 @@ const MOST_FRICTION: f64 = 2.0;
 /// Less would stop a ball in its pocket.
 const LEAST_RESTITUTION: f64 = 0.05;
 /// Softest and stiffest pocket, N/m^1.5: rubber to a ball on a steel flat.
-const STIFFNESSES: [f64; 2] = [1e4, 1e12];
+const STIFFNESSES: std::ops::RangeInclusive<f64> = 1e4..=1e12;
 
 impl RawCage {
     /// Checks the cage of a bearing whose balls move in this way; None where it is not free, or wrong.
@@ -99,8 +99,8 @@ impl RawCage {
         }
         if !is_dynamic {
             problems.add(
-                "cage.motion is \"free\", which only motion in time computes; use [dynamic], or remove [cage]: balls of an \
-                 equilibrium roll as if it let each go its own way",
+                "cage.motion is \"free\", which only motion in time computes; use [dynamic], or remove [cage]: balls \
+                 of an equilibrium roll as if it let each go its own way",
             );
         }
         let bearing = bearing?;
@@ -152,7 +152,7 @@ impl RawCage {
     }
 
     /// The cage as a tube, if its dimensions are given; they must hold the pitch circle between them.
-    fn tube(&self, bearing: &Bearing, problems: &mut Problems) -> Option<Tube> {
+    fn tube(&self, bearing: &Bearing, problems: &mut Problems) -> Option<CageTube> {
         let keys = [
             ("bore_diameter", &self.bore_diameter),
             ("outside_diameter", &self.outside_diameter),
@@ -193,7 +193,7 @@ impl RawCage {
                 1e3 * pitch
             ),
         );
-        Some(Tube {
+        Some(CageTube {
             bore: bore.si(),
             outside: outside.si(),
             width: width.si(),
@@ -201,9 +201,9 @@ impl RawCage {
     }
 
     /// Mass, moment of inertia about the axis and across it.
-    fn inertia(&self, tube: Option<Tube>, problems: &mut Problems) -> Option<[f64; 3]> {
+    fn inertia(&self, tube: Option<CageTube>, problems: &mut Problems) -> Option<[f64; 3]> {
         let mass = self.of_mass(tube, problems)?;
-        let of_tube = tube.map(|Tube { bore, outside, width }| {
+        let of_tube = tube.map(|CageTube { bore, outside, width }| {
             let squares = 0.25 * (bore * bore + outside * outside);
             [
                 0.5 * mass * squares,
@@ -237,7 +237,7 @@ impl RawCage {
         Some([mass, polar, transverse])
     }
 
-    fn of_mass(&self, tube: Option<Tube>, problems: &mut Problems) -> Option<f64> {
+    fn of_mass(&self, tube: Option<CageTube>, problems: &mut Problems) -> Option<f64> {
         match (&self.mass, &self.density, tube) {
             (Some(_), Some(_), _) => {
                 problems.add("cage.mass and cage.density both say how heavy the cage is; keep one of them");
@@ -247,13 +247,13 @@ impl RawCage {
                 problems.require_positive(mass, "cage.mass", "a mass");
                 Some(mass.si())
             }
-            (None, Some(density), Some(Tube { bore, outside, width })) => {
+            (None, Some(density), Some(CageTube { bore, outside, width })) => {
                 problems.require_positive(density, "cage.density", "a density");
                 Some(density.si() * 0.25 * PI * (outside * outside - bore * bore) * width)
             }
             (None, Some(_), None) => {
                 problems.add(
-                    "cage.density needs the tube that it fills: bore_diameter, outside_diameter and width; or give mass",
+                    "cage.density needs the tube that it fills: bore_diameter, outside_diameter, width; or give mass",
                 );
                 None
             }
@@ -289,12 +289,12 @@ impl RawCage {
     fn stiffness(&self, problems: &mut Problems) -> Option<f64> {
         let Some(stiffness) = &self.pocket_stiffness else {
             problems.add(
-                "[cage] needs pocket_stiffness, such as \"2e8 N/m^1.5\": force over overlap^1.5 of a ball in its pocket",
+                "[cage] needs pocket_stiffness, such as \"2e8 N/m^1.5\": force over overlap^1.5 in a pocket",
             );
             return None;
         };
         problems.require(
-            (STIFFNESSES[0]..=STIFFNESSES[1]).contains(&stiffness.si()),
+            STIFFNESSES.contains(&stiffness.si()),
             "cage.pocket_stiffness",
             stiffness,
             "expected 1e4 to 1e12 N/m^1.5; polymer cages have about 1e8, steel ones 1e9 to 1e10",
@@ -349,7 +349,7 @@ impl RawCage {
     }
 
     /// The land, if one guides it; None where it is wrong.
-    fn land(&self, tube: Option<Tube>, problems: &mut Problems) -> Option<Option<Land>> {
+    fn land(&self, tube: Option<CageTube>, problems: &mut Problems) -> Option<Option<Land>> {
         let side = match self.guidance {
             Guidance::Balls => {
                 for (key, given) in [
@@ -358,8 +358,8 @@ impl RawCage {
                 ] {
                     if given {
                         problems.add(format!(
-                            "cage.{key} does nothing where the balls guide the cage; write guidance = \"inner_land\" or \
-                             \"outer_land\", or remove it"
+                            "cage.{key} does nothing where the balls guide the cage; write guidance = \"inner_land\" \
+                             or \"outer_land\", or remove it"
                         ));
                     }
                 }
@@ -369,7 +369,9 @@ impl RawCage {
             Guidance::OuterLand => Side::Outer,
         };
         if tube.is_none() {
-            problems.add("[cage] needs bore_diameter, outside_diameter and width, which meet the land of cage.guidance");
+            problems.add(
+                "[cage] needs bore_diameter, outside_diameter and width to meet the land of cage.guidance",
+            );
         }
         let clearance = self.clearance("guidance_clearance", &self.guidance_clearance, 5e-3, problems);
         let viscosity = self.land_viscosity.as_ref();
@@ -381,7 +383,7 @@ impl RawCage {
                 );
             }
         }
-        let Tube { bore, outside, width } = tube?;
+        let CageTube { bore, outside, width } = tube?;
         Some(Some(Land {
             side,
             radius: 0.5 * if side == Side::Inner { bore } else { outside },

@@ -355,9 +355,7 @@ impl Source<'_> {
             &mut problems,
         );
         let balls = raw.balls.check(raw.balls_context(), &mut problems);
-        let cage = raw.cage.as_ref();
-        let cage =
-            cage.and_then(|cage| cage.check((balls, raw.dynamic.is_some()), bearing.as_ref(), &mut problems));
+        let cage = raw.cage(balls, bearing.as_ref(), &mut problems);
         let speed = raw.speed.as_ref();
         let ball_speeds = speed.map_or(BallSpeeds::default(), |s| s.ball_speeds(effects, &mut problems));
         let speed = speed.and_then(|s| s.check(raw.speed_use(), &mut problems));

@@ -1,13 +1,28 @@
-//! Tables that change nothing that a run computes: for lubrication, life and heat.
+//! Tables that a scene may have: a free cage; and those that change nothing that a run computes, for lubrication, life
+//! and heat.
 
+use dynamics::interactions::cage::Cage;
 use input::Problems;
 
 use super::RawScene;
+use super::balls::BallMotion;
+use super::bearing::Bearing;
 use super::heat::Heat;
 use super::life::Life;
 use super::lubricant::Lubrication;
 
 impl RawScene {
+    /// A free cage beside balls that move so.
+    pub(super) fn cage(
+        &self,
+        balls: BallMotion,
+        bearing: Option<&Bearing>,
+        problems: &mut Problems,
+    ) -> Option<Cage> {
+        let cage = self.cage.as_ref()?;
+        cage.check((balls, self.dynamic.is_some()), bearing, problems)
+    }
+
     /// What lubricates the contacts; `turns`: whether a speed rolls them.
     pub(super) fn lubricant(&self, turns: bool, problems: &mut Problems) -> Option<Lubrication> {
         self.lubricant.as_ref()?.check(turns, problems)

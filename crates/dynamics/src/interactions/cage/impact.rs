@@ -8,15 +8,23 @@
 //! ```
 //!
 //! (from v dv/dd = -k d^1.5 (1 + A v/v_0)/m: the integrals of v dv/(1 + A v/v_0) over compression and restitution are
-//! equal). The usual 3 (1 - e^2)/4 of Lankarani and Nikravesh is its limit near 1 alone: with 0.6 it rebounds with 0.76.
-//! The force never pulls.
+//! equal). The usual 3 (1 - e^2)/4 of Lankarani and Nikravesh is its limit near 1 alone: with 0.6 it rebounds with
+//! 0.76. The force never pulls.
 
 use contact::ContactLaw;
 
+use super::design::Cage;
 use crate::interactions::discrete_gradient::{MeanForce, mean_force_with};
 
 /// Speed of a first touch at least, m/s: what begins to touch at rest has none.
 pub const LEAST_SPEED: f64 = 1e-6;
+
+impl Cage {
+    /// Law of force and impact of a contact that was first met at `speed` m/s.
+    pub fn impact(&self, speed: f64) -> Impact {
+        Impact::new(self.law(), self.restitution, speed)
+    }
+}
 
 /// Length below which two points count as one, m: their distance has no direction.
 const ONE_POINT: f64 = 1e-15;

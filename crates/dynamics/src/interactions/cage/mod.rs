@@ -21,85 +21,20 @@
 //! The land belongs to what carries the ring: deformation of the ring there is left out. Moment of momentum about the
 //! axis is kept to the second order in the tilts.
 
+pub mod design;
 pub mod impact;
 pub mod land;
 pub mod links;
 pub mod pocket;
 
-use contact::{ContactLaw, Side};
+pub use self::design::{Cage, Land};
 
-use self::impact::Impact;
 use super::free_contact::jet::Jet;
 
 /// Least slip, m/s, below which friction grows in proportion to slip.
 const LEAST_SLIP: f64 = 1e-3;
 /// The same over the speed of the ball's surface.
 const SHARE_OF_SURFACE: f64 = 1e-3;
-
-/// A cage, as a scene describes it.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Cage {
-    /// Mass, kg.
-    pub mass: f64,
-    /// Moment of inertia about its axis, kg m^2.
-    pub polar: f64,
-    /// The same across it.
-    pub transverse: f64,
-    /// Diametral clearance of a ball in its pocket, m.
-    pub pocket_clearance: f64,
-    /// Azimuths of the pockets beyond equal spacing, rad, by ball.
-    pub pocket_offsets: Vec<f64>,
-    /// Force over overlap^1.5, N/m^1.5.
-    pub stiffness: f64,
-    /// What an impact leaves of the speed.
-    pub restitution: f64,
-    /// Coefficient of friction.
-    pub friction: f64,
-    /// The land that guides it; None: the balls do.
-    pub land: Option<Land>,
-}
-
-/// The land that guides a cage.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Land {
-    /// Its ring.
-    pub side: Side,
-    /// Its radius, m.
-    pub radius: f64,
-    /// Axial width of the cage, m.
-    pub width: f64,
-    /// Diametral clearance, m.
-    pub clearance: f64,
-    /// Viscosity of what fills the gap, Pa s; 0: no drag.
-    pub viscosity: f64,
-}
-
-impl Land {
-    /// Torque of the drag over the relative speed, N m s (Petroff).
-    pub fn drag(&self) -> f64 {
-        if self.viscosity == 0.0 {
-            return 0.0;
-        }
-        2.0 * std::f64::consts::PI * self.viscosity * self.radius.powi(3) * self.width
-            / (0.5 * self.clearance)
-    }
-}
-
-impl Cage {
-    /// Law of force and impact of a contact that was first met at `speed` m/s.
-    pub fn impact(&self, speed: f64) -> Impact {
-        Impact::new(self.law(), self.restitution, speed)
-    }
-
-    /// Force over overlap.
-    pub fn law(&self) -> ContactLaw {
-        ContactLaw {
-            stiffness: self.stiffness,
-            patch_compliance: 0.0,
-            ball_compliance: 0.0,
-        }
-    }
-}
 
 /// Slip below which friction grows in proportion to it, of a surface that moves at `speed` m/s.
 pub fn small_slip(speed: f64) -> f64 {

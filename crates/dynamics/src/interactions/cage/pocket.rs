@@ -46,7 +46,7 @@ pub struct PocketStep {
 }
 
 /// The pocket at one instant.
-struct Standing {
+struct PocketPlace {
     /// From the centre of the cage to the ball.
     arm: Vector,
     tilts: [Jet; 2],
@@ -114,12 +114,12 @@ impl PocketStep {
         found
     }
 
-    fn start(&self) -> Standing {
+    fn start(&self) -> PocketPlace {
         self.at(&[Jet::default(); N_LENGTHS])
     }
 
     /// The pocket at lengths.
-    fn at(&self, x: &[Jet; N_LENGTHS]) -> Standing {
+    fn at(&self, x: &[Jet; N_LENGTHS]) -> PocketPlace {
         let [at, _] = self.cage;
         let ball = plus(fixed(self.ball[0]), [x[0], x[1], x[2]]);
         let centre = plus(fixed([at[0], at[1], at[2]]), [x[6], x[7], x[8]]);
@@ -127,7 +127,7 @@ impl PocketStep {
         let tilts = [x[9] + at[3], x[10] + at[4]];
         let [out, round] = directions(x[11] + (at[5] + self.azimuth));
         let axial = arm[2] + tilts[1] * arm[0] - tilts[0] * arm[1];
-        Standing {
+        PocketPlace {
             arm,
             tilts,
             reach: [dot(arm, round), axial],
@@ -138,7 +138,7 @@ impl PocketStep {
 
     fn add_normal(
         &self,
-        (start, last): (&Standing, &Standing),
+        (start, last): (&PocketPlace, &PocketPlace),
         load: [Jet; 2],
         x: &[Jet; N_LENGTHS],
         resists: &mut [Jet; N_LENGTHS],
@@ -163,7 +163,7 @@ impl PocketStep {
     /// Friction on ball and cage under a normal force.
     fn add_friction(
         &self,
-        (start, last): (&Standing, &Standing),
+        (start, last): (&PocketPlace, &PocketPlace),
         normal: Jet,
         x: &[Jet; N_LENGTHS],
         resists: &mut [Jet; N_LENGTHS],
@@ -174,12 +174,12 @@ impl PocketStep {
             |first: usize, before: [f64; 3]| [0, 1, 2].map(|i| x[first + i] * (2.0 / self.dt) + -before[i]);
         let [_, rate] = self.cage;
         let rates = [[rate[0], rate[1], rate[2]], [rate[3], rate[4], rate[5]]];
-        let middle = Middle::new(self, start, last, x);
+        let middle = WallFrame::new(self, start, last, x);
         let at_middle = middle.slip([mean(0), mean(3), mean(6), mean(9)]);
         let followed = match self.slip_at {
             SlipAt::Middle => at_middle,
             SlipAt::End => {
-                let frame = Middle::of(self, last.arm, last.reach, [last.out, last.round]);
+                let frame = WallFrame::of(self, last.arm, last.reach, [last.out, last.round]);
                 frame.slip([
                     end(0, self.ball[1]),
                     end(3, self.ball[2]),
@@ -206,7 +206,7 @@ impl PocketStep {
 }
 
 /// Directions and levers of friction at one instant.
-struct Middle {
+struct WallFrame {
     arm: Vector,
     /// From the ball's centre to where it touches.
     lever: Vector,
@@ -214,19 +214,19 @@ struct Middle {
     tangents: [Vector; 2],
 }
 
-impl Middle {
-    fn new(step: &PocketStep, start: &Standing, last: &Standing, x: &[Jet; N_LENGTHS]) -> Middle {
+impl WallFrame {
+    fn new(step: &PocketStep, start: &PocketPlace, last: &PocketPlace, x: &[Jet; N_LENGTHS]) -> WallFrame {
         let arm = scaled(0.5, plus(start.arm, last.arm));
         let reach = [0, 1].map(|i| start.reach[i] + last.reach[i]);
         let directions = directions(x[11] * 0.5 + (step.cage[0][5] + step.azimuth));
-        Middle::of(step, arm, reach, directions)
+        WallFrame::of(step, arm, reach, directions)
     }
 
-    fn of(step: &PocketStep, arm: Vector, reach: [Jet; 2], [out, round]: [Vector; 2]) -> Middle {
+    fn of(step: &PocketStep, arm: Vector, reach: [Jet; 2], [out, round]: [Vector; 2]) -> WallFrame {
         let short = (reach[0] * reach[0] + reach[1] * reach[1]).sqrt().recip();
         let mut normal = times(reach[0] * short, round);
         normal[2] = normal[2] + reach[1] * short;
-        Middle {
+        WallFrame {
             arm,
             lever: scaled(step.ball_radius, normal),
             tangents: [out, cross(normal, out)],

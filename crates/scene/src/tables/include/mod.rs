@@ -246,10 +246,10 @@ fn included(scene: &Path, typed: &str, chain: &[PathBuf]) -> Result<WholeText, N
 }
 
 /// A stretch of the text, and a path in it, or what is wrong there.
-type InPlace = (Range<usize>, String);
+type InFile = (Range<usize>, String);
 
 /// The files of the statement with their places.
-fn files(value: &Spanned<DeValue<'_>>) -> Result<Vec<InPlace>, InPlace> {
+fn files(value: &Spanned<DeValue<'_>>) -> Result<Vec<InFile>, InFile> {
     let expected = "expected the path of a file such as \"types/7010c.toml\", or a list of such paths";
     let one = |value: &Spanned<DeValue<'_>>| match value.get_ref() {
         DeValue::String(typed) if !typed.is_empty() => Ok((value.span(), typed.to_string())),

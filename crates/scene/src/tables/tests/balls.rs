@@ -112,8 +112,8 @@ fn free_balls_and_traction_need_each_other() {
 fn free_balls_are_refused_where_they_are_not_computed() {
     let at_rest = format!("{EXAMPLE}\n[balls]\nmotion = \"free\"\n[effects.traction]\n{COULOMB}\n");
     let message = message_of(&at_rest, &[]);
-    let expected = "balls.motion is \"free\", but nothing turns: balls of an equilibrium roll; add [speed] with inner = \
-                    \"1800 rpm\", or use motion = \"kinematic\"";
+    let expected = "balls.motion is \"free\", but nothing turns: balls of an equilibrium roll; add [speed] with \
+                    inner = \"1800 rpm\", or use motion = \"kinematic\"";
     assert!(message.contains(expected), "{message}");
     let turning = format!("{at_rest}[speed]\ninner = \"1800 rpm\"\n");
     let scene = parse(&turning, &[]).unwrap_or_else(|e| panic!("{e}"));

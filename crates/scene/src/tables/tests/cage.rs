@@ -90,7 +90,7 @@ fn a_cage_that_makes_no_sense_is_refused() {
         ),
         (
             &[("bore_diameter", ""), ("outside_diameter", ""), ("width", "")],
-            "[cage] needs bore_diameter, outside_diameter and width, which meet the land of cage.guidance",
+            "[cage] needs bore_diameter, outside_diameter and width to meet the land of cage.guidance",
         ),
         (
             &[("inertia_z", "\"2e-5 kg m2\"")],
@@ -166,6 +166,6 @@ fn a_cage_that_makes_no_sense_is_refused() {
         assert!(message.contains(expected), "{changes:?}: {message}");
     }
     let kinematic = message_of(&caged(&[]), &["balls.motion=\"kinematic\""]);
-    let expected = "cage.motion is \"free\", but the balls are kinematic and would not feel it; write [balls] with motion";
+    let expected = "cage.motion is \"free\", but the balls are kinematic and would not feel it; write";
     assert!(kinematic.contains(expected), "{kinematic}");
 }
