@@ -16,7 +16,8 @@ pub fn figures(results: &Results) -> anyhow::Result<Vec<Named>> {
     };
     let [x, y] = ["x_m", "y_m"].map(|name| table.column(name).map(|x| MICROMETRE.of(x)));
     let orbit = Figure::new("Orbit of the cage", MICROMETRE.axis("x"), MICROMETRE.axis("y"))
-        .series(Series::line("centre of the cage", points(&x?, &y?)));
+        .series(Series::line("centre of the cage", points(&x?, &y?)))
+        .equal_scales();
     let [speed, kinematic] =
         ["speed_rad_per_s", "kinematic_speed_rad_per_s"].map(|name| table.column(name).map(|v| RPM.of(v)));
     let speed = Figure::new("Speed of the cage", time.clone(), RPM.axis("speed"))
