@@ -2,7 +2,7 @@
 
 use serde_json::Value;
 
-use crate::util::tables::number;
+use crate::util::tables::{Table, number};
 use crate::util::{Dir, RIGID, SCENE, assert_close};
 
 /// Known friction, and two rings that lose heat.
@@ -223,4 +223,44 @@ fn what_a_balance_lacks_is_said() {
     dir.write("heat.json", "{}");
     refused(&dir, &["--out", "."], 2, "heat.json");
     assert_eq!(dir.text("heat.json"), "{}");
+}
+
+/// Wrong: the heat of free balls would not be that of their equilibrium at the temperatures found. The last round beside
+/// a run of the scene at these temperatures.
+#[test]
+fn free_balls_warm_a_bearing_by_their_own_friction() {
+    let balls = "[balls]\nmotion = \"free\"\n\n[effects.traction]\nlaw = \"coulomb\"\nfriction = 0.07\n\n\
+                 [speed]\ninner = \"3000 rpm\"\n\n[heat]";
+    let text = HEAT.replace("speed = \"3000 rpm\"\ntorque = \"0.05 N m\"\n", "");
+    let dir = scene(&text.replace("[heat]", balls));
+    let outcome = dir.raceway(&[&["heat", "scene.toml", "--out", "out"], &RIGID[..]].concat());
+    assert_eq!(outcome.code, Some(0), "{}", outcome.stderr);
+    let found = heat_file(&dir, "out");
+    assert_eq!(found["friction"], "free_balls");
+    let rounds = found["rounds"].as_array().unwrap();
+    let last = rounds.last().unwrap();
+    let torque = last["torque_n_m"].as_f64().unwrap();
+    let power = torque * 3000.0 * std::f64::consts::PI / 30.0;
+    assert_close("balance", number(&found, "/given_off_w"), power, 1e-9);
+    let of = |i: usize| last["temperatures_k"][i].as_f64().unwrap() - 273.15;
+    let set = ["inner", "outer", "balls"].map(|body| {
+        let place = ["inner", "outer", "balls"]
+            .iter()
+            .position(|name| *name == body)
+            .unwrap();
+        format!("effects.temperature.{body}=\"{:?} degC\"", of(place))
+    });
+    let mut arguments = vec!["run", "scene.toml", "--out", "warm"];
+    arguments.extend(RIGID);
+    set.iter().for_each(|set| arguments.extend(["--set", set]));
+    let outcome = dir.raceway(&arguments);
+    assert_eq!(outcome.code, Some(0), "{}", outcome.stderr);
+    let shaft = Table::read(&dir, "warm/shaft.csv");
+    assert_close("torque", shaft.column("friction_torque_n_m")[0], torque, 1e-6);
+    refused(
+        &dir,
+        &["--set", "heat.torque=\"0.1 N m\""],
+        1,
+        "heat.torque stands beside balls.motion = \"free\", whose friction is a result; remove it",
+    );
 }

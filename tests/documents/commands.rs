@@ -100,7 +100,9 @@ fn in_block(block: &str) -> Result<Vec<Command>, String> {
 impl Command {
     /// A line without its comment, or its description after three spaces.
     fn of(line: &str) -> Command {
-        let line = line.split(" #").next().unwrap_or(line).trim();
+        let line = line.split(" #").next().unwrap_or(line);
+        // What it is piped into is no command of ours.
+        let line = line.split(" | ").next().unwrap_or(line).trim();
         let words = line
             .find("   ")
             .map_or(line, |end| match line[end..].trim_start().chars().next() {

@@ -53,7 +53,7 @@ pub struct HeatCommand {
 struct BearingState {
     /// Friction torque, N m.
     torque_n_m: f64,
-    /// Part of the oil, N m; None where the torque is given.
+    /// Part of the oil, N m; only by Palmgren's formula.
     #[serde(skip_serializing_if = "Option::is_none")]
     oil_torque_n_m: Option<f64>,
     /// Sum of the balls' forces on the inner ring, N.
@@ -71,7 +71,7 @@ struct BearingState {
 struct HeatFile<'a> {
     heat_schema: u32,
     source: String,
-    /// `given` or `palmgren`.
+    /// `given`, `free_balls` or `palmgren`.
     friction: &'static str,
     speed_rad_per_s: f64,
     bodies: [&'static str; 5],
@@ -115,6 +115,7 @@ pub fn heat(command: &HeatCommand) -> Result<(), Failure> {
         source: path.display().to_string(),
         friction: match heat.friction {
             FrictionLaw::Given(_) => "given",
+            FrictionLaw::FreeBalls => "free_balls",
             FrictionLaw::Palmgren { .. } => "palmgren",
         },
         speed_rad_per_s: speed,
@@ -276,6 +277,13 @@ impl WarmBearing<'_> {
                 of_oil: 0.0,
                 of_load: *torque,
             },
+            FrictionLaw::FreeBalls => Torque {
+                of_oil: 0.0,
+                of_load: solution
+                    .steady
+                    .as_ref()
+                    .map_or(0.0, |balls| balls.friction().torque_n_m.abs()),
+            },
             FrictionLaw::Palmgren {
                 oil_factor,
                 load_factor,
@@ -288,10 +296,10 @@ impl WarmBearing<'_> {
                 }
             }
         };
-        let is_given = matches!(self.heat.friction, FrictionLaw::Given(_));
+        let is_formula = matches!(self.heat.friction, FrictionLaw::Palmgren { .. });
         let state = BearingState {
             torque_n_m: torque.total(),
-            oil_torque_n_m: (!is_given).then_some(torque.of_oil),
+            oil_torque_n_m: is_formula.then_some(torque.of_oil),
             ball_forces_n: sum,
             largest_force_n: largest,
             radial_clearance_m: clearance.map_or_else(|| bearing.clearance(), |clearance| clearance.radial),
@@ -307,6 +315,7 @@ impl WarmBearing<'_> {
 fn print_balance(balance: &Balance<BearingState>, heat: &Heat, speed: f64) {
     let friction = match heat.friction {
         FrictionLaw::Given(_) => "given",
+        FrictionLaw::FreeBalls => "that of the free balls",
         FrictionLaw::Palmgren { .. } => "Palmgren's formula",
     };
     print::line(format_args!(

@@ -55,6 +55,8 @@ pub struct Heat {
 pub enum FrictionLaw {
     /// Known, N m.
     Given(f64),
+    /// That of free balls in the equilibrium.
+    FreeBalls,
     /// Palmgren's formula.
     Palmgren {
         /// Factor of the oil.
@@ -75,8 +77,9 @@ const MOST_OIL_FACTOR: f64 = 50.0;
 const MOST_LOAD_FACTOR: f64 = 0.1;
 
 impl RawHeat {
-    /// Checks values and what belongs together; `has_speed`: whether the scene has `[speed]`.
-    pub fn check(&self, has_speed: bool, problems: &mut Problems) -> Option<Heat> {
+    /// Checks values and what belongs together; `has_speed`: whether the scene has `[speed]`; `has_free_balls`: whether
+    /// their friction is a result.
+    pub fn check(&self, has_speed: bool, has_free_balls: bool, problems: &mut Problems) -> Option<Heat> {
         problems.require(
             PLAUSIBLE_CELSIUS.contains(&self.ambient.celsius()),
             "heat.ambient",
@@ -111,7 +114,7 @@ impl RawHeat {
         Some(Heat {
             ambient: self.ambient.kelvin(),
             speed: self.speed.as_ref().map(|speed| speed.si().abs()),
-            friction: self.friction(problems)?,
+            friction: self.friction(has_free_balls, problems)?,
             limit,
             conductances,
         })
@@ -163,13 +166,24 @@ impl RawHeat {
         found
     }
 
-    fn friction(&self, problems: &mut Problems) -> Option<FrictionLaw> {
+    fn friction(&self, has_free_balls: bool, problems: &mut Problems) -> Option<FrictionLaw> {
         let of_formula = [
             ("f_0", self.f_0.is_some()),
             ("f_1", self.f_1.is_some()),
             ("viscosity", self.viscosity.is_some()),
             ("viscosity_class", self.viscosity_class.is_some()),
         ];
+        if has_free_balls {
+            let torque = ("torque", self.torque.is_some());
+            let given = of_formula.iter().chain(std::iter::once(&torque));
+            for (key, _) in given.filter(|(_, is_given)| *is_given) {
+                problems.add(format!(
+                    "heat.{key} stands beside balls.motion = \"free\", whose friction is a result; remove it, or use \
+                     balls.motion = \"kinematic\""
+                ));
+            }
+            return Some(FrictionLaw::FreeBalls);
+        }
         if let Some(torque) = &self.torque {
             problems.require_positive(torque, "heat.torque", "a torque");
             for (key, _) in of_formula.iter().filter(|(_, is_given)| *is_given) {
@@ -181,7 +195,8 @@ impl RawHeat {
         }
         let (Some(f_0), Some(f_1)) = (self.f_0, self.f_1) else {
             problems.add(
-                "[heat] has no friction; add heat.torque, or heat.f_0, heat.f_1 and a viscosity of Palmgren's formula",
+                "[heat] has no friction; add heat.torque, or heat.f_0, heat.f_1 and a viscosity of Palmgren's formula, or \
+                 free balls",
             );
             return None;
         };

@@ -35,6 +35,9 @@ impl RawScene {
 
     /// What a heat balance needs.
     pub(super) fn heat(&self, problems: &mut Problems) -> Option<Heat> {
-        self.heat.as_ref()?.check(self.speed.is_some(), problems)
+        let has_free_balls = self.balls.motion() == BallMotion::Free;
+        self.heat
+            .as_ref()?
+            .check(self.speed.is_some(), has_free_balls, problems)
     }
 }
