@@ -5,8 +5,8 @@ use crate::util::lockstep::{assert_same_run, copy};
 use crate::util::tables::Table;
 use crate::util::{Dir, RIGID, assert_close, with_line};
 
-/// Balls between rigid rings under preload and a radial force: each has a slip and a power of its own. A cage with little
-/// clearance meets them and its land.
+/// Balls between rigid rings under preload and a radial force: each has a slip and a power of its own. A cage with
+/// little clearance meets them and its land.
 const FREE: &str = "[balls]\nmotion = \"free\"\n\n[effects.traction]\nlaw = \"coulomb\"\nfriction = 0.07\n\n\
                     [effects.ball_drag]\ncoefficient = 0.5\ndensity = \"20 kg/m3\"\n\n\
                     [cage]\nmotion = \"free\"\nbore_diameter = \"62 mm\"\noutside_diameter = \"68.2 mm\"\n\

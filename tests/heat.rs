@@ -225,8 +225,8 @@ fn what_a_balance_lacks_is_said() {
     assert_eq!(dir.text("heat.json"), "{}");
 }
 
-/// Wrong: the heat of free balls would not be that of their equilibrium at the temperatures found. The last round beside
-/// a run of the scene at these temperatures.
+/// Wrong: the heat of free balls would not be that of their equilibrium at the temperatures found. The last round
+/// beside a run of the scene at these temperatures.
 #[test]
 fn free_balls_warm_a_bearing_by_their_own_friction() {
     let balls = "[balls]\nmotion = \"free\"\n\n[effects.traction]\nlaw = \"coulomb\"\nfriction = 0.07\n\n\

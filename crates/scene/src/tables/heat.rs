@@ -195,8 +195,8 @@ impl RawHeat {
         }
         let (Some(f_0), Some(f_1)) = (self.f_0, self.f_1) else {
             problems.add(
-                "[heat] has no friction; add heat.torque, or heat.f_0, heat.f_1 and a viscosity of Palmgren's formula, or \
-                 free balls",
+                "[heat] has no friction; add heat.torque, or heat.f_0, heat.f_1 and a viscosity of Palmgren's formula; \
+                 or free balls",
             );
             return None;
         };
