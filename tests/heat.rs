@@ -260,7 +260,7 @@ fn free_balls_warm_a_bearing_by_their_own_friction() {
     refused(
         &dir,
         &["--set", "heat.torque=\"0.1 N m\""],
-        1,
+        2,
         "heat.torque stands beside balls.motion = \"free\", whose friction is a result; remove it",
     );
 }
