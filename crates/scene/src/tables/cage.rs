@@ -179,7 +179,7 @@ impl RawCage {
             bore.si() < pitch,
             "cage.bore_diameter",
             bore,
-            &format!(
+            format!(
                 "expected less than the pitch diameter of {:.3} mm, on which the pockets stand",
                 1e3 * pitch
             ),
@@ -188,7 +188,7 @@ impl RawCage {
             outside.si() > pitch,
             "cage.outside_diameter",
             outside,
-            &format!(
+            format!(
                 "expected more than the pitch diameter of {:.3} mm, on which the pockets stand",
                 1e3 * pitch
             ),
@@ -281,7 +281,7 @@ impl RawCage {
             (0.0..=most).contains(&value.si()),
             &format!("cage.{key}"),
             value,
-            &format!("expected a diametral clearance of 0 to {:.3} mm", 1e3 * most),
+            format!("expected a diametral clearance of 0 to {:.3} mm", 1e3 * most),
         );
         Some(value.si())
     }
