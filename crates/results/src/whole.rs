@@ -62,17 +62,18 @@ pub fn write_picture(path: &Path, svg: &str, png: &[u8]) -> anyhow::Result<()> {
     write(&path.with_added_extension("png"), png, |_| true)
 }
 
-/// Makes a folder in one that is there. A link in its place is not followed.
+/// Makes a folder in one that is there, unless somebody else just did. A link in its place is not followed.
 pub fn make_folder(path: &Path) -> anyhow::Result<()> {
-    match path.symlink_metadata() {
-        Ok(data) if data.is_dir() => Ok(()),
-        Ok(_) => Err(anyhow!(
-            "{} is a link or a file; expected a folder or nothing there, remove it or choose another --out",
-            path.display()
-        )),
-        Err(_) => {
-            std::fs::create_dir(path).with_context(|| format!("cannot create folder {}", path.display()))
-        }
+    match std::fs::create_dir(path) {
+        Ok(()) => Ok(()),
+        Err(error) => match path.symlink_metadata() {
+            Ok(data) if data.is_dir() => Ok(()),
+            Ok(_) => Err(anyhow!(
+                "{} is a link or a file; expected a folder or nothing there, remove it or choose another --out",
+                path.display()
+            )),
+            Err(_) => Err(error).with_context(|| format!("cannot create folder {}", path.display())),
+        },
     }
 }
 
