@@ -2,7 +2,10 @@
 //!
 //! Without it, an allocation that fails aborts the process, which tells a user nothing. Files are whole at any instant,
 //! so that a run can end here. Code that could do with less memory is not asked. So [`end_when_empty`] is for a program
-//! that runs alone, not for ranks, which agree on such a failure.
+//! that runs alone, not for ranks, which agree on such a failure. On glibc this holds for libraries in C as well.
+
+#[cfg(all(target_os = "linux", target_env = "gnu", not(target_feature = "crt-static")))]
+mod c;
 
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::io::Write;
