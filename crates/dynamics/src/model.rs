@@ -17,7 +17,7 @@ use ring::{Backend, RingModel};
 use crate::effects::Effect;
 use crate::interactions::cage::design::Cage;
 use crate::interactions::seat_spring::Seat;
-use crate::interactions::traction::Traction;
+use crate::interactions::traction::{Ellipse, Traction};
 use crate::mounting::Mounting;
 use crate::surfaces::Surfaces;
 
@@ -189,6 +189,23 @@ impl Model {
         let ball = self.ball_material.shear_modulus();
         let ring = self.ring(side).map_or(ball, |ring| ring.material.shear_modulus());
         2.0 / (1.0 / ball + 1.0 / ring)
+    }
+
+    /// Distance from a ball's centre to the middle of a contact where bodies approach so far, m.
+    pub fn contact_lever(&self, approach: f64) -> f64 {
+        0.5 * self.geometry.ball_diameter - 0.5 * approach.max(0.0)
+    }
+
+    /// Contact ellipse under a normal force, N.
+    pub fn ellipse(&self, side: Side, force: f64) -> Ellipse {
+        let (ball, groove) = (
+            0.5 * self.geometry.ball_diameter,
+            self.geometry.groove_radius(side),
+        );
+        Ellipse {
+            semi_axes: self.hertz[side.index()].semi_axes(force),
+            radius: 2.0 * groove * ball / (groove + ball),
+        }
     }
 
     /// Mass, kg, and moment of inertia, kg m^2, of a ball.

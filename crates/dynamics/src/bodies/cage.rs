@@ -3,6 +3,7 @@
 //! Coordinates are displacement (3), tilts (2) and turn (1) since the start of the step. The tilts have the gyroscopic
 //! terms of the turn, I_p W times the mean rate of the other tilt, W the speed at the start: they do no work.
 
+use super::UNMOVED;
 use crate::system::{Interval, Lumped};
 
 /// A cage over a step.
@@ -17,9 +18,6 @@ pub struct CageBody {
     /// Step size, s.
     pub dt: f64,
 }
-
-/// Coordinates before a step: nothing has moved.
-const START: [f64; 6] = [0.0; 6];
 
 impl CageBody {
     /// Rates at the end for the coordinates `x`.
@@ -39,24 +37,12 @@ impl CageBody {
 }
 
 impl Lumped for CageBody {
-    fn n_coordinates(&self) -> usize {
-        6
-    }
-
     fn n_unknowns(&self) -> usize {
         6
     }
 
     fn start(&self) -> &[f64] {
-        &START
-    }
-
-    fn place(&self, x: &[f64], end: &mut [f64]) {
-        end.copy_from_slice(x);
-    }
-
-    fn slopes(&self, _x: &[f64]) -> Vec<(usize, usize, f64)> {
-        (0..6).map(|i| (i, i, 1.0)).collect()
+        &UNMOVED
     }
 
     fn guess(&self, _interval: Interval) -> Vec<f64> {

@@ -11,6 +11,7 @@
 //!
 //! Drag -c |v| v takes the mean velocity, u/h. Newton's tangent leaves it out: c |v| h / m is below 1e-3.
 
+use super::UNMOVED;
 use crate::system::{Interval, Lumped};
 
 /// A free ball over a step.
@@ -36,9 +37,6 @@ pub struct FreeBall {
     /// Step size, s.
     pub dt: f64,
 }
-
-/// Coordinates before a step: none has moved.
-const START: [f64; 6] = [0.0; 6];
 
 impl FreeBall {
     /// Velocity and angular velocity at the end for the coordinates `x`.
@@ -92,24 +90,12 @@ impl FreeBall {
 }
 
 impl Lumped for FreeBall {
-    fn n_coordinates(&self) -> usize {
-        6
-    }
-
     fn n_unknowns(&self) -> usize {
         6
     }
 
     fn start(&self) -> &[f64] {
-        &START
-    }
-
-    fn place(&self, x: &[f64], end: &mut [f64]) {
-        end.copy_from_slice(x);
-    }
-
-    fn slopes(&self, _x: &[f64]) -> Vec<(usize, usize, f64)> {
-        (0..6).map(|i| (i, i, 1.0)).collect()
+        &UNMOVED
     }
 
     /// The course goes on round the axis with the orbit's speed, and changes as in the last step.

@@ -13,3 +13,6 @@ pub use frame_inertia::{FrameInertia, StepTakes};
 pub use free_ball::FreeBall;
 pub use inertia::Inertia;
 pub use tilted_loads::TiltedLoads;
+
+/// Coordinates at the start of a step where they count from there.
+const UNMOVED: [f64; 6] = [0.0; 6];

@@ -10,7 +10,6 @@ use super::loads::{AtEquilibrium, Loads, Now};
 use crate::balls::{FreeBallResult, Friction, TractionResult};
 use crate::error::DynamicsError;
 use crate::interactions::steady_rolling::{SteadyBall, SteadyContact, SteadyRolling};
-use crate::interactions::traction::Ellipse;
 use crate::model::Model;
 
 /// Steadily rolling balls of an equilibrium.
@@ -154,17 +153,12 @@ fn contact(
 ) -> SteadyContact {
     let site = 2 * ball + side.index();
     let (sin, cos) = angles[site].sin_cos();
-    let radius = 0.5 * model.geometry.ball_diameter;
-    let groove = model.geometry.groove_radius(side);
     let force = seen.forces[site];
     SteadyContact {
         normal: [side.sign() * cos, side.sign() * sin],
-        lever: radius - 0.5 * seen.approaches[site].max(0.0),
+        lever: model.contact_lever(seen.approaches[site]),
         force,
-        ellipse: Ellipse {
-            semi_axes: model.hertz[side.index()].semi_axes(force),
-            radius: 2.0 * groove * radius / (groove + radius),
-        },
+        ellipse: model.ellipse(side, force),
         speed,
         shear_modulus: model.combined_shear_modulus(side),
     }

@@ -72,6 +72,14 @@ pub struct SteadyRolling {
     pub out: f64,
 }
 
+impl SteadyRolling {
+    /// Speed round the axis and turning, rad/s.
+    pub fn rates(&self) -> [f64; N] {
+        let [radial, round, axial] = self.turning;
+        [self.orbit, radial, round, axial]
+    }
+}
+
 /// Unknowns: speed round the axis, turning about e_r, e_psi, e_z.
 const N: usize = 4;
 /// Residual over the scale of the forces at which a ball rolls steadily.
@@ -151,12 +159,8 @@ impl SteadyBall<'_> {
     /// Slip below which force grows in proportion to it, of both contacts.
     fn small_slips(&self, y: &[f64; N]) -> [f64; 2] {
         self.contacts.map(|contact| {
-            let [n_r, n_z] = contact.normal;
-            let at = self.out + contact.lever * n_r;
-            let of_ball = y[0] * self.out + contact.lever * (y[3] * n_r - y[1] * n_z) - y[0] * at;
-            let of_ring = (contact.speed - y[0]) * at;
             let rolling = RollingContact {
-                speed: 0.5 * (of_ball + of_ring),
+                speed: rolling_speed(self.out, (contact.lever, contact.normal), *y, contact.speed),
                 force: contact.force,
                 semi_axes: contact.ellipse.semi_axes,
                 shear_modulus: contact.shear_modulus,
@@ -352,6 +356,19 @@ pub fn pure_rolling(out: f64, levers: [f64; 2], normals: [[f64; 2]; 2], speeds: 
     let r = speeds[0] * normals[0][1] - speeds[1] * normals[1][1];
     let [orbit, radial, axial] = solve([a, b, c], [p, q, r]);
     [orbit, radial, 0.0, axial]
+}
+
+/// Speed with which material runs through a contact, m/s: mean of both surfaces, seen from the contact. Of a ball as in
+/// [`pure_rolling`], with speeds as that gives them, on a ring of a speed, rad/s.
+pub fn rolling_speed(
+    out: f64,
+    (lever, [n_r, n_z]): (f64, [f64; 2]),
+    [orbit, radial, _, axial]: [f64; N],
+    ring: f64,
+) -> f64 {
+    let at = out + lever * n_r;
+    let of_ball = orbit * out + lever * (axial * n_r - radial * n_z) - orbit * at;
+    0.5 * (of_ball + (ring - orbit) * at)
 }
 
 /// Solves three equations by Cramer's rule.

@@ -11,10 +11,11 @@ use super::span::Span;
 use super::state::MotionState;
 use crate::bearing::{BearingParts, CageParts};
 use crate::bodies::CageBody;
+use crate::interactions::cage::impact::Impact;
 use crate::interactions::cage::land::LandStep;
 use crate::interactions::cage::links::CageLinks;
 use crate::interactions::cage::pocket::PocketStep;
-use crate::interactions::cage::{Cage, Land, small_slip};
+use crate::interactions::cage::{Cage, CageContact, Land};
 use crate::interactions::free_contact::{Carrier, RingStep};
 
 impl Motion<'_> {
@@ -53,10 +54,11 @@ impl Motion<'_> {
         let (cage, state) = (self.model.cage.as_ref()?, free.cage.as_ref()?);
         let n_balls = free.places.len();
         let body = CageParts::number(n_balls, self.model.seat().is_some());
-        let pockets = (0..n_balls).map(|ball| self.pocket_step((cage, state, free), span, ball));
+        let impact = cage.impact();
+        let pockets = (0..n_balls).map(|ball| self.pocket_step((cage, impact), (state, free), span, ball));
         let pockets = CageLinks::pockets(pockets.collect(), crate::bearing::FIRST_BALL, body);
         let ends = cage.land.iter().flat_map(|land| {
-            [0, 1].map(|end| self.land_step((cage, state, land), span, (n_balls, end), shaft))
+            [0, 1].map(|end| self.land_step((cage, impact, land), state, span, (n_balls, end), shaft))
         });
         let carrier = match cage.land.map(|land| land.side) {
             Some(Side::Inner) => Carrier::Lumped(crate::bearing::SHAFT),
@@ -76,7 +78,8 @@ impl Motion<'_> {
 
     fn pocket_step(
         &self,
-        (cage, state, free): (&Cage, &CageState, &FreeState),
+        (cage, impact): (&Cage, Impact),
+        (state, free): (&CageState, &FreeState),
         span: Span,
         ball: usize,
     ) -> PocketStep {
@@ -84,60 +87,45 @@ impl Motion<'_> {
         let radius = 0.5 * self.model.geometry.ball_diameter;
         let speed = radius * turning.iter().map(|w| w * w).sum::<f64>().sqrt();
         let offset = cage.pocket_offsets.get(ball).copied().unwrap_or(0.0);
-        let mut step = PocketStep {
+        let step = PocketStep {
             dt: span.dt,
             ball: [free.places[ball], free.velocities[ball], turning],
             cage: [state.place, state.rates],
             azimuth: self.model.geometry.azimuth(ball) + offset,
             ball_radius: radius,
             touching: 0.5 * cage.pocket_clearance,
-            impact: cage.impact(0.0),
-            friction: cage.friction,
-            small_slip: small_slip(speed),
-            slip_at: Default::default(),
+            impact,
+            rubbing: cage.rubbing(speed),
         };
-        step.impact = cage.impact(speed_of_touch(
-            state.met[ball],
-            step.overlap_at_start(),
-            step.closing_speed(),
-        ));
-        step
+        step.after(state.met[ball])
     }
 
     fn land_step(
         &self,
-        (cage, state, land): (&Cage, &CageState, &Land),
+        (cage, impact, land): (&Cage, Impact, &Land),
+        state: &CageState,
         span: Span,
         (n_balls, end): (usize, usize),
         shaft: RingStep,
     ) -> LandStep {
-        let speeds = self.settings.speeds.of(land.side);
-        let turned = speeds.angle(span.at(1.0)) - speeds.angle(span.start);
         let ring = RingStep {
-            spin: [turned / span.dt, speeds.at(span.at(1.0))],
+            spin: self.ring_speeds(land.side, span),
             ..match land.side {
                 Side::Inner => shaft,
                 Side::Outer => RingStep::default(),
             }
         };
         let h = land.width * (end as f64 - 0.5);
-        let mut step = LandStep {
+        let step = LandStep {
             dt: span.dt,
             cage: [state.place, state.rates],
             ring,
             land: *land,
             heights: [h, self.cage_height() + h],
-            impact: cage.impact(0.0),
-            friction: cage.friction,
-            small_slip: small_slip(land.radius * (state.rates[5] - ring.spin[1])),
-            slip_at: Default::default(),
+            impact,
+            rubbing: cage.rubbing(land.radius * (state.rates[5] - ring.spin[1])),
         };
-        step.impact = cage.impact(speed_of_touch(
-            state.met[n_balls + end],
-            step.overlap_at_start(),
-            step.closing_speed(),
-        ));
-        step
+        step.after(state.met[n_balls + end])
     }
 
     /// Axial distance of the middle of the cage from the origin of the shaft, m: that of the bearing at rest, because a
@@ -159,7 +147,7 @@ impl Motion<'_> {
         let mut ledger = next.cage.unwrap_or_default();
         let all = || found.pockets.iter().chain(&found.lands);
         // Where a contact stands in a step that begins is where the last one ended, but for round-off.
-        ledger.strain = all().map(|force| force.energy[1]).sum();
+        ledger.strain = all().map(|force| force.energy).sum();
         for force in all() {
             ledger.impact_loss += force.impact_loss;
             ledger.friction_loss -= force.friction_work;
@@ -208,16 +196,11 @@ impl Motion<'_> {
         let parts = self.cage_parts(free, span, [0.0; 3], self.carrier_step(state, span, Side::Inner))?;
         let overlaps = parts.pockets.contacts.iter().map(PocketStep::overlap_at_start);
         let overlaps = overlaps.chain(parts.lands.contacts.iter().map(LandStep::overlap_at_start));
-        let law = cage.law();
+        let impact = cage.impact();
         Some(CageLedger {
             kinetic: cage_state.kinetic(cage.masses()),
-            strain: overlaps.map(|overlap| law.evaluate(overlap).energy).sum(),
+            strain: overlaps.map(|overlap| impact.energy_at(overlap)).sum(),
             ..CageLedger::default()
         })
     }
-}
-
-/// Speed at which a contact was first met: it counts anew where it opens, and grows where the bodies are driven on.
-fn speed_of_touch(met: f64, overlap: f64, closing: f64) -> f64 {
-    if overlap > 0.0 { met.max(closing) } else { closing }
 }

@@ -23,9 +23,9 @@ use crate::footprint::{loaded, on_groove};
 use crate::interactions::free_contact::place::GrooveCircle;
 use crate::interactions::free_contact::{ContactStep, FreeContacts, RingStep, elastic_ports};
 use crate::interactions::raceway_contact::Site;
-use crate::interactions::steady_rolling::{SteadyRolling, pure_rolling};
+use crate::interactions::steady_rolling::{SteadyRolling, pure_rolling, rolling_speed};
+use crate::interactions::traction::Traction;
 use crate::interactions::traction::creep::RollingContact;
-use crate::interactions::traction::{Ellipse, Traction};
 use crate::model::{Model, elastic};
 
 /// Acceleration by which the least force of a contact is a weight, m/s^2: what opens has no size of its own.
@@ -47,7 +47,7 @@ impl Motion<'_> {
             let out = radius + displacement[0];
             let angles = [state.angles[2 * ball], state.angles[2 * ball + 1]];
             let rolls = steady.and_then(|steady| steady.balls.get(ball));
-            let Rolls { orbit, turning } = rolls.map_or_else(|| self.rolls(out, angles), Rolls::steady);
+            let [orbit, turning @ ..] = rolls.map_or_else(|| self.rolls(out, angles), SteadyRolling::rates);
             free.places.push([out * cos, out * sin, height + displacement[1]]);
             free.velocities.push([-orbit * out * sin, orbit * out * cos, 0.0]);
             free.turnings.push([
@@ -64,18 +64,14 @@ impl Motion<'_> {
 
     /// Rolling without slip at the centres of both contacts, with spin shared half and half, of a ball at a distance
     /// from the axis, m, with contact angles, rad, on rings that turn as at the start.
-    fn rolls(&self, out: f64, angles: [f64; 2]) -> Rolls {
+    fn rolls(&self, out: f64, angles: [f64; 2]) -> [f64; 4] {
         let lever = 0.5 * self.model.geometry.ball_diameter;
         let speeds = Side::BOTH.map(|side| self.settings.speeds.of(side).at(0.0));
         let normal = Side::BOTH.map(|side| {
             let (sin, cos) = angles[side.index()].sin_cos();
             [side.sign() * cos, side.sign() * sin]
         });
-        let [orbit, radial, _, axial] = pure_rolling(out, [lever; 2], normal, speeds);
-        Rolls {
-            orbit,
-            turning: [radial, 0.0, axial],
-        }
+        pure_rolling(out, [lever; 2], normal, speeds)
     }
 
     /// Free balls and their contacts over a part; None where balls are not free.
@@ -215,9 +211,7 @@ impl Motion<'_> {
         side: Side,
         step: Option<&(dyn ElasticStep + '_)>,
     ) -> Vec<RingStep> {
-        let speed = self.settings.speeds.of(side);
-        let turned = speed.angle(span.at(1.0)) - speed.angle(span.start);
-        let spin = [turned / span.dt, speed.at(span.at(1.0))];
+        let spin = self.ring_speeds(side, span);
         let n_balls = self.n_balls();
         if let Some(step) = step {
             let at_start = |ball: usize| elastic_ports(ball, n_balls).map(|port| step.answer().start[port]);
@@ -233,8 +227,6 @@ impl Motion<'_> {
 
     /// What carries a ring, over a part.
     pub(super) fn carrier_step(&self, state: &MotionState, span: Span, side: Side) -> RingStep {
-        let speed = self.settings.speeds.of(side);
-        let turned = speed.angle(span.at(1.0)) - speed.angle(span.start);
         let (carrier, masses) = match (side, state.seat) {
             (Side::Inner, _) => ([state.shaft, state.shaft_velocity], self.model.shaft_masses()),
             (Side::Outer, Some([z, v, _])) => {
@@ -247,8 +239,15 @@ impl Motion<'_> {
             carrier,
             has_inertia: masses.map(|mass| mass > 0.0),
             elastic: None,
-            spin: [turned / span.dt, speed.at(span.at(1.0))],
+            spin: self.ring_speeds(side, span),
         }
+    }
+
+    /// Speed of a ring, rad/s: mean over a part, and at its end.
+    pub(super) fn ring_speeds(&self, side: Side, span: Span) -> [f64; 2] {
+        let speed = self.settings.speeds.of(side);
+        let turned = speed.angle(span.at(1.0)) - speed.angle(span.start);
+        [turned / span.dt, speed.at(span.at(1.0))]
     }
 
     fn contact_step(
@@ -259,25 +258,21 @@ impl Motion<'_> {
         (ring, traction): (RingStep, &Arc<Traction>),
     ) -> ContactStep {
         let (ball, geometry) = (site.ball, &self.model.geometry);
-        let radius = 0.5 * geometry.ball_diameter;
-        let groove_radius = geometry.groove_radius(site.side);
         let groove = GrooveCircle {
             radius: geometry.centre_radius(site.side),
             height: geometry.groove_centre(site.side)[1],
-            lever: radius - 0.5 * state.approaches[index].max(0.0),
+            lever: self.model.contact_lever(state.approaches[index]),
         };
         let [f_r, f_z] = state.forces[index];
         let force = f_r.hypot(f_z).max(EARTH * self.model.ball_mass());
-        let semi_axes = self.model.hertz[site.side.index()].semi_axes(force);
+        let ellipse = self.model.ellipse(site.side, force);
+        let (sin, cos) = state.angles[index].sin_cos();
+        let normal = [site.side.sign() * cos, site.side.sign() * sin];
+        let (out, rates) = free.rolls(ball);
         let rolling = RollingContact {
-            speed: rolling_speed(
-                free,
-                ball,
-                (site.side, state.angles[index]),
-                (groove.lever, ring.spin[0]),
-            ),
+            speed: rolling_speed(out, (groove.lever, normal), rates, ring.spin[0]),
             force,
-            semi_axes,
+            semi_axes: ellipse.semi_axes,
             shear_modulus: self.model.combined_shear_modulus(site.side),
         };
         ContactStep {
@@ -290,10 +285,7 @@ impl Motion<'_> {
             damping: self.settings.contact_damping,
             ring,
             traction: traction.clone(),
-            ellipse: Ellipse {
-                semi_axes,
-                radius: 2.0 * groove_radius * radius / (groove_radius + radius),
-            },
+            ellipse,
             small_slip: traction.creep.slip(traction.law.at(0.0)[0], &rolling),
             slip_at: Default::default(),
         }
@@ -387,38 +379,6 @@ pub(super) fn check_apart(
         }
     }
     Ok(())
-}
-
-/// A ball that rolls: speed round the axis and turning about e_r, e_psi and e_z, rad/s.
-struct Rolls {
-    orbit: f64,
-    turning: [f64; 3],
-}
-
-impl Rolls {
-    fn steady(ball: &SteadyRolling) -> Rolls {
-        Rolls {
-            orbit: ball.orbit,
-            turning: ball.turning,
-        }
-    }
-}
-
-/// Speed with which material runs through a contact, m/s: mean of both surfaces, seen from the contact.
-fn rolling_speed(
-    free: &FreeState,
-    ball: usize,
-    (side, angle): (Side, f64),
-    (lever, spin): (f64, f64),
-) -> f64 {
-    let ([x, y, _], w) = (free.places[ball], free.turnings[ball]);
-    let (out, orbit) = (x.hypot(y), free.orbit(ball));
-    let (sin, cos) = angle.sin_cos();
-    let [n_r, n_z] = [side.sign() * cos, side.sign() * sin];
-    let turning = (w[0] * x + w[1] * y) / out;
-    let at = out + lever * n_r;
-    let of_ball = orbit * out + lever * (w[2] * n_r - turning * n_z) - orbit * at;
-    0.5 * (of_ball + (spin - orbit) * at)
 }
 
 /// The ledger of friction where balls are free.

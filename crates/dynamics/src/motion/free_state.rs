@@ -78,6 +78,14 @@ impl FreeState {
         }
     }
 
+    /// Distance of a ball from the axis, m; its speed round the axis and its turning about e_r, e_psi, e_z, rad/s.
+    pub(super) fn rolls(&self, ball: usize) -> (f64, [f64; 4]) {
+        let ([x, y, _], [u, v, w]) = (self.places[ball], self.turnings[ball]);
+        let out = x.hypot(y);
+        let turning = [(u * x + v * y) / out, (v * x - u * y) / out, w];
+        (out, [self.orbit(ball), turning[0], turning[1], turning[2]])
+    }
+
     /// Velocity [radial, axial] of a ball, m/s.
     pub fn meridian_velocity(&self, ball: usize) -> [f64; 2] {
         let ([x, y, _], [u, v, w]) = (self.places[ball], self.velocities[ball]);

@@ -11,14 +11,12 @@ use timer::SharedLaps;
 
 use super::cage_state::CageSolution;
 use super::solve::{StepSolution, policy};
-use crate::bearing::{self, BearingParts, CONTACTS, CageParts, FIRST_BALL, SHAFT};
+use crate::bearing::{self, BearingParts, CONTACTS, CageParts, FIRST_BALL, FreeParts, SHAFT};
 use crate::error::DynamicsError;
-use crate::interactions::cage::CageForce;
-use crate::interactions::cage::links::CageContact;
 use crate::interactions::free_contact::{FoundContact, SlipAt};
 use crate::model::Model;
 use crate::system::newton::{NewtonSolution, Policy};
-use crate::system::{Body, Lengths, System};
+use crate::system::{Body, System};
 
 /// Factors of the slip of creep that lead a Newton that stalls to the solution.
 const SOFTER: [f64; 3] = [100.0, 10.0, 1.0];
@@ -36,25 +34,36 @@ impl BearingParts {
             let solved = self.with_friction(model, scale, costs)?;
             iterations += solved.iterations;
             let found = self.found_free(&solved.unknowns);
-            let contacts = self.free.iter_mut().flat_map(|free| &mut free.contacts.contacts);
-            let mut is_again = false;
-            for (contact, found) in contacts.zip(&found) {
-                if found.work > 0.0 && contact.slip_at == SlipAt::End {
-                    contact.slip_at = SlipAt::Middle;
-                    is_again = true;
-                }
-            }
             let cage = self.cage_solution(&solved.unknowns);
-            if let (Some(found), Some(cage)) = (&cage, self.free.as_mut().and_then(|free| free.cage.as_mut()))
-            {
-                is_again |= take_middle(&mut cage.pockets.contacts, &found.pockets);
-                is_again |= take_middle(&mut cage.lands.contacts, &found.lands);
-            }
-            if !is_again {
+            if !self.take_middle(&found, cage.as_ref()) {
                 let solution = self.free_solution(model, &solved.unknowns, found, iterations);
                 return Ok(StepSolution { cage, ..solution });
             }
         }
+    }
+
+    /// Lets contacts whose friction did work over the part take the slip of the middle; whether there are any.
+    fn take_middle(&mut self, found: &[FoundContact], cage: Option<&CageSolution>) -> bool {
+        let Some(free) = &mut self.free else { return false };
+        let mut is_any = false;
+        let mut decide = |work: f64, slip_at: &mut SlipAt| {
+            if work > 0.0 && *slip_at == SlipAt::End {
+                *slip_at = SlipAt::Middle;
+                is_any = true;
+            }
+        };
+        for (contact, found) in free.contacts.contacts.iter_mut().zip(found) {
+            decide(found.work, &mut contact.slip_at);
+        }
+        if let (Some(parts), Some(found)) = (&mut free.cage, cage) {
+            for (contact, found) in parts.pockets.contacts.iter_mut().zip(&found.pockets) {
+                decide(found.friction_work, &mut contact.rubbing.slip_at);
+            }
+            for (contact, found) in parts.lands.contacts.iter_mut().zip(&found.lands) {
+                decide(found.friction_work, &mut contact.rubbing.slip_at);
+            }
+        }
+        is_any
     }
 
     /// Newton, led by softer creep where it stalls.
@@ -154,14 +163,9 @@ impl BearingParts {
 
     /// Contacts of free balls at the solution `x`.
     fn found_free(&self, x: &[f64]) -> Vec<FoundContact> {
-        let [start, end] = self.system().lengths_at(CONTACTS, x);
-        let lengths = Lengths {
-            start: &start,
-            end: &end,
-        };
-        self.free
-            .as_ref()
-            .map_or_else(Vec::new, |free| free.contacts.found(lengths))
+        let lengths = self.system().lengths_at(CONTACTS, x);
+        let found = |free: &FreeParts| free.contacts.found(bearing::lengths(&lengths));
+        self.free.as_ref().map_or_else(Vec::new, found)
     }
 
     fn free_solution(
@@ -190,16 +194,4 @@ impl BearingParts {
             iterations,
         }
     }
-}
-
-/// Lets contacts whose friction did work over the part take the slip of the middle; whether there are any.
-fn take_middle(contacts: &mut [impl CageContact], found: &[CageForce]) -> bool {
-    let mut is_any = false;
-    for (contact, force) in contacts.iter_mut().zip(found) {
-        if force.friction_work > 0.0 && *contact.slip_at() == SlipAt::End {
-            *contact.slip_at() = SlipAt::Middle;
-            is_any = true;
-        }
-    }
-    is_any
 }

@@ -22,21 +22,28 @@ pub enum Body {
 
 /// A body that its own unknowns place.
 pub trait Lumped: Send + Sync {
-    /// Number of coordinates.
-    fn n_coordinates(&self) -> usize;
-
     /// Number of unknowns.
     fn n_unknowns(&self) -> usize;
+
+    /// Number of coordinates. This, [`place`](Lumped::place) and [`slopes`](Lumped::slopes) are by default those of a body
+    /// whose unknowns are its coordinates.
+    fn n_coordinates(&self) -> usize {
+        self.n_unknowns()
+    }
 
     /// Coordinates at the start of the interval, m and rad.
     fn start(&self) -> &[f64];
 
     /// Coordinates at its end for the unknowns `x`.
-    fn place(&self, x: &[f64], end: &mut [f64]);
+    fn place(&self, x: &[f64], end: &mut [f64]) {
+        end.copy_from_slice(x);
+    }
 
     /// Growth of the coordinates with the unknowns at `x`: (coordinate, unknown, value), in ascending order. Where it
     /// changes with `x`, Newton's tangent leaves that change out and converges linearly.
-    fn slopes(&self, x: &[f64]) -> Vec<(usize, usize, f64)>;
+    fn slopes(&self, x: &[f64]) -> Vec<(usize, usize, f64)> {
+        (0..x.len()).map(|i| (i, i, 1.0)).collect()
+    }
 
     /// Unknowns when nothing accelerates.
     fn guess(&self, interval: Interval) -> Vec<f64>;

@@ -26,24 +26,12 @@ impl Sprung {
 }
 
 impl Lumped for Sprung {
-    fn n_coordinates(&self) -> usize {
-        self.load.len()
-    }
-
     fn n_unknowns(&self) -> usize {
         self.load.len()
     }
 
     fn start(&self) -> &[f64] {
         &self.start
-    }
-
-    fn place(&self, x: &[f64], end: &mut [f64]) {
-        end.copy_from_slice(x);
-    }
-
-    fn slopes(&self, x: &[f64]) -> Vec<(usize, usize, f64)> {
-        (0..x.len()).map(|i| (i, i, 1.0)).collect()
     }
 
     fn guess(&self, _interval: Interval) -> Vec<f64> {

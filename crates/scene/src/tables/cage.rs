@@ -36,7 +36,7 @@ enum Guidance {
 }
 
 /// As typed.
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Default, Deserialize, PartialEq)]
 #[serde(deny_unknown_fields, expecting = "the table [cage]")]
 pub struct RawCage {
     #[serde(default)]
@@ -83,7 +83,7 @@ impl RawCage {
         problems: &mut Problems,
     ) -> Option<Cage> {
         if self.motion == CageMotion::Kinematic {
-            if self.has_keys() {
+            if self != &RawCage::default() {
                 problems.add(
                     "[cage] has keys of a free cage, but cage.motion is \"kinematic\"; write motion = \"free\", or \
                      remove them",
@@ -128,27 +128,6 @@ impl RawCage {
             friction: friction?,
             land: land?,
         })
-    }
-
-    fn has_keys(&self) -> bool {
-        let lengths = [
-            &self.bore_diameter,
-            &self.outside_diameter,
-            &self.width,
-            &self.pocket_clearance,
-            &self.guidance_clearance,
-        ];
-        lengths.iter().any(|key| key.is_some())
-            || self.mass.is_some()
-            || self.density.is_some()
-            || self.inertia_z.is_some()
-            || self.inertia_t.is_some()
-            || self.pocket_stiffness.is_some()
-            || self.pocket_offsets.is_some()
-            || self.guidance != Guidance::Balls
-            || self.friction.is_some()
-            || self.restitution.is_some()
-            || self.land_viscosity.is_some()
     }
 
     /// The cage as a tube, if its dimensions are given; they must hold the pitch circle between them.

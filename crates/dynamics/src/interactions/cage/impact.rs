@@ -17,12 +17,12 @@ use super::design::Cage;
 use crate::interactions::discrete_gradient::{MeanForce, mean_force_with};
 
 /// Speed of a first touch at least, m/s: what begins to touch at rest has none.
-pub const LEAST_SPEED: f64 = 1e-6;
+const LEAST_SPEED: f64 = 1e-6;
 
 impl Cage {
-    /// Law of force and impact of a contact that was first met at `speed` m/s.
-    pub fn impact(&self, speed: f64) -> Impact {
-        Impact::new(self.law(), self.restitution, speed)
+    /// Law of force and impact of its contacts.
+    pub fn impact(&self) -> Impact {
+        Impact::new(self.law(), self.restitution)
     }
 }
 
@@ -33,21 +33,26 @@ const ONE_POINT: f64 = 1e-15;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Impact {
     law: ContactLaw,
-    /// A / v_0, s/m.
-    factor: f64,
+    /// A.
+    dissipation: f64,
     /// v_0, m/s.
     speed: f64,
 }
 
 impl Impact {
-    /// Force law `law`, restitution, and speed of the first touch, m/s.
-    pub fn new(law: ContactLaw, restitution: f64, speed: f64) -> Impact {
-        let speed = speed.max(LEAST_SPEED);
+    /// Force law and restitution; nothing has touched yet.
+    pub fn new(law: ContactLaw, restitution: f64) -> Impact {
         Impact {
             law,
-            factor: dissipation(restitution) / speed,
-            speed,
+            dissipation: dissipation(restitution),
+            speed: LEAST_SPEED,
         }
+    }
+
+    /// The same after a first touch at a speed, m/s.
+    pub fn met_at(self, speed: f64) -> Impact {
+        let speed = speed.max(LEAST_SPEED);
+        Impact { speed, ..self }
     }
 
     /// Speed of the first touch, m/s.
@@ -71,15 +76,15 @@ impl Impact {
                 false => own,
             }
         });
-        let rate = self.factor / dt;
+        let rate = self.dissipation / self.speed / dt;
         mean_force_with(&self.law, touching, l, |[mean, slope], change| {
             [rate * mean * change, rate * (mean + slope * change)]
         })
     }
 
-    /// Energy stored at a distance, J.
-    pub fn energy(&self, touching: f64, l: [f64; 2]) -> f64 {
-        self.law.evaluate(l[0].hypot(l[1]) - touching).energy
+    /// Energy stored at an overlap, J.
+    pub fn energy_at(&self, overlap: f64) -> f64 {
+        self.law.evaluate(overlap).energy
     }
 
     /// Force at an overlap, N.
@@ -89,7 +94,7 @@ impl Impact {
 }
 
 /// The factor A of a restitution above 0 and at most 1.
-pub fn dissipation(restitution: f64) -> f64 {
+fn dissipation(restitution: f64) -> f64 {
     let e = restitution;
     if e >= 1.0 {
         return 0.0;
@@ -142,7 +147,7 @@ mod tests {
                     patch_compliance: 0.0,
                     ball_compliance: 0.0,
                 };
-                let impact = Impact::new(law, e, speed);
+                let impact = Impact::new(law, e).met_at(speed);
                 // Time of contact, about 3.2 (m / k)^(2/5) / v^(1/5).
                 let time = 3.2 * (mass / stiffness).powf(0.4) / speed.powf(0.2);
                 let rebound = |steps: f64| {

@@ -6,10 +6,10 @@
 
 use contact::Side;
 
+use super::super::free_contact::RingStep;
 use super::super::free_contact::jet::{Jet, N_LENGTHS, Vector, cross, dot, fixed, minus, plus, times};
-use super::super::free_contact::{RingStep, SlipAt};
 use super::impact::Impact;
-use super::{CageForce, Land, friction};
+use super::{CageContact, CageForce, Land, Rubbing, press};
 
 /// One end of a cage on its land over a step.
 #[derive(Clone, Debug)]
@@ -26,12 +26,8 @@ pub struct LandStep {
     pub heights: [f64; 2],
     /// Force law.
     pub impact: Impact,
-    /// Coefficient of friction.
-    pub friction: f64,
-    /// Slip below which friction is in proportion to it, m/s.
-    pub small_slip: f64,
-    /// Which slip friction follows.
-    pub slip_at: SlipAt,
+    /// Friction.
+    pub rubbing: Rubbing,
 }
 
 /// Velocities of cage and ring: translation and turning.
@@ -40,9 +36,8 @@ struct Rates {
     ring: [Vector; 2],
 }
 
-impl LandStep {
-    /// Speed at which the end moves away from the middle of its land at the start, m/s.
-    pub fn closing_speed(&self) -> f64 {
+impl CageContact for LandStep {
+    fn closing_speed(&self) -> f64 {
         let ([x, y], [u, v]) = (
             self.eccentricity(0, self.ring.carrier[0]),
             self.eccentricity(1, self.ring.carrier[1]),
@@ -51,53 +46,45 @@ impl LandStep {
         if size == 0.0 { 0.0 } else { (x * u + y * v) / size }
     }
 
-    /// Eccentricity less c_g/2 at the start, m.
-    pub fn overlap_at_start(&self) -> f64 {
+    fn overlap_at_start(&self) -> f64 {
         let [x, y] = self.eccentricity(0, self.ring.carrier[0]);
         x.hypot(y) - self.touching()
     }
 
-    /// Energy lost to the drag of this end over the step, J, and its torque on the cage, N m.
-    pub fn drag(&self, end: [f64; N_LENGTHS]) -> [f64; 2] {
-        let slip = end[5] / self.dt - self.ring.spin[0];
-        let torque = 0.5 * self.land.drag() * slip;
-        [torque * slip * self.dt, -torque]
-    }
-
-    /// Forces at lengths at the end; adds what resists the growth of the lengths.
-    pub fn evaluate(&self, end: [f64; N_LENGTHS], resists: &mut [Jet; N_LENGTHS]) -> CageForce {
-        let turn = Jet::length(5, end[5]) * (1.0 / self.dt) + -self.ring.spin[0];
-        resists[5] = resists[5] + turn * (0.5 * self.land.drag());
-        let reach = [self.eccentricity(0, self.ring.carrier[0]), self.at_end(end)];
-        let overlap = reach.map(|l| l[0].hypot(l[1]) - self.touching());
-        if overlap.iter().all(|d| *d <= 0.0) {
-            return CageForce::default();
-        }
+    fn evaluate(&self, end: [f64; N_LENGTHS], resists: &mut [Jet; N_LENGTHS]) -> CageForce {
         let x: [Jet; N_LENGTHS] = std::array::from_fn(|i| Jet::length(i, end[i]));
-        let last = self.at_end_of(&x);
-        let mean = self.impact.mean(self.touching(), reach, self.dt);
-        let load = [0, 1].map(|i| {
-            let mut jet = last[0] * mean.tangent[i][0] + last[1] * mean.tangent[i][1];
-            jet.value = mean.force[i];
-            jet
-        });
+        let turn = x[5] * (1.0 / self.dt) + -self.ring.spin[0];
+        resists[5] = resists[5] + turn * (0.5 * self.land.drag());
+        let (start, last) = (self.eccentricity(0, self.ring.carrier[0]), self.at_end(&x));
+        let Some((load, mut found)) = press(&self.impact, self.touching(), (start, last), self.dt) else {
+            return CageForce::default();
+        };
         let [h, height] = self.heights;
         add_load(load, (0, 1.0, h), resists);
         if self.land_moves() {
             add_load(load, (6, -1.0, height), resists);
         }
-        let mut found = CageForce {
-            normal: mean.force.map(|f| -f),
-            energy: reach.map(|l| self.impact.energy(self.touching(), l)),
-            impact_loss: mean.loss,
-            touches: overlap[1] > 0.0,
-            ..CageForce::default()
-        };
-        if mean.force != [0.0; 2] && self.friction > 0.0 {
-            let force = (load[0] * load[0] + load[1] * load[1]).sqrt();
-            self.add_friction((reach[0], last), force, &x, resists, &mut found);
+        if self.rubbing.acts(&found) {
+            self.add_friction((start, last), load, &x, resists, &mut found);
         }
         found
+    }
+
+    fn impact(&self) -> &Impact {
+        &self.impact
+    }
+
+    fn impact_mut(&mut self) -> &mut Impact {
+        &mut self.impact
+    }
+}
+
+impl LandStep {
+    /// Energy lost to the drag of this end over the step, J, and its torque on the cage, N m.
+    pub fn drag(&self, end: [f64; N_LENGTHS]) -> [f64; 2] {
+        let slip = end[5] / self.dt - self.ring.spin[0];
+        let torque = 0.5 * self.land.drag() * slip;
+        [torque * slip * self.dt, -torque]
     }
 
     fn touching(&self) -> f64 {
@@ -117,12 +104,8 @@ impl LandStep {
         ]
     }
 
-    fn at_end(&self, end: [f64; N_LENGTHS]) -> [f64; 2] {
-        self.at_end_of(&end.map(Jet::constant)).map(|x| x.value)
-    }
-
     /// Eccentricity at the end. The lengths of the ring are those of its carrier, which are no increments.
-    fn at_end_of(&self, x: &[Jet; N_LENGTHS]) -> [Jet; 2] {
+    fn at_end(&self, x: &[Jet; N_LENGTHS]) -> [Jet; 2] {
         let (cage, [h, height]) = (self.cage[0], self.heights);
         let ring: [Jet; 5] = self.carrier_at_end(x);
         [
@@ -142,21 +125,15 @@ impl LandStep {
     fn add_friction(
         &self,
         (start, last): ([f64; 2], [Jet; 2]),
-        normal: Jet,
+        load: [Jet; 2],
         x: &[Jet; N_LENGTHS],
         resists: &mut [Jet; N_LENGTHS],
         found: &mut CageForce,
     ) {
         let middle = self.frame([0, 1].map(|i| last[i] + start[i]));
         let at_middle = middle.slip(&self.mean_rates(x));
-        let followed = match self.slip_at {
-            SlipAt::Middle => at_middle,
-            SlipAt::End => self.frame(last).slip(&self.last_rates(x)),
-        };
-        let f = friction(self.friction, normal, followed, self.small_slip);
-        let work = |slip: [Jet; 2]| self.dt * (0..2).map(|i| f[i].value * slip[i].value).sum::<f64>();
-        found.friction_work = work(at_middle);
-        found.work_at_slip = work(followed);
+        let at_end = || self.frame(last).slip(&self.last_rates(x));
+        let f = self.rubbing.rub(load, (at_middle, at_end), self.dt, found);
         let force = plus(times(f[0], middle.round), [Jet::default(), Jet::default(), f[1]]);
         let about = middle.arms.map(|arm| cross(arm, force));
         found.torque = about[0][2].value;

@@ -3,50 +3,11 @@
 use timer::SharedLaps;
 
 use super::super::free_contact::jet::Jet;
-use super::super::free_contact::{Carrier, N_LENGTHS, SlipAt};
-use super::CageForce;
-use super::impact::Impact;
+use super::super::free_contact::{Carrier, N_LENGTHS, link_forces, unit};
 use super::land::LandStep;
 use super::pocket::PocketStep;
+use super::{CageContact, CageForce};
 use crate::system::{Body, Character, Interaction, Lengths, Link, LinkForces, LinkRows, LinkTerm};
-
-/// A contact of the cage over a step.
-pub trait CageContact: Send + Sync {
-    /// Forces at lengths at the end; adds what resists the growth of the lengths.
-    fn evaluate(&self, end: [f64; N_LENGTHS], resists: &mut [Jet; N_LENGTHS]) -> CageForce;
-    /// Its law.
-    fn impact(&self) -> &Impact;
-    /// Which slip friction follows.
-    fn slip_at(&mut self) -> &mut SlipAt;
-}
-
-impl CageContact for PocketStep {
-    fn evaluate(&self, end: [f64; N_LENGTHS], resists: &mut [Jet; N_LENGTHS]) -> CageForce {
-        self.evaluate(end, resists)
-    }
-
-    fn impact(&self) -> &Impact {
-        &self.impact
-    }
-
-    fn slip_at(&mut self) -> &mut SlipAt {
-        &mut self.slip_at
-    }
-}
-
-impl CageContact for LandStep {
-    fn evaluate(&self, end: [f64; N_LENGTHS], resists: &mut [Jet; N_LENGTHS]) -> CageForce {
-        self.evaluate(end, resists)
-    }
-
-    fn impact(&self) -> &Impact {
-        &self.impact
-    }
-
-    fn slip_at(&mut self) -> &mut SlipAt {
-        &mut self.slip_at
-    }
-}
 
 /// A family of contacts of the cage.
 #[derive(Clone, Debug, Default)]
@@ -60,8 +21,8 @@ impl CageLinks<PocketStep> {
     /// Pockets of balls that are lumped bodies from `first_ball` on, in a cage that is the body `cage`.
     pub fn pockets(contacts: Vec<PocketStep>, first_ball: usize, cage: usize) -> CageLinks<PocketStep> {
         let link = |ball: usize| {
-            let of_ball = (0..6).map(|c| unit(first_ball + ball, c, c));
-            let of_cage = (0..6).map(|c| unit(cage, c, 6 + c));
+            let of_ball = (0..6).map(|c| unit(Body::Lumped(first_ball + ball), c, c));
+            let of_cage = (0..6).map(|c| unit(Body::Lumped(cage), c, 6 + c));
             Link::linear(LinkRows::default(), of_ball.chain(of_cage).collect())
         };
         let links = (0..contacts.len()).map(link).collect();
@@ -72,9 +33,9 @@ impl CageLinks<PocketStep> {
 impl CageLinks<LandStep> {
     /// Ends of a cage, which is the body `cage`, on a land that `ring` carries.
     pub fn lands(contacts: Vec<LandStep>, cage: usize, ring: Carrier) -> CageLinks<LandStep> {
-        let mut terms: Vec<LinkTerm> = (0..6).map(|c| unit(cage, c, c)).collect();
+        let mut terms: Vec<LinkTerm> = (0..6).map(|c| unit(Body::Lumped(cage), c, c)).collect();
         if let Carrier::Lumped(body) = ring {
-            terms.extend((0..5).map(|c| unit(body, c, 6 + c)));
+            terms.extend((0..5).map(|c| unit(Body::Lumped(body), c, 6 + c)));
         }
         let links = vec![Link::linear(LinkRows::default(), terms); contacts.len()];
         CageLinks { contacts, links }
@@ -108,14 +69,7 @@ impl<C: CageContact> Interaction for CageLinks<C> {
 
     fn evaluate(&self, lengths: Lengths, costs: &SharedLaps) -> LinkForces {
         costs.time("cage", || {
-            let mut found = LinkForces::default();
-            for (_, resists) in self.found(lengths) {
-                for force in resists {
-                    found.forces.push(force.value);
-                    found.tangents.extend(force.slope);
-                }
-            }
-            found
+            link_forces(self.found(lengths).into_iter().map(|(_, resists)| resists))
         })
     }
 
@@ -126,16 +80,5 @@ impl<C: CageContact> Interaction for CageLinks<C> {
             contact.impact().force_at(2.0 * f64::EPSILON * largest)
         };
         self.contacts.iter().enumerate().map(of).sum()
-    }
-}
-
-/// A coordinate of a lumped body that is a length of its own.
-fn unit(body: usize, coordinate: usize, row: usize) -> LinkTerm {
-    let mut rows = LinkRows::default();
-    rows[row] = 1.0;
-    LinkTerm {
-        body: Body::Lumped(body),
-        coordinate,
-        rows,
     }
 }

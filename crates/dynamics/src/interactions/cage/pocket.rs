@@ -13,12 +13,11 @@
 //! and the forces take these factors. Moment of momentum about the axis is off by D^2/12 of a force's own moment: 5e-8
 //! at 800 rpm and 10 us.
 
-use super::super::free_contact::SlipAt;
 use super::super::free_contact::jet::{
     Jet, N_LENGTHS, Vector, cross, dot, fixed, minus, plus, scaled, times,
 };
 use super::impact::Impact;
-use super::{CageForce, friction};
+use super::{CageContact, CageForce, Rubbing, press};
 
 /// A ball in its pocket over a step.
 #[derive(Clone, Debug)]
@@ -37,12 +36,8 @@ pub struct PocketStep {
     pub touching: f64,
     /// Force law.
     pub impact: Impact,
-    /// Coefficient of friction.
-    pub friction: f64,
-    /// Slip below which friction is in proportion to it, m/s.
-    pub small_slip: f64,
-    /// Which slip friction follows.
-    pub slip_at: SlipAt,
+    /// Friction.
+    pub rubbing: Rubbing,
 }
 
 /// The pocket at one instant.
@@ -56,9 +51,8 @@ struct PocketPlace {
     round: Vector,
 }
 
-impl PocketStep {
-    /// Speed at which the ball moves away from the pocket's middle at the start, m/s.
-    pub fn closing_speed(&self) -> f64 {
+impl CageContact for PocketStep {
+    fn closing_speed(&self) -> f64 {
         let start = self.start();
         let [d_psi, d_z] = start.reach.map(|x| x.value);
         let size = d_psi.hypot(d_z);
@@ -74,46 +68,37 @@ impl PocketStep {
         (d_psi * of_psi + d_z * of_z) / size
     }
 
-    /// |d| - c_p/2 at the start, m.
-    pub fn overlap_at_start(&self) -> f64 {
+    fn overlap_at_start(&self) -> f64 {
         let [a, b] = self.start().reach.map(|x| x.value);
         a.hypot(b) - self.touching
     }
 
-    /// Forces at lengths at the end; adds what resists the growth of the lengths.
-    pub fn evaluate(&self, end: [f64; N_LENGTHS], resists: &mut [Jet; N_LENGTHS]) -> CageForce {
-        let plain: [Jet; N_LENGTHS] = end.map(Jet::constant);
-        let far = [self.start(), self.at(&plain)];
-        let reach = [0, 1].map(|i| far[i].reach.map(|x| x.value));
-        let overlap = reach.map(|l| l[0].hypot(l[1]) - self.touching);
-        if overlap.iter().all(|d| *d <= 0.0) {
-            return CageForce::default();
-        }
+    fn evaluate(&self, end: [f64; N_LENGTHS], resists: &mut [Jet; N_LENGTHS]) -> CageForce {
+        let start = self.start();
         let x: [Jet; N_LENGTHS] = std::array::from_fn(|i| Jet::length(i, end[i]));
-        let [start, last] = [self.start(), self.at(&x)];
-        let mean = self.impact.mean(self.touching, reach, self.dt);
+        let last = self.at(&x);
+        let reach = (start.reach.map(|l| l.value), last.reach);
         // On the pocket; the ball gets the opposite.
-        let load = [0, 1].map(|i| {
-            let mut jet = last.reach[0] * mean.tangent[i][0] + last.reach[1] * mean.tangent[i][1];
-            jet.value = mean.force[i];
-            jet
-        });
-        let size = mean.force[0].hypot(mean.force[1]);
-        self.add_normal((&start, &last), load, &x, resists);
-        let mut found = CageForce {
-            normal: mean.force.map(|f| -f),
-            energy: reach.map(|l| self.impact.energy(self.touching, l)),
-            impact_loss: mean.loss,
-            touches: overlap[1] > 0.0,
-            ..CageForce::default()
+        let Some((load, mut found)) = press(&self.impact, self.touching, reach, self.dt) else {
+            return CageForce::default();
         };
-        if size > 0.0 && self.friction > 0.0 {
-            let force = (load[0] * load[0] + load[1] * load[1]).sqrt();
-            self.add_friction((&start, &last), force, &x, resists, &mut found);
+        self.add_normal((&start, &last), load, &x, resists);
+        if self.rubbing.acts(&found) {
+            self.add_friction((&start, &last), load, &x, resists, &mut found);
         }
         found
     }
 
+    fn impact(&self) -> &Impact {
+        &self.impact
+    }
+
+    fn impact_mut(&mut self) -> &mut Impact {
+        &mut self.impact
+    }
+}
+
+impl PocketStep {
     fn start(&self) -> PocketPlace {
         self.at(&[Jet::default(); N_LENGTHS])
     }
@@ -164,7 +149,7 @@ impl PocketStep {
     fn add_friction(
         &self,
         (start, last): (&PocketPlace, &PocketPlace),
-        normal: Jet,
+        load: [Jet; 2],
         x: &[Jet; N_LENGTHS],
         resists: &mut [Jet; N_LENGTHS],
         found: &mut CageForce,
@@ -176,22 +161,16 @@ impl PocketStep {
         let rates = [[rate[0], rate[1], rate[2]], [rate[3], rate[4], rate[5]]];
         let middle = WallFrame::new(self, start, last, x);
         let at_middle = middle.slip([mean(0), mean(3), mean(6), mean(9)]);
-        let followed = match self.slip_at {
-            SlipAt::Middle => at_middle,
-            SlipAt::End => {
-                let frame = WallFrame::of(self, last.arm, last.reach, [last.out, last.round]);
-                frame.slip([
-                    end(0, self.ball[1]),
-                    end(3, self.ball[2]),
-                    end(6, rates[0]),
-                    end(9, rates[1]),
-                ])
-            }
+        let at_end = || {
+            let frame = WallFrame::of(self, last.arm, last.reach, [last.out, last.round]);
+            frame.slip([
+                end(0, self.ball[1]),
+                end(3, self.ball[2]),
+                end(6, rates[0]),
+                end(9, rates[1]),
+            ])
         };
-        let f = friction(self.friction, normal, followed, self.small_slip);
-        let work = |slip: [Jet; 2]| self.dt * (0..2).map(|i| f[i].value * slip[i].value).sum::<f64>();
-        found.friction_work = work(at_middle);
-        found.work_at_slip = work(followed);
+        let f = self.rubbing.rub(load, (at_middle, at_end), self.dt, found);
         let force = plus(times(f[0], middle.tangents[0]), times(f[1], middle.tangents[1]));
         let about_ball = cross(middle.lever, force);
         let about_cage = cross(plus(middle.arm, middle.lever), force);

@@ -36,6 +36,7 @@ pub mod place;
 use timer::SharedLaps;
 
 pub use contact::{ContactStep, FoundContact, RingStep, SlipAt};
+use jet::Jet;
 pub use jet::N_LENGTHS;
 
 use crate::system::{Body, Character, Interaction, Lengths, Link, LinkForces, LinkRows, LinkTerm};
@@ -101,8 +102,18 @@ pub fn elastic_ports(ball: usize, n_balls: usize) -> [usize; 6] {
     [0, 1, 2, 3, 4, 5].map(|i| 2 * ((i / 2) * n_balls + ball) + i % 2)
 }
 
+/// Forces and tangents of links from what resists the growth of the lengths of each.
+pub fn link_forces(links: impl Iterator<Item = [Jet; N_LENGTHS]>) -> LinkForces {
+    let mut found = LinkForces::default();
+    for force in links.flatten() {
+        found.forces.push(force.value);
+        found.tangents.extend(force.slope);
+    }
+    found
+}
+
 /// A coordinate that is a length of its own.
-fn unit(body: Body, coordinate: usize, row: usize) -> LinkTerm {
+pub fn unit(body: Body, coordinate: usize, row: usize) -> LinkTerm {
     let mut rows = LinkRows::default();
     rows[row] = 1.0;
     LinkTerm {
@@ -127,14 +138,7 @@ impl Interaction for FreeContacts {
 
     fn evaluate(&self, lengths: Lengths, costs: &SharedLaps) -> LinkForces {
         costs.time("traction", || {
-            let mut found = LinkForces::default();
-            for contact in self.found(lengths) {
-                for force in contact.resists {
-                    found.forces.push(force.value);
-                    found.tangents.extend(force.slope);
-                }
-            }
-            found
+            link_forces(self.found(lengths).into_iter().map(|contact| contact.resists))
         })
     }
 
