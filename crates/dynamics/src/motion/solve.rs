@@ -15,8 +15,8 @@ use crate::interactions::discrete_gradient::MeanForce;
 use crate::interactions::free_contact::FoundContact;
 use crate::interactions::raceway_contact::SiteState;
 use crate::model::{MAX_TILT, Model};
+use crate::system::System;
 use crate::system::newton::{Policy, RoundOff, Shortening};
-use crate::system::{Lengths, System};
 
 /// Newton iterations before a step counts as failed.
 const MOST_ITERATIONS: usize = 40;
@@ -26,6 +26,7 @@ const RESIDUAL_LIMIT: f64 = 1e-9;
 const HALVINGS: u32 = 10;
 
 /// Solution of a part.
+#[derive(Default)]
 pub struct StepSolution {
     /// Shaft at the end, m and rad.
     pub shaft: [f64; 5],
@@ -57,11 +58,6 @@ impl StepSolution {
         lengths(&self.reaches).of(site)
     }
 
-    /// l of all contacts at start and end.
-    pub(super) fn lengths(&self) -> Lengths<'_> {
-        lengths(&self.reaches)
-    }
-
     /// Contacts at the start, 0, or at the end, 1, of the part.
     pub fn states(&self, parts: &BearingParts, end: usize) -> Vec<SiteState> {
         parts.contacts.states(&self.reaches[end])
@@ -76,8 +72,11 @@ impl BearingParts {
         let (x, reaches) = (&solved.unknowns, self.reaches(&solved.unknowns));
         let means = self.contacts.means;
         let balls = means.map(|means| self.contacts.mean_forces(lengths(&reaches), means, costs));
-        let balls = balls.unwrap_or_default();
-        let forces: Vec<MeanForce> = balls.iter().flat_map(|ball| ball.contacts).collect();
+        let forces: Vec<MeanForce> = balls
+            .into_iter()
+            .flatten()
+            .flat_map(|ball| ball.contacts)
+            .collect();
         let on_shaft = system.forces_on(SHAFT, CONTACTS, x, &self.with_dead(&forces));
         Ok(StepSolution {
             shaft: system.coordinates(SHAFT, x),
@@ -89,19 +88,16 @@ impl BearingParts {
             on_shaft,
             reaches,
             mounts: Side::BOTH.map(|side| self.mount(&system, side, x)),
-            free_ends: Vec::new(),
-            free_contacts: Vec::new(),
-            cage: None,
             iterations: solved.iterations,
+            ..StepSolution::default()
         })
     }
 
     /// Forces of the partner on the mount of a ring for the unknowns `x`, in the ring's frame.
     pub(super) fn mount(&self, system: &System<'_>, side: Side, x: &[f64]) -> Vec<f64> {
         let elastic = self.elastic(side).zip(self.rings[side.index()].as_ref());
-        elastic.map_or_else(Vec::new, |(body, ports)| {
-            system.port_forces(body, x)[ports.n_moving..].to_vec()
-        })
+        let forces = elastic.map(|(body, ports)| system.port_forces(body, x)[ports.n_moving..].to_vec());
+        forces.unwrap_or_default()
     }
 }
 
@@ -142,27 +138,26 @@ pub(super) fn check_range(
 ) -> Result<(), DynamicsError> {
     let diameter = model.geometry.ball_diameter;
     let in_mm = |x: f64| format!("{:.3} mm", 1e3 * x);
+    let left = |what, value, limit| Err(DynamicsError::LeftBearing { what, value, limit });
     for (dof, q) in solution.shaft.into_iter().enumerate() {
         let (limit, text): (f64, fn(f64) -> String) = match dof {
             0..3 => (0.5 * diameter, in_mm),
             _ => (MAX_TILT, |x| format!("{x:.3} rad")),
         };
         if q.abs() > limit {
-            let what = format!("{} of the shaft", AXES[dof]);
-            return Err(left(what, text(q), text(limit)));
+            return left(format!("{} of the shaft", AXES[dof]), text(q), text(limit));
         }
     }
     for (ball, [radial, axial]) in solution.balls.iter().enumerate() {
         if radial.hypot(*axial) > diameter {
-            let what = format!("ball {ball}");
-            return Err(left(what, in_mm(radial.hypot(*axial)), in_mm(diameter)));
+            return left(
+                format!("ball {ball}"),
+                in_mm(radial.hypot(*axial)),
+                in_mm(diameter),
+            );
         }
     }
     check_grooves(parts, solution)
-}
-
-fn left(what: String, value: String, limit: String) -> DynamicsError {
-    DynamicsError::LeftBearing { what, value, limit }
 }
 
 /// Fails when a contact is beyond what its patch leaves of Hertz's law.
@@ -170,11 +165,9 @@ pub(super) fn check_patches(parts: &BearingParts, solution: &StepSolution) -> Re
     let contacts = parts.contacts.sites.iter().zip(&solution.forces);
     for ((site, force), state) in contacts.zip(solution.states(parts, 1)) {
         if state.force.beyond_limit {
-            return Err(DynamicsError::PatchTooSmall {
-                ball: site.ball,
-                side: site.side.name(),
-                force: force.force[0].hypot(force.force[1]),
-            });
+            let (ball, side) = (site.ball, site.side.name());
+            let force = force.force[0].hypot(force.force[1]);
+            return Err(DynamicsError::PatchTooSmall { ball, side, force });
         }
     }
     Ok(())

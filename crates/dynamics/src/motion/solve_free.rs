@@ -186,12 +186,11 @@ impl BearingParts {
             seat: self.seat_end(&system, x),
             reaches: [reach(0), reach(1)],
             forces: found.iter().map(|found| found.normal).collect(),
-            on_shaft: [0.0; 5],
             mounts: Side::BOTH.map(|side| self.mount(&system, side, x)),
             free_ends: ends,
             free_contacts: found,
-            cage: None,
             iterations,
+            ..StepSolution::default()
         }
     }
 }

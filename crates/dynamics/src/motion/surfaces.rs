@@ -9,7 +9,7 @@ use super::ledger::Ledger;
 use super::run::Motion;
 use super::solve::StepSolution;
 use super::span::Span;
-use crate::bearing::BearingParts;
+use crate::bearing::{BearingParts, lengths};
 use crate::interactions::raceway_contact::Site;
 
 impl Motion<'_> {
@@ -44,7 +44,7 @@ pub(super) fn note_temperature_work(
     solution: &StepSolution,
     (start, end): (f64, f64),
 ) {
-    if let Some(own) = parts.contacts.energies_as_mounted(solution.lengths()) {
+    if let Some(own) = parts.contacts.energies_as_mounted(lengths(&solution.reaches)) {
         let [first, last] = [start - own[0], own[1] - end];
         ledger.temperature_work += first + last;
         ledger.patch_work -= first;
@@ -60,7 +60,7 @@ pub(super) fn note_profile_work(
     solution: &StepSolution,
     (start, end): (f64, f64),
 ) {
-    if let Some(own) = parts.contacts.energies_on_surfaces(solution.lengths()) {
+    if let Some(own) = parts.contacts.energies_on_surfaces(lengths(&solution.reaches)) {
         let [first, last] = [start - own[0], own[1] - end];
         ledger.profile_work += first + last;
         ledger.patch_work -= first;

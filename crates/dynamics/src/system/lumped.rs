@@ -25,7 +25,7 @@ pub trait Lumped: Send + Sync {
     /// Number of unknowns.
     fn n_unknowns(&self) -> usize;
 
-    /// Number of coordinates. This, [`place`](Lumped::place) and [`slopes`](Lumped::slopes) are by default those of a body
+    /// Number of coordinates. By default, as [`place`](Lumped::place) and [`slopes`](Lumped::slopes), that of a body
     /// whose unknowns are its coordinates.
     fn n_coordinates(&self) -> usize {
         self.n_unknowns()

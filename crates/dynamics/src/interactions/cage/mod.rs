@@ -139,8 +139,8 @@ impl Cage {
 }
 
 impl Rubbing {
-    /// Friction under a normal force on the body whose slip is given, that at the middle and, where it is asked for, that
-    /// at the end of a step of `dt`; notes its works.
+    /// Friction under a normal force on the body whose slip is given: that at the middle and, where it is asked for,
+    /// that at the end of a step of `dt`; notes its works.
     fn rub(
         &self,
         load: [Jet; 2],
