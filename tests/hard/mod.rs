@@ -10,6 +10,8 @@ mod clearances;
 mod course;
 mod edges;
 mod extremes;
+mod free_balls;
+mod free_cage;
 mod invariance;
 mod loads;
 mod meshes;
@@ -85,6 +87,7 @@ fn groups() -> Vec<Group> {
             "Bearings",
             both(both(loads::cases(), clearances::cases()), speeds::cases()),
         ),
+        group("Free balls and cage", free_balls::cases()),
         group("Steps and integrators", steps::cases()),
         group(
             "Discretisation",

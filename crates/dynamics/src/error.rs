@@ -101,14 +101,30 @@ pub enum DynamicsError {
     },
     /// Two free balls run into each other.
     #[error(
-        "balls {ball} and {other} run into each other: orbits that differ bring free balls together; give \
-         them a cage, [cage] with motion = \"free\", or load the bearing so that all balls roll alike"
+        "balls {ball} and {other} run into each other: orbits that differ bring free balls together; {remedy}, or load \
+         the bearing so that all balls roll alike"
     )]
     BallsTouch {
         /// A ball.
         ball: usize,
         /// The one after it.
         other: usize,
+        /// What would keep them apart.
+        remedy: &'static str,
+    },
+    /// A free cage that nothing holds.
+    #[error(
+        "the cage stands {:.3} mm off the axis, beyond {:.3} mm, a quarter of a ball diameter: pockets hold no cage \
+         along their own axes, and balls that lag shift it; guide it by a land, cage.guidance = \"outer_land\" or \
+         \"inner_land\"",
+        1e3 * distance,
+        1e3 * limit
+    )]
+    CageLost {
+        /// Distance from the axis, m.
+        distance: f64,
+        /// Its limit, m.
+        limit: f64,
     },
     /// Contacts of a ring share so few nodes that they are not independent.
     #[error(

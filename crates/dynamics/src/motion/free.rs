@@ -359,24 +359,42 @@ impl BearingParts {
     }
 }
 
-/// Fails where two balls have run into each other.
+/// Fails where two balls have run into each other, or a cage is off the axis.
 pub(super) fn check_apart(
     model: &Model,
     parts: &BearingParts,
-    ends: &[[f64; 6]],
+    solution: &StepSolution,
 ) -> Result<(), DynamicsError> {
     let Some(free) = &parts.free else { return Ok(()) };
+    check_cage(model, parts, solution)?;
     let n = free.balls.len();
-    let place = |ball: usize| free.balls[ball].end(&ends[ball]);
+    let place = |ball: usize| free.balls[ball].end(&solution.free_ends[ball]);
+    let remedy = match &free.cage {
+        Some(_) => "give the pockets of the cage less clearance",
+        None => "give them a cage, [cage] with motion = \"free\"",
+    };
     for ball in 0..n {
-        let (a, b) = (place(ball), place((ball + 1) % n));
+        let other = (ball + 1) % n;
+        let (a, b) = (place(ball), place(other));
         let square: f64 = (0..3).map(|i| (a[i] - b[i]).powi(2)).sum();
         if square < model.geometry.ball_diameter.powi(2) {
-            return Err(DynamicsError::BallsTouch {
-                ball,
-                other: (ball + 1) % n,
-            });
+            return Err(DynamicsError::BallsTouch { ball, other, remedy });
         }
+    }
+    Ok(())
+}
+
+fn check_cage(model: &Model, parts: &BearingParts, solution: &StepSolution) -> Result<(), DynamicsError> {
+    let (Some(cage), Some(found)) = (parts.cage(), &solution.cage) else {
+        return Ok(());
+    };
+    let Some(pocket) = cage.pockets.contacts.first() else {
+        return Ok(());
+    };
+    let [x, y] = [0, 1].map(|i| pocket.cage[0][i] + found.end[i]);
+    let (distance, limit) = (x.hypot(y), 0.25 * model.geometry.ball_diameter);
+    if distance > limit {
+        return Err(DynamicsError::CageLost { distance, limit });
     }
     Ok(())
 }

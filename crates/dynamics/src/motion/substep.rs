@@ -56,7 +56,7 @@ impl Motion<'_> {
         };
         check_patches(&part.parts, &solution)?;
         check_range(self.model, &part.parts, &solution)?;
-        check_apart(self.model, &part.parts, &solution.free_ends)?;
+        check_apart(self.model, &part.parts, &solution)?;
         let places = part.parts.places(&solution);
         self.check_on_grooves(&places)?;
         let (mut next, error) = self.finish(state, (&part.parts, span.dt), &solution, part.rings, ends.rings);

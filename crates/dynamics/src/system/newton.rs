@@ -107,21 +107,20 @@ impl System<'_> {
                 RoundOff::Links => self.round_off(&x),
             };
             let is_at_floor = policy.ends_at_floor && now <= floor();
-            let is_solved = now <= RESIDUAL_TARGET * scale || (stalled >= 2 && now <= limit.max(floor()));
+            // Where increments are small beside places, these have their own round-off.
+            let places = || policy.ends_at_floor && now <= self.round_off(&x);
+            let is_floor = || now <= limit.max(floor()) || places();
+            let is_solved = now <= RESIDUAL_TARGET * scale || (stalled >= 2 && is_floor());
             if is_solved {
-                return Ok(NewtonSolution {
-                    unknowns: x,
-                    iterations: iteration,
-                });
+                let (unknowns, iterations) = (x, iteration);
+                return Ok(NewtonSolution { unknowns, iterations });
             }
             let step = self.direction(&x, &at, &mut tangent, policy)?;
             if is_at_floor {
                 // Light bodies beside heavy ones gain by the last step; its residual is round-off of the heavy ones.
                 x.iter_mut().zip(&step).for_each(|(x, s)| *x += s);
-                return Ok(NewtonSolution {
-                    unknowns: x,
-                    iterations: iteration + 1,
-                });
+                let (unknowns, iterations) = (x, iteration + 1);
+                return Ok(NewtonSolution { unknowns, iterations });
             }
             (x, at) = self.search(x, at, &step, policy);
             (policy.watch)(&x)?;
@@ -304,10 +303,9 @@ fn round_off(tangent: &[f64], x: &[f64]) -> f64 {
 /// Place and size of the largest entry; NaN wins.
 fn largest(r: &[f64]) -> (usize, f64) {
     r.iter().enumerate().fold((0, 0.0), |(place, most), (i, v)| {
-        if v.is_nan() || v.abs() > most {
-            (i, v.abs())
-        } else {
-            (place, most)
+        match v.is_nan() || v.abs() > most {
+            true => (i, v.abs()),
+            false => (place, most),
         }
     })
 }

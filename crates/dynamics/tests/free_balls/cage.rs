@@ -80,7 +80,9 @@ fn the_ledger_closes_with_a_cage_and_no_loss_ever_falls() {
         let start = motion.with_energies(start);
         let (mut losses, mut worst) = ([0.0; 3], 0.0f64);
         let (mut met, mut landed) = (0, 0);
-        let last = run(&motion, start, 200, |state| {
+        // Unguided, balls without load would shift it off the axis.
+        let n = if guide.is_some() { 200 } else { 100 };
+        let last = run(&motion, start, n, |state| {
             let ledger = state.ledger.cage.unwrap();
             let now = [ledger.impact_loss, ledger.friction_loss, ledger.drag_loss];
             assert!(

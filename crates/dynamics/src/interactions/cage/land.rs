@@ -70,6 +70,10 @@ impl CageContact for LandStep {
         found
     }
 
+    fn sizes(&self) -> (f64, f64) {
+        (self.dt, self.land.radius)
+    }
+
     fn impact(&self) -> &Impact {
         &self.impact
     }

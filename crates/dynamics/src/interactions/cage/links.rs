@@ -75,9 +75,12 @@ impl<C: CageContact> Interaction for CageLinks<C> {
 
     fn round_off(&self, lengths: Lengths) -> f64 {
         let of = |(i, contact): (usize, &C)| {
-            let [_, end] = lengths.of::<N_LENGTHS>(i);
-            let largest = end.iter().fold(1e-3, |most: f64, x| most.max(x.abs()));
-            contact.impact().force_at(2.0 * f64::EPSILON * largest)
+            let [_, end] = lengths.of(i);
+            let [f, g] = contact.evaluate(end, &mut [Jet::default(); N_LENGTHS]).normal;
+            let (dt, size) = contact.sizes();
+            contact
+                .impact()
+                .error_of(f.hypot(g), dt, 2.0 * f64::EPSILON * size)
         };
         self.contacts.iter().enumerate().map(of).sum()
     }

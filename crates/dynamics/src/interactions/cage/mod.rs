@@ -65,6 +65,8 @@ pub trait CageContact: Send + Sync {
     fn closing_speed(&self) -> f64;
     /// Forces at lengths at the end; adds what resists the growth of the lengths.
     fn evaluate(&self, end: [f64; N_LENGTHS], resists: &mut [Jet; N_LENGTHS]) -> CageForce;
+    /// Time of the step, s, and the largest length that enters, m.
+    fn sizes(&self) -> (f64, f64);
     /// Its law.
     fn impact(&self) -> &Impact;
     /// The same, to change.

@@ -89,6 +89,11 @@ impl CageContact for PocketStep {
         found
     }
 
+    fn sizes(&self) -> (f64, f64) {
+        let [x, y, _] = self.ball[0];
+        (self.dt, x.hypot(y))
+    }
+
     fn impact(&self) -> &Impact {
         &self.impact
     }
