@@ -102,6 +102,20 @@ pub struct CageResult {
 }
 
 impl BallResult {
+    /// Speed with which surfaces roll through a contact of a free ball of a radius, m/s and m: mean of both, seen from
+    /// the contact, along the way round; None: the ball is not free.
+    pub fn rolling_speed(&self, side: Side, radius: f64) -> Option<f64> {
+        let free = self.free?;
+        let slip = [free.inner, free.outer][side.index()].slip_m_per_s[0];
+        let (sin, cos) = self.contact(side).contact_angle_rad.sin_cos();
+        let [n_r, n_z] = [side.sign() * cos, side.sign() * sin];
+        let (y, x) = self.azimuth_rad.sin_cos();
+        let [w_x, w_y, w_z] = free.omega_rad_per_s;
+        let of_ball = radius * ((w_z - free.orbit_rad_per_s) * n_r - (w_x * x + w_y * y) * n_z);
+        // The ring's surface is slower by the slip.
+        Some(of_ball - 0.5 * slip)
+    }
+
     /// The contact with the ring of one side.
     pub fn contact(&self, side: Side) -> &ContactResult {
         match side {

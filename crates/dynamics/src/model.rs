@@ -8,6 +8,7 @@
 
 use std::sync::Arc;
 
+use contact::film::FilmContact;
 use contact::hertz::Elastic;
 use contact::{BearingGeometry, HertzContact, Meridian, NodalWeights, Side, SphereCompliance};
 use fem::Material;
@@ -205,7 +206,17 @@ impl Model {
         Ellipse {
             semi_axes: self.hertz[side.index()].semi_axes(force),
             radius: 2.0 * groove * ball / (groove + ball),
+            peak_pressure: self.hertz[side.index()].peak_pressure(force),
+            film: 0.0,
         }
+    }
+
+    /// Contact of a ball with a raceway as its film sees it; a rigid ring has the material of the balls.
+    pub fn film_contact(&self, side: Side) -> FilmContact {
+        let [a, b] = self.hertz[side.index()].semi_axes(1.0);
+        let rolling = 2.0 / self.geometry.ball_diameter + self.geometry.rolling_curvature(side);
+        let ring = self.ring(side).map_or(&self.ball_material, |ring| &ring.material);
+        FilmContact::new(rolling, a / b, [elastic(&self.ball_material), elastic(ring)])
     }
 
     /// Mass, kg, and moment of inertia, kg m^2, of a ball.

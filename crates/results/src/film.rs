@@ -1,8 +1,8 @@
 //! Films of the contacts, for `balls.csv`, `summary.json` and warnings.
 //!
 //! The surfaces of ball and raceway roll with the speed r omega_R, omega_R the ball's rotation about its own axis
-//! relative to the cage: that of kinematic balls, at the free contact angle. Thickness: [`contact::film`]. Films change
-//! no gap and no force.
+//! relative to the cage: that of kinematic balls, at the free contact angle. Free balls roll as they turn and slip.
+//! Thickness: [`contact::film`]. Films change no gap and no normal force.
 
 use contact::film::{Film, FilmContact, Lubricant};
 use contact::{BySide, Side};
@@ -54,12 +54,14 @@ impl FilmLaw {
         })
     }
 
-    /// Film of a contact of a ball that rotates at `spin` rad/s; None where nothing rolls or presses.
+    /// Film of a contact of a ball that rotates at `spin` rad/s, or as a free one does; None where nothing rolls or
+    /// presses.
     pub fn film(&self, side: Side, ball: &BallResult, spin: f64) -> Option<Film> {
+        let speed = ball.rolling_speed(side, self.ball_radius);
         let contact = self.contacts[side.index()];
         contact.film(
             self.lubricant,
-            self.ball_radius * spin,
+            speed.unwrap_or(self.ball_radius * spin),
             ball.contact(side).force_n,
         )
     }

@@ -328,9 +328,10 @@ pub fn mode_name(model: &Model) -> &'static str {
 
 /// Thinnest film of each raceway at an instant.
 fn thinnest(scene: &Scene, model: &Model, snapshot: &Snapshot) -> BTreeMap<&'static str, FilmSummary> {
-    let Some((law, spin)) = FilmLaw::new(scene, model).zip(snapshot.spin) else {
+    let Some(law) = FilmLaw::new(scene, model) else {
         return BTreeMap::new();
     };
+    let spin = snapshot.spin.unwrap_or_default();
     let film = |side: Side| Some((side.name(), law.thinnest(side, &snapshot.balls, spin)?));
     Side::BOTH.into_iter().filter_map(film).collect()
 }

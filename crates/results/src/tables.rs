@@ -25,7 +25,7 @@ pub struct Tables {
     profiles: Option<csv::Writer<GrowingFile>>,
     /// Whether balls have a spin.
     with_spin: bool,
-    /// Films, of balls with a spin and a lubricant.
+    /// Films, of balls that turn and a lubricant.
     film: Option<FilmLaw>,
 }
 
@@ -171,9 +171,11 @@ impl Tables {
         let row = |cells: Vec<String>| [head.clone(), cells].concat();
         let balls = snapshot.balls.iter().enumerate();
         let spin = snapshot.spin.filter(|_| self.with_spin);
-        let film = self.film.as_ref().zip(spin);
+        // Free balls have rotations of their own.
+        let of_film = spin.unwrap_or_default();
         let rolling = |ball: &BallResult| -> Vec<String> {
-            let films = film.map_or(Vec::new(), |(film, spin)| film.cells(ball, spin));
+            let film = self.film.iter().filter(|_| spin.is_some() || ball.free.is_some());
+            let films = film.flat_map(|film| film.cells(ball, of_film));
             spin.into_iter().chain(films).map(number).collect()
         };
         let shaft = snapshot.shaft.iter().chain(snapshot.reaction.iter().flatten());
@@ -431,6 +433,8 @@ fn columns(swept: Option<&str>, first: &Snapshot, own: &OwnColumns) -> [Vec<Stri
     }
     if first.spin.is_some() {
         balls.push("spin_rad_per_s".to_string());
+    }
+    if first.spin.is_some() || first.friction.is_some() {
         balls.extend(own.film.iter().flat_map(FilmLaw::columns));
     }
     if first.cage.is_some() {

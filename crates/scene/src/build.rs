@@ -77,6 +77,7 @@ pub fn model_with_rings(scene: &Scene, rings: [Option<Arc<RingModel>>; 2]) -> Re
         slip: scene.effects.slip(),
         ball_speeds: scene.ball_speeds,
         rings: &rings,
+        lubricant: scene.lubricant.map(|lubrication| lubrication.lubricant),
     })?;
     let mounting = mounting(scene, &geometry, &rings)?;
     let shaft = &scene.shaft;

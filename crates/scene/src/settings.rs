@@ -55,6 +55,7 @@ pub fn effects_context(scene: &Scene) -> Context {
         is_flexible: [scene.inner.body.is_some(), scene.outer.body.is_some()],
         seat_diameters: [scene.bearing.bore_diameter, scene.bearing.outside_diameter].map(Some),
         has_expansion: scene.materials.has_expansion(),
+        has_lubricant: scene.lubricant.is_some(),
     }
 }
 

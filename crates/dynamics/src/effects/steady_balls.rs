@@ -159,6 +159,7 @@ fn contact(
         lever: model.contact_lever(seen.approaches[site]),
         force,
         ellipse: model.ellipse(side, force),
+        film: model.film_contact(side),
         speed,
         shear_modulus: model.combined_shear_modulus(side),
     }

@@ -14,6 +14,7 @@
 
 use std::sync::Arc;
 
+use contact::film::Lubricant;
 use input::{Clock, Problems, Quantity, Schedule};
 use ring::RingModel;
 
@@ -94,6 +95,8 @@ pub struct Context {
     pub seat_diameters: [Option<f64>; 2],
     /// Whether the scene has the thermal expansion of rings and balls.
     pub has_expansion: [bool; 2],
+    /// Whether the scene has a lubricant.
+    pub has_lubricant: bool,
 }
 
 impl Context {
@@ -120,6 +123,8 @@ pub struct Setting<'a> {
     pub ball_speeds: BallSpeeds,
     /// Flexible rings, inner first; None is a rigid ring.
     pub rings: &'a [Option<Arc<RingModel>>; 2],
+    /// The oil, where a scene has one.
+    pub lubricant: Option<Lubricant>,
 }
 
 /// Damping matrix of the rings, C = mass M + stiffness K.

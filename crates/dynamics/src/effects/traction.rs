@@ -8,6 +8,7 @@
 //! ```text
 //! law = "curve"           at_rest = 0.02, most = 0.07, slip_of_most = "0.1 m/s", at_large = 0.03    Gupta's curve
 //! law = "curve"           slips = ["0 m/s", "0.1 m/s", "2 m/s"], coefficients = [0.0, 0.07, 0.04]   a table
+//! law = "limiting_shear"  eyring_stress = "5 MPa", limit = 0.08                   the film of [lubricant]
 //! ```
 //!
 //! In an equilibrium every ball rolls steadily where it stands ([`super::steady_balls`]); a motion starts from there.
@@ -16,7 +17,8 @@
 //! Rule of thumb: balls keep rolling while F_a > 10 Z F_c, F_c the centrifugal force of a ball (Hirano, ASLE Trans. 8
 //! (1965) 425).
 
-use input::{Problems, Quantity, SPEED};
+use contact::film::Lubricant;
+use input::{Problems, Quantity, SPEED, STRESS};
 use serde::Deserialize;
 
 use super::ball_centrifugal::BallCentrifugal;
@@ -26,12 +28,12 @@ use super::steady_balls::SteadyBalls;
 use super::table::{self, About, Context, Setting, SpeedRole};
 use crate::error::DynamicsError;
 use crate::interactions::traction::law::{CurvePoints, SlipTable};
-use crate::interactions::traction::{Creep, Curve, PatchPoints, Traction, TractionLaw};
+use crate::interactions::traction::{Creep, Curve, LimitingShear, PatchPoints, Traction, TractionLaw};
 use crate::kinematics::{BallSpeeds, RingSpeeds};
 use crate::model::Model;
 
 const EXAMPLE: &str = r#"[effects.traction]              # needs [balls] with motion = "free"
-law = "coulomb"                 # or "curve"
+law = "coulomb"                 # or "curve", "limiting_shear"
 friction = 0.07                 # coefficient of friction: 0.07 to 0.15 dry or with boundary lubrication
 # at_rest = 0.0                 # of "curve": coefficient without slip,
 # most = 0.07                   # the largest one,
@@ -39,6 +41,8 @@ friction = 0.07                 # coefficient of friction: 0.07 to 0.15 dry or w
 # at_large = 0.03               # and that of large slip; or a table over slips:
 # slips = ["0 m/s", "0.1 m/s"]
 # coefficients = [0.0, 0.07]
+# eyring_stress = "5 MPa"       # of "limiting_shear", with [lubricant]: stress at which the oil begins to thin,
+# limit = 0.08                  # and largest shear stress over the pressure
 creep = "elastic"               # optional: force at small slip by elastic creep, or a slip ratio such as 1e-3
 points = [3, 15]                # optional: places over the ellipse, along the rolling direction and across it
 "#;
@@ -77,6 +81,8 @@ pub struct Table {
     at_large: Option<f64>,
     slips: Option<Vec<Quantity<SPEED>>>,
     coefficients: Option<Vec<f64>>,
+    eyring_stress: Option<Quantity<STRESS>>,
+    limit: Option<f64>,
     creep: Option<RawCreep>,
     points: Option<[usize; 2]>,
 }
@@ -115,19 +121,28 @@ impl table::Table for Table {
     }
 
     fn advice(table: Option<&Self>, case: &Case<'_>) -> Vec<String> {
+        let Some(table) = table else { return Vec::new() };
         let (force, axial) = (case.centrifugal_force(), case.load.axial / case.n_balls());
-        if table.is_none() || case.speeds.is_zero() || axial > HIRANO * force {
-            return Vec::new();
+        let mut advice = Vec::new();
+        if !case.speeds.is_zero() && axial <= HIRANO * force {
+            advice.push(format!(
+                "[effects.traction] is on, and balls may skid: F_a / (Z F_c) = {:.1}, and pure rolling needs more than \
+                 {HIRANO:.0} (Hirano); look at the slip of the contacts and at cage_speed_rad_per_s",
+                axial / force
+            ));
         }
-        vec![format!(
-            "[effects.traction] is on, and balls may skid: F_a / (Z F_c) = {:.1}, and pure rolling needs more than \
-             {HIRANO:.0} (Hirano); look at the slip of the contacts and at cage_speed_rad_per_s",
-            axial / force
-        )]
+        if table.law == Law::LimitingShear {
+            advice.push(
+                "[effects.traction] has law = \"limiting_shear\", which is isothermal: above some 1 m/s of slip an oil \
+                 warms and thins, and its traction is less; look at the slip of the contacts"
+                    .to_string(),
+            );
+        }
+        advice
     }
 
-    fn check(&self, _context: Context, problems: &mut Problems) {
-        self.check_law(problems);
+    fn check(&self, context: Context, problems: &mut Problems) {
+        self.check_law(context.has_lubricant, problems);
         if let Some(RawCreep::Ratio(ratio)) = self.creep {
             problems.require(
                 (1e-9..=1.0).contains(&ratio),
@@ -149,7 +164,7 @@ impl table::Table for Table {
 
     fn load(&self, setting: Setting<'_>) -> Result<Option<Box<dyn Effect>>, DynamicsError> {
         Ok(Some(Box::new(FreeBalls {
-            traction: self.traction(),
+            traction: self.traction(setting.lubricant),
             at_start: BallCentrifugal {
                 speeds: setting.speeds.clone(),
                 slip: setting.slip,
@@ -160,7 +175,7 @@ impl table::Table for Table {
 }
 
 impl Table {
-    fn check_law(&self, problems: &mut Problems) {
+    fn check_law(&self, has_lubricant: bool, problems: &mut Problems) {
         let points = [&self.at_rest, &self.most, &self.at_large];
         let has_points = points.iter().any(|x| x.is_some()) || self.slip_of_most.is_some();
         let has_table = self.slips.is_some() || self.coefficients.is_some();
@@ -196,11 +211,49 @@ impl Table {
                     ),
                 }
             }
-            Law::LimitingShear => problems.add(
-                "effects.traction.law is \"limiting_shear\", which needs the film of a lubricant; this version has no \
-                 film, use \"coulomb\" or \"curve\" with measured coefficients",
-            ),
+            Law::LimitingShear => {
+                if has_points || has_table || self.friction.is_some() {
+                    problems.add(
+                        "[effects.traction] has law = \"limiting_shear\", whose coefficients follow from the film; \
+                         remove friction and the keys of a curve",
+                    );
+                }
+                if !has_lubricant {
+                    problems.add(
+                        "[effects.traction] has law = \"limiting_shear\", which shears a film; add the table \
+                         [lubricant] with viscosity and pressure_coefficient",
+                    );
+                }
+                self.check_film(problems);
+            }
         }
+        let has_film = self.eyring_stress.is_some() || self.limit.is_some();
+        if has_film && self.law != Law::LimitingShear {
+            problems.add(
+                "[effects.traction]: eyring_stress and limit do nothing without law = \"limiting_shear\"; remove them",
+            );
+        }
+    }
+
+    fn check_film(&self, problems: &mut Problems) {
+        let (Some(stress), Some(limit)) = (&self.eyring_stress, self.limit) else {
+            problems.add(
+                "[effects.traction] has law = \"limiting_shear\" and needs eyring_stress, such as \"5 MPa\", and \
+                 limit, such as 0.08",
+            );
+            return;
+        };
+        problems.require_positive(
+            stress,
+            "effects.traction.eyring_stress",
+            "the stress at which an oil begins to thin",
+        );
+        problems.require(
+            limit > 0.0 && limit <= 1.0,
+            "effects.traction.limit",
+            limit,
+            "expected above 0 to 1, the largest shear stress over the pressure: 0.05 to 0.1",
+        );
     }
 
     fn check_points(&self, problems: &mut Problems) {
@@ -260,7 +313,8 @@ impl Table {
     }
 
     /// What a checked table says.
-    fn traction(&self) -> Traction {
+    fn traction(&self, oil: Option<Lubricant>) -> Traction {
+        let film = self.eyring_stress.as_ref().zip(self.limit).zip(oil);
         let law = match (self.law, self.most, &self.slips) {
             (Law::Curve, Some(most), _) => TractionLaw::Curve(Curve::new(CurvePoints {
                 at_rest: self.at_rest.unwrap_or_default(),
@@ -272,7 +326,14 @@ impl Table {
                 slips.iter().map(Quantity::si).collect(),
                 self.coefficients.clone().unwrap_or_default(),
             )),
-            _ => TractionLaw::Coulomb(self.friction.unwrap_or_default()),
+            _ => match film {
+                Some(((stress, limit), lubricant)) => TractionLaw::LimitingShear(LimitingShear {
+                    eyring: stress.si(),
+                    limit,
+                    lubricant,
+                }),
+                None => TractionLaw::Coulomb(self.friction.unwrap_or_default()),
+            },
         };
         Traction {
             law,

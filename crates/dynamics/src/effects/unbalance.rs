@@ -208,6 +208,7 @@ mod tests {
             is_flexible: [false; 2],
             seat_diameters: [None; 2],
             has_expansion: [false; 2],
+            has_lubricant: false,
         };
         let messages = |mass: &str, eccentricity: &str, position: &str| {
             let table = Table {

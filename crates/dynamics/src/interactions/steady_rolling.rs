@@ -20,6 +20,7 @@
 //!
 //! Cost: two tractions over 45 places per step, some tens of steps.
 
+use contact::film::FilmContact;
 use dense::DenseLu;
 
 use super::traction::creep::RollingContact;
@@ -34,8 +35,10 @@ pub struct SteadyContact {
     pub lever: f64,
     /// Normal force, N.
     pub force: f64,
-    /// The ellipse.
+    /// The ellipse; its film follows from how the ball rolls.
     pub ellipse: Ellipse,
+    /// The contact as its film sees it.
+    pub film: FilmContact,
     /// Speed of the ring, rad/s.
     pub speed: f64,
     /// Combined shear modulus, Pa.
@@ -118,16 +121,16 @@ impl SteadyBall<'_> {
             _ => false,
         };
         for _ in 0..CREEP_PASSES {
-            let small = self.small_slips(&y);
-            let found = self.settle(y, small, held)?;
+            let filmed = self.with_films(&y);
+            let found = filmed.settle(y, filmed.small_slips(&y), held)?;
             let change = (0..N).map(|i| (found[i] - y[i]).abs()).fold(0.0, f64::max);
             y = found;
             if change <= TOLERANCE * y[N - 1].abs() {
                 break;
             }
         }
-        let small = self.small_slips(&y);
-        let tractions = [0, 1].map(|k| self.traction_at(k, &y, small[k]));
+        let (filmed, small) = (self.with_films(&y), self.small_slips(&y));
+        let tractions = [0, 1].map(|k| filmed.traction_at(k, &y, small[k]));
         Ok(Some(SteadyRolling {
             orbit: y[0],
             turning: [y[1], y[2], y[3]],
@@ -156,11 +159,32 @@ impl SteadyBall<'_> {
             .fold(0.0, f64::max)
     }
 
+    fn rolling_speed(&self, contact: &SteadyContact, y: &[f64; N]) -> f64 {
+        rolling_speed(self.out, (contact.lever, contact.normal), *y, contact.speed)
+    }
+
+    /// The same ball with films of contacts that roll so.
+    fn with_films(&self, y: &[f64; N]) -> Self {
+        let with_film = |contact: SteadyContact| {
+            let speed = self.rolling_speed(&contact, y);
+            let film = self.traction.law.film(&contact.film, speed, contact.force);
+            let ellipse = Ellipse {
+                film,
+                ..contact.ellipse
+            };
+            SteadyContact { ellipse, ..contact }
+        };
+        SteadyBall {
+            contacts: self.contacts.map(with_film),
+            ..self.clone()
+        }
+    }
+
     /// Slip below which force grows in proportion to it, of both contacts.
     fn small_slips(&self, y: &[f64; N]) -> [f64; 2] {
         self.contacts.map(|contact| {
             let rolling = RollingContact {
-                speed: rolling_speed(self.out, (contact.lever, contact.normal), *y, contact.speed),
+                speed: self.rolling_speed(&contact, y),
                 force: contact.force,
                 semi_axes: contact.ellipse.semi_axes,
                 shear_modulus: contact.shear_modulus,

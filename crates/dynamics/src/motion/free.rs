@@ -24,8 +24,8 @@ use crate::interactions::free_contact::place::GrooveCircle;
 use crate::interactions::free_contact::{ContactStep, FreeContacts, RingStep, elastic_ports};
 use crate::interactions::raceway_contact::Site;
 use crate::interactions::steady_rolling::{SteadyRolling, pure_rolling, rolling_speed};
-use crate::interactions::traction::Traction;
 use crate::interactions::traction::creep::RollingContact;
+use crate::interactions::traction::{Ellipse, Traction};
 use crate::model::{Model, elastic};
 
 /// Acceleration by which the least force of a contact is a weight, m/s^2: what opens has no size of its own.
@@ -285,7 +285,12 @@ impl Motion<'_> {
             damping: self.settings.contact_damping,
             ring,
             traction: traction.clone(),
-            ellipse,
+            ellipse: Ellipse {
+                film: traction
+                    .law
+                    .film(&self.model.film_contact(site.side), rolling.speed, force),
+                ..ellipse
+            },
             small_slip: traction.creep.slip(traction.law.at(0.0)[0], &rolling),
             slip_at: Default::default(),
         }

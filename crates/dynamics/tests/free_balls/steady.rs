@@ -1,8 +1,9 @@
 //! Equilibria in which every ball rolls steadily under friction.
 
+use contact::film::Lubricant;
 use dynamics::effects::RadialForce;
 use dynamics::effects::ball_drag::BallDrag;
-use dynamics::interactions::traction::Creep;
+use dynamics::interactions::traction::{Creep, LimitingShear, Traction, TractionLaw};
 use dynamics::kinematics::{RingSpeeds, Speed};
 use dynamics::motion::Motion;
 use dynamics::{ShaftDof, StaticSolution};
@@ -214,4 +215,54 @@ fn the_orbit_breaks_away_before_the_grip_of_both_contacts() {
     println!("{found:?}");
     assert!(found.windows(2).all(|pair| pair[0] > pair[1]), "{found:?}");
     assert!(found[2] > 0.99 && found[3] < 0.95, "{found:?}");
+}
+
+/// Wrong: a film that shears would have another traction in an equilibrium than in motion, or depend on what it should
+/// not: the torque goes with the limit where the oil is stiff, and with the viscosity where it is thin.
+#[test]
+fn a_film_that_shears_rolls_the_same_in_equilibrium_and_in_motion() {
+    let film = |limit: f64, viscosity: f64, pressure_coefficient: f64| Traction {
+        law: TractionLaw::LimitingShear(LimitingShear {
+            eyring: 5e6,
+            limit,
+            lubricant: Lubricant {
+                viscosity,
+                pressure_coefficient,
+            },
+        }),
+        ..coulomb(0.0, Creep::Elastic)
+    };
+    let solved = |traction: &Traction, n: f64| {
+        let model = freed(thrust(2000.0), traction.clone(), &speeds(n));
+        let solution = equilibrium(&model);
+        (model, solution)
+    };
+    let torque = |traction: &Traction, n: f64| solved(traction, n).1.steady.unwrap().friction().torque_n_m;
+    let traction = film(0.08, 0.04, 2.2e-8);
+    let (model, start) = solved(&traction, 1800.0);
+    let motion = Motion::new(&model, settings(1e-5, &speeds(1800.0))).unwrap();
+    let last = run(&motion, motion.start(&start), 100, |_| ());
+    let moving: f64 = last
+        .free
+        .unwrap()
+        .contacts
+        .iter()
+        .step_by(2)
+        .map(|c| c.torque)
+        .sum();
+    let still = start.steady.as_ref().unwrap().friction().torque_n_m;
+    println!("torque {still} at rest, {moving} in motion");
+    assert!((moving / still - 1.0).abs() < 1e-5, "{moving} {still}");
+    // Eyring's stress is far above this limit: dry friction.
+    let stiff = film(1e-3, 4.0, 2.2e-8);
+    let dry = torque(&coulomb(1e-3, Creep::Elastic), 1800.0);
+    assert!(
+        (torque(&stiff, 1800.0) / dry - 1.0).abs() < 0.01,
+        "{} {dry}",
+        torque(&stiff, 1800.0)
+    );
+    // An oil that hardly stiffens is Newton's fluid: eta/h_c goes with eta^(1 - 0.67), where nothing gyroscopic slips.
+    let thin = |viscosity: f64| torque(&film(0.08, viscosity, 1e-9), 100.0);
+    let ratio = thin(0.08) / thin(0.04);
+    assert!((ratio / 2f64.powf(0.33) - 1.0).abs() < 0.01, "{ratio}");
 }

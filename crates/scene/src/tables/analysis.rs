@@ -102,6 +102,7 @@ impl RawScene {
             seat_diameters: [0, 1].map(|i| seats.map(|d| d[i])),
             // Materials that are wrong are reported themselves.
             has_expansion: materials.map_or([true; 2], Materials::has_expansion),
+            has_lubricant: self.lubricant.is_some(),
         }
     }
 
@@ -133,7 +134,6 @@ impl RawScene {
         BallsContext {
             effects: &self.effects,
             has_ball_speeds: self.speed.as_ref().is_some_and(RawSpeed::has_ball_speeds),
-            has_lubricant: self.lubricant.is_some(),
             is_dynamic: self.dynamic.is_some(),
             is_modes: self.modes.is_some(),
             has_speed: self.speed.is_some(),

@@ -37,8 +37,6 @@ pub struct BallsContext<'a> {
     pub effects: &'a Effects,
     /// Whether `speed.ball_speeds` is given.
     pub has_ball_speeds: bool,
-    /// Whether films are asked for.
-    pub has_lubricant: bool,
     /// Whether motion in time is computed.
     pub is_dynamic: bool,
     /// Whether natural modes are computed.
@@ -114,12 +112,6 @@ impl RawBalls {
                 "[effects.{name}] stands beside balls.motion = \"free\", which is not computed; remove it, or use \
                  balls.motion = \"kinematic\""
             ));
-        }
-        if context.has_lubricant {
-            problems.add(
-                "[lubricant] stands beside balls.motion = \"free\", whose films are not computed; remove it, or use \
-                 balls.motion = \"kinematic\"",
-            );
         }
         if context.has_ball_speeds {
             problems.add(

@@ -1,4 +1,4 @@
-//! What lubricates the contacts. It changes nothing that a run computes.
+//! What lubricates the contacts. It changes nothing that a run computes but traction with law = "limiting_shear".
 //!
 //! ```toml
 #![doc = include_str!("example_lubricant.toml")]

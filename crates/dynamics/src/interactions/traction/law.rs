@@ -11,6 +11,10 @@
 //! at k = 0 through 0 at k = 1 without bound, so k is the one root of a monotone function. A falling branch is no
 //! gradient of a convex potential.
 
+use contact::film::FilmContact;
+
+use super::limiting_shear::LimitingShear;
+
 /// Coefficient of traction over slip.
 #[derive(Clone, Debug, PartialEq)]
 pub enum TractionLaw {
@@ -20,6 +24,8 @@ pub enum TractionLaw {
     Curve(Curve),
     /// A table, cubic and monotone between its places.
     Table(SlipTable),
+    /// A film that shears.
+    LimitingShear(LimitingShear),
 }
 
 /// Gupta's law.
@@ -56,12 +62,32 @@ pub struct SlipTable {
 }
 
 impl TractionLaw {
-    /// Coefficient at a slip of at least 0 m/s, and its slope, s/m.
+    /// Coefficient at a slip of at least 0 m/s, and its slope, s/m; of a film that shears its limit.
     pub fn at(&self, slip: f64) -> [f64; 2] {
         match self {
             TractionLaw::Coulomb(mu) => [*mu, 0.0],
             TractionLaw::Curve(curve) => curve.at(slip),
             TractionLaw::Table(table) => table.at(slip),
+            TractionLaw::LimitingShear(film) => [film.limit, 0.0],
+        }
+    }
+
+    /// The same under a pressure, Pa, in a film, m, for the slip and its regularised size g = sqrt(s^2 + s_v^2), at
+    /// which a film shears.
+    #[inline]
+    pub fn at_place(&self, [slip, g]: [f64; 2], pressure: f64, thickness: f64) -> [f64; 2] {
+        let TractionLaw::LimitingShear(film) = self else {
+            return self.at(slip);
+        };
+        let (mu, slope) = film.at(g, pressure, thickness);
+        [mu, slope * slip / g]
+    }
+
+    /// Film of a contact whose surfaces roll at a speed, m/s, under a force, N; 0 where the law knows none.
+    pub fn film(&self, contact: &FilmContact, speed: f64, force: f64) -> f64 {
+        match self {
+            TractionLaw::LimitingShear(film) => film.film(contact, speed, force),
+            _ => 0.0,
         }
     }
 }

@@ -20,10 +20,12 @@
 
 pub mod creep;
 pub mod law;
+pub mod limiting_shear;
 pub mod patch;
 
 pub use creep::Creep;
 pub use law::{Curve, TractionLaw};
+pub use limiting_shear::LimitingShear;
 pub use patch::{Ellipse, PatchPoints, Resultant, Slip};
 
 /// What a scene says of traction.

@@ -16,12 +16,16 @@ pub struct Slip {
 }
 
 /// The contact over which traction is spread.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Ellipse {
     /// Semi-axes along the groove (a) and along the rolling direction (b), m.
     pub semi_axes: [f64; 2],
     /// Radius R_d of the deformed surface across the track, m; infinite is flat.
     pub radius: f64,
+    /// Largest pressure, Pa.
+    pub peak_pressure: f64,
+    /// Thickness of the film, m; 0 where the law of traction knows none.
+    pub film: f64,
 }
 
 /// A place of the unit ellipse and its share of the load.
@@ -90,11 +94,11 @@ impl PatchPoints {
             let square = s[0] * s[0] + s[1] * s[1];
             let size = square.sqrt();
             let g = (square + small * small).sqrt();
-            let [mu, rise] = law.at(size);
+            let pressure = (1.0 - place.x * place.x - place.y * place.y).max(0.0).sqrt();
+            let [mu, rise] = law.at_place([size, g], pressure * ellipse.peak_pressure, ellipse.film);
             let load = force * place.share;
             let f = s.map(|s| -mu * load * s / g);
             found.power += f[0] * s[0] + f[1] * s[1];
-            let pressure = (1.0 - place.x * place.x - place.y * place.y).max(0.0).sqrt();
             found.severity = found.severity.max(size * pressure);
             // Growth of both slips with the slip and the turning of the contact; forces and moments are its transpose.
             let rows = [[1.0, 0.0, 0.0, z, -y], [0.0, 1.0, -z, 0.0, x]];
@@ -200,6 +204,7 @@ mod tests {
                 let ellipse = Ellipse {
                     semi_axes,
                     radius: FLAT,
+                    ..Ellipse::default()
                 };
                 let found = PatchPoints::new(points).traction(
                     &TractionLaw::Coulomb(mu),
@@ -223,6 +228,7 @@ mod tests {
         let ellipse = Ellipse {
             semi_axes: [a, b],
             radius: 4.57e-3,
+            ..Ellipse::default()
         };
         let places = PatchPoints::new([3, 63]);
         let at = |s: f64| {
@@ -256,6 +262,7 @@ mod tests {
         let ellipse = Ellipse {
             semi_axes: [a, 0.101 * a],
             radius: FLAT,
+            ..Ellipse::default()
         };
         let places = PatchPoints::new([15, 63]);
         for (centre, share, moment) in [([w * a, 0.0], 0.998, 0.0037), ([0.0, w * a], 0.922, 0.169)] {
@@ -274,6 +281,8 @@ mod tests {
         let ellipse = Ellipse {
             semi_axes: [1e-3, 1e-4],
             radius: 4.6e-3,
+            peak_pressure: 1e9,
+            film: 0.4e-6,
         };
         let curve = super::super::law::Curve::new(super::super::law::CurvePoints {
             at_rest: 0.02,
@@ -290,7 +299,15 @@ mod tests {
             };
             places.traction(law, &ellipse, &slip, (100.0, 3e-3))
         };
-        for law in [TractionLaw::Coulomb(0.07), TractionLaw::Curve(curve)] {
+        let film = TractionLaw::LimitingShear(super::super::LimitingShear {
+            eyring: 5e6,
+            limit: 0.08,
+            lubricant: contact::film::Lubricant {
+                viscosity: 0.04,
+                pressure_coefficient: 2.2e-8,
+            },
+        });
+        for law in [TractionLaw::Coulomb(0.07), TractionLaw::Curve(curve), film] {
             let found = at(&law, slip);
             assert!(found.power < 0.0);
             let work: f64 = (0..5).map(|i| found.action[i] * slip[i]).sum();

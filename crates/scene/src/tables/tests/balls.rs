@@ -67,11 +67,6 @@ fn what_free_balls_replace_is_refused_with_the_reason() {
     let expected =
         "profiles stands beside balls.motion = \"free\", which is not computed; use balls.motion = ";
     assert!(message.contains(expected), "{message}");
-    let oil = "[lubricant]\nviscosity = \"0.03 Pa s\"\npressure_coefficient = \"2e-8 1/Pa\"";
-    let message = message_of(&free(COULOMB, oil), &[]);
-    let expected =
-        "[lubricant] stands beside balls.motion = \"free\", whose films are not computed; remove it";
-    assert!(message.contains(expected), "{message}");
     let message = message_of(&free(COULOMB, ""), &["contact.ball=\"sphere\""]);
     let expected = "contact.ball is \"sphere\", but free balls yield as half-spaces: remove it, or use balls.motion = \
                     \"kinematic\"";
@@ -172,7 +167,27 @@ fn laws_that_cannot_be_are_refused() {
         ),
         (
             "law = \"limiting_shear\"".to_string(),
-            "effects.traction.law is \"limiting_shear\", which needs the film of a lubricant; this version has no film",
+            "[effects.traction] has law = \"limiting_shear\", which shears a film; add the table [lubricant]",
+        ),
+        (
+            "law = \"limiting_shear\"".to_string(),
+            "[effects.traction] has law = \"limiting_shear\" and needs eyring_stress, such as \"5 MPa\", and limit",
+        ),
+        (
+            "law = \"limiting_shear\"\neyring_stress = \"0 MPa\"\nlimit = 0.08".to_string(),
+            "effects.traction.eyring_stress is 0 MPa; the stress at which an oil begins to thin must be positive",
+        ),
+        (
+            "law = \"limiting_shear\"\neyring_stress = \"5 MPa\"\nlimit = 0".to_string(),
+            "effects.traction.limit is 0; expected above 0 to 1, the largest shear stress over the pressure: 0.05",
+        ),
+        (
+            "law = \"limiting_shear\"\neyring_stress = \"5 MPa\"\nlimit = 0.08\nfriction = 0.07".to_string(),
+            "[effects.traction] has law = \"limiting_shear\", whose coefficients follow from the film",
+        ),
+        (
+            format!("{COULOMB}\nlimit = 0.08"),
+            "eyring_stress and limit do nothing without law = \"limiting_shear\"",
         ),
         (
             format!("{curve}friction = 0.1\nslips = [\"0 m/s\", \"1 m/s\"]\ncoefficients = [0.0, 0.1]"),
