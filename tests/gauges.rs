@@ -418,3 +418,28 @@ fn load_matrices_refuse_what_they_cannot_tell() {
         "do not tell the loads of the balls apart: the condition of their load matrix is",
     );
 }
+
+/// Wrong: looking would change what is looked at: a motion with gauges and a tachometer has the bits of one without.
+#[test]
+fn gauges_change_no_bit_of_a_motion() {
+    let dir = elastic(ANALYSES[2], EDGES);
+    let scene = dir.text("scene.toml");
+    let (before, rest) = scene.split_once("[probes.gauge.outside]").unwrap();
+    let (_, output) = rest.split_once("[output]").unwrap();
+    let tachometer = "[probes.tachometer.t]\nring = \"inner\"\n\n[output]";
+    dir.write("scene.toml", format!("{before}[output]{output}"));
+    dir.run("without", &[]);
+    dir.write("scene.toml", scene.replace("[output]", tachometer));
+    dir.run("with", &[]);
+    for table in ["balls.csv", "shaft.csv", "energy.csv"] {
+        assert_eq!(
+            dir.text(&format!("with/{table}")),
+            dir.text(&format!("without/{table}")),
+            "{table}"
+        );
+    }
+    assert!(!dir.path("without/probes.csv").exists());
+    let turned = Table::read(&dir, "with/probes.csv").column("t_angle_rad");
+    let exact = 60e-6 * 18000.0 * std::f64::consts::PI / 30.0;
+    assert_within("angle", *turned.last().unwrap(), exact, 1e-12);
+}
