@@ -197,6 +197,17 @@ fn print_probes(scene: &Scene, probes: Option<&Probes>) {
             1e3 * p.distance_m
         ));
     }
+    for g in &scene.probes.gauges {
+        print::line(format_args!(
+            "probe    {}: strain gauge of {} mm x {} mm on the surface {:?} of the {} ring, azimuth {:.3} deg",
+            g.name,
+            1e3 * g.size[0],
+            1e3 * g.size[1],
+            g.surface,
+            g.ring.key(),
+            g.azimuth.to_degrees()
+        ));
+    }
     for c in &scene.probes.contacts {
         print::line(format_args!(
             "probe    {}: contact of ball {} with the {} ring",

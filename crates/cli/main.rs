@@ -10,6 +10,7 @@ mod export;
 mod help;
 mod info;
 mod init;
+mod load_matrix;
 mod modes;
 mod motion;
 mod options;
@@ -48,6 +49,7 @@ use crate::cycles::Cycles;
 use crate::export::Export;
 use crate::info::Depth;
 use crate::init::Init;
+use crate::load_matrix::{BallLoadsCommand, LoadMatrixCommand};
 use crate::options::{Limits, Part, parse_part};
 use crate::pack::Pack;
 use crate::resume::Request;
@@ -128,6 +130,10 @@ enum Command {
     Report(Report),
     /// Spectrum of a signal of a motion, with the lines of the bearing: amplitudes, power density or envelope.
     Spectrum(SpectrumCommand),
+    /// What the strain gauges of a scene read under a unit load of each ball.
+    LoadMatrix(LoadMatrixCommand),
+    /// Ball loads from what the strain gauges of a run have read, by a load matrix.
+    BallLoads(BallLoadsCommand),
     /// Ratings of a bearing, and its life under the forces of a run or of a load spectrum.
     Life(LifeCommand),
     /// Steady temperatures from friction and given conductances, with what they do to clearance and forces.
@@ -322,6 +328,7 @@ fn execute(arguments: Arguments) -> Result<(), Failure> {
             | Command::Resume(_)
             | Command::Check { .. }
             | Command::Stiffness(_)
+            | Command::LoadMatrix(_)
             | Command::Campbell(_)
     );
     let threads = wanted_threads(arguments.threads)?;
@@ -366,6 +373,8 @@ fn execute(arguments: Arguments) -> Result<(), Failure> {
         Command::Plot(request) => plot::plot(&request),
         Command::Report(request) => report::report(&request),
         Command::Spectrum(request) => spectrum::spectrum(&request),
+        Command::LoadMatrix(command) => load_matrix::load_matrix(&command),
+        Command::BallLoads(command) => load_matrix::ball_loads(&command),
         Command::Life(request) => life::life(&request),
         Command::Heat(request) => heat::heat(&request),
         Command::Stiffness(command) => stiffness::stiffness(&command),

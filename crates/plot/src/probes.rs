@@ -9,7 +9,7 @@ use super::run::Steps;
 use super::{Named, Results};
 
 /// What a column of a probe shows, by the words in its name: the words that end the name of the probe, and the figure.
-const KINDS: [(&str, &str); 9] = [
+const KINDS: [(&str, &str); 11] = [
     ("_principal_", "principal_stress"),
     ("_maximum_shear", "principal_stress"),
     ("_hydrostatic", "principal_stress"),
@@ -19,6 +19,8 @@ const KINDS: [(&str, &str); 9] = [
     ("_force", "force"),
     ("_moment", "moment"),
     ("_pressure", "stress"),
+    ("_strain", "strain"),
+    ("_angle_rad", "angle"),
 ];
 
 /// The figures of `probes.csv`; none for a single step.
@@ -44,7 +46,7 @@ pub fn figures(results: &Results) -> anyhow::Result<Vec<Named>> {
         let mut figure = Figure::new(title, x_axis.clone(), unit.axis(what));
         for column in columns {
             let (name, unit) = quantity::split(column);
-            let label = name[probe.len() + 1..].replace('_', " ");
+            let label = name[probe.len()..].trim_start_matches('_').replace('_', " ");
             let values = points(&x, &unit.of(table.column(column)?));
             figure = figure.series(match results.steps {
                 Steps::Times => Series::line(label, values),
@@ -82,6 +84,7 @@ mod tests {
         assert_eq!(kind("p_o2_displacement_r_m"), Some(("p_o2", "displacement")));
         assert_eq!(kind("ball_1_force_n"), Some(("ball_1", "force")));
         assert_eq!(kind("ball_1_moment_x_n_m"), Some(("ball_1", "moment")));
+        assert_eq!(kind("g1_strain"), Some(("g1", "strain")));
         assert_eq!(kind("time_s"), None);
         assert_eq!(kind("effects.axial_force.value_n"), None);
     }

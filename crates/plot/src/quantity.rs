@@ -77,6 +77,11 @@ pub const ONE: Unit = Unit {
     sign: "1",
     factor: 1.0,
 };
+/// Micrometre per metre.
+pub const MICROSTRAIN: Unit = Unit {
+    sign: "µm/m",
+    factor: 1e6,
+};
 /// Newton metre.
 pub const NEWTON_METRE: Unit = Unit {
     sign: "N m",
@@ -84,7 +89,7 @@ pub const NEWTON_METRE: Unit = Unit {
 };
 
 /// Endings of column names, longer ones before those that they end with, and the units that show them.
-const ENDINGS: [(&str, Unit); 12] = [
+const ENDINGS: [(&str, Unit); 13] = [
     ("_rad_per_s", RPM),
     (
         "_n_s_per_m",
@@ -127,6 +132,7 @@ const ENDINGS: [(&str, Unit); 12] = [
     ("_n", NEWTON),
     ("_m", MICROMETRE),
     ("_s", MILLISECOND),
+    ("_strain", MICROSTRAIN),
 ];
 
 /// Name without its ending, and the unit; a number without unit has no ending.

@@ -1,10 +1,11 @@
 //! Where node probes lie: the mesh node nearest to the point of the scene.
 
 use anyhow::anyhow;
+use contact::Side;
 use dynamics::RACEWAY_GROUP;
 use dynamics::RingModel;
 use mesh::Mesh;
-use scene::{NodeProbe, SectionPoint};
+use scene::{NodeProbe, RingName, SectionPoint};
 use serde::Serialize;
 
 use crate::failure::Failure;
@@ -28,6 +29,14 @@ pub struct NodePlace {
     pub z_m: f64,
     /// Its distance from the point of the scene, m.
     pub distance_m: f64,
+}
+
+/// The side of a ring's name.
+pub fn side_of(ring: RingName) -> Side {
+    match ring {
+        RingName::Inner => Side::Inner,
+        RingName::Outer => Side::Outer,
+    }
 }
 
 /// The node of a probe on its ring, whose nodes have the given tags.

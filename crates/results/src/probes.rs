@@ -3,11 +3,13 @@
 use contact::Side;
 use dynamics::Model;
 use dynamics::balls::BallResult;
+use dynamics::kinematics::Speed;
 use fem::stress::{NodeRecovery, von_mises};
-use scene::{Axes, ContactProbe, NodeTags, RingName, Scene};
+use scene::{Axes, ContactProbe, NodeTags, Scene};
 
 use super::fields::force_on_ball;
-use super::probe_places::{NodePlace, place};
+use super::gauges::Gauges;
+use super::probe_places::{NodePlace, place, side_of};
 use super::shown::{RingField, Shown, Turn, add};
 use super::stress_points::{self, StressPoints};
 use super::timed_near_field::TimedNearField;
@@ -23,6 +25,9 @@ pub struct Probes {
     contacts: Vec<ContactProbe>,
     points: Option<StressPoints>,
     profiles: Option<StressPoints>,
+    gauges: Gauges,
+    /// Name and speed.
+    tachometers: Vec<(String, Speed)>,
 }
 
 /// Profile, number of the point, and azimuth, groove angle, depth and stress in SI.
@@ -77,6 +82,13 @@ impl Probes {
             let some = !lines.is_empty();
             some.then(|| StressPoints::new(lines, model, reach)).transpose()
         };
+        let tachometer = |probe: &scene::Tachometer| {
+            let speeds = scene
+                .speed
+                .as_ref()
+                .expect("the scene refuses a tachometer without a speed");
+            (probe.name.clone(), speeds.of(side_of(probe.ring)).clone())
+        };
         Ok(Some(Probes {
             near_fields: Side::BOTH.map(near_field),
             points: lines(&scene.probes.points)?,
@@ -84,6 +96,8 @@ impl Probes {
             recoveries: [recovery(Side::Inner)?, recovery(Side::Outer)?],
             nodes,
             contacts: scene.probes.contacts.clone(),
+            gauges: Gauges::new(&scene.probes.gauges, model)?,
+            tachometers: scene.probes.tachometers.iter().map(tachometer).collect(),
         }))
     }
 
@@ -128,6 +142,12 @@ impl Probes {
         for line in self.points.iter().flat_map(StressPoints::lines) {
             columns.extend(stress_points::COLUMNS.map(|column| format!("{}_{column}", line.name)));
         }
+        columns.extend(self.gauges.columns());
+        columns.extend(
+            self.tachometers
+                .iter()
+                .map(|(name, _)| format!("{name}_angle_rad")),
+        );
         (!columns.is_empty()).then_some(columns)
     }
 
@@ -188,15 +208,13 @@ impl Probes {
         if let Some(points) = &self.points {
             values.extend(points.values(shown)?.into_iter().flatten());
         }
+        values.extend(self.gauges.values(shown));
+        values.extend(
+            self.tachometers
+                .iter()
+                .map(|(_, speed)| speed.angle(shown.time())),
+        );
         Ok(values)
-    }
-}
-
-/// The side of a ring's name.
-pub fn side_of(ring: RingName) -> Side {
-    match ring {
-        RingName::Inner => Side::Inner,
-        RingName::Outer => Side::Outer,
     }
 }
 
@@ -218,10 +236,7 @@ fn node_values(probe: &NodeProbe, ring: &RingField<'_>, stress: [f64; 6]) -> Vec
 /// Force of the ring on the ball and its moment about the probe's point, each with its size.
 fn contact_values(probe: &ContactProbe, model: &Model, ball: &BallResult) -> Vec<f64> {
     let side = side_of(probe.ring);
-    let contact = match side {
-        Side::Inner => &ball.inner,
-        Side::Outer => &ball.outer,
-    };
+    let contact = ball.contact(side);
     let force = force_on_ball(side, contact, ball.azimuth_rad);
     let [radial, axial] = model.geometry.ball_centre();
     let (sin, cos) = ball.azimuth_rad.sin_cos();

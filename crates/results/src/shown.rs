@@ -79,6 +79,14 @@ impl<'a> Shown<'a> {
         }
     }
 
+    /// Time of the instant, s.
+    pub fn time(&self) -> f64 {
+        match self {
+            Shown::Equilibrium { solution, .. } => solution.pose.now.time,
+            Shown::Motion { motion, state, .. } => motion.time(state.step),
+        }
+    }
+
     /// Contact forces on a ring and the patches over which they are spread, by ball; empty for a rigid ring or facets.
     pub fn patches(&self, side: Side) -> Result<Vec<LoadedPatch>, DynamicsError> {
         match self {
@@ -107,11 +115,7 @@ impl<'a> Shown<'a> {
         moved: impl FnOnce(&Motion<'_>, &MotionState) -> Option<(Vec<f64>, f64)>,
     ) -> Option<RingField<'a>> {
         let ring = self.model().ring(side)?;
-        let time = match self {
-            Shown::Equilibrium { solution, .. } => solution.pose.now.time,
-            Shown::Motion { motion, state, .. } => motion.time(state.step),
-        };
-        let mounting = self.model().mounting.at(time);
+        let mounting = self.model().mounting.at(self.time());
         let mounted = &mounting.rings[side.index()];
         let (centre_z, expansion) = (ring.groove.centre_z, mounted.expansion);
         let mount = |mut field: Cow<'a, [f64]>| {

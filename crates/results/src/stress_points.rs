@@ -8,7 +8,7 @@ use fem::FemError;
 use fem::stress::{PointRecovery, principal, von_mises};
 use scene::StressLine;
 
-use super::probes::side_of;
+use super::probe_places::side_of;
 use super::shown::{Shown, add};
 use super::timed_near_field::TimedNearField;
 use crate::failure::Failure;

@@ -1,26 +1,28 @@
 //! `raceway spectrum`: amplitude spectrum, power density and envelope spectrum of a signal of a motion, with the lines
-//! at which defects of the bearing show.
+//! at which defects of the bearing show; over the frequency, or over the order where the speed changes.
 
 pub mod fourier;
 pub mod lines;
+pub mod orders;
+pub mod signal;
+mod sound;
 
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
-use anyhow::{Context, anyhow, ensure};
+use anyhow::{Context, ensure};
 use checkpoint::{all_steps, read_any_step};
 use clap::Args;
 use comm::print;
 use figure::{Axis, Figure, Series};
-use plot::{Unit, quantity};
 use results::failure::Failure;
 use results::integrity::warn_of_doubts;
-use results::table::Table;
 use results::whole::{make_folder, require_own_picture, write, write_picture};
 use scene::{MeshFiles, Scene};
 
 use fourier::LineSpectrum;
 use lines::{Line, lines};
+use signal::Signal;
 
 /// What the command line asks for.
 #[derive(Debug, Args)]
@@ -46,7 +48,17 @@ pub struct SpectrumCommand {
     /// Its end, s.
     #[arg(long, default_value_t = f64::INFINITY)]
     to: f64,
-    /// Highest frequency of the figure, Hz; default: the tenth multiple of the highest line.
+    /// Over orders, multiples of the speed of this tachometer, [probes.tachometer.NAME] of the scene: for a speed that
+    /// changes.
+    #[arg(long, value_name = "NAME")]
+    orders: Option<String>,
+    /// Writes the signal besides, as signal_NAME.wav with a text that has its scale.
+    #[arg(long)]
+    wav: bool,
+    /// Writes the signal besides, as signal_NAME.csv.
+    #[arg(long)]
+    csv: bool,
+    /// Highest frequency of the figure, Hz, or order; default: the tenth multiple of the highest line.
     #[arg(long)]
     upto: Option<f64>,
 }
@@ -72,29 +84,8 @@ impl FromStr for Band {
     }
 }
 
-/// Fewest samples of a spectrum.
-const LEAST_SAMPLES: usize = 16;
-/// Largest deviation of a step from the mean one.
-const UNEQUAL: f64 = 1e-6;
 /// Height from name to name of the lines in a figure, as a share of it.
 const LABEL_STEP: f64 = 0.08;
-/// Name of the first column of what is written.
-const FREQUENCY: &str = "frequency_hz";
-
-/// A signal of equal steps.
-struct Signal {
-    /// What it is, without its unit.
-    name: String,
-    /// Unit as it ends names of columns.
-    ending: String,
-    /// How it is shown.
-    unit: Unit,
-    values: Vec<f64>,
-    /// Samples a second.
-    rate: f64,
-    /// First and last time, s.
-    span: (f64, f64),
-}
 
 /// A spectrum and how it is called.
 struct Titled {
@@ -108,15 +99,37 @@ struct Titled {
     is_density: bool,
     /// From SI to the unit of the axis.
     factor: f64,
+    over: Abscissa,
 }
+
+/// What a spectrum is over.
+#[derive(Clone, Copy)]
+struct Abscissa {
+    /// First column of the table.
+    column: &'static str,
+    name: &'static str,
+    unit: &'static str,
+    /// Hz of one unit: 1, or the mean speed of the tachometer, turns a second.
+    hertz: f64,
+}
+
+const FREQUENCY: Abscissa = Abscissa {
+    column: "frequency_hz",
+    name: "frequency",
+    unit: "Hz",
+    hertz: 1.0,
+};
 
 /// Writes the table and the figure of a spectrum.
 pub fn spectrum(request: &SpectrumCommand) -> Result<(), Failure> {
     let dir = &request.dir;
     require_folder(dir)?;
     let signal = request.signal()?;
-    let marks = lines(dir, &scene_of(dir)?, signal.span)?;
+    let mut marks = lines(dir, &scene_of(dir)?, signal.span)?;
     let named = request.transform(&signal)?;
+    marks
+        .iter_mut()
+        .for_each(|line| line.frequency /= named.over.hertz);
     warn_of_doubts(dir)?;
     let figure = draw(&named, &marks, request.upto)?.images()?;
     let table = dir.join(format!("{}.csv", named.file));
@@ -126,6 +139,17 @@ pub fn spectrum(request: &SpectrumCommand) -> Result<(), Failure> {
     make_folder(&dir.join("figures"))?;
     write_picture(&picture, &figure.svg, &figure.png)?;
     say(dir, &named, &marks);
+    if request.wav {
+        let [sound, text] = sound::write_wav(dir, &signal)?;
+        print::line(format_args!(
+            "{}, its scale in {}",
+            sound.display(),
+            text.display()
+        ));
+    }
+    if request.csv {
+        print::line(format_args!("{}", sound::write_csv(dir, &signal)?.display()));
+    }
     Ok(())
 }
 
@@ -139,7 +163,7 @@ fn require_folder(dir: &Path) -> anyhow::Result<()> {
 }
 
 /// The scene of the run in `dir`.
-fn scene_of(dir: &Path) -> Result<Scene, Failure> {
+pub fn scene_of(dir: &Path) -> Result<Scene, Failure> {
     let steps = all_steps(dir)?;
     let newest = steps.last().copied();
     let newest = newest.with_context(|| format!("{} has no step files", dir.display()))?;
@@ -153,86 +177,14 @@ fn scene_of(dir: &Path) -> Result<Scene, Failure> {
 }
 
 impl SpectrumCommand {
-    /// The column that is asked for, within the span of time.
+    /// The signal that is asked for, within the span of time.
     fn signal(&self) -> anyhow::Result<Signal> {
-        let (table, column) = self.column()?;
-        let all = table.column("time_s")?;
-        let rows: Vec<usize> = (0..table.n_rows())
-            .filter(|&row| (self.from..=self.to).contains(&all[row]))
-            .collect();
-        ensure!(
-            rows.len() >= LEAST_SAMPLES,
-            "there are {} steps from {} s to {} s; expected {LEAST_SAMPLES} at least",
-            rows.len(),
-            self.from,
-            self.to
-        );
-        let times: Vec<f64> = rows.iter().map(|&row| all[row]).collect();
-        let rate = equal_rate(&times)?;
-        let values = table.column(&column)?;
-        let values: Vec<f64> = rows.iter().map(|&row| values[row]).collect();
-        let (name, unit) = quantity::split(&column);
-        let signal = Signal {
-            name: name.to_string(),
-            ending: column[name.len()..].trim_start_matches('_').to_string(),
-            unit,
-            values,
-            rate,
-            span: (times[0], times[times.len() - 1]),
-        };
-        if !self.acceleration {
-            return Ok(signal);
+        let span = [self.from, self.to];
+        let signal = Signal::read(&self.dir, &self.probe, self.orders.as_deref(), span)?;
+        if self.acceleration {
+            return signal.acceleration();
         }
-        ensure!(
-            signal.ending == "m",
-            "{column} is no displacement, in m; --acceleration needs one"
-        );
-        Ok(Signal {
-            name: format!("{}_acceleration", signal.name),
-            ending: "m_per_s2".to_string(),
-            unit: quantity::split("a_m_per_s2").1,
-            values: fourier::acceleration(&signal.values, rate),
-            ..signal
-        })
-    }
-
-    /// The table that has the column asked for, and its full name.
-    fn column(&self) -> anyhow::Result<(Table, String)> {
-        let mut known = Vec::new();
-        for name in ["probes.csv", "shaft.csv"] {
-            let Some(table) = Table::read(&self.dir, name)? else {
-                continue;
-            };
-            let columns = table
-                .names()
-                .iter()
-                .filter(|n| !["step", "time_s"].contains(&n.as_str()));
-            let columns: Vec<String> = columns.cloned().collect();
-            if columns.contains(&self.probe) {
-                return Ok((table, self.probe.clone()));
-            }
-            let start = format!("{}_", self.probe);
-            let of_probe: Vec<&String> = columns.iter().filter(|n| n.starts_with(&start)).collect();
-            if let [column] = of_probe[..] {
-                let column = column.clone();
-                return Ok((table, column));
-            }
-            known.extend(if of_probe.is_empty() {
-                columns
-            } else {
-                of_probe.into_iter().cloned().collect()
-            });
-        }
-        Err(anyhow!(
-            "{} has no signal {:?}; expected a column of probes.csv or shaft.csv: {}",
-            self.dir.display(),
-            self.probe,
-            if known.is_empty() {
-                "there is none".to_string()
-            } else {
-                known.join(", ")
-            }
-        ))
+        Ok(signal)
     }
 
     fn transform(&self, signal: &Signal) -> anyhow::Result<Titled> {
@@ -240,15 +192,53 @@ impl SpectrumCommand {
             name, ending, unit, ..
         } = signal;
         let what = name.replace('_', " ");
-        let linear = Titled {
-            spectrum: fourier::amplitudes(&signal.values, signal.rate),
-            file: format!("spectrum_{name}"),
-            column: format!("amplitude_{ending}"),
-            title: format!("Amplitudes of {what}"),
-            axis: unit.axis("amplitude"),
+        let samples = self.samples(signal)?;
+        let file = |more: &str| {
+            let over = if self.orders.is_some() { "_orders" } else { "" };
+            format!("spectrum_{name}{more}{over}")
+        };
+        let linear = |more: &str, column: String, title: String, axis: Axis| Titled {
+            spectrum: samples.limited(fourier::amplitudes(&samples.values, samples.rate)),
+            file: file(more),
+            column,
+            title,
+            axis,
             is_density: false,
             factor: unit.factor,
+            over: samples.over,
         };
+        if let Some(Band(band)) = self.envelope {
+            return Ok(linear(
+                "_envelope",
+                format!("envelope_amplitude_{ending}"),
+                format!("Envelope of {what} from {} Hz to {} Hz", band[0], band[1]),
+                unit.axis("amplitude of the envelope"),
+            ));
+        }
+        if self.density {
+            let per = if self.orders.is_some() { "order" } else { "hz" };
+            return Ok(Titled {
+                spectrum: samples.limited(fourier::density(&samples.values, samples.rate)),
+                file: file("_density"),
+                column: format!("density_{ending}_squared_per_{per}"),
+                title: format!("Power density of {what}"),
+                axis: Axis::logarithmic("power density", format!("({})²/{}", unit.sign, samples.over.unit)),
+                is_density: true,
+                factor: unit.factor * unit.factor,
+                over: samples.over,
+            });
+        }
+        Ok(linear(
+            "",
+            format!("amplitude_{ending}"),
+            format!("Amplitudes of {what}"),
+            unit.axis("amplitude"),
+        ))
+    }
+
+    /// What is transformed: the signal, or the envelope of its band; with a tachometer at equal angles.
+    fn samples(&self, signal: &Signal) -> anyhow::Result<Samples> {
+        let mut values = signal.values.clone();
         if let Some(Band(band)) = self.envelope {
             let highest = 0.5 * signal.rate;
             ensure!(
@@ -256,45 +246,50 @@ impl SpectrumCommand {
                 "--envelope goes up to {} Hz; the steps of the run show {highest:.1} Hz at most",
                 band[1]
             );
-            let envelope = fourier::envelope(&signal.values, signal.rate, band);
-            return Ok(Titled {
-                spectrum: fourier::amplitudes(&envelope, signal.rate),
-                file: format!("spectrum_{name}_envelope"),
-                column: format!("envelope_amplitude_{ending}"),
-                title: format!("Envelope of {what} from {} Hz to {} Hz", band[0], band[1]),
-                axis: unit.axis("amplitude of the envelope"),
-                ..linear
-            });
+            values = fourier::envelope(&values, signal.rate, band);
         }
-        if self.density {
-            return Ok(Titled {
-                spectrum: fourier::density(&signal.values, signal.rate),
-                file: format!("spectrum_{name}_density"),
-                column: format!("density_{ending}_squared_per_hz"),
-                title: format!("Power density of {what}"),
-                axis: Axis::logarithmic("power density", format!("({})²/Hz", unit.sign)),
-                is_density: true,
-                factor: unit.factor * unit.factor,
+        let Some(angles) = &signal.angles else {
+            return Ok(Samples {
+                values,
+                rate: signal.rate,
+                highest: f64::INFINITY,
+                over: FREQUENCY,
             });
-        }
-        Ok(linear)
+        };
+        let turned = orders::resample(&values, angles)?;
+        let seconds = (values.len() - 1) as f64 / signal.rate;
+        Ok(Samples {
+            values: turned.values,
+            rate: turned.rate,
+            highest: turned.highest,
+            over: Abscissa {
+                column: "order",
+                name: "order",
+                unit: "1",
+                hertz: turned.turns / seconds,
+            },
+        })
     }
 }
 
-/// Samples a second of instants that must be equally far apart.
-fn equal_rate(times: &[f64]) -> anyhow::Result<f64> {
-    let step = (times[times.len() - 1] - times[0]) / (times.len() - 1) as f64;
-    ensure!(step > 0.0, "the steps of the run have no time; expected a motion");
-    let uneven = times
-        .windows(2)
-        .find(|t| (t[1] - t[0] - step).abs() > UNEQUAL * step);
-    match uneven {
-        Some(t) => Err(anyhow!(
-            "the step from {} s to {} s is not like the others, {step:.6e} s; a spectrum needs equal steps",
-            t[0],
-            t[1]
-        )),
-        None => Ok(1.0 / step),
+/// Samples of equal steps of time or angle.
+struct Samples {
+    values: Vec<f64>,
+    /// Samples a second, or a turn.
+    rate: f64,
+    /// Largest frequency or order that they show.
+    highest: f64,
+    over: Abscissa,
+}
+
+impl Samples {
+    /// A spectrum without what lies above the largest frequency or order.
+    fn limited(&self, mut spectrum: LineSpectrum) -> LineSpectrum {
+        let last = (self.highest / spectrum.resolution).floor();
+        if last < spectrum.values.len() as f64 {
+            spectrum.values.truncate(last as usize + 1);
+        }
+        spectrum
     }
 }
 
@@ -306,7 +301,8 @@ fn draw(named: &Titled, marks: &[Line], upto: Option<f64>) -> anyhow::Result<Fig
         .min(*resolution * (values.len() - 1) as f64);
     ensure!(
         end > 2.0 * resolution,
-        "the record is too short for a figure up to {end} Hz: its resolution is {resolution:.6} Hz"
+        "the record is too short for a figure up to {end} {unit}: its resolution is {resolution:.6} {unit}",
+        unit = named.over.unit
     );
     // The mean is taken out: frequency 0 has nothing to show.
     let last = (end / resolution).floor() as usize;
@@ -322,7 +318,7 @@ fn draw(named: &Titled, marks: &[Line], upto: Option<f64>) -> anyhow::Result<Fig
     let bottom = if named.is_density { low } else { 0.0 };
     let mut figure = Figure::new(
         &named.title,
-        Axis::linear("frequency", "Hz").tight(),
+        Axis::linear(named.over.name, named.over.unit).tight(),
         named.axis.clone(),
     )
     .note("Dashed: lines of the bearing and their multiples, from the simulated cage speed");
@@ -349,7 +345,7 @@ fn draw(named: &Titled, marks: &[Line], upto: Option<f64>) -> anyhow::Result<Fig
 }
 
 fn write_table(path: &Path, named: &Titled) -> anyhow::Result<()> {
-    let head = format!("{FREQUENCY},{}\n", named.column);
+    let head = format!("{},{}\n", named.over.column, named.column);
     let rows = named.spectrum.values.iter().enumerate();
     let row = |(k, value): (usize, &f64)| format!("{:?},{value:?}\n", k as f64 * named.spectrum.resolution);
     let content = head.clone() + &rows.map(row).collect::<String>();
@@ -358,8 +354,14 @@ fn write_table(path: &Path, named: &Titled) -> anyhow::Result<()> {
 
 /// What stands at the lines.
 fn say(dir: &Path, named: &Titled, marks: &[Line]) {
+    // An order has no unit.
+    let unit = if named.over.column == FREQUENCY.column {
+        " Hz"
+    } else {
+        ""
+    };
     print::line(format_args!(
-        "{}.csv in {}, figure in {}; resolution {:.4} Hz; {}:",
+        "{}.csv in {}, figure in {}; resolution {:.4}{unit}; {}:",
         named.file,
         dir.display(),
         dir.join("figures").display(),
@@ -369,8 +371,8 @@ fn say(dir: &Path, named: &Titled, marks: &[Line]) {
     for line in marks {
         let [frequency, value] = named.spectrum.peak_near(line.frequency);
         print::line(format_args!(
-            "  {:<6} {:>10.3} Hz: {value:.3e} at {frequency:.3} Hz",
-            line.name, line.frequency
+            "  {:<6} {:>10.3}{unit}: {value:.3e} at {frequency:.3}{unit}",
+            line.name, line.frequency,
         ));
     }
 }

@@ -5,8 +5,8 @@ use std::path::{Component, Path, PathBuf};
 
 use anyhow::{Context, bail};
 
-use super::format::{OneOrMany, RawAxis, RawQuantity, RawReference, RawStudy, Take};
-use super::plan::{Axis, AxisValue, Plan, Quantity, Reference, Source, grid};
+use super::format::{OneOrMany, RawAxis, RawQuantity, RawReference, RawSignals, RawStudy, Take};
+use super::plan::{Axis, AxisValue, Plan, Quantity, Reference, Signals, Source, grid};
 
 /// Runs of a point beyond this are a slip.
 const MAX_REPEATS: i64 = 100;
@@ -70,6 +70,24 @@ fn checked(raw: RawStudy, path: &Path) -> anyhow::Result<Plan> {
         axes,
         points,
         quantities,
+        signals: raw.signals.map(signals).transpose()?,
+    })
+}
+
+/// Columns of a labelled set.
+fn signals(raw: RawSignals) -> anyhow::Result<Signals> {
+    if raw.columns.is_empty() {
+        bail!("[signals] has no columns; expected names of columns of its table, such as \"g1_strain\"");
+    }
+    let table = raw.table.unwrap_or_else(|| "probes.csv".to_string());
+    if !["probes.csv", "shaft.csv"].contains(&table.as_str()) {
+        bail!(
+            "[signals] has the table {table:?}; expected \"probes.csv\" or \"shaft.csv\", which have a line per step"
+        );
+    }
+    Ok(Signals {
+        table,
+        columns: raw.columns,
     })
 }
 

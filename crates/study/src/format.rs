@@ -22,6 +22,15 @@ pub struct RawStudy {
     #[serde(default)]
     pub exclude: Vec<BTreeMap<String, OneOrMany>>,
     pub quantities: Vec<RawQuantity>,
+    pub signals: Option<RawSignals>,
+}
+
+/// Columns that are kept of every run.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields, expecting = "a table [signals]")]
+pub struct RawSignals {
+    pub table: Option<String>,
+    pub columns: Vec<String>,
 }
 
 /// Where the meshes of the points come from.

@@ -25,6 +25,7 @@ mod record;
 mod report;
 mod richardson;
 mod runner;
+mod signals;
 mod table;
 
 use std::path::{Path, PathBuf};
@@ -87,6 +88,12 @@ pub fn study(request: &Request) -> Result<(), Failure> {
     }
     let report = table::collect(&plan, &out)?;
     print_report(&report);
+    if let Some(n) = signals::write(&plan, &report, &out)? {
+        print::line(format_args!(
+            "{n} labelled signals: {}",
+            out.join(signals::LABELS).display()
+        ));
+    }
     for path in plots::write(&report, &out)? {
         print::line(format_args!("plot: {}.svg and .png", path.display()));
     }

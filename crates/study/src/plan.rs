@@ -37,6 +37,17 @@ pub struct Plan {
     pub points: Vec<Point>,
     /// What is looked at.
     pub quantities: Vec<Quantity>,
+    /// What is kept of every run as a labelled set.
+    pub signals: Option<Signals>,
+}
+
+/// What a study keeps of every run.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Signals {
+    /// Table of the runs.
+    pub table: String,
+    /// Its columns.
+    pub columns: Vec<String>,
 }
 
 /// One choice that is varied.

@@ -108,6 +108,7 @@ fn plan(request: &Request) -> anyhow::Result<Plan> {
         axes,
         points,
         quantities: quantities(&scene),
+        signals: None,
     })
 }
 

@@ -3,6 +3,7 @@
 //! **Order of the six components, here and everywhere: xx, yy, zz, xy, yz, xz** (that of VTK's symmetric tensors).
 //! Strain has engineering shear, `gamma_xy = du_x/dy + du_y/dx`; stress is in Pa, tension positive.
 
+mod gauge;
 mod initial;
 mod invariants;
 pub(crate) mod kernel;
@@ -12,6 +13,7 @@ mod recovery;
 mod sector;
 mod sector_points;
 
+pub use gauge::{GaugePoint, StrainGauge};
 pub use invariants::{principal, von_mises};
 pub use nodes::NodeRecovery;
 pub use points::{MeshPoint, PointRecovery};

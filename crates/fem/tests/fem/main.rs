@@ -2,6 +2,7 @@
 
 mod convergence;
 mod errors;
+mod gauge;
 mod loads;
 mod matrices;
 mod patch;

@@ -48,6 +48,7 @@ mod dynamic;
 mod edit;
 mod error;
 mod gather;
+mod gauges;
 mod heat;
 mod hints;
 mod include;
@@ -94,6 +95,7 @@ pub use self::contact::{BallElasticity, Contact, ContactMode};
 pub use self::difference::difference;
 pub use self::dynamic::{ContactScheme, Dynamic, IntegratorChoice};
 pub use self::error::SceneError;
+pub use self::gauges::{Across, GaugeProbe, Tachometer};
 pub use self::heat::{BODIES, FrictionLaw, Heat, SURROUNDINGS};
 pub use self::life::{Life, LifeGrooves};
 pub use self::locate::locate;
@@ -371,10 +373,8 @@ impl Source<'_> {
             is_modes: raw.modes.is_some(),
         };
         let stress = raw.stress.check(stress, &mut problems);
-        let probes = ProbesContext {
-            bearing: bearing.as_ref(),
-            rigid: [raw.inner.is_rigid(), raw.outer.is_rigid()],
-        };
+        let rigid = [raw.inner.is_rigid(), raw.outer.is_rigid()];
+        let probes = ProbesContext::new(bearing.as_ref(), rigid, has_speed);
         let probes = raw.probes.check(probes, &mut problems);
         let turns = raw.speed.is_some() && raw.modes.is_none();
         let lubricant = raw.lubricant(turns, &mut problems);

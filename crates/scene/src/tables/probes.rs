@@ -10,7 +10,7 @@
 //! the displacement is that within the turning ring; Cartesian axes are fixed in space, as in the step files, and the
 //! displacement contains the turning.
 //!
-//! Points and profiles are in the file `stress_probes`.
+//! Points and profiles are in the file `stress_probes`, strain gauges in `gauges`.
 //!
 //! A contact probe gives the force of the ring on the ball in x, y, z and its size, and its moment about the given
 //! point, likewise. Without friction the force acts along a line through the ball's centre. In motion with inertia the
@@ -22,6 +22,7 @@ use input::{ANGLE, LENGTH, Problems, Quantity};
 use serde::Deserialize;
 
 use super::bearing::Bearing;
+use super::gauges::{GaugeProbe, RawGauge, RawTachometer, Tachometer};
 use super::ring::RingName;
 use super::stress_probes::{RawPointProbe, RawProfile, StressLine};
 
@@ -29,7 +30,8 @@ use super::stress_probes::{RawPointProbe, RawProfile, StressLine};
 #[derive(Debug, Default, Deserialize)]
 #[serde(
     deny_unknown_fields,
-    expecting = "tables [probes.node.*], [probes.point.*], [probes.profile.*] and [probes.contact.*]"
+    expecting = "tables [probes.node.*], [probes.point.*], [probes.profile.*], [probes.contact.*], \
+                 [probes.gauge.*] and [probes.tachometer.*]"
 )]
 pub struct RawProbes {
     #[serde(default)]
@@ -40,6 +42,10 @@ pub struct RawProbes {
     point: BTreeMap<String, RawPointProbe>,
     #[serde(default)]
     profile: BTreeMap<String, RawProfile>,
+    #[serde(default)]
+    gauge: BTreeMap<String, RawGauge>,
+    #[serde(default)]
+    tachometer: BTreeMap<String, RawTachometer>,
 }
 
 /// As typed.
@@ -122,6 +128,10 @@ pub struct Probes {
     pub points: Vec<StressLine>,
     /// Lines of points of rings.
     pub profiles: Vec<StressLine>,
+    /// Strain gauges.
+    pub gauges: Vec<GaugeProbe>,
+    /// Angles of rings.
+    pub tachometers: Vec<Tachometer>,
 }
 
 impl Probes {
@@ -131,6 +141,8 @@ impl Probes {
             && self.contacts.is_empty()
             && self.points.is_empty()
             && self.profiles.is_empty()
+            && self.gauges.is_empty()
+            && self.tachometers.is_empty()
     }
 }
 
@@ -141,6 +153,19 @@ pub struct ProbesContext<'a> {
     pub bearing: Option<&'a Bearing>,
     /// Which rings are rigid, inner first.
     pub rigid: [bool; 2],
+    /// Which rings [speed] names, inner first.
+    pub has_speed: [bool; 2],
+}
+
+impl<'a> ProbesContext<'a> {
+    /// A bearing with rigid rings and rings with a speed.
+    pub fn new(bearing: Option<&'a Bearing>, rigid: [bool; 2], has_speed: [bool; 2]) -> ProbesContext<'a> {
+        ProbesContext {
+            bearing,
+            rigid,
+            has_speed,
+        }
+    }
 }
 
 /// Groove angles beyond this are in no groove, rad.
@@ -184,11 +209,26 @@ impl RawProbes {
             require_flexible(&key, raw.ring, context, problems);
             profiles.push(raw.check(&key, name, problems));
         }
+        let gauge = |(name, raw): (&String, &RawGauge)| {
+            let key = format!("probes.gauge.{name}");
+            check_name(&key, name, problems);
+            require_flexible(&key, raw.ring, context, problems);
+            raw.check(&key, name, problems)
+        };
+        let gauges = self.gauge.iter().map(gauge).collect();
+        let tachometer = |(name, raw): (&String, &RawTachometer)| {
+            let key = format!("probes.tachometer.{name}");
+            check_name(&key, name, problems);
+            raw.check(&key, name, context.has_speed, problems)
+        };
+        let tachometers = self.tachometer.iter().map(tachometer).collect();
         Probes {
+            tachometers,
             nodes,
             contacts,
             points,
             profiles,
+            gauges,
         }
     }
 }

@@ -85,6 +85,12 @@ fn ring_variants(scene: &Scene, name: &str, ring: &Ring) -> Vec<Variant> {
         let own = lines.iter().filter(|line| line.ring.key() == name);
         rigid.extend(own.map(|line| format!("probes.{table}.{}=none", line.name)));
     }
+    let gauges = scene
+        .probes
+        .gauges
+        .iter()
+        .filter(|gauge| gauge.ring.key() == name);
+    rigid.extend(gauges.map(|gauge| format!("probes.gauge.{}=none", gauge.name)));
     let is_other_rigid = [&scene.inner, &scene.outer].iter().any(|r| r.body.is_none());
     if is_other_rigid || scene.contact.mode == ContactMode::Rigid {
         rigid.push("contact.mode=rigid".to_string());

@@ -1,6 +1,7 @@
 //! Scenes with probes: what they say, and those that cannot be.
 
 use super::*;
+use crate::tables::gauges::Across;
 use crate::tables::probes::{Axes, ContactProbe, NodeProbe, SectionPoint};
 
 /// The example of an equilibrium with more tables.
@@ -114,4 +115,43 @@ fn wrong_probes_are_refused_by_name() {
     let message = message_of(&on_raceway, &["outer.flexible=false"]);
     let part = "probes.node.p.ring is \"outer\", but that ring is rigid and has no nodes; make it flexible or remove the probe";
     assert!(message.contains(part), "expected\n{part}\nin\n{message}");
+}
+
+/// If this failed, a gauge would lie or look elsewhere than its scene says, or a tachometer be of another ring.
+#[test]
+fn gauges_and_tachometers_read_as_they_say() {
+    let gauge = |more: &str| {
+        with_probe(&format!(
+            "[probes.gauge.g]\nring = \"outer\"\nsurface = \"seat\"\nazimuth = \"90 deg\"\nz = \"2 mm\"\n\
+             length = \"3 mm\"\nwidth = \"1.5 mm\"\n{more}"
+        ))
+    };
+    for (direction, degrees, across) in [
+        ("hoop", 0.0, Across::Any),
+        ("axial", 90.0, Across::Axial),
+        ("radial", 90.0, Across::Radial),
+        ("-30 deg", -30.0, Across::Any),
+    ] {
+        let text = gauge(&format!("direction = \"{direction}\""));
+        let probes = parse(&text, &[]).unwrap_or_else(|e| panic!("{e}")).probes;
+        let found = &probes.gauges[0];
+        assert!((found.angle.to_degrees() - degrees).abs() < 1e-12);
+        assert_eq!(
+            (found.across, found.size, found.z, found.r),
+            (across, [3e-3, 1.5e-3], Some(2e-3), None)
+        );
+    }
+    let message = message_of(&gauge("direction = \"hoop\"\nr = \"0 mm\""), &[]);
+    assert!(
+        message.contains("probes.gauge.g.r is 0 mm; a distance from the axis must be positive"),
+        "{message}"
+    );
+    let message = message_of(&gauge("direction = \"hoop\""), &["outer.flexible=false"]);
+    let part = "probes.gauge.g.ring is \"outer\", but that ring is rigid and has no nodes";
+    assert!(message.contains(part), "{message}");
+    let tachometer = with_probe("[probes.tachometer.t]\nring = \"inner\"");
+    let message = message_of(&tachometer, &[]);
+    let part = "probes.tachometer.t.ring is \"inner\", but [speed] gives that ring no speed; expected a ring that \
+                turns";
+    assert!(message.contains(part), "{message}");
 }

@@ -1,0 +1,201 @@
+//! `raceway load-matrix`: what the strain gauges of a scene read under a unit load of each ball. `raceway ball-loads`:
+//! ball loads from what the gauges of a run have read, as a sensor bearing computes them.
+
+use std::path::PathBuf;
+
+use anyhow::{Context, anyhow};
+use clap::Args;
+use comm::print;
+use contact::Side;
+use dynamics::StaticSolver;
+use results::failure::Failure;
+use results::gauges::Gauges;
+use results::integrity::warn_of_doubts;
+use results::load_matrix::{LoadMatrix, MATRIX_FILE, MATRIX_TABLE};
+use results::probe_places::side_of;
+use results::shown::Shown;
+use results::survey::say_doubts;
+use results::table::Table;
+use results::whole::write;
+use scene::{Analysis, Scene, build_model, doubts};
+use spectrum::scene_of;
+
+use crate::stiffness::{instant, pose_at};
+
+/// Table that is written into the folder of the run.
+const LOADS: &str = "ball_loads.csv";
+
+/// What the command line asks for.
+#[derive(Debug, Args)]
+pub struct LoadMatrixCommand {
+    /// Scene file with [probes.gauge.*].
+    scene: PathBuf,
+    /// Changes a value of the scene: path=value.
+    #[arg(long = "set", value_name = "PATH=VALUE")]
+    overrides: Vec<String>,
+    /// Folder of load_matrix.json and load_matrix.csv; nothing in it is replaced.
+    #[arg(long)]
+    out: PathBuf,
+    /// The ring whose gauges count; default: the one that has gauges.
+    #[arg(long, value_parser = ["inner", "outer"])]
+    ring: Option<String>,
+    /// Instant of a scene that runs in time, s; default: its start.
+    #[arg(long, value_name = "SECONDS")]
+    time: Option<f64>,
+}
+
+/// What the command line asks for.
+#[derive(Debug, Args)]
+pub struct BallLoadsCommand {
+    /// Folder of the results of a run with the gauges of the matrix.
+    dir: PathBuf,
+    /// The load_matrix.json of raceway load-matrix.
+    #[arg(long)]
+    matrix: PathBuf,
+}
+
+/// Solves the equilibrium and writes its matrix.
+pub fn load_matrix(command: &LoadMatrixCommand) -> Result<(), Failure> {
+    let scene = Scene::load(&command.scene, &command.overrides)?;
+    if matches!(scene.analysis, Analysis::Sweep(_) | Analysis::Modes(_)) {
+        return Err(Failure::User(anyhow!(
+            "{}: a load matrix is of one equilibrium; expected [static], [quasi_static] or [dynamic]",
+            scene.path.display()
+        )));
+    }
+    let side = ring_of(&scene, command.ring.as_deref())?;
+    let time = instant(&scene, command.time)?;
+    let (model, _) = build_model(&scene)?;
+    say_doubts(&doubts(&scene, &model));
+    let gauges = Gauges::new(&scene.probes.gauges, &model)?;
+    let mut solver = StaticSolver::new(&model).map_err(Failure::solving)?;
+    let solution = solver
+        .solve_at(&model, &pose_at(&scene, time), None)
+        .map_err(Failure::solving)?;
+    let read = gauges.values(&Shown::Equilibrium {
+        model: &model,
+        placed: &model.geometry,
+        solution: &solution,
+    });
+    let matrix = LoadMatrix::new(&model, &solver, &solution, &gauges, &read, side)?;
+    std::fs::create_dir_all(&command.out)
+        .with_context(|| format!("cannot create folder {}", command.out.display()))?;
+    matrix.write(&command.out)?;
+    print::line(format_args!(
+        "{} gauges on the {} ring, {} balls: {}",
+        matrix.gauges.len(),
+        matrix.ring,
+        matrix.ball_azimuths_rad.len(),
+        match matrix.condition {
+            Some(condition) => format!("condition {condition:.3}"),
+            None => "fewer gauges than balls, so that it cannot be inverted".to_string(),
+        }
+    ));
+    print::line(format_args!(
+        "{MATRIX_FILE}, {MATRIX_TABLE} in {}",
+        command.out.display()
+    ));
+    Ok(())
+}
+
+/// The ring whose gauges count.
+fn ring_of(scene: &Scene, asked: Option<&str>) -> Result<Side, Failure> {
+    let has = |side: &Side| {
+        scene
+            .probes
+            .gauges
+            .iter()
+            .any(|gauge| side_of(gauge.ring) == *side)
+    };
+    let known: Vec<Side> = Side::BOTH.into_iter().filter(has).collect();
+    let problem = match asked {
+        Some(name) => match known.iter().find(|side| side.name() == name) {
+            Some(side) => return Ok(*side),
+            None => format!(
+                "the {name} ring has no strain gauges; expected [probes.gauge.NAME] with ring = \"{name}\""
+            ),
+        },
+        None => match known[..] {
+            [side] => return Ok(side),
+            [] => "there are no strain gauges; expected [probes.gauge.NAME]".to_string(),
+            _ => "both rings have strain gauges; expected --ring inner or --ring outer".to_string(),
+        },
+    };
+    Err(Failure::User(anyhow!("{}: {problem}", scene.path.display())))
+}
+
+/// Writes the ball loads of a run.
+pub fn ball_loads(command: &BallLoadsCommand) -> Result<(), Failure> {
+    let dir = &command.dir;
+    let matrix = LoadMatrix::read(&command.matrix)?;
+    let inverse = matrix.inverse()?;
+    let probes = Table::read(dir, "probes.csv")?.with_context(|| {
+        format!(
+            "{} has no probes.csv; expected the results of a scene with gauges",
+            dir.display()
+        )
+    })?;
+    let balls = Table::read(dir, "balls.csv")?.with_context(|| {
+        format!(
+            "{} has no balls.csv; expected the results of a run",
+            dir.display()
+        )
+    })?;
+    warn_of_doubts(dir)?;
+    let columns = matrix
+        .gauges
+        .iter()
+        .map(|name| probes.column(&format!("{name}_strain")));
+    let columns = columns.collect::<anyhow::Result<Vec<_>>>()?;
+    let side = Side::BOTH.into_iter().find(|side| side.name() == matrix.ring);
+    let side = side.ok_or_else(|| anyhow!("{} is of no ring of a bearing", command.matrix.display()))?;
+    let speeds = scene_of(dir)?.speed;
+    let (steps, times) = (probes.column("step")?, probes.column("time_s")?);
+    let (ball_steps, azimuths) = (balls.column("step")?, balls.column("azimuth_rad")?);
+    let true_forces = balls.column(&format!("{}_force_n", side.name()))?;
+    let head = format!("step,time_s,ball,load_n,{}_force_n\n", side.name());
+    let (mut table, mut left_out, mut worst, mut largest) = (head.clone(), 0, 0.0f64, 0.0f64);
+    for row in 0..probes.n_rows() {
+        let own: Vec<usize> = (0..balls.n_rows())
+            .filter(|&i| ball_steps[i] == steps[row])
+            .collect();
+        let turned = speeds
+            .as_ref()
+            .map_or(0.0, |speeds| speeds.of(side).angle(times[row]));
+        let stand: Vec<f64> = own.iter().map(|&i| azimuths[i] - turned).collect();
+        let Some(places) = matrix.places(&stand) else {
+            left_out += 1;
+            continue;
+        };
+        let strains: Vec<f64> = columns.iter().map(|column| column[row]).collect();
+        let loads = inverse.loads(&strains);
+        for (ball, (&place, &i)) in places.iter().zip(&own).enumerate() {
+            let (load, known) = (loads[place], true_forces[i]);
+            worst = worst.max((load - known).abs());
+            largest = largest.max(known.abs());
+            table += &format!(
+                "{:?},{:?},{ball},{load:?},{known:?}\n",
+                steps[row] as u64, times[row]
+            );
+        }
+    }
+    if left_out == probes.n_rows() {
+        return Err(Failure::User(anyhow!(
+            "no step of {} has its {} balls at the places of {}; expected equal numbers, and steps at which a ball \
+             stands where the matrix has one",
+            dir.display(),
+            matrix.ball_azimuths_rad.len(),
+            command.matrix.display()
+        )));
+    }
+    let path = dir.join(LOADS);
+    write(&path, table.as_bytes(), |old| old.starts_with(head.as_bytes()))?;
+    print::line(format_args!(
+        "{} steps, {left_out} left out with balls elsewhere; loads differ from those of the run by {:.3} % of the \
+         largest at most; {LOADS} in {}",
+        probes.n_rows() - left_out,
+        100.0 * worst / largest.max(f64::MIN_POSITIVE),
+        dir.display()
+    ));
+    Ok(())
+}

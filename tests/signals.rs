@@ -1,0 +1,258 @@
+//! Tachometers, order spectra, exported signals and labelled sets, through the whole program with rigid rings.
+
+use std::f64::consts::TAU;
+
+use crate::util::tables::Table;
+use crate::util::{Dir, RIGID, with_line};
+
+/// A run-up from 1200 to 3600 rpm within 0.1 s, of a heavy damped shaft over an outer spall, with a tachometer.
+const RUN_UP: &str = "[speed]\ninner = { ramp = { from = \"1200 rpm\", to = \"3600 rpm\", \
+    start = \"0 ms\", duration = \"100 ms\" } }\n\n\
+    [probes.tachometer.shaft]\nring = \"inner\"\n\n\
+    [probes.contact.ball]\nball = 0\nring = \"outer\"\n\n\
+    [[profiles.spall]]\nring = \"outer\"\nazimuth = \"10 deg\"\ngroove_angle = \"18 deg\"\nlength = \"0.5 mm\"\n\
+    width = \"4 mm\"\ndepth = \"50 um\"\nedge = \"0.1 mm\"\n\n\
+    [effects.contact_damping]\ncoefficient = \"200 N s/m\"\nfull_approach = \"3 um\"\n\n\
+    [dynamic]\nduration = \"100 ms\"\nstep = \"20 us\"\noutput_every = 5000\nintegrator = \"average_acceleration\"\n\
+    contact = \"discrete_gradient\"\nledger_tolerance = 1e-6\n";
+
+fn ran(analysis: &str) -> Dir {
+    let dir = Dir::with_scene(&with_line("[static]", "[static]", analysis));
+    let run = ["run", "scene.toml", "--out", "out", "--set", "shaft.mass=2 kg"];
+    let outcome = dir.raceway(&[&run, &RIGID[..]].concat());
+    assert_eq!(outcome.code, Some(0), "{}", outcome.stderr);
+    dir
+}
+
+/// Wrong: a tachometer would not show the angle of its ring, or a spall's line would be smeared over the speeds of a
+/// run-up: over orders it stands at the balls that pass per turn of the shaft, 18 (1 - 0.43313), and stands out.
+#[test]
+fn a_spall_under_a_rising_speed_is_a_line_over_orders() {
+    let dir = ran(RUN_UP);
+    let probes = Table::read(&dir, "out/probes.csv");
+    let (times, angles) = (probes.column("time_s"), probes.column("shaft_angle_rad"));
+    for (t, angle) in times.iter().zip(&angles) {
+        let exact = TAU * (20.0 * t + 0.5 * 400.0 * t * t);
+        assert!((angle - exact).abs() < 1e-12 * exact.max(1.0), "{angle} {exact}");
+    }
+    let both = ["spectrum", "out", "--probe", "z_m", "--acceleration"];
+    let outcome = dir.raceway(&[&both[..], &["--orders", "shaft"]].concat());
+    assert_eq!(outcome.code, Some(0), "{}", outcome.stderr);
+    assert!(
+        outcome.stdout.contains("BPFO        7.796:"),
+        "{}",
+        outcome.stdout
+    );
+    let table = Table::read(&dir, "out/spectrum_z_acceleration_orders.csv");
+    let (orders, amplitudes) = (table.column("order"), table.column("amplitude_m_per_s2"));
+    let largest = |from: f64, to: f64| {
+        let of = orders
+            .iter()
+            .zip(&amplitudes)
+            .filter(|(o, _)| (from..to).contains(*o));
+        of.map(|(_, a)| *a).fold(0.0, f64::max)
+    };
+    let bpfo = 7.796;
+    // At the second multiple the run-up passes a natural frequency.
+    let (line, beside) = (
+        largest(bpfo - 0.5, bpfo + 0.5),
+        largest(bpfo + 1.5, 2.0 * bpfo - 1.5),
+    );
+    assert!(line > 3.0 * beside, "{line} {beside}");
+    assert!(
+        dir.text("out/figures/spectrum_z_acceleration_orders.svg")
+            .contains("BPFO")
+    );
+    // Steps at the highest speed show orders up to half their number a turn: 60 turns a second, 50 000 steps.
+    assert!(*orders.last().unwrap() < 0.5 * 50_000.0 / 60.0 + 1.0);
+}
+
+/// Wrong: a signal in other hands would have another scale or rate, or replace a file of the user.
+#[test]
+fn a_signal_goes_out_as_wav_and_csv() {
+    let dir = ran(&RUN_UP.replace("100 ms\"\nstep", "2 ms\"\nstep"));
+    let arguments = ["spectrum", "out", "--probe", "ball_force_n", "--wav", "--csv"];
+    let outcome = dir.raceway(&arguments);
+    assert_eq!(outcome.code, Some(0), "{}", outcome.stderr);
+    assert!(
+        outcome.stdout.contains("signal_ball_force.wav, its scale in"),
+        "{}",
+        outcome.stdout
+    );
+    let probes = Table::read(&dir, "out/probes.csv");
+    let (times, forces) = (probes.column("time_s"), probes.column("ball_force_n"));
+    let text = dir.text("out/signal_ball_force.csv");
+    let rows: Vec<Vec<f64>> = text
+        .lines()
+        .skip(1)
+        .map(|l| l.split(',').map(|c| c.parse().unwrap()).collect())
+        .collect();
+    assert!(text.starts_with("time_s,ball_force_n\n") && rows.len() == forces.len());
+    for (row, (time, force)) in rows.iter().zip(times.iter().zip(&forces)) {
+        assert!((row[0] - time).abs() < 1e-15 && row[1] == *force);
+    }
+    let about = dir.text("out/signal_ball_force.wav.toml");
+    let number = |key: &str| -> f64 {
+        let line = about
+            .lines()
+            .find_map(|line| line.strip_prefix(&format!("{key} = ")));
+        line.unwrap_or_else(|| panic!("{key} in {about}"))
+            .parse()
+            .unwrap()
+    };
+    assert!(
+        (number("samples_per_second") - 50_000.0).abs() < 1e-6
+            && number("samples_per_second_of_the_wav") == 50_000.0
+    );
+    // A WAV file of one channel: at 20 its format 3, floats; at 24 its rate; samples are the last bytes.
+    let wav = std::fs::read(dir.path("out/signal_ball_force.wav")).unwrap();
+    assert_eq!((&wav[..4], &wav[8..12]), (&b"RIFF"[..], &b"WAVE"[..]));
+    assert_eq!(u32::from_le_bytes(wav[24..28].try_into().unwrap()), 50_000);
+    let samples = wav[wav.len() - 4 * forces.len()..].chunks_exact(4);
+    let mut largest = 0.0f64;
+    for (sample, force) in samples.zip(&forces) {
+        let sample = f64::from(f32::from_le_bytes(sample.try_into().unwrap()));
+        largest = largest.max(sample.abs());
+        let back = number("offset") + number("scale") * sample;
+        assert!((back - force).abs() <= 1e-7 * number("scale"), "{back} {force}");
+    }
+    assert_eq!(largest, 1.0);
+    assert_eq!(dir.raceway(&arguments).code, Some(0), "own files are replaced");
+    std::fs::remove_file(dir.path("out/signal_ball_force.wav.toml")).unwrap();
+    dir.write("out/signal_ball_force.wav", "mine");
+    let refused = dir.raceway(&arguments);
+    assert_eq!(refused.code, Some(2));
+    assert!(
+        refused
+            .stderr
+            .contains("signal_ball_force.wav was not written by this command"),
+        "{}",
+        refused.stderr
+    );
+    assert_eq!(dir.text("out/signal_ball_force.wav"), "mine");
+}
+
+/// Wrong: a tachometer would be of a ring that stands, or orders be made without one.
+#[test]
+fn orders_need_a_ring_that_turns() {
+    let dir = ran(&RUN_UP.replace("100 ms\"\nstep", "2 ms\"\nstep"));
+    let refused = |arguments: &[&str], text: &str| {
+        let outcome = dir.raceway(arguments);
+        assert_eq!(outcome.code, Some(2), "{arguments:?}: {}", outcome.stdout);
+        assert!(outcome.stderr.contains(text), "{arguments:?}: {}", outcome.stderr);
+    };
+    refused(
+        &["spectrum", "out", "--probe", "z_m", "--orders", "ball_force_n"],
+        "ball_force_n is no angle; --orders needs a tachometer, from [probes.tachometer.NAME] of a scene",
+    );
+    refused(
+        &["spectrum", "out", "--probe", "z_m", "--orders", "tacho"],
+        "out has no signal \"tacho\"; expected a column of probes.csv: ball_force_x_n",
+    );
+    refused(
+        &[
+            &[
+                "check",
+                "scene.toml",
+                "--set",
+                "probes.tachometer.shaft.ring=outer",
+            ],
+            &RIGID[..],
+        ]
+        .concat(),
+        "probes.tachometer.shaft.ring is \"outer\", but [speed] gives that ring no speed; expected a ring that turns",
+    );
+}
+
+const STUDY: &str = r#"
+title = "spalls"
+scene = "scene.toml"
+set = [
+    "contact.mode = rigid", "inner.flexible = false", "outer.flexible = false", 'shaft.mass = "2 kg"',
+    '''profiles.spall = [{ ring = "outer", azimuth = "10 deg", groove_angle = "18 deg", length = "{length} mm",
+                           width = "4 mm", depth = "50 um", edge = "0.1 mm" }]''',
+    'profiles.random = [{ ring = "outer", orders = [2, 40], amplitude = "0.05 um", slope = 2.0, seed = {seed} }]',
+]
+[signals]
+columns = ["ball_force_n", "shaft_angle_rad"]
+[[axes]]
+name = "length"
+values = [{ name = "0.5" }, { name = "1" }]
+[[axes]]
+name = "seed"
+values = [{ name = "1" }, { name = "2" }]
+[[quantities]]
+name = "largest force"
+unit = "N"
+table = "probes.csv"
+column = "ball_force_n"
+take = "max"
+"#;
+
+/// Wrong: a learner would be given signals under the labels of other ones: every file has the columns of its run,
+/// every
+/// line the values of its point; other seeds and lengths give other signals.
+#[test]
+fn a_study_makes_a_labelled_set() {
+    let analysis = RUN_UP.replace("100 ms\"\nstep", "2 ms\"\nstep");
+    let dir = Dir::with_scene(&with_line("[static]", "[static]", &analysis));
+    dir.write("study.toml", STUDY);
+    let outcome = dir.raceway(&["study", "study.toml", "--out", "out"]);
+    assert_eq!(outcome.code, Some(0), "{}", outcome.stderr);
+    assert!(
+        outcome.stdout.contains("4 labelled signals: "),
+        "{}",
+        outcome.stdout
+    );
+    let labels = dir.text("out/labels.csv");
+    let lines: Vec<&str> = labels.lines().collect();
+    assert_eq!(lines.len(), 5);
+    assert_eq!(
+        lines[0],
+        "point,file,length,seed,samples,samples_per_second,largest force [N]"
+    );
+    let mut seen = Vec::new();
+    for (point, (length, seed)) in [("0.5", "1"), ("0.5", "2"), ("1", "1"), ("1", "2")]
+        .into_iter()
+        .enumerate()
+    {
+        let file = format!("signals/{point:04}.csv");
+        let cells: Vec<&str> = lines[point + 1].split(',').collect();
+        assert_eq!(&cells[..5], &[&point.to_string(), &*file, length, seed, "101"]);
+        let rate: f64 = cells[5].parse().unwrap();
+        assert!((rate - 50_000.0).abs() < 1e-6);
+        let own = Table::read(&dir, &format!("out/points/{point:04}/run/probes.csv"));
+        let signal = Table::read(&dir, &format!("out/{file}"));
+        for column in ["time_s", "ball_force_n", "shaft_angle_rad"] {
+            assert_eq!(signal.column(column), own.column(column));
+        }
+        let summary = dir.text(&format!("out/points/{point:04}/point.json"));
+        assert!(summary.contains(&format!("seed = {seed}")) && summary.contains(&format!("{length} mm")));
+        seen.push(signal.column("ball_force_n"));
+    }
+    assert!(seen[0] != seen[1] && seen[0] != seen[2]);
+    dir.write(
+        "bad.toml",
+        STUDY.replace("\"ball_force_n\", \"shaft", "\"no_n\", \"shaft"),
+    );
+    let refused = dir.raceway(&["study", "bad.toml", "--out", "out"]);
+    assert_ne!(refused.code, Some(0));
+    assert!(refused.stderr.contains("no_n"), "{}", refused.stderr);
+    for (from, to, text) in [
+        (
+            "columns = [\"ball_force_n\", \"shaft_angle_rad\"]",
+            "columns = []",
+            "[signals] has no columns",
+        ),
+        (
+            "[signals]\n",
+            "[signals]\ntable = \"balls.csv\"\n",
+            "[signals] has the table \"balls.csv\"; expected \"probes.csv\"",
+        ),
+    ] {
+        dir.write("bad.toml", STUDY.replace(from, to));
+        let refused = dir.raceway(&["study", "bad.toml", "--list"]);
+        assert_eq!(refused.code, Some(2));
+        assert!(refused.stderr.contains(text), "{}", refused.stderr);
+    }
+}
