@@ -23,13 +23,16 @@ fn the_page_of_a_run_stands_alone() {
         "<tr><th>free contact angle</th><td>14.928 deg</td></tr>",
         "<h2>Balls at the end</h2>",
         "<tr><th>17</th>",
-        "<tr><th>meshes</th><td>inner ring ",
         ", commit ",
         " UTC</td>",
     ] {
         assert!(page.contains(part), "{part}");
     }
-    let title = summary(&dir, "motion")["title"].as_str().unwrap().to_string();
+    let summary = summary(&dir, "motion");
+    let (elements, dofs) = (&summary["elements"]["inner"], &summary["dofs"]["inner"]);
+    let meshes = format!("<tr><th>meshes</th><td>inner ring {elements} elements, {dofs} dofs, outer ring ");
+    assert!(page.contains(&meshes), "{meshes}");
+    let title = summary["title"].as_str().unwrap().to_string();
     assert!(page.contains(&format!("<h1>{title}</h1>")), "{title}");
     // 26 figures, each an SVG of its own.
     assert_eq!(page.matches("<svg ").count(), 26);

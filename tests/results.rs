@@ -8,13 +8,14 @@ use crate::statics::reference;
 use crate::util::tables::{Table, keys, number, summary};
 use crate::util::{Dir, RIGID, SCENE, assert_within};
 
-const SUMMARY_KEYS: [&str; 21] = [
+const SUMMARY_KEYS: [&str; 22] = [
     "advice",
     "analysis",
     "balls",
     "contact_mode",
     "dofs",
     "effects",
+    "elements",
     "energy_j",
     "factor_bytes_forecast",
     "iterations",
@@ -121,6 +122,7 @@ fn the_summary_has_the_keys_of_schema_1() {
         ]
     );
     assert_eq!(keys(&summary["dofs"]), ["inner", "outer"]);
+    assert_eq!(keys(&summary["elements"]), ["inner", "outer"]);
     assert_eq!(
         keys(&summary["energy_j"]),
         ["defect", "hertz", "load_potential", "strain", "total"]

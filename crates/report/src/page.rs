@@ -62,7 +62,11 @@ fn about(source: &Source) -> String {
         .and_then(Value::as_object)
         .into_iter()
         .flatten();
-    let dofs: Vec<String> = dofs.map(|(ring, n)| format!("{ring} ring {n} dofs")).collect();
+    let mesh = |(ring, dofs): (&String, &Value)| match summary["elements"][ring].as_u64() {
+        Some(elements) if elements > 0 => format!("{ring} ring {elements} elements, {dofs} dofs"),
+        _ => format!("{ring} ring {dofs} dofs"),
+    };
+    let dofs: Vec<String> = dofs.map(mesh).collect();
     let effects = list(summary, "effects").join(", ").replace('_', " ");
     let rows = [
         ("status", text(summary, "status")),

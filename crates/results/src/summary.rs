@@ -66,6 +66,7 @@ pub struct Summary {
     subsurface: BTreeMap<&'static str, ContactSubsurface>,
     effects: Vec<&'static str>,
     dofs: BTreeMap<&'static str, usize>,
+    elements: BTreeMap<&'static str, usize>,
     energy_j: BTreeMap<&'static str, f64>,
     /// Radial clearance, mounted and warm; absent without fits, temperatures and seat forms, as the fits.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -228,6 +229,7 @@ impl Summary {
                 .collect(),
             effects: scene.effects.names(),
             dofs: sides(|i| model.rings[i].as_ref().map_or(0, |r| r.mesh.n_dofs())),
+            elements: sides(|i| model.rings[i].as_ref().map_or(0, |r| r.mesh.n_elements())),
             energy_j: last.energies.iter().copied().collect(),
             clearance: model.mounting.report.as_ref().map(ClearanceSummary::new),
             fits: fits(model.mounting.report.as_ref()),
