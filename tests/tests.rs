@@ -34,6 +34,7 @@ mod remarks;
 mod report;
 mod results;
 mod resume;
+mod rigid_ring;
 mod schedules;
 mod sectors;
 mod small_files;

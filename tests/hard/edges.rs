@@ -178,10 +178,10 @@ fn edge_in_motion(record: &mut Record) {
 fn patch(record: &mut Record) {
     let mut model = loaded(rings(Level::hex8(90, 6, 1, 2)));
     super::bearings::set_loads(&mut model, Load::dead(2e3), Load::dead(0.0));
-    model.contact.patch_spacings = 2.0;
+    model.contact.least_patch.spacings = 2.0;
     let usual = solve(&model).unwrap();
     // On 90 elements round, 5 from ball to ball, patches of 5 elements on both sides overlap.
-    model.contact.patch_spacings = 5.0;
+    model.contact.least_patch.spacings = 5.0;
     match solve(&model) {
         Ok(wide) => {
             record.below(
@@ -192,7 +192,7 @@ fn patch(record: &mut Record) {
         }
         Err(error) => record.says(&error.to_string(), "few nodes"),
     }
-    model.contact.patch_spacings = 20.0;
+    model.contact.least_patch.spacings = 20.0;
     match solve(&model) {
         Ok(widest) => {
             record.note(format!(
