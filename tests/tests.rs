@@ -35,6 +35,7 @@ mod remarks;
 mod report;
 mod results;
 mod resume;
+mod rigid_ring;
 mod schedules;
 mod sectors;
 mod signals;

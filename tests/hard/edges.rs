@@ -40,7 +40,7 @@ pub fn cases() -> Vec<HardCase> {
             "edge_contact_in_motion",
             Pace::Fast,
             "a load jump brings the balls to the edge while the bearing moves",
-            "raceway of the inner ring cut at 19.4 deg, axial 10 N to 1.5 kN in 10 us, both rings flexible, dt 5 us, 0.5 ms",
+            "raceway of the inner ring cut at 19.4 deg, axial 10 N to 1.5 kN in 10 us, rings flexible, dt 5 us, 0.5 ms",
             edge_in_motion,
         ),
         case(
@@ -178,10 +178,10 @@ fn edge_in_motion(record: &mut Record) {
 fn patch(record: &mut Record) {
     let mut model = loaded(rings(Level::hex8(90, 6, 1, 2)));
     super::bearings::set_loads(&mut model, Load::dead(2e3), Load::dead(0.0));
-    model.contact.patch_spacings = 2.0;
+    model.contact.least_patch.spacings = 2.0;
     let usual = solve(&model).unwrap();
     // On 90 elements round, 5 from ball to ball, patches of 5 elements on both sides overlap.
-    model.contact.patch_spacings = 5.0;
+    model.contact.least_patch.spacings = 5.0;
     match solve(&model) {
         Ok(wide) => {
             record.below(
@@ -192,7 +192,7 @@ fn patch(record: &mut Record) {
         }
         Err(error) => record.says(&error.to_string(), "few nodes"),
     }
-    model.contact.patch_spacings = 20.0;
+    model.contact.least_patch.spacings = 20.0;
     match solve(&model) {
         Ok(widest) => {
             record.note(format!(

@@ -33,7 +33,7 @@ pub use geometry::{BearingGeometry, BySide, Meridian, Side};
 pub use hertz::{Elastic, HertzContact};
 pub use law::{BallLaws, ContactLaw};
 pub use near_field::{LoadedPatch, NearField, RingPoint};
-pub use patch::Patch;
+pub use patch::{LeastSize, Patch};
 pub use raceway::{Groove, RacewaySurface};
 pub use sphere::SphereCompliance;
 pub use strips::{StripForce, StripLaw, StripLine};

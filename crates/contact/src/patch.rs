@@ -1,12 +1,13 @@
 //! A contact patch: nodal weights that spread a contact force over the raceway and measure its motion.
 //!
 //! The force Q is spread as a semi-ellipsoidal pressure over an ellipse on the torus with semi-axes [along the
-//! groove, rolling direction], each the larger of the Hertz semi-axis and a few node spacings. Its
-//! consistent nodal weights w_a sum to 1. The elastic motion of the groove centre is measured with the *same*
-//! weights: u_c = u_bar + omega x (x_c - x_bar), u_bar the weighted mean displacement of the patch and omega its
-//! rotation by weighted least squares. This is exact for rigid motion, and force and motion are conjugate, so
-//! tangents are symmetric and energy is conserved. Only the meridian components [radial, axial] of u_c enter the
-//! contact; a tangential motion of a torus changes no gap.
+//! groove, rolling direction], each the larger of the Hertz semi-axis and a few node spacings, in the rolling direction
+//! of a length too: a pressure that shrank with the elements would leave their errors the same share of a stress that
+//! grows ([`crate::near_field`]). Its consistent nodal weights w_a sum to 1. The elastic motion of the groove centre is
+//! measured with the *same* weights: u_c = u_bar + omega x (x_c - x_bar), u_bar the weighted mean displacement of the
+//! patch and omega its rotation by weighted least squares. This is exact for rigid motion, and force and motion are
+//! conjugate, so tangents are symmetric and energy is conserved. Only the meridian components [radial, axial] of u_c
+//! enter the contact; a tangential motion of a torus changes no gap.
 
 use crate::error::ContactError;
 use crate::halfspace::patch_compliance;
@@ -34,6 +35,15 @@ pub struct PatchShape {
     pub truncated: bool,
 }
 
+/// How small a patch may be.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LeastSize {
+    /// Least semi-axis in both directions, node spacings.
+    pub spacings: f64,
+    /// Least semi-axis in the rolling direction, m.
+    pub rolling: f64,
+}
+
 /// A contact force spread over the raceway.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Patch {
@@ -46,19 +56,19 @@ pub struct Patch {
 }
 
 impl PatchShape {
-    /// Shape at an azimuth and contact angle, at least the Hertz ellipse `hertz_axes` (m) and `n_spacings` node
-    /// spacings, at most up to the edge of the groove.
+    /// Shape at an azimuth and contact angle, at least the Hertz ellipse `hertz_axes` (m) and `least`, at most up to
+    /// the edge of the groove.
     pub fn new(
         surface: &RacewaySurface,
         azimuth: f64,
         angle: f64,
         hertz_axes: [f64; 2],
-        n_spacings: f64,
+        least: LeastSize,
     ) -> Result<PatchShape, ContactError> {
         let spacing = surface.spacing(surface.locate(azimuth, angle)?);
         let room = EDGE_SHARE * surface.rim_distance(angle);
-        let along = hertz_axes[0].max(n_spacings * spacing[0]).min(room);
-        let rolling = hertz_axes[1].max(n_spacings * spacing[1]);
+        let along = hertz_axes[0].max(least.spacings * spacing[0]).min(room);
+        let rolling = hertz_axes[1].max(least.spacings * spacing[1]).max(least.rolling);
         Ok(PatchShape {
             azimuth,
             angle,

@@ -76,8 +76,8 @@ fn place_patch(
     let load = force[0].hypot(force[1]);
     let angle = on_groove(&raceway.surface, angle, loaded);
     let hertz = model.hertz[site.side.index()].semi_axes(load);
-    let spacings = model.contact.patch_spacings;
-    let shape = PatchShape::new(&raceway.surface, site.ring_azimuth, angle, hertz, spacings)?;
+    let least = model.contact.least_patch;
+    let shape = PatchShape::new(&raceway.surface, site.ring_azimuth, angle, hertz, least)?;
     let patch = Patch::new(
         &raceway.surface,
         &ring.mesh.nodes,

@@ -10,7 +10,7 @@ use std::sync::Arc;
 
 use contact::film::FilmContact;
 use contact::hertz::Elastic;
-use contact::{BearingGeometry, HertzContact, Meridian, NodalWeights, Side, SphereCompliance};
+use contact::{BearingGeometry, HertzContact, LeastSize, Meridian, NodalWeights, Side, SphereCompliance};
 use fem::Material;
 use input::Schedule;
 use ring::{Backend, RingModel};
@@ -61,8 +61,8 @@ pub enum ContactMode {
 pub struct ContactSettings {
     /// Mode.
     pub mode: ContactMode,
-    /// Smallest semi-axis of a patch, node spacings.
-    pub patch_spacings: f64,
+    /// How small a patch may be.
+    pub least_patch: LeastSize,
 }
 
 /// Dimensionless stopping rules.

@@ -13,14 +13,14 @@ use dynamics::{Backend, ContactMode, Hold, RingModel, Sectors, SharedStress, Str
 use fem::StressRecovery;
 use mesh::{ElementKind, Mesh};
 use ring::division::body_load;
-use support::Case;
 use support::rings::{Level, ring, ring_model};
+use support::{Case, LEAST_PATCH};
 
 const LEVEL: Level = Level::hex8(54, 6, 1, 2);
 
 fn patch(ring: &RingModel, azimuth: f64, angle: f64) -> Patch {
     let surface = RacewaySurface::new(&ring.mesh, ring.mesh.group("raceway"), ring.groove);
-    let shape = PatchShape::new(&surface, azimuth, angle, [1e-3, 1e-4], 2.0).unwrap();
+    let shape = PatchShape::new(&surface, azimuth, angle, [1e-3, 1e-4], LEAST_PATCH).unwrap();
     Patch::new(
         &surface,
         &ring.mesh.nodes,
@@ -174,7 +174,7 @@ fn a_clamped_bore_does_not_move_and_is_stiffer() {
 fn places_off_the_raceway_are_errors() {
     let ring = ring(Side::Inner, LEVEL, Hold::Clamped);
     let surface = RacewaySurface::new(&ring.mesh, ring.mesh.group("raceway"), ring.groove);
-    let error = PatchShape::new(&surface, 0.1, 1.5, [1e-3, 1e-4], 2.0)
+    let error = PatchShape::new(&surface, 0.1, 1.5, [1e-3, 1e-4], LEAST_PATCH)
         .unwrap_err()
         .to_string();
     assert!(
@@ -192,12 +192,12 @@ fn places_off_the_raceway_are_errors() {
     );
     // Edge contact: the Hertz ellipse does not fit between the contact and the rim.
     assert!(
-        PatchShape::new(&surface, 0.1, 0.9, [3e-3, 1e-4], 2.0)
+        PatchShape::new(&surface, 0.1, 0.9, [3e-3, 1e-4], LEAST_PATCH)
             .unwrap()
             .truncated
     );
     assert!(
-        !PatchShape::new(&surface, 0.1, 0.3, [1e-3, 1e-4], 2.0)
+        !PatchShape::new(&surface, 0.1, 0.3, [1e-3, 1e-4], LEAST_PATCH)
             .unwrap()
             .truncated
     );

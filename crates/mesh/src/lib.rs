@@ -36,5 +36,5 @@ pub use periodic::{
     find_nearly_periodic, find_periodicity,
 };
 pub use positions::NodePositions;
-pub use ring::{RingGeometry, RingSection, RingSide, ring_geo, ring_tet_geo};
+pub use ring::{RingGeometry, RingSection, RingSide, VolumeMoments, ring_geo, ring_tet_geo};
 pub use section::{Arc, Section, SectionEdge, Snap, read_section, read_section_with_origin, revolve};

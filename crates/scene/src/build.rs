@@ -3,11 +3,11 @@
 use std::sync::Arc;
 
 use comm::Communicator;
-use contact::{BearingGeometry, Groove, HertzContact, Side, SphereCompliance};
+use contact::{BearingGeometry, Groove, HertzContact, LeastSize, Side, SphereCompliance};
 use dynamics::RACEWAY_GROUP;
 use dynamics::effects::Setting;
 use dynamics::kinematics::Rolling;
-use dynamics::model::elastic;
+use dynamics::model::{ShaftInertia, elastic};
 use dynamics::mounting::{Mounting, Unmounted};
 use dynamics::{
     Backend, ContactMode, ContactSettings, Hold, Model, RingModel, Sectors, ShaftDof, Tolerances,
@@ -80,7 +80,7 @@ pub fn model_with_rings(scene: &Scene, rings: [Option<Arc<RingModel>>; 2]) -> Re
         lubricant: scene.lubricant.map(|lubrication| lubrication.lubricant),
     })?;
     let mounting = mounting(scene, &geometry, &rings)?;
-    let shaft = &scene.shaft;
+    let (shaft, ring) = (&scene.shaft, scene.inner.inertia);
     let dofs = [shaft.x, shaft.y, shaft.z, shaft.tilt_x, shaft.tilt_y].map(|motion| match motion {
         tables::Motion::Free => ShaftDof::Free,
         tables::Motion::Locked => ShaftDof::Prescribed(0.0),
@@ -96,8 +96,11 @@ pub fn model_with_rings(scene: &Scene, rings: [Option<Arc<RingModel>>; 2]) -> Re
         ball_material: ball_steel,
         shaft: dofs,
         shaft_schedules: shaft.schedules.clone(),
-        shaft_mass: shaft.mass,
-        shaft_inertia: shaft.inertia,
+        shaft_mass: shaft.mass + ring.map_or(0.0, |r| r.mass),
+        shaft_inertia: ShaftInertia {
+            transverse: shaft.inertia.transverse + ring.map_or(0.0, |r| r.transverse),
+            polar: shaft.inertia.polar + ring.map_or(0.0, |r| r.polar),
+        },
         load_point: shaft.load_point,
         cage: scene.cage.clone(),
         contact: ContactSettings {
@@ -106,7 +109,10 @@ pub fn model_with_rings(scene: &Scene, rings: [Option<Arc<RingModel>>; 2]) -> Re
                 tables::ContactMode::Facet => ContactMode::Facet,
                 tables::ContactMode::Rigid => ContactMode::Rigid,
             },
-            patch_spacings: scene.contact.patch_elements,
+            least_patch: LeastSize {
+                spacings: scene.contact.patch_elements,
+                rolling: scene.contact.patch_length,
+            },
         },
         effects,
         backend: backend(scene),

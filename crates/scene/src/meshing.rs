@@ -8,11 +8,11 @@ use std::path::{Path, PathBuf};
 
 use comm::print;
 use contact::Side;
-use mesh::{ElementKind, Gmsh, Mesh, Overwrite, RingSection, RingSide};
+use mesh::{ElementKind, Gmsh, Mesh, Overwrite, RingSection};
 
 use crate::error::BuildError;
 use crate::section_record::record;
-use crate::tables::{FlexibleRing, MeshFiles, Ring, Scene, Section, SectionElement};
+use crate::tables::{FlexibleRing, MeshFiles, Ring, RingName, Scene, Section, SectionElement};
 
 /// Length unit of the files that Gmsh reads and writes, m.
 const GMSH_UNIT: f64 = 1e-3;
@@ -28,7 +28,7 @@ pub fn build_meshes(
     for line in &scene.assumed {
         print::note(format_args!("assumed: {line}"));
     }
-    let rings = [(RingSide::Inner, &scene.inner), (RingSide::Outer, &scene.outer)];
+    let rings = [(RingName::Inner, &scene.inner), (RingName::Outer, &scene.outer)];
     let jobs: Vec<_> = rings
         .into_iter()
         .filter_map(|(side, ring)| Some((side, job(ring)?)))
@@ -53,7 +53,7 @@ pub fn build_meshes(
 
 /// Builds those meshes of a scene that it describes and that do not exist.
 pub fn build_missing(scene: &Scene, gmsh: Gmsh<'_>) -> Result<(), BuildError> {
-    for (side, ring) in [(RingSide::Inner, &scene.inner), (RingSide::Outer, &scene.outer)] {
+    for (side, ring) in [(RingName::Inner, &scene.inner), (RingName::Outer, &scene.outer)] {
         if let Some((body, section)) = job(ring)
             && !body.mesh.exists()
         {
@@ -65,7 +65,7 @@ pub fn build_missing(scene: &Scene, gmsh: Gmsh<'_>) -> Result<(), BuildError> {
 
 fn build_file(
     scene: &Scene,
-    side: RingSide,
+    side: RingName,
     (body, section): (&FlexibleRing, &Section),
     overwrite: Overwrite,
     gmsh: Gmsh<'_>,
@@ -90,11 +90,11 @@ fn job(ring: &Ring) -> Option<(&FlexibleRing, &Section)> {
 
 fn build_ring(
     scene: &Scene,
-    side: RingSide,
+    side: RingName,
     (body, section): (&FlexibleRing, &Section),
     gmsh: Gmsh<'_>,
 ) -> Result<Mesh, BuildError> {
-    let measures = measures(scene, side, section);
+    let measures = section.measures(&scene.bearing, side);
     if let Some(folder) = body.mesh.parent() {
         std::fs::create_dir_all(folder).map_err(file_error("create", folder))?;
     }
@@ -133,31 +133,6 @@ fn revolved(
         kind,
         &[measures.geometry()?.snap()],
     )?)
-}
-
-fn measures(scene: &Scene, side: RingSide, section: &Section) -> RingSection {
-    let b = &scene.bearing;
-    let (seat_diameter, raceway_diameter, groove_radius) = match side {
-        RingSide::Inner => (b.bore_diameter, b.inner_raceway_diameter, b.inner_groove_radius),
-        RingSide::Outer => (
-            b.outside_diameter,
-            b.outer_raceway_diameter,
-            b.outer_groove_radius,
-        ),
-    };
-    RingSection {
-        side,
-        seat_diameter,
-        raceway_diameter,
-        groove_radius,
-        shoulder_diameters: section.shoulder_diameters,
-        width: b.width,
-        groove_offset: 0.0,
-        groove_elements: section.groove_elements,
-        thickness_elements: section.thickness_elements,
-        shoulder_elements: [section.shoulder_elements; 2],
-        grading: section.grading,
-    }
 }
 
 /// The mesh's path with another ending.

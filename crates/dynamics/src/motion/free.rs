@@ -159,7 +159,7 @@ impl Motion<'_> {
                 sites[index].azimuth - self.frame_angle(side, course.time),
                 on_groove(&raceway.surface, angle, loaded[index]),
                 self.model.hertz[side.index()].semi_axes(force),
-                self.model.contact.patch_spacings,
+                self.model.contact.least_patch,
             )?;
             let (surface, nodes, rule) = (&raceway.surface, &ring.mesh.nodes, &raceway.rule);
             let half = course.travel[ball][side.index()].abs().max(LEAST_TRAVEL);

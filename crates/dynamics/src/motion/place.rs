@@ -194,7 +194,7 @@ impl Motion<'_> {
             azimuth - self.frame_angle(side, course.time),
             on_groove(&moving.raceway.surface, angle, loaded),
             model.hertz[side.index()].semi_axes(force),
-            model.contact.patch_spacings,
+            model.contact.least_patch,
         )?;
         let patch = Patch::new(
             &moving.raceway.surface,

@@ -106,14 +106,14 @@ impl Motion<'_> {
             let force = state.forces[index][0].hypot(state.forces[index][1]);
             let azimuth = self.azimuth_now(state, ball) - self.frame_angle(side, time);
             let [patch_angle, load] = state.places[0][index];
-            let spacings = self.model.contact.patch_spacings;
+            let least = self.model.contact.least_patch;
             let patch_angle = on_groove(&moving.raceway.surface, patch_angle, force > 0.0);
             let shape = PatchShape::new(
                 &moving.raceway.surface,
                 azimuth,
                 patch_angle,
                 hertz.semi_axes(load),
-                spacings,
+                least,
             )?;
             Ok(LoadedPatch {
                 azimuth,

@@ -8,6 +8,7 @@ use contact::{LoadedPatch, NearField, RacewaySurface, Side};
 use dynamics::Hold;
 use fem::stress::StressRecovery;
 
+use crate::support::LEAST_PATCH;
 use crate::support::rings::{Level, ring};
 use crate::{ANGLE, FORCE, NU, model};
 
@@ -32,7 +33,7 @@ fn the_near_field_costs_what_the_documents_say() {
                     angle: ANGLE,
                     semi_axes,
                     patch_angle: ANGLE,
-                    patch_axes: PatchShape::new(&surface, azimuth, ANGLE, semi_axes, 2.0)
+                    patch_axes: PatchShape::new(&surface, azimuth, ANGLE, semi_axes, LEAST_PATCH)
                         .unwrap()
                         .semi_axes,
                 }

@@ -8,31 +8,41 @@ use dynamics::statics::StaticRing;
 use dynamics::{Hold, Model, RingModel};
 use fem::stress::PointRecovery;
 
+use crate::support::LEAST_PATCH;
 use crate::support::rings::{Level, ring};
 use crate::{ANGLE, FORCE, model};
-
-/// Spacings in a patch's semi-axis, as scenes have it.
-const SPACINGS: f64 = 2.0;
 
 /// A ring, clamped, ready for loads.
 pub struct Ring {
     side: Side,
     pub model: Model,
+    /// Force on each patch, N.
+    pub force: f64,
 }
 
 impl Ring {
     pub fn new(side: Side, level: Level) -> Ring {
+        Ring::under(side, level, FORCE)
+    }
+
+    /// The same under another force, N.
+    pub fn under(side: Side, level: Level, force: f64) -> Ring {
         let model = model(side, ring(side, level, Hold::Clamped));
-        Ring { side, model }
+        Ring { side, model, force }
     }
 
     pub fn ring(&self) -> &RingModel {
         self.model.ring(self.side).unwrap()
     }
 
-    /// Semi-axes of the Hertz ellipse of the tests' force, m.
+    /// Semi-axes of the Hertz ellipse of the force, m.
     pub fn hertz_axes(&self) -> [f64; 2] {
-        self.model.hertz[self.side.index()].semi_axes(FORCE)
+        self.model.hertz[self.side.index()].semi_axes(self.force)
+    }
+
+    /// Peak pressure of the force, Pa.
+    pub fn peak_pressure(&self) -> f64 {
+        self.model.hertz[self.side.index()].peak_pressure(self.force)
     }
 
     fn surface(&self) -> RacewaySurface {
@@ -42,10 +52,10 @@ impl Ring {
 
     /// The patch that a run has on this mesh.
     pub fn patch(&self, azimuth: f64) -> PatchShape {
-        PatchShape::new(&self.surface(), azimuth, ANGLE, self.hertz_axes(), SPACINGS).unwrap()
+        PatchShape::new(&self.surface(), azimuth, ANGLE, self.hertz_axes(), LEAST_PATCH).unwrap()
     }
 
-    /// Displacements, m, under the tests' force on each of some patches.
+    /// Displacements, m, under the force on each of some patches.
     pub fn displacements(&self, patches: &[PatchShape]) -> Vec<f64> {
         let (ring, surface, rule) = (self.ring(), self.surface(), PressureRule::new());
         let direction = ring.groove.direction(ANGLE);
@@ -53,7 +63,9 @@ impl Ring {
         for &shape in patches {
             let steel = elastic(&ring.material);
             let patch = Patch::new(&surface, &ring.mesh.nodes, &rule, shape, steel).unwrap();
-            patch.weights.add_load(direction.map(|n| FORCE * n), &mut load);
+            patch
+                .weights
+                .add_load(direction.map(|n| self.force * n), &mut load);
         }
         StaticRing::new(&self.model, self.side, ring)
             .unwrap()

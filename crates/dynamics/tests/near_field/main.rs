@@ -3,6 +3,7 @@
 mod between;
 mod costs;
 mod loaded;
+mod refined;
 mod resolved;
 #[path = "../support/mod.rs"]
 mod support;

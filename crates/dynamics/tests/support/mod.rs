@@ -2,12 +2,18 @@
 
 #![allow(dead_code)]
 
-use contact::{BearingGeometry, HertzContact, Side, SphereCompliance};
+use contact::{BearingGeometry, HertzContact, LeastSize, Side, SphereCompliance};
 use dynamics::effects::{AxialForce, Effect, Moment, RadialForce};
 use dynamics::model::ShaftInertia;
 use dynamics::{ContactMode, ContactSettings, Model, ShaftDof, StaticSolution, StaticSolver, Tolerances};
 use fem::Material;
 use input::Schedule;
+
+/// The least patch of a scene that asks for none.
+pub const LEAST_PATCH: LeastSize = LeastSize {
+    spacings: 2.0,
+    rolling: 1.89e-3,
+};
 
 /// A load case of the 7010C.
 #[derive(Clone, Copy, Debug)]
@@ -88,7 +94,7 @@ impl Case {
             cage: None,
             contact: ContactSettings {
                 mode: ContactMode::Rigid,
-                patch_spacings: 2.0,
+                least_patch: LEAST_PATCH,
             },
             effects,
             backend: dynamics::Backend::Auto,

@@ -5,11 +5,13 @@
 
 mod geo;
 mod geometry;
+mod moments;
 
 use crate::error::MeshError;
 
 pub use geo::{ring_geo, ring_tet_geo};
 pub use geometry::RingGeometry;
+pub use moments::VolumeMoments;
 
 /// Which ring it is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -67,6 +67,7 @@ mod quasi_static;
 mod random;
 pub mod reference;
 mod ring;
+mod ring_inertia;
 mod section;
 mod shaft;
 mod solver;
@@ -108,6 +109,7 @@ pub use self::probes::{Axes, ContactProbe, NodeProbe, Probes, SectionPoint};
 pub use self::profiles::SurfaceProfiles;
 pub use self::quasi_static::QuasiStatic;
 pub use self::ring::{FlexibleRing, MeshFiles, Ring, RingName, Support};
+pub use self::ring_inertia::RingInertia;
 pub use self::section::{Section, SectionElement};
 pub use self::shaft::{Motion, Shaft};
 pub use self::solver::{Backend, Solver};
@@ -332,6 +334,7 @@ impl Source<'_> {
             .check(diameters, surfaces, &mut contact, &mut problems);
         let context = RingContext {
             bearing: bearing.as_ref(),
+            density: materials.as_ref().map(|m| m.rings.density),
             mode: contact.mode,
             scene: self.path,
             overridden: !self.overrides.is_empty(),
@@ -376,8 +379,7 @@ impl Source<'_> {
         let rigid = [raw.inner.is_rigid(), raw.outer.is_rigid()];
         let probes = ProbesContext::new(bearing.as_ref(), rigid, has_speed);
         let probes = raw.probes.check(probes, &mut problems);
-        let turns = raw.speed.is_some() && raw.modes.is_none();
-        let lubricant = raw.lubricant(turns, &mut problems);
+        let lubricant = raw.lubricant(raw.speed.is_some() && raw.modes.is_none(), &mut problems);
         let life = raw.life(&mut problems);
         let heat = raw.heat(&mut problems);
         let modes = ModesContext {

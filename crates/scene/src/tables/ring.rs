@@ -8,6 +8,7 @@ use serde::Deserialize;
 use super::bearing::Bearing;
 use super::contact::ContactMode;
 use super::cut::{Cut, RawCut};
+use super::ring_inertia::{self, InertiaSource, RingInertia};
 use super::section::{RawSection, Section};
 
 /// As typed.
@@ -21,6 +22,7 @@ pub struct RawRing {
     groove_z: Option<Quantity<LENGTH>>,
     partial: Option<bool>,
     section: Option<RawSection>,
+    inertia: Option<InertiaSource>,
     #[serde(default)]
     cut: Vec<RawCut>,
 }
@@ -70,6 +72,8 @@ pub struct Ring {
     pub body: Option<FlexibleRing>,
     /// The section `raceway mesh` builds, when given.
     pub section: Option<Section>,
+    /// Inertia of a rigid ring, where it has its own.
+    pub inertia: Option<RingInertia>,
 }
 
 /// A ring that is a finite-element body.
@@ -105,6 +109,8 @@ pub enum MeshFiles {
 pub struct RingContext<'a> {
     /// Macro-geometry, when it is sound.
     pub bearing: Option<&'a Bearing>,
+    /// Density of the rings, kg/m^3, when it is sound.
+    pub density: Option<f64>,
     /// Contact mode of the scene.
     pub mode: ContactMode,
     /// The scene file; relative paths start at its folder.
@@ -135,7 +141,12 @@ impl RawRing {
             .as_ref()
             .map(|s| s.check(ring, context.bearing, problems, assumed));
         if self.is_rigid() {
-            return Ring { body: None, section };
+            let inertia = self.check_inertia(ring, section.as_ref(), context, problems, assumed);
+            return Ring {
+                body: None,
+                section,
+                inertia,
+            };
         }
         if context.mode == ContactMode::Rigid {
             let typed = if self.flexible.is_some() {
@@ -147,12 +158,39 @@ impl RawRing {
                 "{key}.flexible is true{typed} but contact.mode is \"rigid\"; set {key}.flexible = false, or \
                  contact.mode = \"patch\" to let the ring deform"
             ));
-            return Ring { body: None, section };
+            return Ring {
+                body: None,
+                section,
+                inertia: None,
+            };
         }
         Ring {
             body: self.check_flexible(ring, context, problems),
             section,
+            inertia: None,
         }
+    }
+
+    /// Inertia of a rigid ring that asks for that of its section.
+    fn check_inertia(
+        &self,
+        ring: RingName,
+        section: Option<&Section>,
+        context: RingContext<'_>,
+        problems: &mut Problems,
+        assumed: &mut Vec<String>,
+    ) -> Option<RingInertia> {
+        let InertiaSource::Section = self.inertia?;
+        if ring == RingName::Outer {
+            problems.add(ring_inertia::OF_OUTER);
+            return None;
+        }
+        let Some(section) = section else {
+            problems.add(ring_inertia::NO_SECTION);
+            return None;
+        };
+        let measures = section.measures(context.bearing?, ring);
+        ring_inertia::of_section(&measures, context.density?, problems, assumed)
     }
 
     fn check_flexible(

@@ -6,6 +6,7 @@
 //! low shoulder or a counterbore has to be given.
 
 use input::{LENGTH, Problems, Quantity, ten_digits};
+use mesh::{RingSection, RingSide};
 use serde::Deserialize;
 
 use super::bearing::Bearing;
@@ -63,6 +64,39 @@ const BEYOND_CONTACT: f64 = std::f64::consts::PI / 9.0;
 const MAX_ELEMENTS: i64 = 1000;
 /// The same round the ring.
 const MAX_SECTORS: i64 = 100_000;
+
+impl Section {
+    /// Measures of the ring that it is the section of.
+    pub fn measures(&self, bearing: &Bearing, ring: RingName) -> RingSection {
+        let (side, seat_diameter, raceway_diameter, groove_radius) = match ring {
+            RingName::Inner => (
+                RingSide::Inner,
+                bearing.bore_diameter,
+                bearing.inner_raceway_diameter,
+                bearing.inner_groove_radius,
+            ),
+            RingName::Outer => (
+                RingSide::Outer,
+                bearing.outside_diameter,
+                bearing.outer_raceway_diameter,
+                bearing.outer_groove_radius,
+            ),
+        };
+        RingSection {
+            side,
+            seat_diameter,
+            raceway_diameter,
+            groove_radius,
+            shoulder_diameters: self.shoulder_diameters,
+            width: bearing.width,
+            groove_offset: 0.0,
+            groove_elements: self.groove_elements,
+            thickness_elements: self.thickness_elements,
+            shoulder_elements: [self.shoulder_elements; 2],
+            grading: self.grading,
+        }
+    }
+}
 
 impl RawSection {
     /// Checks the section of `ring`; the bearing is there when it is sound. `assumed` is told shoulders that are not

@@ -3,7 +3,7 @@
 use super::{Case, EXAMPLE, Scene, assert_messages, message_of, with_line};
 
 /// Values that make no sense.
-const INVALID: [Case; 59] = [
+const INVALID: [Case; 61] = [
     (
         "cut",
         "cut = [{ azimuth = [\"96 deg\", \"84 deg\"] }]",
@@ -157,6 +157,16 @@ const INVALID: [Case; 59] = [
         &[
             "contact.outer_stiffness is 8.09e20 N/m^1.5; that is 7.5e10 times E* sqrt(ball_diameter), check its unit",
         ],
+    ),
+    (
+        "patch_length",
+        "patch_length = \"-1 mm\"",
+        &["contact.patch_length is -1 mm; expected 0 mm to a ball diameter, 0.21 of one is usual"],
+    ),
+    (
+        "patch_length",
+        "patch_length = \"1.89 m\"",
+        &["contact.patch_length is 1.89 m; expected 0 mm to a ball diameter, 0.21 of one is usual"],
     ),
     (
         "patch_elements",

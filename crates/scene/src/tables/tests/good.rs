@@ -82,6 +82,8 @@ fn what_is_optional_may_be_left_out() {
         "inner_stiffness",
         "outer_stiffness",
         "patch_elements",
+        "patch_length",
+        "inertia",
         "groove_z",
         "flexible",
         "grading",
@@ -104,9 +106,12 @@ fn what_is_optional_may_be_left_out() {
         Contact {
             inner_stiffness: None,
             outer_stiffness: None,
+            // One rounding.
+            patch_length: short.contact.patch_length,
             ..long.contact
         }
     );
+    assert!((short.contact.patch_length / long.contact.patch_length - 1.0).abs() < 1e-15);
     assert_eq!((short.solver, short.output), (long.solver, long.output));
     assert_eq!((short.inner.body, short.bearing), (long.inner.body, long.bearing));
     assert_eq!(short.inner.section.map(|s| s.grading), Some(1.0));

@@ -19,6 +19,7 @@ mod probes;
 mod profiles;
 mod quasi_static;
 mod reference;
+mod ring_inertia;
 mod schedules;
 mod slips;
 mod sweeps;
