@@ -2,12 +2,12 @@
 //!
 //! The force Q is spread as a semi-ellipsoidal pressure over an ellipse on the torus with semi-axes [along the
 //! groove, rolling direction], each the larger of the Hertz semi-axis and a few node spacings, in the rolling direction
-//! of a length too: a pressure that shrank with the elements would leave their errors the same share of a stress that
-//! grows ([`crate::near_field`]). Its consistent nodal weights w_a sum to 1. The elastic motion of the groove centre is
-//! measured with the *same* weights: u_c = u_bar + omega x (x_c - x_bar), u_bar the weighted mean displacement of the
-//! patch and omega its rotation by weighted least squares. This is exact for rigid motion, and force and motion are
-//! conjugate, so tangents are symmetric and energy is conserved. Only the meridian components [radial, axial] of u_c
-//! enter the contact; a tangential motion of a torus changes no gap.
+//! of a length too, or the elements' error would stay the same share of a stress that grows with refinement. Its
+//! consistent nodal weights w_a sum to 1. The elastic motion of the groove centre is measured with the *same*
+//! weights: u_c = u_bar + omega x (x_c - x_bar), u_bar the weighted mean displacement of the patch and omega its
+//! rotation by weighted least squares. This is exact for rigid motion, and force and motion are conjugate, so
+//! tangents are symmetric and energy is conserved. Only the meridian components [radial, axial] of u_c enter the
+//! contact; a tangential motion of a torus changes no gap.
 
 use crate::error::ContactError;
 use crate::halfspace::patch_compliance;

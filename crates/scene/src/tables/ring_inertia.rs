@@ -34,8 +34,8 @@ pub struct RingInertia {
 const MAX_SHARE: f64 = 1e-3;
 
 /// What is said of an outer ring that asks for it.
-pub const OF_OUTER: &str = "outer.inertia is there, but the outer ring does not move with the shaft; remove it, or give \
-                            the mass of a ring that slides in its seat as effects.spring_preload.mass";
+pub const OF_OUTER: &str = "outer.inertia is there, but the outer ring does not move with the shaft; remove it, or \
+                            give the mass of a ring that slides in its seat as effects.spring_preload.mass";
 /// What is said where no section is described.
 pub const NO_SECTION: &str = "inner.inertia is \"section\", but there is no table [inner.section]; describe the \
                               section, or give shaft.mass, shaft.transverse_inertia and shaft.polar_inertia instead";

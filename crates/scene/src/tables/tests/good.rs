@@ -123,6 +123,7 @@ fn rigid_rings_need_no_tables_beyond_the_switch() {
     let text = without_table("[inner.section]").replace("mode = \"patch\"", "mode = \"rigid\"");
     let text = text
         .replace("flexible = true", "flexible = false")
+        .replace("inertia = \"section\"", "")
         .replace("[outer]", "[outer]\nflexible = false");
     let scene = parse(&text, &[]).unwrap();
     assert_eq!((scene.inner.body, scene.outer.body), (None, None));
