@@ -15,6 +15,8 @@ use crate::rating::{CatalogueBearing, REFERENCE_GROOVES, STATIC_PRESSURE};
 
 /// Exponent of life over load of ball bearings (ISO 281).
 const LIFE_EXPONENT: f64 = 3.0;
+/// Contact angle that no clearance of a deep groove bearing makes, deg.
+const LARGEST_OF_CLEARANCE: f64 = 20.0;
 
 /// What a scene says of its bearing's life.
 #[derive(Clone, Debug, PartialEq)]
@@ -56,10 +58,14 @@ impl Rated {
     fn notes(&self) -> Vec<String> {
         let mut notes = Vec::new();
         if self.life.contact_angle.is_none() {
+            let angle = self.bearing.contact_angle.to_degrees();
+            // Clearance alone makes no larger angle.
+            let deep_groove = match angle < LARGEST_OF_CLEARANCE {
+                true => "; catalogues rate a deep groove bearing at 0 deg, life.contact_angle",
+                false => "",
+            };
             notes.push(format!(
-                "nominal contact angle {:.2} deg: the free contact angle; catalogues rate a deep groove bearing at \
-                 0 deg, life.contact_angle",
-                self.bearing.contact_angle.to_degrees()
+                "nominal contact angle {angle:.2} deg: the free contact angle{deep_groove}"
             ));
         }
         notes
