@@ -22,6 +22,10 @@ use crate::settings::speeds;
 use crate::surfaces::surfaces;
 use crate::tables::{self, FlexibleRing, Scene};
 
+/// Least semi-axis of a patch on quadratic elements in the rolling direction, ball diameters. A patch of one such element
+/// has a pressure that grows with refinement, and so have the errors of the stress beside it (docs/stress.md).
+const LEAST_QUADRATIC_PATCH: f64 = 0.21;
+
 /// Deviation of raceway nodes from the scene's torus that is taken for round-off of a file, over the groove
 /// radius.
 const TORUS_TOLERANCE: f64 = 2e-4;
@@ -81,6 +85,12 @@ pub fn model_with_rings(scene: &Scene, rings: [Option<Arc<RingModel>>; 2]) -> Re
     })?;
     let mounting = mounting(scene, &geometry, &rings)?;
     let (shaft, ring) = (&scene.shaft, scene.inner.inertia);
+    let is_quadratic = |ring: &RingModel| ring.mesh.kind.n_nodes() > ring.mesh.kind.n_corners();
+    let least_length = match rings.iter().flatten().any(|ring| is_quadratic(ring)) {
+        true => LEAST_QUADRATIC_PATCH * geometry.ball_diameter,
+        false => 0.0,
+    };
+    let patch_length = scene.contact.patch_length.unwrap_or(least_length);
     let dofs = [shaft.x, shaft.y, shaft.z, shaft.tilt_x, shaft.tilt_y].map(|motion| match motion {
         tables::Motion::Free => ShaftDof::Free,
         tables::Motion::Locked => ShaftDof::Prescribed(0.0),
@@ -111,7 +121,7 @@ pub fn model_with_rings(scene: &Scene, rings: [Option<Arc<RingModel>>; 2]) -> Re
             },
             least_patch: LeastSize {
                 spacings: scene.contact.patch_elements,
-                rolling: scene.contact.patch_length,
+                rolling: patch_length,
             },
         },
         effects,

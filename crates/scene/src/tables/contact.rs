@@ -53,8 +53,9 @@ pub struct Contact {
     pub outer_stiffness: Option<f64>,
     /// Least semi-axis of a contact patch, in element sizes.
     pub patch_elements: f64,
-    /// Least semi-axis of a contact patch in the rolling direction, m.
-    pub patch_length: f64,
+    /// Least semi-axis of a contact patch in the rolling direction, m; None: by the elements, 0.21 ball diameters where
+    /// a ring has quadratic ones.
+    pub patch_length: Option<f64>,
     /// What balls yield. By default spheres, but half-spaces with rigid rings (the Jones-Harris limit), with facets
     /// (the paper's way), where a stiffness is given and where balls are free.
     pub ball: BallElasticity,
@@ -64,9 +65,6 @@ pub struct Contact {
 
 /// Smaller patches see single elements (design number: the structural compliance is then mesh-independent).
 const DEFAULT_PATCH_ELEMENTS: f64 = 2.0;
-/// Default least semi-axis in the rolling direction, ball diameters: stress near a contact is then within 0.01 peak
-/// pressures of that of other meshes, hex8 and hex20 (docs/stress.md).
-const DEFAULT_PATCH_LENGTH: f64 = 0.21;
 /// A given K may differ from E* sqrt(D_w), the size of exact Hertz, by this factor, such as to compare with rigid
 /// contacts: more is nothing that numbers of 16 digits can solve.
 const SLIP_FACTOR: f64 = 1e8;
@@ -155,21 +153,16 @@ impl RawContact {
         }
     }
 
-    /// Least semi-axis of a patch in the rolling direction, m: typed, or a share of the ball diameter.
-    fn least_length(&self, bearing: Option<&Bearing>, problems: &mut Problems) -> f64 {
-        let Some(diameter) = bearing.map(|b| b.ball_diameter) else {
-            return 0.0;
-        };
-        let Some(typed) = &self.patch_length else {
-            return DEFAULT_PATCH_LENGTH * diameter;
-        };
+    /// Least semi-axis of a patch in the rolling direction, m, if it is typed.
+    fn least_length(&self, bearing: Option<&Bearing>, problems: &mut Problems) -> Option<f64> {
+        let (diameter, typed) = (bearing?.ball_diameter, self.patch_length.as_ref()?);
         problems.require(
             (0.0..=diameter).contains(&typed.si()),
             "contact.patch_length",
             typed,
             "expected 0 mm to a ball diameter, 0.21 of one is usual",
         );
-        typed.si()
+        Some(typed.si())
     }
 }
 
