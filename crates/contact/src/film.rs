@@ -12,7 +12,8 @@
 //! stiffens (hard EHL), k of 1 and more. Source: Hamrock and Dowson, J. Lubrication Technology 99 (1977) 264,
 //! DOI 10.1115/1.3453074. Cost: three powers.
 
-use crate::hertz::Elastic;
+use crate::geometry::{BearingGeometry, Side};
+use crate::hertz::{Elastic, HertzContact};
 
 /// Temperatures of the two viscosities of an oil, K.
 const FORTY: f64 = 313.15;
@@ -58,6 +59,17 @@ impl FilmContact {
         }
     }
 
+    /// Contact with a raceway.
+    pub fn of_raceway(
+        geometry: &BearingGeometry,
+        side: Side,
+        hertz: &HertzContact,
+        bodies: [Elastic; 2],
+    ) -> FilmContact {
+        let [a, b] = hertz.semi_axes(1.0);
+        FilmContact::new(geometry.sum_of_rolling_curvatures(side), a / b, bodies)
+    }
+
     /// Film at a mean surface speed, m/s, and a load, N; None without motion or load.
     pub fn film(&self, lubricant: Lubricant, speed: f64, load: f64) -> Option<Film> {
         if speed == 0.0 || load <= 0.0 {
@@ -99,7 +111,6 @@ pub fn walther(at_40: f64, at_100: f64, temperature: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{BearingGeometry, HertzContact, Side};
 
     /// Films of the 7010C at 1800 rpm under 331.78 N: u = 3.012 m/s, eta_0 = 0.04 Pa s, xi = 2.2e-8 1/Pa.
     fn films(speed: f64, load: f64) -> [Film; 2] {

@@ -117,6 +117,11 @@ impl BearingGeometry {
         -side.sign() * cos / radius
     }
 
+    /// Curvature of ball and raceway against each other in the rolling direction, 1/m.
+    pub fn sum_of_rolling_curvatures(&self, side: Side) -> f64 {
+        2.0 / self.ball_diameter + self.rolling_curvature(side)
+    }
+
     /// Radius of the circle of groove centres, m.
     pub fn centre_radius(&self, side: Side) -> f64 {
         match side {

@@ -213,10 +213,9 @@ impl Model {
 
     /// Contact of a ball with a raceway as its film sees it; a rigid ring has the material of the balls.
     pub fn film_contact(&self, side: Side) -> FilmContact {
-        let [a, b] = self.hertz[side.index()].semi_axes(1.0);
-        let rolling = 2.0 / self.geometry.ball_diameter + self.geometry.rolling_curvature(side);
         let ring = self.ring(side).map_or(&self.ball_material, |ring| &ring.material);
-        FilmContact::new(rolling, a / b, [elastic(&self.ball_material), elastic(ring)])
+        let bodies = [elastic(&self.ball_material), elastic(ring)];
+        FilmContact::of_raceway(&self.geometry, side, &self.hertz[side.index()], bodies)
     }
 
     /// Mass, kg, and moment of inertia, kg m^2, of a ball.

@@ -41,11 +41,8 @@ impl FilmLaw {
         let bodies = [rings, balls]
             .map(|material| elastic(&scene::material(material).expect("materials were checked")));
         let geometry = &model.geometry;
-        let contact = |side: Side| {
-            let [a, b] = model.hertz[side.index()].semi_axes(1.0);
-            let rolling = 2.0 / geometry.ball_diameter + geometry.rolling_curvature(side);
-            FilmContact::new(rolling, a / b, bodies)
-        };
+        let contact =
+            |side: Side| FilmContact::of_raceway(geometry, side, &model.hertz[side.index()], bodies);
         Some(FilmLaw {
             contacts: Side::BOTH.map(contact),
             lubricant: lubrication.lubricant,

@@ -167,7 +167,7 @@ impl SteadyBall<'_> {
     fn with_films(&self, y: &[f64; N]) -> Self {
         let with_film = |contact: SteadyContact| {
             let speed = self.rolling_speed(&contact, y);
-            let film = self.traction.law.film(&contact.film, speed, contact.force);
+            let film = self.traction.law.film(|| contact.film, speed, contact.force);
             let ellipse = Ellipse {
                 film,
                 ..contact.ellipse

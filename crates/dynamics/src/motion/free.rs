@@ -288,7 +288,7 @@ impl Motion<'_> {
             ellipse: Ellipse {
                 film: traction
                     .law
-                    .film(&self.model.film_contact(site.side), rolling.speed, force),
+                    .film(|| self.model.film_contact(site.side), rolling.speed, force),
                 ..ellipse
             },
             small_slip: traction.creep.slip(traction.law.at(0.0)[0], &rolling),

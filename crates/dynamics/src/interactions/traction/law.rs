@@ -84,9 +84,9 @@ impl TractionLaw {
     }
 
     /// Film of a contact whose surfaces roll at a speed, m/s, under a force, N; 0 where the law knows none.
-    pub fn film(&self, contact: &FilmContact, speed: f64, force: f64) -> f64 {
+    pub fn film(&self, contact: impl FnOnce() -> FilmContact, speed: f64, force: f64) -> f64 {
         match self {
-            TractionLaw::LimitingShear(film) => film.film(contact, speed, force),
+            TractionLaw::LimitingShear(film) => film.film(&contact(), speed, force),
             _ => 0.0,
         }
     }
