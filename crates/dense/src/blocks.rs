@@ -28,61 +28,104 @@ pub fn solve_with_blocks(
         DenseLu::factor(n, a)?.solve(rhs, 1);
         return Ok(());
     }
-    let in_block = |i: usize| blocks.iter().any(|block| block.contains(&i));
-    let rest: Vec<usize> = (0..n).filter(|i| !in_block(*i)).collect();
-    let m = rest.len();
-    let row_of = |i: &usize| {
-        let row = &a[n * i..n * (i + 1)];
-        rest.iter().map(|j| row[*j]).collect::<Vec<f64>>()
+    let rest = outside(n, blocks);
+    let m: usize = rest.iter().map(Range::len).sum();
+    let add_rest = |row: &[f64], all: &mut Vec<f64>| {
+        rest.iter()
+            .for_each(|range| all.extend_from_slice(&row[range.clone()]));
     };
-    let mut left: Vec<f64> = rest.iter().flat_map(row_of).collect();
-    let mut right: Vec<f64> = rest.iter().map(|i| rhs[*i]).collect();
-    let mut inner = Vec::new();
+    let rows: Vec<usize> = rest.iter().cloned().flatten().collect();
+    let mut left = Vec::with_capacity(m * m);
+    rows.iter().for_each(|i| add_rest(&a[n * i..], &mut left));
+    let mut right = Vec::with_capacity(m);
+    add_rest(rhs, &mut right);
+    let mut eliminated = Vec::with_capacity(blocks.len());
     for block in blocks {
-        let size = block.len();
-        let own: Vec<f64> = block
-            .clone()
-            .flat_map(|i| a[n * i + block.start..n * i + block.end].to_vec())
-            .collect();
-        let lu = DenseLu::factor(size, &own)?;
-        let is_some = |j: &usize| block.clone().any(|i| a[n * i + rest[*j]] != 0.0);
-        let columns: Vec<usize> = (0..m).filter(is_some).collect();
-        // A^-1 [B, rhs], column-major.
-        let mut solved: Vec<f64> = columns
-            .iter()
-            .flat_map(|j| block.clone().map(|i| a[n * i + rest[*j]]))
-            .chain(rhs[block.clone()].iter().copied())
-            .collect();
-        lu.solve(&mut solved, columns.len() + 1);
-        let (x, y) = solved.split_at(size * columns.len());
-        for (k, i) in rest.iter().enumerate() {
-            let row = &a[n * i + block.start..n * i + block.end];
-            if row.iter().all(|c| *c == 0.0) {
-                continue;
+        let solved = eliminate((n, a), block, &rows, rhs)?;
+        let (width, columns) = (solved.columns.len() + 1, &solved.columns);
+        for (k, &i) in rows.iter().enumerate() {
+            let couples = &a[n * i..][block.clone()];
+            for (c, x) in couples.iter().zip(solved.x.chunks_exact(width)) {
+                if *c == 0.0 {
+                    continue;
+                }
+                let row = &mut left[m * k..m * (k + 1)];
+                columns.iter().zip(x).for_each(|(j, x)| row[*j] -= c * x);
+                right[k] -= c * x[width - 1];
             }
-            let product = |v: &[f64]| row.iter().zip(v).map(|(c, v)| c * v).sum::<f64>();
-            for (column, x) in columns.iter().zip(x.chunks_exact(size)) {
-                left[m * k + column] -= product(x);
-            }
-            right[k] -= product(y);
         }
-        inner.push((columns, solved));
+        eliminated.push(solved);
     }
     if m > 0 {
         DenseLu::factor(m, &left)?.solve(&mut right, 1);
     }
-    for (block, (columns, solved)) in blocks.iter().zip(inner) {
-        let size = block.len();
-        let (x, y) = solved.split_at(size * columns.len());
-        rhs[block.clone()].copy_from_slice(y);
-        for (column, x) in columns.iter().zip(x.chunks_exact(size)) {
-            for (value, x) in rhs[block.clone()].iter_mut().zip(x) {
-                *value -= x * right[*column];
-            }
+    for (block, Eliminated { columns, x }) in blocks.iter().zip(eliminated) {
+        for (value, x) in rhs[block.clone()]
+            .iter_mut()
+            .zip(x.chunks_exact(columns.len() + 1))
+        {
+            let coupled = columns.iter().zip(x).map(|(j, x)| x * right[*j]);
+            *value = x[columns.len()] - coupled.sum::<f64>();
         }
     }
-    rest.iter().zip(right).for_each(|(i, value)| rhs[*i] = value);
+    rows.iter().zip(right).for_each(|(i, value)| rhs[*i] = value);
     Ok(())
+}
+
+/// What no block has, ascending.
+fn outside(n: usize, blocks: &[Range<usize>]) -> Vec<Range<usize>> {
+    let mut sorted: Vec<&Range<usize>> = blocks.iter().collect();
+    sorted.sort_unstable_by_key(|block| block.start);
+    let ends = sorted.iter().map(|block| block.end);
+    let starts = sorted.iter().map(|block| block.start);
+    std::iter::once(0)
+        .chain(ends)
+        .zip(starts.chain([n]))
+        .map(|(start, end)| start..end)
+        .filter(|range| !range.is_empty())
+        .collect()
+}
+
+/// A^-1 [B, rhs] of a block.
+struct Eliminated {
+    /// Columns of B that are not zero, among those outside of all blocks.
+    columns: Vec<usize>,
+    /// Row-major.
+    x: Vec<f64>,
+}
+
+fn eliminate(
+    (n, a): (usize, &[f64]),
+    block: &Range<usize>,
+    outside: &[usize],
+    rhs: &[f64],
+) -> Result<Eliminated, DenseError> {
+    let size = block.len();
+    let mut own = Vec::with_capacity(size * size);
+    let mut is_some = vec![false; outside.len()];
+    for i in block.clone() {
+        let row = &a[n * i..n * (i + 1)];
+        own.extend_from_slice(&row[block.clone()]);
+        is_some
+            .iter_mut()
+            .zip(outside)
+            .for_each(|(is, j)| *is |= row[*j] != 0.0);
+    }
+    let columns: Vec<usize> = (0..outside.len()).filter(|k| is_some[*k]).collect();
+    // Column-major.
+    let mut inverse: Vec<f64> = (0..size * size)
+        .map(|i| f64::from(u8::from(i % (size + 1) == 0)))
+        .collect();
+    DenseLu::factor(size, &own)?.solve(&mut inverse, size);
+    let mut x = vec![0.0; size * (columns.len() + 1)];
+    for (j, i) in block.clone().enumerate() {
+        let coupled = columns.iter().map(|k| a[n * i + outside[*k]]);
+        let row: Vec<f64> = coupled.chain([rhs[i]]).collect();
+        for (x, factor) in x.chunks_exact_mut(row.len()).zip(&inverse[size * j..]) {
+            x.iter_mut().zip(&row).for_each(|(x, b)| *x += factor * b);
+        }
+    }
+    Ok(Eliminated { columns, x })
 }
 
 #[cfg(test)]
