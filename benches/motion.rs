@@ -19,6 +19,9 @@ mod support;
 #[path = "../crates/dynamics/benches/support/clock.rs"]
 mod clock;
 
+#[path = "support/rolling.rs"]
+mod rolling;
+
 use std::fs::{self, File};
 use std::io::Write;
 use std::path::Path;
@@ -26,13 +29,13 @@ use std::path::Path;
 use checkpoint::{Body, CellFields, Output, PointFields, StateArray, StepRecord, Storage};
 use clock::{Runs, least_wall};
 use contact::Side;
-use dynamics::costs::*;
 use dynamics::effects::FrameRotation;
 use dynamics::kinematics::Speed;
-use dynamics::motion::{Motion, MotionSettings, MotionState, StepCache, StepReport};
-use dynamics::{Backend, ContactMode, Hold, Model, NodalStress, StaticSolver};
+use dynamics::motion::MotionState;
+use dynamics::{Backend, ContactMode, Hold, Model, NodalStress};
 use fem::stress::von_mises;
 use rayon::prelude::*;
+use rolling::{DT, Rolling, SPEED};
 use support::Case;
 use support::rings::Level;
 use timer::Stopwatch;
@@ -50,21 +53,6 @@ const SIZES: [(&str, Level); 4] = [
 const UPDATED: usize = 8;
 /// Steps of a hundredth of a ball's revolution of 77 ms.
 const HUNDREDTH: usize = 77;
-/// Parts of a step in the table, and their laps.
-const PARTS: [(&str, &str); 8] = [
-    ("step/loads", LOADS),
-    ("step/patches", PATCHES),
-    ("step/right_side", RIGHT_SIDE),
-    ("step/solve", BLOCK_SOLVE),
-    ("step/raceways", RACEWAYS),
-    ("step/newton", NEWTON),
-    ("step/frame", FRAME),
-    ("step/update", UPDATE),
-];
-/// Step size, s, and speed, rad/s (1800 rpm).
-const DT: f64 = 1e-5;
-const SPEED: f64 = 60.0 * std::f64::consts::PI;
-
 fn bearing(level: Level, frame_rotation: bool) -> Model {
     let case = Case {
         radial: 1000.0,
@@ -77,69 +65,6 @@ fn bearing(level: Level, frame_rotation: bool) -> Model {
         }));
     }
     model
-}
-
-fn settings() -> MotionSettings {
-    MotionSettings::conserving(DT, Speed::constant(SPEED))
-}
-
-/// A bearing on its way.
-struct Rolling<'a> {
-    motion: Motion<'a>,
-    state: MotionState,
-    cache: StepCache,
-    laps: Runs,
-    report: StepReport,
-    n_steps: usize,
-}
-
-impl<'a> Rolling<'a> {
-    fn new(model: &'a Model) -> Rolling<'a> {
-        let start = StaticSolver::new(model)
-            .and_then(|mut solver| solver.solve(model, None))
-            .expect("the bearing has an equilibrium");
-        let motion = Motion::new(model, settings()).expect("the rings can be factored");
-        let state = motion.start(&start);
-        let mut cache = StepCache::default();
-        // The first step touches memory for the first time.
-        let state = motion
-            .step(&state, &mut cache)
-            .expect("a step from equilibrium")
-            .0;
-        Rolling {
-            motion,
-            state,
-            cache,
-            laps: Runs::default(),
-            report: StepReport::default(),
-            n_steps: 0,
-        }
-    }
-
-    fn step(&mut self) {
-        let (next, report) = self
-            .laps
-            .time("step", || self.motion.step(&self.state, &mut self.cache))
-            .expect("slow rolling");
-        for (part, lap) in PARTS {
-            self.laps.add_wall(part, report.laps.seconds(lap));
-        }
-        self.laps.end_run();
-        self.report.add(&report);
-        self.n_steps += 1;
-        self.state = next;
-    }
-
-    fn print(&self, name: &str) {
-        let per_step = |n: usize| n as f64 / self.n_steps as f64;
-        println!(
-            "\n{name}: {} steps, {:.1} newton iterations and {:.1} frame rounds each",
-            self.n_steps,
-            per_step(self.report.newton_iterations),
-            per_step(self.report.frame_rounds)
-        );
-        self.laps.print();
-    }
 }
 
 /// Stress of both rings at their nodes, Pa, and the file of the step.

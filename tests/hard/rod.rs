@@ -23,7 +23,9 @@ use dynamics::system::{ElasticPorts, Interval};
 use dynamics::{Backend, Hold, RingModel};
 use fem::Material;
 use mesh::{ElementKind, Facet, Mesh};
-use ring::{BodySettings, End, Frame, KnownLoad, Partner, PortForces, RingState, StepScheme, elastic_body};
+use ring::{
+    BodySettings, End, Feet, Frame, KnownLoad, Partner, PortForces, RingState, StepScheme, elastic_body,
+};
 use timer::SharedLaps;
 
 /// Dimensions and numbers of a bar and its flight.
@@ -172,7 +174,11 @@ impl Rod {
                 turn: None,
             };
             let known = Arc::new(factor.predict(&state, load));
-            let mut moving = factor.begin(&state, known, std::slice::from_ref(&foot));
+            let feet = Feet {
+                weights: std::slice::from_ref(&foot),
+                per_contact: 1,
+            };
+            let mut moving = factor.begin(&state, known, feet);
             let answer = moving.answer().clone();
             let inverse = DenseCholesky::factor(2, &answer.compliance).unwrap().inverse();
             let inertia = wall.map(|start| Inertia {

@@ -47,6 +47,17 @@ impl Affine {
         let from = [azimuth - self.origin[0], angle - self.origin[1]];
         [0, 1].map(|i| self.inverse[i][0] * from[0] + self.inverse[i][1] * from[1])
     }
+
+    /// Growth of the reference coordinates with the azimuth, per rad.
+    pub fn azimuth_slope(&self) -> [f64; 2] {
+        [self.inverse[0][0], self.inverse[1][0]]
+    }
+}
+
+/// Growth of the reference coordinates with the azimuth, per rad, at a point of a facet; 0 where its map is singular.
+pub(crate) fn azimuth_slope(kind: FacetKind, coordinates: &[[f64; 2]], xi: [f64; 2]) -> [f64; 2] {
+    let (_, j) = linear(kind, coordinates, xi);
+    determinant(j).map_or([0.0; 2], |det| [j[1][1] / det, -j[1][0] / det])
 }
 
 /// Reference coordinates of a target (azimuth, groove angle) by Newton; None when it does not converge.

@@ -12,7 +12,7 @@
 use crate::error::ContactError;
 use crate::halfspace::patch_compliance;
 use crate::hertz::Elastic;
-use crate::pressure::NodeSums;
+use crate::pressure::{NodeSlopes, NodeSums};
 use crate::quadrature::PressureRule;
 use crate::raceway::RacewaySurface;
 use crate::vector::cross;
@@ -94,6 +94,26 @@ impl Patch {
         elastic: Elastic,
     ) -> Result<Patch, ContactError> {
         let sums = NodeSums::new(surface, nodes, rule, shape)?;
+        Ok(Patch::of_sums(surface, &sums, shape, elastic))
+    }
+
+    /// The same of a free ball, with two more weights: of traction, the mean motion of the patch along the rolling
+    /// direction t and along q = n x t, n the normal into the ring, which spread forces by the same pressure; and of
+    /// the slope, the growth of the groove centre's motion [radial, axial] with the azimuth, 1/rad.
+    pub fn of_free_ball(
+        surface: &RacewaySurface,
+        nodes: &NodePositions,
+        rule: &PressureRule,
+        shape: PatchShape,
+        elastic: Elastic,
+    ) -> Result<(Patch, [NodalWeights; 2]), ContactError> {
+        let (sums, slopes) = NodeSums::with_slopes(surface, nodes, rule, shape)?;
+        let patch = Patch::of_sums(surface, &sums, shape, elastic);
+        let slope = slope_weights(surface, (&sums, &slopes), shape.azimuth);
+        Ok((patch, [traction_weights(surface, sums, shape), slope]))
+    }
+
+    fn of_sums(surface: &RacewaySurface, sums: &NodeSums, shape: PatchShape, elastic: Elastic) -> Patch {
         let inertia = sums.inertia();
         let (sin, cos) = shape.azimuth.sin_cos();
         let lever = axpy(surface.groove.centre(shape.azimuth), -1.0, sums.mean);
@@ -104,63 +124,69 @@ impl Patch {
             .map(|(weight, moment)| [0, 1].map(|i| axpy(cross(twists[i], *moment), *weight, directions[i])))
             .collect();
         let weights = NodalWeights {
-            nodes: sums.nodes,
+            nodes: sums.nodes.clone(),
             coefficients,
         };
-        Ok(Patch {
+        Patch {
             shape,
             weights,
             compliance: patch_compliance(shape.semi_axes, elastic),
-        })
+        }
     }
 }
 
-/// Weights of a traction on the patch `shape`: mean motion of the patch along the rolling direction t and along q = n x
-/// t, n the normal into the ring. They spread forces by the same pressure.
-pub fn traction_weights(
-    surface: &RacewaySurface,
-    nodes: &NodePositions,
-    rule: &PressureRule,
-    shape: PatchShape,
-) -> Result<NodalWeights, ContactError> {
-    let sums = NodeSums::new(surface, nodes, rule, shape)?;
+fn traction_weights(surface: &RacewaySurface, sums: NodeSums, shape: PatchShape) -> NodalWeights {
     let ((sin, cos), (across, along)) = (shape.azimuth.sin_cos(), shape.angle.sin_cos());
     let sign = surface.groove.side.sign();
     let rolling = [-sin, cos, 0.0];
     let lateral = [-sign * across * cos, -sign * across * sin, sign * along];
     let scaled = |w: &f64| [rolling, lateral].map(|e| e.map(|x| w * x));
-    Ok(NodalWeights {
+    NodalWeights {
         coefficients: sums.weights.iter().map(scaled).collect(),
         nodes: sums.nodes,
-    })
+    }
 }
 
-/// Weights of the growth of the groove centre's motion [radial, axial] with the azimuth, 1/rad: those of patches half
-/// an angle `half`, rad, ahead and behind.
-pub fn slope_weights(
+/// The growth of the weights of [`Patch::of_sums`] with the azimuth. With d the direction, t = I^-1 (l x d) the twist,
+/// m the moments and w the weights of the nodes, weights are w d + t x m, and
+///
+/// ```text
+/// t' = I^-1 (l' x d + l x d' - I' t),    l' = e_z x c - mean',    d' = e_z x d
+/// ```
+fn slope_weights(
     surface: &RacewaySurface,
-    nodes: &NodePositions,
-    rule: &PressureRule,
-    (shape, half): (PatchShape, f64),
-    elastic: Elastic,
-) -> Result<NodalWeights, ContactError> {
-    let at = |azimuth: f64| {
-        let shape = PatchShape { azimuth, ..shape };
-        Ok::<_, ContactError>(Patch::new(surface, nodes, rule, shape, elastic)?.weights)
+    (sums, slopes): (&NodeSums, &NodeSlopes),
+    azimuth: f64,
+) -> NodalWeights {
+    let (inertia, growth) = (sums.inertia(), sums.inertia_slope(slopes));
+    let (sin, cos) = azimuth.sin_cos();
+    let centre = surface.groove.centre(azimuth);
+    let lever = axpy(centre, -1.0, sums.mean);
+    let lever_slope = axpy(cross([0.0, 0.0, 1.0], centre), -1.0, slopes.mean);
+    let directions = [[cos, sin, 0.0], [0.0, 0.0, 1.0]];
+    let turned = directions.map(|d| cross([0.0, 0.0, 1.0], d));
+    let twists = directions.map(|d| solve3(inertia, cross(lever, d)));
+    let twist_slopes = [0, 1].map(|i| {
+        let by_inertia = growth.map(|row| (0..3).map(|j| row[j] * twists[i][j]).sum::<f64>());
+        let moved = axpy(cross(lever_slope, directions[i]), 1.0, cross(lever, turned[i]));
+        solve3(inertia, axpy(moved, -1.0, by_inertia))
+    });
+    let of_node = |node: usize| {
+        [0, 1].map(|i| {
+            let weight = axpy([0.0; 3], slopes.weights[node], directions[i]);
+            let weight = axpy(weight, sums.weights[node], turned[i]);
+            let twist = cross(twist_slopes[i], sums.moments[node]);
+            axpy(
+                axpy(weight, 1.0, twist),
+                1.0,
+                cross(twists[i], slopes.moments[node]),
+            )
+        })
     };
-    let (ahead, behind) = (at(shape.azimuth + half)?, at(shape.azimuth - half)?);
-    let factor = 0.5 / half;
-    let mut sums = std::collections::BTreeMap::new();
-    for (weights, factor) in [(&ahead, factor), (&behind, -factor)] {
-        for (node, coefficients) in weights.nodes.iter().zip(&weights.coefficients) {
-            let sum: &mut [[f64; 3]; 2] = sums.entry(*node).or_default();
-            for i in 0..2 {
-                (0..3).for_each(|k| sum[i][k] += factor * coefficients[i][k]);
-            }
-        }
+    NodalWeights {
+        coefficients: (0..sums.nodes.len()).map(of_node).collect(),
+        nodes: sums.nodes.clone(),
     }
-    let (nodes, coefficients) = sums.into_iter().unzip();
-    Ok(NodalWeights { nodes, coefficients })
 }
 
 /// a + s b.

@@ -12,7 +12,7 @@ use mesh::{Facet, FacetKind, Mesh};
 
 use crate::bins::{Bins, grown_box};
 use crate::error::ContactError;
-use crate::facet_map::{Affine, invert, outside};
+use crate::facet_map::{Affine, azimuth_slope, invert, outside};
 use crate::geometry::Side;
 use crate::neighbours::Neighbours;
 
@@ -224,6 +224,18 @@ impl RacewaySurface {
             return None;
         }
         invert(self.kind, coordinates, target)
+    }
+
+    /// Growth of the reference coordinates with the azimuth at a point, per rad.
+    pub fn azimuth_slope(&self, location: Location) -> [f64; 2] {
+        match &self.maps[location.facet] {
+            Some(map) => map.azimuth_slope(),
+            None => {
+                let n = self.kind.n_nodes();
+                let coordinates = &self.coordinates[n * location.facet..n * (location.facet + 1)];
+                azimuth_slope(self.kind, coordinates, location.xi)
+            }
+        }
     }
 
     /// Node spacing [along the groove, rolling direction] at a point, m: continuous over the raceway.

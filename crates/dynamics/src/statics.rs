@@ -314,7 +314,7 @@ impl StaticSolver {
                 at_forces: (0..feet[i].len()).flat_map(|b| forces[2 * b + i]).collect(),
                 stiffness: stiffness.clone(),
                 n_moving: 2 * feet[i].len(),
-                follow: None,
+                ..ElasticPorts::default()
             })
         })
     }

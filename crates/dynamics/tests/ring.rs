@@ -69,6 +69,76 @@ fn patches_follow_rigid_motions_exactly() {
     }
 }
 
+/// A ring whose facets are no parallelograms: nodes turned about the axis by up to a tenth of a sector.
+fn uneven(mut ring: RingModel) -> RingModel {
+    for x in &mut ring.mesh.nodes.iter_mut() {
+        let [radius, azimuth] = [x[0].hypot(x[1]), x[1].atan2(x[0])];
+        let turned = azimuth + 2e-3 * (40.0 * x[2] / radius).sin() * (9.0 * azimuth).cos();
+        (x[0], x[1]) = (radius * turned.cos(), radius * turned.sin());
+    }
+    ring
+}
+
+/// Wrong: the slope that a free ball meets would not be that of the ring's surface under it: of a rigid motion, and of
+/// any field by differences of patches a little ahead and behind, on affine and on uneven facets.
+#[test]
+fn slopes_are_the_growth_of_the_patches_motion_with_the_azimuth() {
+    let (t, phi) = ([3e-6, -2e-6, 5e-6], [1e-4, -2e-4, 3e-4]);
+    let quadratic = Level::hex20(54, 4, 1, 1);
+    for side in Side::BOTH {
+        let rings = [
+            ring(side, LEVEL, Hold::Clamped),
+            ring(side, quadratic, Hold::Clamped),
+            uneven(ring(side, LEVEL, Hold::Clamped)),
+            uneven(ring(side, quadratic, Hold::Clamped)),
+        ];
+        for ring in rings {
+            let surface = RacewaySurface::new(&ring.mesh, ring.mesh.group("raceway"), ring.groove);
+            let (nodes, rule, steel) = (&ring.mesh.nodes, PressureRule::new(), elastic(&ring.material));
+            for (azimuth, angle) in [(0.3f64, 0.35), (2.0, -0.2), (-3.1, 0.0)] {
+                let shape = PatchShape::new(&surface, azimuth, angle, [1e-3, 1e-4], LEAST_PATCH).unwrap();
+                let free = |shape| Patch::of_free_ball(&surface, nodes, &rule, shape, steel).unwrap();
+                let (patch, [traction, slope]) = free(shape);
+                assert_eq!(
+                    patch.weights,
+                    Patch::new(&surface, nodes, &rule, shape, steel).unwrap().weights
+                );
+                let total: f64 = traction.coefficients.iter().map(|c| c[0][1]).sum();
+                assert!((total - azimuth.cos()).abs() < 1e-12, "{total}");
+
+                let found = slope.measure(&rigid(nodes, t, phi));
+                let (centre, (sin, cos)) = (ring.groove.centre(azimuth), azimuth.sin_cos());
+                let (u, along) = (rigid_at(centre, t, phi), [-centre[1], centre[0], 0.0]);
+                let grown = rigid_at(along, [0.0; 3], phi);
+                let expected = [
+                    u[1] * cos - u[0] * sin + grown[0] * cos + grown[1] * sin,
+                    grown[2],
+                ];
+                for i in 0..2 {
+                    assert!((found[i] - expected[i]).abs() < 1e-16, "{found:?} {expected:?}");
+                }
+
+                let field: Vec<f64> = (0..ring.mesh.n_dofs())
+                    .map(|i| ((37 * i) % 101) as f64 / 101.0)
+                    .collect();
+                let h = 1e-7;
+                let [ahead, behind] = [h, -h].map(|h| {
+                    let azimuth = azimuth + h;
+                    free(PatchShape { azimuth, ..shape }).0.weights.measure(&field)
+                });
+                let found = slope.measure(&field);
+                for i in 0..2 {
+                    let expected = (ahead[i] - behind[i]) / (2.0 * h);
+                    assert!(
+                        (found[i] - expected).abs() < 1e-6 * (1.0 + expected.abs()),
+                        "{found:?} {expected}"
+                    );
+                }
+            }
+        }
+    }
+}
+
 /// Wrong: the loads of a patch would not have the resultant of the contact force at the groove centre: force and
 /// moment on the shaft would not be those of the balls. Conjugate to the statement before; 1e-12 of the force.
 #[test]

@@ -42,6 +42,7 @@ pub use seat::{OwnStress, RadialProfile, SeatAction, SeatField};
 pub use solver::SolverError;
 pub use state::RingState;
 pub use step::{
-    ElasticStep, End, Ended, FrameTurn, Known, KnownLoad, PortAnswer, PortForces, Settling, StepFactor, Works,
+    ElasticStep, End, Ended, Feet, FrameTurn, Known, KnownLoad, PortAnswer, PortForces, Settling, StepFactor,
+    Works,
 };
 pub use vibration::VibratingRing;

@@ -1,7 +1,8 @@
 //! The border between an elastic ring and whoever moves it: one implicit step in time.
 //!
 //! A factor belongs to one scheme and step size, S = c_M M + c_C C + c_K K. A step of it meets the world at its
-//! *ports*: two directions of every contact, then the functionals of the mount. At these the ring answers
+//! *ports*: two directions of all nodal weights of every contact, then the functionals of the mount. At these the ring
+//! answers
 //! ```text
 //! g(end) = predicted + compliance F
 //! ```
@@ -62,10 +63,19 @@ impl Known {
     }
 }
 
+/// Where contacts meet a ring.
+#[derive(Clone, Copy, Debug)]
+pub struct Feet<'a> {
+    /// Nodal weights of the contacts, those of a contact together.
+    pub weights: &'a [NodalWeights],
+    /// How many of them a contact has: one of its force, more where it has traction as well.
+    pub per_contact: usize,
+}
+
 /// Forces at the ports.
 #[derive(Clone, Copy, Debug)]
 pub struct PortForces<'a> {
-    /// On the two directions of every contact, N, `[2 n_contacts]`.
+    /// On the two directions of all nodal weights of the contacts, N.
     pub contacts: &'a [f64],
     /// On the functionals of the mount, N and N m.
     pub mount: &'a [f64],
@@ -142,7 +152,7 @@ pub trait StepFactor: Send + Sync {
         &'a self,
         from: &'a RingState,
         known: Arc<Known>,
-        contacts: &[NodalWeights],
+        contacts: Feet<'_>,
     ) -> Box<dyn ElasticStep + 'a>;
 }
 
@@ -155,9 +165,9 @@ pub trait ElasticStep: Send {
     fn laps(&self) -> &Laps;
 
     /// Moves the contacts to other places; says of the time what is told apart from the block solve.
-    fn move_contacts(&mut self, contacts: &[NodalWeights]) -> Laps;
+    fn move_contacts(&mut self, contacts: Feet<'_>) -> Laps;
 
-    /// Values of a vector of the body at the contacts, `[2 n_contacts]`.
+    /// Values of a vector of the body at the contacts, in two directions of all their nodal weights.
     fn at_contacts(&self, x: &[f64]) -> Vec<f64>;
 
     /// One round for the inertia of the turning frame under these forces; `scale` is the largest force of the whole

@@ -48,6 +48,34 @@ fn read_once(bytes: usize) -> f64 {
     best(50, read).0
 }
 
+/// Compliance of 18 contacts on six of the raceway's nodes in seven sectors, with one pair of directions, as of normal
+/// forces, and with three, as of free balls.
+fn contacts(table: &ResponseTable, periodicity: &Periodicity, raceway: &[usize]) {
+    let (n, width) = (periodicity.n_sectors(), periodicity.n_section_nodes());
+    let weights: Vec<[[f64; 3]; 2]> = (0..42)
+        .map(|i| [0, 3].map(|k| [0, 1, 2].map(|c| 1.0 + ((7 * i + k + c) % 11) as f64)))
+        .collect();
+    let patch = |contact: usize, pairs: usize| {
+        let node = |i: usize| {
+            let sector = (contact * n / 18 + i / 6) % n;
+            periodicity.nodes()[sector * width + raceway[1 + i % 6]]
+        };
+        let nodes: Vec<usize> = (0..42).map(node).collect();
+        table
+            .patch(&vec![(&nodes[..], &weights[..]); pairs])
+            .expect("nodes of the raceway")
+    };
+    let time = |pairs: usize| {
+        let patches: Vec<_> = (0..18).map(|contact| patch(contact, pairs)).collect();
+        best(50, || black_box(table.compliances(&patches))).0
+    };
+    let (one, three) = (time(1), time(3));
+    println!(
+        "  cyclic: compliance of 18 contacts {one:.2} ms, with three pairs of directions {three:.2} ms = {:.1} x",
+        three / one
+    );
+}
+
 fn cyclic(mesh: &Mesh) -> (f64, f64, f64) {
     let (find, periodicity) = best(3, || {
         find_periodicity(mesh, PERIODIC_TOLERANCE).expect("a revolved ring is periodic")
@@ -101,6 +129,7 @@ fn cyclic(mesh: &Mesh) -> (f64, f64, f64) {
         "  cyclic: table of responses of 8 section nodes {table:.1} ms, {:.1} MB",
         responses.bytes() as f64 / 1e6
     );
+    contacts(&responses, &periodicity, &raceway);
     let floor = read_once(factor.factor_bytes());
     println!(
         "  cyclic: solve in harmonic space {harmonic:.2} ms = {:.2} x reading L once ({floor:.2} ms on one thread), \

@@ -35,12 +35,11 @@ impl Motion<'_> {
         for ((side, step), end) in Side::BOTH.into_iter().zip(rings).zip(ends) {
             let i = side.index();
             if let (Some(step), Some(end), Some(old)) = (step, end, &state.rings[i]) {
-                let works = (end.works, &*step);
-                self.finish_ring(&mut next, side, (parts, solution), works, [old, &end.state]);
+                self.finish_ring(&mut next, side, (parts, solution), end.works, [old, &end.state]);
                 if let Some(trend) = &mut trend {
                     let mean = mean_acceleration(&*step, [old, &end.state], dt);
                     let first = parts.n_balls() + i;
-                    for (ball, a) in mean.chunks_exact(2).take(parts.n_balls()).enumerate() {
+                    for (ball, a) in mean.chunks_exact(2 * self.feet_per_contact()).enumerate() {
                         trend[first + 2 * ball] = [a[0], a[1]];
                     }
                 }
@@ -75,7 +74,7 @@ impl Motion<'_> {
         next: &mut MotionState,
         side: Side,
         (parts, solution): (&BearingParts, &StepSolution),
-        (works, step): (Works, &dyn ElasticStep),
+        works: Works,
         [old, new]: [&RingState; 2],
     ) {
         let Some(MovingRing { body, .. }) = &self.rings[side.index()] else {
@@ -90,14 +89,13 @@ impl Motion<'_> {
             ledger.rayleigh_loss += self.costs.time("rayleigh_damping", loss);
         }
         ledger.numerical_loss += body.numerical_loss(integrator, old, new);
-        let follow = parts.rings[side.index()].as_ref().and_then(|ports| ports.follow);
-        if let Some(follow) = follow.filter(|follow| follow.body == SHAFT) {
+        let Some(ports) = &parts.rings[side.index()] else {
+            return;
+        };
+        if let Some(follow) = ports.follow.filter(|follow| follow.body == SHAFT) {
             // What the shaft gives in space and what the ring gets in its frame differ by the work of the turning.
             let mount = &solution.mounts[side.index()];
-            let n = parts.rings[side.index()]
-                .as_ref()
-                .map_or(0, |ports| ports.n_moving);
-            let (start, end) = (&step.answer().start[n..], follow.in_frame(solution.shaft));
+            let (start, end) = (&ports.start[ports.n_moving..], follow.in_frame(solution.shaft));
             let in_frame: f64 = (0..mount.len().min(5))
                 .map(|i| mount[i] * (end[i] - start[i]))
                 .sum();

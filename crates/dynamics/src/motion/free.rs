@@ -2,9 +2,7 @@
 
 use std::sync::Arc;
 
-use contact::patch::{PatchShape, slope_weights, traction_weights};
-use contact::{NodalWeights, Side};
-use rayon::prelude::*;
+use contact::Side;
 use ring::ElasticStep;
 
 use super::free_state::{ContactTraction, FreeState};
@@ -19,21 +17,16 @@ use crate::bearing::{BearingParts, FreeParts};
 use crate::bodies::FreeBall;
 use crate::effects::steady_balls::SteadyBalls;
 use crate::error::DynamicsError;
-use crate::footprint::{loaded, on_groove};
 use crate::interactions::free_contact::place::GrooveCircle;
-use crate::interactions::free_contact::{ContactStep, FreeContacts, RingStep, elastic_ports};
+use crate::interactions::free_contact::{ContactStep, FREE_FEET, FreeContacts, RingStep};
 use crate::interactions::raceway_contact::Site;
 use crate::interactions::steady_rolling::{SteadyRolling, pure_rolling, rolling_speed};
 use crate::interactions::traction::creep::RollingContact;
 use crate::interactions::traction::{Ellipse, Traction};
-use crate::model::{Model, elastic};
+use crate::model::Model;
 
 /// Acceleration by which the least force of a contact is a weight, m/s^2: what opens has no size of its own.
 const EARTH: f64 = 9.81;
-
-/// Least half of the angle between the patches whose difference is a slope, rad: a ball that does not move along its
-/// ring.
-const LEAST_TRAVEL: f64 = 1e-5;
 
 impl Motion<'_> {
     /// Balls that roll steadily, or without slip from the displacements and contact angles of a state; None where balls
@@ -101,11 +94,11 @@ impl Motion<'_> {
         })
     }
 
-    /// Ports of a flexible ring that move freely: of each ball its groove, and of a free one patch and slope too.
-    pub(super) fn n_moving(&self) -> usize {
+    /// Nodal weights of a contact on a flexible ring: of its groove, and of a free ball of patch and slope too.
+    pub(super) fn feet_per_contact(&self) -> usize {
         match self.model.traction() {
-            Some(_) => 6 * self.n_balls(),
-            None => 2 * self.n_balls(),
+            Some(_) => FREE_FEET,
+            None => 1,
         }
     }
 
@@ -118,60 +111,19 @@ impl Motion<'_> {
             return Course {
                 time,
                 azimuths: balls.map(|ball| self.ball_azimuth(ball, time)).collect(),
-                travel: Vec::new(),
+                is_free: false,
                 ends: [span.at(0.0), span.at(1.0)],
             };
         };
         let half = 0.5 * span.dt;
-        let speeds = Side::BOTH.map(|side| self.settings.speeds.of(side).at(time));
         Course {
             time,
             azimuths: balls
-                .clone()
                 .map(|ball| free.azimuth(ball) + half * free.orbit(ball))
                 .collect(),
-            travel: balls
-                .map(|ball| speeds.map(|speed| half * (free.orbit(ball) - speed)))
-                .collect(),
+            is_free: true,
             ends: [span.at(0.0), span.at(1.0)],
         }
-    }
-
-    /// Weights of tractions, then of slopes, of all balls on a flexible ring.
-    pub(super) fn free_feet(
-        &self,
-        side: Side,
-        sites: &[Site],
-        places: &[[f64; 2]],
-        course: &Course,
-    ) -> Result<Vec<NodalWeights>, DynamicsError> {
-        let (Some(ring), Some(moving)) = (self.model.ring(side), &self.rings[side.index()]) else {
-            return Ok(Vec::new());
-        };
-        let forces: Vec<[f64; 2]> = places.iter().map(|p| [p[1], 0.0]).collect();
-        let loaded = loaded(&forces);
-        let raceway = &moving.raceway;
-        let of_ball = |ball: usize| {
-            let index = 2 * ball + side.index();
-            let [angle, force] = places[index];
-            let shape = PatchShape::new(
-                &raceway.surface,
-                sites[index].azimuth - self.frame_angle(side, course.time),
-                on_groove(&raceway.surface, angle, loaded[index]),
-                self.model.hertz[side.index()].semi_axes(force),
-                self.model.contact.least_patch,
-            )?;
-            let (surface, nodes, rule) = (&raceway.surface, &ring.mesh.nodes, &raceway.rule);
-            let half = course.travel[ball][side.index()].abs().max(LEAST_TRAVEL);
-            Ok([
-                traction_weights(surface, nodes, rule, shape)?,
-                slope_weights(surface, nodes, rule, (shape, half), elastic(&ring.material))?,
-            ])
-        };
-        let pairs: Result<Vec<[NodalWeights; 2]>, DynamicsError> =
-            (0..self.n_balls()).into_par_iter().map(of_ball).collect();
-        let (tractions, slopes): (Vec<_>, Vec<_>) = pairs?.into_iter().map(|[a, b]| (a, b)).unzip();
-        Ok(tractions.into_iter().chain(slopes).collect())
     }
 
     /// Acceleration of all that falls, m/s^2.
@@ -214,13 +166,13 @@ impl Motion<'_> {
         let spin = self.ring_speeds(side, span);
         let n_balls = self.n_balls();
         if let Some(step) = step {
-            let at_start = |ball: usize| elastic_ports(ball, n_balls).map(|port| step.answer().start[port]);
-            let of_ball = |ball: usize| RingStep {
-                elastic: Some(at_start(ball)),
+            let of_contact = |at_start: &[f64; 2 * FREE_FEET]| RingStep {
+                elastic: Some(*at_start),
                 spin,
                 ..RingStep::default()
             };
-            return (0..n_balls).map(of_ball).collect();
+            let contacts = step.answer().start.as_chunks().0.iter().take(n_balls);
+            return contacts.map(of_contact).collect();
         }
         vec![self.carrier_step(state, span, side); n_balls]
     }

@@ -27,6 +27,7 @@ pub mod ledger;
 mod limits;
 mod part;
 mod place;
+mod ports;
 pub mod report;
 mod round_off;
 pub mod run;

@@ -1,21 +1,20 @@
 //! What a part of a step asks of loads, rings and shaft, and the bodies and contacts they make.
 
 use contact::{NodalWeights, Side};
-use ring::{ElasticStep, PortForces, StepScheme};
+use ring::{ElasticStep, Feet, PortForces, StepScheme};
 
 use super::cache::Ahead;
 use super::run::Motion;
 use super::solve::StepSolution;
 use super::span::Span;
 use super::state::MotionState;
-use crate::bearing::{BearingParts, ContactList, SeatStep, carrier};
+use crate::bearing::{BearingParts, ContactList, SeatStep};
 use crate::bodies::{FlatBody, FrameInertia, Inertia, Name, StepTakes};
-use crate::compliance;
 use crate::effects::{self, Loads, Now};
 use crate::error::DynamicsError;
 use crate::interactions::discrete_gradient::MeanForce;
 use crate::interactions::raceway_contact::{Means, Site};
-use crate::system::{ElasticPorts, Follow, Interval};
+use crate::system::Interval;
 
 /// Force scale of a bearing on which nothing acts, N.
 const LEAST_FORCE: f64 = 1e-9;
@@ -25,7 +24,7 @@ pub(super) type RingSteps<'m> = [Option<Box<dyn ElasticStep + 'm>>; 2];
 
 /// Forces on a ring.
 pub(super) struct RingForces {
-    /// On its contacts, patches and slopes, N.
+    /// On its contacts, N.
     contacts: Vec<f64>,
     /// On its mount, N and N m.
     mount: Vec<f64>,
@@ -74,7 +73,11 @@ impl Motion<'_> {
             let known = ahead.rings[i].clone();
             let known =
                 known.unwrap_or_else(|| factor.predict(old, self.known_load(side, &ahead.loads)).into());
-            Some(factor.begin(old, known, &feet[i]))
+            let feet = Feet {
+                weights: &feet[i],
+                per_contact: self.feet_per_contact(),
+            };
+            Some(factor.begin(old, known, feet))
         };
         let (inner, outer) = self
             .model
@@ -94,7 +97,7 @@ impl Motion<'_> {
     ) -> Result<BearingParts, DynamicsError> {
         let ports = |side: Side| {
             let step = rings[side.index()].as_deref();
-            step.map(|step| self.ports(span, side, step)).transpose()
+            step.map(|step| self.ports(state, span, side, step)).transpose()
         };
         let (integrator, dt) = (self.settings.integrator, span.dt);
         let contacts = ContactList {
@@ -148,25 +151,6 @@ impl Motion<'_> {
             angles: None,
             seen: None,
         }
-    }
-
-    /// A flexible ring by its ports: contacts move freely, the mount follows its partner.
-    fn ports(&self, span: Span, side: Side, step: &dyn ElasticStep) -> Result<ElasticPorts, DynamicsError> {
-        let (answer, n_balls) = (step.answer(), self.n_balls());
-        let n = answer.start.len();
-        let angle = |share: f64| self.frame_angle(side, span.at(share));
-        Ok(ElasticPorts {
-            name: side.name(),
-            start: answer.start.clone(),
-            offset: answer.predicted.clone(),
-            at_forces: Vec::new(),
-            stiffness: compliance::inverse(side, n, n_balls, &answer.compliance)?,
-            n_moving: self.n_moving(),
-            follow: carrier(side, n_balls, self.model.seat().is_some()).map(|body| Follow {
-                body,
-                frame: [angle(1.0 - self.settings.integrator.alpha_f), angle(1.0)],
-            }),
-        })
     }
 
     fn ball(&self, state: &MotionState, ball: usize, loads: &Loads) -> FlatBody<2> {
@@ -254,21 +238,17 @@ impl BearingParts {
         }
     }
 
-    /// Forces on a ring's contacts, `[2 n_balls]`, N; with free balls those on patches and slopes follow.
+    /// Forces on a ring's contacts by ball, N: on the groove; of a free one on the patch too, and none on the slope.
     pub(super) fn ring_loads(&self, side: Side, solution: &StepSolution) -> Vec<f64> {
         let all = self.with_dead(&solution.forces);
         let of_ball = |ball: usize| {
             let site = 2 * ball + side.index();
-            [all[2 * site], all[2 * site + 1]]
+            let groove = [all[2 * site], all[2 * site + 1]];
+            let patch = solution.free_contacts.get(site);
+            let patch = patch.map(|found| [-found.traction.action[0], -found.traction.action[1], 0.0, 0.0]);
+            groove.into_iter().chain(patch.into_iter().flatten())
         };
-        let mut loads: Vec<f64> = (0..self.n_balls()).flat_map(of_ball).collect();
-        if self.free.is_some() {
-            let on_patches = solution.free_contacts.iter().skip(side.index()).step_by(2);
-            loads.extend(on_patches.flat_map(|found| [0, 1].map(|i| -found.traction.action[i])));
-            // Slopes carry no force.
-            loads.resize(6 * self.n_balls(), 0.0);
-        }
-        loads
+        (0..self.n_balls()).flat_map(of_ball).collect()
     }
 
     /// Forces on the rings at all contacts, the dead ones with them, `[2 n_sites]`, N.

@@ -36,7 +36,8 @@ const SIZE_TOLERANCE: f64 = 1e-3;
 /// One contact as it is placed.
 struct Placed {
     site: Site,
-    weights: Option<NodalWeights>,
+    /// On a flexible ring of its groove, and of a free ball of patch and slope.
+    weights: Vec<NodalWeights>,
     /// Half of the patch along the groove, rad; infinite on a rigid ring.
     half_angle: f64,
 }
@@ -47,9 +48,8 @@ pub(super) struct Course {
     pub time: f64,
     /// Azimuths, rad, by ball.
     pub azimuths: Vec<f64>,
-    /// Half of the angle by which each free ball moves along a ring in the part, rad, `[inner, outer]`; empty where
-    /// balls are not free.
-    pub travel: Vec<[f64; 2]>,
+    /// Whether contacts are those of free balls, with traction and slope.
+    pub is_free: bool,
     /// Start and end of the part, s.
     pub ends: [f64; 2],
 }
@@ -83,7 +83,7 @@ impl<'m> PartMounting<'m> {
 /// All contacts as they are placed.
 pub(super) struct Placing {
     pub sites: Vec<Site>,
-    /// Weights of the patches on each flexible ring.
+    /// Nodal weights of the contacts on each flexible ring, those of a contact together.
     pub feet: [Vec<NodalWeights>; 2],
     /// Half of every patch along the groove, rad, by site.
     half_angles: Vec<f64>,
@@ -160,11 +160,6 @@ impl Motion<'_> {
             placing.sites.push(placed.site);
             placing.half_angles.push(placed.half_angle);
         }
-        for (side, feet) in Side::BOTH.into_iter().zip(&mut placing.feet) {
-            if !feet.is_empty() && !course.travel.is_empty() {
-                feet.extend(self.free_feet(side, &placing.sites, places, course)?);
-            }
-        }
         Ok(placing)
     }
 
@@ -185,7 +180,7 @@ impl Motion<'_> {
             mounting.place(model, &mut site, None);
             return Ok(Placed {
                 site,
-                weights: None,
+                weights: Vec::new(),
                 half_angle: f64::INFINITY,
             });
         };
@@ -196,18 +191,19 @@ impl Motion<'_> {
             model.hertz[side.index()].semi_axes(force),
             model.contact.least_patch,
         )?;
-        let patch = Patch::new(
-            &moving.raceway.surface,
-            &ring.mesh.nodes,
-            &moving.raceway.rule,
-            shape,
-            elastic(&ring.material),
-        )?;
+        let (surface, nodes, rule) = (&moving.raceway.surface, &ring.mesh.nodes, &moving.raceway.rule);
+        let material = elastic(&ring.material);
+        let (patch, more) = if course.is_free {
+            let (patch, more) = Patch::of_free_ball(surface, nodes, rule, shape, material)?;
+            (patch, more.to_vec())
+        } else {
+            (Patch::new(surface, nodes, rule, shape, material)?, Vec::new())
+        };
         site.law.patch_compliance = patch.compliance;
         mounting.place(model, &mut site, Some(&patch.weights));
         Ok(Placed {
             site,
-            weights: Some(patch.weights),
+            weights: std::iter::once(patch.weights).chain(more).collect(),
             half_angle: shape.semi_axes[0] / ring.groove.groove_radius,
         })
     }

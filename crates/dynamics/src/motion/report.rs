@@ -180,7 +180,7 @@ impl Motion<'_> {
             azimuths: (0..self.n_balls())
                 .map(|ball| self.ball_azimuth(ball, time))
                 .collect(),
-            travel: Vec::new(),
+            is_free: false,
             ends: [time; 2],
         };
         let feet = self.place(&to.places[0], &course)?.feet;

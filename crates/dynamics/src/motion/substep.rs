@@ -4,7 +4,7 @@
 use std::sync::Arc;
 
 use contact::Side;
-use ring::ElasticStep;
+use ring::{ElasticStep, Feet};
 use timer::{Laps, Stopwatch};
 
 use super::cache::{Ahead, ExpectedLoads, StepCache};
@@ -147,7 +147,11 @@ impl Motion<'_> {
         let feet = &part.placing.feet;
         let [inner, outer] = &mut part.rings;
         let move_ring = |step: &mut Option<Box<dyn ElasticStep + '_>>, side: Side| {
-            step.as_mut().map(|step| step.move_contacts(&feet[side.index()]))
+            let feet = Feet {
+                weights: &feet[side.index()],
+                per_contact: self.feet_per_contact(),
+            };
+            step.as_mut().map(|step| step.move_contacts(feet))
         };
         let (inner, outer) = self
             .model

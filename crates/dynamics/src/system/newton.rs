@@ -106,9 +106,9 @@ impl System<'_> {
                 RoundOff::Unknowns => round_off(&tangent, &x),
                 RoundOff::Links => self.round_off(&x),
             };
-            let is_at_floor = policy.ends_at_floor && now <= floor();
             // Where increments are small beside places, these have their own round-off.
             let places = || policy.ends_at_floor && now <= self.round_off(&x);
+            let is_at_floor = policy.ends_at_floor && now <= floor() || now <= limit && places();
             let is_floor = || now <= limit.max(floor()) || places();
             let is_solved = now <= RESIDUAL_TARGET * scale || (stalled >= 2 && is_floor());
             if is_solved {

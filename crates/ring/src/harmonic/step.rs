@@ -4,7 +4,6 @@
 use std::borrow::Cow;
 use std::sync::Arc;
 
-use contact::NodalWeights;
 use timer::{Laps, Stopwatch};
 
 use super::defect_step::{DefectFactor, DefectStep};
@@ -19,7 +18,7 @@ use crate::pool::PooledVector;
 use crate::settling::FrameRounds;
 use crate::state::{RingState, RowValues, within_part};
 use crate::step::{
-    ElasticStep, End, Ended, FrameTurn, Known, KnownLoad, PortAnswer, PortForces, RACEWAYS, Settling,
+    ElasticStep, End, Ended, Feet, FrameTurn, Known, KnownLoad, PortAnswer, PortForces, RACEWAYS, Settling,
     StepFactor, Works,
 };
 use crate::vectors::{add, combined, dot, sum};
@@ -124,7 +123,7 @@ impl StepFactor for HarmonicFactor {
         &'a self,
         from: &'a RingState,
         known: Arc<Known>,
-        contacts: &[NodalWeights],
+        contacts: Feet<'_>,
     ) -> Box<dyn ElasticStep + 'a> {
         let mut clock = Stopwatch::start();
         let held = &self.body.held;
@@ -265,7 +264,7 @@ impl ElasticStep for HarmonicStep<'_> {
         &self.laps
     }
 
-    fn move_contacts(&mut self, contacts: &[NodalWeights]) -> Laps {
+    fn move_contacts(&mut self, contacts: Feet<'_>) -> Laps {
         let (mut laps, mut clock) = (Laps::default(), Stopwatch::start());
         let held = &self.factor.body.held;
         self.ports = Ports::new(held, contacts);

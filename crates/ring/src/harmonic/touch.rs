@@ -3,7 +3,7 @@
 
 use contact::NodalWeights;
 use solver::LinearSolver;
-use solver::cyclic::Patch;
+use solver::cyclic::{PairWeights, Patch};
 
 use super::defect_step::{DefectFactor, DefectStep};
 use super::factor::CyclicFactor;
@@ -14,8 +14,9 @@ use crate::vectors::dot;
 
 /// Contacts as the responses of a raceway meet them.
 struct Touch {
+    /// One by contact, of all its functionals.
     patches: Vec<Patch>,
-    /// Motion of each contact direction under unit forces of the mount, `[2 n_contacts][n_mount]`.
+    /// Motion of each functional of the contacts under unit forces of the mount, `[n][n_mount]`.
     by_mount: Vec<Vec<f64>>,
     /// M^-1 times these, with M the border's compliance; empty without a border.
     by_border: Vec<Vec<f64>>,
@@ -61,19 +62,22 @@ impl CyclicFactor {
     /// What the responses of the raceway need to know of the contacts.
     fn touch(&self, held: &HeldRing, ports: &Ports) -> Touch {
         let table = &self.responses.table;
-        let patch = |foot: &NodalWeights| {
+        let free_nodes = |foot: &NodalWeights| -> Vec<usize> {
             let free = |node: &usize| held.coordinates.free_node(*node);
             let nodes: Option<Vec<usize>> = foot.nodes.iter().map(free).collect();
-            let nodes = nodes.expect("no raceway node of a periodic ring is held");
-            table
-                .patch(&nodes, &foot.coefficients)
-                .expect("patches lie on the raceway")
+            nodes.expect("no raceway node of a periodic ring is held")
+        };
+        let patch = |feet: &[NodalWeights]| {
+            let nodes: Vec<Vec<usize>> = feet.iter().map(free_nodes).collect();
+            let pairs = nodes.iter().zip(feet);
+            let pairs: Vec<PairWeights> = pairs.map(|(n, foot)| (&n[..], &foot.coefficients[..])).collect();
+            table.patch(&pairs).expect("patches lie on the raceway")
         };
         let columns: Vec<&[f64]> = self.mount.columns.chunks_exact(held.coordinates.n()).collect();
         let moved = |contact: &SparseLoad| columns.iter().map(|y| sparse_dot(contact, y)).collect();
         let by_mount: Vec<Vec<f64>> = ports.contacts.iter().map(moved).collect();
         Touch {
-            patches: ports.places.iter().map(patch).collect(),
+            patches: ports.places.chunks_exact(ports.per_contact).map(patch).collect(),
             by_border: by_mount.iter().map(|v| self.times_border(v)).collect(),
             by_mount,
         }

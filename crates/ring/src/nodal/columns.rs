@@ -7,7 +7,7 @@ use crate::error::RingError;
 use crate::matrices::NodalMatrices;
 use crate::memory::MotionSizes;
 use crate::sparse::{SparseLoad, sparse_dot};
-use crate::step::{PortAnswer, PortForces};
+use crate::step::{Feet, PortAnswer, PortForces};
 use crate::vectors::sum;
 
 /// A ring and what solves it.
@@ -76,9 +76,11 @@ pub(crate) trait Columns: Send + Sync {
 
 /// What the ports of a step are.
 pub(crate) struct Ports {
-    /// Places of the contacts.
+    /// Nodal weights of the contacts.
     pub places: Vec<NodalWeights>,
-    /// Functionals of the contacts, two each.
+    /// How many of them a contact has.
+    pub per_contact: usize,
+    /// Functionals of the contacts, two of each nodal weights.
     pub contacts: Vec<SparseLoad>,
 }
 
@@ -102,10 +104,11 @@ impl Moved {
 }
 
 impl Ports {
-    pub fn new(held: &HeldRing, places: &[NodalWeights]) -> Ports {
+    pub fn new(held: &HeldRing, feet: Feet<'_>) -> Ports {
         Ports {
-            contacts: held.coordinates.of_contacts(places),
-            places: places.to_vec(),
+            contacts: held.coordinates.of_contacts(feet.weights),
+            places: feet.weights.to_vec(),
+            per_contact: feet.per_contact,
         }
     }
 

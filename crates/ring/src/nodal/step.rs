@@ -2,7 +2,6 @@
 
 use std::sync::Arc;
 
-use contact::NodalWeights;
 use timer::{Laps, Stopwatch};
 
 use super::columns::{Columns, NodalBody, NodalSolver, Ports, measure};
@@ -12,7 +11,7 @@ use crate::pool::PooledVector;
 use crate::settling::{Change, FrameRounds};
 use crate::state::RingState;
 use crate::step::{
-    ElasticStep, End, Ended, FrameTurn, Known, KnownLoad, PortAnswer, PortForces, RACEWAYS, RIGHT_SIDE,
+    ElasticStep, End, Ended, Feet, FrameTurn, Known, KnownLoad, PortAnswer, PortForces, RACEWAYS, RIGHT_SIDE,
     Settling, StepFactor, Works,
 };
 use crate::vectors::{add, combined, dot};
@@ -97,7 +96,7 @@ impl<S: NodalSolver> StepFactor for NodalFactor<S> {
         &'a self,
         from: &'a RingState,
         known: Arc<Known>,
-        contacts: &[NodalWeights],
+        contacts: Feet<'_>,
     ) -> Box<dyn ElasticStep + 'a> {
         let (mut laps, mut clock) = (Laps::default(), Stopwatch::start());
         let held = &self.body.held;
@@ -142,7 +141,7 @@ impl<S: NodalSolver> ElasticStep for NodalStep<'_, S> {
         &self.laps
     }
 
-    fn move_contacts(&mut self, contacts: &[NodalWeights]) -> Laps {
+    fn move_contacts(&mut self, contacts: Feet<'_>) -> Laps {
         let (mut laps, mut clock) = (Laps::default(), Stopwatch::start());
         let held = &self.factor.body.held;
         self.ports = Ports::new(held, contacts);

@@ -76,7 +76,7 @@ pub use part_field::{PartField, PartHarmonics, PartLoads};
 pub use patch::Patch;
 pub use pattern::Coupling;
 pub use phases::NODE_LEN;
-pub use response::ResponseTable;
+pub use response::{PairWeights, ResponseTable};
 pub use ring::CyclicRing;
 pub use row_responses::RowResponses;
 pub use sites::NodalLoad;

@@ -33,6 +33,9 @@ pub struct ResponseTable {
     responses: Vec<f64>,
 }
 
+/// Nodes, and Cartesian weights of two directions at each.
+pub type PairWeights<'a> = (&'a [usize], &'a [[[f64; 3]; 2]]);
+
 /// A Cartesian unit vector at a chosen node.
 pub(super) struct Unit {
     pub(super) sector: usize,
@@ -66,33 +69,53 @@ impl ResponseTable {
         }
     }
 
-    /// A patch on the caller's nodes `nodes` with the Cartesian weights `coefficients` of two directions,
-    /// `[n][2][3]`. The error is the first node that is not chosen.
-    pub fn patch(&self, nodes: &[usize], coefficients: &[[[f64; 3]; 2]]) -> Result<Patch, usize> {
+    /// A patch of pairs of directions, each on the caller's nodes with Cartesian weights, `[n][2][3]`. The error is the
+    /// first node that is not chosen.
+    ///
+    /// # Panics
+    /// Without a pair.
+    pub fn patch(&self, pairs: &[PairWeights<'_>]) -> Result<Patch, usize> {
+        assert!(!pairs.is_empty(), "a patch has directions");
         let shared = &self.ring.shared;
         let width = self.ring.n_section_nodes();
-        let mut sites = Vec::with_capacity(nodes.len());
-        for (&node, weights) in nodes.iter().zip(coefficients) {
-            let site = *shared.sites.get(node).ok_or(node)?;
-            let chosen = self.chosen[site % width];
-            if chosen == usize::MAX {
-                return Err(node);
+        let mut sites = Vec::with_capacity(pairs.iter().map(|(nodes, _)| nodes.len()).sum());
+        for (pair, (nodes, coefficients)) in pairs.iter().enumerate() {
+            for (&node, weights) in nodes.iter().zip(*coefficients) {
+                let site = *shared.sites.get(node).ok_or(node)?;
+                let chosen = self.chosen[site % width];
+                if chosen == usize::MAX {
+                    return Err(node);
+                }
+                let [c, s] = shared.directions[site];
+                let weights = weights.map(|[x, y, z]| [c * x + s * y, c * y - s * x, z]);
+                sites.push(((site / width, 3 * chosen), pair, weights));
             }
-            let [c, s] = shared.directions[site];
-            let weights = weights.map(|[x, y, z]| [c * x + s * y, c * y - s * x, z]);
-            sites.push((site / width, 3 * chosen, weights));
         }
-        sites.sort_unstable_by_key(|&(sector, dof, _)| (sector, dof));
-        let mut patch = Patch::default();
-        for (sector, dof, weights) in sites {
-            patch.push(sector, dof, weights);
+        sites.sort_unstable_by_key(|&(place, pair, _)| (place, pair));
+        let mut patch = Patch::new(pairs.len());
+        for (place, pair, weights) in sites {
+            patch.push(place, pair, weights);
         }
         Ok(patch)
     }
 
-    /// Compliance between two patches, m/N, `[direction of a][direction of b]`: what a measures when b is loaded.
-    pub fn compliance(&self, a: &Patch, b: &Patch) -> [[f64; 2]; 2] {
-        Arch::new().dispatch(Compliance {
+    /// Compliance between two patches of as many directions, m/N, row-major over directions: what a measures when b is
+    /// loaded.
+    ///
+    /// # Panics
+    /// When the patches differ in their number of directions, or have neither two, four nor six.
+    pub fn compliance(&self, a: &Patch, b: &Patch) -> Vec<f64> {
+        assert_eq!(a.n_directions(), b.n_directions(), "patches of equal directions");
+        match a.n_directions() {
+            2 => self.between_patches::<2>(a, b).concat(),
+            4 => self.between_patches::<4>(a, b).concat(),
+            6 => self.between_patches::<6>(a, b).concat(),
+            n => panic!("a patch of {n} directions"),
+        }
+    }
+
+    fn between_patches<const D: usize>(&self, a: &Patch, b: &Patch) -> [[f64; D]; D] {
+        Arch::new().dispatch(Compliance::<D> {
             n_sectors: self.ring.n_sectors(),
             n_dofs: self.n_dofs,
             responses: &self.responses,
@@ -101,13 +124,25 @@ impl ResponseTable {
         })
     }
 
-    /// Compliance of all patches, m/N, row-major `[2 n][2 n]` over (patch, direction), exactly symmetric.
+    /// Compliance of all patches, m/N, row-major over (patch, direction), exactly symmetric.
+    ///
+    /// # Panics
+    /// As [`ResponseTable::compliance`].
     pub fn compliances(&self, patches: &[Patch]) -> Vec<f64> {
-        let (n, m) = (patches.len(), 2 * patches.len());
+        match patches.first().map_or(2, Patch::n_directions) {
+            2 => self.of_all::<2>(patches),
+            4 => self.of_all::<4>(patches),
+            6 => self.of_all::<6>(patches),
+            n => panic!("patches of {n} directions"),
+        }
+    }
+
+    fn of_all<const D: usize>(&self, patches: &[Patch]) -> Vec<f64> {
+        let (n, m) = (patches.len(), D * patches.len());
         // Of evenly spaced patches, pairs that are equally far apart read the same responses: they come together.
-        let apart = |k: usize| -> Vec<[[f64; 2]; 2]> {
+        let apart = |k: usize| -> Vec<[[f64; D]; D]> {
             let pairs = patches[k..].iter().zip(patches);
-            pairs.map(|(a, b)| self.compliance(a, b)).collect()
+            pairs.map(|(a, b)| self.between_patches(a, b)).collect()
         };
         let blocks: Vec<_> = (0..n).into_par_iter().map(apart).collect();
         let mut all = vec![0.0; m * m];
@@ -115,7 +150,7 @@ impl ResponseTable {
             for (b, block) in blocks.iter().enumerate() {
                 let a = b + k;
                 for (p, row) in block.iter().enumerate() {
-                    all[(2 * a + p) * m + 2 * b..][..2].copy_from_slice(row);
+                    all[(D * a + p) * m + D * b..][..D].copy_from_slice(row);
                 }
             }
         }

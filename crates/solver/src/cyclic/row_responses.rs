@@ -83,12 +83,23 @@ impl RowResponses {
         }
     }
 
-    /// Displacements of the rows per force on each patch in its two directions, m/N, row-major
-    /// `[n_rows][2 n_patches]`. The patches are those of [`ResponseTable::first`].
+    /// Displacements of the rows per force on each patch in its directions, m/N, row-major
+    /// `[n_rows][directions of all patches]`. The patches are those of [`ResponseTable::first`].
     pub fn of_patches(&self, patches: &[Patch]) -> Vec<f64> {
-        let of_patch = |patch: &Patch| Arch::new().dispatch(Measure { table: self, patch });
-        let columns: Vec<Vec<[f64; 2]>> = patches.par_iter().map(of_patch).collect();
-        let mut all = Vec::with_capacity(2 * self.n_rows * patches.len());
+        let pairs = |patch: &'_ Patch| patch.n_directions() / 2;
+        let all: Vec<(&Patch, usize)> = patches
+            .iter()
+            .flat_map(|patch| (0..pairs(patch)).map(move |pair| (patch, pair)))
+            .collect();
+        let of_pair = |&(patch, pair): &(&Patch, usize)| {
+            Arch::new().dispatch(Measure {
+                table: self,
+                patch,
+                pair,
+            })
+        };
+        let columns: Vec<Vec<[f64; 2]>> = all.par_iter().map(of_pair).collect();
+        let mut all = Vec::with_capacity(2 * self.n_rows * columns.len());
         for row in 0..self.n_rows {
             columns.iter().for_each(|column| all.extend(column[row]));
         }
@@ -96,13 +107,13 @@ impl RowResponses {
     }
 
     #[inline(always)]
-    fn measured(&self, patch: &Patch) -> Vec<[f64; 2]> {
+    fn measured(&self, patch: &Patch, pair: usize) -> Vec<[f64; 2]> {
         let mut moved = vec![[0.0; 2]; self.n_rows];
         let mut fields = vec![[0.0; 2]; self.n_components];
         for sector in &self.sectors {
             let blocks = fields.as_chunks_mut::<BLOCK>().0;
             for (block, fields) in blocks.iter_mut().enumerate() {
-                let sums = self.block(sector.sector, BLOCK * block, patch);
+                let sums = self.block(sector.sector, BLOCK * block, (patch, pair));
                 (0..BLOCK).for_each(|i| fields[i] = [sums[0][i], sums[1][i]]);
             }
             for &(row, first, weights) in &sector.rows {
@@ -114,16 +125,17 @@ impl RowResponses {
         moved
     }
 
-    /// Displacements of the components from `first` on in a sector, by direction of the patch.
+    /// Displacements of the components from `first` on in a sector, by direction of a pair of a patch.
     #[inline(always)]
-    fn block(&self, sector: usize, first: usize, patch: &Patch) -> [[f64; BLOCK]; 2] {
+    fn block(&self, sector: usize, first: usize, (patch, pair): (&Patch, usize)) -> [[f64; BLOCK]; 2] {
         let mut sums = [[0.0; BLOCK]; 2];
         for run in patch.runs() {
             let apart = (sector + self.n_sectors - run.sector) % self.n_sectors;
             let start = (apart * self.n_forces + run.dof) * self.n_components + first;
-            let [v0, v1] = patch.of(run);
+            let weights = patch.of(run).chunks_exact(patch.n_directions());
+            let weights = weights.map(|dof| (dof[2 * pair], dof[2 * pair + 1]));
             let rows = self.responses[start..].chunks(self.n_components);
-            for ((a, b), row) in v0.iter().zip(v1).zip(rows) {
+            for ((a, b), row) in weights.zip(rows) {
                 let row: &[f64; BLOCK] = row[..BLOCK].try_into().expect("blocks are whole");
                 for i in 0..BLOCK {
                     sums[0][i] += a * row[i];
@@ -145,10 +157,11 @@ impl RowResponses {
     }
 }
 
-/// What a patch moves, by the processor's widest vectors.
+/// What a pair of directions of a patch moves, by the processor's widest vectors.
 struct Measure<'a> {
     table: &'a RowResponses,
     patch: &'a Patch,
+    pair: usize,
 }
 
 impl WithSimd for Measure<'_> {
@@ -156,6 +169,6 @@ impl WithSimd for Measure<'_> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) -> Self::Output {
-        self.table.measured(self.patch)
+        self.table.measured(self.patch, self.pair)
     }
 }

@@ -209,7 +209,7 @@ fn rows_of_a_defect_move_under_patches_as_solves_say() {
             let nodes = [0, 1, 2, 3].map(|i| node(sector + i / 2, raceway[(p + i) % 3]));
             let value = |i: usize, q: usize, c: usize| values[24 * p + 6 * i + 3 * q + c];
             let weights = [0, 1, 2, 3].map(|i| [0, 1].map(|q| [0, 1, 2].map(|c| value(i, q, c))));
-            patches.push(first.patch(&nodes, &weights).unwrap());
+            patches.push(first.patch(&[(&nodes, &weights)]).unwrap());
             for q in 0..2 {
                 let mut u = vec![0.0; ring.mesh.n_dofs()];
                 for (node, w) in nodes.iter().zip(&weights) {

@@ -46,7 +46,7 @@ use crate::system::{Body, Character, Interaction, Lengths, Link, LinkForces, Lin
 pub enum Carrier {
     /// A lumped body.
     Lumped(usize),
-    /// The ports of an elastic ring: two of each groove, then of each patch, then of each slope.
+    /// An elastic ring: of each ball the ports of groove and patch, then what is seen of the slopes.
     Elastic(usize),
     /// Nothing.
     AtRest,
@@ -80,8 +80,8 @@ impl FreeContacts {
             match rings[side] {
                 Carrier::Lumped(body) => terms.extend((0..5).map(|c| unit(Body::Lumped(body), c, 6 + c))),
                 Carrier::Elastic(body) => {
-                    let ports = elastic_ports(ball, n_balls).into_iter().enumerate();
-                    terms.extend(ports.map(|(i, port)| unit(Body::Elastic(body), port, 6 + i)));
+                    let coordinates = elastic_coordinates(ball, n_balls).enumerate();
+                    terms.extend(coordinates.map(|(i, c)| unit(Body::Elastic(body), c, 6 + i)));
                 }
                 Carrier::AtRest => {}
             }
@@ -97,9 +97,17 @@ impl FreeContacts {
     }
 }
 
-/// Ports of an elastic ring at a ball: groove r, z; patch t, q; slope r, z.
-pub fn elastic_ports(ball: usize, n_balls: usize) -> [usize; 6] {
-    [0, 1, 2, 3, 4, 5].map(|i| 2 * ((i / 2) * n_balls + ball) + i % 2)
+/// Nodal weights of a contact on an elastic ring: groove r, z; patch t, q; slope r, z.
+pub const FREE_FEET: usize = 3;
+/// Functionals of a contact on an elastic ring that forces act on: groove and patch.
+pub const FREE_PORTS: usize = 4;
+/// Functionals of a contact on an elastic ring that are only seen: the slope.
+pub const FREE_SEEN: usize = 2;
+
+/// Coordinates of an elastic ring at a ball: ports of its groove and patch, and the slope seen there.
+fn elastic_coordinates(ball: usize, n_balls: usize) -> impl Iterator<Item = usize> {
+    let seen = FREE_PORTS * n_balls + FREE_SEEN * ball;
+    (FREE_PORTS * ball..FREE_PORTS * (ball + 1)).chain(seen..seen + FREE_SEEN)
 }
 
 /// Forces and tangents of links from what resists the growth of the lengths of each.

@@ -1,6 +1,7 @@
 //! The assembly of a system: lengths, residual and tangent from its lists.
 
 mod finite;
+mod seen;
 
 use std::ops::Range;
 
@@ -45,7 +46,7 @@ impl<'a> System<'a> {
         let sizes = lumped
             .iter()
             .map(|body| [body.n_unknowns(), body.n_coordinates()]);
-        let sizes = sizes.chain(elastic.iter().map(|body| [body.n_moving, body.n_moving]));
+        let sizes = sizes.chain(elastic.iter().map(|body| [body.n_moving, body.n_coordinates()]));
         let mut first = vec![[0, 0]];
         for [unknowns, coordinates] in sizes {
             let [u, c] = first[first.len() - 1];
@@ -98,7 +99,12 @@ impl<'a> System<'a> {
             .flat_map(|body| body.guess(self.interval))
             .collect();
         for body in &self.elastic {
-            x.extend_from_slice(&body.start[..body.n_moving]);
+            let guess = if body.guess.is_empty() {
+                &body.start
+            } else {
+                &body.guess
+            };
+            x.extend_from_slice(&guess[..body.n_moving]);
         }
         x
     }
@@ -240,16 +246,20 @@ impl<'a> System<'a> {
     pub fn add_link_tangents(&self, x: &[f64], links: &[LinkForces], tangent: &mut [f64]) {
         let (n, moves, end) = (self.n(), self.moves(x), self.end(x));
         let (mut moved, mut at_end) = (Vec::new(), Vec::new());
+        let mut entries = [Entries::new(), Entries::new()];
         for (family, found) in self.interactions.iter().zip(links) {
             let m = family.n_rows();
             for (link, t) in family.links().iter().zip(found.tangents.chunks_exact(m * m)) {
                 let finite = link.finite.map(|finite| (finite, self.mean_rows(&finite, &end)));
                 self.moved_by(link, finite, &moves, &mut moved);
+                self.add_seen(link, (t, m), &moved, tangent);
                 let at = |finite: &CarriedCircle| finite.circle.rows(self.finite_coordinates(finite, &end));
                 let finite = link.finite.map(|finite| (finite, at(&finite)));
                 self.moved_by(link, finite, &moves, &mut at_end);
                 if m > FEW_ROWS {
-                    add_sparse(t, m, &moved, &at_end, (n, tangent));
+                    list_entries(&moved, m, &mut entries[0]);
+                    list_entries(&at_end, m, &mut entries[1]);
+                    add_sparse(t, m, &entries, (n, tangent));
                     continue;
                 }
                 for (a, row_a) in &moved {
@@ -282,19 +292,27 @@ impl<'a> System<'a> {
     /// All coordinates at the start.
     fn at_start(&self) -> Vec<f64> {
         let lumped = self.lumped.iter().flat_map(|body| body.start());
-        let elastic = self.elastic.iter().flat_map(|body| &body.start[..body.n_moving]);
+        let elastic = self
+            .elastic
+            .iter()
+            .flat_map(|body| body.start[..body.n_moving].iter().chain(&body.seen.start));
         lumped.chain(elastic).copied().collect()
     }
 
     /// All coordinates at the end.
     fn end(&self, x: &[f64]) -> Vec<f64> {
-        let [n_lumped, first] = self.first[self.lumped.len()];
+        let [_, first] = self.first[self.lumped.len()];
         let mut end = vec![0.0; first];
         for (i, body) in self.lumped.iter().enumerate() {
             let own = self.first[i][1]..self.first[i + 1][1];
             body.place(&x[self.unknowns(Body::Lumped(i))], &mut end[own]);
         }
-        end.extend_from_slice(&x[n_lumped..]);
+        for (i, body) in self.elastic.iter().enumerate() {
+            end.extend_from_slice(&x[self.unknowns(Body::Elastic(i))]);
+            if !body.seen.start.is_empty() {
+                end.extend(body.seen_at(&self.ports(i, x)));
+            }
+        }
         end
     }
 
@@ -339,10 +357,12 @@ impl<'a> System<'a> {
                 moves.list.push((unknown + u, slope));
             }
         }
-        let [unknown, coordinate] = self.first[self.lumped.len()];
-        for k in 0..self.n() - unknown {
-            moves.begin(coordinate + k);
-            moves.list.push((unknown + k, 1.0));
+        for (i, body) in self.elastic.iter().enumerate() {
+            let [unknown, coordinate] = self.first[self.lumped.len() + i];
+            for k in 0..body.n_moving {
+                moves.begin(coordinate + k);
+                moves.list.push((unknown + k, 1.0));
+            }
         }
         moves.begin(self.first[self.first.len() - 1][1]);
         moves
@@ -446,26 +466,23 @@ impl<'a> System<'a> {
 /// Links with more lengths see most coordinates in one of them alone.
 const FEW_ROWS: usize = 4;
 
+/// Entries of rows that are mostly zero: unknown, length, growth.
+type Entries = Vec<(usize, usize, f64)>;
+
+fn list_entries(rows: &[(usize, LinkRows)], m: usize, entries: &mut Entries) {
+    entries.clear();
+    for (unknown, row) in rows {
+        let some = row[..m].iter().enumerate().filter(|(_, r)| **r != 0.0);
+        entries.extend(some.map(|(i, r)| (*unknown, i, *r)));
+    }
+}
+
 /// Adds R_a^T T R_b of a link whose rows are mostly zero, for all pairs of unknowns.
-fn add_sparse(
-    t: &[f64],
-    m: usize,
-    moved: &[(usize, LinkRows)],
-    at_end: &[(usize, LinkRows)],
-    (n, tangent): (usize, &mut [f64]),
-) {
-    let entries = |rows: &[(usize, LinkRows)]| -> Vec<(usize, usize, f64)> {
-        let of = |(unknown, row): &(usize, LinkRows)| {
-            let unknown = *unknown;
-            let some = row.iter().take(m).enumerate().filter(|(_, r)| **r != 0.0);
-            some.map(|(i, r)| (unknown, i, *r)).collect::<Vec<_>>()
-        };
-        rows.iter().flat_map(of).collect()
-    };
-    let (rows, columns) = (entries(moved), entries(at_end));
+fn add_sparse(t: &[f64], m: usize, [rows, columns]: &[Entries; 2], (n, tangent): (usize, &mut [f64])) {
     for (a, i, r) in rows {
-        for (b, j, s) in &columns {
-            tangent[n * a + b] += r * t[m * i + j] * s;
+        let (row, t) = (&mut tangent[n * a..n * (a + 1)], &t[m * i..m * (i + 1)]);
+        for (b, j, s) in columns {
+            row[*b] += r * t[*j] * s;
         }
     }
 }
