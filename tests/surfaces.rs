@@ -198,6 +198,33 @@ fn spectra_refuse_what_they_cannot_show() {
     assert_eq!(dir.text("out/spectrum_x.csv"), "mine");
 }
 
+/// Wrong: a user would look for the length of a spall, or for waves, in steps that skip them. At 1800 rpm contacts run
+/// over the outer ring of the 7010C at 81.6 rad/s: 0.5 mm take 165 us.
+#[test]
+fn steps_that_skip_a_surface_are_warned_of() {
+    let dent = "[[profiles.dent]]\nring = \"inner\"\nazimuth = \"0 deg\"\ngroove_angle = \"18 deg\"\n\
+                diameter = \"0.2 mm\"\ndepth = \"5 um\"\n\n";
+    let waves = "[[profiles.waviness]]\nring = \"inner\"\norder = 400\namplitude = \"0.1 um\"\n\n";
+    let check = |step: &str| {
+        let tables = spall("outer") + dent + waves + &MOTION.replace("20 us", step);
+        let dir = Dir::with_scene(&with_line("[static]", "[static]", &tables));
+        let outcome = dir.raceway(&[&["check", "scene.toml"], &RIGID[..]].concat());
+        assert_eq!(outcome.code, Some(0), "{}", outcome.stderr);
+        outcome.stdout
+    };
+    let said = check("20 us");
+    for part in [
+        "a ball passes spall 1 of the outer ring in 165.",
+        "expected 20 or more: dynamic.step of 8.2 us or less",
+        "a ball passes dent 1 of the inner ring in ",
+        "a ball passes a wave of order 400 of the inner ring in 147.0",
+    ] {
+        assert!(said.contains(part), "{said}\nhas no\n{part}");
+    }
+    let said = check("2 us");
+    assert!(!said.contains("a ball passes"), "{said}");
+}
+
 /// Wrong: edges and profiles that fit no ring would be taken; a rigid ring without a section has no shoulders, and a
 /// spall beyond them is none.
 #[test]
