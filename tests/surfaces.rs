@@ -107,9 +107,9 @@ fn line_and_sidebands(ring: &str, load: &str, line: f64) -> ([f64; 2], String) {
 }
 
 /// Wrong: lines would not tell which ring is damaged. Under a load that stands an outer spall always meets the same
-/// load: BPFO without sidebands; an inner one goes through the loaded zone once a turn: BPFI with sidebands at the
-/// speed of the shaft. Under a load that turns with the shaft (unbalance) both are exchanged. (Randall and Antoni, MSSP 25
-/// (2011) 485.) The marked lines have them alike.
+/// load: BPFO without sidebands; an inner one goes through it once a turn: BPFI with sidebands at the speed of the
+/// shaft. Under a load that turns with the shaft (unbalance) both are exchanged. (Randall and Antoni, MSSP 25 (2011)
+/// 485.) The marked lines have them alike.
 #[test]
 fn the_ring_that_turns_through_the_load_has_sidebands() {
     let stands = "[effects.radial_force]\nvalue = \"1 kN\"\ndirection = \"0 deg\"\n";

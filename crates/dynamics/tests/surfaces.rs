@@ -263,9 +263,9 @@ fn a_larger_ball_carries_more() {
     }
 }
 
-/// Wrong: the passage of a ball would not show the length of a spall, as condition monitoring takes it: force is lost at
-/// the leading edge, least where the ball meets the trailing one half-way, and whole again behind it. A ball that stays
-/// loaded and rolls slowly: the length from either pair of places within 5 %.
+/// Wrong: the passage of a ball would not show the length of a spall, as condition monitoring takes it: force is lost
+/// at the leading edge, least where the ball meets the trailing one half-way, and whole again behind it. A ball that
+/// stays loaded and rolls slowly: the length from either pair of places within 5 %.
 #[test]
 fn a_slow_passage_shows_the_length_of_a_spall() {
     for (length, load) in [(0.4e-3, 2000.0), (0.6e-3, 4000.0)] {
