@@ -88,11 +88,10 @@ fn an_outer_spall_shows_lines_at_bpfo() {
 fn line_and_sidebands(ring: &str, load: &str, line: f64) -> ([f64; 2], String) {
     let motion = "[speed]\ninner = \"1800 rpm\"\n\n[quasi_static]\nduration = \"0.2 s\"\nstep = \"100 us\"\n\
                   output_every = 2000\n";
-    let stands = "[effects.radial_force]\nvalue = \"1 kN\"\ndirection = \"0 deg\"\n";
     let spall = spall(ring).replace("0.5 mm", "1 mm");
     let scene = with_line("[static]", "[static]", &(spall + motion));
-    assert!(scene.contains(stands));
-    let dir = Dir::with_scene(&scene.replace(stands, load));
+    assert!(scene.contains(RADIAL));
+    let dir = Dir::with_scene(&scene.replace(RADIAL, load));
     let outcome = dir.raceway(&[&["run", "scene.toml", "--out", "out"], &RIGID[..]].concat());
     assert_eq!(outcome.code, Some(0), "{}", outcome.stderr);
     let outcome = dir.raceway(&["spectrum", "out", "--probe", "z_m"]);
@@ -112,12 +111,11 @@ fn line_and_sidebands(ring: &str, load: &str, line: f64) -> ([f64; 2], String) {
 /// 485.) The marked lines have them alike.
 #[test]
 fn the_ring_that_turns_through_the_load_has_sidebands() {
-    let stands = "[effects.radial_force]\nvalue = \"1 kN\"\ndirection = \"0 deg\"\n";
     // 1 kN at 188.5 rad/s.
     let turns = "[effects.unbalance]\nmass = \"1 kg\"\neccentricity = \"28.145 mm\"\n";
     for (ring, load, line, name, has_sidebands) in [
-        ("outer", stands, 233.89, "BPFO", false),
-        ("inner", stands, 306.11, "BPFI", true),
+        ("outer", RADIAL, 233.89, "BPFO", false),
+        ("inner", RADIAL, 306.11, "BPFI", true),
         ("outer", turns, 233.89, "BPFO", true),
         ("inner", turns, 306.11, "BPFI", false),
     ] {
@@ -146,6 +144,70 @@ fn an_inner_spall_in_motion_has_sidebands() {
     let between = near(&table, 306.11 + 150.0, 40.0);
     assert!(line > 5.0 * low.max(high), "{line} {low} {high}");
     assert!(low.min(high) > 3.0 * between, "{low} {high} {between}");
+}
+
+const RADIAL: &str = "[effects.radial_force]\nvalue = \"1 kN\"\ndirection = \"0 deg\"\n";
+
+/// Wrong: a ball of another size would not be seen, or elsewhere than at the frequency of the cage: it comes through
+/// the loaded zone once a turn of the cage, 12.994 Hz. Equal balls leave no line there.
+#[test]
+fn one_larger_ball_shows_at_the_frequency_of_the_cage() {
+    let motion = "[speed]\ninner = \"1800 rpm\"\n\n[quasi_static]\nduration = \"1 s\"\nstep = \"1 ms\"\n\
+                  output_every = 1000\n";
+    let at_cage = |first: &str| {
+        let others = ", \"0 um\"".repeat(17);
+        let balls = format!("[bearing.ball_diameters]\ndeviations = [\"{first}\"{others}]\n\n");
+        let dir = Dir::with_scene(&with_line("[static]", "[static]", &(balls + motion)));
+        let outcome = dir.raceway(&[&["run", "scene.toml", "--out", "out"], &RIGID[..]].concat());
+        assert_eq!(outcome.code, Some(0), "{}", outcome.stderr);
+        let outcome = dir.raceway(&["spectrum", "out", "--probe", "x_m"]);
+        assert_eq!(outcome.code, Some(0), "{}", outcome.stderr);
+        let table = Table::read(&dir, "out/spectrum_x.csv");
+        [12.994, 18.0].map(|frequency| near_in(&table, "amplitude_m", frequency, 2.0))
+    };
+    let [line, beside] = at_cage("1 um");
+    assert!(line > 1e-8 && line > 100.0 * beside, "{line} {beside}");
+    let [line, _] = at_cage("0 um");
+    assert!(line < 1e-12, "{line}");
+}
+
+/// Wrong: an elastic ring would be as dumb as a rigid one. Waves of order 2 on the inner ring move no rigid bearing
+/// under thrust, nor the shaft between elastic rings. But the balls carry their pattern round, twice a turn of the
+/// shaft, and material points of the outer ring follow.
+#[test]
+fn an_oval_ring_moves_material_points_of_elastic_rings_alone() {
+    // 31.25 turns a second: 32 steps a turn.
+    let motion = "[speed]\ninner = \"1875 rpm\"\n\n[quasi_static]\nduration = \"32 ms\"\nstep = \"1 ms\"\n\
+                  output_every = 32\n\n[probes.node.p]\nring = \"outer\"\nazimuth = \"40 deg\"\n\
+                  r = \"38.5 mm\"\nz = \"1 mm\"\n\n";
+    let waves = "[[profiles.waviness]]\nring = \"inner\"\norder = 2\namplitude = \"1 um\"\n";
+    let twice_a_turn = |waves: &str| {
+        let dir = Dir::with_meshes();
+        let scene = with_line("[static]", "[static]", &(motion.to_string() + waves));
+        let scene = scene
+            .replace(RADIAL, "")
+            .replace("\"clamped\"", "\"mean_motion\"");
+        dir.write("scene.toml", scene);
+        let outcome = dir.raceway(&["run", "scene.toml", "--out", "out"]);
+        assert_eq!(outcome.code, Some(0), "{}", outcome.stderr);
+        let amplitude = |table: &Table, column: &str| {
+            let values = &table.column(column)[1..=32];
+            let part = |shift: f64| -> f64 {
+                let wave = |i: usize| (std::f64::consts::TAU * i as f64 / 16.0 + shift).cos();
+                values.iter().enumerate().map(|(i, v)| v * wave(i)).sum::<f64>() / 16.0
+            };
+            part(0.0).hypot(part(0.5 * std::f64::consts::PI))
+        };
+        let [probes, shaft] = ["probes", "shaft"].map(|name| Table::read(&dir, &format!("out/{name}.csv")));
+        [
+            amplitude(&probes, "p_displacement_r_m"),
+            amplitude(&shaft, "x_m").max(amplitude(&shaft, "z_m")),
+        ]
+    };
+    let [point, shaft] = twice_a_turn(waves);
+    let [smooth, _] = twice_a_turn("");
+    assert!(point > 1e-8 && point > 20.0 * smooth, "{point} {smooth}");
+    assert!(shaft < 0.02 * point, "{shaft} {point}");
 }
 
 /// Wrong: a spectrum would be made of what has none, or write over a file of the user.
