@@ -314,6 +314,13 @@ fn surfaces_that_fit_no_ring_are_refused() {
     let said = check(&with_sections, &[]);
     let beyond = "spall 1 of the outer ring lies at the groove angle 80.00 deg beyond the groove";
     assert!(said.contains(beyond), "{said}");
+    let dent = "[[profiles.dent]]\nring = \"outer\"\nazimuth = \"0 deg\"\ngroove_angle = \"-80 deg\"\n\
+                diameter = \"0.3 mm\"\ndepth = \"5 um\"\n\n[static]";
+    let dented = with_line("[static]", "[static]", dent);
+    let dented = dented.replacen("[static]", &format!("{sections}{outer}[static]"), 1);
+    let said = check(&dented, &[]);
+    let beyond = "dent 1 of the outer ring lies at the groove angle -80.00 deg beyond the groove";
+    assert!(said.contains(beyond), "{said}");
     let sharp = spall("inner")
         .replace("0.5 mm", "0.02 mm")
         .replace("edge = \"0.1 mm\"", "");
