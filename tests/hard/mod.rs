@@ -27,6 +27,9 @@ mod statics;
 mod steps;
 #[path = "../../crates/dynamics/tests/support/mod.rs"]
 mod support;
+mod surface_spalls;
+mod surface_waves;
+mod surfaces;
 mod swings;
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -88,6 +91,7 @@ fn groups() -> Vec<Group> {
             both(both(loads::cases(), clearances::cases()), speeds::cases()),
         ),
         group("Free balls and cage", free_balls::cases()),
+        group("Real surfaces", surfaces::cases()),
         group("Steps and integrators", steps::cases()),
         group(
             "Discretisation",

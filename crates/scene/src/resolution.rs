@@ -68,6 +68,7 @@ fn judged(scene: &Scene, geometry: &BearingGeometry) -> Said {
         judge_schedule(&key, &schedule, &steps, &mut said);
     }
     judge_speed(scene, &steps, &mut said);
+    judge_surfaces(scene, geometry, &steps, &mut said);
     said
 }
 
@@ -238,6 +239,43 @@ fn judge_speed(scene: &Scene, steps: &TimeSteps, said: &mut Said) {
         for side in Side::BOTH {
             let mut warn = |text: String| said.warnings.push(format!("speed.{}: {text}", side.name()));
             warn_of_table(&speed.of(side).times, steps, &mut warn);
+        }
+    }
+}
+
+/// The shortest spall or dent of a ring, and its shortest wave, at the largest speed of the balls over it.
+fn judge_surfaces(scene: &Scene, geometry: &BearingGeometry, steps: &TimeSteps, said: &mut Said) {
+    let Some(speeds) = &scene.speed else { return };
+    let turning = Kinematics::new(geometry, scene.effects.slip());
+    for side in Side::BOTH {
+        let over = |speeds: BothRings| (turning.of_cage(speeds) - speeds[side.index()]).abs();
+        let rate = over(speeds.at_largest(over));
+        let radius = geometry.centre_radius(side) + side.sign() * geometry.groove_radius(side);
+        let profiles = &scene.profiles.raceways[side.index()];
+        let spalls = profiles.spalls.iter().zip(1..);
+        let spalls = spalls.map(|(spall, number)| (spall.length, format!("spall {number}")));
+        let dents = profiles.dents.iter().zip(1..);
+        let dents = dents.map(|(dent, number)| (2.0 * dent.reach(), format!("dent {number}")));
+        let waves = profiles.waves.iter().map(|wave| wave.order).max();
+        let waves = waves.map(|order| {
+            let length = TAU * radius / order as f64;
+            (length, format!("a wave of order {order}"))
+        });
+        let shortest = spalls.chain(dents).min_by(|a, b| a.0.total_cmp(&b.0));
+        for (length, what) in shortest.into_iter().chain(waves) {
+            let needed = length / (radius * rate * STEPS_PER_PERIOD);
+            if steps.step > needed {
+                said.warnings.push(format!(
+                    "a ball passes {what} of the {} ring in {}, {:.2} steps of {}; expected {STEPS_PER_PERIOD} or \
+                     more: {}.step of {} or less",
+                    side.name(),
+                    time(STEPS_PER_PERIOD * needed),
+                    STEPS_PER_PERIOD * needed / steps.step,
+                    time(steps.step),
+                    steps.table,
+                    time(below(needed))
+                ));
+            }
         }
     }
 }

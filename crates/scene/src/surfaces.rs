@@ -2,8 +2,8 @@
 
 use std::sync::Arc;
 
-use contact::surface::MOST_NUMBERS;
-use contact::{BearingGeometry, HertzContact, Side, StripLaw, StripSurface};
+use contact::surface::{Dent, MOST_NUMBERS, Spall};
+use contact::{BearingGeometry, HertzContact, Profiles, Side, StripLaw, StripSurface};
 use dynamics::{RACEWAY_GROUP, RingModel, Surfaces};
 
 use crate::error::BuildError;
@@ -61,26 +61,31 @@ fn strips_of(
             side.name()
         ));
     }
+    let marks = marks(profiles);
     if let (Some([low, high]), radius) = (shoulders, geometry.groove_radius(side)) {
-        for (spall, number) in profiles.spalls.iter().zip(1..) {
-            let half = 0.5 * spall.width / radius;
-            if spall.groove_angle + half <= low || spall.groove_angle - half >= high {
+        for mark in &marks {
+            let half = 0.5 * mark.width / radius;
+            if mark.groove_angle + half <= low || mark.groove_angle - half >= high {
                 return refuse(format!(
-                    "spall {number} of the {} ring lies at the groove angle {:.2} deg beyond the groove, which goes \
+                    "{} of the {} ring lies at the groove angle {:.2} deg beyond the groove, which goes \
                      from {:.2} to {:.2} deg",
+                    mark.name,
                     side.name(),
-                    spall.groove_angle.to_degrees(),
+                    mark.groove_angle.to_degrees(),
                     low.to_degrees(),
                     high.to_degrees()
                 ));
             }
         }
     }
-    if let Some(number) = ring.and_then(|ring| over_missing_facets(ring, geometry, side, scene)) {
+    let in_gap = |ring: &RingModel| over_missing_facets(&marks, ring, (geometry, side), scene);
+    if let Some(mark) = ring.and_then(in_gap) {
         return refuse(format!(
-            "spall {number} of the {0} ring lies where its mesh has no raceway: it would count twice; leave out the \
-             [[{0}.cut]] or the [[profiles.spall]]",
-            side.name()
+            "{} of the {1} ring lies where its mesh has no raceway: it would count twice; leave out the \
+             [[{1}.cut]] or the [[profiles.{2}]]",
+            mark.name,
+            side.name(),
+            mark.table
         ));
     }
     let law = StripLaw::new(hertz, geometry.groove_radius(side));
@@ -90,8 +95,8 @@ fn strips_of(
     match StripSurface::new(law, (geometry, side), edges, profiles) {
         Some(surface) => Ok(Some(Arc::new(surface))),
         None => refuse(format!(
-            "the profiles of the {} ring need a grid of more than {} million points; use a longer spall, a longer edge \
-             or lower orders",
+            "the profiles of the {} ring need a grid of more than {} million points; use a longer spall, a longer \
+             edge, fewer or larger dents or lower orders",
             side.name(),
             MOST_NUMBERS / 1_000_000
         )),
@@ -131,13 +136,47 @@ fn shoulders(
     })
 }
 
-/// The first spall, from 1, in which the raceway of a mesh with cuts has a gap; None: there is none.
-fn over_missing_facets(
+/// A spall or a dent: where it lies on its groove.
+struct Mark {
+    /// Such as "spall 1".
+    name: String,
+    table: &'static str,
+    azimuth: f64,
+    groove_angle: f64,
+    /// Along the track, m.
+    length: f64,
+    /// Across it, m.
+    width: f64,
+}
+
+fn marks(profiles: &Profiles) -> Vec<Mark> {
+    let spall = |(spall, number): (&Spall, usize)| Mark {
+        name: format!("spall {number}"),
+        table: "spall",
+        azimuth: spall.azimuth,
+        groove_angle: spall.groove_angle,
+        length: spall.length,
+        width: spall.width,
+    };
+    let dent = |(dent, number): (&Dent, usize)| Mark {
+        name: format!("dent {number}"),
+        table: "dent",
+        azimuth: dent.azimuth,
+        groove_angle: dent.groove_angle,
+        length: 2.0 * dent.reach(),
+        width: 2.0 * dent.reach(),
+    };
+    let spalls = profiles.spalls.iter().zip(1..).map(spall);
+    spalls.chain(profiles.dents.iter().zip(1..).map(dent)).collect()
+}
+
+/// The first spall or dent in which the raceway of a mesh with cuts has a gap; None: there is none.
+fn over_missing_facets<'m>(
+    marks: &'m [Mark],
     ring: &RingModel,
-    geometry: &BearingGeometry,
-    side: Side,
+    (geometry, side): (&BearingGeometry, Side),
     scene: &Scene,
-) -> Option<usize> {
+) -> Option<&'m Mark> {
     let table = [&scene.inner, &scene.outer][side.index()];
     let is_whole = |body: &FlexibleRing| body.cuts.is_empty() && !body.is_partial;
     if table.body.as_ref().is_none_or(is_whole) {
@@ -145,18 +184,16 @@ fn over_missing_facets(
     }
     let surface = contact::RacewaySurface::new(&ring.mesh, ring.mesh.group(RACEWAY_GROUP), ring.groove);
     let [low, high] = surface.angle_range;
-    let spalls = &scene.profiles.raceways[side.index()].spalls;
-    let is_gap = |spall: &contact::surface::Spall| {
-        let places = |half: f64| [-1.0, -0.5, 0.0, 0.5, 1.0].map(|share| share * half);
-        let radius = geometry.centre_radius(side) + side.sign() * geometry.groove_radius(side);
-        places(0.5 * spall.length / radius).iter().any(|azimuth| {
-            places(0.5 * spall.width / geometry.groove_radius(side))
+    let places = |half: f64| [-1.0, -0.5, 0.0, 0.5, 1.0].map(|share| share * half);
+    let radius = geometry.centre_radius(side) + side.sign() * geometry.groove_radius(side);
+    marks.iter().find(|mark| {
+        places(0.5 * mark.length / radius).iter().any(|azimuth| {
+            places(0.5 * mark.width / geometry.groove_radius(side))
                 .iter()
                 .any(|angle| {
-                    let angle = (spall.groove_angle + angle).clamp(low, high);
-                    surface.locate(spall.azimuth + azimuth, angle).is_err()
+                    let angle = (mark.groove_angle + angle).clamp(low, high);
+                    surface.locate(mark.azimuth + azimuth, angle).is_err()
                 })
         })
-    };
-    spalls.iter().position(is_gap).map(|place| place + 1)
+    })
 }

@@ -100,10 +100,10 @@ fn hann(n: usize) -> Vec<f64> {
 }
 
 impl LineSpectrum {
-    /// Frequency, Hz, and value of the largest line within two resolutions of a frequency.
+    /// Frequency, Hz, and value of the largest line within two resolutions of a frequency; 0 Hz is none.
     pub fn peak_near(&self, frequency: f64) -> [f64; 2] {
         let place = frequency / self.resolution;
-        let first = (place - 2.0).ceil().max(0.0) as usize;
+        let first = (place - 2.0).ceil().max(1.0) as usize;
         let last = ((place + 2.0).floor() as usize).min(self.values.len() - 1);
         let all = (first..=last).map(|k| [k as f64 * self.resolution, self.values[k]]);
         all.fold(

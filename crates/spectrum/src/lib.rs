@@ -87,6 +87,9 @@ impl FromStr for Band {
 /// Height from name to name of the lines in a figure, as a share of it.
 const LABEL_STEP: f64 = 0.08;
 
+/// Height of the marks of sidebands, as a share of the figure.
+const SIDEBAND_HEIGHT: f64 = 0.4;
+
 /// A spectrum and how it is called.
 struct Titled {
     spectrum: LineSpectrum,
@@ -127,9 +130,10 @@ pub fn spectrum(request: &SpectrumCommand) -> Result<(), Failure> {
     let signal = request.signal()?;
     let mut marks = lines(dir, &scene_of(dir)?, signal.span)?;
     let named = request.transform(&signal)?;
-    marks
-        .iter_mut()
-        .for_each(|line| line.frequency /= named.over.hertz);
+    marks.iter_mut().for_each(|line| {
+        line.frequency /= named.over.hertz;
+        line.sidebands /= named.over.hertz;
+    });
     warn_of_doubts(dir)?;
     let figure = draw(&named, &marks, request.upto)?.images()?;
     let table = dir.join(format!("{}.csv", named.file));
@@ -321,22 +325,29 @@ fn draw(named: &Titled, marks: &[Line], upto: Option<f64>) -> anyhow::Result<Fig
         Axis::linear(named.over.name, named.over.unit).tight(),
         named.axis.clone(),
     )
-    .note("Dashed: lines of the bearing and their multiples, from the simulated cage speed");
+    .note(
+        "Dashed: lines of the bearing and their multiples, from the simulated cage speed; short: sidebands",
+    );
+    let at_height = |height: f64| {
+        if named.is_density {
+            top * (bottom / top).powf(1.0 - height)
+        } else {
+            top * height
+        }
+    };
     for (place, line) in marks.iter().enumerate() {
-        for k in 1..=line.harmonics {
-            let x = k as f64 * line.frequency;
-            if x > points[points.len() - 1][0] {
-                break;
+        for (x, is_sideband) in line.family() {
+            if x <= points[points.len() - 1][0] {
+                let y = if is_sideband {
+                    at_height(SIDEBAND_HEIGHT)
+                } else {
+                    top
+                };
+                figure = figure.series(Series::reference("", vec![[x, bottom], [x, y]]));
             }
-            figure = figure.series(Series::reference("", vec![[x, bottom], [x, top]]));
         }
         // Names stand one below the other: lines may be close.
-        let height = LABEL_STEP * (place as f64 + 0.5);
-        let y = if named.is_density {
-            top * (bottom / top).powf(height)
-        } else {
-            top * (1.0 - height)
-        };
+        let y = at_height(1.0 - LABEL_STEP * (place as f64 + 0.5));
         if line.frequency <= points[points.len() - 1][0] {
             figure = figure.label([line.frequency, y], line.name);
         }
@@ -369,10 +380,17 @@ fn say(dir: &Path, named: &Titled, marks: &[Line]) {
         named.column
     ));
     for line in marks {
-        let [frequency, value] = named.spectrum.peak_near(line.frequency);
-        print::line(format_args!(
-            "  {:<6} {:>10.3}{unit}: {value:.3e} at {frequency:.3}{unit}",
-            line.name, line.frequency,
-        ));
+        let at = |name: &str, line: f64| {
+            let [frequency, value] = named.spectrum.peak_near(line);
+            print::line(format_args!(
+                "  {name:<6} {line:>10.3}{unit}: {value:.3e} at {frequency:.3}{unit}"
+            ));
+        };
+        at(line.name, line.frequency);
+        for (sign, side) in [("side -", -line.sidebands), ("side +", line.sidebands)] {
+            if line.sidebands > 0.0 && line.frequency + side > 0.0 {
+                at(sign, line.frequency + side);
+            }
+        }
     }
 }

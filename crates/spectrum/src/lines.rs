@@ -2,6 +2,11 @@
 //!
 //! With the cage at f_c, the rings at f_i and f_o and Z balls: BPFO = Z |f_c - f_o|, BPFI = Z |f_i - f_c|; a defect
 //! on a ball meets both raceways in a turn of the ball relative to the cage: 2 BSF.
+//!
+//! A defect that turns with its ring through a load that stands is loaded and unloaded once a turn of the ring: its
+//! lines have sidebands at the speed of the ring, those of a defect on a ball at the speed of the cage. Under an
+//! unbalance the load turns with the inner ring: then it is the outer ring's lines that have them. (Randall and Antoni,
+//! Mechanical Systems and Signal Processing 25 (2011) 485.)
 
 use std::f64::consts::TAU;
 use std::path::Path;
@@ -20,6 +25,28 @@ pub struct Line {
     pub frequency: f64,
     /// Multiples of it that matter.
     pub harmonics: usize,
+    /// Distance from the line to its sidebands, Hz; 0: it has none.
+    pub sidebands: f64,
+}
+
+/// Sidebands that matter on each side of a line.
+const SIDEBANDS: i32 = 2;
+
+impl Line {
+    /// The line and its multiples, each with its sidebands: frequency, Hz, and whether it is a sideband.
+    pub fn family(&self) -> Vec<(f64, bool)> {
+        let orders = -SIDEBANDS..=SIDEBANDS;
+        let wanted = |order: &i32| *order == 0 || self.sidebands > 0.0;
+        let orders: Vec<i32> = orders.filter(wanted).collect();
+        let of = |k: usize| {
+            let line = k as f64 * self.frequency;
+            orders
+                .iter()
+                .map(move |order| (line + f64::from(*order) * self.sidebands, *order != 0))
+        };
+        let all = (1..=self.harmonics).flat_map(of);
+        all.filter(|(frequency, _)| *frequency > 0.0).collect()
+    }
 }
 
 /// The lines of a motion in `dir` over a span of time, s, with those that are 0 left out.
@@ -62,17 +89,22 @@ pub fn lines(dir: &Path, scene: &Scene, (from, to): (f64, f64)) -> anyhow::Resul
     let spin = spins.map_or(0.0, |spin| {
         rows.iter().map(|&row| spin[row].abs()).sum::<f64>() / (TAU * rows.len() as f64)
     });
-    let line = |name, frequency: f64, harmonics| Line {
+    let line = |name, frequency: f64, harmonics, sidebands: f64| Line {
         name,
         frequency: frequency.abs(),
         harmonics,
+        sidebands: sidebands.abs(),
+    };
+    let load = match scene.effects.unbalance {
+        Some(_) => inner,
+        None => 0.0,
     };
     let all = [
-        line("BPFO", n * (cage - outer), 3),
-        line("BPFI", n * (inner - cage), 3),
-        line("2 BSF", 2.0 * spin, 1),
-        line("cage", cage, 1),
-        line("shaft", inner, 1),
+        line("BPFO", n * (cage - outer), 3, outer - load),
+        line("BPFI", n * (inner - cage), 3, inner),
+        line("2 BSF", 2.0 * spin, 1, cage),
+        line("cage", cage, 1, 0.0),
+        line("shaft", inner, 1, 0.0),
     ];
     let found: Vec<Line> = all.into_iter().filter(|line| line.frequency > 0.0).collect();
     if found.is_empty() {
@@ -82,4 +114,47 @@ pub fn lines(dir: &Path, scene: &Scene, (from, to): (f64, f64)) -> anyhow::Resul
         ));
     }
     Ok(found)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Wrong: sidebands would be marked elsewhere, at lines that have none, or below frequency 0.
+    #[test]
+    fn a_line_has_its_multiples_and_sidebands() {
+        let line = Line {
+            name: "BPFI",
+            frequency: 300.0,
+            harmonics: 2,
+            sidebands: 30.0,
+        };
+        let lines: Vec<f64> = line.family().iter().map(|(f, _)| *f).collect();
+        assert_eq!(
+            lines,
+            [
+                240.0, 270.0, 300.0, 330.0, 360.0, 540.0, 570.0, 600.0, 630.0, 660.0
+            ]
+        );
+        let own = line
+            .family()
+            .iter()
+            .filter(|(_, is_sideband)| !is_sideband)
+            .count();
+        assert_eq!(own, 2);
+        let bare = Line {
+            sidebands: 0.0,
+            ..line.clone()
+        };
+        assert_eq!(bare.family(), [(300.0, false), (600.0, false)]);
+        let slow = Line {
+            frequency: 40.0,
+            harmonics: 1,
+            ..line
+        };
+        assert_eq!(
+            slow.family().iter().map(|(f, _)| *f).collect::<Vec<_>>(),
+            [10.0, 40.0, 70.0, 100.0]
+        );
+    }
 }

@@ -1,4 +1,4 @@
-//! The surface of a raceway as its balls meet it: spalls, waves and measured heights, filtered by the size of the ball.
+//! The surface of a raceway as its balls meet it: spalls, dents, waves, measured heights, filtered by the ball's size.
 //!
 //! h(theta, beta) is the material that is missing of the smooth groove, m, at the azimuth theta of the ring and the
 //! groove angle beta: the sum of all profiles. Along the track the ball touches what is highest within its reach, so
@@ -18,8 +18,15 @@
 //! met by the strips beside it as if it were not there. The ellipse's own length along the track does not filter waves:
 //! waves shorter than some four half-widths of the ellipse are felt too much.
 
+mod dent;
+mod track;
+
 use std::f64::consts::{PI, TAU};
 use std::ops::RangeInclusive;
+
+pub use self::dent::Dent;
+use self::track::{Track, turn};
+use rayon::prelude::*;
 
 use crate::geometry::{BearingGeometry, Side};
 use crate::strips::{StripLaw, StripLine};
@@ -68,6 +75,8 @@ pub struct Heights {
 pub struct Profiles {
     /// Spalls.
     pub spalls: Vec<Spall>,
+    /// Dents.
+    pub dents: Vec<Dent>,
     /// Waves.
     pub waves: Vec<Wave>,
     /// Tables of heights.
@@ -105,39 +114,10 @@ const SPACINGS_PER_ROW: f64 = 4.0;
 /// Most numbers of a surface: 160 MB.
 pub const MOST_NUMBERS: usize = 20_000_000;
 
-/// The sizes on which an envelope depends.
-#[derive(Clone, Copy, Debug)]
-struct Track {
-    side: Side,
-    centre_radius: f64,
-    groove_radius: f64,
-    ball_radius: f64,
-}
-
-impl Track {
-    fn radius(&self, angle: f64) -> f64 {
-        self.centre_radius + self.side.sign() * self.groove_radius * angle.cos()
-    }
-
-    /// Curvature k_t of the ball relative to the track, 1/m.
-    fn curvature(&self, angle: f64) -> f64 {
-        1.0 / self.ball_radius - self.side.sign() * angle.cos() / self.radius(angle)
-    }
-}
-
 /// Depth by which a ball sinks into a spall of the length `length`, m, with sharp edges, if it is deep enough: k_t L^2
 /// / 8, m.
 pub fn sag(geometry: &BearingGeometry, side: Side, angle: f64, length: f64) -> f64 {
-    track(geometry, side).curvature(angle) * length * length / 8.0
-}
-
-fn track(geometry: &BearingGeometry, side: Side) -> Track {
-    Track {
-        side,
-        centre_radius: geometry.centre_radius(side),
-        groove_radius: geometry.groove_radius(side),
-        ball_radius: 0.5 * geometry.ball_diameter,
-    }
+    Track::new(geometry, side).curvature(angle) * length * length / 8.0
 }
 
 impl StripSurface {
@@ -149,20 +129,19 @@ impl StripSurface {
         shoulders: Option<RangeInclusive<f64>>,
         profiles: &Profiles,
     ) -> Option<StripSurface> {
-        let track = track(geometry, side);
+        let track = Track::new(geometry, side);
         let groove = shoulders.unwrap_or(-PI..=PI);
         let angles = corners(&groove, track.groove_radius, profiles);
         let n_rows = profiles.rows(track);
         if n_rows.checked_mul(angles.len())? > MOST_NUMBERS {
             return None;
         }
+        let waves = profiles.wave_heights(n_rows);
         let columns: Vec<Vec<f64>> = angles
-            .iter()
+            .par_iter()
             .map(|&angle| {
                 let spacing = track.radius(angle).abs() * TAU / n_rows as f64;
-                let heights: Vec<f64> = (0..n_rows)
-                    .map(|row| profiles.missing(track, TAU * row as f64 / n_rows as f64, angle))
-                    .collect();
+                let heights = profiles.column(track, &waves, angle);
                 envelope(&heights, spacing, track.curvature(angle))
             })
             .collect();
@@ -227,15 +206,44 @@ impl StripSurface {
 impl Profiles {
     /// Whether the groove is smooth.
     pub fn is_empty(&self) -> bool {
-        self.spalls.is_empty() && self.waves.is_empty() && self.tables.is_empty()
+        self.spalls.is_empty() && self.dents.is_empty() && self.waves.is_empty() && self.tables.is_empty()
     }
 
-    /// Missing material at an azimuth and a groove angle, rad, in m.
-    fn missing(&self, track: Track, azimuth: f64, angle: f64) -> f64 {
-        let spalls: f64 = self.spalls.iter().map(|s| s.missing(track, azimuth, angle)).sum();
-        let waves: f64 = self.waves.iter().map(|wave| wave.height(azimuth)).sum();
-        let tables: f64 = self.tables.iter().map(|table| table.height(azimuth, angle)).sum();
-        spalls - waves - tables
+    /// Heights of all waves at equal azimuths from 0 on, m.
+    fn wave_heights(&self, n_rows: usize) -> Vec<f64> {
+        let height = |row: usize| {
+            let azimuth = azimuth_of(row, n_rows);
+            self.waves.iter().map(|wave| wave.height(azimuth)).sum()
+        };
+        (0..n_rows).into_par_iter().map(height).collect()
+    }
+
+    /// Missing material along the line of one groove angle, rad, in m: from the heights of the waves on it. Spalls and
+    /// dents cost only where they are.
+    fn column(&self, track: Track, waves: &[f64], angle: f64) -> Vec<f64> {
+        let n_rows = waves.len();
+        let mut missing = vec![0.0; n_rows];
+        let mut add = |middle: f64, reach: f64, height: &dyn Fn(f64) -> f64| {
+            for row in rows_within(middle, reach / track.radius(angle).abs(), n_rows) {
+                missing[row] += height(azimuth_of(row, n_rows));
+            }
+        };
+        for spall in &self.spalls {
+            add(spall.azimuth, 0.5 * spall.length, &|azimuth| {
+                spall.missing(track, azimuth, angle)
+            });
+        }
+        for dent in &self.dents {
+            add(dent.azimuth, dent.reach(), &|azimuth| {
+                dent.missing(track, azimuth, angle)
+            });
+        }
+        for (row, (missing, wave)) in missing.iter_mut().zip(waves).enumerate() {
+            let azimuth = azimuth_of(row, n_rows);
+            let tables: f64 = self.tables.iter().map(|table| table.height(azimuth, angle)).sum();
+            *missing = *missing - wave - tables;
+        }
+        missing
     }
 
     /// Azimuths of the grid.
@@ -251,7 +259,8 @@ impl Profiles {
             longest / finest
         };
         let table = |t: &Heights| SPACINGS_PER_ROW * TAU / smallest_gap(&t.azimuths);
-        let wanted = self.spalls.iter().map(spall);
+        let dent = |d: &Dent| longest / SPALL_SPACING.min(d.spacing());
+        let wanted = self.spalls.iter().map(spall).chain(self.dents.iter().map(dent));
         let wanted = wanted.chain(self.waves.iter().map(|w| SPACINGS_PER_WAVE * w.order as f64));
         let wanted = wanted.chain(self.tables.iter().map(table));
         wanted.fold(1.0, f64::max).ceil().min(1e12) as usize
@@ -260,7 +269,7 @@ impl Profiles {
 
 impl Spall {
     fn missing(&self, track: Track, azimuth: f64, angle: f64) -> f64 {
-        let turn = (azimuth - self.azimuth + PI).rem_euclid(TAU) - PI;
+        let turn = turn(azimuth, self.azimuth);
         let along = turn * track.radius(angle);
         let across = (angle - self.groove_angle) * track.groove_radius;
         self.depth * self.ramp(along, self.length) * self.ramp(across, self.width)
@@ -310,13 +319,27 @@ impl Heights {
     }
 }
 
+/// Azimuth of a row of the grid, rad.
+fn azimuth_of(row: usize, n_rows: usize) -> f64 {
+    TAU * row as f64 / n_rows as f64
+}
+
+/// Rows of a grid round the ring within an angle of an azimuth, rad, each once, and one more on both sides.
+fn rows_within(azimuth: f64, half: f64, n_rows: usize) -> impl Iterator<Item = usize> {
+    let spacing = TAU / n_rows as f64;
+    let first = ((azimuth - half) / spacing).floor();
+    let n = (2.0 * half / spacing).ceil() as usize + 3;
+    let first = first.rem_euclid(n_rows as f64) as usize;
+    (0..n.min(n_rows)).map(move |i| (first + i) % n_rows)
+}
+
 /// Smallest distance of neighbouring azimuths round the ring, rad.
 fn smallest_gap(azimuths: &[f64]) -> f64 {
     let around = azimuths[0] + TAU - azimuths[azimuths.len() - 1];
     azimuths.windows(2).map(|a| a[1] - a[0]).fold(around, f64::min)
 }
 
-/// Groove angles between which w is linear: shoulders, edges of spalls, angles of tables.
+/// Groove angles between which w is linear: shoulders, edges of spalls, pieces of dents, angles of tables.
 fn corners(groove: &RangeInclusive<f64>, groove_radius: f64, profiles: &Profiles) -> Vec<f64> {
     let mut angles = vec![*groove.start(), *groove.end()];
     for spall in &profiles.spalls {
@@ -333,6 +356,7 @@ fn corners(groove: &RangeInclusive<f64>, groove_radius: f64, profiles: &Profiles
             }
         }
     }
+    angles.extend(profiles.dents.iter().flat_map(|dent| dent.corners(groove_radius)));
     angles.extend(profiles.tables.iter().flat_map(|table| &table.angles));
     angles.retain(|angle| groove.contains(angle));
     angles.sort_by(f64::total_cmp);

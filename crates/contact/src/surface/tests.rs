@@ -78,6 +78,7 @@ fn a_surface_goes_round_and_adds_its_profiles() {
             angles: vec![0.0, 0.6],
             heights: vec![1e-6, 3e-6, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0],
         }],
+        ..Profiles::default()
     };
     let surface = StripSurface::new(law, (&geometry, Side::Outer), None, &profiles).unwrap();
     // A corner on the floor of the spall.
@@ -110,4 +111,183 @@ fn too_fine_a_surface_is_refused() {
         ..Profiles::default()
     };
     assert!(StripSurface::new(law, (&geometry, Side::Outer), None, &profiles).is_none());
+}
+
+/// The outer track of the 7010C.
+fn outer() -> Track {
+    Track::new(&BearingGeometry::reference_7010c(), Side::Outer)
+}
+
+fn dent() -> Dent {
+    Dent {
+        azimuth: 1.0,
+        groove_angle: 0.3,
+        diameter: 0.4e-3,
+        depth: 10e-6,
+        rim_height: 1e-6,
+        rim_width: 0.1e-3,
+    }
+}
+
+/// Wrong: a dent would have another shape than its formula: depth in the middle, the rim's height half-way across it,
+/// nothing at its edges; and the volumes pi a^2 D/2 of the bowl and pi h b (a + b/2) of the rim, by a sum over a grid.
+#[test]
+fn a_dent_has_the_depth_and_the_volumes_of_its_formula() {
+    let (track, dent) = (outer(), dent());
+    let radius = track.radius(0.3);
+    let at = |r: f64| dent.missing(track, 1.0 + r / radius, 0.3);
+    let (a, b) = (0.5 * dent.diameter, dent.rim_width);
+    for (r, expected) in [
+        (0.0, 10e-6),
+        (0.5 * a, 7.5e-6),
+        (a, 0.0),
+        (a + 0.5 * b, -1e-6),
+        (a + b, 0.0),
+    ] {
+        assert!((at(r) - expected).abs() < 1e-15, "{r}: {} {expected}", at(r));
+        assert!((at(-r) - expected).abs() < 1e-15);
+        let across = dent.missing(track, 1.0, 0.3 + r / track.groove_radius);
+        assert!((across - expected).abs() < 1e-15, "{r}: {across} {expected}");
+    }
+    let cell = 1e-6;
+    let n = (dent.reach() / cell) as isize + 2;
+    let (mut bowl, mut rim) = (0.0, 0.0);
+    for i in -n..=n {
+        for k in -n..=n {
+            let [x, y] = [i, k].map(|i| i as f64 * cell);
+            let missing = dent.missing_at(x.hypot(y));
+            bowl += missing.max(0.0) * cell * cell;
+            rim -= missing.min(0.0) * cell * cell;
+        }
+    }
+    let expected = [
+        PI * a * a * dent.depth / 2.0,
+        PI * dent.rim_height * b * (a + 0.5 * b),
+    ];
+    // The sum is off by the square of the cell over the radius at the kink.
+    assert!((bowl / expected[0] - 1.0).abs() < 1e-4, "{bowl} {expected:?}");
+    assert!((rim / expected[1] - 1.0).abs() < 1e-4, "{rim} {expected:?}");
+}
+
+/// Wrong: a dent would be lost between the corners and rows of the grid: the surface beside the points at which it is
+/// computed, against the formula. The dent is so flat that the ball meets all of it, to the square of its slope. Chords
+/// of a 24th of the radius leave 2 % of the depth at the kinks, a tenth of a percent in the bowl.
+#[test]
+fn the_grid_of_a_surface_shows_its_dents() {
+    let geometry = BearingGeometry::reference_7010c();
+    let hertz = crate::HertzContact::from_curvatures(14.0, 260.0, 113.7e9);
+    let law = StripLaw::new(&hertz, geometry.groove_radius(Side::Outer));
+    let flat = Dent {
+        depth: 1e-10,
+        rim_height: 1e-11,
+        ..dent()
+    };
+    let profiles = Profiles {
+        dents: vec![flat],
+        ..Profiles::default()
+    };
+    let surface = StripSurface::new(law, (&geometry, Side::Outer), None, &profiles).unwrap();
+    let radius = outer().radius(0.3);
+    let mut worst = [0.0f64; 2];
+    for i in -40..=40 {
+        let x = 0.35e-3 * i as f64 / 40.3;
+        let missing = surface.missing_at(1.0 + x / radius);
+        for k in -40..=40 {
+            let y = 0.35e-3 * k as f64 / 40.7;
+            let angle = 0.3 + y / law.groove_radius;
+            let next = surface.angles().partition_point(|a| *a <= angle);
+            let [low, high] = [surface.angles()[next - 1], surface.angles()[next]];
+            let found =
+                missing[next - 1] + (missing[next] - missing[next - 1]) * (angle - low) / (high - low);
+            let off = (found - flat.missing(outer(), 1.0 + x / radius, angle)).abs() / flat.depth;
+            let is_bowl = x.hypot(y) < 0.9 * 0.5 * flat.diameter;
+            worst[usize::from(is_bowl)] = worst[usize::from(is_bowl)].max(off);
+        }
+    }
+    assert!(worst[0] < 0.02 && worst[1] < 1e-3, "{worst:?}");
+    let far = surface.missing_at(1.1);
+    assert!(far.iter().all(|w| *w == 0.0));
+}
+
+/// Wrong: a ball would fall through a dent, or not ride over its rim. In a bowl that is sharper than the ball it sinks
+/// to k a^2/2 and no more; in a flat one to the depth, to the square of the grid. A rim holds it up, where its own
+/// slope meets that of the rim: w is the least of -h sin^2(pi (r - a)/b) + k r^2/2. The rim's crest lifts it by h.
+#[test]
+fn a_ball_meets_the_envelope_of_a_dent() {
+    let track = outer();
+    let (angle, spacing) = (0.3, 1e-6);
+    let curvature = track.curvature(angle);
+    let met = |dent: Dent| {
+        let n = 4001;
+        let place = |i: usize| (i as f64 - 2000.0) * spacing / track.radius(angle);
+        let heights: Vec<f64> = (0..n).map(|i| dent.missing(track, place(i), angle)).collect();
+        envelope(&heights, spacing, curvature)
+    };
+    let at_zero = Dent {
+        azimuth: 0.0,
+        rim_height: 3e-6,
+        ..dent()
+    };
+    let (a, b) = (0.5 * at_zero.diameter, at_zero.rim_width);
+    let sharp = met(Dent {
+        rim_height: 0.0,
+        ..at_zero
+    });
+    let sag = 0.5 * curvature * a * a;
+    assert!(at_zero.depth > sag);
+    assert!((sharp[2000] / sag - 1.0).abs() < 1e-9, "{} {sag}", sharp[2000]);
+    let flat = met(Dent {
+        rim_height: 0.0,
+        depth: 0.5 * sag,
+        ..at_zero
+    });
+    assert!(
+        (flat[2000] / (0.5 * sag) - 1.0).abs() < 1e-5,
+        "{} {sag}",
+        flat[2000]
+    );
+    let rim = met(at_zero);
+    let held = |r: f64| -at_zero.rim_height * (PI * (r - a) / b).sin().powi(2) + 0.5 * curvature * r * r;
+    let least = (0..10_000)
+        .map(|i| held(a + b * f64::from(i) / 1e4))
+        .fold(sag, f64::min);
+    assert!((rim[2000] - least).abs() < 1e-3 * sag, "{} {least}", rim[2000]);
+    assert!(rim[2000] < 0.9 * sag, "{} {sag}", rim[2000]);
+    let crest = 2000 + ((a + 0.5 * b) / spacing).round() as usize;
+    assert!((rim[crest] + at_zero.rim_height).abs() < 1e-12, "{}", rim[crest]);
+}
+
+/// Wrong: a contact in a dent would carry another load. In a dent wider than the ellipse and flatter than the ball
+/// strips meet a groove of another curvature, 1/(2 R'') = 1/(2 R') - D/a^2, deeper by D: (4/3) c sqrt(2 R'')
+/// (d - D)^1.5. Chords of the bowl leave a thousandth of D.
+#[test]
+fn a_contact_in_a_wide_dent_has_the_force_of_a_flatter_groove() {
+    let geometry = BearingGeometry::reference_7010c();
+    let hertz = crate::HertzContact::from_curvatures(14.0, 260.0, 113.7e9);
+    let law = StripLaw::new(&hertz, geometry.groove_radius(Side::Outer));
+    let wide = Dent {
+        diameter: 4e-3,
+        depth: 2e-6,
+        rim_height: 0.0,
+        rim_width: 0.0,
+        ..dent()
+    };
+    let profiles = Profiles {
+        dents: vec![wide],
+        ..Profiles::default()
+    };
+    let surface = StripSurface::new(law, (&geometry, Side::Outer), None, &profiles).unwrap();
+    let missing = surface.missing_at(wide.azimuth);
+    let radius = 0.5 / (0.5 / law.parabola_radius - wide.depth / (0.5 * wide.diameter).powi(2));
+    for d in [4e-6, 8e-6, 15e-6] {
+        assert!((2.0 * radius * (d - wide.depth)).sqrt() < 0.5 * wide.diameter);
+        let found = law.evaluate(surface.line(&missing), 0.0, d, wide.groove_angle);
+        let expected = 4.0 / 3.0 * law.density * (2.0 * radius).sqrt() * (d - wide.depth).powf(1.5);
+        let error = found.force / expected - 1.0;
+        assert!(
+            error.abs() < 1.5e-3 * wide.depth / (d - wide.depth),
+            "{d}: {error}"
+        );
+        assert!(found.moment.abs() < 1e-6 * found.force * law.groove_radius);
+    }
 }

@@ -42,6 +42,7 @@ mod bearing;
 mod cage;
 mod contact;
 mod cut;
+mod dent;
 mod difference;
 mod dimensions;
 mod dynamic;

@@ -17,6 +17,7 @@ use super::ball_diameters::RawBallDiameters;
 use super::balls::BallMotion;
 use super::bearing::Bearing;
 use super::contact::{BallElasticity, Contact, ContactMode};
+use super::dent::{RawDent, check_groove_angle};
 use super::random::SplitMix64;
 use super::ring::{MeshFiles, RingName};
 
@@ -26,6 +27,8 @@ use super::ring::{MeshFiles, RingName};
 pub struct RawProfiles {
     #[serde(default)]
     spall: Vec<RawSpall>,
+    #[serde(default)]
+    dent: Vec<RawDent>,
     #[serde(default)]
     waviness: Vec<RawWaviness>,
     #[serde(default)]
@@ -122,6 +125,10 @@ impl RawProfiles {
         for (number, spall) in (1..).zip(&self.spall) {
             spall.check(number, context.bearing, problems);
             found.raceways[index(spall.ring)].spalls.push(spall.spall());
+        }
+        for (number, dent) in (1..).zip(&self.dent) {
+            let checked = dent.check(number, context.bearing, problems);
+            found.raceways[index(dent.ring())].dents.push(checked);
         }
         for (number, wave) in (1..).zip(&self.waviness) {
             let key = format!("profiles.waviness {number}: order");
@@ -241,12 +248,7 @@ impl RawSpall {
                 ),
             );
         }
-        problems.require(
-            self.groove_angle.si().abs() < std::f64::consts::FRAC_PI_2,
-            &key("groove_angle"),
-            &self.groove_angle,
-            "expected -90 to 90 deg",
-        );
+        check_groove_angle(&self.groove_angle, &key("groove_angle"), problems);
         let Some(bearing) = bearing else { return };
         let round = std::f64::consts::PI * bearing.inner_raceway_diameter;
         problems.require(

@@ -11,6 +11,9 @@ fn with(tables: &str) -> String {
 const SPALL: &str = "[[profiles.spall]]\nring = \"outer\"\nazimuth = \"30 deg\"\ngroove_angle = \"15 deg\"\n\
                      length = \"1 mm\"\nwidth = \"2 mm\"\ndepth = \"50 um\"\nedge = \"0.1 mm\"";
 
+const DENT: &str = "[[profiles.dent]]\nring = \"inner\"\nazimuth = \"30 deg\"\ngroove_angle = \"15 deg\"\n\
+                    diameter = \"0.3 mm\"\ndepth = \"10 um\"\nrim_height = \"1 um\"\nrim_width = \"0.1 mm\"";
+
 /// Wrong: a key of the documentation would be refused or read in another unit, or a scene without profiles have some.
 #[test]
 fn profiles_read_as_their_documentation_says() {
@@ -33,6 +36,26 @@ fn profiles_read_as_their_documentation_says() {
     let orders: Vec<usize> = outer.waves.iter().map(|wave| wave.order).collect();
     assert_eq!(orders, [2, 3, 4, 5]);
     assert!((outer.waves[2].amplitude - 0.05e-6 / 4.0).abs() < 1e-20);
+    let dents = |text: &str| {
+        parse(&with(text), &[]).unwrap().profiles.raceways[0]
+            .dents
+            .clone()
+    };
+    let dent = dents(DENT)[0];
+    assert_eq!(
+        [dent.diameter, dent.depth, dent.rim_height, dent.rim_width],
+        [0.3e-3, 10e-6, 1e-6, 0.1e-3]
+    );
+    assert_eq!(
+        [dent.azimuth, dent.groove_angle],
+        [30f64.to_radians(), 15f64.to_radians()]
+    );
+    let bare = DENT.split("\nrim_height").next().unwrap();
+    let found = dents(&format!("{DENT}\n{bare}"));
+    assert_eq!(
+        (found.len(), found[1].rim_height, found[1].rim_width),
+        (2, 0.0, 0.0)
+    );
     // Half-spaces are the default beside profiles.
     assert_eq!(scene.contact.ball, BallElasticity::HalfSpace);
     assert!(!scene.contact.edges);
@@ -66,6 +89,7 @@ fn seeds_make_surfaces_and_balls() {
 #[test]
 fn what_makes_no_sense_in_profiles_is_refused() {
     let spall = |line: &str, new: &str| replace_line(&with(SPALL), line, new);
+    let dent = |line: &str, new: &str| replace_line(&with(DENT), line, new);
     let waves = |keys: &str| with(&format!("[[profiles.waviness]]\nring = \"inner\"\n{keys}"));
     let balls = |keys: &str| with(&format!("[bearing.ball_diameters]\n{keys}"));
     for (text, part) in [
@@ -133,7 +157,55 @@ fn what_makes_no_sense_in_profiles_is_refused() {
             balls("spread = \"1 mm\"\nseed = 1"),
             "bearing.ball_diameters.spread is 1 mm; expected at most a thousandth of the ball diameter, 9 um",
         ),
-        (with("[[profiles.dent]]\nring = \"outer\""), "dent"),
+        (
+            with("[[profiles.dent]]\nring = \"outer\""),
+            "[profiles.dent[0]] has no key \"azimuth\", which is required",
+        ),
+        (
+            dent("diameter = ", "diameter = \"0 mm\""),
+            "profiles.dent 1: diameter is 0 mm; a diameter must be positive",
+        ),
+        (
+            dent("diameter = ", "diameter = \"9 mm\""),
+            "profiles.dent 1: diameter is 9 mm; expected a thousandth of the ball diameter, 9 um, to the whole of it, \
+             9 mm, the rim included",
+        ),
+        (
+            dent("depth = ", "depth = \"0.2 mm\""),
+            "profiles.dent 1: depth is 0.2 mm; expected at most half the diameter, 150 um",
+        ),
+        (
+            dent("depth = ", "depth = \"-1 um\""),
+            "profiles.dent 1: depth is -1 um; a depth must be positive",
+        ),
+        (
+            dent("groove_angle = ", "groove_angle = \"95 deg\""),
+            "profiles.dent 1: groove_angle is 95 deg; expected -90 to 90 deg",
+        ),
+        (
+            dent("rim_height = ", "rim_height = \"11 um\""),
+            "profiles.dent 1: rim_height is 11 um; expected 0 to the depth",
+        ),
+        (
+            dent("rim_width = ", "rim_width = \"1 mm\""),
+            "profiles.dent 1: rim_width is 1 mm; expected a hundredth of the diameter, 3 um, to the whole of it",
+        ),
+        (
+            dent("rim_width = ", ""),
+            "profiles.dent 1: rim_width is missing; expected a length beside rim_height",
+        ),
+        (
+            dent("rim_height = ", ""),
+            "profiles.dent 1: rim_height is missing; expected a height beside rim_width",
+        ),
+        (
+            dent("ring = ", "ball = 3"),
+            "unknown key \"ball\" in [profiles.dent[0]]; profiles of balls are not computed, only those of a ring",
+        ),
+        (
+            spall("ring = ", "ball = 3"),
+            "unknown key \"ball\" in [profiles.spall[0]]; profiles of balls are not computed, only those of a ring",
+        ),
         (
             replace_line(&with(SPALL), "mode = \"patch\"", "mode = \"facet\""),
             "contact.mode is \"facet\"; profiles needs exact grooves, use \"patch\" or \"rigid\"",
