@@ -39,11 +39,11 @@ pub fn figures(results: &Results) -> anyhow::Result<Vec<(String, Figure)>> {
             let parts = intervals.parts(energy, friction, &contacts);
             (intervals.middles(), parts, intervals.note())
         }
-        None => (
-            times.to_vec(),
-            named(contacts.map(|power| WATT.of(&power))),
-            String::new(),
-        ),
+        None => {
+            let note = "Friction of the contacts alone: equilibria have no ledger of losses.";
+            let parts = named(contacts.map(|power| WATT.of(&power)));
+            (times.to_vec(), parts, note.to_string())
+        }
     };
     let parts: Vec<(String, Vec<f64>)> = parts
         .into_iter()
