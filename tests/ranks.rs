@@ -11,6 +11,7 @@ use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
 use crate::cuts::cut_motion;
+use crate::free_resume::everything;
 use crate::sectors::SECTOR;
 use crate::util::lockstep::{assert_same_run, copy, small_motion};
 use crate::util::{Dir, Outcome, SCENE};
@@ -113,6 +114,29 @@ fn harmonics_have_the_same_bits_on_any_number_of_ranks() {
             );
         }
     }
+}
+
+/// Wrong: balls with a film, drag and a cage would move otherwise where ranks share the rings.
+#[test]
+#[ignore = "needs mpirun and a program built with MPI: scripts/test-mpi"]
+fn free_balls_have_the_same_bits_on_any_number_of_ranks() {
+    let dir = everything();
+    dir.run("alone", &[]);
+    for (ranks, threads) in [(1, "2"), (2, "1"), (3, "1")] {
+        let out = format!("ranks{ranks}");
+        let run = ["run", "scene.toml", "--out", &out, "--threads", threads];
+        done(&on_ranks(&dir, ranks, &run));
+        assert_same_run(&dir, "alone", &out);
+    }
+    let short = ["--set", "dynamic.duration=0.2 ms"];
+    done(&on_ranks(
+        &dir,
+        2,
+        &[&["run", "scene.toml", "--out", "cut"], &short[..]].concat(),
+    ));
+    let whole = ["--stored-scene", "--set", "dynamic.duration=0.4 ms"];
+    done(&on_ranks(&dir, 3, &[&["resume", "cut"], &whole[..]].concat()));
+    assert_same_run(&dir, "alone", "cut");
 }
 
 /// Wrong: a ring with missing elements would have other bits when ranks share the harmonics of the ring that has them.

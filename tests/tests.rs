@@ -12,6 +12,7 @@ mod export;
 mod first_hour;
 mod fits;
 mod free_balls;
+mod free_resume;
 mod gauges;
 mod hard;
 mod heat;

@@ -52,6 +52,11 @@ pub struct TractionResult {
     pub spin_rad_per_s: f64,
     /// Force on the ball along the rolling direction and across it, N.
     pub traction_n: [f64; 2],
+    /// Moment on the ball about the centre of the contact: about these directions and the normal, which points from the
+    /// ball's centre to the raceway, N m.
+    pub traction_moment_n_m: [f64; 3],
+    /// Largest pressure times sliding speed over the ellipse, W/m^2.
+    pub pv_w_per_m2: f64,
     /// Power lost, W.
     pub friction_power_w: f64,
 }
@@ -101,12 +106,19 @@ pub struct CageResult {
     pub torques_n_m: [f64; 2],
 }
 
+impl FreeBallResult {
+    /// Traction at the contact with the ring of one side.
+    pub fn traction(&self, side: Side) -> &TractionResult {
+        [&self.inner, &self.outer][side.index()]
+    }
+}
+
 impl BallResult {
     /// Speed with which surfaces roll through a contact of a free ball of a radius, m/s and m: mean of both, seen from
     /// the contact, along the way round; None: the ball is not free.
     pub fn rolling_speed(&self, side: Side, radius: f64) -> Option<f64> {
         let free = self.free?;
-        let slip = [free.inner, free.outer][side.index()].slip_m_per_s[0];
+        let slip = free.traction(side).slip_m_per_s[0];
         let (sin, cos) = self.contact(side).contact_angle_rad.sin_cos();
         let [n_r, n_z] = [side.sign() * cos, side.sign() * sin];
         let (y, x) = self.azimuth_rad.sin_cos();

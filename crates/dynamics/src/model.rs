@@ -99,6 +99,8 @@ pub struct Model {
     pub mounting: Mounting,
     /// Ball steel.
     pub ball_material: Material,
+    /// Steel of the rings: contacts of rigid rings have it too.
+    pub ring_material: Material,
     /// Shaft dofs x, y, z, tilt about x, tilt about y.
     pub shaft: [ShaftDof; 5],
     /// Factors over time of the prescribed ones; those of free dofs do nothing.
@@ -185,10 +187,15 @@ impl Model {
         self.effects.iter().find_map(|effect| effect.traction())
     }
 
-    /// Combined shear modulus of a ball and a ring, 2/G = 1/G_1 + 1/G_2, Pa; a rigid ring has that of the balls.
+    /// Material with which the contacts of a ring deform: that of its mesh, of a rigid ring the scene's.
+    fn material_of(&self, side: Side) -> &Material {
+        self.ring(side).map_or(&self.ring_material, |ring| &ring.material)
+    }
+
+    /// Combined shear modulus of a ball and a ring, 2/G = 1/G_1 + 1/G_2, Pa.
     pub fn combined_shear_modulus(&self, side: Side) -> f64 {
         let ball = self.ball_material.shear_modulus();
-        let ring = self.ring(side).map_or(ball, |ring| ring.material.shear_modulus());
+        let ring = self.material_of(side).shear_modulus();
         2.0 / (1.0 / ball + 1.0 / ring)
     }
 
@@ -211,10 +218,9 @@ impl Model {
         }
     }
 
-    /// Contact of a ball with a raceway as its film sees it; a rigid ring has the material of the balls.
+    /// Contact of a ball with a raceway as its film sees it.
     pub fn film_contact(&self, side: Side) -> FilmContact {
-        let ring = self.ring(side).map_or(&self.ball_material, |ring| &ring.material);
-        let bodies = [elastic(&self.ball_material), elastic(ring)];
+        let bodies = [elastic(&self.ball_material), elastic(self.material_of(side))];
         FilmContact::of_raceway(&self.geometry, side, &self.hertz[side.index()], bodies)
     }
 

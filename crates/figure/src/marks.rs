@@ -13,6 +13,10 @@ use crate::{Figure, Look, palette};
 const SERIES_WIDTH: u32 = 16;
 /// Width of the first series: it shows at both sides of another on the same points.
 const FIRST_WIDTH: u32 = 30;
+/// How much of its colour an area has.
+const AREA: f64 = 0.6;
+/// Half the height of the sample of an area, pixels.
+const AREA_SAMPLE: f64 = 4.5;
 /// Width of the ends of a band beside others.
 const BAND_END: u32 = 7;
 /// The same for marks: size of those of the first series over that of others.
@@ -93,6 +97,10 @@ pub fn draw_band(figure: &Figure, index: usize, pen: &Pen, canvas: &Canvas) -> D
     };
     let mut outline: Vec<(i32, i32)> = end(1).collect();
     let below: Vec<(i32, i32)> = end(0).collect();
+    if series.look == Look::Area {
+        outline.extend(below.iter().rev());
+        return canvas.draw(&Polygon::new(outline, colour(figure, index).mix(AREA)));
+    }
     if figure
         .series
         .iter()
@@ -132,7 +140,14 @@ pub fn draw_series(figure: &Figure, index: usize, pen: &Pen, canvas: &Canvas) ->
 /// The sample of a series and its name in the legend.
 pub fn draw_sample(figure: &Figure, entry: &Entry, canvas: &Canvas) -> Drawn {
     let series = &figure.series[entry.series];
-    if !matches!(series.look, Look::Marks | Look::Rings) {
+    if series.look == Look::Area {
+        let corners = [
+            units([entry.x, entry.y - AREA_SAMPLE]),
+            units([entry.x + SAMPLE, entry.y + AREA_SAMPLE]),
+        ];
+        let fill = colour(figure, entry.series).mix(AREA).filled();
+        canvas.draw(&Rectangle::new(corners, fill))?;
+    } else if !matches!(series.look, Look::Marks | Look::Rings) {
         let (from, to) = (units([entry.x, entry.y]), units([entry.x + SAMPLE, entry.y]));
         let line = [[from.0, from.1], [to.0, to.1]];
         let (colour, width) = (colour(figure, entry.series), width(figure, entry.series));
@@ -161,7 +176,10 @@ fn width(figure: &Figure, index: usize) -> u32 {
 /// Whether a series is the first of several of the palette.
 fn is_under_others(figure: &Figure, index: usize) -> bool {
     let own = &figure.series[index];
-    own.shade.is_none() && figure.series.len() > 1 && style_index(&figure.series, index) == 0
+    own.look != Look::Area
+        && own.shade.is_none()
+        && figure.series.len() > 1
+        && style_index(&figure.series, index) == 0
 }
 
 fn draw_line(line: &[[i32; 2]], look: Look, colour: RGBColor, width: u32, canvas: &Canvas) -> Drawn {
@@ -249,7 +267,7 @@ fn draw_mark(figure: &Figure, index: usize, place: [f64; 2], canvas: &Canvas) ->
                 colour.filled(),
             ))
         }
-        Look::Line | Look::Reference | Look::Outline => Ok(()),
+        Look::Line | Look::Area | Look::Reference | Look::Outline => Ok(()),
     }
 }
 

@@ -5,6 +5,8 @@
 pub enum Look {
     /// Joined by a line.
     Line,
+    /// A line with the area down to the series below: a part of a sum.
+    Area,
     /// A mark at each point.
     Marks,
     /// A mark at each point, joined by a line.
@@ -49,6 +51,24 @@ impl Series {
     /// A line with marks.
     pub fn line_and_marks(name: impl Into<String>, points: Vec<[f64; 2]>) -> Series {
         Series::new(name, Look::LineAndMarks, points)
+    }
+
+    /// Parts of a sum over the same places, one above the other from zero: an area each, the first at the bottom.
+    /// `parts` are names and values, `[n]` as `places`.
+    pub fn stacked(places: &[f64], parts: &[(String, Vec<f64>)]) -> Vec<Series> {
+        let mut below = vec![0.0; places.len()];
+        let area = |(name, values): &(String, Vec<f64>)| {
+            let above: Vec<f64> = below.iter().zip(values).map(|(low, value)| low + value).collect();
+            let band = below
+                .iter()
+                .zip(&above)
+                .map(|(low, high)| [*low, *high])
+                .collect();
+            let points = places.iter().zip(&above).map(|(x, y)| [*x, *y]).collect();
+            below = above;
+            Series::new(name.clone(), Look::Area, points).band(band)
+        };
+        parts.iter().map(area).collect()
     }
 
     /// Marks.

@@ -125,7 +125,7 @@ fn awkward() -> Vec<Figure> {
 /// Wrong: a reader could not read a label, because another lies on it or the picture ends.
 #[test]
 fn no_text_overlaps_another_or_leaves_the_picture() {
-    let figures = [histories(), work_precision(), map()]
+    let figures = [histories(), work_precision(), map(), parts()]
         .into_iter()
         .chain(awkward());
     for figure in figures {
@@ -163,6 +163,61 @@ fn a_clash_is_found() {
     );
     let outside = clashes(&svg(&[text(190, "abc")])).unwrap();
     assert!(outside[0].contains("leaves the picture"), "{outside:?}");
+}
+
+fn parts() -> Figure {
+    let axes = (
+        Axis::linear("time", "ms").tight(),
+        Axis::linear("power", "W").including(0.0),
+    );
+    let places: Vec<f64> = (0..50).map(f64::from).collect();
+    let part = |name: &str, size: f64| {
+        (
+            name.to_string(),
+            places.iter().map(|x| size * (1.0 + (0.1 * x).sin())).collect(),
+        )
+    };
+    let parts = [part("traction", 20.0), part("drag", 5.0), part("impacts", 0.0)];
+    let figure = Figure::new("Power by source", axes.0, axes.1);
+    Series::stacked(&places, &parts)
+        .into_iter()
+        .fold(figure, Figure::series)
+}
+
+/// Wrong: parts of a sum would not stand on each other, so that the uppermost line would not be the sum.
+#[test]
+fn parts_of_a_sum_stand_on_each_other() {
+    let svg = parts().svg().unwrap();
+    // Areas of 50 places: their upper edge forwards, the lower one back.
+    let polygons = svg.split("<polygon").skip(1).map(|element| {
+        let points = element
+            .split_once("points=\"")
+            .and_then(|(_, rest)| rest.split_once('"'))
+            .unwrap()
+            .0;
+        let point = |pair: &str| {
+            pair.split_once(',')
+                .map(|(x, y)| [x, y].map(|v| v.parse::<i32>().unwrap()))
+        };
+        points
+            .split_whitespace()
+            .map(|pair| point(pair).unwrap())
+            .collect::<Vec<_>>()
+    });
+    let areas: Vec<Vec<[i32; 2]>> = polygons.filter(|points| points.len() == 100).collect();
+    assert_eq!(areas.len(), 3);
+    for pair in areas.windows(2) {
+        let upper: Vec<_> = pair[0][..50].to_vec();
+        let lower: Vec<_> = pair[1][50..].iter().rev().copied().collect();
+        assert_eq!(upper, lower);
+    }
+    // 20 to 5: heights over the axis, to the unit of the drawing.
+    let floor = areas[0][99][1];
+    let heights = [0, 1].map(|i| f64::from(floor - areas[i][10][1]));
+    assert!(
+        (heights[1] / heights[0] - 1.25).abs() < 2.0 / heights[0],
+        "{heights:?}"
+    );
 }
 
 /// Wrong: an axis would not say what it shows or in which unit.
@@ -326,7 +381,7 @@ fn examples_can_be_looked_at() {
     let Some(dir) = std::env::var_os("FIGURES") else {
         return;
     };
-    let figures = [histories(), work_precision(), map()]
+    let figures = [histories(), work_precision(), map(), parts()]
         .into_iter()
         .chain(awkward());
     for (i, figure) in figures.enumerate() {

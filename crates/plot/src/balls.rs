@@ -3,7 +3,8 @@
 use figure::{Axis, Figure, Series};
 
 use super::quantity::{
-    DEGREE, GIGAPASCAL, MICROMETRE, MILLIMETRE_PER_SECOND, NEWTON, ONE, RPM, Unit, WATT, azimuth_axis, points,
+    DEGREE, GIGAPASCAL, MEGAWATT_PER_SQUARE_METRE, MICROMETRE, MILLIMETRE_PER_SECOND, NEWTON, ONE, RPM, Unit,
+    WATT, azimuth_axis, points,
 };
 use super::run::Steps;
 use super::shades::{self, Shades};
@@ -55,7 +56,7 @@ const CONTACTS: [Contact; 3] = [
 ];
 
 /// What contacts of free balls have besides.
-const OF_FREE_BALLS: [Contact; 4] = [
+const OF_FREE_BALLS: [Contact; 5] = [
     Contact {
         name: "ball_slip",
         title: "Slip along the rolling direction",
@@ -86,6 +87,14 @@ const OF_FREE_BALLS: [Contact; 4] = [
         axis: "power",
         column: "friction_power_w",
         unit: WATT,
+        resolution: 1e-9,
+    },
+    Contact {
+        name: "pv",
+        title: "Largest pressure times sliding speed",
+        axis: "pv",
+        column: "pv_w_per_m2",
+        unit: MEGAWATT_PER_SQUARE_METRE,
         resolution: 1e-9,
     },
 ];

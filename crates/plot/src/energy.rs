@@ -8,12 +8,19 @@ use super::{Named, Results};
 use results::table::Table;
 
 /// Sums of columns that are shown as one line.
-const LINES: [(&str, &[&str]); 5] = [
+const LINES: [(&str, &[&str]); 6] = [
     (
         "kinetic",
-        &["kinetic_inner", "kinetic_outer", "kinetic_balls", "kinetic_shaft"],
+        &[
+            "kinetic_inner",
+            "kinetic_outer",
+            "kinetic_balls",
+            "kinetic_shaft",
+            "kinetic_cage",
+        ],
     ),
     ("strain of the rings", &["strain_inner", "strain_outer"]),
+    ("strain of the cage", &["strain_cage"]),
     ("Hertz contacts", &["hertz"]),
     (
         "work of loads, drives, frame, patches",
@@ -24,9 +31,23 @@ const LINES: [(&str, &[&str]); 5] = [
             "patch_work",
             "profile_work",
             "temperature_work",
+            "drive_work",
+            "cage_drive_work",
         ],
     ),
-    ("losses", &["contact_loss", "rayleigh_loss", "numerical_loss"]),
+    (
+        "losses",
+        &[
+            "contact_loss",
+            "rayleigh_loss",
+            "numerical_loss",
+            "friction_loss",
+            "drag_loss",
+            "cage_impact_loss",
+            "cage_friction_loss",
+            "cage_drag_loss",
+        ],
+    ),
 ];
 
 /// The figures of `energy.csv` of a motion.

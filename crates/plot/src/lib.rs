@@ -11,6 +11,7 @@ mod cut;
 mod energy;
 mod groove;
 mod modes;
+mod power;
 mod probes;
 mod profiles;
 pub mod quantity;
@@ -145,6 +146,7 @@ pub fn figures(dir: &Path, choice: &Choice) -> Result<Figures, Failure> {
         ("balls", balls::figures(&results, choice)),
         ("shaft", shaft::figures(&results)),
         ("cage", cage::figures(&results)),
+        ("power", named(power::figures(&results))),
         ("probes", probes::figures(&results)),
         ("profiles", profiles::figures(&results, choice)),
         ("energy", energy::figures(&results)),

@@ -72,6 +72,11 @@ pub const WATT: Unit = Unit {
     sign: "W",
     factor: 1.0,
 };
+/// Megawatt per square metre: gigapascal times millimetre per second.
+pub const MEGAWATT_PER_SQUARE_METRE: Unit = Unit {
+    sign: "MW/m²",
+    factor: 1e-6,
+};
 /// A number without unit.
 pub const ONE: Unit = Unit {
     sign: "1",

@@ -4,11 +4,12 @@ use std::collections::BTreeMap;
 
 use checkpoint::{Body, CellFields, PointFields, StateArray, StepRecord};
 use contact::{BearingGeometry, Side};
-use dynamics::balls::{BallResult, ContactResult};
+use dynamics::balls::BallResult;
 use dynamics::{Model, StaticSolution};
 use fem::stress::von_mises;
 use scene::{RingFrame, Scene};
 
+use super::on_ball::force_on_ball;
 use super::ring_stress::{Basis, Gathered, RingStress, ShownRing, StressFields};
 use super::shown::{Shown, Turn};
 use crate::failure::Failure;
@@ -160,23 +161,10 @@ fn add_balls(
         ];
         displacement.push(moved);
         for (side, list) in Side::BOTH.into_iter().zip(&mut forces) {
-            let contact = if side == Side::Inner {
-                &ball.inner
-            } else {
-                &ball.outer
-            };
-            list.push(force_on_ball(side, contact, ball.azimuth_rad));
+            list.push(force_on_ball(side, ball));
         }
     }
     forces
-}
-
-/// Force of a ring on a ball at an azimuth, N: from the contact to the ball centre.
-pub fn force_on_ball(side: Side, contact: &ContactResult, azimuth: f64) -> [f64; 3] {
-    let (sin, cos) = azimuth.sin_cos();
-    let (sin_a, cos_a) = contact.contact_angle_rad.sin_cos();
-    let radial = -side.sign() * contact.force_n * cos_a;
-    [radial * cos, radial * sin, -side.sign() * contact.force_n * sin_a]
 }
 
 fn state(solution: &StaticSolution) -> BTreeMap<String, StateArray> {

@@ -25,6 +25,7 @@ pub mod memory;
 pub mod modes;
 pub mod motion_fields;
 pub mod mounting;
+pub mod on_ball;
 pub mod probe_places;
 pub mod probes;
 pub mod rainflow;

@@ -7,8 +7,8 @@ use dynamics::kinematics::Speed;
 use fem::stress::{NodeRecovery, von_mises};
 use scene::{Axes, ContactProbe, NodeTags, Scene};
 
-use super::fields::force_on_ball;
 use super::gauges::Gauges;
+use super::on_ball::{force_on_ball, moment_on_ball};
 use super::probe_places::{NodePlace, place, side_of};
 use super::shown::{RingField, Shown, Turn, add};
 use super::stress_points::{self, StressPoints};
@@ -236,18 +236,14 @@ fn node_values(probe: &NodeProbe, ring: &RingField<'_>, stress: [f64; 6]) -> Vec
 /// Force of the ring on the ball and its moment about the probe's point, each with its size.
 fn contact_values(probe: &ContactProbe, model: &Model, ball: &BallResult) -> Vec<f64> {
     let side = side_of(probe.ring);
-    let contact = ball.contact(side);
-    let force = force_on_ball(side, contact, ball.azimuth_rad);
+    let force = force_on_ball(side, ball);
     let [radial, axial] = model.geometry.ball_centre();
     let (sin, cos) = ball.azimuth_rad.sin_cos();
     let radius = radial + ball.displacement_m.radial;
     let centre = [radius * cos, radius * sin, axial + ball.displacement_m.axial];
     let arm = [0, 1, 2].map(|i| centre[i] - probe.about[i]);
-    let moment = [
-        arm[1] * force[2] - arm[2] * force[1],
-        arm[2] * force[0] - arm[0] * force[2],
-        arm[0] * force[1] - arm[1] * force[0],
-    ];
+    let lever = model.contact_lever(ball.contact(side).approach_m);
+    let moment = moment_on_ball(side, ball, arm, lever);
     let size = |v: [f64; 3]| v[0].hypot(v[1]).hypot(v[2]);
     [&force[..], &[size(force)], &moment, &[size(moment)]].concat()
 }

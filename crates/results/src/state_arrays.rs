@@ -33,6 +33,11 @@ pub fn load(arrays: &Arrays, shape: &StateShape) -> anyhow::Result<MotionState> 
     for (side, ring) in Side::BOTH.into_iter().zip(shape.rings) {
         require_kind(arrays, side.name(), ring)?;
     }
+    ensure!(
+        !arrays.contains_key(OLD_TRACTIONS),
+        "the tractions of the balls are stored without their moments: an earlier version of raceway wrote them; run \
+         the scene anew"
+    );
     let mut state = MotionState::default();
     let mut port = Port::In {
         arrays,
@@ -46,6 +51,9 @@ pub fn load(arrays: &Arrays, shape: &StateShape) -> anyhow::Result<MotionState> 
     }
     Ok(state)
 }
+
+/// Tractions of free balls as earlier versions stored them.
+const OLD_TRACTIONS: &str = "free_ball_contacts";
 
 /// Every field of the state by its name. A new field is one line here.
 fn exchange(state: &mut MotionState, shape: &StateShape, port: &mut Port<'_>) -> anyhow::Result<()> {
@@ -118,8 +126,8 @@ fn exchange_free(free: &mut FreeState, n_balls: usize, port: &mut Port<'_>) -> a
     port.rows("free_ball_velocities", velocities, n_balls)?;
     port.rows("free_ball_turnings", turnings, n_balls)?;
     port.rows("free_ball_trends", trends, n_balls)?;
-    let mut rows: Vec<[f64; 7]> = contacts.iter().map(|contact| contact.to_row()).collect();
-    port.rows("free_ball_contacts", &mut rows, 2 * n_balls)?;
+    let mut rows: Vec<[f64; 12]> = contacts.iter().map(|contact| contact.to_row()).collect();
+    port.rows("free_ball_tractions", &mut rows, 2 * n_balls)?;
     *contacts = rows.into_iter().map(ContactTraction::from_row).collect();
     Ok(())
 }

@@ -292,13 +292,14 @@ fn ball_cells(index: usize, ball: &BallResult) -> Vec<String> {
     cells
 }
 
-const TRACTION_COLUMNS: [&str; 6] = [
+const TRACTION_COLUMNS: [&str; 7] = [
     "slip_rolling_m_per_s",
     "slip_lateral_m_per_s",
     "spin_rad_per_s",
     "traction_rolling_n",
     "traction_lateral_n",
     "friction_power_w",
+    "pv_w_per_m2",
 ];
 
 const FREE_BALL_COLUMNS: [&str; 4] = [
@@ -367,7 +368,7 @@ fn pocket_cells(ball: usize, snapshot: &Snapshot) -> Vec<String> {
 const FRICTION_COLUMNS: [&str; 3] = ["friction_torque_n_m", "friction_power_w", "cage_speed_rad_per_s"];
 
 /// Cells of a free ball: both contacts, then its turning.
-fn free_cells(ball: &FreeBallResult) -> [f64; 16] {
+fn free_cells(ball: &FreeBallResult) -> [f64; 18] {
     let [inner, outer] = [&ball.inner, &ball.outer].map(|contact| {
         let ([s_t, s_q], [f_t, f_q]) = (contact.slip_m_per_s, contact.traction_n);
         [
@@ -377,11 +378,12 @@ fn free_cells(ball: &FreeBallResult) -> [f64; 16] {
             f_t,
             f_q,
             contact.friction_power_w,
+            contact.pv_w_per_m2,
         ]
     });
     let [x, y, z] = ball.omega_rad_per_s;
     let turning = [x, y, z, ball.orbit_rad_per_s];
-    let mut cells = [0.0; 16];
+    let mut cells = [0.0; 18];
     let all = inner.into_iter().chain(outer).chain(turning);
     cells.iter_mut().zip(all).for_each(|(cell, value)| *cell = value);
     cells

@@ -104,6 +104,7 @@ pub fn model_with_rings(scene: &Scene, rings: [Option<Arc<RingModel>>; 2]) -> Re
         rings,
         mounting,
         ball_material: ball_steel,
+        ring_material: ring_steel,
         shaft: dofs,
         shaft_schedules: shaft.schedules.clone(),
         shaft_mass: shaft.mass + ring.map_or(0.0, |r| r.mass),

@@ -3,7 +3,8 @@
 //!
 //! A folder `points/NNNN` holds `run` (the results), `log.txt` and, once the point came to an end, `point.json`. A
 //! point with a record is not run again; one without starts anew. A lock in the folder keeps two processes, such as
-//! the tasks of a Slurm array, from running the same point.
+//! the tasks of a Slurm array, from running the same point. A second one belongs to the run, which ends a moment
+//! after a study that was killed: the next study waits for it.
 
 use std::fs::{File, TryLockError};
 use std::os::unix::process::ExitStatusExt;
@@ -27,8 +28,11 @@ use super::machine;
 use super::plan::{Plan, Point, arguments};
 use super::record::{self, Cost, LOG, RUN, Record};
 
-/// How often a lock is tried, and how long to wait between.
-const LOCK_TRIES: usize = 30;
+/// How often the lock of a study is tried: a child that is not yet this program has it for a moment.
+const STUDY_TRIES: usize = 5;
+/// How often that of a run is tried: one that was killed may have memory to free and files to close.
+const RUN_TRIES: usize = 1200;
+/// How long to wait between.
 const LOCK_WAIT: Duration = Duration::from_millis(100);
 /// Exit code of a run that was asked to stop.
 const STOPPED: i32 = 75;
@@ -71,23 +75,17 @@ fn run_point(plan: &Plan, point: &Point, out: &Path) -> Result<(), Failure> {
     let dir = record::folder(out, point.index);
     dir.parent().map_or(Ok(()), make_folder)?;
     make_folder(&dir)?;
-    let path = dir.join(".lock");
-    let lock = open_lock(&path)?;
-    match try_lock(&lock) {
-        Ok(()) => {}
-        Err(TryLockError::WouldBlock) => {
-            print::note(format_args!(
-                "point {} is being run by another process",
-                point.index
-            ));
-            return Ok(());
-        }
-        Err(TryLockError::Error(e)) => {
-            return Err(anyhow!(e)
-                .context(format!("cannot lock {}", path.display()))
-                .into());
-        }
-    }
+    let Some(_study) = take_lock(&dir.join(".lock"), STUDY_TRIES)? else {
+        print::note(format_args!(
+            "point {} is being run by another process",
+            point.index
+        ));
+        return Ok(());
+    };
+    let lock = take_lock(&dir.join(".run.lock"), RUN_TRIES)?.with_context(|| {
+        let folder = dir.display();
+        format!("the run in {folder} has not ended, although its study has; kill it, then the same command goes on")
+    })?;
     print::note(format_args!("point {}: {}", point.index, plan.name(point)));
     let set = arguments(point, out);
     let mut record = Record {
@@ -124,15 +122,21 @@ fn run_point(plan: &Plan, point: &Point, out: &Path) -> Result<(), Failure> {
     Ok(record::write(&record, out)?)
 }
 
-/// Takes a lock. A run whose study was killed ends a moment later and has the lock so long.
-fn try_lock(lock: &File) -> Result<(), TryLockError> {
-    for _ in 0..LOCK_TRIES {
+/// Takes the lock `path`; nothing if somebody has it all the time that is tried.
+fn take_lock(path: &Path, tries: usize) -> Result<Option<File>, Failure> {
+    let lock = open_lock(path)?;
+    for _ in 0..tries {
         match lock.try_lock() {
+            Ok(()) => return Ok(Some(lock)),
             Err(TryLockError::WouldBlock) => std::thread::sleep(LOCK_WAIT),
-            taken => return taken,
+            Err(TryLockError::Error(e)) => {
+                return Err(anyhow!(e)
+                    .context(format!("cannot lock {}", path.display()))
+                    .into());
+            }
         }
     }
-    lock.try_lock()
+    Ok(None)
 }
 
 /// Builds the meshes of a point that are missing; one process at a time.
@@ -146,8 +150,7 @@ fn build_meshes(plan: &Plan, set: &[String], out: &Path) -> Result<(), Failure> 
 }
 
 /// Runs the program once: the cost, or why there are no results. Results of repeats are not kept: they are the same.
-/// The run has the lock of its folder as its input, so that the folder stays locked as long as anybody
-/// writes into it, and ends with this process.
+/// The run has its lock as its input, so that the folder stays locked as long as it writes, and ends with this process.
 fn run_once(
     plan: &Plan,
     set: &[String],

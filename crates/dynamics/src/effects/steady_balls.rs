@@ -10,6 +10,7 @@ use super::loads::{AtEquilibrium, Loads, Now};
 use crate::balls::{FreeBallResult, Friction, TractionResult};
 use crate::error::DynamicsError;
 use crate::interactions::steady_rolling::{SteadyBall, SteadyContact, SteadyRolling};
+use crate::interactions::traction::largest_pv;
 use crate::model::Model;
 
 /// Steadily rolling balls of an equilibrium.
@@ -113,10 +114,14 @@ impl SteadyBalls {
         let rolls = &self.balls[ball];
         let contact = |side: Side| {
             let (traction, slip) = (&rolls.tractions[side.index()], &rolls.slips[side.index()]);
+            let contact = &self.contacts[ball][side.index()];
+            let [f_t, f_q, moment @ ..] = traction.action;
             TractionResult {
                 slip_m_per_s: slip.centre,
                 spin_rad_per_s: slip.turning[2],
-                traction_n: [traction.action[0], traction.action[1]],
+                traction_n: [f_t, f_q],
+                traction_moment_n_m: moment,
+                pv_w_per_m2: largest_pv(&contact.ellipse, slip),
                 friction_power_w: rolls.power(side.index()),
             }
         };

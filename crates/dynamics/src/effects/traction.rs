@@ -12,7 +12,7 @@
 //! ```
 //!
 //! In an equilibrium every ball rolls steadily where it stands ([`super::steady_balls`]); a motion starts from there.
-//! Rings of no finite elements have the shear modulus of the balls.
+//! Creep has the shear moduli of ball and ring, a rigid ring those of the rings' steel.
 //!
 //! Rule of thumb: balls keep rolling while F_a > 10 Z F_c, F_c the centrifugal force of a ball (Hirano, ASLE Trans. 8
 //! (1965) 425).

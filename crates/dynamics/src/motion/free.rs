@@ -273,10 +273,14 @@ impl Motion<'_> {
             // What the slope force takes from a patch that moves on, ball and drive have.
             friction.drive_work += found.slope.torque * turned;
             next.ledger.patch_work += found.slope.work - found.slope.torque * turned;
+            let [w_t, w_q, spin] = found.slip.turning;
+            let [f_t, f_q, moment @ ..] = found.traction.action;
             state.contacts.push(ContactTraction {
                 slip: found.slip.centre,
-                spin: found.slip.turning[2],
-                force: [found.traction.action[0], found.traction.action[1]],
+                turning: [w_t, w_q],
+                spin,
+                force: [f_t, f_q],
+                moment,
                 power: -found.work / contact.dt,
                 torque: found.torque,
             });

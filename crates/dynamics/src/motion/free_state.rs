@@ -1,6 +1,7 @@
 //! What evolves of free balls.
 
 use super::cage_state::CageState;
+use crate::interactions::traction::Slip;
 
 /// Free balls: places, velocities and angular velocities in space, and what their contacts report.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -25,10 +26,14 @@ pub struct FreeState {
 pub struct ContactTraction {
     /// Slip of the ball on the ring along the rolling direction and across it, m/s.
     pub slip: [f64; 2],
+    /// Relative turning about these directions, rad/s.
+    pub turning: [f64; 2],
     /// Relative turning about the normal, from the ball's centre to the raceway, rad/s.
     pub spin: f64,
     /// Force on the ball along the rolling direction and across it, N.
     pub force: [f64; 2],
+    /// Moment on the ball about the centre of the contact, about these directions and the normal, N m.
+    pub moment: [f64; 3],
     /// Power lost over the step, W.
     pub power: f64,
     /// Torque on the ball about the ring's axis, N m.
@@ -37,25 +42,39 @@ pub struct ContactTraction {
 
 impl ContactTraction {
     /// As a row of numbers, for files.
-    pub fn to_row(self) -> [f64; 7] {
+    pub fn to_row(self) -> [f64; 12] {
         let ContactTraction {
-            slip,
+            slip: [s_t, s_q],
+            turning: [w_t, w_q],
             spin,
-            force,
+            force: [f_t, f_q],
+            moment: [m_t, m_q, m_n],
             power,
             torque,
         } = self;
-        [slip[0], slip[1], spin, force[0], force[1], power, torque]
+        [s_t, s_q, w_t, w_q, spin, f_t, f_q, m_t, m_q, m_n, power, torque]
     }
 
     /// From a row of numbers.
-    pub fn from_row(row: [f64; 7]) -> ContactTraction {
+    pub fn from_row(row: [f64; 12]) -> ContactTraction {
+        let [s_t, s_q, w_t, w_q, spin, f_t, f_q, m_t, m_q, m_n, power, torque] = row;
         ContactTraction {
-            slip: [row[0], row[1]],
-            spin: row[2],
-            force: [row[3], row[4]],
-            power: row[5],
-            torque: row[6],
+            slip: [s_t, s_q],
+            turning: [w_t, w_q],
+            spin,
+            force: [f_t, f_q],
+            moment: [m_t, m_q, m_n],
+            power,
+            torque,
+        }
+    }
+
+    /// The slip that the force follows.
+    pub fn whole_slip(&self) -> Slip {
+        let [w_t, w_q] = self.turning;
+        Slip {
+            centre: self.slip,
+            turning: [w_t, w_q, self.spin],
         }
     }
 }

@@ -12,6 +12,7 @@ use crate::balls::{
 };
 use crate::error::DynamicsError;
 use crate::footprint::on_groove;
+use crate::interactions::traction::largest_pv;
 use ring::RingState;
 use ring::rigid::RigidInertia;
 
@@ -39,9 +40,32 @@ impl Motion<'_> {
                 radial: state.balls[b][0],
                 axial: state.balls[b][1],
             },
-            free: state.free.as_ref().map(|free| free_ball(free, b)),
+            free: state.free.as_ref().map(|free| self.free_result(state, free, b)),
         };
         (0..self.model.geometry.n_balls).map(ball).collect()
+    }
+
+    /// What a free ball has besides.
+    fn free_result(&self, state: &MotionState, free: &FreeState, ball: usize) -> FreeBallResult {
+        let contact = |side: Side| {
+            let index = 2 * ball + side.index();
+            let (of, force) = (&free.contacts[index], &state.forces[index]);
+            let ellipse = self.model.ellipse(side, force[0].hypot(force[1]));
+            TractionResult {
+                slip_m_per_s: of.slip,
+                spin_rad_per_s: of.spin,
+                traction_n: of.force,
+                traction_moment_n_m: of.moment,
+                pv_w_per_m2: largest_pv(&ellipse, &of.whole_slip()),
+                friction_power_w: of.power,
+            }
+        };
+        FreeBallResult {
+            inner: contact(Side::Inner),
+            outer: contact(Side::Outer),
+            omega_rad_per_s: free.turnings[ball],
+            orbit_rad_per_s: free.orbit(ball),
+        }
     }
 
     /// Azimuth of a ball in a state, rad.
@@ -205,24 +229,5 @@ impl Motion<'_> {
         let speeds = &self.settings.speeds;
         (!speeds.is_zero() && state.free.is_none())
             .then(|| self.kinematics.spin(speeds, self.time(state.step)))
-    }
-}
-
-/// What a free ball has besides.
-fn free_ball(free: &FreeState, ball: usize) -> FreeBallResult {
-    let contact = |side: Side| {
-        let of = free.contacts[2 * ball + side.index()];
-        TractionResult {
-            slip_m_per_s: of.slip,
-            spin_rad_per_s: of.spin,
-            traction_n: of.force,
-            friction_power_w: of.power,
-        }
-    };
-    FreeBallResult {
-        inner: contact(Side::Inner),
-        outer: contact(Side::Outer),
-        omega_rad_per_s: free.turnings[ball],
-        orbit_rad_per_s: free.orbit(ball),
     }
 }

@@ -123,6 +123,38 @@ fn what_free_balls_cannot_do_is_said() {
     let expected = "balls 3 and 4 run into each other: orbits that differ bring free balls together; give them a \
                     cage, [cage] with motion = \"free\", or load the bearing so that all balls roll alike";
     assert!(error.ends_with(expected), "{error}");
+    let mut caged = thrust(1000.0);
+    caged.cage = Some(dynamics::interactions::cage::Cage {
+        pocket_clearance: 5e-3,
+        ..crate::cage::cage()
+    });
+    let caged = freed(caged, coulomb(0.07, Creep::Elastic), &speeds);
+    let moving = Motion::new(&caged, conserving.clone()).unwrap();
+    let mut start = moving.start(&equilibrium(&caged));
+    start.free.as_mut().unwrap().cage.as_mut().unwrap().place[0] = 2.3e-3;
+    let error = moving
+        .step(&start, &mut StepCache::default())
+        .unwrap_err()
+        .to_string();
+    let expected = "the cage stands 2.300 mm off the axis, beyond 2.250 mm, a quarter of a ball diameter: pockets hold \
+                    no cage along their own axes, and balls that lag shift it; guide it by a land, cage.guidance = \
+                    \"outer_land\" or \"inner_land\"";
+    assert!(error.ends_with(expected), "{error}");
+    let mut sphere = freed(thrust(1000.0), coulomb(0.07, Creep::Elastic), &speeds);
+    sphere.sphere = contact::SphereCompliance::new(
+        dynamics::model::elastic(&sphere.ball_material),
+        sphere.geometry.ball_diameter,
+        &sphere.hertz,
+    );
+    let error = Motion::new(&sphere, conserving.clone())
+        .err()
+        .unwrap()
+        .to_string();
+    assert_eq!(
+        error,
+        "a moving bearing cannot have balls.motion = \"free\" with contact.ball = \"sphere\"; use \"half_space\" in \
+         this version"
+    );
     let dissipating = MotionSettings {
         integrator: Integrator::chung_hulbert(0.8),
         ..conserving

@@ -6,6 +6,8 @@ mod support;
 mod bearings;
 mod cage;
 mod closed_forms;
+mod conservation;
+mod control;
 mod flexible;
 mod hard;
 mod ledger;

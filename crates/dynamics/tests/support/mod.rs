@@ -80,6 +80,7 @@ impl Case {
             rings: [None, None],
             mounting: Default::default(),
             ball_material: steel,
+            ring_material: steel,
             shaft: [
                 dof(true),
                 dof(true),

@@ -83,7 +83,7 @@ fn state() -> MotionState {
             turnings: (0..2).map(|_| [0, 1, 2].map(|_| number())).collect(),
             trends: (0..2).map(|_| [(); 6].map(|()| number())).collect(),
             contacts: (0..4)
-                .map(|_| ContactTraction::from_row([(); 7].map(|()| number())))
+                .map(|_| ContactTraction::from_row([(); 12].map(|()| number())))
                 .collect(),
             cage: Some(CageState {
                 place: [(); 6].map(|()| number()),
@@ -150,6 +150,14 @@ fn a_state_of_another_shape_is_refused_by_name() {
     assert!(
         text.contains("stored as harmonics in another order, expected harmonics"),
         "{text}"
+    );
+    let mut without_moments = arrays.clone();
+    let rows = without_moments.remove("free_ball_tractions").unwrap();
+    without_moments.insert("free_ball_contacts".to_string(), rows);
+    assert_eq!(
+        refused(&without_moments, &SHAPE),
+        "the tractions of the balls are stored without their moments: an earlier version of raceway wrote them; run \
+         the scene anew"
     );
     let mut other = arrays.clone();
     other.insert("angles".to_string(), StateArray::Integer(vec![1]));

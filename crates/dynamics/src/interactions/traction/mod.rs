@@ -22,11 +22,13 @@ pub mod creep;
 pub mod law;
 pub mod limiting_shear;
 pub mod patch;
+pub mod pv;
 
 pub use creep::Creep;
 pub use law::{Curve, TractionLaw};
 pub use limiting_shear::LimitingShear;
 pub use patch::{Ellipse, PatchPoints, Resultant, Slip};
+pub use pv::largest_pv;
 
 /// What a scene says of traction.
 #[derive(Clone, Debug, PartialEq)]

@@ -117,6 +117,17 @@ fn free_balls_are_refused_where_they_are_not_computed() {
     let expected =
         "cage.motion is \"free\", which only motion in time computes; use [dynamic], or remove [cage]";
     assert!(message_of(&caged, &[]).contains(expected));
+    let modes = format!(
+        "{}[balls]\nmotion = \"free\"\n[effects.traction]\n{COULOMB}\n[modes]\nnumber = 3\n",
+        without_table("[sweep]")
+    );
+    let expected =
+        "balls.motion is \"free\", whose traction natural modes do not know; use motion = \"kinematic\"";
+    assert!(message_of(&modes, &[]).contains(expected));
+    let message = message_of(&free(COULOMB, ""), &["contact.edges=true"]);
+    let expected = "contact.edges stands beside balls.motion = \"free\", which is not computed; use balls.motion = \
+                    \"kinematic\"";
+    assert!(message.contains(expected), "{message}");
     let message = message_of(
         &free(COULOMB, ""),
         &["dynamic.integrator=\"chung_hulbert\"", "dynamic.rho=0.8"],
@@ -245,7 +256,34 @@ fn laws_that_cannot_be_are_refused() {
             format!("{COULOMB}\ncreep = \"plastic\""),
             "\"elastic\" or a slip ratio such as 1e-3",
         ),
-        ("law = \"stribeck\"".to_string(), "stribeck"),
+        (
+            "law = \"stribeck\"".to_string(),
+            "effects.traction.law is \"stribeck\"; valid values are \"coulomb\", \"curve\", \"limiting_shear\"",
+        ),
+        (
+            format!("{COULOMB}\npoints = [3]"),
+            "effects.traction.points: invalid length 1, expected an array of length 2",
+        ),
+        (
+            format!("{COULOMB}\ncreep = -1e-3"),
+            "effects.traction.creep is -0.001; expected \"elastic\" or a slip ratio of 1e-9 to 1",
+        ),
+        (
+            "law = \"coulomb\"\nfriction = nan".to_string(),
+            "effects.traction.friction is NaN; expected a coefficient of friction from 0 to 2",
+        ),
+        (
+            "law = \"coulomb\"\nmu = 0.07".to_string(),
+            "unknown key \"mu\" in [effects.traction]; valid keys are \"law\", \"friction\",",
+        ),
+        (
+            "friction = 0.07".to_string(),
+            "[effects.traction] has no key \"law\", which is required",
+        ),
+        (
+            format!("{curve}at_rest = 0.0\nmost = 0.1\nslip_of_most = 0.1\nat_large = 0.0"),
+            "effects.traction.slip_of_most: 0.1 is a number without a unit; expected a speed such as",
+        ),
     ] {
         let message = message_of(&free(&law, ""), &[]);
         assert!(message.contains(expected), "{law}: {message}");

@@ -77,6 +77,42 @@ fn a_cage_that_makes_no_sense_is_refused() {
             "cage.mass and cage.density both say how heavy the cage is; keep one of them",
         ),
         (&[("mass", "\"0 g\"")], "cage.mass is 0 g"),
+        (
+            &[
+                ("mass", ""),
+                ("density", "\"1400 kg/m3\""),
+                ("bore_diameter", ""),
+                ("outside_diameter", ""),
+                ("width", ""),
+                ("guidance", ""),
+                ("guidance_clearance", ""),
+            ],
+            "cage.density needs the tube that it fills: bore_diameter, outside_diameter, width; or give mass",
+        ),
+        (
+            &[("mass", ""), ("density", "\"0 kg/m3\"")],
+            "cage.density is 0 kg/m3; a density must be positive",
+        ),
+        (
+            &[("inertia_t", "\"0 kg m2\"")],
+            "cage.inertia_t is 0 kg m2; a moment of inertia must be positive",
+        ),
+        (
+            &[("guidance_clearance", "\"6 mm\"")],
+            "cage.guidance_clearance is 6 mm; expected a diametral clearance of 0 to 5.000 mm",
+        ),
+        (
+            &[("restitution", "1.01")],
+            "cage.restitution is 1.01; expected 0.05 to 1",
+        ),
+        (
+            &[("pocket_clearance", "0.2")],
+            "cage.pocket_clearance: 0.2 is a number without a unit; expected a length such as",
+        ),
+        (
+            &[("speed", "\"10 rpm\"")],
+            "unknown key \"speed\" in [cage]; speed belongs to [speed], [life], [heat]; valid keys are \"motion\",",
+        ),
         (&[("bore_diameter", "\"68 mm\"")], pitch),
         (&[("outside_diameter", "\"61 mm\"")], pitch),
         (
@@ -165,6 +201,14 @@ fn a_cage_that_makes_no_sense_is_refused() {
         let message = message_of(&caged(changes), &[]);
         assert!(message.contains(expected), "{changes:?}: {message}");
     }
+    let offsets = ["\"1 mm\""]
+        .into_iter()
+        .chain(["\"0 mm\""; 17])
+        .collect::<Vec<_>>()
+        .join(", ");
+    let offsets = message_of(&caged(&[("pocket_offsets", &format!("[{offsets}]"))]), &[]);
+    let expected = "cage.pocket_offsets[0] is 1 mm; expected at most a tenth of the ball, to either side";
+    assert!(offsets.contains(expected), "{offsets}");
     let kinematic = message_of(&caged(&[]), &["balls.motion=\"kinematic\""]);
     let expected = "cage.motion is \"free\", but the balls are kinematic and would not feel it; write";
     assert!(kinematic.contains(expected), "{kinematic}");
