@@ -1,75 +1,82 @@
-//! Solution of a dense system in which some small blocks of unknowns see only themselves and the rest.
+//! Factors of a dense matrix in which some small blocks of unknowns see only themselves and the rest.
 
 use std::ops::Range;
 
 use crate::error::DenseError;
 use crate::factors::DenseLu;
 
-/// Solves a x = rhs, `a` row-major `[n][n]`, by eliminating `blocks` first: unknowns of different blocks must not be
+/// LU factors of a matrix `[n][n]` whose `blocks` are eliminated first: unknowns of different blocks must not be
 /// coupled. What is left, the Schur complement D - sum C A^-1 B, is factored as a whole. Without blocks this is
 /// [`DenseLu`].
 ///
 /// Cost: the cube of what is left, and of each block its few rows and columns that are not zero.
-///
-/// # Panics
-/// When `a.len() != n * n` or `rhs.len() != n`.
-pub fn solve_with_blocks(
+#[derive(Clone, Debug)]
+pub struct BlockLu {
     n: usize,
-    a: &[f64],
-    blocks: &[Range<usize>],
-    rhs: &mut [f64],
-) -> Result<(), DenseError> {
-    assert_eq!(
-        (a.len(), rhs.len()),
-        (n * n, n),
-        "a matrix of {n} rows and its right-hand side"
-    );
-    if blocks.is_empty() {
-        DenseLu::factor(n, a)?.solve(rhs, 1);
-        return Ok(());
+    blocks: Vec<Eliminated>,
+    /// Unknowns outside of all blocks.
+    rest: Vec<usize>,
+    left: Option<DenseLu>,
+}
+
+impl BlockLu {
+    /// Factors `a`, row-major `[n][n]`.
+    ///
+    /// # Panics
+    /// When `a.len() != n * n`.
+    pub fn factor(n: usize, a: &[f64], blocks: &[Range<usize>]) -> Result<BlockLu, DenseError> {
+        assert_eq!(a.len(), n * n, "a matrix of {n} rows");
+        let ranges = outside(n, blocks);
+        let rest: Vec<usize> = ranges.iter().cloned().flatten().collect();
+        let m = rest.len();
+        let mut left = Vec::with_capacity(m * m);
+        for i in &rest {
+            let row = &a[n * i..n * (i + 1)];
+            ranges
+                .iter()
+                .for_each(|range| left.extend_from_slice(&row[range.clone()]));
+        }
+        let eliminate = |block: &Range<usize>| {
+            let eliminated = Eliminated::new((n, a), block, &rest)?;
+            eliminated.subtract_from(m, &mut left);
+            Ok(eliminated)
+        };
+        let blocks = blocks.iter().map(eliminate).collect::<Result<_, DenseError>>()?;
+        let left = (m > 0).then(|| DenseLu::factor(m, &left)).transpose()?;
+        Ok(BlockLu {
+            n,
+            blocks,
+            rest,
+            left,
+        })
     }
-    let rest = outside(n, blocks);
-    let m: usize = rest.iter().map(Range::len).sum();
-    let add_rest = |row: &[f64], all: &mut Vec<f64>| {
-        rest.iter()
-            .for_each(|range| all.extend_from_slice(&row[range.clone()]));
-    };
-    let rows: Vec<usize> = rest.iter().cloned().flatten().collect();
-    let mut left = Vec::with_capacity(m * m);
-    rows.iter().for_each(|i| add_rest(&a[n * i..], &mut left));
-    let mut right = Vec::with_capacity(m);
-    add_rest(rhs, &mut right);
-    let mut eliminated = Vec::with_capacity(blocks.len());
-    for block in blocks {
-        let solved = eliminate((n, a), block, &rows, rhs)?;
-        let (width, columns) = (solved.columns.len() + 1, &solved.columns);
-        for (k, &i) in rows.iter().enumerate() {
-            let couples = &a[n * i..][block.clone()];
-            for (c, x) in couples.iter().zip(solved.x.chunks_exact(width)) {
-                if *c == 0.0 {
-                    continue;
-                }
-                let row = &mut left[m * k..m * (k + 1)];
-                columns.iter().zip(x).for_each(|(j, x)| row[*j] -= c * x);
-                right[k] -= c * x[width - 1];
+
+    /// Replaces a right-hand side by the solution.
+    ///
+    /// # Panics
+    /// When `rhs.len()` is not the number of rows.
+    pub fn solve(&self, rhs: &mut [f64]) {
+        assert_eq!(rhs.len(), self.n, "a right-hand side of {} rows", self.n);
+        let mut right: Vec<f64> = self.rest.iter().map(|i| rhs[*i]).collect();
+        for block in &self.blocks {
+            let x = block.inverse_times(rhs);
+            for (k, couples) in block.couples() {
+                right[k] -= couples.iter().zip(&x).map(|(c, x)| c * x).sum::<f64>();
+            }
+            rhs[block.range.clone()].copy_from_slice(&x);
+        }
+        if let Some(left) = &self.left {
+            left.solve(&mut right, 1);
+        }
+        for block in &self.blocks {
+            let width = block.columns.len().max(1);
+            for (value, row) in rhs[block.range.clone()].iter_mut().zip(block.x.chunks(width)) {
+                let coupled = block.columns.iter().zip(row).map(|(j, x)| x * right[*j]);
+                *value -= coupled.sum::<f64>();
             }
         }
-        eliminated.push(solved);
+        self.rest.iter().zip(right).for_each(|(i, value)| rhs[*i] = value);
     }
-    if m > 0 {
-        DenseLu::factor(m, &left)?.solve(&mut right, 1);
-    }
-    for (block, Eliminated { columns, x }) in blocks.iter().zip(eliminated) {
-        for (value, x) in rhs[block.clone()]
-            .iter_mut()
-            .zip(x.chunks_exact(columns.len() + 1))
-        {
-            let coupled = columns.iter().zip(x).map(|(j, x)| x * right[*j]);
-            *value = x[columns.len()] - coupled.sum::<f64>();
-        }
-    }
-    rows.iter().zip(right).for_each(|(i, value)| rhs[*i] = value);
-    Ok(())
 }
 
 /// What no block has, ascending.
@@ -86,46 +93,99 @@ fn outside(n: usize, blocks: &[Range<usize>]) -> Vec<Range<usize>> {
         .collect()
 }
 
-/// A^-1 [B, rhs] of a block.
+/// A block, and the parts of B and C that are not zero.
+#[derive(Clone, Debug)]
 struct Eliminated {
+    range: Range<usize>,
+    /// Column-major.
+    inverse: Vec<f64>,
     /// Columns of B that are not zero, among those outside of all blocks.
     columns: Vec<usize>,
-    /// Row-major.
+    /// A^-1 B, row-major.
     x: Vec<f64>,
+    /// Rows of C that are not zero, likewise.
+    rows: Vec<usize>,
+    /// These, row-major.
+    c: Vec<f64>,
 }
 
-fn eliminate(
-    (n, a): (usize, &[f64]),
-    block: &Range<usize>,
-    outside: &[usize],
-    rhs: &[f64],
-) -> Result<Eliminated, DenseError> {
-    let size = block.len();
-    let mut own = Vec::with_capacity(size * size);
-    let mut is_some = vec![false; outside.len()];
-    for i in block.clone() {
-        let row = &a[n * i..n * (i + 1)];
-        own.extend_from_slice(&row[block.clone()]);
-        is_some
-            .iter_mut()
-            .zip(outside)
-            .for_each(|(is, j)| *is |= row[*j] != 0.0);
+impl Eliminated {
+    fn new(
+        (n, a): (usize, &[f64]),
+        block: &Range<usize>,
+        outside: &[usize],
+    ) -> Result<Eliminated, DenseError> {
+        let size = block.len();
+        let mut own = Vec::with_capacity(size * size);
+        let mut is_some = vec![false; outside.len()];
+        for i in block.clone() {
+            let row = &a[n * i..n * (i + 1)];
+            own.extend_from_slice(&row[block.clone()]);
+            is_some
+                .iter_mut()
+                .zip(outside)
+                .for_each(|(is, j)| *is |= row[*j] != 0.0);
+        }
+        let columns: Vec<usize> = (0..outside.len()).filter(|k| is_some[*k]).collect();
+        let mut inverse: Vec<f64> = (0..size * size)
+            .map(|i| f64::from(u8::from(i % (size + 1) == 0)))
+            .collect();
+        DenseLu::factor(size, &own)?.solve(&mut inverse, size);
+        let mut x = vec![0.0; size * columns.len()];
+        for (i, inverse) in block.clone().zip(inverse.chunks_exact(size)) {
+            let row: Vec<f64> = columns.iter().map(|k| a[n * i + outside[*k]]).collect();
+            for (x, factor) in x.chunks_exact_mut(row.len().max(1)).zip(inverse) {
+                x.iter_mut().zip(&row).for_each(|(x, b)| *x += factor * b);
+            }
+        }
+        let couples = |i: usize| &a[n * i..][block.clone()];
+        let is_coupled = |k: &usize| couples(outside[*k]).iter().any(|c| *c != 0.0);
+        let rows: Vec<usize> = (0..outside.len()).filter(is_coupled).collect();
+        let c = rows.iter().flat_map(|k| couples(outside[*k])).copied().collect();
+        Ok(Eliminated {
+            range: block.clone(),
+            inverse,
+            columns,
+            x,
+            rows,
+            c,
+        })
     }
-    let columns: Vec<usize> = (0..outside.len()).filter(|k| is_some[*k]).collect();
-    // Column-major.
-    let mut inverse: Vec<f64> = (0..size * size)
-        .map(|i| f64::from(u8::from(i % (size + 1) == 0)))
-        .collect();
-    DenseLu::factor(size, &own)?.solve(&mut inverse, size);
-    let mut x = vec![0.0; size * (columns.len() + 1)];
-    for (j, i) in block.clone().enumerate() {
-        let coupled = columns.iter().map(|k| a[n * i + outside[*k]]);
-        let row: Vec<f64> = coupled.chain([rhs[i]]).collect();
-        for (x, factor) in x.chunks_exact_mut(row.len()).zip(&inverse[size * j..]) {
-            x.iter_mut().zip(&row).for_each(|(x, b)| *x += factor * b);
+
+    /// Rows of C that are not zero, each with its number outside.
+    fn couples(&self) -> impl Iterator<Item = (usize, &[f64])> {
+        self.rows
+            .iter()
+            .copied()
+            .zip(self.c.chunks_exact(self.range.len().max(1)))
+    }
+
+    /// Subtracts C A^-1 B from what is left, row-major `[m][m]`.
+    fn subtract_from(&self, m: usize, left: &mut [f64]) {
+        let width = self.columns.len().max(1);
+        for (k, couples) in self.couples() {
+            let row = &mut left[m * k..m * (k + 1)];
+            for (c, x) in couples.iter().zip(self.x.chunks(width)) {
+                if *c != 0.0 {
+                    self.columns.iter().zip(x).for_each(|(j, x)| row[*j] -= c * x);
+                }
+            }
         }
     }
-    Ok(Eliminated { columns, x })
+
+    /// A^-1 of the block's part of a vector.
+    fn inverse_times(&self, rhs: &[f64]) -> Vec<f64> {
+        let size = self.range.len();
+        let mut x = vec![0.0; size];
+        for (column, value) in self
+            .inverse
+            .chunks_exact(size.max(1))
+            .zip(&rhs[self.range.clone()])
+        {
+            x.iter_mut().zip(column).for_each(|(x, a)| *x += a * value);
+        }
+        x
+    }
 }
 
 #[cfg(test)]
@@ -152,7 +212,7 @@ mod tests {
             let a: Vec<f64> = (0..n * n).map(|k| entry(k / n, k % n)).collect();
             let rhs: Vec<f64> = (0..n).map(|i| 1.0 + i as f64).collect();
             let (mut x, mut expected) = (rhs.clone(), rhs);
-            solve_with_blocks(n, &a, &blocks, &mut x).unwrap();
+            BlockLu::factor(n, &a, &blocks).unwrap().solve(&mut x);
             DenseLu::factor(n, &a).unwrap().solve(&mut expected, 1);
             for (x, e) in x.iter().zip(&expected) {
                 assert!((x - e).abs() < 1e-12, "{blocks:?}: {x} {e}");

@@ -17,7 +17,7 @@ mod error;
 mod factors;
 mod forms;
 
-pub use blocks::solve_with_blocks;
+pub use blocks::BlockLu;
 pub use eigen::{
     ComplexNumber, ComplexPair, EigenProblem, Eigenpairs, LanczosSettings, Searched, dense_lowest,
     general_eigen, lanczos, lowest_pairs, symmetric_eigen,

@@ -79,6 +79,7 @@ pub fn minimise(
         force_scale: largest_load(parts, scales),
         round_off: RoundOff::Links,
         ends_at_floor: false,
+        keeps_factors: false,
         blocks: &[],
         scales: Some(&lengths),
         proximal: proximal(parts, scales),

@@ -109,6 +109,7 @@ pub(super) fn policy<'p>(scale: f64, scales: Option<&'p [f64]>, costs: &'p Share
         force_scale: scale,
         round_off: RoundOff::Unknowns,
         ends_at_floor: false,
+        keeps_factors: false,
         blocks: &[],
         scales,
         proximal: 0.0,

@@ -4,11 +4,12 @@
 //! shrinks. An equilibrium may begin anywhere: where forces have a convex energy, Cholesky, and a step along which the
 //! slope of the energy still falls is progress, whatever opens or closes; the test needs no energy values and so loses
 //! no digits near the solution. A small proximal stiffness makes steps of unloaded bodies zero instead of undefined and
-//! does not shift the solution. Cost: one dense factorisation of the unknowns per iteration.
+//! does not shift the solution. Cost: one dense factorisation of the unknowns per iteration; fewer where a policy keeps
+//! factors as long as the residual shrinks fast.
 
 use std::ops::Range;
 
-use dense::{DenseCholesky, DenseError, solve_with_blocks};
+use dense::{BlockLu, DenseCholesky, DenseError};
 use timer::SharedLaps;
 
 use super::assembly::{Evaluated, System};
@@ -18,6 +19,8 @@ use crate::error::DynamicsError;
 
 /// Residual over the force scale that counts as round-off.
 const RESIDUAL_TARGET: f64 = 1e-14;
+/// Residual over that before it at which the factors of an earlier tangent are good enough for one more step.
+const KEPT_SHRINK: f64 = 1e-2;
 /// Slope of the energy that ends a line search, relative to its start.
 const SLOPE_SHRINK: f64 = 0.5;
 
@@ -51,6 +54,8 @@ pub struct Policy<'p> {
     pub round_off: RoundOff,
     /// Whether iteration ends where the residual is what round-off makes; else it goes on while it improves.
     pub ends_at_floor: bool,
+    /// Whether factors are kept for further iterations while these shrink the residual fast.
+    pub keeps_factors: bool,
     /// Unknowns of bodies that see no other block of them: eliminated first. Without an energy only.
     pub blocks: &'p [Range<usize>],
     /// Length per unknown by which it is scaled, so that all are lengths; None: they are taken as they are.
@@ -86,6 +91,7 @@ impl System<'_> {
             self.add_curvatures(&x, &at.links, &mut bodies);
         }
         let mut tangent = bodies.clone();
+        let mut factors: Option<Factors> = None;
         let (mut worst, mut limit) = (0, 0.0);
         for iteration in 0..policy.most_iterations {
             let (place, now) = largest(&policy.scaled(&at.residual));
@@ -95,13 +101,17 @@ impl System<'_> {
                     what: "a contact force",
                 });
             }
+            let is_fast = history.last().is_some_and(|last| now <= KEPT_SHRINK * last);
             history.push(now);
             stalled = if now < 0.5 * best { 0 } else { stalled + 1 };
             best = best.min(now);
             let scale = force_scale(&at.links, policy.force_scale);
             limit = policy.residual_limit * scale;
-            tangent.copy_from_slice(&bodies);
-            self.add_link_tangents(&x, &at.links, &mut tangent);
+            factors = factors.filter(|_| policy.keeps_factors && is_fast);
+            if factors.is_none() {
+                tangent.copy_from_slice(&bodies);
+                self.add_link_tangents(&x, &at.links, &mut tangent);
+            }
             let floor = || match policy.round_off {
                 RoundOff::Unknowns => round_off(&tangent, &x),
                 RoundOff::Links => self.round_off(&x),
@@ -115,7 +125,12 @@ impl System<'_> {
                 let (unknowns, iterations) = (x, iteration);
                 return Ok(NewtonSolution { unknowns, iterations });
             }
-            let step = self.direction(&x, &at, &mut tangent, policy)?;
+            let found = match factors.take() {
+                Some(kept) => kept,
+                None => self.factors(&x, &at, &tangent, policy)?,
+            };
+            let step = found.step(&at.residual, policy);
+            factors = Some(found);
             if is_at_floor {
                 // Light bodies beside heavy ones gain by the last step; its residual is round-off of the heavy ones.
                 x.iter_mut().zip(&step).for_each(|(x, s)| *x += s);
@@ -135,50 +150,36 @@ impl System<'_> {
         })
     }
 
-    /// Newton's step. Where curvatures of finite motions make an energy's tangent indefinite, they are left out: the step
-    /// still goes downhill.
-    fn direction(
+    /// Factors of the scaled tangent. Where curvatures of finite motions make an energy's tangent indefinite, they are
+    /// left out: the step still goes downhill.
+    fn factors(
         &self,
         x: &[f64],
         at: &Evaluated,
-        matrix: &mut [f64],
+        tangent: &[f64],
         policy: &Policy,
-    ) -> Result<Vec<f64>, DynamicsError> {
-        self.check_held(matrix, &at.residual, policy)?;
-        let right: Vec<f64> = policy.scaled(&at.residual).iter().map(|r| -r).collect();
+    ) -> Result<Factors, DynamicsError> {
+        self.check_held(tangent, &at.residual, policy)?;
         let is_rest = self.interval() == Interval::Rest;
         let curved = (is_rest && self.has_curvature()).then(|| {
-            let mut curved = matrix.to_vec();
+            let mut curved = tangent.to_vec();
             self.add_curvatures(x, &at.links, &mut curved);
-            self.scaled_step(&mut curved, &right, policy)
+            self.factors_of(curved, policy)
         });
-        let step = match curved {
-            Some(Ok(step)) => Ok(step),
-            _ => self.scaled_step(matrix, &right, policy),
+        let factors = match curved {
+            Some(Ok(factors)) => Ok(factors),
+            _ => self.factors_of(tangent.to_vec(), policy),
         };
-        let mut step = step.map_err(|source| DynamicsError::ContactSystem { source })?;
-        let length = step.iter().fold(0.0, |most: f64, s| most.max(s.abs()));
-        if length > policy.longest_step {
-            step.iter_mut().for_each(|s| *s *= policy.longest_step / length);
-        }
-        Ok(policy.scaled(&step))
+        factors.map_err(|source| DynamicsError::ContactSystem { source })
     }
 
-    /// Solution of the scaled system with this tangent.
-    fn scaled_step(
-        &self,
-        matrix: &mut [f64],
-        right: &[f64],
-        policy: &Policy,
-    ) -> Result<Vec<f64>, DenseError> {
-        let (n, mut step) = (self.n(), right.to_vec());
-        policy.scale(n, matrix);
-        if self.has_energy() {
-            DenseCholesky::factor(n, matrix)?.solve(&mut step, 1);
-        } else {
-            solve_with_blocks(n, matrix, policy.blocks, &mut step)?;
-        }
-        Ok(step)
+    fn factors_of(&self, mut tangent: Vec<f64>, policy: &Policy) -> Result<Factors, DenseError> {
+        let n = self.n();
+        policy.scale(n, &mut tangent);
+        Ok(match self.has_energy() {
+            true => Factors::OfEnergy(DenseCholesky::factor(n, &tangent)?),
+            false => Factors::Any(BlockLu::factor(n, &tangent, policy.blocks)?),
+        })
     }
 
     /// Fails when an unknown has neither inertia nor stiffness: its row of the tangent is empty. Names the one that the
@@ -210,6 +211,28 @@ impl System<'_> {
             Shortening::Energy if !self.has_energy() => halve(&at, policy, 30, 0.1, trial),
             Shortening::Energy => along_energy(&at.residual, step, trial).unwrap_or((x, at)),
         }
+    }
+}
+
+/// A tangent of scaled unknowns, factored.
+enum Factors {
+    OfEnergy(DenseCholesky),
+    Any(BlockLu),
+}
+
+impl Factors {
+    /// Newton's step from a residual, at most as long as the policy allows.
+    fn step(&self, residual: &[f64], policy: &Policy) -> Vec<f64> {
+        let mut step: Vec<f64> = policy.scaled(residual).iter().map(|r| -r).collect();
+        match self {
+            Factors::OfEnergy(factors) => factors.solve(&mut step, 1),
+            Factors::Any(factors) => factors.solve(&mut step),
+        }
+        let length = step.iter().fold(0.0, |most: f64, s| most.max(s.abs()));
+        if length > policy.longest_step {
+            step.iter_mut().for_each(|s| *s *= policy.longest_step / length);
+        }
+        policy.scaled(&step)
     }
 }
 

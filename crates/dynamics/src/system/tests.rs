@@ -158,6 +158,7 @@ fn solve(system: &System) -> Result<Vec<f64>, DynamicsError> {
         force_scale: 1.0,
         round_off: RoundOff::Unknowns,
         ends_at_floor: false,
+        keeps_factors: false,
         blocks: &[],
         scales: None,
         proximal: 0.0,
