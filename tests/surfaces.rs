@@ -36,7 +36,7 @@ fn near(table: &Table, frequency: f64, width: f64) -> f64 {
 }
 
 /// The same in a column.
-fn near_in(table: &Table, column: &str, frequency: f64, width: f64) -> f64 {
+pub fn near_in(table: &Table, column: &str, frequency: f64, width: f64) -> f64 {
     let amplitudes = table.column(column);
     let lines = table.column("frequency_hz");
     let found = lines
@@ -267,8 +267,9 @@ fn steps_that_skip_a_surface_are_warned_of() {
     let dent = "[[profiles.dent]]\nring = \"inner\"\nazimuth = \"0 deg\"\ngroove_angle = \"18 deg\"\n\
                 diameter = \"0.2 mm\"\ndepth = \"5 um\"\n\n";
     let waves = "[[profiles.waviness]]\nring = \"inner\"\norder = 400\namplitude = \"0.1 um\"\n\n";
+    let ball = "[[profiles.waviness]]\nball = 3\norder = 30\namplitude = \"0.1 um\"\n\n";
     let check = |step: &str| {
-        let tables = spall("outer") + dent + waves + &MOTION.replace("20 us", step);
+        let tables = spall("outer") + dent + waves + ball + &MOTION.replace("20 us", step);
         let dir = Dir::with_scene(&with_line("[static]", "[static]", &tables));
         let outcome = dir.raceway(&[&["check", "scene.toml"], &RIGID[..]].concat());
         assert_eq!(outcome.code, Some(0), "{}", outcome.stderr);
@@ -280,11 +281,16 @@ fn steps_that_skip_a_surface_are_warned_of() {
         "expected 20 or more: dynamic.step of 8.2 us or less",
         "a ball passes dent 1 of the inner ring in ",
         "a ball passes a wave of order 400 of the inner ring in 147.0",
+        // 668.7 rad/s, which is 106.43 Hz, and 30 waves.
+        "a raceway passes a wave of order 30 of ball 3 in 313.19",
     ] {
         assert!(said.contains(part), "{said}\nhas no\n{part}");
     }
     let said = check("2 us");
-    assert!(!said.contains("a ball passes"), "{said}");
+    assert!(
+        !said.contains("a ball passes") && !said.contains("a raceway passes"),
+        "{said}"
+    );
 }
 
 /// Wrong: edges and profiles that fit no ring would be taken; a rigid ring without a section has no shoulders, and a

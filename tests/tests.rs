@@ -51,3 +51,4 @@ mod study_jobs;
 mod surfaces;
 mod sweeps;
 mod util;
+mod worn_balls;

@@ -34,6 +34,13 @@ STRESS_PROBES = (
     'depth = "0 mm"\npoints = 41\n[stress]\nnear_field = true\n'
 )
 
+# Spall and waves of rings under contact damping: all that a contact of strips does.
+SURFACES = (
+    '[[profiles.spall]]\nring = "outer"\nazimuth = "3 deg"\ngroove_angle = "19 deg"\nlength = "1 mm"\nwidth = "2 mm"\n'
+    'depth = "20 um"\nedge = "0.1 mm"\n'
+    '[[profiles.random]]\nring = "inner"\norders = [2, 30]\namplitude = "0.5 um"\nslope = 1.0\nseed = 1\n'
+)
+
 
 def dynamic(more="", steps=20, step=20, every=5, speed="12000 rpm"):
     """The table of a motion of so many steps of so many microseconds, and that of the speed."""
@@ -107,6 +114,7 @@ COURSES = [
         'effects.axial_force.schedule.harmonic={ frequency = "5 kHz", mean = 1, amplitude = 0.5 }',
         'effects.radial_force.schedule.table={ times = ["0 s", "0.2 ms"], factors = [1, 0.2] }',
     ),
+    motion("surfaces", dynamic() + SURFACES + DAMPING, "contact.edges=true", resume=(10,), threads=True),
     motion("started_free", dynamic("start.free = {}", step=5), MASS),
     motion("started_given", dynamic('start.given = { z = "10 um", velocity_x = "1 mm/s" }', step=5), MASS),
     motion("broken_ledger", dynamic('contact = "pointwise"').replace("1e-2", "1e-14"), code=3),

@@ -27,6 +27,7 @@ mod statics;
 mod steps;
 #[path = "../../crates/dynamics/tests/support/mod.rs"]
 mod support;
+mod surface_balls;
 mod surface_spalls;
 mod surface_waves;
 mod surfaces;

@@ -1,9 +1,10 @@
 //! Real surfaces: balls that fall into spalls and hit their ends, fly over waves, and meet what is no groove any more.
 
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use contact::surface::{Dent, Heights, Spall, Wave};
-use contact::{Profiles, Side, StripLaw, StripSurface};
+use contact::{BallSurface, Profiles, Side, StripLaw, StripSurface};
 use dynamics::interactions::contact_damping::ContactDamping;
 use dynamics::kinematics::{Kinematics, RingSpeeds, Speed};
 use dynamics::motion::{Motion, MotionSettings, MotionState};
@@ -13,7 +14,7 @@ use super::bearings::{Load, RPM, equilibrium_at, flexible, halvings, largest_bal
 use super::course::{Course, march_with};
 use super::plot::{Curve, Plot};
 use super::record::Record;
-use super::{HardCase, surface_spalls, surface_waves};
+use super::{HardCase, surface_balls, surface_spalls, surface_waves};
 
 /// Ledger defect over the largest energy.
 const CLOSED: f64 = 1e-8;
@@ -21,7 +22,8 @@ const CLOSED: f64 = 1e-8;
 pub const ENTRY: f64 = 50e-6;
 
 pub fn cases() -> Vec<HardCase> {
-    super::both(surface_spalls::cases(), surface_waves::cases())
+    let rings = super::both(surface_spalls::cases(), surface_waves::cases());
+    super::both(rings, surface_balls::cases())
 }
 
 /// A bearing that rolls over real surfaces.
@@ -33,6 +35,8 @@ pub struct Rolling {
     pub speed: f64,
     /// Profiles, inner ring first.
     pub profiles: [Profiles; 2],
+    /// Profiles of balls.
+    pub balls: BTreeMap<usize, Profiles>,
     /// Groove angles of the outer shoulders, rad.
     pub shoulders: Option<[f64; 2]>,
     /// How much larger each ball is, m.
@@ -53,6 +57,7 @@ impl Rolling {
             speeds: Speed::constant(rpm * RPM).into(),
             speed: rpm * RPM,
             profiles: Default::default(),
+            balls: BTreeMap::new(),
             shoulders: None,
             oversizes: Vec::new(),
             is_flexible: false,
@@ -84,6 +89,14 @@ impl Rolling {
             model.surfaces.strips[side.index()] = Some(Arc::new(surface.unwrap()));
         }
         model.surfaces.oversizes.clone_from(&self.oversizes);
+        for (ball, profiles) in &self.balls {
+            let geometry = model.geometry;
+            let surface = |side| {
+                let equator = geometry.free_contact_angle();
+                Arc::new(BallSurface::new((&geometry, side), equator, profiles).unwrap())
+            };
+            model.surfaces.balls.insert(*ball, Side::BOTH.map(surface));
+        }
         model
     }
 

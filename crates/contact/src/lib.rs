@@ -26,6 +26,7 @@ pub mod surface;
 pub mod unevenness;
 mod vector;
 pub mod weights;
+pub mod worn_line;
 
 pub use error::ContactError;
 pub use facets::FacetSurface;
@@ -37,6 +38,7 @@ pub use patch::{LeastSize, Patch};
 pub use raceway::{Groove, RacewaySurface};
 pub use sphere::SphereCompliance;
 pub use strips::{StripForce, StripLaw, StripLine};
-pub use surface::{Profiles, StripSurface};
+pub use surface::{BallSurface, Profiles, StripSurface};
 pub use unevenness::Unevenness;
 pub use weights::NodalWeights;
+pub use worn_line::WornLine;

@@ -16,6 +16,10 @@
 //! So U depends on alpha too; dU/dalpha over |l| is a force across the contact normal. w is linear in beta between
 //! *corners*, so that all integrals are exact: force and tangents are the derivatives of the energy to round-off.
 //!
+//! A ball that is no sphere misses w_b at an angle mu of its own, the contact angle at which that place is touched: the
+//! strip at y meets it at mu = alpha + y / r, r the radius of the ball. Strips still belong to the groove, so that mu
+//! moves by 1 - R_g / r per unit of alpha, and dU/dalpha has a part of w_b's slope.
+//!
 //! What the patch of a finite-element ring and the ball yield besides, c_s + c_b, is taken out as in [`crate::law`]:
 //! g = d - (c_s + c_b) Q, V = U - (c_s + c_b) Q^2 / 2, so that dV/dg = Q and dV/dalpha = dU/dalpha. From the load on at
 //! which a smooth groove's law reaches [`MIN_SLOPE`], what is taken out stays the same: such a state is not valid.
@@ -26,6 +30,7 @@
 
 use crate::hertz::HertzContact;
 use crate::law::MIN_SLOPE;
+use crate::worn_line::WornLine;
 
 /// Gauss points on -1..1 and weights: exact for o^2, of degree four.
 const GAUSS: [(f64, f64); 3] = [
@@ -72,6 +77,8 @@ pub struct StripLine<'l> {
     pub angles: &'l [f64],
     /// Missing material w at them, m; negative is a bump.
     pub missing: &'l [f64],
+    /// What is missing of the ball; None: it is a sphere.
+    pub worn: Option<WornLine<'l>>,
 }
 
 /// A contact by strips at a geometric approach and a contact angle.
@@ -213,6 +220,18 @@ impl StripLaw {
     }
 
     fn integrals(&self, line: StripLine, d: f64, angle: f64) -> Integrals {
+        let mut sum = match line.worn {
+            Some(worn) => self.sums_under(line, &worn, d, angle),
+            None => self.sums(line, d, angle),
+        };
+        sum.energy *= self.density;
+        sum.force *= self.density;
+        sum.moment *= self.density;
+        sum.growth = sum.growth.map(|x| x * self.density);
+        sum
+    }
+
+    fn sums(&self, line: StripLine, d: f64, angle: f64) -> Integrals {
         let mut sum = Integrals::default();
         let mut first = 0;
         while first + 1 < line.angles.len() {
@@ -227,18 +246,51 @@ impl StripLaw {
             let missing = ends.map(|corner| line.missing[corner]);
             if d > missing[0].min(missing[1]) {
                 let y = ends.map(|corner| self.groove_radius * (line.angles[corner] - angle));
-                self.add_piece(y, missing, d, &mut sum);
+                self.add_piece((y, missing), d, 0.0, &mut sum);
             }
         }
-        sum.energy *= self.density;
-        sum.force *= self.density;
-        sum.moment *= self.density;
-        sum.growth = sum.growth.map(|x| x * self.density);
         sum
     }
 
-    /// Adds the strips between two corners, where they overlap.
-    fn add_piece(&self, y: [f64; 2], missing: [f64; 2], d: f64, sum: &mut Integrals) {
+    /// The same under a ball that is no sphere: pieces end at the corners of both.
+    fn sums_under(&self, line: StripLine, worn: &WornLine, d: f64, angle: f64) -> Integrals {
+        let mut sum = Integrals::default();
+        // How far mu stays behind the strip, per unit of alpha.
+        let behind = self.groove_radius / worn.radius - 1.0;
+        let corner = |k: usize| worn.radius * (worn.angles[k] - angle);
+        for k in 1..line.angles.len() {
+            let [low, high] = [k - 1, k].map(|k| self.groove_radius * (line.angles[k] - angle));
+            let ramp = (line.missing[k] - line.missing[k - 1]) / (high - low);
+            let of_groove = |y: f64| line.missing[k - 1] + ramp * (y - low);
+            let mut piece = worn
+                .angles
+                .partition_point(|mu| worn.radius * (mu - angle) <= low);
+            let mut from = low;
+            loop {
+                let is_last = piece == worn.angles.len() || corner(piece) >= high;
+                let to = if is_last { high } else { corner(piece) };
+                let slope = worn.piece(piece, angle).0;
+                let at = |y: f64| of_groove(y) + worn.piece(piece, angle + y / worn.radius).1;
+                let missing = [at(from), at(to)];
+                if to > from && d > missing[0].min(missing[1]) {
+                    self.add_piece(([from, to], missing), d, behind * slope, &mut sum);
+                }
+                if is_last {
+                    break;
+                }
+                // The slope of w_b jumps at its corners, and these move along the groove.
+                let overlap = (d - missing[1] - 0.5 * to * to / self.parabola_radius).max(0.0);
+                let jump = worn.piece(piece + 1, angle).0 - slope;
+                sum.growth[2] -= behind * behind * worn.radius * jump * overlap;
+                (from, piece) = (to, piece + 1);
+            }
+        }
+        sum
+    }
+
+    /// Adds the strips between two places y with what is missing there, where they overlap; with the contact angle the
+    /// overlap grows by `more` besides what the groove does, m/rad.
+    fn add_piece(&self, (y, missing): ([f64; 2], [f64; 2]), d: f64, more: f64, sum: &mut Integrals) {
         let radius = self.parabola_radius;
         let ramp = (missing[1] - missing[0]) / (y[1] - y[0]);
         // Overlap at y: level - ramp y - y^2 / (2 R').
@@ -259,7 +311,7 @@ impl StripLaw {
             let y = middle + half * x;
             let overlap = (level - ramp * y - 0.5 * y * y / radius).max(0.0);
             let share = weight * half;
-            let turn = lever * y;
+            let turn = lever * y + more;
             sum.energy += share * 0.5 * overlap * overlap;
             sum.force += share * overlap;
             sum.moment += share * overlap * turn;

@@ -183,6 +183,12 @@ impl Kinematics {
         self.ball * speeds.relative(time)
     }
 
+    /// Angle by which a ball has rolled about its own axis when the rings `[inner, outer]` have turned by these, rad:
+    /// the integral of [`Kinematics::spin`].
+    pub fn rolled(&self, [inner, outer]: BothRings) -> f64 {
+        self.ball * (inner - outer)
+    }
+
     /// Rolling at the contact angles `[inner, outer]`, rad, about an axis pitched by beta (`pitch_angle`): the
     /// surface of the ball has cos(a - beta) of its largest speed at a contact (Harris, 4th ed., chapter 8; Jones
     /// 1959). Without slip omega_c = omega_i (1 - D_w / D_m cos a_i) / (1 + cos(a_i - a_o)).
@@ -254,6 +260,7 @@ impl Rolling {
 
     /// Where the parts stand at a time, s.
     pub fn pose(&self, time: f64) -> Pose {
+        let ring_angles = Side::BOTH.map(|side| self.speeds.of(side).angle(time));
         Pose {
             now: Now {
                 time,
@@ -262,7 +269,8 @@ impl Rolling {
                 angles: None,
                 seen: None,
             },
-            ring_angles: Side::BOTH.map(|side| self.speeds.of(side).angle(time)),
+            rolled: self.kinematics.rolled(ring_angles),
+            ring_angles,
         }
     }
 

@@ -23,6 +23,7 @@ use crate::interactions::raceway_contact::Site;
 use crate::model::Model;
 use crate::pose::Pose;
 use crate::surface_equilibrium::settle_on_surfaces;
+use crate::surfaces::SurfacePlace;
 use crate::system::Interval;
 
 /// Bodies and contacts of a model at an instant, with their loads.
@@ -157,7 +158,11 @@ fn parts_at(pose: &Pose, model: &Model) -> BearingParts {
         let azimuth = geometry.azimuth(ball) + pose.now.cage_angle;
         let mut site = Site::new(model, &mounting, ball, side, azimuth);
         site.ring_azimuth -= pose.frame_angle(side);
-        site.strips = model.surfaces.at(side, site.ring_azimuth);
+        let place = SurfacePlace {
+            azimuth: site.ring_azimuth,
+            rolled: pose.rolled,
+        };
+        site.strips = model.surfaces.at(ball, side, place);
         site
     };
     let sites = (0..geometry.n_balls).flat_map(|ball| Side::BOTH.map(|side| site(ball, side)));

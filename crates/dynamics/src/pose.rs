@@ -18,6 +18,8 @@ pub struct Pose {
     pub now: Now<'static>,
     /// Angles the rings have turned since the start, inner first, rad.
     pub ring_angles: [f64; 2],
+    /// Angle by which the balls have rolled about their own axes since the start, rad.
+    pub rolled: f64,
 }
 
 impl Pose {

@@ -1,8 +1,9 @@
-//! Real surfaces of a bearing: raceways of strips, and balls of different diameters.
+//! Real surfaces of a bearing: raceways of strips, balls of different diameters, and balls that are no spheres.
 
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use contact::{Side, StripLine, StripSurface};
+use contact::{BallSurface, Side, StripLine, StripSurface};
 
 /// What a scene asks for beyond smooth grooves without edges and equal balls; the default is nothing.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -12,6 +13,24 @@ pub struct Surfaces {
     /// How much larger the diameter of each ball is, m; empty: all are equal. Mass and Hertz stiffness stay those of
     /// the bearing's ball.
     pub oversizes: Vec<f64>,
+    /// Balls that are no spheres, by number, as inner and outer raceway meet them; both raceways are then of strips.
+    pub balls: BTreeMap<usize, [Arc<BallSurface>; 2]>,
+}
+
+/// Where a contact stands on its surfaces.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct SurfacePlace {
+    /// Azimuth on the ring, rad.
+    pub azimuth: f64,
+    /// Angle by which balls have rolled since the start, rad ([`contact::surface::ball`]).
+    pub rolled: f64,
+}
+
+impl SurfacePlace {
+    /// A contact of balls that have not rolled yet, at an azimuth on the ring, rad.
+    pub fn at_start(azimuth: f64) -> SurfacePlace {
+        SurfacePlace { azimuth, rolled: 0.0 }
+    }
 }
 
 impl Surfaces {
@@ -22,7 +41,7 @@ impl Surfaces {
 
     /// Whether balls meet anything but smooth grooves.
     pub fn has_profiles(&self) -> bool {
-        self.strips.iter().flatten().any(|surface| surface.has_profile())
+        !self.balls.is_empty() || self.strips.iter().flatten().any(|surface| surface.has_profile())
     }
 
     /// How much larger the radius of a ball is, m.
@@ -30,14 +49,35 @@ impl Surfaces {
         0.5 * self.oversizes.get(ball).copied().unwrap_or(0.0)
     }
 
-    /// The strips of a contact at an azimuth of its ring, rad; None: it has none.
-    pub fn at(&self, side: Side, azimuth: f64) -> Option<Strips> {
+    /// The strips of a ball's contact where it stands; None: it has none.
+    pub fn at(&self, ball: usize, side: Side, place: SurfacePlace) -> Option<Strips> {
         let surface = self.strips[side.index()].as_ref()?;
+        let worn = self.balls.get(&ball).map(|sides| sides[side.index()].clone());
         Some(Strips {
-            missing: surface.missing_at(azimuth).into(),
+            lines: MissingLines::at(surface, worn.as_deref(), place),
             ends: None,
             surface: surface.clone(),
+            worn,
         })
+    }
+}
+
+/// What is missing of both bodies along the line of a contact, m.
+#[derive(Clone, Debug, PartialEq)]
+struct MissingLines {
+    groove: Arc<[f64]>,
+    /// Empty of a sphere.
+    ball: Arc<[f64]>,
+}
+
+impl MissingLines {
+    fn at(surface: &StripSurface, worn: Option<&BallSurface>, place: SurfacePlace) -> MissingLines {
+        MissingLines {
+            groove: surface.missing_at(place.azimuth).into(),
+            ball: worn
+                .map_or(Vec::new(), |ball| ball.missing_at(place.rolled))
+                .into(),
+        }
     }
 }
 
@@ -46,16 +86,17 @@ impl Surfaces {
 pub struct Strips {
     /// The raceway.
     pub surface: Arc<StripSurface>,
-    /// What is missing at its corners, m.
-    missing: Arc<[f64]>,
-    /// The same at the start and at the end of a step, during which the contact keeps that of its middle.
-    ends: Option<[Arc<[f64]>; 2]>,
+    /// The ball; None: it is a sphere.
+    worn: Option<Arc<BallSurface>>,
+    lines: MissingLines,
+    /// The same at the start and at the end of a step, during which the contact keeps those of its middle.
+    ends: Option<[MissingLines; 2]>,
 }
 
 impl Strips {
-    /// The same over a step that begins and ends at these azimuths of the ring, rad.
-    pub fn between(self, start: f64, end: f64) -> Strips {
-        let ends = [start, end].map(|azimuth| self.surface.missing_at(azimuth).into());
+    /// The same over a step that begins and ends at these places.
+    pub fn between(self, places: [SurfacePlace; 2]) -> Strips {
+        let ends = places.map(|place| MissingLines::at(&self.surface, self.worn.as_deref(), place));
         Strips {
             ends: Some(ends),
             ..self
@@ -64,21 +105,33 @@ impl Strips {
 
     /// The line across the track on which the contact stands.
     pub fn line(&self) -> StripLine<'_> {
-        self.surface.line(&self.missing)
+        self.line_of(&self.lines)
+    }
+
+    fn line_of<'l>(&'l self, lines: &'l MissingLines) -> StripLine<'l> {
+        let worn = self.worn.as_ref();
+        StripLine {
+            worn: worn.map(|ball| ball.line(&lines.ball)),
+            ..self.surface.line(&lines.groove)
+        }
     }
 
     /// The lines on which it stands at the start and at the end of a step; without a step, where it stands.
     pub fn lines_at_ends(&self) -> [StripLine<'_>; 2] {
         match &self.ends {
-            Some(ends) => ends.each_ref().map(|missing| self.surface.line(missing)),
+            Some(ends) => ends.each_ref().map(|lines| self.line_of(lines)),
             None => [self.line(); 2],
         }
     }
 
     /// The same with this share of what is missing.
     pub fn scaled(&self, share: f64) -> Strips {
+        let scaled = |missing: &[f64]| missing.iter().map(|w| share * w).collect();
         Strips {
-            missing: self.missing.iter().map(|w| share * w).collect(),
+            lines: MissingLines {
+                groove: scaled(&self.lines.groove),
+                ball: scaled(&self.lines.ball),
+            },
             ..self.clone()
         }
     }

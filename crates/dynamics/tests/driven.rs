@@ -131,6 +131,7 @@ fn a_driven_shaft_moves_the_balls() {
             let pose = Pose {
                 now,
                 ring_angles: [0.0, 0.0],
+                rolled: 0.0,
             };
             let statics = solver.solve_at(&model, &pose, None).unwrap();
             let (force, still) = (

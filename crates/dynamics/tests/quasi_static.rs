@@ -108,6 +108,7 @@ fn forces_repeat_when_every_ball_stands_where_the_next_one_stood() {
             ..Now::default()
         },
         ring_angles: [2.0 * PI / 18.0 * 2.0, 0.0],
+        rolled: 0.0,
     };
     let mut solver = StaticSolver::new(&model).unwrap();
     let exact = solver.solve_at(&model, &turned, Some(first)).unwrap();
@@ -147,6 +148,7 @@ fn a_turned_bearing_under_turned_loads_is_the_same_bearing() {
                 ..Now::default()
             },
             ring_angles: [angle, 0.0],
+            rolled: 0.0,
         };
         let model = model_at(angle);
         let mut solver = StaticSolver::new(&model).unwrap();

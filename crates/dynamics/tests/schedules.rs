@@ -50,6 +50,7 @@ fn solve(model: &Model, time: f64) -> StaticSolution {
     let pose = Pose {
         now,
         ring_angles: [0.0, 0.0],
+        rolled: 0.0,
     };
     StaticSolver::new(model)
         .unwrap()

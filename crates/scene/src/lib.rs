@@ -15,6 +15,7 @@ mod starter;
 mod surfaces;
 pub mod tables;
 mod toml_text;
+mod worn_balls;
 
 pub use build::{NodeTags, build_model, geometry, material, model_with_rings, ring_of, rolling};
 pub use doubts::doubts;

@@ -11,7 +11,7 @@
 
 use std::f64::consts::TAU;
 
-use contact::{BearingGeometry, Side};
+use contact::{BearingGeometry, Profiles, Side};
 use dynamics::kinematics::{BothRings, Kinematics};
 use input::{Quantity, Schedule, TIME};
 
@@ -243,32 +243,68 @@ fn judge_speed(scene: &Scene, steps: &TimeSteps, said: &mut Said) {
     }
 }
 
-/// The shortest spall or dent of a ring, and its shortest wave, at the largest speed of the balls over it.
+/// Profiles of a body, and how fast contacts run over them.
+struct WornTrack<'s> {
+    /// Such as "a ball passes".
+    passes: &'static str,
+    /// Such as "the outer ring".
+    body: String,
+    profiles: &'s Profiles,
+    /// Of the track, m.
+    radius: f64,
+    /// Of the contact on the body at the largest speed, rad/s.
+    rate: f64,
+}
+
+/// Profiles at the largest speed of contacts over them.
 fn judge_surfaces(scene: &Scene, geometry: &BearingGeometry, steps: &TimeSteps, said: &mut Said) {
     let Some(speeds) = &scene.speed else { return };
     let turning = Kinematics::new(geometry, scene.effects.slip());
+    let largest = |rate: &dyn Fn(BothRings) -> f64| rate(speeds.at_largest(rate));
     for side in Side::BOTH {
-        let over = |speeds: BothRings| (turning.of_cage(speeds) - speeds[side.index()]).abs();
-        let rate = over(speeds.at_largest(over));
-        let radius = geometry.centre_radius(side) + side.sign() * geometry.groove_radius(side);
-        let profiles = &scene.profiles.raceways[side.index()];
+        let track = WornTrack {
+            passes: "a ball passes",
+            body: format!("the {} ring", side.name()),
+            profiles: &scene.profiles.raceways[side.index()],
+            radius: geometry.centre_radius(side) + side.sign() * geometry.groove_radius(side),
+            rate: largest(&|speeds| (turning.of_cage(speeds) - speeds[side.index()]).abs()),
+        };
+        track.judge(steps, said);
+    }
+    for (ball, profiles) in &scene.profiles.balls {
+        let track = WornTrack {
+            passes: "a raceway passes",
+            body: format!("ball {ball}"),
+            profiles,
+            radius: 0.5 * geometry.ball_diameter,
+            rate: largest(&|speeds| turning.rolled(speeds).abs()),
+        };
+        track.judge(steps, said);
+    }
+}
+
+impl WornTrack<'_> {
+    /// Judges the shortest spall or dent and the shortest wave.
+    fn judge(&self, steps: &TimeSteps, said: &mut Said) {
+        let profiles = self.profiles;
         let spalls = profiles.spalls.iter().zip(1..);
         let spalls = spalls.map(|(spall, number)| (spall.length, format!("spall {number}")));
         let dents = profiles.dents.iter().zip(1..);
         let dents = dents.map(|(dent, number)| (2.0 * dent.reach(), format!("dent {number}")));
         let waves = profiles.waves.iter().map(|wave| wave.order).max();
         let waves = waves.map(|order| {
-            let length = TAU * radius / order as f64;
+            let length = TAU * self.radius / order as f64;
             (length, format!("a wave of order {order}"))
         });
         let shortest = spalls.chain(dents).min_by(|a, b| a.0.total_cmp(&b.0));
         for (length, what) in shortest.into_iter().chain(waves) {
-            let needed = length / (radius * rate * STEPS_PER_PERIOD);
+            let needed = length / (self.radius * self.rate * STEPS_PER_PERIOD);
             if steps.step > needed {
                 said.warnings.push(format!(
-                    "a ball passes {what} of the {} ring in {}, {:.2} steps of {}; expected {STEPS_PER_PERIOD} or \
-                     more: {}.step of {} or less",
-                    side.name(),
+                    "{} {what} of {} in {}, {:.2} steps of {}; expected {STEPS_PER_PERIOD} or more: {}.step of {} or \
+                     less",
+                    self.passes,
+                    self.body,
                     time(STEPS_PER_PERIOD * needed),
                     STEPS_PER_PERIOD * needed / steps.step,
                     time(steps.step),

@@ -1,13 +1,15 @@
 //! Real surfaces of a scene: raceways of strips with their shoulders and profiles.
 
+use std::ops::RangeInclusive;
 use std::sync::Arc;
 
-use contact::surface::{Dent, MOST_NUMBERS, Spall};
+use contact::surface::{Dent, Spall};
 use contact::{BearingGeometry, HertzContact, Profiles, Side, StripLaw, StripSurface};
 use dynamics::{RACEWAY_GROUP, RingModel, Surfaces};
 
 use crate::error::BuildError;
 use crate::tables::{FlexibleRing, Scene};
+use crate::worn_balls::{too_fine, worn_balls};
 
 /// The surfaces that a scene asks for; nothing where it does not.
 pub fn surfaces(
@@ -24,6 +26,7 @@ pub fn surfaces(
     Ok(Surfaces {
         strips,
         oversizes: scene.profiles.oversizes.clone(),
+        balls: worn_balls(scene, geometry)?,
     })
 }
 
@@ -34,7 +37,7 @@ fn strips_of(
     ring: Option<&RingModel>,
 ) -> Result<Option<Arc<StripSurface>>, BuildError> {
     let profiles = &scene.profiles.raceways[side.index()];
-    if profiles.is_empty() && !scene.contact.edges {
+    if profiles.is_empty() && !scene.contact.edges && scene.profiles.balls.is_empty() {
         return Ok(None);
     }
     let refuse = |problem: String| {
@@ -62,7 +65,8 @@ fn strips_of(
         ));
     }
     let marks = marks(profiles);
-    if let (Some([low, high]), radius) = (shoulders, geometry.groove_radius(side)) {
+    if let (Some(groove), radius) = (&shoulders, geometry.groove_radius(side)) {
+        let (low, high) = (*groove.start(), *groove.end());
         for mark in &marks {
             let half = 0.5 * mark.width / radius;
             if mark.groove_angle + half <= low || mark.groove_angle - half >= high {
@@ -89,17 +93,10 @@ fn strips_of(
         ));
     }
     let law = StripLaw::new(hertz, geometry.groove_radius(side));
-    let edges = shoulders
-        .filter(|_| scene.contact.edges)
-        .map(|[low, high]| low..=high);
+    let edges = shoulders.filter(|_| scene.contact.edges);
     match StripSurface::new(law, (geometry, side), edges, profiles) {
         Some(surface) => Ok(Some(Arc::new(surface))),
-        None => refuse(format!(
-            "the profiles of the {} ring need a grid of more than {} million points; use a longer spall, a longer \
-             edge, fewer or larger dents or lower orders",
-            side.name(),
-            MOST_NUMBERS / 1_000_000
-        )),
+        None => refuse(too_fine(&format!("the {} ring", side.name()))),
     }
 }
 
@@ -108,16 +105,16 @@ fn shoulders(
     scene: &Scene,
     (geometry, side): (&BearingGeometry, Side),
     ring: Option<&RingModel>,
-) -> Option<[f64; 2]> {
+) -> Option<RangeInclusive<f64>> {
     if let Some(ring) = ring {
         let nodes = ring.mesh.group_nodes(RACEWAY_GROUP);
         let angles = nodes
             .iter()
             .map(|&node| ring.groove.coordinates(ring.mesh.nodes[node])[1]);
-        let range = |r: [f64; 2], a: f64| [r[0].min(a), r[1].max(a)];
+        let range = |[low, high]: [f64; _], a: f64| [low.min(a), high.max(a)];
         let found = angles.fold([f64::INFINITY, f64::NEG_INFINITY], range);
         if found[0] < found[1] {
-            return Some(found);
+            return Some(found[0]..=found[1]);
         }
     }
     let table = [&scene.inner, &scene.outer][side.index()];
@@ -130,9 +127,9 @@ fn shoulders(
     let [at_low_z, at_high_z] = section.shoulder_diameters.map(angle);
     // A positive groove angle points outwards along +z, on the inner ring along -z.
     Some(if side.sign() > 0.0 {
-        [-at_low_z, at_high_z]
+        -at_low_z..=at_high_z
     } else {
-        [-at_high_z, at_low_z]
+        -at_high_z..=at_low_z
     })
 }
 

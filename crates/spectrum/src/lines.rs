@@ -99,10 +99,12 @@ pub fn lines(dir: &Path, scene: &Scene, (from, to): (f64, f64)) -> anyhow::Resul
         Some(_) => inner,
         None => 0.0,
     };
+    // Balls that are spheres have no pulses.
+    let of_ball = if scene.profiles.balls.is_empty() { 1 } else { 3 };
     let all = [
         line("BPFO", n * (cage - outer), 3, outer - load),
         line("BPFI", n * (inner - cage), 3, inner),
-        line("2 BSF", 2.0 * spin, 1, cage),
+        line("2 BSF", 2.0 * spin, of_ball, cage),
         line("cage", cage, 1, 0.0),
         line("shaft", inner, 1, 0.0),
     ];

@@ -64,7 +64,7 @@ impl Dent {
     /// What is missing at an azimuth and a groove angle, rad, in m.
     pub(super) fn missing(&self, track: Track, azimuth: f64, angle: f64) -> f64 {
         let along = turn(azimuth, self.azimuth) * track.radius(angle);
-        let across = (angle - self.groove_angle) * track.groove_radius;
+        let across = (angle - self.groove_angle) * track.section_radius();
         self.missing_at(along.hypot(across))
     }
 
@@ -79,7 +79,7 @@ impl Dent {
     }
 
     /// Groove angles of its corners, rad.
-    pub(super) fn corners(&self, groove_radius: f64) -> impl Iterator<Item = f64> + '_ {
+    pub(super) fn corners(&self, section_radius: f64) -> impl Iterator<Item = f64> + '_ {
         let radius = 0.5 * self.diameter;
         let part = |from: f64, length: f64, pieces: usize| {
             (0..=pieces).map(move |i| from + length * i as f64 / pieces as f64)
@@ -87,6 +87,6 @@ impl Dent {
         let bowl = part(0.0, radius, BOWL_PIECES);
         let rim = part(radius, self.reach() - radius, RIM_PIECES);
         let places = bowl.chain(rim).flat_map(|y| [-y, y]);
-        places.map(move |y| self.groove_angle + y / groove_radius)
+        places.map(move |y| self.groove_angle + y / section_radius)
     }
 }

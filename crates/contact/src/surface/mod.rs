@@ -18,13 +18,17 @@
 //! met by the strips beside it as if it were not there. The ellipse's own length along the track does not filter waves:
 //! waves shorter than some four half-widths of the ellipse are felt too much.
 
+pub mod ball;
 mod dent;
+mod grid;
 mod track;
 
 use std::f64::consts::{PI, TAU};
 use std::ops::RangeInclusive;
 
+pub use self::ball::BallSurface;
 pub use self::dent::Dent;
+use self::grid::SurfaceGrid;
 use self::track::{Track, turn};
 use rayon::prelude::*;
 
@@ -88,12 +92,7 @@ pub struct Profiles {
 pub struct StripSurface {
     /// Law of the strips.
     pub law: StripLaw,
-    /// Groove angles of the corners, rad.
-    angles: Vec<f64>,
-    /// Missing material as a ball meets it, m, `[n_rows][n_angles]`, at equal azimuths from 0 on.
-    missing: Vec<f64>,
-    /// Radius of the ball-free track at each corner, m.
-    track_radii: Vec<f64>,
+    grid: SurfaceGrid,
     has_profile: bool,
 }
 
@@ -129,37 +128,17 @@ impl StripSurface {
         shoulders: Option<RangeInclusive<f64>>,
         profiles: &Profiles,
     ) -> Option<StripSurface> {
-        let track = Track::new(geometry, side);
         let groove = shoulders.unwrap_or(-PI..=PI);
-        let angles = corners(&groove, track.groove_radius, profiles);
-        let n_rows = profiles.rows(track);
-        if n_rows.checked_mul(angles.len())? > MOST_NUMBERS {
-            return None;
-        }
-        let waves = profiles.wave_heights(n_rows);
-        let columns: Vec<Vec<f64>> = angles
-            .par_iter()
-            .map(|&angle| {
-                let spacing = track.radius(angle).abs() * TAU / n_rows as f64;
-                let heights = profiles.column(track, &waves, angle);
-                envelope(&heights, spacing, track.curvature(angle))
-            })
-            .collect();
-        let missing = (0..n_rows)
-            .flat_map(|row| columns.iter().map(move |column| column[row]))
-            .collect();
         Some(StripSurface {
             law,
-            track_radii: angles.iter().map(|&angle| track.radius(angle)).collect(),
-            missing,
-            angles,
+            grid: profiles.grid(Track::new(geometry, side), &groove)?,
             has_profile: !profiles.is_empty(),
         })
     }
 
     /// Groove angles of the corners, rad.
     pub fn angles(&self) -> &[f64] {
-        &self.angles
+        self.grid.angles()
     }
 
     /// Whether anything is missing of the smooth groove between the shoulders.
@@ -169,36 +148,15 @@ impl StripSurface {
 
     /// Missing material at the corners, m, as a ball meets it at an azimuth of the ring, rad.
     pub fn missing_at(&self, azimuth: f64) -> Vec<f64> {
-        let n = self.angles.len();
-        let n_rows = self.missing.len() / n;
-        let place = azimuth.rem_euclid(TAU) / TAU * n_rows as f64;
-        let row = (place.floor() as usize).min(n_rows - 1);
-        let share = place - row as f64;
-        let next = (row + 1) % n_rows;
-        let of = |row: usize| &self.missing[n * row..n * (row + 1)];
-        let pairs = of(row).iter().zip(of(next));
-        pairs.map(|(a, b)| a + share * (b - a)).collect()
+        self.grid.missing_at(azimuth)
     }
 
-    /// Largest difference of the missing material, m.
-    pub fn height_range(&self) -> f64 {
-        let low = self.missing.iter().copied().fold(0.0, f64::min);
-        self.missing.iter().copied().fold(0.0, f64::max) - low
-    }
-
-    /// The same surface with all missing material multiplied: to follow an equilibrium from the smooth groove.
-    pub fn scaled(&self, share: f64) -> StripSurface {
-        StripSurface {
-            missing: self.missing.iter().map(|w| share * w).collect(),
-            ..self.clone()
-        }
-    }
-
-    /// A line across the track.
+    /// A line across the track, under a smooth ball.
     pub fn line<'l>(&'l self, missing: &'l [f64]) -> StripLine<'l> {
         StripLine {
-            angles: &self.angles,
+            angles: self.angles(),
             missing,
+            worn: None,
         }
     }
 }
@@ -207,6 +165,20 @@ impl Profiles {
     /// Whether the groove is smooth.
     pub fn is_empty(&self) -> bool {
         self.spalls.is_empty() && self.dents.is_empty() && self.waves.is_empty() && self.tables.is_empty()
+    }
+
+    /// Their envelopes within a range of contact angles, rad; None where the grid would need more than
+    /// [`MOST_NUMBERS`] numbers.
+    fn grid(&self, track: Track, range: &RangeInclusive<f64>) -> Option<SurfaceGrid> {
+        let angles = corners(range, track.section_radius(), self);
+        let n_rows = self.rows(track);
+        if n_rows.checked_mul(angles.len())? > MOST_NUMBERS {
+            return None;
+        }
+        let waves = self.wave_heights(n_rows);
+        Some(SurfaceGrid::new(track, n_rows, angles, |angle| {
+            self.column(track, &waves, angle)
+        }))
     }
 
     /// Heights of all waves at equal azimuths from 0 on, m.
@@ -248,7 +220,7 @@ impl Profiles {
 
     /// Azimuths of the grid.
     fn rows(&self, track: Track) -> usize {
-        let longest = TAU * track.radius(0.0).max(track.radius(0.5 * PI));
+        let longest = track.longest();
         let spall = |s: &Spall| {
             let finest = SPALL_SPACING.min(s.length / SPACINGS_PER_SPALL);
             let finest = if s.edge > 0.0 {
@@ -271,7 +243,7 @@ impl Spall {
     fn missing(&self, track: Track, azimuth: f64, angle: f64) -> f64 {
         let turn = turn(azimuth, self.azimuth);
         let along = turn * track.radius(angle);
-        let across = (angle - self.groove_angle) * track.groove_radius;
+        let across = (angle - self.groove_angle) * track.section_radius();
         self.depth * self.ramp(along, self.length) * self.ramp(across, self.width)
     }
 
@@ -339,12 +311,12 @@ fn smallest_gap(azimuths: &[f64]) -> f64 {
     azimuths.windows(2).map(|a| a[1] - a[0]).fold(around, f64::min)
 }
 
-/// Groove angles between which w is linear: shoulders, edges of spalls, pieces of dents, angles of tables.
-fn corners(groove: &RangeInclusive<f64>, groove_radius: f64, profiles: &Profiles) -> Vec<f64> {
-    let mut angles = vec![*groove.start(), *groove.end()];
+/// Contact angles between which w is linear: shoulders, edges of spalls, pieces of dents, angles of tables.
+fn corners(range: &RangeInclusive<f64>, section_radius: f64, profiles: &Profiles) -> Vec<f64> {
+    let mut angles = vec![*range.start(), *range.end()];
     for spall in &profiles.spalls {
         let edge = spall.edge.max(SHARP * spall.width);
-        let floor = (0.5 * spall.width - edge) / groove_radius;
+        let floor = (0.5 * spall.width - edge) / section_radius;
         let pieces = (2.0 * floor / FLOOR_PIECE).ceil().max(1.0);
         let step = 2.0 * floor / pieces;
         angles.extend((1..pieces as usize).map(|i| spall.groove_angle - floor + step * i as f64));
@@ -352,69 +324,21 @@ fn corners(groove: &RangeInclusive<f64>, groove_radius: f64, profiles: &Profiles
             for piece in 0..=RAMP_PIECES {
                 let inside = edge * piece as f64 / RAMP_PIECES as f64;
                 let y = sign * (0.5 * spall.width - inside);
-                angles.push(spall.groove_angle + y / groove_radius);
+                angles.push(spall.groove_angle + y / section_radius);
             }
         }
     }
-    angles.extend(profiles.dents.iter().flat_map(|dent| dent.corners(groove_radius)));
+    angles.extend(
+        profiles
+            .dents
+            .iter()
+            .flat_map(|dent| dent.corners(section_radius)),
+    );
     angles.extend(profiles.tables.iter().flat_map(|table| &table.angles));
-    angles.retain(|angle| groove.contains(angle));
+    angles.retain(|angle| range.contains(angle));
     angles.sort_by(f64::total_cmp);
     angles.dedup_by(|b, a| *b - *a <= 1e-12);
     angles
-}
-
-/// Lower envelope min over t of h(s + t) + k t^2 / 2 round a ring, h linear between points `spacing` apart, m.
-fn envelope(heights: &[f64], spacing: f64, curvature: f64) -> Vec<f64> {
-    let n = heights.len();
-    let low = heights.iter().copied().fold(f64::INFINITY, f64::min);
-    let high = heights.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-    if high - low == 0.0 {
-        return heights.to_vec();
-    }
-    // A ball meets nothing farther away than where the parabola has risen by the whole range.
-    let reach = (2.0 * (high - low) / curvature).sqrt() / spacing;
-    let reach = (reach.ceil() as usize + 1).min(n);
-    let at = |i: isize| heights[i.rem_euclid(n as isize) as usize];
-    let factor = 0.5 * curvature * spacing * spacing;
-    // Parabolas of the points from -reach to n + reach, in units of the spacing.
-    let (mut vertices, mut starts): (Vec<isize>, Vec<f64>) = (Vec::new(), Vec::new());
-    for q in -(reach as isize)..(n + reach) as isize {
-        let mut start = f64::NEG_INFINITY;
-        while let Some(&p) = vertices.last() {
-            let (p_, q_) = (p as f64, q as f64);
-            start = ((at(q) - at(p)) / factor + q_ * q_ - p_ * p_) / (2.0 * (q_ - p_));
-            if start > starts[starts.len() - 1] {
-                break;
-            }
-            vertices.pop();
-            starts.pop();
-            start = f64::NEG_INFINITY;
-        }
-        vertices.push(q);
-        starts.push(start);
-    }
-    let mut k = 0;
-    let mut result = Vec::with_capacity(n);
-    for s in 0..n as isize {
-        while k + 1 < vertices.len() && starts[k + 1] < s as f64 {
-            k += 1;
-        }
-        let vertex = vertices[k];
-        let point = |i: isize| at(i) + factor * ((i - s) as f64).powi(2);
-        let mut least = point(vertex);
-        // The minimum may lie on the lines beside the point.
-        for (a, b) in [(vertex - 1, vertex), (vertex, vertex + 1)] {
-            let ramp = at(b) - at(a);
-            let t = (s - a) as f64 - 0.5 * ramp / factor;
-            if t > 0.0 && t < 1.0 {
-                let place = a as f64 + t - s as f64;
-                least = least.min(at(a) + t * ramp + factor * place * place);
-            }
-        }
-        result.push(least);
-    }
-    result
 }
 
 #[cfg(test)]

@@ -1,5 +1,6 @@
 //! Tests of surfaces and their envelopes.
 
+use super::grid::envelope;
 use super::*;
 
 /// Wrong: a ball would fall through a spall, or not sink at all. k_t L^2/8 in the middle of a deep spall with sharp
@@ -146,7 +147,7 @@ fn a_dent_has_the_depth_and_the_volumes_of_its_formula() {
     ] {
         assert!((at(r) - expected).abs() < 1e-15, "{r}: {} {expected}", at(r));
         assert!((at(-r) - expected).abs() < 1e-15);
-        let across = dent.missing(track, 1.0, 0.3 + r / track.groove_radius);
+        let across = dent.missing(track, 1.0, 0.3 + r / track.section_radius());
         assert!((across - expected).abs() < 1e-15, "{r}: {across} {expected}");
     }
     let cell = 1e-6;
@@ -289,5 +290,104 @@ fn a_contact_in_a_wide_dent_has_the_force_of_a_flatter_groove() {
             "{d}: {error}"
         );
         assert!(found.moment.abs() < 1e-6 * found.force * law.groove_radius);
+    }
+}
+
+/// Wrong: a mark on a ball would come under a raceway at another time, or at another contact angle, than the ball turns
+/// it there. The place of a dent in space, by Rodrigues' rotation about the axis of rolling, is on the normal of the
+/// outer contact, or against that of the inner one, exactly where the surface has the whole depth.
+#[test]
+fn a_ball_turns_its_marks_under_both_raceways() {
+    let geometry = BearingGeometry::reference_7010c();
+    let equator = geometry.free_contact_angle();
+    let (sin, cos) = equator.sin_cos();
+    // In e_r, e_psi, e_z.
+    let (axis, out) = ([sin, 0.0, -cos], [cos, 0.0, sin]);
+    let cross = |a: [f64; 3], b: [f64; 3]| {
+        [
+            a[1] * b[2] - a[2] * b[1],
+            a[2] * b[0] - a[0] * b[2],
+            a[0] * b[1] - a[1] * b[0],
+        ]
+    };
+    for (longitude, latitude) in [(0.0, 0.0), (0.7, 0.15), (4.0, -0.3)] {
+        let depth = 1e-8;
+        let dent = Dent {
+            azimuth: longitude,
+            groove_angle: latitude,
+            diameter: 0.4e-3,
+            depth,
+            rim_height: 0.0,
+            rim_width: 0.0,
+        };
+        let profiles = Profiles {
+            dents: vec![dent],
+            ..Profiles::default()
+        };
+        let (sin, cos) = f64::sin_cos(longitude);
+        let turned = cross(axis, out);
+        let (up, flat) = f64::sin_cos(latitude);
+        let start = [0, 1, 2].map(|i| flat * (cos * out[i] + sin * turned[i]) - up * axis[i]);
+        for side in Side::BOTH {
+            let surface = BallSurface::new((&geometry, side), equator, &profiles).unwrap();
+            let mut deepest = [0.0; 3];
+            for i in 0..20_000 {
+                let rolled = TAU * f64::from(i) / 20_000.0;
+                let across = cross(axis, start);
+                let along: f64 = (0..3).map(|k| axis[k] * start[k]).sum();
+                let place = [0, 1, 2].map(|k| {
+                    start[k] * rolled.cos()
+                        + across[k] * rolled.sin()
+                        + axis[k] * along * (1.0 - rolled.cos())
+                });
+                let towards = place.map(|x| side.sign() * x);
+                if towards[1].abs() < 1e-3 && towards[0] > 0.0 {
+                    let missing = surface.missing_at(rolled);
+                    let line = surface.line(&missing);
+                    let angle = towards[2].atan2(towards[0]);
+                    let corner = line.angles.partition_point(|a| *a < angle - 1e-9);
+                    if line.missing[corner] > deepest[0] {
+                        deepest = [line.missing[corner], line.angles[corner] - angle, towards[1]];
+                    }
+                }
+            }
+            let [found, off, beside] = deepest;
+            assert!(
+                (found / depth - 1.0).abs() < 1e-2,
+                "{side:?} {longitude}: {found}"
+            );
+            // Corners of the dent are 1.9e-3 rad apart.
+            assert!(off.abs() < 2e-3 && beside.abs() < 1e-3, "{off} {beside}");
+        }
+    }
+}
+
+/// Wrong: a table of a ball would be read the wrong way round where the inner raceway meets it.
+#[test]
+fn a_table_of_a_ball_is_seen_by_both_raceways() {
+    let geometry = BearingGeometry::reference_7010c();
+    let profiles = Profiles {
+        tables: vec![Heights {
+            azimuths: vec![0.0, 2.0, 4.0],
+            angles: vec![-0.2, 0.0, 0.3],
+            heights: [-1e-9, 0.0, 2e-9].repeat(3),
+        }],
+        ..Profiles::default()
+    };
+    for side in Side::BOTH {
+        let surface = BallSurface::new((&geometry, side), 0.25, &profiles).unwrap();
+        let missing = surface.missing_at(1.234);
+        for (angle, missing) in surface.line(&missing).angles.iter().zip(&missing) {
+            let latitude = side.sign() * (angle - 0.25);
+            let height = if latitude < 0.0 {
+                5e-9 * latitude.max(-0.2)
+            } else {
+                latitude.min(0.3) / 0.3 * 2e-9
+            };
+            assert!(
+                (missing + height).abs() < 1e-20,
+                "{side:?} {angle}: {missing} {height}"
+            );
+        }
     }
 }

@@ -2,6 +2,7 @@
 
 use contact::hertz::Elastic;
 use contact::strips::{StripForce, StripLaw, StripLine};
+use contact::worn_line::WornLine;
 use contact::{BearingGeometry, ContactLaw, HertzContact, Side};
 
 fn outer_of_7010c() -> StripLaw {
@@ -17,6 +18,7 @@ fn outer_of_7010c() -> StripLaw {
 const SMOOTH: StripLine = StripLine {
     angles: &[-3.0, 3.0],
     missing: &[0.0, 0.0],
+    worn: None,
 };
 
 /// Wrong: strips on a smooth groove would not be Hertz's law with what the patch takes out. To round-off.
@@ -67,6 +69,7 @@ fn a_shoulder_takes_its_share_of_the_ellipse() {
         let line = StripLine {
             angles: &[-1.0, tau * half_width / law.groove_radius],
             missing: &[0.0, 0.0],
+            worn: None,
         };
         let kept = law.evaluate(line, 0.0, d, 0.0).force / full;
         let formula = if tau < 1.0 {
@@ -99,6 +102,7 @@ fn a_spall_takes_the_middle_of_the_ellipse() {
             1.0,
         ],
         missing: &[0.0, 0.0, 1e-4, 1e-4, 0.0, 0.0],
+        worn: None,
     };
     let kept = law.evaluate(line, 0.0, d, 0.1).force / full;
     assert!((kept - 0.3125).abs() < 1e-9, "{kept}");
@@ -108,25 +112,81 @@ fn a_spall_takes_the_middle_of_the_ellipse() {
 const UNEVEN: StripLine = StripLine {
     angles: &[-0.5, 0.02, 0.05, 0.09, 0.13, 0.2],
     missing: &[0.0, 0.4e-6, 2.5e-6, 0.3e-6, -1.1e-6, 0.2e-6],
+    worn: None,
+};
+
+/// A ball with a dip and a bump within the ellipse, at angles between those of the groove.
+const WORN: WornLine = WornLine {
+    radius: 4.5e-3,
+    angles: &[0.01, 0.04, 0.07, 0.11, 0.15],
+    missing: &[0.1e-6, 1.3e-6, -0.8e-6, 1.7e-6, -0.2e-6],
 };
 
 /// Wrong: forces, moments and tangents would not be derivatives of one energy, and motion would make some. Difference
-/// quotients, with and without compliance, also beyond the limit of the patch.
+/// quotients, with and without compliance, also beyond the limit of the patch; under a smooth and under a worn ball.
 #[test]
 fn forces_and_tangents_are_derivatives_of_the_energy() {
     let law = outer_of_7010c();
-    let mut beyond = 0;
-    for compliance in [0.0, 8e-9] {
-        for i in 0..60 {
-            let (g, angle) = (-1e-6 + 1.2e-6 * i as f64, 0.02 + 0.0023 * i as f64);
-            let at = |g: f64, angle: f64| law.evaluate(UNEVEN, compliance, g, angle);
-            let found = at(g, angle);
-            beyond += usize::from(found.beyond_limit);
-            check(&found, [at(g - 1e-11, angle), at(g + 1e-11, angle)], 2e-11, 0);
-            check(&found, [at(g, angle - 1e-8), at(g, angle + 1e-8)], 2e-8, 1);
+    let worn = StripLine {
+        worn: Some(WORN),
+        ..UNEVEN
+    };
+    for line in [UNEVEN, worn] {
+        let mut beyond = 0;
+        for compliance in [0.0, 8e-9] {
+            for i in 0..60 {
+                let (g, angle) = (-1e-6 + 1.2e-6 * i as f64, 0.02 + 0.0023 * i as f64);
+                let at = |g: f64, angle: f64| law.evaluate(line, compliance, g, angle);
+                let found = at(g, angle);
+                beyond += usize::from(found.beyond_limit);
+                check(&found, [at(g - 1e-11, angle), at(g + 1e-11, angle)], 2e-11, 0);
+                check(&found, [at(g, angle - 1e-8), at(g, angle + 1e-8)], 2e-8, 1);
+            }
         }
+        assert!(beyond > 5, "the sweep must reach the limit, {beyond}");
     }
-    assert!(beyond > 5, "the sweep must reach the limit, {beyond}");
+}
+
+/// Wrong: what a ball lacks would be felt otherwise than what the groove lacks. At one contact angle the same heights
+/// at the same places y across the track give the same force and energy; a ball that lacks the same all over is one
+/// that stands farther away; a ball that lacks nothing is a sphere.
+#[test]
+fn a_worn_ball_on_a_groove_is_a_worn_groove_under_a_ball() {
+    let law = outer_of_7010c();
+    let (d, angle, radius) = (7e-6, 0.08, 4.5e-3);
+    let force = |line: StripLine| law.evaluate(line, 2e-9, d, angle);
+    let angles: Vec<f64> = WORN
+        .angles
+        .iter()
+        .map(|a| angle + (a - angle) * radius / law.groove_radius)
+        .collect();
+    let groove = StripLine {
+        angles: &[&[-3.0], &angles[..], &[3.0]].concat(),
+        missing: &[&WORN.missing[..1], WORN.missing, &WORN.missing[4..]].concat(),
+        worn: None,
+    };
+    let ball = StripLine {
+        worn: Some(WORN),
+        ..SMOOTH
+    };
+    let (a, b) = (force(groove), force(ball));
+    assert!((a.force / b.force - 1.0).abs() < 1e-12, "{} {}", a.force, b.force);
+    assert!((a.energy / b.energy - 1.0).abs() < 1e-12);
+    // What moves with the contact angle is r/R_g of what it is on a groove.
+    let share = a.moment / b.moment * radius / law.groove_radius;
+    assert!((share - 1.0).abs() < 1e-9, "{} {}", a.moment, b.moment);
+    let h = 1.3e-6;
+    let [none, all] = [[0.0; 5], [h; 5]];
+    let level = |missing| StripLine {
+        worn: Some(WornLine { missing, ..WORN }),
+        ..UNEVEN
+    };
+    let sphere = force(level(&none));
+    assert!((sphere.force / force(UNEVEN).force - 1.0).abs() < 1e-14);
+    let lower = force(level(&all));
+    let smooth = law.evaluate(UNEVEN, 2e-9, d - h, angle);
+    assert!((lower.force / smooth.force - 1.0).abs() < 1e-12);
+    assert!((lower.moment / smooth.moment - 1.0).abs() < 1e-10);
 }
 
 fn check(found: &StripForce, [low, high]: [StripForce; 2], h: f64, k: usize) {

@@ -11,7 +11,11 @@ impl RacewayContacts {
     /// where no contact has strips.
     pub fn energies_on_surfaces(&self, lengths: Lengths) -> Option<[f64; 2]> {
         self.sites.iter().find(|site| site.strips.is_some())?;
-        let smooth = [lengths.start, lengths.end].map(|l| self.states(l));
+        let is_smooth = self.sites.iter().any(|site| site.strips.is_none());
+        let smooth = match is_smooth {
+            true => [lengths.start, lengths.end].map(|l| self.states(l)),
+            false => Default::default(),
+        };
         let mut sum = [0.0; 2];
         for (index, site) in self.sites.iter().enumerate() {
             let energies = match site.strip_site() {

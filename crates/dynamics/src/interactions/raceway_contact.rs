@@ -18,7 +18,7 @@ use super::discrete_gradient::{BallLengths, BallMeans, ContactScheme, mean_force
 use super::strip_contact::{Lateral, StripSite};
 use crate::model::Model;
 use crate::mounting::Mounting;
-use crate::surfaces::Strips;
+use crate::surfaces::{Strips, SurfacePlace};
 use crate::system::{
     Body, CarriedCircle, Character, Circle, Interaction, Lengths, Link, LinkForces, LinkRows, LinkTerm,
 };
@@ -96,7 +96,7 @@ impl Site {
             },
             across: model.sphere.across,
             unevenness: None,
-            strips: model.surfaces.at(side, azimuth),
+            strips: model.surfaces.at(ball, side, SurfacePlace::at_start(azimuth)),
             ends: None,
         }
     }

@@ -5,12 +5,15 @@
 //! of its start, over the rest with those of its end. The sum of all parts telescopes: it is the change of the contact
 //! energies that the contacts' forces did not make. Temperatures are kept and accounted for in the same way.
 
+use contact::Side;
+
 use super::ledger::Ledger;
 use super::run::Motion;
 use super::solve::StepSolution;
 use super::span::Span;
 use crate::bearing::{BearingParts, lengths};
 use crate::interactions::raceway_contact::Site;
+use crate::surfaces::SurfacePlace;
 
 impl Motion<'_> {
     /// Whether contacts of a raceway are strips: their surfaces then have a line in the ledger.
@@ -24,13 +27,16 @@ impl Motion<'_> {
             return sites;
         }
         for site in &mut sites {
-            let azimuth = |time: f64| self.ball_azimuth(site.ball, time) - self.frame_angle(site.side, time);
-            let strips = self
-                .model
-                .surfaces
-                .at(site.side, azimuth(self.weighted_time(span)));
-            let (start, end) = (azimuth(span.at(0.0)), azimuth(span.at(1.0)));
-            site.strips = strips.map(|strips| strips.between(start, end));
+            let place = |time: f64| SurfacePlace {
+                azimuth: self.ball_azimuth(site.ball, time) - self.frame_angle(site.side, time),
+                rolled: self
+                    .kinematics
+                    .rolled(Side::BOTH.map(|side| self.frame_angle(side, time))),
+            };
+            let middle = place(self.weighted_time(span));
+            let strips = self.model.surfaces.at(site.ball, site.side, middle);
+            let ends = [0.0, 1.0].map(|share| place(span.at(share)));
+            site.strips = strips.map(|strips| strips.between(ends));
         }
         sites
     }

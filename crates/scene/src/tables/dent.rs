@@ -1,20 +1,24 @@
-//! `[[profiles.dent]]`: a round dent with a raised rim on a raceway; see [`super::profiles`] and
+//! `[[profiles.dent]]`: a round dent with a raised rim on a raceway or a ball; see [`super::profiles`] and
 //! [`contact::surface::Dent`] for its shape.
 
 use contact::surface::Dent;
-use input::{ANGLE, LENGTH, Problems, Quantity};
+use input::{LENGTH, Problems, Quantity};
 use serde::Deserialize;
 
 use super::bearing::Bearing;
+use super::profile_place::{RawAngle, RawBody, RawPlace, WornBody};
 use super::ring::RingName;
 
 /// As typed.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields, expecting = "a table [[profiles.dent]]")]
 pub(super) struct RawDent {
-    ring: RingName,
-    azimuth: Quantity<ANGLE>,
-    groove_angle: Quantity<ANGLE>,
+    ring: Option<RingName>,
+    ball: Option<i64>,
+    azimuth: RawAngle,
+    groove_angle: RawAngle,
+    longitude: RawAngle,
+    latitude: RawAngle,
     diameter: Quantity<LENGTH>,
     depth: Quantity<LENGTH>,
     rim_height: Option<Quantity<LENGTH>>,
@@ -22,14 +26,31 @@ pub(super) struct RawDent {
 }
 
 impl RawDent {
-    /// The ring that has it.
-    pub fn ring(&self) -> RingName {
-        self.ring
+    /// What has it.
+    pub fn body(&self) -> RawBody {
+        RawBody {
+            ring: self.ring,
+            ball: self.ball,
+        }
     }
 
     /// The dent, checked.
-    pub fn check(&self, number: usize, bearing: Option<&Bearing>, problems: &mut Problems) -> Dent {
-        let key = |name: &str| format!("profiles.dent {number}: {name}");
+    pub fn check(
+        &self,
+        number: usize,
+        body: Option<WornBody>,
+        bearing: Option<&Bearing>,
+        problems: &mut Problems,
+    ) -> Dent {
+        let table = format!("profiles.dent {number}");
+        let key = |name: &str| format!("{table}: {name}");
+        let place = RawPlace {
+            azimuth: self.azimuth.clone(),
+            groove_angle: self.groove_angle.clone(),
+            longitude: self.longitude.clone(),
+            latitude: self.latitude.clone(),
+        };
+        let angles = place.check(&table, body, problems);
         problems.require_positive(&self.diameter, &key("diameter"), "a diameter");
         problems.require_positive(&self.depth, &key("depth"), "a depth");
         let diameter = self.diameter.si();
@@ -42,15 +63,15 @@ impl RawDent {
                 Quantity::<LENGTH>::about(0.5 * diameter)
             ),
         );
-        check_groove_angle(&self.groove_angle, &key("groove_angle"), problems);
         let dent = Dent {
-            azimuth: self.azimuth.si(),
-            groove_angle: self.groove_angle.si(),
+            azimuth: angles.along,
+            groove_angle: angles.across,
             diameter,
             depth: self.depth.si(),
             rim_height: self.rim_height.as_ref().map_or(0.0, Quantity::si),
             rim_width: self.rim_width.as_ref().map_or(0.0, Quantity::si),
         };
+        place.check_across(&table, body, (dent.reach(), bearing), problems);
         self.check_rim(&key, problems);
         let Some(bearing) = bearing else { return dent };
         let [least, most] = [1e-3, 1.0].map(|share| share * bearing.ball_diameter);
@@ -101,14 +122,4 @@ impl RawDent {
             ),
         );
     }
-}
-
-/// Requires an angle on a groove.
-pub(super) fn check_groove_angle(angle: &Quantity<ANGLE>, key: &str, problems: &mut Problems) {
-    problems.require(
-        angle.si().abs() < std::f64::consts::FRAC_PI_2,
-        key,
-        angle,
-        "expected -90 to 90 deg",
-    );
 }

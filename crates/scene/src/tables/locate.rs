@@ -123,10 +123,6 @@ pub fn entry<'a, 'i>(table: &'a DeTable<'i>, name: &str) -> Option<(Range<usize>
     Some((key.span(), value))
 }
 
-const NO_PROFILES_ON_BALLS: &str = "; profiles of balls are not computed, only those of a ring, \
-                                    ring = \"inner\" or \"outer\"; balls of other sizes: \
-                                    [bearing.ball_diameters]";
-
 /// Adds the key's path to the reader's message, and says it in the words of a scene.
 fn describe(text: &str, span: Range<usize>, message: &str) -> String {
     let message = message
@@ -160,10 +156,7 @@ fn describe(text: &str, span: Range<usize>, message: &str) -> String {
             Some((table, _)) => format!(" in [{table}]"),
             None => String::new(),
         };
-        let advice = match path.starts_with("profiles.") && name == "ball" {
-            true => NO_PROFILES_ON_BALLS.to_string(),
-            false => advice("keys", name, valid),
-        };
+        let advice = advice("keys", name, valid);
         return format!("unknown key {name:?}{table}{advice}");
     }
     if message.starts_with("unknown variant") {

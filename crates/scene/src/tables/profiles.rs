@@ -9,15 +9,17 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use contact::surface::{Heights, Profiles, Spall, Wave};
-use input::{ANGLE, LENGTH, Problems, Quantity};
+use contact::surface::{Profiles, Spall, Wave};
+use input::{LENGTH, Problems, Quantity};
 use serde::Deserialize;
 
 use super::ball_diameters::RawBallDiameters;
 use super::balls::BallMotion;
 use super::bearing::Bearing;
 use super::contact::{BallElasticity, Contact, ContactMode};
-use super::dent::{RawDent, check_groove_angle};
+use super::dent::RawDent;
+use super::heights::RawHeights;
+use super::profile_place::{RawAngle, RawBody, RawPlace, WornBody};
 use super::random::SplitMix64;
 use super::ring::{MeshFiles, RingName};
 
@@ -41,9 +43,12 @@ pub struct RawProfiles {
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields, expecting = "a table [[profiles.spall]]")]
 struct RawSpall {
-    ring: RingName,
-    azimuth: Quantity<ANGLE>,
-    groove_angle: Quantity<ANGLE>,
+    ring: Option<RingName>,
+    ball: Option<i64>,
+    azimuth: RawAngle,
+    groove_angle: RawAngle,
+    longitude: RawAngle,
+    latitude: RawAngle,
     length: Quantity<LENGTH>,
     width: Quantity<LENGTH>,
     depth: Quantity<LENGTH>,
@@ -54,29 +59,23 @@ struct RawSpall {
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields, expecting = "a table [[profiles.waviness]]")]
 struct RawWaviness {
-    ring: RingName,
+    ring: Option<RingName>,
+    ball: Option<i64>,
     order: i64,
     amplitude: Quantity<LENGTH>,
-    phase: Option<Quantity<ANGLE>>,
+    phase: RawAngle,
 }
 
 /// As typed.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields, expecting = "a table [[profiles.random]]")]
 struct RawRandom {
-    ring: RingName,
+    ring: Option<RingName>,
+    ball: Option<i64>,
     orders: [i64; 2],
     amplitude: Quantity<LENGTH>,
     slope: f64,
     seed: i64,
-}
-
-/// As typed.
-#[derive(Debug, Deserialize)]
-#[serde(deny_unknown_fields, expecting = "a table [[profiles.table]]")]
-struct RawHeights {
-    ring: RingName,
-    file: String,
 }
 
 /// What profiles are checked against.
@@ -94,6 +93,8 @@ pub struct ProfilesContext<'a> {
     pub is_modes: bool,
     /// How the balls move.
     pub balls: BallMotion,
+    /// Whether the speeds of balls follow their contact angles.
+    pub follows_angles: bool,
 }
 
 /// Real surfaces of a checked scene.
@@ -101,16 +102,16 @@ pub struct ProfilesContext<'a> {
 pub struct SurfaceProfiles {
     /// Profiles of the raceways, inner first.
     pub raceways: [Profiles; 2],
+    /// Profiles of balls, by number: their azimuths are longitudes, their groove angles latitudes.
+    pub balls: BTreeMap<usize, Profiles>,
     /// How much larger the diameter of each ball is, m; empty: all are equal.
     pub oversizes: Vec<f64>,
 }
 
 /// Highest order of waves: 10 um of a ring of 70 mm.
 const MAX_ORDER: i64 = 20_000;
-/// Largest amplitude of waves, m, and height of a table: more is no surface but another groove.
+/// Largest amplitude of waves, m: more is no surface but another groove.
 const MAX_HEIGHT: f64 = 0.1e-3;
-/// Columns of a table of heights.
-const COLUMNS: &str = "azimuth_deg,groove_angle_deg,height_um";
 
 impl RawProfiles {
     /// Checks all profiles, and sets what balls yield beside them: half-spaces, where the scene does not say.
@@ -122,43 +123,82 @@ impl RawProfiles {
         problems: &mut Problems,
     ) -> SurfaceProfiles {
         let mut found = SurfaceProfiles::default();
-        for (number, spall) in (1..).zip(&self.spall) {
-            spall.check(number, context.bearing, problems);
-            found.raceways[index(spall.ring)].spalls.push(spall.spall());
-        }
-        for (number, dent) in (1..).zip(&self.dent) {
-            let checked = dent.check(number, context.bearing, problems);
-            found.raceways[index(dent.ring())].dents.push(checked);
-        }
-        for (number, wave) in (1..).zip(&self.waviness) {
-            let key = format!("profiles.waviness {number}: order");
-            let order = problems.whole(wave.order, &key, 1, MAX_ORDER);
-            check_height(
-                &wave.amplitude,
-                &format!("profiles.waviness {number}: amplitude"),
-                problems,
-            );
-            found.raceways[index(wave.ring)].waves.push(Wave {
-                order,
-                amplitude: wave.amplitude.si(),
-                phase: wave.phase.as_ref().map_or(0.0, Quantity::si),
-            });
-        }
-        for (number, random) in (1..).zip(&self.random) {
-            let waves = random.waves(number, problems);
-            found.raceways[index(random.ring)].waves.extend(waves);
-        }
-        for (number, table) in (1..).zip(&self.table) {
-            match table.read(context) {
-                Ok(heights) => found.raceways[index(table.ring)].tables.extend(heights),
-                Err(problem) => problems.add(format!("profiles.table {number}: {problem}")),
-            }
-        }
+        self.check_marks(context, &mut found, problems);
+        self.check_heights(context, &mut found, problems);
         if let (Some(balls), Some(bearing)) = (balls, context.bearing) {
             found.oversizes = balls.check(bearing.balls, bearing.ball_diameter, problems);
         }
         self.check_contact(&found, context, contact, problems);
         found
+    }
+
+    /// Spalls and dents.
+    fn check_marks(
+        &self,
+        context: ProfilesContext<'_>,
+        found: &mut SurfaceProfiles,
+        problems: &mut Problems,
+    ) {
+        for (number, spall) in (1..).zip(&self.spall) {
+            let body = spall
+                .body()
+                .check(&format!("profiles.spall {number}"), context.bearing, problems);
+            let checked = spall.check(number, body, context.bearing, problems);
+            if let Some(body) = body {
+                found.of(body).spalls.push(checked);
+            }
+        }
+        for (number, dent) in (1..).zip(&self.dent) {
+            let body = dent
+                .body()
+                .check(&format!("profiles.dent {number}"), context.bearing, problems);
+            let checked = dent.check(number, body, context.bearing, problems);
+            if let Some(body) = body {
+                found.of(body).dents.push(checked);
+            }
+        }
+    }
+
+    /// Waves and tables.
+    fn check_heights(
+        &self,
+        context: ProfilesContext<'_>,
+        found: &mut SurfaceProfiles,
+        problems: &mut Problems,
+    ) {
+        let body_of = |table: String, ring, ball, problems: &mut Problems| {
+            RawBody { ring, ball }.check(&table, context.bearing, problems)
+        };
+        for (number, wave) in (1..).zip(&self.waviness) {
+            let table = format!("profiles.waviness {number}");
+            let order = problems.whole(wave.order, &format!("{table}: order"), 1, MAX_ORDER);
+            check_height(&wave.amplitude, &format!("{table}: amplitude"), problems);
+            let checked = Wave {
+                order,
+                amplitude: wave.amplitude.si(),
+                phase: wave.phase.as_ref().map_or(0.0, Quantity::si),
+            };
+            if let Some(body) = body_of(table, wave.ring, wave.ball, problems) {
+                found.of(body).waves.push(checked);
+            }
+        }
+        for (number, random) in (1..).zip(&self.random) {
+            let waves = random.waves(number, problems);
+            let table = format!("profiles.random {number}");
+            if let Some(body) = body_of(table, random.ring, random.ball, problems) {
+                found.of(body).waves.extend(waves);
+            }
+        }
+        for (number, table) in (1..).zip(&self.table) {
+            let name = format!("profiles.table {number}");
+            let Some(body) = body_of(name.clone(), table.ring, table.ball, problems) else {
+                continue;
+            };
+            match table.read(body, context.scene, context.files) {
+                Ok(heights) => found.of(body).tables.extend(heights),
+                Err(problem) => problems.add(format!("{name}: {problem}")),
+            }
+        }
     }
 
     /// What real surfaces cannot go with.
@@ -169,8 +209,7 @@ impl RawProfiles {
         contact: &mut Contact,
         problems: &mut Problems,
     ) {
-        let has_profiles =
-            found.raceways.iter().any(|profiles| !profiles.is_empty()) || !self.table.is_empty();
+        let has_profiles = found.bodies().any(|profiles| !profiles.is_empty()) || !self.table.is_empty();
         let what = if has_profiles {
             "profiles"
         } else if contact.edges {
@@ -205,14 +244,14 @@ impl RawProfiles {
                 "contact.ball is \"sphere\"; beside {what} both contacts of a ball are on their own, use \"half_space\""
             ));
         }
+        if context.follows_angles && !found.balls.is_empty() {
+            problems.add(
+                "speed.ball_speeds is \"outer_control\" beside profiles of a ball; a ball then rolls about an axis \
+                 that follows its contact angles, and where its profiles are is not computed: use \"free_angle\""
+                    .to_string(),
+            );
+        }
         contact.ball = BallElasticity::HalfSpace;
-    }
-}
-
-fn index(ring: RingName) -> usize {
-    match ring {
-        RingName::Inner => 0,
-        RingName::Outer => 1,
     }
 }
 
@@ -226,8 +265,45 @@ fn check_height(amplitude: &Quantity<LENGTH>, key: &str, problems: &mut Problems
 }
 
 impl RawSpall {
-    fn check(&self, number: usize, bearing: Option<&Bearing>, problems: &mut Problems) {
-        let key = |name: &str| format!("profiles.spall {number}: {name}");
+    fn body(&self) -> RawBody {
+        RawBody {
+            ring: self.ring,
+            ball: self.ball,
+        }
+    }
+
+    fn check(
+        &self,
+        number: usize,
+        body: Option<WornBody>,
+        bearing: Option<&Bearing>,
+        problems: &mut Problems,
+    ) -> Spall {
+        let table = format!("profiles.spall {number}");
+        let place = RawPlace {
+            azimuth: self.azimuth.clone(),
+            groove_angle: self.groove_angle.clone(),
+            longitude: self.longitude.clone(),
+            latitude: self.latitude.clone(),
+        };
+        let angles = place.check(&table, body, problems);
+        place.check_across(&table, body, (0.5 * self.width.si(), bearing), problems);
+        self.check_sizes(&table, problems);
+        if let Some(bearing) = bearing {
+            self.check_on(&table, (body, angles.across), bearing, problems);
+        }
+        Spall {
+            azimuth: angles.along,
+            groove_angle: angles.across,
+            length: self.length.si(),
+            width: self.width.si(),
+            depth: self.depth.si(),
+            edge: self.edge.as_ref().map_or(0.0, Quantity::si),
+        }
+    }
+
+    fn check_sizes(&self, table: &str, problems: &mut Problems) {
+        let key = |name: &str| format!("{table}: {name}");
         let sizes = [
             ("length", &self.length),
             ("width", &self.width),
@@ -248,9 +324,22 @@ impl RawSpall {
                 ),
             );
         }
-        check_groove_angle(&self.groove_angle, &key("groove_angle"), problems);
-        let Some(bearing) = bearing else { return };
-        let round = std::f64::consts::PI * bearing.inner_raceway_diameter;
+    }
+
+    /// Checks the sizes against those of the body on which it is, at an angle across the track.
+    fn check_on(
+        &self,
+        table: &str,
+        (body, angle): (Option<WornBody>, f64),
+        bearing: &Bearing,
+        problems: &mut Problems,
+    ) {
+        let key = |name: &str| format!("{table}: {name}");
+        let diameter = match body {
+            Some(WornBody::Ball(_)) => bearing.ball_diameter * angle.cos(),
+            _ => bearing.inner_raceway_diameter,
+        };
+        let round = std::f64::consts::PI * diameter;
         problems.require(
             self.length.si() < round,
             &key("length"),
@@ -277,17 +366,6 @@ impl RawSpall {
                 Quantity::<LENGTH>::about(finest)
             ),
         );
-    }
-
-    fn spall(&self) -> Spall {
-        Spall {
-            azimuth: self.azimuth.si(),
-            groove_angle: self.groove_angle.si(),
-            length: self.length.si(),
-            width: self.width.si(),
-            depth: self.depth.si(),
-            edge: self.edge.as_ref().map_or(0.0, Quantity::si),
-        }
     }
 }
 
@@ -320,97 +398,24 @@ impl RawRandom {
     }
 }
 
-impl RawHeights {
-    /// The heights of the file; None where it may be missing and is.
-    fn read(&self, context: ProfilesContext<'_>) -> Result<Option<Heights>, String> {
-        let path = context.scene.parent().unwrap_or(Path::new(".")).join(&self.file);
-        if context.files == MeshFiles::MayBeMissing && !path.exists() {
-            return Ok(None);
-        }
-        let text = std::fs::read_to_string(&path)
-            .map_err(|error| format!("cannot read {}: {error}", path.display()))?;
-        heights(&text)
-            .map(Some)
-            .map_err(|problem| format!("{}, {problem}", path.display()))
-    }
-}
-
-/// A table of heights from its text: lines of azimuth, groove angle and height that make a full grid.
-fn heights(text: &str) -> Result<Heights, String> {
-    let lines = text
-        .lines()
-        .zip(1..)
-        .filter(|(line, _)| !line.trim().is_empty() && !line.starts_with('#'));
-    let mut lines = lines.map(|(line, number)| (line.trim(), number));
-    let head = lines
-        .next()
-        .map_or(String::new(), |(line, _)| line.replace(' ', ""));
-    if head != COLUMNS {
-        return Err(format!("line 1 is {head:?}; expected the columns {COLUMNS}"));
-    }
-    let mut rows: BTreeMap<u64, BTreeMap<u64, f64>> = BTreeMap::new();
-    for (line, number) in lines {
-        let cells: Vec<Option<f64>> = line.split(',').map(|cell| cell.trim().parse().ok()).collect();
-        let [Some(azimuth), Some(angle), Some(height)] = cells[..] else {
-            return Err(format!("line {number} is {line:?}; expected three numbers"));
-        };
-        let most = 1e6 * MAX_HEIGHT;
-        let is_sane = (0.0..360.0).contains(&azimuth) && angle.abs() < 90.0 && height.abs() <= most;
-        if !is_sane {
-            return Err(format!(
-                "line {number} is {line:?}; expected an azimuth from 0 to below 360 deg, a groove angle between -90 \
-                 and 90 deg and a height of at most 100 um"
-            ));
-        }
-        let row = rows.entry(ordered(azimuth)).or_default();
-        if row.insert(ordered(angle), 1e-6 * height).is_some() {
-            return Err(format!(
-                "line {number} gives {line:?} again; expected each point once"
-            ));
-        }
-    }
-    let angles: Vec<u64> = rows
-        .values()
-        .next()
-        .map(|row| row.keys().copied().collect())
-        .unwrap_or_default();
-    if angles.is_empty() {
-        return Err(format!("there is no line below the columns {COLUMNS}"));
-    }
-    for (azimuth, row) in &rows {
-        if !row.keys().eq(&angles) {
-            return Err(format!(
-                "the azimuth {} deg has other groove angles than the first one; expected a full grid",
-                value(*azimuth)
-            ));
-        }
-    }
-    Ok(Heights {
-        azimuths: rows.keys().map(|azimuth| value(*azimuth).to_radians()).collect(),
-        angles: angles.iter().map(|angle| value(*angle).to_radians()).collect(),
-        heights: rows.values().flat_map(|row| row.values().copied()).collect(),
-    })
-}
-
-/// A whole number in the order of the numbers.
-fn ordered(x: f64) -> u64 {
-    // Adding zero makes a negative zero positive.
-    let bits = (x + 0.0).to_bits();
-    if bits >> 63 == 1 { !bits } else { bits | 1 << 63 }
-}
-
-fn value(ordered: u64) -> f64 {
-    f64::from_bits(if ordered >> 63 == 1 {
-        ordered & !(1 << 63)
-    } else {
-        !ordered
-    })
-}
-
 impl SurfaceProfiles {
+    /// The profiles of a body.
+    pub(super) fn of(&mut self, body: WornBody) -> &mut Profiles {
+        match body {
+            WornBody::Ring(RingName::Inner) => &mut self.raceways[0],
+            WornBody::Ring(RingName::Outer) => &mut self.raceways[1],
+            WornBody::Ball(ball) => self.balls.entry(ball).or_default(),
+        }
+    }
+
+    /// Profiles of all bodies.
+    fn bodies(&self) -> impl Iterator<Item = &Profiles> {
+        self.raceways.iter().chain(self.balls.values())
+    }
+
     /// Numbers that came from files beside the scene: with its text, all that profiles depend on.
     pub fn from_files(&self) -> impl Iterator<Item = f64> + '_ {
-        let tables = self.raceways.iter().flat_map(|profiles| &profiles.tables);
+        let tables = self.bodies().flat_map(|profiles| &profiles.tables);
         tables.flat_map(|table| {
             [&table.azimuths, &table.angles, &table.heights]
                 .into_iter()

@@ -93,6 +93,11 @@ impl RawSpeed {
         self.ball_speeds.is_some()
     }
 
+    /// Whether the speeds of balls follow their contact angles.
+    pub fn follows_angles(&self) -> bool {
+        self.ball_speeds == Some(BallSpeeds::OuterControl)
+    }
+
     /// Checks sizes and the order of times; `None` when there are problems.
     pub fn check(&self, speed_use: SpeedUse, problems: &mut Problems) -> Option<RingSpeeds> {
         let before = problems.len();

@@ -153,6 +153,8 @@ struct StripStep<'s> {
     l: [[f64; 2]; 2],
     /// Approach and contact angle at start and end.
     at: [[f64; 2]; 2],
+    /// The contact there.
+    ends: [StripForce; 2],
 }
 
 impl<'s> StripStep<'s> {
@@ -161,10 +163,12 @@ impl<'s> StripStep<'s> {
         let turn = (l0[0] * l1[1] - l0[1] * l1[0]).atan2(l0[0] * l1[0] + l0[1] * l1[1]);
         let angle = site.angle(l0);
         let approach = l.map(|l| size(l) - site.touching);
+        let at = [[approach[0], angle], [approach[1], angle + turn]];
         StripStep {
             site,
             l,
-            at: [[approach[0], angle], [approach[1], angle + turn]],
+            at,
+            ends: at.map(|[g, angle]| site.evaluate(site.strips.line(), g, angle)),
         }
     }
 
@@ -177,7 +181,7 @@ impl<'s> StripStep<'s> {
     }
 
     fn weighted(&self, weight: f64) -> MeanGradient {
-        let [start, end] = self.at.map(|[g, angle]| self.evaluate(g, angle));
+        let [start, end] = self.ends;
         let mean = |a: f64, b: f64| weight * a + (1.0 - weight) * b;
         MeanGradient {
             values: [mean(start.force, end.force), mean(start.moment, end.moment)],
@@ -187,7 +191,7 @@ impl<'s> StripStep<'s> {
 
     fn discrete_gradient(&self) -> MeanGradient {
         let [[g0, a0], [g1, a1]] = self.at;
-        let [start, end] = self.at.map(|[g, angle]| self.evaluate(g, angle));
+        let [start, end] = self.ends;
         if self.is_small(0, [&start, &end]) && self.is_small(1, [&start, &end]) {
             return self.integrated();
         }
@@ -261,7 +265,7 @@ impl<'s> StripStep<'s> {
 
     /// Adds contact damping along the normal; a sum never pulls. Returns the loss, J.
     fn add_damping(&self, damping: &ContactDamping, dt: f64, mean: &mut MeanGradient) -> f64 {
-        let [start, end] = self.at.map(|[g, angle]| self.evaluate(g, angle));
+        let [start, end] = self.ends;
         let approach = |found: &StripForce, g: f64| {
             let law = &self.site.strips.surface.law;
             if found.force > 0.0 {

@@ -7,7 +7,7 @@ use contact::{BallLaws, BearingGeometry, HertzContact, Side, StripLaw, StripSurf
 
 use super::*;
 use crate::interactions::discrete_gradient::{BallLengths, mean_forces};
-use crate::surfaces::Surfaces;
+use crate::surfaces::{SurfacePlace, Surfaces};
 
 const TOUCHING: f64 = 0.15e-3;
 const CONSERVING: (ContactScheme, f64) = (ContactScheme::DiscreteGradient, 0.5);
@@ -35,9 +35,9 @@ fn strips(height: f64, shoulders: std::ops::RangeInclusive<f64>) -> Strips {
     let surface = StripSurface::new(law(), (&geometry, Side::Outer), Some(shoulders), &profiles);
     let surfaces = Surfaces {
         strips: [None, surface.map(Arc::new)],
-        oversizes: Vec::new(),
+        ..Surfaces::default()
     };
-    surfaces.at(Side::Outer, 1.0).unwrap()
+    surfaces.at(0, Side::Outer, SurfacePlace::at_start(1.0)).unwrap()
 }
 
 fn contact_law(compliance: f64) -> ContactLaw {

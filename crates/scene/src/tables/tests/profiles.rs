@@ -14,6 +14,35 @@ const SPALL: &str = "[[profiles.spall]]\nring = \"outer\"\nazimuth = \"30 deg\"\
 const DENT: &str = "[[profiles.dent]]\nring = \"inner\"\nazimuth = \"30 deg\"\ngroove_angle = \"15 deg\"\n\
                     diameter = \"0.3 mm\"\ndepth = \"10 um\"\nrim_height = \"1 um\"\nrim_width = \"0.1 mm\"";
 
+const BALL_SPALL: &str = "[[profiles.spall]]\nball = 3\nlongitude = \"40 deg\"\nlatitude = \"-2 deg\"\n\
+                          length = \"0.5 mm\"\nwidth = \"2 mm\"\ndepth = \"20 um\"";
+
+/// Wrong: profiles of a ball would go to a ring, to another ball, or to other angles; or those of several kinds would
+/// not add up.
+#[test]
+fn profiles_of_balls_read_as_their_documentation_says() {
+    let more = "[[profiles.dent]]\nball = 3\nlongitude = \"1 deg\"\nlatitude = \"2 deg\"\ndiameter = \"0.3 mm\"\n\
+                depth = \"10 um\"\n[[profiles.waviness]]\nball = 17\norder = 4\namplitude = \"0.1 um\"\n\
+                [[profiles.random]]\nball = 3\norders = [2, 6]\namplitude = \"0.05 um\"\nslope = 1.0\nseed = 1";
+    let found = parse(&with(&format!("{BALL_SPALL}\n{more}")), &[])
+        .unwrap()
+        .profiles;
+    assert!(found.raceways.iter().all(|profiles| profiles.is_empty()));
+    assert_eq!(found.balls.keys().collect::<Vec<_>>(), [&3, &17]);
+    let worn = &found.balls[&3];
+    let spall = worn.spalls[0];
+    assert_eq!([spall.length, spall.width, spall.depth], [0.5e-3, 2e-3, 20e-6]);
+    assert_eq!(
+        [spall.azimuth, spall.groove_angle],
+        [40f64, -2f64].map(f64::to_radians)
+    );
+    assert_eq!(
+        [worn.dents[0].azimuth, worn.dents[0].groove_angle],
+        [1f64, 2f64].map(f64::to_radians)
+    );
+    assert_eq!((worn.waves.len(), found.balls[&17].waves[0].order), (5, 4));
+}
+
 /// Wrong: a key of the documentation would be refused or read in another unit, or a scene without profiles have some.
 #[test]
 fn profiles_read_as_their_documentation_says() {
@@ -90,6 +119,7 @@ fn seeds_make_surfaces_and_balls() {
 fn what_makes_no_sense_in_profiles_is_refused() {
     let spall = |line: &str, new: &str| replace_line(&with(SPALL), line, new);
     let dent = |line: &str, new: &str| replace_line(&with(DENT), line, new);
+    let ball_spall = |line: &str, new: &str| replace_line(&with(BALL_SPALL), line, new);
     let waves = |keys: &str| with(&format!("[[profiles.waviness]]\nring = \"inner\"\n{keys}"));
     let balls = |keys: &str| with(&format!("[bearing.ball_diameters]\n{keys}"));
     for (text, part) in [
@@ -159,7 +189,7 @@ fn what_makes_no_sense_in_profiles_is_refused() {
         ),
         (
             with("[[profiles.dent]]\nring = \"outer\""),
-            "[profiles.dent[0]] has no key \"azimuth\", which is required",
+            "[profiles.dent[0]] has no key \"diameter\", which is required",
         ),
         (
             dent("diameter = ", "diameter = \"0 mm\""),
@@ -199,12 +229,48 @@ fn what_makes_no_sense_in_profiles_is_refused() {
             "profiles.dent 1: rim_height is missing; expected a height beside rim_width",
         ),
         (
-            dent("ring = ", "ball = 3"),
-            "unknown key \"ball\" in [profiles.dent[0]]; profiles of balls are not computed, only those of a ring",
+            dent("azimuth = ", ""),
+            "profiles.dent 1: azimuth is missing; expected an angle beside ring",
         ),
         (
-            spall("ring = ", "ball = 3"),
-            "unknown key \"ball\" in [profiles.spall[0]]; profiles of balls are not computed, only those of a ring",
+            dent("ring = ", "ball = 3"),
+            "profiles.dent 1: azimuth stands beside ball; a place on a ball has longitude and latitude",
+        ),
+        (
+            dent("ring = ", ""),
+            "profiles.dent 1: ring or ball is missing; expected ring = \"inner\" or \"outer\", or ball = 0 and so on",
+        ),
+        (
+            spall("ring = ", "ring = \"outer\"\nball = 3"),
+            "profiles.spall 1: ring and ball are both given; expected one, a table of its own for each",
+        ),
+        (
+            spall("edge = ", "edge = \"0.1 mm\"\nlongitude = \"5 deg\""),
+            "profiles.spall 1: longitude stands beside ring; a place on a ring has azimuth and groove_angle",
+        ),
+        (
+            with("[[profiles.waviness]]\norder = 3\namplitude = \"1 um\""),
+            "profiles.waviness 1: ring or ball is missing",
+        ),
+        (
+            ball_spall("ball = ", "ball = 18"),
+            "profiles.spall 1: ball is 18; expected a whole number from 0 to 17",
+        ),
+        (
+            ball_spall("ball = ", "ball = -1"),
+            "profiles.spall 1: ball is -1; expected a whole number from 0 to 17",
+        ),
+        (
+            ball_spall("latitude = ", ""),
+            "profiles.spall 1: latitude is missing; expected an angle beside ball",
+        ),
+        (
+            ball_spall("latitude = ", "latitude = \"79 deg\""),
+            "profiles.spall 1: latitude is 79 deg; expected -80 to 80 deg, the width included: raceways never touch",
+        ),
+        (
+            ball_spall("length = ", "length = \"29 mm\""),
+            "profiles.spall 1: length is 29 mm; the track is only 28.2",
         ),
         (
             replace_line(&with(SPALL), "mode = \"patch\"", "mode = \"facet\""),
@@ -257,6 +323,30 @@ fn tables_of_heights_are_read_and_checked() {
     assert_eq!(table.angles, [(-5f64).to_radians(), 20f64.to_radians()]);
     assert_eq!(table.heights, [0.5e-6, -0.25e-6, 1e-6, 2e-6]);
     assert_eq!(found.from_files().count(), 8);
+    let ball = with("[[profiles.table]]\nball = 2\nfile = \"roundness.csv\"");
+    let parse_ball = |csv: &str| {
+        std::fs::write(folder.path().join("roundness.csv"), csv).unwrap();
+        Scene::parse(&ball, &scene, &[], MeshFiles::MayBeMissing)
+    };
+    let found = parse_ball("longitude_deg, latitude_deg, height_um\n0, 0, 1\n180, 0, 2\n")
+        .unwrap()
+        .profiles;
+    assert_eq!(found.balls[&2].tables[0].heights, [1e-6, 2e-6]);
+    assert_eq!(found.from_files().count(), 5);
+    for (csv, part) in [
+        (
+            good,
+            "line 1 is \"azimuth_deg,groove_angle_deg,height_um\"; expected the columns \
+             longitude_deg,latitude_deg,height_um",
+        ),
+        (
+            "longitude_deg,latitude_deg,height_um\n-1,0,1\n",
+            "expected a longitude from 0 to below 360 deg, a latitude between -90 and 90 deg",
+        ),
+    ] {
+        let message = parse_ball(csv).unwrap_err().to_string();
+        assert!(message.contains(part), "{message}\nhas no\n{part}");
+    }
     for (csv, part) in [
         (
             "a,b\n",
@@ -286,4 +376,14 @@ fn tables_of_heights_are_read_and_checked() {
         let message = parse_with(csv).unwrap_err().to_string();
         assert!(message.contains(part), "{message}\nhas no\n{part}");
     }
+}
+
+/// Wrong: profiles of a ball would turn about an axis that is not that of its motion.
+#[test]
+fn profiles_of_balls_need_a_motion_that_is_known() {
+    let effect = "[effects.ball_centrifugal]\n[speed]\ninner = \"1800 rpm\"\nball_speeds = \"outer_control\"";
+    let message = message_of(&with(&format!("{BALL_SPALL}\n{effect}")), &[]);
+    let part = "speed.ball_speeds is \"outer_control\" beside profiles of a ball; a ball then rolls about an axis that";
+    assert!(message.contains(part), "{message}");
+    assert!(parse(&with(&format!("{SPALL}\n{effect}")), &[]).is_ok());
 }
