@@ -31,7 +31,7 @@ use support::Case;
 use support::rings::{Level, ring_model};
 
 /// Steps and solves.
-const REPEATS: usize = 40;
+const REPEATS: usize = 24;
 
 fn bearing(mesh: &Path) -> Model {
     let case = Case {

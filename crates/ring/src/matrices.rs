@@ -6,7 +6,7 @@
 
 use mesh::NodePositions;
 use solver::CyclicStencil;
-use solver::{SolverError, SparseCholesky, Symbolic};
+use solver::{SolverError, SparseCholesky, Symbolic, restrict_lower};
 use sprs::CsMat;
 
 use crate::coordinates::Coordinates;
@@ -128,12 +128,24 @@ impl SparseMatrices {
         })
     }
 
+    /// Stored entries of K.
+    pub fn n_entries(&self) -> usize {
+        self.stiffness.nnz()
+    }
+
     /// Analysis of c_M M + c_K K.
     pub fn analyse(&self, ring: &RingModel, coordinates: &Coordinates) -> Result<Symbolic, SolverError> {
         let mut order = elimination_order(&ring.mesh, coordinates.free());
         order.extend(coordinates.free().len()..coordinates.n());
+        Symbolic::new(&self.effective(coordinates, [1.0; 2]), &order)
+    }
+
+    /// c_M M + c_K K, its lower triangle.
+    fn effective(&self, coordinates: &Coordinates, [c_mass, c_stiffness]: [f64; 2]) -> CsMat<f64> {
+        let rows: Vec<usize> = (0..coordinates.n()).collect();
         let mass = coordinates.reduce_matrix(&kronecker(&self.node_mass));
-        Symbolic::new(&(&mass + &self.stiffness), &order)
+        let mass = restrict_lower(&mass, &rows).map(|x| c_mass * x);
+        &mass + &restrict_lower(&self.stiffness, &rows).map(|x| c_stiffness * x)
     }
 
     /// Factor of c_M M + c_K K.
@@ -141,12 +153,9 @@ impl SparseMatrices {
         &self,
         symbolic: &Symbolic,
         coordinates: &Coordinates,
-        [c_mass, c_stiffness]: [f64; 2],
+        coefficients: [f64; 2],
     ) -> Result<SparseCholesky, SolverError> {
-        let mass = coordinates.reduce_matrix(&kronecker(&self.node_mass));
-        let effective = &mass.map(|x| c_mass * x) + &self.stiffness.map(|x| c_stiffness * x);
-        drop(mass);
-        symbolic.factor(&effective)
+        symbolic.factor(&self.effective(coordinates, coefficients))
     }
 }
 

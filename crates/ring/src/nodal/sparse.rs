@@ -9,6 +9,7 @@ use super::columns::{Columns, Moved, NodalBody, NodalSolver, Ports, column_compl
 use crate::body::HeldRing;
 use crate::error::RingError;
 use crate::matrices::{NodalMatrices, SparseMatrices};
+use crate::memory::MotionMemory;
 use crate::model::RingModel;
 use crate::step::PortForces;
 use crate::vectors::add;
@@ -20,6 +21,7 @@ pub type SparseBody = NodalBody<SparseSolver>;
 pub struct SparseSolver {
     matrices: SparseMatrices,
     symbolic: Box<Symbolic>,
+    memory: MotionMemory,
     why: String,
 }
 
@@ -49,6 +51,7 @@ impl SparseBody {
             })?;
         Ok(NodalBody {
             solver: SparseSolver {
+                memory: MotionMemory::sparse(&ring.mesh, matrices.n_entries(), &symbolic),
                 matrices,
                 symbolic: Box::new(symbolic),
                 why,
@@ -71,6 +74,10 @@ impl NodalSolver for SparseSolver {
 
     fn note(&self) -> String {
         format!("sparse ({})", self.why)
+    }
+
+    fn memory(&self, _: &HeldRing) -> Option<MotionMemory> {
+        Some(self.memory)
     }
 
     fn factor(&self, held: &HeldRing, coefficients: [f64; 2]) -> Result<SparseColumns, RingError> {
