@@ -105,7 +105,7 @@ fn check_forecasts_the_memory_of_motions_of_periodic_rings() {
 }
 
 /// Wrong: the same of rings with one sparse factor, which is made anew for a motion. Measured with free meshes of 45 k
-/// to 88 k dofs and hex8 of 51 k, 1 and 2 threads: -11 to +19 %; the same run differs by up to 25 % on two threads.
+/// to 414 k dofs and hex8 of 51 k, 1 and 2 threads: -9 to +17 %; the same run differs by up to 25 % on two threads.
 #[test]
 fn check_forecasts_the_memory_of_motions_with_sparse_factors() {
     let dir = rings(120, ElementKind::Hex8);
