@@ -7,7 +7,7 @@ use comm::print;
 use contact::{BearingGeometry, Side};
 use dynamics::kinematics::Kinematics;
 use dynamics::statics::settings;
-use dynamics::{Model, MotionSizes, Numbers, Prepared, RingMemory, Substructures};
+use dynamics::{Model, MotionMemory, Numbers, Prepared, RingMemory, Substructures};
 use results::answer;
 use results::disk::{self, Forecast};
 use results::failure::Failure;
@@ -147,7 +147,7 @@ fn print_memory(
     scene: &Scene,
     model: &Model,
     memory: [Option<RingMemory>; 2],
-    motion: [Option<Option<MotionSizes>>; 2],
+    motion: [Option<Option<MotionMemory>>; 2],
 ) {
     let n_threads = rayon::current_num_threads();
     let (start, steps) = forecast(&scene.analysis, memory, motion);
@@ -219,7 +219,7 @@ fn print_probes(scene: &Scene, probes: Option<&Probes>) {
 }
 
 /// Memory of one ring, what its motion holds when that is known, and on ranks when it is in sectors.
-type RingForecast = (RingMemory, Option<MotionSizes>, Option<RingOnRanks>);
+type RingForecast = (RingMemory, Option<MotionMemory>, Option<RingOnRanks>);
 
 /// Prints one ring and returns the forecast of its memory; None for a rigid ring.
 fn print_ring(model: &Model, side: Side) -> Result<Option<RingForecast>, Failure> {

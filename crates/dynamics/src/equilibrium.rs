@@ -16,7 +16,8 @@ use crate::error::DynamicsError;
 use crate::footprint::loaded;
 use crate::interactions::raceway_contact::on_rings;
 use crate::model::MAX_TILT;
-use crate::system::newton::{Policy, RoundOff, Shortening, scale_tangent};
+use crate::system::newton::{Policy, RoundOff, Shortening};
+use crate::system::tangent::scale_tangent;
 
 /// Largest residual over the force scale at which Newton may stop; it goes on to round-off while it improves.
 const RESIDUAL_LIMIT: f64 = 1e-10;

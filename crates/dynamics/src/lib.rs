@@ -56,7 +56,7 @@ pub use surfaces::Surfaces;
 
 // A model and its results are made of rings.
 pub use ring::OwnStress;
-pub use ring::memory::{MotionSizes, RingMemory, forecast_motion_peak, forecast_peak};
+pub use ring::memory::{MotionMemory, RingMemory, forecast_motion_peak, forecast_peak};
 pub use ring::rank_memory::{RankMemory, Share, forecast_rank_peak};
 pub use ring::statics::{Numbers, Prepared};
 pub use ring::stress::{NodalStress, PointStress, SharedStress, StressPlaces};

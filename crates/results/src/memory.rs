@@ -8,7 +8,7 @@ use comm::Communicator;
 use contact::Side;
 use dynamics::motion::Motion;
 use dynamics::statics::settings;
-use dynamics::{Model, MotionSizes, Numbers, Prepared, RingMemory, forecast_motion_peak, forecast_peak};
+use dynamics::{Model, MotionMemory, Numbers, Prepared, RingMemory, forecast_motion_peak, forecast_peak};
 use rustix::process::{Resource, getrlimit};
 use scene::{Analysis, Dynamic};
 
@@ -38,7 +38,7 @@ impl Forecasts {
     /// Of a motion that begins with `rings` at rest.
     pub fn of_motion(rings: [Option<RingMemory>; 2], motion: &Motion<'_>, dynamic: &Dynamic) -> Forecasts {
         let start = forecast_peak(rings, rings_at_once());
-        let steps = motion.memory_forecast(queued_steps(dynamic));
+        let steps = motion.memory_forecast(queued_steps(dynamic), rings_at_once());
         Forecasts {
             rings,
             peak: steps.map(|steps| steps.max(start)),
@@ -51,11 +51,12 @@ impl Forecasts {
 pub fn forecast(
     analysis: &Analysis,
     rings: [Option<RingMemory>; 2],
-    motion: [Option<Option<MotionSizes>>; 2],
+    motion: [Option<Option<MotionMemory>>; 2],
 ) -> (usize, Option<usize>) {
     let steps = match (analysis, motion) {
         (Analysis::Dynamic(dynamic), [Some(inner), Some(outer)]) => {
-            Some(forecast_motion_peak([inner, outer], queued_steps(dynamic)))
+            let queued = queued_steps(dynamic);
+            Some(forecast_motion_peak([inner, outer], queued, rings_at_once()))
         }
         _ => None,
     };

@@ -17,7 +17,7 @@ use crate::integrator::Integrator;
 use crate::integrator::StepScheme;
 use crate::inventory::Inventory;
 use crate::matrices::{Matrix, NodalMatrices, Nodes};
-use crate::memory::MotionSizes;
+use crate::memory::MotionMemory;
 use crate::model::{Backend, Hold, RingModel};
 use crate::sparse::{SparseLoad, sparse_dot};
 use crate::state::RingState;
@@ -110,8 +110,8 @@ pub trait ElasticBody: Send + Sync {
     /// The linear solver and why it is that one, for a log.
     fn solver_note(&self) -> String;
 
-    /// What its motion holds; None of a ring that harmonics do not solve.
-    fn sizes(&self) -> Option<MotionSizes>;
+    /// Forecast of the memory of its motion; None of a ring in sectors.
+    fn memory(&self) -> Option<MotionMemory>;
 
     /// What its vectors are.
     fn shape(&self) -> RingShape;

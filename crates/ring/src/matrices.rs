@@ -6,7 +6,7 @@
 
 use mesh::NodePositions;
 use solver::CyclicStencil;
-use solver::{LinearSolver, SolverError, Symbolic};
+use solver::{SolverError, SparseCholesky, Symbolic, restrict_lower};
 use sprs::CsMat;
 
 use crate::coordinates::Coordinates;
@@ -15,7 +15,7 @@ use crate::harmonic::defect::RingDefect;
 use crate::model::RingModel;
 use crate::sparse::{elimination_order, kronecker, node_product, product, products};
 use crate::substructures::Substructures;
-use crate::vectors::dot;
+use crate::vectors::{add, dot};
 
 /// K and M of one ring.
 pub trait NodalMatrices: Send + Sync {
@@ -56,6 +56,32 @@ pub trait NodalMatrices: Send + Sync {
             0.5 * dot(w, &self.stiffness_product(coordinates, w)),
         ]
     }
+
+    /// Energies of a state, J, and what the next step has on its right-hand side but loads, `[n]`.
+    fn of_state(&self, coordinates: &Coordinates, state: &StateVectors) -> ([f64; 2], Vec<f64>) {
+        let mut elastic = state.damped.clone();
+        let terms = elastic.iter_mut().zip(state.displacement);
+        terms.for_each(|(c, w)| *c -= w);
+        let energies = self.energies(coordinates, state.velocity, &state.strained);
+        (
+            energies,
+            self.sum_of_products(coordinates, &state.inertial, &elastic),
+        )
+    }
+}
+
+/// Vectors of a state that K and M meet at the end of a step and the begin of the next, coordinates.
+pub struct StateVectors<'a> {
+    /// w.
+    pub displacement: &'a [f64],
+    /// v.
+    pub velocity: &'a [f64],
+    /// w less the rigid motion of the ring's partner, which K does not see.
+    pub strained: Vec<f64>,
+    /// Of v and a, what M meets in the next step.
+    pub inertial: Vec<f64>,
+    /// Of v and a, what K meets, which is damping; zero without.
+    pub damped: Vec<f64>,
 }
 
 /// Which of the two matrices.
@@ -102,12 +128,24 @@ impl SparseMatrices {
         })
     }
 
+    /// Stored entries of K.
+    pub fn n_entries(&self) -> usize {
+        self.stiffness.nnz()
+    }
+
     /// Analysis of c_M M + c_K K.
     pub fn analyse(&self, ring: &RingModel, coordinates: &Coordinates) -> Result<Symbolic, SolverError> {
         let mut order = elimination_order(&ring.mesh, coordinates.free());
         order.extend(coordinates.free().len()..coordinates.n());
+        Symbolic::new(&self.effective(coordinates, [1.0; 2]), &order)
+    }
+
+    /// c_M M + c_K K, its lower triangle.
+    fn effective(&self, coordinates: &Coordinates, [c_mass, c_stiffness]: [f64; 2]) -> CsMat<f64> {
+        let rows: Vec<usize> = (0..coordinates.n()).collect();
         let mass = coordinates.reduce_matrix(&kronecker(&self.node_mass));
-        Symbolic::new(&(&mass + &self.stiffness), &order)
+        let mass = restrict_lower(&mass, &rows).map(|x| c_mass * x);
+        &mass + &restrict_lower(&self.stiffness, &rows).map(|x| c_stiffness * x)
     }
 
     /// Factor of c_M M + c_K K.
@@ -115,12 +153,9 @@ impl SparseMatrices {
         &self,
         symbolic: &Symbolic,
         coordinates: &Coordinates,
-        [c_mass, c_stiffness]: [f64; 2],
-    ) -> Result<Box<dyn LinearSolver>, SolverError> {
-        let mass = coordinates.reduce_matrix(&kronecker(&self.node_mass));
-        let effective = &mass.map(|x| c_mass * x) + &self.stiffness.map(|x| c_stiffness * x);
-        drop(mass);
-        Ok(Box::new(symbolic.factor(&effective)?))
+        coefficients: [f64; 2],
+    ) -> Result<SparseCholesky, SolverError> {
+        symbolic.factor(&self.effective(coordinates, coefficients))
     }
 }
 
@@ -139,6 +174,22 @@ impl NodalMatrices for SparseMatrices {
 
     fn nodal_mass_product(&self, field: &[f64]) -> Vec<f64> {
         node_product(&self.node_mass, field)
+    }
+
+    /// K w serves the energy and the next step.
+    fn of_state(&self, coordinates: &Coordinates, state: &StateVectors) -> ([f64; 2], Vec<f64>) {
+        let (v, w) = (state.velocity, &state.strained);
+        let stiff = product(&self.stiffness, w);
+        let energies = [
+            0.5 * dot(v, &self.mass_product(coordinates, v)),
+            0.5 * dot(w, &stiff),
+        ];
+        let mut side = self.mass_product(coordinates, &state.inertial);
+        side.iter_mut().zip(&stiff).for_each(|(side, k)| *side -= k);
+        if state.damped.iter().any(|&x| x != 0.0) {
+            add(&mut side, &product(&self.stiffness, &state.damped));
+        }
+        (energies, side)
     }
 }
 

@@ -22,6 +22,11 @@
 //! sector 600 (blocks of K, M, stress). What its results take fits into what the columns left. For rings in sectors
 //! see [`crate::rank_memory`].
 //!
+//! **Motion** of a ring with one sparse factor, made anew after the start: K stays, E being its entries and P = E / 9;
+//! the mass of all dofs has E / 3. Making adds scaled lower triangles of both and their sum, or that sum with F + W.
+//! Freed blocks of the assembly that the allocator keeps count as another K, measured. Mesh, states and vectors of a
+//! step are counted as those of a periodic ring.
+//!
 //! **Motion** of a periodic ring of n nodes, N sectors and r section nodes in its raceway: factor, table of responses
 //! 72 N r^2, 900 per coupling of a sector, 24 n for each functional of the mount, 1340 n for mesh, sites, states and
 //! the vectors of a step, 390 n for each of two step files that wait to be written. The last three numbers are
@@ -148,24 +153,71 @@ pub struct MotionSizes {
     pub factor: usize,
 }
 
+/// Bytes of one ring in motion: see the module.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct MotionMemory {
+    /// Peak while its matrices and its factor are made.
+    pub making: usize,
+    /// What it holds while steps are made.
+    pub kept: usize,
+    /// Each step that waits to be written.
+    pub queued: usize,
+}
+
 impl MotionSizes {
-    /// Bytes of the ring while steps are made and `queued` of them wait to be written: see the module.
-    pub fn bytes(&self, queued: usize) -> usize {
-        self.factor
+    /// Bytes of the ring.
+    pub fn memory(&self) -> MotionMemory {
+        let kept = self.factor
             + 72 * self.n_sectors * self.n_responses.pow(2)
             + MOTION_COUPLING_BYTES * self.n_couplings
-            + (MOTION_BYTES + 24 * self.n_mount + QUEUED_BYTES * queued) * self.n_nodes
+            + (MOTION_BYTES + 24 * self.n_mount) * self.n_nodes;
+        MotionMemory {
+            making: kept,
+            kept,
+            queued: QUEUED_BYTES * self.n_nodes,
+        }
     }
 }
 
-/// Forecast of the largest resident memory of the steps of a motion, bytes; None is a rigid ring.
-pub fn forecast_motion_peak(rings: [Option<MotionSizes>; 2], queued: usize) -> usize {
-    PROGRAM_BYTES
-        + rings
-            .iter()
-            .flatten()
-            .map(|ring| ring.bytes(queued))
-            .sum::<usize>()
+impl MotionMemory {
+    /// Of a ring with one sparse factor, whose matrices have `n_entries` stored entries together and whose analysis is
+    /// `symbolic`.
+    pub fn sparse(mesh: &Mesh, n_entries: usize, symbolic: &Symbolic) -> MotionMemory {
+        let stiffness = ENTRY_BYTES * n_entries;
+        // Of nine entries between two nodes the mass of all dofs has three, and that between nodes one.
+        let (mass, node_mass) = (stiffness / 3, stiffness / 9);
+        // Blocks of the assembly that the allocator keeps: measured, about as much as K.
+        let freed = stiffness;
+        let lasting = 8 * mesh.connectivity.len()
+            + MOTION_BYTES * mesh.n_nodes()
+            + stiffness
+            + node_mass
+            + freed
+            + symbolic.bytes();
+        let triangle = stiffness / 2;
+        MotionMemory {
+            making: lasting + (mass / 2 + 2 * triangle).max(triangle + symbolic.peak_bytes()),
+            kept: lasting
+                + symbolic.factor_bytes()
+                + 24 * mesh.connectivity.len()
+                + 48 * mesh.kind.n_corners() * mesh.n_elements(),
+            queued: QUEUED_BYTES * mesh.n_nodes(),
+        }
+    }
+}
+
+/// Forecast of the largest resident memory of a motion after its start, bytes, with `n_threads` threads while `queued`
+/// steps wait to be written; inner ring first, None is rigid.
+pub fn forecast_motion_peak(rings: [Option<MotionMemory>; 2], queued: usize, n_threads: usize) -> usize {
+    let of = |phase: fn(&MotionMemory) -> usize| rings.each_ref().map(|ring| ring.as_ref().map_or(0, phase));
+    let (making, kept, waiting) = (of(|r| r.making), of(|r| r.kept), of(|r| r.queued));
+    let made = if n_threads > 1 {
+        making[0] + making[1]
+    } else {
+        making[0].max(kept[0] + making[1])
+    };
+    let stepping = kept[0] + kept[1] + queued * (waiting[0] + waiting[1]);
+    PROGRAM_BYTES + made.max(stepping)
 }
 
 /// Forecast of the largest resident memory of a static run, bytes, with `n_threads` threads; inner ring first, None is
@@ -203,6 +255,25 @@ mod tests {
         columns: 600,
         results: 4,
     };
+
+    /// If this failed, a job for a motion would be sized for rings that are factored after each other, or together,
+    /// although they are not.
+    #[test]
+    fn a_motion_is_made_on_its_threads_before_it_steps() {
+        let ring = |making, kept| {
+            Some(MotionMemory {
+                making,
+                kept,
+                queued: 7,
+            })
+        };
+        let peak = |rings, queued, threads| forecast_motion_peak(rings, queued, threads) - PROGRAM_BYTES;
+        assert_eq!(peak([None, None], 2, 2), 0);
+        assert_eq!(peak([ring(90, 40), ring(80, 30)], 1, 2), 170);
+        assert_eq!(peak([ring(90, 40), ring(80, 30)], 1, 1), 120);
+        assert_eq!(peak([ring(90, 40), None], 1, 1), 90);
+        assert_eq!(peak([ring(90, 80), ring(80, 30)], 10, 2), 80 + 30 + 140);
+    }
 
     /// If this failed, a batch job sized by the forecast would be killed, or reserve memory it never uses.
     #[test]

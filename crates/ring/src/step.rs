@@ -8,7 +8,7 @@
 //! ```
 //! and nothing else of it is seen until the forces F are known. The steps of a run follow each other:
 //! ```text
-//! predict     S^-1 of what is known before the contacts          (the end of the step before does it, where it can)
+//! predict     what is known before the contacts, solved where it can be  (the end of the step before does it)
 //! begin       start, predicted and compliance at the ports
 //! move_contacts   the same with contacts elsewhere; the predictor stays
 //! settle      inertia of a turning frame that fits the motion; Again: the ports answer anew
@@ -52,6 +52,8 @@ pub struct Known {
     pub(crate) inertia: Option<Arc<PooledVector>>,
     /// Of a ring in harmonic space, the first half of S^-1 of its right-hand side.
     pub(crate) solved: Option<Arc<PooledVector>>,
+    /// Of a ring in coordinates, K and M on the state: what its right-hand side has but loads.
+    pub(crate) history: Option<Arc<PooledVector>>,
     /// Values of the state on the rows of a defect.
     pub(crate) rows: Option<Arc<RowValues>>,
 }

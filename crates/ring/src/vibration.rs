@@ -55,7 +55,7 @@ impl VibratingRing {
                     let matrices = SparseMatrices::new(ring, name, &held.coordinates)?;
                     let symbolic = matrices.analyse(ring, &held.coordinates).map_err(error)?;
                     let factor = matrices.factor(&symbolic, &held.coordinates, coefficients);
-                    (Box::new(matrices), factor.map_err(error)?)
+                    (Box::new(matrices), Box::new(factor.map_err(error)?))
                 }
             };
         // A mount has the moving dofs of a clamped surface, or all mean motions.

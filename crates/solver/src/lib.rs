@@ -24,18 +24,25 @@
 //! Any other ring is cut by angle into sectors ([`sector`]), which are factored and solved in parallel and joined
 //! exactly.
 //!
-//! All but the cyclic and the sector solver is sequential. Those run their harmonics and sectors in parallel, each in
-//! its own place, and sum in a fixed order. So the bits of a result cannot depend on the number of threads.
+//! A sparse factor whose halves come apart takes one solve where forces at a few rows follow from the motion there
+//! ([`triangular`]).
+//!
+//! The cyclic solver, sectors and these halves run their harmonics, sectors and subtrees in parallel, each in its own
+//! place, and sum in a fixed order; all else is sequential. So the bits of a result cannot depend on the number of
+//! threads.
 
 pub mod cyclic;
 pub mod dissection;
 pub mod sector;
+pub mod triangular;
 
 pub mod bordered;
 mod cholesky;
 mod elimination_tree;
 mod error;
+mod kernel;
 mod linear_solver;
+mod panels;
 mod permutation;
 mod refinement;
 mod submatrix;
@@ -58,3 +65,4 @@ pub use sector::{
 };
 pub use submatrix::{restrict, restrict_lower};
 pub use symbolic::Symbolic;
+pub use triangular::{ForwardColumns, TriangularFactor};

@@ -5,7 +5,7 @@
 //! ```text
 //! place patches at the azimuths of the weighted time of the integrator, measure the motion at the start with them
 //! predictor:  S dw = f - K w + M (...)             one solve per ring
-//! compliance: of a periodic ring by a table, of another by columns S^-1 W in the same block solve
+//! compliance: of a periodic ring by a table, of another by columns of its factor
 //! Newton on shaft, balls and groove centres: discrete-gradient forces F
 //! dw = predictor + S^-1 W F; v, a; energies; ledger
 //! ```

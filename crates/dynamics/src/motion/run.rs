@@ -139,13 +139,16 @@ impl<'a> Motion<'a> {
         }
     }
 
-    /// Forecast of the largest resident memory of the steps, bytes, while `queued` of them wait to be written; None
-    /// when harmonics do not solve all flexible rings.
-    pub fn memory_forecast(&self, queued: usize) -> Option<usize> {
-        let sizes = |ring: &Option<MovingRing>| ring.as_ref().map(|ring| ring.body.sizes());
-        match self.rings.each_ref().map(sizes) {
+    /// Forecast of the largest resident memory after the start, bytes, with `n_threads` threads while `queued` steps
+    /// wait to be written; None when a ring is in sectors.
+    pub fn memory_forecast(&self, queued: usize, n_threads: usize) -> Option<usize> {
+        let memory = |ring: &Option<MovingRing>| ring.as_ref().map(|ring| ring.body.memory());
+        match self.rings.each_ref().map(memory) {
             [Some(None), _] | [_, Some(None)] => None,
-            [inner, outer] => Some(forecast_motion_peak([inner.flatten(), outer.flatten()], queued)),
+            [inner, outer] => {
+                let rings = [inner.flatten(), outer.flatten()];
+                Some(forecast_motion_peak(rings, queued, n_threads))
+            }
         }
     }
 

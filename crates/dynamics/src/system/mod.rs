@@ -26,6 +26,7 @@ mod interaction;
 mod lumped;
 mod moves;
 pub mod newton;
+pub mod tangent;
 #[cfg(test)]
 mod tests;
 

@@ -4,17 +4,17 @@
 //! shrinks. An equilibrium may begin anywhere: where forces have a convex energy, Cholesky, and a step along which the
 //! slope of the energy still falls is progress, whatever opens or closes; the test needs no energy values and so loses
 //! no digits near the solution. A small proximal stiffness makes steps of unloaded bodies zero instead of undefined and
-//! does not shift the solution. Cost: one dense factorisation of the unknowns per iteration; fewer where a policy keeps
-//! factors as long as the residual shrinks fast.
+//! does not shift the solution. Cost: one dense factorisation per iteration, fewer where a policy keeps factors.
 
 use std::ops::Range;
 
-use dense::{BlockLu, DenseCholesky, DenseError};
+use dense::DenseError;
 use timer::SharedLaps;
 
 use super::assembly::{Evaluated, System};
 use super::interaction::LinkForces;
 use super::lumped::Interval;
+use super::tangent::{TangentFactors, scale_tangent};
 use crate::error::DynamicsError;
 
 /// Residual over the force scale that counts as round-off.
@@ -91,7 +91,7 @@ impl System<'_> {
             self.add_curvatures(&x, &at.links, &mut bodies);
         }
         let mut tangent = bodies.clone();
-        let mut factors: Option<Factors> = None;
+        let mut factors: Option<TangentFactors> = None;
         let (mut worst, mut limit) = (0, 0.0);
         for iteration in 0..policy.most_iterations {
             let (place, now) = largest(&policy.scaled(&at.residual));
@@ -129,7 +129,7 @@ impl System<'_> {
                 Some(kept) => kept,
                 None => self.factors(&x, &at, &tangent, policy)?,
             };
-            let step = found.step(&at.residual, policy);
+            let step = self.direction(&found, &at.residual, policy);
             factors = Some(found);
             if is_at_floor {
                 // Light bodies beside heavy ones gain by the last step; its residual is round-off of the heavy ones.
@@ -158,7 +158,7 @@ impl System<'_> {
         at: &Evaluated,
         tangent: &[f64],
         policy: &Policy,
-    ) -> Result<Factors, DynamicsError> {
+    ) -> Result<TangentFactors, DynamicsError> {
         self.check_held(tangent, &at.residual, policy)?;
         let is_rest = self.interval() == Interval::Rest;
         let curved = (is_rest && self.has_curvature()).then(|| {
@@ -173,13 +173,20 @@ impl System<'_> {
         factors.map_err(|source| DynamicsError::ContactSystem { source })
     }
 
-    fn factors_of(&self, mut tangent: Vec<f64>, policy: &Policy) -> Result<Factors, DenseError> {
-        let n = self.n();
-        policy.scale(n, &mut tangent);
-        Ok(match self.has_energy() {
-            true => Factors::OfEnergy(DenseCholesky::factor(n, &tangent)?),
-            false => Factors::Any(BlockLu::factor(n, &tangent, policy.blocks)?),
-        })
+    fn factors_of(&self, mut tangent: Vec<f64>, policy: &Policy) -> Result<TangentFactors, DenseError> {
+        policy.scale(self.n(), &mut tangent);
+        TangentFactors::new(self.n(), &tangent, self.has_energy(), policy.blocks)
+    }
+
+    /// Newton's step from a residual, at most as long as the policy allows.
+    fn direction(&self, factors: &TangentFactors, residual: &[f64], policy: &Policy) -> Vec<f64> {
+        let mut step: Vec<f64> = policy.scaled(residual).iter().map(|r| -r).collect();
+        factors.solve(&mut step);
+        let length = step.iter().fold(0.0, |most: f64, s| most.max(s.abs()));
+        if length > policy.longest_step {
+            step.iter_mut().for_each(|s| *s *= policy.longest_step / length);
+        }
+        policy.scaled(&step)
     }
 
     /// Fails when an unknown has neither inertia nor stiffness: its row of the tangent is empty. Names the one that the
@@ -214,28 +221,6 @@ impl System<'_> {
     }
 }
 
-/// A tangent of scaled unknowns, factored.
-enum Factors {
-    OfEnergy(DenseCholesky),
-    Any(BlockLu),
-}
-
-impl Factors {
-    /// Newton's step from a residual, at most as long as the policy allows.
-    fn step(&self, residual: &[f64], policy: &Policy) -> Vec<f64> {
-        let mut step: Vec<f64> = policy.scaled(residual).iter().map(|r| -r).collect();
-        match self {
-            Factors::OfEnergy(factors) => factors.solve(&mut step, 1),
-            Factors::Any(factors) => factors.solve(&mut step),
-        }
-        let length = step.iter().fold(0.0, |most: f64, s| most.max(s.abs()));
-        if length > policy.longest_step {
-            step.iter_mut().for_each(|s| *s *= policy.longest_step / length);
-        }
-        policy.scaled(&step)
-    }
-}
-
 impl Policy<'_> {
     /// Forces on scaled unknowns, or unknowns of scaled ones.
     fn scaled(&self, values: &[f64]) -> Vec<f64> {
@@ -252,17 +237,6 @@ impl Policy<'_> {
             .iter_mut()
             .step_by(n + 1)
             .for_each(|diagonal| *diagonal += self.proximal);
-    }
-}
-
-/// Makes a tangent over `n` unknowns, row-major, that of unknowns scaled by `scales`; none are ones.
-pub fn scale_tangent(n: usize, scales: &[f64], tangent: &mut [f64]) {
-    let scales = scales.iter().enumerate();
-    for (i, scale) in scales.filter(|(_, scale)| **scale != 1.0) {
-        let row = tangent[n * i..n * (i + 1)].iter_mut();
-        row.for_each(|value| *value *= scale);
-        let column = tangent[i..].iter_mut().step_by(n);
-        column.for_each(|value| *value *= scale);
     }
 }
 

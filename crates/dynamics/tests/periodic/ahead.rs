@@ -1,4 +1,5 @@
-//! A step of periodic rings begins with what the pass that ended the step before has found.
+//! A step begins with what the one before has found: of periodic rings in its pass over the harmonics, of others of
+//! K and M on its last state.
 
 use dynamics::effects::Gravity;
 use dynamics::motion::RingState;
@@ -50,14 +51,18 @@ fn a_step_from_its_state_alone_has_the_same_bits() {
             },
         ),
     ];
-    for (hold, settings) in cases {
-        let mut model = bearing(HEX8, hold, Backend::Auto);
+    let backends = [(Backend::Auto, "cyclic"), (Backend::Sparse, "sparse")];
+    let all = backends
+        .iter()
+        .flat_map(|&backend| cases.iter().map(move |case| (backend, case.clone())));
+    for ((backend, name), (hold, settings)) in all {
+        let mut model = bearing(HEX8, hold, backend);
         let gravity = Gravity::new([0.0, -9.81, 0.0], Schedule::Constant, &model.rings).unwrap();
         model.effects.push(Box::new(gravity));
         model.effects.push(Box::new(FrameRotation {
             speeds: settings.speeds.clone(),
         }));
-        let start = statics(&model, "cyclic");
+        let start = statics(&model, name);
         let motion = Motion::new(&model, settings).unwrap();
         let mut state = motion.start(&start);
         let mut parts = 0;
@@ -65,11 +70,11 @@ fn a_step_from_its_state_alone_has_the_same_bits() {
         for _ in 0..6 {
             let (next, report) = motion.step(&state, &mut cache).unwrap();
             let (expected, _) = motion.step(&alone(&state), &mut StepCache::default()).unwrap();
-            assert!(next == expected, "{hold:?}, step {}", next.step);
+            assert!(next == expected, "{name}, {hold:?}, step {}", next.step);
             parts += report.substeps;
             state = next;
         }
         assert!(hold == Hold::MeanMotion || state.ledger.relative_defect().abs() < 1e-9);
-        println!("{hold:?}: {parts} parts of 6 steps");
+        println!("{name}, {hold:?}: {parts} parts of 6 steps");
     }
 }

@@ -9,7 +9,7 @@ use crate::body::{ElasticBody, HeldRing, RingShape};
 use crate::error::RingError;
 use crate::integrator::StepScheme;
 use crate::matrices::{Matrix, NodalMatrices};
-use crate::memory::MotionSizes;
+use crate::memory::MotionMemory;
 use crate::state::RingState;
 use crate::step::StepFactor;
 
@@ -30,8 +30,8 @@ impl ElasticBody for HarmonicBody {
         self.harmonics.note.clone()
     }
 
-    fn sizes(&self) -> Option<MotionSizes> {
-        Some(self.harmonics.sizes(&self.held))
+    fn memory(&self) -> Option<MotionMemory> {
+        Some(self.harmonics.sizes(&self.held).memory())
     }
 
     fn shape(&self) -> RingShape {

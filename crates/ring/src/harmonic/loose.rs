@@ -11,7 +11,7 @@ use super::touch::Meeting;
 use crate::body::HeldRing;
 use crate::error::RingError;
 use crate::matrices::{NodalMatrices, Stencils};
-use crate::memory::MotionSizes;
+use crate::memory::MotionMemory;
 use crate::nodal::columns::{Columns, Moved, NodalSolver, Ports};
 use crate::step::PortForces;
 use crate::vectors::add;
@@ -45,8 +45,8 @@ impl NodalSolver for LooseSolver {
         self.harmonics.note.clone()
     }
 
-    fn sizes(&self, held: &HeldRing) -> Option<MotionSizes> {
-        Some(self.harmonics.sizes(held))
+    fn memory(&self, held: &HeldRing) -> Option<MotionMemory> {
+        Some(self.harmonics.sizes(held).memory())
     }
 
     fn factor(&self, held: &HeldRing, coefficients: [f64; 2]) -> Result<CyclicFactor, RingError> {

@@ -115,6 +115,7 @@ impl StepFactor for HarmonicFactor {
             inertia: load.turn.map(|_| Arc::new(predicted.inertia)),
             load,
             solved: Some(Arc::new(predicted.solved)),
+            history: None,
             rows: defect.map(|defect| Arc::new(defect.of_state(from))),
         }
     }
@@ -330,6 +331,7 @@ impl ElasticStep for HarmonicStep<'_> {
             inertia: load.turn.map(|_| Arc::new(predicted.inertia)),
             load,
             solved: Some(Arc::new(predicted.solved)),
+            history: None,
             rows,
         });
         End::Done(Box::new(Ended {

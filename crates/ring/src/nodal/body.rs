@@ -8,7 +8,7 @@ use crate::body::{ElasticBody, HeldRing, RingShape};
 use crate::error::RingError;
 use crate::integrator::StepScheme;
 use crate::matrices::{Matrix, NodalMatrices};
-use crate::memory::MotionSizes;
+use crate::memory::MotionMemory;
 use crate::state::RingState;
 use crate::step::StepFactor;
 use crate::vectors::dot;
@@ -30,8 +30,8 @@ impl<S: NodalSolver> ElasticBody for NodalBody<S> {
         self.solver.note()
     }
 
-    fn sizes(&self) -> Option<MotionSizes> {
-        self.solver.sizes(&self.held)
+    fn memory(&self) -> Option<MotionMemory> {
+        self.solver.memory(&self.held)
     }
 
     fn shape(&self) -> RingShape {

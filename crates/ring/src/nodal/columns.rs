@@ -5,7 +5,7 @@ use contact::NodalWeights;
 use crate::body::HeldRing;
 use crate::error::RingError;
 use crate::matrices::NodalMatrices;
-use crate::memory::MotionSizes;
+use crate::memory::MotionMemory;
 use crate::sparse::{SparseLoad, sparse_dot};
 use crate::step::{Feet, PortAnswer, PortForces};
 use crate::vectors::sum;
@@ -25,8 +25,8 @@ pub(crate) trait NodalSolver: Send + Sync + 'static {
     fn name(&self) -> &'static str;
     fn note(&self) -> String;
 
-    /// What a motion holds, where that is known.
-    fn sizes(&self, _: &HeldRing) -> Option<MotionSizes> {
+    /// Forecast of the memory of a motion, where there is one.
+    fn memory(&self, _: &HeldRing) -> Option<MotionMemory> {
         None
     }
 

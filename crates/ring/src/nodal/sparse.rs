@@ -1,15 +1,18 @@
-//! A ring with one sparse factor: columns of all contacts in one block solve.
+//! A ring with one sparse factor: half a solve before the contacts, half after, and between them forward solutions.
+//!
+//! See [`solver::triangular`]: the compliance of the contacts takes the columns of the factor above them, and the
+//! predictor stays half solved until their forces are known.
 
-use solver::{LinearSolver, Symbolic};
+use solver::{ForwardColumns, Symbolic, TriangularFactor};
 
-use super::columns::{Columns, Moved, NodalBody, NodalSolver, Ports, column_compliance, measure};
+use super::columns::{Columns, Moved, NodalBody, NodalSolver, Ports, column_compliance};
 use crate::body::HeldRing;
 use crate::error::RingError;
 use crate::matrices::{NodalMatrices, SparseMatrices};
+use crate::memory::MotionMemory;
 use crate::model::RingModel;
-use crate::mount::MountColumns;
-use crate::sparse::{fill, sparse_dot};
 use crate::step::PortForces;
+use crate::vectors::add;
 
 /// A ring with one sparse factor.
 pub type SparseBody = NodalBody<SparseSolver>;
@@ -18,13 +21,22 @@ pub type SparseBody = NodalBody<SparseSolver>;
 pub struct SparseSolver {
     matrices: SparseMatrices,
     symbolic: Box<Symbolic>,
+    memory: MotionMemory,
     why: String,
 }
 
-/// A factor and the columns of the mount.
+/// A factor and the forward solutions of the mount.
 pub struct SparseColumns {
-    factor: Box<dyn LinearSolver>,
-    mount: MountColumns,
+    factor: TriangularFactor,
+    mount: ForwardColumns,
+    /// Compliance of the mount, row-major.
+    mount_compliance: Vec<f64>,
+}
+
+/// A predictor half solved, L^-1 of its right-hand side, and the forward solutions of the contacts.
+pub struct HalfSolved {
+    predictor: Vec<f64>,
+    contacts: ForwardColumns,
 }
 
 impl SparseBody {
@@ -39,6 +51,7 @@ impl SparseBody {
             })?;
         Ok(NodalBody {
             solver: SparseSolver {
+                memory: MotionMemory::sparse(&ring.mesh, matrices.n_entries(), &symbolic),
                 matrices,
                 symbolic: Box::new(symbolic),
                 why,
@@ -63,6 +76,10 @@ impl NodalSolver for SparseSolver {
         format!("sparse ({})", self.why)
     }
 
+    fn memory(&self, _: &HeldRing) -> Option<MotionMemory> {
+        Some(self.memory)
+    }
+
     fn factor(&self, held: &HeldRing, coefficients: [f64; 2]) -> Result<SparseColumns, RingError> {
         let factor = self
             .matrices
@@ -71,71 +88,69 @@ impl NodalSolver for SparseSolver {
                 side: held.name,
                 source,
             })?;
+        let factor = TriangularFactor::new(factor);
+        let mount = factor.columns(&held.mount);
         Ok(SparseColumns {
-            mount: MountColumns::new(&*factor, &held.mount, held.coordinates.n()),
+            mount_compliance: mount.products(&mount),
+            mount,
             factor,
         })
     }
 }
 
 impl SparseColumns {
-    /// What ports see of a block of columns, the predictor first.
-    fn moved(&self, held: &HeldRing, block: &[f64], ports: &Ports) -> Moved {
-        let (n, all) = (held.coordinates.n(), ports.all(held));
-        let (predictor, columns) = block.split_at(n);
-        let size = [all.len(), columns.len() / n];
+    /// What ports see of a predictor and their own columns.
+    fn moved(&self, half: &HalfSolved) -> Moved {
+        let own = half.contacts.products(&half.contacts);
+        let of_mount = self.mount.products(&half.contacts);
+        let n_contacts = half.contacts.n_columns();
+        let size = [n_contacts + self.mount.n_columns(), n_contacts];
         Moved {
-            predicted: measure(&all, predictor),
-            compliance: column_compliance(size, &self.mount.compliance, |i, j| {
-                sparse_dot(all[i], &columns[n * j..n * (j + 1)])
+            predicted: self.values(half, &half.predictor),
+            compliance: column_compliance(size, &self.mount_compliance, |i, j| match i < n_contacts {
+                true => own[n_contacts * i + j],
+                false => of_mount[n_contacts * (i - n_contacts) + j],
             }),
         }
+    }
+
+    /// Values at contacts and mount of the solution whose forward half is `z`.
+    fn values(&self, half: &HalfSolved, z: &[f64]) -> Vec<f64> {
+        [half.contacts.values(z), self.mount.values(z)].concat()
     }
 }
 
 impl Columns for SparseColumns {
-    /// The predictor, then the increments per unit contact force: column-major `[n][1 + 2 n_contacts]`.
-    type Predictor = Vec<f64>;
+    type Predictor = HalfSolved;
 
     const BY_TABLE: bool = false;
 
     fn bytes(&self) -> usize {
-        self.factor.factor_bytes()
+        self.factor.bytes() + self.mount.bytes()
     }
 
-    fn begin(&self, held: &HeldRing, mut block: Vec<f64>, ports: &Ports) -> (Vec<f64>, Moved) {
-        let (n, n_columns) = (held.coordinates.n(), 1 + ports.contacts.len());
-        block.resize(n * n_columns, 0.0);
-        fill(&mut block[n..], &ports.contacts, n);
-        self.factor.solve(&mut block, n_columns);
-        let moved = self.moved(held, &block, ports);
-        (block, moved)
+    fn begin(&self, _: &HeldRing, side: Vec<f64>, ports: &Ports) -> (HalfSolved, Moved) {
+        let (predictor, contacts) = self.factor.forward_with(&side, &ports.contacts);
+        let half = HalfSolved { predictor, contacts };
+        let moved = self.moved(&half);
+        (half, moved)
     }
 
-    fn move_contacts(&self, held: &HeldRing, block: &mut Vec<f64>, ports: &Ports) -> Moved {
-        let n = held.coordinates.n();
-        block[n..].fill(0.0);
-        fill(&mut block[n..], &ports.contacts, n);
-        self.factor.solve(&mut block[n..], ports.contacts.len());
-        self.moved(held, block, ports)
+    fn move_contacts(&self, _: &HeldRing, half: &mut HalfSolved, ports: &Ports) -> Moved {
+        half.contacts = self.factor.columns(&ports.contacts);
+        self.moved(half)
     }
 
-    fn add_load(&self, held: &HeldRing, block: &mut Vec<f64>, mut load: Vec<f64>, ports: &Ports) -> Vec<f64> {
-        self.factor.solve(&mut load, 1);
-        block.iter_mut().zip(&load).for_each(|(p, d)| *p += d);
-        measure(&ports.all(held), &load)
+    fn add_load(&self, _: &HeldRing, half: &mut HalfSolved, load: Vec<f64>, _: &Ports) -> Vec<f64> {
+        let more = self.factor.forward(&load);
+        add(&mut half.predictor, &more);
+        self.values(half, &more)
     }
 
-    fn increment(&self, held: &HeldRing, block: &Vec<f64>, _: &Ports, forces: PortForces<'_>) -> Vec<f64> {
-        let n = held.coordinates.n();
-        let mut dw = block[..n].to_vec();
-        let contacts = block[n..].chunks_exact(n).zip(forces.contacts);
-        let mount = self.mount.columns.chunks_exact(n).zip(forces.mount);
-        for (column, &f) in contacts.chain(mount) {
-            if f != 0.0 {
-                dw.iter_mut().zip(column).for_each(|(d, c)| *d += f * c);
-            }
-        }
-        dw
+    fn increment(&self, _: &HeldRing, half: &HalfSolved, _: &Ports, forces: PortForces<'_>) -> Vec<f64> {
+        let mut z = half.predictor.clone();
+        half.contacts.add_to(&mut z, forces.contacts);
+        self.mount.add_to(&mut z, forces.mount);
+        self.factor.backward(z)
     }
 }

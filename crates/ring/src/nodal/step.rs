@@ -7,6 +7,7 @@ use timer::{Laps, Stopwatch};
 use super::columns::{Columns, NodalBody, NodalSolver, Ports, measure};
 use crate::body::{ElasticBody, frame_load};
 use crate::integrator::StepScheme;
+use crate::matrices::StateVectors;
 use crate::pool::PooledVector;
 use crate::settling::{Change, FrameRounds};
 use crate::state::RingState;
@@ -48,21 +49,33 @@ impl<S: NodalSolver> NodalFactor<S> {
         }
     }
 
-    /// f - K w0 + M (history) + C (history), the right-hand side of S dw.
-    fn right_side(&self, state: &RingState, load: Option<&[f64]>) -> Vec<f64> {
+    /// Energies of a state, J, and -K w + M (history) + C (history), what the right-hand side of a step from there has
+    /// but loads.
+    fn of_state(&self, state: &RingState) -> ([f64; 2], Vec<f64>) {
         let held = &self.body.held;
         let [m, k] = held.history(self.scheme);
         let (v, a) = (state.velocity(), state.acceleration());
-        let inertial = combined(m, v, a);
-        let mut elastic = combined(k, v, a);
-        let terms = elastic.iter_mut().zip(state.displacement());
-        terms.for_each(|(c, w)| *c -= w);
-        let matrices = self.body.solver.matrices();
-        let mut side = matrices.sum_of_products(&held.coordinates, &inertial, &elastic);
-        if let Some(load) = load {
-            add(&mut side, load);
+        let vectors = StateVectors {
+            displacement: state.displacement(),
+            velocity: v,
+            strained: held.without_rigid_motion(state.displacement()),
+            inertial: combined(m, v, a),
+            damped: combined(k, v, a),
+        };
+        self.body.solver.matrices().of_state(&held.coordinates, &vectors)
+    }
+
+    /// What is known of a step from a state with this `history`.
+    fn known(&self, from: &RingState, load: KnownLoad, history: Vec<f64>) -> Known {
+        let guess = |turn| Arc::new(self.frame_load(turn, from, None).into());
+        Known {
+            of: from.stamp().clone(),
+            inertia: load.turn.map(guess),
+            load,
+            solved: None,
+            history: Some(Arc::new(history.into())),
+            rows: None,
         }
-        side
     }
 
     /// Inertia of the turning frame at the weighted time of a step with an increment, or in which the velocity stays.
@@ -82,14 +95,7 @@ impl<S: NodalSolver> StepFactor for NodalFactor<S> {
     }
 
     fn predict(&self, from: &RingState, load: KnownLoad) -> Known {
-        let guess = |turn| Arc::new(self.frame_load(turn, from, None).into());
-        Known {
-            of: from.stamp().clone(),
-            inertia: load.turn.map(guess),
-            load,
-            solved: None,
-            rows: None,
-        }
+        self.known(from, load, self.of_state(from).1)
     }
 
     fn begin<'a>(
@@ -101,11 +107,17 @@ impl<S: NodalSolver> StepFactor for NodalFactor<S> {
         let (mut laps, mut clock) = (Laps::default(), Stopwatch::start());
         let held = &self.body.held;
         let ports = Ports::new(held, contacts);
-        let load = match (known.load.load.as_deref(), known.inertia.as_deref()) {
-            (Some(load), Some(f)) => Some(combined([1.0; 2], load, f)),
-            (load, f) => load.or(f.map(|f| &**f)).map(<[f64]>::to_vec),
-        };
-        let side = self.right_side(from, load.as_deref());
+        let history = known
+            .history
+            .as_deref()
+            .expect("a step in coordinates is known with its history");
+        let mut side = history.to_vec();
+        match (known.load.load.as_deref(), known.inertia.as_deref()) {
+            (Some(load), Some(f)) => add(&mut side, &combined([1.0; 2], load, f)),
+            (Some(load), None) => add(&mut side, load),
+            (None, Some(f)) => add(&mut side, f),
+            (None, None) => (),
+        }
         let start = measure(&ports.all(held), from.displacement());
         laps.add(RIGHT_SIDE, clock.lap());
         let (predictor, moved) = self.columns.begin(held, side, &ports);
@@ -189,9 +201,16 @@ impl<S: NodalSolver> ElasticStep for NodalStep<'_, S> {
             frame: self.inertia.as_ref().map_or(0.0, |(_, f)| work(f)),
         };
         let state = self.old.advanced(self.factor.scheme, &dw);
+        let (energies, next) = match next {
+            Some(load) => {
+                let (energies, history) = self.factor.of_state(&state);
+                (energies, Some(self.factor.known(&state, load, history)))
+            }
+            None => (self.factor.body.energies(&state), None),
+        };
         End::Done(Box::new(Ended {
-            energies: self.factor.body.energies(&state),
-            next: next.map(|load| self.factor.predict(&state, load)),
+            energies,
+            next,
             state,
             works,
         }))

@@ -10,7 +10,7 @@ use crate::coordinates::Coordinates;
 use crate::error::RingError;
 use crate::harmonic::defect_change::Changes;
 use crate::harmonic::periodic::{Defective, HeldSectors, Periodic};
-use crate::memory::{MotionSizes, RingMemory};
+use crate::memory::{MotionMemory, RingMemory};
 use crate::model::{Hold, RingModel};
 use crate::support::Support;
 
@@ -25,7 +25,7 @@ pub(super) struct HarmonicStiffness {
     changes: Option<Changes>,
     note: String,
     memory: RingMemory,
-    motion: MotionSizes,
+    motion: MotionMemory,
 }
 
 impl HarmonicStiffness {
@@ -51,7 +51,7 @@ impl HarmonicStiffness {
             symmetry,
             memory: defect.map_or(memory, |d| memory.with_defect(mesh, d.defect.bytes())),
             changes: defect.map(|d| changes(mesh, held_nodes, d)),
-            motion: periodic.motion_sizes(mesh, &moving, how.n_mount()),
+            motion: periodic.motion_sizes(mesh, &moving, how.n_mount()).memory(),
             note: periodic.note(),
             sectors: periodic.held,
         })
@@ -104,7 +104,7 @@ impl HeldStiffness for HarmonicStiffness {
         self.sectors.sectors.ring.flops(self.symmetry)
     }
 
-    fn motion(&self) -> Option<MotionSizes> {
+    fn motion(&self) -> Option<MotionMemory> {
         Some(self.motion)
     }
 

@@ -5,7 +5,7 @@ use sprs::CsMat;
 
 use super::stiffness::{Factored, HeldStiffness, Numbers, named};
 use crate::error::RingError;
-use crate::memory::RingMemory;
+use crate::memory::{MotionMemory, RingMemory};
 use crate::model::RingModel;
 use crate::sparse::elimination_order;
 use crate::support::Support;
@@ -16,6 +16,7 @@ pub(super) struct SparseStiffness {
     symbolic: Box<Symbolic>,
     why: String,
     memory: RingMemory,
+    motion: MotionMemory,
 }
 
 impl SparseStiffness {
@@ -40,6 +41,7 @@ impl SparseStiffness {
             .map_err(|source| named(source, name, ring, support))?;
         Ok(SparseStiffness {
             memory: RingMemory::new(mesh, n_entries, &symbolic, n_contacts),
+            motion: MotionMemory::sparse(mesh, 2 * lower.nnz() - lower.rows(), &symbolic),
             lower,
             symbolic: Box::new(symbolic),
             why,
@@ -58,6 +60,10 @@ impl HeldStiffness for SparseStiffness {
 
     fn memory(&self) -> RingMemory {
         self.memory
+    }
+
+    fn motion(&self) -> Option<MotionMemory> {
+        Some(self.motion)
     }
 
     fn factor_bytes(&self) -> usize {

@@ -3,7 +3,7 @@
 use ::solver::{LinearSolver, SolverError};
 
 use crate::error::RingError;
-use crate::memory::{MotionSizes, RingMemory};
+use crate::memory::{MotionMemory, RingMemory};
 use crate::model::RingModel;
 use crate::substructures::Substructures;
 use crate::support::Support;
@@ -40,8 +40,8 @@ pub trait HeldStiffness: Send {
     /// Multiplications and additions of the factorisation.
     fn flops(&self) -> f64;
 
-    /// What a motion of the ring holds, where that is known.
-    fn motion(&self) -> Option<MotionSizes> {
+    /// Forecast of the memory of its motion, where there is one.
+    fn motion(&self) -> Option<MotionMemory> {
         None
     }
 

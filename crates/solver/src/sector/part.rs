@@ -12,9 +12,9 @@ use sprs::CsMat;
 
 use super::factor::Points;
 use super::layout::{COMPONENTS, Sector};
-use super::panels::Panels;
 use crate::dissection::dissection_within;
 use crate::error::SolverError;
+use crate::panels::Panels;
 use crate::submatrix::restrict_lower;
 use crate::symbolic::{Symbolic, supernodes};
 
@@ -130,12 +130,12 @@ impl Part {
 
     /// The forward sweep over values by places, `[places][n_rhs]`.
     pub(super) fn forward(&self, x: &mut [f64], n_rhs: usize) {
-        self.panels.forward(x, n_rhs);
+        self.panels.forward(self.panels.all(), x, n_rhs);
     }
 
     /// The backward sweep.
     pub(super) fn backward(&self, x: &mut [f64], n_rhs: usize) {
-        self.panels.backward(x, n_rhs);
+        self.panels.backward(self.panels.all(), x, n_rhs);
     }
 }
 
