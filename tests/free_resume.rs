@@ -6,8 +6,8 @@ use std::time::Duration;
 use checkpoint::committed_steps;
 
 use crate::interruption::{signal, wait_for_steps};
-use crate::resume::resumed;
-use crate::util::lockstep::{assert_same_run, copy, small_motion};
+use crate::resume::assert_cuts_continue;
+use crate::util::lockstep::{assert_same_run, small_motion};
 use crate::util::tables::Table;
 use crate::util::{Dir, SCENE};
 
@@ -60,13 +60,7 @@ fn with_all_of_it_on_a_run_has_the_same_bits_on_any_threads_and_after_a_cut() {
     assert_all_acts(&dir, "whole");
     dir.run("two", &["--threads", "2"]);
     assert_same_run(&dir, "whole", "two");
-    for (step, threads) in [("0", "2"), ("14", "1"), ("38", "2")] {
-        let cut = format!("cut{step}");
-        copy(&dir, "whole", &cut);
-        std::fs::remove_file(dir.path(&format!("{cut}/summary.json"))).unwrap();
-        resumed(&dir, &[&cut, "--step", step, "--threads", threads]);
-        assert_same_run(&dir, "whole", &cut);
-    }
+    assert_cuts_continue(&dir, &[("0", "2"), ("14", "1"), ("38", "2")]);
 }
 
 /// Wrong: a kill would lose what free balls and their cage had, or leave what cannot go on.

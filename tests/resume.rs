@@ -22,6 +22,17 @@ fn resume(dir: &Dir, arguments: &[&str]) -> Outcome {
     dir.raceway(&[&["resume"], arguments].concat())
 }
 
+/// The run `whole`, cut after each of these steps, goes on to the same bits; (step, threads).
+pub fn assert_cuts_continue(dir: &Dir, cuts: &[(&str, &str)]) {
+    for (step, threads) in cuts {
+        let cut = format!("cut{step}");
+        copy(dir, "whole", &cut);
+        std::fs::remove_file(dir.path(&format!("{cut}/summary.json"))).unwrap();
+        resumed(dir, &[&cut, "--step", step, "--threads", threads]);
+        assert_same_run(dir, "whole", &cut);
+    }
+}
+
 #[track_caller]
 pub fn resumed(dir: &Dir, arguments: &[&str]) -> Outcome {
     let outcome = resume(dir, arguments);

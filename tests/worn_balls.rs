@@ -1,9 +1,9 @@
 //! Balls with profiles through the whole program: the lines that they show, and the same bits on any threads and after
 //! a resume.
 
-use crate::resume::resumed;
+use crate::resume::assert_cuts_continue;
 use crate::surfaces::near_in;
-use crate::util::lockstep::{assert_same_run, copy, small_motion};
+use crate::util::lockstep::{assert_same_run, small_motion};
 use crate::util::tables::Table;
 use crate::util::{Dir, RIGID, SCENE, with_line};
 
@@ -103,11 +103,5 @@ fn worn_balls_have_the_same_bits_on_any_threads_and_after_a_cut() {
     assert!(work.iter().any(|work| work.abs() > 1e-7), "{work:?}");
     dir.run("two", &["--threads", "2"]);
     assert_same_run(&dir, "whole", "two");
-    for (step, threads) in [("0", "2"), ("14", "1"), ("38", "2")] {
-        let cut = format!("cut{step}");
-        copy(&dir, "whole", &cut);
-        std::fs::remove_file(dir.path(&format!("{cut}/summary.json"))).unwrap();
-        resumed(&dir, &[&cut, "--step", step, "--threads", threads]);
-        assert_same_run(&dir, "whole", &cut);
-    }
+    assert_cuts_continue(&dir, &[("0", "2"), ("14", "1"), ("38", "2")]);
 }

@@ -40,5 +40,6 @@ pub use sphere::SphereCompliance;
 pub use strips::{StripForce, StripLaw, StripLine};
 pub use surface::{BallSurface, Profiles, StripSurface};
 pub use unevenness::Unevenness;
+pub use vector::cross;
 pub use weights::NodalWeights;
 pub use worn_line::WornLine;

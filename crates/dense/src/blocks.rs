@@ -1,5 +1,6 @@
 //! Factors of a dense matrix in which some small blocks of unknowns see only themselves and the rest.
 
+use std::borrow::Cow;
 use std::ops::Range;
 
 use crate::error::DenseError;
@@ -29,16 +30,19 @@ impl BlockLu {
         let ranges = outside(n, blocks);
         let rest: Vec<usize> = ranges.iter().cloned().flatten().collect();
         let m = rest.len();
-        let mut left = Vec::with_capacity(m * m);
-        for i in &rest {
-            let row = &a[n * i..n * (i + 1)];
-            ranges
-                .iter()
-                .for_each(|range| left.extend_from_slice(&row[range.clone()]));
+        let mut left = Cow::Borrowed(a);
+        if !blocks.is_empty() {
+            let mut part = Vec::with_capacity(m * m);
+            for row in rest.iter().map(|i| &a[n * i..n * (i + 1)]) {
+                ranges
+                    .iter()
+                    .for_each(|range| part.extend_from_slice(&row[range.clone()]));
+            }
+            left = Cow::Owned(part);
         }
         let eliminate = |block: &Range<usize>| {
             let eliminated = Eliminated::new((n, a), block, &rest)?;
-            eliminated.subtract_from(m, &mut left);
+            eliminated.subtract_from(m, left.to_mut());
             Ok(eliminated)
         };
         let blocks = blocks.iter().map(eliminate).collect::<Result<_, DenseError>>()?;

@@ -1,6 +1,6 @@
 //! What a ring does to a ball: normal force, and of a free ball traction, in space.
 
-use contact::Side;
+use contact::{Side, cross};
 use dynamics::balls::{BallResult, TractionResult};
 
 /// Force of a ring on a ball at its azimuth, N: normal force, and traction of a free ball.
@@ -61,12 +61,4 @@ impl Pull {
             moment: [0, 1, 2].map(|i| m_t * t[i] + m_q * q[i] + m_n * normal[i]),
         })
     }
-}
-
-fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    [
-        a[1] * b[2] - a[2] * b[1],
-        a[2] * b[0] - a[0] * b[2],
-        a[0] * b[1] - a[1] * b[0],
-    ]
 }

@@ -2,7 +2,7 @@
 
 mod common;
 
-use solver::{LinearSolver, SparseVector, Symbolic, TriangularFactor};
+use solver::{LinearSolver, SparseCholesky, SparseVector, Symbolic, TriangularFactor};
 use sprs::{CsMat, TriMat};
 
 use common::{Numbers, Ring, assert_close, relative_error};
@@ -14,6 +14,13 @@ fn ring() -> (Ring, CsMat<f64>) {
     let ring = Ring::new(40, 4, 3);
     let matrix = ring.stiffness_with_mass(1e-2);
     (ring, matrix)
+}
+
+fn factor(ring: &Ring, matrix: &CsMat<f64>) -> SparseCholesky {
+    Symbolic::new(matrix, &ring.order())
+        .unwrap()
+        .factor(matrix)
+        .unwrap()
 }
 
 /// Loads on nodes near each other: a few at one azimuth after the other, of one, none and all components.
@@ -46,16 +53,8 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
 fn two_halves_make_the_whole_solve() {
     let (ring, matrix) = ring();
     let n = matrix.rows();
-    let whole = Symbolic::new(&matrix, &ring.order())
-        .unwrap()
-        .factor(&matrix)
-        .unwrap();
-    let halves = TriangularFactor::new(
-        Symbolic::new(&matrix, &ring.order())
-            .unwrap()
-            .factor(&matrix)
-            .unwrap(),
-    );
+    let whole = factor(&ring, &matrix);
+    let halves = TriangularFactor::new(factor(&ring, &matrix));
     assert!(
         halves.bytes() < whole.factor_bytes() + 64 * n,
         "{} bytes",
@@ -81,16 +80,8 @@ fn two_halves_make_the_whole_solve() {
 fn forward_solutions_give_compliance_motion_and_solution() {
     let (ring, matrix) = ring();
     let n = matrix.rows();
-    let whole = Symbolic::new(&matrix, &ring.order())
-        .unwrap()
-        .factor(&matrix)
-        .unwrap();
-    let halves = TriangularFactor::new(
-        Symbolic::new(&matrix, &ring.order())
-            .unwrap()
-            .factor(&matrix)
-            .unwrap(),
-    );
+    let whole = factor(&ring, &matrix);
+    let halves = TriangularFactor::new(factor(&ring, &matrix));
     // More columns than go through the kernel of few at the top, and fewer.
     for n_loads in [1, 6, 25] {
         let loads = loads(&ring, n_loads);
@@ -156,12 +147,7 @@ fn a_forest_and_a_single_row_are_solved() {
 fn halves_have_the_same_bits_on_any_number_of_threads() {
     let (ring, matrix) = ring();
     let n = matrix.rows();
-    let halves = TriangularFactor::new(
-        Symbolic::new(&matrix, &ring.order())
-            .unwrap()
-            .factor(&matrix)
-            .unwrap(),
-    );
+    let halves = TriangularFactor::new(factor(&ring, &matrix));
     let (load, loads) = (Numbers::new(5).vector(n), loads(&ring, 25));
     let bits = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new()

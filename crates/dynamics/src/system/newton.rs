@@ -90,7 +90,7 @@ impl System<'_> {
             // It hardly changes over a step.
             self.add_curvatures(&x, &at.links, &mut bodies);
         }
-        let mut tangent = bodies.clone();
+        let (mut tangent, mut diagonal) = (bodies.clone(), Vec::new());
         let mut factors: Option<TangentFactors> = None;
         let (mut worst, mut limit) = (0, 0.0);
         for iteration in 0..policy.most_iterations {
@@ -111,9 +111,10 @@ impl System<'_> {
             if factors.is_none() {
                 tangent.copy_from_slice(&bodies);
                 self.add_link_tangents(&x, &at.links, &mut tangent);
+                diagonal = tangent.iter().step_by(x.len() + 1).copied().collect();
             }
             let floor = || match policy.round_off {
-                RoundOff::Unknowns => round_off(&tangent, &x),
+                RoundOff::Unknowns => round_off(&diagonal, &x),
                 RoundOff::Links => self.round_off(&x),
             };
             // Where increments are small beside places, these have their own round-off.
@@ -127,7 +128,7 @@ impl System<'_> {
             }
             let found = match factors.take() {
                 Some(kept) => kept,
-                None => self.factors(&x, &at, &tangent, policy)?,
+                None => self.factors(&x, &at, &mut tangent, policy)?,
             };
             let step = self.direction(&found, &at.residual, policy);
             factors = Some(found);
@@ -150,13 +151,13 @@ impl System<'_> {
         })
     }
 
-    /// Factors of the scaled tangent. Where curvatures of finite motions make an energy's tangent indefinite, they are
+    /// Factors of the tangent, which is scaled. Where curvatures of finite motions make an energy's tangent indefinite, they are
     /// left out: the step still goes downhill.
     fn factors(
         &self,
         x: &[f64],
         at: &Evaluated,
-        tangent: &[f64],
+        tangent: &mut [f64],
         policy: &Policy,
     ) -> Result<TangentFactors, DynamicsError> {
         self.check_held(tangent, &at.residual, policy)?;
@@ -164,18 +165,18 @@ impl System<'_> {
         let curved = (is_rest && self.has_curvature()).then(|| {
             let mut curved = tangent.to_vec();
             self.add_curvatures(x, &at.links, &mut curved);
-            self.factors_of(curved, policy)
+            self.factors_of(&mut curved, policy)
         });
         let factors = match curved {
             Some(Ok(factors)) => Ok(factors),
-            _ => self.factors_of(tangent.to_vec(), policy),
+            _ => self.factors_of(tangent, policy),
         };
         factors.map_err(|source| DynamicsError::ContactSystem { source })
     }
 
-    fn factors_of(&self, mut tangent: Vec<f64>, policy: &Policy) -> Result<TangentFactors, DenseError> {
-        policy.scale(self.n(), &mut tangent);
-        TangentFactors::new(self.n(), &tangent, self.has_energy(), policy.blocks)
+    fn factors_of(&self, tangent: &mut [f64], policy: &Policy) -> Result<TangentFactors, DenseError> {
+        policy.scale(self.n(), tangent);
+        TangentFactors::new(self.n(), tangent, self.has_energy(), policy.blocks)
     }
 
     /// Newton's step from a residual, at most as long as the policy allows.
@@ -291,9 +292,8 @@ fn force_scale(links: &[LinkForces], least: f64) -> f64 {
 }
 
 /// Residual that round-off of the unknowns alone can make.
-fn round_off(tangent: &[f64], x: &[f64]) -> f64 {
-    let diagonal = tangent.iter().step_by(x.len() + 1);
-    let terms = diagonal.zip(x).map(|(slope, x)| (slope * x).abs());
+fn round_off(diagonal: &[f64], x: &[f64]) -> f64 {
+    let terms = diagonal.iter().zip(x).map(|(slope, x)| (slope * x).abs());
     16.0 * f64::EPSILON * terms.fold(0.0, f64::max)
 }
 
