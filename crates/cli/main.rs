@@ -11,10 +11,12 @@ mod help;
 mod info;
 mod init;
 mod load_matrix;
+mod mesh_command;
 mod modes;
 mod motion;
 mod options;
 mod pack;
+mod periodic_gain;
 mod progress;
 mod quasi_static;
 mod rank_table;
@@ -35,7 +37,6 @@ use comm::print::Manner;
 use comm::{Communicator, End, Environment, print};
 use heat::HeatCommand;
 use life::LifeCommand;
-use mesh::Overwrite;
 use plot::Plot;
 use report::Report;
 use results::failure::{Failure, agree, say_of_rank};
@@ -50,6 +51,7 @@ use crate::export::Export;
 use crate::info::Depth;
 use crate::init::Init;
 use crate::load_matrix::{BallLoadsCommand, LoadMatrixCommand};
+use crate::mesh_command::MeshCommand;
 use crate::options::{Limits, Part, parse_part};
 use crate::pack::Pack;
 use crate::resume::Request;
@@ -175,17 +177,8 @@ enum Command {
     },
     /// Prints the man page: raceway man > raceway.1.
     Man,
-    /// Builds the ring meshes that a scene describes; needs Gmsh.
-    Mesh {
-        /// Scene file.
-        scene: PathBuf,
-        /// Changes a value of the scene.
-        #[arg(long = "set", value_name = "PATH=VALUE")]
-        overrides: Vec<String>,
-        /// Replaces existing mesh files.
-        #[arg(long)]
-        force: bool,
-    },
+    /// Builds the ring meshes that a scene describes, or the periodic mesh of a ring that has a free one; needs Gmsh.
+    Mesh(MeshCommand),
 }
 
 fn main() -> ExitCode {
@@ -380,22 +373,6 @@ fn execute(arguments: Arguments) -> Result<(), Failure> {
         Command::Stiffness(command) => stiffness::stiffness(&command),
         Command::Campbell(command) => campbell::campbell(&command),
         Command::Check { scene, overrides } => check::check(&scene, &overrides),
-        Command::Mesh {
-            scene,
-            overrides,
-            force,
-        } => {
-            let overwrite = if force {
-                Overwrite::Replace
-            } else {
-                Overwrite::Refuse
-            };
-            Ok(scene::build_meshes(
-                &scene,
-                &overrides,
-                overwrite,
-                &results::stop::gmsh,
-            )?)
-        }
+        Command::Mesh(command) => mesh_command::mesh(&command),
     }
 }

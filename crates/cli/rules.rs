@@ -15,6 +15,8 @@ use dynamics::effects::rules::{Case, MATTERS, percent};
 use results::failure::Failure;
 use scene::{Analysis, Motion, Scene, material, speeds};
 
+use crate::periodic_gain;
+
 /// What the rules of thumb say about the effects of a scene: a sentence each, with estimate and formula.
 pub fn advice(scene: &Scene, model: &Model) -> Result<Vec<String>, Failure> {
     let effects = &scene.effects;
@@ -37,6 +39,7 @@ pub fn advice(scene: &Scene, model: &Model) -> Result<Vec<String>, Failure> {
     lines.extend(flexibility(scene, &case));
     zero_of_the_shaft(scene, model, &mut lines);
     lines.extend(rigid_ring_without_inertia(scene, &case));
+    lines.extend(periodic_gain::advice(scene, model));
     Ok(lines)
 }
 

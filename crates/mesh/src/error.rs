@@ -376,6 +376,34 @@ pub enum MeshError {
         /// What is wrong, where, and what to try.
         problem: String,
     },
+    /// The shape of a mesh is no body of revolution about the axis z.
+    #[error("{path} is not a body of revolution about the axis z: {problem}")]
+    NotRevolved {
+        /// The file.
+        path: PathBuf,
+        /// Where it is not, by how much, and what to try.
+        problem: Box<str>,
+    },
+    /// A facet group of a body of revolution does not go round the axis.
+    #[error(
+        "{path}: group \"{group}\" ends between the nodes {} and {} (azimuth {azimuth:.2} deg, r = {r:.4} mm, \
+         z = {z:.4} mm), not on a circle about the axis; expected groups that go all round the ring, so that all \
+         sectors are equal", nodes[0], nodes[1]
+    )]
+    GroupNotRound {
+        /// The file.
+        path: PathBuf,
+        /// The group.
+        group: String,
+        /// Tags of two nodes between which it ends.
+        nodes: [u64; 2],
+        /// Azimuth of the first, degrees.
+        azimuth: f64,
+        /// Its radius, mm.
+        r: f64,
+        /// Its axial position, mm.
+        z: f64,
+    },
     /// The section cannot be revolved as asked.
     #[error("cannot revolve the section: {problem}")]
     Revolve {

@@ -99,6 +99,33 @@ fn tet10_gradients(xi: [f64; 3]) -> Gradients {
     g
 }
 
+/// Shape functions at the reference point `xi`; the first `n_nodes` count.
+pub(crate) fn values(kind: ElementKind, xi: [f64; 3]) -> [f64; 20] {
+    let mut n = [0.0; 20];
+    if kind == ElementKind::Tet10 {
+        let l = [1.0 - xi[0] - xi[1] - xi[2], xi[0], xi[1], xi[2]];
+        (0..4).for_each(|a| n[a] = l[a] * (2.0 * l[a] - 1.0));
+        for (e, &[a, b]) in kind.edges().iter().enumerate() {
+            n[4 + e] = 4.0 * l[a] * l[b];
+        }
+        return n;
+    }
+    for (a, node) in reference_nodes(kind).iter().enumerate() {
+        let factor = |i: usize| match node[i] == 0.0 {
+            true => 1.0 - xi[i] * xi[i],
+            false => 1.0 + xi[i] * node[i],
+        };
+        let product = factor(0) * factor(1) * factor(2);
+        let sum = (0..3).map(|i| xi[i] * node[i]).sum::<f64>() - 2.0;
+        n[a] = match (kind, a < 8) {
+            (ElementKind::Hex20, true) => 0.125 * product * sum,
+            (ElementKind::Hex20, false) => 0.25 * product,
+            _ => 0.125 * product,
+        };
+    }
+    n
+}
+
 /// Points and weights that integrate det J exactly: Gauss 2x2x2 and 3x3x3, and for the tetrahedron the
 /// five-point rule of degree 3 (Stroud 1971, T3: 3-1).
 pub(crate) fn quadrature(kind: ElementKind) -> Vec<([f64; 3], f64)> {
@@ -169,6 +196,31 @@ pub fn volume(mesh: &Mesh) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// Wrong: centres and moments of meshes would be those of other bodies.
+    #[test]
+    fn shape_functions_reproduce_linear_and_quadratic_fields() {
+        for kind in ElementKind::ALL {
+            let nodes = reference_nodes(kind);
+            for xi in [[0.1, 0.2, 0.3], [0.0, 0.0, 0.0], [0.25, 0.5, 0.125]] {
+                let n = values(kind, xi);
+                let value = |f: &dyn Fn(&[f64; 3]) -> f64| -> f64 {
+                    nodes.iter().zip(&n).map(|(p, n)| f(p) * n).sum()
+                };
+                assert!((value(&|_| 1.0) - 1.0).abs() < 1e-14, "{kind:?}");
+                for i in 0..3 {
+                    let j = (i + 1) % 3;
+                    assert!((value(&|p| p[i]) - xi[i]).abs() < 1e-14, "{kind:?}");
+                    if kind != ElementKind::Hex8 {
+                        assert!(
+                            (value(&|p| p[i] * p[j]) - xi[i] * xi[j]).abs() < 1e-14,
+                            "{kind:?}"
+                        );
+                    }
+                }
+            }
+        }
+    }
 
     /// If this failed, det J would not be the derivative of the element's map, and every check of shape would lie.
     #[test]

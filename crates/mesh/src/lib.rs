@@ -15,6 +15,7 @@ pub mod msh;
 pub mod origin;
 pub mod periodic;
 pub mod positions;
+pub mod revolution;
 pub mod ring;
 pub mod section;
 
@@ -36,5 +37,10 @@ pub use periodic::{
     find_nearly_periodic, find_periodicity,
 };
 pub use positions::NodePositions;
+pub use revolution::{
+    GrooveOfOutline, NotRevolved, OffOutline, OutlineCurve, OutlinePiece, OwnAxis, REVOLVED_TOLERANCE,
+    Revolution, RevolvedOutline, SectionFineness, find_revolution, groove_of, group_outline, is_revolved,
+    outline_geo, revolve_outline,
+};
 pub use ring::{RingGeometry, RingSection, RingSide, VolumeMoments, ring_geo, ring_tet_geo};
 pub use section::{Arc, Section, SectionEdge, Snap, read_section, read_section_with_origin, revolve};

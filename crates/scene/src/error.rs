@@ -86,6 +86,12 @@ pub enum BuildError {
         /// The mesh file.
         path: PathBuf,
     },
+    /// A mesh would be written over the one that it is made from.
+    #[error("{} is the mesh that is to be revolved; expected another name for the new one", path.display())]
+    OwnSource {
+        /// The mesh file.
+        path: PathBuf,
+    },
     /// A file or folder cannot be made or removed.
     #[error("cannot {action} {}: {source}", path.display())]
     File {

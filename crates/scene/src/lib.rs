@@ -9,6 +9,7 @@ mod doubts;
 mod error;
 mod meshing;
 mod resolution;
+mod revolve_like;
 mod section_record;
 mod settings;
 mod starter;
@@ -21,6 +22,7 @@ pub use build::{NodeTags, build_model, geometry, material, model_with_rings, rin
 pub use doubts::doubts;
 pub use error::BuildError;
 pub use meshing::{build_meshes, build_missing};
+pub use revolve_like::{MadeLike, RevolveLike, revolve_like};
 pub use settings::{effects_context, settings, speeds};
 pub use starter::{StarterRequest, file_name, scene_text};
 pub use tables::*;

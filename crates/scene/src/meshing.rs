@@ -136,13 +136,13 @@ fn revolved(
 }
 
 /// The mesh's path with another ending.
-fn beside(mesh: &Path, ending: &str) -> PathBuf {
+pub(crate) fn beside(mesh: &Path, ending: &str) -> PathBuf {
     mesh.with_extension(ending)
 }
 
 /// Writes the geometry of a ring: whole or not at all, and only over one that was written here. What Gmsh makes of it
 /// has no place for a mark; it is known by the geometry beside it.
-fn write_geo(path: &Path, msh: &Path, text: &str) -> Result<(), BuildError> {
+pub(crate) fn write_geo(path: &Path, msh: &Path, text: &str) -> Result<(), BuildError> {
     require_own(path).map_err(file_error("write", path))?;
     let is_own = msh
         .symlink_metadata()
@@ -178,7 +178,7 @@ fn foreign() -> std::io::Error {
     std::io::Error::new(std::io::ErrorKind::AlreadyExists, what)
 }
 
-fn file_error(action: &'static str, path: &Path) -> impl Fn(std::io::Error) -> BuildError {
+pub(crate) fn file_error(action: &'static str, path: &Path) -> impl Fn(std::io::Error) -> BuildError {
     let path = path.to_path_buf();
     move |source| BuildError::File {
         action,

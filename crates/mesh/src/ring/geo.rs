@@ -92,6 +92,18 @@ fn groove_elements(ring: &RingSection) -> Result<[usize; 2], MeshError> {
     Ok([left, n - left])
 }
 
+/// First lines of the section of a ring, by which it is known as one of this program.
+pub(crate) fn section_head(side: RingSide, source: &str) -> String {
+    let name = match side {
+        RingSide::Inner => "inner",
+        RingSide::Outer => "outer",
+    };
+    format!(
+        "// {name} ring of a ball bearing; lengths in mm, x = radius, y = axial position, {source}\n\
+         // mesh it with: gmsh -2 -order 1 -format msh41 FILE\n"
+    )
+}
+
 /// Comment and measures.
 fn head(ring: &RingSection, command: &str, axes: &str) -> String {
     let (name, side) = match ring.side {

@@ -9,6 +9,7 @@ mod moments;
 
 use crate::error::MeshError;
 
+pub(crate) use geo::section_head;
 pub use geo::{ring_geo, ring_tet_geo};
 pub use geometry::RingGeometry;
 pub use moments::VolumeMoments;

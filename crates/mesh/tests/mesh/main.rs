@@ -3,6 +3,7 @@
 mod files;
 mod nearly_periodic;
 mod periodic;
+mod revolution;
 mod revolved;
 mod rings;
 mod written;
