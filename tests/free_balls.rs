@@ -304,3 +304,29 @@ fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
         a[0] * b[1] - a[1] * b[0],
     ]
 }
+
+/// Wrong: balls that just touch, to the round-off of their places, would be asked to roll under friction that cannot
+/// move them: the equilibrium of a bearing from a catalogue would fail, by the luck of its dimensions.
+#[test]
+fn bearings_of_a_catalogue_roll() {
+    for designation in ["7208", "7306", "7010B"] {
+        let dir = Dir::empty();
+        let name = format!("{designation}.toml");
+        assert_eq!(dir.raceway(&["init", designation, "--out", &name]).code, Some(0));
+        let rigid: Vec<String> = dir
+            .text(&name)
+            .lines()
+            .map(|line| match line.starts_with("mesh = ") {
+                true => "flexible = false".to_owned(),
+                false => line.to_owned(),
+            })
+            .collect();
+        let free = "[balls]\nmotion = \"free\"\n\n[effects.traction]\nlaw = \"coulomb\"\nfriction = 0.06\n\n\
+                    [speed]\ninner = \"3000 rpm\"\n\n[static]";
+        dir.write(&name, rigid.join("\n").replace("[static]", free));
+        let outcome = dir.raceway(&["run", &name, "--out", "rolling"]);
+        assert_eq!(outcome.code, Some(0), "{designation}: {}", outcome.stderr);
+        let shaft = Table::read(&dir, "rolling/shaft.csv");
+        assert!(shaft.column("friction_torque_n_m")[0] > 0.0);
+    }
+}

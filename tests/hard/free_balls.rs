@@ -14,7 +14,7 @@ use super::course::{Course, march_with};
 use super::free_cage::{self, cage};
 use super::plot::{Curve, Plot};
 use super::record::Record;
-use super::{HardCase, Pace};
+use super::{HardCase, Pace, surfaces};
 
 /// Ledger defect over the largest energy.
 pub const CLOSED: f64 = 1e-9;
@@ -145,6 +145,10 @@ pub struct Rolling {
     pub is_falling: bool,
     pub cage: Option<Cage>,
     pub is_flexible: bool,
+    /// Surfaces of rings and balls; None: they are smooth.
+    pub surfaces: Option<surfaces::Rolling>,
+    /// Turning of ball 0 at the start in space, rad/s, where it does not roll.
+    pub spin: Option<[f64; 3]>,
     pub dt: f64,
     pub duration: f64,
 }
@@ -160,6 +164,8 @@ impl Rolling {
             is_falling: false,
             cage: None,
             is_flexible: false,
+            surfaces: None,
+            spin: None,
             dt: 1e-5,
             duration: 3e-3,
         }
@@ -200,13 +206,20 @@ impl Rolling {
             },
         }));
         model.cage.clone_from(&self.cage);
+        if let Some(surfaces) = &self.surfaces {
+            surfaces.put_on(&mut model);
+        }
         let settings = MotionSettings {
             ladder: halvings(6),
             ..MotionSettings::conserving(self.dt, self.speeds.clone())
         };
         let start = equilibrium_at(&model, 0.0).unwrap();
         let motion = Motion::new(&model, settings).unwrap();
-        let state = motion.with_accelerations(motion.start(&start)).unwrap();
+        let mut state = motion.with_accelerations(motion.start(&start)).unwrap();
+        if let (Some(spin), Some(free)) = (self.spin, &mut state.free) {
+            free.turnings[0] = spin;
+            state = motion.with_energies(state);
+        }
         let n = (self.duration / self.dt).round() as usize;
         let mut points = Vec::new();
         let course = march_with(&motion, state, n, |state| {
@@ -222,6 +235,22 @@ impl Rolling {
     /// It must end with a closed ledger, and no loss may fall.
     pub fn holds(&self, record: &mut Record) {
         self.seen(record, |_| ());
+    }
+
+    /// The same on real surfaces, whose work is that of balls and drives but for this share of the largest energy.
+    pub fn rolled(&self, record: &mut Record, share: f64, mut look: impl FnMut(&MotionState)) -> Course {
+        let (mut work, mut largest) = (0.0f64, 0.0f64);
+        let course = self.seen(record, |state| {
+            work = work.max(state.ledger.profile_work.abs());
+            largest = largest.max(state.ledger.largest);
+            look(state);
+        });
+        record.below(
+            "work of surfaces that nobody has, of the largest energy",
+            work / largest,
+            share,
+        );
+        course
     }
 
     fn seen(&self, record: &mut Record, mut look: impl FnMut(&MotionState)) -> Course {

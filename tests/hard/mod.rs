@@ -12,6 +12,7 @@ mod edges;
 mod extremes;
 mod free_balls;
 mod free_cage;
+mod free_surfaces;
 mod invariance;
 mod loads;
 mod meshes;
@@ -92,7 +93,7 @@ fn groups() -> Vec<Group> {
             both(both(loads::cases(), clearances::cases()), speeds::cases()),
         ),
         group("Free balls and cage", free_balls::cases()),
-        group("Real surfaces", surfaces::cases()),
+        group("Real surfaces", both(surfaces::cases(), free_surfaces::cases())),
         group("Steps and integrators", steps::cases()),
         group(
             "Discretisation",

@@ -177,6 +177,7 @@ impl Rod {
             let feet = Feet {
                 weights: std::slice::from_ref(&foot),
                 per_contact: 1,
+                seen: &[],
             };
             let mut moving = factor.begin(&state, known, feet);
             let answer = moving.answer().clone();

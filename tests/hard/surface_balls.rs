@@ -65,7 +65,7 @@ fn entering(case: &Rolling, length: f64) -> f64 {
     -spin * ENTRY - length / geometry.ball_diameter
 }
 
-fn spalled(longitude: f64, length: f64, depth: f64) -> Profiles {
+pub fn spalled(longitude: f64, length: f64, depth: f64) -> Profiles {
     Profiles {
         spalls: vec![Spall {
             azimuth: longitude,
@@ -79,7 +79,7 @@ fn spalled(longitude: f64, length: f64, depth: f64) -> Profiles {
     }
 }
 
-fn worn(longitude: f64, length: f64, depth: f64) -> Profiles {
+pub fn worn(longitude: f64, length: f64, depth: f64) -> Profiles {
     let waves: Vec<Wave> = rough(2..=20, 0.2e-6);
     Profiles {
         waves,

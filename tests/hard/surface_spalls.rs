@@ -111,7 +111,7 @@ pub fn cases() -> Vec<HardCase> {
         fast(
             "surface_free_balls",
             "what is not computed must be refused before anything runs",
-            "balls.motion = \"free\" beside a spall",
+            "contact.ball = \"sphere\" beside a spall and free balls",
             free_balls,
         ),
     ]
@@ -354,8 +354,8 @@ fn free_balls(record: &mut Record) {
     );
     refused(
         record,
-        &Dir::with_scene(&scene),
-        "profiles stands beside balls.motion = \"free\", which is not computed",
+        &Dir::with_scene(&scene.replace("[contact]", "[contact]\nball = \"sphere\"")),
+        "contact.ball is \"sphere\"; beside profiles both contacts of a ball are on their own, use \"half_space\"",
     );
 }
 

@@ -80,6 +80,12 @@ impl Rolling {
 
     pub fn model(&self) -> Model {
         let mut model = self.smooth();
+        self.put_on(&mut model);
+        model
+    }
+
+    /// Gives a model these surfaces.
+    pub fn put_on(&self, model: &mut Model) {
         for side in Side::BOTH {
             let profiles = &self.profiles[side.index()];
             let law = StripLaw::new(&model.hertz[side.index()], model.geometry.groove_radius(side));
@@ -97,7 +103,6 @@ impl Rolling {
             };
             model.surfaces.balls.insert(*ball, Side::BOTH.map(surface));
         }
-        model
     }
 
     /// Contact angle outside under the loads of the start, on smooth grooves, rad.

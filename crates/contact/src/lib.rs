@@ -38,7 +38,7 @@ pub use patch::{LeastSize, Patch};
 pub use raceway::{Groove, RacewaySurface};
 pub use sphere::SphereCompliance;
 pub use strips::{StripForce, StripLaw, StripLine};
-pub use surface::{BallSurface, Profiles, StripSurface};
+pub use surface::{BallArc, BallSurface, Profiles, SeenMeridian, StripSurface};
 pub use unevenness::Unevenness;
 pub use vector::cross;
 pub use weights::NodalWeights;

@@ -211,7 +211,11 @@ impl StripLaw {
 
     /// About the approach d of d - compliance K d^1.5 = g on a smooth groove: strips that lack little are near it.
     fn smooth_guess(&self, compliance: f64, g: f64) -> f64 {
-        let mut d = g.max(0.0);
+        // Where only a bump touches there is nothing to go on from.
+        if g <= 0.0 {
+            return g;
+        }
+        let mut d = g;
         for _ in 0..GUESSES {
             let grows = compliance * self.stiffness * d.sqrt();
             d -= (d - grows * d - g) / (1.0 - 1.5 * grows).max(MIN_SLOPE);

@@ -55,6 +55,13 @@ pub struct TractionResult {
     /// Moment on the ball about the centre of the contact: about these directions and the normal, which points from the
     /// ball's centre to the raceway, N m.
     pub traction_moment_n_m: [f64; 3],
+    /// Of a contact on a real surface, force on the ball along the rolling direction by the slope of the surface,
+    /// through the ball's centre, N.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub slope_force_n: Option<f64>,
+    /// Of the same, moment on the ball about its centre, x, y, z in space, N m.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub slope_moment_n_m: Option<[f64; 3]>,
     /// Largest pressure times sliding speed over the ellipse, W/m^2.
     pub pv_w_per_m2: f64,
     /// Power lost, W.

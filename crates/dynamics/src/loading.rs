@@ -161,6 +161,7 @@ fn parts_at(pose: &Pose, model: &Model) -> BearingParts {
         let place = SurfacePlace {
             azimuth: site.ring_azimuth,
             rolled: pose.rolled,
+            seen: None,
         };
         site.strips = model.surfaces.at(ball, side, place);
         site

@@ -200,8 +200,9 @@ impl Model {
     }
 
     /// Distance from a ball's centre to the middle of a contact where bodies approach so far, m.
-    pub fn contact_lever(&self, approach: f64) -> f64 {
-        0.5 * self.geometry.ball_diameter - 0.5 * approach.max(0.0)
+    pub fn contact_lever(&self, ball: usize, approach: f64) -> f64 {
+        let radius = 0.5 * self.geometry.ball_diameter + self.surfaces.larger_radius(ball);
+        radius - 0.5 * approach.max(0.0)
     }
 
     /// Contact ellipse under a normal force, N.

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use contact::{BallSurface, Side, StripLine, StripSurface};
+use contact::{BallArc, BallSurface, SeenMeridian, Side, StripLine, StripSurface, WornLine};
 
 /// What a scene asks for beyond smooth grooves without edges and equal balls; the default is nothing.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -24,12 +24,17 @@ pub struct SurfacePlace {
     pub azimuth: f64,
     /// Angle by which balls have rolled since the start, rad ([`contact::surface::ball`]).
     pub rolled: f64,
+    /// How the contact's meridian plane sees a ball that turns freely, in the place of `rolled`.
+    pub seen: Option<SeenMeridian>,
 }
 
 impl SurfacePlace {
     /// A contact of balls that have not rolled yet, at an azimuth on the ring, rad.
     pub fn at_start(azimuth: f64) -> SurfacePlace {
-        SurfacePlace { azimuth, rolled: 0.0 }
+        SurfacePlace {
+            azimuth,
+            ..SurfacePlace::default()
+        }
     }
 }
 
@@ -66,17 +71,54 @@ impl Surfaces {
 #[derive(Clone, Debug, PartialEq)]
 struct MissingLines {
     groove: Arc<[f64]>,
-    /// Empty of a sphere.
-    ball: Arc<[f64]>,
+    /// None of a sphere.
+    ball: Option<BallMissing>,
+}
+
+/// What is missing of a ball along the line of a contact.
+#[derive(Clone, Debug, PartialEq)]
+enum BallMissing {
+    /// At the corners of its own grid, m.
+    AtCorners(Arc<[f64]>),
+    /// Along an arc.
+    Along(Arc<BallArc>),
+}
+
+impl BallMissing {
+    fn at(ball: &BallSurface, place: SurfacePlace) -> BallMissing {
+        match &place.seen {
+            Some(seen) => BallMissing::Along(ball.arc(seen).into()),
+            None => BallMissing::AtCorners(ball.missing_at(place.rolled).into()),
+        }
+    }
+
+    fn line<'l>(&'l self, ball: &'l BallSurface) -> WornLine<'l> {
+        match self {
+            BallMissing::AtCorners(missing) => ball.line(missing),
+            BallMissing::Along(arc) => ball.line_along(arc),
+        }
+    }
+
+    fn scaled(&self, share: f64) -> BallMissing {
+        let scaled = |missing: &[f64]| missing.iter().map(|w| share * w).collect::<Vec<f64>>();
+        match self {
+            BallMissing::AtCorners(missing) => BallMissing::AtCorners(scaled(missing).into()),
+            BallMissing::Along(arc) => BallMissing::Along(
+                BallArc {
+                    missing: scaled(&arc.missing),
+                    angles: arc.angles.clone(),
+                }
+                .into(),
+            ),
+        }
+    }
 }
 
 impl MissingLines {
     fn at(surface: &StripSurface, worn: Option<&BallSurface>, place: SurfacePlace) -> MissingLines {
         MissingLines {
             groove: surface.missing_at(place.azimuth).into(),
-            ball: worn
-                .map_or(Vec::new(), |ball| ball.missing_at(place.rolled))
-                .into(),
+            ball: worn.map(|ball| BallMissing::at(ball, place)),
         }
     }
 }
@@ -94,6 +136,16 @@ pub struct Strips {
 }
 
 impl Strips {
+    /// The same where the contact stands at another place.
+    pub fn moved(&self, place: SurfacePlace) -> Strips {
+        Strips {
+            surface: self.surface.clone(),
+            worn: self.worn.clone(),
+            lines: MissingLines::at(&self.surface, self.worn.as_deref(), place),
+            ends: None,
+        }
+    }
+
     /// The same over a step that begins and ends at these places.
     pub fn between(self, places: [SurfacePlace; 2]) -> Strips {
         let ends = places.map(|place| MissingLines::at(&self.surface, self.worn.as_deref(), place));
@@ -103,15 +155,20 @@ impl Strips {
         }
     }
 
+    /// Contact angle that meets the equator of its ball at the start, rad; None: the ball is a sphere.
+    pub fn equator(&self) -> Option<f64> {
+        self.worn.as_ref().map(|ball| ball.equator())
+    }
+
     /// The line across the track on which the contact stands.
     pub fn line(&self) -> StripLine<'_> {
         self.line_of(&self.lines)
     }
 
     fn line_of<'l>(&'l self, lines: &'l MissingLines) -> StripLine<'l> {
-        let worn = self.worn.as_ref();
+        let worn = self.worn.as_ref().zip(lines.ball.as_ref());
         StripLine {
-            worn: worn.map(|ball| ball.line(&lines.ball)),
+            worn: worn.map(|(ball, missing)| missing.line(ball)),
             ..self.surface.line(&lines.groove)
         }
     }
@@ -126,11 +183,10 @@ impl Strips {
 
     /// The same with this share of what is missing.
     pub fn scaled(&self, share: f64) -> Strips {
-        let scaled = |missing: &[f64]| missing.iter().map(|w| share * w).collect();
         Strips {
             lines: MissingLines {
-                groove: scaled(&self.lines.groove),
-                ball: scaled(&self.lines.ball),
+                groove: self.lines.groove.iter().map(|w| share * w).collect(),
+                ball: self.lines.ball.as_ref().map(|ball| ball.scaled(share)),
             },
             ..self.clone()
         }

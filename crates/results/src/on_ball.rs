@@ -15,7 +15,10 @@ pub fn force_on_ball(side: Side, ball: &BallResult) -> [f64; 3] {
 /// Moment of the same about a point that the ball's centre is `arm` away from, N m; `lever` is the distance from the
 /// ball's centre to the centre of the contact, m.
 pub fn moment_on_ball(side: Side, ball: &BallResult, arm: [f64; 3], lever: f64) -> [f64; 3] {
+    let of_slope = ball.free.and_then(|free| free.traction(side).slope_moment_n_m);
+    let of_slope = of_slope.unwrap_or_default();
     let of_normal = cross(arm, normal_force(side, ball));
+    let of_normal = [0, 1, 2].map(|i| of_normal[i] + of_slope[i]);
     let Some(pull) = Pull::of(side, ball) else {
         return of_normal;
     };
@@ -24,13 +27,19 @@ pub fn moment_on_ball(side: Side, ball: &BallResult, arm: [f64; 3], lever: f64) 
     [0, 1, 2].map(|i| of_normal[i] + of_pull[i] + pull.moment[i])
 }
 
-/// From the contact to the ball's centre, N.
+/// From the contact to the ball's centre, N, with what the slope of a real surface adds along the rolling direction.
 fn normal_force(side: Side, ball: &BallResult) -> [f64; 3] {
     let contact = ball.contact(side);
     let (sin, cos) = ball.azimuth_rad.sin_cos();
     let (sin_a, cos_a) = contact.contact_angle_rad.sin_cos();
     let radial = -side.sign() * contact.force_n * cos_a;
-    [radial * cos, radial * sin, -side.sign() * contact.force_n * sin_a]
+    let slope = ball.free.and_then(|free| free.traction(side).slope_force_n);
+    let slope = slope.unwrap_or_default();
+    [
+        radial * cos - slope * sin,
+        radial * sin + slope * cos,
+        -side.sign() * contact.force_n * sin_a,
+    ]
 }
 
 /// Traction on a free ball.

@@ -242,7 +242,7 @@ fn contact_values(probe: &ContactProbe, model: &Model, ball: &BallResult) -> Vec
     let radius = radial + ball.displacement_m.radial;
     let centre = [radius * cos, radius * sin, axial + ball.displacement_m.axial];
     let arm = [0, 1, 2].map(|i| centre[i] - probe.about[i]);
-    let lever = model.contact_lever(ball.contact(side).approach_m);
+    let lever = model.contact_lever(probe.ball, ball.contact(side).approach_m);
     let moment = moment_on_ball(side, ball, arm, lever);
     let size = |v: [f64; 3]| v[0].hypot(v[1]).hypot(v[2]);
     [&force[..], &[size(force)], &moment, &[size(moment)]].concat()

@@ -10,8 +10,8 @@ use checkpoint::StateArray;
 use contact::Side;
 use dynamics::motion::RingState;
 use dynamics::motion::{
-    CageLedger, CageState, ContactTraction, FreeState, FrictionLedger, Ledger, MotionState, RingShape,
-    StateShape,
+    CageLedger, CageState, ContactTraction, FreeState, FrictionLedger, Ledger, MotionState, RingCourse,
+    RingShape, StateShape,
 };
 
 /// Arrays by name.
@@ -96,7 +96,7 @@ fn exchange(state: &mut MotionState, shape: &StateShape, port: &mut Port<'_>) ->
         port.rows(&format!("places_{part}"), places, n_sites)?;
     }
     if shape.has_free_balls {
-        exchange_free(free.get_or_insert_default(), shape.n_balls, port)?;
+        exchange_free(free.get_or_insert_default(), shape, port)?;
         exchange_friction(ledger.friction.get_or_insert_default(), port)?;
         if let Some(ends) = shape.cage_ends {
             let cage = free.get_or_insert_default().cage.get_or_insert_default();
@@ -113,13 +113,17 @@ fn exchange(state: &mut MotionState, shape: &StateShape, port: &mut Port<'_>) ->
     Ok(())
 }
 
-fn exchange_free(free: &mut FreeState, n_balls: usize, port: &mut Port<'_>) -> anyhow::Result<()> {
+fn exchange_free(free: &mut FreeState, shape: &StateShape, port: &mut Port<'_>) -> anyhow::Result<()> {
+    let n_balls = shape.n_balls;
     let FreeState {
         places,
         velocities,
         turnings,
         trends,
         contacts,
+        courses,
+        track,
+        orientations,
         cage: _,
     } = free;
     port.rows("free_balls", places, n_balls)?;
@@ -129,6 +133,15 @@ fn exchange_free(free: &mut FreeState, n_balls: usize, port: &mut Port<'_>) -> a
     let mut rows: Vec<[f64; 12]> = contacts.iter().map(|contact| contact.to_row()).collect();
     port.rows("free_ball_tractions", &mut rows, 2 * n_balls)?;
     *contacts = rows.into_iter().map(ContactTraction::from_row).collect();
+    let mut rows: Vec<[f64; 6]> = courses.iter().map(|course| course.to_row()).collect();
+    port.rows("free_ball_courses", &mut rows, 2 * n_balls)?;
+    *courses = rows.into_iter().map(RingCourse::from_row).collect();
+    if shape.has_profiles {
+        port.rows("free_ball_track", track, 2 * n_balls)?;
+    }
+    if shape.has_orientations {
+        port.rows("free_ball_orientations", orientations, n_balls)?;
+    }
     Ok(())
 }
 

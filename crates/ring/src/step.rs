@@ -72,6 +72,8 @@ pub struct Feet<'a> {
     pub weights: &'a [NodalWeights],
     /// How many of them a contact has: one of its force, more where it has traction as well.
     pub per_contact: usize,
+    /// Nodal weights on the raceway by which a vector is only measured.
+    pub seen: &'a [NodalWeights],
 }
 
 /// Forces at the ports.
@@ -88,6 +90,8 @@ pub struct PortForces<'a> {
 pub struct PortAnswer {
     /// Values at the start of the step, m and rad.
     pub start: Vec<f64>,
+    /// What is only measured, at the start of the step, two values of all nodal weights, m.
+    pub seen: Vec<f64>,
     /// Values at its end without forces.
     pub predicted: Vec<f64>,
     /// Growth of the values at the end with the forces, row-major, SI.
@@ -171,6 +175,9 @@ pub trait ElasticStep: Send {
 
     /// Values of a vector of the body at the contacts, in two directions of all their nodal weights.
     fn at_contacts(&self, x: &[f64]) -> Vec<f64>;
+
+    /// The same in those of what is only measured.
+    fn at_seen(&self, x: &[f64]) -> Vec<f64>;
 
     /// One round for the inertia of the turning frame under these forces; `scale` is the largest force of the whole
     /// bearing, N.

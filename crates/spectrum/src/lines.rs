@@ -1,7 +1,8 @@
 //! Frequencies at which defects of a bearing show: from the cage as it was simulated.
 //!
 //! With the cage at f_c, the rings at f_i and f_o and Z balls: BPFO = Z |f_c - f_o|, BPFI = Z |f_i - f_c|; a defect
-//! on a ball meets both raceways in a turn of the ball relative to the cage: 2 BSF.
+//! on a ball meets both raceways in a turn of the ball relative to the cage: 2 BSF. A free ball has its own turning w:
+//! that is |w - f_c e_z|, of the first ball with a profile.
 //!
 //! A defect that turns with its ring through a load that stands is loaded and unloaded once a turn of the ring: its
 //! lines have sidebands at the speed of the ring, those of a defect on a ball at the speed of the cage. Under an
@@ -85,10 +86,7 @@ pub fn lines(dir: &Path, scene: &Scene, (from, to): (f64, f64)) -> anyhow::Resul
     };
     let [inner, outer] = Side::BOTH.map(of_ring);
     let n = scene.bearing.balls as f64;
-    let spins = table.find("spin_rad_per_s");
-    let spin = spins.map_or(0.0, |spin| {
-        rows.iter().map(|&row| spin[row].abs()).sum::<f64>() / (TAU * rows.len() as f64)
-    });
+    let spin = spin(&table, scene, (from, to))?;
     let line = |name, frequency: f64, harmonics, sidebands: f64| Line {
         name,
         frequency: frequency.abs(),
@@ -116,6 +114,26 @@ pub fn lines(dir: &Path, scene: &Scene, (from, to): (f64, f64)) -> anyhow::Resul
         ));
     }
     Ok(found)
+}
+
+/// Mean speed with which a ball turns relative to the cage, Hz; 0 where the table does not tell.
+fn spin(table: &Table, scene: &Scene, (from, to): (f64, f64)) -> anyhow::Result<f64> {
+    let marked = scene.profiles.balls.keys().next().copied().unwrap_or(0) as f64;
+    let (times, balls) = (table.column("time_s")?, table.column("ball")?);
+    let is_wanted = |row: &usize| balls[*row] == marked && (from..=to).contains(&times[*row]);
+    let free = [
+        "omega_x_rad_per_s",
+        "omega_y_rad_per_s",
+        "omega_z_rad_per_s",
+        "orbit_rad_per_s",
+    ];
+    let speed = |row: usize| match (table.find("spin_rad_per_s"), free.map(|name| table.find(name))) {
+        (Some(spin), _) => spin[row].abs(),
+        (None, [Some(x), Some(y), Some(z), Some(orbit)]) => x[row].hypot(y[row]).hypot(z[row] - orbit[row]),
+        _ => 0.0,
+    };
+    let speeds: Vec<f64> = (0..table.n_rows()).filter(is_wanted).map(speed).collect();
+    Ok(speeds.iter().sum::<f64>() / (TAU * speeds.len().max(1) as f64))
 }
 
 #[cfg(test)]

@@ -37,7 +37,20 @@ pub struct BallSurface {
     /// Longitude that the raceway meets at the start, rad.
     longitude: f64,
     radius: f64,
+    /// Sign of the raceway's side.
+    sign: f64,
+    /// Contact angle that meets the equator at the start, rad.
+    equator: f64,
     grid: SurfaceGrid,
+}
+
+/// What a ball lacks along an arc.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct BallArc {
+    /// Contact angles of its corners, rad, rising.
+    pub angles: Vec<f64>,
+    /// Missing material at them, m.
+    pub missing: Vec<f64>,
 }
 
 impl BallSurface {
@@ -54,6 +67,8 @@ impl BallSurface {
         Some(BallSurface {
             longitude: 0.5 * PI * (1.0 - side.sign()),
             radius: 0.5 * geometry.ball_diameter,
+            sign: side.sign(),
+            equator,
             grid: seen.grid(track, &range)?,
         })
     }
@@ -61,6 +76,48 @@ impl BallSurface {
     /// Missing material at the corners, m, as the raceway meets it after the ball has rolled by an angle, rad.
     pub fn missing_at(&self, rolled: f64) -> Vec<f64> {
         self.grid.missing_at(self.longitude - rolled)
+    }
+
+    /// Contact angle that meets the equator at the start, rad.
+    pub fn equator(&self) -> f64 {
+        self.equator
+    }
+
+    /// Sign of the raceway's side.
+    pub(super) fn sign(&self) -> f64 {
+        self.sign
+    }
+
+    /// Latitudes of the corners, rad: rising outside, falling inside.
+    pub(super) fn latitudes(&self) -> impl Iterator<Item = f64> {
+        let angles = self.grid.angles().iter();
+        angles.map(|angle| self.sign * (angle - self.equator))
+    }
+
+    /// Missing material at a longitude, rad, on the latitude of a corner, m.
+    pub(super) fn missing_on(&self, longitude: f64, corner: usize) -> f64 {
+        self.grid.missing_on(longitude, corner)
+    }
+
+    /// Missing material at a longitude and a latitude, rad, in m.
+    pub(super) fn missing_of(&self, longitude: f64, latitude: f64) -> f64 {
+        let (angle, angles) = (self.equator + self.sign * latitude, self.grid.angles());
+        let next = angles.partition_point(|corner| *corner <= angle);
+        if next == 0 || next == angles.len() {
+            return self.missing_on(longitude, next.min(angles.len() - 1));
+        }
+        let share = (angle - angles[next - 1]) / (angles[next] - angles[next - 1]);
+        let [low, high] = [next - 1, next].map(|corner| self.missing_on(longitude, corner));
+        low + share * (high - low)
+    }
+
+    /// The ball along an arc.
+    pub fn line_along<'l>(&self, arc: &'l BallArc) -> WornLine<'l> {
+        WornLine {
+            radius: self.radius,
+            angles: &arc.angles,
+            missing: &arc.missing,
+        }
     }
 
     /// A line across the track.

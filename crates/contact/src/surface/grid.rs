@@ -46,14 +46,26 @@ impl SurfaceGrid {
     /// Missing material at the corners at an azimuth, rad, in m.
     pub fn missing_at(&self, azimuth: f64) -> Vec<f64> {
         let n = self.angles.len();
-        let n_rows = self.missing.len() / n;
-        let place = azimuth.rem_euclid(TAU) / TAU * n_rows as f64;
-        let row = (place.floor() as usize).min(n_rows - 1);
-        let share = place - row as f64;
-        let next = (row + 1) % n_rows;
+        let ([row, next], share) = self.rows_at(azimuth);
         let of = |row: usize| &self.missing[n * row..n * (row + 1)];
         let pairs = of(row).iter().zip(of(next));
         pairs.map(|(a, b)| a + share * (b - a)).collect()
+    }
+
+    /// The same at one corner.
+    pub fn missing_on(&self, azimuth: f64, corner: usize) -> f64 {
+        let n = self.angles.len();
+        let (rows, share) = self.rows_at(azimuth);
+        let [a, b] = rows.map(|row| self.missing[n * row + corner]);
+        a + share * (b - a)
+    }
+
+    /// The rows on both sides of an azimuth, rad, and how far it is on from the first to the second.
+    fn rows_at(&self, azimuth: f64) -> ([usize; 2], f64) {
+        let n_rows = self.missing.len() / self.angles.len();
+        let place = azimuth.rem_euclid(TAU) / TAU * n_rows as f64;
+        let row = (place.floor() as usize).min(n_rows - 1);
+        ([row, (row + 1) % n_rows], place - row as f64)
     }
 }
 

@@ -19,6 +19,7 @@
 //! waves shorter than some four half-widths of the ellipse are felt too much.
 
 pub mod ball;
+mod ball_arc;
 mod dent;
 mod grid;
 mod track;
@@ -26,7 +27,8 @@ mod track;
 use std::f64::consts::{PI, TAU};
 use std::ops::RangeInclusive;
 
-pub use self::ball::BallSurface;
+pub use self::ball::{BallArc, BallSurface};
+pub use self::ball_arc::SeenMeridian;
 pub use self::dent::Dent;
 use self::grid::SurfaceGrid;
 use self::track::{Track, turn};

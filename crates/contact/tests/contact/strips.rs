@@ -58,6 +58,37 @@ fn a_smooth_groove_is_exactly_hertz() {
     assert_eq!(law.evaluate(SMOOTH, 0.0, -1e-6, 0.2).force, 0.0);
 }
 
+/// Wrong: where bodies touch on a bump alone, while the smooth groove would not, a contact that yields besides would
+/// have no number for its approach. A bump that is level everywhere is a groove that is nearer: the same force at an
+/// approach that is larger by its height, which Hertz's approach is measured without.
+#[test]
+fn a_contact_on_a_bump_has_an_approach_below_zero() {
+    let law = outer_of_7010c();
+    let height = 0.5e-6;
+    let bump = StripLine {
+        missing: &[-height, -height],
+        ..SMOOTH
+    };
+    for compliance in [0.0, 7.5e-10] {
+        for g in [-0.499e-6, -0.3e-6, -1e-7, 0.0, 1e-7] {
+            let found = law.evaluate(bump, compliance, g, 0.2);
+            let exact = law.evaluate(SMOOTH, compliance, g + height, 0.2);
+            assert!(
+                (found.force / exact.force - 1.0).abs() < 1e-9,
+                "{g}: {} {}",
+                found.force,
+                exact.force
+            );
+            assert!(
+                (found.approach + height - exact.approach).abs() < 1e-15,
+                "{g}: {}",
+                found.approach
+            );
+        }
+        assert!(law.evaluate(bump, compliance, -0.6e-6, 0.2).approach.is_finite());
+    }
+}
+
 /// Wrong: a truncated ellipse would keep another share of its force than 1/2 + 3/4 tau - tau^3/4.
 #[test]
 fn a_shoulder_takes_its_share_of_the_ellipse() {

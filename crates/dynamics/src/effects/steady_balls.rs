@@ -121,6 +121,8 @@ impl SteadyBalls {
                 spin_rad_per_s: slip.turning[2],
                 traction_n: [f_t, f_q],
                 traction_moment_n_m: moment,
+                slope_force_n: None,
+                slope_moment_n_m: None,
                 pv_w_per_m2: largest_pv(&contact.ellipse, slip),
                 friction_power_w: rolls.power(side.index()),
             }
@@ -158,14 +160,23 @@ fn contact(
 ) -> SteadyContact {
     let site = 2 * ball + side.index();
     let (sin, cos) = angles[site].sin_cos();
-    let force = seen.forces[site];
+    let force = match seen.forces[site] {
+        force if force > round_off(model, side) => force,
+        _ => 0.0,
+    };
     SteadyContact {
         normal: [side.sign() * cos, side.sign() * sin],
-        lever: model.contact_lever(seen.approaches[site]),
+        lever: model.contact_lever(ball, seen.approaches[site]),
         force,
         ellipse: model.ellipse(side, force),
         film: model.film_contact(side),
         speed,
         shear_modulus: model.combined_shear_modulus(side),
     }
+}
+
+/// Force of a contact that the round-off of places alone makes, N: a ball that just touches is not loaded.
+fn round_off(model: &Model, side: Side) -> f64 {
+    let place = 16.0 * f64::EPSILON * model.geometry.ball_centre()[0];
+    model.hertz[side.index()].stiffness * place.powf(1.5)
 }

@@ -113,7 +113,7 @@ impl Motion<'_> {
         }
         for (ports, step) in part.parts.rings.iter_mut().zip(&part.rings) {
             if let (Some(ports), Some(step)) = (ports, step) {
-                [ports.offset, ports.seen.offset] = self.order(step.answer()).split(&step.answer().predicted);
+                ports.offset.clone_from(&step.answer().predicted);
             }
         }
         Ok(())

@@ -43,6 +43,12 @@ impl Motion<'_> {
                         trend[first + 2 * ball] = [a[0], a[1]];
                     }
                 }
+                self.note_courses(
+                    &mut next,
+                    side,
+                    (solution, dt),
+                    (&*step, end.state.displacement()),
+                );
                 next.rings[i] = Some(end.state);
             }
         }

@@ -9,6 +9,7 @@ use super::free_state::{ContactTraction, FreeState};
 use super::ledger::FrictionLedger;
 use super::part::RingSteps;
 use super::place::Course;
+use super::ring_course::RingCourse;
 use super::run::Motion;
 use super::solve::StepSolution;
 use super::span::Span;
@@ -17,8 +18,11 @@ use crate::bearing::{BearingParts, FreeParts};
 use crate::bodies::FreeBall;
 use crate::effects::steady_balls::SteadyBalls;
 use crate::error::DynamicsError;
+use crate::interactions::free_contact::orientation::turned;
 use crate::interactions::free_contact::place::GrooveCircle;
-use crate::interactions::free_contact::{ContactStep, FREE_FEET, FreeContacts, RingStep};
+use crate::interactions::free_contact::{
+    ContactStep, ElasticPlace, FREE_FEET, FREE_PORTS, FreeContacts, RingStep,
+};
 use crate::interactions::raceway_contact::Site;
 use crate::interactions::steady_rolling::{SteadyRolling, pure_rolling, rolling_speed};
 use crate::interactions::traction::creep::RollingContact;
@@ -51,6 +55,11 @@ impl Motion<'_> {
         }
         free.trends = vec![[0.0; 6]; free.places.len()];
         free.contacts = vec![ContactTraction::default(); 2 * free.places.len()];
+        free.courses = vec![RingCourse::default(); 2 * free.places.len()];
+        if self.has_strips() {
+            free.track = vec![[0.0; 4]; 2 * free.places.len()];
+        }
+        free.orientations = self.orientations_at_start();
         free.cage = self.cage_at_start(&free, state.shaft);
         Some(free)
     }
@@ -79,7 +88,10 @@ impl Motion<'_> {
         let traction = Arc::new(traction.clone());
         let shaft = self.carrier_step(state, span, Side::Inner);
         let fall = self.fall(span);
-        let rings = Side::BOTH.map(|side| self.ring_steps(state, span, side, rings[side.index()].as_deref()));
+        let rings = Side::BOTH.map(|side| {
+            let step = rings[side.index()].as_deref();
+            self.ring_steps((state, free), span, side, step)
+        });
         let contact = |(index, site): (usize, &Site)| {
             let ring = rings[index % 2][index / 2];
             self.contact_step((state, free), span, (index, site), (ring, &traction))
@@ -94,7 +106,7 @@ impl Motion<'_> {
         })
     }
 
-    /// Nodal weights of a contact on a flexible ring: of its groove, and of a free ball of patch and slope too.
+    /// Nodal weights of a contact on a flexible ring: of its groove, and of a free ball of its patch too.
     pub(super) fn feet_per_contact(&self) -> usize {
         match self.model.traction() {
             Some(_) => FREE_FEET,
@@ -158,23 +170,46 @@ impl Motion<'_> {
     /// A ring's side of its contacts, by ball.
     fn ring_steps(
         &self,
-        state: &MotionState,
+        (state, free): (&MotionState, &FreeState),
         span: Span,
         side: Side,
         step: Option<&(dyn ElasticStep + '_)>,
     ) -> Vec<RingStep> {
-        let spin = self.ring_speeds(side, span);
-        let n_balls = self.n_balls();
-        if let Some(step) = step {
-            let of_contact = |at_start: &[f64; 2 * FREE_FEET]| RingStep {
-                elastic: Some(*at_start),
-                spin,
-                ..RingStep::default()
-            };
-            let contacts = step.answer().start.as_chunks().0.iter().take(n_balls);
-            return contacts.map(of_contact).collect();
+        let Some(step) = step else {
+            return vec![self.carrier_step(state, span, side); self.n_balls()];
+        };
+        let answer = step.answer();
+        let courses = free.courses.iter().skip(side.index()).step_by(2);
+        let contacts = answer.start.as_chunks().0.iter().zip(answer.seen.as_chunks().0);
+        let of_contact = |((start, seen), course): ((&[f64; FREE_PORTS], &[f64; 2]), &RingCourse)| RingStep {
+            elastic: Some(ElasticPlace {
+                start: *start,
+                slope: course.expected_slope(*seen, span.dt),
+            }),
+            spin: self.ring_speeds(side, span),
+            ..RingStep::default()
+        };
+        contacts.zip(courses).map(of_contact).collect()
+    }
+
+    /// Goes on with the course of the contacts of free balls on a ring, whose motion is `end` at the end of a part.
+    pub(super) fn note_courses(
+        &self,
+        next: &mut MotionState,
+        side: Side,
+        (solution, dt): (&StepSolution, f64),
+        (step, end): (&dyn ElasticStep, &[f64]),
+    ) {
+        let Some(free) = &mut next.free else { return };
+        let (answer, slopes_at_end) = (step.answer(), step.at_seen(end));
+        let pairs = |values: &[f64]| values.as_chunks::<2>().0.to_vec();
+        let slopes = pairs(&answer.seen).into_iter().zip(pairs(&slopes_at_end));
+        let ports = answer.start.as_chunks::<FREE_PORTS>().0.iter();
+        let ports = ports.zip(solution.ports[side.index()].as_chunks::<FREE_PORTS>().0);
+        let courses = free.courses.iter_mut().skip(side.index()).step_by(2);
+        for ((course, (from, to)), (start, end)) in courses.zip(slopes).zip(ports) {
+            *course = RingCourse::over([*start, *end], [from, to], dt);
         }
-        vec![self.carrier_step(state, span, side); n_balls]
     }
 
     /// What carries a ring, over a part.
@@ -213,7 +248,7 @@ impl Motion<'_> {
         let groove = GrooveCircle {
             radius: geometry.centre_radius(site.side),
             height: geometry.groove_centre(site.side)[1],
-            lever: self.model.contact_lever(state.approaches[index]),
+            lever: self.model.contact_lever(ball, state.approaches[index]),
         };
         let [f_r, f_z] = state.forces[index];
         let force = f_r.hypot(f_z).max(EARTH * self.model.ball_mass());
@@ -233,6 +268,8 @@ impl Motion<'_> {
             groove,
             law: site.law,
             touching: site.touching,
+            sign: site.side.sign(),
+            surface: self.rolling_surface((free, state.angles[index]), span, site),
             scheme: self.settings.scheme,
             damping: self.settings.contact_damping,
             ring,
@@ -253,7 +290,10 @@ impl Motion<'_> {
         let (Some(free), Some(before)) = (&parts.free, next.free.take()) else {
             return;
         };
-        let mut state = FreeState::default();
+        let mut state = FreeState {
+            courses: before.courses.clone(),
+            ..FreeState::default()
+        };
         let mut friction = next.ledger.friction.unwrap_or_default();
         for (ball, x) in free.balls.iter().zip(&solution.free_ends) {
             let [velocity, turning] = ball.velocities(x);
@@ -273,6 +313,18 @@ impl Motion<'_> {
             // What the slope force takes from a patch that moves on, ball and drive have.
             friction.drive_work += found.slope.torque * turned;
             next.ledger.patch_work += found.slope.work - found.slope.torque * turned;
+            if let Some(surface) = &found.surface {
+                // What a surface that moves on gives to the contact, ball and drive lose.
+                friction.drive_work += surface.track.torque * turned;
+                next.ledger.profile_work += surface.track.work - surface.track.torque * turned;
+            }
+            if self.has_strips() {
+                let track = found.surface.as_ref().map_or([0.0; 4], |surface| {
+                    let [x, y, z] = surface.moment;
+                    [surface.track.force, x, y, z]
+                });
+                state.track.push(track);
+            }
             let [w_t, w_q, spin] = found.slip.turning;
             let [f_t, f_q, moment @ ..] = found.traction.action;
             state.contacts.push(ContactTraction {
@@ -285,6 +337,8 @@ impl Motion<'_> {
                 torque: found.torque,
             });
         }
+        let turns = before.orientations.iter().zip(&solution.free_ends);
+        state.orientations = turns.map(|(q, x)| turned(*q, [x[3], x[4], x[5]])).collect();
         next.ledger.friction = Some(friction);
         state.cage = self.finish_cage((&before, &mut next.ledger), parts, solution);
         for ball in 0..state.places.len() {

@@ -1,6 +1,7 @@
 //! What evolves of free balls.
 
 use super::cage_state::CageState;
+use super::ring_course::RingCourse;
 use crate::interactions::traction::Slip;
 
 /// Free balls: places, velocities and angular velocities in space, and what their contacts report.
@@ -17,6 +18,13 @@ pub struct FreeState {
     pub trends: Vec<[f64; 6]>,
     /// Traction in the last step, by site.
     pub contacts: Vec<ContactTraction>,
+    /// What contacts have met on elastic rings, by site.
+    pub courses: Vec<RingCourse>,
+    /// What real surfaces did in the last step, by site: force on the ball along the rolling direction, N, and moment
+    /// on it in space, N m; empty where all are smooth.
+    pub track: Vec<[f64; 4]>,
+    /// Orientations of all balls, unit quaternions from the frame of a ball to space; empty where all are spheres.
+    pub orientations: Vec<[f64; 4]>,
     /// The cage, if it is free.
     pub cage: Option<CageState>,
 }
@@ -122,7 +130,10 @@ impl FreeState {
         let vectors = [&self.places, &self.velocities, &self.turnings];
         let vectors = vectors.into_iter().flat_map(|v| v.as_flattened()).sum::<f64>();
         let cage = self.cage.iter().map(CageState::sum).sum::<f64>();
-        vectors + cage + self.contacts.iter().flat_map(|c| c.to_row()).sum::<f64>()
+        let courses = self.courses.iter().flat_map(|c| c.to_row()).sum::<f64>();
+        let surfaces = [&self.track, &self.orientations].into_iter();
+        let track = surfaces.flat_map(|v| v.as_flattened()).sum::<f64>();
+        vectors + cage + courses + track + self.contacts.iter().flat_map(|c| c.to_row()).sum::<f64>()
     }
 
     /// Kinetic energy of all balls of this mass and moment of inertia, J.

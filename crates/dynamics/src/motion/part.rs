@@ -1,9 +1,10 @@
 //! What a part of a step asks of loads, rings and shaft, and the bodies and contacts they make.
 
-use contact::{NodalWeights, Side};
+use contact::Side;
 use ring::{ElasticStep, Feet, PortForces, StepScheme};
 
 use super::cache::Ahead;
+use super::place::Placing;
 use super::run::Motion;
 use super::solve::StepSolution;
 use super::span::Span;
@@ -59,12 +60,12 @@ impl Motion<'_> {
         effects::timed_loads(self.model, &now, &self.costs)
     }
 
-    /// Both rings under their known loads, with contacts at `feet`.
+    /// Both rings under their known loads, with contacts as they are placed.
     pub(super) fn begin_rings<'m>(
         &'m self,
         state: &'m MotionState,
         ahead: Ahead,
-        feet: &[Vec<NodalWeights>; 2],
+        placing: &Placing,
     ) -> Result<RingSteps<'m>, DynamicsError> {
         let rung = self.rung(ahead.loads.span.rung)?;
         let begin = |side: Side| {
@@ -73,17 +74,22 @@ impl Motion<'_> {
             let known = ahead.rings[i].clone();
             let known =
                 known.unwrap_or_else(|| factor.predict(old, self.known_load(side, &ahead.loads)).into());
-            let feet = Feet {
-                weights: &feet[i],
-                per_contact: self.feet_per_contact(),
-            };
-            Some(factor.begin(old, known, feet))
+            Some(factor.begin(old, known, self.feet(side, placing)))
         };
         let (inner, outer) = self
             .model
             .backend
             .both(|| begin(Side::Inner), || begin(Side::Outer));
         Ok([inner, outer])
+    }
+
+    /// Where contacts meet a ring.
+    pub(super) fn feet<'p>(&self, side: Side, placing: &'p Placing) -> Feet<'p> {
+        Feet {
+            weights: &placing.feet[side.index()],
+            per_contact: self.feet_per_contact(),
+            seen: &placing.slopes[side.index()],
+        }
     }
 
     /// Bodies and contacts of a part.
@@ -238,14 +244,14 @@ impl BearingParts {
         }
     }
 
-    /// Forces on a ring's contacts by ball, N: on the groove; of a free one on the patch too, and none on the slope.
+    /// Forces on a ring's contacts by ball, N: on the groove; of a free one on the patch too.
     pub(super) fn ring_loads(&self, side: Side, solution: &StepSolution) -> Vec<f64> {
         let all = self.with_dead(&solution.forces);
         let of_ball = |ball: usize| {
             let site = 2 * ball + side.index();
             let groove = [all[2 * site], all[2 * site + 1]];
             let patch = solution.free_contacts.get(site);
-            let patch = patch.map(|found| [-found.traction.action[0], -found.traction.action[1], 0.0, 0.0]);
+            let patch = patch.map(|found| [-found.along_track(), -found.traction.action[1]]);
             groove.into_iter().chain(patch.into_iter().flatten())
         };
         (0..self.n_balls()).flat_map(of_ball).collect()

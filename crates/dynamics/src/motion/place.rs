@@ -36,8 +36,10 @@ const SIZE_TOLERANCE: f64 = 1e-3;
 /// One contact as it is placed.
 struct Placed {
     site: Site,
-    /// On a flexible ring of its groove, and of a free ball of patch and slope.
+    /// On a flexible ring of its groove, and of a free ball of its patch too.
     weights: Vec<NodalWeights>,
+    /// Of a free ball on a flexible ring, of its slope.
+    slope: Option<NodalWeights>,
     /// Half of the patch along the groove, rad; infinite on a rigid ring.
     half_angle: f64,
 }
@@ -85,6 +87,8 @@ pub(super) struct Placing {
     pub sites: Vec<Site>,
     /// Nodal weights of the contacts on each flexible ring, those of a contact together.
     pub feet: [Vec<NodalWeights>; 2],
+    /// Nodal weights of the slopes of free balls on each flexible ring.
+    pub slopes: [Vec<NodalWeights>; 2],
     /// Half of every patch along the groove, rad, by site.
     half_angles: Vec<f64>,
 }
@@ -153,10 +157,13 @@ impl Motion<'_> {
         let mut placing = Placing {
             sites: Vec::new(),
             feet: [Vec::new(), Vec::new()],
+            slopes: [Vec::new(), Vec::new()],
             half_angles: Vec::new(),
         };
         for placed in placed? {
-            placing.feet[placed.site.side.index()].extend(placed.weights);
+            let side = placed.site.side.index();
+            placing.feet[side].extend(placed.weights);
+            placing.slopes[side].extend(placed.slope);
             placing.sites.push(placed.site);
             placing.half_angles.push(placed.half_angle);
         }
@@ -181,6 +188,7 @@ impl Motion<'_> {
             return Ok(Placed {
                 site,
                 weights: Vec::new(),
+                slope: None,
                 half_angle: f64::INFINITY,
             });
         };
@@ -193,17 +201,18 @@ impl Motion<'_> {
         )?;
         let (surface, nodes, rule) = (&moving.raceway.surface, &ring.mesh.nodes, &moving.raceway.rule);
         let material = elastic(&ring.material);
-        let (patch, more) = if course.is_free {
+        let (patch, [traction, slope]) = if course.is_free {
             let (patch, more) = Patch::of_free_ball(surface, nodes, rule, shape, material)?;
-            (patch, more.to_vec())
+            (patch, more.map(Some))
         } else {
-            (Patch::new(surface, nodes, rule, shape, material)?, Vec::new())
+            (Patch::new(surface, nodes, rule, shape, material)?, [None, None])
         };
         site.law.patch_compliance = patch.compliance;
         mounting.place(model, &mut site, Some(&patch.weights));
         Ok(Placed {
             site,
-            weights: std::iter::once(patch.weights).chain(more).collect(),
+            weights: std::iter::once(patch.weights).chain(traction).collect(),
+            slope,
             half_angle: shape.semi_axes[0] / ring.groove.groove_radius,
         })
     }

@@ -56,6 +56,8 @@ impl Motion<'_> {
                 spin_rad_per_s: of.spin,
                 traction_n: of.force,
                 traction_moment_n_m: of.moment,
+                slope_force_n: free.track.get(index).map(|track| track[0]),
+                slope_moment_n_m: free.track.get(index).map(|[_, moment @ ..]| *moment),
                 pv_w_per_m2: largest_pv(&ellipse, &of.whole_slip()),
                 friction_power_w: of.power,
             }

@@ -19,6 +19,8 @@ pub struct StateShape {
     pub cage_ends: Option<usize>,
     /// Whether surfaces have a line in the ledger.
     pub has_profiles: bool,
+    /// Whether balls have profiles and are free, so that their orientation evolves.
+    pub has_orientations: bool,
     /// Whether temperatures have a line in the ledger.
     pub has_temperature_work: bool,
 }
@@ -33,6 +35,7 @@ impl Motion<'_> {
             has_free_balls: self.model.traction().is_some(),
             cage_ends: self.model.cage.as_ref().map(|cage| cage.n_ends()),
             has_profiles: self.has_strips(),
+            has_orientations: self.model.traction().is_some() && !self.model.surfaces.balls.is_empty(),
             has_temperature_work: self.model.mounting.changes(),
         }
     }

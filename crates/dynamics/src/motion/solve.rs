@@ -42,6 +42,8 @@ pub struct StepSolution {
     pub on_shaft: [f64; 5],
     /// Forces of the partners on the mounts of inner and outer ring, in the ring's frame.
     pub mounts: [Vec<f64>; 2],
+    /// Motion of the ports of contacts of free balls on inner and outer ring at the end, m.
+    pub ports: [Vec<f64>; 2],
     /// Displacement and rotation of free balls over the part, m and rad.
     pub free_ends: Vec<[f64; 6]>,
     /// Contacts of free balls, by site.

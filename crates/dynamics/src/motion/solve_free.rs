@@ -36,6 +36,7 @@ impl BearingParts {
             let found = self.found_free(&solved.unknowns);
             let cage = self.cage_solution(&solved.unknowns);
             if !self.take_middle(&found, cage.as_ref()) {
+                self.roll_over(&found);
                 let solution = self.free_solution(model, &solved.unknowns, found, iterations);
                 return Ok(StepSolution { cage, ..solution });
             }
@@ -188,6 +189,10 @@ impl BearingParts {
             reaches: [reach(0), reach(1)],
             forces: found.iter().map(|found| found.normal).collect(),
             mounts: Side::BOTH.map(|side| self.mount(&system, side, x)),
+            ports: Side::BOTH.map(|side| {
+                let body = self.elastic(side).map(Body::Elastic);
+                body.map_or_else(Vec::new, |body| x[system.unknowns(body)].to_vec())
+            }),
             free_ends: ends,
             free_contacts: found,
             iterations,

@@ -4,7 +4,7 @@
 use std::sync::Arc;
 
 use contact::Side;
-use ring::{ElasticStep, Feet};
+use ring::ElasticStep;
 use timer::{Laps, Stopwatch};
 
 use super::cache::{Ahead, ExpectedLoads, StepCache};
@@ -87,7 +87,7 @@ impl Motion<'_> {
         let places = expected.places.clone();
         let placing = self.place(&places, &self.course(state, span))?;
         report.laps.add(PATCHES, clock.lap());
-        let rings = self.begin_rings(state, ahead, &placing.feet)?;
+        let rings = self.begin_rings(state, ahead, &placing)?;
         let known = longest(rings.iter().flatten().map(|step| step.laps()));
         report.laps.add(BLOCK_SOLVE, clock.lap() - known.total());
         report.laps.merge(&known);
@@ -144,14 +144,11 @@ impl Motion<'_> {
 
     /// Both rings with their contacts where the patches are.
     fn move_contacts(&self, part: &mut Part<'_>) {
-        let feet = &part.placing.feet;
+        let placing = &part.placing;
         let [inner, outer] = &mut part.rings;
         let move_ring = |step: &mut Option<Box<dyn ElasticStep + '_>>, side: Side| {
-            let feet = Feet {
-                weights: &feet[side.index()],
-                per_contact: self.feet_per_contact(),
-            };
-            step.as_mut().map(|step| step.move_contacts(feet))
+            step.as_mut()
+                .map(|step| step.move_contacts(self.feet(side, placing)))
         };
         let (inner, outer) = self
             .model

@@ -7,11 +7,15 @@
 
 use contact::Side;
 
+use super::free_state::FreeState;
 use super::ledger::Ledger;
 use super::run::Motion;
 use super::solve::StepSolution;
 use super::span::Span;
 use crate::bearing::{BearingParts, lengths};
+use crate::interactions::free_contact::FoundContact;
+use crate::interactions::free_contact::orientation::{Quaternion, at_start};
+use crate::interactions::free_contact::rolling_surface::{RollingSurface, WornBall};
 use crate::interactions::raceway_contact::Site;
 use crate::surfaces::SurfacePlace;
 
@@ -23,7 +27,8 @@ impl Motion<'_> {
 
     /// Contacts on the surfaces over which they roll in a part.
     pub(super) fn on_surfaces(&self, span: Span, mut sites: Vec<Site>) -> Vec<Site> {
-        if !self.model.surfaces.has_strips() {
+        // A free ball's contact finds its surfaces with the ball's place.
+        if !self.model.surfaces.has_strips() || self.model.traction().is_some() {
             return sites;
         }
         for site in &mut sites {
@@ -32,6 +37,7 @@ impl Motion<'_> {
                 rolled: self
                     .kinematics
                     .rolled(Side::BOTH.map(|side| self.frame_angle(side, time))),
+                seen: None,
             };
             let middle = place(self.weighted_time(span));
             let strips = self.model.surfaces.at(site.ball, site.side, middle);
@@ -39,6 +45,49 @@ impl Motion<'_> {
             site.strips = strips.map(|strips| strips.between(ends));
         }
         sites
+    }
+
+    /// The surfaces over which a free ball's contact rolls in a part; None where they are smooth.
+    pub(super) fn rolling_surface(
+        &self,
+        (free, angle): (&FreeState, f64),
+        span: Span,
+        site: &Site,
+    ) -> Option<RollingSurface> {
+        let strips = site.strips.clone()?;
+        let [start, end] = [0.0, 1.0].map(|share| self.frame_angle(site.side, span.at(share)));
+        let orientation = free
+            .orientations
+            .get(site.ball)
+            .filter(|_| strips.equator().is_some());
+        Some(RollingSurface {
+            ring_angle: start,
+            ring_turn: end - start,
+            ball: orientation.map(|orientation| WornBall {
+                orientation: *orientation,
+                angle,
+            }),
+            strips,
+        })
+    }
+
+    /// Orientations of free balls at the start; none where all are spheres.
+    pub(super) fn orientations_at_start(&self) -> Vec<Quaternion> {
+        let worn = self.model.surfaces.balls.values().next();
+        let Some([ball, _]) = worn else { return Vec::new() };
+        let at_start = |i: usize| at_start(self.model.geometry.azimuth(i), ball.equator());
+        (0..self.n_balls()).map(at_start).collect()
+    }
+}
+
+impl BearingParts {
+    /// Puts the strips over which the contacts of free balls rolled.
+    pub(super) fn roll_over(&mut self, found: &[FoundContact]) {
+        for (site, found) in self.contacts.sites.iter_mut().zip(found) {
+            if let Some(surface) = &found.surface {
+                site.strips = Some(surface.strips.clone());
+            }
+        }
     }
 }
 

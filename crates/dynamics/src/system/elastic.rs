@@ -24,20 +24,6 @@ pub struct ElasticPorts {
     pub n_moving: usize,
     /// What the others follow; None: they are held.
     pub follow: Option<Follow>,
-    /// What links see of it besides.
-    pub seen: SeenMotion,
-}
-
-/// What links see of an elastic body besides its ports. No force acts there, so the ports place it: coordinates that
-/// are no unknowns.
-#[derive(Clone, Debug, Default)]
-pub struct SeenMotion {
-    /// At the start.
-    pub start: Vec<f64>,
-    /// At the end when all ports move by their offset.
-    pub offset: Vec<f64>,
-    /// Growth with the motion of each port, row-major `[seen][ports]`.
-    pub by_ports: Vec<f64>,
 }
 
 /// Ports that follow a lumped body whose coordinates are x, y, z and the tilts about x and y. A sixth port is the
@@ -83,24 +69,6 @@ impl ElasticPorts {
             *force += at;
         }
         forces
-    }
-
-    /// What is seen where the ports move as `g`.
-    pub(super) fn seen_at(&self, g: &[f64]) -> Vec<f64> {
-        let off: Vec<f64> = g.iter().zip(&self.offset).map(|(g, p)| g - p).collect();
-        let rows = self.seen.by_ports.chunks_exact(g.len().max(1));
-        let moved = rows.map(|row| row.iter().zip(&off).map(|(m, off)| m * off).sum::<f64>());
-        self.seen
-            .offset
-            .iter()
-            .zip(moved)
-            .map(|(at, moved)| at + moved)
-            .collect()
-    }
-
-    /// Number of coordinates: ports that move freely, then what is seen.
-    pub(super) fn n_coordinates(&self) -> usize {
-        self.n_moving + self.seen.start.len()
     }
 
     /// Growth of the force at port `i` when the ports in `moved` grow by `slope`.

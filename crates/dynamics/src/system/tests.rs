@@ -3,7 +3,7 @@
 use super::newton::{Policy, RoundOff, Shortening};
 use super::{
     Body, Character, ElasticPorts, Follow, Interaction, Interval, Lengths, Link, LinkForces, LinkRows,
-    LinkTerm, Lumped, SeenMotion, System,
+    LinkTerm, Lumped, System,
 };
 use crate::error::DynamicsError;
 use timer::SharedLaps;
@@ -271,7 +271,6 @@ fn following_and_held_ports_have_no_unknowns() {
             body,
             frame: [0.7, 0.7],
         }),
-        seen: SeenMotion::default(),
     };
     let (wide, front, rear) = (seat(None, 2, 227), seat(Some(0), 2, 7), seat(Some(1), 2, 7));
     let system = System::new(
@@ -310,12 +309,6 @@ fn the_tangent_is_the_derivative_of_the_residual() {
             body: 0,
             frame: [0.4, 0.6],
         }),
-        seen: SeenMotion {
-            start: vec![0.0],
-            offset: vec![0.03],
-            // Moved by the port alone that the same link sees.
-            by_ports: vec![0.0, 0.0, 0.5, 0.0, 0.0, 0.0, 0.0, 0.0],
-        },
     };
     for (i, k) in ring.stiffness.iter_mut().enumerate() {
         *k = if i % 9 == 0 {
@@ -332,20 +325,7 @@ fn the_tangent_is_the_derivative_of_the_residual() {
         matrix: SKEW,
         memory: vec![[0.0; 3]],
     };
-    // No force acts on what is seen, the third length.
-    let seeing = Matrix {
-        links: vec![Link::linear(
-            LinkRows::default(),
-            vec![
-                LinkTerm::new(Body::Lumped(0), 1, [1.0, 0.5, 0.0]),
-                LinkTerm::new(Body::Elastic(0), 2, [0.0, -1.0, 0.0]),
-                LinkTerm::new(Body::Elastic(0), 3, [0.0, 0.0, 2.0]),
-            ],
-        )],
-        matrix: [SKEW[0], [-2.0, 5.0, 1.5], [0.0; 3]],
-        memory: vec![[0.1, 0.0, 0.2]],
-    };
-    let system = System::new(Interval::Rest, vec![&shaft], vec![&ring], vec![&links, &seeing]);
+    let system = System::new(Interval::Rest, vec![&shaft], vec![&ring], vec![&links]);
     let x: Vec<f64> = (0..system.n()).map(|i| 0.1 * i as f64).collect();
     let costs = SharedLaps::default();
     let at = system.evaluate(&x, &costs);

@@ -49,7 +49,7 @@ fn without_curvature_the_contact_with_the_larger_moment_of_spin_controls() {
         let (sin, cos) = found.contact_angle_rad.sin_cos();
         SteadyContact {
             normal: [side.sign() * cos, side.sign() * sin],
-            lever: model.contact_lever(found.approach_m),
+            lever: model.contact_lever(0, found.approach_m),
             force: found.force_n,
             ellipse: Ellipse {
                 radius: f64::INFINITY,

@@ -13,4 +13,6 @@ mod hard;
 mod ledger;
 mod skid;
 mod steady;
+mod surfaces;
 mod thrust;
+mod worn;

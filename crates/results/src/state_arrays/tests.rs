@@ -15,6 +15,7 @@ const SHAPE: StateShape = StateShape {
     has_free_balls: true,
     cage_ends: Some(2),
     has_profiles: true,
+    has_orientations: true,
     has_temperature_work: true,
 };
 
@@ -85,6 +86,11 @@ fn state() -> MotionState {
             contacts: (0..4)
                 .map(|_| ContactTraction::from_row([(); 12].map(|()| number())))
                 .collect(),
+            courses: (0..4)
+                .map(|_| RingCourse::from_row([(); 6].map(|()| number())))
+                .collect(),
+            orientations: (0..2).map(|_| [(); 4].map(|()| number())).collect(),
+            track: (0..4).map(|_| [(); 4].map(|()| number())).collect(),
             cage: Some(CageState {
                 place: [(); 6].map(|()| number()),
                 rates: [(); 6].map(|()| number()),

@@ -171,7 +171,8 @@ impl HarmonicStep<'_> {
 
     /// Takes what the ports see of the predictor.
     fn answer_with(&mut self, moved: Moved) {
-        let start = self.measure(self.old.displacement());
+        let at_start = self.ports.at_start(&self.factor.body.held);
+        let start = self.factor.factor.measure(self.old.displacement(), &at_start);
         self.answer = moved.into_answer(start);
     }
 
@@ -285,6 +286,11 @@ impl ElasticStep for HarmonicStep<'_> {
     fn at_contacts(&self, x: &[f64]) -> Vec<f64> {
         let contacts: Vec<_> = self.ports.contacts.iter().collect();
         self.factor.factor.measure(x, &contacts)
+    }
+
+    fn at_seen(&self, x: &[f64]) -> Vec<f64> {
+        let seen: Vec<_> = self.ports.seen.iter().collect();
+        self.factor.factor.measure(x, &seen)
     }
 
     fn settle(&mut self, forces: PortForces<'_>, scale: f64) -> Settling {

@@ -82,6 +82,8 @@ pub(crate) struct Ports {
     pub per_contact: usize,
     /// Functionals of the contacts, two of each nodal weights.
     pub contacts: Vec<SparseLoad>,
+    /// Functionals of what is only measured.
+    pub seen: Vec<SparseLoad>,
 }
 
 /// What the ports see.
@@ -93,10 +95,12 @@ pub(crate) struct Moved {
 }
 
 impl Moved {
-    /// The answer of ports with these values at the start of the step.
-    pub fn into_answer(self, start: Vec<f64>) -> PortAnswer {
+    /// The answer of ports with these values at the start of the step, those that are only measured last.
+    pub fn into_answer(self, mut start: Vec<f64>) -> PortAnswer {
+        let seen = start.split_off(self.predicted.len());
         PortAnswer {
             predicted: sum(&start, &self.predicted),
+            seen,
             start,
             compliance: self.compliance,
         }
@@ -107,6 +111,7 @@ impl Ports {
     pub fn new(held: &HeldRing, feet: Feet<'_>) -> Ports {
         Ports {
             contacts: held.coordinates.of_contacts(feet.weights),
+            seen: held.coordinates.of_contacts(feet.seen),
             places: feet.weights.to_vec(),
             per_contact: feet.per_contact,
         }
@@ -115,6 +120,15 @@ impl Ports {
     /// Functionals of contacts, then mount.
     pub fn all<'a>(&'a self, held: &'a HeldRing) -> Vec<&'a SparseLoad> {
         self.contacts.iter().chain(&held.mount).collect()
+    }
+
+    /// Functionals of contacts, mount and what is only measured.
+    pub fn at_start<'a>(&'a self, held: &'a HeldRing) -> Vec<&'a SparseLoad> {
+        self.contacts
+            .iter()
+            .chain(&held.mount)
+            .chain(&self.seen)
+            .collect()
     }
 
     /// Generalised loads of forces at the ports, index and value.

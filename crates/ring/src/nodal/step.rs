@@ -118,7 +118,7 @@ impl<S: NodalSolver> StepFactor for NodalFactor<S> {
             (None, Some(f)) => add(&mut side, f),
             (None, None) => (),
         }
-        let start = measure(&ports.all(held), from.displacement());
+        let start = measure(&ports.at_start(held), from.displacement());
         laps.add(RIGHT_SIDE, clock.lap());
         let (predictor, moved) = self.columns.begin(held, side, &ports);
         let turn = known.load.turn;
@@ -157,7 +157,7 @@ impl<S: NodalSolver> ElasticStep for NodalStep<'_, S> {
         let (mut laps, mut clock) = (Laps::default(), Stopwatch::start());
         let held = &self.factor.body.held;
         self.ports = Ports::new(held, contacts);
-        let start = measure(&self.ports.all(held), self.old.displacement());
+        let start = measure(&self.ports.at_start(held), self.old.displacement());
         let moved = self
             .factor
             .columns
@@ -171,6 +171,10 @@ impl<S: NodalSolver> ElasticStep for NodalStep<'_, S> {
 
     fn at_contacts(&self, x: &[f64]) -> Vec<f64> {
         measure(&self.ports.contacts.iter().collect::<Vec<_>>(), x)
+    }
+
+    fn at_seen(&self, x: &[f64]) -> Vec<f64> {
+        measure(&self.ports.seen.iter().collect::<Vec<_>>(), x)
     }
 
     fn settle(&mut self, forces: PortForces<'_>, scale: f64) -> Settling {

@@ -118,7 +118,6 @@ impl RawScene {
             files,
             ball: self.contact.ball,
             is_modes: self.modes.is_some(),
-            balls: self.balls.motion(),
             follows_angles: self.speed.as_ref().is_some_and(RawSpeed::follows_angles),
         }
     }

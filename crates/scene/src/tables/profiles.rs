@@ -14,7 +14,6 @@ use input::{LENGTH, Problems, Quantity};
 use serde::Deserialize;
 
 use super::ball_diameters::RawBallDiameters;
-use super::balls::BallMotion;
 use super::bearing::Bearing;
 use super::contact::{BallElasticity, Contact, ContactMode};
 use super::dent::RawDent;
@@ -91,8 +90,6 @@ pub struct ProfilesContext<'a> {
     pub ball: Option<BallElasticity>,
     /// Whether the analysis is that of natural modes.
     pub is_modes: bool,
-    /// How the balls move.
-    pub balls: BallMotion,
     /// Whether the speeds of balls follow their contact angles.
     pub follows_angles: bool,
 }
@@ -222,12 +219,6 @@ impl RawProfiles {
         if contact.mode == ContactMode::Facet {
             problems.add(format!(
                 "contact.mode is \"facet\"; {what} needs exact grooves, use \"patch\" or \"rigid\""
-            ));
-        }
-        if context.balls == BallMotion::Free {
-            problems.add(format!(
-                "{what} stands beside balls.motion = \"free\", which is not computed; use balls.motion = \
-                 \"kinematic\""
             ));
         }
         if what == "bearing.ball_diameters" {

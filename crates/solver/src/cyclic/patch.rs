@@ -14,7 +14,7 @@ use pulp::{Simd, WithSimd};
 /// the row they fit into the 16 registers of AVX2, and eight sums at a time hide how long an addition takes; narrower
 /// windows sum several rows apart.
 const WIDEST: usize = 4;
-/// The same by patches of more directions: of six, twelve sums.
+/// The same by patches of four directions: eight sums.
 const WIDEST_OF_MANY: usize = 2;
 /// Numbers in the longest vector.
 const LONGEST: usize = 8;

@@ -103,13 +103,12 @@ impl ResponseTable {
     /// loaded.
     ///
     /// # Panics
-    /// When the patches differ in their number of directions, or have neither two, four nor six.
+    /// When the patches differ in their number of directions, or have neither two nor four.
     pub fn compliance(&self, a: &Patch, b: &Patch) -> Vec<f64> {
         assert_eq!(a.n_directions(), b.n_directions(), "patches of equal directions");
         match a.n_directions() {
             2 => self.between_patches::<2>(a, b).concat(),
             4 => self.between_patches::<4>(a, b).concat(),
-            6 => self.between_patches::<6>(a, b).concat(),
             n => panic!("a patch of {n} directions"),
         }
     }
@@ -132,7 +131,6 @@ impl ResponseTable {
         match patches.first().map_or(2, Patch::n_directions) {
             2 => self.of_all::<2>(patches),
             4 => self.of_all::<4>(patches),
-            6 => self.of_all::<6>(patches),
             n => panic!("patches of {n} directions"),
         }
     }

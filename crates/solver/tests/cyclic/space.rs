@@ -155,8 +155,8 @@ fn compliances_of_large_patches_are_sums_over_the_table() {
     }
 }
 
-/// Wrong: pairs of directions that share some of their nodes would meet each other's weights. Patches of one, two and
-/// three pairs have the compliances that the pairs have as patches of their own.
+/// Wrong: pairs of directions that share some of their nodes would meet each other's weights. Patches of one and two
+/// pairs have the compliances that the pairs have as patches of their own.
 #[test]
 fn pairs_of_directions_share_nodes() {
     for (ring, _) in rings() {
@@ -176,7 +176,7 @@ fn pairs_of_directions_share_nodes() {
             let weights = (0..width).map(|i| [weight(i, 0), weight(i, 1)]).collect();
             (nodes.collect(), weights)
         };
-        for pairs in 1..=3 {
+        for pairs in 1..=2 {
             let sectors = [0, n / 3, n - 1];
             let all: Vec<Vec<Weights>> = sectors
                 .iter()

@@ -4,8 +4,11 @@ use std::sync::Arc;
 
 use contact::{ContactLaw, Meridian};
 
-use super::jet::{Jet, N_LENGTHS, Vector, cross, dot, fixed, minus, plus, scaled, times};
+use super::jet::{Jet, N_LENGTHS, cross, dot, fixed, minus, plus, scaled, times};
 use super::place::{Bodies, ContactFrame, GrooveCircle, SlipJets, Standing, frame, standing};
+use super::ring_step::{ElasticPlace, Middle, RingStep, SlopeForce};
+use super::rolling_surface::{OverSurface, RollingSurface, StripTerms};
+use super::surface_force::{SurfaceForce, add_surface, over_surface};
 use crate::interactions::contact_damping::{ContactDamping, viscous};
 use crate::interactions::discrete_gradient::{ContactScheme, MeanForce, mean_force};
 use crate::interactions::traction::{Ellipse, Resultant, Slip, Traction};
@@ -18,20 +21,6 @@ pub enum SlipAt {
     End,
     /// That of its middle.
     Middle,
-}
-
-/// The ring's side of a contact over a step.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct RingStep {
-    /// What carries the ring at the start: displacement and velocity; zero of an elastic ring.
-    pub carrier: [[f64; 5]; 2],
-    /// Whether a dof of the carrier has inertia: else its velocity is the mean over the step.
-    pub has_inertia: [bool; 5],
-    /// Of an elastic ring, motion of groove (r, z), patch (t, q) and slope (r, z) at the start; None: the ring is
-    /// rigid.
-    pub elastic: Option<[f64; 6]>,
-    /// Mean speed of the ring over the step, and that at its end, rad/s.
-    pub spin: [f64; 2],
 }
 
 /// A contact over a step.
@@ -47,6 +36,10 @@ pub struct ContactStep {
     pub law: ContactLaw,
     /// |l| at which ball and groove touch, m.
     pub touching: f64,
+    /// Sign of the raceway's side.
+    pub sign: f64,
+    /// The surfaces over which it rolls; None: they are smooth.
+    pub surface: Option<RollingSurface>,
     /// How normal forces are evaluated.
     pub scheme: ContactScheme,
     /// Damping along the normal.
@@ -82,19 +75,19 @@ pub struct FoundContact {
     pub work_at_slip: f64,
     /// Torque about the ring's axis with which traction turns the ball, N m: the drive of the ring works against it.
     pub torque: f64,
-    /// The slope force.
+    /// The slope force of an elastic ring.
     pub slope: SlopeForce,
+    /// What a real surface does.
+    pub surface: Option<SurfaceForce>,
 }
 
-/// The slope force of an elastic ring on a ball over a step.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct SlopeForce {
-    /// Along the rolling direction, N.
-    pub force: f64,
-    /// Its work on the ball, J.
-    pub work: f64,
-    /// Its torque about the axis, N m.
-    pub torque: f64,
+impl FoundContact {
+    /// Force on the ball along the rolling direction by traction and by the slope of a real surface, N: the ring has
+    /// the opposite.
+    pub fn along_track(&self) -> f64 {
+        let track = self.surface.as_ref().map(|surface| surface.of_raceway);
+        track.map_or(self.traction.action[0], |track| self.traction.action[0] + track)
+    }
 }
 
 impl ContactStep {
@@ -102,8 +95,12 @@ impl ContactStep {
     pub fn evaluate(&self, [_, end]: [[f64; N_LENGTHS]; 2]) -> FoundContact {
         let x: [Jet; N_LENGTHS] = std::array::from_fn(|i| Jet::length(i, end[i]));
         let [start, last] = [self.start(), self.standing_at_end(&x)];
-        let normal = self.normal_force(&start, &last);
         let mid = self.middle(&start, &last, &x);
+        let over = self.over_surface((&start, &last), (&mid, &x));
+        let normal = match &over {
+            Some(over) => over.normal,
+            None => self.normal_force(&start, &last),
+        };
         let slip = match self.slip_at {
             SlipAt::End => self.slip_at_end(&last, &x),
             SlipAt::Middle => mid.slip,
@@ -123,6 +120,8 @@ impl ContactStep {
         self.add_normal(&mid, (&start, &last), load, &mut resists);
         let torque = self.add_traction(&mid, action, &mut resists);
         let slope = self.add_slope(&mid, load, &x, &mut resists);
+        let surface =
+            over.map(|over| add_surface(&self.ring, (&mid, &x), (&start, &last), over, &mut resists));
         let mean = mid.slip.slip.map(|s| s.value);
         // Place by place where it is the slip of the middle, so that no round-off makes it positive.
         let work_at_slip = self.dt * traction.power;
@@ -140,6 +139,7 @@ impl ContactStep {
             work_at_slip,
             torque,
             slope,
+            surface,
         }
     }
 
@@ -154,7 +154,10 @@ impl ContactStep {
 
     fn start(&self) -> Standing {
         let carrier = self.ring.carrier[0].map(Jet::constant);
-        let motion = self.ring.elastic.map_or([0.0; 2], |at| [at[0], at[1]]);
+        let motion = self
+            .ring
+            .elastic
+            .map_or([0.0; 2], |at| [at.start[0], at.start[1]]);
         standing(
             &self.groove,
             fixed(self.ball[0]),
@@ -165,14 +168,12 @@ impl ContactStep {
 
     fn standing_at_end(&self, x: &[Jet; N_LENGTHS]) -> Standing {
         let place = plus(fixed(self.ball[0]), [x[0], x[1], x[2]]);
-        standing(&self.groove, place, self.carrier_at_end(x), self.groove_motion(x))
-    }
-
-    fn carrier_at_end(&self, x: &[Jet; N_LENGTHS]) -> [Jet; 5] {
-        match self.ring.elastic {
-            Some(_) => [Jet::default(); 5],
-            None => std::array::from_fn(|i| x[6 + i]),
-        }
+        standing(
+            &self.groove,
+            place,
+            self.ring.carrier_at_end(x),
+            self.groove_motion(x),
+        )
     }
 
     fn groove_motion(&self, x: &[Jet; N_LENGTHS]) -> [Jet; 2] {
@@ -184,7 +185,7 @@ impl ContactStep {
 
     /// Mean velocity of the elastic patch along t and q.
     fn patch_velocity(&self, x: &[Jet; N_LENGTHS]) -> [Jet; 2] {
-        let of = |at: [f64; 6]| [2, 3].map(|i| (x[6 + i] + -at[i]) * (1.0 / self.dt));
+        let of = |at: ElasticPlace| [2, 3].map(|i| (x[6 + i] + -at.start[i]) * (1.0 / self.dt));
         self.ring.elastic.map_or([Jet::default(); 2], of)
     }
 
@@ -197,12 +198,29 @@ impl ContactStep {
         mean_force(&self.law, self.touching, reach, self.scheme, damping)
     }
 
+    /// The contact on the surfaces over which it rolls; None where they are smooth.
+    fn over_surface(
+        &self,
+        course: (&Standing, &Standing),
+        middle: (&Middle, &[Jet; N_LENGTHS]),
+    ) -> Option<OverSurface> {
+        let terms = StripTerms {
+            compliance: self.law.compliance(),
+            touching: self.touching,
+            sign: self.sign,
+            scheme: self.scheme,
+            damping: self.damping.as_ref().map(|damping| (damping, self.dt)),
+        };
+        let surface = self.surface.as_ref()?;
+        Some(over_surface(surface, terms, &self.ring, course, middle))
+    }
+
     /// Slip at the end of the step in the frame of the end.
     fn slip_at_end(&self, end: &Standing, x: &[Jet; N_LENGTHS]) -> SlipJets {
         let last = |change: Jet, before: f64| change * (2.0 / self.dt) + -before;
         let ball = |first: usize, before: [f64; 3]| [0, 1, 2].map(|i| last(x[first + i], before[i]));
         let [from, velocity] = self.ring.carrier;
-        let carrier = self.carrier_at_end(x);
+        let carrier = self.ring.carrier_at_end(x);
         let rate = std::array::from_fn(|i| {
             let change = carrier[i] + -from[i];
             match (self.ring.elastic, self.ring.has_inertia[i]) {
@@ -231,7 +249,7 @@ impl ContactStep {
     fn middle(&self, start: &Standing, end: &Standing, x: &[Jet; N_LENGTHS]) -> Middle {
         let from = self.ring.carrier[0];
         let change: [Jet; 5] = {
-            let carrier = self.carrier_at_end(x);
+            let carrier = self.ring.carrier_at_end(x);
             std::array::from_fn(|i| carrier[i] + -from[i])
         };
         let change = if self.ring.elastic.is_some() {
@@ -333,9 +351,8 @@ impl ContactStep {
         let Some(at) = self.ring.elastic else {
             return SlopeForce::default();
         };
-        let mean = [0, 1].map(|i| (x[10 + i] + at[4 + i]) * 0.5);
         let out = (mid.arm[0] * mid.arm[0] + mid.arm[1] * mid.arm[1]).sqrt();
-        let along = (load[0] * mean[0] + load[1] * mean[1]) * out.recip();
+        let along = (load[0] * at.slope[0] + load[1] * at.slope[1]) * out.recip();
         let force = times(along, mid.frame.rolling);
         for i in 0..3 {
             resists[i] = resists[i] - force[i];
@@ -359,27 +376,6 @@ impl ContactStep {
         let x: [Jet; N_LENGTHS] = std::array::from_fn(|i| Jet::constant(end[i]));
         let [start, last] = [self.start(), self.standing_at_end(&x)];
         self.middle(&start, &last, &x).frame.directions()
-    }
-}
-
-/// The middle of a step.
-struct Middle {
-    frame: ContactFrame,
-    /// From the ring's centre to the ball's, m.
-    arm: Vector,
-    /// Slip there.
-    slip: SlipJets,
-}
-
-impl Middle {
-    /// Adds a force and a moment about the ring's centre, both on the ring, to what resists the carrier's motion.
-    fn add_to_ring(&self, force: Vector, moment: Vector, resists: &mut [Jet; N_LENGTHS]) {
-        for i in 0..3 {
-            resists[6 + i] = resists[6 + i] - force[i];
-        }
-        for (i, turning) in self.frame.tilts.into_iter().enumerate() {
-            resists[9 + i] = resists[9 + i] - dot(turning, moment);
-        }
     }
 }
 

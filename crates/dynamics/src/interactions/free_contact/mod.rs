@@ -20,24 +20,34 @@
 //! u_c(psi) the motion of the groove centre and F the normal force on the ring, the ball gets
 //!
 //! ```text
-//! T = F . (du_c/dpsi) / r      along e_psi, at the mean motion of the ring over the step
+//! T = F . (du_c/dpsi) / r      along e_psi
 //! ```
 //!
 //! which is the energy that the contact gives as its patch moves on, per length of its course: what the patch loses,
-//! the ball and the drive of the ring gain. Where a ring is rigid the exact lengths have this force in them.
+//! the ball and the drive of the ring gain. du_c/dpsi is that of the middle of the step if it changes as in the step
+//! before: of second order, and no unknown. Where a ring is rigid the exact lengths have this force in them.
+//!
+//! On a real surface the normal force is that of strips, and the slope of the surface is a force along the track
+//! ([`rolling_surface`]). Traction acts over the ellipse that has the contact's force on a smooth groove.
 //!
 //! Lengths of a link: displacement and rotation vector of the ball since the start (3 + 3), then either displacement of
-//! what carries the ring (5) or motion of an elastic ring at the ball (groove r, z; patch t, q; du_c/dpsi r, z).
+//! what carries the ring (5) or motion of an elastic ring at the ball (groove r, z; patch t, q).
 
 pub mod contact;
 pub mod jet;
+pub mod orientation;
 pub mod place;
+pub mod ring_step;
+pub mod rolling_surface;
+pub mod surface_force;
 
 use timer::SharedLaps;
 
-pub use contact::{ContactStep, FoundContact, RingStep, SlipAt};
+pub use contact::{ContactStep, FoundContact, SlipAt};
 use jet::Jet;
 pub use jet::N_LENGTHS;
+pub use ring_step::{ElasticPlace, FREE_FEET, FREE_PORTS, RingStep, SlopeForce};
+pub use surface_force::SurfaceForce;
 
 use crate::system::{Body, Character, Interaction, Lengths, Link, LinkForces, LinkRows, LinkTerm};
 
@@ -46,7 +56,7 @@ use crate::system::{Body, Character, Interaction, Lengths, Link, LinkForces, Lin
 pub enum Carrier {
     /// A lumped body.
     Lumped(usize),
-    /// An elastic ring: of each ball the ports of groove and patch, then what is seen of the slopes.
+    /// An elastic ring: of each ball the ports of groove and patch.
     Elastic(usize),
     /// Nothing.
     AtRest,
@@ -71,7 +81,6 @@ impl FreeContacts {
 
     /// Connects balls, which are lumped bodies from `first_ball` on, and rings, inner first.
     pub fn connect(&mut self, first_ball: usize, rings: [Carrier; 2]) {
-        let n_balls = self.contacts.len() / 2;
         let link = |(index, _): (usize, &ContactStep)| {
             let (ball, side) = (index / 2, index % 2);
             let mut terms: Vec<LinkTerm> = (0..6)
@@ -80,7 +89,7 @@ impl FreeContacts {
             match rings[side] {
                 Carrier::Lumped(body) => terms.extend((0..5).map(|c| unit(Body::Lumped(body), c, 6 + c))),
                 Carrier::Elastic(body) => {
-                    let coordinates = elastic_coordinates(ball, n_balls).enumerate();
+                    let coordinates = (FREE_PORTS * ball..FREE_PORTS * (ball + 1)).enumerate();
                     terms.extend(coordinates.map(|(i, c)| unit(Body::Elastic(body), c, 6 + i)));
                 }
                 Carrier::AtRest => {}
@@ -95,19 +104,6 @@ impl FreeContacts {
         let at = |(i, contact): (usize, &ContactStep)| contact.evaluate(lengths.of(i));
         self.contacts.iter().enumerate().map(at).collect()
     }
-}
-
-/// Nodal weights of a contact on an elastic ring: groove r, z; patch t, q; slope r, z.
-pub const FREE_FEET: usize = 3;
-/// Functionals of a contact on an elastic ring that forces act on: groove and patch.
-pub const FREE_PORTS: usize = 4;
-/// Functionals of a contact on an elastic ring that are only seen: the slope.
-pub const FREE_SEEN: usize = 2;
-
-/// Coordinates of an elastic ring at a ball: ports of its groove and patch, and the slope seen there.
-fn elastic_coordinates(ball: usize, n_balls: usize) -> impl Iterator<Item = usize> {
-    let seen = FREE_PORTS * n_balls + FREE_SEEN * ball;
-    (FREE_PORTS * ball..FREE_PORTS * (ball + 1)).chain(seen..seen + FREE_SEEN)
 }
 
 /// Forces and tangents of links from what resists the growth of the lengths of each.

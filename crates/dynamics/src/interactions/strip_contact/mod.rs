@@ -99,13 +99,20 @@ impl<'s> StripSite<'s> {
         (force, lateral)
     }
 
+    /// The contact at l on the surface of the step's middle.
+    pub fn at(&self, l: [f64; 2]) -> StripForce {
+        self.evaluate(self.strips.line(), size(l) - self.touching, self.angle(l))
+    }
+
+    /// The contact at l on the surface of the start, 0, or the end, 1, of the step.
+    pub fn at_end(&self, end: usize, l: [f64; 2]) -> StripForce {
+        let line = self.strips.lines_at_ends()[end];
+        self.evaluate(line, size(l) - self.touching, self.angle(l))
+    }
+
     /// Energies with the lengths and on the lines of start and end of a step, J.
     pub fn energies_at_ends(&self, l: [[f64; 2]; 2]) -> [f64; 2] {
-        let lines = self.strips.lines_at_ends();
-        [0, 1].map(|end| {
-            let g = size(l[end]) - self.touching;
-            self.evaluate(lines[end], g, self.angle(l[end])).energy
-        })
+        [0, 1].map(|end| self.at_end(end, l[end]).energy)
     }
 
     fn angle(&self, l: [f64; 2]) -> f64 {
@@ -133,6 +140,13 @@ impl<'s> StripSite<'s> {
         }
         result
     }
+}
+
+/// Force on the ring [radial, axial], N, of a contact at l.
+pub fn force_on_ring(found: &StripForce, l: [f64; 2]) -> [f64; 2] {
+    let (n, length) = (unit(l), size(l));
+    let t = across(n);
+    [0, 1].map(|i| found.force * n[i] + found.moment / length * t[i])
 }
 
 /// t = (-n_axial, n_radial).

@@ -1,7 +1,6 @@
 //! The assembly of a system: lengths, residual and tangent from its lists.
 
 mod finite;
-mod seen;
 
 use std::ops::Range;
 
@@ -46,7 +45,7 @@ impl<'a> System<'a> {
         let sizes = lumped
             .iter()
             .map(|body| [body.n_unknowns(), body.n_coordinates()]);
-        let sizes = sizes.chain(elastic.iter().map(|body| [body.n_moving, body.n_coordinates()]));
+        let sizes = sizes.chain(elastic.iter().map(|body| [body.n_moving; 2]));
         let mut first = vec![[0, 0]];
         for [unknowns, coordinates] in sizes {
             let [u, c] = first[first.len() - 1];
@@ -252,7 +251,6 @@ impl<'a> System<'a> {
             for (link, t) in family.links().iter().zip(found.tangents.chunks_exact(m * m)) {
                 let finite = link.finite.map(|finite| (finite, self.mean_rows(&finite, &end)));
                 self.moved_by(link, finite, &moves, &mut moved);
-                self.add_seen(link, (t, m), &moved, tangent);
                 let at = |finite: &CarriedCircle| finite.circle.rows(self.finite_coordinates(finite, &end));
                 let finite = link.finite.map(|finite| (finite, at(&finite)));
                 self.moved_by(link, finite, &moves, &mut at_end);
@@ -292,10 +290,7 @@ impl<'a> System<'a> {
     /// All coordinates at the start.
     fn at_start(&self) -> Vec<f64> {
         let lumped = self.lumped.iter().flat_map(|body| body.start());
-        let elastic = self
-            .elastic
-            .iter()
-            .flat_map(|body| body.start[..body.n_moving].iter().chain(&body.seen.start));
+        let elastic = self.elastic.iter().flat_map(|body| &body.start[..body.n_moving]);
         lumped.chain(elastic).copied().collect()
     }
 
@@ -307,11 +302,8 @@ impl<'a> System<'a> {
             let own = self.first[i][1]..self.first[i + 1][1];
             body.place(&x[self.unknowns(Body::Lumped(i))], &mut end[own]);
         }
-        for (i, body) in self.elastic.iter().enumerate() {
+        for i in 0..self.elastic.len() {
             end.extend_from_slice(&x[self.unknowns(Body::Elastic(i))]);
-            if !body.seen.start.is_empty() {
-                end.extend(body.seen_at(&self.ports(i, x)));
-            }
         }
         end
     }

@@ -62,16 +62,29 @@ fn what_free_balls_replace_is_refused_with_the_reason() {
     let expected = "[effects.temperature] stands beside balls.motion = \"free\", which is not computed; remove it, or \
                     use balls.motion = \"kinematic\"";
     assert!(message.contains(expected), "{message}");
-    let waves = "[[profiles.waviness]]\nring = \"inner\"\norder = 19\namplitude = \"0.5 um\"";
-    let message = message_of(&free(COULOMB, waves), &[]);
-    let expected =
-        "profiles stands beside balls.motion = \"free\", which is not computed; use balls.motion = ";
-    assert!(message.contains(expected), "{message}");
     let message = message_of(&free(COULOMB, ""), &["contact.ball=\"sphere\""]);
     let expected = "contact.ball is \"sphere\", but free balls yield as half-spaces: remove it, or use balls.motion = \
                     \"kinematic\"";
     assert!(message.contains(expected), "{message}");
     let message = message_of(&free(COULOMB, ""), &["speed.ball_speeds=\"outer_control\""]);
+    let expected = "speed.ball_speeds stands beside balls.motion = \"free\", but the speeds of free balls are results; \
+                    remove it";
+    assert!(message.contains(expected), "{message}");
+}
+
+/// Wrong: surfaces that are computed beside free balls would be refused, or those that are not be computed.
+#[test]
+fn free_balls_roll_on_real_surfaces() {
+    let surfaces = "[[profiles.waviness]]\nring = \"inner\"\norder = 19\namplitude = \"0.5 um\"\n\n\
+                    [[profiles.waviness]]\nball = 2\norder = 3\namplitude = \"0.5 um\"\n";
+    let scene = parse(&free(COULOMB, surfaces), &[]).unwrap_or_else(|e| panic!("{e}"));
+    assert_eq!(scene.balls, BallMotion::Free);
+    assert!(!scene.profiles.raceways[0].is_empty() && scene.profiles.balls.contains_key(&2));
+    let message = message_of(&free(COULOMB, surfaces), &["contact.ball=\"sphere\""]);
+    let expected = "contact.ball is \"sphere\"; beside profiles both contacts of a ball are on their own, use \
+                    \"half_space\"";
+    assert!(message.contains(expected), "{message}");
+    let message = message_of(&free(COULOMB, surfaces), &["speed.ball_speeds=\"outer_control\""]);
     let expected = "speed.ball_speeds stands beside balls.motion = \"free\", but the speeds of free balls are results; \
                     remove it";
     assert!(message.contains(expected), "{message}");
@@ -124,10 +137,6 @@ fn free_balls_are_refused_where_they_are_not_computed() {
     let expected =
         "balls.motion is \"free\", whose traction natural modes do not know; use motion = \"kinematic\"";
     assert!(message_of(&modes, &[]).contains(expected));
-    let message = message_of(&free(COULOMB, ""), &["contact.edges=true"]);
-    let expected = "contact.edges stands beside balls.motion = \"free\", which is not computed; use balls.motion = \
-                    \"kinematic\"";
-    assert!(message.contains(expected), "{message}");
     let message = message_of(
         &free(COULOMB, ""),
         &["dynamic.integrator=\"chung_hulbert\"", "dynamic.rho=0.8"],
