@@ -7,7 +7,7 @@
 use fem::facet;
 use mesh::FacetKind;
 
-use crate::raceway::unwrap_near;
+use crate::unwrap::unwrap_near;
 
 /// Distance of the nodes of an affine facet from where the affine map has them, reference coordinates: what round-off
 /// of positions makes of a thousandth of a turn, with a margin.

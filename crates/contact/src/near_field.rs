@@ -30,7 +30,8 @@ use std::f64::consts::PI;
 use rayon::prelude::*;
 
 use crate::halfspace::{CurvatureRules, CurvedSurface, EllipticPressure};
-use crate::raceway::{Groove, unwrap_near};
+use crate::raceway::Groove;
+use crate::unwrap::unwrap_near;
 
 /// Bins of azimuth in which points are looked up.
 const N_BINS: usize = 1024;

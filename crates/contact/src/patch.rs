@@ -12,37 +12,13 @@
 use crate::error::ContactError;
 use crate::halfspace::patch_compliance;
 use crate::hertz::Elastic;
+use crate::patch_shape::PatchShape;
 use crate::pressure::{NodeSlopes, NodeSums};
 use crate::quadrature::PressureRule;
 use crate::raceway::RacewaySurface;
 use crate::vector::cross;
 use crate::weights::NodalWeights;
 use mesh::NodePositions;
-
-/// Share of the way to the groove's edge that a patch may fill.
-const EDGE_SHARE: f64 = 0.98;
-
-/// Where and how large a patch is.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct PatchShape {
-    /// Azimuth of the ball in the ring's frame, rad.
-    pub azimuth: f64,
-    /// Contact angle, rad.
-    pub angle: f64,
-    /// Semi-axes [along the groove, rolling direction], m.
-    pub semi_axes: [f64; 2],
-    /// The Hertz ellipse reaches beyond the edge of the groove: edge contact, Hertz theory does not hold.
-    pub truncated: bool,
-}
-
-/// How small a patch may be.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct LeastSize {
-    /// Least semi-axis in both directions, node spacings.
-    pub spacings: f64,
-    /// Least semi-axis in the rolling direction, m.
-    pub rolling: f64,
-}
 
 /// A contact force spread over the raceway.
 #[derive(Clone, Debug, PartialEq)]
@@ -53,35 +29,6 @@ pub struct Patch {
     pub weights: NodalWeights,
     /// Half-space compliance of the patch c_s, m/N.
     pub compliance: f64,
-}
-
-impl PatchShape {
-    /// Shape at an azimuth and contact angle, at least the Hertz ellipse `hertz_axes` (m) and `least`, at most up to
-    /// the edge of the groove.
-    pub fn new(
-        surface: &RacewaySurface,
-        azimuth: f64,
-        angle: f64,
-        hertz_axes: [f64; 2],
-        least: LeastSize,
-    ) -> Result<PatchShape, ContactError> {
-        let spacing = surface.spacing(surface.locate(azimuth, angle)?);
-        let room = EDGE_SHARE * surface.rim_distance(angle);
-        let along = hertz_axes[0].max(least.spacings * spacing[0]).min(room);
-        let rolling = hertz_axes[1].max(least.spacings * spacing[1]).max(least.rolling);
-        Ok(PatchShape {
-            azimuth,
-            angle,
-            semi_axes: [along, rolling],
-            truncated: is_truncated(surface, angle, hertz_axes),
-        })
-    }
-}
-
-/// Whether a Hertz ellipse of semi-axes `hertz_axes`, m, at a contact angle, rad, reaches beyond the edge of the
-/// groove.
-pub fn is_truncated(surface: &RacewaySurface, angle: f64, hertz_axes: [f64; 2]) -> bool {
-    hertz_axes[0] > EDGE_SHARE * surface.rim_distance(angle)
 }
 
 impl Patch {

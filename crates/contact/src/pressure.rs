@@ -8,9 +8,10 @@ use fem::facet;
 use mesh::{FacetKind, NodePositions};
 
 use crate::error::ContactError;
-use crate::patch::PatchShape;
+use crate::patch_shape::PatchShape;
 use crate::quadrature::PressureRule;
-use crate::raceway::{Location, RacewaySurface, unwrap_near};
+use crate::raceway::{Location, RacewaySurface};
+use crate::unwrap::unwrap_near;
 
 /// Sums over the points of a pressure, by node.
 pub(crate) struct NodeSums {

@@ -5,8 +5,6 @@
 //! the raceway is covered without gaps and interpolation is continuous. Search is over a uniform grid of
 //! bins: constant time per point. The groove angle is 0 at the groove bottom and positive as contact angles are.
 
-use std::f64::consts::PI;
-
 use fem::facet;
 use mesh::{Facet, FacetKind, Mesh};
 
@@ -15,6 +13,7 @@ use crate::error::ContactError;
 use crate::facet_map::{Affine, azimuth_slope, invert, outside};
 use crate::geometry::Side;
 use crate::neighbours::Neighbours;
+use crate::unwrap::unwrap_near;
 
 /// Edges crossed on the way to a point before it is searched in the bins.
 const MOST_EDGES: usize = 6;
@@ -276,14 +275,6 @@ fn corner_kind(kind: FacetKind) -> FacetKind {
 
 fn coordinates_first(coordinates: &[[f64; 2]], first: usize) -> f64 {
     coordinates[first][0]
-}
-
-/// The angle equal to `angle` modulo a turn that lies within half a turn of `reference`.
-pub fn unwrap_near(angle: f64, reference: f64) -> f64 {
-    if (angle - reference).abs() < PI {
-        return angle;
-    }
-    angle - 2.0 * PI * ((angle - reference) / (2.0 * PI)).round()
 }
 
 /// Spacing of the nodes of every facet, averaged over the facets that share a node.

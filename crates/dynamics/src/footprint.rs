@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use contact::facets::FacetContact;
-use contact::patch::PatchShape;
+use contact::patch_shape::PatchShape;
 use contact::{ContactError, FacetSurface, Groove, NodalWeights, Patch, RacewaySurface, Side, Unevenness};
 use mesh::NodePositions;
 use rayon::prelude::*;

@@ -4,7 +4,7 @@ mod support;
 
 use std::collections::BTreeMap;
 
-use contact::patch::PatchShape;
+use contact::patch_shape::PatchShape;
 use contact::quadrature::PressureRule;
 use contact::{Patch, RacewaySurface, Side};
 use dynamics::model::elastic;

@@ -18,10 +18,10 @@ pub mod positions;
 pub mod revolution;
 pub mod ring;
 pub mod section;
+pub mod torus;
 
 pub use check::{
-    Coverage, Cylinder, Revolved, Torus, check_mesh, check_torus, check_unit, check_whole, coverage,
-    require_groups,
+    Coverage, Cylinder, Revolved, check_mesh, check_torus, check_unit, check_whole, coverage, require_groups,
 };
 pub use element::{ElementKind, FacetKind};
 pub use error::{MeshError, Place};
@@ -44,3 +44,4 @@ pub use revolution::{
 };
 pub use ring::{RingGeometry, RingSection, RingSide, VolumeMoments, ring_geo, ring_tet_geo};
 pub use section::{Arc, Section, SectionEdge, Snap, read_section, read_section_with_origin, revolve};
+pub use torus::Torus;

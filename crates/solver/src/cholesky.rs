@@ -44,6 +44,14 @@ pub struct SparseCholesky {
     values: Vec<f64>,
 }
 
+impl Symbolic {
+    /// Factors a matrix of the analysed pattern, on the calling thread. Time `flops() / (10..40 GFlop/s)`.
+    pub fn factor(&self, matrix: &CsMat<f64>) -> Result<SparseCholesky, SolverError> {
+        self.require_pattern(matrix)?;
+        SparseCholesky::new(self.clone(), matrix)
+    }
+}
+
 impl SparseCholesky {
     /// Factors `matrix`, whose pattern is that of `symbolic`.
     pub(crate) fn new(symbolic: Symbolic, matrix: &CsMat<f64>) -> Result<Self, SolverError> {

@@ -14,7 +14,6 @@ use faer::sparse::linalg::{SupernodalThreshold, SymbolicSupernodalParams};
 use faer::{Par, Side};
 use sprs::CsMat;
 
-use crate::cholesky::SparseCholesky;
 use crate::elimination_tree::postordered;
 use crate::error::SolverError;
 use crate::permutation::invert;
@@ -146,8 +145,8 @@ impl Symbolic {
         self.factor_bytes() + self.factor_scratch().unaligned_bytes_required()
     }
 
-    /// Factors a matrix of the analysed pattern, on the calling thread. Time `flops() / (10..40 GFlop/s)`.
-    pub fn factor(&self, matrix: &CsMat<f64>) -> Result<SparseCholesky, SolverError> {
+    /// Fails unless a matrix has the analysed pattern.
+    pub(crate) fn require_pattern(&self, matrix: &CsMat<f64>) -> Result<(), SolverError> {
         square_size(matrix)?;
         if Pattern::of(matrix) != self.shared.pattern {
             let expected = self.shared.pattern.n_entries;
@@ -156,7 +155,7 @@ impl Symbolic {
                 expected,
             });
         }
-        SparseCholesky::new(self.clone(), matrix)
+        Ok(())
     }
 
     pub(crate) fn factor_scratch(&self) -> StackReq {

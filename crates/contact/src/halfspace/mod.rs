@@ -7,8 +7,10 @@ mod confocal;
 mod curvature;
 mod rays;
 mod stress;
+mod target;
 
 pub use axis::{Extreme, Subsurface, subsurface};
 pub use compliance::patch_compliance;
-pub use curvature::{CurvatureRules, CurvedSurface, point_load as curved_point_load};
+pub use curvature::{CurvatureRules, CurvedSurface};
 pub use stress::EllipticPressure;
+pub use target::point_load as curved_point_load;

@@ -11,7 +11,7 @@
 use std::f64::consts::{FRAC_PI_2, PI};
 
 use super::confocal::{LANES, Lanes};
-use super::curvature::Target;
+use super::target::Target;
 use crate::quadrature::gauss_legendre;
 
 /// Terms of the series of sine and cosine up to a right angle: error 4e-14.

@@ -1,7 +1,7 @@
 //! Where the contacts of a motion leave what Hertz's theory and bearing steel can do: said, not refused.
 
 use contact::Side;
-use contact::patch::is_truncated;
+use contact::patch_shape::is_truncated;
 
 use super::run::{Motion, MovingRing};
 use super::state::MotionState;

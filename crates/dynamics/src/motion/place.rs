@@ -12,7 +12,7 @@
 
 use std::borrow::Cow;
 
-use contact::patch::PatchShape;
+use contact::patch_shape::PatchShape;
 use contact::{NodalWeights, Patch, Side};
 use rayon::prelude::*;
 

@@ -1,6 +1,6 @@
 //! What is reported of a state: shaft, balls, ring displacements.
 
-use contact::patch::PatchShape;
+use contact::patch_shape::PatchShape;
 use contact::{LoadedPatch, Side};
 
 use super::free_state::FreeState;

@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 use contact::near_field::in_axes;
-use contact::patch::PatchShape;
+use contact::patch_shape::PatchShape;
 use contact::{RingPoint, Side};
 use fem::stress::von_mises;
 

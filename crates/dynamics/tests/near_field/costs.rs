@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 use std::time::Instant;
 
-use contact::patch::PatchShape;
+use contact::patch_shape::PatchShape;
 use contact::{LoadedPatch, NearField, RacewaySurface, Side};
 use dynamics::Hold;
 use fem::stress::StressRecovery;

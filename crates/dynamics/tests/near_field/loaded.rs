@@ -1,6 +1,6 @@
 //! A ring of the 7010C under equal contact forces through patches, alone.
 
-use contact::patch::PatchShape;
+use contact::patch_shape::PatchShape;
 use contact::quadrature::PressureRule;
 use contact::{Patch, RacewaySurface, RingPoint, Side};
 use dynamics::model::elastic;

@@ -4,7 +4,7 @@
 //! an edge along xi: `(1 - xi^2)(1 + eta_a eta)(1 + zeta_a zeta) / 4`, and likewise along eta and zeta. Zienkiewicz
 //! and Taylor, The Finite Element Method, 5th ed., vol. 1, 2000, section 8.11.
 
-use super::MAX_NODES;
+use super::size::MAX_NODES;
 
 /// Reference coordinates: corners, mid-nodes of the bottom, the top and the vertical edges.
 pub(super) const NODES: [[f64; 3]; 20] = [

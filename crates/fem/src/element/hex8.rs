@@ -2,7 +2,8 @@
 //!
 //! Hughes, The Finite Element Method, 1987, section 3.5.
 
-use super::{MAX_NODES, hex20};
+use super::hex20;
+use super::size::MAX_NODES;
 
 /// Values of the shape functions, first 8 of `[MAX_NODES]`.
 pub(super) fn shape(xi: [f64; 3]) -> [f64; MAX_NODES] {

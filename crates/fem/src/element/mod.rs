@@ -5,12 +5,12 @@
 
 mod hex20;
 mod hex8;
+mod size;
 mod tet10;
 
 use mesh::ElementKind;
 
-/// Nodes of the largest element; arrays of shape functions have this length and end in zeros.
-pub const MAX_NODES: usize = 20;
+pub use size::MAX_NODES;
 
 /// Values of the shape functions at a reference point, `[MAX_NODES]`.
 pub fn shape(kind: ElementKind, xi: [f64; 3]) -> [f64; MAX_NODES] {

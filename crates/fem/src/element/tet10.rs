@@ -4,7 +4,7 @@
 //! Corner: `L (2 L - 1)`; mid-node of the edge ab: `4 L_a L_b`. Zienkiewicz and Taylor, The Finite Element Method,
 //! 5th ed., vol. 1, 2000, section 8.12.
 
-use super::MAX_NODES;
+use super::size::MAX_NODES;
 
 /// Reference coordinates: corners, then mid-nodes of the edges 01 12 02 03 13 23.
 pub(super) const NODES: [[f64; 3]; 10] = [

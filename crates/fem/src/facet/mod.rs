@@ -6,12 +6,12 @@
 
 mod quad4;
 mod quad8;
+mod size;
 mod tri6;
 
 use mesh::FacetKind;
 
-/// Nodes of the largest facet; arrays of shape functions have this length and end in zeros.
-pub const MAX_FACET_NODES: usize = 8;
+pub use size::MAX_FACET_NODES;
 
 /// Values of the shape functions at a reference point, `[MAX_FACET_NODES]`.
 #[inline]

@@ -1,6 +1,7 @@
 //! The bilinear quadrilateral: `N_a = (1 + xi_a xi)(1 + eta_a eta) / 4`.
 
-use super::{MAX_FACET_NODES, quad8};
+use super::quad8;
+use super::size::MAX_FACET_NODES;
 
 /// Values of the shape functions, first 4 of `[MAX_FACET_NODES]`.
 #[inline]

@@ -4,7 +4,7 @@
 //! `(1 - xi^2)(1 + eta_a eta) / 2`, and likewise along eta. Zienkiewicz and Taylor, The Finite Element Method, 5th ed.,
 //! vol. 1, 2000, section 8.6.
 
-use super::MAX_FACET_NODES;
+use super::size::MAX_FACET_NODES;
 
 /// Reference coordinates: corners, then mid-nodes of the edges 01 12 23 30.
 pub(super) const NODES: [[f64; 2]; 8] = [

@@ -2,7 +2,7 @@
 //!
 //! Corner: `L (2 L - 1)`; mid-node of the edge ab: `4 L_a L_b`.
 
-use super::MAX_FACET_NODES;
+use super::size::MAX_FACET_NODES;
 
 /// Reference coordinates: corners, then mid-nodes of the edges 01 12 20.
 pub(super) const NODES: [[f64; 2]; 6] = [

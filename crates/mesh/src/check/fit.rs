@@ -1,26 +1,10 @@
 //! Does the mesh belong to this bearing: is its raceway the groove, and its unit the one stated?
 
+use super::groups::require_groups;
 use crate::error::MeshError;
 use crate::mesh::Mesh;
 use crate::origin::Origin;
-
-/// A raceway groove about the axis z.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Torus {
-    /// Radius of the circle of groove centres, m.
-    pub centre_radius: f64,
-    /// Radius of the groove, m.
-    pub groove_radius: f64,
-    /// Axial position of the plane of groove centres, m.
-    pub centre_z: f64,
-}
-
-impl Torus {
-    /// Signed distance of `x` (m) from the groove surface, m: positive farther from the groove centre.
-    pub fn distance(&self, x: [f64; 3]) -> f64 {
-        (x[0].hypot(x[1]) - self.centre_radius).hypot(x[2] - self.centre_z) - self.groove_radius
-    }
-}
+use crate::torus::Torus;
 
 /// Every node of `group` must lie on `torus` within `tolerance`, m. The group must exist ([`crate::require_groups`]).
 pub fn check_torus(
@@ -30,7 +14,7 @@ pub fn check_torus(
     torus: &Torus,
     tolerance: f64,
 ) -> Result<(), MeshError> {
-    crate::check::require_groups(mesh, &origin.path, &[group])?;
+    require_groups(mesh, &origin.path, &[group])?;
     let nodes = mesh.group_nodes(group);
     let mut worst = (0, 0.0_f64);
     let mut count = 0;

@@ -6,6 +6,7 @@ use std::f64::consts::TAU;
 use crate::error::MeshError;
 use crate::mesh::{Facet, Mesh};
 use crate::origin::Origin;
+use crate::torus::Torus;
 
 /// A surface of revolution about the axis z.
 pub trait Revolved {
@@ -13,9 +14,9 @@ pub trait Revolved {
     fn distance(&self, x: [f64; 3]) -> f64;
 }
 
-impl Revolved for super::Torus {
+impl Revolved for Torus {
     fn distance(&self, x: [f64; 3]) -> f64 {
-        super::Torus::distance(self, x)
+        Torus::distance(self, x)
     }
 }
 

@@ -3,7 +3,8 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use super::raw::{Block, RawMsh};
+use super::block::Block;
+use super::raw::RawMsh;
 use super::tags::TagMap;
 use super::types::{gmsh_type, remedy};
 use crate::error::{MeshError, quoted_list};

@@ -8,6 +8,7 @@
 //!
 //! Cost: the file and its tables are held in memory, about four times the size of a binary file.
 
+mod block;
 mod body;
 mod cursor;
 mod facets;

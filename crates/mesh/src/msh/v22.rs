@@ -1,7 +1,7 @@
 //! The sections of MSH 2.2 in text form (Gmsh reference manual, "MSH file format version 2").
 
+use super::block::Block;
 use super::cursor::Cursor;
-use super::raw::Block;
 use super::types::gmsh_type;
 use crate::error::MeshError;
 

@@ -6,8 +6,8 @@
 
 use std::collections::BTreeMap;
 
+use super::block::Block;
 use super::cursor::Cursor;
-use super::raw::Block;
 use super::types::gmsh_type;
 use crate::error::MeshError;
 

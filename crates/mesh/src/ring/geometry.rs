@@ -3,9 +3,9 @@
 use std::f64::consts::TAU;
 
 use super::RingSection;
-use crate::check::Torus;
 use crate::error::MeshError;
 use crate::section::{Arc, Snap};
+use crate::torus::Torus;
 
 /// What follows from the measures of a ring; the groove centres are at z = 0.
 #[derive(Clone, Copy, Debug, PartialEq)]

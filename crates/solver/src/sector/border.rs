@@ -6,8 +6,9 @@
 
 use dense::DenseCholesky;
 
+use super::agree::agree;
 use super::columns::SectorColumns;
-use super::factor::{SectorCholesky, agree};
+use super::factor::SectorCholesky;
 use crate::bordered::factor_complement;
 use crate::error::SolverError;
 use crate::linear_solver::{LinearSolver, SparseVector};

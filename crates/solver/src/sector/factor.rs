@@ -8,13 +8,11 @@ use comm::Communicator;
 use rayon::prelude::*;
 use sprs::CsMat;
 
+use super::agree::agree;
 use super::interface::{Interface, InterfaceSymbolic};
 use super::layout::{Sector, SectorLayout};
-use super::part::{Part, PartSymbolic, SectorCost};
+use super::part::{Part, PartSymbolic, Points, SectorCost};
 use crate::error::SolverError;
-
-/// Positions of the nodes of a ring, by their numbers.
-pub type Points<'p> = dyn Fn(usize) -> [f64; 3] + Sync + 'p;
 
 /// Analysis of a ring in sectors: of those that this rank owns, and of the interface.
 #[derive(Clone, Debug)]
@@ -133,10 +131,4 @@ impl Shared {
         let shares = self.comm.shares(sectors.len());
         shares.into_iter().map(sum).collect()
     }
-}
-
-/// The result of all ranks: an error on one is an error on all.
-#[track_caller]
-pub(super) fn agree<T>(comm: Communicator, result: Result<T, SolverError>) -> Result<T, SolverError> {
-    comm.agree(result, |rank, message| SolverError::OnRank { rank, message })
 }

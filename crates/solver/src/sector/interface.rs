@@ -92,9 +92,9 @@ impl InterfaceSymbolic {
                 drop(complements);
                 whole.factor(layout, &all).map(Interface::Whole)
             }
-            InterfaceSymbolic::Reduced(reduction) => reduction
-                .factor(layout, comm, complements)
-                .map(Interface::Reduced),
+            InterfaceSymbolic::Reduced(reduction) => {
+                ReducedFactor::new(reduction, layout, comm, complements).map(Interface::Reduced)
+            }
         }
     }
 }

@@ -26,6 +26,7 @@
 //! m numbers per sector and right-hand side, and one of the solution; with a divided interface two more per level of
 //! the reduction.
 
+mod agree;
 mod border;
 mod columns;
 mod cut;
@@ -39,7 +40,7 @@ mod solve;
 
 pub use border::{BorderedColumns, SectorBordered};
 pub use columns::SectorColumns;
-pub use factor::{Points, SectorCholesky, SectorSymbolic};
+pub use factor::{SectorCholesky, SectorSymbolic};
 pub use interface::REDUCED_FROM;
 pub use layout::{Sector, SectorCut, SectorLayout, default_sectors};
-pub use part::SectorCost;
+pub use part::{Points, SectorCost};

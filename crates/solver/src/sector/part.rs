@@ -10,13 +10,15 @@ use faer::sparse::linalg::cholesky::supernodal::SymbolicSupernodalCholesky;
 use faer::{Accum, Mat, Par};
 use sprs::CsMat;
 
-use super::factor::Points;
 use super::layout::{COMPONENTS, Sector};
 use crate::dissection::dissection_within;
 use crate::error::SolverError;
 use crate::panels::Panels;
 use crate::submatrix::restrict_lower;
 use crate::symbolic::{Symbolic, supernodes};
+
+/// Positions of the nodes of a ring, by their numbers.
+pub type Points<'p> = dyn Fn(usize) -> [f64; 3] + Sync + 'p;
 
 /// Size and cost of one sector, for reports.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,29 +1,39 @@
 //! The factor of the interface by cyclic reduction, and its solution: see [`super::reduction`].
 
-use std::collections::BTreeMap;
-
 use comm::Communicator;
 use faer::linalg::matmul::matmul;
 use faer::linalg::triangular_solve::{solve_lower_triangular_in_place, solve_upper_triangular_in_place};
-use faer::{Accum, Mat, MatMut, MatRef, Par};
+use faer::{Accum, MatMut, MatRef, Par};
 use rayon::prelude::*;
 
-use super::reduction::{Blocks, Reduction, Step, starts};
+use super::layout::SectorLayout;
+use super::reduction::{OwnInterface, Reduction, Step, starts};
+use crate::error::SolverError;
 
-/// What a rank holds of the factor.
+/// The factor: its analysis, and what a rank holds of it.
 #[derive(Debug)]
 pub(super) struct ReducedFactor {
-    pub(super) reduction: Reduction,
-    /// L of the cross-sections owned.
-    pub(super) triangles: BTreeMap<usize, Mat<f64>>,
-    /// W by neighbour and cross-section owned.
-    pub(super) couplings: Blocks,
+    reduction: Reduction,
+    own: OwnInterface,
 }
 
 impl ReducedFactor {
+    /// Factors the sum of the complements of all sectors, of which those of the sectors owned are given. Collective.
+    pub(super) fn new(
+        reduction: &Reduction,
+        layout: &SectorLayout,
+        comm: Communicator,
+        complements: Vec<Vec<f64>>,
+    ) -> Result<ReducedFactor, SolverError> {
+        Ok(ReducedFactor {
+            own: reduction.eliminated(layout, comm, complements)?,
+            reduction: reduction.clone(),
+        })
+    }
+
     /// Bytes of the factor.
     pub(super) fn bytes(&self) -> usize {
-        let all = self.triangles.values().chain(self.couplings.values());
+        let all = self.own.triangles.values().chain(self.own.couplings.values());
         size_of::<f64>() * all.map(|m| m.nrows() * m.ncols()).sum::<usize>()
     }
 
@@ -63,7 +73,7 @@ impl ReducedFactor {
         let k = step.section;
         let mut result = self.values(x, k, n_rhs).to_vec();
         let y = MatMut::from_row_major_slice_mut(&mut result, self.reduction.rows(k), n_rhs);
-        solve_lower_triangular_in_place(self.triangles[&k].as_ref(), y, Par::Seq);
+        solve_lower_triangular_in_place(self.own.triangles[&k].as_ref(), y, Par::Seq);
         for &a in &step.neighbours {
             let (first, rows) = (result.len(), self.reduction.rows(a));
             result.resize(first + n_rhs * rows, 0.0);
@@ -77,7 +87,7 @@ impl ReducedFactor {
             matmul(
                 product,
                 Accum::Replace,
-                self.couplings[&[a, k]].as_ref(),
+                self.own.couplings[&[a, k]].as_ref(),
                 y,
                 1.0,
                 Par::Seq,
@@ -93,10 +103,10 @@ impl ReducedFactor {
         let mut y = MatMut::from_row_major_slice_mut(&mut result, self.reduction.rows(k), n_rhs);
         for &a in &step.neighbours {
             let known = MatRef::from_row_major_slice(self.values(x, a, n_rhs), self.reduction.rows(a), n_rhs);
-            let w = self.couplings[&[a, k]].transpose();
+            let w = self.own.couplings[&[a, k]].transpose();
             matmul(y.as_mut(), Accum::Add, w, known, -1.0, Par::Seq);
         }
-        solve_upper_triangular_in_place(self.triangles[&k].transpose(), y, Par::Seq);
+        solve_upper_triangular_in_place(self.own.triangles[&k].transpose(), y, Par::Seq);
         result
     }
 

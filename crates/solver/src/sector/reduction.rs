@@ -23,9 +23,8 @@ use faer::linalg::triangular_solve::solve_lower_triangular_in_place;
 use faer::{Accum, Mat, Par};
 use rayon::prelude::*;
 
-use super::factor::agree;
+use super::agree::agree;
 use super::layout::{SectorLayout, reduction};
-use super::reduced::ReducedFactor;
 use crate::cholesky::check_pivot;
 use crate::error::SolverError;
 
@@ -49,6 +48,15 @@ struct Addend {
 
 /// The blocks held, by rows and columns.
 pub(super) type Blocks = BTreeMap<Block, Mat<f64>>;
+
+/// What a rank holds of the factor.
+#[derive(Debug)]
+pub(super) struct OwnInterface {
+    /// L of the cross-sections owned.
+    pub(super) triangles: BTreeMap<usize, Mat<f64>>,
+    /// W by neighbour and cross-section owned.
+    pub(super) couplings: Blocks,
+}
 
 /// Analysis: who eliminates what when.
 #[derive(Clone, Debug)]
@@ -162,13 +170,13 @@ impl Reduction {
         }
     }
 
-    /// Factors the sum of the complements of all sectors, of which those of the sectors owned are given. Collective.
-    pub(super) fn factor(
+    /// Eliminates the sum of the complements of all sectors, of which those of the sectors owned are given. Collective.
+    pub(super) fn eliminated(
         &self,
         layout: &SectorLayout,
         comm: Communicator,
         complements: Vec<Vec<f64>>,
-    ) -> Result<ReducedFactor, SolverError> {
+    ) -> Result<OwnInterface, SolverError> {
         let mut blocks = self.assemble(layout, comm, complements);
         let is_diagonal = |(block, _): &(&Block, &Mat<f64>)| block[0] == block[1];
         let diagonals: BTreeMap<usize, Vec<f64>> = blocks
@@ -199,11 +207,7 @@ impl Reduction {
             let addends: Vec<Addend> = level.iter().flat_map(|step| self.addends(step)).collect();
             self.add(comm, &addends, updates, &mut blocks);
         }
-        Ok(ReducedFactor {
-            reduction: self.clone(),
-            triangles,
-            couplings,
-        })
+        Ok(OwnInterface { triangles, couplings })
     }
 
     /// The blocks of the interface at their holders. Collective.
