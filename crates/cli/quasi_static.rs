@@ -23,6 +23,7 @@ use timer::Stopwatch;
 use crate::options::Limits;
 use crate::progress::Progress;
 use crate::remarks::Remarks;
+use crate::run::seat;
 
 /// Steps between two lines of progress in a log.
 const PROGRESS_STEPS: u64 = 50;
@@ -74,6 +75,7 @@ pub fn run(
     let ended = series.run(&mut bearing, &mut progress, dir);
     let seconds = clock.lap();
     progress.finish();
+    let seat = seat(&model, &series.last, dir);
     let findings = series.findings(&ended, remarks);
     let snapshot = findings.last.clone();
     let forecast = Side::BOTH.map(|side| bearing.solver.ring(side).map(|r| r.solver.memory));
@@ -83,7 +85,9 @@ pub fn run(
         (Err(_), Err(_)) => return ended,
         (costs, _) => costs?,
     };
-    let summary = Summary::new(scene, &model, findings, &costs).with_life(life::of_run(scene, dir));
+    let summary = Summary::new(scene, &model, findings, &costs)
+        .with_life(life::of_run(scene, dir))
+        .with_seat(agree(seat)?);
     agree(summary.write(dir).map_err(Failure::from))?;
     ended?;
     console::print_snapshot(&snapshot);

@@ -7,11 +7,12 @@ use std::time::Instant;
 use anyhow::anyhow;
 use comm::{Communicator, print};
 use contact::Side;
-use dynamics::{DynamicsError, StaticSolution, StaticSolver};
+use dynamics::{DynamicsError, Model, StaticSolution, StaticSolver};
 use results::disk::Forecast;
 use results::failure::{Failure, agree, of_all};
 use results::files::Files;
 use results::memory::Forecasts;
+use results::seat::{SeatState, SeatSummary};
 use results::shown::Shown;
 use results::snapshot::Snapshot;
 use results::summary::{Findings, Summary};
@@ -137,13 +138,26 @@ pub fn run(
     if let Some(files) = results {
         let costs = agree(files.finish(read, Forecasts::at_rest(forecast), solver.laps(), start))?;
         let findings = findings(&scene, &solutions, &failure, remarks);
-        let summary = Summary::new(&scene, &model, findings, &costs).with_life(life::of_run(&scene, &dir));
+        let seat = solutions
+            .last()
+            .map_or(Ok(None), |last| seat(&model, &last.solution, &dir));
+        let summary = Summary::new(&scene, &model, findings, &costs)
+            .with_life(life::of_run(&scene, &dir))
+            .with_seat(agree(seat)?);
         agree(summary.write(&dir).map_err(Failure::from))?;
         if failure.is_none() {
             print_results(&scene, &solutions, &summary);
         }
     }
     failure.map_or(Ok(dir), Err)
+}
+
+/// Writes what the seat of the outer ring in a body carries, and sums it up; None where it is in none.
+pub fn seat(model: &Model, solution: &StaticSolution, dir: &Path) -> Result<Option<SeatSummary>, Failure> {
+    match SeatState::new(model, solution)? {
+        Some(state) => Ok(Some(state.finish(dir)?)),
+        None => Ok(None),
+    }
 }
 
 /// Says how each ring is solved.
@@ -251,6 +265,7 @@ fn same_rings(a: &Scene, b: &Scene) -> bool {
     let same_bodies = a.inner.body == b.inner.body && a.outer.body == b.outer.body;
     let rigid = a.inner.body.is_none() && a.outer.body.is_none();
     same_bodies
+        && a.body == b.body
         && a.contact.mode == b.contact.mode
         && (rigid || (a.materials.rings == b.materials.rings && grooves(a) == grooves(b)))
 }
