@@ -22,9 +22,9 @@ pub fn figures(dir: &Path) -> anyhow::Result<Vec<(String, Figure)>> {
     // Cells round the points of the table; the last column closes the circle.
     let step = 360.0 / n_round as f64;
     let x_edges = (0..=n_round).map(|i| step * i as f64).collect();
-    let half = 0.5 * (z[n_across - 1] - z[0]) / (n_across - 1) as f64;
-    let mut y_edges: Vec<f64> = z[..n_across].iter().map(|z| z - half).collect();
-    y_edges.push(z[n_across - 1] + half);
+    let mut y_edges = vec![z[0]];
+    y_edges.extend(z[..n_across].windows(2).map(|pair| 0.5 * (pair[0] + pair[1])));
+    y_edges.push(z[n_across - 1]);
     let mut values = Vec::with_capacity(pressure.len());
     for j in 0..n_across {
         for i in 0..n_round {

@@ -1,6 +1,6 @@
 //! `[[body]]`: an elastic body round the outer ring.
 
-use body::SeatBasis;
+use ::body::SeatBasis;
 
 use super::*;
 
