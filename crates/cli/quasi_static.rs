@@ -16,14 +16,13 @@ use results::shown::Shown;
 use results::snapshot::Snapshot;
 use results::summary::{Findings, Summary};
 use results::survey::build_surveyed;
-use results::{console, fields};
+use results::{console, fields, seat};
 use scene::{Scene, rolling};
 use timer::Stopwatch;
 
 use crate::options::Limits;
 use crate::progress::Progress;
 use crate::remarks::Remarks;
-use crate::run::seat;
 
 /// Steps between two lines of progress in a log.
 const PROGRESS_STEPS: u64 = 50;
@@ -75,7 +74,7 @@ pub fn run(
     let ended = series.run(&mut bearing, &mut progress, dir);
     let seconds = clock.lap();
     progress.finish();
-    let seat = seat(&model, &series.last, dir);
+    let seat = seat::of_run(&model, &series.last, dir);
     let findings = series.findings(&ended, remarks);
     let snapshot = findings.last.clone();
     let forecast = Side::BOTH.map(|side| bearing.solver.ring(side).map(|r| r.solver.memory));

@@ -12,12 +12,11 @@ use results::disk::Forecast;
 use results::failure::{Failure, agree, of_all};
 use results::files::Files;
 use results::memory::Forecasts;
-use results::seat::{SeatState, SeatSummary};
 use results::shown::Shown;
 use results::snapshot::Snapshot;
-use results::summary::{Findings, Summary};
+use results::summary::{Costs, Findings, Summary};
 use results::survey::build_surveyed;
-use results::{console, fields, folder};
+use results::{console, fields, folder, seat};
 use scene::{Analysis, Backend, Scene, model_with_rings, rolling};
 
 use crate::modes;
@@ -138,12 +137,7 @@ pub fn run(
     if let Some(files) = results {
         let costs = agree(files.finish(read, Forecasts::at_rest(forecast), solver.laps(), start))?;
         let findings = findings(&scene, &solutions, &failure, remarks);
-        let seat = solutions
-            .last()
-            .map_or(Ok(None), |last| seat(&model, &last.solution, &dir));
-        let summary = Summary::new(&scene, &model, findings, &costs)
-            .with_life(life::of_run(&scene, &dir))
-            .with_seat(agree(seat)?);
+        let summary = summary(&scene, (&model, &solutions), findings, &costs, &dir)?;
         agree(summary.write(&dir).map_err(Failure::from))?;
         if failure.is_none() {
             print_results(&scene, &solutions, &summary);
@@ -152,12 +146,18 @@ pub fn run(
     failure.map_or(Ok(dir), Err)
 }
 
-/// Writes what the seat of the outer ring in a body carries, and sums it up; None where it is in none.
-pub fn seat(model: &Model, solution: &StaticSolution, dir: &Path) -> Result<Option<SeatSummary>, Failure> {
-    match SeatState::new(model, solution)? {
-        Some(state) => Ok(Some(state.finish(dir)?)),
-        None => Ok(None),
-    }
+/// The summary of points that were solved; writes what the seat of a ring in a body carries at the last.
+fn summary(
+    scene: &Scene,
+    (model, solutions): (&Model, &[Solved]),
+    findings: Findings,
+    costs: &Costs,
+    dir: &Path,
+) -> Result<Summary, Failure> {
+    let last = solutions.last();
+    let seat = last.map_or(Ok(None), |last| seat::of_run(model, &last.solution, dir));
+    let summary = Summary::new(scene, model, findings, costs).with_life(life::of_run(scene, dir));
+    Ok(summary.with_seat(agree(seat)?))
 }
 
 /// Says how each ring is solved.

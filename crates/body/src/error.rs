@@ -81,8 +81,8 @@ pub enum SurroundingError {
     },
     /// Ring and seat of the body have different radii.
     #[error(
-        "the seat of body \"{body}\" has a radius of {found_mm:.4} mm, that of the ring has {expected_mm:.4} mm; expected \
-         the same to {limit} %, so check mesh_unit and the group{unit}"
+        "the seat of body \"{body}\" has a radius of {found_mm:.4} mm, that of the ring has {expected_mm:.4} mm; \
+         expected the same to {limit} %, so check mesh_unit and the group{unit}"
     )]
     Radius {
         /// Name of the body.
@@ -98,8 +98,8 @@ pub enum SurroundingError {
     },
     /// Ring and seat of the body have different widths.
     #[error(
-        "the seat of body \"{body}\" is {found_mm:.4} mm wide, that of the ring {expected_mm:.4} mm; expected the same to \
-         {limit} %: split the bore of the body in Gmsh where the seat of the ring ends"
+        "the seat of body \"{body}\" is {found_mm:.4} mm wide, that of the ring {expected_mm:.4} mm; expected the same \
+         to {limit} %: split the bore of the body in Gmsh where the seat of the ring ends"
     )]
     Width {
         /// Name of the body.
@@ -113,8 +113,8 @@ pub enum SurroundingError {
     },
     /// The nodes of a seat do not tell the functions apart.
     #[error(
-        "{what} has {nodes} nodes, too few or too uneven for {functions} functions of the seat; use a finer mesh there, or \
-         fewer harmonics or across"
+        "{what} has {nodes} nodes, too few or too uneven for {functions} functions of the seat; use a finer mesh \
+         there, or fewer harmonics or across"
     )]
     TooFewNodes {
         /// The seat.

@@ -226,7 +226,7 @@ fn read_stiffness(files: &MatrixFiles, tags: &[u64]) -> Result<CsMat<f64>, Surro
             "general",
         ] => false,
         _ => {
-            let expected = "expected the first line \"%%MatrixMarket matrix coordinate real symmetric\" or \"... general\"";
+            let expected = "expected first \"%%MatrixMarket matrix coordinate real symmetric\", or general";
             return Err(wrong(
                 path,
                 1,

@@ -179,8 +179,8 @@ pub struct SeatFunctions {
 }
 
 impl SeatFunctions {
-    /// Functionals of nodes with areas (m^2), which stand at `place(node)`, m, in the coordinates of the ring. `what` is
-    /// for messages.
+    /// Functionals of nodes with areas (m^2), which stand at `place(node)`, m, in the coordinates of the ring. `what`
+    /// is for messages.
     pub fn new(
         what: &str,
         space: SeatSpace,
@@ -308,7 +308,7 @@ fn rigid_rows(space: &SeatSpace, places: &[[f64; 3]], weights: &[f64]) -> Option
     Some(rows)
 }
 
-/// Rigid motions at a place, `[component][motion]`: translations x, y, z and rotations x, y, z, whose arms are in radii.
+/// Rigid motions at a place, `[component][motion]`: translations and rotations x, y, z, whose arms are in radii.
 fn rigid_modes_at(space: &SeatSpace, x: [f64; 3]) -> [[f64; 6]; 3] {
     let [x, y, z] = [x[0], x[1], x[2] - space.middle].map(|arm| arm / space.radius);
     [

@@ -53,7 +53,7 @@ pub struct Surrounding {
 }
 
 /// What is common to meshes and matrices.
-struct Held<'a> {
+struct Unfactored<'a> {
     name: String,
     stiffness: &'a CsMat<f64>,
     places: &'a [[f64; 3]],
@@ -93,7 +93,7 @@ impl Surrounding {
             source,
         };
         let stiffness = fem::assemble_stiffness(&mesh, &material).map_err(fem)?;
-        let held = Held {
+        let held = Unfactored {
             name: name.to_string(),
             stiffness: &stiffness,
             places: &mesh.nodes,
@@ -118,7 +118,7 @@ impl Surrounding {
         let joints = vec![joint(name, seat, &areas, &matrix.places, &matrix.tags)?];
         refuse_fixed(name, seat, &areas, &matrix.fixed, &matrix.tags)?;
         let pairs = matrix.neighbours();
-        let held = Held {
+        let held = Unfactored {
             name: name.to_string(),
             stiffness: &matrix.stiffness,
             places: &matrix.places,
@@ -154,7 +154,7 @@ impl Surrounding {
     }
 }
 
-impl Held<'_> {
+impl Unfactored<'_> {
     /// Factors the stiffness and finds the flexibility.
     fn condense(
         self,

@@ -13,7 +13,7 @@ use scene::{RingFrame, Scene};
 
 use super::on_ball::force_on_ball;
 use super::ring_stress::{Basis, Gathered, RingStress, ShownRing, StressFields};
-use super::seat::SeatState;
+use super::seat::{SeatState, tied};
 use super::shown::{Shown, Turn};
 use crate::failure::Failure;
 
@@ -45,18 +45,18 @@ pub fn bodies(model: &Model) -> Vec<Body> {
         &centres,
         0.5 * model.geometry.ball_diameter,
     ));
-    if let Some((body, mesh)) = body {
-        let shift = [0.0, 0.0, body.shift + model.ring_shift(Side::Outer)];
+    if let Some((body, mesh, shift)) = body {
         bodies.push(Body::from_mesh(&body.name, BODY_ID, mesh, shift));
     }
     bodies
 }
 
-/// The body round the outer ring, and its mesh.
-fn body_of(model: &Model) -> Option<(&Surrounding, &Mesh)> {
-    let tie = model.ring(Side::Outer)?.tie.as_ref()?;
+/// The body round the outer ring, its mesh, and where that stands in the bearing, m.
+fn body_of(model: &Model) -> Option<(&Surrounding, &Mesh, [f64; 3])> {
+    let (side, _, tie) = tied(model)?;
     let body = tie.body.as_ref()?;
-    Some((body, &body.mesh.as_ref()?.0))
+    let shift = [0.0, 0.0, body.shift + model.ring_shift(side)];
+    Some((body, &body.mesh.as_ref()?.0, shift))
 }
 
 /// The record of one equilibrium, with the stress that ranks have `gathered`; its step also stands for its time where

@@ -13,6 +13,7 @@ use mesh::NodePositions;
 use scene::{Scene, StressOutput};
 use timer::Laps;
 
+use super::seat::tied;
 use super::shown::{Shown, Turn, add};
 use super::summary::{GATHER, STRESS};
 use super::timed_near_field::TimedNearField;
@@ -251,8 +252,7 @@ impl RingStress {
 
 /// Recovery of a body round the outer ring, where stress is asked for and it has a mesh.
 fn body_recovery(model: &Model, scene: &Scene) -> Result<Option<Box<StressRecovery>>, Failure> {
-    let tie = model.ring(Side::Outer).and_then(|ring| ring.tie.as_ref());
-    let body = tie.and_then(|tie| tie.body.as_ref()?.mesh.as_ref());
+    let body = tied(model).and_then(|(_, _, tie)| tie.body.as_ref()?.mesh.as_ref());
     let Some((mesh, material)) = body.filter(|_| scene.output.stress != StressOutput::None) else {
         return Ok(None);
     };

@@ -1,8 +1,8 @@
 //! The seat of a ring in an elastic body: tractions as a table, and what the summary says of the joint.
 //!
 //! `seat_outer.csv` has the last equilibrium of a run on a grid of the seat: azimuth from +x towards +y, z in the
-//! coordinates of the ring's mesh. Pressure is positive where the body presses on the ring; shear is the traction on the
-//! ring in the direction of growing azimuth and z; motion is that of the seat, which ring and body share.
+//! coordinates of the ring's mesh. Pressure is positive where the body presses on the ring; shear is the traction on
+//! the ring in the direction of growing azimuth and z; motion is that of the seat, which ring and body share.
 
 use std::f64::consts::TAU;
 use std::fmt::Write;
@@ -12,7 +12,7 @@ use std::sync::Arc;
 use body::{SeatBasis, SeatFunctions, SeatTie, SeatTraction};
 use comm::{Communicator, print};
 use contact::Side;
-use dynamics::{Model, StaticSolution};
+use dynamics::{Model, RingModel, StaticSolution};
 use serde::Serialize;
 
 use crate::failure::Failure;
@@ -57,6 +57,23 @@ pub struct SeatSummary {
     body_seconds: f64,
 }
 
+/// The ring that is tied to a body, and its joint.
+pub fn tied(model: &Model) -> Option<(Side, &RingModel, &Arc<SeatTie>)> {
+    let of_side = |side: Side| {
+        let ring = model.ring(side)?;
+        Some((side, ring, ring.tie.as_ref()?))
+    };
+    Side::BOTH.into_iter().find_map(of_side)
+}
+
+/// Writes what the seat of a ring in a body carries, and sums it up; None where no ring is in one.
+pub fn of_run(model: &Model, solution: &StaticSolution, dir: &Path) -> Result<Option<SeatSummary>, Failure> {
+    match SeatState::new(model, solution)? {
+        Some(state) => Ok(Some(state.finish(dir)?)),
+        None => Ok(None),
+    }
+}
+
 /// A place of the table.
 struct SeatPoint {
     azimuth: f64,
@@ -70,18 +87,16 @@ struct SeatPoint {
 impl SeatState {
     /// The joint at an equilibrium; None where the outer ring is in no body.
     pub fn new(model: &Model, solution: &StaticSolution) -> Result<Option<SeatState>, Failure> {
-        let field = solution.elastic[Side::Outer.index()].as_ref();
-        let (Some(ring), Some(field)) = (model.ring(Side::Outer), field) else {
+        let Some((side, ring, tie)) = tied(model) else {
             return Ok(None);
         };
-        let functions = ring.seat_functions(Side::Outer.name());
-        let functions = functions.map_err(Failure::solving)?;
-        let (Some(tie), Some(functions)) = (ring.tie.clone(), functions) else {
+        let functions = ring.seat_functions(side.name()).map_err(Failure::solving)?;
+        let (Some(functions), Some(field)) = (functions, &solution.elastic[side.index()]) else {
             return Ok(None);
         };
         let traction = tie.traction(&functions, field);
         Ok(traction.map(|traction| SeatState {
-            tie,
+            tie: tie.clone(),
             functions,
             traction,
         }))
@@ -104,8 +119,8 @@ impl SeatState {
         }
         let summary = self.summary(&points);
         print::line(format_args!(
-            "seat of the outer ring in body {:?}: {} functions; the last two orders hold {:.2e} of its energy, the last \
-             degree across {:.2e}",
+            "seat of the outer ring in body {:?}: {} functions; the last two orders hold {:.2e} of its energy, the \
+             last degree across {:.2e}",
             summary.body,
             summary.functions,
             summary.energy_share_last_orders,

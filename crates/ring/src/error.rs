@@ -64,9 +64,7 @@ pub enum RingError {
         source: SurroundingError,
     },
     /// Ring and body make no joint.
-    #[error(
-        "the ring cannot be tied to its body: {source}; use fewer harmonics or across in the seat of the body"
-    )]
+    #[error("the ring cannot be tied to its body: {source}; use fewer harmonics or across in the seat")]
     Tie {
         /// Cause.
         source: DenseError,

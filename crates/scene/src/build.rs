@@ -230,7 +230,7 @@ fn ring(
     let Some(mut ring) = ring_of(scene, side, steel, mesh) else {
         return Ok(None);
     };
-    if side == Side::Outer {
+    if body.support == tables::Support::Body {
         ring.tie = seat_tie(scene, &ring)?;
     }
     Ok(Some((ring, node_tags)))

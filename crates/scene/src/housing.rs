@@ -5,8 +5,8 @@ use std::sync::Arc;
 use body::matrix::MatrixBody;
 use body::{BodySeat, SeatCylinder, SeatSpace, SeatTie, Surrounding};
 use dynamics::RingModel;
+use fem::Material;
 
-use crate::build::material;
 use crate::error::BuildError;
 use crate::tables::{BodySource, Scene, SceneBody};
 
@@ -35,12 +35,12 @@ fn surrounding(body: &SceneBody, seat: &BodySeat) -> Result<Surrounding, BuildEr
         BodySource::Mesh {
             mesh,
             mesh_unit,
-            material: made_of,
+            material: m,
             fixed,
         } => {
             let (mesh, origin) = mesh::read_body_msh(mesh, *mesh_unit)?;
             let seats = std::slice::from_ref(seat);
-            let made_of = material(made_of)?;
+            let made_of = Material::new(m.young_modulus, m.poisson_ratio, m.density)?;
             Ok(Surrounding::of_mesh(
                 &body.name,
                 (mesh, &origin),

@@ -64,7 +64,7 @@ impl RingSolver {
                 ring.hold == Hold::MeanMotion,
                 "a ring on a body is held in its mean motion"
             );
-            let tied = RingTie::new(&solver, ring, functions, tie)?;
+            let tied = RingTie::new(solver.seat_compliance(&functions), ring, functions, tie)?;
             solver.note += &format!(
                 "; its {} is tied to a body by {} functions",
                 ring.held_group,
@@ -113,7 +113,7 @@ impl RingSolver {
     }
 
     /// A = Phi^T K_h^-1 Phi of functions of the held surface, m/N, `[n][n]` flat, exactly symmetric.
-    pub(super) fn seat_compliance(&self, functions: &SeatFunctions) -> Vec<f64> {
+    fn seat_compliance(&self, functions: &SeatFunctions) -> Vec<f64> {
         let n = functions.n();
         let mut compliance = Vec::with_capacity(n * n);
         for first in (0..n).step_by(self.block) {

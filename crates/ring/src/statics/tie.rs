@@ -19,7 +19,6 @@ use body::{SeatFunctions, SeatTie};
 use dense::DenseLu;
 use mesh::NodePositions;
 
-use super::solver::RingSolver;
 use crate::error::RingError;
 use crate::model::RingModel;
 
@@ -48,15 +47,14 @@ impl RingModel {
 }
 
 impl RingTie {
-    /// Ties the ring that `held` solves in its mean motion.
+    /// Ties a ring whose seat has the compliance A = `matrix` (m/N, `[n][n]` flat) in its mean motion.
     pub fn new(
-        held: &RingSolver,
+        mut matrix: Vec<f64>,
         ring: &RingModel,
         functions: SeatFunctions,
         tie: &Arc<SeatTie>,
     ) -> Result<RingTie, RingError> {
         let n = functions.n();
-        let mut matrix = held.seat_compliance(&functions);
         matrix.iter_mut().zip(&tie.flexibility).for_each(|(a, f)| *a += f);
         let scale = (0..n).map(|i| matrix[n * i + i]).fold(0.0, f64::max);
         let mut tied = vec![0.0; (n + N_RIGID) * (n + N_RIGID)];

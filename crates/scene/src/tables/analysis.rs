@@ -13,7 +13,7 @@ use super::dynamic::RawDynamic;
 use super::materials::Materials;
 use super::modes::ModesContext;
 use super::profiles::ProfilesContext;
-use super::ring::{MeshFiles, Support};
+use super::ring::MeshFiles;
 use super::shaft::Shaft;
 use super::speed::{RawSpeed, SpeedUse, makes_force};
 use super::sweep::{Analysis, RawStatic};
@@ -139,11 +139,6 @@ impl RawScene {
             has_speed: self.speed.is_some(),
             conserves: self.dynamic.as_ref().is_some_and(RawDynamic::conserves),
         }
-    }
-
-    /// How the rings are held, as typed, inner first.
-    pub(super) fn supports(&self) -> [Option<Support>; 2] {
-        [self.inner.support(), self.outer.support()]
     }
 
     /// Whether the scene names the speed of a ring, inner first.

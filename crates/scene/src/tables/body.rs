@@ -11,9 +11,8 @@ use body::matrix::MatrixFiles;
 use input::{KINDS, LENGTH, Problems, Quantity, STIFFNESS, parse_unit};
 use serde::Deserialize;
 
-use super::RawScene;
 use super::materials::{Material, RawMaterial};
-use super::ring::{MeshFiles, Ring, RingName, Support};
+use super::ring::{MeshFiles, RingName, Support};
 use super::solver::Backend;
 
 /// Orders round a seat without a word.
@@ -31,7 +30,7 @@ const REFUSED_EFFECTS: [(&str, &str); 4] = [
 /// As typed.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields, expecting = "a table of a body round a ring")]
-pub struct RawBody {
+pub struct RawSceneBody {
     name: String,
     mesh: Option<String>,
     mesh_unit: Option<String>,
@@ -97,97 +96,99 @@ pub struct BodyContext<'a> {
     pub scene: &'a Path,
     /// Whether files have to exist.
     pub files: MeshFiles,
-    /// The outer ring.
-    pub outer: &'a Ring,
+    /// How the rings are held, as typed, inner first.
+    pub supports: [Option<Support>; 2],
+    /// Whether the scene says that the outer ring is rigid.
+    pub is_outer_rigid: bool,
+    /// Whether the outer ring turns.
+    pub turns_outer: bool,
     /// Linear solver of the rings.
     pub backend: Backend,
+    /// An analysis of the scene that has no place for a body: `dynamic` or `modes`.
+    pub moving: Option<&'static str>,
+    /// Effects of the scene.
+    pub effects: Vec<&'static str>,
 }
 
-impl RawScene {
-    /// The body round the outer ring, if there is one.
-    pub(super) fn body(
-        &self,
-        context: BodyContext<'_>,
-        problems: &mut Problems,
-        assumed: &mut Vec<String>,
-    ) -> Option<SceneBody> {
-        let supports = self.supports();
-        if supports[0] == Some(Support::Body) {
+/// The body round the outer ring among the tables of a scene, if there is one.
+pub fn check_bodies(
+    bodies: &[RawSceneBody],
+    context: &BodyContext<'_>,
+    problems: &mut Problems,
+    assumed: &mut Vec<String>,
+) -> Option<SceneBody> {
+    if context.supports[0] == Some(Support::Body) {
+        problems.add(
+            "inner.support is \"body\", but a body that carries the inner ring, such as an elastic shaft, is not \
+             solved; expected \"clamped\" or \"mean_motion\"",
+        );
+    }
+    let is_wanted = context.supports[1] == Some(Support::Body);
+    let Some(first) = bodies.first() else {
+        if is_wanted {
             problems.add(
-                "inner.support is \"body\", but a body that carries the inner ring, such as an elastic shaft, is not solved; \
-                 expected \"clamped\" or \"mean_motion\"",
+                "outer.support is \"body\", but the scene has no body; add a table [[body]] with a [[body.seat]] \
+                 of ring = \"outer\", or set outer.support = \"clamped\" or \"mean_motion\"",
             );
         }
-        let is_wanted = supports[1] == Some(Support::Body);
-        let Some(first) = self.body.first() else {
-            if is_wanted {
-                problems.add(
-                    "outer.support is \"body\", but the scene has no body; add a table [[body]] with a [[body.seat]] of \
-                     ring = \"outer\", or set outer.support = \"clamped\" or \"mean_motion\"",
-                );
-            }
-            return None;
-        };
-        if let Some(second) = self.body.get(1) {
-            problems.add(format!(
-                "the scene has {} tables [[body]], such as {:?} and {:?}, for one outer ring; expected one body, so mesh \
-                 what is joined as one",
-                self.body.len(),
-                first.name,
-                second.name
-            ));
-        }
-        if context.outer.body.is_none() && self.outer.is_rigid() {
-            problems.add(format!(
-                "body {:?} carries the outer ring, but that ring is rigid; set outer.flexible = true or remove [[body]]",
-                first.name
-            ));
-        } else if !is_wanted {
-            problems.add(format!(
-                "body {:?} is there, but outer.support is not \"body\"; set outer.support = \"body\" or remove [[body]]",
-                first.name
-            ));
-        }
-        self.refuse_beside_body(&first.name, context.backend, problems);
-        first.check(&context, problems, assumed)
+        return None;
+    };
+    if let Some(second) = bodies.get(1) {
+        problems.add(format!(
+            "the scene has {} tables [[body]], such as {:?} and {:?}, for one outer ring; expected one body, so \
+             mesh what is joined as one",
+            bodies.len(),
+            first.name,
+            second.name
+        ));
     }
+    if context.is_outer_rigid {
+        problems.add(format!(
+            "body {:?} carries the outer ring, but that ring is rigid; set outer.flexible = true or remove \
+             [[body]]",
+            first.name
+        ));
+    } else if !is_wanted {
+        problems.add(format!(
+            "body {:?} is there, but outer.support is not \"body\"; set outer.support = \"body\" or remove \
+             [[body]]",
+            first.name
+        ));
+    }
+    refuse_beside_body(&first.name, context, problems);
+    first.check(context, problems, assumed)
+}
 
-    /// What a body at rest does not go with.
-    fn refuse_beside_body(&self, name: &str, backend: Backend, problems: &mut Problems) {
-        for (is_there, table) in [
-            (self.dynamic.is_some(), "dynamic"),
-            (self.modes.is_some(), "modes"),
-        ] {
-            if is_there {
-                problems.add(format!(
-                    "body {name:?} has no mass and is solved at rest only, but the scene has [{table}]; expected \
-                     [static], [sweep] or [quasi_static], or outer.support = \"mean_motion\" without [[body]]"
-                ));
-            }
-        }
-        if backend == Backend::Sector {
+/// What a body at rest does not go with.
+fn refuse_beside_body(name: &str, context: &BodyContext<'_>, problems: &mut Problems) {
+    if let Some(table) = context.moving {
+        problems.add(format!(
+            "body {name:?} has no mass and is solved at rest only, but the scene has [{table}]; expected \
+             [static], [sweep] or [quasi_static], or outer.support = \"mean_motion\" without [[body]]"
+        ));
+    }
+    if context.backend.divides_rings() {
+        problems.add(format!(
+            "solver.backend is \"sector\", which does not tie a ring to a body ({name:?}); expected \"auto\", \
+             \"cyclic\" or \"sparse\""
+        ));
+    }
+    if context.turns_outer {
+        problems.add(format!(
+            "speed.outer turns the outer ring, but body {name:?} carries it and stands; remove speed.outer or \
+             [[body]]"
+        ));
+    }
+    for (effect, why) in REFUSED_EFFECTS {
+        if context.effects.contains(&effect) {
             problems.add(format!(
-                "solver.backend is \"sector\", which does not tie a ring to a body ({name:?}); expected \"auto\", \"cyclic\" or \
-                 \"sparse\""
+                "effects.{effect} does not go with body {name:?}: {why}; remove one of them"
             ));
-        }
-        if self.has_speed()[1] {
-            problems.add(format!(
-                "speed.outer turns the outer ring, but body {name:?} carries it and stands; remove speed.outer or [[body]]"
-            ));
-        }
-        let effects = self.effects.names();
-        for (effect, why) in REFUSED_EFFECTS {
-            if effects.contains(&effect) {
-                problems.add(format!(
-                    "effects.{effect} does not go with body {name:?}: {why}; remove one of them"
-                ));
-            }
         }
     }
 }
 
-impl RawBody {
+impl RawSceneBody {
     fn check(
         &self,
         context: &BodyContext<'_>,
@@ -208,8 +209,8 @@ impl RawBody {
             }
             (None, None) => {
                 problems.add(format!(
-                    "{key} has neither mesh nor stiffness; add mesh, mesh_unit, material and fixed, or stiffness, nodes and \
-                     seat_nodes of another program"
+                    "{key} has neither mesh nor stiffness; add mesh, mesh_unit, material and fixed, or stiffness, \
+                     nodes and seat_nodes of another program"
                 ));
                 None
             }
@@ -251,7 +252,8 @@ impl RawBody {
         };
         if seat.ring == RingName::Inner {
             problems.add(format!(
-                "{key}: seat.ring is \"inner\", but a body that carries the inner ring is not solved; expected \"outer\""
+                "{key}: seat.ring is \"inner\", but a body that carries the inner ring is not solved; \
+                 expected \"outer\""
             ));
         }
         if self.mesh.is_some() && seat.group.is_none() {
@@ -308,8 +310,8 @@ impl RawBody {
     ) -> Option<BodySource> {
         if self.material.is_some() || self.fixed.is_some() || self.mesh_unit.is_some() {
             problems.add(format!(
-                "{key} comes from a matrix, which has material and supports in it; remove mesh_unit, material and fixed \
-                 (nodes are held by fixed_nodes)"
+                "{key} comes from a matrix, which has material and supports in it; remove mesh_unit, material and \
+                 fixed (nodes are held by fixed_nodes)"
             ));
         }
         let mut path = |name: &str, text: &Option<String>| match text {

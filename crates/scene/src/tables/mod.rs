@@ -125,7 +125,7 @@ pub use self::sweep::{Analysis, SweepPoint};
 
 use self::balls::RawBalls;
 use self::bearing::RawBearing;
-use self::body::{BodyContext, RawBody};
+use self::body::RawSceneBody;
 use self::cage::RawCage;
 use self::contact::RawContact;
 use self::dynamic::RawDynamic;
@@ -165,7 +165,7 @@ struct RawScene {
     #[serde(default)]
     outer: RawRing,
     #[serde(default)]
-    body: Vec<RawBody>,
+    body: Vec<RawSceneBody>,
     shaft: RawShaft,
     #[serde(default)]
     balls: RawBalls,
@@ -376,13 +376,7 @@ impl Source<'_> {
         let speed = speed.and_then(|s| s.check(raw.speed_use(), &mut problems));
         let has_speed = raw.has_speed();
         let solver = raw.solver.check(&mut problems);
-        let body = BodyContext {
-            scene: self.path,
-            files: self.mesh_files,
-            outer: &outer,
-            backend: solver.backend,
-        };
-        let body = raw.body(body, &mut problems, &mut assumed);
+        let body = raw.body(self, solver.backend, &mut problems, &mut assumed);
         let output = OutputContext {
             has_steps: raw.dynamic.is_some() || raw.quasi_static.is_some(),
             is_motion: raw.dynamic.is_some(),

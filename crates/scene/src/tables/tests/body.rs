@@ -67,7 +67,8 @@ fn a_body_of_matrices_reads_as_it_says() {
 fn matrices(more: &str) -> String {
     let start = SCENE.find("mesh = \"../meshes/plummer_block.msh\"").unwrap();
     let end = SCENE.find("[[body.seat]]").unwrap();
-    let keys = "stiffness = \"K.mtx\"\nnodes = \"n.csv\"\nseat_nodes = \"s.csv\"\nlength_unit = \"mm\"\nstiffness_unit = \"N/mm\"\n";
+    let files = "stiffness = \"K.mtx\"\nnodes = \"n.csv\"\nseat_nodes = \"s.csv\"";
+    let keys = format!("{files}\nlength_unit = \"mm\"\nstiffness_unit = \"N/mm\"\n");
     format!("{}{keys}{more}\n{}", &SCENE[..start], &SCENE[end..])
 }
 
@@ -76,7 +77,7 @@ fn matrices(more: &str) -> String {
 fn scenes_in_which_a_body_makes_no_sense_are_refused() {
     let support = "support = \"body\"";
     let whole_body = {
-        let (start, end) = (SCENE.find("[[body]]").unwrap(), SCENE.find("[shaft]").unwrap());
+        let (start, end) = (SCENE.find("[[body]]  ").unwrap(), SCENE.find("[shaft]").unwrap());
         &SCENE[start..end]
     };
     let unit = "mesh_unit = \"mm\"\nmaterial";
@@ -109,7 +110,7 @@ fn scenes_in_which_a_body_makes_no_sense_are_refused() {
             "seat.ring is \"inner\", but a body that carries the inner ring is not solved",
         ),
         (
-            with("support = \"clamped\"", support),
+            with("support = \"clamped\"    ", support),
             "inner.support is \"body\", but a body that carries the inner ring",
         ),
         (
