@@ -170,7 +170,7 @@ fn scenes_in_which_a_body_makes_no_sense_are_refused() {
         (
             with(
                 "[output]",
-                "[effects.fit.outer]\ninterference = \"5 um\"\n[output]",
+                "[effects.fit.outer]\ninterference = \"5 um\"\nhousing_diameter = \"160 mm\"\n[output]",
             ),
             "effects.fit does not go with body",
         ),
