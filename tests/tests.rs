@@ -17,6 +17,7 @@ mod free_surfaces;
 mod gauges;
 mod hard;
 mod heat;
+mod housing;
 mod includes;
 mod integration_points;
 mod interruption;

@@ -16,7 +16,7 @@ use results::shown::Shown;
 use results::snapshot::Snapshot;
 use results::summary::{Findings, Summary};
 use results::survey::build_surveyed;
-use results::{console, fields};
+use results::{console, fields, seat};
 use scene::{Scene, rolling};
 use timer::Stopwatch;
 
@@ -74,6 +74,7 @@ pub fn run(
     let ended = series.run(&mut bearing, &mut progress, dir);
     let seconds = clock.lap();
     progress.finish();
+    let seat = seat::of_run(&model, &series.last, dir);
     let findings = series.findings(&ended, remarks);
     let snapshot = findings.last.clone();
     let forecast = Side::BOTH.map(|side| bearing.solver.ring(side).map(|r| r.solver.memory));
@@ -83,7 +84,9 @@ pub fn run(
         (Err(_), Err(_)) => return ended,
         (costs, _) => costs?,
     };
-    let summary = Summary::new(scene, &model, findings, &costs).with_life(life::of_run(scene, dir));
+    let summary = Summary::new(scene, &model, findings, &costs)
+        .with_life(life::of_run(scene, dir))
+        .with_seat(agree(seat)?);
     agree(summary.write(dir).map_err(Failure::from))?;
     ended?;
     console::print_snapshot(&snapshot);

@@ -7,16 +7,16 @@ use std::time::Instant;
 use anyhow::anyhow;
 use comm::{Communicator, print};
 use contact::Side;
-use dynamics::{DynamicsError, StaticSolution, StaticSolver};
+use dynamics::{DynamicsError, Model, StaticSolution, StaticSolver};
 use results::disk::Forecast;
 use results::failure::{Failure, agree, of_all};
 use results::files::Files;
 use results::memory::Forecasts;
 use results::shown::Shown;
 use results::snapshot::Snapshot;
-use results::summary::{Findings, Summary};
+use results::summary::{Costs, Findings, Summary};
 use results::survey::build_surveyed;
-use results::{console, fields, folder};
+use results::{console, fields, folder, seat};
 use scene::{Analysis, Backend, Scene, model_with_rings, rolling};
 
 use crate::modes;
@@ -137,13 +137,27 @@ pub fn run(
     if let Some(files) = results {
         let costs = agree(files.finish(read, Forecasts::at_rest(forecast), solver.laps(), start))?;
         let findings = findings(&scene, &solutions, &failure, remarks);
-        let summary = Summary::new(&scene, &model, findings, &costs).with_life(life::of_run(&scene, &dir));
+        let summary = summary(&scene, (&model, &solutions), findings, &costs, &dir)?;
         agree(summary.write(&dir).map_err(Failure::from))?;
         if failure.is_none() {
             print_results(&scene, &solutions, &summary);
         }
     }
     failure.map_or(Ok(dir), Err)
+}
+
+/// The summary of points that were solved; writes what the seat of a ring in a body carries at the last.
+fn summary(
+    scene: &Scene,
+    (model, solutions): (&Model, &[Solved]),
+    findings: Findings,
+    costs: &Costs,
+    dir: &Path,
+) -> Result<Summary, Failure> {
+    let last = solutions.last();
+    let seat = last.map_or(Ok(None), |last| seat::of_run(model, &last.solution, dir));
+    let summary = Summary::new(scene, model, findings, costs).with_life(life::of_run(scene, dir));
+    Ok(summary.with_seat(agree(seat)?))
 }
 
 /// Says how each ring is solved.
@@ -251,6 +265,7 @@ fn same_rings(a: &Scene, b: &Scene) -> bool {
     let same_bodies = a.inner.body == b.inner.body && a.outer.body == b.outer.body;
     let rigid = a.inner.body.is_none() && a.outer.body.is_none();
     same_bodies
+        && a.body == b.body
         && a.contact.mode == b.contact.mode
         && (rigid || (a.materials.rings == b.materials.rings && grooves(a) == grooves(b)))
 }

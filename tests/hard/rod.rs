@@ -108,6 +108,7 @@ impl Rod {
                 groove_radius: self.side,
                 centre_z: 0.0,
             },
+            tie: None,
             sectors: Default::default(),
         }
     }

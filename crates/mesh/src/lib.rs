@@ -30,7 +30,7 @@ pub use gmsh::{Gmsh, NO_GMSH, mesh_section_with_gmsh, mesh_tets_with_gmsh};
 pub use mesh::{Facet, Mesh};
 pub use msh::record::read_record;
 pub use msh::write::{MshFormat, Overwrite, write_msh, write_msh_with_record};
-pub use msh::{read_msh, read_msh_with_origin};
+pub use msh::{read_body_msh, read_msh, read_msh_with_origin};
 pub use origin::Origin;
 pub use periodic::{
     NearlyPeriodic, NotNearlyPeriodic, NotPeriodic, PERIODIC_TOLERANCE, Periodicity, Site,

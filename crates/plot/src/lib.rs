@@ -17,6 +17,7 @@ mod profiles;
 pub mod quantity;
 mod raceways;
 mod run;
+mod seat;
 mod section;
 mod shades;
 mod shaft;
@@ -154,6 +155,7 @@ pub fn figures(dir: &Path, choice: &Choice) -> Result<Figures, Failure> {
         ("stiffness", linear_figures(dir)),
         ("raceways", surface::figures(&results, choice)),
         ("grooves", named(groove::figures(&results, choice.step))),
+        ("seat", named(seat::figures(dir))),
         ("sections", named(section::figures(&results, choice.step))),
     ];
     let is_chosen = choice.ball != 0 || choice.step.is_some();

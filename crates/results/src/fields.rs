@@ -2,19 +2,26 @@
 
 use std::collections::BTreeMap;
 
+use body::Surrounding;
 use checkpoint::{Body, CellFields, PointFields, StateArray, StepRecord};
 use contact::{BearingGeometry, Side};
 use dynamics::balls::BallResult;
 use dynamics::{Model, StaticSolution};
 use fem::stress::von_mises;
+use mesh::Mesh;
 use scene::{RingFrame, Scene};
 
 use super::on_ball::force_on_ball;
 use super::ring_stress::{Basis, Gathered, RingStress, ShownRing, StressFields};
+use super::seat::{SeatState, tied};
 use super::shown::{Shown, Turn};
 use crate::failure::Failure;
 
-/// The bodies of a result, in the order of its points: flexible rings, whose meshes must be whole, then the balls.
+/// Value of the cell array `body` on a body round the outer ring.
+const BODY_ID: u8 = 3;
+
+/// The bodies of a result, in the order of its points: flexible rings, whose meshes must be whole, the balls, then a
+/// body round the outer ring.
 pub fn bodies(model: &Model) -> Vec<Body> {
     let mut bodies = Vec::new();
     for side in Side::BOTH {
@@ -24,6 +31,7 @@ pub fn bodies(model: &Model) -> Vec<Body> {
             bodies.push(Body::from_mesh(&name, side as u8, &ring.mesh, shift));
         }
     }
+    let body = body_of(model);
     let centre = model.geometry.ball_centre();
     let centres: Vec<[f64; 3]> = (0..model.geometry.n_balls)
         .map(|ball| {
@@ -37,7 +45,18 @@ pub fn bodies(model: &Model) -> Vec<Body> {
         &centres,
         0.5 * model.geometry.ball_diameter,
     ));
+    if let Some((body, mesh, shift)) = body {
+        bodies.push(Body::from_mesh(&body.name, BODY_ID, mesh, shift));
+    }
     bodies
+}
+
+/// The body round the outer ring, its mesh, and where that stands in the bearing, m.
+fn body_of(model: &Model) -> Option<(&Surrounding, &Mesh, [f64; 3])> {
+    let (side, _, tie) = tied(model)?;
+    let body = tie.body.as_ref()?;
+    let shift = [0.0, 0.0, body.shift + model.ring_shift(side)];
+    Some((body, &body.mesh.as_ref()?.0, shift))
 }
 
 /// The record of one equilibrium, with the stress that ranks have `gathered`; its step also stands for its time where
@@ -69,6 +88,8 @@ pub struct Places {
     rings: [Option<ShownRing>; 2],
     /// Forces on the balls, N.
     forces: [Vec<[f64; 3]>; 2],
+    /// Displacement of a body round the outer ring, m, flat.
+    body: Option<Vec<f64>>,
 }
 
 impl Places {
@@ -101,17 +122,29 @@ impl Places {
                 patches,
             });
         }
-        let forces = add_balls(shown.model(), shown.placed(), &shown.balls(), &mut displacement);
+        let mut forces = add_balls(shown.model(), shown.placed(), &shown.balls(), &mut displacement);
+        let body = body_displacement(shown)?;
+        if let Some(body) = &body {
+            displacement.extend(body.chunks_exact(3).map(|u| [u[0], u[1], u[2]]));
+            forces
+                .iter_mut()
+                .for_each(|list| list.resize(displacement.len(), [0.0; 3]));
+        }
         Ok(Places {
             displacement,
             rings,
             forces,
+            body,
         })
     }
 
     /// Fields of all points and cells, with the stress that is asked for.
     pub fn fields(self, stress: &RingStress) -> (PointFields, CellFields) {
-        let stress = stress.fields(&self.rings);
+        let recovery = stress;
+        let mut stress = recovery.fields(&self.rings);
+        if let Some(body) = &self.body {
+            recovery.add_body(body, &mut stress);
+        }
         let [force_inner, force_outer] = self.forces;
         let (points, cells) = with_stress(self.displacement, stress);
         let points = PointFields {
@@ -121,6 +154,17 @@ impl Places {
         };
         (points, cells)
     }
+}
+
+/// Displacement of the body round the outer ring at rest, m, `[n_nodes][3]` flat; None where none is shown.
+fn body_displacement(shown: &Shown<'_>) -> Result<Option<Vec<f64>>, Failure> {
+    let Shown::Equilibrium { model, solution, .. } = shown else {
+        return Ok(None);
+    };
+    if body_of(model).is_none() {
+        return Ok(None);
+    }
+    Ok(SeatState::new(model, solution)?.map(|seat| seat.body_displacement()))
 }
 
 /// Displacement and stress of all points and cells.

@@ -10,13 +10,14 @@ use checkpoint::{FolderLock, clear_unfinished_start, is_unfinished_start};
 use comm::{Communicator, print};
 
 use crate::failure::{Failure, agree};
+use crate::seat::SEAT_TABLE;
 use crate::summary::SUMMARY_FILE;
 
 /// Largest number that a default result folder may carry.
 const MAX_FOLDERS: usize = 10_000;
 
 /// Files that say that a folder holds results, besides those of steps.
-const RESULT_FILES: [&str; 11] = [
+const RESULT_FILES: [&str; 12] = [
     SUMMARY_FILE,
     "balls.csv",
     "shaft.csv",
@@ -25,6 +26,7 @@ const RESULT_FILES: [&str; 11] = [
     "probes.csv",
     "profiles.csv",
     "modes.csv",
+    SEAT_TABLE,
     "mesh.hdf",
     "run.hdf.series",
     "run.vtkhdf",
@@ -145,7 +147,7 @@ fn require_writable(dir: &Path) -> Result<(), Failure> {
 }
 
 /// Tables that a run may write.
-const TABLES: [&str; 7] = [
+const TABLES: [&str; 8] = [
     "balls.csv",
     "shaft.csv",
     "energy.csv",
@@ -153,6 +155,7 @@ const TABLES: [&str; 7] = [
     "probes.csv",
     "profiles.csv",
     "modes.csv",
+    SEAT_TABLE,
 ];
 
 /// Makes the folder `dir` and locks it. What a run left there that ended before its first step is removed.

@@ -6,12 +6,14 @@ use checkpoint::{CellFields, IntegrationPointStress};
 use comm::Communicator;
 use contact::{LoadedPatch, Side};
 use dynamics::{Backend, Model, NodalStress, OwnStress, PointStress, RingModel, SharedStress, StressPlaces};
+use fem::StressRecovery;
 use fem::quadrature::stiffness_rule;
 use fem::stress::von_mises;
 use mesh::NodePositions;
 use scene::{Scene, StressOutput};
 use timer::Laps;
 
+use super::seat::tied;
 use super::shown::{Shown, Turn, add};
 use super::summary::{GATHER, STRESS};
 use super::timed_near_field::TimedNearField;
@@ -31,6 +33,8 @@ pub struct RingStress {
     rings: [Option<Recovery>; 2],
     /// Balls, which have a point and a cell each.
     n_balls: usize,
+    /// Recovery of a body round the outer ring.
+    body: Option<Box<StressRecovery>>,
 }
 
 /// Recovery of one ring, and the places of its stress for the near field if that is asked for.
@@ -102,6 +106,7 @@ impl RingStress {
             kind: scene.output.stress,
             rings: [recovery(Side::Inner)?, recovery(Side::Outer)?],
             n_balls: model.geometry.n_balls,
+            body: body_recovery(model, scene)?,
         })
     }
 
@@ -195,9 +200,33 @@ impl RingStress {
         stress
     }
 
+    /// Adds the stress of a body round the outer ring, displaced so (m, flat), after all others.
+    pub fn add_body(&self, displacement: &[f64], fields: &mut StressFields) {
+        let Some(body) = &self.body else { return };
+        if let Some(nodal) = &mut fields.nodal {
+            nodal.extend(body.nodal(displacement));
+        }
+        let (Some(points), Some(largest)) = (
+            &mut fields.cells.stress_integration_points,
+            &mut fields.cells.von_mises_largest,
+        ) else {
+            return;
+        };
+        for cell in body
+            .integration_points(displacement)
+            .chunks_exact(body.points_per_element())
+        {
+            let end = points.values.len() + 6 * points.points_per_cell;
+            points.values.extend(cell.as_flattened());
+            points.values.resize(end, 0.0);
+            largest.push(cell.iter().map(|&s| von_mises(s)).fold(0.0, f64::max));
+        }
+    }
+
     fn cells(&self, rings: &[(&Recovery, &ShownRing)]) -> CellFields {
         let points = rings.iter().map(|(recovery, _)| recovery.points_per_element);
-        let points_per_cell = points.max().unwrap_or(0);
+        let of_body = self.body.iter().map(|body| body.points_per_element());
+        let points_per_cell = points.chain(of_body).max().unwrap_or(0);
         let (mut values, mut largest) = (Vec::new(), Vec::new());
         for (recovery, ring) in rings {
             let stress = self.stress(recovery, ring);
@@ -219,6 +248,16 @@ impl RingStress {
             von_mises_largest: Some(largest),
         }
     }
+}
+
+/// Recovery of a body round the outer ring, where stress is asked for and it has a mesh.
+fn body_recovery(model: &Model, scene: &Scene) -> Result<Option<Box<StressRecovery>>, Failure> {
+    let body = tied(model).and_then(|(_, _, tie)| tie.body.as_ref()?.mesh.as_ref());
+    let Some((mesh, material)) = body.filter(|_| scene.output.stress != StressOutput::None) else {
+        return Ok(None);
+    };
+    let recovery = StressRecovery::new(mesh, material).map_err(anyhow::Error::from)?;
+    Ok(Some(Box::new(recovery)))
 }
 
 impl Recovery {
@@ -288,8 +327,8 @@ impl Source {
 
 #[cfg(test)]
 mod tests {
+    use fem::Material;
     use fem::element::reference_nodes;
-    use fem::{Material, StressRecovery};
     use mesh::{ElementKind, Mesh};
 
     use super::*;
@@ -322,6 +361,7 @@ mod tests {
                 })
             }),
             n_balls: 1,
+            body: None,
         };
         let stretched = |mesh: &Mesh| mesh.nodes.iter().flat_map(|x| [1e-3 * x[0], 0.0, 0.0]).collect();
         let quarter = std::f64::consts::FRAC_PI_2;

@@ -18,6 +18,7 @@ use super::film::{FilmLaw, FilmSummary};
 use super::memory::Forecasts;
 use super::mounting::{ClearanceSummary, FitSummary, fits};
 use super::probe_places::NodePlace;
+use super::seat::SeatSummary;
 use super::snapshot::Snapshot;
 use super::subsurface::{self, ContactSubsurface};
 use super::whole;
@@ -82,6 +83,9 @@ pub struct Summary {
     /// Ratings and life; absent where the scene does not ask for them.
     #[serde(skip_serializing_if = "Option::is_none")]
     life: Option<serde_json::Value>,
+    /// The seat of the outer ring in an elastic body; absent without one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    seat: Option<SeatSummary>,
     warnings: Vec<String>,
     /// What rules of thumb say about its effects.
     advice: Vec<String>,
@@ -237,6 +241,7 @@ impl Summary {
             iterations: findings.iterations,
             sweep,
             life: None,
+            seat: None,
             warnings,
             advice: findings.advice,
             assumed: scene.assumed.clone(),
@@ -251,6 +256,12 @@ impl Summary {
     /// The same with ratings and life.
     pub fn with_life(self, life: Option<serde_json::Value>) -> Summary {
         Summary { life, ..self }
+    }
+
+    /// The same with the seat of the outer ring in a body.
+    pub fn with_seat(mut self, seat: Option<SeatSummary>) -> Summary {
+        self.warnings.extend(seat.as_ref().and_then(SeatSummary::warning));
+        Summary { seat, ..self }
     }
 
     /// Prints warnings, then where the time went.

@@ -1,5 +1,7 @@
 //! Errors of one ring.
 
+use body::SurroundingError;
+use dense::DenseError;
 use fem::FemError;
 use solver::SolverError;
 
@@ -55,6 +57,18 @@ pub enum RingError {
         /// Cause.
         source: SolverError,
     },
+    /// The functions of a seat cannot be tied.
+    #[error(transparent)]
+    Body {
+        /// Cause.
+        source: SurroundingError,
+    },
+    /// Ring and body make no joint.
+    #[error("the ring cannot be tied to its body: {source}; use fewer harmonics or across in the seat")]
+    Tie {
+        /// Cause.
+        source: DenseError,
+    },
     /// Finite elements failed.
     #[error("{side} ring: {source}")]
     Fem {
@@ -73,6 +87,7 @@ impl RingError {
             self,
             RingError::NotHeld { .. }
                 | RingError::Fem { .. }
+                | RingError::Body { .. }
                 | RingError::Solver {
                     source: SolverError::BadSectors { .. },
                     ..

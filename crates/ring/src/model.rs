@@ -2,6 +2,7 @@
 
 use std::sync::{Arc, Mutex, OnceLock};
 
+use body::SeatTie;
 use comm::Communicator;
 use contact::Groove;
 use fem::{FemError, Material};
@@ -40,6 +41,8 @@ pub struct RingModel {
     pub held_group: &'static str,
     /// The raceway's torus in mesh coordinates.
     pub groove: Groove,
+    /// The elastic body to which the held group is tied at rest; the hold must be [`Hold::MeanMotion`] then.
+    pub tie: Option<Arc<SeatTie>>,
     /// Sectors of the mesh, found when first asked for; a new model has the default.
     pub sectors: FoundSectors,
 }

@@ -16,6 +16,7 @@ use fem::Material;
 use mesh::{Coverage, Cylinder, Mesh, Torus};
 
 use crate::error::BuildError;
+use crate::housing::seat_tie;
 use crate::resolution::require_resolvable;
 use crate::section_record::{require_fresh, with_command};
 use crate::settings::speeds;
@@ -226,7 +227,13 @@ fn ring(
     let (mesh, nodes) = cut(mesh, body)?;
     let node_tags = nodes.iter().map(|&node| origin.node_tags[node]).collect();
     let steel = material(&scene.materials.rings)?;
-    Ok(ring_of(scene, side, steel, mesh).map(|ring| (ring, node_tags)))
+    let Some(mut ring) = ring_of(scene, side, steel, mesh) else {
+        return Ok(None);
+    };
+    if body.support == tables::Support::Body {
+        ring.tie = seat_tie(scene, &ring)?;
+    }
+    Ok(Some((ring, node_tags)))
 }
 
 /// What the groups of a ring have of the surfaces of revolution that they should be the whole of: raceway, and bore or
@@ -285,10 +292,12 @@ pub fn ring_of(scene: &Scene, side: Side, material: Material, mesh: Mesh) -> Opt
         material,
         hold: match body.support {
             tables::Support::Clamped => Hold::Clamped,
-            tables::Support::MeanMotion => Hold::MeanMotion,
+            // A body takes the place of the rigid partner.
+            tables::Support::MeanMotion | tables::Support::Body => Hold::MeanMotion,
         },
         held_group: of_side(scene, side).1,
         groove: groove(&geometry(scene), side, body.groove_z),
+        tie: None,
         sectors: Default::default(),
     })
 }

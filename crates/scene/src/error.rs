@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use body::SurroundingError;
 use contact::ContactError;
 use dynamics::DynamicsError;
 use fem::FemError;
@@ -28,6 +29,9 @@ pub enum BuildError {
     /// An effect cannot be constructed.
     #[error(transparent)]
     Dynamics(#[from] DynamicsError),
+    /// The body round a ring cannot be read, or does not fit.
+    #[error(transparent)]
+    Body(#[from] SurroundingError),
     /// Profiles do not fit the rings.
     #[error("scene {}: {problem}", path.display())]
     Surface {

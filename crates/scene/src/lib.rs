@@ -7,6 +7,7 @@ mod build;
 mod designations;
 mod doubts;
 mod error;
+mod housing;
 mod meshing;
 mod resolution;
 mod revolve_like;

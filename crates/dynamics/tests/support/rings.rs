@@ -53,6 +53,7 @@ pub fn ring_model(side: Side, mesh: Mesh, hold: Hold) -> RingModel {
         hold,
         held_group: measures(side).2,
         groove: groove(side),
+        tie: None,
         sectors: Default::default(),
     }
 }

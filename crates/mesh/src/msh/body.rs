@@ -14,6 +14,8 @@ pub(crate) const BODY: &str = "ring";
 
 /// What a body is made of.
 pub(crate) struct Wanted {
+    /// Name of the physical group.
+    pub(crate) name: &'static str,
     /// 3 for a mesh, 2 for a section.
     pub(crate) dimension: usize,
     /// Gmsh element types that are read.
@@ -45,15 +47,15 @@ pub(crate) struct Body {
 /// A named element of the boundary: its tag and node indices.
 pub(crate) type BoundaryElement = (u64, Vec<usize>);
 
-/// Extracts the elements of the group [`BODY`].
+/// Extracts the elements of the wanted group.
 pub(crate) fn select_body(raw: &RawMsh, path: &Path, wanted: &Wanted) -> Result<Body, MeshError> {
-    let numbers = raw.numbers(wanted.dimension, BODY);
+    let numbers = raw.numbers(wanted.dimension, wanted.name);
     let blocks = blocks_of(raw, wanted.dimension, &numbers);
     let Some(first) = blocks.first() else {
         return Err(MeshError::NoBody {
             path: path.to_path_buf(),
             kind: wanted.noun(),
-            name: BODY,
+            name: wanted.name,
             groups: quoted_list(raw.names_of(wanted.dimension)),
         });
     };

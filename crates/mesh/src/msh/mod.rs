@@ -33,6 +33,7 @@ pub(crate) use raw::RawMsh;
 
 /// The volume elements that are read.
 const VOLUMES: Wanted = Wanted {
+    name: BODY,
     dimension: 3,
     types: &[5, 17, 11],
     expected: "8-node hexahedra, 20-node hexahedra or 10-node tetrahedra",
@@ -49,9 +50,23 @@ pub fn read_msh_with_origin(path: impl AsRef<Path>, unit: f64) -> Result<(Mesh, 
     mesh_of(&RawMsh::read(path.as_ref())?, path.as_ref(), unit)
 }
 
+/// The same of a body round a ring, such as a housing: the elements of the physical volume `body`.
+pub fn read_body_msh(path: impl AsRef<Path>, unit: f64) -> Result<(Mesh, Origin), MeshError> {
+    check_scale(unit)?;
+    let wanted = Wanted {
+        name: "body",
+        ..VOLUMES
+    };
+    wanted_mesh(&RawMsh::read(path.as_ref())?, path.as_ref(), unit, &wanted)
+}
+
 /// Builds and checks the mesh of a file's contents.
 pub(crate) fn mesh_of(raw: &RawMsh, path: &Path, unit: f64) -> Result<(Mesh, Origin), MeshError> {
-    let body = select_body(raw, path, &VOLUMES)?;
+    wanted_mesh(raw, path, unit, &VOLUMES)
+}
+
+fn wanted_mesh(raw: &RawMsh, path: &Path, unit: f64, wanted: &Wanted) -> Result<(Mesh, Origin), MeshError> {
+    let body = select_body(raw, path, wanted)?;
     let surfaces = named_boundary(raw, &body, path, 2)?;
     let kind = match body.gmsh_type {
         17 => ElementKind::Hex20,

@@ -4,11 +4,12 @@ use std::path::Path;
 
 use super::Section;
 use crate::error::MeshError;
-use crate::msh::{RawMsh, Wanted, check_scale, named_boundary, not_boundary, select_body};
+use crate::msh::{BODY, RawMsh, Wanted, check_scale, named_boundary, not_boundary, select_body};
 use crate::origin::Origin;
 
 /// The surface elements that are read.
 const QUADS: Wanted = Wanted {
+    name: BODY,
     dimension: 2,
     types: &[3],
     expected: "4-node quadrangles",

@@ -53,6 +53,7 @@ impl RingModel {
             hold,
             held_group,
             groove,
+            tie,
             mesh,
             ..
         } = self;
@@ -63,6 +64,7 @@ impl RingModel {
             hold,
             held_group,
             groove,
+            tie,
             sectors: Default::default(),
         })
     }

@@ -11,6 +11,7 @@ mod sector;
 mod solver;
 mod sparse;
 mod stiffness;
+mod tie;
 
 pub use prepared::{Prepared, StaticSettings};
 pub use solver::{ASSEMBLE, FACTOR, RingSolver, iterations_note};

@@ -1,16 +1,19 @@
 //! One flexible ring in statics, factored: its displacement under loads.
 
 use ::solver::{LinearSolver, SparseVector};
+use body::SeatFunctions;
 use contact::NodalWeights;
 use timer::{Laps, Stopwatch};
 
 use super::prepared::{Prepared, StaticSettings};
 use super::stiffness::Numbers;
+use super::tie::RingTie;
 use crate::error::RingError;
 use crate::inventory::Inventory;
 use crate::memory::RingMemory;
-use crate::model::RingModel;
+use crate::model::{Hold, RingModel};
 use crate::support::Support;
+use crate::vectors::dot;
 
 /// Lap: assembly of the stiffness.
 pub const ASSEMBLE: &str = "assemble";
@@ -26,6 +29,7 @@ pub struct RingSolver {
     /// The linear solver and why it is that one, for a log.
     note: String,
     n_dofs: usize,
+    tie: Option<RingTie>,
     /// Wall time of [`ASSEMBLE`] and [`FACTOR`].
     pub laps: Laps,
     /// Memory forecast from the analysis, before the factorisation.
@@ -45,8 +49,7 @@ impl RingSolver {
         if let Some(iterations) = iterations {
             note.push_str(&iterations_note(iterations));
         }
-        laps.add(FACTOR, clock.lap());
-        Ok(RingSolver {
+        let mut solver = RingSolver {
             n_dofs: ring.mesh.n_dofs(),
             laps,
             memory,
@@ -54,7 +57,23 @@ impl RingSolver {
             factor,
             block,
             note,
-        })
+            tie: None,
+        };
+        if let (Some(tie), Some(functions)) = (&ring.tie, ring.seat_functions(settings.name)?) {
+            assert!(
+                ring.hold == Hold::MeanMotion,
+                "a ring on a body is held in its mean motion"
+            );
+            let tied = RingTie::new(solver.seat_compliance(&functions), ring, functions, tie)?;
+            solver.note += &format!(
+                "; its {} is tied to a body by {} functions",
+                ring.held_group,
+                tied.n_functions()
+            );
+            solver.tie = Some(tied);
+        }
+        solver.laps.add(FACTOR, clock.lap());
+        Ok(solver)
     }
 
     /// The linear solver and why it is that one, for a log.
@@ -62,8 +81,60 @@ impl RingSolver {
         &self.note
     }
 
-    /// Elastic displacements, m, column-major `[n_dofs][n]`, under `n` load vectors (N) of the same layout.
+    /// Bytes of the joint with a body; 0 without one.
+    pub fn tie_bytes(&self) -> usize {
+        self.tie.as_ref().map_or(0, RingTie::bytes)
+    }
+
+    /// Elastic displacements, m, column-major `[n_dofs][n]`, under `n` load vectors (N) of the same layout: relative to
+    /// the rigid partner, or to what holds the body to which the ring is tied.
     pub fn solve(&self, mut loads: Vec<f64>, n: usize) -> Vec<f64> {
+        let Some(tie) = &self.tie else {
+            return self.solve_held(loads, n);
+        };
+        let held = self.solve_held(loads.clone(), n);
+        let columns = held
+            .chunks_exact(self.n_dofs)
+            .zip(loads.chunks_exact(self.n_dofs));
+        let couplings: Vec<f64> = columns.flat_map(|(u, f)| tie.coupling(u, f)).collect();
+        let answers = tie.answer(&couplings);
+        for (load, answer) in loads
+            .chunks_exact_mut(self.n_dofs)
+            .zip(answers.chunks_exact(tie.n()))
+        {
+            tie.add_forces(answer, load);
+        }
+        let mut displacements = self.solve_held(loads, n);
+        let columns = displacements.chunks_exact_mut(self.n_dofs);
+        columns
+            .zip(answers.chunks_exact(tie.n()))
+            .for_each(|(u, answer)| tie.add_motion(answer, u));
+        displacements
+    }
+
+    /// A = Phi^T K_h^-1 Phi of functions of the held surface, m/N, `[n][n]` flat, exactly symmetric.
+    fn seat_compliance(&self, functions: &SeatFunctions) -> Vec<f64> {
+        let n = functions.n();
+        let mut compliance = Vec::with_capacity(n * n);
+        for first in (0..n).step_by(self.block) {
+            let chunk = first..n.min(first + self.block);
+            let mut loads = vec![0.0; self.n_dofs * chunk.len()];
+            for (function, load) in chunk.clone().zip(loads.chunks_exact_mut(self.n_dofs)) {
+                functions.add_unit_load(function, 1.0, load);
+            }
+            let fields = self.solve_held(loads, chunk.len());
+            compliance.extend(
+                fields
+                    .chunks_exact(self.n_dofs)
+                    .flat_map(|field| functions.measure(field)),
+            );
+        }
+        make_symmetric(n, &mut compliance);
+        compliance
+    }
+
+    /// The same as [`Self::solve`] of a ring that no body is tied to.
+    fn solve_held(&self, mut loads: Vec<f64>, n: usize) -> Vec<f64> {
         let n_free = self.support.free.len();
         let mut rhs = Vec::with_capacity(n_free * n);
         for load in loads.chunks_exact_mut(self.n_dofs) {
@@ -91,10 +162,12 @@ impl RingSolver {
             .iter()
             .flat_map(|weights| &weights.nodes)
             .copied()
+            .chain(self.tie.iter().flat_map(|tie| tie.nodes().iter().copied()))
             .collect();
         at.sort_unstable();
         at.dedup();
         let mut field = vec![0.0; self.n_dofs];
+        let mut couplings = Vec::new();
         for first in (0..n).step_by(self.block) {
             let numbers = first..n.min(first + self.block);
             let loads: Vec<SparseVector> = numbers.clone().map(|j| self.unit_load(contacts, j)).collect();
@@ -110,19 +183,20 @@ impl RingSolver {
                     compliance[n * (2 * i) + j] = motion[0];
                     compliance[n * (2 * i + 1) + j] = motion[1];
                 }
+                if let Some(tie) = &self.tie {
+                    couplings.extend(tie.coupling(&field, &self.force(contacts, j)));
+                }
             }
         }
-        for i in 0..n {
-            for j in 0..i {
-                let mean = 0.5 * (compliance[n * i + j] + compliance[n * j + i]);
-                (compliance[n * i + j], compliance[n * j + i]) = (mean, mean);
-            }
+        if let Some(tie) = &self.tie {
+            add_body(tie, &couplings, &mut compliance);
         }
+        make_symmetric(n, &mut compliance);
         compliance
     }
 
-    /// A unit force on contact direction j, balanced, by rows of the factor.
-    fn unit_load(&self, contacts: &[NodalWeights], j: usize) -> SparseVector {
+    /// A unit force on contact direction j, N, `[n_dofs]`.
+    fn force(&self, contacts: &[NodalWeights], j: usize) -> Vec<f64> {
         let mut load = vec![0.0; self.n_dofs];
         let unit = if j.is_multiple_of(2) {
             [1.0, 0.0]
@@ -130,6 +204,12 @@ impl RingSolver {
             [0.0, 1.0]
         };
         contacts[j / 2].add_load(unit, &mut load);
+        load
+    }
+
+    /// The same, balanced, by rows of the factor.
+    fn unit_load(&self, contacts: &[NodalWeights], j: usize) -> SparseVector {
+        let mut load = self.force(contacts, j);
         self.support.balance_at(&contacts[j / 2].nodes, &mut load);
         let entries = self
             .support
@@ -166,6 +246,27 @@ impl RingSolver {
     /// Number of dofs of the ring, held ones included.
     pub fn n_dofs(&self) -> usize {
         self.n_dofs
+    }
+}
+
+/// What the body adds to the compliance of contacts with these couplings, `[n][tie.n()]`.
+fn add_body(tie: &RingTie, couplings: &[f64], compliance: &mut [f64]) {
+    let n = couplings.len() / tie.n();
+    let answers = tie.answer(couplings);
+    for (i, coupling) in couplings.chunks_exact(tie.n()).enumerate() {
+        for (j, answer) in answers.chunks_exact(tie.n()).enumerate() {
+            compliance[n * i + j] += dot(coupling, answer);
+        }
+    }
+}
+
+/// Takes the mean of mirrored entries.
+fn make_symmetric(n: usize, matrix: &mut [f64]) {
+    for i in 0..n {
+        for j in 0..i {
+            let mean = 0.5 * (matrix[n * i + j] + matrix[n * j + i]);
+            (matrix[n * i + j], matrix[n * j + i]) = (mean, mean);
+        }
     }
 }
 

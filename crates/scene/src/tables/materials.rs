@@ -35,8 +35,10 @@ pub struct RawMaterials {
 
 /// As typed: a name, or a table of numbers.
 #[derive(Debug)]
-enum RawMaterial {
+pub enum RawMaterial {
+    /// By its name.
     Named(&'static NamedMaterial),
+    /// By its numbers.
     Numbers(RawNumbers),
 }
 
@@ -46,7 +48,7 @@ enum RawMaterial {
     deny_unknown_fields,
     expecting = "a table with young_modulus, poisson_ratio, density"
 )]
-struct RawNumbers {
+pub struct RawNumbers {
     young_modulus: Quantity<STRESS>,
     poisson_ratio: f64,
     density: Quantity<DENSITY>,
@@ -87,7 +89,7 @@ impl Materials {
 
 /// A material that a scene may name.
 #[derive(Debug)]
-struct NamedMaterial {
+pub struct NamedMaterial {
     /// The first is that of messages.
     names: &'static [&'static str],
     material: Material,
@@ -161,7 +163,8 @@ impl RawMaterials {
 }
 
 impl RawMaterial {
-    fn check(&self, table: &str, problems: &mut Problems, assumed: &mut Vec<String>) -> Material {
+    /// Checks the material of a table; `assumed` is told the numbers of names.
+    pub fn check(&self, table: &str, problems: &mut Problems, assumed: &mut Vec<String>) -> Material {
         let named = match self {
             RawMaterial::Named(named) => named,
             RawMaterial::Numbers(numbers) => return numbers.check(table, problems),

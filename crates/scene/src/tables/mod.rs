@@ -39,6 +39,7 @@ mod analysis;
 mod ball_diameters;
 mod balls;
 mod bearing;
+mod body;
 mod cage;
 mod contact;
 mod cut;
@@ -94,6 +95,7 @@ use toml_edit::DocumentMut;
 
 pub use self::balls::BallMotion;
 pub use self::bearing::Bearing;
+pub use self::body::{BodySource, SceneBody};
 pub(crate) use self::contact::unusual_stiffnesses;
 pub use self::contact::{BallElasticity, Contact, ContactMode};
 pub use self::difference::difference;
@@ -123,6 +125,7 @@ pub use self::sweep::{Analysis, SweepPoint};
 
 use self::balls::RawBalls;
 use self::bearing::RawBearing;
+use self::body::RawSceneBody;
 use self::cage::RawCage;
 use self::contact::RawContact;
 use self::dynamic::RawDynamic;
@@ -161,6 +164,8 @@ struct RawScene {
     inner: RawRing,
     #[serde(default)]
     outer: RawRing,
+    #[serde(default)]
+    body: Vec<RawSceneBody>,
     shaft: RawShaft,
     #[serde(default)]
     balls: RawBalls,
@@ -210,6 +215,8 @@ pub struct Scene {
     pub inner: Ring,
     /// The ring in the housing.
     pub outer: Ring,
+    /// The elastic body round the outer ring.
+    pub body: Option<SceneBody>,
     /// Freedoms of the shaft.
     pub shaft: Shaft,
     /// How the balls move.
@@ -369,6 +376,7 @@ impl Source<'_> {
         let speed = speed.and_then(|s| s.check(raw.speed_use(), &mut problems));
         let has_speed = raw.has_speed();
         let solver = raw.solver.check(&mut problems);
+        let body = raw.body(self, solver.backend, &mut problems, &mut assumed);
         let output = OutputContext {
             has_steps: raw.dynamic.is_some() || raw.quasi_static.is_some(),
             is_motion: raw.dynamic.is_some(),
@@ -403,6 +411,7 @@ impl Source<'_> {
                 profiles,
                 inner,
                 outer,
+                body,
                 shaft,
                 balls,
                 cage,

@@ -1,15 +1,17 @@
-//! Tables that a scene may have: a free cage; and those that change nothing that a run computes, for lubrication, life
-//! and heat.
+//! Tables that a scene may have: a free cage, a body round the outer ring; and those that change nothing that a run
+//! computes, for lubrication, life and heat.
 
 use dynamics::interactions::cage::Cage;
 use input::Problems;
 
-use super::RawScene;
 use super::balls::BallMotion;
 use super::bearing::Bearing;
+use super::body::{BodyContext, SceneBody, check_bodies};
 use super::heat::Heat;
 use super::life::Life;
 use super::lubricant::Lubrication;
+use super::solver::Backend;
+use super::{RawScene, Source};
 
 impl RawScene {
     /// A free cage beside balls that move so.
@@ -21,6 +23,34 @@ impl RawScene {
     ) -> Option<Cage> {
         let cage = self.cage.as_ref()?;
         cage.check((balls, self.dynamic.is_some()), bearing, problems)
+    }
+
+    /// The body round the outer ring.
+    pub(super) fn body(
+        &self,
+        source: &Source<'_>,
+        backend: Backend,
+        problems: &mut Problems,
+        assumed: &mut Vec<String>,
+    ) -> Option<SceneBody> {
+        let moving = [
+            (self.dynamic.is_some(), "dynamic"),
+            (self.modes.is_some(), "modes"),
+        ];
+        let context = BodyContext {
+            scene: source.path,
+            files: source.mesh_files,
+            supports: [self.inner.support(), self.outer.support()],
+            is_outer_rigid: self.outer.is_rigid(),
+            turns_outer: self.has_speed()[1],
+            backend,
+            moving: moving
+                .iter()
+                .find(|(is_there, _)| *is_there)
+                .map(|(_, table)| *table),
+            effects: self.effects.names(),
+        };
+        check_bodies(&self.body, &context, problems, assumed)
     }
 
     /// What lubricates the contacts; `turns`: whether a speed rolls them.

@@ -46,6 +46,14 @@ impl RingName {
         }
     }
 
+    /// How the surface may be held, for messages.
+    fn supports(self) -> &'static str {
+        match self {
+            RingName::Inner => "\"clamped\" or \"mean_motion\"",
+            RingName::Outer => "\"clamped\" or \"mean_motion\", or \"body\" with a table [[body]]",
+        }
+    }
+
     /// The surface that is held: the bore or the seat.
     fn held_surface(self) -> &'static str {
         match self {
@@ -63,6 +71,8 @@ pub enum Support {
     Clamped,
     /// Only the mean motion of the surface does; it may become oval.
     MeanMotion,
+    /// The surface is tied to the elastic body of `[[body]]`.
+    Body,
 }
 
 /// One ring of a checked scene.
@@ -122,6 +132,11 @@ pub struct RingContext<'a> {
 }
 
 impl RawRing {
+    /// How it is held, as typed.
+    pub fn support(&self) -> Option<Support> {
+        self.support
+    }
+
     /// Whether the scene says that the ring does not deform.
     pub fn is_rigid(&self) -> bool {
         !self.flexible.unwrap_or(true)
@@ -215,7 +230,7 @@ impl RawRing {
         if self.support.is_none() {
             missing(
                 "support",
-                &format!("to know how its {held} is held, \"clamped\" or \"mean_motion\""),
+                &format!("to know how its {held} is held, {}", ring.supports()),
             );
         }
         let mesh_unit = self.mesh_unit.as_ref().and_then(|text| {

@@ -100,14 +100,17 @@ fn ring_variants(scene: &Scene, name: &str, ring: &Ring) -> Vec<Variant> {
     }
     let (held, other) = match support {
         Support::Clamped => ("held in its mean motion", "mean_motion"),
-        Support::MeanMotion => ("clamped", "clamped"),
+        Support::MeanMotion | Support::Body => ("clamped", "clamped"),
     };
+    let mut held_so = vec![format!("{name}.support={other}")];
+    if *support == Support::Body {
+        // Neither a rigid ring nor one that is held otherwise takes a body.
+        rigid.push("body=none".to_string());
+        held_so.push("body=none".to_string());
+    }
     vec![
         (format!("{name} ring rigid"), rigid),
-        (
-            format!("{name} ring {held}"),
-            vec![format!("{name}.support={other}")],
-        ),
+        (format!("{name} ring {held}"), held_so),
     ]
 }
 

@@ -4,6 +4,7 @@ mod bad_format;
 mod bad_motion;
 mod bad_values;
 mod balls;
+mod body;
 mod cage;
 mod catalogue;
 mod effects;

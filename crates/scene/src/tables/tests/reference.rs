@@ -8,6 +8,8 @@ fn taken(table: &str) -> Vec<String> {
     // An array of tables takes what its tables take.
     let header = match table {
         "" => "no_such_key = 1\n".to_string(),
+        "body" => "[[body]]\nno_such_key = 1\n".to_string(),
+        "body.seat" => "[[body]]\n[[body.seat]]\nno_such_key = 1\n".to_string(),
         "inner.cut" | "effects.seat_form" => format!("[[{table}]]\nno_such_key = 1\n"),
         _ if table.starts_with("profiles.") => format!("[[{table}]]\nno_such_key = 1\n"),
         _ => format!("[{table}]\nno_such_key = 1\n"),

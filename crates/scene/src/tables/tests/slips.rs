@@ -169,7 +169,7 @@ const SLIPS: [(&str, &str, &str); 52] = [
     (
         "first_ball",
         "mesh = \"a.msh\"",
-        "unknown key \"mesh\" in [bearing]; mesh belongs to [inner], [outer]; valid",
+        "unknown key \"mesh\" in [bearing]; mesh belongs to [inner], [outer], [body]; valid",
     ),
     (
         "[materials.balls]",

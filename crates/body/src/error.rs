@@ -1,0 +1,184 @@
+//! What can be wrong with a body round a ring.
+
+use std::path::PathBuf;
+
+use fem::FemError;
+use solver::SolverError;
+use thiserror::Error;
+
+/// Directions, for messages.
+pub(crate) const AXES: [&str; 3] = ["x", "y", "z"];
+
+/// Why there is no body, or no joint of it with a ring.
+#[derive(Debug, Error)]
+pub enum SurroundingError {
+    /// A group that is not in the mesh.
+    #[error(
+        "body \"{body}\" has no facet group \"{group}\" in its mesh; groups are {known}; correct {key} or name the \
+         surface in Gmsh"
+    )]
+    UnknownGroup {
+        /// Name of the body.
+        body: String,
+        /// The group.
+        group: String,
+        /// Those that it has.
+        known: String,
+        /// The key of the scene.
+        key: &'static str,
+    },
+    /// Nothing holds the body.
+    #[error(
+        "body \"{body}\" is not held: it can move at node {node} in {axis} without any force; name the groups that \
+         stand on the ground in `fixed`, and check that the body is one connected part"
+    )]
+    NotHeld {
+        /// Name of the body.
+        body: String,
+        /// Node, as its source numbers it.
+        node: u64,
+        /// Direction.
+        axis: &'static str,
+    },
+    /// The fixed nodes lie on a line or a point.
+    #[error(
+        "body \"{body}\" is fixed at {count} nodes that lie on one line, so it can turn about it; fix a surface, or \
+         nodes that span one"
+    )]
+    FixedOnLine {
+        /// Name of the body.
+        body: String,
+        /// Number of fixed nodes.
+        count: usize,
+    },
+    /// A seat that shares nodes with what is fixed.
+    #[error(
+        "body \"{body}\": node {node} of the seat \"{seat}\" is fixed as well; a seat that does not move is \
+         `support = \"clamped\"`, so separate the two groups"
+    )]
+    FixedSeat {
+        /// Name of the body.
+        body: String,
+        /// The seat.
+        seat: String,
+        /// Node, as its source numbers it.
+        node: u64,
+    },
+    /// The seat is no cylinder about z.
+    #[error(
+        "{what} is no cylinder about the z axis: node {node} lies at a radius of {radius_mm:.4} mm, most others at \
+         {most_mm:.4} mm; move the mesh so that the axis of the seat is z, and choose the facets of the cylinder only"
+    )]
+    NoCylinder {
+        /// The seat.
+        what: String,
+        /// The farthest node.
+        node: u64,
+        /// Its radius, mm.
+        radius_mm: f64,
+        /// Median radius, mm.
+        most_mm: f64,
+    },
+    /// Ring and seat of the body have different radii.
+    #[error(
+        "the seat of body \"{body}\" has a radius of {found_mm:.4} mm, that of the ring has {expected_mm:.4} mm; \
+         expected the same to {limit} %, so check mesh_unit and the group{unit}"
+    )]
+    Radius {
+        /// Name of the body.
+        body: String,
+        /// Of the body, mm.
+        found_mm: f64,
+        /// Of the ring, mm.
+        expected_mm: f64,
+        /// Allowed difference, per cent.
+        limit: f64,
+        /// The unit that would fit, as a remark.
+        unit: String,
+    },
+    /// Ring and seat of the body have different widths.
+    #[error(
+        "the seat of body \"{body}\" is {found_mm:.4} mm wide, that of the ring {expected_mm:.4} mm; expected the same \
+         to {limit} %: split the bore of the body in Gmsh where the seat of the ring ends"
+    )]
+    Width {
+        /// Name of the body.
+        body: String,
+        /// Of the body, mm.
+        found_mm: f64,
+        /// Of the ring, mm.
+        expected_mm: f64,
+        /// Allowed difference, per cent.
+        limit: f64,
+    },
+    /// The nodes of a seat do not tell the functions apart.
+    #[error(
+        "{what} has {nodes} nodes, too few or too uneven for {functions} functions of the seat; use a finer mesh \
+         there, or fewer harmonics or across"
+    )]
+    TooFewNodes {
+        /// The seat.
+        what: String,
+        /// Its nodes.
+        nodes: usize,
+        /// Functions of a component.
+        functions: usize,
+    },
+    /// A file of a body cannot be read.
+    #[error("cannot read {}: {source}", path.display())]
+    Unreadable {
+        /// The file.
+        path: PathBuf,
+        /// Reason of the system.
+        source: std::io::Error,
+    },
+    /// A file of a body is not as it should be.
+    #[error("{}{}: {problem}", path.display(), at(*line))]
+    File {
+        /// The file.
+        path: PathBuf,
+        /// Line from 1; 0: the file as a whole.
+        line: usize,
+        /// What is wrong, what was expected, what to do.
+        problem: String,
+    },
+    /// The matrix is not symmetric.
+    #[error(
+        "{}: the stiffness is not symmetric: node {} {} with node {} {} has {value:e}, the other way round {other:e}; \
+         expected equal to 1e-8 of the diagonal, so export the stiffness of a linear static step without friction or \
+         follower loads", path.display(), places[0].0, places[0].1, places[1].0, places[1].1
+    )]
+    NotSymmetric {
+        /// The file.
+        path: PathBuf,
+        /// Node number and direction of row and column.
+        places: [(u64, &'static str); 2],
+        /// Entry.
+        value: f64,
+        /// Its mirror image.
+        other: f64,
+    },
+    /// Finite elements failed.
+    #[error("body \"{body}\": {source}")]
+    Fem {
+        /// Name of the body.
+        body: String,
+        /// Cause.
+        source: FemError,
+    },
+    /// The factorisation failed otherwise.
+    #[error("body \"{body}\": {source}")]
+    Solver {
+        /// Name of the body.
+        body: String,
+        /// Cause.
+        source: SolverError,
+    },
+}
+
+fn at(line: usize) -> String {
+    match line {
+        0 => String::new(),
+        line => format!(", line {line}"),
+    }
+}

@@ -1,0 +1,22 @@
+//! An elastic body round a ring, such as a housing: its seats, and its exact flexibility there.
+//!
+//! A body meets a ring in functions of their common cylinder ([`SeatSpace`]): Fourier round it, Legendre across it. Of
+//! each side of the joint [`SeatFunctions`] measure a displacement and spread a traction, with the areas of its own
+//! nodes, so that neither mesh need know the other. A [`Surrounding`] comes from a Gmsh mesh, or from the matrix of
+//! another program ([`matrix`]). At rest it is condensed exactly: F = Phi^T K^-1 Phi.
+//!
+//! Cost: one sparse factorisation, and one solve per function of the seats; 225 with 12 harmonics and 2 degrees
+//! across. The factor is kept for the displacement of the whole body.
+
+mod areas;
+mod error;
+pub mod matrix;
+mod seat;
+mod surrounding;
+mod tie;
+
+pub use areas::cylinder_areas;
+pub use error::SurroundingError;
+pub use seat::{SeatBasis, SeatCylinder, SeatFunctions, SeatSpace};
+pub use surrounding::{BodySeat, Surrounding};
+pub use tie::{SeatTie, SeatTraction, TieConvergence};

@@ -1,0 +1,368 @@
+//! An elastic body at rest, condensed exactly to the functions of its seats.
+
+use std::time::Instant;
+
+use fem::Material;
+use mesh::{Mesh, Origin};
+use rayon::prelude::*;
+use solver::{LinearSolver, SolverError, SparseCholesky, Symbolic, angular_dissection, expand};
+use sprs::CsMat;
+
+use crate::error::{AXES, SurroundingError};
+use crate::matrix::MatrixBody;
+use crate::seat::{SeatCylinder, SeatFunctions, SeatSpace};
+
+/// Columns that are solved for together: a factor is read once for them. Fixed, so that threads change no bit.
+const BLOCK: usize = 16;
+/// Allowed difference of the radii of ring and seat, share.
+const RADIUS_TOLERANCE: f64 = 2e-3;
+/// The same of the widths.
+const WIDTH_TOLERANCE: f64 = 1e-2;
+
+/// A seat of a body and the functions that are tied there.
+#[derive(Clone, Debug)]
+pub struct BodySeat {
+    /// Facet group; of a body from matrices any name.
+    pub group: String,
+    /// Functions in the coordinates of its ring.
+    pub space: SeatSpace,
+    /// Where the middle of the seat stands in the body, m along z; None: in its own middle.
+    pub middle: Option<f64>,
+}
+
+/// A held elastic body, factored.
+pub struct Surrounding {
+    /// Its name.
+    pub name: String,
+    /// Mesh and material; None for a body from matrices.
+    pub mesh: Option<(Mesh, Material)>,
+    /// What is added to its z for the coordinates of the ring of its first seat, m.
+    pub shift: f64,
+    /// Its seats.
+    pub seats: Vec<SeatFunctions>,
+    /// F over the functions of all seats, m/N, `[n][n]` flat, symmetric.
+    pub flexibility: Vec<f64>,
+    /// Dofs.
+    pub n_dofs: usize,
+    /// Bytes of the factor and the functionals.
+    pub bytes: usize,
+    /// Wall time of assembly, factor and columns, s.
+    pub seconds: f64,
+    free: Vec<usize>,
+    factor: SparseCholesky,
+}
+
+/// What is common to meshes and matrices.
+struct Unfactored<'a> {
+    name: String,
+    stiffness: &'a CsMat<f64>,
+    places: &'a [[f64; 3]],
+    tags: &'a [u64],
+    fixed: Vec<bool>,
+    /// Elements, for the order of elimination.
+    cliques: &'a [usize],
+    clique: usize,
+}
+
+impl Surrounding {
+    /// A body of a mesh, held at the facet groups `fixed`.
+    pub fn of_mesh(
+        name: &str,
+        (mesh, origin): (Mesh, &Origin),
+        material: Material,
+        fixed: &[String],
+        seats: &[BodySeat],
+    ) -> Result<Surrounding, SurroundingError> {
+        let start = Instant::now();
+        for group in fixed {
+            require_group(name, &mesh, group, "`fixed`")?;
+        }
+        let mut is_fixed = vec![false; mesh.n_nodes()];
+        for node in fixed.iter().flat_map(|group| mesh.group_nodes(group)) {
+            is_fixed[node] = true;
+        }
+        let mut joints = Vec::new();
+        for seat in seats {
+            require_group(name, &mesh, &seat.group, "the `group` of its seat")?;
+            let areas = fem::facet_node_weights(&mesh, mesh.group(&seat.group));
+            joints.push(joint(name, seat, &areas, &mesh.nodes, &origin.node_tags)?);
+            refuse_fixed(name, seat, &areas, &is_fixed, &origin.node_tags)?;
+        }
+        let fem = |source| SurroundingError::Fem {
+            body: name.to_string(),
+            source,
+        };
+        let stiffness = fem::assemble_stiffness(&mesh, &material).map_err(fem)?;
+        let held = Unfactored {
+            name: name.to_string(),
+            stiffness: &stiffness,
+            places: &mesh.nodes,
+            tags: &origin.node_tags,
+            fixed: is_fixed,
+            cliques: &mesh.connectivity,
+            clique: mesh.kind.n_nodes(),
+        };
+        let mut body = held.condense(joints, start)?;
+        body.mesh = Some((mesh, material));
+        Ok(body)
+    }
+
+    /// A body of the matrices of another program, with one seat.
+    pub fn of_matrix(
+        name: &str,
+        matrix: &MatrixBody,
+        seat: &BodySeat,
+    ) -> Result<Surrounding, SurroundingError> {
+        let start = Instant::now();
+        let areas = matrix.seat_areas(name)?;
+        let joints = vec![joint(name, seat, &areas, &matrix.places, &matrix.tags)?];
+        refuse_fixed(name, seat, &areas, &matrix.fixed, &matrix.tags)?;
+        let pairs = matrix.neighbours();
+        let held = Unfactored {
+            name: name.to_string(),
+            stiffness: &matrix.stiffness,
+            places: &matrix.places,
+            tags: &matrix.tags,
+            fixed: matrix.fixed.clone(),
+            cliques: &pairs,
+            clique: 2,
+        };
+        held.condense(joints, start)
+    }
+
+    /// Number of functions of all seats.
+    pub fn n_functions(&self) -> usize {
+        self.seats.iter().map(SeatFunctions::n).sum()
+    }
+
+    /// Displacement under the forces lam on its seats, N, `[n_functions]`: m, `[n_nodes][3]` flat.
+    pub fn displacement(&self, lam: &[f64]) -> Vec<f64> {
+        let mut load = vec![0.0; self.n_dofs];
+        let mut rest = lam;
+        for seat in &self.seats {
+            let (own, others) = rest.split_at(seat.n());
+            seat.add_load(own, &mut load);
+            rest = others;
+        }
+        let mut rhs: Vec<f64> = self.free.iter().map(|&dof| load[dof]).collect();
+        self.factor.solve(&mut rhs, 1);
+        load.fill(0.0);
+        for (&dof, u) in self.free.iter().zip(rhs) {
+            load[dof] = u;
+        }
+        load
+    }
+}
+
+impl Unfactored<'_> {
+    /// Factors the stiffness and finds the flexibility.
+    fn condense(
+        self,
+        joints: Vec<(SeatFunctions, f64)>,
+        start: Instant,
+    ) -> Result<Surrounding, SurroundingError> {
+        self.require_spanning()?;
+        let free: Vec<usize> = (0..3 * self.places.len())
+            .filter(|dof| !self.fixed[dof / 3])
+            .collect();
+        let lower = solver::restrict_lower(self.stiffness, &free);
+        let nodes = angular_dissection(self.places, self.cliques, self.clique);
+        let order = solver::restrict_order(&expand(&nodes, 3), &free);
+        let failed = |source| self.failed(source, &free);
+        let symbolic = Symbolic::new(&lower, &order).map_err(failed)?;
+        let factor = symbolic.factor(&lower).map_err(failed)?;
+        let shift = joints.first().map_or(0.0, |joint| joint.1);
+        let seats: Vec<SeatFunctions> = joints.into_iter().map(|joint| joint.0).collect();
+        let functional_bytes: usize = seats.iter().map(SeatFunctions::bytes).sum();
+        let mut body = Surrounding {
+            name: self.name,
+            mesh: None,
+            shift,
+            flexibility: Vec::new(),
+            n_dofs: 3 * self.places.len(),
+            bytes: factor.factor_bytes() + functional_bytes,
+            seconds: 0.0,
+            seats,
+            free,
+            factor,
+        };
+        body.flexibility = body.flexibility_of_seats();
+        body.seconds = start.elapsed().as_secs_f64();
+        Ok(body)
+    }
+
+    /// Fixed nodes must span a plane, or the body can turn.
+    fn require_spanning(&self) -> Result<(), SurroundingError> {
+        let fixed: Vec<[f64; 3]> = (0..self.places.len())
+            .filter(|&node| self.fixed[node])
+            .map(|node| self.places[node])
+            .collect();
+        let Some(first) = fixed.first() else {
+            // A matrix may hold its supports itself; if not, its factor says so.
+            return Ok(());
+        };
+        let arm = |x: &[f64; 3]| [0, 1, 2].map(|c| x[c] - first[c]);
+        let size = |v: [f64; 3]| v.iter().map(|c| c * c).sum::<f64>().sqrt();
+        let far = fixed.iter().map(arm).max_by(|a, b| size(*a).total_cmp(&size(*b)));
+        let far = far.unwrap_or_default();
+        let across = |x: &[f64; 3]| {
+            let a = arm(x);
+            size([0, 1, 2].map(|c| a[(c + 1) % 3] * far[(c + 2) % 3] - a[(c + 2) % 3] * far[(c + 1) % 3]))
+        };
+        let widest = fixed.iter().map(across).fold(0.0, f64::max);
+        if widest > 1e-6 * size(far) * size(far) {
+            return Ok(());
+        }
+        Err(SurroundingError::FixedOnLine {
+            body: self.name.clone(),
+            count: fixed.len(),
+        })
+    }
+
+    /// The error of a factorisation, with the node that nothing holds.
+    fn failed(&self, source: SolverError, free: &[usize]) -> SurroundingError {
+        match source {
+            SolverError::NotPositiveDefinite { row, .. } | SolverError::Singular { row, .. } => {
+                SurroundingError::NotHeld {
+                    body: self.name.clone(),
+                    node: self.tags[free[row] / 3],
+                    axis: AXES[free[row] % 3],
+                }
+            }
+            source => SurroundingError::Solver {
+                body: self.name.clone(),
+                source,
+            },
+        }
+    }
+}
+
+impl Surrounding {
+    /// F = Phi^T K^-1 Phi, made exactly symmetric.
+    fn flexibility_of_seats(&self) -> Vec<f64> {
+        let n = self.n_functions();
+        let owners: Vec<(usize, usize)> = self
+            .seats
+            .iter()
+            .enumerate()
+            .flat_map(|(seat, functions)| (0..functions.n()).map(move |f| (seat, f)))
+            .collect();
+        let n_free = self.free.len();
+        let columns = |chunk: &[(usize, usize)]| -> Vec<f64> {
+            let mut field = vec![0.0; self.n_dofs];
+            let mut rhs = Vec::with_capacity(n_free * chunk.len());
+            for &(seat, function) in chunk {
+                field.fill(0.0);
+                self.seats[seat].add_unit_load(function, 1.0, &mut field);
+                rhs.extend(self.free.iter().map(|&dof| field[dof]));
+            }
+            self.factor.solve(&mut rhs, chunk.len());
+            let mut measured = Vec::with_capacity(n * chunk.len());
+            for column in rhs.chunks_exact(n_free) {
+                field.fill(0.0);
+                for (&dof, u) in self.free.iter().zip(column) {
+                    field[dof] = *u;
+                }
+                measured.extend(self.seats.iter().flat_map(|seat| seat.measure(&field)));
+            }
+            measured
+        };
+        let mut flexibility: Vec<f64> = owners.par_chunks(BLOCK).map(columns).collect::<Vec<_>>().concat();
+        for i in 0..n {
+            for j in 0..i {
+                let mean = 0.5 * (flexibility[n * i + j] + flexibility[n * j + i]);
+                (flexibility[n * i + j], flexibility[n * j + i]) = (mean, mean);
+            }
+        }
+        flexibility
+    }
+}
+
+fn require_group(body: &str, mesh: &Mesh, group: &str, key: &'static str) -> Result<(), SurroundingError> {
+    if !mesh.group(group).is_empty() {
+        return Ok(());
+    }
+    let known: Vec<String> = mesh.groups.keys().map(|name| format!("{name:?}")).collect();
+    Err(SurroundingError::UnknownGroup {
+        body: body.to_string(),
+        group: group.to_string(),
+        known: known.join(", "),
+        key,
+    })
+}
+
+/// Functions of a seat on the body's side, and what is added to z for them.
+fn joint(
+    body: &str,
+    seat: &BodySeat,
+    areas: &[(usize, f64)],
+    places: &[[f64; 3]],
+    tags: &[u64],
+) -> Result<(SeatFunctions, f64), SurroundingError> {
+    let what = format!("the seat \"{}\" of body \"{body}\"", seat.group);
+    let nodes = areas.iter().map(|&(node, _)| (tags[node], places[node]));
+    let cylinder = SeatCylinder::of_nodes(&what, nodes)?;
+    let space = &seat.space;
+    let ratio = cylinder.radius / space.radius;
+    if (ratio - 1.0).abs() > RADIUS_TOLERANCE {
+        return Err(SurroundingError::Radius {
+            body: body.to_string(),
+            found_mm: 1e3 * cylinder.radius,
+            expected_mm: 1e3 * space.radius,
+            limit: 100.0 * RADIUS_TOLERANCE,
+            unit: unit_of(ratio),
+        });
+    }
+    let width = 2.0 * space.half_width;
+    if (cylinder.width() / width - 1.0).abs() > WIDTH_TOLERANCE {
+        return Err(SurroundingError::Width {
+            body: body.to_string(),
+            found_mm: 1e3 * cylinder.width(),
+            expected_mm: 1e3 * width,
+            limit: 100.0 * WIDTH_TOLERANCE,
+        });
+    }
+    let shift = space.middle - seat.middle.unwrap_or(cylinder.middle());
+    let place = |node: usize| {
+        let [x, y, z] = places[node];
+        [x, y, z + shift]
+    };
+    Ok((SeatFunctions::new(&what, *space, areas, place)?, shift))
+}
+
+/// A remark on the unit of a mesh whose seat is `ratio` times too large.
+fn unit_of(ratio: f64) -> String {
+    for (factor, remark) in [
+        (
+            1e3,
+            "its lengths seem to be in a unit 1000 times smaller, such as mm for m",
+        ),
+        (
+            1e-3,
+            "its lengths seem to be in a unit 1000 times larger, such as m for mm",
+        ),
+        (1.0 / 25.4, "its lengths seem to be in inch"),
+    ] {
+        if (ratio / factor - 1.0).abs() < 0.05 {
+            return format!("; {remark}");
+        }
+    }
+    String::new()
+}
+
+fn refuse_fixed(
+    body: &str,
+    seat: &BodySeat,
+    areas: &[(usize, f64)],
+    fixed: &[bool],
+    tags: &[u64],
+) -> Result<(), SurroundingError> {
+    match areas.iter().find(|(node, _)| fixed[*node]) {
+        None => Ok(()),
+        Some(&(node, _)) => Err(SurroundingError::FixedSeat {
+            body: body.to_string(),
+            seat: seat.group.clone(),
+            node: tags[node],
+        }),
+    }
+}

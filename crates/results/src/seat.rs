@@ -1,0 +1,220 @@
+//! The seat of a ring in an elastic body: tractions as a table, and what the summary says of the joint.
+//!
+//! `seat_outer.csv` has the last equilibrium of a run on a grid of the seat: azimuth from +x towards +y, z in the
+//! coordinates of the ring's mesh. Pressure is positive where the body presses on the ring; shear is the traction on
+//! the ring in the direction of growing azimuth and z; motion is that of the seat, which ring and body share.
+
+use std::f64::consts::TAU;
+use std::fmt::Write;
+use std::path::Path;
+use std::sync::Arc;
+
+use body::{SeatBasis, SeatFunctions, SeatTie, SeatTraction};
+use comm::{Communicator, print};
+use contact::Side;
+use dynamics::{Model, RingModel, StaticSolution};
+use serde::Serialize;
+
+use crate::failure::Failure;
+use crate::whole;
+
+/// Name of the table.
+pub const SEAT_TABLE: &str = "seat_outer.csv";
+/// Its columns.
+const HEAD: &str =
+    "azimuth_rad,z_m,pressure_pa,shear_tangential_pa,shear_axial_pa,radial_m,tangential_m,axial_m";
+/// Points of the table round and across the seat.
+const GRID: [usize; 2] = [144, 9];
+/// Shares of the energy above which a warning asks for more functions.
+const UNRESOLVED: f64 = 0.02;
+
+/// The joint of the outer ring with its body at one equilibrium.
+pub struct SeatState {
+    tie: Arc<SeatTie>,
+    functions: SeatFunctions,
+    /// What it carries.
+    pub traction: SeatTraction,
+}
+
+/// What the summary says of a seat.
+#[derive(Clone, Debug, Serialize)]
+pub struct SeatSummary {
+    body: String,
+    harmonics: usize,
+    across: usize,
+    functions: usize,
+    /// Share of the last two orders round the seat in the energy of the body.
+    energy_share_last_orders: f64,
+    /// Share of the last degree across.
+    energy_share_last_degree: f64,
+    /// Strain energy of the body; part of that of the rings.
+    body_energy_j: f64,
+    largest_pressure_pa: f64,
+    smallest_pressure_pa: f64,
+    body_dofs: usize,
+    body_bytes: usize,
+    /// Assembly, factor and all columns of the body.
+    body_seconds: f64,
+}
+
+/// The ring that is tied to a body, and its joint.
+pub fn tied(model: &Model) -> Option<(Side, &RingModel, &Arc<SeatTie>)> {
+    let of_side = |side: Side| {
+        let ring = model.ring(side)?;
+        Some((side, ring, ring.tie.as_ref()?))
+    };
+    Side::BOTH.into_iter().find_map(of_side)
+}
+
+/// Writes what the seat of a ring in a body carries, and sums it up; None where no ring is in one.
+pub fn of_run(model: &Model, solution: &StaticSolution, dir: &Path) -> Result<Option<SeatSummary>, Failure> {
+    match SeatState::new(model, solution)? {
+        Some(state) => Ok(Some(state.finish(dir)?)),
+        None => Ok(None),
+    }
+}
+
+/// A place of the table.
+struct SeatPoint {
+    azimuth: f64,
+    z: f64,
+    /// Traction on the ring, Pa: radial, tangential, axial.
+    traction: [f64; 3],
+    /// Motion, m.
+    motion: [f64; 3],
+}
+
+impl SeatState {
+    /// The joint at an equilibrium; None where the outer ring is in no body.
+    pub fn new(model: &Model, solution: &StaticSolution) -> Result<Option<SeatState>, Failure> {
+        let Some((side, ring, tie)) = tied(model) else {
+            return Ok(None);
+        };
+        let functions = ring.seat_functions(side.name()).map_err(Failure::solving)?;
+        let (Some(functions), Some(field)) = (functions, &solution.elastic[side.index()]) else {
+            return Ok(None);
+        };
+        let traction = tie.traction(&functions, field);
+        Ok(traction.map(|traction| SeatState {
+            tie: tie.clone(),
+            functions,
+            traction,
+        }))
+    }
+
+    /// Displacement of the body, m, `[n_nodes][3]` flat.
+    pub fn body_displacement(&self) -> Vec<f64> {
+        let displacement = self.tie.body_displacement(&self.traction);
+        displacement.expect("a joint that carries something has a body")
+    }
+
+    /// Writes the table, says how converged the joint is, and makes the entry of the summary. Rank 0 writes for all.
+    pub fn finish(&self, dir: &Path) -> anyhow::Result<SeatSummary> {
+        let points = self.points();
+        if Communicator::world().is_root() {
+            let text = table(&points);
+            whole::write(&dir.join(SEAT_TABLE), text.as_bytes(), |old| {
+                whole::holds(old, HEAD)
+            })?;
+        }
+        let summary = self.summary(&points);
+        print::line(format_args!(
+            "seat of the outer ring in body {:?}: {} functions; the last two orders hold {:.2e} of its energy, the \
+             last degree across {:.2e}",
+            summary.body,
+            summary.functions,
+            summary.energy_share_last_orders,
+            summary.energy_share_last_degree
+        ));
+        Ok(summary)
+    }
+
+    fn summary(&self, points: &[SeatPoint]) -> SeatSummary {
+        let body = self
+            .tie
+            .body
+            .as_ref()
+            .expect("a joint that carries something has a body");
+        let share = self.traction.convergence(self.tie.space.basis);
+        let (harmonics, across) = match self.tie.space.basis {
+            SeatBasis::Harmonics { harmonics, across } => (harmonics, across),
+            SeatBasis::Rigid => (1, 1),
+        };
+        let pressures = || points.iter().map(|p| -p.traction[0]);
+        SeatSummary {
+            body: body.name.clone(),
+            harmonics,
+            across,
+            functions: self.functions.n(),
+            energy_share_last_orders: share.last_orders,
+            energy_share_last_degree: share.last_degree,
+            body_energy_j: self.traction.energy(),
+            largest_pressure_pa: pressures().fold(f64::NEG_INFINITY, f64::max),
+            smallest_pressure_pa: pressures().fold(f64::INFINITY, f64::min),
+            body_dofs: body.n_dofs,
+            body_bytes: body.bytes,
+            body_seconds: body.seconds,
+        }
+    }
+
+    fn points(&self) -> Vec<SeatPoint> {
+        let space = &self.tie.space;
+        let traction = self.functions.traction(&self.traction.forces);
+        let mut points = Vec::with_capacity(GRID[0] * GRID[1]);
+        for i in 0..GRID[0] {
+            let azimuth = TAU * i as f64 / GRID[0] as f64;
+            for j in 0..GRID[1] {
+                let across = 2.0 * j as f64 / (GRID[1] - 1) as f64 - 1.0;
+                let phi = space.scalars(azimuth, across);
+                let sum = |coefficients: &[f64], c: usize| {
+                    let own = coefficients.iter().skip(c).step_by(3);
+                    own.zip(&phi).map(|(a, b)| a * b).sum::<f64>()
+                };
+                points.push(SeatPoint {
+                    azimuth,
+                    z: space.middle + across * space.half_width,
+                    traction: [0, 1, 2].map(|c| sum(&traction, c)),
+                    motion: [0, 1, 2].map(|c| sum(&self.traction.motion, c)),
+                });
+            }
+        }
+        points
+    }
+}
+
+impl SeatSummary {
+    /// What a user should know.
+    pub fn warning(&self) -> Option<String> {
+        let (orders, degree) = (self.energy_share_last_orders, self.energy_share_last_degree);
+        if orders.max(degree) < UNRESOLVED {
+            return None;
+        }
+        let key = if orders > degree { "harmonics" } else { "across" };
+        Some(format!(
+            "the seat of body {:?} is not resolved: its last functions hold {:.1} % of its energy; raise {key} of \
+             [[body.seat]]",
+            self.body,
+            100.0 * orders.max(degree)
+        ))
+    }
+}
+
+fn table(points: &[SeatPoint]) -> String {
+    let mut text = format!("{HEAD}\n");
+    for p in points {
+        let [radial, tangential, axial] = p.traction;
+        let values = [
+            p.azimuth,
+            p.z,
+            -radial,
+            tangential,
+            axial,
+            p.motion[0],
+            p.motion[1],
+            p.motion[2],
+        ];
+        let cells: Vec<String> = values.iter().map(|v| format!("{v:e}")).collect();
+        writeln!(text, "{}", cells.join(",")).expect("a string takes all text");
+    }
+    text
+}

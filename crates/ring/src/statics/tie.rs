@@ -1,0 +1,154 @@
+//! A ring whose seat is tied to an elastic body in functions of the seat.
+//!
+//! The solver holds the ring in its mean motion: K_h^-1 with B u = 0. A body of flexibility F takes the place of the
+//! rigid partner by forces lam in the functions Phi of the seat, and the ring moves by R q as well:
+//!
+//! ```text
+//! u = K_h^-1 (f + Phi lam) + R q
+//! | A + F    Phi^T R |  | lam |      | Phi^T K_h^-1 f |
+//! | R^T Phi     0    |  |  q  | = -  | R^T f          |,     A = Phi^T K_h^-1 Phi
+//! ```
+//!
+//! The second row says that f + Phi lam is balanced. So the mean motion holds nothing, and it is no matter how it is
+//! defined: the answer is that of the free ring on the body. The rigid motions are exact, because K R = 0 and the
+//! solver leaves u + R q open for any q. Cost: one solve per function once, then two solves per load instead of one.
+
+use std::sync::Arc;
+
+use body::{SeatFunctions, SeatTie};
+use dense::DenseLu;
+use mesh::NodePositions;
+
+use crate::error::RingError;
+use crate::model::RingModel;
+
+/// Rigid motions of a ring.
+const N_RIGID: usize = 6;
+
+/// The joint of a factored ring.
+pub(super) struct RingTie {
+    functions: SeatFunctions,
+    places: NodePositions,
+    /// Factor over (lam, q / scale).
+    saddle: DenseLu,
+    /// Unit of q, m: makes both parts of the matrix equally large.
+    scale: f64,
+}
+
+impl RingModel {
+    /// Functions of the seat on the ring's side; None where no body is tied to it.
+    pub fn seat_functions(&self, side: &'static str) -> Result<Option<SeatFunctions>, RingError> {
+        let Some(tie) = &self.tie else { return Ok(None) };
+        let areas = fem::facet_node_weights(&self.mesh, self.mesh.group(self.held_group));
+        let what = format!("the {} of the {side} ring", self.held_group);
+        let functions = SeatFunctions::new(&what, tie.space, &areas, |node| self.mesh.nodes[node]);
+        functions.map(Some).map_err(|source| RingError::Body { source })
+    }
+}
+
+impl RingTie {
+    /// Ties a ring whose seat has the compliance A = `matrix` (m/N, `[n][n]` flat) in its mean motion.
+    pub fn new(
+        mut matrix: Vec<f64>,
+        ring: &RingModel,
+        functions: SeatFunctions,
+        tie: &Arc<SeatTie>,
+    ) -> Result<RingTie, RingError> {
+        let n = functions.n();
+        matrix.iter_mut().zip(&tie.flexibility).for_each(|(a, f)| *a += f);
+        let scale = (0..n).map(|i| matrix[n * i + i]).fold(0.0, f64::max);
+        let mut tied = vec![0.0; (n + N_RIGID) * (n + N_RIGID)];
+        for (i, row) in matrix.chunks_exact(n).enumerate() {
+            tied[(n + N_RIGID) * i..(n + N_RIGID) * i + n].copy_from_slice(row);
+        }
+        for k in 0..N_RIGID {
+            let mut mode = vec![0.0; ring.mesh.n_dofs()];
+            for (x, u) in ring.mesh.nodes.iter().zip(mode.chunks_exact_mut(3)) {
+                u.copy_from_slice(&motion(arm(x, &functions)).map(|row| scale * row[k]));
+            }
+            for (i, value) in functions.measure(&mode).into_iter().enumerate() {
+                tied[(n + N_RIGID) * i + n + k] = value;
+                tied[(n + N_RIGID) * (n + k) + i] = value;
+            }
+        }
+        let saddle = DenseLu::factor(n + N_RIGID, &tied).map_err(|source| RingError::Tie { source })?;
+        Ok(RingTie {
+            functions,
+            places: ring.mesh.nodes.clone(),
+            saddle,
+            scale,
+        })
+    }
+
+    /// Rows and columns of the saddle.
+    pub fn n(&self) -> usize {
+        self.functions.n() + N_RIGID
+    }
+
+    /// Number of functions.
+    pub fn n_functions(&self) -> usize {
+        self.functions.n()
+    }
+
+    /// Bytes of the joint.
+    pub fn bytes(&self) -> usize {
+        size_of::<f64>() * (self.n() * self.n() + 3 * self.places.len()) + self.functions.bytes()
+    }
+
+    /// Nodes of the seat.
+    pub fn nodes(&self) -> &[usize] {
+        &self.functions.nodes
+    }
+
+    /// Phi^T u and scale R^T f of a held displacement, m, and the load on the ring, N, that made it.
+    pub fn coupling(&self, displacement: &[f64], load: &[f64]) -> Vec<f64> {
+        let mut coupling = self.functions.measure(displacement);
+        let mut resultant = [0.0; N_RIGID];
+        for (x, f) in self.places.iter().zip(load.chunks_exact(3)) {
+            if f.iter().any(|f| *f != 0.0) {
+                for (row, f) in motion(arm(x, &self.functions)).iter().zip(f) {
+                    (0..N_RIGID).for_each(|k| resultant[k] += row[k] * f);
+                }
+            }
+        }
+        coupling.extend(resultant.map(|sum| self.scale * sum));
+        coupling
+    }
+
+    /// Forces lam and motions q for some couplings, column-major `[n][columns]`.
+    pub fn answer(&self, couplings: &[f64]) -> Vec<f64> {
+        let mut answer: Vec<f64> = couplings.iter().map(|b| -b).collect();
+        self.saddle.solve(&mut answer, couplings.len() / self.n());
+        answer
+    }
+
+    /// Adds the forces of the body to a load.
+    pub fn add_forces(&self, answer: &[f64], load: &mut [f64]) {
+        self.functions.add_load(&answer[..self.n_functions()], load);
+    }
+
+    /// Adds the rigid motion to a displacement.
+    pub fn add_motion(&self, answer: &[f64], displacement: &mut [f64]) {
+        let q = &answer[self.n_functions()..];
+        for (x, u) in self.places.iter().zip(displacement.chunks_exact_mut(3)) {
+            for (row, u) in motion(arm(x, &self.functions)).iter().zip(u) {
+                *u += self.scale * row.iter().zip(q).map(|(r, q)| r * q).sum::<f64>();
+            }
+        }
+    }
+}
+
+/// Place of a node from the middle of the seat, in radii.
+fn arm(x: &[f64; 3], functions: &SeatFunctions) -> [f64; 3] {
+    let space = &functions.space;
+    [x[0], x[1], x[2] - space.middle].map(|arm| arm / space.radius)
+}
+
+/// Rigid motions at an arm, `[component][motion]`.
+fn motion([x, y, z]: [f64; 3]) -> [[f64; N_RIGID]; 3] {
+    [
+        [1.0, 0.0, 0.0, 0.0, z, -y],
+        [0.0, 1.0, 0.0, -z, 0.0, x],
+        [0.0, 0.0, 1.0, y, -x, 0.0],
+    ]
+}

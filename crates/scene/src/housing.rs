@@ -1,0 +1,58 @@
+//! The body round the outer ring, from what a scene says of it.
+
+use std::sync::Arc;
+
+use body::matrix::MatrixBody;
+use body::{BodySeat, SeatCylinder, SeatSpace, SeatTie, Surrounding};
+use dynamics::RingModel;
+use fem::Material;
+
+use crate::error::BuildError;
+use crate::tables::{BodySource, Scene, SceneBody};
+
+/// The joint of the outer ring with the body of the scene, if there is one: reads, factors and condenses it.
+pub fn seat_tie(scene: &Scene, ring: &RingModel) -> Result<Option<Arc<SeatTie>>, BuildError> {
+    let Some(body) = &scene.body else { return Ok(None) };
+    let nodes = ring.mesh.group_nodes(ring.held_group);
+    let what = "the seat of the outer ring";
+    let numbered = nodes.iter().map(|&node| (node as u64 + 1, ring.mesh.nodes[node]));
+    let cylinder = SeatCylinder::of_nodes(what, numbered)?;
+    let seat = BodySeat {
+        group: body.group.clone(),
+        space: SeatSpace::on(&cylinder, body.basis),
+        middle: body.z,
+    };
+    // The ring must tell the functions apart too: sooner than after a long factorisation.
+    let areas = fem::facet_node_weights(&ring.mesh, ring.mesh.group(ring.held_group));
+    body::SeatFunctions::new(what, seat.space, &areas, |node| ring.mesh.nodes[node])?;
+    Ok(Some(Arc::new(SeatTie::to_body(Arc::new(surrounding(
+        body, &seat,
+    )?)))))
+}
+
+fn surrounding(body: &SceneBody, seat: &BodySeat) -> Result<Surrounding, BuildError> {
+    match &body.source {
+        BodySource::Mesh {
+            mesh,
+            mesh_unit,
+            material: m,
+            fixed,
+        } => {
+            let (mesh, origin) = mesh::read_body_msh(mesh, *mesh_unit)?;
+            let seats = std::slice::from_ref(seat);
+            let made_of = Material::new(m.young_modulus, m.poisson_ratio, m.density)?;
+            Ok(Surrounding::of_mesh(
+                &body.name,
+                (mesh, &origin),
+                made_of,
+                fixed,
+                seats,
+            )?)
+        }
+        BodySource::Matrix(files) => Ok(Surrounding::of_matrix(
+            &body.name,
+            &MatrixBody::read(files)?,
+            seat,
+        )?),
+    }
+}

@@ -1,0 +1,377 @@
+//! `[[body]]`: an elastic body round the outer ring, at rest.
+//!
+//! ```toml
+#![doc = include_str!("example_body.toml")]
+//! ```
+
+use std::path::{Path, PathBuf};
+
+use body::SeatBasis;
+use body::matrix::MatrixFiles;
+use input::{KINDS, LENGTH, Problems, Quantity, STIFFNESS, parse_unit};
+use serde::Deserialize;
+
+use super::materials::{Material, RawMaterial};
+use super::ring::{MeshFiles, RingName, Support};
+use super::solver::Backend;
+
+/// Orders round a seat without a word.
+const HARMONICS: i64 = 12;
+/// Degrees across a seat without a word.
+const ACROSS: i64 = 2;
+/// Effects that act on a seat of which something else is assumed, and why not with a body.
+const REFUSED_EFFECTS: [(&str, &str); 4] = [
+    ("fit", "its pressure is that of a rigid or round housing"),
+    ("seat_form", "its form is pressed on by a rigid housing"),
+    ("spring_preload", "its ring slides in a rigid housing"),
+    ("temperature", "its seat grows with a rigid or round housing"),
+];
+
+/// As typed.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields, expecting = "a table of a body round a ring")]
+pub struct RawSceneBody {
+    name: String,
+    mesh: Option<String>,
+    mesh_unit: Option<String>,
+    material: Option<RawMaterial>,
+    fixed: Option<Vec<String>>,
+    stiffness: Option<String>,
+    nodes: Option<String>,
+    seat_nodes: Option<String>,
+    fixed_nodes: Option<String>,
+    length_unit: Option<String>,
+    stiffness_unit: Option<String>,
+    #[serde(default)]
+    seat: Vec<RawBodySeat>,
+}
+
+/// As typed.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields, expecting = "a table of a seat of a body")]
+struct RawBodySeat {
+    ring: RingName,
+    group: Option<String>,
+    harmonics: Option<i64>,
+    across: Option<i64>,
+    z: Option<Quantity<LENGTH>>,
+}
+
+/// A body of a checked scene.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SceneBody {
+    /// Its name.
+    pub name: String,
+    /// Where its stiffness comes from.
+    pub source: BodySource,
+    /// Facet group of its seat; empty for matrices.
+    pub group: String,
+    /// Functions that are tied.
+    pub basis: SeatBasis,
+    /// Where the middle of the ring's seat stands along its z, m; None: in the middle of the group.
+    pub z: Option<f64>,
+}
+
+/// Mesh or matrices of a body.
+#[derive(Clone, Debug, PartialEq)]
+pub enum BodySource {
+    /// A mesh.
+    Mesh {
+        /// Gmsh file.
+        mesh: PathBuf,
+        /// Length of one unit of the file, m.
+        mesh_unit: f64,
+        /// What it is made of.
+        material: Material,
+        /// Facet groups that are held.
+        fixed: Vec<String>,
+    },
+    /// Matrices of another program.
+    Matrix(MatrixFiles),
+}
+
+/// What bodies are checked against.
+pub struct BodyContext<'a> {
+    /// The scene file.
+    pub scene: &'a Path,
+    /// Whether files have to exist.
+    pub files: MeshFiles,
+    /// How the rings are held, as typed, inner first.
+    pub supports: [Option<Support>; 2],
+    /// Whether the scene says that the outer ring is rigid.
+    pub is_outer_rigid: bool,
+    /// Whether the outer ring turns.
+    pub turns_outer: bool,
+    /// Linear solver of the rings.
+    pub backend: Backend,
+    /// An analysis of the scene that has no place for a body: `dynamic` or `modes`.
+    pub moving: Option<&'static str>,
+    /// Effects of the scene.
+    pub effects: Vec<&'static str>,
+}
+
+/// The body round the outer ring among the tables of a scene, if there is one.
+pub fn check_bodies(
+    bodies: &[RawSceneBody],
+    context: &BodyContext<'_>,
+    problems: &mut Problems,
+    assumed: &mut Vec<String>,
+) -> Option<SceneBody> {
+    if context.supports[0] == Some(Support::Body) {
+        problems.add(
+            "inner.support is \"body\", but a body that carries the inner ring, such as an elastic shaft, is not \
+             solved; expected \"clamped\" or \"mean_motion\"",
+        );
+    }
+    let is_wanted = context.supports[1] == Some(Support::Body);
+    let Some(first) = bodies.first() else {
+        if is_wanted {
+            problems.add(
+                "outer.support is \"body\", but the scene has no body; add a table [[body]] with a [[body.seat]] \
+                 of ring = \"outer\", or set outer.support = \"clamped\" or \"mean_motion\"",
+            );
+        }
+        return None;
+    };
+    if let Some(second) = bodies.get(1) {
+        problems.add(format!(
+            "the scene has {} tables [[body]], such as {:?} and {:?}, for one outer ring; expected one body, so \
+             mesh what is joined as one",
+            bodies.len(),
+            first.name,
+            second.name
+        ));
+    }
+    if context.is_outer_rigid {
+        problems.add(format!(
+            "body {:?} carries the outer ring, but that ring is rigid; set outer.flexible = true or remove \
+             [[body]]",
+            first.name
+        ));
+    } else if !is_wanted {
+        problems.add(format!(
+            "body {:?} is there, but outer.support is not \"body\"; set outer.support = \"body\" or remove \
+             [[body]]",
+            first.name
+        ));
+    }
+    refuse_beside_body(&first.name, context, problems);
+    first.check(context, problems, assumed)
+}
+
+/// What a body at rest does not go with.
+fn refuse_beside_body(name: &str, context: &BodyContext<'_>, problems: &mut Problems) {
+    if let Some(table) = context.moving {
+        problems.add(format!(
+            "body {name:?} has no mass and is solved at rest only, but the scene has [{table}]; expected \
+             [static], [sweep] or [quasi_static], or outer.support = \"mean_motion\" without [[body]]"
+        ));
+    }
+    if context.backend.divides_rings() {
+        problems.add(format!(
+            "solver.backend is \"sector\", which does not tie a ring to a body ({name:?}); expected \"auto\", \
+             \"cyclic\" or \"sparse\""
+        ));
+    }
+    if context.turns_outer {
+        problems.add(format!(
+            "speed.outer turns the outer ring, but body {name:?} carries it and stands; remove speed.outer or \
+             [[body]]"
+        ));
+    }
+    for (effect, why) in REFUSED_EFFECTS {
+        if context.effects.contains(&effect) {
+            problems.add(format!(
+                "effects.{effect} does not go with body {name:?}: {why}; remove one of them"
+            ));
+        }
+    }
+}
+
+impl RawSceneBody {
+    fn check(
+        &self,
+        context: &BodyContext<'_>,
+        problems: &mut Problems,
+        assumed: &mut Vec<String>,
+    ) -> Option<SceneBody> {
+        let key = format!("body {:?}", self.name);
+        problems.require(
+            !self.name.trim().is_empty() && self.name.len() <= 64,
+            "body.name",
+            format!("{:?}", self.name),
+            "expected a name of 1 to 64 letters",
+        );
+        let source = match (&self.mesh, &self.stiffness) {
+            (Some(_), Some(_)) => {
+                problems.add(format!("{key} has both mesh and stiffness; keep one of them"));
+                None
+            }
+            (None, None) => {
+                problems.add(format!(
+                    "{key} has neither mesh nor stiffness; add mesh, mesh_unit, material and fixed, or stiffness, \
+                     nodes and seat_nodes of another program"
+                ));
+                None
+            }
+            (Some(mesh), None) => self.check_mesh(&key, mesh, context, problems, assumed),
+            (None, Some(_)) => self.check_matrix(&key, context, problems),
+        };
+        let seat = self.check_seat(&key, problems)?;
+        let harmonics = seat.harmonics.unwrap_or(HARMONICS);
+        let across = seat.across.unwrap_or(ACROSS);
+        Some(SceneBody {
+            basis: SeatBasis::Harmonics {
+                harmonics: problems.whole(harmonics, "body.seat.harmonics", 1, 64),
+                across: problems.whole(across, "body.seat.across", 1, 8),
+            },
+            name: self.name.clone(),
+            source: source?,
+            group: seat.group.clone().unwrap_or_default(),
+            z: seat.z.as_ref().map(Quantity::si),
+        })
+    }
+
+    /// The one seat.
+    fn check_seat(&self, key: &str, problems: &mut Problems) -> Option<&RawBodySeat> {
+        let seat = match self.seat.as_slice() {
+            [seat] => seat,
+            [] => {
+                problems.add(format!(
+                    "{key} has no seat; add a table [[body.seat]] with ring = \"outer\" and the group of its surface"
+                ));
+                return None;
+            }
+            many => {
+                problems.add(format!(
+                    "{key} has {} tables [[body.seat]], but the bearing has one outer ring; expected one",
+                    many.len()
+                ));
+                return None;
+            }
+        };
+        if seat.ring == RingName::Inner {
+            problems.add(format!(
+                "{key}: seat.ring is \"inner\", but a body that carries the inner ring is not solved; \
+                 expected \"outer\""
+            ));
+        }
+        if self.mesh.is_some() && seat.group.is_none() {
+            problems.add(format!(
+                "{key}: seat.group is missing; expected the facet group of its mesh that carries the ring"
+            ));
+        }
+        Some(seat)
+    }
+
+    fn check_mesh(
+        &self,
+        key: &str,
+        mesh: &str,
+        context: &BodyContext<'_>,
+        problems: &mut Problems,
+        assumed: &mut Vec<String>,
+    ) -> Option<BodySource> {
+        let mesh = file(&format!("{key}: mesh"), mesh, context, problems);
+        let unit = unit_of(
+            &format!("{key}: mesh_unit"),
+            self.mesh_unit.as_deref(),
+            (LENGTH, "mm"),
+            problems,
+        );
+        if self.material.is_none() {
+            problems.add(format!(
+                "{key}: material is missing; expected a table with young_modulus, poisson_ratio and density, or a name"
+            ));
+        }
+        let fixed = self.fixed.clone().unwrap_or_default();
+        if fixed.is_empty() {
+            problems.add(format!(
+                "{key}: fixed names no facet group, so nothing holds the body; expected such as fixed = [\"feet\"]"
+            ));
+        }
+        let material = self
+            .material
+            .as_ref()?
+            .check(&format!("{key}: material"), problems, assumed);
+        Some(BodySource::Mesh {
+            mesh,
+            mesh_unit: unit?,
+            material,
+            fixed,
+        })
+    }
+
+    fn check_matrix(
+        &self,
+        key: &str,
+        context: &BodyContext<'_>,
+        problems: &mut Problems,
+    ) -> Option<BodySource> {
+        if self.material.is_some() || self.fixed.is_some() || self.mesh_unit.is_some() {
+            problems.add(format!(
+                "{key} comes from a matrix, which has material and supports in it; remove mesh_unit, material and \
+                 fixed (nodes are held by fixed_nodes)"
+            ));
+        }
+        let mut path = |name: &str, text: &Option<String>| match text {
+            Some(text) => Some(file(&format!("{key}: {name}"), text, context, problems)),
+            None => {
+                problems.add(format!(
+                    "{key}: {name} is missing; a body from a matrix needs stiffness, nodes and seat_nodes"
+                ));
+                None
+            }
+        };
+        let stiffness = path("stiffness", &self.stiffness);
+        let nodes = path("nodes", &self.nodes);
+        let seat_nodes = path("seat_nodes", &self.seat_nodes);
+        let fixed_nodes = self.fixed_nodes.as_ref();
+        let fixed_nodes =
+            fixed_nodes.map(|text| file(&format!("{key}: fixed_nodes"), text, context, problems));
+        let length = self.length_unit.as_deref();
+        let length = unit_of(&format!("{key}: length_unit"), length, (LENGTH, "mm"), problems);
+        let unit = self.stiffness_unit.as_deref();
+        let unit = unit_of(
+            &format!("{key}: stiffness_unit"),
+            unit,
+            (STIFFNESS, "N/mm"),
+            problems,
+        );
+        Some(BodySource::Matrix(MatrixFiles {
+            stiffness: stiffness?,
+            nodes: nodes?,
+            seat_nodes: seat_nodes?,
+            fixed_nodes,
+            length_unit: length?,
+            stiffness_unit: unit?,
+        }))
+    }
+}
+
+/// A file beside the scene.
+fn file(key: &str, typed: &str, context: &BodyContext<'_>, problems: &mut Problems) -> PathBuf {
+    let path = context.scene.parent().unwrap_or(Path::new("")).join(typed);
+    if context.files == MeshFiles::MustExist && !path.is_file() {
+        problems.add(format!(
+            "{key} is {typed:?}, but there is no file {}; correct the path, which is relative to the scene file",
+            path.display()
+        ));
+    }
+    path
+}
+
+/// The SI value of a unit that a scene must state.
+fn unit_of(
+    key: &str,
+    typed: Option<&str>,
+    (kind, example): (usize, &str),
+    problems: &mut Problems,
+) -> Option<f64> {
+    let Some(typed) = typed else {
+        problems.add(format!("{key} is missing; expected a unit such as {example:?}"));
+        return None;
+    };
+    let unit = parse_unit(typed, &KINDS[kind]);
+    unit.map_err(|error| problems.add(format!("{key}: {error}"))).ok()
+}

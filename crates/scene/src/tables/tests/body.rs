@@ -1,0 +1,205 @@
+//! `[[body]]`: an elastic body round the outer ring.
+
+use ::body::SeatBasis;
+
+use super::*;
+
+/// The delivered scene.
+const SCENE: &str = include_str!("../../../../../scenes/6010_plummer_block.toml");
+/// The seat of the delivered scene.
+const SEAT: &str = "[[body.seat]]\nring = \"outer\"\ngroup = \"seat_a\"";
+
+fn with(old: &str, new: &str) -> String {
+    assert!(SCENE.contains(old), "{old}");
+    SCENE.replacen(old, new, 1)
+}
+
+fn body_of(text: &str) -> SceneBody {
+    let scene = parse(text, &[]).unwrap_or_else(|e| panic!("{e}"));
+    scene.body.unwrap()
+}
+
+/// Wrong: a key would be read as something else, or a default would differ from what the reference says.
+#[test]
+fn the_delivered_scene_and_the_defaults_read_as_they_say() {
+    let body = body_of(SCENE);
+    let BodySource::Mesh {
+        mesh_unit,
+        material,
+        fixed,
+        ..
+    } = &body.source
+    else {
+        panic!("{body:?}");
+    };
+    assert_eq!((body.name.as_str(), *mesh_unit), ("plummer block", 1e-3));
+    assert_eq!(
+        (material.young_modulus, fixed.as_slice()),
+        (110e9, &["feet".to_string()][..])
+    );
+    let short = SCENE.replace("harmonics = 12", "").replace("\nacross = 2", "");
+    let expected = SeatBasis::Harmonics {
+        harmonics: 12,
+        across: 2,
+    };
+    assert_eq!((body.basis, body_of(&short).basis), (expected, expected));
+    assert_eq!(
+        (body.z, body_of(&with(SEAT, &format!("{SEAT}\nz = \"3 mm\""))).z),
+        (None, Some(3e-3))
+    );
+}
+
+/// Wrong: a body of matrices would be read with other units or files.
+#[test]
+fn a_body_of_matrices_reads_as_it_says() {
+    let text = matrices("");
+    let BodySource::Matrix(files) = body_of(&text).source else {
+        panic!("{text}");
+    };
+    assert_eq!(
+        (files.length_unit, files.stiffness_unit, files.fixed_nodes),
+        (1e-3, 1e3, None)
+    );
+    assert!(files.stiffness.ends_with("K.mtx"), "{:?}", files.stiffness);
+}
+
+/// The delivered scene with a body of matrices.
+fn matrices(more: &str) -> String {
+    let start = SCENE.find("mesh = \"../meshes/plummer_block.msh\"").unwrap();
+    let end = SCENE.find("[[body.seat]]").unwrap();
+    let files = "stiffness = \"K.mtx\"\nnodes = \"n.csv\"\nseat_nodes = \"s.csv\"";
+    let keys = format!("{files}\nlength_unit = \"mm\"\nstiffness_unit = \"N/mm\"\n");
+    format!("{}{keys}{more}\n{}", &SCENE[..start], &SCENE[end..])
+}
+
+/// Wrong: a body would be left out in silence, stand where nothing is known of it, or be refused without a remedy.
+#[test]
+fn scenes_in_which_a_body_makes_no_sense_are_refused() {
+    let support = "support = \"body\"";
+    let whole_body = {
+        let (start, end) = (SCENE.find("[[body]]  ").unwrap(), SCENE.find("[shaft]").unwrap());
+        &SCENE[start..end]
+    };
+    let unit = "mesh_unit = \"mm\"\nmaterial";
+    let cases: Vec<(String, &str)> = vec![
+        (
+            with(whole_body, ""),
+            "outer.support is \"body\", but the scene has no body; add a table [[body]]",
+        ),
+        (
+            with(support, "support = \"clamped\""),
+            "body \"plummer block\" is there, but outer.support is not \"body\"",
+        ),
+        (
+            with("[shaft]", &format!("{whole_body}\n[shaft]")),
+            "2 tables [[body]], such as \"plummer block\" and \"plummer block\"",
+        ),
+        (
+            with(SEAT, &format!("{SEAT}\n{SEAT}")),
+            "has 2 tables [[body.seat]], but the bearing has one outer ring",
+        ),
+        (
+            with(
+                &SCENE[SCENE.find("[[body.seat]]").unwrap()..SCENE.find("[shaft]").unwrap()],
+                "",
+            ),
+            "has no seat; add a table [[body.seat]]",
+        ),
+        (
+            with("ring = \"outer\"", "ring = \"inner\""),
+            "seat.ring is \"inner\", but a body that carries the inner ring is not solved",
+        ),
+        (
+            with("support = \"clamped\"    ", support),
+            "inner.support is \"body\", but a body that carries the inner ring",
+        ),
+        (
+            with("group = \"seat_a\"", ""),
+            "seat.group is missing; expected the facet group of its mesh",
+        ),
+        (with("harmonics = 12", "harmonics = 0"), "body.seat.harmonics"),
+        (with("across = 2", "across = 9"), "body.seat.across"),
+        (
+            with("fixed = [\"feet\"]", "fixed = []"),
+            "fixed names no facet group, so nothing holds the body",
+        ),
+        (
+            with(unit, "material"),
+            "body \"plummer block\": mesh_unit is missing; expected a unit such as \"mm\"",
+        ),
+        (
+            with(unit, "mesh_unit = \"kg\"\nmaterial"),
+            "body \"plummer block\": mesh_unit",
+        ),
+        (
+            with("name = \"plummer block\"", "name = \"\""),
+            "expected a name of 1 to 64 letters",
+        ),
+        (
+            with("name = \"plummer block\"", "name = \"a\"\nstiffness = \"K.mtx\""),
+            "has both mesh and stiffness; keep one",
+        ),
+        (
+            with("mesh = \"../meshes/plummer_block.msh\"", "#"),
+            "has neither mesh nor stiffness",
+        ),
+        (
+            with("poisson_ratio = 0.26", "poisson_ratio = 0.6"),
+            "body \"plummer block\": material.poisson_ratio",
+        ),
+        (
+            matrices("").replace("nodes = \"n.csv\"\nseat", "seat"),
+            "nodes is missing; a body from a matrix needs",
+        ),
+        (
+            matrices("").replace("stiffness_unit = \"N/mm\"", "stiffness_unit = \"mm\""),
+            "stiffness_unit",
+        ),
+        (
+            matrices("fixed = [\"feet\"]"),
+            "comes from a matrix, which has material and supports in it",
+        ),
+        (
+            with("backend = \"auto\"", "backend = \"sector\""),
+            "solver.backend is \"sector\", which does not tie a ring to a body",
+        ),
+        (
+            with("[static]", "[modes]\nnumber = 3"),
+            "solved at rest only, but the scene has [modes]",
+        ),
+        (
+            with(
+                "[output]",
+                "[effects.fit.outer]\ninterference = \"5 um\"\nhousing_diameter = \"160 mm\"\n[output]",
+            ),
+            "effects.fit does not go with body",
+        ),
+    ];
+    assert!(cases.len() >= 20);
+    for (text, expected) in cases {
+        let said = parse(&text, &[]).err().map(|e| e.to_string()).unwrap_or_default();
+        assert!(said.contains(expected), "{said}\nexpected: {expected}");
+    }
+    let motion = DYNAMIC.replace("[outer]", &format!("{whole_body}\n[outer]"));
+    let said = parse(&motion, &["outer.support=\"body\""])
+        .unwrap_err()
+        .to_string();
+    assert!(
+        said.contains("solved at rest only, but the scene has [dynamic]"),
+        "{said}"
+    );
+}
+
+/// Wrong: a missing file would be found after the meshes are read, or without its place.
+#[test]
+fn missing_files_of_a_body_are_named() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes/test.toml");
+    let text = with("plummer_block.msh", "no_block.msh");
+    let said = Scene::parse(&text, &path, &[], MeshFiles::MustExist)
+        .unwrap_err()
+        .to_string();
+    assert!(
+        said.contains("body \"plummer block\": mesh is \"../meshes/no_block.msh\", but there is no file"),
+        "{said}"
+    );
+}
