@@ -16,6 +16,7 @@ use fem::Material;
 use mesh::{Coverage, Cylinder, Mesh, Torus};
 
 use crate::error::BuildError;
+use crate::marks::require_raceway_under_marks;
 use crate::resolution::require_resolvable;
 use crate::section_record::{require_fresh, with_command};
 use crate::settings::speeds;
@@ -47,6 +48,11 @@ pub fn build_model(scene: &Scene) -> Result<(Model, NodeTags), BuildError> {
     );
     let (inner, inner_tags) = rings.0?.unzip();
     let (outer, outer_tags) = rings.1?.unzip();
+    for (side, ring) in [(Side::Inner, &inner), (Side::Outer, &outer)] {
+        if let Some(ring) = ring {
+            require_raceway_under_marks(scene, &geometry, side, ring)?;
+        }
+    }
     let model = model_with_rings(scene, [inner.map(Arc::new), outer.map(Arc::new)])?;
     Ok((model, [inner_tags, outer_tags]))
 }

@@ -7,6 +7,7 @@ mod build;
 mod designations;
 mod doubts;
 mod error;
+mod marks;
 mod meshing;
 mod resolution;
 mod revolve_like;

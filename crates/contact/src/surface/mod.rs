@@ -95,6 +95,8 @@ pub struct StripSurface {
     /// Law of the strips.
     pub law: StripLaw,
     grid: SurfaceGrid,
+    track: Track,
+    edges: Option<[f64; 2]>,
     has_profile: bool,
 }
 
@@ -130,10 +132,14 @@ impl StripSurface {
         shoulders: Option<RangeInclusive<f64>>,
         profiles: &Profiles,
     ) -> Option<StripSurface> {
+        let edges = shoulders.as_ref().map(|groove| [*groove.start(), *groove.end()]);
         let groove = shoulders.unwrap_or(-PI..=PI);
+        let track = Track::new(geometry, side);
         Some(StripSurface {
             law,
-            grid: profiles.grid(Track::new(geometry, side), &groove)?,
+            grid: profiles.grid(track, &groove)?,
+            track,
+            edges,
             has_profile: !profiles.is_empty(),
         })
     }
@@ -141,6 +147,16 @@ impl StripSurface {
     /// Groove angles of the corners, rad.
     pub fn angles(&self) -> &[f64] {
         self.grid.angles()
+    }
+
+    /// Groove angles where the groove ends, rad; None: it goes on for ever.
+    pub fn edges(&self) -> Option<[f64; 2]> {
+        self.edges
+    }
+
+    /// Radius of the track at a contact angle, rad, in m.
+    pub fn track_radius(&self, angle: f64) -> f64 {
+        self.track.radius(angle)
     }
 
     /// Whether anything is missing of the smooth groove between the shoulders.
@@ -269,7 +285,8 @@ impl Wave {
 }
 
 impl Heights {
-    fn height(&self, azimuth: f64, angle: f64) -> f64 {
+    /// Height at an azimuth and a groove angle, rad, in m.
+    pub fn height(&self, azimuth: f64, angle: f64) -> f64 {
         let (n, n_angles) = (self.azimuths.len(), self.angles.len());
         let first = self.azimuths[0];
         let azimuth = first + (azimuth - first).rem_euclid(TAU);
