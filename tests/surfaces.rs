@@ -366,7 +366,12 @@ fn marks_and_depths_where_the_mesh_has_no_raceway_are_refused_by_every_solver() 
     for backend in ["auto", "sparse", "sector"] {
         let check = |text: &str| {
             dir.write("scene.toml", scene.clone() + text);
-            dir.raceway(&["check", "scene.toml", "--set", &format!("solver.backend={backend}")])
+            dir.raceway(&[
+                "check",
+                "scene.toml",
+                "--set",
+                &format!("solver.backend={backend}"),
+            ])
         };
         let refused = |text: &str, what: &str, remedy: &str| {
             let outcome = check(text);
@@ -379,12 +384,18 @@ fn marks_and_depths_where_the_mesh_has_no_raceway_are_refused_by_every_solver() 
             assert_eq!(outcome.code, Some(0), "{backend}: {}", outcome.stderr);
         };
         // From 2 to 48 deg: between the hole and its middle there is raceway.
-        let long = spall("outer").replace("10 deg", "25 deg").replace("0.5 mm", "30 mm");
+        let long = spall("outer")
+            .replace("10 deg", "25 deg")
+            .replace("0.5 mm", "30 mm");
         refused(&long, "spall 1", " or the [[profiles.spall]]");
         refused(&dent("3 deg"), "dent 1", " or the [[profiles.dent]]");
         taken(&dent("40 deg"));
         dir.write("roundness.csv", table(5.0));
-        refused(tables, "the depth of table 1", ", or give heights of 0 or more there");
+        refused(
+            tables,
+            "the depth of table 1",
+            ", or give heights of 0 or more there",
+        );
         dir.write("roundness.csv", table(40.0));
         taken(tables);
     }

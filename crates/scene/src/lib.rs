@@ -7,6 +7,7 @@ mod build;
 mod designations;
 mod doubts;
 mod error;
+mod half_widths;
 mod marks;
 mod meshing;
 mod resolution;

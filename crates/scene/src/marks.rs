@@ -99,7 +99,8 @@ pub fn require_raceway_under_marks(
 
 /// Whether a table has missing material at one of these azimuths and groove angles, rad.
 fn is_deep(table: &Heights, gaps: &[[f64; 2]]) -> bool {
-    gaps.iter().any(|&[azimuth, angle]| table.height(azimuth, angle) < 0.0)
+    gaps.iter()
+        .any(|&[azimuth, angle]| table.height(azimuth, angle) < 0.0)
 }
 
 /// The raceway of a mesh that may have holes.
@@ -131,9 +132,7 @@ impl Raceway {
     fn lacks(&self, mark: &Mark, gaps: &[[f64; 2]]) -> bool {
         let half = [mark.length / self.radius, mark.width / self.groove_radius].map(|size| 0.5 * size);
         let [low, high] = self.surface.angle_range;
-        let turned = |azimuth: f64| {
-            (azimuth - mark.azimuth + 0.5 * TAU).rem_euclid(TAU) - 0.5 * TAU
-        };
+        let turned = |azimuth: f64| (azimuth - mark.azimuth + 0.5 * TAU).rem_euclid(TAU) - 0.5 * TAU;
         let covers = |[azimuth, angle]: &[f64; 2]| {
             turned(*azimuth).abs() <= half[0] && (angle - mark.groove_angle).abs() <= half[1]
         };

@@ -17,23 +17,26 @@ pub fn surfaces(
     geometry: &BearingGeometry,
     hertz: &[HertzContact; 2],
     rings: &[Option<Arc<RingModel>>; 2],
+    half_widths: [f64; 2],
 ) -> Result<Surfaces, BuildError> {
     let mut strips = [None, None];
     for side in Side::BOTH {
         let ring = rings[side.index()].as_deref();
-        strips[side.index()] = strips_of(scene, (geometry, side), &hertz[side.index()], ring)?;
+        let (hertz, half_width) = (&hertz[side.index()], half_widths[side.index()]);
+        strips[side.index()] = strips_of(scene, (geometry, side), (hertz, half_width), ring)?;
     }
     Ok(Surfaces {
         strips,
         oversizes: scene.profiles.oversizes.clone(),
-        balls: worn_balls(scene, geometry)?,
+        balls: worn_balls(scene, geometry, half_widths)?,
+        half_widths,
     })
 }
 
 fn strips_of(
     scene: &Scene,
     (geometry, side): (&BearingGeometry, Side),
-    hertz: &HertzContact,
+    (hertz, half_width): (&HertzContact, f64),
     ring: Option<&RingModel>,
 ) -> Result<Option<Arc<StripSurface>>, BuildError> {
     let profiles = &scene.profiles.raceways[side.index()];
@@ -84,10 +87,17 @@ fn strips_of(
     }
     let law = StripLaw::new(hertz, geometry.groove_radius(side));
     let edges = shoulders.filter(|_| scene.contact.edges);
-    match StripSurface::new(law, (geometry, side), edges, profiles) {
+    let felt = profiles.felt_by(half_width, track_radius(geometry, side));
+    match StripSurface::new(law, (geometry, side), edges, &felt) {
         Some(surface) => Ok(Some(Arc::new(surface))),
         None => refuse(too_fine(&format!("the {} ring", side.name()))),
     }
+}
+
+/// Radius of the track at the free contact angle, m.
+pub fn track_radius(geometry: &BearingGeometry, side: Side) -> f64 {
+    let out = geometry.groove_radius(side) * geometry.free_contact_angle().cos();
+    geometry.centre_radius(side) + side.sign() * out
 }
 
 /// Groove angles where a groove ends, rad: those of its mesh, else of its section; None where neither is there.

@@ -15,12 +15,13 @@
 //! and made exact beside the point that it finds. Between azimuths, and across the track between corners, w is linear.
 //!
 //! Validity: envelopes of neighbouring lines know nothing of each other, so that a spall narrower than the ellipse is
-//! met by the strips beside it as if it were not there. The ellipse's own length along the track does not filter waves:
-//! waves shorter than some four half-widths of the ellipse are felt too much.
+//! met by the strips beside it as if it were not there. The ellipse's own length along the track filters waves alone, by
+//! a factor that a scene's waves have before ([`felt`]): marks and tables are felt as by a point.
 
 pub mod ball;
 mod ball_arc;
 mod dent;
+pub mod felt;
 mod grid;
 mod track;
 
@@ -112,6 +113,10 @@ const SPACINGS_PER_SPALL: f64 = 400.0;
 const SPALL_SPACING: f64 = 5e-6;
 /// Grid spacings in a wave.
 const SPACINGS_PER_WAVE: f64 = 64.0;
+/// Least grid spacings round a ring with waves. Heights linear between M azimuths add to a wave of order n those of the
+/// orders k M +- n, of n^2/(k M +- n)^2 of its amplitude: below 1e-6 up to order 60, so that a bearing shows no line of
+/// an order that the wave has not.
+const LEAST_WAVE_ROWS: f64 = 65536.0;
 /// Grid spacings between azimuths of a table.
 const SPACINGS_PER_ROW: f64 = 4.0;
 /// Most numbers of a surface: 160 MB.
@@ -251,7 +256,11 @@ impl Profiles {
         let table = |t: &Heights| SPACINGS_PER_ROW * TAU / smallest_gap(&t.azimuths);
         let dent = |d: &Dent| longest / SPALL_SPACING.min(d.spacing());
         let wanted = self.spalls.iter().map(spall).chain(self.dents.iter().map(dent));
-        let wanted = wanted.chain(self.waves.iter().map(|w| SPACINGS_PER_WAVE * w.order as f64));
+        let wanted = wanted.chain(
+            self.waves
+                .iter()
+                .map(|w| LEAST_WAVE_ROWS.max(SPACINGS_PER_WAVE * w.order as f64)),
+        );
         let wanted = wanted.chain(self.tables.iter().map(table));
         wanted.fold(1.0, f64::max).ceil().min(1e12) as usize
     }
