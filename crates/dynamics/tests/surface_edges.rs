@@ -10,7 +10,8 @@ use contact::{Profiles, Side, StripLaw, StripSurface};
 use dynamics::kinematics::Speed;
 use dynamics::motion::{ContactLimit, Motion, MotionSettings, StepCache};
 use dynamics::surfaces::Ellipse;
-use dynamics::{Model, StaticSolver};
+use dynamics::{ContactMode, Hold, Model, StaticSolver};
+use support::rings::Level;
 use support::{Case, equilibrium, relative};
 
 fn with_outer_strips(mut model: Model, shoulders: Option<RangeInclusive<f64>>, profiles: &Profiles) -> Model {
@@ -183,4 +184,38 @@ fn contacts_over_marks_are_told_from_those_on_level_ground() {
     // 0.6 mm long, four to five half-widths.
     assert_eq!(marked(wave(390)).len(), 18);
     assert!(marked(Profiles::default()).is_empty());
+}
+
+/// Wrong: smooth strips on elastic rings would have another equilibrium than Hertz's law. Both settle to 1e-12 of their
+/// forces, and agree to 1e-10.
+#[test]
+fn smooth_strips_on_elastic_rings_have_the_equilibrium_of_hertz() {
+    let case = Case {
+        radial: 800.0,
+        ..Case::axial(2000.0)
+    };
+    let model = || {
+        let mut model = case.flexible(ContactMode::Patch, Level::hex8(54, 6, 1, 2), Hold::MeanMotion);
+        model.sphere = Default::default();
+        model.tolerances.force = 1e-12;
+        model
+    };
+    let (hertz, mut strips) = (model(), model());
+    for side in Side::BOTH {
+        let law = StripLaw::new(&strips.hertz[side.index()], strips.geometry.groove_radius(side));
+        let smooth = StripSurface::new(law, (&strips.geometry, side), None, &Profiles::default());
+        strips.surfaces.strips[side.index()] = Some(Arc::new(smooth.unwrap()));
+    }
+    let (a, b) = (equilibrium(&hertz), equilibrium(&strips));
+    let largest = a.balls.iter().map(|ball| ball.inner.force_n).fold(0.0, f64::max);
+    for (x, y) in a.balls.iter().zip(&b.balls) {
+        for side in Side::BOTH {
+            let off = x.contact(side).force_n - y.contact(side).force_n;
+            assert!(off.abs() < 1e-10 * largest, "{off} of {largest}");
+        }
+    }
+    let scale = a.displacements.shaft[2].abs();
+    for (x, y) in a.displacements.shaft.iter().zip(&b.displacements.shaft) {
+        assert!((x - y).abs() < 1e-10 * scale, "{x} {y}");
+    }
 }

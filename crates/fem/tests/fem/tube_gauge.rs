@@ -49,7 +49,13 @@ fn hoop_strain() -> f64 {
 
 /// A quarter of the tube with n cells through its wall under p cos 2 psi, between rigid plane ends.
 fn oval(n: usize) -> (Mesh, Vec<f64>) {
-    let mesh = ring(ElementKind::Hex20, [n, 3 * n, 1], [INNER, OUTER], 0.006, FRAC_PI_2);
+    let mesh = ring(
+        ElementKind::Hex20,
+        [n, 3 * n, 1],
+        [INNER, OUTER],
+        0.006,
+        FRAC_PI_2,
+    );
     let k = assemble_stiffness(&mesh, &steel()).unwrap();
     let load = traction_load(&mesh, mesh.group("x1"), |[x, y, _], normal| {
         let p = PRESSURE * (x * x - y * y) / (x * x + y * y);
