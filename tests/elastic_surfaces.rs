@@ -18,7 +18,8 @@ fn passed() -> Dir {
     let tables = "[speed]\ninner = \"1800 rpm\"\n\n[probes.contact.ball]\nball = 0\nring = \"outer\"\n\n\
                   [probes.node.n]\nring = \"outer\"\nazimuth = \"0 deg\"\nr = \"34.3 mm\"\nz = \"6 mm\"\n\
                   acceleration = true\n\n[probes.node.bore]\nring = \"inner\"\nazimuth = \"0 deg\"\n\
-                  r = \"25 mm\"\nz = \"0 mm\"\naxes = \"cartesian\"\nacceleration = true\n\n[effects.contact_damping]\ncoefficient = \"100 N s/m\"\n\
+                  r = \"25 mm\"\nz = \"0 mm\"\naxes = \"cartesian\"\n\
+                  acceleration = true\n\n[effects.contact_damping]\ncoefficient = \"100 N s/m\"\n\
                   full_approach = \"3 um\"\n\n[dynamic]\nduration = \"0.52 ms\"\nstep = \"4 us\"\n\
                   output_every = 1000\nintegrator = \"chung_hulbert\"\nrho = 0.8\ncontact = \"discrete_gradient\"\n\
                   ledger_tolerance = 1e-6\n";
@@ -74,11 +75,14 @@ fn a_spall_on_elastic_rings_takes_the_times_of_its_passage_and_is_felt_twice() {
         entry > 3.0 * before && blow > 5.0 * entry,
         "{before} {entry} {blow}"
     );
-    // The shaft: up as the ball lets go, down from the far edge on. Its accelerations are those of its displacements, to
-    // a tenth of the largest: those of a step are weighted in time.
+    // The shaft: up as the ball lets go, down from the far edge on. Its accelerations are those of its displacements,
+    // to a tenth of the largest: those of a step are weighted in time.
     let of_shaft = probes.column("bore_acceleration_x_m_per_s2");
     let range = |from: f64, to: f64| &of_shaft[(from / STEP) as usize..(to / STEP) as usize];
-    let up = range(ENTRY, ENTRY + 0.5 * PASSAGE).iter().copied().fold(0.0, f64::max);
+    let up = range(ENTRY, ENTRY + 0.5 * PASSAGE)
+        .iter()
+        .copied()
+        .fold(0.0, f64::max);
     let down = range(ENTRY + impact, ENTRY + 1.2 * PASSAGE)
         .iter()
         .copied()

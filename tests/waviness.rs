@@ -98,9 +98,9 @@ fn check(rings: Rings, (ring, order, axis, frequency): (&str, usize, &str, f64),
     }
 }
 
-/// Wrong: waves would show at other lines than those of the rules, or where nothing must move. Rigid rings: kZ along the
-/// axis at k BPFO or k BPFI; kZ +- 1 across it, on the inner ring at k BPFI +- f; the other direction, and order 5, stay
-/// at rest: 0.1 % of the amplitude, of second order in it over the approach of 5 um.
+/// Wrong: waves would show at other lines than those of the rules, or where nothing must move. Rigid rings: kZ along
+/// the axis at k BPFO or k BPFI; kZ +- 1 across it, on the inner ring at k BPFI +- f; the other direction, and order 5,
+/// stay at rest: 0.1 % of the amplitude, of second order in it over the approach of 5 um.
 #[test]
 fn orders_of_waves_show_at_their_lines_on_rigid_rings() {
     let floor = [1e-3 * AMPLITUDE; 2];

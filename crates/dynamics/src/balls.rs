@@ -3,7 +3,7 @@
 use contact::Side;
 use serde::Serialize;
 
-use crate::surfaces::Ellipse;
+use crate::surfaces::EllipseKind;
 
 /// One contact of a ball.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -20,7 +20,7 @@ pub struct ContactResult {
     pub peak_pressure_pa: f64,
     /// Whether the ellipse, and with it pressure and stress, is Hertz's; None: the raceway has no strips, and it is.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub ellipse: Option<Ellipse>,
+    pub ellipse: Option<EllipseKind>,
 }
 
 /// Displacement of a ball from the just-touching position.

@@ -143,13 +143,13 @@ pub fn check_in_grooves(
 pub fn require_in_groove(site: &Site, angle: f64) -> Result<(), DynamicsError> {
     let (ball, side) = (site.ball, site.side);
     let edges = site.strips.as_ref().and_then(|strips| strips.surface.edges());
-    if let Some([low, high]) = edges.filter(|[low, high]| angle < *low || *high < angle) {
+    if let Some(groove) = edges.filter(|groove| !groove.contains(&angle)) {
         let beyond = ContactError::BeyondShoulder {
             ball,
             side: side.name(),
             angle_deg: angle.to_degrees(),
-            low_deg: low.to_degrees(),
-            high_deg: high.to_degrees(),
+            low_deg: groove.start().to_degrees(),
+            high_deg: groove.end().to_degrees(),
         };
         return Err(beyond.into());
     }

@@ -15,7 +15,7 @@ use crate::interactions::raceway_contact::{Site, SiteState, on_rings};
 use crate::loading::LoadCase;
 use crate::model::Model;
 use crate::pose::Pose;
-use crate::surfaces::{Ellipse, Strips};
+use crate::surfaces::{EllipseKind, Strips};
 use crate::system::{FiniteMotion, Interval};
 
 /// Peak pressure that leaves a permanent indentation of 1e-4 of the ball diameter in bearing steel, Pa: ISO 76, for
@@ -336,7 +336,7 @@ fn edge_warnings(
     let (mut warnings, loaded) = (Vec::new(), loaded(forces));
     for side in Side::BOTH {
         let is_beyond = |ball: &usize| match model.surfaces.edges(side) {
-            Some(_) => balls[*ball].contact(side).ellipse == Some(Ellipse::Edge),
+            Some(_) => balls[*ball].contact(side).ellipse == Some(EllipseKind::Edge),
             None => footprints[side.index()]
                 .get(*ball)
                 .is_some_and(|foot| foot.truncated),

@@ -1,9 +1,10 @@
 //! Real surfaces of a bearing: raceways of strips, balls of different diameters, and balls that are no spheres.
 
 use std::collections::BTreeMap;
+use std::ops::RangeInclusive;
 use std::sync::Arc;
 
-use contact::{BallArc, BallSurface, SeenMeridian, Side, StripLine, StripSurface, WornLine};
+use contact::{BallArc, BallSurface, BySide, SeenMeridian, Side, StripLine, StripSurface, WornLine};
 use serde::Serialize;
 
 /// What a scene asks for beyond smooth grooves without edges and equal balls; the default is nothing.
@@ -17,17 +18,17 @@ pub struct Surfaces {
     /// Balls that are no spheres, by number, as inner and outer raceway meet them; both raceways are then of strips.
     pub balls: BTreeMap<usize, [Arc<BallSurface>; 2]>,
     /// Half-widths along the track of the ellipses by which waves are felt, m, inner first; 0: as by a point.
-    pub half_widths: [f64; 2],
+    pub half_widths: BySide<f64>,
 }
 
-/// What missing material under a contact changes at most where its stress is taken for Hertz's, over its overlap: heights
-/// of 1 % change pressures by 1.5 %.
+/// What missing material under a contact changes at most where its stress is taken for Hertz's, over its overlap:
+/// heights of 1 % change pressures by 1.5 %.
 const LEVEL: f64 = 0.01;
 
 /// Whether a contact on strips has Hertz's ellipse, with Hertz's pressure and stress.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Ellipse {
+pub enum EllipseKind {
     /// It has, or nothing touches.
     Hertz,
     /// The groove ends under it.
@@ -36,13 +37,13 @@ pub enum Ellipse {
     Profile,
 }
 
-impl Ellipse {
+impl EllipseKind {
     /// As in tables.
     pub fn name(self) -> &'static str {
         match self {
-            Ellipse::Hertz => "hertz",
-            Ellipse::Edge => "edge",
-            Ellipse::Profile => "profile",
+            EllipseKind::Hertz => "hertz",
+            EllipseKind::Edge => "edge",
+            EllipseKind::Profile => "profile",
         }
     }
 }
@@ -75,7 +76,7 @@ impl Surfaces {
     }
 
     /// Groove angles where the groove of a raceway ends, rad; None: it goes on for ever.
-    pub fn edges(&self, side: Side) -> Option<[f64; 2]> {
+    pub fn edges(&self, side: Side) -> Option<&RangeInclusive<f64>> {
         self.strips[side.index()].as_ref()?.edges()
     }
 
@@ -235,13 +236,13 @@ impl Strips {
 
     /// Whether its ellipse is Hertz's, at an approach, m, and a contact angle, rad, with the half-width `rolling` along
     /// the track, m.
-    pub fn ellipse(&self, approach: f64, angle: f64, rolling: f64) -> Ellipse {
+    pub fn ellipse(&self, approach: f64, angle: f64, rolling: f64) -> EllipseKind {
         let law = &self.surface.law;
         let Some(extent) = law.extent(&self.line(), approach, angle) else {
-            return Ellipse::Hertz;
+            return EllipseKind::Hertz;
         };
         if extent.is_cut && self.surface.edges().is_some() {
-            return Ellipse::Edge;
+            return EllipseKind::Edge;
         }
         let mut range = extent.missing;
         for place in self.ends_of_ellipse(angle, rolling) {
@@ -249,8 +250,8 @@ impl Strips {
             range = [range[0].min(low), range[1].max(high)];
         }
         match range[1] - range[0] > LEVEL * extent.overlap {
-            true => Ellipse::Profile,
-            false => Ellipse::Hertz,
+            true => EllipseKind::Profile,
+            false => EllipseKind::Hertz,
         }
     }
 

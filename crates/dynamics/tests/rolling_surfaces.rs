@@ -194,10 +194,10 @@ fn both_raceways_pass_under_the_ball_with_the_speed_of_the_formula() {
     assert!(relative(formula * half, length) < 0.2, "{half}");
 }
 
-/// Wrong: the accelerations of a passage would not show the length of a spall. A light shaft (7 kHz on its bearing) over
-/// which balls roll slowly and stay loaded: the first acceleration is the entry, the largest the kink half-way. L = 2 v
-/// times their distance within 5 %: a quarter period of the shaft is 2 % of it. Faster balls are thrown across, heavier
-/// shafts ring for longer than half a passage.
+/// Wrong: the accelerations of a passage would not show the length of a spall. A light shaft (7 kHz on its bearing)
+/// over which balls roll slowly and stay loaded: the first acceleration is the entry, the largest the kink half-way. L
+/// = 2 v times their distance within 5 %: a quarter period of the shaft is 2 % of it. Faster balls are thrown across,
+/// heavier shafts ring for longer than half a passage.
 #[test]
 fn accelerations_of_a_slow_passage_show_the_length_of_a_spall() {
     let model = || {

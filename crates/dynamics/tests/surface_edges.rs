@@ -9,7 +9,7 @@ use contact::surface::{Spall, Wave};
 use contact::{Profiles, Side, StripLaw, StripSurface};
 use dynamics::kinematics::Speed;
 use dynamics::motion::{ContactLimit, Motion, MotionSettings, StepCache};
-use dynamics::surfaces::Ellipse;
+use dynamics::surfaces::EllipseKind;
 use dynamics::{ContactMode, Hold, Model, StaticSolver};
 use support::rings::Level;
 use support::{Case, equilibrium, relative};
@@ -48,7 +48,7 @@ fn balls_whose_ellipses_end_at_the_shoulder_of_a_rigid_ring_are_named() {
         found
             .balls
             .iter()
-            .all(|ball| ball.outer.ellipse == Some(Ellipse::Edge))
+            .all(|ball| ball.outer.ellipse == Some(EllipseKind::Edge))
     );
     assert!(found.balls.iter().all(|ball| ball.inner.ellipse.is_none()));
     let wide = with_outer_strips(
@@ -62,7 +62,7 @@ fn balls_whose_ellipses_end_at_the_shoulder_of_a_rigid_ring_are_named() {
         found
             .balls
             .iter()
-            .all(|ball| ball.outer.ellipse == Some(Ellipse::Hertz))
+            .all(|ball| ball.outer.ellipse == Some(EllipseKind::Hertz))
     );
 }
 
@@ -128,12 +128,12 @@ fn the_force_of_an_edge_contact_is_the_same_at_rest_and_in_motion() {
         // Both contacts of a ball at rest carry the same.
         assert!(relative(a.inner.force_n, a.outer.force_n) < 1e-8);
         let a_half = (2.0 * law.parabola_radius * a.outer.approach_m).sqrt();
-        let [_, high] = model.surfaces.edges(Side::Outer).unwrap();
+        let high = model.surfaces.edges(Side::Outer).unwrap().end();
         let tau = (high - a.outer.contact_angle_rad) * law.groove_radius / a_half;
         let normal = law.stiffness * a.outer.approach_m.powf(1.5) * (0.5 + 0.75 * tau - 0.25 * tau.powi(3));
         let across = (a.outer.force_n.powi(2) - normal * normal).sqrt();
         assert!(across > 5.0, "{} {normal}", a.outer.force_n);
-        assert_eq!(b.outer.ellipse, Some(Ellipse::Edge));
+        assert_eq!(b.outer.ellipse, Some(EllipseKind::Edge));
     }
     let beyond = motion.exceeded(&state);
     assert_eq!(beyond.len(), 18);
@@ -174,7 +174,7 @@ fn contacts_over_marks_are_told_from_those_on_level_ground() {
         let found = equilibrium(&with_outer_strips(case.rigid(), None, &profiles));
         let of_ball = |ball: usize| found.balls[ball].outer.ellipse.unwrap();
         (0..18)
-            .filter(|ball| of_ball(*ball) == Ellipse::Profile)
+            .filter(|ball| of_ball(*ball) == EllipseKind::Profile)
             .collect::<Vec<_>>()
     };
     assert_eq!(marked(spall(0.3e-3, 20e-6)), [0]);

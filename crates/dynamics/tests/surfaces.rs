@@ -332,8 +332,8 @@ fn a_slow_passage_shows_the_length_of_a_spall() {
     }
 }
 
-/// Wrong: the times of a passage would depend on the load. Under 1 to 4 kN half-widths along the track grow by 1.6, from
-/// 0.10 to 0.16 mm; places move by far less than b, a tenth of it: by the threshold at which the force has fallen.
+/// Wrong: the times of a passage would depend on the load. Under 1 to 4 kN half-widths along the track grow by 1.6,
+/// from 0.10 to 0.16 mm; places move by far less than b, a tenth of it: by the threshold at which the force has fallen.
 #[test]
 fn the_places_of_a_passage_do_not_depend_on_the_load() {
     let length = 0.3e-3;

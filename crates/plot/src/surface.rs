@@ -1,8 +1,8 @@
 //! The raceways unrolled: von Mises stress over azimuth and arc of the groove, with the contact ellipses.
 //!
 //! An ellipse is Hertz's, around the contact of its ball: its semi-axis across is an arc of the groove, that along the
-//! raceway an angle about the axis, so it is not distorted. Of contacts at an edge or over a profile, which have another
-//! one, it is drawn in dashes.
+//! raceway an angle about the axis, so it is not distorted. Of contacts at an edge or over a profile, which have
+//! another one, it is drawn in dashes.
 
 use std::f64::consts::TAU;
 
@@ -109,8 +109,8 @@ fn interpolate(rows: &[(f64, Vec<Node>)], azimuth: f64, angle: f64) -> f64 {
     a + part * (b - a)
 }
 
-/// Outlines of the loaded contacts of a step, `[azimuth in deg, arc in mm]`, cut where the picture ends, and how they are
-/// drawn.
+/// Outlines of the loaded contacts of a step, `[azimuth in deg, arc in mm]`, cut where the picture ends, and how they
+/// are drawn.
 fn ellipses(groove: &Groove, balls: &Table, step: u64) -> anyhow::Result<Vec<(Look, Vec<[f64; 2]>)>> {
     let side = groove.side.name();
     let column = |name: &str| balls.column(&format!("{side}_{name}"));

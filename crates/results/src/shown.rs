@@ -108,8 +108,8 @@ impl<'a> Shown<'a> {
         })
     }
 
-    /// Accelerations of the chosen nodes of a ring in its frame, m/s^2, `[n_nodes][3]` flat; None at rest and of a rigid
-    /// ring.
+    /// Accelerations of the chosen nodes of a ring in its frame, m/s^2, `[n_nodes][3]` flat; None at rest and of a
+    /// rigid ring.
     pub fn accelerations_at(&self, side: Side, nodes: &[usize]) -> Option<Vec<f64>> {
         match self {
             Shown::Equilibrium { .. } => None,

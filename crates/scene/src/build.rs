@@ -49,7 +49,7 @@ pub fn build_model(scene: &Scene) -> Result<(Model, NodeTags), BuildError> {
     );
     let (inner, inner_tags) = rings.0?.unzip();
     let (outer, outer_tags) = rings.1?.unzip();
-    for (side, ring) in [(Side::Inner, &inner), (Side::Outer, &outer)] {
+    for (side, ring) in Side::BOTH.into_iter().zip([&inner, &outer]) {
         if let Some(ring) = ring {
             require_raceway_under_marks(scene, &geometry, side, ring)?;
         }

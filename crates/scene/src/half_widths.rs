@@ -2,22 +2,22 @@
 //! scene's start on smooth, rigid grooves.
 
 use contact::Side;
-use dynamics::{Backend, ContactMode, Model, StaticSolver};
+use dynamics::kinematics::BothRings;
+use dynamics::{ContactMode, Model, StaticSolver};
 
 use crate::tables::Scene;
 
-/// Half-widths along the track under the mean load of the loaded balls, m, inner first. 0 where nothing is loaded at the
-/// start, or no equilibrium is found there: waves then keep their amplitudes.
-pub fn half_widths(scene: &Scene, model: &mut Model) -> [f64; 2] {
+/// Half-widths along the track under the mean load of the loaded balls, m, inner first. 0 where nothing is loaded at
+/// the start, or no equilibrium is found there: waves then keep their amplitudes.
+pub fn half_widths(scene: &Scene, model: &mut Model) -> BothRings {
     if !scene.profiles.has_profiles() {
         return [0.0; 2];
     }
     // Rigid rings are the same on all ranks, and their loads nearly those of elastic ones.
     let rings = std::mem::take(&mut model.rings);
     let mode = std::mem::replace(&mut model.contact.mode, ContactMode::Rigid);
-    let backend = std::mem::replace(&mut model.backend, Backend::Auto);
     let solution = StaticSolver::new(model).and_then(|mut solver| solver.solve(model, None));
-    (model.rings, model.contact.mode, model.backend) = (rings, mode, backend);
+    (model.rings, model.contact.mode) = (rings, mode);
     let Ok(solution) = solution else { return [0.0; 2] };
     Side::BOTH.map(|side| {
         let forces = solution.balls.iter().map(|ball| ball.contact(side).force_n);

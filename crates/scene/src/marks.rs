@@ -68,7 +68,7 @@ pub fn require_raceway_under_marks(
     if !has_marks || body.is_none_or(is_whole) {
         return Ok(());
     }
-    let raceway = Raceway {
+    let raceway = MeshedRaceway {
         surface: RacewaySurface::new(&ring.mesh, ring.mesh.group(RACEWAY_GROUP), ring.groove),
         radius: geometry.centre_radius(side) + side.sign() * geometry.groove_radius(side),
         groove_radius: geometry.groove_radius(side),
@@ -104,14 +104,14 @@ fn is_deep(table: &Heights, gaps: &[[f64; 2]]) -> bool {
 }
 
 /// The raceway of a mesh that may have holes.
-struct Raceway {
+struct MeshedRaceway {
     surface: RacewaySurface,
     /// Of its track from the axis, m.
     radius: f64,
     groove_radius: f64,
 }
 
-impl Raceway {
+impl MeshedRaceway {
     fn is_missing(&self, azimuth: f64, angle: f64) -> bool {
         self.surface.locate(azimuth, angle).is_err()
     }

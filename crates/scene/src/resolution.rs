@@ -46,7 +46,7 @@ struct Said {
 
 /// What the steps of a scene show badly: a sentence each. `half_widths` are those of the ellipses along the track, m,
 /// inner first; 0 is unknown.
-pub fn unresolved(scene: &Scene, geometry: &BearingGeometry, half_widths: [f64; 2]) -> Vec<String> {
+pub fn unresolved(scene: &Scene, geometry: &BearingGeometry, half_widths: BothRings) -> Vec<String> {
     judged(scene, geometry, half_widths).warnings
 }
 
@@ -62,7 +62,7 @@ pub fn require_resolvable(scene: &Scene, geometry: &BearingGeometry) -> Result<(
     })
 }
 
-fn judged(scene: &Scene, geometry: &BearingGeometry, half_widths: [f64; 2]) -> Said {
+fn judged(scene: &Scene, geometry: &BearingGeometry, half_widths: BothRings) -> Said {
     let mut said = Said::default();
     let Some(steps) = TimeSteps::of(scene) else {
         return said;
@@ -269,7 +269,7 @@ struct WornTrack<'s> {
 fn worn_tracks<'s>(
     scene: &'s Scene,
     geometry: &BearingGeometry,
-    half_widths: [f64; 2],
+    half_widths: BothRings,
 ) -> Vec<WornTrack<'s>> {
     let Some(speeds) = &scene.speed else {
         return Vec::new();

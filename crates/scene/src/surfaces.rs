@@ -4,6 +4,7 @@ use std::ops::RangeInclusive;
 use std::sync::Arc;
 
 use contact::{BearingGeometry, HertzContact, Side, StripLaw, StripSurface};
+use dynamics::kinematics::BothRings;
 use dynamics::{RACEWAY_GROUP, RingModel, Surfaces};
 
 use crate::error::BuildError;
@@ -17,7 +18,7 @@ pub fn surfaces(
     geometry: &BearingGeometry,
     hertz: &[HertzContact; 2],
     rings: &[Option<Arc<RingModel>>; 2],
-    half_widths: [f64; 2],
+    half_widths: BothRings,
 ) -> Result<Surfaces, BuildError> {
     let mut strips = [None, None];
     for side in Side::BOTH {

@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use contact::surface::MOST_NUMBERS;
 use contact::{BallSurface, BearingGeometry, Profiles, Side};
+use dynamics::kinematics::BothRings;
 
 use crate::error::BuildError;
 use crate::tables::Scene;
@@ -14,7 +15,7 @@ use crate::tables::Scene;
 pub fn worn_balls(
     scene: &Scene,
     geometry: &BearingGeometry,
-    half_widths: [f64; 2],
+    half_widths: BothRings,
 ) -> Result<BTreeMap<usize, [Arc<BallSurface>; 2]>, BuildError> {
     let equator = geometry.free_contact_angle();
     let worn = |(ball, profiles): (&usize, &Profiles)| {

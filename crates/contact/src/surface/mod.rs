@@ -15,8 +15,8 @@
 //! and made exact beside the point that it finds. Between azimuths, and across the track between corners, w is linear.
 //!
 //! Validity: envelopes of neighbouring lines know nothing of each other, so that a spall narrower than the ellipse is
-//! met by the strips beside it as if it were not there. The ellipse's own length along the track filters waves alone, by
-//! a factor that a scene's waves have before ([`felt`]): marks and tables are felt as by a point.
+//! met by the strips beside it as if it were not there. The ellipse's own length along the track filters waves alone,
+//! by a factor that a scene's waves have before ([`felt`]): marks and tables are felt as by a point.
 
 pub mod ball;
 mod ball_arc;
@@ -97,7 +97,7 @@ pub struct StripSurface {
     pub law: StripLaw,
     grid: SurfaceGrid,
     track: Track,
-    edges: Option<[f64; 2]>,
+    edges: Option<RangeInclusive<f64>>,
     has_profile: bool,
 }
 
@@ -137,7 +137,7 @@ impl StripSurface {
         shoulders: Option<RangeInclusive<f64>>,
         profiles: &Profiles,
     ) -> Option<StripSurface> {
-        let edges = shoulders.as_ref().map(|groove| [*groove.start(), *groove.end()]);
+        let edges = shoulders.clone();
         let groove = shoulders.unwrap_or(-PI..=PI);
         let track = Track::new(geometry, side);
         Some(StripSurface {
@@ -155,8 +155,8 @@ impl StripSurface {
     }
 
     /// Groove angles where the groove ends, rad; None: it goes on for ever.
-    pub fn edges(&self) -> Option<[f64; 2]> {
-        self.edges
+    pub fn edges(&self) -> Option<&RangeInclusive<f64>> {
+        self.edges.as_ref()
     }
 
     /// Radius of the track at a contact angle, rad, in m.

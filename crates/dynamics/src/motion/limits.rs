@@ -7,7 +7,7 @@ use super::run::{Motion, MovingRing};
 use super::state::MotionState;
 use crate::footprint::loaded;
 use crate::solution::STATIC_LIMIT;
-use crate::surfaces::Ellipse;
+use crate::surfaces::EllipseKind;
 
 /// What a contact can exceed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -57,7 +57,7 @@ impl Motion<'_> {
             let beyond =
                 |moving: &MovingRing| is_truncated(&moving.raceway.surface, state.angles[index], axes);
             let is_beyond = match self.model.surfaces.edges(side) {
-                Some(_) => self.ellipse(state, (ball, side), axes[1]) == Some(Ellipse::Edge),
+                Some(_) => self.ellipse(state, (ball, side), axes[1]) == Some(EllipseKind::Edge),
                 None => self.rings[side.index()].as_ref().is_some_and(beyond),
             };
             if is_beyond {

@@ -18,7 +18,7 @@ use crate::interactions::free_contact::FoundContact;
 use crate::interactions::free_contact::orientation::{Quaternion, at_start, in_ball};
 use crate::interactions::free_contact::rolling_surface::{RollingSurface, WornBall};
 use crate::interactions::raceway_contact::Site;
-use crate::surfaces::{Ellipse, SurfacePlace, Surfaces};
+use crate::surfaces::{EllipseKind, SurfacePlace, Surfaces};
 
 impl Motion<'_> {
     /// Surfaces of the bearing.
@@ -94,7 +94,7 @@ impl Motion<'_> {
         state: &MotionState,
         (ball, side): (usize, Side),
         rolling: f64,
-    ) -> Option<Ellipse> {
+    ) -> Option<EllipseKind> {
         let time = self.time(state.step);
         let turned = Side::BOTH.map(|side| self.frame_angle(side, time));
         let index = 2 * ball + side.index();

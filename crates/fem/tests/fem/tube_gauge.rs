@@ -91,9 +91,9 @@ fn point(mesh: &Mesh, facet: Facet, xi: [f64; 2]) -> GaugePoint {
     }
 }
 
-/// Wrong: a gauge would read another strain than that of its place, or none that gets better with the mesh. A hoop gauge
-/// from 0 to 30 deg on the outer surface, 2 x 2 Gauss points a facet: its mean is that of cos 2 psi, sin(60 deg)/(60
-/// deg). Hex20, whose strain is of second order and at these points of a higher one.
+/// Wrong: a gauge would read another strain than that of its place, or none that gets better with the mesh. A hoop
+/// gauge from 0 to 30 deg on the outer surface, 2 x 2 Gauss points a facet: its mean is that of cos 2 psi, sin(60
+/// deg)/(60 deg). Hex20, whose strain is of second order and at these points of a higher one.
 #[test]
 fn a_gauge_on_an_oval_tube_converges_to_the_closed_form() {
     let third = std::f64::consts::FRAC_PI_3;
@@ -119,8 +119,8 @@ fn a_gauge_on_an_oval_tube_converges_to_the_closed_form() {
 }
 
 /// Wrong: a short gauge would read something else than the strain of the node on which it lies. In the limit it is the
-/// mean of the strains of the elements round the node; that of the nodal stress, by Hooke's law, and the closed form are
-/// met with the mesh: within 2 % and 0.5 %.
+/// mean of the strains of the elements round the node; that of the nodal stress, by Hooke's law, and the closed form
+/// are met with the mesh: within 2 % and 0.5 %.
 #[test]
 fn a_gauge_of_no_length_reads_the_strain_of_its_node() {
     let (mesh, u) = oval(4);
