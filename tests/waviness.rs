@@ -128,7 +128,7 @@ fn orders_of_waves_show_at_their_lines_on_elastic_rings() {
         check(Rings::Elastic, line, ripple.map(|a| 2.0 * a + 1e-3 * AMPLITUDE));
     }
     // A gauge feels every ball that passes, smooth grooves or not.
-    let strain = lines(&smooth, "g1", "spectrum_g1_strain", "amplitude_");
+    let strain = lines(&smooth, "g1", "spectrum_g1", "amplitude_strain");
     let most = strain.iter().skip(1).fold(
         [0.0; 2],
         |most: [f64; 2], line| {
