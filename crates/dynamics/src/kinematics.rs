@@ -378,7 +378,8 @@ mod tests {
             (cage, 13.044, 1e-3),
             (18.0 * cage, 234.79, 1e-2),
             (18.0 * (30.0 - cage), 305.21, 1e-2),
-            (spin, 106.53, 1e-2),
+            // The balls' circle is 7 um smaller on these grooves.
+            (spin, 106.53, 2e-2),
         ] {
             assert!((found - expected).abs() < 0.6 * digit, "{found} {expected}");
         }

@@ -110,7 +110,7 @@ fn balls_beyond_the_shoulder_of_a_rigid_ring_are_refused() {
 /// least of 340 N act across.
 #[test]
 fn the_force_of_an_edge_contact_is_the_same_at_rest_and_in_motion() {
-    let model = cut(0.4);
+    let model = cut(0.6);
     let rest = equilibrium(&model);
     let motion = Motion::new(&model, MotionSettings::conserving(5e-6, Speed::constant(0.0))).unwrap();
     let mut cache = StepCache::default();
