@@ -194,9 +194,7 @@ take = "max"
 /// line the values of its point; other seeds and lengths give other signals.
 #[test]
 fn a_study_makes_a_labelled_set() {
-    let analysis = RUN_UP.replace("100 ms\"\nstep", "2 ms\"\nstep");
-    let dir = Dir::with_scene(&with_line("[static]", "[static]", &analysis));
-    dir.write("study.toml", STUDY);
+    let dir = labelled();
     let outcome = dir.raceway(&["study", "study.toml", "--out", "out"]);
     assert_eq!(outcome.code, Some(0), "{}", outcome.stderr);
     assert!(
@@ -255,4 +253,12 @@ fn a_study_makes_a_labelled_set() {
         assert_eq!(refused.code, Some(2));
         assert!(refused.stderr.contains(text), "{}", refused.stderr);
     }
+}
+
+/// Scene and study of a labelled set of four short signals.
+pub fn labelled() -> Dir {
+    let analysis = RUN_UP.replace("100 ms\"\nstep", "2 ms\"\nstep");
+    let dir = Dir::with_scene(&with_line("[static]", "[static]", &analysis));
+    dir.write("study.toml", STUDY);
+    dir
 }

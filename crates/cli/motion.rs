@@ -222,7 +222,7 @@ impl March<'_> {
         };
         let (state, motion) = (&self.state, self.motion);
         let mut warnings = remarks.warnings;
-        warnings.extend(self.watch.warnings(|step| motion.time(step)));
+        warnings.extend(self.watch.warnings(motion.surfaces(), |step| motion.time(step)));
         warnings.extend(lossy(state));
         let findings = Findings {
             status: ended

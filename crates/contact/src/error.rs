@@ -44,6 +44,23 @@ pub enum ContactError {
         /// Highest groove angle of the mesh, deg.
         high_deg: f64,
     },
+    /// A contact lies beyond the shoulders of a rigid ring.
+    #[error(
+        "ball {ball} leaves the {side} raceway: contact angle {angle_deg:.2} deg, between its shoulders the groove \
+         reaches from {low_deg:.2} to {high_deg:.2} deg; raise the shoulder or lower the load"
+    )]
+    BeyondShoulder {
+        /// Ball number, from 0.
+        ball: usize,
+        /// `inner` or `outer`.
+        side: &'static str,
+        /// Contact angle, deg.
+        angle_deg: f64,
+        /// Lowest groove angle, deg.
+        low_deg: f64,
+        /// Highest groove angle, deg.
+        high_deg: f64,
+    },
     /// A ball presses where no groove can be.
     #[error(
         "ball {ball} presses on the {side} ring at a contact angle of {angle_deg:.1} deg, but no groove reaches beyond 90 deg: the \

@@ -7,6 +7,7 @@
 mod bins;
 pub mod elliptic;
 pub mod error;
+pub mod extent;
 mod facet_map;
 pub mod facets;
 pub mod film;
@@ -31,6 +32,7 @@ pub mod weights;
 pub mod worn_line;
 
 pub use error::ContactError;
+pub use extent::StripExtent;
 pub use facets::FacetSurface;
 pub use geometry::{BearingGeometry, BySide, Meridian, Side};
 pub use hertz::{Elastic, HertzContact};

@@ -3,10 +3,12 @@
 use contact::Side;
 use serde::Serialize;
 
+use crate::surfaces::EllipseKind;
+
 /// One contact of a ball.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct ContactResult {
-    /// Normal force, N.
+    /// Force, N: normal; on strips with the force across the normal.
     pub force_n: f64,
     /// Contact angle, rad.
     pub contact_angle_rad: f64,
@@ -16,6 +18,9 @@ pub struct ContactResult {
     pub semi_axes_m: [f64; 2],
     /// Peak Hertz pressure, Pa.
     pub peak_pressure_pa: f64,
+    /// Whether the ellipse, and with it pressure and stress, is Hertz's; None: the raceway has no strips, and it is.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub ellipse: Option<EllipseKind>,
 }
 
 /// Displacement of a ball from the just-touching position.

@@ -134,13 +134,25 @@ pub fn check_in_grooves(
 ) -> Result<(), DynamicsError> {
     let contacts = sites.iter().zip(states).zip(loaded(forces));
     for ((site, state), _) in contacts.filter(|(_, loaded)| *loaded) {
-        require_in_groove(site.ball, site.side, state.angle)?;
+        require_in_groove(site, state.angle)?;
     }
     Ok(())
 }
 
-/// Fails when a contact angle, rad, is 90 deg or more.
-pub fn require_in_groove(ball: usize, side: Side, angle: f64) -> Result<(), DynamicsError> {
+/// Fails when a contact angle, rad, is 90 deg or more, or beyond the edges of its groove where it has any.
+pub fn require_in_groove(site: &Site, angle: f64) -> Result<(), DynamicsError> {
+    let (ball, side) = (site.ball, site.side);
+    let edges = site.strips.as_ref().and_then(|strips| strips.surface.edges());
+    if let Some(groove) = edges.filter(|groove| !groove.contains(&angle)) {
+        let beyond = ContactError::BeyondShoulder {
+            ball,
+            side: side.name(),
+            angle_deg: angle.to_degrees(),
+            low_deg: groove.start().to_degrees(),
+            high_deg: groove.end().to_degrees(),
+        };
+        return Err(beyond.into());
+    }
     if angle.abs() < std::f64::consts::FRAC_PI_2 {
         return Ok(());
     }

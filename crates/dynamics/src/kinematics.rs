@@ -355,4 +355,33 @@ mod tests {
         assert_eq!(speed.rate(0.5), 10.0);
         assert_eq!(speed.rate(2.0), -10.0);
     }
+
+    /// Wrong: lines would be looked for at other frequencies than those of the textbooks. The 7010C at 1800 rpm with
+    /// the free contact angle 19.57 deg, which a larger clearance on the same pitch circle gives: f_c = f/2 (1 -
+    /// gamma), BPFO = 18 f_c, BPFI = 18 (f - f_c), BSF = D_m/(2 D) f (1 - gamma^2), gamma = D cos(a)/D_m (Harris, 4th
+    /// ed., chapter 8). Numbers to their last digit, those of the balls' passing from the cage's.
+    #[test]
+    fn frequencies_at_a_contact_angle_are_those_of_textbooks() {
+        let mut geometry = BearingGeometry::reference_7010c();
+        let angle = 19.57f64.to_radians();
+        let wider = 2.0 * geometry.groove_distance() * (1.0 - angle.cos());
+        let clearance =
+            geometry.outer_raceway_diameter - geometry.inner_raceway_diameter - 2.0 * geometry.ball_diameter;
+        let more = 0.5 * (wider - clearance);
+        geometry.outer_raceway_diameter += more;
+        geometry.inner_raceway_diameter -= more;
+        assert!((geometry.free_contact_angle() - angle).abs() < 1e-12);
+        let kinematics = Kinematics::new(&geometry, [0.0; 2]);
+        let cage = 30.0 * kinematics.cage;
+        let spin = kinematics.rolled([30.0, 0.0]).abs();
+        for (found, expected, digit) in [
+            (cage, 13.044, 1e-3),
+            (18.0 * cage, 234.79, 1e-2),
+            (18.0 * (30.0 - cage), 305.21, 1e-2),
+            // The balls' circle is 7 um smaller on these grooves.
+            (spin, 106.53, 2e-2),
+        ] {
+            assert!((found - expected).abs() < 0.6 * digit, "{found} {expected}");
+        }
+    }
 }

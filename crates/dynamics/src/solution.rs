@@ -15,6 +15,7 @@ use crate::interactions::raceway_contact::{Site, SiteState, on_rings};
 use crate::loading::LoadCase;
 use crate::model::Model;
 use crate::pose::Pose;
+use crate::surfaces::{EllipseKind, Strips};
 use crate::system::{FiniteMotion, Interval};
 
 /// Peak pressure that leaves a permanent indentation of 1e-4 of the ball diameter in bearing steel, Pa: ISO 76, for
@@ -114,7 +115,7 @@ impl StaticSolution {
             + seat_work(parts, &u)
             + finite_load;
         Ok(StaticSolution {
-            warnings: warnings(&rings.footprints, &forces, &balls)
+            warnings: warnings(model, &rings.footprints, &forces, &balls)
                 .into_iter()
                 .chain(friction_warning(&forces, &case.loads.contacts))
                 .chain(
@@ -281,8 +282,13 @@ fn shaft_balance(parts: &BearingParts, u: &Displacements, forces: &[[f64; 2]]) -
     (pick(true), pick(false).map(|x| -x))
 }
 
-fn warnings(footprints: &[Vec<Footprint>; 2], forces: &[[f64; 2]], balls: &[BallResult]) -> Vec<String> {
-    let mut warnings = edge_warnings(footprints, forces);
+fn warnings(
+    model: &Model,
+    footprints: &[Vec<Footprint>; 2],
+    forces: &[[f64; 2]],
+    balls: &[BallResult],
+) -> Vec<String> {
+    let mut warnings = edge_warnings(model, footprints, forces, balls);
     let pressures = balls
         .iter()
         .flat_map(|b| [b.inner.peak_pressure_pa, b.outer.peak_pressure_pa]);
@@ -304,7 +310,6 @@ fn warnings(footprints: &[Vec<Footprint>; 2], forces: &[[f64; 2]], balls: &[Ball
 
 /// Warns of forces across contacts (the gyroscopic moment's) that friction cannot carry.
 fn friction_warning(forces: &[[f64; 2]], across: &[[f64; 2]]) -> Option<String> {
-    let size = |f: &[f64; 2]| f[0].hypot(f[1]);
     let needed = forces.iter().zip(across).map(|(n, f)| size(f) / size(n));
     let (place, most) = needed
         .enumerate()
@@ -321,26 +326,39 @@ fn friction_warning(forces: &[[f64; 2]], across: &[[f64; 2]]) -> Option<String> 
     })
 }
 
-fn edge_warnings(footprints: &[Vec<Footprint>; 2], forces: &[[f64; 2]]) -> Vec<String> {
+/// Warns of ellipses that reach beyond their groove: as strips tell, where there are edges, else as the mesh does.
+fn edge_warnings(
+    model: &Model,
+    footprints: &[Vec<Footprint>; 2],
+    forces: &[[f64; 2]],
+    balls: &[BallResult],
+) -> Vec<String> {
     let (mut warnings, loaded) = (Vec::new(), loaded(forces));
     for side in Side::BOTH {
-        let loaded = |ball: usize| loaded[2 * ball + side.index()];
-        let truncated: Vec<String> = footprints[side.index()]
-            .iter()
-            .enumerate()
-            .filter(|(ball, f)| f.truncated && loaded(*ball))
-            .map(|(ball, _)| ball.to_string())
+        let is_beyond = |ball: &usize| match model.surfaces.edges(side) {
+            Some(_) => balls[*ball].contact(side).ellipse == Some(EllipseKind::Edge),
+            None => footprints[side.index()]
+                .get(*ball)
+                .is_some_and(|foot| foot.truncated),
+        };
+        let truncated: Vec<String> = (0..balls.len())
+            .filter(|ball| loaded[2 * ball + side.index()] && is_beyond(ball))
+            .map(|ball| ball.to_string())
             .collect();
         if !truncated.is_empty() {
             warnings.push(format!(
-                "edge contact on the {} raceway, balls {}: the Hertz ellipse reaches beyond the groove; \
-                 pressures there are not valid, and forces only with contact.edges = true",
+                "edge contact on the {} raceway, balls {}: {}",
                 side.name(),
-                truncated.join(", ")
+                truncated.join(", "),
+                model.surfaces.edge_meaning(side)
             ));
         }
     }
     warnings
+}
+
+fn size(f: &[f64; 2]) -> f64 {
+    f[0].hypot(f[1])
 }
 
 /// Results of all balls at given displacements, where their contacts have these states.
@@ -354,12 +372,20 @@ fn ball_results(
     let contact = |i: usize| {
         let (site, state) = (&sites[i], &states[i]);
         let hertz = &model.hertz[site.side.index()];
+        // As a motion has it: with the force of strips across the normal.
+        let force = match state.lateral {
+            Some(_) => size(&state.on_ring()),
+            None => state.force.force,
+        };
+        let semi_axes = hertz.semi_axes(force);
+        let ellipse = |strips: &Strips| strips.ellipse(state.force.approach, state.angle, semi_axes[1]);
         ContactResult {
-            force_n: state.force.force,
+            force_n: force,
             contact_angle_rad: state.angle,
             approach_m: state.force.approach,
-            semi_axes_m: hertz.semi_axes(state.force.force),
-            peak_pressure_pa: hertz.peak_pressure(state.force.force),
+            semi_axes_m: semi_axes,
+            peak_pressure_pa: hertz.peak_pressure(force),
+            ellipse: site.strips.as_ref().map(ellipse),
         }
     };
     (0..model.geometry.n_balls)

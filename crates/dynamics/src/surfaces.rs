@@ -1,9 +1,11 @@
 //! Real surfaces of a bearing: raceways of strips, balls of different diameters, and balls that are no spheres.
 
 use std::collections::BTreeMap;
+use std::ops::RangeInclusive;
 use std::sync::Arc;
 
-use contact::{BallArc, BallSurface, SeenMeridian, Side, StripLine, StripSurface, WornLine};
+use contact::{BallArc, BallSurface, BySide, SeenMeridian, Side, StripLine, StripSurface, WornLine};
+use serde::Serialize;
 
 /// What a scene asks for beyond smooth grooves without edges and equal balls; the default is nothing.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -15,6 +17,35 @@ pub struct Surfaces {
     pub oversizes: Vec<f64>,
     /// Balls that are no spheres, by number, as inner and outer raceway meet them; both raceways are then of strips.
     pub balls: BTreeMap<usize, [Arc<BallSurface>; 2]>,
+    /// Half-widths along the track of the ellipses by which waves are felt, m, inner first; 0: as by a point.
+    pub half_widths: BySide<f64>,
+}
+
+/// What missing material under a contact changes at most where its stress is taken for Hertz's, over its overlap:
+/// heights of 1 % change pressures by 1.5 %.
+const LEVEL: f64 = 0.01;
+
+/// Whether a contact on strips has Hertz's ellipse, with Hertz's pressure and stress.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum EllipseKind {
+    /// It has, or nothing touches.
+    Hertz,
+    /// The groove ends under it.
+    Edge,
+    /// It touches a profile that is not level under it.
+    Profile,
+}
+
+impl EllipseKind {
+    /// As in tables.
+    pub fn name(self) -> &'static str {
+        match self {
+            EllipseKind::Hertz => "hertz",
+            EllipseKind::Edge => "edge",
+            EllipseKind::Profile => "profile",
+        }
+    }
 }
 
 /// Where a contact stands on its surfaces.
@@ -44,6 +75,25 @@ impl Surfaces {
         self.strips.iter().any(Option::is_some)
     }
 
+    /// Groove angles where the groove of a raceway ends, rad; None: it goes on for ever.
+    pub fn edges(&self, side: Side) -> Option<&RangeInclusive<f64>> {
+        self.strips[side.index()].as_ref()?.edges()
+    }
+
+    /// What an ellipse beyond the groove of one side means.
+    pub fn edge_meaning(&self, side: Side) -> &'static str {
+        match self.edges(side) {
+            Some(_) => {
+                "the ellipse ends at the shoulder; forces are those of what is left of it, but the stress at the edge \
+                 is higher than any pressure given here"
+            }
+            None => {
+                "the Hertz ellipse reaches beyond the groove; pressures there are not valid, and forces only with \
+                 contact.edges = true"
+            }
+        }
+    }
+
     /// Whether balls meet anything but smooth grooves.
     pub fn has_profiles(&self) -> bool {
         !self.balls.is_empty() || self.strips.iter().flatten().any(|surface| surface.has_profile())
@@ -59,6 +109,7 @@ impl Surfaces {
         let surface = self.strips[side.index()].as_ref()?;
         let worn = self.balls.get(&ball).map(|sides| sides[side.index()].clone());
         Some(Strips {
+            place,
             lines: MissingLines::at(surface, worn.as_deref(), place),
             ends: None,
             surface: surface.clone(),
@@ -130,6 +181,7 @@ pub struct Strips {
     pub surface: Arc<StripSurface>,
     /// The ball; None: it is a sphere.
     worn: Option<Arc<BallSurface>>,
+    place: SurfacePlace,
     lines: MissingLines,
     /// The same at the start and at the end of a step, during which the contact keeps those of its middle.
     ends: Option<[MissingLines; 2]>,
@@ -139,6 +191,7 @@ impl Strips {
     /// The same where the contact stands at another place.
     pub fn moved(&self, place: SurfacePlace) -> Strips {
         Strips {
+            place,
             surface: self.surface.clone(),
             worn: self.worn.clone(),
             lines: MissingLines::at(&self.surface, self.worn.as_deref(), place),
@@ -179,6 +232,47 @@ impl Strips {
             Some(ends) => ends.each_ref().map(|lines| self.line_of(lines)),
             None => [self.line(); 2],
         }
+    }
+
+    /// Whether its ellipse is Hertz's, at an approach, m, and a contact angle, rad, with the half-width `rolling` along
+    /// the track, m.
+    pub fn ellipse(&self, approach: f64, angle: f64, rolling: f64) -> EllipseKind {
+        let law = &self.surface.law;
+        let Some(extent) = law.extent(&self.line(), approach, angle) else {
+            return EllipseKind::Hertz;
+        };
+        if extent.is_cut && self.surface.edges().is_some() {
+            return EllipseKind::Edge;
+        }
+        let mut range = extent.missing;
+        for place in self.ends_of_ellipse(angle, rolling) {
+            let [low, high] = law.missing_within(&self.moved(place).line(), angle, extent.ends);
+            range = [range[0].min(low), range[1].max(high)];
+        }
+        match range[1] - range[0] > LEVEL * extent.overlap {
+            true => EllipseKind::Profile,
+            false => EllipseKind::Hertz,
+        }
+    }
+
+    /// Where the ellipse ends along the track of the raceway and of a ball that is no sphere.
+    fn ends_of_ellipse(&self, angle: f64, rolling: f64) -> Vec<SurfacePlace> {
+        let (place, mut ends) = (self.place, Vec::new());
+        if self.surface.has_profile() {
+            let half = rolling / self.surface.track_radius(angle);
+            ends.extend([-half, half].map(|turn| SurfacePlace {
+                azimuth: place.azimuth + turn,
+                ..place
+            }));
+        }
+        if let (Some(ball), None) = (&self.worn, place.seen) {
+            let half = rolling / ball.radius();
+            ends.extend([-half, half].map(|turn| SurfacePlace {
+                rolled: place.rolled + turn,
+                ..place
+            }));
+        }
+        ends
     }
 
     /// The same with this share of what is missing.

@@ -145,6 +145,55 @@ fn the_force_falls_at_the_leading_edge_and_the_ball_meets_the_other_half_way() {
     );
 }
 
+/// Wrong: contacts would run over the inner raceway at another speed than (Omega - omega_c) d_i/2, or the length of a
+/// spall would not be that of Sawalhi and Randall (MSSP 25 (2011) 846), L = pi f (D_m^2 - D^2)/D_m times the time from
+/// entry to impact: with balls at the contact angle a of cos(a)^2 D^2 in the place of D^2, 0.14 % more, and at another
+/// angle than that of the cage's speed, 0.5 %.
+#[test]
+fn both_raceways_pass_under_the_ball_with_the_speed_of_the_formula() {
+    let model = heavy();
+    let (geometry, angle) = (&model.geometry, angle(&model));
+    let turns = SPEED / (2.0 * PI);
+    let pitch = 0.5 * (geometry.inner_raceway_diameter + geometry.outer_raceway_diameter);
+    let formula = PI * turns * (pitch * pitch - geometry.ball_diameter.powi(2)) / pitch;
+    let cage = SPEED * cage(&model);
+    let on =
+        |side: Side| geometry.centre_radius(side) + side.sign() * geometry.groove_radius(side) * angle.cos();
+    let speeds = [(SPEED - cage) * on(Side::Inner), cage * on(Side::Outer)];
+    for speed in speeds {
+        assert!(relative(2.0 * speed, formula) < 7e-3, "{speed} {formula}");
+    }
+    // A spall on the inner ring that ball 0 enters after 50 us.
+    let (length, dt) = (1e-3, 2e-6);
+    let middle = (0.5 * length + 50e-6 * speeds[0]) / on(Side::Inner);
+    let spall = Spall {
+        azimuth: geometry.azimuth(0) - middle,
+        groove_angle: equilibrium(&model).balls[0].inner.contact_angle_rad,
+        length,
+        width: 6e-3,
+        depth: 200e-6,
+        edge: 0.05e-3,
+    };
+    let profiles = Profiles {
+        spalls: vec![spall],
+        ..Profiles::default()
+    };
+    let states = run(&with_strips(heavy(), Side::Inner, None, &profiles), dt, 0.6e-3);
+    let force = |s: &MotionState| s.forces[0][0].hypot(s.forces[0][1]);
+    let before = force(&states[0]);
+    let fell = states
+        .iter()
+        .skip(1)
+        .position(|s| force(s) < 0.98 * before)
+        .unwrap();
+    assert!((dt * (fell as f64 + 0.5) - 50e-6).abs() < 12e-6, "{fell}");
+    let empty = |s: &MotionState| force(s) < 0.05 * before;
+    let first = states.iter().skip(1).position(empty).unwrap();
+    let impact = first + states[first + 1..].iter().position(|s| !empty(s)).unwrap();
+    let half = dt * impact as f64 - 50e-6;
+    assert!(relative(formula * half, length) < 0.2, "{half}");
+}
+
 /// Wrong: the ledger would not close on elastic rings, or patches and surfaces do each other's work. Waves on both
 /// raceways, a shoulder in the ellipses and a spall, with patches that move.
 #[test]
@@ -162,11 +211,11 @@ fn the_ledger_closes_on_flexible_rings() {
         amplitude: 0.2e-6,
         phase: 0.3,
     });
-    model = with_strips(model, Side::Outer, Some(-0.5..=0.5), &profiles);
+    model = with_strips(model, Side::Outer, Some(-0.62..=0.62), &profiles);
     model = with_strips(
         model,
         Side::Inner,
-        Some(-0.45..=0.45),
+        Some(-0.62..=0.62),
         &Profiles {
             spalls: Vec::new(),
             ..profiles

@@ -157,29 +157,33 @@ fn waves_of_the_number_of_balls_move_a_rigid_bearing_along_its_axis() {
 }
 
 /// Wrong: waves would move a rigid bearing under thrust that must not, or not those that must (Wardle 1988): orders kZ
-/// along the axis, kZ +- 1 across it, all others not at all, to the round-off of the equilibrium and the second order
-/// of the amplitude.
+/// along the axis, kZ +- 1 across it, all others not at all. Largest deviation from its mean over a ball pass, over the
+/// amplitude A: what is left is of the second order, some A/d = 1e-4 of 1e-2, and what the grid adds, below 1e-6.
 #[test]
 fn orders_of_waves_move_a_rigid_bearing_as_they_must() {
     let case = Case::axial(2000.0);
-    let smooth = equilibrium(&case.rigid()).displacements.shaft;
     let n = case.rigid().geometry.n_balls;
     let amplitude = 1e-9;
     for side in Side::BOTH {
         for order in [2, 5, n - 2, n - 1, n, n + 1, n + 2, 2 * n, 2 * n + 1] {
             let model = with_strips(case.rigid(), side, None, &waves(order, amplitude));
             let mut solver = StaticSolver::new(&model).unwrap();
-            let (mut axial, mut radial) = (0.0f64, 0.0f64);
-            for k in 0..5 {
-                let turn = 0.09 * k as f64;
-                let q = turned(&model, &mut solver, turn, 2.3 * turn);
-                axial = axial.max((q[2] - smooth[2]).abs() / amplitude);
-                radial = radial.max(q[0].hypot(q[1]) / amplitude);
-            }
+            let places: Vec<[f64; 5]> = (0..8)
+                .map(|k| {
+                    let turn = std::f64::consts::TAU / n as f64 * k as f64 / 8.0;
+                    turned(&model, &mut solver, turn, 1.0 / 0.43313 * turn)
+                })
+                .collect();
+            let deviation = |i: usize| {
+                let mean = places.iter().map(|q| q[i]).sum::<f64>() / places.len() as f64;
+                let off = places.iter().map(|q| (q[i] - mean).abs());
+                off.fold(0.0, f64::max) / amplitude
+            };
+            let (axial, radial) = (deviation(2), deviation(0).hypot(deviation(1)));
             let (is_axial, is_radial) = (order % n == 0, (order + 1) % n == 0 || (order - 1) % n == 0);
             assert_eq!(axial > 0.5, is_axial, "{side:?} {order}: axial {axial}");
             assert_eq!(radial > 0.2, is_radial, "{side:?} {order}: radial {radial}");
-            let quiet = 2e-3;
+            let quiet = 3e-6;
             assert!(is_axial || axial < quiet, "{side:?} {order}: axial {axial}");
             assert!(is_radial || radial < quiet, "{side:?} {order}: radial {radial}");
         }
@@ -259,8 +263,59 @@ fn a_larger_ball_carries_more() {
         let grown = b.inner.approach_m + b.outer.approach_m - a.inner.approach_m - a.outer.approach_m;
         let expected = if ball == 3 { oversize } else { 0.0 };
         assert!((grown - expected).abs() < 1e-3 * oversize, "{ball}: {grown}");
-        assert_eq!(b.outer.force_n > a.outer.force_n + 0.1, ball == 3);
+        // d(K d^1.5) of both contacts in a row; the second order of 10 nm over 5 um leaves 1e-3.
+        let k = [0, 1].map(|i| {
+            let contact = [&a.inner, &a.outer][i];
+            1.5 * model.hertz[i].stiffness * contact.approach_m.sqrt()
+        });
+        let more = expected / (1.0 / k[0] + 1.0 / k[1]);
+        for (before, after) in [(&a.inner, &b.inner), (&a.outer, &b.outer)] {
+            let found = after.force_n - before.force_n;
+            assert!(
+                (found - more).abs() < 2e-3 * (more + 0.01),
+                "{ball}: {found} {more}"
+            );
+        }
     }
+}
+
+/// Places on the track from the middle of a spall of a length, m, on the outer ring, of a ball that rolls slowly over
+/// it under a thrust, N: where its force falls first, is least, and is whole again; and the least share of its force.
+fn slow_passage(length: f64, load: f64) -> ([f64; 3], f64) {
+    let case = Case::axial(load);
+    let smooth = equilibrium(&case.rigid()).balls[0].outer;
+    let spall = Spall {
+        azimuth: 0.0,
+        groove_angle: smooth.contact_angle_rad,
+        length,
+        width: 6e-3,
+        depth: 1e-3,
+        edge: 0.0,
+    };
+    let profiles = Profiles {
+        spalls: vec![spall],
+        ..Profiles::default()
+    };
+    let model = with_strips(case.rigid(), Side::Outer, None, &profiles);
+    let geometry = &model.geometry;
+    let radius = geometry.centre_radius(Side::Outer)
+        + geometry.groove_radius(Side::Outer) * smooth.contact_angle_rad.cos();
+    let mut solver = StaticSolver::new(&model).unwrap();
+    let places: Vec<f64> = (-100..=100).map(|i| 0.0075 * length * f64::from(i)).collect();
+    let forces = places.iter().map(|place| {
+        let mut pose = Pose::default();
+        pose.now.cage_angle = place / radius - geometry.azimuth(0);
+        let solution = solver.solve_at(&model, &pose, None).unwrap();
+        solution.balls[0].outer.force_n
+    });
+    let forces: Vec<f64> = forces.collect();
+    let is_less = |f: &f64| *f < (1.0 - 1e-4) * smooth.force_n;
+    let entry = places[forces.iter().position(is_less).unwrap()];
+    let exit = places[forces.iter().rposition(is_less).unwrap()];
+    let least = (0..forces.len())
+        .min_by(|a, b| forces[*a].total_cmp(&forces[*b]))
+        .unwrap();
+    ([entry, places[least], exit], forces[least] / smooth.force_n)
 }
 
 /// Wrong: the passage of a ball would not show the length of a spall, as condition monitoring takes it: force is lost
@@ -269,43 +324,28 @@ fn a_larger_ball_carries_more() {
 #[test]
 fn a_slow_passage_shows_the_length_of_a_spall() {
     for (length, load) in [(0.4e-3, 2000.0), (0.6e-3, 4000.0)] {
-        let case = Case::axial(load);
-        let smooth = equilibrium(&case.rigid()).balls[0].outer;
-        let spall = Spall {
-            azimuth: 0.0,
-            groove_angle: smooth.contact_angle_rad,
-            length,
-            width: 6e-3,
-            depth: 1e-3,
-            edge: 0.0,
-        };
-        let profiles = Profiles {
-            spalls: vec![spall],
-            ..Profiles::default()
-        };
-        let model = with_strips(case.rigid(), Side::Outer, None, &profiles);
-        let geometry = &model.geometry;
-        let radius = geometry.centre_radius(Side::Outer)
-            + geometry.groove_radius(Side::Outer) * smooth.contact_angle_rad.cos();
-        let mut solver = StaticSolver::new(&model).unwrap();
-        let places: Vec<f64> = (-100..=100).map(|i| 0.0075 * length * f64::from(i)).collect();
-        let forces = places.iter().map(|place| {
-            let mut pose = Pose::default();
-            pose.now.cage_angle = place / radius - geometry.azimuth(0);
-            solver.solve_at(&model, &pose, None).unwrap().balls[0]
-                .outer
-                .force_n
-        });
-        let forces: Vec<f64> = forces.collect();
-        let is_less = |f: &f64| *f < (1.0 - 1e-4) * smooth.force_n;
-        let entry = places[forces.iter().position(is_less).unwrap()];
-        let exit = places[forces.iter().rposition(is_less).unwrap()];
-        let least = (0..forces.len())
-            .min_by(|a, b| forces[*a].total_cmp(&forces[*b]))
-            .unwrap();
-        assert!(forces[least] > 0.0 && forces[least] < 0.7 * smooth.force_n);
-        for found in [exit - entry, 2.0 * (places[least] - entry)] {
+        let ([entry, least, exit], share) = slow_passage(length, load);
+        assert!(share > 0.0 && share < 0.7, "{share}");
+        for found in [exit - entry, 2.0 * (least - entry)] {
             assert!(relative(found, length) < 0.05, "{length} {load}: {found}");
+        }
+    }
+}
+
+/// Wrong: the times of a passage would depend on the load. Under 1 to 4 kN half-widths along the track grow by 1.6,
+/// from 0.10 to 0.16 mm; places move by far less than b, a tenth of it: by the threshold at which the force has fallen.
+#[test]
+fn the_places_of_a_passage_do_not_depend_on_the_load() {
+    let length = 0.3e-3;
+    let all = [1000.0, 2000.0, 4000.0].map(|load| slow_passage(length, load));
+    let half_width = equilibrium(&Case::axial(1000.0).rigid()).balls[0]
+        .outer
+        .semi_axes_m[1];
+    for (places, share) in all {
+        assert!(share > 0.05, "the ball stays loaded: {share}");
+        for i in 0..3 {
+            let moved = (places[i] - all[0].0[i]).abs();
+            assert!(moved < 0.1 * half_width, "{i}: {moved} {half_width}");
         }
     }
 }

@@ -116,8 +116,12 @@ pub fn style_index(series: &[Series], index: usize) -> usize {
         .iter()
         .position(|s| !own.name.is_empty() && s.name == own.name)
         .unwrap_or(index);
-    let counts =
-        |s: &&Series| !matches!(s.look, Look::Reference | Look::Outline | Look::Rings) && s.shade.is_none();
+    let counts = |s: &&Series| {
+        !matches!(
+            s.look,
+            Look::Reference | Look::Outline | Look::BrokenOutline | Look::Rings
+        ) && s.shade.is_none()
+    };
     let mut seen: Vec<&str> = Vec::new();
     for s in series[..first].iter().filter(counts) {
         if s.name.is_empty() || !seen.contains(&s.name.as_str()) {

@@ -191,6 +191,14 @@ fn draw_line(line: &[[i32; 2]], look: Look, colour: RGBColor, width: u32, canvas
             }
             Ok(())
         }
+        Look::BrokenOutline => {
+            for dash in dashes(&points) {
+                let dash = dash.to_vec();
+                canvas.draw(&PathElement::new(dash.clone(), BLACK.stroke_width(width)))?;
+                canvas.draw(&PathElement::new(dash, WHITE.stroke_width(LINE_WIDTH)))?;
+            }
+            Ok(())
+        }
         Look::Outline => {
             canvas.draw(&PathElement::new(points.clone(), BLACK.stroke_width(width)))?;
             canvas.draw(&PathElement::new(points, WHITE.stroke_width(LINE_WIDTH)))
@@ -267,7 +275,7 @@ fn draw_mark(figure: &Figure, index: usize, place: [f64; 2], canvas: &Canvas) ->
                 colour.filled(),
             ))
         }
-        Look::Line | Look::Area | Look::Reference | Look::Outline => Ok(()),
+        Look::Line | Look::Area | Look::Reference | Look::Outline | Look::BrokenOutline => Ok(()),
     }
 }
 

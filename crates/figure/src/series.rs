@@ -17,6 +17,8 @@ pub enum Look {
     Reference,
     /// A thin white line with a dark edge, for outlines on a surface.
     Outline,
+    /// The same in dashes: of what is not as the others.
+    BrokenOutline,
 }
 
 /// Points with a name. A point that is not finite, or not positive on a logarithmic axis, interrupts the line.

@@ -9,13 +9,14 @@ use super::run::Steps;
 use super::{Named, Results};
 
 /// What a column of a probe shows, by the words in its name: the words that end the name of the probe, and the figure.
-const KINDS: [(&str, &str); 11] = [
+const KINDS: [(&str, &str); 12] = [
     ("_principal_", "principal_stress"),
     ("_maximum_shear", "principal_stress"),
     ("_hydrostatic", "principal_stress"),
     ("_stress_", "stress"),
     ("_von_mises", "stress"),
     ("_displacement_", "displacement"),
+    ("_acceleration_", "acceleration"),
     ("_force", "force"),
     ("_moment", "moment"),
     ("_pressure", "stress"),

@@ -1,7 +1,8 @@
 //! The raceways unrolled: von Mises stress over azimuth and arc of the groove, with the contact ellipses.
 //!
 //! An ellipse is Hertz's, around the contact of its ball: its semi-axis across is an arc of the groove, that along the
-//! raceway an angle about the axis, so it is not distorted.
+//! raceway an angle about the axis, so it is not distorted. Of contacts at an edge or over a profile, which have
+//! another one, it is drawn in dashes.
 
 use std::f64::consts::TAU;
 
@@ -84,8 +85,12 @@ fn unrolled(
     let mut figure = Figure::new(title, azimuth_axis(), y_axis)
         .surface(Surface::new(value_axis, x_edges, y_edges, values)?)
         .size(900, 400);
-    for ellipse in ellipses(groove, balls, step)? {
-        figure = figure.series(Series::new("contact ellipse", Look::Outline, ellipse));
+    for (look, ellipse) in ellipses(groove, balls, step)? {
+        let name = match look {
+            Look::BrokenOutline => "ellipse at an edge or over a profile: not Hertz's",
+            _ => "contact ellipse",
+        };
+        figure = figure.series(Series::new(name, look, ellipse));
     }
     Ok(Named::new(format!("raceway_{side}"), figure))
 }
@@ -104,14 +109,20 @@ fn interpolate(rows: &[(f64, Vec<Node>)], azimuth: f64, angle: f64) -> f64 {
     a + part * (b - a)
 }
 
-/// Outlines of the loaded contacts of a step, `[azimuth in deg, arc in mm]`, cut where the picture ends.
-fn ellipses(groove: &Groove, balls: &Table, step: u64) -> anyhow::Result<Vec<Vec<[f64; 2]>>> {
+/// Outlines of the loaded contacts of a step, `[azimuth in deg, arc in mm]`, cut where the picture ends, and how they
+/// are drawn.
+fn ellipses(groove: &Groove, balls: &Table, step: u64) -> anyhow::Result<Vec<(Look, Vec<[f64; 2]>)>> {
     let side = groove.side.name();
     let column = |name: &str| balls.column(&format!("{side}_{name}"));
     let (force, angle) = (column("force_n")?, column("contact_angle_rad")?);
     let (along, across) = (column("semi_axis_rolling_m")?, column("semi_axis_groove_m")?);
     let (steps, azimuth) = (balls.column("step")?, balls.column("azimuth_rad")?);
     let loaded = (0..balls.n_rows()).filter(|&row| steps[row] == step as f64 && force[row] > 0.0);
+    let ellipse = balls.texts(&format!("{side}_ellipse"));
+    let look = |row: usize| match ellipse.map(|texts| texts[row].as_str()) {
+        None | Some("hertz") => Look::Outline,
+        Some(_) => Look::BrokenOutline,
+    };
     let outline = |row: usize| {
         let half_width = along[row] / groove.radius(angle[row]) * DEGREE.factor;
         let middle = (azimuth[row] * DEGREE.factor).rem_euclid(360.0);
@@ -128,15 +139,17 @@ fn ellipses(groove: &Groove, balls: &Table, step: u64) -> anyhow::Result<Vec<Vec
             }
         };
         // At the ends of the picture both halves are drawn.
-        [-360.0, 0.0, 360.0].map(|turn| {
-            (0..=CORNERS)
-                .map(corner)
-                .map(|[x, y]| inside([x + turn, y]))
-                .collect::<Vec<_>>()
-        })
+        [-360.0, 0.0, 360.0]
+            .map(|turn| {
+                (0..=CORNERS)
+                    .map(corner)
+                    .map(|[x, y]| inside([x + turn, y]))
+                    .collect::<Vec<_>>()
+            })
+            .map(|line| (look(row), line))
     };
     let drawn = loaded
         .flat_map(outline)
-        .filter(|line| line.iter().any(|p| p[0].is_finite()));
+        .filter(|(_, line)| line.iter().any(|p| p[0].is_finite()));
     Ok(drawn.collect())
 }

@@ -76,14 +76,25 @@ pub fn about(scene: &Scene, dir: &Path, warnings: &[String]) -> anyhow::Result<B
     Ok(texts)
 }
 
-/// Where stress lives and whether it contains the near field.
+/// Where stress lives and whether it contains the near field; which contacts are not Hertz's.
 fn stress_text(scene: &Scene) -> String {
+    if scene.output.stress == StressOutput::None {
+        return "none".to_string();
+    }
+    let marked = match scene.contact.edges || scene.profiles.has_profiles() {
+        true => "; not Hertz's at contacts that balls.csv marks as edge or profile",
+        false => "",
+    };
+    stress_place(scene) + marked
+}
+
+fn stress_place(scene: &Scene) -> String {
     let rounded = scene
         .output
         .stress_error
         .map_or(String::new(), |error| format!("; rounded, by at most {error} Pa"));
     let place = match scene.output.stress {
-        StressOutput::None => return "none".to_string(),
+        StressOutput::None => "none",
         StressOutput::Nodal => {
             "at nodes: extrapolated from the integration points of every element, averaged by volume"
         }

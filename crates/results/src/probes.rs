@@ -1,11 +1,12 @@
 //! Probes: single numbers of a run, a line per step in `probes.csv`. The scene's own documentation says what they are.
 
+use anyhow::anyhow;
 use contact::Side;
 use dynamics::Model;
 use dynamics::balls::BallResult;
 use dynamics::kinematics::Speed;
 use fem::stress::{NodeRecovery, von_mises};
-use scene::{Axes, ContactProbe, NodeTags, Scene};
+use scene::{Analysis, Axes, ContactProbe, NodeTags, Scene};
 
 use super::gauges::Gauges;
 use super::on_ball::{force_on_ball, moment_on_ball};
@@ -37,6 +38,7 @@ struct NodeProbe {
     place: NodePlace,
     side: Side,
     axes: Axes,
+    has_acceleration: bool,
 }
 
 const CYLINDRICAL: [&str; 6] = ["rr", "tt", "zz", "rt", "tz", "rz"];
@@ -48,6 +50,7 @@ impl Probes {
         if scene.probes.is_empty() {
             return Ok(None);
         }
+        require_motion(scene)?;
         let find = |probe: &scene::NodeProbe| {
             let side = side_of(probe.ring);
             let (ring, tags) = match (model.ring(side), &tags[side.index()]) {
@@ -58,6 +61,7 @@ impl Probes {
                 place: place(probe, ring, tags)?,
                 side,
                 axes: probe.axes,
+                has_acceleration: probe.has_acceleration,
             })
         };
         let nodes: Vec<NodeProbe> = scene.probes.nodes.iter().map(find).collect::<Result<_, _>>()?;
@@ -132,6 +136,9 @@ impl Probes {
             columns.extend(pairs.map(|ij| format!("{name}_stress_{ij}_pa")));
             columns.push(format!("{name}_von_mises_pa"));
             columns.extend(axes.map(|i| format!("{name}_displacement_{i}_m")));
+            if probe.has_acceleration {
+                columns.extend(axes.map(|i| format!("{name}_acceleration_{i}_m_per_s2")));
+            }
         }
         for ContactProbe { name, .. } in &self.contacts {
             columns.extend(["x", "y", "z"].map(|i| format!("{name}_force_{i}_n")));
@@ -193,6 +200,7 @@ impl Probes {
                 rings[side.index()] = Some((ring, stress.into_iter()));
             }
         }
+        let accelerations = Side::BOTH.map(|side| self.accelerations(shown, side));
         let mut values = Vec::new();
         for probe in &self.nodes {
             let Some((ring, stress)) = &mut rings[probe.side.index()] else {
@@ -200,6 +208,12 @@ impl Probes {
             };
             let stress = stress.next().expect("one stress per probed node of the ring");
             values.extend(node_values(probe, ring, stress));
+            if let Some(field) = accelerations[probe.side.index()]
+                .as_ref()
+                .filter(|_| probe.has_acceleration)
+            {
+                values.extend(node_acceleration(probe, ring, field));
+            }
         }
         let balls = shown.balls();
         for probe in &self.contacts {
@@ -215,6 +229,42 @@ impl Probes {
                 .map(|(_, speed)| speed.angle(shown.time())),
         );
         Ok(values)
+    }
+}
+
+impl Probes {
+    /// Accelerations of a ring where a probe asks for them, m/s^2, `[n_nodes][3]` flat.
+    fn accelerations(&self, shown: &Shown<'_>, side: Side) -> Option<Vec<f64>> {
+        let own = self.nodes.iter();
+        let own = own.filter(|probe| probe.side == side && probe.has_acceleration);
+        let nodes: Vec<usize> = own.map(|probe| probe.place.node).collect();
+        match nodes.is_empty() {
+            true => None,
+            false => shown.accelerations_at(side, &nodes),
+        }
+    }
+}
+
+/// Fails where nothing has an acceleration.
+fn require_motion(scene: &Scene) -> Result<(), Failure> {
+    let probes = &mut scene.probes.nodes.iter();
+    match (probes.find(|probe| probe.has_acceleration), &scene.analysis) {
+        (None, _) | (_, Analysis::Dynamic(_)) => Ok(()),
+        (Some(probe), _) => Err(Failure::User(anyhow!(
+            "probes.node.{}.acceleration is true, but only a motion has accelerations; expected [dynamic], or leave it \
+             out",
+            probe.name
+        ))),
+    }
+}
+
+/// Acceleration of a node along the axes of its probe.
+fn node_acceleration(probe: &NodeProbe, ring: &RingField<'_>, field: &[f64]) -> [f64; 3] {
+    let node = probe.place.node;
+    let own = [0, 1, 2].map(|i| field[3 * node + i]);
+    match probe.axes {
+        Axes::Cylindrical => Turn::new(-probe.place.azimuth_rad).vector(own),
+        Axes::Cartesian => ring.turn.vector(own),
     }
 }
 

@@ -108,6 +108,15 @@ impl<'a> Shown<'a> {
         })
     }
 
+    /// Accelerations of the chosen nodes of a ring in its frame, m/s^2, `[n_nodes][3]` flat; None at rest and of a
+    /// rigid ring.
+    pub fn accelerations_at(&self, side: Side, nodes: &[usize]) -> Option<Vec<f64>> {
+        match self {
+            Shown::Equilibrium { .. } => None,
+            Shown::Motion { motion, state, .. } => motion.ring_acceleration_at(state, side, nodes),
+        }
+    }
+
     /// A ring; in motion with the displacements (m, `[n_nodes][3]` flat) and the angle that `moved` finds.
     fn ring_moved(
         &self,

@@ -1,12 +1,13 @@
 //! A table of a run as others read it: every cell is looked at, so that damage is an error and no number.
 
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, anyhow, ensure};
 use checkpoint::open_regular;
 
 /// Columns of texts. All others hold numbers.
-const TEXTS: [&str; 3] = ["profile", "body", "whirl"];
+const TEXTS: [&str; 5] = ["profile", "body", "whirl", "inner_ellipse", "outer_ellipse"];
 /// Columns that must not fall from row to row.
 const STEP: &str = "step";
 const TIME: &str = "time_s";
@@ -27,6 +28,8 @@ pub struct Table {
     path: PathBuf,
     names: Vec<String>,
     columns: Vec<Vec<f64>>,
+    /// Columns of texts by their names.
+    texts: BTreeMap<String, Vec<String>>,
 }
 
 /// Reads a table of a run; none if there is no such file. Fails, with the line, at a cell that is no finite
@@ -166,7 +169,19 @@ impl Table {
                 .collect()
         };
         let columns: Vec<Vec<f64>> = (0..names.len()).map(column).collect();
-        Ok(Some(Table { path, names, columns }).filter(|table| table.n_rows() > 0))
+        let text = |(i, name): (usize, &String)| {
+            let cells = rows.iter().map(|row| row[i].to_string());
+            (name.clone(), cells.collect())
+        };
+        let is_text = |(_, name): &(usize, &String)| TEXTS.contains(&name.as_str());
+        let texts = names.iter().enumerate().filter(is_text).map(text).collect();
+        let table = Table {
+            path,
+            names,
+            columns,
+            texts,
+        };
+        Ok(Some(table).filter(|table| table.n_rows() > 0))
     }
 
     /// Number of rows.
@@ -188,6 +203,11 @@ impl Table {
                 self.names.join(", ")
             )
         })
+    }
+
+    /// The column of texts with this name, if there is one.
+    pub fn texts(&self, name: &str) -> Option<&[String]> {
+        self.texts.get(name).map(Vec::as_slice)
     }
 
     /// The column with this name, if there is one.

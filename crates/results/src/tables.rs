@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, anyhow};
 use checkpoint::{Companion, GrowingFile, Stamps};
+use contact::Side;
 use dynamics::balls::{BallResult, CageResult, ContactResult, FreeBallResult, Friction};
 
 use super::cut::Cut;
@@ -187,7 +188,8 @@ impl Tables {
             &mut self.balls,
             BALLS,
             balls.map(|(i, ball)| {
-                row([ball_cells(i, ball), rolling(ball), pocket_cells(i, snapshot)].concat())
+                let own = [ball_cells(i, ball), rolling(ball), pocket_cells(i, snapshot)];
+                row([own.concat(), ellipse_cells(ball)].concat())
             }),
         )?;
         if let (Some(table), Some(cage)) = (&mut self.cage, &snapshot.cage) {
@@ -290,6 +292,26 @@ fn ball_cells(index: usize, ball: &BallResult) -> Vec<String> {
         cells.extend(free_cells(free).map(number));
     }
     cells
+}
+
+/// Cells of contacts whose raceways have strips: whether their ellipse is Hertz's.
+fn ellipse_cells(ball: &BallResult) -> Vec<String> {
+    let ellipses = Side::BOTH
+        .into_iter()
+        .filter_map(|side| ball.contact(side).ellipse);
+    ellipses.map(|ellipse| ellipse.name().to_string()).collect()
+}
+
+/// Columns of [`ellipse_cells`].
+fn ellipse_columns(first: &Snapshot) -> Vec<String> {
+    let has_strips = |side: &Side| {
+        first
+            .balls
+            .iter()
+            .any(|ball| ball.contact(*side).ellipse.is_some())
+    };
+    let sides = Side::BOTH.into_iter().filter(has_strips);
+    sides.map(|side| format!("{}_ellipse", side.name())).collect()
 }
 
 const TRACTION_COLUMNS: [&str; 7] = [
@@ -442,6 +464,7 @@ fn columns(swept: Option<&str>, first: &Snapshot, own: &OwnColumns) -> [Vec<Stri
     if first.cage.is_some() {
         balls.extend(names(&POCKET_COLUMNS));
     }
+    balls.extend(ellipse_columns(first));
     let mut shaft = names(&["x_m", "y_m", "z_m", "tilt_x_rad", "tilt_y_rad"]);
     if first.reaction.is_some() {
         shaft.extend(names(&REACTION_COLUMNS));

@@ -2,6 +2,7 @@
 //! the summary.
 
 use contact::Side;
+use dynamics::Surfaces;
 use dynamics::motion::{ContactLimit, Exceeded};
 
 /// What was seen since the start of a run.
@@ -47,7 +48,7 @@ impl Watch {
     }
 
     /// A line for the summary per limit that was exceeded; `time` of a step, s.
-    pub fn warnings(&self, time: impl Fn(u64) -> f64) -> Vec<String> {
+    pub fn warnings(&self, surfaces: &Surfaces, time: impl Fn(u64) -> f64) -> Vec<String> {
         let mut texts = Vec::new();
         for (k, limit) in ContactLimit::ALL.into_iter().enumerate() {
             let seen = self.first[k].iter().enumerate().filter(|(_, step)| **step > 0);
@@ -65,7 +66,7 @@ impl Watch {
                 self.steps[k],
                 time(step),
                 event(limit, site / 2, Side::BOTH[site % 2], None),
-                meaning(limit)
+                meaning(limit, surfaces, Side::BOTH[site % 2])
             ));
         }
         texts
@@ -106,12 +107,9 @@ fn event(limit: ContactLimit, ball: usize, side: Side, pressure: Option<f64>) ->
     }
 }
 
-fn meaning(limit: ContactLimit) -> &'static str {
+fn meaning(limit: ContactLimit, surfaces: &Surfaces, side: Side) -> &'static str {
     match limit {
-        ContactLimit::Edge => {
-            "the Hertz ellipse reaches beyond the groove: pressures there are not valid, and forces only with \
-             contact.edges = true"
-        }
+        ContactLimit::Edge => surfaces.edge_meaning(side),
         ContactLimit::StaticPressure => "there it yields (ISO 76), which this model does not know",
     }
 }

@@ -10,13 +10,15 @@ use dynamics::kinematics::Rolling;
 use dynamics::model::{ShaftInertia, elastic};
 use dynamics::mounting::{Mounting, Unmounted};
 use dynamics::{
-    Backend, ContactMode, ContactSettings, Hold, Model, RingModel, Sectors, ShaftDof, Tolerances,
+    Backend, ContactMode, ContactSettings, Hold, Model, RingModel, Sectors, ShaftDof, Surfaces, Tolerances,
 };
 use fem::Material;
 use mesh::{Coverage, Cylinder, Mesh, Torus};
 
 use crate::error::BuildError;
+use crate::half_widths::half_widths;
 use crate::housing::seat_tie;
+use crate::marks::require_raceway_under_marks;
 use crate::resolution::require_resolvable;
 use crate::section_record::{require_fresh, with_command};
 use crate::settings::speeds;
@@ -48,6 +50,11 @@ pub fn build_model(scene: &Scene) -> Result<(Model, NodeTags), BuildError> {
     );
     let (inner, inner_tags) = rings.0?.unzip();
     let (outer, outer_tags) = rings.1?.unzip();
+    for (side, ring) in Side::BOTH.into_iter().zip([&inner, &outer]) {
+        if let Some(ring) = ring {
+            require_raceway_under_marks(scene, &geometry, side, ring)?;
+        }
+    }
     let model = model_with_rings(scene, [inner.map(Arc::new), outer.map(Arc::new)])?;
     Ok((model, [inner_tags, outer_tags]))
 }
@@ -76,7 +83,6 @@ pub fn model_with_rings(scene: &Scene, rings: [Option<Arc<RingModel>>; 2]) -> Re
         }
         tables::BallElasticity::HalfSpace => SphereCompliance::default(),
     };
-    let surfaces = surfaces(scene, &geometry, &hertz, &rings)?;
     let effects = scene.effects.loads(Setting {
         speeds: &speeds(scene),
         slip: scene.effects.slip(),
@@ -97,11 +103,11 @@ pub fn model_with_rings(scene: &Scene, rings: [Option<Arc<RingModel>>; 2]) -> Re
         tables::Motion::Locked => ShaftDof::Prescribed(0.0),
         tables::Motion::Prescribed(value) => ShaftDof::Prescribed(value),
     });
-    Ok(Model {
+    let mut model = Model {
         geometry,
         hertz,
         sphere,
-        surfaces,
+        surfaces: Surfaces::default(),
         rings,
         mounting,
         ball_material: ball_steel,
@@ -132,7 +138,10 @@ pub fn model_with_rings(scene: &Scene, rings: [Option<Arc<RingModel>>; 2]) -> Re
             force: scene.solver.tolerance,
             max_rounds: scene.solver.max_iterations,
         },
-    })
+    };
+    let half_widths = half_widths(scene, &mut model);
+    model.surfaces = surfaces(scene, &model.geometry, &model.hertz, &model.rings, half_widths)?;
+    Ok(model)
 }
 
 /// What fits and temperatures do to the bearing.

@@ -8,12 +8,14 @@
 use std::ops::RangeInclusive;
 
 use contact::Side;
+use contact::surface::felt::felt;
 use dynamics::{Model, RingModel};
 use input::{DENSITY, LENGTH, Quantity, STRESS};
 
 use crate::build::{coverages, torus};
 use crate::resolution::unresolved;
 use crate::section_record::unrecorded;
+use crate::surfaces::track_radius;
 use crate::tables::{Material, Scene, unusual_stiffnesses};
 
 /// Young's modulus of what rings and balls are made of, Pa: from soft plastics to diamond.
@@ -23,6 +25,9 @@ const DENSITIES: RangeInclusive<f64> = 500.0..=25_000.0;
 /// Relative difference of a diameter, and of a width, from which a mesh is said to have another.
 const OTHER_DIAMETER: f64 = 2e-3;
 const OTHER_WIDTH: f64 = 2e-2;
+
+/// Share of a wave's amplitude below which it is said that an ellipse filters it.
+const LEAST_FELT: f64 = 0.95;
 
 /// What real surfaces do not change.
 const WHOLE_ELLIPSES: &str = "contacts on real surfaces have their forces by strips; ellipses, peak pressures and near \
@@ -46,11 +51,46 @@ pub fn doubts(scene: &Scene, model: &Model) -> Vec<String> {
         }
     }
     lines.extend(unusual_stiffnesses(&scene.contact, &scene.bearing, materials));
-    lines.extend(unresolved(scene, &model.geometry));
+    lines.extend(unresolved(scene, &model.geometry, model.surfaces.half_widths));
+    lines.extend(filtered(scene, model));
     let mounted = model.mounting.report.iter();
     lines.extend(mounted.flat_map(|report| report.warnings.clone()));
     if model.surfaces.has_strips() {
         lines.push(WHOLE_ELLIPSES.to_string());
+    }
+    lines
+}
+
+/// Says how weakly ellipses feel the shortest waves of a ring, or of a ball.
+fn filtered(scene: &Scene, model: &Model) -> Vec<String> {
+    let (geometry, widths) = (&model.geometry, model.surfaces.half_widths);
+    let ring = |side: Side| {
+        let profiles = &scene.profiles.raceways[side.index()];
+        let size = (widths[side.index()], track_radius(geometry, side));
+        (profiles, format!("the {} ring", side.name()), size)
+    };
+    let widest = widths[0].max(widths[1]);
+    let ball = |(ball, profiles)| {
+        (
+            profiles,
+            format!("ball {ball}"),
+            (widest, 0.5 * geometry.ball_diameter),
+        )
+    };
+    let bodies = Side::BOTH.into_iter().map(ring);
+    let mut lines = Vec::new();
+    for (profiles, body, (half_width, radius)) in bodies.chain(scene.profiles.balls.iter().map(ball)) {
+        let Some(order) = profiles.waves.iter().map(|wave| wave.order).max() else {
+            continue;
+        };
+        let share = felt(order as f64 * half_width / radius);
+        if share < LEAST_FELT {
+            lines.push(format!(
+                "waves of order {order} of {body} are felt with {share:.3} of their amplitude: ellipses under the \
+                 mean load at the start reach {:.3} mm to both sides along the track",
+                1e3 * half_width
+            ));
+        }
     }
     lines
 }

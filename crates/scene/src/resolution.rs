@@ -11,6 +11,7 @@
 
 use std::f64::consts::TAU;
 
+use contact::surface::Spall;
 use contact::{BearingGeometry, Profiles, Side};
 use dynamics::kinematics::{BothRings, Kinematics};
 use input::{Quantity, Schedule, TIME};
@@ -18,6 +19,8 @@ use input::{Quantity, Schedule, TIME};
 use crate::error::BuildError;
 use crate::tables::{Analysis, Scene};
 
+/// Steps in the time in which a contact passes its own half-width, at a sharp edge.
+const STEPS_PER_EDGE: f64 = 5.0;
 /// TimeSteps per period from which a result is one.
 const STEPS_PER_PERIOD: f64 = 20.0;
 /// TimeSteps per period below which a motion shows another frequency (Nyquist).
@@ -41,14 +44,15 @@ struct Said {
     warnings: Vec<String>,
 }
 
-/// What the steps of a scene show badly: a sentence each.
-pub fn unresolved(scene: &Scene, geometry: &BearingGeometry) -> Vec<String> {
-    judged(scene, geometry).warnings
+/// What the steps of a scene show badly: a sentence each. `half_widths` are those of the ellipses along the track, m,
+/// inner first; 0 is unknown.
+pub fn unresolved(scene: &Scene, geometry: &BearingGeometry, half_widths: BothRings) -> Vec<String> {
+    judged(scene, geometry, half_widths).warnings
 }
 
 /// Fails where the steps of a scene cannot show what happens.
 pub fn require_resolvable(scene: &Scene, geometry: &BearingGeometry) -> Result<(), BuildError> {
-    let problems = judged(scene, geometry).problems;
+    let problems = judged(scene, geometry, [0.0; 2]).problems;
     if problems.is_empty() {
         return Ok(());
     }
@@ -58,7 +62,7 @@ pub fn require_resolvable(scene: &Scene, geometry: &BearingGeometry) -> Result<(
     })
 }
 
-fn judged(scene: &Scene, geometry: &BearingGeometry) -> Said {
+fn judged(scene: &Scene, geometry: &BearingGeometry, half_widths: BothRings) -> Said {
     let mut said = Said::default();
     let Some(steps) = TimeSteps::of(scene) else {
         return said;
@@ -68,7 +72,10 @@ fn judged(scene: &Scene, geometry: &BearingGeometry) -> Said {
         judge_schedule(&key, &schedule, &steps, &mut said);
     }
     judge_speed(scene, &steps, &mut said);
-    judge_surfaces(scene, geometry, &steps, &mut said);
+    for track in worn_tracks(scene, geometry, half_widths) {
+        track.judge(&steps, &mut said);
+        track.judge_edges(&steps, &mut said);
+    }
     said
 }
 
@@ -254,33 +261,39 @@ struct WornTrack<'s> {
     radius: f64,
     /// Of the contact on the body at the largest speed, rad/s.
     rate: f64,
+    /// Half-width of the ellipses along the track, m; 0: unknown.
+    half_width: f64,
 }
 
-/// Profiles at the largest speed of contacts over them.
-fn judge_surfaces(scene: &Scene, geometry: &BearingGeometry, steps: &TimeSteps, said: &mut Said) {
-    let Some(speeds) = &scene.speed else { return };
+/// All bodies at the largest speed of contacts over them; none where nothing turns.
+fn worn_tracks<'s>(
+    scene: &'s Scene,
+    geometry: &BearingGeometry,
+    half_widths: BothRings,
+) -> Vec<WornTrack<'s>> {
+    let Some(speeds) = &scene.speed else {
+        return Vec::new();
+    };
     let turning = Kinematics::new(geometry, scene.effects.slip());
     let largest = |rate: &dyn Fn(BothRings) -> f64| rate(speeds.at_largest(rate));
-    for side in Side::BOTH {
-        let track = WornTrack {
-            passes: "a ball passes",
-            body: format!("the {} ring", side.name()),
-            profiles: &scene.profiles.raceways[side.index()],
-            radius: geometry.centre_radius(side) + side.sign() * geometry.groove_radius(side),
-            rate: largest(&|speeds| (turning.of_cage(speeds) - speeds[side.index()]).abs()),
-        };
-        track.judge(steps, said);
-    }
-    for (ball, profiles) in &scene.profiles.balls {
-        let track = WornTrack {
-            passes: "a raceway passes",
-            body: format!("ball {ball}"),
-            profiles,
-            radius: 0.5 * geometry.ball_diameter,
-            rate: largest(&|speeds| turning.rolled(speeds).abs()),
-        };
-        track.judge(steps, said);
-    }
+    let ring = |side: Side| WornTrack {
+        passes: "a ball passes",
+        body: format!("the {} ring", side.name()),
+        profiles: &scene.profiles.raceways[side.index()],
+        radius: geometry.centre_radius(side) + side.sign() * geometry.groove_radius(side),
+        rate: largest(&|speeds| (turning.of_cage(speeds) - speeds[side.index()]).abs()),
+        half_width: half_widths[side.index()],
+    };
+    let ball = |(ball, profiles)| WornTrack {
+        passes: "a raceway passes",
+        body: format!("ball {ball}"),
+        profiles,
+        radius: 0.5 * geometry.ball_diameter,
+        rate: largest(&|speeds| turning.rolled(speeds).abs()),
+        half_width: half_widths[0].min(half_widths[1]),
+    };
+    let rings = Side::BOTH.into_iter().map(ring);
+    rings.chain(scene.profiles.balls.iter().map(ball)).collect()
 }
 
 impl WornTrack<'_> {
@@ -312,6 +325,30 @@ impl WornTrack<'_> {
                     time(below(needed))
                 ));
             }
+        }
+    }
+}
+
+impl WornTrack<'_> {
+    /// Judges the edges of spalls that are sharp for the ellipses: a fifth of the time in which a contact passes its
+    /// own half-width shows them.
+    fn judge_edges(&self, steps: &TimeSteps, said: &mut Said) {
+        let is_sharp = |spall: &Spall| spall.edge < 2.0 * self.half_width;
+        let needed = self.half_width / (STEPS_PER_EDGE * self.radius * self.rate);
+        let sharp = self.profiles.spalls.iter().position(is_sharp);
+        if let Some(spall) = sharp.filter(|_| steps.step > needed) {
+            said.warnings.push(format!(
+                "{} the edge of spall {} of {} within {}, in which the ellipse moves by its half-width of {:.3} mm; a \
+                 step of {} smears it: {}.step of {} or less keeps it",
+                self.passes,
+                spall + 1,
+                self.body,
+                time(STEPS_PER_EDGE * needed),
+                1e3 * self.half_width,
+                time(steps.step),
+                steps.table,
+                time(below(needed))
+            ));
         }
     }
 }

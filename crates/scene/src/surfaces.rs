@@ -3,12 +3,13 @@
 use std::ops::RangeInclusive;
 use std::sync::Arc;
 
-use contact::surface::{Dent, Spall};
-use contact::{BearingGeometry, HertzContact, Profiles, Side, StripLaw, StripSurface};
+use contact::{BearingGeometry, HertzContact, Side, StripLaw, StripSurface};
+use dynamics::kinematics::BothRings;
 use dynamics::{RACEWAY_GROUP, RingModel, Surfaces};
 
 use crate::error::BuildError;
-use crate::tables::{FlexibleRing, Scene};
+use crate::marks::marks;
+use crate::tables::Scene;
 use crate::worn_balls::{too_fine, worn_balls};
 
 /// The surfaces that a scene asks for; nothing where it does not.
@@ -17,23 +18,26 @@ pub fn surfaces(
     geometry: &BearingGeometry,
     hertz: &[HertzContact; 2],
     rings: &[Option<Arc<RingModel>>; 2],
+    half_widths: BothRings,
 ) -> Result<Surfaces, BuildError> {
     let mut strips = [None, None];
     for side in Side::BOTH {
         let ring = rings[side.index()].as_deref();
-        strips[side.index()] = strips_of(scene, (geometry, side), &hertz[side.index()], ring)?;
+        let (hertz, half_width) = (&hertz[side.index()], half_widths[side.index()]);
+        strips[side.index()] = strips_of(scene, (geometry, side), (hertz, half_width), ring)?;
     }
     Ok(Surfaces {
         strips,
         oversizes: scene.profiles.oversizes.clone(),
-        balls: worn_balls(scene, geometry)?,
+        balls: worn_balls(scene, geometry, half_widths)?,
+        half_widths,
     })
 }
 
 fn strips_of(
     scene: &Scene,
     (geometry, side): (&BearingGeometry, Side),
-    hertz: &HertzContact,
+    (hertz, half_width): (&HertzContact, f64),
     ring: Option<&RingModel>,
 ) -> Result<Option<Arc<StripSurface>>, BuildError> {
     let profiles = &scene.profiles.raceways[side.index()];
@@ -82,22 +86,19 @@ fn strips_of(
             }
         }
     }
-    let in_gap = |ring: &RingModel| over_missing_facets(&marks, ring, (geometry, side), scene);
-    if let Some(mark) = ring.and_then(in_gap) {
-        return refuse(format!(
-            "{} of the {1} ring lies where its mesh has no raceway: it would count twice; leave out the \
-             [[{1}.cut]] or the [[profiles.{2}]]",
-            mark.name,
-            side.name(),
-            mark.table
-        ));
-    }
     let law = StripLaw::new(hertz, geometry.groove_radius(side));
     let edges = shoulders.filter(|_| scene.contact.edges);
-    match StripSurface::new(law, (geometry, side), edges, profiles) {
+    let felt = profiles.felt_by(half_width, track_radius(geometry, side));
+    match StripSurface::new(law, (geometry, side), edges, &felt) {
         Some(surface) => Ok(Some(Arc::new(surface))),
         None => refuse(too_fine(&format!("the {} ring", side.name()))),
     }
+}
+
+/// Radius of the track at the free contact angle, m.
+pub fn track_radius(geometry: &BearingGeometry, side: Side) -> f64 {
+    let out = geometry.groove_radius(side) * geometry.free_contact_angle().cos();
+    geometry.centre_radius(side) + side.sign() * out
 }
 
 /// Groove angles where a groove ends, rad: those of its mesh, else of its section; None where neither is there.
@@ -130,67 +131,5 @@ fn shoulders(
         -at_low_z..=at_high_z
     } else {
         -at_high_z..=at_low_z
-    })
-}
-
-/// A spall or a dent: where it lies on its groove.
-struct Mark {
-    /// Such as "spall 1".
-    name: String,
-    table: &'static str,
-    azimuth: f64,
-    groove_angle: f64,
-    /// Along the track, m.
-    length: f64,
-    /// Across it, m.
-    width: f64,
-}
-
-fn marks(profiles: &Profiles) -> Vec<Mark> {
-    let spall = |(spall, number): (&Spall, usize)| Mark {
-        name: format!("spall {number}"),
-        table: "spall",
-        azimuth: spall.azimuth,
-        groove_angle: spall.groove_angle,
-        length: spall.length,
-        width: spall.width,
-    };
-    let dent = |(dent, number): (&Dent, usize)| Mark {
-        name: format!("dent {number}"),
-        table: "dent",
-        azimuth: dent.azimuth,
-        groove_angle: dent.groove_angle,
-        length: 2.0 * dent.reach(),
-        width: 2.0 * dent.reach(),
-    };
-    let spalls = profiles.spalls.iter().zip(1..).map(spall);
-    spalls.chain(profiles.dents.iter().zip(1..).map(dent)).collect()
-}
-
-/// The first spall or dent in which the raceway of a mesh with cuts has a gap; None: there is none.
-fn over_missing_facets<'m>(
-    marks: &'m [Mark],
-    ring: &RingModel,
-    (geometry, side): (&BearingGeometry, Side),
-    scene: &Scene,
-) -> Option<&'m Mark> {
-    let table = [&scene.inner, &scene.outer][side.index()];
-    let is_whole = |body: &FlexibleRing| body.cuts.is_empty() && !body.is_partial;
-    if table.body.as_ref().is_none_or(is_whole) {
-        return None;
-    }
-    let surface = contact::RacewaySurface::new(&ring.mesh, ring.mesh.group(RACEWAY_GROUP), ring.groove);
-    let [low, high] = surface.angle_range;
-    let places = |half: f64| [-1.0, -0.5, 0.0, 0.5, 1.0].map(|share| share * half);
-    let radius = geometry.centre_radius(side) + side.sign() * geometry.groove_radius(side);
-    marks.iter().find(|mark| {
-        places(0.5 * mark.length / radius).iter().any(|azimuth| {
-            places(0.5 * mark.width / geometry.groove_radius(side))
-                .iter()
-                .any(|angle| {
-                    let angle = (mark.groove_angle + angle).clamp(low, high);
-                    surface.locate(mark.azimuth + azimuth, angle).is_err()
-                })
-        })
     })
 }

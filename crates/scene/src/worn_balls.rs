@@ -4,7 +4,8 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use contact::surface::MOST_NUMBERS;
-use contact::{BallSurface, BearingGeometry, Side};
+use contact::{BallSurface, BearingGeometry, Profiles, Side};
+use dynamics::kinematics::BothRings;
 
 use crate::error::BuildError;
 use crate::tables::Scene;
@@ -14,11 +15,13 @@ use crate::tables::Scene;
 pub fn worn_balls(
     scene: &Scene,
     geometry: &BearingGeometry,
+    half_widths: BothRings,
 ) -> Result<BTreeMap<usize, [Arc<BallSurface>; 2]>, BuildError> {
     let equator = geometry.free_contact_angle();
-    let worn = |(ball, profiles): (&usize, _)| {
+    let worn = |(ball, profiles): (&usize, &Profiles)| {
         let [inner, outer] = Side::BOTH.map(|side| {
-            let surface = BallSurface::new((geometry, side), equator, profiles);
+            let felt = profiles.felt_by(half_widths[side.index()], 0.5 * geometry.ball_diameter);
+            let surface = BallSurface::new((geometry, side), equator, &felt);
             surface.map(Arc::new).ok_or_else(|| BuildError::Surface {
                 path: scene.path.clone(),
                 problem: too_fine(&format!("ball {ball}")),

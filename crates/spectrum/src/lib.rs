@@ -380,10 +380,14 @@ fn say(dir: &Path, named: &Titled, marks: &[Line]) {
         named.column
     ));
     for line in marks {
-        let at = |name: &str, line: f64| {
-            let [frequency, value] = named.spectrum.peak_near(line);
+        let at = |name: &str, place: f64| {
+            let [frequency, value] = named.spectrum.peak_near(place);
+            let doubt = match line.is_resolved(place, marks, named.spectrum.resolution) {
+                true => "",
+                false => "; not resolved",
+            };
             print::line(format_args!(
-                "  {name:<6} {line:>10.3}{unit}: {value:.3e} at {frequency:.3}{unit}"
+                "  {name:<6} {place:>10.3}{unit}: {value:.3e} at {frequency:.3}{unit}{doubt}"
             ));
         };
         at(line.name, line.frequency);

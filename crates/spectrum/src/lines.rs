@@ -50,6 +50,19 @@ impl Line {
     }
 }
 
+impl Line {
+    /// Whether a record shows a place of this line, itself or a sideband, apart from frequency 0 and from the other
+    /// lines of `all`, and from the line itself, by two resolutions: so wide is a peak under the window of Hann.
+    pub fn is_resolved(&self, place: f64, all: &[Line], resolution: f64) -> bool {
+        let lines = all.iter().map(|line| line.frequency).chain([0.0]);
+        let others = lines.filter(|line| *line != place);
+        others
+            .map(|line| (line - place).abs())
+            .all(|off| off >= 2.0 * resolution)
+            && (self.sidebands == 0.0 || self.sidebands >= 2.0 * resolution)
+    }
+}
+
 /// The lines of a motion in `dir` over a span of time, s, with those that are 0 left out.
 pub fn lines(dir: &Path, scene: &Scene, (from, to): (f64, f64)) -> anyhow::Result<Vec<Line>> {
     let table = Table::read(dir, "balls.csv")?.with_context(|| {
@@ -176,5 +189,33 @@ mod tests {
             slow.family().iter().map(|(f, _)| *f).collect::<Vec<_>>(),
             [10.0, 40.0, 70.0, 100.0]
         );
+    }
+
+    /// Wrong: the neighbour of a line, or the mean of the signal, would be read as the line.
+    #[test]
+    fn a_line_is_resolved_two_resolutions_from_all_others_and_from_zero() {
+        let line = |name, frequency, sidebands| Line {
+            name,
+            frequency,
+            harmonics: 1,
+            sidebands,
+        };
+        let all = [
+            line("BPFO", 234.0, 0.0),
+            line("2 BSF", 213.0, 0.0),
+            line("cage", 13.0, 0.0),
+            line("BPFI", 306.0, 30.0),
+        ];
+        let resolved = |resolution: f64| {
+            let found = all
+                .iter()
+                .map(|line| line.is_resolved(line.frequency, &all, resolution));
+            found.collect::<Vec<_>>()
+        };
+        assert_eq!(resolved(5.0), [true; 4]);
+        assert_eq!(resolved(8.0), [true, true, false, true]);
+        assert_eq!(resolved(12.0), [false, false, false, true]);
+        assert_eq!(resolved(16.0), [false, false, false, false]);
+        assert!(all[3].is_resolved(276.0, &all, 8.0) && !all[3].is_resolved(276.0, &all, 16.0));
     }
 }

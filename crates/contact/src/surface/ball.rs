@@ -78,6 +78,11 @@ impl BallSurface {
         self.grid.missing_at(self.longitude - rolled)
     }
 
+    /// Radius of the ball, m.
+    pub fn radius(&self) -> f64 {
+        self.radius
+    }
+
     /// Contact angle that meets the equator at the start, rad.
     pub fn equator(&self) -> f64 {
         self.equator

@@ -15,12 +15,13 @@
 //! and made exact beside the point that it finds. Between azimuths, and across the track between corners, w is linear.
 //!
 //! Validity: envelopes of neighbouring lines know nothing of each other, so that a spall narrower than the ellipse is
-//! met by the strips beside it as if it were not there. The ellipse's own length along the track does not filter waves:
-//! waves shorter than some four half-widths of the ellipse are felt too much.
+//! met by the strips beside it as if it were not there. The ellipse's own length along the track filters waves alone,
+//! by a factor that a scene's waves have before ([`felt`]): marks and tables are felt as by a point.
 
 pub mod ball;
 mod ball_arc;
 mod dent;
+pub mod felt;
 mod grid;
 mod track;
 
@@ -95,6 +96,8 @@ pub struct StripSurface {
     /// Law of the strips.
     pub law: StripLaw,
     grid: SurfaceGrid,
+    track: Track,
+    edges: Option<RangeInclusive<f64>>,
     has_profile: bool,
 }
 
@@ -110,6 +113,10 @@ const SPACINGS_PER_SPALL: f64 = 400.0;
 const SPALL_SPACING: f64 = 5e-6;
 /// Grid spacings in a wave.
 const SPACINGS_PER_WAVE: f64 = 64.0;
+/// Least grid spacings round a ring with waves. Heights linear between M azimuths add to a wave of order n those of the
+/// orders k M +- n, of n^2/(k M +- n)^2 of its amplitude: below 1e-6 up to order 60, so that a bearing shows no line of
+/// an order that the wave has not.
+const LEAST_WAVE_ROWS: f64 = 65536.0;
 /// Grid spacings between azimuths of a table.
 const SPACINGS_PER_ROW: f64 = 4.0;
 /// Most numbers of a surface: 160 MB.
@@ -130,10 +137,14 @@ impl StripSurface {
         shoulders: Option<RangeInclusive<f64>>,
         profiles: &Profiles,
     ) -> Option<StripSurface> {
+        let edges = shoulders.clone();
         let groove = shoulders.unwrap_or(-PI..=PI);
+        let track = Track::new(geometry, side);
         Some(StripSurface {
             law,
-            grid: profiles.grid(Track::new(geometry, side), &groove)?,
+            grid: profiles.grid(track, &groove)?,
+            track,
+            edges,
             has_profile: !profiles.is_empty(),
         })
     }
@@ -141,6 +152,16 @@ impl StripSurface {
     /// Groove angles of the corners, rad.
     pub fn angles(&self) -> &[f64] {
         self.grid.angles()
+    }
+
+    /// Groove angles where the groove ends, rad; None: it goes on for ever.
+    pub fn edges(&self) -> Option<&RangeInclusive<f64>> {
+        self.edges.as_ref()
+    }
+
+    /// Radius of the track at a contact angle, rad, in m.
+    pub fn track_radius(&self, angle: f64) -> f64 {
+        self.track.radius(angle)
     }
 
     /// Whether anything is missing of the smooth groove between the shoulders.
@@ -235,7 +256,11 @@ impl Profiles {
         let table = |t: &Heights| SPACINGS_PER_ROW * TAU / smallest_gap(&t.azimuths);
         let dent = |d: &Dent| longest / SPALL_SPACING.min(d.spacing());
         let wanted = self.spalls.iter().map(spall).chain(self.dents.iter().map(dent));
-        let wanted = wanted.chain(self.waves.iter().map(|w| SPACINGS_PER_WAVE * w.order as f64));
+        let wanted = wanted.chain(
+            self.waves
+                .iter()
+                .map(|w| LEAST_WAVE_ROWS.max(SPACINGS_PER_WAVE * w.order as f64)),
+        );
         let wanted = wanted.chain(self.tables.iter().map(table));
         wanted.fold(1.0, f64::max).ceil().min(1e12) as usize
     }
@@ -269,7 +294,8 @@ impl Wave {
 }
 
 impl Heights {
-    fn height(&self, azimuth: f64, angle: f64) -> f64 {
+    /// Height at an azimuth and a groove angle, rad, in m.
+    pub fn height(&self, azimuth: f64, angle: f64) -> f64 {
         let (n, n_angles) = (self.azimuths.len(), self.angles.len());
         let first = self.azimuths[0];
         let azimuth = first + (azimuth - first).rem_euclid(TAU);

@@ -8,7 +8,7 @@ use std::f64::consts::{PI, TAU};
 use crate::geometry::{BearingGeometry, Side};
 
 /// The sizes on which an envelope depends.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Track {
     side: Side,
     centre_radius: f64,

@@ -7,11 +7,12 @@ use super::run::{Motion, MovingRing};
 use super::state::MotionState;
 use crate::footprint::loaded;
 use crate::solution::STATIC_LIMIT;
+use crate::surfaces::EllipseKind;
 
 /// What a contact can exceed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ContactLimit {
-    /// The Hertz ellipse reaches beyond the groove of a flexible ring.
+    /// The ellipse reaches beyond the groove of a flexible ring, or of any ring with edges.
     Edge,
     /// The peak pressure exceeds the static limit of bearing steel (ISO 76, 4.2 GPa).
     StaticPressure,
@@ -55,7 +56,11 @@ impl Motion<'_> {
             let axes = hertz.semi_axes(force);
             let beyond =
                 |moving: &MovingRing| is_truncated(&moving.raceway.surface, state.angles[index], axes);
-            if self.rings[side.index()].as_ref().is_some_and(beyond) {
+            let is_beyond = match self.model.surfaces.edges(side) {
+                Some(_) => self.ellipse(state, (ball, side), axes[1]) == Some(EllipseKind::Edge),
+                None => self.rings[side.index()].as_ref().is_some_and(beyond),
+            };
+            if is_beyond {
                 add(ContactLimit::Edge);
             }
             if pressure > STATIC_LIMIT {

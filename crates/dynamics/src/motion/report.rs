@@ -23,12 +23,14 @@ impl Motion<'_> {
             let index = 2 * ball + side.index();
             let force = state.forces[index][0].hypot(state.forces[index][1]);
             let hertz = &self.model.hertz[side.index()];
+            let semi_axes = hertz.semi_axes(force);
             ContactResult {
                 force_n: force,
                 contact_angle_rad: state.angles[index],
                 approach_m: state.approaches[index],
-                semi_axes_m: hertz.semi_axes(force),
+                semi_axes_m: semi_axes,
                 peak_pressure_pa: hertz.peak_pressure(force),
+                ellipse: self.ellipse(state, (ball, side), semi_axes[1]),
             }
         };
         let turn = 2.0 * std::f64::consts::PI;
@@ -71,7 +73,7 @@ impl Motion<'_> {
     }
 
     /// Azimuth of a ball in a state, rad.
-    fn azimuth_now(&self, state: &MotionState, ball: usize) -> f64 {
+    pub(super) fn azimuth_now(&self, state: &MotionState, ball: usize) -> f64 {
         match &state.free {
             Some(free) => free.azimuth(ball),
             None => self.ball_azimuth(ball, self.time(state.step)),
@@ -173,6 +175,14 @@ impl Motion<'_> {
         let ring = state.rings[side.index()].as_ref()?;
         let turned = self.frame_angle(side, self.time(state.step));
         Some((moving.body.nodal_at(ring.displacement(), nodes), turned))
+    }
+
+    /// Acceleration of the chosen nodes of a flexible ring in its own frame, m/s^2, `[n_nodes][3]` flat; others may be
+    /// NaN.
+    pub fn ring_acceleration_at(&self, state: &MotionState, side: Side, nodes: &[usize]) -> Option<Vec<f64>> {
+        let moving = self.rings[side.index()].as_ref()?;
+        let ring = state.rings[side.index()].as_ref()?;
+        Some(moving.body.nodal_at(ring.acceleration(), nodes))
     }
 
     /// Displacement, velocity and acceleration of the coordinates of a flexible ring, `[n]`, SI, whatever solves it.

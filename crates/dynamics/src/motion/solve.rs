@@ -127,7 +127,7 @@ fn check_grooves(parts: &BearingParts, solution: &StepSolution) -> Result<(), Dy
     for (index, site) in parts.contacts.sites.iter().enumerate() {
         let [_, end] = solution.reach(index);
         if end[0].hypot(end[1]) > site.touching {
-            require_in_groove(site.ball, site.side, site.angle(end))?;
+            require_in_groove(site, site.angle(end))?;
         }
     }
     Ok(())

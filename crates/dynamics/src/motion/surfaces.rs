@@ -5,21 +5,27 @@
 //! of its start, over the rest with those of its end. The sum of all parts telescopes: it is the change of the contact
 //! energies that the contacts' forces did not make. Temperatures are kept and accounted for in the same way.
 
-use contact::Side;
+use contact::{SeenMeridian, Side};
 
 use super::free_state::FreeState;
 use super::ledger::Ledger;
 use super::run::Motion;
 use super::solve::StepSolution;
 use super::span::Span;
+use super::state::MotionState;
 use crate::bearing::{BearingParts, lengths};
 use crate::interactions::free_contact::FoundContact;
-use crate::interactions::free_contact::orientation::{Quaternion, at_start};
+use crate::interactions::free_contact::orientation::{Quaternion, at_start, in_ball};
 use crate::interactions::free_contact::rolling_surface::{RollingSurface, WornBall};
 use crate::interactions::raceway_contact::Site;
-use crate::surfaces::SurfacePlace;
+use crate::surfaces::{EllipseKind, SurfacePlace, Surfaces};
 
 impl Motion<'_> {
+    /// Surfaces of the bearing.
+    pub fn surfaces(&self) -> &Surfaces {
+        &self.model.surfaces
+    }
+
     /// Whether contacts of a raceway are strips: their surfaces then have a line in the ledger.
     pub fn has_strips(&self) -> bool {
         self.model.surfaces.has_strips()
@@ -77,6 +83,38 @@ impl Motion<'_> {
         let Some([ball, _]) = worn else { return Vec::new() };
         let at_start = |i: usize| at_start(self.model.geometry.azimuth(i), ball.equator());
         (0..self.n_balls()).map(at_start).collect()
+    }
+}
+
+impl Motion<'_> {
+    /// Whether the ellipse of a contact is Hertz's in a state, with the half-width `rolling` along the track, m; None:
+    /// its raceway has no strips.
+    pub(super) fn ellipse(
+        &self,
+        state: &MotionState,
+        (ball, side): (usize, Side),
+        rolling: f64,
+    ) -> Option<EllipseKind> {
+        let time = self.time(state.step);
+        let turned = Side::BOTH.map(|side| self.frame_angle(side, time));
+        let index = 2 * ball + side.index();
+        let (azimuth, angle) = (self.azimuth_now(state, ball), state.angles[index]);
+        let free = state.free.as_ref();
+        let seen = |q: &Quaternion| {
+            let (sin, cos) = azimuth.sin_cos();
+            SeenMeridian {
+                out: in_ball(*q, [cos, sin, 0.0]),
+                axial: in_ball(*q, [0.0, 0.0, 1.0]),
+                angle,
+            }
+        };
+        let place = SurfacePlace {
+            azimuth: azimuth - turned[side.index()],
+            rolled: self.kinematics.rolled(turned),
+            seen: free.and_then(|free| free.orientations.get(ball)).map(seen),
+        };
+        let strips = self.model.surfaces.at(ball, side, place)?;
+        Some(strips.ellipse(state.approaches[index], angle, rolling))
     }
 }
 

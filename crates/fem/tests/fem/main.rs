@@ -12,4 +12,5 @@ mod rings;
 mod sector;
 mod stress;
 mod support;
+mod tube_gauge;
 mod waves;

@@ -10,6 +10,9 @@
 //! the displacement is that within the turning ring; Cartesian axes are fixed in space, as in the step files, and the
 //! displacement contains the turning.
 //!
+//! `acceleration = true` writes its acceleration besides, that of the integrator at the end of the step: of the
+//! displacement in the frame of the ring, along the same axes. Only motions have it.
+//!
 //! Points and profiles are in the file `stress_probes`, strain gauges in `gauges`.
 //!
 //! A contact probe gives the force of the ring on the ball in x, y, z and its size, and its moment about the given
@@ -58,6 +61,7 @@ struct RawNodeProbe {
     r: Option<Quantity<LENGTH>>,
     z: Option<Quantity<LENGTH>>,
     axes: Option<Axes>,
+    acceleration: Option<bool>,
 }
 
 /// As typed.
@@ -102,6 +106,8 @@ pub struct NodeProbe {
     pub point: SectionPoint,
     /// Axes of the components.
     pub axes: Axes,
+    /// Whether its acceleration is written besides, in motions only.
+    pub has_acceleration: bool,
 }
 
 /// Force and moment of a contact.
@@ -270,6 +276,7 @@ impl RawNodeProbe {
             azimuth: self.azimuth.si(),
             point: self.point(key, problems)?,
             axes: self.axes.unwrap_or_default(),
+            has_acceleration: self.acceleration.unwrap_or(false),
         })
     }
 

@@ -105,6 +105,13 @@ pub struct SurfaceProfiles {
     pub oversizes: Vec<f64>,
 }
 
+impl SurfaceProfiles {
+    /// Whether anything differs from smooth grooves and spheres.
+    pub fn has_profiles(&self) -> bool {
+        !self.balls.is_empty() || self.raceways.iter().any(|raceway| !raceway.is_empty())
+    }
+}
+
 /// Highest order of waves: 10 um of a ring of 70 mm.
 const MAX_ORDER: i64 = 20_000;
 /// Largest amplitude of waves, m: more is no surface but another groove.

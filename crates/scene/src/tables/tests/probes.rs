@@ -50,6 +50,7 @@ fn probes_may_lie_anywhere_and_moments_be_about_any_point() {
         azimuth: 0.0,
         point: SectionPoint::Anywhere([30e-3, -8e-3]),
         axes: Axes::Cartesian,
+        has_acceleration: false,
     };
     assert_eq!(probes.nodes, [rim]);
     assert_eq!(probes.contacts[0].about, [1e-3, 2e-3, -3e-3]);
