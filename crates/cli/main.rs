@@ -24,6 +24,7 @@ mod remarks;
 mod resume;
 mod rules;
 mod run;
+mod several;
 mod start;
 mod stiffness;
 

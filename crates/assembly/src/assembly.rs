@@ -152,34 +152,19 @@ impl AssemblySolver {
     pub fn solve(
         &mut self,
         assembly: &mut Assembly,
-        start: Option<AssemblySolution>,
+        start: Option<&AssemblySolution>,
     ) -> Result<AssemblySolution, AssemblyError> {
         let is_flexible = |b: &MountedBearing| Side::BOTH.iter().any(|&side| b.model.ring(side).is_some());
-        let has_flexible = assembly.bearings.iter().any(is_flexible);
-        let (at, last) = match start {
-            Some(solution) => {
-                let last = solution.bearings.into_iter().map(Some).collect();
-                (solution.shaft.displacements, last)
+        let at = match start {
+            Some(solution) => solution.shaft.displacements.clone(),
+            None if assembly.bearings.iter().any(is_flexible) => {
+                let at = vec![0.0; assembly.shaft.n()];
+                self.settle(assembly, Rings::Rigid, &at, None)?.0.displacements
             }
-            None => {
-                let mut last: Vec<Option<StaticSolution>> = assembly.bearings.iter().map(|_| None).collect();
-                let mut at = vec![0.0; assembly.shaft.n()];
-                if has_flexible {
-                    let (settled, _) = self.settle(assembly, Rings::Rigid, &at, last)?;
-                    at = settled.displacements;
-                    last = assembly.bearings.iter().map(|_| None).collect();
-                }
-                (at, last)
-            }
+            None => vec![0.0; assembly.shaft.n()],
         };
-        let (shaft, bearings) = self.settle(assembly, Rings::AsTheyAre, &at, last)?;
-        let bearings = bearings
-            .into_iter()
-            .map(|b| b.expect("every bearing has answered"));
-        Ok(AssemblySolution {
-            bearings: bearings.collect(),
-            shaft,
-        })
+        let (shaft, bearings) = self.settle(assembly, Rings::AsTheyAre, &at, start)?;
+        Ok(AssemblySolution { bearings, shaft })
     }
 
     /// The shaft in balance on bearings with these rings, and their solutions.
@@ -188,8 +173,8 @@ impl AssemblySolver {
         assembly: &mut Assembly,
         rings: Rings,
         at: &[f64],
-        last: Vec<Option<StaticSolution>>,
-    ) -> Result<(Settled, Vec<Option<StaticSolution>>), AssemblyError> {
+        start: Option<&AssemblySolution>,
+    ) -> Result<(Settled, Vec<StaticSolution>), AssemblyError> {
         let (mounts, scales) = (assembly.mounts(), assembly.scales());
         let problem = Problem {
             shaft: &assembly.shaft,
@@ -201,13 +186,14 @@ impl AssemblySolver {
             .bearings
             .iter_mut()
             .zip(&mut self.columns)
-            .zip(last)
             .zip(&self.type_of)
-            .map(|(((bearing, columns), last), &solver)| BearingSupport {
+            .enumerate()
+            .map(|(i, ((bearing, columns), &solver))| BearingSupport {
                 model: &mut bearing.model,
                 solver,
                 columns,
-                last,
+                start: start.map(|solution| &solution.bearings[i]),
+                last: None,
             });
         let mut supports = BearingSupports {
             bearings: bearings.collect(),
@@ -217,7 +203,8 @@ impl AssemblySolver {
             },
         };
         let settled = settle(&problem, &mut supports, at)?;
-        let found = supports.bearings.into_iter().map(|bearing| bearing.last);
+        let found = supports.bearings.into_iter();
+        let found = found.map(|bearing| bearing.last.expect("every bearing has answered"));
         Ok((settled, found.collect()))
     }
 }

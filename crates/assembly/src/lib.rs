@@ -26,4 +26,5 @@ pub use assembly::{Assembly, AssemblySolution, AssemblySolver, MountedBearing};
 pub use beam::{BeamSection, BeamShaft, PointMass};
 pub use error::AssemblyError;
 pub use place::{Orientation, Seating};
+pub use ring::rigid::RigidInertia;
 pub use shaft::{ShaftBody, Station};

@@ -64,6 +64,8 @@ pub struct BearingSupport<'a> {
     pub solver: usize,
     /// The columns of this bearing: those of other bearings of its type stay as they are.
     pub columns: &'a mut ContactColumns,
+    /// The solution from which the first starts.
+    pub start: Option<&'a StaticSolution>,
     /// The last solution, from which the next starts.
     pub last: Option<StaticSolution>,
 }
@@ -82,7 +84,11 @@ impl Supports for BearingSupports<'_> {
         let solver = &mut self.solvers[bearing.solver];
         bearing.model.shaft = at.map(ShaftDof::Prescribed);
         solver.swap_columns(bearing.columns);
-        let found = solver.solve_at(bearing.model, &Pose::default(), bearing.last.as_ref());
+        let found = solver.solve_at(
+            bearing.model,
+            &Pose::default(),
+            bearing.last.as_ref().or(bearing.start),
+        );
         solver.swap_columns(bearing.columns);
         let solution = found?;
         let tangent = Linearisation::as_solved(bearing.model, &solution)?.stiffness()?;

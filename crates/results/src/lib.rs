@@ -30,6 +30,7 @@ pub mod probe_places;
 pub mod probes;
 pub mod rainflow;
 mod ring_stress;
+pub mod several;
 pub mod shown;
 pub mod snapshot;
 pub mod state_arrays;

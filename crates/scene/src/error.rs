@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use assembly::AssemblyError;
 use contact::ContactError;
 use dynamics::DynamicsError;
 use fem::FemError;
@@ -28,6 +29,9 @@ pub enum BuildError {
     /// An effect cannot be constructed.
     #[error(transparent)]
     Dynamics(#[from] DynamicsError),
+    /// The shaft of a list of bearings cannot be.
+    #[error(transparent)]
+    Assembly(#[from] AssemblyError),
     /// Profiles do not fit the rings.
     #[error("scene {}: {problem}", path.display())]
     Surface {

@@ -3,6 +3,7 @@
 //! [`Scene`] reads and checks a file, whose format is on the page [`tables`]. [`build_model`] reads its meshes and
 //! constructs the model; [`build_meshes`] makes meshes that it describes. It is the only crate that names TOML.
 
+mod several;
 mod build;
 mod designations;
 mod doubts;
@@ -18,6 +19,7 @@ pub mod tables;
 mod toml_text;
 mod worn_balls;
 
+pub use several::{Rings, assembly_with_rings, build_assembly, have_same_rings};
 pub use build::{NodeTags, build_model, geometry, material, model_with_rings, ring_of, rolling};
 pub use doubts::doubts;
 pub use error::BuildError;
