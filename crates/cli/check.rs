@@ -13,15 +13,19 @@ use results::disk::{self, Forecast};
 use results::failure::Failure;
 use results::memory::{bound, forecast};
 use results::probes::Probes;
-use scene::{Analysis, Scene, build_model, doubts};
+use scene::{Analysis, AnyScene, Scene, build_model, doubts};
 
 use crate::modes;
 use crate::rank_table::{self, RingOnRanks};
 use crate::rules;
+use crate::several_check;
 
 /// Reads and checks the scene and its meshes and prints effects, sizes and forecasts.
 pub fn check(path: &Path, overrides: &[String]) -> Result<(), Failure> {
-    let scene = Scene::load(path, overrides)?;
+    let scene = match AnyScene::load(path, overrides)? {
+        AnyScene::One(scene) => *scene,
+        AnyScene::Several(list) => return several_check::check(&list),
+    };
     let (model, tags) = build_model(&scene)?;
     let probes = Probes::new(&scene, &model, &tags)?;
     print::line(format_args!(
@@ -219,10 +223,10 @@ fn print_probes(scene: &Scene, probes: Option<&Probes>) {
 }
 
 /// Memory of one ring, what its motion holds when that is known, and on ranks when it is in sectors.
-type RingForecast = (RingMemory, Option<MotionMemory>, Option<RingOnRanks>);
+pub type RingForecast = (RingMemory, Option<MotionMemory>, Option<RingOnRanks>);
 
 /// Prints one ring and returns the forecast of its memory; None for a rigid ring.
-fn print_ring(model: &Model, side: Side) -> Result<Option<RingForecast>, Failure> {
+pub fn print_ring(model: &Model, side: Side) -> Result<Option<RingForecast>, Failure> {
     let stiffness = model.hertz[side.index()].stiffness / 10f64.powf(4.5);
     let Some(ring) = model.ring(side) else {
         print::line(format_args!(

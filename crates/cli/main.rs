@@ -25,6 +25,9 @@ mod resume;
 mod rules;
 mod run;
 mod several;
+mod several_campbell;
+mod several_check;
+mod several_stiffness;
 mod start;
 mod stiffness;
 

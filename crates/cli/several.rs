@@ -59,9 +59,14 @@ pub fn run(scene: &SeveralScene, dir: &Path, start: Instant) -> Result<(), Failu
             none => none.insert(Written::create(scene, &assembly, &solution, dir)?),
         };
         files.append(step as u64, *value, (&assembly, point), &solution)?;
-        let at = column.zip(*value).map_or(String::new(), |(c, v)| format!("{c} = {v}: "));
+        let at = column
+            .zip(*value)
+            .map_or(String::new(), |(c, v)| format!("{c} = {v}: "));
         for (bearing, found) in assembly.bearings.iter().zip(&solution.bearings) {
-            let own = found.warnings.iter().map(|w| format!("{at}bearing {:?}: {w}", bearing.name));
+            let own = found
+                .warnings
+                .iter()
+                .map(|w| format!("{at}bearing {:?}: {w}", bearing.name));
             warnings.extend(own);
         }
         iterations += solution.shaft.iterations;
@@ -116,8 +121,11 @@ impl Written {
         std::fs::write(dir.join("scene.toml"), &scene.text)
             .map_err(|error| anyhow!("cannot write scene.toml of the results: {error}"))?;
         let mut bearings = Vec::new();
-        for ((bearing, mounted), found) in
-            scene.bearings.iter().zip(&assembly.bearings).zip(&solution.bearings)
+        for ((bearing, mounted), found) in scene
+            .bearings
+            .iter()
+            .zip(&assembly.bearings)
+            .zip(&solution.bearings)
         {
             let own = dir.join(&bearing.name);
             let placed = bearing.scene.with_shaft_at(found.displacements.shaft)?;
@@ -219,7 +227,11 @@ pub fn all_doubts(scene: &SeveralScene, assembly: &Assembly) -> Vec<String> {
     let mut all: Vec<String> = Vec::new();
     for (bearing, mounted) in scene.bearings.iter().zip(&assembly.bearings) {
         let new = doubts(&bearing.scene, &mounted.model);
-        all.extend(new.into_iter().filter(|line| !all.contains(line)).collect::<Vec<_>>());
+        all.extend(
+            new.into_iter()
+                .filter(|line| !all.contains(line))
+                .collect::<Vec<_>>(),
+        );
     }
     if scene.effects.temperature.is_some() {
         all.push(
@@ -237,7 +249,12 @@ pub fn points(scene: &SeveralScene) -> Result<Vec<SeveralPoint>, Failure> {
         return Ok(vec![(None, scene.clone())]);
     };
     let scenes = scene.sweep_scenes()?;
-    let n_balls = |s: &SeveralScene| s.bearings.iter().map(|b| b.scene.bearing.balls).collect::<Vec<_>>();
+    let n_balls = |s: &SeveralScene| {
+        s.bearings
+            .iter()
+            .map(|b| b.scene.bearing.balls)
+            .collect::<Vec<_>>()
+    };
     for point in &scenes {
         let pairs = || scene.bearings.iter().zip(&point.bearings);
         let same = |(a, b): (&scene::BearingOnShaft, &scene::BearingOnShaft)| {
@@ -271,7 +288,9 @@ pub fn rings(assembly: Assembly) -> Vec<Rings> {
 /// A failure of the solution.
 pub fn solving(error: AssemblyError) -> Failure {
     match error {
-        AssemblyError::ShaftBody { .. } | AssemblyError::NoInertia { .. } => Failure::from(BuildError::from(error)),
+        AssemblyError::ShaftBody { .. } | AssemblyError::NoInertia { .. } => {
+            Failure::from(BuildError::from(error))
+        }
         AssemblyError::Bearing { name, source } => {
             Failure::solving(source).context(format!("bearing {name:?}"))
         }

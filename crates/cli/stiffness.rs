@@ -21,10 +21,11 @@ use results::stiffness::{
 };
 use results::survey::say_doubts;
 use results::whole::write_picture;
-use scene::{Analysis, Scene, build_model, doubts, model_with_rings, rolling};
+use scene::{Analysis, AnyScene, Scene, build_model, doubts, model_with_rings, rolling};
 
 use crate::progress::Progress;
 use crate::run::{Point, points, stage_text};
+use crate::{several, several_stiffness};
 
 /// Most positions of a ripple: far more than one can be resolved with.
 const MOST_POSITIONS: usize = 1000;
@@ -52,7 +53,14 @@ pub struct StiffnessCommand {
 
 /// Linearises and writes.
 pub fn stiffness(command: &StiffnessCommand) -> Result<(), Failure> {
-    let scene = Scene::load(&command.scene, &command.overrides)?;
+    let scene = match AnyScene::load(&command.scene, &command.overrides)? {
+        AnyScene::One(scene) => *scene,
+        AnyScene::Several(list) => {
+            several::refuse(command.ripple.map(|_| "--ripple"), &list)?;
+            several::refuse(command.time.map(|_| "--time"), &list)?;
+            return several_stiffness::stiffness(&list, &command.out);
+        }
+    };
     let time = instant(&scene, command.time)?;
     check_positions(command.ripple)?;
     require_free(&command.out, &[STIFFNESS_FILE, STIFFNESS_TABLE, ROSS_TABLE])?;

@@ -31,6 +31,7 @@ pub mod probes;
 pub mod rainflow;
 mod ring_stress;
 pub mod several;
+pub mod several_stiffness;
 pub mod shown;
 pub mod snapshot;
 pub mod state_arrays;

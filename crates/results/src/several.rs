@@ -1,8 +1,8 @@
 //! Results of several bearings on one shaft: `balls.csv`, `bearings.csv`, `shaft.csv`, `summary.json`, and what the
 //! screen shows.
 //!
-//! Every bearing has a folder of its own beside them, in its own frame, as if it had been run alone. These tables are in
-//! the frame of the shaft, with a column `bearing` where rows are of bearings.
+//! Every bearing has a folder of its own beside them, in its own frame, as if it had been run alone. These tables are
+//! in the frame of the shaft, with a column `bearing` where rows are of bearings.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -71,7 +71,8 @@ impl SeveralTables {
         let row = |cells: Vec<String>| [place.clone(), cells].concat();
         let mut balls = Vec::new();
         let mut bearings = Vec::new();
-        for (number_of, (mounted, of_bearing)) in assembly.bearings.iter().zip(&solution.bearings).enumerate() {
+        for (number_of, (mounted, of_bearing)) in assembly.bearings.iter().zip(&solution.bearings).enumerate()
+        {
             for (i, ball) in of_bearing.balls.iter().enumerate() {
                 let mut turned = *ball;
                 turned.azimuth_rad = in_one_turn(mounted.place.orientation.turned_angle(ball.azimuth_rad));
@@ -86,7 +87,10 @@ impl SeveralTables {
                     state.loaded_balls as f64,
                     of_bearing.displacements.seat,
                 ]);
-            bearings.push(row([mounted.name.clone()].into_iter().chain(numbers.map(number)).collect()));
+            bearings.push(row([mounted.name.clone()]
+                .into_iter()
+                .chain(numbers.map(number))
+                .collect()));
         }
         append(&mut self.balls, BALLS_TABLE, balls)?;
         append(&mut self.bearings, BEARINGS_TABLE, bearings)?;
@@ -106,7 +110,12 @@ fn line(assembly: &Assembly, solution: &AssemblySolution) -> Vec<(f64, [f64; N_S
     let shaft = &assembly.shaft;
     let mut places = match shaft.is_beam() {
         true => shaft.nodes.clone(),
-        false => assembly.bearings.iter().map(|b| b.place.position).chain([0.0]).collect(),
+        false => assembly
+            .bearings
+            .iter()
+            .map(|b| b.place.position)
+            .chain([0.0])
+            .collect(),
     };
     places.sort_by(f64::total_cmp);
     places.dedup();
@@ -136,7 +145,10 @@ impl BearingState {
             displacement: station.displacement(&solution.shaft.displacements),
             force: assembly.force_on_shaft(number, solution).map(|f| f + 0.0),
             largest_ball_force: largest,
-            loaded_balls: balls.iter().filter(|b| b.inner.force_n > 1e-9 * largest.max(1.0)).count(),
+            loaded_balls: balls
+                .iter()
+                .filter(|b| b.inner.force_n > 1e-9 * largest.max(1.0))
+                .count(),
         }
     }
 }
@@ -228,7 +240,10 @@ impl SeveralSummary {
             (mounted.name.clone(), summary)
         };
         let line = line(assembly, solution);
-        let parts = findings.laps.iter().map(|lap| (lap.name.to_string(), lap.seconds));
+        let parts = findings
+            .laps
+            .iter()
+            .map(|lap| (lap.name.to_string(), lap.seconds));
         SeveralSummary {
             schema: 1,
             scene: scene.path.display().to_string(),
@@ -266,21 +281,28 @@ impl SeveralSummary {
         for warning in &self.warnings {
             print::line(format_args!("warning: {warning}"));
         }
-        let parts: Vec<String> = self.timing_s.iter().map(|(part, s)| format!("{part} {s:.3}")).collect();
+        let parts: Vec<String> = self
+            .timing_s
+            .iter()
+            .map(|(part, s)| format!("{part} {s:.3}"))
+            .collect();
         print::line(format_args!("seconds: {}", parts.join(", ")));
-        print::line(format_args!("peak memory: {:.0} MB", self.peak_memory_bytes as f64 / 1e6));
+        print::line(format_args!(
+            "peak memory: {:.0} MB",
+            self.peak_memory_bytes as f64 / 1e6
+        ));
     }
 }
 
 /// Prints the bearings and the ends of the shaft.
 pub fn print_solution(assembly: &Assembly, solution: &AssemblySolution) {
     print::line(format_args!(
-        "bearing        position       x        y        z   tilt x   tilt y   force x   force y   force z  largest ball  \
-         loaded"
+        "bearing        position       x        y        z   tilt x   tilt y   force x   force y   force z  \
+         largest ball  loaded"
     ));
     print::line(format_args!(
-        "                     mm      um       um       um     urad     urad         N         N         N             N   \
-         balls"
+        "                     mm      um       um       um     urad     urad         N         N         N  \
+                    N   balls"
     ));
     for (number, mounted) in assembly.bearings.iter().enumerate() {
         let state = BearingState::new(assembly, solution, number);

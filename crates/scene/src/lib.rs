@@ -3,7 +3,6 @@
 //! [`Scene`] reads and checks a file, whose format is on the page [`tables`]. [`build_model`] reads its meshes and
 //! constructs the model; [`build_meshes`] makes meshes that it describes. It is the only crate that names TOML.
 
-mod several;
 mod build;
 mod designations;
 mod doubts;
@@ -13,19 +12,20 @@ mod resolution;
 mod revolve_like;
 mod section_record;
 mod settings;
+mod several;
 mod starter;
 mod surfaces;
 pub mod tables;
 mod toml_text;
 mod worn_balls;
 
-pub use several::{Rings, assembly_with_rings, build_assembly, have_same_rings};
 pub use build::{NodeTags, build_model, geometry, material, model_with_rings, ring_of, rolling};
 pub use doubts::doubts;
 pub use error::BuildError;
 pub use meshing::{build_meshes, build_missing};
 pub use revolve_like::{MadeLike, RevolveLike, revolve_like};
 pub use settings::{effects_context, settings, speeds};
+pub use several::{Rings, assembly_with_rings, build_assembly, have_same_rings};
 pub use starter::{StarterRequest, file_name, scene_text};
 pub use tables::*;
 pub use toml_text::{read_tables, title};

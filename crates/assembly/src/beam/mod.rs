@@ -8,8 +8,8 @@
 //! constant in an element, which leaves a smaller error of second order.
 //!
 //! References: Przemieniecki, Theory of Matrix Structural Analysis (1968), ch. 5 and 11; Nelson, A finite rotating
-//! shaft element using Timoshenko beam theory, J. Mech. Des. 102 (1980) 793; Cowper, J. Appl. Mech. 33 (1966) 335, eq. 37
-//! (shear coefficient of a hollow circle).
+//! shaft element using Timoshenko beam theory, J. Mech. Des. 102 (1980) 793; Cowper, J. Appl. Mech. 33 (1966) 335, eq.
+//! 37 (shear coefficient of a hollow circle).
 
 mod element;
 mod section;

@@ -195,7 +195,14 @@ impl<const KIND: usize> RawMotion<KIND> {
     }
 
     /// Reports a prescribed motion that exceeds `limit` at the peak of its schedule.
-    pub fn require_small(&self, limit: f64, key: &str, schedule: &Schedule, rule: &str, problems: &mut Problems) {
+    pub fn require_small(
+        &self,
+        limit: f64,
+        key: &str,
+        schedule: &Schedule,
+        rule: &str,
+        problems: &mut Problems,
+    ) {
         let RawMotion::Prescribed(RawPrescribed { value, .. }) = self else {
             return;
         };

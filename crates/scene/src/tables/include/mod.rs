@@ -156,13 +156,20 @@ impl WholeText {
             NotIncluded::There(error) => TypeError::There(error),
         })?;
         if let Ok(document) = DeTable::parse(&other.text) {
-            let unknown = document.get_ref().keys().find(|key| !known.contains(&&*key.get_ref().as_ref()));
+            let unknown = document
+                .get_ref()
+                .keys()
+                .find(|key| !known.contains(&&*key.get_ref().as_ref()));
             if let Some(key) = unknown {
                 return Err(TypeError::Here(format!(
                     "bearing.type of {bearing:?}: {} has {}; expected the tables of one bearing alone: {}",
                     other.files[0].display(),
                     key.get_ref(),
-                    known.iter().map(|name| format!("[{name}]")).collect::<Vec<_>>().join(", ")
+                    known
+                        .iter()
+                        .map(|name| format!("[{name}]"))
+                        .collect::<Vec<_>>()
+                        .join(", ")
                 )));
             }
         }

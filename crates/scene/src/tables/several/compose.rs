@@ -48,36 +48,42 @@ impl Composer<'_> {
         if is_plain(&raw) {
             raw.bearing[0].check(1, &mut problems);
             return match problems.into_texts() {
-                none if none.is_empty() => self.plain(&raw.bearing[0], document).map(|s| AnyScene::One(Box::new(s))),
+                none if none.is_empty() => self
+                    .plain(&raw.bearing[0], document)
+                    .map(|s| AnyScene::One(Box::new(s))),
                 texts => Err(self.messages.invalid(texts)),
             };
         }
-        raw.refuse(&mut problems);
-        check_loads(&raw, &mut problems);
-        (1..).zip(&raw.bearing).for_each(|(i, b)| b.check(i, &mut problems));
-        if raw.bearing.is_empty() {
-            problems.add("bearing is an empty list; expected at least one table [[bearing]]");
-        }
+        let scene = self.listed(raw, text, &document)?;
+        self.check_points(&scene)?;
+        Ok(AnyScene::Several(Box::new(scene)))
+    }
+
+    /// The scene of a list of bearings, checked.
+    fn listed(
+        &self,
+        raw: RawSeveral,
+        text: String,
+        document: &DocumentMut,
+    ) -> Result<SeveralScene, SceneError> {
+        let mut problems = Problems::default();
+        check_list(&raw, &mut problems);
         let pairing = raw.pairing.as_ref().map(|p| p.check(&raw.bearing, &mut problems));
         let pairing = pairing.unwrap_or_default();
-        let analysis = raw.analysis(&document, &mut problems);
-        let mut texts = problems.into_texts();
-        let scenes = self.scenes(&raw, &document, &pairing, &mut texts)?;
-        let mut problems = Problems::default();
+        let analysis = raw.analysis(document, &mut problems);
+        let (scenes, told) = self.scenes(&raw, document, &pairing)?;
         check_places(&raw.bearing, &scenes, &mut problems);
-        let largest_ball = scenes.iter().flatten().map(|s| s.bearing.ball_diameter);
-        let largest_ball = largest_ball.fold(0.0, f64::max);
-        let limit = if largest_ball > 0.0 { largest_ball } else { f64::INFINITY };
-        let shaft = raw.shaft.check(limit, &mut problems);
+        let balls = scenes.iter().flatten().map(|s| s.bearing.ball_diameter);
+        let largest_ball = balls.fold(0.0, f64::max);
+        let shaft = raw.shaft.check(largest_ball, &mut problems);
         if let Some(shaft) = &shaft {
             check_ends(&raw.bearing, &scenes, shaft, &mut problems);
             check_axis(&raw.bearing, &pairing, shaft, &mut problems);
         }
-        texts.extend(problems.into_texts());
-        let bearings: Option<Vec<Scene>> = scenes.into_iter().collect();
-        let (Some(shaft), Some(analysis), Some(scenes), true) = (shaft, analysis, bearings, texts.is_empty())
-        else {
-            return Err(self.messages.invalid(texts));
+        let is_sound = problems.is_empty() && told.is_empty();
+        let scenes: Option<Vec<Scene>> = scenes.into_iter().collect();
+        let (Some(shaft), Some(analysis), Some(scenes), true) = (shaft, analysis, scenes, is_sound) else {
+            return Err(self.invalid(problems.into_texts(), told));
         };
         let mounted = |(raw, scene): (&RawMounted, Scene)| BearingOnShaft {
             name: raw.name.clone(),
@@ -91,7 +97,7 @@ impl Composer<'_> {
             turn_speeds(&mut speed, bearings[0].orientation);
             speed
         });
-        let scene = SeveralScene {
+        Ok(SeveralScene {
             path: self.path.to_path_buf(),
             text,
             overrides: self.overrides.to_vec(),
@@ -102,9 +108,23 @@ impl Composer<'_> {
             effects: raw.effects,
             speed,
             analysis,
-        };
-        self.check_points(&scene)?;
-        Ok(AnyScene::Several(Box::new(scene)))
+        })
+    }
+
+    /// Problems of the list, and those of its bearings, which say their lines already.
+    fn invalid(&self, texts: Vec<String>, told: Vec<String>) -> SceneError {
+        match self.messages.invalid(texts) {
+            SceneError::Invalid {
+                path,
+                overrides,
+                problems,
+            } => SceneError::Invalid {
+                path,
+                overrides,
+                problems: [problems, told].concat(),
+            },
+            other => other,
+        }
     }
 
     /// Every point of a sweep must be a valid scene before the first is solved.
@@ -113,7 +133,12 @@ impl Composer<'_> {
             return Ok(());
         };
         for (i, point) in sweep.points.iter().enumerate() {
-            let found = AnyScene::parse(&point.text, self.path, &scene.type_overrides(), MeshFiles::MayBeMissing);
+            let found = AnyScene::parse(
+                &point.text,
+                self.path,
+                &scene.type_overrides(),
+                MeshFiles::MayBeMissing,
+            );
             if let Err(error) = found {
                 let reason = match error {
                     SceneError::Invalid { problems, .. } => problems.join("; "),
@@ -129,29 +154,30 @@ impl Composer<'_> {
         Ok(())
     }
 
-    /// The scene of every bearing; problems go to `texts`, each once.
+    /// The scene of every bearing that has one, and what is wrong with the others, each problem once.
     fn scenes(
         &self,
         raw: &RawSeveral,
         document: &DocumentMut,
         pairing: &Pairing,
-        texts: &mut Vec<String>,
-    ) -> Result<Vec<Option<Scene>>, SceneError> {
-        let mut scenes = Vec::new();
+    ) -> Result<(Vec<Option<Scene>>, Vec<String>), SceneError> {
+        let (mut scenes, mut told) = (Vec::new(), Vec::new());
         for (number, bearing) in raw.bearing.iter().enumerate() {
             let sliding = pairing.spring.as_ref().filter(|spring| spring.bearing == number);
-            let found = self.scene_of(bearing, document, sliding.map(|spring| spring.force));
-            match found {
+            match self.scene_of(bearing, document, sliding.map(|spring| spring.force)) {
                 Ok(scene) => scenes.push(Some(scene)),
                 Err(SceneError::Invalid { problems, .. }) => {
-                    let new = problems.into_iter().filter(|p| !texts.contains(p)).collect::<Vec<_>>();
-                    texts.extend(new);
+                    for problem in problems {
+                        if !told.contains(&problem) {
+                            told.push(problem);
+                        }
+                    }
                     scenes.push(None);
                 }
                 Err(other) => return Err(other),
             }
         }
-        Ok(scenes)
+        Ok((scenes, told))
     }
 
     /// The scene of a bearing, whose outer ring may be pressed by a spring, N.
@@ -163,20 +189,37 @@ impl Composer<'_> {
     ) -> Result<Scene, SceneError> {
         self.made(bearing, |document| {
             let orientation = bearing.orientation().unwrap_or(Orientation::PlusZ);
-            OF_LIST.iter().filter(|name| **name != "bearing").for_each(|name| {
-                document.remove(name);
-            });
+            OF_LIST
+                .iter()
+                .filter(|name| **name != "bearing")
+                .for_each(|name| {
+                    document.remove(name);
+                });
             copy_shared(list, document, &ON_SHAFT);
             if let Some(azimuth) = &bearing.first_ball_azimuth {
                 let own = orientation.turned_angle(azimuth.si());
-                set(document, "bearing.first_ball_azimuth", &format!("\"{own:?} rad\""));
+                set(
+                    document,
+                    "bearing.first_ball_azimuth",
+                    &format!("\"{own:?} rad\""),
+                );
             }
             turn_weight(document, orientation);
             turn_speed(document, orientation);
             if let Some(force) = spring {
-                set(document, "effects.spring_preload.force", &format!("\"{force:?} N\""));
+                set(
+                    document,
+                    "effects.spring_preload.force",
+                    &format!("\"{force:?} N\""),
+                );
             }
-            for (key, unit) in [("x", "m"), ("y", "m"), ("z", "m"), ("tilt_x", "rad"), ("tilt_y", "rad")] {
+            for (key, unit) in [
+                ("x", "m"),
+                ("y", "m"),
+                ("z", "m"),
+                ("tilt_x", "rad"),
+                ("tilt_y", "rad"),
+            ] {
                 set(document, &format!("shaft.{key}"), &format!("\"0 {unit}\""));
             }
             set(document, "shaft.load_point", "\"0 m\"");
@@ -206,11 +249,7 @@ impl Composer<'_> {
     }
 
     /// The scene of a type file and of what `change` makes of the tables that all bearings share.
-    fn made(
-        &self,
-        bearing: &RawMounted,
-        change: impl FnOnce(&mut DocumentMut),
-    ) -> Result<Scene, SceneError> {
+    fn made(&self, bearing: &RawMounted, change: impl FnOnce(&mut DocumentMut)) -> Result<Scene, SceneError> {
         let is_shared = |names: &[String]| {
             let of_shaft = names.len() == 2 && names[0] == "effects" && ON_SHAFT.contains(&names[1].as_str());
             !of_shaft && !names.first().is_some_and(|name| OF_LIST.contains(&name.as_str()))
@@ -251,6 +290,18 @@ impl Composer<'_> {
                 problems: vec![problem],
             },
         }
+    }
+}
+
+/// Checks what is of the list alone.
+fn check_list(raw: &RawSeveral, problems: &mut Problems) {
+    raw.refuse(problems);
+    check_loads(raw, problems);
+    for (number, bearing) in (1..).zip(&raw.bearing) {
+        bearing.check(number, problems);
+    }
+    if raw.bearing.is_empty() {
+        problems.add("bearing is an empty list; expected at least one table [[bearing]]");
     }
 }
 
@@ -314,7 +365,11 @@ fn turn_weight(document: &mut DocumentMut, orientation: Orientation) {
     let of = |value: &Value| value.as_float().or_else(|| value.as_integer().map(|i| i as f64));
     let numbers: Vec<f64> = direction.iter().filter_map(of).collect();
     if let [x, y, z] = numbers[..] {
-        *direction = orientation.turned_vector([x, y, z]).map(|d| d + 0.0).into_iter().collect();
+        *direction = orientation
+            .turned_vector([x, y, z])
+            .map(|d| d + 0.0)
+            .into_iter()
+            .collect();
     }
 }
 
@@ -341,17 +396,15 @@ fn turn_speed(document: &mut DocumentMut, orientation: Orientation) {
 /// Speeds in the frame of the shaft of those of a bearing, or back.
 pub fn turn_speeds(speeds: &mut dynamics::kinematics::RingSpeeds, orientation: Orientation) {
     for speed in [&mut speeds.inner, &mut speeds.outer] {
-        speed.values.iter_mut().for_each(|w| *w = orientation.turned_angle(*w));
+        speed
+            .values
+            .iter_mut()
+            .for_each(|w| *w = orientation.turned_angle(*w));
     }
 }
 
 /// Bearings lie on the shaft.
-fn check_ends(
-    raw: &[RawMounted],
-    scenes: &[Option<Scene>],
-    shaft: &CommonShaft,
-    problems: &mut Problems,
-) {
+fn check_ends(raw: &[RawMounted], scenes: &[Option<Scene>], shaft: &CommonShaft, problems: &mut Problems) {
     let ([first, last], text) = shaft.ends();
     for (bearing, scene) in raw.iter().zip(scenes) {
         let Some(scene) = scene else { continue };
@@ -363,7 +416,8 @@ fn check_ends(
         let at = bearing.position.si();
         if at - half < first || at + half > last {
             problems.add(format!(
-                "bearing.position of {:?} is {}: with its width of {:.3} mm it reaches beyond the shaft; expected {text}",
+                "bearing.position of {:?} is {}: with its width of {:.3} mm it reaches beyond the shaft; expected \
+                 {text}",
                 bearing.name,
                 bearing.position,
                 1e3 * scene.bearing.width

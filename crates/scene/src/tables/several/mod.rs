@@ -5,11 +5,11 @@
 //! ```
 //!
 //! Each bearing is a scene of its own ([`compose`]): the tables of its type file with those of the scene that all
-//! bearings have, such as `[solver]` and `[effects.gravity]`. It stands in its own frame, with the shaft prescribed. What
-//! loads the shaft is kept apart. So every check of a bearing's tables is that of a scene with one bearing.
+//! bearings have, such as `[solver]` and `[effects.gravity]`. It stands in its own frame, with the shaft prescribed.
+//! What loads the shaft is kept apart. So every check of a bearing's tables is that of a scene with one bearing.
 //!
-//! Positions count along the shaft. That of a bearing is the position of the plane of its inner groove centres, to which
-//! the displacements of a scene with one bearing refer too.
+//! Positions count along the shaft. That of a bearing is the position of the plane of its inner groove centres, to
+//! which the displacements of a scene with one bearing refer too.
 
 mod compose;
 mod mounted;
@@ -28,10 +28,10 @@ use toml_edit::DocumentMut;
 use self::compose::Composer;
 pub use self::mounted::BearingOnShaft;
 use self::mounted::RawMounted;
-pub use self::pairing::{Pairing, SpringPairing};
 use self::pairing::RawPairing;
-pub use self::shaft::{CommonShaft, RigidShaft, ShaftKind, ShaftLoad};
+pub use self::pairing::{Pairing, SpringPairing};
 use self::shaft::RawCommonShaft;
+pub use self::shaft::{CommonShaft, RigidShaft, ShaftKind, ShaftLoad};
 use super::messages::Messages;
 use super::ring::MeshFiles;
 use super::sweep::{Analysis, RawStatic, RawSweep};
@@ -51,7 +51,10 @@ const IN_BEARINGS: [&str; 6] = [
 
 /// As typed; tables of bearings are read with their types.
 #[derive(Debug, Deserialize)]
-#[serde(deny_unknown_fields, expecting = "the tables of a scene with a list of bearings")]
+#[serde(
+    deny_unknown_fields,
+    expecting = "the tables of a scene with a list of bearings"
+)]
 struct RawSeveral {
     title: Option<String>,
     #[serde(rename = "include")]
@@ -164,7 +167,10 @@ impl AnyScene {
         };
         let document = match messages.document(&whole.text) {
             Ok(document) if is_list(&document) => document,
-            _ => return Scene::parse_one(text, path, overrides, mesh_files).map(|s| AnyScene::One(Box::new(s))),
+            _ => {
+                return Scene::parse_one(text, path, overrides, mesh_files)
+                    .map(|s| AnyScene::One(Box::new(s)));
+            }
         };
         let composer = Composer {
             path,
@@ -254,9 +260,7 @@ impl RawSeveral {
                 "spring_preload" => "write [pairing] with spring and sliding",
                 _ => "remove it, or give one table [bearing]",
             };
-            problems.add(format!(
-                "effects.{name} is not for a list of bearings; {instead}"
-            ));
+            problems.add(format!("effects.{name} is not for a list of bearings; {instead}"));
         }
     }
 

@@ -8,7 +8,10 @@ use super::super::Scene;
 
 /// As typed.
 #[derive(Debug, Deserialize)]
-#[serde(deny_unknown_fields, expecting = "a table [[bearing]] with name, position, orientation and type")]
+#[serde(
+    deny_unknown_fields,
+    expecting = "a table [[bearing]] with name, position, orientation and type"
+)]
 pub struct RawMounted {
     pub name: String,
     pub position: Quantity<LENGTH>,

@@ -13,7 +13,10 @@ use super::mounted::RawMounted;
 
 /// As typed.
 #[derive(Debug, Deserialize)]
-#[serde(deny_unknown_fields, expecting = "the table [pairing] with offset, or with spring and sliding")]
+#[serde(
+    deny_unknown_fields,
+    expecting = "the table [pairing] with offset, or with spring and sliding"
+)]
 pub struct RawPairing {
     offset: Option<Quantity<LENGTH>>,
     spring: Option<Quantity<FORCE>>,
@@ -63,10 +66,13 @@ impl RawPairing {
             }
         }
         if self.offset.is_some() && self.spring.is_some() {
-            problems.add("pairing has both offset and spring; keep the one that presses the bearings together");
+            problems
+                .add("pairing has both offset and spring; keep the one that presses the bearings together");
         }
         if self.offset.is_none() && self.spring.is_none() {
-            problems.add("pairing is empty; expected offset = \"8 um\", or spring = \"500 N\" and sliding = \"rear\"");
+            problems.add(
+                "pairing is empty; expected offset = \"8 um\", or spring = \"500 N\" and sliding = \"rear\"",
+            );
         }
         Pairing {
             offset: self.offset.as_ref().map_or(0.0, Quantity::si),

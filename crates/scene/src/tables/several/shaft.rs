@@ -3,9 +3,7 @@
 use assembly::{BeamSection, BeamShaft, PointMass};
 use dynamics::model::MAX_TILT;
 use fem::Material;
-use input::{
-    ANGLE, Clock, DENSITY, FORCE, INERTIA, LENGTH, MASS, MOMENT, Problems, Quantity, STRESS,
-};
+use input::{ANGLE, Clock, DENSITY, FORCE, INERTIA, LENGTH, MASS, MOMENT, Problems, Quantity, STRESS};
 use serde::Deserialize;
 
 use super::super::shaft::{Motion, RawMotion};
@@ -34,7 +32,10 @@ pub struct RawCommonShaft {
 
 /// As typed: `mass` of a rigid shaft, or a list of tables `[[shaft.mass]]`.
 #[derive(Debug, Deserialize)]
-#[serde(untagged, expecting = "a mass such as \"2 kg\", or tables [[shaft.mass]] with position and mass")]
+#[serde(
+    untagged,
+    expecting = "a mass such as \"2 kg\", or tables [[shaft.mass]] with position and mass"
+)]
 enum RawMasses {
     Whole(Quantity<MASS>),
     Points(Vec<RawPointMass>),
@@ -42,7 +43,10 @@ enum RawMasses {
 
 /// As typed.
 #[derive(Debug, Deserialize)]
-#[serde(deny_unknown_fields, expecting = "young_modulus, poisson_ratio and density of the shaft")]
+#[serde(
+    deny_unknown_fields,
+    expecting = "young_modulus, poisson_ratio and density of the shaft"
+)]
 struct RawSteel {
     young_modulus: Quantity<STRESS>,
     poisson_ratio: f64,
@@ -176,7 +180,9 @@ impl RawCommonShaft {
             ("element_length", self.element_length.is_some()),
         ];
         for (key, _) in beam_only.iter().filter(|(_, is_there)| *is_there) {
-            problems.add(format!("shaft.{key} is for shaft.model = \"beam\"; remove it, or write \"beam\""));
+            problems.add(format!(
+                "shaft.{key} is for shaft.model = \"beam\"; remove it, or write \"beam\""
+            ));
         }
         let missing: Vec<&str> = [
             ("x", self.x.is_none()),
@@ -190,16 +196,29 @@ impl RawCommonShaft {
         .collect();
         if !missing.is_empty() {
             problems.add(format!(
-                "shaft lacks {}; a rigid shaft needs all of x, y, z, tilt_x and tilt_y: \"free\", \"locked\" or a value",
+                "shaft lacks {}; a rigid shaft needs all of x, y, z, tilt_x and tilt_y: \"free\", \"locked\" or a \
+                 value",
                 missing.join(", ")
             ));
         }
+        // Without a sound bearing there is no ball to compare with.
+        let largest_ball = if largest_ball > 0.0 {
+            largest_ball
+        } else {
+            f64::INFINITY
+        };
         let rule = "a prescribed displacement must be less than a ball radius";
         for (key, motion) in [("shaft.x", &self.x), ("shaft.y", &self.y), ("shaft.z", &self.z)] {
             check_motion(motion, key, 0.5 * largest_ball, rule, problems);
         }
         for (key, motion) in [("shaft.tilt_x", &self.tilt_x), ("shaft.tilt_y", &self.tilt_y)] {
-            check_motion(motion, key, MAX_TILT, "a prescribed tilt must be small, at most 55 mrad", problems);
+            check_motion(
+                motion,
+                key,
+                MAX_TILT,
+                "a prescribed tilt must be small, at most 55 mrad",
+                problems,
+            );
         }
         RigidShaft {
             motions: [
@@ -224,6 +243,40 @@ impl RawCommonShaft {
 
     fn beam(&self, problems: &mut Problems) -> Option<BeamShaft> {
         let before = problems.len();
+        self.refuse_rigid_keys(problems);
+        let Some(steel) = &self.material else {
+            problems.add(
+                "shaft.material is missing; expected { young_modulus = \"207 GPa\", poisson_ratio = 0.3, density = \
+                 \"7800 kg/m3\" }",
+            );
+            return None;
+        };
+        let density = steel.density.si();
+        let material = Material::new(steel.young_modulus.si(), steel.poisson_ratio, density);
+        if let Err(error) = &material {
+            problems.add(format!("shaft.material: {error}"));
+        }
+        let sections = self.sections(problems)?;
+        let length = sections[sections.len() - 1].to - sections[0].from;
+        let longest = self.element_length.as_ref();
+        if let Some(longest) = longest {
+            problems.require(
+                longest.si() > 0.0 && longest.si() >= 1e-3 * length,
+                "shaft.element_length",
+                longest,
+                "expected at least a thousandth of the shaft",
+            );
+        }
+        let material = material.ok()?;
+        (problems.len() == before).then_some(BeamShaft {
+            sections,
+            material,
+            longest_element: longest.map_or(length / ELEMENTS, Quantity::si),
+        })
+    }
+
+    /// Reports keys that only a rigid shaft has.
+    fn refuse_rigid_keys(&self, problems: &mut Problems) {
         let of_rigid = [
             ("x", self.x.is_some()),
             ("y", self.y.is_some()),
@@ -240,48 +293,31 @@ impl RawCommonShaft {
                  remove it, or write [[shaft.mass]]"
             ));
         }
-        let Some(steel) = &self.material else {
-            problems.add(
-                "shaft.material is missing; expected { young_modulus = \"207 GPa\", poisson_ratio = 0.3, density = \
-                 \"7800 kg/m3\" }",
-            );
-            return None;
-        };
-        let density = steel.density.si();
-        let material = Material::new(steel.young_modulus.si(), steel.poisson_ratio, density);
-        if let Err(error) = &material {
-            problems.add(format!("shaft.material: {error}"));
-        }
+    }
+
+    /// The sections of a beam from the lowest z to the highest; at least one.
+    fn sections(&self, problems: &mut Problems) -> Option<Vec<BeamSection>> {
         let mut sections: Vec<(usize, &RawSection)> = (1..).zip(&self.section).collect();
-        if sections.is_empty() {
+        sections
+            .iter()
+            .for_each(|(number, section)| section.check(*number, problems));
+        sections.sort_by(|a, b| a.1.from.si().total_cmp(&b.1.from.si()));
+        let (Some(first), Some(last)) = (sections.first(), sections.last()) else {
             problems.add(
                 "shaft.section is missing; expected at least one table [[shaft.section]] with from, to and outside",
             );
             return None;
-        }
-        sections.iter().for_each(|(number, section)| section.check(*number, problems));
-        sections.sort_by(|a, b| a.1.from.si().total_cmp(&b.1.from.si()));
-        let length = sections[sections.len() - 1].1.to.si() - sections[0].1.from.si();
+        };
+        let length = last.1.to.si() - first.1.from.si();
         for pair in sections.windows(2) {
             check_ends(pair, length, problems);
         }
-        let longest = self.element_length.as_ref();
-        let longest_element = longest.map_or(length / ELEMENTS, Quantity::si);
-        if let Some(longest) = longest {
-            problems.require(
-                longest.si() > 0.0 && longest.si() >= 1e-3 * length,
-                "shaft.element_length",
-                longest,
-                "expected at least a thousandth of the shaft",
-            );
-        }
-        let sections = sections.into_iter().map(|(_, section)| section.section()).collect();
-        let material = material.ok()?;
-        (problems.len() == before).then_some(BeamShaft {
-            sections,
-            material,
-            longest_element,
-        })
+        Some(
+            sections
+                .into_iter()
+                .map(|(_, section)| section.section())
+                .collect(),
+        )
     }
 
     fn masses(&self, problems: &mut Problems) -> Vec<PointMass> {
@@ -310,16 +346,30 @@ impl RawCommonShaft {
     /// Loads and masses lie on the shaft.
     fn check_positions(&self, shaft: &CommonShaft, problems: &mut Problems) {
         let mut places: Vec<(String, &Quantity<LENGTH>)> = Vec::new();
-        places.extend((1..).zip(&self.load).map(|(i, l)| (format!("shaft.load {i}"), &l.position)));
+        places.extend(
+            (1..)
+                .zip(&self.load)
+                .map(|(i, l)| (format!("shaft.load {i}"), &l.position)),
+        );
         if let Some(RawMasses::Points(masses)) = &self.mass {
-            places.extend((1..).zip(masses).map(|(i, m)| (format!("shaft.mass {i}"), &m.position)));
+            places.extend(
+                (1..)
+                    .zip(masses)
+                    .map(|(i, m)| (format!("shaft.mass {i}"), &m.position)),
+            );
         }
-        places.extend(self.load_point.iter().map(|p| ("shaft.load_point".to_string(), p)));
+        places.extend(
+            self.load_point
+                .iter()
+                .map(|p| ("shaft.load_point".to_string(), p)),
+        );
         for (name, position) in places {
             let (ends, text) = shaft.ends();
             let near = SAME_PLACE * (ends[1] - ends[0]);
             if !(ends[0] - near..=ends[1] + near).contains(&position.si()) {
-                problems.add(format!("{name} is at {position}, which is off the shaft; expected {text}"));
+                problems.add(format!(
+                    "{name} is at {position}, which is off the shaft; expected {text}"
+                ));
             }
         }
         for (number, load) in (1..).zip(&self.load) {
@@ -346,7 +396,11 @@ impl CommonShaft {
                 let [first, last] = beam.ends();
                 (
                     [first, last],
-                    format!("{:.3} to {:.3} mm, where its sections are", 1e3 * first, 1e3 * last),
+                    format!(
+                        "{:.3} to {:.3} mm, where its sections are",
+                        1e3 * first,
+                        1e3 * last
+                    ),
                 )
             }
         }
@@ -424,7 +478,10 @@ impl RawLoad {
         ShaftLoad {
             position: self.position.si(),
             force: self.force.as_ref().map_or([0.0; 3], |f| f.each_ref().map(si)),
-            moment: self.moment.as_ref().map_or([0.0; 2], |m| m.each_ref().map(Quantity::si)),
+            moment: self
+                .moment
+                .as_ref()
+                .map_or([0.0; 2], |m| m.each_ref().map(Quantity::si)),
         }
     }
 }
