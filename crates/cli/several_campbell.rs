@@ -24,6 +24,9 @@ use crate::stiffness::draw;
 /// Modes of a beam that are shown where nobody says how many.
 const MODES_OF_BEAM: usize = 10;
 
+/// Share of the shaft in the energy below which a mode is one of balls alone, of which there are many.
+const OF_BALLS: f64 = 0.02;
+
 /// Computes the modes at speeds, rpm, and writes them.
 pub fn campbell(
     scene: SeveralScene,
@@ -108,6 +111,7 @@ fn diagram(
         let mut modes = modes.map_err(Failure::solving).map_err(at)?;
         // Balls that creep back have no frequency.
         modes.retain(|mode| mode.frequency > 0.0 || mode.damping_ratio < GROWS);
+        modes.retain(|mode| mode.shaft_share > OF_BALLS || mode.damping_ratio < GROWS);
         modes.truncate(number);
         let growing = modes.iter().position(|mode| mode.damping_ratio < GROWS);
         warnings.extend(growing.map(|i| format!("{rpm} rpm: mode {} grows by itself", i + 1)));

@@ -6,7 +6,7 @@ use anyhow::{Context, anyhow, ensure};
 use checkpoint::open_regular;
 
 /// Columns of texts. All others hold numbers.
-const TEXTS: [&str; 3] = ["profile", "body", "whirl"];
+const TEXTS: [&str; 4] = ["profile", "body", "whirl", "bearing"];
 /// Columns that must not fall from row to row.
 const STEP: &str = "step";
 const TIME: &str = "time_s";
@@ -91,7 +91,8 @@ impl RowOrder {
         RowOrder {
             step: place(STEP),
             time: place(TIME),
-            ball: place(BALL),
+            // The balls of several bearings begin anew with each.
+            ball: place(BALL).filter(|_| place("bearing").is_none()),
             last: None,
             n_balls: None,
         }
