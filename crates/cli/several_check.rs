@@ -91,8 +91,8 @@ fn print_shaft(scene: &SeveralScene, shaft: &assembly::ShaftBody) {
             let elements = beam.elements(&shaft.nodes);
             let mass: f64 = elements.iter().map(assembly::beam::BeamElement::mass_total).sum();
             print::line(format_args!(
-                "shaft    beam from {:.3} to {:.3} mm, {} elements, {} dofs, {mass:.4} kg, {} loads and {} masses along \
-                 it",
+                "shaft    beam from {:.3} to {:.3} mm, {} elements, {} dofs, {mass:.4} kg, {} loads and {} masses \
+                 along it",
                 1e3 * first,
                 1e3 * last,
                 elements.len(),

@@ -13,8 +13,8 @@
 //!
 //! **Pressing together.** With the faces ground by `offset`, clamping moves the rings of a "+z" bearing against those
 //! of a "-z" bearing by that much. Each gets half of it, as a shift of its inner ring along its own z; how it is
-//! shared matters only where the shaft is held along z. Inner rings (back to back) or outer ones (face to face) give the
-//! same.
+//! shared matters only where the shaft is held along z. Inner rings (back to back) or outer ones (face to face) give
+//! the same.
 
 use dynamics::stiffness::{N_SHAFT, ShaftMatrix};
 

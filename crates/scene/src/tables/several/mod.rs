@@ -219,7 +219,11 @@ impl SeveralScene {
         let point = |text: &str| -> Result<SeveralScene, SceneError> {
             match AnyScene::parse(text, &self.path, &self.type_overrides(), MeshFiles::MayBeMissing)? {
                 AnyScene::Several(scene) => Ok(*scene),
-                AnyScene::One(_) => unreachable!("a point of a list is a list"),
+                AnyScene::One(_) => Err(SceneError::Invalid {
+                    path: self.path.clone(),
+                    overrides: Vec::new(),
+                    problems: vec!["a point of the sweep has one bearing alone; expected a list".to_string()],
+                }),
             }
         };
         sweep.points.iter().map(|p| point(&p.text)).collect()

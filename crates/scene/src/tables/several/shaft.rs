@@ -174,33 +174,7 @@ impl RawCommonShaft {
     }
 
     fn rigid(&self, largest_ball: f64, problems: &mut Problems) -> RigidShaft {
-        let beam_only = [
-            ("section", !self.section.is_empty()),
-            ("material", self.material.is_some()),
-            ("element_length", self.element_length.is_some()),
-        ];
-        for (key, _) in beam_only.iter().filter(|(_, is_there)| *is_there) {
-            problems.add(format!(
-                "shaft.{key} is for shaft.model = \"beam\"; remove it, or write \"beam\""
-            ));
-        }
-        let missing: Vec<&str> = [
-            ("x", self.x.is_none()),
-            ("y", self.y.is_none()),
-            ("z", self.z.is_none()),
-            ("tilt_x", self.tilt_x.is_none()),
-            ("tilt_y", self.tilt_y.is_none()),
-        ]
-        .iter()
-        .filter_map(|(key, is_missing)| is_missing.then_some(*key))
-        .collect();
-        if !missing.is_empty() {
-            problems.add(format!(
-                "shaft lacks {}; a rigid shaft needs all of x, y, z, tilt_x and tilt_y: \"free\", \"locked\" or a \
-                 value",
-                missing.join(", ")
-            ));
-        }
+        self.check_rigid_keys(problems);
         // Without a sound bearing there is no ball to compare with.
         let largest_ball = if largest_ball > 0.0 {
             largest_ball
@@ -238,6 +212,37 @@ impl RawCommonShaft {
             },
             transverse: self.transverse_inertia.as_ref().map_or(0.0, Quantity::si),
             polar: self.polar_inertia.as_ref().map_or(0.0, Quantity::si),
+        }
+    }
+
+    /// Reports keys that only a beam has, and motions that are missing.
+    fn check_rigid_keys(&self, problems: &mut Problems) {
+        let beam_only = [
+            ("section", !self.section.is_empty()),
+            ("material", self.material.is_some()),
+            ("element_length", self.element_length.is_some()),
+        ];
+        for (key, _) in beam_only.iter().filter(|(_, is_there)| *is_there) {
+            problems.add(format!(
+                "shaft.{key} is for shaft.model = \"beam\"; remove it, or write \"beam\""
+            ));
+        }
+        let missing: Vec<&str> = [
+            ("x", self.x.is_none()),
+            ("y", self.y.is_none()),
+            ("z", self.z.is_none()),
+            ("tilt_x", self.tilt_x.is_none()),
+            ("tilt_y", self.tilt_y.is_none()),
+        ]
+        .iter()
+        .filter_map(|(key, is_missing)| is_missing.then_some(*key))
+        .collect();
+        if !missing.is_empty() {
+            problems.add(format!(
+                "shaft lacks {}; a rigid shaft needs all of x, y, z, tilt_x and tilt_y: \"free\", \"locked\" or a \
+                 value",
+                missing.join(", ")
+            ));
         }
     }
 
