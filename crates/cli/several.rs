@@ -59,16 +59,7 @@ pub fn run(scene: &SeveralScene, dir: &Path, start: Instant) -> Result<(), Failu
             none => none.insert(Written::create(scene, &assembly, &solution, dir)?),
         };
         files.append(step as u64, *value, (&assembly, point), &solution)?;
-        let at = column
-            .zip(*value)
-            .map_or(String::new(), |(c, v)| format!("{c} = {v}: "));
-        for (bearing, found) in assembly.bearings.iter().zip(&solution.bearings) {
-            let own = found
-                .warnings
-                .iter()
-                .map(|w| format!("{at}bearing {:?}: {w}", bearing.name));
-            warnings.extend(own);
-        }
+        warnings.extend(warnings_at(&words_of(column, *value), &assembly, &solution));
         iterations += solution.shaft.iterations;
         before = Some(solution);
         progress.advance();
@@ -95,6 +86,23 @@ pub fn run(scene: &SeveralScene, dir: &Path, start: Instant) -> Result<(), Failu
         }
     }
     failure.map_or(Ok(()), Err)
+}
+
+/// What a message on a point of a sweep begins with; empty without a sweep.
+pub fn words_of(column: Option<&str>, value: Option<f64>) -> String {
+    let words = |(column, value): (&str, f64)| format!("{column} = {value}: ");
+    column.zip(value).map_or(String::new(), words)
+}
+
+/// Warnings of all bearings, behind the words on the point.
+pub fn warnings_at(at: &str, assembly: &Assembly, solution: &AssemblySolution) -> Vec<String> {
+    let pairs = assembly.bearings.iter().zip(&solution.bearings);
+    let of = |(bearing, found): (&assembly::MountedBearing, &dynamics::StaticSolution)| {
+        let own = found.warnings.iter();
+        own.map(|w| format!("{at}bearing {:?}: {w}", bearing.name))
+            .collect::<Vec<_>>()
+    };
+    pairs.flat_map(of).collect()
 }
 
 /// The files of a run: tables of all bearings, and a folder for each.

@@ -18,7 +18,7 @@ use scene::{Analysis, SeveralScene, assembly_with_rings, build_assembly};
 
 use crate::campbell::GROWS;
 use crate::progress::Progress;
-use crate::several::{all_doubts, rings, solving};
+use crate::several::{all_doubts, rings, solving, warnings_at};
 use crate::stiffness::draw;
 
 /// Modes of a beam that are shown where nobody says how many.
@@ -116,11 +116,9 @@ fn diagram(
         let growing = modes.iter().position(|mode| mode.damping_ratio < GROWS);
         warnings.extend(growing.map(|i| format!("{rpm} rpm: mode {} grows by itself", i + 1)));
         if !is_warned {
-            for (bearing, of_bearing) in assembly.bearings.iter().zip(&solution.bearings) {
-                let own = of_bearing.warnings.iter();
-                warnings.extend(own.map(|w| format!("from {rpm} rpm on: bearing {:?}: {w}", bearing.name)));
-                is_warned |= !of_bearing.warnings.is_empty();
-            }
+            let found = warnings_at(&format!("from {rpm} rpm on: "), &assembly, &solution);
+            is_warned = !found.is_empty();
+            warnings.extend(found);
         }
         let outer = scene.speed.as_ref().map_or(0.0, |speed| speed.outer.at(0.0));
         found.push(ModesAtSpeed {

@@ -5,8 +5,8 @@
 use std::path::Path;
 
 use anyhow::anyhow;
-use assembly::AssemblySolver;
 use assembly::stiffness::LinearAssembly;
+use assembly::{Assembly, AssemblySolution, AssemblySolver};
 use comm::print;
 use contact::Side;
 use dynamics::DampingLaws;
@@ -17,7 +17,7 @@ use results::survey::say_doubts;
 use scene::{SeveralScene, assembly_with_rings, build_assembly};
 
 use crate::progress::Progress;
-use crate::several::{all_doubts, at_point, column, points, rings, solving, stage_text};
+use crate::several::{all_doubts, at_point, column, points, rings, solving, stage_text, words_of};
 use crate::stiffness::draw;
 
 /// Why there is no damping.
@@ -115,23 +115,29 @@ fn linearise(scene: &SeveralScene) -> Result<SeveralStiffness, Failure> {
                 operating_point: OperatingPoint::new(&solution.bearings[i], speeds),
                 ripple: None,
             });
-            let found = solution.bearings[i]
-                .balls
-                .iter()
-                .all(|ball| ball.inner.force_n == 0.0);
-            if found {
-                let at = column
-                    .zip(*value)
-                    .map_or(String::new(), |(c, v)| format!("{c} = {v}: "));
-                results.warnings.push(format!(
-                    "{at}bearing {:?} carries nothing: its stiffness is 0",
-                    bearing.name
-                ));
-            }
         }
+        results
+            .warnings
+            .extend(unloaded(&words_of(column, *value), &assembly, &solution));
         before = Some(solution);
         progress.advance();
     }
     progress.finish();
     Ok(results)
+}
+
+/// Says which bearings carry nothing.
+fn unloaded(at: &str, assembly: &Assembly, solution: &AssemblySolution) -> Vec<String> {
+    let pairs = assembly.bearings.iter().zip(&solution.bearings);
+    let is_loose =
+        |found: &dynamics::StaticSolution| found.balls.iter().all(|ball| ball.inner.force_n == 0.0);
+    pairs
+        .filter(|(_, found)| is_loose(found))
+        .map(|(bearing, _)| {
+            format!(
+                "{at}bearing {:?} carries nothing: its stiffness is 0",
+                bearing.name
+            )
+        })
+        .collect()
 }
