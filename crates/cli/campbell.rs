@@ -20,16 +20,15 @@ use results::stiffness::require_free;
 use results::survey::say_doubts;
 use scene::{Analysis, AnyScene, Scene, build_model, doubts, model_with_rings};
 
+use crate::linear_figures::draw;
 use crate::progress::Progress;
-use crate::several_campbell;
-use crate::stiffness::{draw, instant, laws, pose_at, require_load};
+use crate::several_campbell::{self, GROWS};
+use crate::stiffness::{instant, laws, pose_at, require_load};
 
 /// Most speeds of a diagram.
 const MOST_SPEEDS: usize = 1000;
 /// Largest speed, rpm: that of scenes.
 const LARGEST_SPEED: f64 = 9.5e5;
-/// Damping ratio below which a mode counts as one that grows: far beyond round-off.
-pub const GROWS: f64 = -1e-8;
 
 /// What the command line asks for.
 #[derive(Debug, Args)]

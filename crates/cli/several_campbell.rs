@@ -16,14 +16,15 @@ use results::stiffness::require_free;
 use results::survey::say_doubts;
 use scene::{Analysis, SeveralScene, assembly_with_rings, build_assembly};
 
-use crate::campbell::GROWS;
+use crate::linear_figures::draw;
 use crate::progress::Progress;
 use crate::several::{all_doubts, rings, solving, warnings_at};
-use crate::stiffness::draw;
 
 /// Modes of a beam that are shown where nobody says how many.
 const MODES_OF_BEAM: usize = 10;
 
+/// Damping ratio below which a mode counts as one that grows: far beyond round-off.
+pub const GROWS: f64 = -1e-8;
 /// Share of the shaft in the energy below which a mode is one of balls alone, of which there are many.
 const OF_BALLS: f64 = 0.02;
 

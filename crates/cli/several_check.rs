@@ -7,7 +7,7 @@ use results::answer;
 use results::failure::Failure;
 use scene::{Analysis, SeveralScene, ShaftKind, build_assembly, have_same_rings};
 
-use crate::check::print_ring;
+use crate::ring_sizes::print_ring;
 use crate::several::all_doubts;
 
 /// Prints what a run would be.

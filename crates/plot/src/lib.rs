@@ -157,7 +157,7 @@ fn named(found: anyhow::Result<Vec<(String, Figure)>>) -> anyhow::Result<Vec<Nam
 /// error.
 pub fn figures(dir: &Path, choice: &Choice) -> Result<Figures, Failure> {
     if several::is_of_several(dir) {
-        let mut drawn = several::figures(dir)?;
+        let mut drawn = named(several::figures(dir))?;
         drawn.extend(linear_figures(dir)?);
         let problems = Vec::new();
         return Ok(Figures { drawn, problems });

@@ -6,7 +6,6 @@ use figure::{Axis, Figure, Series};
 use results::several::{BEARINGS_TABLE, SHAFT_TABLE};
 use results::table::Table;
 
-use super::Named;
 use super::quantity::{MICROMETRE, Unit, points};
 use super::run::axis_of;
 
@@ -29,14 +28,14 @@ pub fn is_of_several(dir: &Path) -> bool {
 }
 
 /// The figures of such a folder.
-pub fn figures(dir: &Path) -> anyhow::Result<Vec<Named>> {
+pub fn figures(dir: &Path) -> anyhow::Result<Vec<(String, Figure)>> {
     let mut found = Vec::new();
     let (Some(shaft), Some(bearings)) = (Table::read(dir, SHAFT_TABLE)?, Table::read(dir, BEARINGS_TABLE)?)
     else {
         return Ok(found);
     };
-    found.push(Named::new("shaft_line", line(&shaft, &bearings)?));
-    found.extend(loads(dir, &bearings)?.map(|figure| Named::new("bearing_loads", figure)));
+    found.push(("shaft_line".to_string(), line(&shaft, &bearings)?));
+    found.extend(loads(dir, &bearings)?.map(|figure| ("bearing_loads".to_string(), figure)));
     Ok(found)
 }
 

@@ -21,8 +21,24 @@ use super::shaft::{CommonShaft, ShaftKind};
 use super::{AnyScene, ON_SHAFT, RawSeveral, SeveralScene, is_plain, set};
 use crate::tables::shaft::Motion;
 
-/// Tables of the list that no bearing has.
-const OF_LIST: [&str; 5] = ["bearing", "shaft", "pairing", "static", "sweep"];
+/// Tables of the list that no bearing has, or that a list is refused with.
+const OF_LIST: [&str; 15] = [
+    "bearing",
+    "shaft",
+    "pairing",
+    "static",
+    "sweep",
+    "quasi_static",
+    "dynamic",
+    "modes",
+    "profiles",
+    "balls",
+    "cage",
+    "probes",
+    "life",
+    "heat",
+    "lubricant",
+];
 /// Tables that a type file may have.
 const OF_TYPE: [&str; 5] = ["bearing", "materials", "contact", "inner", "outer"];
 

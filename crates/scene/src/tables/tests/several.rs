@@ -195,10 +195,12 @@ fn a_list_of_one_bearing_on_a_rigid_shaft_is_the_scene_with_one_table() {
         (&found.materials, &found.contact),
         (&expected.materials, &expected.contact)
     );
-    assert_eq!(
-        (&found.solver, &found.analysis),
-        (&expected.solver, &expected.analysis)
-    );
+    assert_eq!(found.solver, expected.solver);
+    let values = |scene: &Scene| match &scene.analysis {
+        Analysis::Sweep(sweep) => sweep.points.iter().map(|p| p.value).collect::<Vec<_>>(),
+        _ => Vec::new(),
+    };
+    assert_eq!(values(&found), values(&expected));
     // Commands that know no lists take it too.
     assert!(Scene::parse(&text, &lists.0.join("list.toml"), &[], MeshFiles::MayBeMissing).is_ok());
 }
