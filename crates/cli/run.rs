@@ -49,11 +49,7 @@ pub fn run(
     let start = Instant::now();
     let scene = match agree(AnyScene::load(path, overrides).map_err(Failure::from))? {
         AnyScene::One(scene) => *scene,
-        AnyScene::Several(list) => {
-            several::refuse(part.map(|_| "--points"), &list)?;
-            let dir = folder::choose(path, out)?;
-            return several::run(&list, &dir, start).map(|()| dir);
-        }
+        AnyScene::Several(list) => return several::run(&list, out, part.map(|_| "--points"), start),
     };
     if let Some(part) = part {
         part.check(&scene)?;

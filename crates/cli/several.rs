@@ -9,6 +9,7 @@ use comm::Communicator;
 use contact::Side;
 use results::failure::{Failure, agree};
 use results::files::{Files, say_folder};
+use results::folder;
 use results::memory::{Forecasts, require_memory};
 use results::several::{
     SeveralFindings, SeveralSummary, SeveralTables, print_solution, print_sweep_head, print_sweep_point,
@@ -24,8 +25,19 @@ use crate::progress::Progress;
 /// One load case: the swept value (None for a static scene) and its scene.
 pub type SeveralPoint = (Option<f64>, SeveralScene);
 
-/// Runs a scene and returns the folder of its results.
-pub fn run(scene: &SeveralScene, dir: &Path, start: Instant) -> Result<(), Failure> {
+/// Runs a scene and returns the folder of its results; `refused` is an option that is for one bearing.
+pub fn run(
+    scene: &SeveralScene,
+    out: Option<PathBuf>,
+    refused: Option<&str>,
+    start: Instant,
+) -> Result<PathBuf, Failure> {
+    refuse(refused, scene)?;
+    let dir = folder::choose(&scene.path, out)?;
+    run_in(scene, &dir, start).map(|()| dir)
+}
+
+fn run_in(scene: &SeveralScene, dir: &Path, start: Instant) -> Result<(), Failure> {
     require_one_rank()?;
     let points = points(scene)?;
     let mut progress = Progress::new(points.len() as u64);
@@ -56,7 +68,7 @@ pub fn run(scene: &SeveralScene, dir: &Path, start: Instant) -> Result<(), Failu
         // The first solution makes the folder: a scene that has none leaves no files.
         let files = match &mut written {
             Some(files) => files,
-            none => none.insert(Written::create(scene, &assembly, &solution, dir)?),
+            none => none.insert(SeveralFiles::create(scene, &assembly, &solution, dir)?),
         };
         files.append(step as u64, *value, (&assembly, point), &solution)?;
         warnings.extend(warnings_at(&words_of(column, *value), &assembly, &solution));
@@ -106,7 +118,7 @@ pub fn warnings_at(at: &str, assembly: &Assembly, solution: &AssemblySolution) -
 }
 
 /// The files of a run: tables of all bearings, and a folder for each.
-struct Written {
+struct SeveralFiles {
     tables: SeveralTables,
     bearings: Vec<(PathBuf, Files)>,
     /// Snapshots of the last step.
@@ -114,13 +126,13 @@ struct Written {
     column: Option<String>,
 }
 
-impl Written {
+impl SeveralFiles {
     fn create(
         scene: &SeveralScene,
         assembly: &Assembly,
         solution: &AssemblySolution,
         dir: &Path,
-    ) -> Result<Written, Failure> {
+    ) -> Result<SeveralFiles, Failure> {
         std::fs::create_dir_all(dir)
             .map_err(|error| anyhow!("cannot create folder {}: {error}", dir.display()))?;
         say_folder(dir);
@@ -145,7 +157,7 @@ impl Written {
         if column.is_some() {
             print_sweep_head(column.as_deref().unwrap_or_default(), assembly);
         }
-        Ok(Written {
+        Ok(SeveralFiles {
             tables,
             bearings,
             last: Vec::new(),

@@ -61,7 +61,7 @@ fn empty(scene: &SeveralScene, warnings: Vec<String>) -> SeveralStiffness {
     SeveralStiffness {
         bearings,
         position: first_load.unwrap_or(scene.shaft.load_point),
-        speed: speeds.of(Side::Inner).at(0.0),
+        speed: speeds.inner.at(0.0),
         shaft: Vec::new(),
         warnings,
         source,

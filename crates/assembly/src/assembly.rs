@@ -159,11 +159,13 @@ impl AssemblySolver {
             Some(solution) => solution.shaft.displacements.clone(),
             None if assembly.bearings.iter().any(is_flexible) => {
                 let at = vec![0.0; assembly.shaft.n()];
-                self.settle(assembly, Rings::Rigid, &at, None)?.0.displacements
+                self.settle(assembly, SolvedRings::Rigid, &at, None)?
+                    .0
+                    .displacements
             }
             None => vec![0.0; assembly.shaft.n()],
         };
-        let (shaft, bearings) = self.settle(assembly, Rings::AsTheyAre, &at, start)?;
+        let (shaft, bearings) = self.settle(assembly, SolvedRings::AsTheyAre, &at, start)?;
         Ok(AssemblySolution { bearings, shaft })
     }
 
@@ -171,7 +173,7 @@ impl AssemblySolver {
     fn settle(
         &mut self,
         assembly: &mut Assembly,
-        rings: Rings,
+        rings: SolvedRings,
         at: &[f64],
         start: Option<&AssemblySolution>,
     ) -> Result<(Settled, Vec<StaticSolution>), AssemblyError> {
@@ -198,8 +200,8 @@ impl AssemblySolver {
         let mut supports = BearingSupports {
             bearings: bearings.collect(),
             solvers: match rings {
-                Rings::Rigid => &mut self.rigid,
-                Rings::AsTheyAre => &mut self.solvers,
+                SolvedRings::Rigid => &mut self.rigid,
+                SolvedRings::AsTheyAre => &mut self.solvers,
             },
         };
         let settled = settle(&problem, &mut supports, at)?;
@@ -211,7 +213,7 @@ impl AssemblySolver {
 
 /// With which rings.
 #[derive(Clone, Copy)]
-enum Rings {
+enum SolvedRings {
     Rigid,
     AsTheyAre,
 }

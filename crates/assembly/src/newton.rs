@@ -85,7 +85,7 @@ pub struct Settled {
 }
 
 /// The equations at a point.
-struct Point {
+struct Iterate {
     q: Vec<f64>,
     answers: Vec<Answer>,
     residual: Vec<f64>,
@@ -134,7 +134,7 @@ pub fn settle(
     })
 }
 
-fn is_settled(at: &Point, history: &[f64]) -> bool {
+fn is_settled(at: &Iterate, history: &[f64]) -> bool {
     if at.error <= at.limit {
         return true;
     }
@@ -153,7 +153,7 @@ impl Problem<'_> {
         }
     }
 
-    fn evaluate(&self, supports: &mut dyn Supports, q: Vec<f64>) -> Result<Point, AssemblyError> {
+    fn evaluate(&self, supports: &mut dyn Supports, q: Vec<f64>) -> Result<Iterate, AssemblyError> {
         let n = self.shaft.n();
         let elastic = times(n, &self.shaft.stiffness, &q);
         let mut residual: Vec<f64> = self.load.iter().zip(&elastic).map(|(f, k)| f - k).collect();
@@ -182,7 +182,7 @@ impl Problem<'_> {
         let free = (0..n).filter(|&i| self.shaft.held[i].is_none());
         let error = free.fold(0.0f64, |m, i| m.max(residual[i].abs() * self.length(i))) / largest;
         let round_off = 16.0 * f64::EPSILON * self.cancelled(&q) / largest;
-        Ok(Point {
+        Ok(Iterate {
             q,
             answers,
             residual,
@@ -202,7 +202,7 @@ impl Problem<'_> {
     }
 
     /// Tangent over all dofs, row-major.
-    fn tangent(&self, at: &Point) -> Vec<f64> {
+    fn tangent(&self, at: &Iterate) -> Vec<f64> {
         let n = self.shaft.n();
         let mut tangent = self.shaft.stiffness.clone();
         for (mount, answer) in self.mounts.iter().zip(&at.answers) {
@@ -213,7 +213,7 @@ impl Problem<'_> {
     }
 
     /// Newton's step, cut to the longest one.
-    fn step(&self, at: &Point) -> Result<Vec<f64>, AssemblyError> {
+    fn step(&self, at: &Iterate) -> Result<Vec<f64>, AssemblyError> {
         let n = self.shaft.n();
         let free: Vec<usize> = (0..n).filter(|&i| self.shaft.held[i].is_none()).collect();
         let tangent = self.tangent(at);
@@ -240,8 +240,13 @@ impl Problem<'_> {
     }
 
     /// The point along a step to go on from.
-    fn search(&self, supports: &mut dyn Supports, from: Point, step: &[f64]) -> Result<Point, AssemblyError> {
-        let slope = |at: &Point| -> f64 { -at.residual.iter().zip(step).map(|(r, p)| r * p).sum::<f64>() };
+    fn search(
+        &self,
+        supports: &mut dyn Supports,
+        from: Iterate,
+        step: &[f64],
+    ) -> Result<Iterate, AssemblyError> {
+        let slope = |at: &Iterate| -> f64 { -at.residual.iter().zip(step).map(|(r, p)| r * p).sum::<f64>() };
         let first = slope(&from);
         let (mut low, mut high) = ((0.0, first), None);
         let mut share = 1.0;
@@ -281,7 +286,7 @@ impl Problem<'_> {
     }
 
     /// Fails where nothing holds a rigid motion of the shaft.
-    fn check_held(&self, at: &Point) -> Result<(), AssemblyError> {
+    fn check_held(&self, at: &Iterate) -> Result<(), AssemblyError> {
         let mut stiffness = [[0.0; N_SHAFT]; N_SHAFT];
         for (mount, answer) in self.mounts.iter().zip(&at.answers) {
             let turned = mount.place.orientation.turned_matrix(&answer.stiffness);

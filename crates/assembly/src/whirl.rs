@@ -69,7 +69,7 @@ pub fn equations(
             row[i] = 1.0;
             bearing.place.orientation.turned(row)
         });
-        let at = Block {
+        let at = BearingRows {
             motion: product(&turn, &mount.station.motion),
             shaft: mount.station.first,
             balls: first,
@@ -95,13 +95,13 @@ pub fn equations(
 }
 
 /// Where the dofs of a bearing are among all rows: its axis point moves by `motion` times five dofs of the shaft.
-struct Block {
+struct BearingRows {
     motion: [[f64; N_SHAFT]; N_SHAFT],
     shaft: usize,
     balls: usize,
 }
 
-impl Block {
+impl BearingRows {
     /// Adds a matrix of `m` rows over the axis point and the balls to one of `n` rows.
     fn add(&self, m: usize, own: &[f64], n: usize, to: &mut [f64]) {
         // Of a row of the bearing: the rows among all, and their factors.

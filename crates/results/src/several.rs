@@ -78,7 +78,7 @@ impl SeveralTables {
                 turned.azimuth_rad = in_one_turn(mounted.place.orientation.turned_angle(ball.azimuth_rad));
                 balls.push(row([vec![mounted.name.clone()], ball_cells(i, &turned)].concat()));
             }
-            let state = BearingState::new(assembly, solution, number_of);
+            let state = StateOnShaft::new(assembly, solution, number_of);
             let numbers = std::iter::once(mounted.place.position)
                 .chain(state.displacement)
                 .chain(state.force)
@@ -124,7 +124,7 @@ fn line(assembly: &Assembly, solution: &AssemblySolution) -> Vec<(f64, [f64; N_S
 }
 
 /// A bearing in the frame of the shaft.
-pub struct BearingState {
+pub struct StateOnShaft {
     /// Displacement of the shaft at its place, m and rad.
     pub displacement: [f64; N_SHAFT],
     /// Force, N, and moment, N m, by which it pushes the shaft at its place.
@@ -135,13 +135,13 @@ pub struct BearingState {
     pub loaded_balls: usize,
 }
 
-impl BearingState {
+impl StateOnShaft {
     /// Of a bearing in a solution, by its number.
-    pub fn new(assembly: &Assembly, solution: &AssemblySolution, number: usize) -> BearingState {
+    pub fn new(assembly: &Assembly, solution: &AssemblySolution, number: usize) -> StateOnShaft {
         let station = assembly.shaft.station(assembly.bearings[number].place.position);
         let balls = &solution.bearings[number].balls;
         let largest = balls.iter().fold(0.0f64, |m, b| m.max(b.inner.force_n));
-        BearingState {
+        StateOnShaft {
             displacement: station.displacement(&solution.shaft.displacements),
             force: assembly.force_on_shaft(number, solution).map(|f| f + 0.0),
             largest_ball_force: largest,
@@ -221,7 +221,7 @@ impl SeveralSummary {
     ) -> SeveralSummary {
         let split = |v: [f64; N_SHAFT]| ([v[0], v[1], v[2]], [v[3], v[4]]);
         let bearing = |(number, mounted): (usize, &scene::BearingOnShaft)| {
-            let state = BearingState::new(assembly, solution, number);
+            let state = StateOnShaft::new(assembly, solution, number);
             let (displacement_m, rotation_rad) = split(state.displacement);
             let (force_on_shaft_n, moment_on_shaft_n_m) = split(state.force);
             let summary = BearingSummary {
@@ -305,7 +305,7 @@ pub fn print_solution(assembly: &Assembly, solution: &AssemblySolution) {
                     N   balls"
     ));
     for (number, mounted) in assembly.bearings.iter().enumerate() {
-        let state = BearingState::new(assembly, solution, number);
+        let state = StateOnShaft::new(assembly, solution, number);
         let [x, y, z, a, b] = state.displacement.map(|q| 1e6 * q);
         let [fx, fy, fz, ..] = state.force;
         print::line(format_args!(
@@ -369,7 +369,7 @@ pub fn print_sweep_head(column: &str, assembly: &Assembly) {
 pub fn print_sweep_point(value: f64, assembly: &Assembly, solution: &AssemblySolution) {
     let cells: Vec<String> = (0..assembly.bearings.len())
         .map(|i| {
-            let state = BearingState::new(assembly, solution, i);
+            let state = StateOnShaft::new(assembly, solution, i);
             format!("{:14.2} ({:5})", state.largest_ball_force, state.loaded_balls)
         })
         .collect();

@@ -25,7 +25,7 @@ pub struct RawCommonShaft {
     material: Option<RawSteel>,
     element_length: Option<Quantity<LENGTH>>,
     #[serde(default)]
-    section: Vec<RawSection>,
+    section: Vec<RawShaftSection>,
     #[serde(default)]
     load: Vec<RawLoad>,
 }
@@ -56,7 +56,7 @@ struct RawSteel {
 /// As typed.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields, expecting = "a table [[shaft.section]]")]
-struct RawSection {
+struct RawShaftSection {
     from: Quantity<LENGTH>,
     to: Quantity<LENGTH>,
     outside: Quantity<LENGTH>,
@@ -302,7 +302,7 @@ impl RawCommonShaft {
 
     /// The sections of a beam from the lowest z to the highest; at least one.
     fn sections(&self, problems: &mut Problems) -> Option<Vec<BeamSection>> {
-        let mut sections: Vec<(usize, &RawSection)> = (1..).zip(&self.section).collect();
+        let mut sections: Vec<(usize, &RawShaftSection)> = (1..).zip(&self.section).collect();
         sections
             .iter()
             .for_each(|(number, section)| section.check(*number, problems));
@@ -429,7 +429,7 @@ fn check_motion<const KIND: usize>(
     }
 }
 
-fn check_ends(pair: &[(usize, &RawSection)], length: f64, problems: &mut Problems) {
+fn check_ends(pair: &[(usize, &RawShaftSection)], length: f64, problems: &mut Problems) {
     let [(a, first), (b, second)] = [pair[0], pair[1]];
     let gap = second.from.si() - first.to.si();
     if gap.abs() <= SAME_PLACE * length {
@@ -443,7 +443,7 @@ fn check_ends(pair: &[(usize, &RawSection)], length: f64, problems: &mut Problem
     ));
 }
 
-impl RawSection {
+impl RawShaftSection {
     fn check(&self, number: usize, problems: &mut Problems) {
         problems.require(
             self.to.si() > self.from.si(),
