@@ -10,9 +10,8 @@ pub const REST: &str = include_str!("example.toml");
 /// Motion, of which the tables that say more than those at rest are shown.
 pub const MOTION: &str = include_str!("example_dynamic.toml");
 /// All other tables.
-pub const OTHERS: [&str; 17] = [
+pub const OTHERS: [&str; 16] = [
     include_str!("example_include.toml"),
-    include_str!("example_several.toml"),
     include_str!("example_catalogue.toml"),
     include_str!("example_materials.toml"),
     include_str!("example_balls.toml"),
