@@ -43,6 +43,7 @@ mod revolve_like;
 mod rigid_ring;
 mod schedules;
 mod sectors;
+mod several;
 mod signals;
 mod small_files;
 mod statics;

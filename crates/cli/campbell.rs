@@ -18,17 +18,17 @@ use results::campbell::{CAMPBELL_LINES, CAMPBELL_TABLE, ModesAtSpeed, print_camp
 use results::failure::Failure;
 use results::stiffness::require_free;
 use results::survey::say_doubts;
-use scene::{Analysis, Scene, build_model, doubts, model_with_rings};
+use scene::{Analysis, AnyScene, Scene, build_model, doubts, model_with_rings};
 
+use crate::linear_figures::draw;
 use crate::progress::Progress;
-use crate::stiffness::{draw, instant, laws, pose_at, require_load};
+use crate::several_campbell::{self, GROWS};
+use crate::stiffness::{instant, laws, pose_at, require_load};
 
 /// Most speeds of a diagram.
 const MOST_SPEEDS: usize = 1000;
 /// Largest speed, rpm: that of scenes.
 const LARGEST_SPEED: f64 = 9.5e5;
-/// Damping ratio below which a mode counts as one that grows: far beyond round-off.
-const GROWS: f64 = -1e-8;
 
 /// What the command line asks for.
 #[derive(Debug, Args)]
@@ -94,7 +94,13 @@ fn parse_speeds(text: &str) -> Result<SpeedRange, String> {
 
 /// Computes the modes and writes them.
 pub fn campbell(command: &CampbellCommand) -> Result<(), Failure> {
-    let scene = Scene::load(&command.scene, &command.overrides)?;
+    let scene = match AnyScene::load(&command.scene, &command.overrides)? {
+        AnyScene::One(scene) => *scene,
+        AnyScene::Several(list) => {
+            let speeds = command.speeds.values();
+            return several_campbell::campbell(*list, &speeds, command.number, &command.out);
+        }
+    };
     if let Analysis::Sweep(sweep) = &scene.analysis {
         return Err(Failure::User(anyhow!(
             "{} has a [sweep] of {}; expected one operating point, so replace [sweep] by [static]",

@@ -6,22 +6,27 @@ use std::path::Path;
 use comm::print;
 use contact::{BearingGeometry, Side};
 use dynamics::kinematics::Kinematics;
-use dynamics::statics::settings;
-use dynamics::{Model, MotionMemory, Numbers, Prepared, RingMemory, Substructures};
+
+use dynamics::{Model, MotionMemory, RingMemory};
 use results::answer;
 use results::disk::{self, Forecast};
 use results::failure::Failure;
 use results::memory::{bound, forecast};
 use results::probes::Probes;
-use scene::{Analysis, Scene, build_model, doubts};
+use scene::{Analysis, AnyScene, Scene, build_model, doubts};
 
 use crate::modes;
-use crate::rank_table::{self, RingOnRanks};
+use crate::rank_table;
+use crate::ring_sizes::print_ring;
 use crate::rules;
+use crate::several_check;
 
 /// Reads and checks the scene and its meshes and prints effects, sizes and forecasts.
 pub fn check(path: &Path, overrides: &[String]) -> Result<(), Failure> {
-    let scene = Scene::load(path, overrides)?;
+    let scene = match AnyScene::load(path, overrides)? {
+        AnyScene::One(scene) => *scene,
+        AnyScene::Several(list) => return several_check::check(&list),
+    };
     let (model, tags) = build_model(&scene)?;
     let probes = Probes::new(&scene, &model, &tags)?;
     print::line(format_args!(
@@ -214,72 +219,6 @@ fn print_probes(scene: &Scene, probes: Option<&Probes>) {
             c.name,
             c.ball,
             c.ring.key()
-        ));
-    }
-}
-
-/// Memory of one ring, what its motion holds when that is known, and on ranks when it is in sectors.
-type RingForecast = (RingMemory, Option<MotionMemory>, Option<RingOnRanks>);
-
-/// Prints one ring and returns the forecast of its memory; None for a rigid ring.
-fn print_ring(model: &Model, side: Side) -> Result<Option<RingForecast>, Failure> {
-    let stiffness = model.hertz[side.index()].stiffness / 10f64.powf(4.5);
-    let Some(ring) = model.ring(side) else {
-        print::line(format_args!(
-            "{}    rigid, Hertz stiffness {stiffness:.4e} N/mm^1.5, no dofs",
-            side.name()
-        ));
-        return Ok(None);
-    };
-    let mesh = &ring.mesh;
-    let prepared = Prepared::new(ring, settings(model, side), Numbers::Pattern).map_err(Failure::solving)?;
-    let prepared = prepared.stiffness;
-    let memory = prepared.memory();
-    print::line(format_args!(
-        "{}    {} {}, {} nodes, {} dofs; Hertz stiffness {stiffness:.4e} N/mm^1.5; factor {:.1} MB, {:.2e} flops, \
-         peak {:.1} MB",
-        side.name(),
-        mesh.n_elements(),
-        mesh.kind.name(),
-        mesh.n_nodes(),
-        mesh.n_dofs(),
-        prepared.factor_bytes() as f64 / 1e6,
-        prepared.flops(),
-        (memory.mesh + memory.making()) as f64 / 1e6
-    ));
-    print::line(format_args!(
-        "         {}",
-        match ring.periodicity() {
-            Ok(periodicity) => format!(
-                "rotationally periodic, {} equal sectors, to {:.1e} m; solver {}",
-                periodicity.n_sectors(),
-                periodicity.deviation(),
-                prepared.note()
-            ),
-            Err(_) if prepared.solver_name() == "cyclic" =>
-                format!("rotationally periodic up to a defect; solver {}", prepared.note()),
-            Err(reason) => format!("not rotationally periodic: {reason}"),
-        }
-    ));
-    if let Some(parts) = prepared.parts() {
-        print_sectors(parts);
-    }
-    let on_ranks = prepared.parts().map(|parts| RingOnRanks::new(model, ring, parts));
-    Ok(Some((memory, prepared.motion(), on_ranks)))
-}
-
-/// Prints the balance of the sectors.
-fn print_sectors(parts: &Substructures) {
-    print::line(format_args!("         {}", parts.note()));
-    let costs = parts.symbolic().costs();
-    let whole: f64 = costs.iter().map(|c| c.flops).sum();
-    for (s, cost) in costs.iter().enumerate() {
-        print::line(format_args!(
-            "         sector {s}: {} elements, {} dofs, factor {:.1} MB, {:.1} % of the flops",
-            cost.n_elements,
-            cost.n_rows,
-            cost.factor_bytes as f64 / 1e6,
-            100.0 * cost.flops / whole
         ));
     }
 }

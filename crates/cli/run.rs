@@ -17,7 +17,7 @@ use results::snapshot::Snapshot;
 use results::summary::{Costs, Findings, Summary};
 use results::survey::build_surveyed;
 use results::{console, fields, folder, seat};
-use scene::{Analysis, Backend, Scene, model_with_rings, rolling};
+use scene::{Analysis, AnyScene, Backend, Scene, have_same_rings, model_with_rings, rolling};
 
 use crate::modes;
 use crate::motion;
@@ -25,6 +25,7 @@ use crate::options::{Limits, Part};
 use crate::progress::Progress;
 use crate::quasi_static;
 use crate::remarks::Remarks;
+use crate::several;
 
 /// One load case of a run: the swept value (None for a static scene) and its scene.
 pub type Point = (Option<f64>, Scene);
@@ -46,7 +47,10 @@ pub fn run(
     part: Option<Part>,
 ) -> Result<PathBuf, Failure> {
     let start = Instant::now();
-    let scene = agree(Scene::load(path, overrides).map_err(Failure::from))?;
+    let scene = match agree(AnyScene::load(path, overrides).map_err(Failure::from))? {
+        AnyScene::One(scene) => *scene,
+        AnyScene::Several(list) => return several::run(&list, out, part.map(|_| "--points"), start),
+    };
     if let Some(part) = part {
         part.check(&scene)?;
     }
@@ -239,7 +243,7 @@ pub fn points(scene: &Scene) -> Result<Vec<Point>, Failure> {
                 sweep.key
             )));
         }
-        if !same_rings(scene, point) {
+        if !have_same_rings(scene, point) {
             return Err(Failure::User(anyhow!(
                 "{}: [sweep] key {} changes the rings themselves; sweep loads, contacts, supports of the shaft or the \
                  ball phase, or run one scene per value with --set",
@@ -249,25 +253,6 @@ pub fn points(scene: &Scene) -> Result<Vec<Point>, Failure> {
         }
     }
     Ok(sweep.points.iter().map(|p| Some(p.value)).zip(scenes).collect())
-}
-
-/// Whether two scenes have the same finite-element rings, so that one factorisation serves both.
-fn same_rings(a: &Scene, b: &Scene) -> bool {
-    let grooves = |s: &Scene| {
-        let b = &s.bearing;
-        [
-            b.inner_raceway_diameter,
-            b.outer_raceway_diameter,
-            b.inner_groove_radius,
-            b.outer_groove_radius,
-        ]
-    };
-    let same_bodies = a.inner.body == b.inner.body && a.outer.body == b.outer.body;
-    let rigid = a.inner.body.is_none() && a.outer.body.is_none();
-    same_bodies
-        && a.body == b.body
-        && a.contact.mode == b.contact.mode
-        && (rigid || (a.materials.rings == b.materials.rings && grooves(a) == grooves(b)))
 }
 
 /// What is computed at a point, for progress.

@@ -5,7 +5,7 @@
 //! places of the balls of that time, without inertia.
 
 use std::f64::consts::TAU;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use anyhow::anyhow;
 use clap::Args;
@@ -20,11 +20,12 @@ use results::stiffness::{
     require_free,
 };
 use results::survey::say_doubts;
-use results::whole::write_picture;
-use scene::{Analysis, Scene, build_model, doubts, model_with_rings, rolling};
+use scene::{Analysis, AnyScene, Scene, build_model, doubts, model_with_rings, rolling};
 
+use crate::linear_figures::draw;
 use crate::progress::Progress;
 use crate::run::{Point, points, stage_text};
+use crate::{several, several_stiffness};
 
 /// Most positions of a ripple: far more than one can be resolved with.
 const MOST_POSITIONS: usize = 1000;
@@ -52,7 +53,14 @@ pub struct StiffnessCommand {
 
 /// Linearises and writes.
 pub fn stiffness(command: &StiffnessCommand) -> Result<(), Failure> {
-    let scene = Scene::load(&command.scene, &command.overrides)?;
+    let scene = match AnyScene::load(&command.scene, &command.overrides)? {
+        AnyScene::One(scene) => *scene,
+        AnyScene::Several(list) => {
+            several::refuse(command.ripple.map(|_| "--ripple"), &list)?;
+            several::refuse(command.time.map(|_| "--time"), &list)?;
+            return several_stiffness::stiffness(&list, &command.out);
+        }
+    };
     let time = instant(&scene, command.time)?;
     check_positions(command.ripple)?;
     require_free(&command.out, &[STIFFNESS_FILE, STIFFNESS_TABLE, ROSS_TABLE])?;
@@ -281,15 +289,4 @@ fn not_positive(stiffness: &ShaftMatrix, model: &Model) -> Result<Option<String>
             AXES[found.dof]
         )
     }))
-}
-
-/// Draws what tables in a folder hold, and returns the names of the SVG files.
-pub fn draw(dir: &Path) -> Result<Vec<String>, Failure> {
-    let mut names = Vec::new();
-    for named in plot::linear_figures(dir)? {
-        let images = named.figure.images()?;
-        write_picture(&dir.join(&named.name), &images.svg, &images.png)?;
-        names.push(format!("{}.svg", named.name));
-    }
-    Ok(names)
 }

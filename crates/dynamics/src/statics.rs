@@ -53,10 +53,13 @@ pub struct StaticRing {
     pub raceway: Raceway,
 }
 
+/// Inverse compliance of the contacts on both rings, inner first; none yet by default.
+pub type ContactColumns = [Option<Vec<f64>>; 2];
+
 /// Factored rings of a model, ready for any number of load cases.
 pub struct StaticSolver {
     rings: [Option<StaticRing>; 2],
-    columns: [Option<Vec<f64>>; 2],
+    columns: ContactColumns,
     /// Wall time so far, effects apart.
     pub timing: Laps,
     /// Wall time so far, by effect.
@@ -100,10 +103,26 @@ impl StaticSolver {
         }
         Ok(StaticSolver {
             rings,
-            columns: [None, None],
+            columns: ContactColumns::default(),
             timing,
             costs: costs::of_effects(model),
         })
+    }
+
+    /// The bearing of a model as if its rings were rigid: where flexible ones may start from.
+    pub fn rigid(model: &Model) -> StaticSolver {
+        StaticSolver {
+            rings: [None, None],
+            columns: ContactColumns::default(),
+            timing: Laps::default(),
+            costs: costs::of_effects(model),
+        }
+    }
+
+    /// Exchanges the compliance of the contacts, which is a tangent only, for that of another bearing with the same
+    /// rings.
+    pub fn swap_columns(&mut self, other: &mut ContactColumns) {
+        std::mem::swap(&mut self.columns, other);
     }
 
     /// Wall time so far, effects among it.

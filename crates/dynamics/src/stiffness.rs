@@ -96,20 +96,25 @@ impl Linearisation {
         solution: &StaticSolution,
         laws: DampingLaws,
     ) -> Result<Linearisation, DynamicsError> {
-        if model.contact.mode == ContactMode::Facet {
-            let what = "contact.mode = \"facet\", whose contacts jump from facet to facet; use \"patch\"";
-            return Err(DynamicsError::NotInStiffness { what });
-        }
-        if model.surfaces.has_strips() {
-            let what =
-                "real surfaces ([[profiles.*]], contact.edges), whose tangent changes wherever a ball stands";
-            return Err(DynamicsError::NotInStiffness { what });
-        }
-        if model.traction().is_some() {
-            let what = "balls.motion = \"free\", whose traction is not linearised; use \"kinematic\"";
-            return Err(DynamicsError::NotInStiffness { what });
-        }
-        let case = released(model, solver, solution)?;
+        require_linear(model)?;
+        let case = released(model, Some(solver), solution)?;
+        Linearisation::of_case(model, solution, &case, laws)
+    }
+
+    /// The same without damping on rings whose contacts have the compliance with which they were solved, which is that
+    /// of places nearby: a tangent for Newton, for the cost of the dense factors.
+    pub fn as_solved(model: &Model, solution: &StaticSolution) -> Result<Linearisation, DynamicsError> {
+        require_linear(model)?;
+        let case = released(model, None, solution)?;
+        Linearisation::of_case(model, solution, &case, DampingLaws::default())
+    }
+
+    fn of_case(
+        model: &Model,
+        solution: &StaticSolution,
+        case: &LoadCase,
+        laws: DampingLaws,
+    ) -> Result<Linearisation, DynamicsError> {
         let parts = &case.parts;
         let (system, x) = (parts.system(), parts.unknowns(&solution.displacements));
         let at = system.evaluate(&x, &SharedLaps::default());
@@ -117,7 +122,7 @@ impl Linearisation {
         system.add_link_tangents(&x, &at.links, &mut stiffness);
         system.add_curvatures(&x, &at.links, &mut stiffness);
         if case.loads.follows_angles {
-            add_following_loads(model, solution, &case, &x, &mut stiffness)?;
+            add_following_loads(model, solution, case, &x, &mut stiffness)?;
         }
         let damping = damping_of(parts, &system, &x, laws);
         let n = system.n();
@@ -163,6 +168,24 @@ impl Linearisation {
     }
 }
 
+/// Fails for contacts and balls that have no tangent.
+fn require_linear(model: &Model) -> Result<(), DynamicsError> {
+    if model.contact.mode == ContactMode::Facet {
+        let what = "contact.mode = \"facet\", whose contacts jump from facet to facet; use \"patch\"";
+        return Err(DynamicsError::NotInStiffness { what });
+    }
+    if model.surfaces.has_strips() {
+        let what =
+            "real surfaces ([[profiles.*]], contact.edges), whose tangent changes wherever a ball stands";
+        return Err(DynamicsError::NotInStiffness { what });
+    }
+    if model.traction().is_some() {
+        let what = "balls.motion = \"free\", whose traction is not linearised; use \"kinematic\"";
+        return Err(DynamicsError::NotInStiffness { what });
+    }
+    Ok(())
+}
+
 fn not_solved(source: &DenseError) -> DynamicsError {
     DynamicsError::ContactSystem {
         source: source.clone(),
@@ -170,10 +193,10 @@ fn not_solved(source: &DenseError) -> DynamicsError {
 }
 
 /// Bodies and contacts of a solution whose shaft may move in all its dofs, on rings with the compliance of their
-/// contacts where these stand.
+/// contacts where these stand, or without `solver` with that of the solution.
 fn released<'m>(
     model: &'m Model,
-    solver: &StaticSolver,
+    solver: Option<&StaticSolver>,
     solution: &StaticSolution,
 ) -> Result<LoadCase<'m>, DynamicsError> {
     let u = &solution.displacements;
@@ -186,7 +209,9 @@ fn released<'m>(
     let mut rings = [None, None];
     for side in Side::BOTH {
         let (i, found) = (side.index(), solution.parts.rings[side.index()].as_ref());
-        let (Some(ports), Some(ring)) = (found, solver.ring(side)) else {
+        let Some(ports) = found else { continue };
+        let Some(ring) = solver.and_then(|solver| solver.ring(side)) else {
+            rings[i] = Some(ports.clone());
             continue;
         };
         let weights: Vec<_> = solution

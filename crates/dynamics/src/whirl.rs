@@ -111,9 +111,46 @@ pub struct TurningShaft {
     /// Damping and gyroscopic terms.
     rates: Vec<f64>,
     stiffness: Vec<f64>,
-    /// Shaft dofs that are free, in their order: the first rows.
-    free: Vec<usize>,
+    /// The first rows: free dofs of the shaft.
+    shaft: Vec<ShaftRow>,
     speed: f64,
+}
+
+/// A row of the shaft.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ShaftRow {
+    /// Its place on the shaft; a rigid shaft has one.
+    pub node: usize,
+    /// Its dof there, of x, y, z, tilt x, tilt y.
+    pub dof: usize,
+}
+
+/// Mass, damping with gyroscopic terms, and stiffness, row-major with `n` rows.
+pub struct WhirlMatrices {
+    /// Number of rows.
+    pub n: usize,
+    /// Mass.
+    pub mass: Vec<f64>,
+    /// Damping and gyroscopic terms.
+    pub rates: Vec<f64>,
+    /// Stiffness.
+    pub stiffness: Vec<f64>,
+}
+
+impl WhirlMatrices {
+    /// The matrices of the given rows alone; all others are held.
+    pub fn of_rows(&self, rows: &[usize]) -> WhirlMatrices {
+        let pick = |matrix: &[f64]| -> Vec<f64> {
+            let row = |i: &usize| rows.iter().map(|j| matrix[self.n * i + j]).collect::<Vec<_>>();
+            rows.iter().flat_map(row).collect()
+        };
+        WhirlMatrices {
+            n: rows.len(),
+            mass: pick(&self.mass),
+            rates: pick(&self.rates),
+            stiffness: pick(&self.stiffness),
+        }
+    }
 }
 
 impl TurningShaft {
@@ -134,12 +171,6 @@ impl TurningShaft {
             .copied()
             .chain((N_SHAFT..all.n).filter(|&i| is_held(&all, i)))
             .collect();
-        let pick = |matrix: &[f64]| -> Vec<f64> {
-            let entry = |i: &usize, j: &usize| matrix[all.n * i + j];
-            rows.iter()
-                .flat_map(|i| rows.iter().map(|j| entry(i, j)).collect::<Vec<_>>())
-                .collect()
-        };
         let mut stiffness = all.stiffness.clone();
         let (mut mass, mut rates) = (vec![0.0; all.n * all.n], vec![0.0; all.n * all.n]);
         if let Some(damping) = &all.damping {
@@ -157,14 +188,26 @@ impl TurningShaft {
         (N_SHAFT..all.n).for_each(|i| mass[(all.n + 1) * i] = model.ball_mass());
         rates[all.n * 3 + 4] += inertia.polar * speed;
         rates[all.n * 4 + 3] -= inertia.polar * speed;
-        Ok(TurningShaft {
-            n: rows.len(),
-            mass: pick(&mass),
-            rates: pick(&rates),
-            stiffness: pick(&stiffness),
-            free,
+        let whole = WhirlMatrices {
+            n: all.n,
+            mass,
+            rates,
+            stiffness,
+        };
+        let shaft = free.iter().map(|&dof| ShaftRow { node: 0, dof }).collect();
+        Ok(TurningShaft::of_matrices(whole.of_rows(&rows), shaft, speed))
+    }
+
+    /// Of matrices whose first rows are those of a shaft that turns with `speed`, rad/s, which is in the matrices.
+    pub fn of_matrices(matrices: WhirlMatrices, shaft: Vec<ShaftRow>, speed: f64) -> TurningShaft {
+        TurningShaft {
+            n: matrices.n,
+            mass: matrices.mass,
+            rates: matrices.rates,
+            stiffness: matrices.stiffness,
+            shaft,
             speed,
-        })
+        }
     }
 
     /// The modes, from the lowest frequency. They are the pairs of the inverse of the equations of first order, in
@@ -219,10 +262,10 @@ impl TurningShaft {
         let [re, im] = pair
             .value
             .map(|part| slowest * part / square.max(f64::MIN_POSITIVE));
-        let of_shaft = energy(0..self.free.len());
+        let of_shaft = energy(0..self.shaft.len());
         let roundness = self.roundness(&x);
-        let axial = self.free.iter().position(|&dof| dof == 2);
-        let axial = axial.map_or(0.0, |i| energy(i..i + 1));
+        let axial = (0..self.shaft.len()).filter(|&i| self.shaft[i].dof == 2);
+        let axial: f64 = axial.map(|i| energy(i..i + 1)).sum();
         WhirlMode {
             frequency: im / std::f64::consts::TAU,
             damping_ratio: 0.0 - re / re.hypot(im).max(f64::MIN_POSITIVE),
@@ -240,15 +283,18 @@ impl TurningShaft {
     /// Energy that goes round along the spin less that against it, over their sum; 0 without a spin.
     fn roundness(&self, x: &[ComplexNumber]) -> f64 {
         let (mut along, mut against) = (0.0, 0.0);
-        for axes in [[0, 1], [3, 4]] {
-            let [Some(i), Some(k)] = axes.map(|axis| self.free.iter().position(|&dof| dof == axis)) else {
-                continue;
-            };
-            let mass = self.mass[(self.n + 1) * i];
-            let ([a, b], [c, d]) = (x[i], x[k]);
-            // |X + iY|^2 and |X - iY|^2.
-            along += mass * ((a - d).powi(2) + (b + c).powi(2));
-            against += mass * ((a + d).powi(2) + (b - c).powi(2));
+        for [first, second] in [[0, 1], [3, 4]] {
+            for (i, row) in self.shaft.iter().enumerate().filter(|(_, row)| row.dof == first) {
+                let other = ShaftRow { dof: second, ..*row };
+                let Some(k) = self.shaft.iter().position(|row| *row == other) else {
+                    continue;
+                };
+                let mass = self.mass[(self.n + 1) * i];
+                let ([a, b], [c, d]) = (x[i], x[k]);
+                // |X + iY|^2 and |X - iY|^2.
+                along += mass * ((a - d).powi(2) + (b + c).powi(2));
+                against += mass * ((a + d).powi(2) + (b - c).powi(2));
+            }
         }
         if self.speed == 0.0 || along + against == 0.0 {
             return 0.0;
@@ -257,8 +303,8 @@ impl TurningShaft {
     }
 }
 
-/// Whether something touches a ball.
-fn is_held(all: &ShaftAndBalls, i: usize) -> bool {
+/// Whether something touches the ball of a row.
+pub fn is_held(all: &ShaftAndBalls, i: usize) -> bool {
     (0..all.n).any(|j| j != i && all.stiffness[all.n * i + j] != 0.0)
 }
 

@@ -19,6 +19,7 @@ mod raceways;
 mod run;
 mod seat;
 mod section;
+mod several;
 mod shades;
 mod shaft;
 mod stiffness;
@@ -125,6 +126,20 @@ pub fn plot(request: &Plot) -> Result<(), Failure> {
     }
 }
 
+/// Fails for the folder of several bearings: what is asked is of one.
+pub fn require_one_bearing(dir: &Path) -> Result<(), Failure> {
+    if !several::is_of_several(dir) {
+        return Ok(());
+    }
+    let names = several::names(dir, usize::MAX)?;
+    let first = names.first().map_or("", String::as_str);
+    Err(Failure::User(anyhow!(
+        "{} has the results of several bearings on one shaft; expected the folder of one of them, such as {}",
+        dir.display(),
+        dir.join(first).display()
+    )))
+}
+
 /// The figures of `raceway stiffness` and `raceway campbell` in `dir`.
 pub fn linear_figures(dir: &Path) -> anyhow::Result<Vec<Named>> {
     let found = stiffness::figures(dir)?
@@ -142,6 +157,12 @@ fn named(found: anyhow::Result<Vec<(String, Figure)>>) -> anyhow::Result<Vec<Nam
 /// The figures of the run in `dir`; at least one. Where none can be made, or what was chosen is not there, that is the
 /// error.
 pub fn figures(dir: &Path, choice: &Choice) -> Result<Figures, Failure> {
+    if several::is_of_several(dir) {
+        let mut drawn = named(several::figures(dir))?;
+        drawn.extend(linear_figures(dir)?);
+        let problems = Vec::new();
+        return Ok(Figures { drawn, problems });
+    }
     let results = Results::read(dir)?;
     let groups = [
         ("balls", balls::figures(&results, choice)),

@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use figure::{Axis, Figure, Series};
+use results::several_stiffness::BEARING_STIFFNESS;
 use results::stiffness::STIFFNESS_TABLE;
 use results::table::Table;
 
@@ -47,7 +48,10 @@ pub fn figures(dir: &Path) -> anyhow::Result<Vec<(&'static str, Figure)>> {
             of(
                 NEWTON_PER_MICROMETRE,
                 &["x", "y", "z"],
-                "Stiffness of the bearing",
+                match is_of_several(dir)? {
+                    true => "Stiffness of the shaft on its bearings",
+                    false => "Stiffness of the bearing",
+                },
             )?,
         ),
         (
@@ -59,6 +63,15 @@ pub fn figures(dir: &Path) -> anyhow::Result<Vec<(&'static str, Figure)>> {
             )?,
         ),
     ])
+}
+
+/// Whether bearings have tables of their own beside that of the shaft.
+fn is_of_several(dir: &Path) -> anyhow::Result<bool> {
+    let names = std::fs::read_dir(dir)?.flatten().map(|entry| entry.file_name());
+    let is_one = |name: &str| name.starts_with(BEARING_STIFFNESS) && name.ends_with(".csv");
+    Ok(names
+        .filter_map(|name| name.into_string().ok())
+        .any(|name| is_one(&name)))
 }
 
 fn stiffness_axis(unit: Unit) -> Axis {

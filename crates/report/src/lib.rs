@@ -31,6 +31,7 @@ pub struct Report {
 
 /// Writes the page of a run.
 pub fn report(request: &Report) -> Result<(), Failure> {
+    plot::require_one_bearing(&request.dir)?;
     let mut source = source::read(&request.dir)?;
     say_later(&request.dir);
     for doubt in &source.doubts {

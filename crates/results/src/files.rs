@@ -63,8 +63,25 @@ struct Open {
 }
 
 impl Files {
-    /// Creates the folder's files; `first` tells the columns, `warnings` are those of the start. Collective.
+    /// Creates the folder's files, and says where they are; `first` tells the columns, `warnings` are those of the
+    /// start. Collective.
     pub fn create(
+        scene: &Scene,
+        model: &Model,
+        dir: &Path,
+        first: &Snapshot,
+        survey: Survey,
+        warnings: &[String],
+    ) -> Result<Files, Failure> {
+        let files = Files::create_part(scene, model, dir, first, survey, warnings)?;
+        if files.are_written_here() {
+            say_folder(dir);
+        }
+        Ok(files)
+    }
+
+    /// The same for the folder of a part of a run, of which nothing is said.
+    pub fn create_part(
         scene: &Scene,
         model: &Model,
         dir: &Path,
@@ -83,7 +100,6 @@ impl Files {
         note_dead_owner(&lock);
         let mut output = Output::create_in(lock, &mesh, storage(scene))?;
         drop(mesh);
-        say_folder(dir);
         output.describe(about(scene, dir, warnings)?)?;
         let tables = Tables::create(
             dir,

@@ -31,6 +31,8 @@ pub mod probes;
 pub mod rainflow;
 mod ring_stress;
 pub mod seat;
+pub mod several;
+pub mod several_stiffness;
 pub mod shown;
 pub mod snapshot;
 pub mod state_arrays;

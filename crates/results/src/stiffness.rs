@@ -24,7 +24,9 @@ pub const STIFFNESS_TABLE: &str = "stiffness.csv";
 /// The table for ROSS.
 pub const ROSS_TABLE: &str = "ross.csv";
 /// Version of the keys.
-const SCHEMA: u32 = 1;
+pub(crate) const SCHEMA: u32 = 1;
+pub(crate) const UNITS: &str =
+    "stiffness N/m, N/rad, N m/m, N m/rad; damping the same times s; displacements m, rad; loads N, N m";
 /// What stands in the table before the swept value, and after it before the entries.
 const FIRST_COLUMNS: [&str; 2] = ["point", "time_s"];
 const SPEED: &str = "speed_rad_per_s";
@@ -214,7 +216,7 @@ impl StiffnessResults {
             stiffness_schema: SCHEMA,
             source: &self.source,
             order: AXES,
-            units: "stiffness N/m, N/rad, N m/m, N m/rad; damping the same times s; displacements m, rad; loads N, N m",
+            units: UNITS,
             damping_note: &self.damping_note,
             warnings: &self.warnings,
             single: self.points.first().filter(|_| sweep.is_none()),
@@ -230,30 +232,20 @@ impl StiffnessResults {
     }
 
     /// All entries, a line per point.
-    fn table(&self) -> anyhow::Result<Vec<u8>> {
-        let mut writer = csv::Writer::from_writer(Vec::new());
-        let has_damping = self.points.iter().all(|point| point.damping.is_some());
-        let mut names: Vec<String> = FIRST_COLUMNS.map(str::to_string).to_vec();
-        names.extend(self.column.clone());
-        names.push(SPEED.to_string());
-        names.extend(entry_names("k"));
-        names.extend(has_damping.then(|| entry_names("c")).into_iter().flatten());
-        writer.write_record(&names)?;
-        for (i, point) in self.points.iter().enumerate() {
-            let mut cells = vec![i.to_string()];
-            let numbers = std::iter::once(point.operating_point.time_s);
-            let numbers = numbers.chain(self.column.as_ref().and(point.value));
-            let numbers = numbers.chain([speed(point)]);
-            let numbers = numbers.chain(point.stiffness.as_flattened().iter().copied());
-            let damping = point.damping.iter().flat_map(|c| c.as_flattened().to_vec());
-            cells.extend(numbers.chain(damping).map(|x| format!("{x:?}")));
-            writer.write_record(&cells)?;
-        }
-        Ok(writer.into_inner()?)
+    pub fn table(&self) -> anyhow::Result<Vec<u8>> {
+        let line = |point: &StiffnessAt| TableLine {
+            time: point.operating_point.time_s,
+            value: point.value,
+            speed: speed(point),
+            stiffness: point.stiffness,
+            damping: point.damping,
+        };
+        let lines: Vec<TableLine> = self.points.iter().map(line).collect();
+        table(self.column.as_deref(), &lines)
     }
 
     /// The entries of x and y over the speed.
-    fn ross(&self) -> anyhow::Result<Vec<u8>> {
+    pub fn ross(&self) -> anyhow::Result<Vec<u8>> {
         let mut writer = csv::Writer::from_writer(Vec::new());
         let has_damping = self.points.iter().all(|point| point.damping.is_some());
         let names = ["speed", "kxx", "kxy", "kyx", "kyy", "cxx", "cxy", "cyx", "cyy"];
@@ -311,6 +303,43 @@ impl StiffnessResults {
     }
 }
 
+/// A line of `stiffness.csv`.
+pub struct TableLine {
+    /// Instant, s.
+    pub time: f64,
+    /// The swept value.
+    pub value: Option<f64>,
+    /// Speed of the shaft, rad/s.
+    pub speed: f64,
+    /// Stiffness.
+    pub stiffness: ShaftMatrix,
+    /// Damping, if there is any.
+    pub damping: Option<ShaftMatrix>,
+}
+
+/// The table of points, with the column of a swept value.
+pub fn table(column: Option<&str>, lines: &[TableLine]) -> anyhow::Result<Vec<u8>> {
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    let has_damping = lines.iter().all(|line| line.damping.is_some());
+    let mut names: Vec<String> = FIRST_COLUMNS.map(str::to_string).to_vec();
+    names.extend(column.map(str::to_string));
+    names.push(SPEED.to_string());
+    names.extend(entry_names("k"));
+    names.extend(has_damping.then(|| entry_names("c")).into_iter().flatten());
+    writer.write_record(&names)?;
+    for (i, line) in lines.iter().enumerate() {
+        let mut cells = vec![i.to_string()];
+        let numbers = std::iter::once(line.time);
+        let numbers = numbers.chain(column.and(line.value));
+        let numbers = numbers.chain([line.speed]);
+        let numbers = numbers.chain(line.stiffness.as_flattened().iter().copied());
+        let damping = line.damping.iter().flat_map(|c| c.as_flattened().to_vec());
+        cells.extend(numbers.chain(damping).map(|x| format!("{x:?}")));
+        writer.write_record(&cells)?;
+    }
+    Ok(writer.into_inner()?)
+}
+
 /// Speed of the shaft, rad/s.
 fn speed(point: &StiffnessAt) -> f64 {
     point.operating_point.speed_rad_per_s[0]
@@ -322,7 +351,7 @@ fn entry_names(of: &str) -> Vec<String> {
     AXES.iter().flat_map(|i| row(i)).collect()
 }
 
-fn print_matrix(title: &str, matrix: &ShaftMatrix) {
+pub(crate) fn print_matrix(title: &str, matrix: &ShaftMatrix) {
     print::line(format_args!("{title}"));
     for (axis, row) in AXES.iter().zip(matrix) {
         let cells: Vec<String> = row.iter().map(|x| format!("{x:13.5e}")).collect();

@@ -7,7 +7,14 @@ use anyhow::{Context, anyhow, ensure};
 use checkpoint::open_regular;
 
 /// Columns of texts. All others hold numbers.
-const TEXTS: [&str; 5] = ["profile", "body", "whirl", "inner_ellipse", "outer_ellipse"];
+const TEXTS: [&str; 6] = [
+    "profile",
+    "body",
+    "whirl",
+    "bearing",
+    "inner_ellipse",
+    "outer_ellipse",
+];
 /// Columns that must not fall from row to row.
 const STEP: &str = "step";
 const TIME: &str = "time_s";
@@ -94,7 +101,8 @@ impl RowOrder {
         RowOrder {
             step: place(STEP),
             time: place(TIME),
-            ball: place(BALL),
+            // The balls of several bearings begin anew with each.
+            ball: place(BALL).filter(|_| place("bearing").is_none()),
             last: None,
             n_balls: None,
         }

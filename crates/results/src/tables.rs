@@ -251,7 +251,7 @@ pub struct OwnColumns {
 }
 
 /// Header line: step, time, a swept value, and the rest.
-fn head(swept: Option<&str>, rest: &[String]) -> Vec<String> {
+pub fn head(swept: Option<&str>, rest: &[String]) -> Vec<String> {
     let mut columns = vec!["step".to_string(), "time_s".to_string()];
     columns.extend(swept.map(str::to_string));
     columns.extend(rest.iter().cloned());
@@ -259,7 +259,7 @@ fn head(swept: Option<&str>, rest: &[String]) -> Vec<String> {
 }
 
 /// The first cells of a row.
-fn place_of(step: u64, time: f64, swept: Option<f64>) -> Vec<String> {
+pub fn place_of(step: u64, time: f64, swept: Option<f64>) -> Vec<String> {
     let mut cells = vec![step.to_string(), number(time)];
     cells.extend(swept.map(number));
     cells
@@ -280,7 +280,8 @@ pub fn append(
     write().with_context(|| format!("cannot write {name} of the results"))
 }
 
-fn ball_cells(index: usize, ball: &BallResult) -> Vec<String> {
+/// Cells of a ball in the columns [`ball_columns`].
+pub fn ball_cells(index: usize, ball: &BallResult) -> Vec<String> {
     let mut cells = vec![index.to_string(), number(ball.azimuth_rad)];
     cells.extend([ball.inner.force_n, ball.outer.force_n].map(number));
     cells.extend([ball.inner.contact_angle_rad, ball.outer.contact_angle_rad].map(number));
@@ -429,14 +430,16 @@ fn rest_of(contact: &ContactResult) -> [f64; 4] {
 }
 
 /// Shortest text that reads back as the same number.
-fn number(x: f64) -> String {
+pub fn number(x: f64) -> String {
     format!("{x:?}")
 }
 
-/// Columns of the three tables.
-fn columns(swept: Option<&str>, first: &Snapshot, own: &OwnColumns) -> [Vec<String>; 3] {
-    let head = |rest: &[String]| head(swept, rest);
-    let names = |list: &[&str]| list.iter().map(|s| s.to_string()).collect::<Vec<_>>();
+fn names(list: &[&str]) -> Vec<String> {
+    list.iter().map(|s| s.to_string()).collect()
+}
+
+/// Columns that `balls.csv` always has.
+pub fn ball_columns() -> Vec<String> {
     let mut balls = names(&[
         "ball",
         "azimuth_rad",
@@ -449,6 +452,13 @@ fn columns(swept: Option<&str>, first: &Snapshot, own: &OwnColumns) -> [Vec<Stri
         balls.extend(CONTACT_COLUMNS[2..].iter().map(|c| format!("{side}_{c}")));
     }
     balls.extend(names(&["displacement_radial_m", "displacement_axial_m"]));
+    balls
+}
+
+/// Columns of the three tables.
+fn columns(swept: Option<&str>, first: &Snapshot, own: &OwnColumns) -> [Vec<String>; 3] {
+    let head = |rest: &[String]| head(swept, rest);
+    let mut balls = ball_columns();
     if first.friction.is_some() {
         for side in ["inner", "outer"] {
             balls.extend(TRACTION_COLUMNS.iter().map(|c| format!("{side}_{c}")));

@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use assembly::AssemblyError;
 use body::SurroundingError;
 use contact::ContactError;
 use dynamics::DynamicsError;
@@ -32,6 +33,9 @@ pub enum BuildError {
     /// The body round a ring cannot be read, or does not fit.
     #[error(transparent)]
     Body(#[from] SurroundingError),
+    /// The shaft of a list of bearings cannot be.
+    #[error(transparent)]
+    Assembly(#[from] AssemblyError),
     /// Profiles do not fit the rings.
     #[error("scene {}: {problem}", path.display())]
     Surface {

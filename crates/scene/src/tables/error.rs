@@ -39,6 +39,16 @@ pub enum SceneError {
         /// The line itself with a mark below.
         excerpt: String,
     },
+    /// A list of bearings where one is expected.
+    #[error(
+        "{} has a list of bearings on one shaft, which this command does not take yet; expected one table [bearing]. \
+         Lists are for raceway run, check, stiffness, campbell and plot",
+        path.display()
+    )]
+    Several {
+        /// The scene file.
+        path: PathBuf,
+    },
     /// Values that make no sense, all of them.
     #[error("{}{} has {}", path.display(), overridden(overrides), list(problems))]
     Invalid {

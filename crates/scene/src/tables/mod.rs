@@ -73,6 +73,7 @@ pub mod reference;
 mod ring;
 mod ring_inertia;
 mod section;
+mod several;
 mod shaft;
 mod solver;
 mod speed;
@@ -116,6 +117,10 @@ pub use self::quasi_static::QuasiStatic;
 pub use self::ring::{FlexibleRing, MeshFiles, Ring, RingName, Support};
 pub use self::ring_inertia::RingInertia;
 pub use self::section::{Section, SectionElement};
+pub use self::several::{
+    AnyScene, BearingOnShaft, CommonShaft, ON_SHAFT, Pairing, RigidShaft, SeveralScene, ShaftKind, ShaftLoad,
+    SpringPairing,
+};
 pub use self::shaft::{Motion, Shaft};
 pub use self::solver::{Backend, Solver};
 pub use self::start::Start;
@@ -266,8 +271,24 @@ impl Scene {
         Scene::parse(&text, path, overrides, mesh_files)
     }
 
-    /// Checks the text of a scene; `path` is for messages and its folder is where relative paths start.
+    /// Checks the text of a scene; `path` is for messages and its folder is where relative paths start. A list of
+    /// bearings is no such scene, unless it has one bearing and says no more than one table does.
     pub fn parse(
+        text: &str,
+        path: &Path,
+        overrides: &[String],
+        mesh_files: MeshFiles,
+    ) -> Result<Scene, SceneError> {
+        match AnyScene::parse(text, path, overrides, mesh_files)? {
+            AnyScene::One(scene) => Ok(*scene),
+            AnyScene::Several(_) => Err(SceneError::Several {
+                path: path.to_path_buf(),
+            }),
+        }
+    }
+
+    /// The same of a text whose bearing is a table.
+    fn parse_one(
         text: &str,
         path: &Path,
         overrides: &[String],

@@ -50,7 +50,7 @@ pub struct RawShaft {
 
 /// As typed: `"free"`, `"locked"`, a value, or a table with a value and its schedule.
 #[derive(Debug)]
-enum RawMotion<const KIND: usize> {
+pub enum RawMotion<const KIND: usize> {
     Free,
     Locked,
     Prescribed(RawPrescribed<KIND>),
@@ -59,7 +59,7 @@ enum RawMotion<const KIND: usize> {
 /// As typed.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields, expecting = "a table with the value of a shaft motion")]
-struct RawPrescribed<const KIND: usize> {
+pub struct RawPrescribed<const KIND: usize> {
     value: Quantity<KIND>,
     schedule: Option<Box<RawSchedule>>,
 }
@@ -177,7 +177,8 @@ impl RawShaft {
 }
 
 impl<const KIND: usize> RawMotion<KIND> {
-    fn motion(&self) -> Motion {
+    /// What it says of the motion.
+    pub fn motion(&self) -> Motion {
         match self {
             RawMotion::Free => Motion::Free,
             RawMotion::Locked => Motion::Locked,
@@ -185,7 +186,8 @@ impl<const KIND: usize> RawMotion<KIND> {
         }
     }
 
-    fn schedule(&self, key: &str, clock: Clock, problems: &mut Problems) -> Schedule {
+    /// Its factor over time.
+    pub fn schedule(&self, key: &str, clock: Clock, problems: &mut Problems) -> Schedule {
         match self {
             RawMotion::Prescribed(p) => check_schedule(p.schedule.as_deref(), key, clock, problems),
             _ => Schedule::Constant,
@@ -193,7 +195,14 @@ impl<const KIND: usize> RawMotion<KIND> {
     }
 
     /// Reports a prescribed motion that exceeds `limit` at the peak of its schedule.
-    fn require_small(&self, limit: f64, key: &str, schedule: &Schedule, rule: &str, problems: &mut Problems) {
+    pub fn require_small(
+        &self,
+        limit: f64,
+        key: &str,
+        schedule: &Schedule,
+        rule: &str,
+        problems: &mut Problems,
+    ) {
         let RawMotion::Prescribed(RawPrescribed { value, .. }) = self else {
             return;
         };

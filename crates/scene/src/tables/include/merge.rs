@@ -99,6 +99,17 @@ pub fn merge<'a>(scene: &'a str, other: &'a str, statement: usize) -> Result<Vec
     }
 }
 
+/// A text without the tables whose names are not wanted: their lines are blank. Keys without a table stay.
+pub fn blanked(text: &str, is_wanted: impl Fn(&[String]) -> bool) -> Result<String, String> {
+    let mut lines: Vec<&str> = text.lines().collect();
+    for section in sections(text)? {
+        if !section.names.is_empty() && !is_wanted(&section.names) {
+            lines[section.lines].fill("");
+        }
+    }
+    Ok(lines.iter().map(|line| line.to_string() + "\n").collect())
+}
+
 /// The line behind the last one that is neither empty nor a comment.
 fn end_of_values(lines: &[&str], range: &Range<usize>) -> usize {
     let is_value = |line: &str| !line.trim().is_empty() && !line.trim_start().starts_with('#');

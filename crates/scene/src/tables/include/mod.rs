@@ -123,6 +123,68 @@ impl WholeText {
     }
 }
 
+/// Why the type of a bearing is not read.
+pub enum TypeError {
+    /// What is wrong with its name or its tables: a sentence.
+    Here(String),
+    /// What is wrong in the file.
+    There(SceneError),
+}
+
+impl WholeText {
+    /// The tables of which `is_shared` tells by their names, with those of a type file for the bearing of a name; the
+    /// lines of all others are blank. The file may have the tables `known` alone.
+    pub fn with_type(
+        &self,
+        (bearing, typed): (&str, &str),
+        known: &[&str],
+        is_shared: impl Fn(&[String]) -> bool,
+    ) -> Result<WholeText, TypeError> {
+        let blanked = merge::blanked(&self.text, is_shared).map_err(TypeError::Here)?;
+        // A line of its own, behind which the first table may begin.
+        let first = LineOrigin { file: 0, line: 1 };
+        let base = WholeText {
+            text: format!("\n{blanked}"),
+            origins: [&[first][..], &self.origins].concat(),
+            files: self.files.clone(),
+        };
+        let scene = &self.files[0];
+        let other = included(scene, typed, &[physical(scene)]).map_err(|error| match error {
+            NotIncluded::Here(message) => {
+                TypeError::Here(format!("bearing.type of {bearing:?} is {typed:?}: {message}"))
+            }
+            NotIncluded::There(error) => TypeError::There(error),
+        })?;
+        if let Ok(document) = DeTable::parse(&other.text) {
+            let unknown = document
+                .get_ref()
+                .keys()
+                .find(|key| !known.contains(&&*key.get_ref().as_ref()));
+            if let Some(key) = unknown {
+                return Err(TypeError::Here(format!(
+                    "bearing.type of {bearing:?}: {} has {}; expected the tables of one bearing alone: {}",
+                    other.files[0].display(),
+                    key.get_ref(),
+                    known
+                        .iter()
+                        .map(|name| format!("[{name}]"))
+                        .collect::<Vec<_>>()
+                        .join(", ")
+                )));
+            }
+        }
+        let clashes = clashes(&base, &other);
+        if !clashes.is_empty() {
+            return Err(TypeError::There(SceneError::Invalid {
+                path: scene.clone(),
+                overrides: Vec::new(),
+                problems: clashes,
+            }));
+        }
+        base.add(&other, typed, 1).map_err(TypeError::Here)
+    }
+}
+
 /// The text of a scene with all that it includes; `overrides` may name other files to include.
 pub fn whole(text: &str, path: &Path, overrides: &[String]) -> Result<WholeText, SceneError> {
     let of_include: Vec<&String> = overrides.iter().filter(|o| is_of_include(o)).collect();

@@ -22,6 +22,7 @@ mod quasi_static;
 mod reference;
 mod ring_inertia;
 mod schedules;
+mod several;
 mod slips;
 mod sweeps;
 

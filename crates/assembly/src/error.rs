@@ -1,0 +1,77 @@
+//! What can go wrong with bearings on a shaft.
+
+use dense::DenseError;
+use dynamics::DynamicsError;
+use thiserror::Error;
+
+/// Why there is no result.
+#[derive(Debug, Error)]
+pub enum AssemblyError {
+    /// A bearing has no solution.
+    #[error("bearing {name:?}: {source}")]
+    Bearing {
+        /// Its name.
+        name: String,
+        /// Why.
+        source: DynamicsError,
+    },
+    /// The shaft leaves a bearing.
+    #[error(
+        "there is no equilibrium: {dof} of the shaft in bearing {name:?} moves beyond {limit}; check the loads, and \
+         that bearings hold the shaft along the axis in both directions"
+    )]
+    NoEquilibrium {
+        /// The bearing.
+        name: String,
+        /// What moves.
+        dof: &'static str,
+        /// How far it may, with its unit.
+        limit: String,
+    },
+    /// A free motion of the shaft without stiffness.
+    #[error(
+        "nothing holds {dof} of the shaft at the solution: the bearings have {stiffness:.1e} of a contact's stiffness \
+         there; preload them, or add a load that keeps them together"
+    )]
+    Unheld {
+        /// The motion.
+        dof: &'static str,
+        /// Stiffness over that of a contact.
+        stiffness: f64,
+    },
+    /// Newton did not end.
+    #[error(
+        "the shaft on its bearings does not settle: after {iterations} iterations the residual is {residual:.1e} of \
+         the largest force, and the limit is {limit:.1e}; last residuals {history:?}"
+    )]
+    NotSettled {
+        /// Iterations.
+        iterations: usize,
+        /// Residual over the largest force.
+        residual: f64,
+        /// Its limit.
+        limit: f64,
+        /// The last residuals.
+        history: Vec<f64>,
+    },
+    /// A shaft that is no shaft.
+    #[error("{problem}")]
+    ShaftBody {
+        /// What is wrong, where, what was expected.
+        problem: String,
+    },
+    /// A matrix of the shaft has no factors.
+    #[error("the matrix of the shaft on its bearings cannot be factored: {source}")]
+    Matrix {
+        /// Why.
+        source: DenseError,
+    },
+    /// Modes without mass.
+    #[error("{dof} of the shaft is free and has no inertia; give {key}")]
+    NoInertia {
+        /// The motion.
+        dof: &'static str,
+        /// What gives it one.
+        key: &'static str,
+    },
+}

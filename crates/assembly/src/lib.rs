@@ -1,0 +1,30 @@
+//! Several bearings on one shaft, at rest.
+//!
+//! Each bearing is a [`dynamics::Model`] whose shaft is prescribed: it answers a displacement of its axis point by a
+//! load and a tangent ([`support`]). The shaft is rigid or a chain of beam elements ([`shaft`], [`beam`]). An outer
+//! Newton balances it ([`newton`]):
+//!
+//! ```text
+//! K q + sum over bearings  S^T T^T r(T S q + shift)  =  f
+//! S  displacement of the shaft at the bearing's place,  T  rotation into the bearing's frame (`place`)
+//! ```
+//!
+//! So nothing in a bearing knows of the others, and rings, balls and contacts are those of a bearing alone. Bearings of
+//! one type share their rings and the factors of these.
+
+pub mod assembly;
+pub mod beam;
+mod error;
+pub mod newton;
+pub mod place;
+pub mod shaft;
+pub mod stiffness;
+pub mod support;
+pub mod whirl;
+
+pub use assembly::{Assembly, AssemblySolution, AssemblySolver, MountedBearing};
+pub use beam::{BeamSection, BeamShaft, PointMass};
+pub use error::AssemblyError;
+pub use place::{Orientation, Seating};
+pub use ring::rigid::RigidInertia;
+pub use shaft::{ShaftBody, Station};

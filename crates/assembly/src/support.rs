@@ -1,0 +1,111 @@
+//! What holds the shaft at a place: a bearing, or a linear spring.
+
+use dynamics::statics::ContactColumns;
+use dynamics::stiffness::{N_SHAFT, ShaftMatrix};
+use dynamics::{DynamicsError, Linearisation, Model, Pose, ShaftDof, StaticSolution, StaticSolver};
+
+/// Answer to a displacement, in the frame of what answers.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Answer {
+    /// Load that has to be put on the shaft to hold it there, N and N m.
+    pub load: [f64; N_SHAFT],
+    /// Its growth with the displacement; a tangent, good enough for Newton.
+    pub stiffness: ShaftMatrix,
+    /// A force by which its round-off counts, N.
+    pub force: f64,
+}
+
+/// What answers displacements of the shaft, by the number of the mount.
+pub trait Supports {
+    /// The load and tangent at a displacement.
+    fn answer(&mut self, mount: usize, at: [f64; N_SHAFT]) -> Result<Answer, DynamicsError>;
+
+    /// Displacement beyond which there is no equilibrium, m; None: any.
+    fn range(&self, mount: usize) -> Option<f64>;
+}
+
+/// A linear spring over all five dofs.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LinearSupport {
+    /// Its stiffness.
+    pub stiffness: ShaftMatrix,
+}
+
+impl LinearSupport {
+    /// A hinge: stiffness along x, y, z, none against tilt.
+    pub fn hinge(stiffness: f64) -> LinearSupport {
+        let mut matrix = [[0.0; N_SHAFT]; N_SHAFT];
+        (0..3).for_each(|i| matrix[i][i] = stiffness);
+        LinearSupport { stiffness: matrix }
+    }
+}
+
+impl Supports for Vec<LinearSupport> {
+    fn answer(&mut self, mount: usize, at: [f64; N_SHAFT]) -> Result<Answer, DynamicsError> {
+        let stiffness = self[mount].stiffness;
+        let load: [f64; N_SHAFT] = stiffness.map(|row| row.iter().zip(at).map(|(k, x)| k * x).sum());
+        Ok(Answer {
+            load,
+            stiffness,
+            force: load[..3].iter().fold(0.0, |m, f| f.abs().max(m)),
+        })
+    }
+
+    fn range(&self, _mount: usize) -> Option<f64> {
+        None
+    }
+}
+
+/// A bearing whose shaft is put where it is asked for.
+pub struct BearingSupport<'a> {
+    /// The bearing.
+    pub model: &'a mut Model,
+    /// Number of the factors of its rings.
+    pub solver: usize,
+    /// The columns of this bearing: those of other bearings of its type stay as they are.
+    pub columns: &'a mut ContactColumns,
+    /// The solution from which the first starts.
+    pub start: Option<&'a StaticSolution>,
+    /// The last solution, from which the next starts.
+    pub last: Option<StaticSolution>,
+}
+
+/// Bearings with the factors of their rings.
+pub struct BearingSupports<'a> {
+    /// Factors of each type.
+    pub solvers: &'a mut [StaticSolver],
+    /// The bearings.
+    pub bearings: Vec<BearingSupport<'a>>,
+}
+
+impl Supports for BearingSupports<'_> {
+    fn answer(&mut self, mount: usize, at: [f64; N_SHAFT]) -> Result<Answer, DynamicsError> {
+        let bearing = &mut self.bearings[mount];
+        let solver = &mut self.solvers[bearing.solver];
+        bearing.model.shaft = at.map(ShaftDof::Prescribed);
+        solver.swap_columns(bearing.columns);
+        let found = solver.solve_at(
+            bearing.model,
+            &Pose::default(),
+            bearing.last.as_ref().or(bearing.start),
+        );
+        solver.swap_columns(bearing.columns);
+        let solution = found?;
+        let tangent = Linearisation::as_solved(bearing.model, &solution)?.stiffness()?;
+        let forces = solution
+            .balls
+            .iter()
+            .flat_map(|b| [b.inner.force_n, b.outer.force_n]);
+        let answer = Answer {
+            load: solution.shaft_reaction,
+            stiffness: tangent,
+            force: forces.fold(0.0, f64::max),
+        };
+        bearing.last = Some(solution);
+        Ok(answer)
+    }
+
+    fn range(&self, mount: usize) -> Option<f64> {
+        Some(0.5 * self.bearings[mount].model.geometry.ball_diameter)
+    }
+}

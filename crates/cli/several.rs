@@ -1,0 +1,362 @@
+//! `raceway run` of a scene with a list of bearings on one shaft.
+
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+use anyhow::anyhow;
+use assembly::{Assembly, AssemblyError, AssemblySolution, AssemblySolver};
+use comm::Communicator;
+use contact::Side;
+use results::failure::{Failure, agree};
+use results::files::{Files, say_folder};
+use results::folder;
+use results::memory::{Forecasts, require_memory};
+use results::several::{
+    SeveralFindings, SeveralSummary, SeveralTables, print_solution, print_sweep_head, print_sweep_point,
+};
+use results::shown::Shown;
+use results::snapshot::Snapshot;
+use results::summary::{Findings, READ, Summary, TOTAL};
+use results::survey::{Survey, say_doubts};
+use scene::{Analysis, BuildError, Rings, SeveralScene, assembly_with_rings, build_assembly, doubts};
+
+use crate::progress::Progress;
+
+/// One load case: the swept value (None for a static scene) and its scene.
+pub type SeveralPoint = (Option<f64>, SeveralScene);
+
+/// Runs a scene and returns the folder of its results; `refused` is an option that is for one bearing.
+pub fn run(
+    scene: &SeveralScene,
+    out: Option<PathBuf>,
+    refused: Option<&str>,
+    start: Instant,
+) -> Result<PathBuf, Failure> {
+    refuse(refused, scene)?;
+    let dir = folder::choose(&scene.path, out)?;
+    run_in(scene, &dir, start).map(|()| dir)
+}
+
+fn run_in(scene: &SeveralScene, dir: &Path, start: Instant) -> Result<(), Failure> {
+    require_one_rank()?;
+    let points = points(scene)?;
+    let mut progress = Progress::new(points.len() as u64);
+    progress.stage("reading meshes");
+    let (mut assembly, _) = build_assembly(&points[0].1)?;
+    let mut warnings = all_doubts(scene, &assembly);
+    say_doubts(&warnings);
+    for bearing in &assembly.bearings {
+        require_memory(&scene.analysis, &bearing.model)?;
+    }
+    let read = start.elapsed().as_secs_f64();
+    progress.stage("factoring the stiffness of the rings");
+    let mut solver = AssemblySolver::new(&assembly).map_err(solving)?;
+    say_types(&solver, &assembly, &progress);
+    let column = column(scene);
+    let (mut written, mut failure, mut before) = (None, None, None);
+    let mut iterations = 0;
+    for (step, (value, point)) in points.iter().enumerate() {
+        progress.stage(&stage_text(column, *value));
+        assembly = assembly_with_rings(point, rings(assembly)).map_err(Failure::from)?;
+        let solution = match solver.solve(&mut assembly, before.as_ref()) {
+            Ok(solution) => solution,
+            Err(error) => {
+                failure = Some(at_point(solving(error), column, *value));
+                break;
+            }
+        };
+        // The first solution makes the folder: a scene that has none leaves no files.
+        let files = match &mut written {
+            Some(files) => files,
+            none => none.insert(SeveralFiles::create(scene, &assembly, &solution, dir)?),
+        };
+        files.append(step as u64, *value, (&assembly, point), &solution)?;
+        warnings.extend(warnings_at(&words_of(column, *value), &assembly, &solution));
+        iterations += solution.shaft.iterations;
+        before = Some(solution);
+        progress.advance();
+    }
+    progress.finish();
+    if let (Some(files), Some(last)) = (written, before) {
+        let mut laps = solver.laps();
+        laps.add(READ, read);
+        laps.add(TOTAL, start.elapsed().as_secs_f64());
+        let findings = SeveralFindings {
+            status: failure.as_ref().map_or("finished".to_string(), Failure::status),
+            iterations,
+            warnings,
+            laps,
+        };
+        files.finish(scene, (&assembly, &last), &solver, start)?;
+        let summary = SeveralSummary::new(scene, &assembly, &last, findings);
+        summary.write(dir)?;
+        if failure.is_none() {
+            if column.is_none() {
+                print_solution(&assembly, &last);
+            }
+            summary.print_costs();
+        }
+    }
+    failure.map_or(Ok(()), Err)
+}
+
+/// What a message on a point of a sweep begins with; empty without a sweep.
+pub fn words_of(column: Option<&str>, value: Option<f64>) -> String {
+    let words = |(column, value): (&str, f64)| format!("{column} = {value}: ");
+    column.zip(value).map_or(String::new(), words)
+}
+
+/// Warnings of all bearings, behind the words on the point.
+pub fn warnings_at(at: &str, assembly: &Assembly, solution: &AssemblySolution) -> Vec<String> {
+    let pairs = assembly.bearings.iter().zip(&solution.bearings);
+    let of = |(bearing, found): (&assembly::MountedBearing, &dynamics::StaticSolution)| {
+        let own = found.warnings.iter();
+        own.map(|w| format!("{at}bearing {:?}: {w}", bearing.name))
+            .collect::<Vec<_>>()
+    };
+    pairs.flat_map(of).collect()
+}
+
+/// The files of a run: tables of all bearings, and a folder for each.
+struct SeveralFiles {
+    tables: SeveralTables,
+    bearings: Vec<(PathBuf, Files)>,
+    /// Snapshots of the last step.
+    last: Vec<Snapshot>,
+    column: Option<String>,
+}
+
+impl SeveralFiles {
+    fn create(
+        scene: &SeveralScene,
+        assembly: &Assembly,
+        solution: &AssemblySolution,
+        dir: &Path,
+    ) -> Result<SeveralFiles, Failure> {
+        std::fs::create_dir_all(dir)
+            .map_err(|error| anyhow!("cannot create folder {}: {error}", dir.display()))?;
+        say_folder(dir);
+        let column = column(scene).map(str::to_string);
+        let tables = SeveralTables::create(dir, column.as_deref())?;
+        std::fs::write(dir.join("scene.toml"), &scene.text)
+            .map_err(|error| anyhow!("cannot write scene.toml of the results: {error}"))?;
+        let mut bearings = Vec::new();
+        for ((bearing, mounted), found) in scene
+            .bearings
+            .iter()
+            .zip(&assembly.bearings)
+            .zip(&solution.bearings)
+        {
+            let own = dir.join(&bearing.name);
+            let placed = bearing.scene.with_shaft_at(found.displacements.shaft)?;
+            let snapshot = snapshot(found);
+            let survey = Survey::default();
+            let files = Files::create_part(&placed, &mounted.model, &own, &snapshot, survey, &[])?;
+            bearings.push((own, files));
+        }
+        if column.is_some() {
+            print_sweep_head(column.as_deref().unwrap_or_default(), assembly);
+        }
+        Ok(SeveralFiles {
+            tables,
+            bearings,
+            last: Vec::new(),
+            column,
+        })
+    }
+
+    fn append(
+        &mut self,
+        step: u64,
+        value: Option<f64>,
+        (assembly, point): (&Assembly, &SeveralScene),
+        solution: &AssemblySolution,
+    ) -> Result<(), Failure> {
+        self.tables.append(step, value, assembly, solution)?;
+        if let (Some(value), true) = (value, self.column.is_some()) {
+            print_sweep_point(value, assembly, solution);
+        }
+        self.last.clear();
+        let time = step as f64;
+        for (i, (_, files)) in self.bearings.iter_mut().enumerate() {
+            let (model, found) = (&assembly.bearings[i].model, &solution.bearings[i]);
+            let snapshot = snapshot(found);
+            let placed = point.bearings[i].scene.with_shaft_at(found.displacements.shaft)?;
+            let shown = Shown::Equilibrium {
+                model,
+                placed: &model.geometry,
+                solution: found,
+            };
+            let gathered = files.gather_stress(&shown);
+            files.write_tables(step, time, None, &snapshot)?;
+            files.write_fields(|stress| {
+                results::fields::record(&shown, found, (stress, gathered), (step, time), &placed)
+            })?;
+            self.last.push(snapshot);
+        }
+        Ok(())
+    }
+
+    fn finish(
+        self,
+        scene: &SeveralScene,
+        (assembly, solution): (&Assembly, &AssemblySolution),
+        solver: &AssemblySolver,
+        start: Instant,
+    ) -> Result<(), Failure> {
+        for (i, ((dir, files), last)) in self.bearings.into_iter().zip(self.last).enumerate() {
+            let factors = solver.of_bearing(i);
+            let forecast = Side::BOTH.map(|side| factors.ring(side).map(|r| r.solver.memory));
+            let costs = files.finish(0.0, Forecasts::at_rest(forecast), factors.laps(), start)?;
+            let found = &solution.bearings[i];
+            let findings = Findings {
+                status: "finished".to_string(),
+                last,
+                points: Vec::new(),
+                iterations: std::collections::BTreeMap::from([
+                    ("rounds", found.rounds),
+                    ("newton", found.newton_iterations),
+                ]),
+                warnings: found.warnings.clone(),
+                advice: Vec::new(),
+            };
+            let bearing = &scene.bearings[i].scene;
+            Summary::new(bearing, &assembly.bearings[i].model, findings, &costs).write(&dir)?;
+        }
+        Ok(())
+    }
+}
+
+fn snapshot(solution: &dynamics::StaticSolution) -> Snapshot {
+    Snapshot::of_equilibrium(solution, None)
+}
+
+/// Ranks share no list of bearings yet.
+fn require_one_rank() -> Result<(), Failure> {
+    let ranks = Communicator::world().size();
+    agree(match ranks {
+        1 => Ok(()),
+        _ => Err(Failure::User(anyhow!(
+            "the launcher started {ranks} tasks, but a list of bearings is solved by one; start one task"
+        ))),
+    })
+}
+
+/// What is most likely a slip, once for each type.
+pub fn all_doubts(scene: &SeveralScene, assembly: &Assembly) -> Vec<String> {
+    let mut all: Vec<String> = Vec::new();
+    for (bearing, mounted) in scene.bearings.iter().zip(&assembly.bearings) {
+        let new = doubts(&bearing.scene, &mounted.model);
+        all.extend(
+            new.into_iter()
+                .filter(|line| !all.contains(line))
+                .collect::<Vec<_>>(),
+        );
+    }
+    if scene.effects.temperature.is_some() {
+        all.push(
+            "effects.temperature acts in each bearing; the axial growth of shaft and housing between bearings is left \
+             out: give it with pairing.offset"
+                .to_string(),
+        );
+    }
+    all
+}
+
+/// The load cases of a scene: one, or those of its sweep.
+pub fn points(scene: &SeveralScene) -> Result<Vec<SeveralPoint>, Failure> {
+    let Analysis::Sweep(sweep) = &scene.analysis else {
+        return Ok(vec![(None, scene.clone())]);
+    };
+    let scenes = scene.sweep_scenes()?;
+    let n_balls = |s: &SeveralScene| {
+        s.bearings
+            .iter()
+            .map(|b| b.scene.bearing.balls)
+            .collect::<Vec<_>>()
+    };
+    for point in &scenes {
+        let pairs = || scene.bearings.iter().zip(&point.bearings);
+        let same = |(a, b): (&scene::BearingOnShaft, &scene::BearingOnShaft)| {
+            scene::have_same_rings(&a.scene, &b.scene)
+        };
+        if n_balls(point) != n_balls(scene) || !pairs().all(same) {
+            return Err(Failure::User(anyhow!(
+                "{}: [sweep] key {} changes the bearings themselves; sweep loads, pairing.offset or supports of the \
+                 shaft, or run one scene per value with --set",
+                scene.path.display(),
+                sweep.key
+            )));
+        }
+    }
+    Ok(sweep.points.iter().map(|p| Some(p.value)).zip(scenes).collect())
+}
+
+/// Column of the swept value.
+pub fn column(scene: &SeveralScene) -> Option<&str> {
+    match &scene.analysis {
+        Analysis::Sweep(sweep) => Some(&sweep.column),
+        _ => None,
+    }
+}
+
+/// The rings of an assembly, for another one.
+pub fn rings(assembly: Assembly) -> Vec<Rings> {
+    assembly.bearings.into_iter().map(|b| b.model.rings).collect()
+}
+
+/// A failure of the solution.
+pub fn solving(error: AssemblyError) -> Failure {
+    match error {
+        AssemblyError::ShaftBody { .. } | AssemblyError::NoInertia { .. } => {
+            Failure::from(BuildError::from(error))
+        }
+        AssemblyError::Bearing { name, source } => {
+            Failure::solving(source).context(format!("bearing {name:?}"))
+        }
+        other => Failure::Numerical(anyhow::Error::from(other)),
+    }
+}
+
+/// A failure with the point of a sweep.
+pub fn at_point(failure: Failure, column: Option<&str>, value: Option<f64>) -> Failure {
+    match column.zip(value) {
+        Some((column, value)) => failure.context(format!("{column} = {value}")),
+        None => failure,
+    }
+}
+
+/// What is computed at a point, for progress.
+pub fn stage_text(column: Option<&str>, value: Option<f64>) -> String {
+    match column.zip(value) {
+        Some((column, value)) => format!("bearings at {column} = {value}"),
+        None => "bearings".to_string(),
+    }
+}
+
+/// Says how the rings of each type are solved.
+fn say_types(solver: &AssemblySolver, assembly: &Assembly, progress: &Progress) {
+    for (first, factors) in solver.types() {
+        for side in Side::BOTH {
+            if let Some(ring) = factors.ring(side) {
+                progress.stage(&format!(
+                    "{} ring as in {:?}: {}",
+                    side.name(),
+                    assembly.bearings[first].name,
+                    ring.solver.solver_note()
+                ));
+            }
+        }
+    }
+}
+
+/// Refuses options that are for one bearing.
+pub fn refuse(option: Option<&str>, scene: &SeveralScene) -> Result<(), Failure> {
+    match option {
+        None => Ok(()),
+        Some(option) => Err(Failure::User(anyhow!(
+            "{option} is not for a list of bearings, and {} has one; leave it out",
+            scene.path.display()
+        ))),
+    }
+}

@@ -1,0 +1,134 @@
+//! `raceway campbell` of a scene with a list of bearings: modes of the shaft on all of them over the speed.
+
+use std::f64::consts::PI;
+use std::path::Path;
+
+use anyhow::anyhow;
+use assembly::AssemblySolver;
+use assembly::stiffness::LinearAssembly;
+use assembly::whirl::{equations, turning_shaft};
+use comm::print;
+use dynamics::DampingLaws;
+use dynamics::kinematics::Speed;
+use results::campbell::{CAMPBELL_LINES, CAMPBELL_TABLE, ModesAtSpeed, print_campbell, write_campbell};
+use results::failure::Failure;
+use results::stiffness::require_free;
+use results::survey::say_doubts;
+use scene::{Analysis, SeveralScene, assembly_with_rings, build_assembly};
+
+use crate::linear_figures::draw;
+use crate::progress::Progress;
+use crate::several::{all_doubts, rings, solving, warnings_at};
+
+/// Modes of a beam that are shown where nobody says how many.
+const MODES_OF_BEAM: usize = 10;
+
+/// Damping ratio below which a mode counts as one that grows: far beyond round-off.
+pub const GROWS: f64 = -1e-8;
+/// Share of the shaft in the energy below which a mode is one of balls alone, of which there are many.
+const OF_BALLS: f64 = 0.02;
+
+/// Computes the modes at speeds, rpm, and writes them.
+pub fn campbell(
+    scene: SeveralScene,
+    speeds: &[f64],
+    number: Option<usize>,
+    out: &Path,
+) -> Result<(), Failure> {
+    if let Analysis::Sweep(sweep) = &scene.analysis {
+        return Err(Failure::User(anyhow!(
+            "{} has a [sweep] of {}; expected one operating point, so replace [sweep] by [static]",
+            scene.path.display(),
+            sweep.key
+        )));
+    }
+    require_free(out, &[CAMPBELL_TABLE, CAMPBELL_LINES])?;
+    let slip = scene.effects.slip();
+    let first = scene::geometry(&scene.bearings[0].scene);
+    let is_like = |b: &scene::BearingOnShaft| scene::geometry(&b.scene) == first;
+    let name = scene.bearings[0].name.clone();
+    let others = !scene.bearings.iter().all(is_like);
+    let (found, warnings) = diagram(scene, speeds, number)?;
+    std::fs::create_dir_all(out)
+        .map_err(|error| anyhow!("cannot create folder {}: {error}", out.display()))?;
+    write_campbell(out, &found, &first, slip)?;
+    print_campbell(&found);
+    for warning in &warnings {
+        print::line(format_args!("warning: {warning}"));
+    }
+    if others {
+        print::line(format_args!(
+            "the lines of cage and ball pass are those of bearing {name:?}"
+        ));
+    }
+    let figures = draw(out)?;
+    print::line(format_args!(
+        "{CAMPBELL_TABLE}, {CAMPBELL_LINES}, {} in {}",
+        figures.join(", "),
+        out.display()
+    ));
+    Ok(())
+}
+
+/// Modes at all speeds.
+fn diagram(
+    mut scene: SeveralScene,
+    speeds: &[f64],
+    number: Option<usize>,
+) -> Result<(Vec<ModesAtSpeed>, Vec<String>), Failure> {
+    let mut progress = Progress::new(speeds.len() as u64);
+    progress.stage("reading meshes");
+    let (mut assembly, _) = build_assembly(&scene)?;
+    let mut warnings = all_doubts(&scene, &assembly);
+    say_doubts(&warnings);
+    let n_free = assembly.shaft.held.iter().filter(|held| held.is_none()).count();
+    let number = number.unwrap_or(n_free.min(MODES_OF_BEAM));
+    if number == 0 {
+        return Err(Failure::User(anyhow!(
+            "no mode is asked for; expected --number of at least 1, and a free motion in [shaft]"
+        )));
+    }
+    progress.stage("factoring the stiffness of the rings");
+    let mut solver = AssemblySolver::new(&assembly).map_err(solving)?;
+    let turning = turning_shaft(&assembly).map_err(solving)?;
+    let (mut found, mut before, mut is_warned) = (Vec::new(), None, false);
+    for &rpm in speeds {
+        let at = |failure: Failure| failure.context(format!("{rpm} rpm"));
+        progress.stage(&format!("{rpm} rpm"));
+        let speed = rpm * PI / 30.0;
+        for bearing in &mut scene.bearings {
+            let mut own = bearing.scene.speed.clone().unwrap_or_default();
+            own.inner = Speed::constant(bearing.orientation.turned_angle(speed));
+            bearing.scene.speed = Some(own);
+        }
+        assembly = assembly_with_rings(&scene, rings(assembly))?;
+        let solution = solver
+            .solve(&mut assembly, before.as_ref())
+            .map_err(solving)
+            .map_err(at)?;
+        let modes = LinearAssembly::new(&assembly, &solver, &solution, DampingLaws::default())
+            .and_then(|linear| equations(&assembly, &turning, &linear, speed));
+        let modes = modes.map_err(solving).map_err(at)?.modes();
+        let mut modes = modes.map_err(Failure::solving).map_err(at)?;
+        // Balls that creep back have no frequency.
+        modes.retain(|mode| mode.frequency > 0.0 || mode.damping_ratio < GROWS);
+        modes.retain(|mode| mode.shaft_share > OF_BALLS || mode.damping_ratio < GROWS);
+        modes.truncate(number);
+        let growing = modes.iter().position(|mode| mode.damping_ratio < GROWS);
+        warnings.extend(growing.map(|i| format!("{rpm} rpm: mode {} grows by itself", i + 1)));
+        if !is_warned {
+            let found = warnings_at(&format!("from {rpm} rpm on: "), &assembly, &solution);
+            is_warned = !found.is_empty();
+            warnings.extend(found);
+        }
+        let outer = scene.speed.as_ref().map_or(0.0, |speed| speed.outer.at(0.0));
+        found.push(ModesAtSpeed {
+            speeds: [speed, outer],
+            modes,
+        });
+        before = Some(solution);
+        progress.advance();
+    }
+    progress.finish();
+    Ok((found, warnings))
+}

@@ -1,0 +1,105 @@
+//! `raceway check` of a scene with a list of bearings: sizes of each type, the shaft, and what is to be solved.
+
+use comm::print;
+use contact::Side;
+use dynamics::{RingMemory, forecast_peak};
+use results::answer;
+use results::failure::Failure;
+use scene::{Analysis, SeveralScene, ShaftKind, build_assembly, have_same_rings};
+
+use crate::ring_sizes::print_ring;
+use crate::several::all_doubts;
+
+/// Prints what a run would be.
+pub fn check(scene: &SeveralScene) -> Result<(), Failure> {
+    let (assembly, _) = build_assembly(scene)?;
+    print::line(format_args!(
+        "scene    {}",
+        scene.title.as_deref().unwrap_or("(no title)")
+    ));
+    match &scene.analysis {
+        Analysis::Sweep(sweep) => print::line(format_args!(
+            "analysis sweep of {} over {} values",
+            sweep.key,
+            sweep.points.len()
+        )),
+        _ => print::line(format_args!("analysis static")),
+    }
+    let names = scene.effects.names();
+    let effects = if names.is_empty() {
+        "none".to_string()
+    } else {
+        names.join(", ")
+    };
+    print::line(format_args!("effects  {effects}"));
+    let mut peak = 0;
+    for (i, bearing) in scene.bearings.iter().enumerate() {
+        let geometry = &assembly.bearings[i].model.geometry;
+        print::line(format_args!(
+            "bearing  {:?} of {} at {:.3} mm, {}: {} balls, clearance {:.4} mm, free contact angle {:.4} deg",
+            bearing.name,
+            bearing.type_file,
+            1e3 * bearing.position,
+            bearing.orientation.name(),
+            geometry.n_balls,
+            1e3 * geometry.clearance(),
+            geometry.free_contact_angle().to_degrees()
+        ));
+        let like = (0..i).find(|&k| have_same_rings(&scene.bearings[k].scene, &bearing.scene));
+        if let Some(k) = like {
+            print::line(format_args!(
+                "         its rings are those of {:?}, and are factored once",
+                scene.bearings[k].name
+            ));
+            continue;
+        }
+        let mut memory: [Option<RingMemory>; 2] = [None, None];
+        for side in Side::BOTH {
+            if let Some((of_ring, ..)) = print_ring(&assembly.bearings[i].model, side)? {
+                memory[side.index()] = Some(of_ring);
+            }
+        }
+        peak += forecast_peak(memory, rayon::current_num_threads());
+    }
+    print_shaft(scene, &assembly.shaft);
+    print::line(format_args!(
+        "memory   peak about {:.0} MB with {} threads",
+        peak as f64 / 1e6,
+        rayon::current_num_threads()
+    ));
+    let advice = all_doubts(scene, &assembly);
+    for line in &advice {
+        print::line(format_args!("advice   {line}"));
+    }
+    answer::add("advice", &advice);
+    answer::add("peak_memory_bytes", peak);
+    answer::add("shaft_dofs", assembly.shaft.n());
+    Ok(())
+}
+
+fn print_shaft(scene: &SeveralScene, shaft: &assembly::ShaftBody) {
+    let n_held = shaft.held.iter().filter(|held| held.is_some()).count();
+    match &scene.shaft.kind {
+        ShaftKind::Rigid(_) => print::line(format_args!(
+            "shaft    rigid, {} free motions, {} loads and {} masses along it",
+            shaft.n() - n_held,
+            scene.shaft.loads.len(),
+            scene.shaft.masses.len()
+        )),
+        ShaftKind::Beam(beam) => {
+            let [first, last] = beam.ends();
+            let elements = beam.elements(&shaft.nodes);
+            let mass: f64 = elements.iter().map(assembly::beam::BeamElement::mass_total).sum();
+            print::line(format_args!(
+                "shaft    beam from {:.3} to {:.3} mm, {} elements, {} dofs, {mass:.4} kg, {} loads and {} masses \
+                 along it",
+                1e3 * first,
+                1e3 * last,
+                elements.len(),
+                shaft.n(),
+                scene.shaft.loads.len(),
+                scene.shaft.masses.len()
+            ));
+        }
+    }
+}

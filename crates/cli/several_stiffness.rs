@@ -1,0 +1,143 @@
+//! `raceway stiffness` of a scene with a list of bearings: the matrix of each, and that of the shaft at a point.
+//!
+//! The point is where the first `[[shaft.load]]` acts, or else `shaft.load_point`.
+
+use std::path::Path;
+
+use anyhow::anyhow;
+use assembly::stiffness::LinearAssembly;
+use assembly::{Assembly, AssemblySolution, AssemblySolver};
+use comm::print;
+use contact::Side;
+use dynamics::DampingLaws;
+use results::failure::Failure;
+use results::several_stiffness::{BearingStiffness, SeveralStiffness, ShaftStiffnessAt};
+use results::stiffness::{OperatingPoint, StiffnessAt, StiffnessResults, require_free};
+use results::survey::say_doubts;
+use scene::{SeveralScene, assembly_with_rings, build_assembly};
+
+use crate::linear_figures::draw;
+use crate::progress::Progress;
+use crate::several::{all_doubts, at_point, column, points, rings, solving, stage_text, words_of};
+
+/// Why there is no damping.
+const NO_DAMPING: &str = "none: a list of bearings is linearised at rest, where no law gives any";
+
+/// Linearises and writes.
+pub fn stiffness(scene: &SeveralScene, out: &Path) -> Result<(), Failure> {
+    let bearings: Vec<String> = scene.bearings.iter().map(|b| b.name.clone()).collect();
+    let names = SeveralStiffness::names(&bearings);
+    let names: Vec<&str> = names.iter().map(String::as_str).collect();
+    require_free(out, &names)?;
+    let results = linearise(scene)?;
+    std::fs::create_dir_all(out)
+        .map_err(|error| anyhow!("cannot create folder {}: {error}", out.display()))?;
+    let mut names = results.write(out)?;
+    results.print();
+    names.extend(draw(out)?);
+    print::line(format_args!("{} in {}", names.join(", "), out.display()));
+    Ok(())
+}
+
+/// The results before anything is linearised.
+fn empty(scene: &SeveralScene, warnings: Vec<String>) -> SeveralStiffness {
+    let column = column(scene).map(str::to_string);
+    let source = scene.path.display().to_string();
+    let speeds = scene.speed.clone().unwrap_or_default();
+    let bearing = |bearing: &scene::BearingOnShaft| BearingStiffness {
+        name: bearing.name.clone(),
+        position: bearing.position,
+        orientation: bearing.orientation.name(),
+        results: StiffnessResults {
+            source: source.clone(),
+            column: column.clone(),
+            points: Vec::new(),
+            damping_note: NO_DAMPING.to_string(),
+            warnings: Vec::new(),
+        },
+    };
+    let bearings = scene.bearings.iter().map(bearing).collect();
+    let first_load = scene.shaft.loads.first().map(|load| load.position);
+    SeveralStiffness {
+        bearings,
+        position: first_load.unwrap_or(scene.shaft.load_point),
+        speed: speeds.inner.at(0.0),
+        shaft: Vec::new(),
+        warnings,
+        source,
+        column,
+    }
+}
+
+fn linearise(scene: &SeveralScene) -> Result<SeveralStiffness, Failure> {
+    let points = points(scene)?;
+    let mut progress = Progress::new(points.len() as u64);
+    progress.stage("reading meshes");
+    let (mut assembly, _) = build_assembly(&points[0].1)?;
+    let doubts = all_doubts(scene, &assembly);
+    say_doubts(&doubts);
+    progress.stage("factoring the stiffness of the rings");
+    let mut solver = AssemblySolver::new(&assembly).map_err(solving)?;
+    let mut results = empty(scene, doubts);
+    let column = results.column.clone();
+    let column = column.as_deref();
+    let mut before = None;
+    for (value, point) in &points {
+        progress.stage(&stage_text(column, *value));
+        let at = |failure: Failure| at_point(failure, column, *value);
+        assembly = assembly_with_rings(point, rings(assembly))?;
+        let solution = solver
+            .solve(&mut assembly, before.as_ref())
+            .map_err(solving)
+            .map_err(at)?;
+        let linear = LinearAssembly::new(&assembly, &solver, &solution, DampingLaws::default())
+            .map_err(solving)
+            .map_err(at)?;
+        let of_shaft = linear
+            .of_shaft(&assembly, results.position)
+            .map_err(solving)
+            .map_err(at)?;
+        results.shaft.push(ShaftStiffnessAt {
+            value: *value,
+            stiffness: of_shaft,
+            displacement: assembly
+                .shaft
+                .displacement_at(results.position, &solution.shaft.displacements),
+        });
+        for (i, bearing) in results.bearings.iter_mut().enumerate() {
+            let speeds = point.bearings[i].scene.speed.clone().unwrap_or_default();
+            let speeds = Side::BOTH.map(|side| speeds.of(side).at(0.0));
+            bearing.results.points.push(StiffnessAt {
+                value: *value,
+                stiffness: linear.stiffness[i],
+                damping: linear.damping[i],
+                load_stiffness: Default::default(),
+                operating_point: OperatingPoint::new(&solution.bearings[i], speeds),
+                ripple: None,
+            });
+        }
+        results
+            .warnings
+            .extend(unloaded(&words_of(column, *value), &assembly, &solution));
+        before = Some(solution);
+        progress.advance();
+    }
+    progress.finish();
+    Ok(results)
+}
+
+/// Says which bearings carry nothing.
+fn unloaded(at: &str, assembly: &Assembly, solution: &AssemblySolution) -> Vec<String> {
+    let pairs = assembly.bearings.iter().zip(&solution.bearings);
+    let is_loose =
+        |found: &dynamics::StaticSolution| found.balls.iter().all(|ball| ball.inner.force_n == 0.0);
+    pairs
+        .filter(|(_, found)| is_loose(found))
+        .map(|(bearing, _)| {
+            format!(
+                "{at}bearing {:?} carries nothing: its stiffness is 0",
+                bearing.name
+            )
+        })
+        .collect()
+}

@@ -1,0 +1,377 @@
+//! Results of several bearings on one shaft: `balls.csv`, `bearings.csv`, `shaft.csv`, `summary.json`, and what the
+//! screen shows.
+//!
+//! Every bearing has a folder of its own beside them, in its own frame, as if it had been run alone. These tables are
+//! in the frame of the shaft, with a column `bearing` where rows are of bearings.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use assembly::{Assembly, AssemblySolution};
+use checkpoint::GrowingFile;
+use comm::print;
+use dynamics::stiffness::N_SHAFT;
+use scene::{Analysis, SeveralScene};
+use serde::Serialize;
+use timer::Laps;
+
+use crate::summary::{peak_memory, write_summary};
+use crate::tables::{append, ball_cells, ball_columns, create, head, number, place_of};
+
+/// Balls of all bearings.
+pub const BALLS_TABLE: &str = "balls.csv";
+/// A row per bearing and step.
+pub const BEARINGS_TABLE: &str = "bearings.csv";
+/// The line of the shaft.
+pub const SHAFT_TABLE: &str = "shaft.csv";
+/// Column with the names of bearings.
+pub const BEARING: &str = "bearing";
+
+const SHAFT_COLUMNS: [&str; 6] = ["position_m", "x_m", "y_m", "z_m", "tilt_x_rad", "tilt_y_rad"];
+const FORCE_COLUMNS: [&str; 5] = [
+    "force_x_n",
+    "force_y_n",
+    "force_z_n",
+    "moment_x_n_m",
+    "moment_y_n_m",
+];
+const LOAD_COLUMNS: [&str; 3] = ["largest_ball_force_n", "loaded_balls", "outer_seat_z_m"];
+
+/// The tables of a run, open for appending.
+pub struct SeveralTables {
+    balls: csv::Writer<GrowingFile>,
+    bearings: csv::Writer<GrowingFile>,
+    shaft: csv::Writer<GrowingFile>,
+}
+
+impl SeveralTables {
+    /// Creates the files in a folder; `swept` is the column of a swept value.
+    pub fn create(dir: &Path, swept: Option<&str>) -> anyhow::Result<SeveralTables> {
+        let names = |lists: &[&[&str]]| -> Vec<String> {
+            lists.concat().iter().map(|name| name.to_string()).collect()
+        };
+        let balls = [vec![BEARING.to_string()], ball_columns()].concat();
+        let bearings = names(&[&[BEARING], &SHAFT_COLUMNS, &FORCE_COLUMNS, &LOAD_COLUMNS]);
+        Ok(SeveralTables {
+            balls: create(dir, BALLS_TABLE, &head(swept, &balls))?,
+            bearings: create(dir, BEARINGS_TABLE, &head(swept, &bearings))?,
+            shaft: create(dir, SHAFT_TABLE, &head(swept, &names(&[&SHAFT_COLUMNS])))?,
+        })
+    }
+
+    /// Appends one step; `swept` is the swept value in SI.
+    pub fn append(
+        &mut self,
+        step: u64,
+        swept: Option<f64>,
+        assembly: &Assembly,
+        solution: &AssemblySolution,
+    ) -> anyhow::Result<()> {
+        let place = place_of(step, step as f64, swept);
+        let row = |cells: Vec<String>| [place.clone(), cells].concat();
+        let mut balls = Vec::new();
+        let mut bearings = Vec::new();
+        for (number_of, (mounted, of_bearing)) in assembly.bearings.iter().zip(&solution.bearings).enumerate()
+        {
+            for (i, ball) in of_bearing.balls.iter().enumerate() {
+                let mut turned = *ball;
+                turned.azimuth_rad = in_one_turn(mounted.place.orientation.turned_angle(ball.azimuth_rad));
+                balls.push(row([vec![mounted.name.clone()], ball_cells(i, &turned)].concat()));
+            }
+            let state = StateOnShaft::new(assembly, solution, number_of);
+            let numbers = std::iter::once(mounted.place.position)
+                .chain(state.displacement)
+                .chain(state.force)
+                .chain([
+                    state.largest_ball_force,
+                    state.loaded_balls as f64,
+                    of_bearing.displacements.seat,
+                ]);
+            bearings.push(row([mounted.name.clone()]
+                .into_iter()
+                .chain(numbers.map(number))
+                .collect()));
+        }
+        append(&mut self.balls, BALLS_TABLE, balls)?;
+        append(&mut self.bearings, BEARINGS_TABLE, bearings)?;
+        let line = line(assembly, solution).into_iter();
+        let line = line.map(|(z, q)| row(std::iter::once(z).chain(q).map(number).collect()));
+        append(&mut self.shaft, SHAFT_TABLE, line)
+    }
+}
+
+/// An angle from 0 to a whole turn.
+fn in_one_turn(angle: f64) -> f64 {
+    angle.rem_euclid(std::f64::consts::TAU)
+}
+
+/// Places of the shaft and their displacements: nodes of a beam; of a rigid shaft its bearings.
+fn line(assembly: &Assembly, solution: &AssemblySolution) -> Vec<(f64, [f64; N_SHAFT])> {
+    let shaft = &assembly.shaft;
+    let mut places = match shaft.is_beam() {
+        true => shaft.nodes.clone(),
+        false => assembly
+            .bearings
+            .iter()
+            .map(|b| b.place.position)
+            .chain([0.0])
+            .collect(),
+    };
+    places.sort_by(f64::total_cmp);
+    places.dedup();
+    let at = |z: f64| (z, shaft.displacement_at(z, &solution.shaft.displacements));
+    places.into_iter().map(at).collect()
+}
+
+/// A bearing in the frame of the shaft.
+pub struct StateOnShaft {
+    /// Displacement of the shaft at its place, m and rad.
+    pub displacement: [f64; N_SHAFT],
+    /// Force, N, and moment, N m, by which it pushes the shaft at its place.
+    pub force: [f64; N_SHAFT],
+    /// Largest force on the inner raceway, N.
+    pub largest_ball_force: f64,
+    /// Balls that carry.
+    pub loaded_balls: usize,
+}
+
+impl StateOnShaft {
+    /// Of a bearing in a solution, by its number.
+    pub fn new(assembly: &Assembly, solution: &AssemblySolution, number: usize) -> StateOnShaft {
+        let station = assembly.shaft.station(assembly.bearings[number].place.position);
+        let balls = &solution.bearings[number].balls;
+        let largest = balls.iter().fold(0.0f64, |m, b| m.max(b.inner.force_n));
+        StateOnShaft {
+            displacement: station.displacement(&solution.shaft.displacements),
+            force: assembly.force_on_shaft(number, solution).map(|f| f + 0.0),
+            largest_ball_force: largest,
+            loaded_balls: balls
+                .iter()
+                .filter(|b| b.inner.force_n > 1e-9 * largest.max(1.0))
+                .count(),
+        }
+    }
+}
+
+/// The whole file.
+#[derive(Debug, Serialize)]
+pub struct SeveralSummary {
+    schema: u32,
+    scene: String,
+    title: Option<String>,
+    version: &'static str,
+    analysis: &'static str,
+    status: String,
+    shaft: ShaftOfSeveral,
+    bearings: BTreeMap<String, BearingSummary>,
+    effects: Vec<&'static str>,
+    iterations: usize,
+    /// Largest residual of the shaft over the largest force.
+    residual: f64,
+    warnings: Vec<String>,
+    timing_s: BTreeMap<String, f64>,
+    peak_memory_bytes: u64,
+}
+
+#[derive(Debug, Serialize)]
+struct ShaftOfSeveral {
+    model: &'static str,
+    nodes: usize,
+    /// Ends of the line, by position.
+    position_m: Vec<f64>,
+    displacement_m: Vec<[f64; 3]>,
+    rotation_rad: Vec<[f64; 2]>,
+}
+
+#[derive(Debug, Serialize)]
+struct BearingSummary {
+    /// Folder of its own results.
+    folder: String,
+    r#type: String,
+    orientation: &'static str,
+    position_m: f64,
+    displacement_m: [f64; 3],
+    rotation_rad: [f64; 2],
+    force_on_shaft_n: [f64; 3],
+    moment_on_shaft_n_m: [f64; 2],
+    largest_ball_force_n: f64,
+    loaded_balls: usize,
+    balls: usize,
+}
+
+/// What a run of several bearings found, besides its last solution.
+pub struct SeveralFindings {
+    /// `finished`, or what ended the run before its end.
+    pub status: String,
+    /// Iterations of the shaft, of all points.
+    pub iterations: usize,
+    /// What a user should know.
+    pub warnings: Vec<String>,
+    /// Wall time.
+    pub laps: Laps,
+}
+
+impl SeveralSummary {
+    /// Of the last solution of a run.
+    pub fn new(
+        scene: &SeveralScene,
+        assembly: &Assembly,
+        solution: &AssemblySolution,
+        findings: SeveralFindings,
+    ) -> SeveralSummary {
+        let split = |v: [f64; N_SHAFT]| ([v[0], v[1], v[2]], [v[3], v[4]]);
+        let bearing = |(number, mounted): (usize, &scene::BearingOnShaft)| {
+            let state = StateOnShaft::new(assembly, solution, number);
+            let (displacement_m, rotation_rad) = split(state.displacement);
+            let (force_on_shaft_n, moment_on_shaft_n_m) = split(state.force);
+            let summary = BearingSummary {
+                folder: mounted.name.clone(),
+                r#type: mounted.type_file.clone(),
+                orientation: mounted.orientation.name(),
+                position_m: mounted.position,
+                displacement_m,
+                rotation_rad,
+                force_on_shaft_n,
+                moment_on_shaft_n_m,
+                largest_ball_force_n: state.largest_ball_force,
+                loaded_balls: state.loaded_balls,
+                balls: assembly.bearings[number].model.geometry.n_balls,
+            };
+            (mounted.name.clone(), summary)
+        };
+        let line = line(assembly, solution);
+        let parts = findings
+            .laps
+            .iter()
+            .map(|lap| (lap.name.to_string(), lap.seconds));
+        SeveralSummary {
+            schema: 1,
+            scene: scene.path.display().to_string(),
+            title: scene.title.clone(),
+            version: env!("CARGO_PKG_VERSION"),
+            analysis: match scene.analysis {
+                Analysis::Sweep(_) => "sweep",
+                _ => "static",
+            },
+            status: findings.status,
+            shaft: ShaftOfSeveral {
+                model: if assembly.shaft.is_beam() { "beam" } else { "rigid" },
+                nodes: assembly.shaft.nodes.len(),
+                position_m: line.iter().map(|(z, _)| *z).collect(),
+                displacement_m: line.iter().map(|(_, q)| split(*q).0).collect(),
+                rotation_rad: line.iter().map(|(_, q)| split(*q).1).collect(),
+            },
+            bearings: scene.bearings.iter().enumerate().map(bearing).collect(),
+            effects: scene.effects.names(),
+            iterations: findings.iterations,
+            residual: solution.shaft.error,
+            warnings: findings.warnings,
+            timing_s: parts.collect(),
+            peak_memory_bytes: peak_memory(),
+        }
+    }
+
+    /// Writes the file: complete or not at all.
+    pub fn write(&self, dir: &Path) -> anyhow::Result<()> {
+        write_summary(dir, self)
+    }
+
+    /// Prints warnings, then where the time went.
+    pub fn print_costs(&self) {
+        for warning in &self.warnings {
+            print::line(format_args!("warning: {warning}"));
+        }
+        let parts: Vec<String> = self
+            .timing_s
+            .iter()
+            .map(|(part, s)| format!("{part} {s:.3}"))
+            .collect();
+        print::line(format_args!("seconds: {}", parts.join(", ")));
+        print::line(format_args!(
+            "peak memory: {:.0} MB",
+            self.peak_memory_bytes as f64 / 1e6
+        ));
+    }
+}
+
+/// Prints the bearings and the ends of the shaft.
+pub fn print_solution(assembly: &Assembly, solution: &AssemblySolution) {
+    print::line(format_args!(
+        "bearing        position       x        y        z   tilt x   tilt y   force x   force y   force z  \
+         largest ball  loaded"
+    ));
+    print::line(format_args!(
+        "                     mm      um       um       um     urad     urad         N         N         N  \
+                    N   balls"
+    ));
+    for (number, mounted) in assembly.bearings.iter().enumerate() {
+        let state = StateOnShaft::new(assembly, solution, number);
+        let [x, y, z, a, b] = state.displacement.map(|q| 1e6 * q);
+        let [fx, fy, fz, ..] = state.force;
+        print::line(format_args!(
+            "{:<12} {} {:7.2} {:>7} {:>8} {:>8} {:>8} {:>8} {:>9} {:>9} {:>9} {:13.2} {:4} of {}",
+            mounted.name,
+            mounted.place.orientation.name(),
+            1e3 * mounted.place.position,
+            fixed(x, 3),
+            fixed(y, 3),
+            fixed(z, 3),
+            fixed(a, 2),
+            fixed(b, 2),
+            fixed(fx, 2),
+            fixed(fy, 2),
+            fixed(fz, 2),
+            state.largest_ball_force,
+            state.loaded_balls,
+            mounted.model.geometry.n_balls
+        ));
+    }
+    for (z, q) in ends(assembly, solution) {
+        print::line(format_args!(
+            "shaft at {:.2} mm: x {} um, y {} um, z {} um",
+            1e3 * z,
+            fixed(1e6 * q[0], 3),
+            fixed(1e6 * q[1], 3),
+            fixed(1e6 * q[2], 3)
+        ));
+    }
+}
+
+/// The ends of a beam.
+fn ends(assembly: &Assembly, solution: &AssemblySolution) -> Vec<(f64, [f64; N_SHAFT])> {
+    let line = line(assembly, solution);
+    match assembly.shaft.is_beam() {
+        true => vec![line[0], line[line.len() - 1]],
+        false => Vec::new(),
+    }
+}
+
+/// A number; one that rounds to zero has no sign.
+fn fixed(x: f64, decimals: usize) -> String {
+    let text = format!("{x:.decimals$}");
+    match text.strip_prefix('-') {
+        Some(rest) if rest.chars().all(|c| c == '0' || c == '.') => rest.to_string(),
+        _ => text,
+    }
+}
+
+/// Prints a line per point of a sweep: the bearings' largest forces and loaded balls.
+pub fn print_sweep_head(column: &str, assembly: &Assembly) {
+    let names: Vec<String> = assembly
+        .bearings
+        .iter()
+        .map(|b| format!("{:>12} N (balls)", b.name))
+        .collect();
+    print::line(format_args!("{column:>28} {}", names.join(" ")));
+}
+
+/// Prints a point of a sweep.
+pub fn print_sweep_point(value: f64, assembly: &Assembly, solution: &AssemblySolution) {
+    let cells: Vec<String> = (0..assembly.bearings.len())
+        .map(|i| {
+            let state = StateOnShaft::new(assembly, solution, i);
+            format!("{:14.2} ({:5})", state.largest_ball_force, state.loaded_balls)
+        })
+        .collect();
+    print::line(format_args!("{value:>28} {}", cells.join(" ")));
+}

@@ -1,0 +1,154 @@
+//! From a scene with a list of bearings to the bearings on their shaft.
+
+use std::sync::Arc;
+
+use assembly::{Assembly, AssemblyError, MountedBearing, Seating, ShaftBody};
+use dynamics::effects::{Loads, Now, Setting};
+use dynamics::{Model, RingModel};
+
+use crate::build::{NodeTags, build_model, model_with_rings};
+use crate::error::BuildError;
+use crate::tables::{Motion, ON_SHAFT, RigidShaft, Scene, SeveralScene, ShaftKind};
+
+/// Rings of a bearing, inner first.
+pub type Rings = [Option<Arc<RingModel>>; 2];
+
+/// The bearings of a scene on their shaft, and the numbers of the nodes of each in the mesh files. Reads the meshes of
+/// each type once.
+pub fn build_assembly(scene: &SeveralScene) -> Result<(Assembly, Vec<NodeTags>), BuildError> {
+    let mut rings: Vec<Rings> = Vec::new();
+    let mut tags: Vec<NodeTags> = Vec::new();
+    for (i, bearing) in scene.bearings.iter().enumerate() {
+        let like = (0..i).find(|&k| have_same_rings(&scene.bearings[k].scene, &bearing.scene));
+        match like {
+            Some(k) => {
+                rings.push(rings[k].clone());
+                tags.push(tags[k].clone());
+            }
+            None => {
+                let (model, of_model) = build_model(&bearing.scene)?;
+                rings.push(model.rings);
+                tags.push(of_model);
+            }
+        }
+    }
+    Ok((assembly_with_rings(scene, rings)?, tags))
+}
+
+/// The same with rings that were read before, by bearing: the points of a sweep share them.
+pub fn assembly_with_rings(scene: &SeveralScene, rings: Vec<Rings>) -> Result<Assembly, BuildError> {
+    let mut bearings = Vec::new();
+    for (bearing, rings) in scene.bearings.iter().zip(rings) {
+        bearings.push(MountedBearing {
+            name: bearing.name.clone(),
+            place: Seating {
+                position: bearing.position,
+                orientation: bearing.orientation,
+                shift: 0.5 * scene.pairing.offset,
+            },
+            model: model_with_rings(&bearing.scene, rings)?,
+        });
+    }
+    let shaft = shaft(scene)?;
+    let load = loads(scene, &shaft, &bearings[0].model)?;
+    Ok(Assembly {
+        bearings,
+        shaft,
+        load,
+    })
+}
+
+/// Whether two scenes have the same finite-element rings, so that one factorisation serves both.
+pub fn have_same_rings(a: &Scene, b: &Scene) -> bool {
+    let grooves = |s: &Scene| {
+        let b = &s.bearing;
+        [
+            b.inner_raceway_diameter,
+            b.outer_raceway_diameter,
+            b.inner_groove_radius,
+            b.outer_groove_radius,
+        ]
+    };
+    let same_bodies = a.inner.body == b.inner.body && a.outer.body == b.outer.body;
+    let rigid = a.inner.body.is_none() && a.outer.body.is_none();
+    same_bodies
+        && a.body == b.body
+        && a.contact.mode == b.contact.mode
+        && (rigid || (a.materials.rings == b.materials.rings && grooves(a) == grooves(b)))
+}
+
+/// The shaft with the masses along it.
+fn shaft(scene: &SeveralScene) -> Result<ShaftBody, AssemblyError> {
+    let shaft = &scene.shaft;
+    let mut body = match &shaft.kind {
+        ShaftKind::Rigid(rigid) => rigid_shaft(rigid),
+        ShaftKind::Beam(beam) => {
+            let bearings = scene.bearings.iter().map(|b| b.position);
+            let loads = shaft.loads.iter().map(|l| l.position);
+            let masses = shaft.masses.iter().map(|m| m.position);
+            let has_load = ON_SHAFT.iter().any(|name| scene.effects.names().contains(name));
+            let load_point = has_load.then_some(shaft.load_point);
+            let stations: Vec<f64> = bearings.chain(loads).chain(masses).chain(load_point).collect();
+            ShaftBody::beam(beam, &stations)?
+        }
+    };
+    shaft.masses.iter().for_each(|mass| body.add_mass(mass));
+    Ok(body)
+}
+
+fn rigid_shaft(rigid: &RigidShaft) -> ShaftBody {
+    let inertia = assembly::RigidInertia {
+        mass: rigid.mass,
+        first_moment: 0.0,
+        transverse: rigid.transverse,
+        polar: rigid.polar,
+    };
+    let held = rigid.motions.map(|motion| match motion {
+        Motion::Free => None,
+        Motion::Locked => Some(0.0),
+        Motion::Prescribed(value) => Some(value),
+    });
+    ShaftBody::rigid(inertia, held)
+}
+
+/// Loads on the shaft's dofs: those along it, those of effects at the load point, and its weight. `model` is any of the
+/// bearings: the effects ask for one.
+fn loads(scene: &SeveralScene, shaft: &ShaftBody, model: &Model) -> Result<Vec<f64>, BuildError> {
+    let mut sum = vec![0.0; shaft.n()];
+    for load in &scene.shaft.loads {
+        let ([x, y, z], [about_x, about_y]) = (load.force, load.moment);
+        shaft.add_load(load.position, [x, y, z, about_x, about_y], &mut sum);
+    }
+    let none = [None, None];
+    let found = scene.effects.loads(Setting {
+        speeds: &scene.speed.clone().unwrap_or_default(),
+        slip: scene.effects.slip(),
+        ball_speeds: scene.bearings[0].scene.ball_speeds,
+        rings: &none,
+        lubricant: None,
+    })?;
+    let mut of_effects = Loads::none(model);
+    for effect in found.iter().filter(|effect| ON_SHAFT.contains(&effect.name())) {
+        // The load point of a bearing's model is its origin: forces have no lever.
+        effect.add_loads(model, &Now::default(), &mut of_effects)?;
+    }
+    shaft.add_load(scene.shaft.load_point, of_effects.shaft, &mut sum);
+    if let Some(gravity) = &scene.effects.gravity {
+        let g = gravity.acceleration();
+        match &scene.shaft.kind {
+            ShaftKind::Beam(_) => {
+                let weight = shaft.weight(g);
+                sum.iter_mut().zip(weight).for_each(|(sum, w)| *sum += w);
+            }
+            ShaftKind::Rigid(rigid) => {
+                let own = (scene.shaft.load_point, rigid.mass);
+                let points = scene.shaft.masses.iter().map(|m| (m.position, m.mass));
+                for (position, mass) in points.chain([own]) {
+                    let [x, y, z] = g.map(|a| mass * a);
+                    shaft.add_load(position, [x, y, z, 0.0, 0.0], &mut sum);
+                }
+            }
+        }
+    }
+    Ok(sum)
+}

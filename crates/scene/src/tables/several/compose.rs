@@ -1,0 +1,459 @@
+//! A scene of one bearing out of a list and the file of its type.
+//!
+//! The tables of the list that are not the bearing's are blanked, so that every line keeps its number; the type file is
+//! included as `include` does it; what depends on the place is set: the shaft is prescribed, azimuth, weight and speeds
+//! are turned into the bearing's frame.
+
+use std::path::Path;
+
+use assembly::Orientation;
+use dynamics::effects::{Context, Effects};
+use input::{Clock, Problems};
+use toml_edit::{DocumentMut, Item, Table, Value};
+
+use super::super::messages::Messages;
+use super::super::ring::MeshFiles;
+use super::super::sweep::Analysis;
+use super::super::{Scene, SceneError, Source, edit, include};
+use super::mounted::{BearingOnShaft, RawMounted, check_places};
+use super::pairing::Pairing;
+use super::shaft::{CommonShaft, ShaftKind};
+use super::{AnyScene, ON_SHAFT, RawSeveral, SeveralScene, is_plain, set};
+use crate::tables::shaft::Motion;
+
+/// Tables of the list that no bearing has, or that a list is refused with.
+const OF_LIST: [&str; 15] = [
+    "bearing",
+    "shaft",
+    "pairing",
+    "static",
+    "sweep",
+    "quasi_static",
+    "dynamic",
+    "modes",
+    "profiles",
+    "balls",
+    "cage",
+    "probes",
+    "life",
+    "heat",
+    "lubricant",
+];
+/// Tables that a type file may have.
+const OF_TYPE: [&str; 5] = ["bearing", "materials", "contact", "inner", "outer"];
+
+/// What a list is made into scenes with.
+pub struct Composer<'a> {
+    pub path: &'a Path,
+    pub overrides: &'a [String],
+    pub mesh_files: MeshFiles,
+    pub whole: &'a include::WholeText,
+    pub messages: Messages<'a>,
+}
+
+impl Composer<'_> {
+    /// The scene of a list, which `document` is before overrides.
+    pub fn several(&self, mut document: DocumentMut) -> Result<AnyScene, SceneError> {
+        let of_list = |o: &&String| !include::is_of_include(o) && !is_of_type(o);
+        for argument in self.overrides.iter().filter(of_list) {
+            apply(&mut document, argument)?;
+        }
+        let text = document.to_string();
+        let raw: RawSeveral = self.messages.read(&text)?;
+        let mut problems = Problems::default();
+        if is_plain(&raw) {
+            raw.bearing[0].check(1, &mut problems);
+            return match problems.into_texts() {
+                none if none.is_empty() => self
+                    .plain(&raw.bearing[0], document)
+                    .map(|s| AnyScene::One(Box::new(s))),
+                texts => Err(self.messages.invalid(texts)),
+            };
+        }
+        let scene = self.listed(raw, text, &document)?;
+        self.check_points(&scene)?;
+        Ok(AnyScene::Several(Box::new(scene)))
+    }
+
+    /// The scene of a list of bearings, checked.
+    fn listed(
+        &self,
+        raw: RawSeveral,
+        text: String,
+        document: &DocumentMut,
+    ) -> Result<SeveralScene, SceneError> {
+        let mut problems = Problems::default();
+        check_list(&raw, &mut problems);
+        let pairing = raw.pairing.as_ref().map(|p| p.check(&raw.bearing, &mut problems));
+        let pairing = pairing.unwrap_or_default();
+        let analysis = raw.analysis(document, &mut problems);
+        let (scenes, told) = self.scenes(&raw, document, &pairing)?;
+        check_places(&raw.bearing, &scenes, &mut problems);
+        let balls = scenes.iter().flatten().map(|s| s.bearing.ball_diameter);
+        let largest_ball = balls.fold(0.0, f64::max);
+        let shaft = raw.shaft.check(largest_ball, &mut problems);
+        if let Some(shaft) = &shaft {
+            check_ends(&raw.bearing, &scenes, shaft, &mut problems);
+            check_axis(&raw.bearing, &pairing, shaft, &mut problems);
+        }
+        let is_sound = problems.is_empty() && told.is_empty();
+        let scenes: Option<Vec<Scene>> = scenes.into_iter().collect();
+        let (Some(shaft), Some(analysis), Some(scenes), true) = (shaft, analysis, scenes, is_sound) else {
+            return Err(self.invalid(problems.into_texts(), told));
+        };
+        let mounted = |(raw, scene): (&RawMounted, Scene)| BearingOnShaft {
+            name: raw.name.clone(),
+            position: raw.position.si(),
+            orientation: raw.orientation().unwrap_or(Orientation::PlusZ),
+            type_file: raw.r#type.clone(),
+            scene,
+        };
+        let bearings: Vec<BearingOnShaft> = raw.bearing.iter().zip(scenes).map(mounted).collect();
+        let speed = bearings[0].scene.speed.clone().map(|mut speed| {
+            turn_speeds(&mut speed, bearings[0].orientation);
+            speed
+        });
+        Ok(SeveralScene {
+            path: self.path.to_path_buf(),
+            text,
+            overrides: self.overrides.to_vec(),
+            title: raw.title,
+            bearings,
+            shaft,
+            pairing,
+            effects: raw.effects,
+            speed,
+            analysis,
+        })
+    }
+
+    /// Problems of the list, and those of its bearings, which say their lines already.
+    fn invalid(&self, texts: Vec<String>, told: Vec<String>) -> SceneError {
+        match self.messages.invalid(texts) {
+            SceneError::Invalid {
+                path,
+                overrides,
+                problems,
+            } => SceneError::Invalid {
+                path,
+                overrides,
+                problems: [problems, told].concat(),
+            },
+            other => other,
+        }
+    }
+
+    /// Every point of a sweep must be a valid scene before the first is solved.
+    fn check_points(&self, scene: &SeveralScene) -> Result<(), SceneError> {
+        let Analysis::Sweep(sweep) = &scene.analysis else {
+            return Ok(());
+        };
+        for (i, point) in sweep.points.iter().enumerate() {
+            let found = AnyScene::parse(
+                &point.text,
+                self.path,
+                &scene.type_overrides(),
+                MeshFiles::MayBeMissing,
+            );
+            if let Err(error) = found {
+                let reason = match error {
+                    SceneError::Invalid { problems, .. } => problems.join("; "),
+                    SceneError::Format { message, .. } => message,
+                    other => other.to_string(),
+                };
+                return Err(self.messages.invalid(vec![format!(
+                    "point {i} of the sweep ({} = {}): {reason}",
+                    sweep.column, point.value
+                )]));
+            }
+        }
+        Ok(())
+    }
+
+    /// The scene of every bearing that has one, and what is wrong with the others, each problem once.
+    fn scenes(
+        &self,
+        raw: &RawSeveral,
+        document: &DocumentMut,
+        pairing: &Pairing,
+    ) -> Result<(Vec<Option<Scene>>, Vec<String>), SceneError> {
+        let (mut scenes, mut told) = (Vec::new(), Vec::new());
+        for (number, bearing) in raw.bearing.iter().enumerate() {
+            let sliding = pairing.spring.as_ref().filter(|spring| spring.bearing == number);
+            match self.scene_of(bearing, document, sliding.map(|spring| spring.force)) {
+                Ok(scene) => scenes.push(Some(scene)),
+                Err(SceneError::Invalid { problems, .. }) => {
+                    for problem in problems {
+                        if !told.contains(&problem) {
+                            told.push(problem);
+                        }
+                    }
+                    scenes.push(None);
+                }
+                Err(other) => return Err(other),
+            }
+        }
+        Ok((scenes, told))
+    }
+
+    /// The scene of a bearing, whose outer ring may be pressed by a spring, N.
+    fn scene_of(
+        &self,
+        bearing: &RawMounted,
+        list: &DocumentMut,
+        spring: Option<f64>,
+    ) -> Result<Scene, SceneError> {
+        self.made(bearing, |document| {
+            let orientation = bearing.orientation().unwrap_or(Orientation::PlusZ);
+            OF_LIST
+                .iter()
+                .filter(|name| **name != "bearing")
+                .for_each(|name| {
+                    document.remove(name);
+                });
+            copy_shared(list, document, &ON_SHAFT);
+            if let Some(azimuth) = &bearing.first_ball_azimuth {
+                let own = orientation.turned_angle(azimuth.si());
+                set(
+                    document,
+                    "bearing.first_ball_azimuth",
+                    &format!("\"{own:?} rad\""),
+                );
+            }
+            turn_weight(document, orientation);
+            turn_speed(document, orientation);
+            if let Some(force) = spring {
+                set(
+                    document,
+                    "effects.spring_preload.force",
+                    &format!("\"{force:?} N\""),
+                );
+            }
+            for (key, unit) in [
+                ("x", "m"),
+                ("y", "m"),
+                ("z", "m"),
+                ("tilt_x", "rad"),
+                ("tilt_y", "rad"),
+            ] {
+                set(document, &format!("shaft.{key}"), &format!("\"0 {unit}\""));
+            }
+            set(document, "shaft.load_point", "\"0 m\"");
+            document.insert("static", Item::Table(Table::new()));
+        })
+    }
+
+    /// The scene with one table that a list of one bearing stands for.
+    fn plain(&self, bearing: &RawMounted, list: DocumentMut) -> Result<Scene, SceneError> {
+        self.made(bearing, |document| {
+            for name in OF_LIST.iter().filter(|name| **name != "bearing") {
+                if let Some(item) = list.get(name) {
+                    document.insert(name, item.clone());
+                }
+            }
+            copy_shared(&list, document, &[]);
+            if let Some(shaft) = document.get_mut("shaft").and_then(Item::as_table_like_mut) {
+                shaft.remove("model");
+                if !shaft.contains_key("load_point") {
+                    shaft.insert("load_point", Item::Value(Value::from("0 m")));
+                }
+            }
+            if let Some(azimuth) = &bearing.first_ball_azimuth {
+                set(document, "bearing.first_ball_azimuth", &format!("\"{azimuth}\""));
+            }
+        })
+    }
+
+    /// The scene of a type file and of what `change` makes of the tables that all bearings share.
+    fn made(&self, bearing: &RawMounted, change: impl FnOnce(&mut DocumentMut)) -> Result<Scene, SceneError> {
+        let is_shared = |names: &[String]| {
+            let of_shaft = names.len() == 2 && names[0] == "effects" && ON_SHAFT.contains(&names[1].as_str());
+            !of_shaft && !names.first().is_some_and(|name| OF_LIST.contains(&name.as_str()))
+        };
+        let whole = self
+            .whole
+            .with_type((&bearing.name, &bearing.r#type), &OF_TYPE, is_shared)
+            .map_err(|error| self.at_bearing(error))?;
+        let source = Source {
+            path: self.path,
+            overrides: self.overrides,
+            mesh_files: self.mesh_files,
+            messages: Messages {
+                path: self.path,
+                whole: &whole,
+                overrides: self.overrides,
+            },
+        };
+        let mut document = source.messages.document(&whole.text)?;
+        for argument in self.overrides.iter().filter(|o| is_of_type(o)) {
+            apply(&mut document, argument)?;
+        }
+        change(&mut document);
+        let text = document.to_string();
+        let document = source.messages.document(&text)?;
+        let scene = source.check(text, &document)?;
+        source.check_points(&scene)?;
+        Ok(scene)
+    }
+
+    /// What is wrong with the file of a type.
+    fn at_bearing(&self, error: include::TypeError) -> SceneError {
+        match error {
+            include::TypeError::There(error) => error,
+            include::TypeError::Here(problem) => SceneError::Invalid {
+                path: self.path.to_path_buf(),
+                overrides: self.overrides.to_vec(),
+                problems: vec![problem],
+            },
+        }
+    }
+}
+
+/// Checks what is of the list alone.
+fn check_list(raw: &RawSeveral, problems: &mut Problems) {
+    raw.refuse(problems);
+    check_loads(raw, problems);
+    for (number, bearing) in (1..).zip(&raw.bearing) {
+        bearing.check(number, problems);
+    }
+    if raw.bearing.is_empty() {
+        problems.add("bearing is an empty list; expected at least one table [[bearing]]");
+    }
+}
+
+/// Checks the effects that load the shaft, which no bearing has.
+fn check_loads(raw: &RawSeveral, problems: &mut Problems) {
+    let on_shaft = Effects {
+        axial_force: raw.effects.axial_force.clone(),
+        radial_force: raw.effects.radial_force.clone(),
+        moment: raw.effects.moment.clone(),
+        ..Effects::default()
+    };
+    let context = Context {
+        is_without_inertia: true,
+        clock: Clock::AtRest,
+        has_speed: [false; 2],
+        is_flexible: [false; 2],
+        seat_diameters: [None; 2],
+        has_expansion: [true; 2],
+        has_lubricant: false,
+    };
+    on_shaft.check(context, problems);
+}
+
+fn apply(document: &mut DocumentMut, argument: &str) -> Result<(), SceneError> {
+    edit::apply_override(document, argument).map_err(|reason| SceneError::Override {
+        argument: argument.to_string(),
+        reason,
+    })
+}
+
+/// Brings what the command line has changed in tables that all bearings share; `left_out` are effects.
+fn copy_shared(list: &DocumentMut, document: &mut DocumentMut, left_out: &[&str]) {
+    for (name, item) in list.iter() {
+        if OF_LIST.contains(&name) || OF_TYPE.contains(&name) || name == "include" {
+            continue;
+        }
+        let mut item = item.clone();
+        if let (true, Some(effects)) = (name == "effects", item.as_table_like_mut()) {
+            left_out.iter().for_each(|effect| {
+                effects.remove(effect);
+            });
+        }
+        document.insert(name, item);
+    }
+}
+
+/// Whether a `--set` argument is of the type of the bearings.
+pub fn is_of_type(argument: &str) -> bool {
+    let root = argument.split(['.', '=']).next().unwrap_or_default().trim();
+    root != "bearing" && OF_TYPE.contains(&root)
+}
+
+/// The direction of the weight in the bearing's frame.
+fn turn_weight(document: &mut DocumentMut, orientation: Orientation) {
+    let direction = document
+        .get_mut("effects")
+        .and_then(|effects| effects.get_mut("gravity"))
+        .and_then(|gravity| gravity.get_mut("direction"))
+        .and_then(Item::as_array_mut);
+    let Some(direction) = direction else { return };
+    let of = |value: &Value| value.as_float().or_else(|| value.as_integer().map(|i| i as f64));
+    let numbers: Vec<f64> = direction.iter().filter_map(of).collect();
+    if let [x, y, z] = numbers[..] {
+        *direction = orientation
+            .turned_vector([x, y, z])
+            .map(|d| d + 0.0)
+            .into_iter()
+            .collect();
+    }
+}
+
+/// Speeds in the bearing's frame: a spin along the shaft's z is one against the bearing's.
+fn turn_speed(document: &mut DocumentMut, orientation: Orientation) {
+    if orientation == Orientation::PlusZ {
+        return;
+    }
+    let Some(speed) = document.get_mut("speed").and_then(Item::as_table_like_mut) else {
+        return;
+    };
+    for ring in ["inner", "outer"] {
+        let Some(text) = speed.get(ring).and_then(Item::as_str).map(str::to_string) else {
+            continue;
+        };
+        let turned = match text.trim().strip_prefix('-') {
+            Some(rest) => rest.to_string(),
+            None => format!("-{}", text.trim().trim_start_matches('+')),
+        };
+        speed.insert(ring, Item::Value(Value::from(turned)));
+    }
+}
+
+/// Speeds in the frame of the shaft of those of a bearing, or back.
+pub fn turn_speeds(speeds: &mut dynamics::kinematics::RingSpeeds, orientation: Orientation) {
+    for speed in [&mut speeds.inner, &mut speeds.outer] {
+        speed
+            .values
+            .iter_mut()
+            .for_each(|w| *w = orientation.turned_angle(*w));
+    }
+}
+
+/// Bearings lie on the shaft.
+fn check_ends(raw: &[RawMounted], scenes: &[Option<Scene>], shaft: &CommonShaft, problems: &mut Problems) {
+    let ([first, last], text) = shaft.ends();
+    for (bearing, scene) in raw.iter().zip(scenes) {
+        let Some(scene) = scene else { continue };
+        let slack = scene.bearing.inner_groove_radius - 0.5 * scene.bearing.ball_diameter;
+        let half = match shaft.kind {
+            ShaftKind::Rigid(_) => 0.0,
+            ShaftKind::Beam(_) => 0.5 * scene.bearing.width - slack,
+        };
+        let at = bearing.position.si();
+        if at - half < first || at + half > last {
+            problems.add(format!(
+                "bearing.position of {:?} is {}: with its width of {:.3} mm it reaches beyond the shaft; expected \
+                 {text}",
+                bearing.name,
+                bearing.position,
+                1e3 * scene.bearing.width
+            ));
+        }
+    }
+}
+
+/// Something holds the shaft along z.
+fn check_axis(raw: &[RawMounted], pairing: &Pairing, shaft: &CommonShaft, problems: &mut Problems) {
+    let is_free = match &shaft.kind {
+        ShaftKind::Rigid(rigid) => rigid.motions[2] == Motion::Free,
+        ShaftKind::Beam(_) => true,
+    };
+    let fixed = raw.len() - usize::from(pairing.spring.is_some());
+    if is_free && fixed == 0 {
+        problems.add(format!(
+            "nothing holds the shaft along z: the outer ring of {:?}, the only bearing, slides; add a bearing whose \
+             outer ring is fixed, or lock shaft.z of a rigid shaft",
+            raw[0].name
+        ));
+    }
+}

@@ -1,0 +1,303 @@
+//! `[[bearing]]`, `[pairing]` and `[shaft]` with `[[shaft.section]]`: several bearings on one shaft.
+//!
+//! ```toml
+#![doc = include_str!("../example_several.toml")]
+//! ```
+//!
+//! Each bearing is a scene of its own ([`compose`]): the tables of its type file with those of the scene that all
+//! bearings have, such as `[solver]` and `[effects.gravity]`. It stands in its own frame, with the shaft prescribed.
+//! What loads the shaft is kept apart. So every check of a bearing's tables is that of a scene with one bearing.
+//!
+//! Positions count along the shaft. That of a bearing is the position of the plane of its inner groove centres, to
+//! which the displacements of a scene with one bearing refer too.
+
+mod compose;
+mod mounted;
+mod pairing;
+mod shaft;
+
+use std::path::{Path, PathBuf};
+
+use dynamics::effects::Effects;
+use dynamics::kinematics::RingSpeeds;
+use input::Problems;
+use serde::Deserialize;
+use serde::de::IgnoredAny;
+use toml_edit::DocumentMut;
+
+use self::compose::Composer;
+pub use self::mounted::BearingOnShaft;
+use self::mounted::RawMounted;
+use self::pairing::RawPairing;
+pub use self::pairing::{Pairing, SpringPairing};
+use self::shaft::RawCommonShaft;
+pub use self::shaft::{CommonShaft, RigidShaft, ShaftKind, ShaftLoad};
+use super::messages::Messages;
+use super::ring::MeshFiles;
+use super::sweep::{Analysis, RawStatic, RawSweep};
+use super::{Scene, SceneError, edit, include};
+
+/// Effects that load the shaft.
+pub const ON_SHAFT: [&str; 3] = ["axial_force", "moment", "radial_force"];
+/// Effects that act in every bearing.
+const IN_BEARINGS: [&str; 6] = [
+    "ball_centrifugal",
+    "cage_slip",
+    "fit",
+    "gravity",
+    "gyroscopic_moment",
+    "temperature",
+];
+
+/// As typed; tables of bearings are read with their types.
+#[derive(Debug, Deserialize)]
+#[serde(
+    deny_unknown_fields,
+    expecting = "the tables of a scene with a list of bearings"
+)]
+struct RawSeveral {
+    title: Option<String>,
+    #[serde(rename = "include")]
+    _include: Option<IgnoredAny>,
+    bearing: Vec<RawMounted>,
+    shaft: RawCommonShaft,
+    pairing: Option<RawPairing>,
+    #[serde(rename = "materials")]
+    _materials: Option<IgnoredAny>,
+    #[serde(rename = "contact")]
+    _contact: Option<IgnoredAny>,
+    #[serde(rename = "inner")]
+    _inner: Option<IgnoredAny>,
+    #[serde(rename = "outer")]
+    _outer: Option<IgnoredAny>,
+    #[serde(rename = "speed")]
+    _speed: Option<IgnoredAny>,
+    #[serde(default)]
+    effects: Effects,
+    #[serde(rename = "solver")]
+    _solver: Option<IgnoredAny>,
+    #[serde(rename = "output")]
+    _output: Option<IgnoredAny>,
+    #[serde(rename = "stress")]
+    _stress: Option<IgnoredAny>,
+    r#static: Option<RawStatic>,
+    sweep: Option<RawSweep>,
+    profiles: Option<IgnoredAny>,
+    balls: Option<IgnoredAny>,
+    cage: Option<IgnoredAny>,
+    probes: Option<IgnoredAny>,
+    life: Option<IgnoredAny>,
+    heat: Option<IgnoredAny>,
+    lubricant: Option<IgnoredAny>,
+    quasi_static: Option<IgnoredAny>,
+    dynamic: Option<IgnoredAny>,
+    modes: Option<IgnoredAny>,
+}
+
+/// A checked scene with a list of bearings, SI.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SeveralScene {
+    /// The scene file.
+    pub path: PathBuf,
+    /// Its text with all that it includes, but for the types of bearings, and the overrides applied.
+    pub text: String,
+    /// The `--set` arguments in it.
+    pub overrides: Vec<String>,
+    /// Free text for people.
+    pub title: Option<String>,
+    /// The bearings, in the order of the scene.
+    pub bearings: Vec<BearingOnShaft>,
+    /// The shaft.
+    pub shaft: CommonShaft,
+    /// What presses the bearings together.
+    pub pairing: Pairing,
+    /// All effects; those of the list [`ON_SHAFT`] are not in the scenes of the bearings.
+    pub effects: Effects,
+    /// Speeds of the rings in the frame of the shaft; none turns when `None`.
+    pub speed: Option<RingSpeeds>,
+    /// [`Analysis::Static`] or [`Analysis::Sweep`].
+    pub analysis: Analysis,
+}
+
+/// A scene of either kind.
+#[derive(Clone, Debug, PartialEq)]
+pub enum AnyScene {
+    /// With one bearing.
+    One(Box<Scene>),
+    /// With a list of bearings.
+    Several(Box<SeveralScene>),
+}
+
+impl AnyScene {
+    /// Reads and checks a scene file; `overrides` are `path=value`. Mesh files must exist.
+    pub fn load(path: &Path, overrides: &[String]) -> Result<AnyScene, SceneError> {
+        AnyScene::load_with(path, overrides, MeshFiles::MustExist)
+    }
+
+    /// Reads and checks a scene file; `mesh_files` says whether the meshes have to be there already.
+    pub fn load_with(
+        path: &Path,
+        overrides: &[String],
+        mesh_files: MeshFiles,
+    ) -> Result<AnyScene, SceneError> {
+        let text = std::fs::read_to_string(path).map_err(|source| SceneError::Unreadable {
+            path: path.to_path_buf(),
+            source,
+        })?;
+        AnyScene::parse(&text, path, overrides, mesh_files)
+    }
+
+    /// Checks the text of a scene; `path` is for messages and its folder is where relative paths start.
+    pub fn parse(
+        text: &str,
+        path: &Path,
+        overrides: &[String],
+        mesh_files: MeshFiles,
+    ) -> Result<AnyScene, SceneError> {
+        let whole = include::whole(text, path, overrides)?;
+        let messages = Messages {
+            path,
+            whole: &whole,
+            overrides,
+        };
+        let is_list = |document: &DocumentMut| {
+            document
+                .get("bearing")
+                .is_some_and(|item| item.is_array_of_tables() || item.is_array())
+        };
+        let document = match messages.document(&whole.text) {
+            Ok(document) if is_list(&document) => document,
+            _ => {
+                return Scene::parse_one(text, path, overrides, mesh_files)
+                    .map(|s| AnyScene::One(Box::new(s)));
+            }
+        };
+        let composer = Composer {
+            path,
+            overrides,
+            mesh_files,
+            whole: &whole,
+            messages,
+        };
+        composer.several(document)
+    }
+}
+
+impl Scene {
+    /// The same scene with its shaft prescribed at a displacement, m and rad: what a bearing of a list leaves behind
+    /// can be run by itself.
+    pub fn with_shaft_at(&self, displacement: [f64; 5]) -> Result<Scene, SceneError> {
+        let overrides: Vec<String> = ["x", "y", "z", "tilt_x", "tilt_y"]
+            .iter()
+            .zip(displacement)
+            .enumerate()
+            .map(|(i, (key, q))| {
+                let unit = if i < 3 { "m" } else { "rad" };
+                format!("shaft.{key}=\"{q:?} {unit}\"")
+            })
+            .collect();
+        let scene = Scene::parse(&self.text, &self.path, &overrides, MeshFiles::MayBeMissing)?;
+        Ok(Scene {
+            overrides: self.overrides.clone(),
+            ..scene
+        })
+    }
+}
+
+impl SeveralScene {
+    /// The `--set` arguments that are of the types of the bearings: they are not in the text.
+    pub fn type_overrides(&self) -> Vec<String> {
+        let of_type = self.overrides.iter().filter(|o| compose::is_of_type(o));
+        of_type.cloned().collect()
+    }
+
+    /// The scenes of the points of a sweep, in order; none for any other scene.
+    pub fn sweep_scenes(&self) -> Result<Vec<SeveralScene>, SceneError> {
+        let Analysis::Sweep(sweep) = &self.analysis else {
+            return Ok(Vec::new());
+        };
+        let point = |text: &str| -> Result<SeveralScene, SceneError> {
+            match AnyScene::parse(text, &self.path, &self.type_overrides(), MeshFiles::MayBeMissing)? {
+                AnyScene::Several(scene) => Ok(*scene),
+                AnyScene::One(_) => Err(SceneError::Invalid {
+                    path: self.path.clone(),
+                    overrides: Vec::new(),
+                    problems: vec!["a point of the sweep has one bearing alone; expected a list".to_string()],
+                }),
+            }
+        };
+        sweep.points.iter().map(|p| point(&p.text)).collect()
+    }
+}
+
+impl RawSeveral {
+    /// Reports tables that a list of bearings does not go with.
+    fn refuse(&self, problems: &mut Problems) {
+        let in_time = [
+            ("quasi_static", &self.quasi_static),
+            ("dynamic", &self.dynamic),
+            ("modes", &self.modes),
+        ];
+        for (name, _) in in_time.iter().filter(|(_, table)| table.is_some()) {
+            problems.add(format!(
+                "[{name}] is not for a list of bearings yet, which is solved at rest; use [static] or [sweep], or give \
+                 one table [bearing]"
+            ));
+        }
+        let others = [
+            ("profiles", &self.profiles),
+            ("balls", &self.balls),
+            ("cage", &self.cage),
+            ("probes", &self.probes),
+            ("life", &self.life),
+            ("heat", &self.heat),
+            ("lubricant", &self.lubricant),
+        ];
+        for (name, _) in others.iter().filter(|(_, table)| table.is_some()) {
+            problems.add(format!(
+                "[{name}] is not for a list of bearings yet; remove it, or give one table [bearing]"
+            ));
+        }
+        let known = [&ON_SHAFT[..], &IN_BEARINGS[..]].concat();
+        for name in self.effects.names().iter().filter(|name| !known.contains(name)) {
+            let instead = match *name {
+                "spring_preload" => "write [pairing] with spring and sliding",
+                _ => "remove it, or give one table [bearing]",
+            };
+            problems.add(format!("effects.{name} is not for a list of bearings; {instead}"));
+        }
+    }
+
+    fn analysis(&self, document: &DocumentMut, problems: &mut Problems) -> Option<Analysis> {
+        match (&self.r#static, &self.sweep) {
+            (Some(_), None) => Some(Analysis::Static),
+            (None, Some(sweep)) => sweep.check(document, problems).map(Analysis::Sweep),
+            (Some(_), Some(_)) => {
+                problems.add("the scene has both [static] and [sweep]; keep exactly one analysis");
+                None
+            }
+            (None, None) => {
+                let is_refused = [&self.quasi_static, &self.dynamic, &self.modes]
+                    .iter()
+                    .any(|table| table.is_some());
+                if !is_refused {
+                    problems.add("the scene has no analysis; add one of the tables [static] and [sweep]");
+                }
+                None
+            }
+        }
+    }
+}
+
+/// Whether a scene is a list of one bearing that a scene with one table says as well.
+fn is_plain(raw: &RawSeveral) -> bool {
+    let [bearing] = raw.bearing.as_slice() else {
+        return false;
+    };
+    bearing.is_plain() && raw.shaft.is_plain() && raw.pairing.is_none()
+}
+
+/// Sets a value of a document by its dotted path.
+fn set(document: &mut DocumentMut, path: &str, value: &str) {
+    edit::apply_override(document, &format!("{path}={value}")).expect("the path is one of the program");
+}

@@ -1,0 +1,228 @@
+//! Several bearings on one shaft through the whole program: run, check, stiffness, campbell, plot, refusals.
+
+use serde_json::Value;
+
+use crate::util::tables::{Table, number, summary};
+use crate::util::{Dir, Outcome, SCENE, assert_close};
+
+/// The tables of the scene's bearing, with rigid rings, in `types/kind.toml`.
+fn with_type() -> Dir {
+    let dir = Dir::with_scene(SCENE);
+    std::fs::create_dir_all(dir.path("types")).unwrap();
+    dir.write("types/kind.toml", kind());
+    dir
+}
+
+fn parts() -> [String; 2] {
+    let [mut kind, mut rest] = [String::new(), String::new()];
+    let mut is_kind = false;
+    for line in SCENE.lines() {
+        if let Some((name, _)) = line.strip_prefix('[').and_then(|line| line.split_once(']')) {
+            let root = name.split('.').next().unwrap_or_default();
+            is_kind = ["bearing", "materials", "contact", "inner", "outer"].contains(&root);
+        }
+        let text = if is_kind { &mut kind } else { &mut rest };
+        *text += &format!("{line}\n");
+    }
+    [kind, rest]
+}
+
+fn kind() -> String {
+    let text = parts()[0].clone();
+    let kept = text.split("[inner]").next().unwrap();
+    let kept = kept.replace("mode = \"patch\"", "mode = \"rigid\"");
+    format!("{kept}\n[inner]\nflexible = false\n\n[outer]\nflexible = false\n")
+}
+
+const PAIR: &str = r#"
+[[bearing]]
+name = "front"
+position = "60 mm"
+orientation = "+z"
+type = "types/kind.toml"
+
+[[bearing]]
+name = "rear"
+position = "130 mm"
+orientation = "-z"
+type = "types/kind.toml"
+
+[pairing]
+offset = "20 um"
+
+[shaft]
+model = "beam"
+material = { young_modulus = "207 GPa", poisson_ratio = 0.3, density = "7800 kg/m3" }
+
+[[shaft.section]]
+from = "0 mm"
+to = "200 mm"
+outside = "50 mm"
+bore = "20 mm"
+
+[[shaft.load]]
+position = "0 mm"
+force = ["300 N", "0 N", "200 N"]
+"#;
+
+fn pair(analysis: &str) -> Dir {
+    let dir = with_type();
+    dir.write("pair.toml", format!("{PAIR}\n{analysis}\n"));
+    dir
+}
+
+#[track_caller]
+fn succeeds(dir: &Dir, arguments: &[&str]) -> Outcome {
+    let outcome = dir.raceway(arguments);
+    assert_eq!(outcome.code, Some(0), "{arguments:?}: {}", outcome.stderr);
+    outcome
+}
+
+/// Wrong: a list of one bearing would give other numbers than the same bearing in one table.
+#[test]
+fn a_list_of_one_bearing_gives_the_same_bits() {
+    let dir = with_type();
+    let rest = parts()[1].clone();
+    let one = "[[bearing]]\nname = \"front\"\nposition = \"0 mm\"\norientation = \"+z\"\ntype = \"types/kind.toml\"\n";
+    dir.write(
+        "list.toml",
+        rest.replace("[shaft]", &format!("{one}\n[shaft]\nmodel = \"rigid\"")),
+    );
+    dir.write("single.toml", format!("{rest}\n{}", kind()));
+    succeeds(&dir, &["run", "single.toml", "--out", "single"]);
+    succeeds(&dir, &["run", "list.toml", "--out", "list"]);
+    for table in ["balls.csv", "shaft.csv", "energy.csv"] {
+        assert!(
+            dir.text(&format!("single/{table}")) == dir.text(&format!("list/{table}")),
+            "{table}"
+        );
+    }
+}
+
+/// Wrong: tables would lack a bearing or its name, forces not balance, or the folder of a bearing be no results.
+#[test]
+fn a_pair_leaves_tables_of_both_and_a_folder_for_each() {
+    let dir = pair("[static]");
+    let said = succeeds(&dir, &["run", "pair.toml", "--out", "out"]);
+    assert!(said.stdout.contains("front        +z   60.00"), "{}", said.stdout);
+    let head = dir.text("out/balls.csv");
+    assert!(
+        head.starts_with("step,time_s,bearing,ball,azimuth_rad,inner_force_n"),
+        "{head}"
+    );
+    assert_eq!(head.lines().filter(|line| line.contains(",rear,")).count(), 18);
+    let found = summary(&dir, "out");
+    let force =
+        |bearing: &str, axis: usize| number(&found, &format!("/bearings/{bearing}/force_on_shaft_n/{axis}"));
+    assert_close("x", force("front", 0) + force("rear", 0), -300.0, 1e-9);
+    assert_close("z", force("front", 2) + force("rear", 2), -200.0, 1e-9);
+    assert_eq!(found["shaft"]["model"], "beam");
+    // The bearing alone, with its shaft where it stands, is what its folder says.
+    let front = Table::read(&dir, "out/front/shaft.csv");
+    assert_close(
+        "reaction",
+        front.column("reaction_z_n")[0],
+        -force("front", 2),
+        1e-9,
+    );
+    succeeds(&dir, &["info", "out/front"]);
+    succeeds(&dir, &["plot", "out/front"]);
+    let drawn = succeeds(&dir, &["plot", "out"]);
+    assert!(drawn.stdout.contains("shaft_line"), "{}", drawn.stdout);
+    let refused = dir.raceway(&["report", "out"]);
+    assert_eq!(refused.code, Some(2));
+    assert!(
+        refused
+            .stderr
+            .contains("has the results of several bearings on one shaft; expected the folder of one of them"),
+        "{}",
+        refused.stderr
+    );
+    // Nothing is written over.
+    assert_eq!(dir.raceway(&["run", "pair.toml", "--out", "out"]).code, Some(2));
+}
+
+/// Wrong: a sweep would lose a point or its value.
+#[test]
+fn a_sweep_of_the_offset_stiffens_the_pair() {
+    let sweep = "[sweep]\nkey = \"pairing.offset\"\nvalues = [\"10 um\", \"20 um\", \"30 um\"]";
+    let dir = pair(sweep);
+    succeeds(&dir, &["run", "pair.toml", "--out", "out"]);
+    let table = Table::read(&dir, "out/bearings.csv");
+    assert_eq!(table.column("pairing.offset_m").len(), 6);
+    let drawn = succeeds(&dir, &["plot", "out"]);
+    assert!(drawn.stdout.contains("bearing_loads"), "{}", drawn.stdout);
+    succeeds(&dir, &["stiffness", "pair.toml", "--out", "k"]);
+    let k = Table::read(&dir, "k/stiffness.csv").column("k_z_z");
+    assert!(k.len() == 3 && k[0] < k[1] && k[1] < k[2], "{k:?}");
+    assert!(dir.path("k/stiffness.svg").exists());
+    let json: Value = serde_json::from_str(&dir.text("k/stiffness.json")).unwrap();
+    assert_eq!(json["bearings"]["rear"]["points"].as_array().unwrap().len(), 3);
+    assert_eq!(json["shaft"]["points"].as_array().unwrap().len(), 3);
+}
+
+/// Wrong: commands on a list would end in an error, or options that they do not know be ignored.
+#[test]
+fn check_stiffness_and_campbell_take_a_list() {
+    let dir = pair("[static]");
+    let said = succeeds(&dir, &["check", "pair.toml"]);
+    assert!(
+        said.stdout.contains("its rings are those of \"front\""),
+        "{}",
+        said.stdout
+    );
+    assert!(
+        said.stdout.contains("shaft    beam from 0.000 to 200.000 mm"),
+        "{}",
+        said.stdout
+    );
+    succeeds(&dir, &["stiffness", "pair.toml", "--out", "k"]);
+    for name in ["stiffness_front.csv", "ross_rear.csv"] {
+        assert!(dir.path(&format!("k/{name}")).exists(), "{name}");
+    }
+    succeeds(
+        &dir,
+        &[
+            "campbell",
+            "pair.toml",
+            "--speeds",
+            "0..20000:10000",
+            "--out",
+            "c",
+        ],
+    );
+    // At rest modes swing in planes, at speed they go round.
+    let modes = dir.text("c/campbell.csv");
+    let at = |speed: &str, whirl: &str| {
+        let is_one = |line: &&str| line.starts_with(speed) && line.contains(whirl);
+        modes.lines().filter(is_one).count()
+    };
+    assert!(
+        at("0.0,", ",planar,") >= 2 && at("0.0,", ",forward,") == 0,
+        "{modes}"
+    );
+    assert!(
+        at("20000.0,", ",forward,") >= 1 && at("20000.0,", ",backward,") >= 1,
+        "{modes}"
+    );
+    for arguments in [
+        &["stiffness", "pair.toml", "--out", "k2", "--ripple", "4"][..],
+        &["run", "pair.toml", "--out", "r2", "--points", "0"],
+        &["life", "pair.toml"],
+    ] {
+        assert_eq!(dir.raceway(arguments).code, Some(2), "{arguments:?}");
+    }
+}
+
+/// Wrong: soft preload would depend on the shaft, or press the wrong way.
+#[test]
+fn a_spring_presses_the_sliding_ring_with_its_force() {
+    let dir = with_type();
+    let text = PAIR.replace("offset = \"20 um\"", "spring = \"500 N\"\nsliding = \"rear\"");
+    dir.write("pair.toml", format!("{text}\n[static]\n"));
+    succeeds(&dir, &["run", "pair.toml", "--out", "out"]);
+    let found = summary(&dir, "out");
+    let force = |bearing: &str| number(&found, &format!("/bearings/{bearing}/force_on_shaft_n/2"));
+    assert_close("rear", force("rear"), 500.0, 1e-8);
+    assert_close("front", force("front"), -700.0, 1e-8);
+}
