@@ -136,18 +136,31 @@ pub fn run(
         progress.advance();
     }
     progress.finish();
-    let forecast = Side::BOTH.map(|side| solver.ring(side).map(|r| r.solver.memory));
     // Points that were solved get their summary, whatever came after them.
     if let Some(files) = results {
+        let forecast = Side::BOTH.map(|side| solver.ring(side).map(|r| r.solver.memory));
         let costs = agree(files.finish(read, Forecasts::at_rest(forecast), solver.laps(), start))?;
-        let findings = findings(&scene, &solutions, &failure, remarks);
-        let summary = summary(&scene, (&model, &solutions), findings, &costs, &dir)?;
-        agree(summary.write(&dir).map_err(Failure::from))?;
-        if failure.is_none() {
-            print_results(&scene, &solutions, &summary);
-        }
+        conclude(&scene, (&model, &solutions), &failure, remarks, &costs, &dir)?;
     }
     failure.map_or(Ok(dir), Err)
+}
+
+/// Writes the summary of points that were solved, and prints the results of a run without a failure.
+fn conclude(
+    scene: &Scene,
+    (model, solutions): (&Model, &[Solved]),
+    failure: &Option<Failure>,
+    remarks: Remarks,
+    costs: &Costs,
+    dir: &Path,
+) -> Result<(), Failure> {
+    let findings = findings(scene, solutions, failure, remarks);
+    let summary = summary(scene, (model, solutions), findings, costs, dir)?;
+    agree(summary.write(dir).map_err(Failure::from))?;
+    if failure.is_none() {
+        print_results(scene, solutions, &summary);
+    }
+    Ok(())
 }
 
 /// The summary of points that were solved; writes what the seat of a ring in a body carries at the last.

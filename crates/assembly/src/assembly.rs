@@ -9,7 +9,7 @@ use dynamics::{Model, StaticSolution, StaticSolver};
 use timer::Laps;
 
 use crate::error::AssemblyError;
-use crate::newton::{Mount, Problem, Scales, Settled, settle};
+use crate::newton::{Mount, Problem, Scales, SettledShaft, settle};
 use crate::place::Seating;
 use crate::shaft::ShaftBody;
 use crate::support::{BearingSupport, BearingSupports};
@@ -49,7 +49,7 @@ pub struct AssemblySolution {
     /// Solution of every bearing, in its own frame.
     pub bearings: Vec<StaticSolution>,
     /// The shaft.
-    pub shaft: Settled,
+    pub shaft: SettledShaft,
 }
 
 impl Assembly {
@@ -176,7 +176,7 @@ impl AssemblySolver {
         rings: SolvedRings,
         at: &[f64],
         start: Option<&AssemblySolution>,
-    ) -> Result<(Settled, Vec<StaticSolution>), AssemblyError> {
+    ) -> Result<(SettledShaft, Vec<StaticSolution>), AssemblyError> {
         let (mounts, scales) = (assembly.mounts(), assembly.scales());
         let problem = Problem {
             shaft: &assembly.shaft,

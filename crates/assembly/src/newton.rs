@@ -16,7 +16,7 @@ use dynamics::stiffness::{N_SHAFT, ShaftMatrix};
 use crate::error::AssemblyError;
 use crate::place::Seating;
 use crate::shaft::{ShaftBody, Station, product, times};
-use crate::support::{Answer, Supports};
+use crate::support::{SupportAnswer, Supports};
 
 /// Iterations before giving up.
 const MOST_ITERATIONS: usize = 200;
@@ -71,11 +71,11 @@ pub struct Problem<'a> {
 
 /// An equilibrium.
 #[derive(Clone, Debug)]
-pub struct Settled {
+pub struct SettledShaft {
     /// Displacements of the shaft's dofs.
     pub displacements: Vec<f64>,
     /// What holds it, in the frames of the holders.
-    pub answers: Vec<Answer>,
+    pub answers: Vec<SupportAnswer>,
     /// Out-of-balance loads on free dofs; on held ones minus the load that holds them.
     pub residual: Vec<f64>,
     /// Largest residual of a free dof over the largest force.
@@ -87,7 +87,7 @@ pub struct Settled {
 /// The equations at a point.
 struct Iterate {
     q: Vec<f64>,
-    answers: Vec<Answer>,
+    answers: Vec<SupportAnswer>,
     residual: Vec<f64>,
     error: f64,
     limit: f64,
@@ -98,7 +98,7 @@ pub fn settle(
     problem: &Problem,
     supports: &mut dyn Supports,
     start: &[f64],
-) -> Result<Settled, AssemblyError> {
+) -> Result<SettledShaft, AssemblyError> {
     let held = &problem.shaft.held;
     let q = start
         .iter()
@@ -125,7 +125,7 @@ pub fn settle(
         iterations += 1;
     }
     problem.check_held(&at)?;
-    Ok(Settled {
+    Ok(SettledShaft {
         displacements: at.q,
         answers: at.answers,
         residual: at.residual,

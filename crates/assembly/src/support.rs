@@ -4,9 +4,9 @@ use dynamics::statics::ContactColumns;
 use dynamics::stiffness::{N_SHAFT, ShaftMatrix};
 use dynamics::{DynamicsError, Linearisation, Model, Pose, ShaftDof, StaticSolution, StaticSolver};
 
-/// Answer to a displacement, in the frame of what answers.
+/// SupportAnswer to a displacement, in the frame of what answers.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Answer {
+pub struct SupportAnswer {
     /// Load that has to be put on the shaft to hold it there, N and N m.
     pub load: [f64; N_SHAFT],
     /// Its growth with the displacement; a tangent, good enough for Newton.
@@ -18,7 +18,7 @@ pub struct Answer {
 /// What answers displacements of the shaft, by the number of the mount.
 pub trait Supports {
     /// The load and tangent at a displacement.
-    fn answer(&mut self, mount: usize, at: [f64; N_SHAFT]) -> Result<Answer, DynamicsError>;
+    fn answer(&mut self, mount: usize, at: [f64; N_SHAFT]) -> Result<SupportAnswer, DynamicsError>;
 
     /// Displacement beyond which there is no equilibrium, m; None: any.
     fn range(&self, mount: usize) -> Option<f64>;
@@ -41,10 +41,10 @@ impl LinearSupport {
 }
 
 impl Supports for Vec<LinearSupport> {
-    fn answer(&mut self, mount: usize, at: [f64; N_SHAFT]) -> Result<Answer, DynamicsError> {
+    fn answer(&mut self, mount: usize, at: [f64; N_SHAFT]) -> Result<SupportAnswer, DynamicsError> {
         let stiffness = self[mount].stiffness;
         let load: [f64; N_SHAFT] = stiffness.map(|row| row.iter().zip(at).map(|(k, x)| k * x).sum());
-        Ok(Answer {
+        Ok(SupportAnswer {
             load,
             stiffness,
             force: load[..3].iter().fold(0.0, |m, f| f.abs().max(m)),
@@ -79,7 +79,7 @@ pub struct BearingSupports<'a> {
 }
 
 impl Supports for BearingSupports<'_> {
-    fn answer(&mut self, mount: usize, at: [f64; N_SHAFT]) -> Result<Answer, DynamicsError> {
+    fn answer(&mut self, mount: usize, at: [f64; N_SHAFT]) -> Result<SupportAnswer, DynamicsError> {
         let bearing = &mut self.bearings[mount];
         let solver = &mut self.solvers[bearing.solver];
         bearing.model.shaft = at.map(ShaftDof::Prescribed);
@@ -96,7 +96,7 @@ impl Supports for BearingSupports<'_> {
             .balls
             .iter()
             .flat_map(|b| [b.inner.force_n, b.outer.force_n]);
-        let answer = Answer {
+        let answer = SupportAnswer {
             load: solution.shaft_reaction,
             stiffness: tangent,
             force: forces.fold(0.0, f64::max),

@@ -61,7 +61,7 @@ impl BeamShaft {
         let fail = |problem: String| Err(AssemblyError::ShaftBody { problem });
         let [first, last] = self.ends();
         let near = SAME_PLACE * (last - first).abs();
-        if self.sections.is_empty() || !(self.longest_element > 0.0) {
+        if self.sections.is_empty() || self.longest_element.is_nan() || self.longest_element <= 0.0 {
             return fail(
                 "the beam shaft has no sections or elements without length; expected one section at least"
                     .to_string(),

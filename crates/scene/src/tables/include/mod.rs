@@ -159,7 +159,7 @@ impl WholeText {
             let unknown = document
                 .get_ref()
                 .keys()
-                .find(|key| !known.contains(&&*key.get_ref().as_ref()));
+                .find(|key| !known.contains(&key.get_ref().as_ref()));
             if let Some(key) = unknown {
                 return Err(TypeError::Here(format!(
                     "bearing.type of {bearing:?}: {} has {}; expected the tables of one bearing alone: {}",

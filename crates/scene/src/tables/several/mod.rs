@@ -12,6 +12,7 @@
 //! which the displacements of a scene with one bearing refer too.
 
 mod compose;
+mod load;
 mod mounted;
 mod pairing;
 mod shaft;
@@ -26,12 +27,13 @@ use serde::de::IgnoredAny;
 use toml_edit::DocumentMut;
 
 use self::compose::Composer;
+pub use self::load::ShaftLoad;
 pub use self::mounted::BearingOnShaft;
 use self::mounted::RawMounted;
 use self::pairing::RawPairing;
 pub use self::pairing::{Pairing, SpringPairing};
 use self::shaft::RawCommonShaft;
-pub use self::shaft::{CommonShaft, RigidShaft, ShaftKind, ShaftLoad};
+pub use self::shaft::{CommonShaft, RigidShaft, ShaftKind};
 use super::messages::Messages;
 use super::ring::MeshFiles;
 use super::sweep::{Analysis, RawStatic, RawSweep};

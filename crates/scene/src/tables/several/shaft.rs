@@ -7,6 +7,7 @@ use input::{ANGLE, Clock, DENSITY, FORCE, INERTIA, LENGTH, MASS, MOMENT, Problem
 use serde::Deserialize;
 
 use super::super::shaft::{Motion, RawMotion};
+use super::load::ShaftLoad;
 
 /// As typed.
 #[derive(Debug, Deserialize)]
@@ -115,17 +116,6 @@ pub struct RigidShaft {
     pub transverse: f64,
     /// Its moment of inertia about z, kg m^2.
     pub polar: f64,
-}
-
-/// A load on the shaft.
-#[derive(Clone, Debug, PartialEq)]
-pub struct ShaftLoad {
-    /// Position along the shaft, m.
-    pub position: f64,
-    /// Force, N.
-    pub force: [f64; 3],
-    /// Moment about x and y, N m.
-    pub moment: [f64; 2],
 }
 
 /// Positions farther away are slips of the unit, m.
@@ -398,15 +388,9 @@ impl CommonShaft {
                 format!("at most {MAX_POSITION} m from position 0, check its unit"),
             ),
             ShaftKind::Beam(beam) => {
-                let [first, last] = beam.ends();
-                (
-                    [first, last],
-                    format!(
-                        "{:.3} to {:.3} mm, where its sections are",
-                        1e3 * first,
-                        1e3 * last
-                    ),
-                )
+                let [first, last] = beam.ends().map(|z| 1e3 * z);
+                let text = format!("{first:.3} to {last:.3} mm, where its sections are");
+                (beam.ends(), text)
             }
         }
     }
