@@ -431,7 +431,8 @@ fn the_surface_kinks_at_mid_spall_by_the_curvature_times_the_length() {
             "{side:?}: {jump} {expected}"
         );
         if (side, length) == (Side::Outer, 1e-3) {
-            assert!((3.034 * k * length - 0.59).abs() < 5e-3, "{}", 3.034 * k * length);
+            // Two digits, and a corner beside the middle of the floor.
+            assert!((3.034 * k * length - 0.59).abs() < 1e-2, "{}", 3.034 * k * length);
         }
     }
 }
