@@ -21,6 +21,7 @@ mod section;
 mod shades;
 mod shaft;
 mod stiffness;
+mod stress_step;
 mod surface;
 
 use std::path::{Path, PathBuf};
@@ -142,6 +143,7 @@ fn named(found: anyhow::Result<Vec<(String, Figure)>>) -> anyhow::Result<Vec<Nam
 /// error.
 pub fn figures(dir: &Path, choice: &Choice) -> Result<Figures, Failure> {
     let results = Results::read(dir)?;
+    stress_step::note_lacking(dir, choice.step)?;
     let groups = [
         ("balls", balls::figures(&results, choice)),
         ("shaft", shaft::figures(&results)),

@@ -7,11 +7,11 @@ use contact::{BearingGeometry, Side};
 use dynamics::balls::BallResult;
 use dynamics::{Model, StaticSolution};
 use fem::stress::von_mises;
-use scene::{RingFrame, Scene};
+use scene::{Kept, RingFrame, Scene};
 
 use super::on_ball::force_on_ball;
 use super::ring_stress::{Basis, Gathered, RingStress, ShownRing, StressFields};
-use super::shown::{Shown, Turn};
+use super::shown::{RingField, Shown, Turn};
 use crate::failure::Failure;
 
 /// The bodies of a result, in the order of its points: flexible rings, whose meshes must be whole, then the balls.
@@ -47,9 +47,9 @@ pub fn record(
     solution: &StaticSolution,
     (stress, gathered): (&RingStress, Gathered),
     (step, time): (u64, f64),
-    scene: &Scene,
+    (scene, kept): (&Scene, Kept),
 ) -> Result<StepRecord, Failure> {
-    let (points, cells) = Places::new(shown, gathered, scene)?.fields(stress);
+    let (points, cells) = Places::new(shown, gathered, scene, kept)?.fields(stress);
     Ok(StepRecord {
         step,
         time,
@@ -61,9 +61,15 @@ pub fn record(
     })
 }
 
+/// A step file with forces on balls alone.
+const NOTHING: Kept = Kept {
+    stress: false,
+    displacement: false,
+};
+
 /// All points at one instant, but for the stress.
 pub struct Places {
-    /// Displacement of every point, m.
+    /// Displacement of every point, m; empty where it is not kept.
     displacement: Vec<[f64; 3]>,
     /// What the stress of the flexible rings follows from.
     rings: [Option<ShownRing>; 2],
@@ -73,10 +79,19 @@ pub struct Places {
 
 impl Places {
     /// Places of rings and balls, rings as they stand in space or in their own frames, and the stress that ranks
-    /// have `gathered`.
-    pub fn new(shown: &Shown<'_>, mut gathered: Gathered, scene: &Scene) -> Result<Places, Failure> {
-        let (mut displacement, mut rings) = (Vec::new(), [None, None]);
+    /// have `gathered`; without the fields that are not kept.
+    pub fn new(
+        shown: &Shown<'_>,
+        mut gathered: Gathered,
+        scene: &Scene,
+        kept: Kept,
+    ) -> Result<Places, Failure> {
+        let (mut displacement, mut rings, mut n_points) = (Vec::new(), [None, None], 0);
         for side in Side::BOTH {
+            n_points += shown.model().ring(side).map_or(0, |ring| ring.mesh.n_nodes());
+            if kept == NOTHING {
+                continue;
+            }
             let Some(mut ring) = shown.ring(side) else {
                 continue;
             };
@@ -86,22 +101,18 @@ impl Places {
             if scene.output.rings[side.index()] == RingFrame::OwnFrame {
                 ring.turn = Turn::new(0.0);
             }
-            displacement.extend(ring.shown_displacements());
-            let patches = match scene.stress.near_field_reach {
-                Some(_) => shown.patches(side).map_err(Failure::solving)?,
-                None => Vec::new(),
-            };
-            rings[side.index()] = Some(ShownRing {
-                own_stress: ring.own_stress.clone(),
-                basis: match gathered.stress[side.index()].take() {
-                    Some(stress) => Basis::Stress(stress),
-                    None => Basis::Displacement(ring.strained.into_owned()),
-                },
-                turn: ring.turn,
-                patches,
-            });
+            if kept.displacement {
+                displacement.extend(ring.shown_displacements());
+            }
+            if kept.stress {
+                let stress = gathered.stress[side.index()].take();
+                rings[side.index()] = Some(shown_ring(shown, side, ring, stress, scene)?);
+            }
         }
-        let forces = add_balls(shown.model(), shown.placed(), &shown.balls(), &mut displacement);
+        let (of_balls, forces) = balls(shown.model(), shown.placed(), &shown.balls(), n_points);
+        if kept.displacement {
+            displacement.extend(of_balls);
+        }
         Ok(Places {
             displacement,
             rings,
@@ -123,6 +134,29 @@ impl Places {
     }
 }
 
+/// What the stress of a ring follows from: its displacement, or the stress that ranks have gathered.
+pub fn shown_ring(
+    shown: &Shown<'_>,
+    side: Side,
+    ring: RingField<'_>,
+    gathered: Option<Vec<[f64; 6]>>,
+    scene: &Scene,
+) -> Result<ShownRing, Failure> {
+    let patches = match scene.stress.near_field_reach {
+        Some(_) => shown.patches(side).map_err(Failure::solving)?,
+        None => Vec::new(),
+    };
+    Ok(ShownRing {
+        own_stress: ring.own_stress.clone(),
+        basis: match gathered {
+            Some(stress) => Basis::Stress(stress),
+            None => Basis::Displacement(ring.strained.into_owned()),
+        },
+        turn: ring.turn,
+        patches,
+    })
+}
+
 /// Displacement and stress of all points and cells.
 pub fn with_stress(displacement: Vec<[f64; 3]>, stress: StressFields) -> (PointFields, CellFields) {
     let nodal = stress.nodal;
@@ -137,18 +171,16 @@ pub fn with_stress(displacement: Vec<[f64; 3]>, stress: StressFields) -> (PointF
     (points, stress.cells)
 }
 
-/// Adds the balls' displacements to those of the rings' points; returns the forces on the balls from the inner and the
-/// outer ring at all points, N, zero on rings. `placed` is the bearing of the mesh file.
-fn add_balls(
+/// Displacements of the balls, m, and the forces on the balls from the inner and the outer ring at all points, N, zero on
+/// rings, which have `n_points`. `placed` is the bearing of the mesh file.
+fn balls(
     model: &Model,
     placed: &BearingGeometry,
     balls: &[BallResult],
-    displacement: &mut Vec<[f64; 3]>,
-) -> [Vec<[f64; 3]>; 2] {
-    let mut forces = [
-        vec![[0.0; 3]; displacement.len()],
-        vec![[0.0; 3]; displacement.len()],
-    ];
+    n_points: usize,
+) -> (Vec<[f64; 3]>, [Vec<[f64; 3]>; 2]) {
+    let mut displacement = Vec::new();
+    let mut forces = [vec![[0.0; 3]; n_points], vec![[0.0; 3]; n_points]];
     let (centre, from) = (model.geometry.ball_centre(), placed.ball_centre());
     for (i, ball) in balls.iter().enumerate() {
         let (sin, cos) = ball.azimuth_rad.sin_cos();
@@ -164,7 +196,7 @@ fn add_balls(
             list.push(force_on_ball(side, ball));
         }
     }
-    forces
+    (displacement, forces)
 }
 
 fn state(solution: &StaticSolution) -> BTreeMap<String, StateArray> {

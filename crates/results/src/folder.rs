@@ -10,14 +10,16 @@ use checkpoint::{FolderLock, clear_unfinished_start, is_unfinished_start};
 use comm::{Communicator, print};
 
 use crate::failure::{Failure, agree};
+use crate::reduction::REDUCTION_FILE;
 use crate::summary::SUMMARY_FILE;
 
 /// Largest number that a default result folder may carry.
 const MAX_FOLDERS: usize = 10_000;
 
 /// Files that say that a folder holds results, besides those of steps.
-const RESULT_FILES: [&str; 11] = [
+const RESULT_FILES: [&str; 12] = [
     SUMMARY_FILE,
+    REDUCTION_FILE,
     "balls.csv",
     "shaft.csv",
     "energy.csv",
@@ -144,8 +146,9 @@ fn require_writable(dir: &Path) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Tables that a run may write.
-const TABLES: [&str; 7] = [
+/// Tables that a run may write, and other files with a name of their own.
+const TABLES: [&str; 8] = [
+    REDUCTION_FILE,
     "balls.csv",
     "shaft.csv",
     "energy.csv",

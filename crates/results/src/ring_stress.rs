@@ -9,7 +9,7 @@ use dynamics::{Backend, Model, NodalStress, OwnStress, PointStress, RingModel, S
 use fem::quadrature::stiffness_rule;
 use fem::stress::von_mises;
 use mesh::NodePositions;
-use scene::{Scene, StressOutput};
+use scene::{Kept, Scene, StressOutput};
 use timer::Laps;
 
 use super::shown::{Shown, Turn, add};
@@ -92,14 +92,19 @@ impl RingStress {
     /// Prepares what the scene asks for: on rank 0 that of all rings, on others their part of rings that ranks share.
     /// Collective.
     pub fn new(model: &Model, scene: &Scene) -> Result<RingStress, Failure> {
+        RingStress::of_kind(scene.output.stress, model, scene)
+    }
+
+    /// The same of another kind than step files have.
+    pub fn of_kind(kind: StressOutput, model: &Model, scene: &Scene) -> Result<RingStress, Failure> {
         let recovery = |side: Side| match model.ring(side) {
-            Some(ring) if scene.output.stress != StressOutput::None => {
-                Recovery::new(ring, side.name(), model.backend, scene)
+            Some(ring) if kind != StressOutput::None => {
+                Recovery::new(ring, (side.name(), kind), model.backend, scene)
             }
             _ => Ok::<_, Failure>(None),
         };
         Ok(RingStress {
-            kind: scene.output.stress,
+            kind,
             rings: [recovery(Side::Inner)?, recovery(Side::Outer)?],
             n_balls: model.geometry.n_balls,
         })
@@ -107,7 +112,7 @@ impl RingStress {
 
     /// Stress of the rings that several ranks share, and what else their fields take, on rank 0;
     /// laps of the sectors of this rank, and of putting all together. Collective.
-    pub fn gather(&self, shown: &Shown<'_>) -> (Gathered, Laps) {
+    pub fn gather(&self, shown: &Shown<'_>, kept: Kept) -> (Gathered, Laps) {
         let (mut gathered, mut laps) = (Gathered::default(), Laps::default());
         let model = shown.model();
         if !matches!(model.backend, Backend::Sector(sectors) if sectors.comm.size() > 1) {
@@ -118,13 +123,13 @@ impl RingStress {
                 continue;
             };
             laps.time(GATHER, || {
-                if field.needs_places() {
+                if kept.displacement && field.needs_places() {
                     let places = ring.places(side.name(), model.backend);
                     let places = places.expect("a ring that is divided has sectors");
                     gathered.places[side.index()] = places.to_root();
                 }
             });
-            let recovery = self.rings[side.index()].as_ref();
+            let recovery = self.rings[side.index()].as_ref().filter(|_| kept.stress);
             let Some(Source::Shared(shared)) = recovery.map(|r| &r.source) else {
                 continue;
             };
@@ -217,6 +222,7 @@ impl RingStress {
                 layout: LAYOUT.to_string(),
             }),
             von_mises_largest: Some(largest),
+            in_region: None,
         }
     }
 }
@@ -225,12 +231,12 @@ impl Recovery {
     /// Recovery of a ring; None on a rank that has no part in it.
     fn new(
         ring: &RingModel,
-        side: &'static str,
+        (side, kind): (&'static str, StressOutput),
         backend: Backend,
         scene: &Scene,
     ) -> Result<Option<Recovery>, Failure> {
         let (at_points, is_root) = (
-            scene.output.stress == StressOutput::IntegrationPoints,
+            kind == StressOutput::IntegrationPoints,
             Communicator::world().is_root(),
         );
         let source = match backend {
