@@ -16,7 +16,7 @@ const EVERY: [&str; 4] = [
     "output.every.displacement=2",
 ];
 
-/// The small motion with these as `every`, and its stress near the raceways of a sector as `region`; once for all tests.
+/// The small motion with these as `every`, and its stress near the raceways of a sector as `region`; once for all.
 fn runs() -> Dir {
     static FILES: OnceLock<Files> = OnceLock::new();
     Dir::with_files(FILES.get_or_init(|| {

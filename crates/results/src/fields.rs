@@ -171,7 +171,8 @@ pub fn with_stress(displacement: Vec<[f64; 3]>, stress: StressFields) -> (PointF
     (points, stress.cells)
 }
 
-/// Displacements of the balls, m, and the forces on the balls from the inner and the outer ring at all points, N, zero on
+/// Displacements of the balls, m, and the forces on the balls from the inner and the outer
+/// ring at all points, N, zero on
 /// rings, which have `n_points`. `placed` is the bearing of the mesh file.
 fn balls(
     model: &Model,

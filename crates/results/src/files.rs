@@ -270,7 +270,8 @@ impl Files {
         Ok(())
     }
 
-    /// As [`Files::write_fields`] for a record that needs nothing but itself: the thread that writes makes it. A step with
+    /// As [`Files::write_fields`] for a record that needs nothing but itself: the thread that
+    /// writes makes it. A step with
     /// a state has what is known of the whole run besides, which is also written as a file.
     pub fn write_fields_later(
         &mut self,

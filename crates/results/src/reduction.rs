@@ -2,7 +2,8 @@
 //!
 //! At every node of the flexible rings: least, largest and mean value of the six stress components and of von Mises
 //! stress over the steps that count, in the ring's own frame. A node is a point of the material, so that on a ring that
-//! turns it meets one contact after the other. At the chosen nodes: rain-flow cycles of one stress ([`crate::rainflow`])
+//! turns it meets one contact after the other. At the chosen nodes: rain-flow cycles of one
+//! stress ([`crate::rainflow`])
 //! and their damage by an S-N line. The stress is that of nodes ([`crate::ring_stress`]), with the near field if the
 //! scene's stress has one.
 //!

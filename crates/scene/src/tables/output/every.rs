@@ -66,7 +66,8 @@ impl RawEvery {
     pub fn check(&self, context: OutputContext, problems: &mut Problems) -> Every {
         if !context.has_steps && !context.is_sweep {
             problems.add(
-                "[output.every] does nothing without a series of steps, [dynamic], [quasi_static] or [sweep]; remove it",
+                "[output.every] does nothing without a series of steps, [dynamic], [quasi_static] or [sweep]; \
+                 remove it",
             );
         }
         if self.stress.is_some() && !context.has_stress {

@@ -110,7 +110,8 @@ impl RawRegion {
         }
         if !context.has_stress && !fields.contains(&RegionField::Displacement) {
             problems.add(
-                "[output.region] does nothing with output.stress = \"none\"; remove it, or add fields = [\"displacement\"]",
+                "[output.region] does nothing with output.stress = \"none\"; remove it, or add \
+                 fields = [\"displacement\"]",
             );
         }
         Kept {
