@@ -31,7 +31,7 @@ pub enum RestartState {
 }
 
 impl Recorded {
-    /// Places of rings and balls at one instant, the stress that ranks have `gathered`, as far as they are kept, and the
+    /// Places of rings and balls at one instant and the stress that ranks have `gathered`, as far as they are kept; the
     /// state if it is to be stored.
     pub fn new(
         model: &Model,

@@ -173,8 +173,8 @@ impl Reduction {
         };
         ensure!(
             same,
-            "[output.reduction] has changed since step {step}, and what it has counted cannot be counted anew; resume with \
-             its old values, or without the table"
+            "[output.reduction] has changed since step {step}, and what it has counted cannot be counted anew; \
+             resume with its old values, or without the table"
         );
         let read = |n: &i64| u64::try_from(*n);
         let steps: Vec<u64> = steps.iter().map(read).collect::<Result<_, _>>()?;
