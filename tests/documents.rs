@@ -12,8 +12,6 @@ use crate::util::Dir;
 
 /// Largest mean of words in the sentences of a page.
 const MEAN_WORDS: f64 = 20.0;
-/// The same of a developers' page, which describes measurements.
-const MEAN_WORDS_OF_DEVELOPERS: f64 = 30.0;
 
 /// Pages of which each is read from the folder that the one before has left.
 const TUTORIAL: [&str; 2] = ["docs/tutorial/bearing.md", "docs/tutorial/motion.md"];
@@ -141,13 +139,9 @@ fn sentences_are_short() {
     for page in pages() {
         let lengths = prose::lengths_of_sentences(&text_of(&page));
         let mean = lengths.iter().sum::<usize>() as f64 / lengths.len().max(1) as f64;
-        let limit = match page.starts_with("docs/dev/") {
-            true => MEAN_WORDS_OF_DEVELOPERS,
-            false => MEAN_WORDS,
-        };
-        if mean >= limit {
+        if mean >= MEAN_WORDS {
             long.push(format!(
-                "{page}: {mean:.1} words a sentence; expected less than {limit}"
+                "{page}: {mean:.1} words a sentence; expected less than {MEAN_WORDS}"
             ));
         }
     }
