@@ -256,7 +256,12 @@ fn over_values(results: &Results, table: &Table, steps: &Rows, contact: &Contact
     let Some((x_axis, x)) = results.against(table)? else {
         unreachable!("a single step has nothing to be plotted against")
     };
-    let title = format!("{}, mean and range over the balls", contact.title);
+    // Others have no angle, pressure or film, and are left out of the mean.
+    let balls = match contact.column {
+        "force_n" => "the balls",
+        _ => "the balls that carry",
+    };
+    let title = format!("{}, mean and range over {balls}", contact.title);
     let mut figure = Figure::new(title, x_axis, contact.y_axis());
     for side in SIDES {
         let (mut mean, mut band) = (Vec::new(), Vec::new());

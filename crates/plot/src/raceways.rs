@@ -37,7 +37,7 @@ pub struct Raceways {
 
 /// Where the stress under a ball is not that of its contact.
 const WITHOUT_NEAR_FIELD: &str = "Without near field: stress of forces spread over the contact patches, \
-                                  far below that under a ball (see [stress])";
+                                  far below that under a ball";
 
 /// Where it is, nodes alone show it.
 const AT_NODES: &str =
