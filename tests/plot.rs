@@ -210,6 +210,35 @@ fn a_bearing_that_does_not_turn_is_shown_in_time() {
     assert!(!svg.contains("azimuth"));
 }
 
+/// Wrong: a sweep of many points would have no room for a name of each, so that its figures fail or its legend covers
+/// them. Points are told apart by shades then, with a bar of the swept value from its first to its last.
+#[test]
+fn a_sweep_of_fifty_points_has_a_colour_bar_and_no_legend() {
+    let sweep =
+        "[sweep]\nkey = \"effects.radial_force.value\"\nfrom = \"0 kN\"\nto = \"2.45 kN\"\nsteps = 50";
+    let dir = Dir::with_scene(&with_line("[static]", "[static]", sweep));
+    dir.run("out", &RIGID);
+    assert_eq!(Table::read(&dir, "out/shaft.csv").column("step").len(), 50);
+    let outcome = dir.raceway(&["plot", "out"]);
+    assert_eq!(outcome.code, Some(0), "{}", outcome.stderr);
+    assert!(!outcome.stderr.contains("warning"), "{}", outcome.stderr);
+    for name in ["ball_force_round", "contact_angle_round", "peak_pressure_round"] {
+        let svg = dir.text(&format!("out/figures/{name}.svg"));
+        assert_eq!(figure::clashes(&svg).unwrap(), Vec::<String>::new(), "{name}");
+        let texts: Vec<&str> = svg.lines().map(str::trim).collect();
+        let bar = "effects.radial_force.value";
+        assert!(texts.iter().any(|text| text.starts_with(bar)), "{name}: no {bar}");
+        // A curve for each point; texts are the ticks of two axes and of the bar, their names and the title.
+        let curves = svg.lines().filter(|line| line.starts_with("<polyline")).count();
+        let words = svg.lines().filter(|line| line.starts_with("<text")).count();
+        assert!(curves >= 50, "{name}: {curves} curves");
+        assert!(words < 40, "{name}: {words} texts");
+        assert!(dir.path(&format!("out/figures/{name}.png")).is_file());
+    }
+    let all = dir.text("out/figures/shaft_displacement.svg");
+    assert_eq!(figure::clashes(&all).unwrap(), Vec::<String>::new());
+}
+
 /// Wrong: a label would lie on another or be cut off, or an axis would not tell its unit.
 #[test]
 fn figures_of_runs_can_be_read() {
