@@ -291,7 +291,7 @@ fn directions_in_a_surface_share_their_trace() {
 }
 
 /// A gauge beside each ball of the tests' bearing, on the shoulder at which the outer ring carries them.
-fn gauges_beside_balls() -> String {
+pub fn gauges_beside_balls() -> String {
     let gauge = |ball: usize| {
         format!(
             "[probes.gauge.g{ball:02}]\nring = \"outer\"\nsurface = \"seat\"\nazimuth = \"{} deg\"\nz = \"2 mm\"\n\

@@ -3,6 +3,7 @@
 use std::path::Path;
 use std::process::Command as Process;
 
+use super::fixtures::FILLED;
 use crate::util::{Dir, Outcome};
 
 /// Programs of others, of which only the paths are checked.
@@ -196,22 +197,36 @@ impl Command {
         }
     }
 
-    /// Whether this is a command of the program that needs nothing in the place of a word.
-    pub fn can_be_run(&self) -> bool {
+    /// Whether this is only the name of a command of the program, in running text.
+    pub fn is_a_name(&self) -> bool {
+        !self.is_shown && self.text.split_whitespace().count() <= 2
+    }
+
+    /// The line that is run: with files of [`fixtures::world`] for words in capitals. None if something is left to
+    /// fill in, or if it is no command of the program.
+    pub fn line(&self) -> Option<String> {
+        let filled = FILLED.iter().find(|filled| filled.command == self.text);
+        let mut text = self.text.clone();
+        for (word, stands_for) in filled.map_or(&[][..], |filled| filled.words) {
+            assert!(text.contains(word), "FILLED: {} has no {word:?}", self.text);
+            text = text.replacen(word, stands_for, 1);
+        }
+        let text = match text.strip_prefix("scripts/run ") {
+            Some(rest) => format!("raceway run {rest}"),
+            None => text.strip_prefix("target/release/").unwrap_or(&text).to_string(),
+        };
         let is_placeholder = |word: &str| {
             word.len() > 1 && word.chars().all(|c| c.is_ascii_uppercase() || c == '_')
                 || word.contains(['[', '<'])
         };
-        let words = || self.text.split([' ', '=', '/', '.']);
-        self.is_shown
-            && self.text.starts_with("raceway ")
-            && words().count() > 1
-            && !words().any(is_placeholder)
+        let is_open = filled.is_none() && text.split([' ', '=', '/', '.']).any(is_placeholder);
+        (text.starts_with("raceway ") && !is_open).then_some(text)
     }
 
     /// Runs it.
     pub fn run(&self, dir: &Dir) -> Outcome {
-        shell(dir, &self.text)
+        let line = self.line().expect("a command that is not run is named");
+        shell(dir, &line)
     }
 }
 
