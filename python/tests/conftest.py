@@ -76,6 +76,27 @@ class Runs:
         words = [word for change in changes for word in ("--set", change)]
         return self.by_command("campbell", "campbell", "7010c_preload.toml", "--speeds", "0..9000:3000", *words)
 
+    def heat(self) -> raceway.Results:
+        heat = {"torque": "0.05 N m", "speed": "3000 rpm", "ambient": "20 degC"}
+        conductances = {"inner_ambient": "0.4 W/K", "outer_ambient": "2 W/K", "inner_outer": "0.8 W/K"}
+        settings = {f"heat.{key}": value for key, value in heat.items()}
+        settings |= {f"heat.conductance.{key}": value for key, value in conductances.items()}
+        settings |= {f"materials.{part}.expansion": "11.5e-6 /K" for part in ("rings", "balls")}
+        words = raceway.program.override_arguments(settings)
+        return self.by_command("heat", "heat", "7010c_preload.toml", *words)
+
+    def load_matrix(self) -> raceway.Results:
+        place = {"ring": "outer", "surface": "seat", "z": "2 mm", "direction": "hoop"}
+        place |= {"length": "3 mm", "width": "1 mm"}
+        settings: dict[str, object] = {
+            f"probes.gauge.g{ball:02}.{key}": value
+            for ball in range(18)
+            for key, value in (place | {"azimuth": f"{20 * ball} deg"}).items()
+        }
+        settings["outer.support"] = "mean_motion"
+        words = raceway.program.override_arguments(settings)
+        return self.by_command("load_matrix", "load-matrix", "7010c_preload.toml", *words)
+
 
 @pytest.fixture(scope="session")
 def runs(tmp_path_factory: pytest.TempPathFactory) -> Runs:

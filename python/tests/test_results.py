@@ -139,6 +139,29 @@ def test_a_campbell_folder_opens(runs):
     assert results.steps == []
 
 
+def test_a_heat_balance_opens_and_balances(runs):
+    results = runs.heat()
+    assert [path.name for path in results.folder.iterdir()] == ["heat.json"]
+    heat = results.heat
+    # The power of a torque of 0.05 N m at 3000 rpm is what flows off, by the conductances of the two rings.
+    power = 0.05 * 3000.0 * np.pi / 30.0
+    inner, outer = heat["temperatures_k"][:2]
+    assert heat["end"] == "steady" and np.isclose(heat["given_off_w"], power, rtol=1e-9)
+    assert np.isclose(0.4 * (inner - 293.15) + 2.0 * (outer - 293.15), power, rtol=1e-9)
+    assert results.steps == [] and results.tables == [] and "no summary" in repr(results)
+
+
+def test_a_load_matrix_is_an_array_of_gauges_and_balls(runs):
+    results = runs.load_matrix()
+    found, table = results.load_matrix, results.table("load_matrix")
+    matrix = found["strain_per_n"]
+    assert matrix.shape == (18, 18) and found["condition"] > 1.0
+    assert np.array_equal(matrix, table.iloc[:, 2:].to_numpy()) and list(table["gauge"]) == found["gauges"]
+    # A gauge beside each ball of a ring that is the same every 20 deg: each row is the one before, shifted.
+    shifted = np.stack([np.roll(row, -i) for i, row in enumerate(matrix)])
+    assert np.allclose(shifted, shifted[0], rtol=0, atol=1e-6 * abs(matrix).max())
+
+
 def test_life_is_read_from_its_file_and_from_the_summary(runs, tmp_path):
     settings = {"life.contact_angle": "15 deg", "life.speed": "1800 rpm"}
     results = runs.of("life", "7010c_preload.toml", settings)
@@ -174,6 +197,8 @@ def test_wrong_folders_and_names_are_refused_with_what_was_expected(runs, tmp_pa
         (lambda: results.stiffness, "has no stiffness.json; raceway stiffness writes it"),
         (lambda: results.life, "has no life; a scene with [life] or raceway life DIR gives it"),
         (lambda: raceway.open_study(tmp_path), "has no study.csv; expected the folder of a study"),
+        (lambda: results.heat, "has no heat.json; raceway heat SCENE --out DIR writes it"),
+        (lambda: results.load_matrix, "has no load_matrix.json; raceway load-matrix writes it"),
         (lambda: runs.campbell().summary, "has no summary.json; a run that has ended has it"),
         (lambda: runs.campbell().scene, "has no steps, which hold the scene"),
     ]

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     import xarray
 
 #: Files of which at least one is in a result folder, besides tables and steps.
-DOCUMENTS = ("summary.json", "stiffness.json", "life.json")
+DOCUMENTS = ("summary.json", "stiffness.json", "life.json", "heat.json", "load_matrix.json")
 
 
 class Results:
@@ -64,6 +64,16 @@ class Results:
         if found is None:
             raise ResultsError(f"{self.folder} has no life; a scene with [life] or raceway life DIR gives it")
         return dict(found)
+
+    @cached_property
+    def heat(self) -> dict[str, Any]:
+        """Rounds and end of `raceway heat`: `heat.json`; matrices are arrays."""
+        return _with_arrays(self._document("heat.json", "raceway heat SCENE --out DIR writes it"))
+
+    @cached_property
+    def load_matrix(self) -> dict[str, Any]:
+        """What gauges read under 1 N of each ball: `load_matrix.json`; `strain_per_n` is an array, gauges by balls."""
+        return _with_arrays(self._document("load_matrix.json", "raceway load-matrix writes it"))
 
     @property
     def scene(self) -> str:
@@ -168,7 +178,7 @@ class Results:
 
 
 def open_results(folder: str | os.PathLike[str]) -> Results:
-    """Opens a result folder of any command: run, resume, stiffness, campbell, life."""
+    """Opens a result folder of any command: run, resume, stiffness, campbell, life, heat, load-matrix."""
     return Results(folder)
 
 
