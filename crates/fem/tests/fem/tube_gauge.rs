@@ -93,7 +93,7 @@ fn point(mesh: &Mesh, facet: Facet, xi: [f64; 2]) -> GaugePoint {
 
 /// Wrong: a gauge would read another strain than that of its place, or none that gets better with the mesh. A hoop
 /// gauge from 0 to 30 deg on the outer surface, 2 x 2 Gauss points a facet: its mean is that of cos 2 psi, sin(60
-/// deg)/(60 deg). Hex20, whose strain is of second order and at these points of a higher one.
+/// deg)/(60 deg). Hex20, whose strain is of second order, and of the fourth where it is sampled at these points.
 #[test]
 fn a_gauge_on_an_oval_tube_converges_to_the_closed_form() {
     let third = std::f64::consts::FRAC_PI_3;
@@ -115,7 +115,7 @@ fn a_gauge_on_an_oval_tube_converges_to_the_closed_form() {
     };
     let errors = [error(2), error(4)];
     assert!(errors[1] < 5e-3, "{errors:?}");
-    assert_order(&errors, &[2.0], 2.5, "oval tube, hoop gauge");
+    assert_order(&errors, &[2.0], 4.0, "oval tube, hoop gauge");
 }
 
 /// Wrong: a short gauge would read something else than the strain of the node on which it lies. In the limit it is the
@@ -123,7 +123,7 @@ fn a_gauge_on_an_oval_tube_converges_to_the_closed_form() {
 /// are met with the mesh: within 2 % and 0.5 %.
 #[test]
 fn a_gauge_of_no_length_reads_the_strain_of_its_node() {
-    let (mesh, u) = oval(4);
+    let (mesh, u) = oval(6);
     let stress = StressRecovery::new(&mesh, &steel()).unwrap().nodal(&u);
     // The corner of facets at 30 deg and the lower end.
     let wanted = [OUTER * 0.75f64.sqrt(), 0.5 * OUTER, 0.0];
