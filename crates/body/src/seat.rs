@@ -123,6 +123,17 @@ pub struct SeatSpace {
 }
 
 impl SeatSpace {
+    /// Rigid motions at a place, `[component][motion]`: translations and rotations x, y, z about the middle of the
+    /// seat, whose arms are in radii.
+    pub fn rigid_motions(&self, [x, y, z]: [f64; 3]) -> [[f64; 6]; 3] {
+        let [x, y, z] = [x, y, z - self.middle].map(|arm| arm / self.radius);
+        [
+            [1.0, 0.0, 0.0, 0.0, z, -y],
+            [0.0, 1.0, 0.0, -z, 0.0, x],
+            [0.0, 0.0, 1.0, y, -x, 0.0],
+        ]
+    }
+
     /// Functions on the seat of a ring.
     pub fn on(cylinder: &SeatCylinder, basis: SeatBasis) -> SeatSpace {
         SeatSpace {
@@ -295,7 +306,7 @@ fn harmonic_rows(space: &SeatSpace, places: &[[f64; 3]], weights: &[f64]) -> Opt
 
 /// Functionals of the rigid motion in the least-squares sense about the middle of the seat; rotations in rad.
 fn rigid_rows(space: &SeatSpace, places: &[[f64; 3]], weights: &[f64]) -> Option<Vec<f64>> {
-    let modes: Vec<[f64; 6]> = places.iter().flat_map(|&x| rigid_modes_at(space, x)).collect();
+    let modes: Vec<[f64; 6]> = places.iter().flat_map(|&x| space.rigid_motions(x)).collect();
     let spread = weights.iter().flat_map(|&w| [w; 3]);
     let inverse = inverse_gram(6, modes.iter().map(|m| m.as_slice()).zip(spread.clone()))?;
     let mut rows = Vec::with_capacity(6 * modes.len());
@@ -306,16 +317,6 @@ fn rigid_rows(space: &SeatSpace, places: &[[f64; 3]], weights: &[f64]) -> Option
         }
     }
     Some(rows)
-}
-
-/// Rigid motions at a place, `[component][motion]`: translations and rotations x, y, z, whose arms are in radii.
-fn rigid_modes_at(space: &SeatSpace, x: [f64; 3]) -> [[f64; 6]; 3] {
-    let [x, y, z] = [x[0], x[1], x[2] - space.middle].map(|arm| arm / space.radius);
-    [
-        [1.0, 0.0, 0.0, 0.0, z, -y],
-        [0.0, 1.0, 0.0, -z, 0.0, x],
-        [0.0, 0.0, 1.0, y, -x, 0.0],
-    ]
 }
 
 /// Inverse of the sum of w v v^T; None where it is singular or nearly so.

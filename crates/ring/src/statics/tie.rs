@@ -64,7 +64,7 @@ impl RingTie {
         for k in 0..N_RIGID {
             let mut mode = vec![0.0; ring.mesh.n_dofs()];
             for (x, u) in ring.mesh.nodes.iter().zip(mode.chunks_exact_mut(3)) {
-                u.copy_from_slice(&motion(arm(x, &functions)).map(|row| scale * row[k]));
+                u.copy_from_slice(&functions.space.rigid_motions(*x).map(|row| scale * row[k]));
             }
             for (i, value) in functions.measure(&mode).into_iter().enumerate() {
                 tied[(n + N_RIGID) * i + n + k] = value;
@@ -106,7 +106,7 @@ impl RingTie {
         let mut resultant = [0.0; N_RIGID];
         for (x, f) in self.places.iter().zip(load.chunks_exact(3)) {
             if f.iter().any(|f| *f != 0.0) {
-                for (row, f) in motion(arm(x, &self.functions)).iter().zip(f) {
+                for (row, f) in self.functions.space.rigid_motions(*x).iter().zip(f) {
                     (0..N_RIGID).for_each(|k| resultant[k] += row[k] * f);
                 }
             }
@@ -131,24 +131,9 @@ impl RingTie {
     pub fn add_motion(&self, answer: &[f64], displacement: &mut [f64]) {
         let q = &answer[self.n_functions()..];
         for (x, u) in self.places.iter().zip(displacement.chunks_exact_mut(3)) {
-            for (row, u) in motion(arm(x, &self.functions)).iter().zip(u) {
+            for (row, u) in self.functions.space.rigid_motions(*x).iter().zip(u) {
                 *u += self.scale * row.iter().zip(q).map(|(r, q)| r * q).sum::<f64>();
             }
         }
     }
-}
-
-/// Place of a node from the middle of the seat, in radii.
-fn arm(x: &[f64; 3], functions: &SeatFunctions) -> [f64; 3] {
-    let space = &functions.space;
-    [x[0], x[1], x[2] - space.middle].map(|arm| arm / space.radius)
-}
-
-/// Rigid motions at an arm, `[component][motion]`.
-fn motion([x, y, z]: [f64; 3]) -> [[f64; N_RIGID]; 3] {
-    [
-        [1.0, 0.0, 0.0, 0.0, z, -y],
-        [0.0, 1.0, 0.0, -z, 0.0, x],
-        [0.0, 0.0, 1.0, y, -x, 0.0],
-    ]
 }
