@@ -11,11 +11,11 @@
 use dense::DenseLu;
 use dynamics::bodies::AXES;
 use dynamics::model::MAX_TILT;
-use dynamics::stiffness::{N_SHAFT, ShaftMatrix};
+use dynamics::stiffness::N_SHAFT;
 
 use crate::error::AssemblyError;
 use crate::place::Seating;
-use crate::shaft::{ShaftBody, Station, product, times};
+use crate::shaft::{ShaftBody, Station, times};
 use crate::support::{SupportAnswer, Supports};
 
 /// Iterations before giving up.
@@ -287,16 +287,11 @@ impl Problem<'_> {
 
     /// Fails where nothing holds a rigid motion of the shaft.
     fn check_held(&self, at: &Iterate) -> Result<(), AssemblyError> {
-        let mut stiffness = [[0.0; N_SHAFT]; N_SHAFT];
+        let mut stiffness = vec![0.0; N_SHAFT * N_SHAFT];
         for (mount, answer) in self.mounts.iter().zip(&at.answers) {
             let turned = mount.place.orientation.turned_matrix(&answer.stiffness);
-            let motion = crate::shaft::lever(mount.place.position);
-            let half = product(&turned, &motion);
-            for (i, row) in stiffness.iter_mut().enumerate() {
-                for (j, sum) in row.iter_mut().enumerate() {
-                    *sum += (0..N_SHAFT).map(|k| motion[k][i] * half[k][j]).sum::<f64>();
-                }
-            }
+            let station = Station::on_rigid_shaft(mount.place.position);
+            station.add_matrix(&turned, N_SHAFT, &mut stiffness);
         }
         let free: Vec<usize> = match self.shaft.is_beam() {
             true => (0..N_SHAFT).collect(),
@@ -305,10 +300,11 @@ impl Problem<'_> {
         self.require_pivots(&stiffness, &free)
     }
 
-    fn require_pivots(&self, stiffness: &ShaftMatrix, free: &[usize]) -> Result<(), AssemblyError> {
+    fn require_pivots(&self, stiffness: &[f64], free: &[usize]) -> Result<(), AssemblyError> {
         let m = free.len();
-        let entry =
-            |i: usize, j: usize| stiffness[free[i]][free[j]] * self.length(free[i]) * self.length(free[j]);
+        let entry = |i: usize, j: usize| {
+            stiffness[N_SHAFT * free[i] + free[j]] * self.length(free[i]) * self.length(free[j])
+        };
         let mut left: Vec<f64> = (0..m * m).map(|k| entry(k / m, k % m)).collect();
         for i in 0..m {
             let pivot = left[m * i + i];

@@ -21,6 +21,15 @@ pub struct Station {
 }
 
 impl Station {
+    /// A place of a rigid shaft at a distance, m, from the point whose dofs are those of the shaft.
+    pub fn on_rigid_shaft(position: f64) -> Station {
+        Station {
+            position,
+            first: 0,
+            motion: lever(position),
+        }
+    }
+
     /// Displacement of the place.
     pub fn displacement(&self, q: &[f64]) -> [f64; N_SHAFT] {
         let own = &q[self.first..self.first + N_SHAFT];
@@ -55,7 +64,7 @@ pub fn product(a: &ShaftMatrix, b: &ShaftMatrix) -> ShaftMatrix {
 }
 
 /// Motion of the point at distance `s` along z from the one whose dofs are given.
-pub fn lever(s: f64) -> ShaftMatrix {
+fn lever(s: f64) -> ShaftMatrix {
     let mut motion = identity();
     motion[0][4] = s;
     motion[1][3] = -s;
@@ -137,11 +146,7 @@ impl ShaftBody {
     /// The place at a position, m: any of a rigid shaft, the nearest node of a beam.
     pub fn station(&self, position: f64) -> Station {
         if !self.is_beam {
-            return Station {
-                position,
-                first: 0,
-                motion: lever(position),
-            };
+            return Station::on_rigid_shaft(position);
         }
         let distance = |k: &usize| (self.nodes[*k] - position).abs();
         let node = (0..self.nodes.len()).min_by(|a, b| distance(a).total_cmp(&distance(b)));

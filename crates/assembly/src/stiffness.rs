@@ -12,7 +12,7 @@ use dynamics::{Linearisation, StaticSolver};
 
 use crate::assembly::{Assembly, AssemblySolution, AssemblySolver};
 use crate::error::AssemblyError;
-use crate::shaft::{Station, lever};
+use crate::shaft::Station;
 
 /// Bearings of an assembly to first order.
 pub struct LinearAssembly {
@@ -60,11 +60,7 @@ impl LinearAssembly {
         if !shaft.is_beam() {
             let mut sum = vec![0.0; N_SHAFT * N_SHAFT];
             for (bearing, stiffness) in assembly.bearings.iter().zip(&self.stiffness) {
-                let station = Station {
-                    position,
-                    first: 0,
-                    motion: lever(bearing.place.position - position),
-                };
+                let station = Station::on_rigid_shaft(bearing.place.position - position);
                 station.add_matrix(stiffness, N_SHAFT, &mut sum);
             }
             return Ok(square(&sum));

@@ -4,7 +4,7 @@ use dynamics::statics::ContactColumns;
 use dynamics::stiffness::{N_SHAFT, ShaftMatrix};
 use dynamics::{DynamicsError, Linearisation, Model, Pose, ShaftDof, StaticSolution, StaticSolver};
 
-/// SupportAnswer to a displacement, in the frame of what answers.
+/// What answers a displacement, in the frame of what answers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SupportAnswer {
     /// Load that has to be put on the shaft to hold it there, N and N m.

@@ -1,5 +1,7 @@
 //! The beam shaft against closed forms: statics, natural frequencies, gyroscopic moments.
 
+mod near;
+
 use assembly::newton::{Mount, Problem, Scales, settle};
 use assembly::stiffness::LinearAssembly;
 use assembly::support::LinearSupport;
@@ -7,6 +9,8 @@ use assembly::whirl::equations;
 use assembly::{Assembly, BeamSection, BeamShaft, Orientation, PointMass, Seating, ShaftBody};
 use dynamics::whirl::{Whirl, WhirlMode};
 use fem::Material;
+
+use near::assert_near;
 
 const LENGTH: f64 = 0.5;
 const OUTSIDE: f64 = 0.06;
@@ -76,15 +80,6 @@ fn deflection(
     let mut holders: Vec<LinearSupport> = supports.iter().map(|(_, support)| *support).collect();
     let settled = settle(&problem, &mut holders, &vec![0.0; shaft.n()]).unwrap();
     (shaft, settled.displacements)
-}
-
-#[track_caller]
-fn assert_near(found: f64, expected: f64, tolerance: f64) {
-    let error = (found - expected).abs() / expected.abs();
-    assert!(
-        error <= tolerance,
-        "found {found:e}, expected {expected:e}: error {error:.1e}"
-    );
 }
 
 /// Wrong: bending or shear stiffness, or the signs of the slopes in one of the planes. Hinges of 1e14 N/m yield by

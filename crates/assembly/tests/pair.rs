@@ -1,5 +1,6 @@
 //! Bearings on a shaft against closed forms of rigid rings, identities and differences.
 
+mod near;
 #[path = "../../dynamics/tests/support/mod.rs"]
 mod support;
 
@@ -13,6 +14,7 @@ use dynamics::{ContactMode, DampingLaws, Hold, Linearisation, Model, StaticSolve
 use ring::rigid::RigidInertia;
 
 use Orientation::{MinusZ, PlusZ};
+use near::assert_near;
 use support::rings::Level;
 use support::{Case, equilibrium, steel};
 
@@ -104,15 +106,6 @@ fn shift(model: &Model, force: f64) -> f64 {
 fn forces(solution: &AssemblySolution, bearing: usize) -> Vec<f64> {
     let balls = solution.bearings[bearing].balls.iter();
     balls.map(|ball| ball.inner.force_n).collect()
-}
-
-#[track_caller]
-fn assert_near(found: f64, expected: f64, tolerance: f64) {
-    let error = (found - expected).abs() / expected.abs();
-    assert!(
-        error <= tolerance,
-        "found {found:e}, expected {expected:e}: error {error:.1e}"
-    );
 }
 
 /// Wrong: what presses a pair together would not be its offset, or a bearing's stiffness not count twice. With exact
