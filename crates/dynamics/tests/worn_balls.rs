@@ -5,12 +5,13 @@ mod support;
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
 
-use contact::surface::{Spall, Wave};
+use contact::surface::Wave;
 use contact::{BallSurface, Profiles, Side, StripLaw, StripSurface};
 use dynamics::kinematics::{Kinematics, Rolling, Speed};
 use dynamics::motion::{Motion, MotionSettings, MotionState, StepCache};
 use dynamics::{ContactMode, Hold, Model, Pose, StaticSolver};
 use support::rings::Level;
+use support::worn::spall;
 use support::{Case, equilibrium};
 
 const SMALL: Level = Level::hex8(54, 6, 1, 2);
@@ -39,21 +40,6 @@ fn wave(order: usize, amplitude: f64) -> Profiles {
             order,
             amplitude,
             phase: 0.0,
-        }],
-        ..Profiles::default()
-    }
-}
-
-/// A spall on the equator at a longitude, wider than the ellipses.
-fn spall(longitude: f64, length: f64, depth: f64) -> Profiles {
-    Profiles {
-        spalls: vec![Spall {
-            azimuth: longitude,
-            groove_angle: 0.0,
-            length,
-            width: 5e-3,
-            depth,
-            edge: 0.05e-3,
         }],
         ..Profiles::default()
     }

@@ -3,7 +3,7 @@
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
 
-use contact::surface::{Heights, Spall, Wave};
+use contact::surface::{Heights, Wave};
 use contact::{BallSurface, Profiles, Side};
 use dynamics::kinematics::{RingSpeeds, Speed};
 use dynamics::motion::{Motion, MotionState};
@@ -11,6 +11,7 @@ use dynamics::{Model, ShaftDof};
 
 use crate::bearings::{rpm, run, settings};
 use crate::flexible::flexible;
+use crate::support::worn::spall;
 use crate::support::{equilibrium, steel};
 use crate::surfaces::{after, turning, wave, with_strips};
 
@@ -28,21 +29,6 @@ pub fn with_ball(mut model: Model, ball: usize, profiles: &Profiles) -> Model {
     };
     model.surfaces.balls.insert(ball, Side::BOTH.map(surface));
     model
-}
-
-/// A spall on the equator, wider than the ellipses and their latitudes.
-fn spall(longitude: f64, length: f64, depth: f64) -> Profiles {
-    Profiles {
-        spalls: vec![Spall {
-            azimuth: longitude,
-            groove_angle: 0.0,
-            length,
-            width: 5e-3,
-            depth,
-            edge: 0.05e-3,
-        }],
-        ..Profiles::default()
-    }
 }
 
 /// Speed at which a ball rolls in its meridian plane, rad/s, in the equilibrium.

@@ -123,6 +123,7 @@ pub mod graded;
 pub mod harris;
 pub mod mounting;
 pub mod rings;
+pub mod worn;
 
 use dynamics::Hold;
 use rings::{Level, ring};
