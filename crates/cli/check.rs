@@ -6,7 +6,6 @@ use std::path::Path;
 use comm::print;
 use contact::{BearingGeometry, Side};
 use dynamics::kinematics::Kinematics;
-
 use dynamics::{Model, MotionMemory, RingMemory};
 use results::answer;
 use results::disk::{self, Forecast};

@@ -16,6 +16,7 @@ use results::probe_places::side_of;
 use results::shown::Shown;
 use results::survey::say_doubts;
 use results::table::Table;
+use results::whole::make_asked_folder;
 use results::whole::write;
 use scene::{Analysis, Scene, build_model, doubts};
 use spectrum::scene_of;
@@ -78,8 +79,7 @@ pub fn load_matrix(command: &LoadMatrixCommand) -> Result<(), Failure> {
         solution: &solution,
     });
     let matrix = LoadMatrix::new(&model, &solver, &solution, &gauges, &read, side)?;
-    std::fs::create_dir_all(&command.out)
-        .with_context(|| format!("cannot create folder {}", command.out.display()))?;
+    make_asked_folder(&command.out)?;
     matrix.write(&command.out)?;
     print::line(format_args!(
         "{} gauges on the {} ring, {} balls: {}",

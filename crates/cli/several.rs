@@ -18,9 +18,13 @@ use results::shown::Shown;
 use results::snapshot::Snapshot;
 use results::summary::{Findings, READ, Summary, TOTAL};
 use results::survey::{Survey, say_doubts};
+use results::whole::{make_asked_folder, write_new};
 use scene::{Analysis, BuildError, Rings, SeveralScene, assembly_with_rings, build_assembly, doubts};
 
 use crate::progress::Progress;
+
+/// The scene, beside the results of its bearings.
+const SCENE_FILE: &str = "scene.toml";
 
 /// One load case: the swept value (None for a static scene) and its scene.
 pub type SeveralPoint = (Option<f64>, SeveralScene);
@@ -133,13 +137,13 @@ impl SeveralFiles {
         solution: &AssemblySolution,
         dir: &Path,
     ) -> Result<SeveralFiles, Failure> {
-        std::fs::create_dir_all(dir)
-            .map_err(|error| anyhow!("cannot create folder {}: {error}", dir.display()))?;
+        make_asked_folder(dir)?;
         say_folder(dir);
         let column = column(scene).map(str::to_string);
+        write_new(&dir.join(SCENE_FILE), |file| {
+            file.write_all(scene.text.as_bytes())
+        })?;
         let tables = SeveralTables::create(dir, column.as_deref())?;
-        std::fs::write(dir.join("scene.toml"), &scene.text)
-            .map_err(|error| anyhow!("cannot write scene.toml of the results: {error}"))?;
         let mut bearings = Vec::new();
         for ((bearing, mounted), found) in scene
             .bearings

@@ -4,7 +4,6 @@
 
 use std::path::Path;
 
-use anyhow::anyhow;
 use assembly::stiffness::LinearAssembly;
 use assembly::{Assembly, AssemblySolution, AssemblySolver};
 use comm::print;
@@ -14,6 +13,7 @@ use results::failure::Failure;
 use results::several_stiffness::{BearingStiffness, SeveralStiffness, ShaftStiffnessAt};
 use results::stiffness::{OperatingPoint, StiffnessAt, StiffnessResults, require_free};
 use results::survey::say_doubts;
+use results::whole::make_asked_folder;
 use scene::{SeveralScene, assembly_with_rings, build_assembly};
 
 use crate::linear_figures::draw;
@@ -30,8 +30,7 @@ pub fn stiffness(scene: &SeveralScene, out: &Path) -> Result<(), Failure> {
     let names: Vec<&str> = names.iter().map(String::as_str).collect();
     require_free(out, &names)?;
     let results = linearise(scene)?;
-    std::fs::create_dir_all(out)
-        .map_err(|error| anyhow!("cannot create folder {}: {error}", out.display()))?;
+    make_asked_folder(out)?;
     let mut names = results.write(out)?;
     results.print();
     names.extend(draw(out)?);

@@ -20,6 +20,7 @@ use results::stiffness::{
     require_free,
 };
 use results::survey::say_doubts;
+use results::whole::make_asked_folder;
 use scene::{Analysis, AnyScene, Scene, build_model, doubts, model_with_rings, rolling};
 
 use crate::linear_figures::draw;
@@ -65,8 +66,7 @@ pub fn stiffness(command: &StiffnessCommand) -> Result<(), Failure> {
     check_positions(command.ripple)?;
     require_free(&command.out, &[STIFFNESS_FILE, STIFFNESS_TABLE, ROSS_TABLE])?;
     let results = linearise(&scene, time, command.ripple)?;
-    std::fs::create_dir_all(&command.out)
-        .map_err(|error| anyhow!("cannot create folder {}: {error}", command.out.display()))?;
+    make_asked_folder(&command.out)?;
     let names = results.write(&command.out)?;
     results.print();
     let mut names: Vec<String> = names.into_iter().map(str::to_string).collect();

@@ -78,7 +78,7 @@ fn print_shaft(snapshot: &Snapshot) {
 }
 
 /// A number with N decimals; one that rounds to zero has no sign.
-fn fixed<const N: usize>(x: f64) -> String {
+pub fn fixed<const N: usize>(x: f64) -> String {
     let text = format!("{x:.N$}");
     match text.strip_prefix('-') {
         Some(rest) if rest.chars().all(|c| c == '0' || c == '.') => rest.to_string(),

@@ -12,6 +12,7 @@ use comm::{Communicator, print};
 use crate::failure::{Failure, agree};
 use crate::seat::SEAT_TABLE;
 use crate::summary::SUMMARY_FILE;
+use crate::whole::make_asked_folder;
 
 /// Largest number that a default result folder may carry.
 const MAX_FOLDERS: usize = 10_000;
@@ -160,7 +161,7 @@ const TABLES: [&str; 8] = [
 
 /// Makes the folder `dir` and locks it. What a run left there that ended before its first step is removed.
 pub fn prepare(dir: &Path) -> Result<FolderLock, Failure> {
-    std::fs::create_dir_all(dir).with_context(|| format!("cannot create folder {}", dir.display()))?;
+    make_asked_folder(dir)?;
     let lock = FolderLock::acquire(dir)?;
     if clear_unfinished_start(&lock, &TABLES)? {
         print::note(format_args!(

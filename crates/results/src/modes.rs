@@ -25,7 +25,10 @@ use super::mounting::{ClearanceSummary, FitSummary, fits};
 use super::ring_stress::{Basis, RingStress, ShownRing};
 use super::shown::Turn;
 use super::snapshot::Snapshot;
-use super::summary::{ShaftSummary, TOTAL, mode_name, peak_memory, sides, write_summary};
+use super::summary::{
+    ShaftSummary, TOTAL, mode_name, peak_memory, print_peak, print_seconds, print_warnings, sides,
+    write_summary,
+};
 use super::tables;
 use crate::failure::Failure;
 
@@ -255,19 +258,9 @@ impl ModesSummary {
 
     /// Prints warnings, then where the time went.
     pub fn print_costs(&self) {
-        for warning in &self.warnings {
-            print::line(format_args!("warning: {warning}"));
-        }
-        let parts: Vec<String> = self
-            .timing_s
-            .iter()
-            .map(|(part, s)| format!("{part} {s:.3}"))
-            .collect();
-        print::line(format_args!("seconds: {}", parts.join(", ")));
-        print::line(format_args!(
-            "peak memory: {:.0} MB",
-            self.peak_memory_bytes as f64 / 1e6
-        ));
+        print_warnings(&self.warnings);
+        print_seconds(self.timing_s.iter().map(|(part, s)| (*part, *s)));
+        print_peak(self.peak_memory_bytes, None);
     }
 
     /// Writes the file: complete or not at all.

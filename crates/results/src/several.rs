@@ -15,7 +15,8 @@ use scene::{Analysis, SeveralScene};
 use serde::Serialize;
 use timer::Laps;
 
-use crate::summary::{peak_memory, write_summary};
+use crate::console::fixed;
+use crate::summary::{peak_memory, print_peak, print_seconds, print_warnings, write_summary};
 use crate::tables::{append, ball_cells, ball_columns, create, head, number, place_of};
 
 /// Balls of all bearings.
@@ -278,19 +279,9 @@ impl SeveralSummary {
 
     /// Prints warnings, then where the time went.
     pub fn print_costs(&self) {
-        for warning in &self.warnings {
-            print::line(format_args!("warning: {warning}"));
-        }
-        let parts: Vec<String> = self
-            .timing_s
-            .iter()
-            .map(|(part, s)| format!("{part} {s:.3}"))
-            .collect();
-        print::line(format_args!("seconds: {}", parts.join(", ")));
-        print::line(format_args!(
-            "peak memory: {:.0} MB",
-            self.peak_memory_bytes as f64 / 1e6
-        ));
+        print_warnings(&self.warnings);
+        print_seconds(self.timing_s.iter().map(|(part, s)| (part.as_str(), *s)));
+        print_peak(self.peak_memory_bytes, None);
     }
 }
 
@@ -313,14 +304,14 @@ pub fn print_solution(assembly: &Assembly, solution: &AssemblySolution) {
             mounted.name,
             mounted.place.orientation.name(),
             1e3 * mounted.place.position,
-            fixed(x, 3),
-            fixed(y, 3),
-            fixed(z, 3),
-            fixed(a, 2),
-            fixed(b, 2),
-            fixed(fx, 2),
-            fixed(fy, 2),
-            fixed(fz, 2),
+            fixed::<3>(x),
+            fixed::<3>(y),
+            fixed::<3>(z),
+            fixed::<2>(a),
+            fixed::<2>(b),
+            fixed::<2>(fx),
+            fixed::<2>(fy),
+            fixed::<2>(fz),
             state.largest_ball_force,
             state.loaded_balls,
             mounted.model.geometry.n_balls
@@ -330,9 +321,9 @@ pub fn print_solution(assembly: &Assembly, solution: &AssemblySolution) {
         print::line(format_args!(
             "shaft at {:.2} mm: x {} um, y {} um, z {} um",
             1e3 * z,
-            fixed(1e6 * q[0], 3),
-            fixed(1e6 * q[1], 3),
-            fixed(1e6 * q[2], 3)
+            fixed::<3>(1e6 * q[0]),
+            fixed::<3>(1e6 * q[1]),
+            fixed::<3>(1e6 * q[2])
         ));
     }
 }
@@ -343,15 +334,6 @@ fn ends(assembly: &Assembly, solution: &AssemblySolution) -> Vec<(f64, [f64; N_S
     match assembly.shaft.is_beam() {
         true => vec![line[0], line[line.len() - 1]],
         false => Vec::new(),
-    }
-}
-
-/// A number; one that rounds to zero has no sign.
-fn fixed(x: f64, decimals: usize) -> String {
-    let text = format!("{x:.decimals$}");
-    match text.strip_prefix('-') {
-        Some(rest) if rest.chars().all(|c| c == '0' || c == '.') => rest.to_string(),
-        _ => text,
     }
 }
 

@@ -17,6 +17,7 @@ use crate::stiffness::{
     SCHEMA, STIFFNESS_FILE, STIFFNESS_TABLE, StiffnessAt, StiffnessResults, TableLine, UNITS, print_matrix,
     table,
 };
+use crate::summary::print_warnings;
 use crate::whole;
 
 /// Start of the names of the bearings' tables.
@@ -200,8 +201,6 @@ impl SeveralStiffness {
             );
             print_matrix(&title, &shaft.stiffness);
         }
-        for warning in &self.warnings {
-            print::line(format_args!("warning: {warning}"));
-        }
+        print_warnings(&self.warnings);
     }
 }

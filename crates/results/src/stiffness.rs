@@ -15,6 +15,7 @@ use dynamics::system::Interval;
 use serde::Serialize;
 
 use crate::failure::Failure;
+use crate::summary::print_warnings;
 use crate::whole;
 
 /// The matrices and where they hold.
@@ -297,9 +298,7 @@ impl StiffnessResults {
             ));
         }
         print::line(format_args!("damping: {}", self.damping_note));
-        for warning in &self.warnings {
-            print::line(format_args!("warning: {warning}"));
-        }
+        print_warnings(&self.warnings);
     }
 }
 

@@ -266,25 +266,11 @@ impl Summary {
 
     /// Prints warnings, then where the time went.
     pub fn print_costs(&self) {
-        self.warnings
-            .iter()
-            .for_each(|w| print::line(format_args!("warning: {w}")));
+        print_warnings(&self.warnings);
         print::line(format_args!("{}", self.effects_line()));
-        let parts: Vec<String> = self
-            .timing_s
-            .iter()
-            .filter(|(part, _)| !part.starts_with(EFFECT_TIMING))
-            .map(|(part, s)| format!("{part} {s:.3}"))
-            .collect();
-        print::line(format_args!("seconds: {}", parts.join(", ")));
-        let forecast = self.peak_memory_forecast_bytes;
-        let forecast = forecast.map_or(String::new(), |bytes| {
-            format!(", forecast {:.0} MB", bytes as f64 / 1e6)
-        });
-        print::line(format_args!(
-            "peak memory: {:.0} MB{forecast}",
-            self.peak_memory_bytes as f64 / 1e6
-        ));
+        let parts = self.timing_s.iter().map(|(part, s)| (part.as_str(), *s));
+        print_seconds(parts.filter(|(part, _)| !part.starts_with(EFFECT_TIMING)));
+        print_peak(self.peak_memory_bytes, self.peak_memory_forecast_bytes);
     }
 
     /// The effects that were on, with their seconds.
@@ -307,6 +293,30 @@ impl Summary {
     pub fn write(&self, dir: &Path) -> anyhow::Result<()> {
         write_summary(dir, self)
     }
+}
+
+/// Prints warnings, a line each.
+pub fn print_warnings(warnings: &[String]) {
+    for warning in warnings {
+        print::line(format_args!("warning: {warning}"));
+    }
+}
+
+/// Prints where the wall time went.
+pub fn print_seconds<'a>(parts: impl Iterator<Item = (&'a str, f64)>) {
+    let parts: Vec<String> = parts.map(|(part, s)| format!("{part} {s:.3}")).collect();
+    print::line(format_args!("seconds: {}", parts.join(", ")));
+}
+
+/// Prints the largest memory, bytes, beside its forecast if there is one.
+pub fn print_peak(bytes: u64, forecast: Option<usize>) {
+    let forecast = forecast.map_or(String::new(), |bytes| {
+        format!(", forecast {:.0} MB", bytes as f64 / 1e6)
+    });
+    print::line(format_args!(
+        "peak memory: {:.0} MB{forecast}",
+        bytes as f64 / 1e6
+    ));
 }
 
 /// Writes `summary.json`: complete or not at all. Rank 0 writes for all.

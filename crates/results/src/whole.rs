@@ -77,11 +77,15 @@ pub fn make_folder(path: &Path) -> anyhow::Result<()> {
     }
 }
 
+/// Makes a folder that was asked for, which may be a link, with those above it.
+pub fn make_asked_folder(path: &Path) -> anyhow::Result<()> {
+    std::fs::create_dir_all(path).with_context(|| format!("cannot create folder {}", path.display()))
+}
+
 /// Makes the folder that a command writes to: the one asked for, which may be a link, or `path` in the results.
 pub fn make_output_folder(asked: Option<&Path>, path: &Path) -> anyhow::Result<()> {
     match asked {
-        Some(asked) => std::fs::create_dir_all(asked)
-            .with_context(|| format!("cannot create folder {}", asked.display())),
+        Some(asked) => make_asked_folder(asked),
         None => make_folder(path),
     }
 }
