@@ -9,20 +9,19 @@ use std::path::PathBuf;
 
 use anyhow::anyhow;
 use clap::Args;
-use comm::print;
 use contact::Side;
 use dynamics::kinematics::Speed;
 use dynamics::whirl::{TurningShaft, turning_inertia};
 use dynamics::{Linearisation, Model, ShaftDof, StaticSolver};
-use results::campbell::{CAMPBELL_LINES, CAMPBELL_TABLE, ModesAtSpeed, print_campbell, write_campbell};
+use results::campbell::{CAMPBELL_LINES, CAMPBELL_TABLE, ModesAtSpeed};
 use results::failure::Failure;
 use results::stiffness::require_free;
 use results::survey::say_doubts;
-use scene::{Analysis, AnyScene, Scene, build_model, doubts, model_with_rings};
+use scene::{AnyScene, Scene, build_model, doubts, model_with_rings};
 
-use crate::linear_figures::draw;
+use crate::campbell_files::{self, Diagram, GROWS, require_one_point};
 use crate::progress::Progress;
-use crate::several_campbell::{self, GROWS};
+use crate::several_campbell;
 use crate::stiffness::{instant, laws, pose_at, require_load};
 
 /// Most speeds of a diagram.
@@ -101,30 +100,16 @@ pub fn campbell(command: &CampbellCommand) -> Result<(), Failure> {
             return several_campbell::campbell(*list, &speeds, command.number, &command.out);
         }
     };
-    if let Analysis::Sweep(sweep) = &scene.analysis {
-        return Err(Failure::User(anyhow!(
-            "{} has a [sweep] of {}; expected one operating point, so replace [sweep] by [static]",
-            scene.path.display(),
-            sweep.key
-        )));
-    }
+    require_one_point(&scene.analysis, &scene.path)?;
     let time = instant(&scene, None)?;
     require_free(&command.out, &[CAMPBELL_TABLE, CAMPBELL_LINES])?;
-    let (found, model, warnings) = diagram(scene.clone(), time, command)?;
-    std::fs::create_dir_all(&command.out)
-        .map_err(|error| anyhow!("cannot create folder {}: {error}", command.out.display()))?;
-    write_campbell(&command.out, &found, &model.geometry, scene.effects.slip())?;
-    print_campbell(&found);
-    for warning in &warnings {
-        print::line(format_args!("warning: {warning}"));
-    }
-    let figures = draw(&command.out)?;
-    print::line(format_args!(
-        "{CAMPBELL_TABLE}, {CAMPBELL_LINES}, {} in {}",
-        figures.join(", "),
-        command.out.display()
-    ));
-    Ok(())
+    let (modes, model, warnings) = diagram(scene.clone(), time, command)?;
+    let diagram = Diagram {
+        modes,
+        warnings,
+        note: None,
+    };
+    campbell_files::write(&diagram, &command.out, &model.geometry, scene.effects.slip())
 }
 
 /// Modes at all speeds.

@@ -4,6 +4,7 @@
 //! from.
 
 mod campbell;
+mod campbell_files;
 mod check;
 mod cycles;
 mod export;

@@ -7,24 +7,21 @@ use anyhow::anyhow;
 use assembly::AssemblySolver;
 use assembly::stiffness::LinearAssembly;
 use assembly::whirl::{equations, turning_shaft};
-use comm::print;
 use dynamics::DampingLaws;
 use dynamics::kinematics::Speed;
-use results::campbell::{CAMPBELL_LINES, CAMPBELL_TABLE, ModesAtSpeed, print_campbell, write_campbell};
+use results::campbell::{CAMPBELL_LINES, CAMPBELL_TABLE, ModesAtSpeed};
 use results::failure::Failure;
 use results::stiffness::require_free;
 use results::survey::say_doubts;
-use scene::{Analysis, SeveralScene, assembly_with_rings, build_assembly};
+use scene::{SeveralScene, assembly_with_rings, build_assembly};
 
-use crate::linear_figures::draw;
+use crate::campbell_files::{self, Diagram, GROWS, require_one_point};
 use crate::progress::Progress;
 use crate::several::{all_doubts, rings, solving, warnings_at};
 
 /// Modes of a beam that are shown where nobody says how many.
 const MODES_OF_BEAM: usize = 10;
 
-/// Damping ratio below which a mode counts as one that grows: far beyond round-off.
-pub const GROWS: f64 = -1e-8;
 /// Share of the shaft in the energy below which a mode is one of balls alone, of which there are many.
 const OF_BALLS: f64 = 0.02;
 
@@ -35,39 +32,21 @@ pub fn campbell(
     number: Option<usize>,
     out: &Path,
 ) -> Result<(), Failure> {
-    if let Analysis::Sweep(sweep) = &scene.analysis {
-        return Err(Failure::User(anyhow!(
-            "{} has a [sweep] of {}; expected one operating point, so replace [sweep] by [static]",
-            scene.path.display(),
-            sweep.key
-        )));
-    }
+    require_one_point(&scene.analysis, &scene.path)?;
     require_free(out, &[CAMPBELL_TABLE, CAMPBELL_LINES])?;
     let slip = scene.effects.slip();
     let first = scene::geometry(&scene.bearings[0].scene);
     let is_like = |b: &scene::BearingOnShaft| scene::geometry(&b.scene) == first;
     let name = scene.bearings[0].name.clone();
     let others = !scene.bearings.iter().all(is_like);
-    let (found, warnings) = diagram(scene, speeds, number)?;
-    std::fs::create_dir_all(out)
-        .map_err(|error| anyhow!("cannot create folder {}: {error}", out.display()))?;
-    write_campbell(out, &found, &first, slip)?;
-    print_campbell(&found);
-    for warning in &warnings {
-        print::line(format_args!("warning: {warning}"));
-    }
-    if others {
-        print::line(format_args!(
-            "the lines of cage and ball pass are those of bearing {name:?}"
-        ));
-    }
-    let figures = draw(out)?;
-    print::line(format_args!(
-        "{CAMPBELL_TABLE}, {CAMPBELL_LINES}, {} in {}",
-        figures.join(", "),
-        out.display()
-    ));
-    Ok(())
+    let (modes, warnings) = diagram(scene, speeds, number)?;
+    let note = others.then(|| format!("the lines of cage and ball pass are those of bearing {name:?}"));
+    let diagram = Diagram {
+        modes,
+        warnings,
+        note,
+    };
+    campbell_files::write(&diagram, out, &first, slip)
 }
 
 /// Modes at all speeds.
