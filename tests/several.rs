@@ -142,6 +142,24 @@ fn a_pair_leaves_tables_of_both_and_a_folder_for_each() {
     assert_eq!(dir.raceway(&["run", "pair.toml", "--out", "out"]).code, Some(2));
 }
 
+/// Wrong: the scene of a user, kept in the folder of the results, would be replaced by that of the run.
+#[test]
+fn a_scene_in_the_folder_is_not_written_over() {
+    let dir = pair("[static]");
+    std::fs::create_dir_all(dir.path("out")).unwrap();
+    dir.write("out/scene.toml", "mine");
+    let refused = dir.raceway(&["run", "pair.toml", "--out", "out"]);
+    assert_eq!(refused.code, Some(2), "{}", refused.stderr);
+    assert!(
+        refused
+            .stderr
+            .contains("cannot write out/scene.toml: File exists"),
+        "{}",
+        refused.stderr
+    );
+    assert_eq!(dir.text("out/scene.toml"), "mine");
+}
+
 /// Wrong: a sweep would lose a point or its value.
 #[test]
 fn a_sweep_of_the_offset_stiffens_the_pair() {

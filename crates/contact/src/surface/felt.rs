@@ -59,7 +59,7 @@ mod tests {
     }
 
     /// Wrong: another wave would be filtered than that of the order: order 300 of the 7010C, whose outer ellipse is
-    /// 0.13 mm wide on both sides under 2 kN, keeps 0.89 of its amplitude, order 1000 0.2 (effects2.md, section 3).
+    /// 0.13 mm wide on both sides under 2 kN, keeps 0.89 of its amplitude, order 1000 0.2, to the digits shown.
     #[test]
     fn waves_of_high_orders_lose_their_amplitude() {
         let wave = |order| Wave {
