@@ -8,7 +8,7 @@ mod known_stress;
 use std::io::Write;
 use std::path::Path;
 use std::process::Command;
-use std::sync::OnceLock;
+use std::sync::{Mutex, MutexGuard, OnceLock, PoisonError};
 
 use checkpoint::{committed_steps, read_any_step, read_mesh, read_step, step_file_name};
 use serde_json::Value;
@@ -76,12 +76,14 @@ const SCREEN: [&str; 5] = [
     "--force-offscreen-rendering",
 ];
 
-fn has_paraview() -> bool {
-    let found = runs("pvpython", &["--version"]) && runs("xvfb-run", &["--help"]);
-    if !found {
-        skipped("no pvpython or no xvfb-run");
+/// ParaView, if there is one, for one test at a time: two that look for a free screen at once may take the same.
+fn paraview() -> Option<MutexGuard<'static, ()>> {
+    static ALONE: Mutex<()> = Mutex::new(());
+    if runs("pvpython", &["--version"]) && runs("xvfb-run", &["--help"]) {
+        return Some(ALONE.lock().unwrap_or_else(PoisonError::into_inner));
     }
-    found
+    skipped("no pvpython or no xvfb-run");
+    None
 }
 
 /// The node whose stress is compared: the one with the largest von Mises stress of the last step.
@@ -200,9 +202,7 @@ fn vtk_reads_every_step() {
 /// Wrong: ParaView would read other times, points, cells or stresses than were written.
 #[test]
 fn paraview_reads_every_step() {
-    if !has_paraview() {
-        return;
-    }
+    let Some(_alone) = paraview() else { return };
     let dir = moved();
     for out in ["out", "small"] {
         let folder = dir.path(out);
@@ -222,9 +222,7 @@ fn paraview_reads_every_step() {
 /// Wrong: a script would fail, make no picture, or an empty one; or it would not say what is wrong with its input.
 #[test]
 fn the_scripts_make_their_pictures() {
-    if !has_paraview() {
-        return;
-    }
+    let Some(_alone) = paraview() else { return };
     let dir = moved();
     let run = |name: &str, arguments: &[&str]| {
         let script = format!("{}/scripts/paraview/{name}", env!("CARGO_MANIFEST_DIR"));

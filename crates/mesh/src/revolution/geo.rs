@@ -210,7 +210,7 @@ fn write_sizes(
          Field[1].F = \"{first} + {growth} * abs(sqrt((x - ({cr}))^2 + (y - ({cz}))^2) - {radius})\";\n\
          Field[2] = MathEval; Field[2].F = \"{most}\";\n\
          Field[3] = Min; Field[3].FieldsList = {{1, 2}}; Background Field = 3;\n\
-         Mesh.MeshSizeExtendFromBoundary = 0; Mesh.MeshSizeFromPoints = 0; Mesh.Algorithm = 8;\n\
+         Mesh.MeshSizeExtendFromBoundary = 0; Mesh.MeshSizeFromPoints = 0; Mesh.Algorithm = 6;\n\
          Mesh.RecombineAll = 1; Mesh.RecombinationAlgorithm = 1; Mesh.SubdivisionAlgorithm = 1;\n"
     );
 }
