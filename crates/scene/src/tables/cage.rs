@@ -10,11 +10,13 @@ use std::f64::consts::PI;
 
 use contact::Side;
 use dynamics::interactions::cage::{Cage, Land};
-use input::{DENSITY, DYNAMIC_VISCOSITY, HERTZ_STIFFNESS, INERTIA, LENGTH, MASS, Problems, Quantity};
+use input::{DENSITY, DYNAMIC_VISCOSITY, HERTZ_STIFFNESS, INERTIA, LENGTH, MASS, Problems, Quantity, STRESS};
 use serde::Deserialize;
 
 use super::balls::BallMotion;
 use super::bearing::Bearing;
+use super::materials::Material;
+use super::pocket::{PocketFit, PocketKeys};
 
 /// How the cage moves.
 #[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Eq)]
@@ -50,6 +52,8 @@ pub struct RawCage {
     inertia_t: Option<Quantity<INERTIA>>,
     pocket_clearance: Option<Quantity<LENGTH>>,
     pocket_stiffness: Option<Quantity<HERTZ_STIFFNESS>>,
+    young_modulus: Option<Quantity<STRESS>>,
+    poisson_ratio: Option<f64>,
     pocket_offsets: Option<Vec<Quantity<LENGTH>>>,
     #[serde(default)]
     guidance: Guidance,
@@ -71,8 +75,6 @@ struct CageTube {
 const MOST_FRICTION: f64 = 2.0;
 /// Less would stop a ball in its pocket.
 const LEAST_RESTITUTION: f64 = 0.05;
-/// Softest and stiffest pocket, N/m^1.5: rubber to a ball on a steel flat.
-const STIFFNESSES: std::ops::RangeInclusive<f64> = 1e4..=1e12;
 
 impl RawCage {
     /// Checks the cage of a bearing whose balls move in this way; None where it is not free, or wrong.
@@ -80,6 +82,7 @@ impl RawCage {
         &self,
         (balls, is_dynamic): (BallMotion, bool),
         bearing: Option<&Bearing>,
+        ball: Option<&Material>,
         problems: &mut Problems,
     ) -> Option<Cage> {
         if self.motion == CageMotion::Kinematic {
@@ -112,7 +115,17 @@ impl RawCage {
             0.5 * bearing.ball_diameter,
             problems,
         );
-        let stiffness = self.stiffness(problems);
+        let keys = PocketKeys {
+            stiffness: self.pocket_stiffness.as_ref(),
+            young_modulus: self.young_modulus.as_ref(),
+            poisson_ratio: self.poisson_ratio,
+        };
+        let fit = clearance.zip(ball).map(|(clearance, material)| PocketFit {
+            diameter: bearing.ball_diameter,
+            clearance,
+            material,
+        });
+        let stiffness = keys.check(fit, problems);
         let [friction, restitution] = self.coefficients(problems);
         let offsets = self.offsets(bearing, problems);
         let land = self.land(tube, problems);
@@ -263,22 +276,6 @@ impl RawCage {
             format!("expected a diametral clearance of 0 to {:.3} mm", 1e3 * most),
         );
         Some(value.si())
-    }
-
-    fn stiffness(&self, problems: &mut Problems) -> Option<f64> {
-        let Some(stiffness) = &self.pocket_stiffness else {
-            problems.add(
-                "[cage] needs pocket_stiffness, such as \"2e8 N/m^1.5\": force over overlap^1.5 in a pocket",
-            );
-            return None;
-        };
-        problems.require(
-            STIFFNESSES.contains(&stiffness.si()),
-            "cage.pocket_stiffness",
-            stiffness,
-            "expected 1e4 to 1e12 N/m^1.5; polymer cages have about 1e8, steel ones 1e9 to 1e10",
-        );
-        Some(stiffness.si())
     }
 
     fn coefficients(&self, problems: &mut Problems) -> [Option<f64>; 2] {

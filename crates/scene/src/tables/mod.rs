@@ -64,6 +64,7 @@ mod modes;
 mod oil;
 mod optional;
 mod output;
+mod pocket;
 mod probes;
 mod profile_place;
 mod profiles;
@@ -391,7 +392,7 @@ impl Source<'_> {
             &mut problems,
         );
         let balls = raw.balls.check(raw.balls_context(), &mut problems);
-        let cage = raw.cage(balls, bearing.as_ref(), &mut problems);
+        let cage = raw.cage(balls, bearing.as_ref(), materials.as_ref(), &mut problems);
         let speed = raw.speed.as_ref();
         let ball_speeds = speed.map_or(BallSpeeds::default(), |s| s.ball_speeds(effects, &mut problems));
         let speed = speed.and_then(|s| s.check(raw.speed_use(), &mut problems));

@@ -10,6 +10,7 @@ use super::body::{BodyContext, SceneBody, check_bodies};
 use super::heat::Heat;
 use super::life::Life;
 use super::lubricant::Lubrication;
+use super::materials::Materials;
 use super::solver::Backend;
 use super::{RawScene, Source};
 
@@ -19,10 +20,12 @@ impl RawScene {
         &self,
         balls: BallMotion,
         bearing: Option<&Bearing>,
+        materials: Option<&Materials>,
         problems: &mut Problems,
     ) -> Option<Cage> {
         let cage = self.cage.as_ref()?;
-        cage.check((balls, self.dynamic.is_some()), bearing, problems)
+        let material = materials.map(|materials| &materials.balls);
+        cage.check((balls, self.dynamic.is_some()), bearing, material, problems)
     }
 
     /// The body round the outer ring.

@@ -36,6 +36,33 @@ fn caged(changes: &[(&str, &str)]) -> String {
     free(COULOMB, &table)
 }
 
+const ELASTIC: [(&str, &str); 3] = [
+    ("pocket_stiffness", ""),
+    ("young_modulus", "\"3 GPa\""),
+    ("poisson_ratio", "0.4"),
+];
+
+/// Wrong: a pocket of a material would have another stiffness than Hertz's, here by the fits of Hamrock and Brewe
+/// (1983) to his integrals: a ball of 9 mm in a cylinder 0.2 mm wider. They are within 3 % for such ellipses.
+#[test]
+fn a_pocket_of_a_material_is_as_stiff_as_a_ball_in_a_cylinder() {
+    let cage = parse(&caged(&ELASTIC), &[]).unwrap().cage.unwrap();
+    let compliance = (1.0 - 0.4f64.powi(2)) / 3e9 + (1.0 - 0.3f64.powi(2)) / 207e9;
+    let (along, round) = (4.5e-3, 1.0 / (1.0 / 4.5e-3 - 1.0 / 4.6e-3));
+    let ratio = round / along;
+    let ellipticity = 1.0339 * f64::powf(ratio, 0.636);
+    let second = 1.0003 + 0.5968 / ratio;
+    let first = 1.5277 + 0.6023 * f64::ln(ratio);
+    let radius = 1.0 / (1.0 / along + 1.0 / round);
+    let root = (radius * second / (4.5 * first.powi(3))).sqrt();
+    let expected = std::f64::consts::PI * ellipticity * 2.0 / compliance * root;
+    assert!(
+        (cage.stiffness / expected - 1.0).abs() < 0.03,
+        "{} {expected}",
+        cage.stiffness
+    );
+}
+
 /// Wrong: mass and inertia of a tube, the radius of a land, or the offset of a pocket.
 #[test]
 fn a_cage_is_a_tube_with_its_land() {
@@ -147,6 +174,35 @@ fn a_cage_that_makes_no_sense_is_refused() {
         (
             &[("pocket_stiffness", "")],
             "[cage] needs pocket_stiffness, such as \"2e8 N/m^1.5\"",
+        ),
+        (
+            &[("young_modulus", "\"3 GPa\"")],
+            "cage.pocket_stiffness and cage.young_modulus both say how stiff pockets are; keep one of them",
+        ),
+        (
+            &[("poisson_ratio", "0.4")],
+            "cage.poisson_ratio does nothing without cage.young_modulus; add it, or remove this",
+        ),
+        (
+            &[("pocket_stiffness", ""), ("young_modulus", "\"3 GPa\"")],
+            "[cage] needs poisson_ratio beside young_modulus, such as 0.4",
+        ),
+        (
+            &[ELASTIC[0], ("young_modulus", "\"3 MPa\""), ELASTIC[2]],
+            "expected 0.1 to 500 GPa; polymer cages have 2 to 10 GPa",
+        ),
+        (
+            &[ELASTIC[0], ELASTIC[1], ("poisson_ratio", "0.5")],
+            "expected 0 to 0.49",
+        ),
+        (
+            &[
+                ELASTIC[0],
+                ELASTIC[1],
+                ELASTIC[2],
+                ("pocket_clearance", "\"0 mm\""),
+            ],
+            "cage.young_modulus needs a pocket_clearance above 0",
         ),
         (
             &[("pocket_stiffness", "\"20 N/m^1.5\"")],
