@@ -48,9 +48,12 @@ fn tables_of_free_balls_agree() {
         }
     }
     assert!(heat > 0.0);
-    // Rolling at the free contact angle, 14.93 deg: (1 - D cos(a)/d_m)/2 of the inner ring's speed, within 1 %.
+    // Rolling at the free contact angle, 14.93 deg: (1 - D cos(a)/d_m)/2 of the inner ring's speed, four digits; the
+    // balls at theirs.
     let inner = 6000.0 * std::f64::consts::PI / 30.0;
-    assert_close("cage", cage[0] / inner, 0.4331, 0.01);
+    let rolling = shaft.column("kinematic_cage_speed_rad_per_s")[0];
+    assert_close("rolling", rolling / inner, 0.4331, 2e-4);
+    assert_close("cage", cage[0], rolling, 0.01);
 }
 
 /// Wrong: forces of the cage would stand in one table and not in the other, or its energy in none.
@@ -89,6 +92,14 @@ fn an_equilibrium_has_rolling_balls_and_their_torque() {
     let drag = 0.5 * 20.0 * 0.5 * std::f64::consts::FRAC_PI_4 * 9e-3f64.powi(2);
     let balls = Table::read(&dir, "rest/balls.csv");
     let orbits = balls.column("orbit_rad_per_s");
+    // The drag's moment about the axis is what the rings' torques leave.
+    let dragging: f64 = orbits
+        .iter()
+        .map(|w| drag * w.powi(2) * 32.512e-3f64.powi(3))
+        .sum();
+    let outer = shaft.column("outer_friction_torque_n_m")[0];
+    assert!(torque > 0.0 && outer < 0.0, "{torque} {outer}");
+    assert_close("moment", torque + outer, dragging, 1e-3);
     // Power of the drive goes to friction and to the drag of balls on their pitch circle.
     let dragged: f64 = orbits.iter().map(|w| drag * (w * 32.512e-3).powi(3)).sum();
     let drive = torque * 6000.0 * std::f64::consts::PI / 30.0;

@@ -12,6 +12,7 @@ mod examples;
 mod export;
 mod first_hour;
 mod fits;
+mod free_analyses;
 mod free_balls;
 mod free_resume;
 mod free_surfaces;

@@ -91,10 +91,14 @@ pub struct FreeBallResult {
 pub struct Friction {
     /// Torque that brakes the inner ring, N m.
     pub torque_n_m: f64,
+    /// Torque that brakes the outer ring, N m: below zero where balls take it along.
+    pub outer_torque_n_m: f64,
     /// Power lost at all contacts, W.
     pub power_w: f64,
     /// Mean speed of the balls round the axis, rad/s.
     pub cage_speed_rad_per_s: f64,
+    /// Speed of a cage of pure rolling at the free contact angle, rad/s.
+    pub kinematic_cage_speed_rad_per_s: f64,
 }
 
 /// A free cage.

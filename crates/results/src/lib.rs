@@ -17,6 +17,7 @@ pub mod fields;
 pub mod files;
 pub mod film;
 pub mod folder;
+mod free_columns;
 pub mod gauges;
 pub mod integrity;
 pub mod load_matrix;

@@ -6,10 +6,14 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, anyhow};
 use checkpoint::{Companion, GrowingFile, Stamps};
 use contact::Side;
-use dynamics::balls::{BallResult, CageResult, ContactResult, FreeBallResult, Friction};
+use dynamics::balls::{BallResult, ContactResult};
 
 use super::cut::Cut;
 use super::film::FilmLaw;
+use super::free_columns::{
+    FREE_BALL_COLUMNS, FRICTION_COLUMNS, POCKET_COLUMNS, TRACTION_COLUMNS, cage_cells, cage_columns,
+    free_cells, friction_cells, pocket_cells,
+};
 use super::probes::ProfileRow;
 use super::snapshot::Snapshot;
 
@@ -188,7 +192,11 @@ impl Tables {
             &mut self.balls,
             BALLS,
             balls.map(|(i, ball)| {
-                let own = [ball_cells(i, ball), rolling(ball), pocket_cells(i, snapshot)];
+                let own = [
+                    ball_cells(i, ball),
+                    rolling(ball),
+                    pocket_cells(i, snapshot).map(number).collect(),
+                ];
                 row([own.concat(), ellipse_cells(ball)].concat())
             }),
         )?;
@@ -313,111 +321,6 @@ fn ellipse_columns(first: &Snapshot) -> Vec<String> {
     };
     let sides = Side::BOTH.into_iter().filter(has_strips);
     sides.map(|side| format!("{}_ellipse", side.name())).collect()
-}
-
-const TRACTION_COLUMNS: [&str; 7] = [
-    "slip_rolling_m_per_s",
-    "slip_lateral_m_per_s",
-    "spin_rad_per_s",
-    "traction_rolling_n",
-    "traction_lateral_n",
-    "friction_power_w",
-    "pv_w_per_m2",
-];
-
-const FREE_BALL_COLUMNS: [&str; 4] = [
-    "omega_x_rad_per_s",
-    "omega_y_rad_per_s",
-    "omega_z_rad_per_s",
-    "orbit_rad_per_s",
-];
-
-const POCKET_COLUMNS: [&str; 2] = ["pocket_rolling_n", "pocket_axial_n"];
-
-const CAGE_COLUMNS: [&str; 15] = [
-    "x_m",
-    "y_m",
-    "z_m",
-    "tilt_x_rad",
-    "tilt_y_rad",
-    "turn_rad",
-    "speed_rad_per_s",
-    "kinematic_speed_rad_per_s",
-    "largest_pocket_force_n",
-    "lower_land_x_n",
-    "lower_land_y_n",
-    "upper_land_x_n",
-    "upper_land_y_n",
-    "pocket_torque_n_m",
-    "land_torque_n_m",
-];
-
-/// Columns of `cage.csv`, if there is a free cage.
-fn cage_columns(first: &Snapshot) -> Option<Vec<String>> {
-    let columns = || CAGE_COLUMNS.iter().map(|name| name.to_string()).collect();
-    first.cage.as_ref().map(|_| columns())
-}
-
-fn cage_cells(cage: &CageResult) -> [f64; 15] {
-    let ([x, y, z], [tilt_x, tilt_y]) = (cage.position_m, cage.tilt_rad);
-    let forces = cage.pocket_forces_n.iter().map(|f| f[0].hypot(f[1]));
-    let [[a, b], [c, d]] = cage.land_forces_n;
-    let [pockets, land] = cage.torques_n_m;
-    [
-        x,
-        y,
-        z,
-        tilt_x,
-        tilt_y,
-        cage.turn_rad,
-        cage.speed_rad_per_s,
-        cage.kinematic_speed_rad_per_s,
-        forces.fold(0.0, f64::max),
-        a,
-        b,
-        c,
-        d,
-        pockets,
-        land,
-    ]
-}
-
-/// Cells of the pocket of a ball; none without a free cage.
-fn pocket_cells(ball: usize, snapshot: &Snapshot) -> Vec<String> {
-    let forces = snapshot.cage.iter().flat_map(|cage| cage.pocket_forces_n[ball]);
-    forces.map(number).collect()
-}
-
-const FRICTION_COLUMNS: [&str; 3] = ["friction_torque_n_m", "friction_power_w", "cage_speed_rad_per_s"];
-
-/// Cells of a free ball: both contacts, then its turning.
-fn free_cells(ball: &FreeBallResult) -> [f64; 18] {
-    let [inner, outer] = [&ball.inner, &ball.outer].map(|contact| {
-        let ([s_t, s_q], [f_t, f_q]) = (contact.slip_m_per_s, contact.traction_n);
-        [
-            s_t,
-            s_q,
-            contact.spin_rad_per_s,
-            f_t,
-            f_q,
-            contact.friction_power_w,
-            contact.pv_w_per_m2,
-        ]
-    });
-    let [x, y, z] = ball.omega_rad_per_s;
-    let turning = [x, y, z, ball.orbit_rad_per_s];
-    let mut cells = [0.0; 18];
-    let all = inner.into_iter().chain(outer).chain(turning);
-    cells.iter_mut().zip(all).for_each(|(cell, value)| *cell = value);
-    cells
-}
-
-fn friction_cells(friction: &Friction) -> [f64; 3] {
-    [
-        friction.torque_n_m,
-        friction.power_w,
-        friction.cage_speed_rad_per_s,
-    ]
 }
 
 fn rest_of(contact: &ContactResult) -> [f64; 4] {

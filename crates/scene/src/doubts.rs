@@ -9,6 +9,7 @@ use std::ops::RangeInclusive;
 
 use contact::Side;
 use contact::surface::felt::felt;
+use dynamics::kinematics::BallSpeeds;
 use dynamics::{Model, RingModel};
 use input::{DENSITY, LENGTH, Quantity, STRESS};
 
@@ -34,7 +35,12 @@ const WHOLE_ELLIPSES: &str = "contacts on real surfaces have their forces by str
                               field are still those of Hertz's whole ellipse under these forces: at edges stress is \
                               higher";
 
-/// A sentence for each slip; `model` has whole meshes.
+/// What `speed.ball_speeds = "outer_control"` takes as given.
+const OUTER_CONTROL: &str = "speed.ball_speeds = \"outer_control\" assumes that balls spin on the inner raceway alone; \
+                             friction shares the spin between both raceways, about half each at low speed: \
+                             balls.motion = \"free\" finds the shares";
+
+/// A sentence for each slip or assumption; `model` has whole meshes.
 pub fn doubts(scene: &Scene, model: &Model) -> Vec<String> {
     let materials = &scene.materials;
     let mut lines = Vec::new();
@@ -49,6 +55,9 @@ pub fn doubts(scene: &Scene, model: &Model) -> Vec<String> {
                 say_parts(ring, &path, &mut lines);
             }
         }
+    }
+    if scene.ball_speeds == BallSpeeds::OuterControl {
+        lines.push(OUTER_CONTROL.to_string());
     }
     lines.extend(unusual_stiffnesses(&scene.contact, &scene.bearing, materials));
     lines.extend(unresolved(scene, &model.geometry, model.surfaces.half_widths));

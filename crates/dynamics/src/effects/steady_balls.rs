@@ -11,6 +11,7 @@ use crate::balls::{FreeBallResult, Friction, TractionResult};
 use crate::error::DynamicsError;
 use crate::interactions::steady_rolling::{SteadyBall, SteadyContact, SteadyRolling};
 use crate::interactions::traction::largest_pv;
+use crate::kinematics::Kinematics;
 use crate::model::Model;
 
 /// Steadily rolling balls of an equilibrium.
@@ -19,6 +20,8 @@ pub struct SteadyBalls {
     /// How each ball rolls.
     pub balls: Vec<SteadyRolling>,
     contacts: Vec<[SteadyContact; 2]>,
+    /// Speed round the axis of pure rolling at the free contact angle, rad/s.
+    kinematic_orbit: f64,
 }
 
 impl SteadyBalls {
@@ -31,6 +34,7 @@ impl SteadyBalls {
         else {
             return Ok(None);
         };
+        let kinematic_orbit = Kinematics::new(&model.geometry, [0.0; 2]).cage_speed(speeds, now.time);
         let speeds = Side::BOTH.map(|side| speeds.of(side).at(now.time));
         let drag = model.effects.iter().map(|effect| effect.drag(model)).sum();
         let balls: Vec<SteadyBall<'_>> = (0..model.geometry.n_balls)
@@ -73,6 +77,7 @@ impl SteadyBalls {
         Ok(Some(SteadyBalls {
             balls: all,
             contacts: balls.iter().map(|ball| ball.contacts).collect(),
+            kinematic_orbit,
         }))
     }
 
@@ -137,16 +142,17 @@ impl SteadyBalls {
         }
     }
 
-    /// Torque, power and cage speed.
+    /// Torques, power and cage speeds.
     pub fn friction(&self) -> Friction {
         let pairs = || self.balls.iter().zip(&self.contacts);
+        let torque = |side: usize| pairs().map(move |(rolls, contacts)| rolls.torque(&contacts[side], side));
         Friction {
-            torque_n_m: pairs()
-                .map(|(rolls, contacts)| rolls.torque(&contacts[0], 0))
-                .sum(),
+            torque_n_m: torque(0).sum(),
+            outer_torque_n_m: torque(1).sum(),
             power_w: pairs().map(|(rolls, _)| rolls.power(0) + rolls.power(1)).sum(),
             cage_speed_rad_per_s: self.balls.iter().map(|ball| ball.orbit).sum::<f64>()
                 / self.balls.len() as f64,
+            kinematic_cage_speed_rad_per_s: self.kinematic_orbit,
         }
     }
 }

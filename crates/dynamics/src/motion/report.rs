@@ -80,25 +80,37 @@ impl Motion<'_> {
         }
     }
 
-    /// Torque with which all balls and a cage on its land brake the inner ring, N m, positive against a ring that turns
-    /// positively; power lost at all contacts with raceways, W; mean speed of the balls round the axis, rad/s. None
-    /// where balls are not free.
+    /// Torques with which all balls and a cage on its land brake the rings, N m, positive against a ring that turns
+    /// positively; power lost at all contacts with raceways, W; mean speed of the balls round the axis and that of pure
+    /// rolling, rad/s. None where balls are not free.
     pub fn friction(&self, state: &MotionState) -> Option<Friction> {
         let free = state.free.as_ref()?;
         let n = free.places.len();
-        let inner = free.contacts.iter().step_by(2);
+        let torque = |side: Side| {
+            let contacts = free.contacts.iter().skip(side.index()).step_by(2);
+            contacts.map(|contact| contact.torque).sum::<f64>() + self.land_torque(free, side)
+        };
+        let [torque_n_m, outer_torque_n_m] = Side::BOTH.map(torque);
         Some(Friction {
-            torque_n_m: inner.map(|contact| contact.torque).sum::<f64>() + self.land_torque(free),
+            torque_n_m,
+            outer_torque_n_m,
             power_w: free.contacts.iter().map(|contact| contact.power).sum(),
             cage_speed_rad_per_s: (0..n).map(|ball| free.orbit(ball)).sum::<f64>() / n as f64,
+            kinematic_cage_speed_rad_per_s: self.kinematic_cage_speed(state),
         })
     }
 
-    /// Torque with which a cage brakes the inner ring on its land, N m.
-    fn land_torque(&self, free: &FreeState) -> f64 {
+    /// Speed of a cage of pure rolling at the free contact angle, rad/s.
+    fn kinematic_cage_speed(&self, state: &MotionState) -> f64 {
+        self.kinematics
+            .cage_speed(&self.settings.speeds, self.time(state.step))
+    }
+
+    /// Torque with which a cage brakes a ring on its land, N m.
+    fn land_torque(&self, free: &FreeState, side: Side) -> f64 {
         let land = self.model.cage.as_ref().and_then(|cage| cage.land);
         match (land, &free.cage) {
-            (Some(land), Some(cage)) if land.side == Side::Inner => cage.torques[1],
+            (Some(land), Some(cage)) if land.side == side => cage.torques[1],
             _ => 0.0,
         }
     }
@@ -113,9 +125,7 @@ impl Motion<'_> {
             tilt_rad: [tilt_x, tilt_y],
             turn_rad,
             speed_rad_per_s: cage.rates[5],
-            kinematic_speed_rad_per_s: self
-                .kinematics
-                .cage_speed(&self.settings.speeds, self.time(state.step)),
+            kinematic_speed_rad_per_s: self.kinematic_cage_speed(state),
             pocket_forces_n: cage.pockets.clone(),
             land_forces_n: [land(0), land(1)],
             torques_n_m: cage.torques,

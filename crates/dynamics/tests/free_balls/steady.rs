@@ -46,8 +46,13 @@ fn a_motion_stays_in_the_equilibrium_of_rolling_balls() {
             (free.contacts[10 + index].spin - expected).abs() / rpm(speed)
         };
         let torque = relative(found.torque_n_m, friction.torque_n_m);
+        // Nothing but the rings acts on balls that stay: what one ring loses is what the other has.
+        let [at_rest, in_motion] = [friction, found].map(|of| relative(-of.outer_torque_n_m, of.torque_n_m));
+        assert!(at_rest < 1e-8 && in_motion < 1e-4, "{at_rest:e} {in_motion:e}");
+        let rolling = [friction, found].map(|of| of.kinematic_cage_speed_rad_per_s);
+        assert!(relative(rolling[0], rolling[1]) < 1e-14, "{rolling:?}");
         println!(
-            "{axial} {speed}: {orbit:e} {:e} {:e} {torque:e}",
+            "{axial} {speed}: {orbit:e} {:e} {:e} {torque:e} {at_rest:e} {in_motion:e}",
             spin(0),
             spin(1)
         );
