@@ -78,10 +78,8 @@ pub fn cage_cells(cage: &CageResult) -> [f64; 15] {
 
 /// Cells of the pocket of a ball; none without a free cage.
 pub fn pocket_cells(ball: usize, snapshot: &Snapshot) -> impl Iterator<Item = f64> {
-    snapshot
-        .cage
-        .iter()
-        .flat_map(move |cage| cage.pocket_forces_n[ball])
+    let cage = snapshot.cage.iter();
+    cage.flat_map(move |cage| cage.pocket_forces_n[ball])
 }
 
 /// Friction of all balls, of `shaft.csv`.

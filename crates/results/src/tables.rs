@@ -184,9 +184,8 @@ impl Tables {
             spin.into_iter().chain(films).map(number).collect()
         };
         let shaft = snapshot.shaft.iter().chain(snapshot.reaction.iter().flatten());
-        let shaft = shaft.chain(&snapshot.seat).copied();
         let friction = snapshot.friction.iter().flat_map(friction_cells);
-        let shaft = shaft.chain(friction);
+        let shaft = shaft.chain(&snapshot.seat).copied().chain(friction);
         let energies = snapshot.energies.iter();
         append(
             &mut self.balls,
