@@ -1,6 +1,6 @@
 //! One ball between grooves, thrown or driven.
 
-use dynamics::interactions::traction::Creep;
+use dynamics::interactions::traction::{Creep, PatchPoints, Traction};
 use dynamics::kinematics::{RingSpeeds, Speed};
 use dynamics::motion::{Motion, MotionState};
 
@@ -14,16 +14,29 @@ fn speeds_of(state: &MotionState) -> f64 {
     free.orbit(0) * x.hypot(y)
 }
 
-/// Balls in the outer groove alone, thrown along it without turning: centrifugal force presses them outwards.
-fn thrown(mu: f64, dt: f64, duration: f64) -> (Vec<(f64, MotionState)>, f64, [f64; 2]) {
-    let model = freed(
-        radial(-20e-6),
-        coulomb(mu, Creep::Ratio(1e-6)),
-        &RingSpeeds::default(),
-    );
+/// Course of balls thrown along the outer groove without turning.
+struct Thrown {
+    /// Times, s, and states.
+    course: Vec<(f64, MotionState)>,
+    /// Radius of the first path, m.
+    out: f64,
+    /// First speed, m/s.
+    v0: f64,
+    /// Lever of the friction over the radius of the ball: short by half of the approach.
+    lever: f64,
+}
+
+/// Balls in the outer groove alone: centrifugal force presses them outwards. One place in the middle of each ellipse,
+/// so that nothing slips differentially.
+fn thrown(mu: f64, dt: f64, duration: f64) -> Thrown {
+    let traction = Traction {
+        places: PatchPoints::new([1, 1]),
+        ..coulomb(mu, Creep::Ratio(1e-6))
+    };
+    let model = freed(radial(-20e-6), traction, &RingSpeeds::default());
     let motion = Motion::new(&model, settings(dt, &RingSpeeds::default())).unwrap();
     let mut state = motion.rest([0.0; 5], [0.0; 5]);
-    let v0 = 2.0;
+    let v0 = 0.2;
     let mass = model.ball_mass();
     let free = state.free.as_mut().unwrap();
     let n = free.places.len();
@@ -56,42 +69,88 @@ fn thrown(mu: f64, dt: f64, duration: f64) -> (Vec<(f64, MotionState)>, f64, [f6
         time += dt;
         course.push((time, state.clone()));
     });
-    (course, out, [v0, mass])
+    let lever = 1.0 - 0.5 * deep / (0.5 * model.geometry.ball_diameter);
+    Thrown {
+        course,
+        out,
+        v0,
+        lever,
+    }
 }
 
-/// Wrong: a thrown ball would not end in rolling with 5/7 of its speed and 5/7 of its energy, or not at any friction.
-/// In a groove the force is m v^2/R, so that v = v0/(1 + mu v0 t/R) while it slides. The lever is short of the radius
-/// by half of the approach, 3e-6 of it; the rest is the slip of creep and what differential slip goes on to take.
+/// What a thrown ball should do: while it slides in a groove its force is m v^2/R, so that v = v0/(1 + mu v0 t/R). With
+/// k = 5/2 lever^2 it rolls from R/(k mu v0) on, with k/(1 + k) of its speed.
+struct Expected {
+    rolls_at: f64,
+    share: f64,
+}
+
+impl Thrown {
+    fn expected(&self, mu: f64) -> Expected {
+        let k = 2.5 * self.lever * self.lever;
+        Expected {
+            rolls_at: self.out / (k * mu * self.v0),
+            share: k / (1.0 + k),
+        }
+    }
+
+    /// Largest error of the speed up to a time, over the speed.
+    fn error_until(&self, mu: f64, end: f64) -> f64 {
+        let error = |(time, state): &(f64, MotionState)| {
+            let exact = self.v0 / (1.0 + mu * self.v0 * time / self.out);
+            (speeds_of(state) / exact - 1.0).abs()
+        };
+        self.course
+            .iter()
+            .filter(|(time, _)| *time < end)
+            .map(error)
+            .fold(0.0, f64::max)
+    }
+}
+
+/// Time of a throw until it rolls, and a third more, s.
+fn time_to_roll(mu: f64) -> f64 {
+    1.3 * 0.4 * 0.0328 / (mu * 0.2)
+}
+
+/// Wrong: a thrown ball would not end in rolling with 5/7 of its speed and of its energy, at any friction, or not at
+/// its time. The lever is short of the radius by half of the approach, which shrinks with the speed: 1e-7 of it.
 #[test]
 fn a_thrown_ball_ends_in_rolling_with_five_sevenths_of_its_speed() {
     for mu in [0.05, 0.2] {
-        let (course, out, [v0, _]) = thrown(mu, 2e-5, 0.4 * 0.0328 / (mu * 2.0) * 1.3);
-        let first = &course[0].1.ledger;
-        for (time, state) in &course {
-            let slides = 0.98 * 0.4 * out / (mu * v0);
-            if *time > 0.0 && *time < slides {
-                let exact = v0 / (1.0 + mu * v0 * time / out);
-                let found = speeds_of(state);
-                assert!((found / exact - 1.0).abs() < 1e-4, "{mu} {time}: {found} {exact}");
-            }
-        }
-        let (_, last) = course.last().unwrap();
-        let v = speeds_of(last);
-        println!(
-            "mu {mu}: v/v0 {} energy {}",
-            v / v0 * 1.4,
-            last.ledger.kinetic[2] / first.kinetic[2] * 1.4
-        );
-        assert!((v / v0 * 1.4 - 1.0).abs() < 1e-4, "{}", v / v0);
-        let left = last.ledger.kinetic[2] / first.kinetic[2];
-        assert!((left * 1.4 - 1.0).abs() < 1e-4, "{left}");
-        let lost = last.ledger.friction.unwrap().loss / first.kinetic[2];
-        assert!((lost * 3.5 - 1.0).abs() < 1e-4, "{lost}");
+        let dt = 1e-4;
+        let thrown = thrown(mu, dt, time_to_roll(mu));
+        let Expected { rolls_at, share } = thrown.expected(mu);
+        let sliding = thrown.error_until(mu, rolls_at - 2.0 * dt);
+        let rolls = |(_, state): &&(f64, MotionState)| speeds_of(state) / thrown.v0 - share < 1e-5;
+        let (begins, _) = thrown.course.iter().find(rolls).unwrap();
+        let (first, (_, last)) = (&thrown.course[0].1.ledger, thrown.course.last().unwrap());
+        let of_kinetic = |energy: f64| energy / first.kinetic[2];
+        let ledger = &last.ledger;
+        let errors = [
+            speeds_of(last) / thrown.v0 / share - 1.0,
+            of_kinetic(ledger.kinetic[2]) / share - 1.0,
+            of_kinetic(ledger.friction.unwrap().loss) / (1.0 - share) - 1.0,
+        ];
+        println!("mu {mu}: {sliding:e} {errors:?} {begins} {rolls_at}");
+        assert!(sliding < 1e-6, "{mu}: {sliding:e}");
+        assert!((begins - rolls_at).abs() < 2.0 * dt, "{mu}: {begins} {rolls_at}");
+        assert!(errors.iter().all(|error| error.abs() < 1e-6), "{mu}: {errors:?}");
         assert!(
-            last.ledger.relative_defect().abs() < 1e-9,
-            "{}",
-            last.ledger.relative_defect()
+            ledger.relative_defect().abs() < 1e-9,
+            "{:e}",
+            ledger.relative_defect()
         );
+    }
+}
+
+/// Wrong: friction that slides would be of another order in the step.
+#[test]
+fn a_sliding_ball_is_right_to_the_second_order_of_the_step() {
+    let errors = [8e-3, 4e-3, 2e-3].map(|dt| thrown(0.2, dt, 0.1).error_until(0.2, 0.09));
+    println!("{errors:?}");
+    for pair in errors.windows(2) {
+        assert!((pair[0] / pair[1] / 4.0 - 1.0).abs() < 0.1, "{errors:?}");
     }
 }
 

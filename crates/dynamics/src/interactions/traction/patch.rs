@@ -57,13 +57,15 @@ pub struct Resultant {
 }
 
 impl PatchPoints {
-    /// `along` places in each line along t, on `lines` lines across.
+    /// `along` places in each line along t, on `lines` lines across, whose shares add up to one.
     pub fn new([along, lines]: [usize; 2]) -> PatchPoints {
         let n = (along + 1) as f64;
+        // The rule has Hertz's loads of two and more lines exactly; one carries all of the force.
+        let sum = if lines == 1 { 1.5 } else { 1.0 };
         let mut places = Vec::with_capacity(along * lines);
         for [y, weight] in gauss_legendre(lines) {
             let half = (1.0 - y * y).sqrt();
-            let load = 0.75 * (1.0 - y * y) * weight;
+            let load = 0.75 * (1.0 - y * y) * weight / sum;
             for k in 1..=along {
                 let (sin, cos) = (k as f64 * std::f64::consts::PI / n).sin_cos();
                 places.push(PatchPoint {
@@ -177,6 +179,19 @@ mod tests {
             power *= 2.0;
         }
         sum * std::f64::consts::FRAC_PI_2 / a
+    }
+
+    /// Wrong: a coarse set of places would have more or less friction than the coefficient says.
+    #[test]
+    fn shares_of_any_places_add_up_to_one() {
+        for places in [[1, 1], [3, 1], [1, 2], [1, 15], [3, 15], [63, 63]] {
+            let sum: f64 = PatchPoints::new(places)
+                .places
+                .iter()
+                .map(|place| place.share)
+                .sum();
+            assert!((sum - 1.0).abs() < 1e-14, "{places:?}: {sum}");
+        }
     }
 
     /// Wrong: the moment of spin. 3/8 mu Q a E(m), 3 pi/16 mu Q a of a circle; 7010C inside at 332 N: a = 1.0155 mm,
