@@ -152,8 +152,8 @@ fn moment_of(state: &MotionState) -> f64 {
     0.012 * crossed(0) + 6.5e-6 * crossed(3) + 1.2e-5 * rates[5] * tilted
 }
 
-/// Wrong: a free cage in a land would gain energy or turn by itself. Thrown off the middle without friction, rebounds in
-/// full: energy and moment of momentum stay to 1e-12 while it rebounds and tilts.
+/// Wrong: a free cage in a land would gain energy or turn by itself. Thrown off the middle without friction, rebounds
+/// in full: energy and moment of momentum stay to 1e-12 while it rebounds and tilts.
 #[test]
 fn a_cage_thrown_in_its_land_keeps_energy_and_moment_of_momentum() {
     let guide = Land {
@@ -239,7 +239,7 @@ fn a_ball_rebounds_from_its_pocket_with_the_restitution_given() {
 }
 
 /// A cage without friction in a bearing under steady thrust, thrown with a share of the balls' speed: mean speed of the
-/// balls, its own over the last turn of it between the balls, and the largest force of a pocket in three parts of the run.
+/// balls, its own over the last third of the run, and the largest force of a pocket in three parts of the run.
 fn thrown_between_balls(share: f64) -> ([f64; 2], [f64; 3]) {
     let speeds = RingSpeeds::from(Speed::constant(rpm(3000.0)));
     let mut model = freed(thrust(1000.0), coulomb(0.07, Creep::Elastic), &speeds);
@@ -270,8 +270,8 @@ fn thrown_between_balls(share: f64) -> ([f64; 2], [f64; 3]) {
 }
 
 /// Wrong: balls that roll alike would not carry a cage that is too fast or too slow along, or would go on driving it.
-/// Each impact leaves 0.3 of the speed between cage and balls, so that less and less force is left, and the mean speed is
-/// that of the balls to the play of a pocket over the time.
+/// Each impact leaves 0.3 of the speed between cage and balls, so that less and less force is left, and the mean speed
+/// is that of the balls to the play of a pocket over the time.
 #[test]
 fn in_steady_thrust_balls_take_a_cage_without_friction_along() {
     for share in [0.95, 1.0, 1.05] {
