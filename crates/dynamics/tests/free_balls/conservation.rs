@@ -9,7 +9,7 @@ use dynamics::motion::{Motion, MotionState};
 use dynamics::{Model, ShaftDof};
 use input::Schedule;
 
-use crate::bearings::{coulomb, freed, rpm, run, settings, thrust};
+use crate::bearings::{coulomb, freed, radial, rpm, run, settings, thrust};
 use crate::support::{equilibrium, relative};
 
 /// The 7010C with three balls.
@@ -207,4 +207,55 @@ struct Skid {
     traction: [f64; 2],
     /// Of the outer ring along the rolling direction, N.
     outer: f64,
+}
+
+/// Wrong: what a contact gives the ball it would not take from the shaft, across the axis: normal forces, traction, or
+/// their directions within a step. A turning shaft without load runs into its balls, which reach no outer raceway
+/// before the end: the momentum of shaft and balls stays to 1e-12 of the shaft's.
+#[test]
+fn a_shaft_that_runs_into_its_balls_shares_its_momentum_with_them() {
+    let speeds = RingSpeeds::from(Speed::constant(rpm(3000.0)));
+    let mut model = freed(radial(-400e-6), coulomb(0.1, Creep::Elastic), &speeds);
+    let middle = -model.geometry.axial_offset();
+    model.shaft_mass = 0.05;
+    (model.shaft[0], model.shaft[1]) = (ShaftDof::Free, ShaftDof::Free);
+    let motion = Motion::new(&model, settings(1e-6, &speeds)).unwrap();
+    let mut start = motion.rest([0.0, 0.0, middle, 0.0, 0.0], [0.3, 0.1, 0.0, 0.0, 0.0]);
+    let free = start.free.as_mut().unwrap();
+    for ball in 0..3 {
+        free.places[ball][2] = 0.0;
+        (free.velocities[ball], free.turnings[ball]) = ([0.0; 3], [0.0; 3]);
+    }
+    let start = motion.with_energies(start);
+    let momentum = |state: &MotionState| {
+        let balls = &state.free.as_ref().unwrap().velocities;
+        [0, 1].map(|i| {
+            let of_balls: f64 = balls.iter().map(|v| model.ball_mass() * v[i]).sum();
+            model.shaft_mass * state.shaft_velocity[i] + of_balls
+        })
+    };
+    let first = momentum(&start);
+    let (mut worst, mut touched, mut rubbed, mut outer) = (0.0f64, 0.0f64, 0.0f64, 0.0f64);
+    run(&motion, start, 480, |state| {
+        for (now, first) in momentum(state).into_iter().zip(first) {
+            worst = worst.max((now - first).abs());
+        }
+        for (site, contact) in state.free.as_ref().unwrap().contacts.iter().enumerate() {
+            let force = state.forces[site][0].hypot(state.forces[site][1]);
+            match site % 2 {
+                0 => {
+                    touched = touched.max(force);
+                    rubbed = rubbed.max(contact.force[0].abs());
+                }
+                _ => outer = outer.max(force),
+            }
+        }
+    });
+    worst /= first[0].hypot(first[1]);
+    println!("{worst:e} {touched} {rubbed} {outer}");
+    assert!(
+        touched > 10.0 && rubbed > 1.0 && outer == 0.0,
+        "{touched} {rubbed} {outer}"
+    );
+    assert!(worst < 1e-12, "{worst:e}");
 }

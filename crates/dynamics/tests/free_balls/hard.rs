@@ -1,6 +1,6 @@
 //! Cases that may break a step: each ends, closes its ledger and heats.
 
-use dynamics::interactions::traction::law::{Curve, CurvePoints};
+use dynamics::interactions::traction::law::{Curve, CurvePoints, SlipTable};
 use dynamics::interactions::traction::{Creep, PatchPoints, Traction, TractionLaw};
 use dynamics::kinematics::{RingSpeeds, Speed};
 use dynamics::motion::{Integrator, Ladder, Motion, MotionSettings, StepCache};
@@ -34,6 +34,14 @@ fn falling() -> Traction {
     }
 }
 
+fn falling_table() -> Traction {
+    let (slips, values) = (vec![0.0, 0.005, 0.02, 0.5], vec![0.0, 0.09, 0.04, 0.02]);
+    Traction {
+        law: TractionLaw::Table(SlipTable::new(slips, values)),
+        ..falling()
+    }
+}
+
 fn cases() -> Vec<Hard> {
     let case = |name, axial, speed, traction, dt, steps| Hard {
         name,
@@ -64,6 +72,14 @@ fn cases() -> Vec<Hard> {
             1000.0,
             ramp(1000.0, 1800.0, 5e-4),
             falling(),
+            1e-5,
+            60,
+        ),
+        case(
+            "falling table",
+            1000.0,
+            ramp(1000.0, 1800.0, 5e-4),
+            falling_table(),
             1e-5,
             60,
         ),
