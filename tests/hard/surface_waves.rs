@@ -117,8 +117,8 @@ pub fn cases() -> Vec<HardCase> {
         ),
         slow(
             "surface_spall_on_the_shoulder",
-            "a spall in the half of the ellipse that the shoulder has left",
-            "rigid rings, 2 kN, 1800 rpm, outer shoulder 3 deg beyond the contact, spall across it, dt 2 us",
+            "a spall in the part of the ellipse that the shoulder has left",
+            "rigid rings, 2 kN, 1800 rpm, outer shoulder 6 deg beyond the contact, spall across it, dt 2 us",
             shoulder,
         ),
         slow(
@@ -161,9 +161,9 @@ fn bump(record: &mut Record) {
 fn shoulder(record: &mut Record) {
     let angle = usual().contact_angle();
     let mut spall = usual().spall(0, 1e-3, 5e-6);
-    (spall.groove_angle, spall.width) = (angle + 3f64.to_radians(), 0.4e-3);
+    (spall.groove_angle, spall.width) = (angle + 6f64.to_radians(), 0.4e-3);
     let case = Rolling {
-        shoulders: Some([-0.5, angle + 3f64.to_radians()]),
+        shoulders: Some([-0.5, angle + 6f64.to_radians()]),
         ..usual()
     };
     case.with(Side::Outer, |p| p.spalls.push(spall)).holds(record);
