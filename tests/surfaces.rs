@@ -296,6 +296,46 @@ fn steps_that_skip_a_surface_are_warned_of() {
     );
 }
 
+/// Cells of a column of `out/balls.csv`; none where it has no such column.
+fn cells(dir: &Dir, name: &str) -> Vec<String> {
+    let text = dir.text("out/balls.csv");
+    let mut rows = text.lines().map(|line| line.split(',').map(str::to_string));
+    let place = rows.next().unwrap().position(|head| head == name);
+    place.map_or_else(Vec::new, |place| {
+        rows.map(|mut row| row.nth(place).unwrap()).collect()
+    })
+}
+
+/// Wrong: the table would call an ellipse that a shoulder cuts Hertz's, or a whole one not, or have the columns where no
+/// scene asks for edges. The ellipses outside reach from 8 to 31 deg, and the groove ends at 26 or at 65 deg.
+#[test]
+fn the_table_says_which_ellipses_a_shoulder_cuts() {
+    let section = |ring: &str, diameter: &str| {
+        format!(
+            "[{ring}.section]\nshoulder_diameters = [\"{diameter}\", \"{diameter}\"]\nelement = \"hex8\"\n\
+             sectors = 18\ngroove_elements = 4\nthickness_elements = 1\nshoulder_elements = 1\n\n"
+        )
+    };
+    for (shoulder, edges, expected) in [
+        ("73.08 mm", true, Some("edge")),
+        ("68.6 mm", true, Some("hertz")),
+        ("73.08 mm", false, None),
+    ] {
+        let sections = section("inner", "60.4 mm") + &section("outer", shoulder) + "[static]";
+        let dir = Dir::with_scene(&with_line("[static]", "[static]", &sections));
+        dir.run(
+            "out",
+            &[&RIGID[..], &["--set", &format!("contact.edges={edges}")]].concat(),
+        );
+        let [inner, outer] = ["inner_ellipse", "outer_ellipse"].map(|name| cells(&dir, name));
+        let all = |texts: &[String], word: &str| texts.len() == 18 && texts.iter().all(|text| text == word);
+        match expected {
+            Some(word) => assert!(all(&outer, word) && all(&inner, "hertz"), "{inner:?} {outer:?}"),
+            None => assert!(inner.is_empty() && outer.is_empty(), "{inner:?} {outer:?}"),
+        }
+    }
+}
+
 /// Wrong: edges and profiles that fit no ring would be taken; a rigid ring without a section has no shoulders, and a
 /// spall beyond them is none.
 #[test]
