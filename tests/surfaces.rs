@@ -306,8 +306,8 @@ fn cells(dir: &Dir, name: &str) -> Vec<String> {
     })
 }
 
-/// Wrong: the table would call an ellipse that a shoulder cuts Hertz's, or a whole one not, or have the columns where no
-/// scene asks for edges. The ellipses outside reach from 8 to 31 deg, and the groove ends at 26 or at 65 deg.
+/// Wrong: the table would call an ellipse that a shoulder cuts Hertz's, or a whole one not, or have the columns where
+/// no scene asks for edges. The ellipses outside reach from 8 to 31 deg, and the groove ends at 26 or at 65 deg.
 #[test]
 fn the_table_says_which_ellipses_a_shoulder_cuts() {
     let section = |ring: &str, diameter: &str| {

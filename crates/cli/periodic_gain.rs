@@ -84,5 +84,7 @@ pub fn advice(scene: &Scene, model: &Model) -> Vec<String> {
 
 /// Whether a ring is neither periodic nor so up to a defect; a part of a ring on a rank is not asked.
 fn is_free(ring: &RingModel) -> bool {
-    ring.is_whole() && ring.periodicity().is_err() && ring.nearly_periodic().is_err()
+    let nodes = &ring.mesh.nodes;
+    let is_whole = ring.is_whole() && nodes.n_kept() == nodes.len();
+    is_whole && ring.periodicity().is_err() && ring.nearly_periodic().is_err()
 }

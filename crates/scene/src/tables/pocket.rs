@@ -97,20 +97,18 @@ impl PocketKeys<'_> {
             );
             return None;
         }
-        let [cage, ball] = [
-            (modulus.si(), ratio),
-            (fit.material.young_modulus, fit.material.poisson_ratio),
-        ]
-        .map(|(young_modulus, poisson_ratio)| {
-            Elastic {
+        let compliance = |young_modulus, poisson_ratio| {
+            let elastic = Elastic {
                 young_modulus,
                 poisson_ratio,
-            }
-            .plane_compliance()
-        });
+            };
+            elastic.plane_compliance()
+        };
+        let ball = fit.material;
+        let sum = compliance(modulus.si(), ratio) + compliance(ball.young_modulus, ball.poisson_ratio);
         let [ball_curvature, pocket_curvature] =
             [fit.diameter, fit.diameter + fit.clearance].map(|diameter| 2.0 / diameter);
         let round = ball_curvature - pocket_curvature;
-        Some(HertzContact::from_curvatures(round, ball_curvature, 1.0 / (cage + ball)).stiffness)
+        Some(HertzContact::from_curvatures(round, ball_curvature, 1.0 / sum).stiffness)
     }
 }
