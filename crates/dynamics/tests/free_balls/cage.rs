@@ -1,6 +1,7 @@
 //! A free cage: impacts, momentum, ledger, and what it does to the balls.
 
 use contact::Side;
+use dynamics::ShaftDof;
 use dynamics::effects::RadialForce;
 use dynamics::interactions::cage::{Cage, Land};
 use dynamics::interactions::traction::Creep;
@@ -375,4 +376,99 @@ fn balls_drift_by_the_integral_of_their_speeds_and_meet_the_cage_where_it_is_nar
     let (_, _, narrow) = drifting(Some(0.4 * expected));
     println!("forces {free} {narrow}");
     assert!(free == 0.0 && narrow > 0.1, "{free} {narrow}");
+}
+
+/// Azimuth, deg, at which a ball begins to press its pocket, and the largest force of that touch, N, positive where it
+/// presses on; by ball, those of the settled way round.
+type Touches = Vec<Vec<[f64; 2]>>;
+
+/// Balls on a shaft that keeps straight, under thrust and a radial force, in pockets that are narrower than their drift:
+/// touches of the last two ways round, and the sum of the sizes of all forces along them, N.
+fn touched() -> ([Touches; 2], Vec<f64>) {
+    let speeds = RingSpeeds::from(Speed::constant(rpm(6000.0)));
+    let mut model = freed(thrust(1000.0), coulomb(0.07, Creep::Elastic), &speeds);
+    model.effects.push(Box::new(RadialForce {
+        value: 2000.0,
+        direction: 0.0,
+        schedule: Schedule::Constant,
+    }));
+    (3..5).for_each(|tilt| model.shaft[tilt] = ShaftDof::Prescribed(0.0));
+    model.cage = Some(Cage {
+        pocket_clearance: 20e-6,
+        friction: 0.0,
+        restitution: 0.3,
+        ..cage()
+    });
+    let (dt, settling) = (2e-5, 3500);
+    let motion = Motion::new(&model, with_ladder(dt, &speeds)).unwrap();
+    let start = run(&motion, motion.start(&equilibrium(&model)), settling, |_| {});
+    let orbits = start.free.as_ref().unwrap();
+    let mean = (0..18).map(|ball| orbits.orbit(ball)).sum::<f64>() / 18.0;
+    let turn = (std::f64::consts::TAU / mean / dt).round() as usize;
+    let (mut touches, mut sums) = ([(); 2].map(|()| vec![Vec::new(); 18]), Vec::new());
+    let (mut pressed, mut ways) = ([true; 18], [0; 18]);
+    // What has begun to touch is seen to its end.
+    run(&motion, start, 2 * turn + turn / 20, |state| {
+        let free = state.free.as_ref().unwrap();
+        let forces: Vec<f64> = cage_of(state).pockets.iter().map(|force| force[0]).collect();
+        for (ball, &force) in forces.iter().enumerate() {
+            if force != 0.0 && !pressed[ball] {
+                ways[ball] = sums.len() / turn;
+                let azimuth = free.azimuth(ball).to_degrees().rem_euclid(360.0);
+                let of_way: Option<&mut Touches> = touches.get_mut(ways[ball]);
+                of_way.into_iter().for_each(|all| all[ball].push([azimuth, 0.0]));
+            }
+            pressed[ball] = force != 0.0;
+            let last = touches.get_mut(ways[ball]).and_then(|all| all[ball].last_mut());
+            if let (true, Some(last)) = (pressed[ball], last) {
+                last[1] = if force.abs() > last[1].abs() {
+                    force
+                } else {
+                    last[1]
+                };
+            }
+        }
+        sums.push(forces.iter().map(|f| f.abs()).sum());
+    });
+    sums.truncate(2 * turn);
+    (touches, sums)
+}
+
+/// Wrong: forces of the cage would come at other times than those at which balls run together and apart. A settled ball
+/// touches its pocket at the same places on every way round, as all others do, in front and behind by turns; so all
+/// forces together repeat with the ball pass frequency of a place in space.
+#[test]
+fn drifting_balls_touch_once_per_turn_at_each_place_and_together_at_the_ball_pass_frequency() {
+    let ([first, second], sums) = touched();
+    println!("{:?}", second[0]);
+    let places = &second[0];
+    assert!(places.len() >= 2 && places.len().is_multiple_of(2), "{places:?}");
+    for own in first.iter().chain(&second) {
+        assert_eq!(own.len(), places.len(), "{own:?} {places:?}");
+        for place in places {
+            let away = |touch: &&[f64; 2]| ((touch[0] - place[0] + 180.0).rem_euclid(360.0) - 180.0).abs();
+            let nearest = own.iter().min_by(|a, b| away(a).total_cmp(&away(b))).unwrap();
+            // What impacts of neighbours leave of the cage's wobble.
+            assert!(away(&nearest) < 4.0, "{own:?} {places:?}");
+            assert!((nearest[1] / place[1] - 1.0).abs() < 0.2, "{own:?} {places:?}");
+        }
+        assert!(own.windows(2).all(|two| two[0][1] * two[1][1] < 0.0), "{own:?}");
+    }
+    // The share of the lines at multiples of the ball pass frequency in the whole variation.
+    let n = sums.len() as f64;
+    let mean = sums.iter().sum::<f64>() / n;
+    let variance = sums.iter().map(|f| (f - mean).powi(2)).sum::<f64>() / n;
+    let line = |per_turn: usize| {
+        let phase = |i: usize| std::f64::consts::TAU * 2.0 * per_turn as f64 * i as f64 / n;
+        let of = |wave: fn(f64) -> f64| {
+            sums.iter()
+                .enumerate()
+                .map(|(i, f)| f * wave(phase(i)))
+                .sum::<f64>()
+        };
+        2.0 * (of(f64::cos).powi(2) + of(f64::sin).powi(2)) / (n * n)
+    };
+    let share = (1..20).map(|k| line(18 * k)).sum::<f64>() / variance;
+    println!("share of the ball pass frequency {share}");
+    assert!(share > 0.9, "{share}");
 }
