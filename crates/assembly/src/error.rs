@@ -66,6 +66,27 @@ pub enum AssemblyError {
         /// Why.
         source: DenseError,
     },
+    /// Patches or frames of the bearings keep changing.
+    #[error("patches and frames of the bearings do not settle in {rounds} rounds; take a smaller step")]
+    RoundsNotSettled {
+        /// Rounds.
+        rounds: usize,
+    },
+    /// A number of the shaft's step is none.
+    #[error("a force on the shaft is not finite; take a smaller step")]
+    NotFinite,
+    /// A step has no solution, however small.
+    #[error("the step of {dt:.3e} s from t = {time:.6e} s on, halved {halvings} times, failed: {source}")]
+    StepFailed {
+        /// The smallest step tried, s.
+        dt: f64,
+        /// Halvings.
+        halvings: u32,
+        /// Its start, s.
+        time: f64,
+        /// Why.
+        source: Box<AssemblyError>,
+    },
     /// Modes without mass.
     #[error("{dof} of the shaft is free and has no inertia; give {key}")]
     NoInertia {
@@ -74,4 +95,18 @@ pub enum AssemblyError {
         /// What gives it one.
         key: &'static str,
     },
+}
+
+impl AssemblyError {
+    /// Whether a smaller step may have a solution.
+    pub fn may_pass_with_smaller_step(&self) -> bool {
+        match self {
+            AssemblyError::Bearing { source, .. } => source.may_pass_with_smaller_step(),
+            AssemblyError::RoundsNotSettled { .. }
+            | AssemblyError::NotFinite
+            | AssemblyError::NotSettled { .. }
+            | AssemblyError::Matrix { .. } => true,
+            _ => false,
+        }
+    }
 }

@@ -1,4 +1,4 @@
-//! Several bearings on one shaft, at rest.
+//! Several bearings on one shaft, at rest and in [`motion`].
 //!
 //! Each bearing is a [`dynamics::Model`] whose shaft is prescribed: it answers a displacement of its axis point by a
 //! load and a tangent ([`support`]). The shaft is rigid or a chain of beam elements ([`shaft`], [`beam`]). An outer
@@ -15,6 +15,7 @@
 pub mod assembly;
 pub mod beam;
 mod error;
+pub mod motion;
 pub mod newton;
 pub mod place;
 pub mod shaft;
@@ -25,6 +26,7 @@ pub mod whirl;
 pub use assembly::{Assembly, AssemblySolution, AssemblySolver, MountedBearing};
 pub use beam::{BeamSection, BeamShaft, PointMass};
 pub use error::AssemblyError;
+pub use motion::{AssemblyMotion, AssemblyState};
 pub use place::{Orientation, Seating};
 pub use ring::rigid::RigidInertia;
 pub use shaft::{ShaftBody, Station};

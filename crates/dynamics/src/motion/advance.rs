@@ -71,8 +71,8 @@ impl Motion<'_> {
         Ok((next, report))
     }
 
-    /// The part of a step that begins `at` smallest parts from its start.
-    fn span(&self, step: u64, at: u64, rung: u32) -> Span {
+    /// The part of a step on a rung of the ladder that begins `at` smallest parts from its start.
+    pub fn span(&self, step: u64, at: u64, rung: u32) -> Span {
         let n = 1u64 << self.settings.ladder.halvings;
         Span {
             start: self.time(step) + self.settings.dt * (at as f64 / n as f64),

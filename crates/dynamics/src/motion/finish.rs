@@ -259,7 +259,7 @@ fn finish_contacts(next: &mut MotionState, parts: &BearingParts, solution: &Step
 
 impl BearingParts {
     /// Forces that hold or drive the shaft's dofs, N and N m; zero to round-off for free ones.
-    fn shaft_reactions(&self, solution: &StepSolution, step: StepScheme) -> [f64; 5] {
+    pub(super) fn shaft_reactions(&self, solution: &StepSolution, step: StepScheme) -> [f64; 5] {
         let mut reactions = self.shaft.forces(Interval::Step(step), &solution.shaft);
         let mount = self.rings[0].as_ref().and_then(|ports| ports.follow);
         let mount = mount.map_or([0.0; 5], |follow| follow.in_space(&solution.mounts[0]));

@@ -52,6 +52,8 @@ pub struct StepSolution {
     pub cage: Option<CageSolution>,
     /// Newton iterations.
     pub iterations: usize,
+    /// Newton's unknowns.
+    pub unknowns: Vec<f64>,
 }
 
 impl StepSolution {
@@ -91,6 +93,7 @@ impl BearingParts {
             reaches,
             mounts: Side::BOTH.map(|side| self.mount(&system, side, x)),
             iterations: solved.iterations,
+            unknowns: solved.unknowns,
             ..StepSolution::default()
         })
     }

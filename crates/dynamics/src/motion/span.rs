@@ -2,7 +2,7 @@
 
 /// A part of a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Span {
+pub struct Span {
     /// Time at its start, s.
     pub start: f64,
     /// Its size, s.

@@ -8,6 +8,7 @@ use ring::ElasticStep;
 use timer::{Laps, Stopwatch};
 
 use super::cache::{Ahead, ExpectedLoads, StepCache};
+use super::close::RingEnds;
 use super::finite::require_finite;
 use super::free::check_apart;
 use super::part::RingSteps;
@@ -54,12 +55,30 @@ impl Motion<'_> {
                 break (solution, ends);
             }
         };
-        check_patches(&part.parts, &solution)?;
-        check_range(self.model, &part.parts, &solution)?;
-        check_apart(self.model, &part.parts, &solution)?;
-        let places = part.parts.places(&solution);
+        self.conclude(state, part, &solution, ends)
+    }
+
+    /// The state after a part whose rings have ended.
+    pub(super) fn conclude(
+        &self,
+        state: &MotionState,
+        part: Part<'_>,
+        solution: &StepSolution,
+        ends: RingEnds,
+    ) -> Result<(MotionState, StepReport, Option<Ahead>), DynamicsError> {
+        let mut part = part;
+        check_patches(&part.parts, solution)?;
+        check_range(self.model, &part.parts, solution)?;
+        check_apart(self.model, &part.parts, solution)?;
+        let places = part.parts.places(solution);
         self.check_on_grooves(&places)?;
-        let (mut next, error) = self.finish(state, (&part.parts, span.dt), &solution, part.rings, ends.rings);
+        let (mut next, error) = self.finish(
+            state,
+            (&part.parts, part.span.dt),
+            solution,
+            part.rings,
+            ends.rings,
+        );
         require_finite(&next)?;
         next.places.rotate_right(1);
         next.places[0] = places;
@@ -70,7 +89,7 @@ impl Motion<'_> {
     }
 
     /// Loads, patches where they are expected, and both rings.
-    fn begin<'m>(
+    pub(super) fn begin<'m>(
         &'m self,
         state: &'m MotionState,
         span: Span,
@@ -123,23 +142,36 @@ impl Motion<'_> {
             };
             part.report.newton_iterations += solution.iterations;
             part.report.laps.add(NEWTON, part.clock.lap());
-            let met = part.parts.places(&solution);
-            if part.placing.holds(&part.places, &met) {
+            if self.stays_in_place(state, part, &solution)? {
                 return Ok(solution);
             }
-            part.report.place_rounds += 1;
-            part.placing = self.place(&met, &self.course(state, part.span))?;
-            part.places = met;
-            part.report.laps.add(PATCHES, part.clock.lap());
-            self.move_contacts(part);
-            let sites = part.placing.sites.clone();
-            part.parts = self.parts(state, part.span, sites, &part.rings, &part.expected.loads)?;
         }
         // A ball that presses beyond the rim has no place: that is the cause then.
         self.check_on_grooves(&part.places)?;
         Err(DynamicsError::PlacesNotSettled {
             rounds: MAX_PLACE_ROUNDS,
         })
+    }
+
+    /// Whether the patches lie where the forces of a solution put them; else they are moved there.
+    pub(super) fn stays_in_place(
+        &self,
+        state: &MotionState,
+        part: &mut Part<'_>,
+        solution: &StepSolution,
+    ) -> Result<bool, DynamicsError> {
+        let met = part.parts.places(solution);
+        if part.placing.holds(&part.places, &met) {
+            return Ok(true);
+        }
+        part.report.place_rounds += 1;
+        part.placing = self.place(&met, &self.course(state, part.span))?;
+        part.places = met;
+        part.report.laps.add(PATCHES, part.clock.lap());
+        self.move_contacts(part);
+        let sites = part.placing.sites.clone();
+        part.parts = self.parts(state, part.span, sites, &part.rings, &part.expected.loads)?;
+        Ok(false)
     }
 
     /// Both rings with their contacts where the patches are.

@@ -1,0 +1,199 @@
+//! The shaft over a part of a step, and Newton on it.
+
+use dense::DenseLu;
+use dynamics::motion::held::HeldPart;
+use dynamics::stiffness::{N_SHAFT, ShaftMatrix};
+
+use crate::error::AssemblyError;
+use crate::newton::Mount;
+use crate::shaft::{ShaftBody, times};
+
+/// Iterations before a part counts as failed.
+const MOST_ITERATIONS: usize = 40;
+/// Residual over the largest force at which iteration may stop; it goes on while it improves.
+const LIMIT: f64 = 1e-10;
+/// Residual over the largest force that counts as round-off.
+const TARGET: f64 = 1e-14;
+/// Halvings of a step of Newton.
+const HALVINGS: u32 = 10;
+
+/// The shaft over a part of a step.
+pub struct ShaftStep<'a> {
+    /// The shaft.
+    pub shaft: &'a ShaftBody,
+    /// Where bearings hold it.
+    pub mounts: &'a [Mount],
+    /// Size of the part, s.
+    pub dt: f64,
+    /// Speeds of the shaft at both ends, rad/s.
+    pub speeds: [f64; 2],
+    /// Displacement and velocity at the start.
+    pub start: [&'a [f64]; 2],
+    /// Load in the middle, N and N m.
+    pub load: Vec<f64>,
+    /// Length by which tilts count, m.
+    pub tilt_arm: f64,
+}
+
+/// The equations at an end.
+struct Iterate {
+    end: Vec<f64>,
+    residual: Vec<f64>,
+    /// Largest residual as a force, N.
+    error: f64,
+    /// Largest force, N.
+    scale: f64,
+    loads: Vec<[f64; N_SHAFT]>,
+    stiffness: Vec<ShaftMatrix>,
+}
+
+impl ShaftStep<'_> {
+    /// Where the shaft ends if it goes on as it moves; held dofs stay.
+    pub fn guess(&self) -> Vec<f64> {
+        let [q, v] = self.start;
+        let held = &self.shaft.held;
+        let end = |i: usize| held[i].unwrap_or(q[i] + self.dt * v[i]);
+        (0..q.len()).map(end).collect()
+    }
+
+    /// Velocity at an end.
+    pub fn velocity(&self, end: &[f64]) -> Vec<f64> {
+        let [q, v] = self.start;
+        let of = |i: usize| 2.0 * (end[i] - q[i]) / self.dt - v[i];
+        (0..q.len()).map(of).collect()
+    }
+
+    /// Mean force of the spin, minus the change of its momentum over the part.
+    pub fn spin_force(&self, end: &[f64]) -> Vec<f64> {
+        let [from, to] = self.speeds;
+        let change = |(q0, q1): (&f64, &f64)| (from * q0 - to * q1) / self.dt;
+        let change: Vec<f64> = self.start[0].iter().zip(end).map(change).collect();
+        times(self.shaft.n(), &self.shaft.gyroscopic, &change)
+    }
+
+    /// The end at which the shaft is in balance with the bearings, and the loads on these, each in its own frame.
+    pub fn balance(
+        &self,
+        parts: &mut [HeldPart<'_>],
+        from: Vec<f64>,
+    ) -> Result<(Vec<f64>, Vec<[f64; N_SHAFT]>), AssemblyError> {
+        let mut at = self.evaluate(parts, from)?;
+        let (mut best, mut stalled) = (f64::INFINITY, 0);
+        let mut history = Vec::new();
+        for _ in 0..MOST_ITERATIONS {
+            stalled = if at.error < 0.5 * best { 0 } else { stalled + 1 };
+            best = best.min(at.error);
+            history.push(at.error / at.scale);
+            let is_small = at.error <= LIMIT * at.scale;
+            if at.error <= TARGET * at.scale || (stalled >= 2 && is_small) {
+                return Ok((at.end, at.loads));
+            }
+            let step = self.step(&at)?;
+            at = self.search(parts, at, &step)?;
+        }
+        let tail = history.len().saturating_sub(6);
+        Err(AssemblyError::NotSettled {
+            iterations: MOST_ITERATIONS,
+            residual: history[history.len() - 1],
+            limit: LIMIT,
+            history: history.split_off(tail),
+        })
+    }
+
+    fn evaluate(&self, parts: &mut [HeldPart<'_>], end: Vec<f64>) -> Result<Iterate, AssemblyError> {
+        let (n, [q, v]) = (self.shaft.n(), self.start);
+        let inertia: Vec<f64> = self
+            .velocity(&end)
+            .iter()
+            .zip(v)
+            .map(|(a, b)| (a - b) / self.dt)
+            .collect();
+        let inertia = times(n, &self.shaft.mass, &inertia);
+        let middle: Vec<f64> = q.iter().zip(&end).map(|(a, b)| 0.5 * (a + b)).collect();
+        let elastic = times(n, &self.shaft.stiffness, &middle);
+        let spin = self.spin_force(&end);
+        let own = |i: usize| self.load[i] + spin[i] - inertia[i] - elastic[i];
+        let mut residual: Vec<f64> = (0..n).map(own).collect();
+        let mut scale = (0..n).fold(f64::MIN_POSITIVE, |m, i| {
+            m.max(self.as_force(i, self.load[i].abs().max(inertia[i].abs())))
+        });
+        let (mut loads, mut stiffness) = (Vec::new(), Vec::new());
+        for (mount, part) in self.mounts.iter().zip(parts) {
+            let own = mount.place.into_bearing(mount.station.displacement(&end));
+            let answer = part.answer(own).map_err(|source| AssemblyError::Bearing {
+                name: mount.name.clone(),
+                source,
+            })?;
+            let load = mount.place.orientation.turned(answer.load);
+            mount.station.add_load(load.map(|f| -f), &mut residual);
+            scale = scale.max(answer.force);
+            loads.push(answer.load);
+            stiffness.push(mount.place.orientation.turned_matrix(&answer.stiffness));
+        }
+        let free = (0..n).filter(|&i| self.shaft.held[i].is_none());
+        let error = free.fold(0.0f64, |m, i| m.max(self.as_force(i, residual[i].abs())));
+        if !error.is_finite() {
+            return Err(AssemblyError::NotFinite);
+        }
+        Ok(Iterate {
+            end,
+            residual,
+            error,
+            scale,
+            loads,
+            stiffness,
+        })
+    }
+
+    /// A load on a dof as a force, N.
+    fn as_force(&self, dof: usize, load: f64) -> f64 {
+        match dof % N_SHAFT {
+            0..3 => load,
+            _ => load / self.tilt_arm,
+        }
+    }
+
+    /// Newton's step.
+    fn step(&self, at: &Iterate) -> Result<Vec<f64>, AssemblyError> {
+        let n = self.shaft.n();
+        let (of_mass, of_spin) = (2.0 / (self.dt * self.dt), self.speeds[1] / self.dt);
+        let own = |k: usize| {
+            of_mass * self.shaft.mass[k] + of_spin * self.shaft.gyroscopic[k] + 0.5 * self.shaft.stiffness[k]
+        };
+        let mut tangent: Vec<f64> = (0..n * n).map(own).collect();
+        for (mount, stiffness) in self.mounts.iter().zip(&at.stiffness) {
+            mount.station.add_matrix(stiffness, n, &mut tangent);
+        }
+        let free: Vec<usize> = (0..n).filter(|&i| self.shaft.held[i].is_none()).collect();
+        let entries = free.iter().flat_map(|&i| free.iter().map(move |&j| n * i + j));
+        let matrix: Vec<f64> = entries.map(|k| tangent[k]).collect();
+        let mut found: Vec<f64> = free.iter().map(|&i| at.residual[i]).collect();
+        DenseLu::factor(free.len(), &matrix)
+            .map_err(|source| AssemblyError::Matrix { source })?
+            .solve(&mut found, 1);
+        let mut step = vec![0.0; n];
+        free.iter().zip(found).for_each(|(&i, x)| step[i] = x);
+        Ok(step)
+    }
+
+    /// The point along a step, halved until the residual does not grow.
+    fn search(
+        &self,
+        parts: &mut [HeldPart<'_>],
+        from: Iterate,
+        step: &[f64],
+    ) -> Result<Iterate, AssemblyError> {
+        let mut share = 1.0;
+        for halving in 0..=HALVINGS {
+            let end = from.end.iter().zip(step).map(|(q, s)| q + share * s).collect();
+            match self.evaluate(parts, end) {
+                Ok(next) if next.error <= from.error.max(LIMIT * next.scale) || halving == HALVINGS => {
+                    return Ok(next);
+                }
+                Err(error) if halving == HALVINGS => return Err(error),
+                _ => share *= 0.5,
+            }
+        }
+        unreachable!("the last halving returns")
+    }
+}

@@ -1,0 +1,99 @@
+//! Energies of the shaft and what went into it.
+
+use dynamics::stiffness::N_SHAFT;
+
+use super::balance::ShaftStep;
+use crate::shaft::{ShaftBody, times};
+
+/// Energy ledger of the shaft, J. Each bearing has its own, into which the shaft's work goes as `imposed_work`.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct ShaftLedger {
+    /// Kinetic energy.
+    pub kinetic: f64,
+    /// Strain energy.
+    pub strain: f64,
+    /// Their sum at the start.
+    pub initial: f64,
+    /// Work of the loads.
+    pub load_work: f64,
+    /// Work of the spin where its speed changes: that of the drive.
+    pub spin_work: f64,
+    /// Work that went into the bearings.
+    pub bearing_work: f64,
+    /// Largest of all energies and works so far.
+    pub scale: f64,
+}
+
+impl ShaftLedger {
+    /// A ledger that begins with a displacement and a velocity.
+    pub fn begin(shaft: &ShaftBody, q: &[f64], v: &[f64]) -> ShaftLedger {
+        let [kinetic, strain] = energies(shaft, q, v);
+        let mut ledger = ShaftLedger {
+            kinetic,
+            strain,
+            initial: kinetic + strain,
+            ..ShaftLedger::default()
+        };
+        ledger.note_scale();
+        ledger
+    }
+
+    /// The ledger after a part that ends so.
+    pub fn after(
+        &self,
+        step: &ShaftStep<'_>,
+        end: &[f64],
+        velocity: &[f64],
+        loads: &[[f64; N_SHAFT]],
+    ) -> ShaftLedger {
+        let [kinetic, strain] = energies(step.shaft, end, velocity);
+        let change: Vec<f64> = end.iter().zip(step.start[0]).map(|(a, b)| a - b).collect();
+        let into = |(mount, load): (&crate::newton::Mount, &[f64; N_SHAFT])| -> f64 {
+            let moved = mount
+                .place
+                .orientation
+                .turned(mount.station.displacement(&change));
+            load.iter().zip(moved).map(|(f, u)| f * u).sum()
+        };
+        let mut ledger = ShaftLedger {
+            kinetic,
+            strain,
+            load_work: self.load_work + work(&step.load, &change),
+            spin_work: self.spin_work + work(&step.spin_force(end), &change),
+            bearing_work: self.bearing_work + step.mounts.iter().zip(loads).map(into).sum::<f64>(),
+            ..*self
+        };
+        ledger.note_scale();
+        ledger
+    }
+
+    /// Energy that nothing accounts for, J.
+    pub fn defect(&self) -> f64 {
+        self.kinetic + self.strain - self.initial - self.load_work - self.spin_work + self.bearing_work
+    }
+
+    /// The defect over the largest energy or work.
+    pub fn relative_defect(&self) -> f64 {
+        self.defect() / self.scale.max(f64::MIN_POSITIVE)
+    }
+
+    fn note_scale(&mut self) {
+        let all = [
+            self.kinetic,
+            self.strain,
+            self.load_work,
+            self.spin_work,
+            self.bearing_work,
+        ];
+        self.scale = all.iter().fold(self.scale, |m, x| m.max(x.abs()));
+    }
+}
+
+fn energies(shaft: &ShaftBody, q: &[f64], v: &[f64]) -> [f64; 2] {
+    let half = |matrix: &[f64], x: &[f64]| 0.5 * work(&times(shaft.n(), matrix, x), x);
+    [half(&shaft.mass, v), half(&shaft.stiffness, q)]
+}
+
+fn work(force: &[f64], change: &[f64]) -> f64 {
+    force.iter().zip(change).map(|(f, u)| f * u).sum()
+}

@@ -1,0 +1,280 @@
+//! Several bearings on one shaft through time.
+//!
+//! Each bearing takes its own step ([`dynamics::motion::held`]) with the end of its shaft given, and answers by the mean
+//! load that has to act there. The shaft moves by average acceleration, as the bearings do:
+//!
+//! ```text
+//! M (v1 - v0)/h + G (W1 q1 - W0 q0)/h + K (q0 + q1)/2 + sum over bearings S^T T^T r(T S q1 + shift) = f(t + h/2)
+//! q1 - q0 = h (v0 + v1)/2
+//! ```
+//!
+//! with the letters of the crate's page, G of 1 rad/s and the speed W. The sum of a bearing's loads times the motion of
+//! its place is the work that goes into it, the `imposed_work` of its ledger. So shaft and bearings together gain no
+//! energy: the shaft has a ledger of its own ([`ShaftLedger`]), and each closes by itself.
+//!
+//! An outer Newton balances the shaft with the condensed tangents of the bearings. Patches and turning frames of all
+//! bearings are then brought in line with the motion found, and the shaft is balanced again until nothing changes. A
+//! part that fails is done again in halves, all bearings together.
+
+mod balance;
+mod ledger;
+
+use dynamics::kinematics::Speed;
+use dynamics::motion::held::{HeldPart, Holding};
+use dynamics::motion::{Integrator, Motion, MotionSettings, MotionState, Span, StepCache, StepReport};
+use dynamics::stiffness::N_SHAFT;
+use dynamics::{DynamicsError, ShaftDof};
+
+use self::balance::ShaftStep;
+pub use self::ledger::ShaftLedger;
+use crate::assembly::{Assembly, AssemblySolution};
+use crate::error::AssemblyError;
+use crate::newton::Mount;
+
+/// Rounds for patches and frames before a part counts as failed.
+const MAX_ROUNDS: usize = 60;
+
+/// Loads on the dofs of the shaft at a time, s, N and N m.
+pub type LoadAt<'a> = dyn Fn(f64) -> Result<Vec<f64>, AssemblyError> + 'a;
+
+/// Bearings and shaft ready to move.
+pub struct AssemblyMotion<'a> {
+    assembly: &'a Assembly,
+    mounts: Vec<Mount>,
+    /// Motion of every bearing, in its own frame.
+    pub bearings: Vec<Motion<'a>>,
+    /// Speed of the shaft in its frame.
+    speed: Speed,
+    load: Box<LoadAt<'a>>,
+    dt: f64,
+    halvings: u32,
+}
+
+/// All that evolves.
+#[derive(Clone, Debug, PartialEq)]
+pub struct AssemblyState {
+    /// Steps done.
+    pub step: u64,
+    /// Every bearing, in its own frame.
+    pub bearings: Vec<MotionState>,
+    /// Displacement of the shaft's dofs, m and rad.
+    pub shaft: Vec<f64>,
+    /// Its velocity.
+    pub velocity: Vec<f64>,
+    /// Mean load of the shaft on every bearing over the last part of a step, in the bearing's frame, N and N m.
+    pub loads: Vec<[f64; N_SHAFT]>,
+    /// Energies of the shaft.
+    pub ledger: ShaftLedger,
+}
+
+/// What each bearing has found of its next step, see [`StepCache`].
+pub type AssemblyCache = Vec<StepCache>;
+
+impl Assembly {
+    /// Frees the shaft in the models of the bearings: in a motion the common shaft moves it.
+    pub fn release(&mut self) {
+        for bearing in &mut self.bearings {
+            bearing.model.shaft = [ShaftDof::Free; N_SHAFT];
+        }
+    }
+}
+
+impl<'a> AssemblyMotion<'a> {
+    /// Factors the rings of every bearing for the full step. `settings` are those of each in its own frame, with one
+    /// step size; the assembly is released.
+    pub fn new(
+        assembly: &'a Assembly,
+        settings: Vec<MotionSettings>,
+        speed: Speed,
+        load: Box<LoadAt<'a>>,
+    ) -> Result<AssemblyMotion<'a>, AssemblyError> {
+        let (dt, halvings) = (settings[0].dt, settings[0].ladder.halvings);
+        let mut bearings = Vec::new();
+        for (bearing, settings) in assembly.bearings.iter().zip(settings) {
+            require_conserving(&settings)?;
+            let motion = Motion::new(&bearing.model, settings);
+            bearings.push(motion.map_err(|source| failed(&bearing.name, source))?);
+        }
+        Ok(AssemblyMotion {
+            mounts: assembly.mounts(),
+            assembly,
+            bearings,
+            speed,
+            load,
+            dt,
+            halvings,
+        })
+    }
+
+    /// The state at an equilibrium, at rest but for the turning of the rings.
+    pub fn start(&self, solution: &AssemblySolution) -> AssemblyState {
+        let bearings = self.bearings.iter().zip(&solution.bearings);
+        let shaft = solution.shaft.displacements.clone();
+        let mut state = AssemblyState {
+            step: 0,
+            bearings: bearings
+                .map(|(motion, solution)| motion.start(solution))
+                .collect(),
+            velocity: vec![0.0; shaft.len()],
+            loads: solution.bearings.iter().map(|b| b.shaft_reaction).collect(),
+            shaft,
+            ledger: ShaftLedger::default(),
+        };
+        state.ledger = ShaftLedger::begin(&self.assembly.shaft, &state.shaft, &state.velocity);
+        state
+    }
+
+    /// Time of a step number, s.
+    pub fn time(&self, step: u64) -> f64 {
+        self.bearings[0].time(step)
+    }
+
+    /// One step, in halves where a part fails.
+    pub fn step(
+        &self,
+        state: &AssemblyState,
+        cache: &mut AssemblyCache,
+    ) -> Result<(AssemblyState, StepReport), AssemblyError> {
+        cache.resize_with(self.bearings.len(), StepCache::default);
+        let n = 1u64 << self.halvings;
+        let (mut at, mut rung, mut report) = (0, 0, StepReport::default());
+        let mut next: Option<AssemblyState> = None;
+        while at < n {
+            let after = at + (n >> rung);
+            let span = |motion: &Motion<'_>| motion.span(state.step, at, rung);
+            let upcoming = |motion: &Motion<'_>| match after < n {
+                true => Some(motion.span(state.step, after, rung)),
+                false => (rung == 0).then(|| motion.span(state.step + 1, 0, 0)),
+            };
+            let spans: Vec<_> = self.bearings.iter().map(|m| (span(m), upcoming(m))).collect();
+            match self.part(next.as_ref().unwrap_or(state), &spans, cache) {
+                Ok((part, done)) => {
+                    at = after;
+                    report.add(&done);
+                    next = Some(part);
+                }
+                Err(error) if rung < self.halvings && error.may_pass_with_smaller_step() => {
+                    rung += 1;
+                    report.retries += 1;
+                }
+                Err(source) => {
+                    return Err(AssemblyError::StepFailed {
+                        dt: self.dt / (1u64 << rung) as f64,
+                        halvings: rung,
+                        time: spans[0].0.start,
+                        source: Box::new(source),
+                    });
+                }
+            }
+        }
+        let mut next = next.expect("a step has at least one part");
+        next.step = state.step + 1;
+        next.bearings
+            .iter_mut()
+            .for_each(|bearing| bearing.step = next.step);
+        Ok((next, report))
+    }
+
+    /// One part; the spans are those of every bearing, with the parts that follow.
+    fn part(
+        &self,
+        state: &AssemblyState,
+        spans: &[(Span, Option<Span>)],
+        cache: &mut AssemblyCache,
+    ) -> Result<(AssemblyState, StepReport), AssemblyError> {
+        let mut parts = Vec::new();
+        for (i, motion) in self.bearings.iter().enumerate() {
+            let part = HeldPart::begin(motion, &state.bearings[i], spans[i].0, &cache[i]);
+            parts.push(part.map_err(|source| self.failed(i, source))?);
+        }
+        let span = spans[0].0;
+        let step = ShaftStep {
+            shaft: &self.assembly.shaft,
+            mounts: &self.mounts,
+            dt: span.dt,
+            speeds: [0.0, 1.0].map(|share| self.speed.at(span.at(share))),
+            start: [&state.shaft, &state.velocity],
+            load: (self.load)(span.at(0.5))?,
+            tilt_arm: self.assembly.scales().tilt_arm,
+        };
+        let mut end = step.guess();
+        for _ in 0..MAX_ROUNDS {
+            let loads;
+            (end, loads) = step.balance(&mut parts, end)?;
+            if self.all(&mut parts, |_, part| part.place())? == Holding::Again {
+                continue;
+            }
+            if self.all(&mut parts, |i, part| part.close(spans[i].1))? == Holding::Settled {
+                return self.finish(state, (&step, parts), (end, loads), cache);
+            }
+        }
+        Err(AssemblyError::RoundsNotSettled { rounds: MAX_ROUNDS })
+    }
+
+    /// Does the same to every part; settled if all are.
+    fn all(
+        &self,
+        parts: &mut [HeldPart<'_>],
+        of: impl Fn(usize, &mut HeldPart<'_>) -> Result<Holding, DynamicsError>,
+    ) -> Result<Holding, AssemblyError> {
+        let mut all = Holding::Settled;
+        for (i, part) in parts.iter_mut().enumerate() {
+            if of(i, part).map_err(|source| self.failed(i, source))? == Holding::Again {
+                all = Holding::Again;
+            }
+        }
+        Ok(all)
+    }
+
+    fn finish(
+        &self,
+        state: &AssemblyState,
+        (step, parts): (&ShaftStep<'_>, Vec<HeldPart<'_>>),
+        (shaft, loads): (Vec<f64>, Vec<[f64; N_SHAFT]>),
+        cache: &mut AssemblyCache,
+    ) -> Result<(AssemblyState, StepReport), AssemblyError> {
+        let mut report = StepReport::default();
+        let mut bearings = Vec::new();
+        for (i, (part, cache)) in parts.into_iter().zip(cache).enumerate() {
+            let (next, done) = part.finish(cache).map_err(|source| self.failed(i, source))?;
+            report.add(&done);
+            bearings.push(next);
+        }
+        report.substeps = 1;
+        let velocity = step.velocity(&shaft);
+        Ok((
+            AssemblyState {
+                step: state.step,
+                ledger: state.ledger.after(step, &shaft, &velocity, &loads),
+                bearings,
+                shaft,
+                velocity,
+                loads,
+            },
+            report,
+        ))
+    }
+
+    fn failed(&self, bearing: usize, source: DynamicsError) -> AssemblyError {
+        failed(&self.mounts[bearing].name, source)
+    }
+}
+
+fn failed(name: &str, source: DynamicsError) -> AssemblyError {
+    AssemblyError::Bearing {
+        name: name.to_string(),
+        source,
+    }
+}
+
+/// The shaft has no scheme that dissipates.
+fn require_conserving(settings: &MotionSettings) -> Result<(), AssemblyError> {
+    match settings.integrator == Integrator::average_acceleration() && settings.ladder.tolerance.is_none() {
+        true => Ok(()),
+        false => Err(AssemblyError::ShaftBody {
+            problem: "a list of bearings moves by equal steps of average acceleration; use integrator = \
+                      \"average_acceleration\" without dynamic.tolerance"
+                .to_string(),
+        }),
+    }
+}

@@ -1,0 +1,139 @@
+//! A part of a step of a bearing whose shaft is moved by others, such as a shaft on several bearings.
+//!
+//! The bearing answers a displacement of its shaft at the end of the part by the mean load that has to act on it over
+//! the part. What holds the shaft balances these loads, bearing by bearing; then patches and the inertia of turning
+//! frames are brought in line with the motion found, as in a bearing alone, until nothing changes.
+
+use ring::StepScheme;
+use timer::SharedLaps;
+
+use super::cache::StepCache;
+use super::close::RingEnds;
+use super::run::Motion;
+use super::solve::StepSolution;
+use super::span::Span;
+use super::state::{MotionState, StepReport};
+use super::substep::Part;
+use crate::bearing::BearingParts;
+use crate::condensation::Condensation;
+use crate::costs::NEWTON;
+use crate::error::DynamicsError;
+use crate::stiffness::{N_SHAFT, ShaftMatrix};
+
+/// A part under way.
+pub struct HeldPart<'m> {
+    motion: &'m Motion<'m>,
+    state: &'m MotionState,
+    part: Part<'m>,
+    solution: StepSolution,
+    ends: Option<RingEnds>,
+}
+
+/// How a bearing answers.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct HeldAnswer {
+    /// Mean load that has to act on the shaft over the part, N and N m.
+    pub load: [f64; N_SHAFT],
+    /// Its growth with the displacement at the end.
+    pub stiffness: ShaftMatrix,
+    /// Force by which its round-off counts, N.
+    pub force: f64,
+}
+
+/// Whether a part is done.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Holding {
+    /// Patches and frames are in line with the motion found.
+    Settled,
+    /// Something has changed: the shaft is to be balanced again.
+    Again,
+}
+
+impl<'m> HeldPart<'m> {
+    /// Begins a part from a state of a motion whose model has a free shaft.
+    pub fn begin(
+        motion: &'m Motion<'m>,
+        state: &'m MotionState,
+        span: Span,
+        cache: &StepCache,
+    ) -> Result<HeldPart<'m>, DynamicsError> {
+        Ok(HeldPart {
+            motion,
+            state,
+            part: motion.begin(state, span, cache)?,
+            solution: StepSolution::default(),
+            ends: None,
+        })
+    }
+
+    /// The answer to a displacement of the shaft at the end.
+    pub fn answer(&mut self, shaft: [f64; N_SHAFT]) -> Result<HeldAnswer, DynamicsError> {
+        let part = &mut self.part;
+        part.parts.shaft.imposed = shaft.map(Some);
+        let solution = part.parts.solve_step(part.scale, &self.motion.costs)?;
+        let scheme = StepScheme {
+            integrator: self.motion.settings.integrator,
+            dt: part.span.dt,
+        };
+        let forces = solution.forces.iter().map(|f| f.force[0].hypot(f.force[1]));
+        let answer = HeldAnswer {
+            load: part.parts.shaft_reactions(&solution, scheme),
+            stiffness: part.parts.held_tangent(shaft, &solution.unknowns)?,
+            force: forces.fold(part.scale, f64::max),
+        };
+        part.report.newton_iterations += solution.iterations;
+        part.report.laps.add(NEWTON, part.clock.lap());
+        self.solution = solution;
+        Ok(answer)
+    }
+
+    /// Brings patches in line with the last answer.
+    pub fn place(&mut self) -> Result<Holding, DynamicsError> {
+        let stays = self
+            .motion
+            .stays_in_place(self.state, &mut self.part, &self.solution)?;
+        Ok(if stays { Holding::Settled } else { Holding::Again })
+    }
+
+    /// Brings the inertia of turning frames in line with the last answer and ends the rings; looks ahead to the part
+    /// `upcoming`.
+    pub fn close(&mut self, upcoming: Option<Span>) -> Result<Holding, DynamicsError> {
+        self.ends = self
+            .motion
+            .close(self.state, &mut self.part, &self.solution, upcoming)?;
+        Ok(match self.ends {
+            Some(_) => Holding::Settled,
+            None => Holding::Again,
+        })
+    }
+
+    /// The state after the part, which is closed.
+    pub fn finish(self, cache: &mut StepCache) -> Result<(MotionState, StepReport), DynamicsError> {
+        let ends = self.ends.expect("the part is closed");
+        let (next, report, ahead) = self
+            .motion
+            .conclude(self.state, self.part, &self.solution, ends)?;
+        cache.ahead = ahead;
+        Ok((next, report))
+    }
+}
+
+impl BearingParts {
+    /// Growth of the load on the shaft with its displacement `shaft` at the end, all else as Newton's unknowns `rest`
+    /// have it.
+    fn held_tangent(&self, shaft: [f64; N_SHAFT], rest: &[f64]) -> Result<ShaftMatrix, DynamicsError> {
+        let mut free = self.clone();
+        free.shaft.imposed = [None; N_SHAFT];
+        let (system, x) = (free.system(), [&shaft[..], rest].concat());
+        let at = system.evaluate(&x, &SharedLaps::default());
+        let mut tangent = system.body_tangent(&x);
+        system.add_link_tangents(&x, &at.links, &mut tangent);
+        system.add_curvatures(&x, &at.links, &mut tangent);
+        let condensed = Condensation::new(system.n(), N_SHAFT, &tangent);
+        let condensed = condensed.map_err(|source| DynamicsError::ContactSystem { source })?;
+        let matrix = condensed.apply(&tangent);
+        Ok(std::array::from_fn(|i| {
+            std::array::from_fn(|j| matrix[N_SHAFT * i + j])
+        }))
+    }
+}
