@@ -30,6 +30,8 @@ mod run;
 mod several;
 mod several_campbell;
 mod several_check;
+mod several_motion;
+mod several_state;
 mod several_stiffness;
 mod start;
 mod stiffness;

@@ -430,7 +430,7 @@ fn lossy(state: &MotionState) -> Option<String> {
 }
 
 /// Stops a run whose energy ledger does not close.
-fn check_ledger(
+pub fn check_ledger(
     dynamic: &Dynamic,
     motion: &Motion<'_>,
     state: &MotionState,

@@ -28,6 +28,7 @@ use scene::{Analysis, Dynamic, MeshFiles, Scene, difference};
 use crate::motion;
 use crate::options::Limits;
 use crate::run::note_unshared;
+use crate::{several, several_motion, several_state};
 
 /// Array of a step file that counts Newton's iterations since the start of the run.
 const NEWTON: &str = "newton_iterations";
@@ -113,6 +114,9 @@ impl Stored {
 pub fn resume(request: &Request) -> Result<(), Failure> {
     let start = Instant::now();
     let dir = &request.dir;
+    if several_state::is_list(dir) {
+        return resume_list(request, start);
+    }
     let lock = agree(acquire(dir))?;
     // All ranks read before the first one writes.
     let step = same_step(dir, request.step)?;
@@ -151,6 +155,18 @@ pub fn resume(request: &Request) -> Result<(), Failure> {
     };
     motion::resume(&scene, &dynamic, stored, &request.limits, start)?;
     print::line(format_args!("results: {}", dir.display()));
+    Ok(())
+}
+
+/// Goes on with a run of a list of bearings.
+fn resume_list(request: &Request, start: Instant) -> Result<(), Failure> {
+    several::require_one_rank()?;
+    let given = request.scene.as_deref();
+    let Some(stored) = several_state::read(&request.dir, request.step, &request.overrides, given)? else {
+        return Ok(());
+    };
+    several_motion::resume(stored, &request.limits, start)?;
+    print::line(format_args!("results: {}", request.dir.display()));
     Ok(())
 }
 

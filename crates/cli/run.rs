@@ -49,7 +49,7 @@ pub fn run(
     let start = Instant::now();
     let scene = match agree(AnyScene::load(path, overrides).map_err(Failure::from))? {
         AnyScene::One(scene) => *scene,
-        AnyScene::Several(list) => return several::run(&list, out, part.map(|_| "--points"), start),
+        AnyScene::Several(list) => return several::run(&list, out, part.map(|_| "--points"), limits, start),
     };
     if let Some(part) = part {
         part.check(&scene)?;

@@ -12,7 +12,8 @@ use results::files::{Files, say_folder};
 use results::folder;
 use results::memory::{Forecasts, require_memory};
 use results::several::{
-    SeveralFindings, SeveralSummary, SeveralTables, print_solution, print_sweep_head, print_sweep_point,
+    ListState, SeveralFindings, SeveralSummary, SeveralTables, print_solution, print_sweep_head,
+    print_sweep_point,
 };
 use results::shown::Shown;
 use results::snapshot::Snapshot;
@@ -21,10 +22,12 @@ use results::survey::{Survey, say_doubts};
 use results::whole::{make_asked_folder, write_new};
 use scene::{Analysis, BuildError, Rings, SeveralScene, assembly_with_rings, build_assembly, doubts};
 
+use crate::options::Limits;
 use crate::progress::Progress;
+use crate::several_motion;
 
 /// The scene, beside the results of its bearings.
-const SCENE_FILE: &str = "scene.toml";
+pub const SCENE_FILE: &str = "scene.toml";
 
 /// One load case: the swept value (None for a static scene) and its scene.
 pub type SeveralPoint = (Option<f64>, SeveralScene);
@@ -34,10 +37,14 @@ pub fn run(
     scene: &SeveralScene,
     out: Option<PathBuf>,
     refused: Option<&str>,
+    limits: &Limits,
     start: Instant,
 ) -> Result<PathBuf, Failure> {
     refuse(refused, scene)?;
     let dir = folder::choose(&scene.path, out)?;
+    if let Analysis::Dynamic(dynamic) = &scene.analysis {
+        return several_motion::run(scene, dynamic, &dir, limits, start).map(|()| dir);
+    }
     run_in(scene, &dir, start).map(|()| dir)
 }
 
@@ -88,15 +95,17 @@ fn run_in(scene: &SeveralScene, dir: &Path, start: Instant) -> Result<(), Failur
         let findings = SeveralFindings {
             status: failure.as_ref().map_or("finished".to_string(), Failure::status),
             iterations,
+            residual: last.shaft.error,
             warnings,
             laps,
         };
         files.finish(scene, (&assembly, &last), &solver, start)?;
-        let summary = SeveralSummary::new(scene, &assembly, &last, findings);
+        let shown = ListState::of_equilibrium(&assembly, &last);
+        let summary = SeveralSummary::new(scene, &assembly, &shown, findings);
         summary.write(dir)?;
         if failure.is_none() {
             if column.is_none() {
-                print_solution(&assembly, &last);
+                print_solution(&assembly, &shown);
             }
             summary.print_costs();
         }
@@ -143,7 +152,8 @@ impl SeveralFiles {
         write_new(&dir.join(SCENE_FILE), |file| {
             file.write_all(scene.text.as_bytes())
         })?;
-        let tables = SeveralTables::create(dir, column.as_deref())?;
+        let first = ListState::of_equilibrium(assembly, solution);
+        let tables = SeveralTables::create(dir, column.as_deref(), &first)?;
         let mut bearings = Vec::new();
         for ((bearing, mounted), found) in scene
             .bearings
@@ -176,12 +186,12 @@ impl SeveralFiles {
         (assembly, point): (&Assembly, &SeveralScene),
         solution: &AssemblySolution,
     ) -> Result<(), Failure> {
-        self.tables.append(step, value, assembly, solution)?;
+        let (time, found) = (step as f64, ListState::of_equilibrium(assembly, solution));
+        self.tables.append((step, time), value, assembly, &found)?;
         if let (Some(value), true) = (value, self.column.is_some()) {
-            print_sweep_point(value, assembly, solution);
+            print_sweep_point(value, &found);
         }
         self.last.clear();
-        let time = step as f64;
         for (i, (_, files)) in self.bearings.iter_mut().enumerate() {
             let (model, found) = (&assembly.bearings[i].model, &solution.bearings[i]);
             let snapshot = snapshot(found);
@@ -236,7 +246,7 @@ fn snapshot(solution: &dynamics::StaticSolution) -> Snapshot {
 }
 
 /// Ranks share no list of bearings yet.
-fn require_one_rank() -> Result<(), Failure> {
+pub fn require_one_rank() -> Result<(), Failure> {
     let ranks = Communicator::world().size();
     agree(match ranks {
         1 => Ok(()),
@@ -339,7 +349,7 @@ pub fn stage_text(column: Option<&str>, value: Option<f64>) -> String {
 }
 
 /// Says how the rings of each type are solved.
-fn say_types(solver: &AssemblySolver, assembly: &Assembly, progress: &Progress) {
+pub fn say_types(solver: &AssemblySolver, assembly: &Assembly, progress: &Progress) {
     for (first, factors) in solver.types() {
         for side in Side::BOTH {
             if let Some(ring) = factors.ring(side) {

@@ -280,7 +280,7 @@ fn the_motion_is_of_second_order() {
     let end = |halvings: i32| {
         let parts = 2.0f64.powi(halvings);
         let places = [(0.0, PlusZ, 10e-6), (0.04, MinusZ, 10e-6)];
-        let list = on_shaft(beam(), &places, [0.0; 5], bare);
+        let list = on_shaft(ShaftBody::rigid(INERTIA, [None; 5]), &places, [0.0; 5], bare);
         // Grows smoothly from nothing, so that nothing jumps at the start.
         let load = |t: f64| [300.0 * (t / 2e-4).powi(2), 0.0, 0.0, 0.0, 0.0];
         run(list, (4e-6 / parts, 50 << halvings), &speed, load, |_, _| {}).shaft

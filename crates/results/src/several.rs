@@ -5,17 +5,19 @@
 //! in the frame of the shaft, with a column `bearing` where rows are of bearings.
 
 use std::collections::BTreeMap;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
-use assembly::{Assembly, AssemblySolution};
+use assembly::{Assembly, AssemblyMotion, AssemblySolution, AssemblyState};
 use checkpoint::GrowingFile;
 use comm::print;
+use dynamics::balls::BallResult;
 use dynamics::stiffness::N_SHAFT;
 use scene::{Analysis, SeveralScene};
 use serde::Serialize;
 use timer::Laps;
 
 use crate::console::fixed;
+use crate::cut::Cut;
 use crate::summary::{peak_memory, print_peak, print_seconds, print_warnings, write_summary};
 use crate::tables::{append, ball_cells, ball_columns, create, head, number, place_of};
 
@@ -25,6 +27,8 @@ pub const BALLS_TABLE: &str = "balls.csv";
 pub const BEARINGS_TABLE: &str = "bearings.csv";
 /// The line of the shaft.
 pub const SHAFT_TABLE: &str = "shaft.csv";
+/// Energies of a shaft in motion.
+pub const ENERGY_TABLE: &str = "energy.csv";
 /// Column with the names of bearings.
 pub const BEARING: &str = "bearing";
 
@@ -43,50 +47,91 @@ pub struct SeveralTables {
     balls: csv::Writer<GrowingFile>,
     bearings: csv::Writer<GrowingFile>,
     shaft: csv::Writer<GrowingFile>,
+    /// Only of a motion.
+    energy: Option<csv::Writer<GrowingFile>>,
+}
+
+/// Names and heads of the tables of a run; `swept` is the column of a swept value.
+fn heads(swept: Option<&str>, energies: &[(&'static str, f64)]) -> Vec<(&'static str, Vec<String>)> {
+    let names =
+        |lists: &[&[&str]]| -> Vec<String> { lists.concat().iter().map(|name| name.to_string()).collect() };
+    let balls = [vec![BEARING.to_string()], ball_columns()].concat();
+    let bearings = names(&[&[BEARING], &SHAFT_COLUMNS, &FORCE_COLUMNS, &LOAD_COLUMNS]);
+    let mut all = vec![
+        (BALLS_TABLE, head(swept, &balls)),
+        (BEARINGS_TABLE, head(swept, &bearings)),
+        (SHAFT_TABLE, head(swept, &names(&[&SHAFT_COLUMNS]))),
+    ];
+    if !energies.is_empty() {
+        let columns: Vec<String> = energies.iter().map(|(name, _)| format!("{name}_j")).collect();
+        all.push((ENERGY_TABLE, head(swept, &columns)));
+    }
+    all
 }
 
 impl SeveralTables {
     /// Creates the files in a folder; `swept` is the column of a swept value.
-    pub fn create(dir: &Path, swept: Option<&str>) -> anyhow::Result<SeveralTables> {
-        let names = |lists: &[&[&str]]| -> Vec<String> {
-            lists.concat().iter().map(|name| name.to_string()).collect()
-        };
-        let balls = [vec![BEARING.to_string()], ball_columns()].concat();
-        let bearings = names(&[&[BEARING], &SHAFT_COLUMNS, &FORCE_COLUMNS, &LOAD_COLUMNS]);
-        Ok(SeveralTables {
-            balls: create(dir, BALLS_TABLE, &head(swept, &balls))?,
-            bearings: create(dir, BEARINGS_TABLE, &head(swept, &bearings))?,
-            shaft: create(dir, SHAFT_TABLE, &head(swept, &names(&[&SHAFT_COLUMNS])))?,
-        })
+    pub fn create(dir: &Path, swept: Option<&str>, first: &ListState) -> anyhow::Result<SeveralTables> {
+        let made = heads(swept, &first.energies).into_iter();
+        let made = made.map(|(name, columns)| create(dir, name, &columns));
+        Ok(SeveralTables::of(made.collect::<anyhow::Result<_>>()?))
+    }
+
+    /// Opens the files of an earlier run to go on after its step `last`; rows after it are moved into the folder that
+    /// `aside` makes.
+    pub fn resume(
+        dir: &Path,
+        first: &ListState,
+        last: u64,
+        aside: &mut dyn FnMut() -> anyhow::Result<PathBuf>,
+    ) -> anyhow::Result<SeveralTables> {
+        let cuts = heads(None, &first.energies).into_iter();
+        let cuts = cuts.map(|(name, columns)| Cut::find(dir, name, &columns.join(","), last));
+        // All are looked at before the first is cut.
+        let cuts: Vec<Cut> = cuts.collect::<anyhow::Result<_>>()?;
+        let mut files = Vec::new();
+        for cut in &cuts {
+            files.push(csv::Writer::from_writer(cut.make(aside)?));
+        }
+        Ok(SeveralTables::of(files))
+    }
+
+    fn of(files: Vec<csv::Writer<GrowingFile>>) -> SeveralTables {
+        let mut files = files.into_iter();
+        let mut next = || files.next().expect("a list has its tables");
+        SeveralTables {
+            balls: next(),
+            bearings: next(),
+            shaft: next(),
+            energy: files.next(),
+        }
     }
 
     /// Appends one step; `swept` is the swept value in SI.
     pub fn append(
         &mut self,
-        step: u64,
+        (step, time): (u64, f64),
         swept: Option<f64>,
         assembly: &Assembly,
-        solution: &AssemblySolution,
+        state: &ListState,
     ) -> anyhow::Result<()> {
-        let place = place_of(step, step as f64, swept);
+        let place = place_of(step, time, swept);
         let row = |cells: Vec<String>| [place.clone(), cells].concat();
         let mut balls = Vec::new();
         let mut bearings = Vec::new();
-        for (number_of, (mounted, of_bearing)) in assembly.bearings.iter().zip(&solution.bearings).enumerate()
-        {
+        for (mounted, of_bearing) in assembly.bearings.iter().zip(&state.bearings) {
             for (i, ball) in of_bearing.balls.iter().enumerate() {
                 let mut turned = *ball;
                 turned.azimuth_rad = in_one_turn(mounted.place.orientation.turned_angle(ball.azimuth_rad));
                 balls.push(row([vec![mounted.name.clone()], ball_cells(i, &turned)].concat()));
             }
-            let state = StateOnShaft::new(assembly, solution, number_of);
             let numbers = std::iter::once(mounted.place.position)
-                .chain(state.displacement)
-                .chain(state.force)
+                .chain(of_bearing.displacement)
+                .chain(of_bearing.force)
                 .chain([
-                    state.largest_ball_force,
-                    state.loaded_balls as f64,
-                    of_bearing.displacements.seat,
+                    of_bearing.largest_ball_force,
+                    of_bearing.loaded_balls as f64,
+                    of_bearing.seat,
                 ]);
             bearings.push(row([mounted.name.clone()]
                 .into_iter()
@@ -95,9 +140,14 @@ impl SeveralTables {
         }
         append(&mut self.balls, BALLS_TABLE, balls)?;
         append(&mut self.bearings, BEARINGS_TABLE, bearings)?;
-        let line = line(assembly, solution).into_iter();
+        let line = line(assembly, &state.shaft).into_iter();
         let line = line.map(|(z, q)| row(std::iter::once(z).chain(q).map(number).collect()));
-        append(&mut self.shaft, SHAFT_TABLE, line)
+        append(&mut self.shaft, SHAFT_TABLE, line)?;
+        let Some(energy) = &mut self.energy else {
+            return Ok(());
+        };
+        let cells = state.energies.iter().map(|(_, x)| number(*x)).collect();
+        append(energy, ENERGY_TABLE, [row(cells)])
     }
 }
 
@@ -107,7 +157,7 @@ fn in_one_turn(angle: f64) -> f64 {
 }
 
 /// Places of the shaft and their displacements: nodes of a beam; of a rigid shaft its bearings.
-fn line(assembly: &Assembly, solution: &AssemblySolution) -> Vec<(f64, [f64; N_SHAFT])> {
+fn line(assembly: &Assembly, displacements: &[f64]) -> Vec<(f64, [f64; N_SHAFT])> {
     let shaft = &assembly.shaft;
     let mut places = match shaft.is_beam() {
         true => shaft.nodes.clone(),
@@ -120,16 +170,79 @@ fn line(assembly: &Assembly, solution: &AssemblySolution) -> Vec<(f64, [f64; N_S
     };
     places.sort_by(f64::total_cmp);
     places.dedup();
-    let at = |z: f64| (z, shaft.displacement_at(z, &solution.shaft.displacements));
+    let at = |z: f64| (z, shaft.displacement_at(z, displacements));
     places.into_iter().map(at).collect()
 }
 
+/// Shaft and bearings at one instant.
+#[derive(Clone)]
+pub struct ListState {
+    /// The bearings.
+    pub bearings: Vec<StateOnShaft>,
+    /// Displacement of the shaft's dofs, m and rad.
+    pub shaft: Vec<f64>,
+    /// Energies of the shaft in motion by name, J; none at rest.
+    pub energies: Vec<(&'static str, f64)>,
+}
+
+impl ListState {
+    /// An equilibrium.
+    pub fn of_equilibrium(assembly: &Assembly, solution: &AssemblySolution) -> ListState {
+        let shaft = solution.shaft.displacements.clone();
+        let bearing = |(number, found): (usize, &dynamics::StaticSolution)| {
+            let force = assembly.force_on_shaft(number, solution);
+            let balls = found.balls.clone();
+            StateOnShaft::new(
+                (assembly, number),
+                &shaft,
+                force,
+                (balls, found.displacements.seat),
+            )
+        };
+        ListState {
+            bearings: solution.bearings.iter().enumerate().map(bearing).collect(),
+            energies: Vec::new(),
+            shaft,
+        }
+    }
+
+    /// An instant of a motion; forces are means over the last part of a step.
+    pub fn of_motion(assembly: &Assembly, motion: &AssemblyMotion<'_>, state: &AssemblyState) -> ListState {
+        let bearing = |number: usize| {
+            let own = &state.bearings[number];
+            let orientation = assembly.bearings[number].place.orientation;
+            let force = orientation.turned(state.loads[number]).map(|f| 0.0 - f);
+            let seat = own.seat.map_or(0.0, |seat| seat[0]);
+            let balls = motion.bearings[number].balls(own);
+            StateOnShaft::new((assembly, number), &state.shaft, force, (balls, seat))
+        };
+        let ledger = &state.ledger;
+        ListState {
+            bearings: (0..state.bearings.len()).map(bearing).collect(),
+            shaft: state.shaft.clone(),
+            energies: vec![
+                ("kinetic", ledger.kinetic),
+                ("strain", ledger.strain),
+                ("load_work", ledger.load_work),
+                ("spin_work", ledger.spin_work),
+                ("bearing_work", ledger.bearing_work),
+                ("defect", ledger.defect()),
+            ],
+        }
+    }
+}
+
 /// A bearing in the frame of the shaft.
+#[derive(Clone)]
 pub struct StateOnShaft {
+    /// Its balls, in its own frame.
+    pub balls: Vec<BallResult>,
     /// Displacement of the shaft at its place, m and rad.
     pub displacement: [f64; N_SHAFT],
     /// Force, N, and moment, N m, by which it pushes the shaft at its place.
     pub force: [f64; N_SHAFT],
+    /// Displacement of the outer ring's seat along its own z, m.
+    pub seat: f64,
     /// Largest force on the inner raceway, N.
     pub largest_ball_force: f64,
     /// Balls that carry.
@@ -137,19 +250,25 @@ pub struct StateOnShaft {
 }
 
 impl StateOnShaft {
-    /// Of a bearing in a solution, by its number.
-    pub fn new(assembly: &Assembly, solution: &AssemblySolution, number: usize) -> StateOnShaft {
+    /// Of a bearing, by its number, on a shaft that is displaced so.
+    fn new(
+        (assembly, number): (&Assembly, usize),
+        shaft: &[f64],
+        force: [f64; N_SHAFT],
+        (balls, seat): (Vec<BallResult>, f64),
+    ) -> StateOnShaft {
         let station = assembly.shaft.station(assembly.bearings[number].place.position);
-        let balls = &solution.bearings[number].balls;
         let largest = balls.iter().fold(0.0f64, |m, b| m.max(b.inner.force_n));
         StateOnShaft {
-            displacement: station.displacement(&solution.shaft.displacements),
-            force: assembly.force_on_shaft(number, solution).map(|f| f + 0.0),
+            displacement: station.displacement(shaft),
+            force: force.map(|f| f + 0.0),
+            seat,
             largest_ball_force: largest,
             loaded_balls: balls
                 .iter()
                 .filter(|b| b.inner.force_n > 1e-9 * largest.max(1.0))
                 .count(),
+            balls,
         }
     }
 }
@@ -167,7 +286,7 @@ pub struct SeveralSummary {
     bearings: BTreeMap<String, BearingSummary>,
     effects: Vec<&'static str>,
     iterations: usize,
-    /// Largest residual of the shaft over the largest force.
+    /// Of the shaft over the largest force; of a motion the largest energy defect over the largest energy.
     residual: f64,
     warnings: Vec<String>,
     timing_s: BTreeMap<String, f64>,
@@ -204,8 +323,10 @@ struct BearingSummary {
 pub struct SeveralFindings {
     /// `finished`, or what ended the run before its end.
     pub status: String,
-    /// Iterations of the shaft, of all points.
+    /// Iterations of the shaft, of all points; of a motion those of Newton.
     pub iterations: usize,
+    /// Largest residual of the shaft over the largest force; of a motion the largest energy defect.
+    pub residual: f64,
     /// What a user should know.
     pub warnings: Vec<String>,
     /// Wall time.
@@ -217,12 +338,12 @@ impl SeveralSummary {
     pub fn new(
         scene: &SeveralScene,
         assembly: &Assembly,
-        solution: &AssemblySolution,
+        last: &ListState,
         findings: SeveralFindings,
     ) -> SeveralSummary {
         let split = |v: [f64; N_SHAFT]| ([v[0], v[1], v[2]], [v[3], v[4]]);
         let bearing = |(number, mounted): (usize, &scene::BearingOnShaft)| {
-            let state = StateOnShaft::new(assembly, solution, number);
+            let state = &last.bearings[number];
             let (displacement_m, rotation_rad) = split(state.displacement);
             let (force_on_shaft_n, moment_on_shaft_n_m) = split(state.force);
             let summary = BearingSummary {
@@ -240,7 +361,7 @@ impl SeveralSummary {
             };
             (mounted.name.clone(), summary)
         };
-        let line = line(assembly, solution);
+        let line = line(assembly, &last.shaft);
         let parts = findings
             .laps
             .iter()
@@ -252,6 +373,7 @@ impl SeveralSummary {
             version: env!("CARGO_PKG_VERSION"),
             analysis: match scene.analysis {
                 Analysis::Sweep(_) => "sweep",
+                Analysis::Dynamic(_) => "dynamic",
                 _ => "static",
             },
             status: findings.status,
@@ -265,7 +387,7 @@ impl SeveralSummary {
             bearings: scene.bearings.iter().enumerate().map(bearing).collect(),
             effects: scene.effects.names(),
             iterations: findings.iterations,
-            residual: solution.shaft.error,
+            residual: findings.residual,
             warnings: findings.warnings,
             timing_s: parts.collect(),
             peak_memory_bytes: peak_memory(),
@@ -286,7 +408,7 @@ impl SeveralSummary {
 }
 
 /// Prints the bearings and the ends of the shaft.
-pub fn print_solution(assembly: &Assembly, solution: &AssemblySolution) {
+pub fn print_solution(assembly: &Assembly, last: &ListState) {
     print::line(format_args!(
         "bearing        position       x        y        z   tilt x   tilt y   force x   force y   force z  \
          largest ball  loaded"
@@ -295,8 +417,7 @@ pub fn print_solution(assembly: &Assembly, solution: &AssemblySolution) {
         "                     mm      um       um       um     urad     urad         N         N         N  \
                     N   balls"
     ));
-    for (number, mounted) in assembly.bearings.iter().enumerate() {
-        let state = StateOnShaft::new(assembly, solution, number);
+    for (mounted, state) in assembly.bearings.iter().zip(&last.bearings) {
         let [x, y, z, a, b] = state.displacement.map(|q| 1e6 * q);
         let [fx, fy, fz, ..] = state.force;
         print::line(format_args!(
@@ -317,7 +438,7 @@ pub fn print_solution(assembly: &Assembly, solution: &AssemblySolution) {
             mounted.model.geometry.n_balls
         ));
     }
-    for (z, q) in ends(assembly, solution) {
+    for (z, q) in ends(assembly, &last.shaft) {
         print::line(format_args!(
             "shaft at {:.2} mm: x {} um, y {} um, z {} um",
             1e3 * z,
@@ -329,8 +450,8 @@ pub fn print_solution(assembly: &Assembly, solution: &AssemblySolution) {
 }
 
 /// The ends of a beam.
-fn ends(assembly: &Assembly, solution: &AssemblySolution) -> Vec<(f64, [f64; N_SHAFT])> {
-    let line = line(assembly, solution);
+fn ends(assembly: &Assembly, displacements: &[f64]) -> Vec<(f64, [f64; N_SHAFT])> {
+    let line = line(assembly, displacements);
     match assembly.shaft.is_beam() {
         true => vec![line[0], line[line.len() - 1]],
         false => Vec::new(),
@@ -348,12 +469,8 @@ pub fn print_sweep_head(column: &str, assembly: &Assembly) {
 }
 
 /// Prints a point of a sweep.
-pub fn print_sweep_point(value: f64, assembly: &Assembly, solution: &AssemblySolution) {
-    let cells: Vec<String> = (0..assembly.bearings.len())
-        .map(|i| {
-            let state = StateOnShaft::new(assembly, solution, i);
-            format!("{:14.2} ({:5})", state.largest_ball_force, state.loaded_balls)
-        })
-        .collect();
+pub fn print_sweep_point(value: f64, point: &ListState) {
+    let cell = |state: &StateOnShaft| format!("{:14.2} ({:5})", state.largest_ball_force, state.loaded_balls);
+    let cells: Vec<String> = point.bearings.iter().map(cell).collect();
     print::line(format_args!("{value:>28} {}", cells.join(" ")));
 }

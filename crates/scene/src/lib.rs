@@ -28,7 +28,7 @@ pub use error::BuildError;
 pub use meshing::{build_meshes, build_missing};
 pub use revolve_like::{MadeLike, RevolveLike, revolve_like};
 pub use settings::{effects_context, settings, speeds};
-pub use several::{Rings, assembly_with_rings, build_assembly, have_same_rings};
+pub use several::{Rings, assembly_with_rings, build_assembly, have_same_rings, loads as loads_on_shaft};
 pub use starter::{StarterRequest, file_name, scene_text};
 pub use tables::*;
 pub use toml_text::{read_tables, title};

@@ -50,7 +50,7 @@ pub fn assembly_with_rings(scene: &SeveralScene, rings: Vec<Rings>) -> Result<As
         });
     }
     let shaft = shaft(scene)?;
-    let load = loads(scene, &shaft, &bearings[0].model)?;
+    let load = loads(scene, (&shaft, &bearings[0].model), 0.0)?;
     Ok(Assembly {
         bearings,
         shaft,
@@ -111,9 +111,13 @@ fn rigid_shaft(rigid: &RigidShaft) -> ShaftBody {
     ShaftBody::rigid(inertia, held)
 }
 
-/// Loads on the shaft's dofs: those along it, those of effects at the load point, and its weight. `model` is any of the
-/// bearings: the effects ask for one.
-fn loads(scene: &SeveralScene, shaft: &ShaftBody, model: &Model) -> Result<Vec<f64>, BuildError> {
+/// Loads on the shaft's dofs at a time, s: those along it, those of effects at the load point, and its weight. `model`
+/// is any of the bearings: the effects ask for one.
+pub fn loads(
+    scene: &SeveralScene,
+    (shaft, model): (&ShaftBody, &Model),
+    time: f64,
+) -> Result<Vec<f64>, BuildError> {
     let mut sum = vec![0.0; shaft.n()];
     for load in &scene.shaft.loads {
         let ([x, y, z], [about_x, about_y]) = (load.force, load.moment);
@@ -130,7 +134,11 @@ fn loads(scene: &SeveralScene, shaft: &ShaftBody, model: &Model) -> Result<Vec<f
     let mut of_effects = Loads::none(model);
     for effect in found.iter().filter(|effect| ON_SHAFT.contains(&effect.name())) {
         // The load point of a bearing's model is its origin: forces have no lever.
-        effect.add_loads(model, &Now::default(), &mut of_effects)?;
+        let now = Now {
+            time,
+            ..Now::default()
+        };
+        effect.add_loads(model, &now, &mut of_effects)?;
     }
     shaft.add_load(scene.shaft.load_point, of_effects.shaft, &mut sum);
     if let Some(gravity) = &scene.effects.gravity {

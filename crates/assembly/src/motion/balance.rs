@@ -2,7 +2,7 @@
 
 use dense::DenseLu;
 use dynamics::motion::held::HeldPart;
-use dynamics::stiffness::{N_SHAFT, ShaftMatrix};
+use dynamics::stiffness::N_SHAFT;
 
 use crate::error::AssemblyError;
 use crate::newton::Mount;
@@ -13,7 +13,9 @@ const MOST_ITERATIONS: usize = 40;
 /// Residual over the largest force at which iteration may stop; it goes on while it improves.
 const LIMIT: f64 = 1e-10;
 /// Residual over the largest force that counts as round-off.
-const TARGET: f64 = 1e-14;
+const TARGET: f64 = 1e-13;
+/// Residual over that before it at which factors are good enough for another step.
+const ENOUGH: f64 = 0.05;
 /// Halvings of a step of Newton.
 const HALVINGS: u32 = 10;
 
@@ -44,7 +46,12 @@ struct Iterate {
     /// Largest force, N.
     scale: f64,
     loads: Vec<[f64; N_SHAFT]>,
-    stiffness: Vec<ShaftMatrix>,
+}
+
+/// Factors of the tangent over the free dofs, kept while Newton gets on with them.
+pub struct Kept {
+    free: Vec<usize>,
+    factors: Option<DenseLu>,
 }
 
 impl ShaftStep<'_> {
@@ -76,6 +83,7 @@ impl ShaftStep<'_> {
         &self,
         parts: &mut [HeldPart<'_>],
         from: Vec<f64>,
+        kept: &mut Kept,
     ) -> Result<(Vec<f64>, Vec<[f64; N_SHAFT]>), AssemblyError> {
         let mut at = self.evaluate(parts, from)?;
         let (mut best, mut stalled) = (f64::INFINITY, 0);
@@ -88,7 +96,12 @@ impl ShaftStep<'_> {
             if at.error <= TARGET * at.scale || (stalled >= 2 && is_small) {
                 return Ok((at.end, at.loads));
             }
-            let step = self.step(&at)?;
+            let gets_on =
+                history.len() < 2 || history[history.len() - 1] <= ENOUGH * history[history.len() - 2];
+            if !gets_on {
+                kept.factors = None;
+            }
+            let step = self.step(parts, &at, kept)?;
             at = self.search(parts, at, &step)?;
         }
         let tail = history.len().saturating_sub(6);
@@ -117,7 +130,7 @@ impl ShaftStep<'_> {
         let mut scale = (0..n).fold(f64::MIN_POSITIVE, |m, i| {
             m.max(self.as_force(i, self.load[i].abs().max(inertia[i].abs())))
         });
-        let (mut loads, mut stiffness) = (Vec::new(), Vec::new());
+        let mut loads = Vec::new();
         for (mount, part) in self.mounts.iter().zip(parts) {
             let own = mount.place.into_bearing(mount.station.displacement(&end));
             let answer = part.answer(own).map_err(|source| AssemblyError::Bearing {
@@ -128,7 +141,6 @@ impl ShaftStep<'_> {
             mount.station.add_load(load.map(|f| -f), &mut residual);
             scale = scale.max(answer.force);
             loads.push(answer.load);
-            stiffness.push(mount.place.orientation.turned_matrix(&answer.stiffness));
         }
         let free = (0..n).filter(|&i| self.shaft.held[i].is_none());
         let error = free.fold(0.0f64, |m, i| m.max(self.as_force(i, residual[i].abs())));
@@ -141,7 +153,6 @@ impl ShaftStep<'_> {
             error,
             scale,
             loads,
-            stiffness,
         })
     }
 
@@ -153,27 +164,53 @@ impl ShaftStep<'_> {
         }
     }
 
-    /// Newton's step.
-    fn step(&self, at: &Iterate) -> Result<Vec<f64>, AssemblyError> {
+    /// Newton's step, with factors of an earlier tangent if there are any.
+    fn step(
+        &self,
+        parts: &mut [HeldPart<'_>],
+        at: &Iterate,
+        kept: &mut Kept,
+    ) -> Result<Vec<f64>, AssemblyError> {
+        let factors = match kept.factors.take() {
+            Some(factors) => factors,
+            None => self.factors(parts, &kept.free)?,
+        };
+        let mut found: Vec<f64> = kept.free.iter().map(|&i| at.residual[i]).collect();
+        factors.solve(&mut found, 1);
+        kept.factors = Some(factors);
+        let mut step = vec![0.0; self.shaft.n()];
+        kept.free.iter().zip(found).for_each(|(&i, x)| step[i] = x);
+        Ok(step)
+    }
+
+    /// Nothing kept yet.
+    pub fn keeps(&self) -> Kept {
+        let held = &self.shaft.held;
+        Kept {
+            free: (0..held.len()).filter(|&i| held[i].is_none()).collect(),
+            factors: None,
+        }
+    }
+
+    /// Factors of the tangent at the last answers of the bearings.
+    fn factors(&self, parts: &mut [HeldPart<'_>], free: &[usize]) -> Result<DenseLu, AssemblyError> {
         let n = self.shaft.n();
         let (of_mass, of_spin) = (2.0 / (self.dt * self.dt), self.speeds[1] / self.dt);
         let own = |k: usize| {
             of_mass * self.shaft.mass[k] + of_spin * self.shaft.gyroscopic[k] + 0.5 * self.shaft.stiffness[k]
         };
         let mut tangent: Vec<f64> = (0..n * n).map(own).collect();
-        for (mount, stiffness) in self.mounts.iter().zip(&at.stiffness) {
-            mount.station.add_matrix(stiffness, n, &mut tangent);
+        for (mount, part) in self.mounts.iter().zip(parts) {
+            let own = part.stiffness().map_err(|source| AssemblyError::Bearing {
+                name: mount.name.clone(),
+                source,
+            })?;
+            let turned = mount.place.orientation.turned_matrix(&own);
+            mount.station.add_matrix(&turned, n, &mut tangent);
         }
-        let free: Vec<usize> = (0..n).filter(|&i| self.shaft.held[i].is_none()).collect();
         let entries = free.iter().flat_map(|&i| free.iter().map(move |&j| n * i + j));
         let matrix: Vec<f64> = entries.map(|k| tangent[k]).collect();
-        let mut found: Vec<f64> = free.iter().map(|&i| at.residual[i]).collect();
-        DenseLu::factor(free.len(), &matrix)
-            .map_err(|source| AssemblyError::Matrix { source })?
-            .solve(&mut found, 1);
-        let mut step = vec![0.0; n];
-        free.iter().zip(found).for_each(|(&i, x)| step[i] = x);
-        Ok(step)
+        DenseLu::factor(free.len(), &matrix).map_err(|source| AssemblyError::Matrix { source })
     }
 
     /// The point along a step, halved until the residual does not grow.

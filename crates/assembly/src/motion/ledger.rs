@@ -25,6 +25,47 @@ pub struct ShaftLedger {
 }
 
 impl ShaftLedger {
+    /// How many numbers it has.
+    pub const N: usize = 7;
+
+    /// Its numbers, to be stored.
+    pub fn to_numbers(&self) -> [f64; ShaftLedger::N] {
+        [
+            self.kinetic,
+            self.strain,
+            self.initial,
+            self.load_work,
+            self.spin_work,
+            self.bearing_work,
+            self.scale,
+        ]
+    }
+
+    /// The ledger of stored numbers; None where they are not as many.
+    pub fn from_numbers(numbers: &[f64]) -> Option<ShaftLedger> {
+        let [
+            kinetic,
+            strain,
+            initial,
+            load_work,
+            spin_work,
+            bearing_work,
+            scale,
+        ] = *numbers
+        else {
+            return None;
+        };
+        Some(ShaftLedger {
+            kinetic,
+            strain,
+            initial,
+            load_work,
+            spin_work,
+            bearing_work,
+            scale,
+        })
+    }
+
     /// A ledger that begins with a displacement and a velocity.
     pub fn begin(shaft: &ShaftBody, q: &[f64], v: &[f64]) -> ShaftLedger {
         let [kinetic, strain] = energies(shaft, q, v);

@@ -197,10 +197,10 @@ impl<'a> AssemblyMotion<'a> {
             load: (self.load)(span.at(0.5))?,
             tilt_arm: self.assembly.scales().tilt_arm,
         };
-        let mut end = step.guess();
+        let (mut end, mut kept) = (step.guess(), step.keeps());
         for _ in 0..MAX_ROUNDS {
             let loads;
-            (end, loads) = step.balance(&mut parts, end)?;
+            (end, loads) = step.balance(&mut parts, end, &mut kept)?;
             if self.all(&mut parts, |_, part| part.place())? == Holding::Again {
                 continue;
             }

@@ -34,8 +34,6 @@ pub struct HeldPart<'m> {
 pub struct HeldAnswer {
     /// Mean load that has to act on the shaft over the part, N and N m.
     pub load: [f64; N_SHAFT],
-    /// Its growth with the displacement at the end.
-    pub stiffness: ShaftMatrix,
     /// Force by which its round-off counts, N.
     pub force: f64,
 }
@@ -66,11 +64,20 @@ impl<'m> HeldPart<'m> {
         })
     }
 
-    /// The answer to a displacement of the shaft at the end.
+    /// The answer to a displacement of the shaft at the end. Newton starts from the answer before.
     pub fn answer(&mut self, shaft: [f64; N_SHAFT]) -> Result<HeldAnswer, DynamicsError> {
         let part = &mut self.part;
+        part.clock.lap();
         part.parts.shaft.imposed = shaft.map(Some);
-        let solution = part.parts.solve_step(part.scale, &self.motion.costs)?;
+        let before = std::mem::take(&mut self.solution.unknowns);
+        let guess = if before.is_empty() {
+            part.parts.system().guess()
+        } else {
+            before
+        };
+        let solution = part
+            .parts
+            .solve_step_from(guess, part.scale, &self.motion.costs)?;
         let scheme = StepScheme {
             integrator: self.motion.settings.integrator,
             dt: part.span.dt,
@@ -78,7 +85,6 @@ impl<'m> HeldPart<'m> {
         let forces = solution.forces.iter().map(|f| f.force[0].hypot(f.force[1]));
         let answer = HeldAnswer {
             load: part.parts.shaft_reactions(&solution, scheme),
-            stiffness: part.parts.held_tangent(shaft, &solution.unknowns)?,
             force: forces.fold(part.scale, f64::max),
         };
         part.report.newton_iterations += solution.iterations;
@@ -87,8 +93,20 @@ impl<'m> HeldPart<'m> {
         Ok(answer)
     }
 
+    /// How the load of the last answer grows with the displacement at the end.
+    pub fn stiffness(&mut self) -> Result<ShaftMatrix, DynamicsError> {
+        let part = &mut self.part;
+        part.clock.lap();
+        let found = part
+            .parts
+            .held_tangent(self.solution.shaft, &self.solution.unknowns);
+        part.report.laps.add(NEWTON, part.clock.lap());
+        found
+    }
+
     /// Brings patches in line with the last answer.
     pub fn place(&mut self) -> Result<Holding, DynamicsError> {
+        self.part.clock.lap();
         let stays = self
             .motion
             .stays_in_place(self.state, &mut self.part, &self.solution)?;
@@ -98,6 +116,7 @@ impl<'m> HeldPart<'m> {
     /// Brings the inertia of turning frames in line with the last answer and ends the rings; looks ahead to the part
     /// `upcoming`.
     pub fn close(&mut self, upcoming: Option<Span>) -> Result<Holding, DynamicsError> {
+        self.part.clock.lap();
         self.ends = self
             .motion
             .close(self.state, &mut self.part, &self.solution, upcoming)?;
@@ -108,7 +127,8 @@ impl<'m> HeldPart<'m> {
     }
 
     /// The state after the part, which is closed.
-    pub fn finish(self, cache: &mut StepCache) -> Result<(MotionState, StepReport), DynamicsError> {
+    pub fn finish(mut self, cache: &mut StepCache) -> Result<(MotionState, StepReport), DynamicsError> {
+        self.part.clock.lap();
         let ends = self.ends.expect("the part is closed");
         let (next, report, ahead) = self
             .motion

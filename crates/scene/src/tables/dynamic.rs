@@ -124,6 +124,24 @@ impl RawDynamic {
         matches!(self.integrator, None | Some(IntegratorName::AverageAcceleration))
     }
 
+    /// Reports what a list of bearings does not go with.
+    pub fn refuse_in_list(&self, problems: &mut Problems) {
+        let given = [
+            ("adaptive", self.adaptive.is_some(), "its steps are equal"),
+            ("start", self.start.is_some(), "it starts from its equilibrium"),
+            (
+                "integrator",
+                !self.conserves(),
+                "it moves by average_acceleration",
+            ),
+        ];
+        for (key, _, instead) in given.iter().filter(|(_, is_given, _)| *is_given) {
+            problems.add(format!(
+                "dynamic.{key} is not for a list of bearings yet: {instead}; remove it, or give one table [bearing]"
+            ));
+        }
+    }
+
     /// Checks ranges, that the step fits the duration, and that the integrator has the numbers it needs; `None` when
     /// there are problems.
     pub fn check(&self, shaft: &Shaft, problems: &mut Problems) -> Option<Dynamic> {

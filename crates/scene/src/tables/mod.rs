@@ -120,7 +120,7 @@ pub use self::ring_inertia::RingInertia;
 pub use self::section::{Section, SectionElement};
 pub use self::several::{
     AnyScene, BearingOnShaft, CommonShaft, ON_SHAFT, Pairing, RigidShaft, SeveralScene, ShaftKind, ShaftLoad,
-    SpringPairing,
+    SpringPairing, names_of_bearings, overrides_of_types,
 };
 pub use self::shaft::{Motion, Shaft};
 pub use self::solver::{Backend, Solver};

@@ -9,7 +9,7 @@ use std::path::Path;
 use assembly::Orientation;
 use dynamics::effects::{Context, Effects};
 use input::{Clock, Problems};
-use toml_edit::{DocumentMut, Item, Table, Value};
+use toml_edit::{DocumentMut, Item, Table, TableLike, Value};
 
 use super::super::messages::Messages;
 use super::super::ring::MeshFiles;
@@ -86,8 +86,12 @@ impl Composer<'_> {
         check_list(&raw, &mut problems);
         let pairing = raw.pairing.as_ref().map(|p| p.check(&raw.bearing, &mut problems));
         let pairing = pairing.unwrap_or_default();
-        let analysis = raw.analysis(document, &mut problems);
+        let at_rest = raw.analysis(document, &mut problems);
         let (scenes, told) = self.scenes(&raw, document, &pairing)?;
+        let analysis = match raw.dynamic {
+            Some(_) => scenes.iter().flatten().map(|s| s.analysis.clone()).next(),
+            None => at_rest,
+        };
         check_places(&raw.bearing, &scenes, &mut problems);
         let balls = scenes.iter().flatten().map(|s| s.bearing.ball_diameter);
         let largest_ball = balls.fold(0.0, f64::max);
@@ -239,7 +243,10 @@ impl Composer<'_> {
                 set(document, &format!("shaft.{key}"), &format!("\"0 {unit}\""));
             }
             set(document, "shaft.load_point", "\"0 m\"");
-            document.insert("static", Item::Table(Table::new()));
+            match list.get("dynamic") {
+                Some(dynamic) => document.insert("dynamic", dynamic.clone()),
+                None => document.insert("static", Item::Table(Table::new())),
+            };
         })
     }
 
@@ -330,8 +337,11 @@ fn check_loads(raw: &RawSeveral, problems: &mut Problems) {
         ..Effects::default()
     };
     let context = Context {
-        is_without_inertia: true,
-        clock: Clock::AtRest,
+        is_without_inertia: raw.dynamic.is_none(),
+        clock: match raw.dynamic {
+            Some(_) => Clock::Running,
+            None => Clock::AtRest,
+        },
         has_speed: [false; 2],
         is_flexible: [false; 2],
         seat_diameters: [None; 2],
@@ -372,9 +382,12 @@ pub fn is_of_type(argument: &str) -> bool {
 
 /// The direction of the weight in the bearing's frame.
 fn turn_weight(document: &mut DocumentMut, orientation: Orientation) {
+    // Getting a key of an item by itself would make it.
     let direction = document
         .get_mut("effects")
+        .and_then(Item::as_table_like_mut)
         .and_then(|effects| effects.get_mut("gravity"))
+        .and_then(Item::as_table_like_mut)
         .and_then(|gravity| gravity.get_mut("direction"))
         .and_then(Item::as_array_mut);
     let Some(direction) = direction else { return };
@@ -398,14 +411,51 @@ fn turn_speed(document: &mut DocumentMut, orientation: Orientation) {
         return;
     };
     for ring in ["inner", "outer"] {
-        let Some(text) = speed.get(ring).and_then(Item::as_str).map(str::to_string) else {
-            continue;
-        };
-        let turned = match text.trim().strip_prefix('-') {
-            Some(rest) => rest.to_string(),
-            None => format!("-{}", text.trim().trim_start_matches('+')),
-        };
-        speed.insert(ring, Item::Value(Value::from(turned)));
+        match speed.get_mut(ring) {
+            Some(Item::Value(value)) => turn_values(value),
+            Some(Item::Table(table)) => {
+                for key in ["values", "ramp"] {
+                    match table.get_mut(key) {
+                        Some(Item::Value(value)) => turn_values(value),
+                        Some(Item::Table(ramp)) => turn_ends(ramp),
+                        _ => {}
+                    }
+                }
+            }
+            _ => {}
+        }
+    }
+}
+
+/// Turns a speed, those of a list, or those in the inline table of a course over time.
+fn turn_values(value: &mut Value) {
+    match value {
+        Value::String(text) => {
+            let turned = match text.value().trim().strip_prefix('-') {
+                Some(rest) => rest.to_string(),
+                None => format!("-{}", text.value().trim().trim_start_matches('+')),
+            };
+            *value = Value::from(turned);
+        }
+        Value::Array(values) => values.iter_mut().for_each(turn_values),
+        Value::InlineTable(table) => {
+            if let Some(values) = table.get_mut("values") {
+                turn_values(values);
+            }
+            if let Some(ramp) = table.get_mut("ramp").and_then(Value::as_inline_table_mut) {
+                turn_ends(ramp);
+            }
+        }
+        _ => {}
+    }
+}
+
+/// Turns the speeds at both ends of a ramp.
+fn turn_ends(ramp: &mut dyn TableLike) {
+    for key in ["from", "to"] {
+        if let Some(Item::Value(value)) = ramp.get_mut(key) {
+            turn_values(value);
+        }
     }
 }
 

@@ -24,7 +24,7 @@ use dynamics::kinematics::RingSpeeds;
 use input::Problems;
 use serde::Deserialize;
 use serde::de::IgnoredAny;
-use toml_edit::DocumentMut;
+use toml_edit::{DocumentMut, Item};
 
 use self::compose::Composer;
 pub use self::load::ShaftLoad;
@@ -34,6 +34,7 @@ use self::pairing::RawPairing;
 pub use self::pairing::{Pairing, SpringPairing};
 use self::shaft::RawCommonShaft;
 pub use self::shaft::{CommonShaft, RigidShaft, ShaftKind};
+use super::dynamic::RawDynamic;
 use super::messages::Messages;
 use super::ring::MeshFiles;
 use super::sweep::{Analysis, RawStatic, RawSweep};
@@ -42,12 +43,15 @@ use super::{Scene, SceneError, edit, include};
 /// Effects that load the shaft.
 pub const ON_SHAFT: [&str; 3] = ["axial_force", "moment", "radial_force"];
 /// Effects that act in every bearing.
-const IN_BEARINGS: [&str; 6] = [
+const IN_BEARINGS: [&str; 9] = [
     "ball_centrifugal",
     "cage_slip",
+    "contact_damping",
     "fit",
+    "frame_rotation",
     "gravity",
     "gyroscopic_moment",
+    "rayleigh_damping",
     "temperature",
 ];
 
@@ -92,7 +96,7 @@ struct RawSeveral {
     heat: Option<IgnoredAny>,
     lubricant: Option<IgnoredAny>,
     quasi_static: Option<IgnoredAny>,
-    dynamic: Option<IgnoredAny>,
+    dynamic: Option<RawDynamic>,
     modes: Option<IgnoredAny>,
 }
 
@@ -117,7 +121,7 @@ pub struct SeveralScene {
     pub effects: Effects,
     /// Speeds of the rings in the frame of the shaft; none turns when `None`.
     pub speed: Option<RingSpeeds>,
-    /// [`Analysis::Static`] or [`Analysis::Sweep`].
+    /// [`Analysis::Static`], [`Analysis::Sweep`] or [`Analysis::Dynamic`].
     pub analysis: Analysis,
 }
 
@@ -206,11 +210,30 @@ impl Scene {
     }
 }
 
+/// Those `--set` arguments that are of the types of the bearings: they are not in the text of a list.
+pub fn overrides_of_types(overrides: &[String]) -> Vec<String> {
+    overrides
+        .iter()
+        .filter(|o| compose::is_of_type(o))
+        .cloned()
+        .collect()
+}
+
+/// Names of the bearings in the text of a list that was read before.
+pub fn names_of_bearings(text: &str) -> Vec<String> {
+    let document: DocumentMut = text.parse().unwrap_or_default();
+    let tables = document.get("bearing").and_then(Item::as_array_of_tables);
+    let names = tables
+        .into_iter()
+        .flatten()
+        .filter_map(|table| table.get("name")?.as_str());
+    names.map(str::to_string).collect()
+}
+
 impl SeveralScene {
     /// The `--set` arguments that are of the types of the bearings: they are not in the text.
     pub fn type_overrides(&self) -> Vec<String> {
-        let of_type = self.overrides.iter().filter(|o| compose::is_of_type(o));
-        of_type.cloned().collect()
+        overrides_of_types(&self.overrides)
     }
 
     /// The scenes of the points of a sweep, in order; none for any other scene.
@@ -235,15 +258,14 @@ impl SeveralScene {
 impl RawSeveral {
     /// Reports tables that a list of bearings does not go with.
     fn refuse(&self, problems: &mut Problems) {
-        let in_time = [
-            ("quasi_static", &self.quasi_static),
-            ("dynamic", &self.dynamic),
-            ("modes", &self.modes),
-        ];
+        let in_time = [("quasi_static", &self.quasi_static), ("modes", &self.modes)];
+        if let Some(dynamic) = &self.dynamic {
+            dynamic.refuse_in_list(problems);
+        }
         for (name, _) in in_time.iter().filter(|(_, table)| table.is_some()) {
             problems.add(format!(
-                "[{name}] is not for a list of bearings yet, which is solved at rest; use [static] or [sweep], or give \
-                 one table [bearing]"
+                "[{name}] is not for a list of bearings yet; use [static], [sweep] or [dynamic], or give one table \
+                 [bearing]"
             ));
         }
         let others = [
@@ -270,21 +292,39 @@ impl RawSeveral {
         }
     }
 
+    /// The analysis of a list at rest; a motion is read with the bearings.
     fn analysis(&self, document: &DocumentMut, problems: &mut Problems) -> Option<Analysis> {
-        match (&self.r#static, &self.sweep) {
-            (Some(_), None) => Some(Analysis::Static),
-            (None, Some(sweep)) => sweep.check(document, problems).map(Analysis::Sweep),
-            (Some(_), Some(_)) => {
-                problems.add("the scene has both [static] and [sweep]; keep exactly one analysis");
+        let given = [
+            ("[static]", self.r#static.is_some()),
+            ("[sweep]", self.sweep.is_some()),
+            ("[dynamic]", self.dynamic.is_some()),
+        ];
+        let given: Vec<&str> = given
+            .iter()
+            .filter(|(_, is)| *is)
+            .map(|(name, _)| *name)
+            .collect();
+        let is_refused = self.quasi_static.is_some() || self.modes.is_some();
+        match given[..] {
+            [_] => match &self.sweep {
+                Some(sweep) => sweep.check(document, problems).map(Analysis::Sweep),
+                None => Some(Analysis::Static),
+            },
+            [] if is_refused => None,
+            [] => {
+                problems
+                    .add("the scene has no analysis; add one of the tables [static], [sweep] and [dynamic]");
                 None
             }
-            (None, None) => {
-                let is_refused = [&self.quasi_static, &self.dynamic, &self.modes]
-                    .iter()
-                    .any(|table| table.is_some());
-                if !is_refused {
-                    problems.add("the scene has no analysis; add one of the tables [static] and [sweep]");
-                }
+            [a, b] => {
+                problems.add(format!(
+                    "the scene has both {a} and {b}; keep exactly one analysis"
+                ));
+                None
+            }
+            _ => {
+                problems
+                    .add("the scene has all of [static], [sweep] and [dynamic]; keep exactly one analysis");
                 None
             }
         }

@@ -1,0 +1,484 @@
+//! `raceway run` of a `[dynamic]` scene with a list of bearings on one shaft, and `raceway resume` of its results.
+//!
+//! Every bearing has a folder with tables, step files and restart states as a bearing alone; the state of the shaft is
+//! stored in each of them. The tables beside the folders are in the frame of the shaft.
+
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+use anyhow::anyhow;
+use assembly::motion::AssemblyCache;
+use assembly::{Assembly, AssemblyError, AssemblyMotion, AssemblySolver, AssemblyState};
+use comm::print;
+use dynamics::costs::{EFFECTS, FACTOR};
+use results::failure::Failure;
+use results::files::Files;
+use results::memory::{Forecasts, require_memory};
+use results::motion_fields::{Recorded, RestartState};
+use results::several::{ListState, SeveralFindings, SeveralSummary, SeveralTables, print_solution};
+use results::shown::Shown;
+use results::snapshot::Snapshot;
+use results::stop::Stop;
+use results::summary::{Findings, READ, Summary, TOTAL};
+use results::survey::{Survey, say_doubts};
+use results::watch::Watch;
+use results::whole::{make_asked_folder, write_new};
+use scene::{Dynamic, Scene, SeveralScene, build_assembly, loads_on_shaft, settings};
+use timer::{Laps, Stopwatch};
+
+use crate::motion::check_ledger;
+use crate::options::Limits;
+use crate::progress::Progress;
+use crate::several::{SCENE_FILE, all_doubts, require_one_rank, say_types, solving};
+use crate::several_state;
+
+/// Steps between two lines of progress in a log.
+const PROGRESS_STEPS: u64 = 50;
+
+/// Runs the motion from its equilibrium.
+pub fn run(
+    scene: &SeveralScene,
+    dynamic: &Dynamic,
+    dir: &Path,
+    limits: &Limits,
+    start: Instant,
+) -> Result<(), Failure> {
+    require_one_rank()?;
+    let progress = Progress::new(dynamic.n_steps);
+    progress.stage("reading meshes");
+    let (mut assembly, _) = build_assembly(scene)?;
+    let mut warnings = all_doubts(scene, &assembly);
+    say_doubts(&warnings);
+    for bearing in &assembly.bearings {
+        require_memory(&scene.analysis, &bearing.model)?;
+    }
+    let mut laps = Laps::default();
+    laps.add(READ, start.elapsed().as_secs_f64());
+    progress.stage("static start");
+    let mut solver = AssemblySolver::new(&assembly).map_err(solving)?;
+    say_types(&solver, &assembly, &progress);
+    let solution = solver.solve(&mut assembly, None).map_err(solving)?;
+    warnings.extend(crate::several::warnings_at("", &assembly, &solution));
+    laps.merge(&solver.laps());
+    drop(solver);
+    assembly.release();
+    progress.stage("factoring the effective matrices");
+    let motion = laps.time(FACTOR, || ready(scene, dynamic, &assembly))?;
+    let state = motion.start(&solution);
+    let placed = scene
+        .bearings
+        .iter()
+        .zip(&solution.bearings)
+        .map(|(bearing, found)| Ok(bearing.scene.with_shaft_at(found.displacements.shaft)?))
+        .collect::<Result<Vec<Scene>, Failure>>()?;
+    drop(solution);
+    make_asked_folder(dir)?;
+    results::files::say_folder(dir);
+    write_new(&dir.join(SCENE_FILE), |file| {
+        file.write_all(scene.text.as_bytes())
+    })?;
+    let first = ListState::of_motion(&assembly, &motion, &state);
+    let tables = SeveralTables::create(dir, None, &first)?;
+    let mut files = Vec::new();
+    for (i, placed) in placed.iter().enumerate() {
+        let first = Snapshot::of_motion(&motion.bearings[i], &state.bearings[i]);
+        let (model, own) = (&assembly.bearings[i].model, dir.join(&scene.bearings[i].name));
+        files.push(Files::create_part(
+            placed,
+            model,
+            &own,
+            &first,
+            Survey::default(),
+            &[],
+        )?);
+    }
+    let mut march = March {
+        watches: new_watches(&assembly),
+        scene,
+        dynamic,
+        assembly: &assembly,
+        motion: &motion,
+        placed,
+        tables,
+        files,
+        state,
+        cache: AssemblyCache::default(),
+        newton: 0,
+        laps,
+        worst_defect: 0.0,
+        last_file: None,
+        last_state: None,
+        last_row: None,
+        dir,
+    };
+    march.write_tables()?;
+    march.write_fields(RestartState::Stored)?;
+    march.finish_run(progress, limits, warnings, start)
+}
+
+/// Goes on with a motion whose bearings and step have been read.
+pub fn resume(stored: several_state::StoredList, limits: &Limits, start: Instant) -> Result<(), Failure> {
+    let several_state::StoredList {
+        dir,
+        scene,
+        dynamic,
+        step,
+        bearings,
+    } = stored;
+    let mut progress = Progress::new(dynamic.n_steps);
+    progress.start_at(step);
+    progress.stage("reading meshes");
+    let (mut assembly, _) = build_assembly(&scene)?;
+    let warnings = all_doubts(&scene, &assembly);
+    say_doubts(&warnings);
+    assembly.release();
+    let mut laps = Laps::default();
+    laps.add(READ, start.elapsed().as_secs_f64());
+    progress.stage("factoring the effective matrices");
+    let motion = laps.time(FACTOR, || ready(&scene, &dynamic, &assembly))?;
+    let restored = several_state::restore(&bearings, &motion, assembly.shaft.n(), (&dir, step))?;
+    let first = ListState::of_motion(&assembly, &motion, &restored.state);
+    let (mut files, mut placed) = (Vec::new(), Vec::new());
+    for (i, bearing) in bearings.into_iter().enumerate() {
+        let own = Snapshot::of_motion(&motion.bearings[i], &restored.state.bearings[i]);
+        let model = &assembly.bearings[i].model;
+        let from = results::files::ResumedFrom {
+            step,
+            tables: bearing.record.tables.as_ref(),
+            warnings: &[],
+        };
+        let lock = Some(bearing.lock);
+        files.push(Files::resume(
+            &bearing.scene,
+            model,
+            lock,
+            &own,
+            Survey::default(),
+            &from,
+        )?);
+        placed.push(bearing.scene);
+    }
+    results::files::say_folder(&dir);
+    let mut aside = None;
+    let mut make_aside = || -> anyhow::Result<PathBuf> {
+        match &aside {
+            Some(folder) => Ok(PathBuf::clone(folder)),
+            None => Ok(aside.insert(checkpoint::new_superseded_folder(&dir)?).clone()),
+        }
+    };
+    let tables = SeveralTables::resume(&dir, &first, step, &mut make_aside)?;
+    let march = March {
+        scene: &scene,
+        dynamic: &dynamic,
+        assembly: &assembly,
+        motion: &motion,
+        placed,
+        tables,
+        files,
+        state: restored.state,
+        cache: AssemblyCache::default(),
+        newton: restored.newton,
+        laps,
+        watches: restored.watches,
+        worst_defect: 0.0,
+        last_file: Some(step),
+        last_state: Some(step),
+        last_row: Some(step),
+        dir: &dir,
+    };
+    march.finish_run(progress, limits, warnings, start)
+}
+
+fn new_watches(assembly: &Assembly) -> Vec<Watch> {
+    let of = |bearing: &assembly::MountedBearing| Watch::new(bearing.model.geometry.n_balls);
+    assembly.bearings.iter().map(of).collect()
+}
+
+/// Bearings and shaft ready to move.
+fn ready<'a>(
+    scene: &'a SeveralScene,
+    dynamic: &Dynamic,
+    assembly: &'a Assembly,
+) -> Result<AssemblyMotion<'a>, Failure> {
+    let of_bearings = scene.bearings.iter().map(|b| settings(&b.scene, dynamic));
+    let speed = scene.speed.clone().unwrap_or_default().inner;
+    let load = |time: f64| {
+        let any = &assembly.bearings[0].model;
+        loads_on_shaft(scene, (&assembly.shaft, any), time).map_err(|error| AssemblyError::ShaftBody {
+            problem: error.to_string(),
+        })
+    };
+    AssemblyMotion::new(assembly, of_bearings.collect(), speed, Box::new(load)).map_err(solving)
+}
+
+/// A run under way.
+struct March<'a> {
+    scene: &'a SeveralScene,
+    dynamic: &'a Dynamic,
+    assembly: &'a Assembly,
+    motion: &'a AssemblyMotion<'a>,
+    /// Scenes of the bearings with the shaft where it was at the start.
+    placed: Vec<Scene>,
+    tables: SeveralTables,
+    /// By bearing.
+    files: Vec<Files>,
+    /// The last good state.
+    state: AssemblyState,
+    cache: AssemblyCache,
+    /// Newton iterations so far.
+    newton: u64,
+    laps: Laps,
+    /// Contacts beyond their limits so far, by bearing.
+    watches: Vec<Watch>,
+    /// Largest energy defect of shaft and bearings since the start of this process, over the largest energy.
+    worst_defect: f64,
+    /// The last step handed over to be written, with its restart state, and with rows in the tables.
+    last_file: Option<u64>,
+    last_state: Option<u64>,
+    last_row: Option<u64>,
+    dir: &'a Path,
+}
+
+impl March<'_> {
+    /// Steps to the end of the run, closes the files and sums up, also when the run ends early.
+    fn finish_run(
+        mut self,
+        mut progress: Progress,
+        limits: &Limits,
+        mut warnings: Vec<String>,
+        start: Instant,
+    ) -> Result<(), Failure> {
+        let mut clock = Stopwatch::start();
+        let first = self.state.step;
+        let mut stop = Stop::listen(start, limits.wall_time).map_err(Failure::from)?;
+        let ended = self.steps(&mut progress, &mut stop);
+        progress.finish();
+        let seconds = clock.lap();
+        for motion in &self.motion.bearings {
+            self.laps.merge_into(EFFECTS, &motion.costs.laps());
+        }
+        let status = ended
+            .as_ref()
+            .err()
+            .map_or("finished".to_string(), Failure::status);
+        for (i, watch) in self.watches.iter().enumerate() {
+            let (name, motion) = (&self.scene.bearings[i].name, &self.motion.bearings[i]);
+            let own = watch.warnings(motion.surfaces(), |step| motion.time(step));
+            warnings.extend(own.into_iter().map(|text| format!("bearing {name:?}: {text}")));
+        }
+        if let Err(failure) = self.close_bearings(&status, start) {
+            // A run that failed says why, not what its failure did to the files.
+            return Err(match ended {
+                Err(cause @ (Failure::User(_) | Failure::Numerical(_))) => cause,
+                _ => failure,
+            });
+        }
+        self.laps.add(TOTAL, start.elapsed().as_secs_f64());
+        let last = ListState::of_motion(self.assembly, self.motion, &self.state);
+        let findings = SeveralFindings {
+            status,
+            iterations: self.newton as usize,
+            residual: self.worst_defect,
+            warnings,
+            laps: self.laps,
+        };
+        let summary = SeveralSummary::new(self.scene, self.assembly, &last, findings);
+        summary.write(self.dir)?;
+        ended?;
+        print_solution(self.assembly, &last);
+        print::line(format_args!(
+            "{} steps of {} s, {:.1} ms per step; largest energy defect {:.1e} of the largest energy",
+            self.state.step - first,
+            self.dynamic.step,
+            1e3 * seconds / (self.state.step - first).max(1) as f64,
+            self.worst_defect
+        ));
+        summary.print_costs();
+        Ok(())
+    }
+
+    /// Closes the files of the bearings and writes their summaries.
+    fn close_bearings(&mut self, status: &str, start: Instant) -> Result<(), Failure> {
+        for (i, files) in std::mem::take(&mut self.files).into_iter().enumerate() {
+            let (motion, state) = (&self.motion.bearings[i], &self.state.bearings[i]);
+            let forecast = Forecasts::of_motion([None, None], motion, self.dynamic);
+            let costs = files.finish(0.0, forecast, motion.costs.laps(), start)?;
+            let findings = Findings {
+                status: status.to_string(),
+                last: Snapshot::of_motion(motion, state),
+                points: Vec::new(),
+                iterations: std::collections::BTreeMap::from([("steps", state.step as usize)]),
+                warnings: self.watches[i].warnings(motion.surfaces(), |step| motion.time(step)),
+                advice: Vec::new(),
+            };
+            let own = self.dir.join(&self.scene.bearings[i].name);
+            let model = &self.assembly.bearings[i].model;
+            Summary::new(&self.placed[i], model, findings, &costs).write(&own)?;
+        }
+        Ok(())
+    }
+
+    /// Steps to the end of the run. On failure and when asked to stop, the last good state has its step files.
+    fn steps(&mut self, progress: &mut Progress, stop: &mut Stop) -> Result<(), Failure> {
+        let n_steps = self.dynamic.n_steps;
+        let first = self.state.step + 1;
+        for n in first..=n_steps {
+            let reason = stop.reason();
+            if let Some(reason) = &reason
+                && (self.last_file != Some(n - 1) || self.last_state == Some(n - 1))
+            {
+                return Err(self.stopped(reason));
+            }
+            if n == first || n % PROGRESS_STEPS == 1 {
+                progress.stage(&format!(
+                    "step {n} of {n_steps}, t = {:.4e} s",
+                    self.motion.time(n)
+                ));
+            }
+            match self.motion.step(&self.state, &mut self.cache) {
+                Ok((next, report)) => {
+                    self.newton += report.newton_iterations as u64;
+                    self.laps.merge(&report.laps);
+                    self.accept(next, progress)?;
+                }
+                Err(error) => return Err(self.failed(solving(error))),
+            }
+            if n.is_multiple_of(self.placed[0].output.tables_every) {
+                self.write_tables()?;
+            }
+            if n == n_steps || n.is_multiple_of(self.dynamic.output_every) {
+                let restart = match reason {
+                    Some(_) => RestartState::Stored,
+                    None => self.restart_at(n),
+                };
+                self.write_fields(restart)?;
+            }
+            progress.advance();
+        }
+        Ok(())
+    }
+
+    /// Takes a state whose ledgers close.
+    fn accept(&mut self, next: AssemblyState, progress: &Progress) -> Result<(), Failure> {
+        let motions = &self.motion.bearings;
+        let mut round_off = 0.0;
+        for (i, (motion, state)) in motions.iter().zip(&next.bearings).enumerate() {
+            if let Err(failure) = check_ledger(self.dynamic, motion, state, self.dir) {
+                let name = &self.scene.bearings[i].name;
+                return Err(self.failed(failure.context(format!("bearing {name:?}"))));
+            }
+            round_off += motion.energy_round_off(state)?;
+            if state.ledger.defect().abs() > motion.energy_round_off(state)? {
+                self.worst_defect = self.worst_defect.max(state.ledger.relative_defect().abs());
+            }
+        }
+        let (defect, relative) = (next.ledger.defect().abs(), next.ledger.relative_defect().abs());
+        if defect > round_off {
+            self.worst_defect = self.worst_defect.max(relative);
+            if relative > self.dynamic.ledger_tolerance {
+                let failure = Failure::Numerical(anyhow!(
+                    "the energy ledger of the shaft does not close: the defect is {relative:.3e} of the largest \
+                     energy, dynamic.ledger_tolerance is {:.1e}; take a smaller step, or a larger tolerance",
+                    self.dynamic.ledger_tolerance
+                ));
+                return Err(self.failed(failure));
+            }
+        }
+        self.state = next;
+        let (step, time) = (self.state.step, self.motion.time(self.state.step));
+        for (i, watch) in self.watches.iter_mut().enumerate() {
+            let found = motions[i].exceeded(&self.state.bearings[i]);
+            for text in watch.note(step, time, &found) {
+                progress.warn(&format!("bearing {:?}: {text}", self.scene.bearings[i].name));
+            }
+        }
+        Ok(())
+    }
+
+    /// Whether the files of a step have the state: those of every `output.restart_every`-th, and those of the end.
+    fn restart_at(&self, step: u64) -> RestartState {
+        let every = self
+            .dynamic
+            .output_every
+            .saturating_mul(self.placed[0].output.restart_every);
+        match step == self.dynamic.n_steps || step.is_multiple_of(every) {
+            true => RestartState::Stored,
+            false => RestartState::Left,
+        }
+    }
+
+    /// Saves the state and says that the run can be resumed.
+    fn stopped(&mut self, reason: &str) -> Failure {
+        if let Err(error) = self.write_fields(RestartState::Stored) {
+            return error.context(format!("{reason}, but the state could not be saved"));
+        }
+        let n = self.state.step;
+        Failure::Stopped(anyhow!(
+            "{reason}; the state after step {n} of {}, t = {:.6e} s, is saved: go on with raceway resume {}",
+            self.dynamic.n_steps,
+            self.motion.time(n),
+            self.dir.display()
+        ))
+    }
+
+    /// Saves the last good state and says where the failed step was.
+    fn failed(&mut self, failure: Failure) -> Failure {
+        let n = self.state.step + 1;
+        let place = format!("step {n}, t = {:.6e} s", self.motion.time(n));
+        match self.write_fields(RestartState::Stored) {
+            Ok(()) => failure.context(format!(
+                "{place}; the last good state is in {}",
+                self.dir.display()
+            )),
+            Err(unsaved) => failure.context(format!(
+                "{place}; the last good state could not be saved: {}",
+                unsaved.text()
+            )),
+        }
+    }
+
+    /// Hands over the step of every bearing to be written as a file, unless it was.
+    fn write_fields(&mut self, restart: RestartState) -> Result<(), Failure> {
+        if self.last_file == Some(self.state.step) {
+            return Ok(());
+        }
+        if self.last_row != Some(self.state.step) {
+            // A step file vouches for the tables up to its step.
+            self.write_tables()?;
+        }
+        let of_shaft = several_state::arrays_of_shaft(&self.state, self.newton);
+        for (i, files) in self.files.iter_mut().enumerate() {
+            let (motion, state) = (&self.motion.bearings[i], &self.state.bearings[i]);
+            let model = &self.assembly.bearings[i].model;
+            let gathered = files.gather_stress(&Shown::Motion { model, motion, state });
+            let shown = Recorded::new(model, motion, state, gathered, &self.placed[i], restart)?;
+            let (of_shaft, watch) = (of_shaft.clone(), self.watches[i].to_numbers());
+            files.write_fields_later(move |stress| {
+                let mut record = shown.record(stress);
+                if restart == RestartState::Stored {
+                    record.state.extend(of_shaft);
+                    several_state::add_watch(&mut record, watch);
+                }
+                record
+            })?;
+        }
+        self.last_file = Some(self.state.step);
+        if restart == RestartState::Stored {
+            self.last_state = Some(self.state.step);
+        }
+        Ok(())
+    }
+
+    /// Appends a line per table, of the shaft and of every bearing.
+    fn write_tables(&mut self) -> Result<(), Failure> {
+        let (step, time) = (self.state.step, self.motion.time(self.state.step));
+        let now = ListState::of_motion(self.assembly, self.motion, &self.state);
+        self.tables.append((step, time), None, self.assembly, &now)?;
+        for (i, files) in self.files.iter_mut().enumerate() {
+            let snapshot = Snapshot::of_motion(&self.motion.bearings[i], &self.state.bearings[i]);
+            files.write_tables(step, time, None, &snapshot)?;
+        }
+        self.last_row = Some(step);
+        Ok(())
+    }
+}

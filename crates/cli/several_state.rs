@@ -1,0 +1,315 @@
+//! What step files hold of a list of bearings beyond each bearing's own state, and how a run of a list goes on.
+
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context, anyhow};
+use assembly::motion::ShaftLedger;
+use assembly::{AssemblyMotion, AssemblyState};
+use checkpoint::{FolderLock, StateArray, StepRecord, has_state, read_about, read_any_step, step_file_name};
+use comm::print;
+use results::about::{MAY_CHANGE, OVERRIDES, SCENE_FILE, require_same_meshes, scene_file};
+use results::failure::Failure;
+use results::files::note_dead_owner;
+use results::several::BEARINGS_TABLE;
+use results::state_arrays::{self, Arrays};
+use results::watch::Watch;
+use scene::{Analysis, AnyScene, Dynamic, MeshFiles, Scene, SeveralScene, difference};
+
+const SHAFT: &str = "list_shaft";
+const VELOCITY: &str = "list_shaft_velocity";
+const LOADS: &str = "list_loads";
+const LEDGER: &str = "list_shaft_ledger";
+const NEWTON: &str = "list_newton_iterations";
+const WATCH: &str = "contacts_beyond_limits";
+
+/// A step of every bearing of a list.
+pub struct StoredList {
+    pub dir: PathBuf,
+    pub scene: SeveralScene,
+    pub dynamic: Dynamic,
+    pub step: u64,
+    pub bearings: Vec<StoredBearing>,
+}
+
+/// A step of one of them.
+pub struct StoredBearing {
+    pub lock: FolderLock,
+    /// Its scene with the shaft where it was at the start of the run.
+    pub scene: Scene,
+    pub record: StepRecord,
+}
+
+/// The state of a stored step.
+pub struct Restored {
+    pub state: AssemblyState,
+    pub newton: u64,
+    pub watches: Vec<Watch>,
+}
+
+/// Whether a folder has results of a list of bearings.
+pub fn is_list(dir: &Path) -> bool {
+    dir.join(BEARINGS_TABLE).exists() && dir.join(crate::several::SCENE_FILE).exists()
+}
+
+/// The state of the shaft, which every bearing's file has.
+pub fn arrays_of_shaft(state: &AssemblyState, newton: u64) -> Arrays {
+    let ledger = &state.ledger;
+    let reals = [
+        (SHAFT, state.shaft.clone()),
+        (VELOCITY, state.velocity.clone()),
+        (LOADS, state.loads.as_flattened().to_vec()),
+        (LEDGER, ledger.to_numbers().to_vec()),
+    ];
+    let mut arrays: Arrays = reals
+        .into_iter()
+        .map(|(name, values)| (name.to_string(), StateArray::Real(values)))
+        .collect();
+    let newton = i64::try_from(newton).expect("nobody iterates 2^63 times");
+    arrays.insert(NEWTON.to_string(), StateArray::Integer(vec![newton]));
+    arrays
+}
+
+/// Adds the contacts beyond their limits.
+pub fn add_watch(record: &mut StepRecord, watch: Vec<i64>) {
+    record.state.insert(WATCH.to_string(), StateArray::Integer(watch));
+}
+
+/// The state of a step of all bearings, whose shaft has `n` dofs.
+pub fn restore(
+    bearings: &[StoredBearing],
+    motion: &AssemblyMotion<'_>,
+    n: usize,
+    (dir, step): (&Path, u64),
+) -> Result<Restored, Failure> {
+    let (mut states, mut watches, mut shaft) = (Vec::new(), Vec::new(), None);
+    for (bearing, motion) in bearings.iter().zip(&motion.bearings) {
+        let at = || format!("step {step} of {}", bearing.lock.dir().display());
+        let mut arrays = bearing.record.state.clone();
+        let of_shaft: Vec<Option<StateArray>> = [SHAFT, VELOCITY, LOADS, LEDGER, NEWTON]
+            .iter()
+            .map(|name| arrays.remove(*name))
+            .collect();
+        if *shaft.get_or_insert_with(|| of_shaft.clone()) != of_shaft {
+            return Err(anyhow!(
+                "{} has another state of the shaft than the other bearings of {}: its files are of another run",
+                at(),
+                dir.display()
+            )
+            .into());
+        }
+        let watch = match arrays.remove(WATCH) {
+            Some(StateArray::Integer(numbers)) => Watch::from_numbers(motion.n_balls(), &numbers),
+            _ => None,
+        };
+        watches.push(watch.ok_or_else(|| anyhow!("{} has no count of contacts beyond their limits", at()))?);
+        states.push(state_arrays::load(&arrays, &motion.shape()).with_context(at)?);
+    }
+    let missing = || anyhow!("step {step} of {} has no state of the shaft", dir.display());
+    let shaft = shaft.ok_or_else(missing)?;
+    let real = |i: usize, length: usize| match &shaft[i] {
+        Some(StateArray::Real(values)) if values.len() == length => Ok(values.clone()),
+        _ => Err(missing()),
+    };
+    let newton = match &shaft[4] {
+        Some(StateArray::Integer(count)) if count.len() == 1 => count[0].max(0) as u64,
+        _ => return Err(missing().into()),
+    };
+    let ledger = ShaftLedger::from_numbers(&real(3, ShaftLedger::N)?).ok_or_else(missing)?;
+    Ok(Restored {
+        state: AssemblyState {
+            step,
+            shaft: real(0, n)?,
+            velocity: real(1, n)?,
+            loads: real(2, 5 * states.len())?.as_chunks::<5>().0.to_vec(),
+            ledger,
+            bearings: states,
+        },
+        newton,
+        watches,
+    })
+}
+
+/// Reads the step from which a run goes on; `asked` is the one asked for, `overrides` change how long it goes and what
+/// it writes. None if the run has finished.
+pub fn read(
+    dir: &Path,
+    asked: Option<u64>,
+    overrides: &[String],
+    given: Option<&Path>,
+) -> Result<Option<StoredList>, Failure> {
+    let text = std::fs::read_to_string(dir.join(crate::several::SCENE_FILE)).with_context(|| {
+        format!(
+            "{} cannot be read",
+            dir.join(crate::several::SCENE_FILE).display()
+        )
+    })?;
+    let names = scene::names_of_bearings(&text);
+    let folders: Vec<PathBuf> = names.iter().map(|name| dir.join(name)).collect();
+    let mut locks = Vec::new();
+    for folder in &folders {
+        let lock = FolderLock::acquire(folder)?;
+        note_dead_owner(&lock);
+        locks.push(lock);
+    }
+    let step = choose(dir, &folders, asked)?;
+    let first = folders[0].join(step_file_name(step));
+    let about = read_about(&first)?;
+    let path = match (given, about.get(SCENE_FILE)) {
+        (Some(path), _) => path.to_path_buf(),
+        (None, Some(path)) => scene_file(&folders[0], path),
+        (None, None) => return Err(anyhow!("{} does not say where its scene is", first.display()).into()),
+    };
+    let before: Vec<String> = about
+        .get(OVERRIDES)
+        .map_or(Vec::new(), |text| text.lines().map(str::to_string).collect());
+    let scene = scene_of(&text, &path, &before, overrides)?;
+    let Analysis::Dynamic(dynamic) = scene.analysis else {
+        return Err(anyhow!(
+            "{} holds results at rest; only a motion, a scene with [dynamic], can be resumed, run the scene again",
+            dir.display()
+        )
+        .into());
+    };
+    if step > dynamic.n_steps {
+        return Err(anyhow!(
+            "the run is at step {step}, beyond dynamic.duration = {} s; expected a longer duration, or an earlier \
+             --step",
+            dynamic.duration
+        )
+        .into());
+    }
+    if step == dynamic.n_steps {
+        print::line(format_args!(
+            "nothing to do: {} has finished with step {step} of {}; a longer duration goes on from there, --set \
+             dynamic.duration=...",
+            dir.display(),
+            dynamic.n_steps
+        ));
+        return Ok(None);
+    }
+    let mut bearings = Vec::new();
+    for (i, (folder, lock)) in folders.iter().zip(locks).enumerate() {
+        let record = read_any_step(folder, step)?;
+        let own = Scene::parse(&record.scene, &path, overrides, MeshFiles::MustExist)?;
+        let now = &scene.bearings[i].scene;
+        let changes = difference(&own.text, &now.text)?;
+        if let Some(change) = changes.iter().find(|change| !change.is_below(&["shaft"])) {
+            return Err(anyhow!(
+                "bearing {:?} has changed since the run: {change}; put its type back as it was",
+                scene.bearings[i].name
+            )
+            .into());
+        }
+        require_same_meshes(&own, &read_about(&folder.join(step_file_name(step)))?)?;
+        bearings.push(StoredBearing {
+            lock,
+            scene: Scene {
+                overrides: [&before, overrides].concat(),
+                ..own
+            },
+            record,
+        });
+    }
+    print::note(format_args!(
+        "resuming {} after step {step} of {}",
+        dir.display(),
+        dynamic.n_steps
+    ));
+    Ok(Some(StoredList {
+        dir: dir.to_path_buf(),
+        scene,
+        dynamic,
+        step,
+        bearings,
+    }))
+}
+
+/// The scene of the run with what may change changed.
+fn scene_of(
+    text: &str,
+    path: &Path,
+    before: &[String],
+    overrides: &[String],
+) -> Result<SeveralScene, Failure> {
+    let of_list = |text: &str, overrides: &[String]| match AnyScene::parse(
+        text,
+        path,
+        overrides,
+        MeshFiles::MustExist,
+    )? {
+        AnyScene::Several(scene) => Ok(*scene),
+        AnyScene::One(_) => Err(Failure::from(anyhow!(
+            "{} has one bearing; expected the list of the run",
+            path.display()
+        ))),
+    };
+    // Those of the types are not in the text.
+    let stored = of_list(text, &scene::overrides_of_types(before))?;
+    if path.exists() {
+        let now =
+            std::fs::read_to_string(path).with_context(|| format!("{} cannot be read", path.display()))?;
+        let now = of_list(&now, before)?;
+        if let Some(change) = difference(&stored.text, &now.text)?
+            .iter()
+            .find(|change| !change.is_below(&MAY_CHANGE))
+        {
+            return Err(anyhow!(
+                "the scene file {} has changed since the run: {change}; put it back, or run the scene anew",
+                path.display()
+            )
+            .into());
+        }
+    }
+    let all = [scene::overrides_of_types(before), overrides.to_vec()].concat();
+    let scene = of_list(text, &all)?;
+    let changes = difference(&stored.text, &scene.text)?;
+    if let Some(change) = changes.iter().find(|change| !change.is_below(&MAY_CHANGE)) {
+        return Err(anyhow!(
+            "--set would change {change}; a resumed run may change only {}",
+            MAY_CHANGE.join(", ")
+        )
+        .into());
+    }
+    Ok(SeveralScene {
+        overrides: [before, overrides].concat(),
+        ..scene
+    })
+}
+
+/// The newest step that every bearing has whole and with its state, or the one asked for.
+fn choose(dir: &Path, folders: &[PathBuf], asked: Option<u64>) -> Result<u64, Failure> {
+    let mut common: Option<Vec<u64>> = None;
+    for folder in folders {
+        let mut steps = checkpoint::committed_steps(folder)?;
+        let holds_state = |step: u64| has_state(&folder.join(step_file_name(step))).unwrap_or(false);
+        steps.retain(|&step| holds_state(step) && common.as_ref().is_none_or(|all| all.contains(&step)));
+        common = Some(steps);
+    }
+    let common = common.unwrap_or_default();
+    if let Some(step) = asked {
+        if common.contains(&step) {
+            return Ok(step);
+        }
+        let known: Vec<String> = common.iter().map(u64::to_string).collect();
+        return Err(anyhow!(
+            "{} has no step {step} with a restart state of all bearings; there are {}",
+            dir.display(),
+            known.join(", ")
+        )
+        .into());
+    }
+    for &step in common.iter().rev() {
+        let damage = folders
+            .iter()
+            .find_map(|folder| checkpoint::read_step(&folder.join(step_file_name(step))).err());
+        match damage {
+            None => return Ok(step),
+            Some(error) => print::note(format_args!("warning: {error}; falling back to the step before")),
+        }
+    }
+    Err(anyhow!(
+        "{} has no step that is whole in all bearings; run the scene again",
+        dir.display()
+    )
+    .into())
+}
