@@ -119,43 +119,53 @@ fn the_nutation_of_a_free_ring_does_not_grow() {
     assert!(states[n].ledger.relative_defect().abs() < 1e-9);
 }
 
-/// Wrong: an instability too slow for thousands of steps would be there all the same. A million steps of a free elastic
-/// ring, with the inertia of its elastic part and without: its nutation, its line and its energy stay.
-#[test]
-#[ignore = "a million steps of a small ring, four times: minutes; scripts/test-slow runs it"]
-fn a_million_steps_of_a_free_ring_neither_grow_nor_decay() {
-    for (rpm, has_frame) in [(18e3, false), (18e3, true), (60e3, false), (60e3, true)] {
-        let speed = Speed::constant(rpm * std::f64::consts::PI / 30.0);
-        let model = free_ring(TINY, Hold::Clamped, &speed, has_frame);
-        let motion = Motion::new(&model, MotionSettings::conserving(1e-5, speed.clone())).unwrap();
-        let back = model.geometry.ball_centre()[1] - model.geometry.groove_centre(Side::Inner)[1];
-        let mut state = motion.rest([0.0, 0.0, back, 0.0, 0.0], [0.0, 0.0, 0.0, RATE, 0.0]);
-        let (n, window) = (1_000_000, 10_000);
-        // Largest tilt in the first and the last steps, smallest and largest tilt rate of all.
-        let (mut tilts, mut rates) = ([0.0f64; 2], [f64::INFINITY, 0.0f64]);
-        let mut cache = StepCache::default();
-        for step in 0..n {
-            state = motion.step(&state, &mut cache).unwrap().0;
-            let tilt = state.shaft[3].hypot(state.shaft[4]);
-            if step < window {
-                tilts[0] = tilts[0].max(tilt);
-            } else if step >= n - window {
-                tilts[1] = tilts[1].max(tilt);
-            }
-            let rate = state.shaft_velocity[3].hypot(state.shaft_velocity[4]);
-            rates = [rates[0].min(rate), rates[1].max(rate)];
+/// A million steps of a free elastic ring, whose nutation and energy must stay.
+fn fly_for_a_million_steps(rpm: f64, has_frame: bool) {
+    let speed = Speed::constant(rpm * std::f64::consts::PI / 30.0);
+    let mut model = free_ring(TINY, Hold::Clamped, &speed, has_frame);
+    model.geometry.n_balls = 2;
+    let motion = Motion::new(&model, MotionSettings::conserving(1e-5, speed.clone())).unwrap();
+    let back = model.geometry.ball_centre()[1] - model.geometry.groove_centre(Side::Inner)[1];
+    let mut state = motion.rest([0.0, 0.0, back, 0.0, 0.0], [0.0, 0.0, 0.0, RATE, 0.0]);
+    let (n, window) = (1_000_000, 10_000);
+    // Largest tilt in the first and the last steps, smallest and largest tilt rate of all, largest defect.
+    let (mut tilts, mut rates, mut defect) = ([0.0f64; 2], [f64::INFINITY, 0.0f64], 0.0f64);
+    let circle = 2.0 * RATE / (ratio(&model) * speed.at(0.0));
+    let mut cache = StepCache::default();
+    for step in 1..=n {
+        state = motion.step(&state, &mut cache).unwrap().0;
+        let tilt = state.shaft[3].hypot(state.shaft[4]) / circle;
+        if step <= window {
+            tilts[0] = tilts[0].max(tilt);
+        } else if step > n - window {
+            tilts[1] = tilts[1].max(tilt);
         }
-        let circle = 2.0 * RATE / (ratio(&model) * speed.at(0.0));
-        let defect = state.ledger.relative_defect();
-        println!(
-            "{rpm} rpm, frame {has_frame}: {:.6?} of the circle, rates {:.6?}, ledger {defect:.1e}",
-            tilts.map(|tilt| tilt / circle),
-            rates.map(|rate| rate / RATE)
-        );
-        assert!((tilts[1] / tilts[0] - 1.0).abs() < 1e-4, "{tilts:?}");
-        assert!((rates[1] / rates[0] - 1.0).abs() < 1e-2, "{rates:?}");
-        assert!(defect.abs() < 1e-8, "{defect}");
+        let rate = state.shaft_velocity[3].hypot(state.shaft_velocity[4]) / RATE;
+        rates = [rates[0].min(rate), rates[1].max(rate)];
+        defect = defect.max(state.ledger.relative_defect().abs());
+        if step == n / 100 || step % (n / 4) == 0 {
+            println!(
+                "{rpm} rpm, {step} steps: {tilts:.7?} of the circle, rates {rates:.7?}, ledger {defect:.1e}"
+            );
+        }
     }
+    assert!((tilts[1] / tilts[0] - 1.0).abs() < 1e-5, "{tilts:?}");
+    assert!(rates[1] / rates[0] - 1.0 < 2e-3, "{rates:?}");
+    assert!(defect < 1e-7, "{defect}");
+}
+
+/// Wrong: a growth too slow for thousands of steps would be there all the same. With the inertia of the elastic part.
+#[test]
+#[ignore = "a million steps of a small ring: ten minutes; scripts/test-slow runs it"]
+fn the_nutation_of_a_free_ring_stays_for_a_million_steps() {
+    fly_for_a_million_steps(60e3, true);
+}
+
+/// Wrong: the same of the inertia of the ring's rigid motion alone.
+#[test]
+#[ignore = "a million steps of a small ring: ten minutes; scripts/test-slow runs it"]
+fn without_the_effect_it_stays_for_a_million_steps_too() {
+    fly_for_a_million_steps(18e3, false);
 }
 
 /// Wrong: a ring whose frame turns without the effect would be thrown outwards, as a displacement at rest in space
