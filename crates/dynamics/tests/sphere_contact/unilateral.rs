@@ -8,6 +8,8 @@
 //! on the ball are in equilibrium in its meridian plane, and those on the inner ring carry the load. Newton's method,
 //! with the cells that press found on the way (Hueber and Wohlmuth, Comput. Methods Appl. Mech. Eng. 194 (2005) 3147).
 
+use std::ops::Range;
+
 use contact::{BearingGeometry, Side};
 use dense::DenseLu;
 
@@ -92,70 +94,81 @@ fn compliance(raceways: &[Raceway; 2], sphere: &Sphere, offsets: [f64; 2]) -> Ve
     all
 }
 
+/// Forces of the cells that press, N, and moves of ball and shaft, m, that close their gaps and carry half the load of
+/// a ball, N.
+fn forces_and_moves(yields: &[f64], gaps: &[Gap], presses: &[bool], half_load: f64) -> (Vec<f64>, [f64; 3]) {
+    let n = gaps.len();
+    let active: Vec<usize> = (0..n).filter(|&i| presses[i]).collect();
+    let (m, size) = (active.len(), active.len() + 3);
+    // In um and N.
+    let (mut matrix, mut rhs) = (vec![0.0; size * size], vec![0.0; size]);
+    for (row, &i) in active.iter().enumerate() {
+        for (column, &j) in active.iter().enumerate() {
+            matrix[row * size + column] = 1e6 * yields[i * n + j];
+        }
+        for k in 0..3 {
+            matrix[row * size + m + k] = gaps[i].slopes[k];
+            matrix[(m + k) * size + row] = gaps[i].slopes[k];
+        }
+        rhs[row] = -1e6 * gaps[i].value;
+    }
+    rhs[m + 2] = -half_load;
+    DenseLu::factor(size, &matrix).unwrap().solve(&mut rhs, 1);
+    let mut forces = vec![0.0; n];
+    active.iter().zip(&rhs).for_each(|(&i, f)| forces[i] = *f);
+    (forces, [0, 1, 2].map(|k| 1e-6 * rhs[m + k]))
+}
+
 /// Equilibrium under a thrust, N, from the elastic bodies alone.
 pub fn solve(geometry: &BearingGeometry, raceways: &[Raceway; 2], sphere: &Sphere, thrust: f64) -> Found {
     let offsets = Side::BOTH.map(|side| geometry.groove_centre(side)[1]);
     let n_inner = raceways[0].cells.len();
     let n = n_inner + raceways[1].cells.len();
     let yields = compliance(raceways, sphere, offsets);
-    let balls = geometry.n_balls as f64;
-    let half_load = 0.5 * thrust / balls;
+    let half_load = 0.5 * thrust / geometry.n_balls as f64;
     let radius = 0.5 * geometry.ball_diameter;
     let [r, z] = geometry.ball_centre();
     let mut place = [r + 1e-6, z + 15e-6, 30e-6];
-    let (mut forces, mut presses) = (vec![0.0; n], vec![true; n]);
+    let mut presses = vec![true; n];
     for _ in 0..MOST_ROUNDS {
-        let side = |i: usize| usize::from(i >= n_inner);
-        let cell = |i: usize| &raceways[side(i)].cells[i - side(i) * n_inner];
-        let gaps: Vec<Gap> = (0..n)
-            .map(|i| gap(cell(i), Side::BOTH[side(i)], offsets[side(i)], place, radius))
-            .collect();
-        // In um and N: [forces; moves of ball and shaft].
-        let active: Vec<usize> = (0..n).filter(|&i| presses[i]).collect();
-        let m = active.len();
-        let size = m + 3;
-        let (mut matrix, mut rhs) = (vec![0.0; size * size], vec![0.0; size]);
-        for (row, &i) in active.iter().enumerate() {
-            for (column, &j) in active.iter().enumerate() {
-                matrix[row * size + column] = 1e6 * yields[i * n + j];
+        let gap_of = |i: usize| {
+            let side = usize::from(i >= n_inner);
+            let cell = &raceways[side].cells[i - side * n_inner];
+            gap(cell, Side::BOTH[side], offsets[side], place, radius)
+        };
+        let gaps: Vec<Gap> = (0..n).map(gap_of).collect();
+        let (forces, moves) = forces_and_moves(&yields, &gaps, &presses, half_load);
+        let open = |i: usize| {
+            let moved: f64 = (0..3).map(|k| gaps[i].slopes[k] * moves[k]).sum();
+            let yielded: f64 = (0..n).map(|j| yields[i * n + j] * forces[j]).sum();
+            gaps[i].value + moved + yielded
+        };
+        let pressing = |i: usize| {
+            if presses[i] {
+                forces[i] > 0.0
+            } else {
+                open(i) < 0.0
             }
-            for k in 0..3 {
-                matrix[row * size + m + k] = gaps[i].slopes[k];
-                matrix[(m + k) * size + row] = gaps[i].slopes[k];
-            }
-            rhs[row] = -1e6 * gaps[i].value;
-        }
-        rhs[m + 2] = -half_load;
-        DenseLu::factor(size, &matrix).unwrap().solve(&mut rhs, 1);
-        forces.fill(0.0);
-        active.iter().zip(&rhs).for_each(|(&i, f)| forces[i] = *f);
-        let moves = [0, 1, 2].map(|k| 1e-6 * rhs[m + k]);
-        (0..3).for_each(|k| place[k] += moves[k].clamp(-5e-6, 5e-6));
+        };
+        let now: Vec<bool> = (0..n).map(pressing).collect();
         let far = moves.iter().fold(0.0f64, |far, x| far.max(x.abs()));
-        let mut changes = 0;
-        for i in 0..n {
-            let open = gaps[i].value
-                + (0..3).map(|k| gaps[i].slopes[k] * moves[k]).sum::<f64>()
-                + (0..n).map(|j| yields[i * n + j] * forces[j]).sum::<f64>();
-            let now = if presses[i] { forces[i] > 0.0 } else { open < 0.0 };
-            changes += usize::from(now != presses[i]);
-            presses[i] = now;
-        }
-        if changes == 0 && far < 1e-13 {
-            let total = |k: usize| {
+        (0..3).for_each(|k| place[k] += moves[k].clamp(-5e-6, 5e-6));
+        if now == presses && far < 1e-13 {
+            let on_outer = |k: usize| {
                 (n_inner..n)
                     .map(|i| -2.0 * gaps[i].slopes[k] * forces[i])
                     .sum::<f64>()
             };
-            let (across, along) = (total(0), total(1));
-            let pressing = [0..n_inner, n_inner..n].map(|range| range.filter(|&i| presses[i]).count());
+            let (across, along) = (on_outer(0), on_outer(1));
+            let count = |range: Range<usize>| range.filter(|&i| presses[i]).count();
             return Found {
                 shaft: place[2],
                 force: across.hypot(along),
                 angle: along.atan2(across),
-                pressing,
+                pressing: [0..n_inner, n_inner..n].map(count),
             };
         }
+        presses = now;
     }
     panic!("cells of the contact do not settle");
 }
