@@ -184,8 +184,8 @@ fn without_the_effect_the_nutation_stays_for_half_a_million_steps() {
 }
 
 /// Wrong: that negative stiffness would be larger than the estimate, and be felt beside contacts. A ring that touches
-/// nothing leaves its place by cosh(g t), g of 26 / s at 60 000 rpm and with the square of the speed. With the effect it
-/// stays there.
+/// nothing leaves its place by cosh(g t), g of 26 / s at 60 000 rpm and with the square of the speed. With the effect
+/// it stays there.
 #[test]
 fn without_the_effect_a_free_ring_leaves_its_place_slowly() {
     let (dt, n) = (1e-5, 4000);
