@@ -27,7 +27,7 @@ const LONGEST: f64 = 0.4;
 
 /// Places from 0 to `end`: steps of `size` up to `width`, then growing ones up to `cap`, stretched so that the last
 /// place is `end`.
-fn graded([size, width]: [f64; 2], growth: f64, end: f64, cap: f64) -> Vec<f64> {
+pub fn graded([size, width]: [f64; 2], growth: f64, end: f64, cap: f64) -> Vec<f64> {
     let mut places = vec![0.0];
     while *places.last().unwrap() < width - 0.5 * size {
         places.push(places.len() as f64 * size);

@@ -60,21 +60,21 @@ pub fn ring_model(side: Side, mesh: Mesh, hold: Hold) -> RingModel {
 
 /// Places of the nodes of a section: columns across the groove as shares of its half, rows from the raceway as shares
 /// of the depth.
-pub(super) struct Columns {
+pub struct Columns {
     pub shares: Vec<f64>,
     pub rows: Vec<f64>,
     pub shoulder_elements: usize,
 }
 
 /// Seat radius, shoulder radius, held group.
-pub(super) fn measures(side: Side) -> (f64, f64, &'static str) {
+pub fn measures(side: Side) -> (f64, f64, &'static str) {
     match side {
         Side::Inner => (25e-3, 30.2e-3, "bore"),
         Side::Outer => (40e-3, 34.3e-3, "seat"),
     }
 }
 
-pub(super) fn groove(side: Side) -> Groove {
+pub fn groove(side: Side) -> Groove {
     let geometry = BearingGeometry::reference_7010c();
     Groove {
         side,
@@ -99,7 +99,7 @@ fn ring_mesh(groove: Groove, seat: f64, shoulder: f64, group: &str, level: Level
 }
 
 /// A revolved section.
-pub(super) fn revolved(
+pub fn revolved(
     groove: Groove,
     seat: f64,
     shoulder: f64,
