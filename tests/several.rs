@@ -247,3 +247,112 @@ fn a_spring_presses_the_sliding_ring_with_its_force() {
     assert_close("rear", force("rear"), 500.0, 1e-8);
     assert_close("front", force("front"), -700.0, 1e-8);
 }
+
+/// A pair that gets a load across while it speeds up, in steps of 10 us.
+fn moving_pair(duration: &str) -> Dir {
+    pair(&format!(
+        "[speed]\ninner = {{ times = [\"0 ms\", \"1 ms\"], values = [\"1800 rpm\", \"6000 rpm\"] }}\n\
+         [effects.radial_force]\nvalue = \"2 kN\"\ndirection = \"30 deg\"\n\
+         [effects.radial_force.schedule.impact]\nstart = \"0.1 ms\"\nduration = \"0.4 ms\"\n\
+         [effects.contact_damping]\ncoefficient = \"5e-2 N s/mm\"\nfull_approach = \"1 um\"\n\
+         [dynamic]\nduration = \"{duration}\"\nstep = \"10 us\"\noutput_every = 10\n"
+    ))
+}
+
+const OWN_TABLES: [&str; 8] = [
+    "balls.csv",
+    "bearings.csv",
+    "energy.csv",
+    "shaft.csv",
+    "front/balls.csv",
+    "front/energy.csv",
+    "rear/shaft.csv",
+    "rear/step_000060.hdf",
+];
+
+fn bytes(dir: &Dir, out: &str, name: &str) -> Vec<u8> {
+    std::fs::read(dir.path(&format!("{out}/{name}"))).unwrap()
+}
+
+/// Wrong: a motion of a list would not balance, lose energy, or be no motion. Forces of the bearings, the load and the
+/// inertia of the shaft; the defect of energy; a restart from the middle to the same bits.
+#[test]
+fn a_pair_moves_and_a_resumed_one_has_the_same_bits() {
+    let dir = moving_pair("0.6 ms");
+    let checked = succeeds(&dir, &["check", "pair.toml"]);
+    let what = "analysis dynamic: 60 steps of 0.00001 s, a step file of each bearing every 10";
+    assert!(checked.stdout.contains(what), "{}", checked.stdout);
+    let said = succeeds(&dir, &["run", "pair.toml", "--out", "whole"]);
+    assert!(said.stdout.contains("60 steps of 0.00001 s"), "{}", said.stdout);
+    let found = summary(&dir, "whole");
+    assert_eq!(found["analysis"], "dynamic");
+    assert!(number(&found, "/residual") < 1e-9);
+    let line = Table::read(&dir, "whole/bearings.csv");
+    let x = line.column("x_m");
+    let range = x.iter().fold(0.0f64, |m, at| m.max((at - x[0]).abs()));
+    assert!(range > 1e-6, "{range}");
+    // Half of it, then the rest.
+    succeeds(
+        &dir,
+        &[
+            "run",
+            "pair.toml",
+            "--out",
+            "half",
+            "--set",
+            "dynamic.duration=\"0.3 ms\"",
+        ],
+    );
+    let refused = dir.raceway(&["resume", "half", "--set", "pairing.offset=\"1 um\""]);
+    assert_eq!(refused.code, Some(2));
+    assert!(
+        refused.stderr.contains("a resumed run may change only"),
+        "{}",
+        refused.stderr
+    );
+    let refused = dir.raceway(&["resume", "half", "--step", "7"]);
+    let expected = "has no step 7 with a restart state of all bearings; there are 0, 10, 20, 30";
+    assert!(refused.stderr.contains(expected), "{}", refused.stderr);
+    succeeds(&dir, &["resume", "half", "--set", "dynamic.duration=\"0.6 ms\""]);
+    for name in OWN_TABLES {
+        assert!(bytes(&dir, "whole", name) == bytes(&dir, "half", name), "{name}");
+    }
+    let again = succeeds(&dir, &["resume", "half", "--set", "dynamic.duration=\"0.6 ms\""]);
+    assert!(
+        again
+            .stdout
+            .contains("nothing to do: half has finished with step 60"),
+        "{}",
+        again.stdout
+    );
+}
+
+/// Wrong: threads would change bits of a list in motion, or a step of one bearing that is damaged be taken.
+#[test]
+fn a_list_in_motion_has_the_same_bits_for_any_threads_and_falls_back_from_damage() {
+    let dir = moving_pair("0.6 ms");
+    succeeds(&dir, &["run", "pair.toml", "--out", "one", "--threads", "1"]);
+    succeeds(&dir, &["run", "pair.toml", "--out", "two", "--threads", "2"]);
+    for name in OWN_TABLES {
+        assert!(bytes(&dir, "one", name) == bytes(&dir, "two", name), "{name}");
+    }
+    let mut damaged = bytes(&dir, "two", "rear/step_000060.hdf");
+    let middle = damaged.len() / 2;
+    damaged[middle..middle + 64].fill(7);
+    std::fs::write(dir.path("two/rear/step_000060.hdf"), damaged).unwrap();
+    let said = succeeds(&dir, &["resume", "two"]);
+    assert!(
+        said.stderr.contains("falling back to the step before"),
+        "{}",
+        said.stderr
+    );
+    for name in OWN_TABLES {
+        assert!(bytes(&dir, "one", name) == bytes(&dir, "two", name), "{name}");
+    }
+    std::fs::remove_file(dir.path("two/summary.json")).unwrap();
+    let at_rest = pair("[static]");
+    succeeds(&at_rest, &["run", "pair.toml", "--out", "out"]);
+    let refused = at_rest.raceway(&["resume", "out"]);
+    let expected = "holds results at rest; only a motion, a scene with [dynamic], can be resumed";
+    assert!(refused.stderr.contains(expected), "{}", refused.stderr);
+}

@@ -23,6 +23,10 @@ pub fn check(scene: &SeveralScene) -> Result<(), Failure> {
             sweep.key,
             sweep.points.len()
         )),
+        Analysis::Dynamic(dynamic) => print::line(format_args!(
+            "analysis dynamic: {} steps of {} s, a step file of each bearing every {}",
+            dynamic.n_steps, dynamic.step, dynamic.output_every
+        )),
         _ => print::line(format_args!("analysis static")),
     }
     let names = scene.effects.names();

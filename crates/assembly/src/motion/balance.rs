@@ -13,7 +13,7 @@ const MOST_ITERATIONS: usize = 40;
 /// Residual over the largest force at which iteration may stop; it goes on while it improves.
 const LIMIT: f64 = 1e-10;
 /// Residual over the largest force that counts as round-off.
-const TARGET: f64 = 1e-13;
+const TARGET: f64 = 1e-12;
 /// Residual over that before it at which factors are good enough for another step.
 const ENOUGH: f64 = 0.05;
 /// Halvings of a step of Newton.

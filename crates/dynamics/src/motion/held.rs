@@ -10,7 +10,7 @@ use timer::SharedLaps;
 use super::cache::StepCache;
 use super::close::RingEnds;
 use super::run::Motion;
-use super::solve::StepSolution;
+use super::solve::{StepSolution, policy};
 use super::span::Span;
 use super::state::{MotionState, StepReport};
 use super::substep::Part;
@@ -19,6 +19,7 @@ use crate::condensation::Condensation;
 use crate::costs::NEWTON;
 use crate::error::DynamicsError;
 use crate::stiffness::{N_SHAFT, ShaftMatrix};
+use crate::system::newton::Policy;
 
 /// A part under way.
 pub struct HeldPart<'m> {
@@ -75,9 +76,13 @@ impl<'m> HeldPart<'m> {
         } else {
             before
         };
-        let solution = part
-            .parts
-            .solve_step_from(guess, part.scale, &self.motion.costs)?;
+        // What holds the shaft asks again and again, near what it asked before.
+        let policy = Policy {
+            keeps_factors: true,
+            ends_at_floor: true,
+            ..policy(part.scale, None, &self.motion.costs)
+        };
+        let solution = part.parts.solve_step_from(guess, &policy)?;
         let scheme = StepScheme {
             integrator: self.motion.settings.integrator,
             dt: part.span.dt,

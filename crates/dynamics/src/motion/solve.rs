@@ -71,18 +71,17 @@ impl StepSolution {
 impl BearingParts {
     /// Solves the part; `scale` is the largest force that acts at its start, N.
     pub fn solve_step(&self, scale: f64, costs: &SharedLaps) -> Result<StepSolution, DynamicsError> {
-        self.solve_step_from(self.system().guess(), scale, costs)
+        self.solve_step_from(self.system().guess(), &policy(scale, None, costs))
     }
 
-    /// The same with unknowns from which Newton starts.
-    pub fn solve_step_from(
+    /// The same with unknowns from which Newton starts, by a policy.
+    pub(super) fn solve_step_from(
         &self,
         guess: Vec<f64>,
-        scale: f64,
-        costs: &SharedLaps,
+        policy: &Policy<'_>,
     ) -> Result<StepSolution, DynamicsError> {
-        let system = self.system();
-        let solved = system.solve(guess, &policy(scale, None, costs))?;
+        let (system, costs) = (self.system(), policy.costs);
+        let solved = system.solve(guess, policy)?;
         let (x, reaches) = (&solved.unknowns, self.reaches(&solved.unknowns));
         let means = self.contacts.means;
         let balls = means.map(|means| self.contacts.mean_forces(lengths(&reaches), means, costs));

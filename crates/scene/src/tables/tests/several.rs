@@ -254,6 +254,34 @@ fn a_bearing_of_a_list_can_be_put_where_its_shaft_is() {
 }
 
 /// Wrong: slips in a list would be solved, or the message would not say what to do.
+/// A list in motion.
+fn moving(list: &str, more: &str) -> String {
+    let analysis = format!("[dynamic]\nduration = \"100 us\"\nstep = \"1 us\"\n{more}");
+    list.replace("[static]", &analysis)
+}
+
+#[test]
+fn speeds_over_time_are_turned_with_their_bearing() {
+    let lists = Lists::new("speeds");
+    for speed in [
+        "{ ramp = { from = \"600 rpm\", to = \"1200 rpm\", start = \"0 s\", duration = \"1 s\" } }",
+        "{ times = [\"0 s\", \"1 s\"], values = [\"600 rpm\", \"1200 rpm\"] }",
+    ] {
+        let text = moving(&list(BEAM, &format!("[speed]\ninner = {speed}\n")), "");
+        let AnyScene::Several(scene) = lists.parse(&text, &[]).unwrap() else {
+            panic!("a list");
+        };
+        for (bearing, sign) in scene.bearings.iter().zip([1.0, -1.0]) {
+            let speed = bearing.scene.speed.clone().unwrap().inner;
+            let found = [0.0, 1.0].map(|t| sign * speed.at(t) * 30.0 / std::f64::consts::PI);
+            assert!(
+                (found[0] - 600.0).abs() < 1e-9 && (found[1] - 1200.0).abs() < 1e-9,
+                "{found:?}"
+            );
+        }
+    }
+}
+
 #[test]
 fn bad_lists_are_refused_with_advice() {
     let lists = Lists::new("bad");
@@ -325,12 +353,32 @@ fn bad_lists_are_refused_with_advice() {
             "no body has more than twice as much about its axis as across it",
         ),
         (
-            beam.replace("[static]", "[dynamic]\nstep = \"1 us\"\n"),
-            "[dynamic] is not for a list of bearings yet, which is solved at rest; use [static] or [sweep]",
+            moving(&beam, "[dynamic.adaptive]\ntolerance = 1e-4\n"),
+            "dynamic.adaptive is not for a list of bearings yet: its steps are equal; remove it",
+        ),
+        (
+            moving(&beam, "[dynamic.start.free]\n"),
+            "dynamic.start is not for a list of bearings yet: it starts from its equilibrium",
+        ),
+        (
+            moving(&beam, "integrator = \"chung_hulbert\"\nrho = 0.8\n"),
+            "dynamic.integrator is not for a list of bearings yet: it moves by average_acceleration",
+        ),
+        (moving(&beam, "step = \"2 us\"\n"), "duplicate key"),
+        (
+            format!("{}[static]\n", moving(&beam, "")),
+            "the scene has both [static] and [dynamic]; keep exactly one analysis",
+        ),
+        (
+            beam.replace(
+                "[static]",
+                "[static]\n[effects.contact_damping]\ncoefficient = \"1 N s/mm\"\n",
+            ),
+            "effects.contact_damping",
         ),
         (
             beam.replace("[static]", "[modes]\n"),
-            "[modes] is not for a list of bearings yet",
+            "[modes] is not for a list of bearings yet; use [static], [sweep] or [dynamic]",
         ),
         (
             beam.replace("[static]", "[quasi_static]\n"),
@@ -338,7 +386,7 @@ fn bad_lists_are_refused_with_advice() {
         ),
         (
             beam.replace("[static]", ""),
-            "the scene has no analysis; add one of the tables [static] and [sweep]",
+            "the scene has no analysis; add one of the tables [static], [sweep] and [dynamic]",
         ),
         (
             beam.replace("model = \"beam\"", "model = \"elastic\""),
