@@ -4,8 +4,7 @@ use crate::util::tables::Table;
 use crate::util::{Dir, assert_within, with_line};
 
 /// Gauges that reach from node to node along an edge of the mesh, whose strain is the change of its length, and
-/// probes of
-/// these nodes.
+/// probes of these nodes.
 const EDGES: &str = "
 [probes.gauge.outside]
 ring = \"outer\"
@@ -446,9 +445,8 @@ fn gauges_change_no_bit_of_a_motion() {
 
 /// Wrong: a gauge that balls pass would read another line than the static one. Slowly, 18 rpm, a pitch of the balls in
 /// motion: at nine places the signal is the offset and the sum of the balls' forces times what `load-matrix` has for a
-/// unit load of each where it stands. Forces of a motion are means over a step, 0.02 deg of the cage, which the largest
-/// slope of the signal makes 1e-4 of the peak; they lag by half of it. The ball that passes makes the pulse: its part is
-/// larger than the signal, for the balls beside it shorten what it stretches.
+/// unit load of each where it stands. Forces of a motion are means over a step, 0.02 deg of the cage: 1e-4 of the peak
+/// at the largest slope, and half of it late. The ball that passes makes more than the signal, others take some away.
 #[test]
 fn passing_slowly_a_ball_draws_the_static_line_of_the_load_matrix() {
     let analysis = "[dynamic]\nduration = \"400 ms\"\nstep = \"0.5 ms\"\noutput_every = 100\nintegrator = \

@@ -1,5 +1,5 @@
-//! The length of a spall from the acceleration of the shaft: a double impulse (N. Sawalhi and R. B. Randall, Mech. Syst.
-//! Signal Process. 25 (2011) 846).
+//! The length of a spall from the acceleration of the shaft: a double impulse (N. Sawalhi and R. B. Randall, Mech.
+//! Syst. Signal Process. 25 (2011) 846).
 //!
 //! Both impulses have gone through the shaft on its other balls, and through the ball between its raceways. The
 //! acceleration a of the shaft is whitened by the inverse of both: what is left is the path w of the ball into the
@@ -105,7 +105,7 @@ fn estimated(length: f64, load: f64, turns: f64) -> Option<f64> {
     let mut model: Model = Case::axial(load).rigid();
     model.shaft_mass = SHAFT;
     let rest = equilibrium(&model).balls[0];
-    let (geometry, outer) = (model.geometry.clone(), rest.outer);
+    let (geometry, outer) = (model.geometry, rest.outer);
     let radius = geometry.centre_radius(Side::Outer)
         + geometry.groove_radius(Side::Outer) * outer.contact_angle_rad.cos();
     let turning = 2.0 * PI * turns / 60.0;
@@ -154,8 +154,8 @@ fn estimated(length: f64, load: f64, turns: f64) -> Option<f64> {
 }
 
 /// Wrong: a length from accelerations would be that of the answers of shaft and ball and not of the spall: the time
-/// from one event of the signal to the other alone makes 0.73 mm of 0.6 mm under 1 kN at 1800 rpm. Whitened, lengths are
-/// within 2 %, a step of 2 um at either end of 0.3 mm and as much for the fits, as long as the ball stays loaded; a
+/// from one event of the signal to the other alone makes 0.73 mm of 0.6 mm under 1 kN at 1800 rpm. Whitened, lengths
+/// are within 2 %, a step of 2 um at either end of 0.3 mm and as much for the fits, as long as the ball stays loaded; a
 /// ball that flies is noticed.
 #[test]
 fn accelerations_of_the_shaft_give_the_length_of_a_spall_over_which_the_ball_stays_loaded() {
