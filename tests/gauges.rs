@@ -4,8 +4,7 @@ use crate::util::tables::Table;
 use crate::util::{Dir, assert_within, with_line};
 
 /// Gauges that reach from node to node along an edge of the mesh, whose strain is the change of its length, and
-/// probes of
-/// these nodes.
+/// probes of these nodes.
 const EDGES: &str = "
 [probes.gauge.outside]
 ring = \"outer\"
@@ -442,4 +441,59 @@ fn gauges_change_no_bit_of_a_motion() {
     let turned = Table::read(&dir, "with/probes.csv").column("t_angle_rad");
     let exact = 60e-6 * 18000.0 * std::f64::consts::PI / 30.0;
     assert_within("angle", *turned.last().unwrap(), exact, 1e-12);
+}
+
+/// Wrong: a gauge that balls pass would read another line than the static one. Slowly, 18 rpm, a pitch of the balls in
+/// motion: at nine places the signal is the offset and the sum of the balls' forces times what `load-matrix` has for a
+/// unit load of each where it stands. Forces of a motion are means over a step, 0.02 deg of the cage: 1e-4 of the peak
+/// at the largest slope, and half of it late. The ball that passes makes more than the signal, others take some away.
+#[test]
+fn passing_slowly_a_ball_draws_the_static_line_of_the_load_matrix() {
+    let analysis = "[dynamic]\nduration = \"400 ms\"\nstep = \"0.5 ms\"\noutput_every = 100\nintegrator = \
+                    \"chung_hulbert\"\nrho = 0.5\ncontact = \"discrete_gradient\"\nledger_tolerance = 1e-3\n\
+                    [speed]\ninner = \"18 rpm\"";
+    let gauge = "[probes.gauge.g]\nring = \"outer\"\nsurface = \"seat\"\nazimuth = \"10 deg\"\nz = \"2 mm\"\n\
+                 length = \"3 mm\"\nwidth = \"1.5 mm\"\ndirection = \"hoop\"\n";
+    let dir = elastic(analysis, gauge);
+    dir.run("out", &["--set", "shaft.mass=1 kg"]);
+    let (probes, balls) = (
+        Table::read(&dir, "out/probes.csv"),
+        Table::read(&dir, "out/balls.csv"),
+    );
+    let (signal, times) = (probes.column("g_strain"), probes.column("time_s"));
+    let (forces, at) = (balls.column("outer_force_n"), balls.column("time_s"));
+    let peak = signal.iter().fold(0.0, |most: f64, e| most.max(e.abs()));
+    let (mut worst, mut passing) = (0.0f64, 0.0f64);
+    for k in 0..9 {
+        let time = format!("{}", 0.05 * f64::from(k));
+        let folder = format!("matrix_{k}");
+        let said = dir.raceway(&["load-matrix", "scene.toml", "--out", &folder, "--time", &time]);
+        assert_eq!(said.code, Some(0), "{}", said.stderr);
+        let text = dir.text(&format!("{folder}/load_matrix.csv"));
+        let cells = text.lines().nth(1).unwrap().split(',').skip(1);
+        let matrix: Vec<f64> = cells.map(|cell| cell.parse().unwrap()).collect();
+        assert_eq!(matrix.len(), 19, "{text}");
+        let row = (times.iter().position(|t| (t - 0.05 * f64::from(k)).abs() < 1e-9)).unwrap();
+        let of_balls: Vec<f64> = (0..forces.len())
+            .filter(|line| (at[*line] - times[row]).abs() < 1e-9)
+            .map(|line| forces[line])
+            .collect();
+        assert_eq!(of_balls.len(), 18);
+        let parts: Vec<f64> = of_balls
+            .iter()
+            .zip(&matrix[1..])
+            .map(|(force, unit)| force * unit)
+            .collect();
+        let line = matrix[0] + parts.iter().sum::<f64>();
+        let largest = parts.iter().fold(0.0, |most: f64, part| most.max(part.abs()));
+        println!(
+            "{time} s: {} by the matrix {line}, largest part {largest}",
+            signal[row]
+        );
+        worst = worst.max((signal[row] - line).abs() / peak);
+        passing = passing.max(largest / peak);
+    }
+    println!("off by {worst:e} of the peak; one ball makes {passing} of it");
+    assert!(worst < 5e-5, "{worst}");
+    assert!(passing > 1.0, "{passing}");
 }

@@ -203,3 +203,25 @@ fn hard_cases_have_names_of_their_own() {
     assert_eq!(names.len(), n, "a name stands twice");
     assert!(n >= 60, "{n} cases");
 }
+
+/// If this failed, the page would state another number of cases than `scripts/hard-cases` runs, or lack one. The number
+/// stands in its text and below its tables, and every case has a line of its own.
+#[test]
+fn the_page_counts_the_cases_that_are_run() {
+    let page = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/dev/stability.md");
+    let page = std::fs::read_to_string(page).unwrap();
+    let groups = groups();
+    let names: Vec<&str> = groups
+        .iter()
+        .flat_map(|group| group.cases.iter().map(|case| case.name))
+        .collect();
+    let n = names.len();
+    assert!(
+        page.contains(&format!("\nAll {n} cases hold in the run below")),
+        "{n}"
+    );
+    assert!(page.contains(&format!("\n\n{n} cases.\n")), "{n}");
+    for name in names {
+        assert!(page.contains(&format!("\n| {name} | ")), "{name} has no line");
+    }
+}

@@ -32,7 +32,7 @@ pub mod weights;
 pub mod worn_line;
 
 pub use error::ContactError;
-pub use extent::StripExtent;
+pub use extent::{LoadPart, StripExtent, StripLoads};
 pub use facets::FacetSurface;
 pub use geometry::{BearingGeometry, BySide, Meridian, Side};
 pub use hertz::{Elastic, HertzContact};

@@ -33,7 +33,7 @@ use crate::law::MIN_SLOPE;
 use crate::worn_line::WornLine;
 
 /// Gauss points on -1..1 and weights: exact for o^2, of degree four.
-const GAUSS: [(f64, f64); 3] = [
+pub(crate) const GAUSS: [(f64, f64); 3] = [
     (-0.774_596_669_241_483_4, 5.0 / 9.0),
     (0.0, 8.0 / 9.0),
     (0.774_596_669_241_483_4, 5.0 / 9.0),

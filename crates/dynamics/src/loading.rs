@@ -23,7 +23,7 @@ use crate::interactions::raceway_contact::Site;
 use crate::model::Model;
 use crate::pose::Pose;
 use crate::surface_equilibrium::settle_on_surfaces;
-use crate::surfaces::SurfacePlace;
+use crate::surfaces::{Strips, SurfacePlace};
 use crate::system::Interval;
 
 /// Bodies and contacts of a model at an instant, with their loads.
@@ -86,11 +86,14 @@ impl<'a> LoadCase<'a> {
         let angles: Vec<f64> = states.iter().map(|state| state.angle).collect();
         let forces: Vec<f64> = states.iter().map(|state| state.force.force).collect();
         let approaches: Vec<f64> = states.iter().map(|state| state.force.approach).collect();
+        let sites = self.parts.contacts.sites.iter();
+        let strips: Vec<Option<&Strips>> = sites.map(|site| site.strips.as_ref()).collect();
         let now = Now {
             angles: Some(&angles),
             seen: Some(AtEquilibrium {
                 forces: &forces,
                 approaches: &approaches,
+                strips: &strips,
                 balls: &u.balls,
             }),
             ..self.pose.now

@@ -7,6 +7,8 @@ use std::sync::Arc;
 use contact::{BallArc, BallSurface, BySide, SeenMeridian, Side, StripLine, StripSurface, WornLine};
 use serde::Serialize;
 
+use crate::interactions::traction::PatchPoints;
+
 /// What a scene asks for beyond smooth grooves without edges and equal balls; the default is nothing.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Surfaces {
@@ -253,6 +255,23 @@ impl Strips {
             true => EllipseKind::Profile,
             false => EllipseKind::Hertz,
         }
+    }
+
+    /// Places of traction with the loads of the strips, at an approach, m, and a contact angle, rad, in the ellipse
+    /// with the half-width `half_width` across the track, m. Strips that overlap by less than `least`, m, are taken to
+    /// be so near.
+    pub fn places(
+        &self,
+        smooth: &PatchPoints,
+        half_width: f64,
+        (approach, least): (f64, f64),
+        angle: f64,
+    ) -> PatchPoints {
+        smooth.over_strips(half_width, |cuts| {
+            self.surface
+                .law
+                .loads(&self.line(), (approach, least), angle, cuts)
+        })
     }
 
     /// Where the ellipse ends along the track of the raceway and of a ball that is no sphere.

@@ -2,7 +2,7 @@
 //!
 //! An ellipse is Hertz's, around the contact of its ball: its semi-axis across is an arc of the groove, that along the
 //! raceway an angle about the axis, so it is not distorted. Of contacts at an edge or over a profile, which have
-//! another one, it is drawn in dashes.
+//! another one, it is drawn in dashes; at an edge it ends where the groove does.
 
 use std::f64::consts::TAU;
 
@@ -85,7 +85,7 @@ fn unrolled(
     let mut figure = Figure::new(title, azimuth_axis(), y_axis)
         .surface(Surface::new(value_axis, x_edges, y_edges, values)?)
         .size(900, 400);
-    for (look, ellipse) in ellipses(groove, balls, step)? {
+    for (look, ellipse) in ellipses(groove, [low, high].map(arc), (balls, step))? {
         let name = match look {
             Look::BrokenOutline => "ellipse at an edge or over a profile: not Hertz's",
             _ => "contact ellipse",
@@ -110,8 +110,12 @@ fn interpolate(rows: &[(f64, Vec<Node>)], azimuth: f64, angle: f64) -> f64 {
 }
 
 /// Outlines of the loaded contacts of a step, `[azimuth in deg, arc in mm]`, cut where the picture ends, and how they
-/// are drawn.
-fn ellipses(groove: &Groove, balls: &Table, step: u64) -> anyhow::Result<Vec<(Look, Vec<[f64; 2]>)>> {
+/// are drawn. `ends` are those of the groove, mm.
+fn ellipses(
+    groove: &Groove,
+    ends: [f64; 2],
+    (balls, step): (&Table, u64),
+) -> anyhow::Result<Vec<(Look, Vec<[f64; 2]>)>> {
     let side = groove.side.name();
     let column = |name: &str| balls.column(&format!("{side}_{name}"));
     let (force, angle) = (column("force_n")?, column("contact_angle_rad")?);
@@ -119,6 +123,7 @@ fn ellipses(groove: &Groove, balls: &Table, step: u64) -> anyhow::Result<Vec<(Lo
     let (steps, azimuth) = (balls.column("step")?, balls.column("azimuth_rad")?);
     let loaded = (0..balls.n_rows()).filter(|&row| steps[row] == step as f64 && force[row] > 0.0);
     let ellipse = balls.texts(&format!("{side}_ellipse"));
+    let is_cut = |row: usize| ellipse.is_some_and(|texts| texts[row] == "edge");
     let look = |row: usize| match ellipse.map(|texts| texts[row].as_str()) {
         None | Some("hertz") => Look::Outline,
         Some(_) => Look::BrokenOutline,
@@ -129,7 +134,12 @@ fn ellipses(groove: &Groove, balls: &Table, step: u64) -> anyhow::Result<Vec<(Lo
         let corner = |i: usize| {
             let t = TAU * i as f64 / CORNERS as f64;
             let arc = groove.groove_radius * angle[row] + across[row] * t.sin();
-            [middle + half_width * t.cos(), 1e3 * arc]
+            let arc = if is_cut(row) {
+                (1e3 * arc).clamp(ends[0], ends[1])
+            } else {
+                1e3 * arc
+            };
+            [middle + half_width * t.cos(), arc]
         };
         let inside = |p: [f64; 2]| {
             if (0.0..=360.0).contains(&p[0]) {
@@ -152,4 +162,41 @@ fn ellipses(groove: &Groove, balls: &Table, step: u64) -> anyhow::Result<Vec<(Lo
         .flat_map(outline)
         .filter(|(_, line)| line.iter().any(|p| p[0].is_finite()));
     Ok(drawn.collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use contact::Side;
+
+    /// Wrong: an ellipse that ends at a shoulder would be drawn over where there is no groove. The same contact, whole
+    /// and cut 1.9 mm from the bottom: one reaches 2.5 mm, the other ends with a straight line, wherever else it is.
+    #[test]
+    fn an_ellipse_at_an_edge_ends_where_the_groove_does() {
+        let groove = Groove {
+            side: Side::Outer,
+            centre_radius: 32.2685e-3,
+            groove_radius: 4.75e-3,
+            centre_z: 0.0,
+        };
+        let folder = tempfile::tempdir().unwrap();
+        let text = "step,azimuth_rad,outer_force_n,outer_contact_angle_rad,outer_semi_axis_rolling_m,\
+                    outer_semi_axis_groove_m,outer_ellipse\n0,1,300,0.35,1.3e-4,8.4e-4,hertz\n\
+                    0,2,300,0.35,1.3e-4,8.4e-4,edge\n";
+        std::fs::write(folder.path().join("balls.csv"), text).unwrap();
+        let balls = Table::read(folder.path(), "balls.csv").unwrap().unwrap();
+        let drawn = ellipses(&groove, [-1.9, 1.9], (&balls, 0)).unwrap();
+        assert_eq!(drawn.len(), 2);
+        let arcs = |k: usize| drawn[k].1.iter().map(|[_, arc]| *arc);
+        let highest = |k: usize| arcs(k).fold(f64::NEG_INFINITY, f64::max);
+        assert!(drawn[0].0 == Look::Outline && (highest(0) - 1e3 * (4.75e-3 * 0.35 + 8.4e-4)).abs() < 1e-9);
+        assert!(
+            drawn[1].0 == Look::BrokenOutline && highest(1) == 1.9,
+            "{}",
+            highest(1)
+        );
+        for (whole, cut) in arcs(0).zip(arcs(1)) {
+            assert_eq!(cut, whole.min(1.9));
+        }
+    }
 }

@@ -13,6 +13,7 @@ use crate::interactions::seat_spring::Seat;
 use crate::interactions::traction::Traction;
 use crate::kinematics::RingSpeeds;
 use crate::model::Model;
+use crate::surfaces::Strips;
 use ring::division::NodePlaces;
 
 /// Loads on all bodies at one instant.
@@ -138,6 +139,8 @@ pub struct AtEquilibrium<'a> {
     pub forces: &'a [f64],
     /// Approaches, m, by site.
     pub approaches: &'a [f64],
+    /// Strips, by site; None: it has none.
+    pub strips: &'a [Option<&'a Strips>],
     /// Displacements of the balls [radial, axial], m.
     pub balls: &'a [[f64; 2]],
 }

@@ -10,7 +10,7 @@ use super::loads::{AtEquilibrium, Loads, Now};
 use crate::balls::{FreeBallResult, Friction, TractionResult};
 use crate::error::DynamicsError;
 use crate::interactions::steady_rolling::{SteadyBall, SteadyContact, SteadyRolling};
-use crate::interactions::traction::largest_pv;
+use crate::interactions::traction::{PatchPoints, Traction, largest_pv};
 use crate::kinematics::Kinematics;
 use crate::model::Model;
 
@@ -45,6 +45,8 @@ impl SteadyBalls {
                 contacts: Side::BOTH
                     .map(|side| contact(model, side, speeds[side.index()], (seen, angles, ball))),
                 traction,
+                on_strips: Side::BOTH
+                    .map(|side| on_strips(model, traction, (seen, angles), 2 * ball + side.index())),
             })
             .collect();
         let solve = |ball: usize, cage: Option<f64>| {
@@ -179,6 +181,19 @@ fn contact(
         speed,
         shear_modulus: model.combined_shear_modulus(side),
     }
+}
+
+/// Places of traction at a loaded contact on strips.
+fn on_strips(
+    model: &Model,
+    traction: &Traction,
+    (seen, angles): (AtEquilibrium<'_>, &[f64]),
+    site: usize,
+) -> Option<PatchPoints> {
+    let strips = seen.strips[site].filter(|_| seen.forces[site] > 0.0)?;
+    let half_width = model.hertz[site % 2].semi_axes(seen.forces[site])[0];
+    let approach = (seen.approaches[site], 0.0);
+    Some(strips.places(&traction.places, half_width, approach, angles[site]))
 }
 
 /// Force of a contact that the round-off of places alone makes, N: a ball that just touches is not loaded.

@@ -11,8 +11,8 @@
 //! moments        M = J w_c e_z x w = J w_c (-w_t, w_r, 0)
 //! ```
 //!
-//! Forces are those of [`super::traction`] over the ellipse. The gyroscopic moment J w_c w_r is what lateral tractions
-//! carry. Rates of the ball's place are left out, as is the wobble of a tilted ring along its groove.
+//! Forces are those of [`super::traction`] over the ellipse, or over strips. The gyroscopic moment J w_c w_r is what
+//! lateral tractions carry. Rates of the ball's place are left out, as is the wobble of a tilted ring along its groove.
 //!
 //! Solved by Newton's method on the motion towards the steady state: implicit Euler steps of the ball's own inertia,
 //! which grow as the residual falls (pseudo-transient continuation; Kelley and Keyes, SIAM J. Numer. Anal. 35 (1998)
@@ -24,7 +24,7 @@ use contact::film::FilmContact;
 use dense::DenseLu;
 
 use super::traction::creep::RollingContact;
-use super::traction::{Ellipse, Resultant, Slip, Traction};
+use super::traction::{Ellipse, PatchPoints, Resultant, Slip, Traction};
 
 /// A contact of a ball that rolls steadily.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -58,6 +58,8 @@ pub struct SteadyBall<'t> {
     pub contacts: [SteadyContact; 2],
     /// Traction.
     pub traction: &'t Traction,
+    /// Its places at contacts on strips; None: those of the ellipse.
+    pub on_strips: [Option<PatchPoints>; 2],
 }
 
 /// How a ball rolls.
@@ -229,9 +231,9 @@ impl SteadyBall<'_> {
             return (Resultant::default(), slip);
         }
         let load = (contact.force, small);
-        let found = self
-            .traction
-            .places
+        let found = self.on_strips[k]
+            .as_ref()
+            .unwrap_or(&self.traction.places)
             .traction(&self.traction.law, &contact.ellipse, &slip, load);
         (found, slip)
     }

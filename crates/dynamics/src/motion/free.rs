@@ -251,7 +251,8 @@ impl Motion<'_> {
             lever: self.model.contact_lever(ball, state.approaches[index]),
         };
         let [f_r, f_z] = state.forces[index];
-        let force = f_r.hypot(f_z).max(EARTH * self.model.ball_mass());
+        let least = EARTH * self.model.ball_mass();
+        let force = f_r.hypot(f_z).max(least);
         let ellipse = self.model.ellipse(site.side, force);
         let (sin, cos) = state.angles[index].sin_cos();
         let normal = [site.side.sign() * cos, site.side.sign() * sin];
@@ -273,7 +274,20 @@ impl Motion<'_> {
             scheme: self.settings.scheme,
             damping: self.settings.contact_damping,
             ring,
-            traction: traction.clone(),
+            traction: match self.strips_at((state, span.start), (ball, site.side)) {
+                Some(strips) => {
+                    let approach = (
+                        state.approaches[index],
+                        strips.surface.law.smooth_approach(0.0, least),
+                    );
+                    let angle = state.angles[index];
+                    Arc::new(Traction {
+                        places: strips.places(&traction.places, ellipse.semi_axes[0], approach, angle),
+                        ..Traction::clone(traction)
+                    })
+                }
+                None => traction.clone(),
+            },
             ellipse: Ellipse {
                 film: traction
                     .law

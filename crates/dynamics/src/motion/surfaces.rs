@@ -18,7 +18,7 @@ use crate::interactions::free_contact::FoundContact;
 use crate::interactions::free_contact::orientation::{Quaternion, at_start, in_ball};
 use crate::interactions::free_contact::rolling_surface::{RollingSurface, WornBall};
 use crate::interactions::raceway_contact::Site;
-use crate::surfaces::{EllipseKind, SurfacePlace, Surfaces};
+use crate::surfaces::{EllipseKind, Strips, SurfacePlace, Surfaces};
 
 impl Motion<'_> {
     /// Surfaces of the bearing.
@@ -95,10 +95,25 @@ impl Motion<'_> {
         (ball, side): (usize, Side),
         rolling: f64,
     ) -> Option<EllipseKind> {
-        let time = self.time(state.step);
-        let turned = Side::BOTH.map(|side| self.frame_angle(side, time));
         let index = 2 * ball + side.index();
-        let (azimuth, angle) = (self.azimuth_now(state, ball), state.angles[index]);
+        let strips = self.strips_at((state, self.time(state.step)), (ball, side))?;
+        Some(strips.ellipse(state.approaches[index], state.angles[index], rolling))
+    }
+
+    /// The strips under a contact as it stands in a state at a time, s; None: its raceway has none.
+    pub(super) fn strips_at(
+        &self,
+        (state, time): (&MotionState, f64),
+        (ball, side): (usize, Side),
+    ) -> Option<Strips> {
+        if !self.has_strips() {
+            return None;
+        }
+        let turned = Side::BOTH.map(|side| self.frame_angle(side, time));
+        let (azimuth, angle) = (
+            self.azimuth_now(state, ball),
+            state.angles[2 * ball + side.index()],
+        );
         let free = state.free.as_ref();
         let seen = |q: &Quaternion| {
             let (sin, cos) = azimuth.sin_cos();
@@ -113,8 +128,7 @@ impl Motion<'_> {
             rolled: self.kinematics.rolled(turned),
             seen: free.and_then(|free| free.orientations.get(ball)).map(seen),
         };
-        let strips = self.model.surfaces.at(ball, side, place)?;
-        Some(strips.ellipse(state.approaches[index], angle, rolling))
+        self.model.surfaces.at(ball, side, place)
     }
 }
 

@@ -66,6 +66,7 @@ fn without_curvature_the_contact_with_the_larger_moment_of_spin_controls() {
         drag: 0.0,
         contacts,
         traction: &traction,
+        on_strips: [None, None],
     };
     let rolls = flat.solve(None).unwrap().unwrap();
     let [at_inner, at_outer] = rolls.slips.map(|slip| slip.turning[2].abs());

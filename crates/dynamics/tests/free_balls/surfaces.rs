@@ -5,13 +5,13 @@ use std::sync::Arc;
 use contact::surface::{Spall, Wave};
 use contact::{Profiles, Side, StripLaw, StripSurface};
 use dynamics::Model;
-use dynamics::interactions::traction::Creep;
+use dynamics::interactions::traction::{Creep, PatchPoints, Traction};
 use dynamics::kinematics::{Kinematics, RingSpeeds, Speed};
 use dynamics::motion::{Motion, MotionState};
 
 use crate::bearings::{coulomb, freed, rpm, run, settings, thrust};
 use crate::flexible::flexible;
-use crate::support::{equilibrium, steel};
+use crate::support::{equilibrium, relative, steel};
 
 pub fn with_strips(mut model: Model, side: Side, profiles: &Profiles) -> Model {
     let law = StripLaw::new(&model.hertz[side.index()], model.geometry.groove_radius(side));
@@ -159,6 +159,64 @@ fn a_profile_of_no_depth_is_no_profile() {
             assert!((x - y).abs() < 1e-7 * 1000.0, "{ball} {i}: {x} {y}");
         }
     }
+}
+
+/// Wrong: traction at a shoulder would be that of the whole ellipse, or another one in motion than in the equilibrium
+/// before it. A shoulder in the outer ellipses: balls of a motion stay in their equilibrium, as on whole grooves. The
+/// moment about the normal over mu Q a is that of the load 1 - Y^2 for -1 < Y < tau under the slip that was found, to
+/// the load of the part of the 63 in which slip changes its sign, 0.01.
+#[test]
+fn at_a_shoulder_balls_roll_steadily_with_the_traction_of_what_is_left() {
+    let (mu, speed) = (0.07, 1800.0);
+    let speeds = RingSpeeds::from(Speed::constant(rpm(speed)));
+    let traction = Traction {
+        places: PatchPoints::new([15, 63]),
+        ..coulomb(mu, Creep::Ratio(1e-6))
+    };
+    let model = freed(thrust(2000.0), traction, &speeds);
+    let before = equilibrium(&model).balls[0].outer;
+    let groove = model.geometry.groove_radius(Side::Outer);
+    let shoulder = before.contact_angle_rad + 0.5 * before.semi_axes_m[0] / groove;
+    let law = StripLaw::new(&model.hertz[1], groove);
+    let shoulders = Some(-0.6..=shoulder);
+    let profiles = Profiles::default();
+    let surface = StripSurface::new(law, (&model.geometry, Side::Outer), shoulders, &profiles).unwrap();
+    let mut model = model;
+    model.surfaces.strips[1] = Some(Arc::new(surface));
+    let solution = equilibrium(&model);
+    let at_rest = solution.steady.as_ref().unwrap().friction().torque_n_m;
+    let motion = Motion::new(&model, settings(2e-6, &speeds)).unwrap();
+    let last = run(&motion, motion.start(&solution), 50, |_| {});
+    let found = motion.friction(&last).unwrap().torque_n_m;
+    println!("torque {at_rest} at rest, {found} in motion");
+    assert!(relative(found, at_rest) < 2e-3, "{found} {at_rest}");
+    let (site, angle) = (11, last.angles[11]);
+    let a = (2.0 * law.parabola_radius * last.approaches[site]).sqrt();
+    let tau = groove * (shoulder - angle) / a;
+    assert!((0.1..0.9).contains(&tau), "{tau}");
+    let contact = &last.free.as_ref().unwrap().contacts[site];
+    let force = last.forces[site][0].hypot(last.forces[site][1]);
+    let moment = contact.moment[2] / (mu * force * a);
+    let radius = model.ellipse(Side::Outer, force).radius;
+    // By a second way: 1000 strips of the load that is left, 41 places along each.
+    let b = a * before.semi_axes_m[1] / before.semi_axes_m[0];
+    let (mut sum, mut load) = (0.0, 0.0);
+    for k in 0..1000 {
+        let y = -1.0 + (1.0 + tau) * (k as f64 + 0.5) / 1000.0;
+        let z = -(a * y).powi(2) / (2.0 * radius);
+        for i in 1..42 {
+            let (sin, cos) = (i as f64 * std::f64::consts::PI / 42.0).sin_cos();
+            let x = b / a * (1.0 - y * y).sqrt() * cos;
+            let share = (1.0 - y * y) * sin * sin;
+            let along = contact.slip[0] - contact.spin * a * y + contact.turning[1] * z;
+            let across = contact.slip[1] + contact.spin * a * x - contact.turning[0] * z;
+            load += share;
+            sum += share * (y * along - x * across) / along.hypot(across);
+        }
+    }
+    println!("tau {tau}: moment {moment}, by a second way {}", sum / load);
+    assert!((moment - sum / load).abs() < 0.01, "{moment} {}", sum / load);
+    assert!(moment.abs() > 0.05, "{moment}");
 }
 
 /// Wrong: the force along the track would have another moment on the ball's orbit than on the ring, or a moment about

@@ -28,7 +28,9 @@
 //! before: of second order, and no unknown. Where a ring is rigid the exact lengths have this force in them.
 //!
 //! On a real surface the normal force is that of strips, and the slope of the surface is a force along the track
-//! ([`rolling_surface`]). Traction acts over the ellipse that has the contact's force on a smooth groove.
+//! ([`rolling_surface`]). Traction has the loads of the strips at the start of the step ([`super::traction::patch`]),
+//! in the ellipse that has the contact's force on a smooth groove; they stay as they are over the step, so that
+//! Newton's tangent is exact.
 //!
 //! Lengths of a link: displacement and rotation vector of the ball since the start (3 + 3), then either displacement of
 //! what carries the ring (5) or motion of an elastic ring at the ball (groove r, z; patch t, q).
