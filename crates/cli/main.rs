@@ -11,6 +11,7 @@ mod export;
 mod help;
 mod info;
 mod init;
+mod ledger_check;
 mod linear_figures;
 mod load_matrix;
 mod mesh_command;
@@ -355,7 +356,15 @@ fn execute(arguments: Arguments) -> Result<(), Failure> {
             Ok(())
         }
         Command::Resume(request) => {
-            resume::resume(&request)?;
+            match several_state::is_list(&request.dir) {
+                true => several_motion::resume_run(
+                    &request.dir,
+                    request.step,
+                    request.changes(),
+                    &request.limits,
+                )?,
+                false => resume::resume(&request)?,
+            }
             say_memory_of_ranks();
             Ok(())
         }

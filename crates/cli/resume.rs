@@ -28,7 +28,7 @@ use scene::{Analysis, Dynamic, MeshFiles, Scene, difference};
 use crate::motion;
 use crate::options::Limits;
 use crate::run::note_unshared;
-use crate::{several, several_motion, several_state};
+use crate::several_state::Changes;
 
 /// Array of a step file that counts Newton's iterations since the start of the run.
 const NEWTON: &str = "newton_iterations";
@@ -39,10 +39,10 @@ const WATCH: &str = "contacts_beyond_limits";
 #[derive(Debug, Args)]
 pub struct Request {
     /// Folder of the results.
-    dir: PathBuf,
+    pub dir: PathBuf,
     /// Step to go on from; default: the newest whole one with a restart state. Later steps are moved aside.
     #[arg(long)]
-    step: Option<u64>,
+    pub step: Option<u64>,
     /// Changes how long the run goes or what it writes: dynamic.duration, dynamic.output_every, output.*, life.*.
     #[arg(long = "set", value_name = "PATH=VALUE")]
     overrides: Vec<String>,
@@ -53,7 +53,18 @@ pub struct Request {
     #[arg(long, conflicts_with = "scene")]
     stored_scene: bool,
     #[command(flatten)]
-    limits: Limits,
+    pub limits: Limits,
+}
+
+impl Request {
+    /// What it says of the scene of a list of bearings.
+    pub fn changes(&self) -> Changes<'_> {
+        Changes {
+            overrides: &self.overrides,
+            scene: self.scene.as_deref(),
+            is_stored: self.stored_scene,
+        }
+    }
 }
 
 /// A step to go on from.
@@ -114,9 +125,6 @@ impl Stored {
 pub fn resume(request: &Request) -> Result<(), Failure> {
     let start = Instant::now();
     let dir = &request.dir;
-    if several_state::is_list(dir) {
-        return resume_list(request, start);
-    }
     let lock = agree(acquire(dir))?;
     // All ranks read before the first one writes.
     let step = same_step(dir, request.step)?;
@@ -155,18 +163,6 @@ pub fn resume(request: &Request) -> Result<(), Failure> {
     };
     motion::resume(&scene, &dynamic, stored, &request.limits, start)?;
     print::line(format_args!("results: {}", dir.display()));
-    Ok(())
-}
-
-/// Goes on with a run of a list of bearings.
-fn resume_list(request: &Request, start: Instant) -> Result<(), Failure> {
-    several::require_one_rank()?;
-    let given = request.scene.as_deref();
-    let Some(stored) = several_state::read(&request.dir, request.step, &request.overrides, given)? else {
-        return Ok(());
-    };
-    several_motion::resume(stored, &request.limits, start)?;
-    print::line(format_args!("results: {}", request.dir.display()));
     Ok(())
 }
 

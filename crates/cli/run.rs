@@ -17,7 +17,7 @@ use results::snapshot::Snapshot;
 use results::summary::{Costs, Findings, Summary};
 use results::survey::build_surveyed;
 use results::{console, fields, folder, seat};
-use scene::{Analysis, AnyScene, Backend, Scene, have_same_rings, model_with_rings, rolling};
+use scene::{Analysis, AnyScene, Backend, Scene, SeveralScene, have_same_rings, model_with_rings, rolling};
 
 use crate::modes;
 use crate::motion;
@@ -25,7 +25,7 @@ use crate::options::{Limits, Part};
 use crate::progress::Progress;
 use crate::quasi_static;
 use crate::remarks::Remarks;
-use crate::several;
+use crate::{several, several_motion};
 
 /// One load case of a run: the swept value (None for a static scene) and its scene.
 pub type Point = (Option<f64>, Scene);
@@ -49,7 +49,9 @@ pub fn run(
     let start = Instant::now();
     let scene = match agree(AnyScene::load(path, overrides).map_err(Failure::from))? {
         AnyScene::One(scene) => *scene,
-        AnyScene::Several(list) => return several::run(&list, out, part.map(|_| "--points"), limits, start),
+        AnyScene::Several(list) => {
+            return run_list(&list, out, (limits, part), start);
+        }
     };
     if let Some(part) = part {
         part.check(&scene)?;
@@ -143,6 +145,22 @@ pub fn run(
         conclude(&scene, (&model, &solutions), &failure, remarks, &costs, &dir)?;
     }
     failure.map_or(Ok(dir), Err)
+}
+
+/// Runs a list of bearings and returns the folder of its results.
+fn run_list(
+    list: &SeveralScene,
+    out: Option<PathBuf>,
+    (limits, part): (&Limits, Option<Part>),
+    start: Instant,
+) -> Result<PathBuf, Failure> {
+    several::refuse(part.map(|_| "--points"), list)?;
+    let dir = folder::choose(&list.path, out)?;
+    match &list.analysis {
+        Analysis::Dynamic(dynamic) => several_motion::run(list, dynamic, &dir, limits, start)?,
+        _ => several::run(list, &dir, start)?,
+    }
+    Ok(dir)
 }
 
 /// Writes the summary of points that were solved, and prints the results of a run without a failure.

@@ -9,7 +9,6 @@ use comm::Communicator;
 use contact::Side;
 use results::failure::{Failure, agree};
 use results::files::{Files, say_folder};
-use results::folder;
 use results::memory::{Forecasts, require_memory};
 use results::several::{
     ListState, SeveralFindings, SeveralSummary, SeveralTables, print_solution, print_sweep_head,
@@ -22,9 +21,7 @@ use results::survey::{Survey, say_doubts};
 use results::whole::{make_asked_folder, write_new};
 use scene::{Analysis, BuildError, Rings, SeveralScene, assembly_with_rings, build_assembly, doubts};
 
-use crate::options::Limits;
 use crate::progress::Progress;
-use crate::several_motion;
 
 /// The scene, beside the results of its bearings.
 pub const SCENE_FILE: &str = "scene.toml";
@@ -32,23 +29,8 @@ pub const SCENE_FILE: &str = "scene.toml";
 /// One load case: the swept value (None for a static scene) and its scene.
 pub type SeveralPoint = (Option<f64>, SeveralScene);
 
-/// Runs a scene and returns the folder of its results; `refused` is an option that is for one bearing.
-pub fn run(
-    scene: &SeveralScene,
-    out: Option<PathBuf>,
-    refused: Option<&str>,
-    limits: &Limits,
-    start: Instant,
-) -> Result<PathBuf, Failure> {
-    refuse(refused, scene)?;
-    let dir = folder::choose(&scene.path, out)?;
-    if let Analysis::Dynamic(dynamic) = &scene.analysis {
-        return several_motion::run(scene, dynamic, &dir, limits, start).map(|()| dir);
-    }
-    run_in(scene, &dir, start).map(|()| dir)
-}
-
-fn run_in(scene: &SeveralScene, dir: &Path, start: Instant) -> Result<(), Failure> {
+/// Runs a scene at rest; its results go into a folder.
+pub fn run(scene: &SeveralScene, dir: &Path, start: Instant) -> Result<(), Failure> {
     require_one_rank()?;
     let points = points(scene)?;
     let mut progress = Progress::new(points.len() as u64);

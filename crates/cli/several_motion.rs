@@ -26,7 +26,7 @@ use results::whole::{make_asked_folder, write_new};
 use scene::{Dynamic, Scene, SeveralScene, build_assembly, loads_on_shaft, settings};
 use timer::{Laps, Stopwatch};
 
-use crate::motion::check_ledger;
+use crate::ledger_check::check_ledger;
 use crate::options::Limits;
 use crate::progress::Progress;
 use crate::several::{SCENE_FILE, all_doubts, require_one_rank, say_types, solving};
@@ -92,7 +92,7 @@ pub fn run(
             &[],
         )?);
     }
-    let mut march = March {
+    let mut march = ListMarch {
         watches: new_watches(&assembly),
         scene,
         dynamic,
@@ -116,8 +116,25 @@ pub fn run(
     march.finish_run(progress, limits, warnings, start)
 }
 
+/// Goes on with a run in a folder of a list.
+pub fn resume_run(
+    dir: &Path,
+    step: Option<u64>,
+    changes: several_state::Changes<'_>,
+    limits: &Limits,
+) -> Result<(), Failure> {
+    let start = Instant::now();
+    require_one_rank()?;
+    let Some(stored) = several_state::read(dir, step, changes)? else {
+        return Ok(());
+    };
+    resume(stored, limits, start)?;
+    print::line(format_args!("results: {}", dir.display()));
+    Ok(())
+}
+
 /// Goes on with a motion whose bearings and step have been read.
-pub fn resume(stored: several_state::StoredList, limits: &Limits, start: Instant) -> Result<(), Failure> {
+fn resume(stored: several_state::StoredList, limits: &Limits, start: Instant) -> Result<(), Failure> {
     let several_state::StoredList {
         dir,
         scene,
@@ -167,7 +184,7 @@ pub fn resume(stored: several_state::StoredList, limits: &Limits, start: Instant
         }
     };
     let tables = SeveralTables::resume(&dir, &first, step, &mut make_aside)?;
-    let march = March {
+    let march = ListMarch {
         scene: &scene,
         dynamic: &dynamic,
         assembly: &assembly,
@@ -212,7 +229,7 @@ fn ready<'a>(
 }
 
 /// A run under way.
-struct March<'a> {
+struct ListMarch<'a> {
     scene: &'a SeveralScene,
     dynamic: &'a Dynamic,
     assembly: &'a Assembly,
@@ -239,7 +256,7 @@ struct March<'a> {
     dir: &'a Path,
 }
 
-impl March<'_> {
+impl ListMarch<'_> {
     /// Steps to the end of the run, closes the files and sums up, also when the run ends early.
     fn finish_run(
         mut self,
@@ -257,10 +274,8 @@ impl March<'_> {
         for motion in &self.motion.bearings {
             self.laps.merge_into(EFFECTS, &motion.costs.laps());
         }
-        let status = ended
-            .as_ref()
-            .err()
-            .map_or("finished".to_string(), Failure::status);
+        let failed = ended.as_ref().err();
+        let status = failed.map_or("finished".to_string(), Failure::status);
         for (i, watch) in self.watches.iter().enumerate() {
             let (name, motion) = (&self.scene.bearings[i].name, &self.motion.bearings[i]);
             let own = watch.warnings(motion.surfaces(), |step| motion.time(step));
@@ -385,10 +400,10 @@ impl March<'_> {
             }
         }
         self.state = next;
-        let (step, time) = (self.state.step, self.motion.time(self.state.step));
+        let step = self.state.step;
         for (i, watch) in self.watches.iter_mut().enumerate() {
             let found = motions[i].exceeded(&self.state.bearings[i]);
-            for text in watch.note(step, time, &found) {
+            for text in watch.note(step, self.motion.time(step), &found) {
                 progress.warn(&format!("bearing {:?}: {text}", self.scene.bearings[i].name));
             }
         }

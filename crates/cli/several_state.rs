@@ -129,14 +129,20 @@ pub fn restore(
     })
 }
 
-/// Reads the step from which a run goes on; `asked` is the one asked for, `overrides` change how long it goes and what
-/// it writes. None if the run has finished.
-pub fn read(
-    dir: &Path,
-    asked: Option<u64>,
-    overrides: &[String],
-    given: Option<&Path>,
-) -> Result<Option<StoredList>, Failure> {
+/// What the command line says of the scene of a run that goes on.
+#[derive(Clone, Copy)]
+pub struct Changes<'a> {
+    /// How long it goes and what it writes.
+    pub overrides: &'a [String],
+    /// The scene file, where it is not where it was.
+    pub scene: Option<&'a Path>,
+    /// Whether the scene file is left out of it.
+    pub is_stored: bool,
+}
+
+/// Reads the step from which a run goes on; `asked` is the one asked for. None if the run has finished.
+pub fn read(dir: &Path, asked: Option<u64>, changes: Changes<'_>) -> Result<Option<StoredList>, Failure> {
+    let overrides = changes.overrides;
     let text = std::fs::read_to_string(dir.join(crate::several::SCENE_FILE)).with_context(|| {
         format!(
             "{} cannot be read",
@@ -154,7 +160,7 @@ pub fn read(
     let step = choose(dir, &folders, asked)?;
     let first = folders[0].join(step_file_name(step));
     let about = read_about(&first)?;
-    let path = match (given, about.get(SCENE_FILE)) {
+    let path = match (changes.scene, about.get(SCENE_FILE)) {
         (Some(path), _) => path.to_path_buf(),
         (None, Some(path)) => scene_file(&folders[0], path),
         (None, None) => return Err(anyhow!("{} does not say where its scene is", first.display()).into()),
@@ -162,7 +168,7 @@ pub fn read(
     let before: Vec<String> = about
         .get(OVERRIDES)
         .map_or(Vec::new(), |text| text.lines().map(str::to_string).collect());
-    let scene = scene_of(&text, &path, &before, overrides)?;
+    let scene = scene_of(&text, &path, &before, changes)?;
     let Analysis::Dynamic(dynamic) = scene.analysis else {
         return Err(anyhow!(
             "{} holds results at rest; only a motion, a scene with [dynamic], can be resumed, run the scene again",
@@ -229,8 +235,9 @@ fn scene_of(
     text: &str,
     path: &Path,
     before: &[String],
-    overrides: &[String],
+    changes: Changes<'_>,
 ) -> Result<SeveralScene, Failure> {
+    let overrides = changes.overrides;
     let of_list = |text: &str, overrides: &[String]| match AnyScene::parse(
         text,
         path,
@@ -245,7 +252,7 @@ fn scene_of(
     };
     // Those of the types are not in the text.
     let stored = of_list(text, &scene::overrides_of_types(before))?;
-    if path.exists() {
+    if path.exists() && !changes.is_stored {
         let now =
             std::fs::read_to_string(path).with_context(|| format!("{} cannot be read", path.display()))?;
         let now = of_list(&now, before)?;
@@ -254,7 +261,8 @@ fn scene_of(
             .find(|change| !change.is_below(&MAY_CHANGE))
         {
             return Err(anyhow!(
-                "the scene file {} has changed since the run: {change}; put it back, or run the scene anew",
+                "the scene file {} has changed since the run: {change}; put it back, or go on with the scene of the \
+                 run: --stored-scene",
                 path.display()
             )
             .into());

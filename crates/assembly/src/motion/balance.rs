@@ -38,7 +38,7 @@ pub struct ShaftStep<'a> {
 }
 
 /// The equations at an end.
-struct Iterate {
+struct ShaftBalance {
     end: Vec<f64>,
     residual: Vec<f64>,
     /// Largest residual as a force, N.
@@ -49,7 +49,7 @@ struct Iterate {
 }
 
 /// Factors of the tangent over the free dofs, kept while Newton gets on with them.
-pub struct Kept {
+pub struct KeptFactors {
     free: Vec<usize>,
     factors: Option<DenseLu>,
 }
@@ -83,7 +83,7 @@ impl ShaftStep<'_> {
         &self,
         parts: &mut [HeldPart<'_>],
         from: Vec<f64>,
-        kept: &mut Kept,
+        kept: &mut KeptFactors,
     ) -> Result<(Vec<f64>, Vec<[f64; N_SHAFT]>), AssemblyError> {
         let mut at = self.evaluate(parts, from)?;
         let (mut best, mut stalled) = (f64::INFINITY, 0);
@@ -113,7 +113,7 @@ impl ShaftStep<'_> {
         })
     }
 
-    fn evaluate(&self, parts: &mut [HeldPart<'_>], end: Vec<f64>) -> Result<Iterate, AssemblyError> {
+    fn evaluate(&self, parts: &mut [HeldPart<'_>], end: Vec<f64>) -> Result<ShaftBalance, AssemblyError> {
         let (n, [q, v]) = (self.shaft.n(), self.start);
         let inertia: Vec<f64> = self
             .velocity(&end)
@@ -147,7 +147,7 @@ impl ShaftStep<'_> {
         if !error.is_finite() {
             return Err(AssemblyError::NotFinite);
         }
-        Ok(Iterate {
+        Ok(ShaftBalance {
             end,
             residual,
             error,
@@ -168,8 +168,8 @@ impl ShaftStep<'_> {
     fn step(
         &self,
         parts: &mut [HeldPart<'_>],
-        at: &Iterate,
-        kept: &mut Kept,
+        at: &ShaftBalance,
+        kept: &mut KeptFactors,
     ) -> Result<Vec<f64>, AssemblyError> {
         let factors = match kept.factors.take() {
             Some(factors) => factors,
@@ -184,9 +184,9 @@ impl ShaftStep<'_> {
     }
 
     /// Nothing kept yet.
-    pub fn keeps(&self) -> Kept {
+    pub fn keeps(&self) -> KeptFactors {
         let held = &self.shaft.held;
-        Kept {
+        KeptFactors {
             free: (0..held.len()).filter(|&i| held[i].is_none()).collect(),
             factors: None,
         }
@@ -217,9 +217,9 @@ impl ShaftStep<'_> {
     fn search(
         &self,
         parts: &mut [HeldPart<'_>],
-        from: Iterate,
+        from: ShaftBalance,
         step: &[f64],
-    ) -> Result<Iterate, AssemblyError> {
+    ) -> Result<ShaftBalance, AssemblyError> {
         let mut share = 1.0;
         for halving in 0..=HALVINGS {
             let end = from.end.iter().zip(step).map(|(q, s)| q + share * s).collect();

@@ -1,7 +1,7 @@
 //! Several bearings on one shaft through time.
 //!
-//! Each bearing takes its own step ([`dynamics::motion::held`]) with the end of its shaft given, and answers by the mean
-//! load that has to act there. The shaft moves by average acceleration, as the bearings do:
+//! Each bearing takes its own step ([`dynamics::motion::held`]) with the end of its shaft given, and answers by the
+//! mean load that has to act there. The shaft moves by average acceleration, as the bearings do:
 //!
 //! ```text
 //! M (v1 - v0)/h + G (W1 q1 - W0 q0)/h + K (q0 + q1)/2 + sum over bearings S^T T^T r(T S q1 + shift) = f(t + h/2)
@@ -21,7 +21,7 @@ mod ledger;
 
 use dynamics::kinematics::Speed;
 use dynamics::motion::held::{HeldPart, Holding};
-use dynamics::motion::{Integrator, Motion, MotionSettings, MotionState, Span, StepCache, StepReport};
+use dynamics::motion::{Integrator, Motion, MotionSettings, MotionState, PartSpan, StepCache, StepReport};
 use dynamics::stiffness::N_SHAFT;
 use dynamics::{DynamicsError, ShaftDof};
 
@@ -179,7 +179,7 @@ impl<'a> AssemblyMotion<'a> {
     fn part(
         &self,
         state: &AssemblyState,
-        spans: &[(Span, Option<Span>)],
+        spans: &[(PartSpan, Option<PartSpan>)],
         cache: &mut AssemblyCache,
     ) -> Result<(AssemblyState, StepReport), AssemblyError> {
         let mut parts = Vec::new();

@@ -4,7 +4,7 @@ use comm::Communicator;
 
 use super::cache::StepCache;
 use super::run::Motion;
-use super::span::Span;
+use super::span::PartSpan;
 use super::state::{MotionState, StepReport};
 use crate::error::DynamicsError;
 
@@ -72,9 +72,9 @@ impl Motion<'_> {
     }
 
     /// The part of a step on a rung of the ladder that begins `at` smallest parts from its start.
-    pub fn span(&self, step: u64, at: u64, rung: u32) -> Span {
+    pub fn span(&self, step: u64, at: u64, rung: u32) -> PartSpan {
         let n = 1u64 << self.settings.ladder.halvings;
-        Span {
+        PartSpan {
             start: self.time(step) + self.settings.dt * (at as f64 / n as f64),
             dt: self.step_size(rung),
             rung,
@@ -85,8 +85,8 @@ impl Motion<'_> {
     fn try_part(
         &self,
         state: &MotionState,
-        span: Span,
-        upcoming: Option<Span>,
+        span: PartSpan,
+        upcoming: Option<PartSpan>,
         cache: &mut StepCache,
     ) -> Result<(MotionState, StepReport), DynamicsError> {
         let (next, report, ahead) = self.substep(state, span, upcoming, cache)?;

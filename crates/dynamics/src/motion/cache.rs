@@ -7,10 +7,10 @@
 use std::sync::Arc;
 
 use contact::Side;
-use ring::{Known, KnownLoad};
+use ring::{Ended, Known, KnownLoad};
 
 use super::run::Motion;
-use super::span::Span;
+use super::span::PartSpan;
 use super::state::MotionState;
 use crate::effects::Loads;
 use crate::error::DynamicsError;
@@ -29,13 +29,20 @@ pub(super) struct Ahead {
     pub rings: [Option<Arc<Known>>; 2],
 }
 
+/// The ends of both rings.
+pub(super) struct RingEnds {
+    pub rings: [Option<Ended>; 2],
+    /// What the part that follows begins with.
+    pub ahead: Option<Ahead>,
+}
+
 /// Loads of a part of a step with its contacts where they are expected.
 #[derive(Debug)]
 pub(super) struct ExpectedLoads {
     /// The motion that evaluated them.
     motion: Arc<()>,
     /// The part.
-    pub span: Span,
+    pub span: PartSpan,
     /// Contact angle, rad, and force, N, with which they were evaluated, by site.
     pub places: Vec<[f64; 2]>,
     pub loads: Loads,
@@ -46,7 +53,7 @@ impl Motion<'_> {
     pub(super) fn expected_loads(
         &self,
         places: Vec<[f64; 2]>,
-        span: Span,
+        span: PartSpan,
     ) -> Result<Arc<ExpectedLoads>, DynamicsError> {
         let loads = self.loads_at(&places, self.weighted_time(span), span.dt)?;
         Ok(Arc::new(ExpectedLoads {
@@ -61,7 +68,7 @@ impl Motion<'_> {
     pub(super) fn ahead(
         &self,
         state: &MotionState,
-        span: Span,
+        span: PartSpan,
         cache: &StepCache,
     ) -> Result<Ahead, DynamicsError> {
         let places = state.expected_places();

@@ -7,7 +7,7 @@ use super::free_state::FreeState;
 use super::ledger::{CageLedger, Ledger};
 use super::run::Motion;
 use super::solve::StepSolution;
-use super::span::Span;
+use super::span::PartSpan;
 use super::state::MotionState;
 use crate::bearing::{BearingParts, CageParts};
 use crate::bodies::CageBody;
@@ -47,7 +47,7 @@ impl Motion<'_> {
     pub(super) fn cage_parts(
         &self,
         free: &FreeState,
-        span: Span,
+        span: PartSpan,
         fall: [f64; 3],
         shaft: RingStep,
     ) -> Option<CageParts> {
@@ -80,7 +80,7 @@ impl Motion<'_> {
         &self,
         (cage, impact): (&Cage, Impact),
         (state, free): (&CageState, &FreeState),
-        span: Span,
+        span: PartSpan,
         ball: usize,
     ) -> PocketStep {
         let turning = free.turnings[ball];
@@ -104,7 +104,7 @@ impl Motion<'_> {
         &self,
         (cage, impact, land): (&Cage, Impact, &Land),
         state: &CageState,
-        span: Span,
+        span: PartSpan,
         (n_balls, end): (usize, usize),
         shaft: RingStep,
     ) -> LandStep {
@@ -188,7 +188,7 @@ impl Motion<'_> {
     pub(super) fn cage_ledger(&self, state: &MotionState) -> Option<CageLedger> {
         let (cage, free) = (self.model.cage.as_ref()?, state.free.as_ref()?);
         let cage_state = free.cage.as_ref()?;
-        let span = Span {
+        let span = PartSpan {
             start: self.time(state.step),
             dt: self.settings.dt,
             rung: 0,

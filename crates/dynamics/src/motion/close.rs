@@ -4,13 +4,13 @@
 use std::sync::Arc;
 
 use contact::Side;
-use ring::{ElasticStep, End, Ended, FrameTurn, Settling};
+use ring::{ElasticStep, End, FrameTurn, Settling};
 
-use super::cache::{Ahead, ExpectedLoads};
+use super::cache::{Ahead, ExpectedLoads, RingEnds};
 use super::place::expected;
 use super::run::Motion;
 use super::solve::StepSolution;
-use super::span::Span;
+use super::span::PartSpan;
 use super::state::MotionState;
 use super::substep::Part;
 use crate::costs::{FRAME, UPDATE};
@@ -20,13 +20,6 @@ use crate::error::DynamicsError;
 /// step size.
 const MAX_FRAME_ROUNDS: usize = 25;
 
-/// The ends of both rings.
-pub(super) struct RingEnds {
-    pub rings: [Option<Ended>; 2],
-    /// What the part that follows begins with.
-    pub ahead: Option<Ahead>,
-}
-
 impl Motion<'_> {
     /// The ends of both rings under the forces of a solution, or None when the inertia of the turning frame has
     /// changed and the contacts are to be solved again. Looks ahead to the part `upcoming`.
@@ -35,7 +28,7 @@ impl Motion<'_> {
         state: &MotionState,
         part: &mut Part<'_>,
         solution: &StepSolution,
-        upcoming: Option<Span>,
+        upcoming: Option<PartSpan>,
     ) -> Result<Option<RingEnds>, DynamicsError> {
         let forces = Side::BOTH.map(|side| part.parts.forces_at_ports(side, solution));
         let scale = part.scale;
@@ -94,7 +87,7 @@ impl Motion<'_> {
         state: &MotionState,
         part: &Part<'_>,
         solution: &StepSolution,
-        upcoming: Option<Span>,
+        upcoming: Option<PartSpan>,
     ) -> Option<Arc<ExpectedLoads>> {
         let span = upcoming.filter(|span| span.rung == part.span.rung)?;
         let met = part.parts.places(solution);

@@ -12,7 +12,7 @@ use super::place::Course;
 use super::ring_course::RingCourse;
 use super::run::Motion;
 use super::solve::StepSolution;
-use super::span::Span;
+use super::span::PartSpan;
 use super::state::MotionState;
 use crate::bearing::{BearingParts, FreeParts};
 use crate::bodies::FreeBall;
@@ -80,7 +80,7 @@ impl Motion<'_> {
     pub(super) fn free_parts(
         &self,
         state: &MotionState,
-        span: Span,
+        span: PartSpan,
         sites: &[Site],
         rings: &RingSteps<'_>,
     ) -> Option<FreeParts> {
@@ -116,7 +116,7 @@ impl Motion<'_> {
 
     /// Where balls are in the middle of a part. A free ball is expected on the orbit that it has at the start: wrong by
     /// dt^2/8 times its angular acceleration, 1e-4 of a patch where all friction speeds it up.
-    pub(super) fn course(&self, state: &MotionState, span: Span) -> Course {
+    pub(super) fn course(&self, state: &MotionState, span: PartSpan) -> Course {
         let time = self.weighted_time(span);
         let balls = 0..self.n_balls();
         let Some(free) = &state.free else {
@@ -139,7 +139,7 @@ impl Motion<'_> {
     }
 
     /// Acceleration of all that falls, m/s^2.
-    fn fall(&self, span: Span) -> [f64; 3] {
+    fn fall(&self, span: PartSpan) -> [f64; 3] {
         let now = self.now(span);
         self.model.effects.iter().fold([0.0; 3], |sum, effect| {
             let a = effect.acceleration(&now);
@@ -147,7 +147,7 @@ impl Motion<'_> {
         })
     }
 
-    fn free_ball(&self, free: &FreeState, span: Span, (ball, fall): (usize, [f64; 3])) -> FreeBall {
+    fn free_ball(&self, free: &FreeState, span: PartSpan, (ball, fall): (usize, [f64; 3])) -> FreeBall {
         let inertia = self.model.ball_inertia();
         FreeBall {
             ball,
@@ -171,7 +171,7 @@ impl Motion<'_> {
     fn ring_steps(
         &self,
         (state, free): (&MotionState, &FreeState),
-        span: Span,
+        span: PartSpan,
         side: Side,
         step: Option<&(dyn ElasticStep + '_)>,
     ) -> Vec<RingStep> {
@@ -213,7 +213,7 @@ impl Motion<'_> {
     }
 
     /// What carries a ring, over a part.
-    pub(super) fn carrier_step(&self, state: &MotionState, span: Span, side: Side) -> RingStep {
+    pub(super) fn carrier_step(&self, state: &MotionState, span: PartSpan, side: Side) -> RingStep {
         let (carrier, masses) = match (side, state.seat) {
             (Side::Inner, _) => ([state.shaft, state.shaft_velocity], self.model.shaft_masses()),
             (Side::Outer, Some([z, v, _])) => {
@@ -231,7 +231,7 @@ impl Motion<'_> {
     }
 
     /// Speed of a ring, rad/s: mean over a part, and at its end.
-    pub(super) fn ring_speeds(&self, side: Side, span: Span) -> [f64; 2] {
+    pub(super) fn ring_speeds(&self, side: Side, span: PartSpan) -> [f64; 2] {
         let speed = self.settings.speeds.of(side);
         let turned = speed.angle(span.at(1.0)) - speed.angle(span.start);
         [turned / span.dt, speed.at(span.at(1.0))]
@@ -240,7 +240,7 @@ impl Motion<'_> {
     fn contact_step(
         &self,
         (state, free): (&MotionState, &FreeState),
-        span: Span,
+        span: PartSpan,
         (index, site): (usize, &Site),
         (ring, traction): (RingStep, &Arc<Traction>),
     ) -> ContactStep {

@@ -7,11 +7,10 @@
 use ring::StepScheme;
 use timer::SharedLaps;
 
-use super::cache::StepCache;
-use super::close::RingEnds;
+use super::cache::{RingEnds, StepCache};
 use super::run::Motion;
 use super::solve::{StepSolution, policy};
-use super::span::Span;
+use super::span::PartSpan;
 use super::state::{MotionState, StepReport};
 use super::substep::Part;
 use crate::bearing::BearingParts;
@@ -53,7 +52,7 @@ impl<'m> HeldPart<'m> {
     pub fn begin(
         motion: &'m Motion<'m>,
         state: &'m MotionState,
-        span: Span,
+        span: PartSpan,
         cache: &StepCache,
     ) -> Result<HeldPart<'m>, DynamicsError> {
         Ok(HeldPart {
@@ -120,7 +119,7 @@ impl<'m> HeldPart<'m> {
 
     /// Brings the inertia of turning frames in line with the last answer and ends the rings; looks ahead to the part
     /// `upcoming`.
-    pub fn close(&mut self, upcoming: Option<Span>) -> Result<Holding, DynamicsError> {
+    pub fn close(&mut self, upcoming: Option<PartSpan>) -> Result<Holding, DynamicsError> {
         self.part.clock.lap();
         self.ends = self
             .motion

@@ -51,5 +51,5 @@ pub use ring::{Integrator, RingState};
 pub use ring_course::RingCourse;
 pub use run::{Motion, check_supported};
 pub use shape::{RingShape, StateShape};
-pub use span::Span;
+pub use span::PartSpan;
 pub use state::{Ladder, MotionSettings, MotionState, StepReport};

@@ -7,7 +7,7 @@ use super::cache::Ahead;
 use super::place::Placing;
 use super::run::Motion;
 use super::solve::StepSolution;
-use super::span::Span;
+use super::span::PartSpan;
 use super::state::MotionState;
 use crate::bearing::{BearingParts, ContactList, SeatStep};
 use crate::bodies::{FlatBody, FrameInertia, Inertia, Name, StepTakes};
@@ -96,7 +96,7 @@ impl Motion<'_> {
     pub(super) fn parts(
         &self,
         state: &MotionState,
-        span: Span,
+        span: PartSpan,
         sites: Vec<Site>,
         rings: &RingSteps<'_>,
         loads: &Loads,
@@ -148,7 +148,7 @@ impl Motion<'_> {
     }
 
     /// The middle of a part.
-    pub(super) fn now(&self, span: Span) -> Now<'static> {
+    pub(super) fn now(&self, span: PartSpan) -> Now<'static> {
         let time = self.weighted_time(span);
         Now {
             time,
@@ -173,7 +173,7 @@ impl Motion<'_> {
         FlatBody::new(Name::Ball(ball), dofs, [None; 2])
     }
 
-    fn shaft(&self, state: &MotionState, span: Span, loads: &Loads) -> FlatBody<5> {
+    fn shaft(&self, state: &MotionState, span: PartSpan, loads: &Loads) -> FlatBody<5> {
         let masses = self.model.shaft_masses();
         let dofs = [0, 1, 2, 3, 4].map(|i| Inertia {
             mass: masses[i],
@@ -192,7 +192,7 @@ impl Motion<'_> {
     }
 
     /// Rigid inertia of what turns with the shaft that neither its dofs nor the step of the ring take.
-    fn frame_inertia(&self, state: &MotionState, span: Span) -> Option<FrameInertia> {
+    fn frame_inertia(&self, state: &MotionState, span: PartSpan) -> Option<FrameInertia> {
         let inertia = self.turning?;
         let inner = Side::Inner;
         let integrator = self.settings.integrator;

@@ -6,7 +6,7 @@ use ring::ElasticStep;
 
 use super::free_state::FreeState;
 use super::run::Motion;
-use super::span::Span;
+use super::span::PartSpan;
 use super::state::MotionState;
 use crate::bearing::carrier;
 use crate::compliance;
@@ -19,7 +19,7 @@ impl Motion<'_> {
     pub(super) fn ports(
         &self,
         state: &MotionState,
-        span: Span,
+        span: PartSpan,
         side: Side,
         step: &dyn ElasticStep,
     ) -> Result<ElasticPorts, DynamicsError> {

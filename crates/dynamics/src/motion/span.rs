@@ -2,7 +2,7 @@
 
 /// A part of a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Span {
+pub struct PartSpan {
     /// Time at its start, s.
     pub start: f64,
     /// Its size, s.
@@ -11,7 +11,7 @@ pub struct Span {
     pub rung: u32,
 }
 
-impl Span {
+impl PartSpan {
     /// Time at a share of the part, s.
     pub fn at(&self, share: f64) -> f64 {
         self.start + share * self.dt

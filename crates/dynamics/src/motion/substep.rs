@@ -7,15 +7,14 @@ use contact::Side;
 use ring::ElasticStep;
 use timer::{Laps, Stopwatch};
 
-use super::cache::{Ahead, ExpectedLoads, StepCache};
-use super::close::RingEnds;
+use super::cache::{Ahead, ExpectedLoads, RingEnds, StepCache};
 use super::finite::require_finite;
 use super::free::check_apart;
 use super::part::RingSteps;
 use super::place::Placing;
 use super::run::Motion;
 use super::solve::{StepSolution, check_patches, check_range};
-use super::span::Span;
+use super::span::PartSpan;
 use super::state::{MotionState, StepReport};
 use crate::bearing::BearingParts;
 use crate::costs::{BLOCK_SOLVE, LOADS, NEWTON, PATCHES, UPDATE};
@@ -26,7 +25,7 @@ const MAX_PLACE_ROUNDS: usize = 20;
 
 /// A part of a step under way.
 pub(super) struct Part<'m> {
-    pub span: Span,
+    pub span: PartSpan,
     pub expected: Arc<ExpectedLoads>,
     /// Contact angle, rad, and force, N, for which the patches were placed, by site.
     places: Vec<[f64; 2]>,
@@ -44,8 +43,8 @@ impl Motion<'_> {
     pub(super) fn substep(
         &self,
         state: &MotionState,
-        span: Span,
-        upcoming: Option<Span>,
+        span: PartSpan,
+        upcoming: Option<PartSpan>,
         cache: &StepCache,
     ) -> Result<(MotionState, StepReport, Option<Ahead>), DynamicsError> {
         let mut part = self.begin(state, span, cache)?;
@@ -92,7 +91,7 @@ impl Motion<'_> {
     pub(super) fn begin<'m>(
         &'m self,
         state: &'m MotionState,
-        span: Span,
+        span: PartSpan,
         cache: &StepCache,
     ) -> Result<Part<'m>, DynamicsError> {
         let mut report = StepReport {
@@ -125,7 +124,7 @@ impl Motion<'_> {
     }
 
     /// Time at which a part is in balance, s.
-    pub(super) fn weighted_time(&self, span: Span) -> f64 {
+    pub(super) fn weighted_time(&self, span: PartSpan) -> f64 {
         span.at(1.0 - self.settings.integrator.alpha_f)
     }
 

@@ -11,7 +11,7 @@ use super::free_state::FreeState;
 use super::ledger::Ledger;
 use super::run::Motion;
 use super::solve::StepSolution;
-use super::span::Span;
+use super::span::PartSpan;
 use super::state::MotionState;
 use crate::bearing::{BearingParts, lengths};
 use crate::interactions::free_contact::FoundContact;
@@ -32,7 +32,7 @@ impl Motion<'_> {
     }
 
     /// Contacts on the surfaces over which they roll in a part.
-    pub(super) fn on_surfaces(&self, span: Span, mut sites: Vec<Site>) -> Vec<Site> {
+    pub(super) fn on_surfaces(&self, span: PartSpan, mut sites: Vec<Site>) -> Vec<Site> {
         // A free ball's contact finds its surfaces with the ball's place.
         if !self.model.surfaces.has_strips() || self.model.traction().is_some() {
             return sites;
@@ -57,7 +57,7 @@ impl Motion<'_> {
     pub(super) fn rolling_surface(
         &self,
         (free, angle): (&FreeState, f64),
-        span: Span,
+        span: PartSpan,
         site: &Site,
     ) -> Option<RollingSurface> {
         let strips = site.strips.clone()?;

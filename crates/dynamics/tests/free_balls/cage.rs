@@ -382,7 +382,7 @@ fn balls_drift_by_the_integral_of_their_speeds_and_meet_the_cage_where_it_is_nar
 /// presses on; by ball, those of the settled way round.
 type Touches = Vec<Vec<[f64; 2]>>;
 
-/// Balls on a shaft that keeps straight, under thrust and a radial force, in pockets that are narrower than their drift:
+/// Balls on a shaft that keeps straight, under thrust and a radial force, in pockets narrower than their drift:
 /// touches of the last two ways round, and the sum of the sizes of all forces along them, N.
 fn touched() -> ([Touches; 2], Vec<f64>) {
     let speeds = RingSpeeds::from(Speed::constant(rpm(6000.0)));

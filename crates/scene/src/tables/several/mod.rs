@@ -16,6 +16,7 @@ mod load;
 mod mounted;
 mod pairing;
 mod shaft;
+mod turned;
 
 use std::path::{Path, PathBuf};
 
