@@ -287,10 +287,13 @@ fn a_pair_moves_and_a_resumed_one_has_the_same_bits() {
     let found = summary(&dir, "whole");
     assert_eq!(found["analysis"], "dynamic");
     assert!(number(&found, "/residual") < 1e-9);
-    let line = Table::read(&dir, "whole/bearings.csv");
+    let line = Table::read(&dir, "whole/shaft.csv");
     let x = line.column("x_m");
     let range = x.iter().fold(0.0f64, |m, at| m.max((at - x[0]).abs()));
     assert!(range > 1e-6, "{range}");
+    let refused = dir.raceway(&["info", "whole"]);
+    let expected = "has the results of several bearings on one shaft; expected the folder of one of them";
+    assert!(refused.stderr.contains(expected), "{}", refused.stderr);
     // Half of it, then the rest.
     succeeds(
         &dir,

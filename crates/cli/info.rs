@@ -98,6 +98,7 @@ fn line(name: &str, text: &str) {
 }
 
 fn folder(dir: &Path, depth: Depth) -> Result<(), Failure> {
+    plot::require_one_bearing(dir)?;
     let steps = committed_steps(dir)?;
     line("folder", &dir.display().to_string());
     let (mut damaged, mut sound, mut states, mut bytes) = (Vec::new(), Vec::new(), Vec::new(), 0);
