@@ -4,6 +4,8 @@
 //! the part. What holds the shaft balances these loads, bearing by bearing; then patches and the inertia of turning
 //! frames are brought in line with the motion found, as in a bearing alone, until nothing changes.
 
+use std::ops::Range;
+
 use ring::StepScheme;
 use timer::SharedLaps;
 
@@ -14,11 +16,11 @@ use super::span::PartSpan;
 use super::state::{MotionState, StepReport};
 use super::substep::Part;
 use crate::bearing::BearingParts;
-use crate::condensation::Condensation;
 use crate::costs::NEWTON;
 use crate::error::DynamicsError;
 use crate::stiffness::{N_SHAFT, ShaftMatrix};
 use crate::system::newton::Policy;
+use crate::system::tangent::TangentFactors;
 
 /// A part under way.
 pub struct HeldPart<'m> {
@@ -79,6 +81,7 @@ impl<'m> HeldPart<'m> {
         let policy = Policy {
             keeps_factors: true,
             ends_at_floor: true,
+            blocks: &part.parts.kinematic_blocks(),
             ..policy(part.scale, None, &self.motion.costs)
         };
         let solution = part.parts.solve_step_from(guess, &policy)?;
@@ -153,11 +156,31 @@ impl BearingParts {
         let mut tangent = system.body_tangent(&x);
         system.add_link_tangents(&x, &at.links, &mut tangent);
         system.add_curvatures(&x, &at.links, &mut tangent);
-        let condensed = Condensation::new(system.n(), N_SHAFT, &tangent);
-        let condensed = condensed.map_err(|source| DynamicsError::ContactSystem { source })?;
-        let matrix = condensed.apply(&tangent);
-        Ok(std::array::from_fn(|i| {
-            std::array::from_fn(|j| matrix[N_SHAFT * i + j])
-        }))
+        let (n, m) = (system.n(), system.n() - N_SHAFT);
+        let of_rest: Vec<f64> = tangent[n * N_SHAFT..]
+            .chunks_exact(n)
+            .flat_map(|row| &row[N_SHAFT..])
+            .copied()
+            .collect();
+        let factors = TangentFactors::new(m, &of_rest, false, &self.kinematic_blocks());
+        let factors = factors.map_err(|source| DynamicsError::ContactSystem { source })?;
+        let mut condensed = [[0.0; N_SHAFT]; N_SHAFT];
+        for j in 0..N_SHAFT {
+            // How the rest follows a unit of the shaft's motion.
+            let mut follow: Vec<f64> = (N_SHAFT..n).map(|i| -tangent[n * i + j]).collect();
+            factors.solve(&mut follow);
+            for (i, row) in condensed.iter_mut().enumerate() {
+                let own = &tangent[n * i..n * (i + 1)];
+                let rest: f64 = own[N_SHAFT..].iter().zip(&follow).map(|(k, x)| k * x).sum();
+                row[j] = own[j] + rest;
+            }
+        }
+        Ok(condensed)
+    }
+
+    /// Unknowns of each ball, radial and axial, where the shaft has none: no ball sees another.
+    fn kinematic_blocks(&self) -> Vec<Range<usize>> {
+        let pairs = 0..self.balls.len();
+        pairs.map(|ball| 2 * ball..2 * ball + 2).collect()
     }
 }
