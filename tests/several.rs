@@ -282,6 +282,24 @@ fn a_pair_moves_and_a_resumed_one_has_the_same_bits() {
     let checked = succeeds(&dir, &["check", "pair.toml"]);
     let what = "analysis dynamic: 60 steps of 0.00001 s, a step file of each bearing every 10";
     assert!(checked.stdout.contains(what), "{}", checked.stdout);
+    let many = ["dynamic.duration=\"1000 s\"", "dynamic.output_every=1"];
+    let refused = dir.raceway(&[
+        "run",
+        "pair.toml",
+        "--out",
+        "long",
+        "--set",
+        many[0],
+        "--set",
+        many[1],
+    ]);
+    assert_eq!(refused.code, Some(2));
+    assert!(
+        refused.stderr.contains("the results need about"),
+        "{}",
+        refused.stderr
+    );
+    assert!(!dir.path("long").exists());
     let said = succeeds(&dir, &["run", "pair.toml", "--out", "whole"]);
     assert!(said.stdout.contains("60 steps of 0.00001 s"), "{}", said.stdout);
     let found = summary(&dir, "whole");

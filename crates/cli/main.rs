@@ -32,6 +32,7 @@ mod several;
 mod several_campbell;
 mod several_check;
 mod several_motion;
+mod several_ready;
 mod several_state;
 mod several_stiffness;
 mod start;

@@ -8,7 +8,7 @@ use std::time::Instant;
 
 use anyhow::anyhow;
 use assembly::motion::AssemblyCache;
-use assembly::{Assembly, AssemblyError, AssemblyMotion, AssemblySolver, AssemblyState};
+use assembly::{Assembly, AssemblyMotion, AssemblySolver, AssemblyState};
 use comm::print;
 use dynamics::costs::{EFFECTS, FACTOR};
 use results::failure::Failure;
@@ -23,13 +23,14 @@ use results::summary::{Findings, READ, Summary, TOTAL};
 use results::survey::{Survey, say_doubts};
 use results::watch::Watch;
 use results::whole::{make_asked_folder, write_new};
-use scene::{Dynamic, Scene, SeveralScene, build_assembly, loads_on_shaft, settings};
+use scene::{Dynamic, Scene, SeveralScene, build_assembly};
 use timer::{Laps, Stopwatch};
 
 use crate::ledger_check::check_ledger;
 use crate::options::Limits;
 use crate::progress::Progress;
 use crate::several::{SCENE_FILE, all_doubts, require_one_rank, say_types, solving};
+use crate::several_ready::{ready, require_space};
 use crate::several_state;
 
 /// Steps between two lines of progress in a log.
@@ -52,6 +53,7 @@ pub fn run(
     for bearing in &assembly.bearings {
         require_memory(&scene.analysis, &bearing.model)?;
     }
+    require_space(scene, &assembly, (dir, 0), limits)?;
     let mut laps = Laps::default();
     laps.add(READ, start.elapsed().as_secs_f64());
     progress.stage("static start");
@@ -148,6 +150,7 @@ fn resume(stored: several_state::StoredList, limits: &Limits, start: Instant) ->
     let (mut assembly, _) = build_assembly(&scene)?;
     let warnings = all_doubts(&scene, &assembly);
     say_doubts(&warnings);
+    require_space(&scene, &assembly, (&dir, step), limits)?;
     assembly.release();
     let mut laps = Laps::default();
     laps.add(READ, start.elapsed().as_secs_f64());
@@ -209,23 +212,6 @@ fn resume(stored: several_state::StoredList, limits: &Limits, start: Instant) ->
 fn new_watches(assembly: &Assembly) -> Vec<Watch> {
     let of = |bearing: &assembly::MountedBearing| Watch::new(bearing.model.geometry.n_balls);
     assembly.bearings.iter().map(of).collect()
-}
-
-/// Bearings and shaft ready to move.
-fn ready<'a>(
-    scene: &'a SeveralScene,
-    dynamic: &Dynamic,
-    assembly: &'a Assembly,
-) -> Result<AssemblyMotion<'a>, Failure> {
-    let of_bearings = scene.bearings.iter().map(|b| settings(&b.scene, dynamic));
-    let speed = scene.speed.clone().unwrap_or_default().inner;
-    let load = |time: f64| {
-        let any = &assembly.bearings[0].model;
-        loads_on_shaft(scene, (&assembly.shaft, any), time).map_err(|error| AssemblyError::ShaftBody {
-            problem: error.to_string(),
-        })
-    };
-    AssemblyMotion::new(assembly, of_bearings.collect(), speed, Box::new(load)).map_err(solving)
 }
 
 /// A run under way.

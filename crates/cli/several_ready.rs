@@ -1,0 +1,45 @@
+//! What a list of bearings in motion needs before its first step: room on the disk, and its matrices.
+
+use std::path::Path;
+
+use assembly::{Assembly, AssemblyError, AssemblyMotion};
+use results::disk::Forecast;
+use results::failure::Failure;
+use scene::{Dynamic, SeveralScene, loads_on_shaft, settings};
+
+use crate::options::Limits;
+use crate::several::solving;
+
+/// Fails where the disk has no room for the files of all bearings after a step.
+pub fn require_space(
+    scene: &SeveralScene,
+    assembly: &Assembly,
+    (dir, done): (&Path, u64),
+    limits: &Limits,
+) -> Result<(), Failure> {
+    let bearings = scene.bearings.iter().zip(&assembly.bearings);
+    let each = bearings.map(|(bearing, mounted)| Forecast::new(&bearing.scene, &mounted.model, done));
+    let all = each.reduce(|sum, own| Forecast {
+        step: sum.step + own.step,
+        total: sum.total + own.total,
+        ..sum
+    });
+    all.map_or(Ok(()), |all| all.require_space(dir, limits.ignore_disk_space))
+}
+
+/// Bearings and shaft ready to move.
+pub fn ready<'a>(
+    scene: &'a SeveralScene,
+    dynamic: &Dynamic,
+    assembly: &'a Assembly,
+) -> Result<AssemblyMotion<'a>, Failure> {
+    let of_bearings = scene.bearings.iter().map(|b| settings(&b.scene, dynamic));
+    let speed = scene.speed.clone().unwrap_or_default().inner;
+    let load = |time: f64| {
+        let any = &assembly.bearings[0].model;
+        loads_on_shaft(scene, (&assembly.shaft, any), time).map_err(|error| AssemblyError::ShaftBody {
+            problem: error.to_string(),
+        })
+    };
+    AssemblyMotion::new(assembly, of_bearings.collect(), speed, Box::new(load)).map_err(solving)
+}
