@@ -292,26 +292,13 @@ impl March<'_> {
             if n == n_steps || n.is_multiple_of(self.dynamic.output_every) {
                 let restart = match reason {
                     Some(_) => RestartState::Stored,
-                    None => self.restart_at(n),
+                    None => RestartState::at(n, self.dynamic, &self.scene.output),
                 };
                 agree(self.write_fields(restart))?;
             }
             progress.advance();
         }
         Ok(())
-    }
-
-    /// Whether the file of a step that is written as the scene asks has the state: every
-    /// `output.restart_every`-th of them, and that of the end.
-    fn restart_at(&self, step: u64) -> RestartState {
-        let every = self
-            .dynamic
-            .output_every
-            .saturating_mul(self.scene.output.restart_every);
-        match step == self.dynamic.n_steps || step.is_multiple_of(every) {
-            true => RestartState::Stored,
-            false => RestartState::Left,
-        }
     }
 
     /// Saves the state and says that the run can be resumed.
@@ -393,11 +380,11 @@ impl March<'_> {
         let time = motion.time(state.step);
         self.files.write_profiles(state.step, time, None, &shown)?;
         let shown = Recorded::new(model, motion, state, gathered, self.scene, restart)?;
-        let (newton, watch) = (self.newton, self.watch.to_numbers());
+        let (newton, watch) = (self.newton, self.watch.clone());
         self.files.write_fields_later(move |stress| {
             let mut record = shown.record(stress);
             if restart == RestartState::Stored {
-                Stored::add_counts(&mut record, newton, watch);
+                Stored::add_counts(&mut record, newton, &watch);
             }
             record
         })?;

@@ -32,8 +32,6 @@ use crate::several_state::Changes;
 
 /// Array of a step file that counts Newton's iterations since the start of the run.
 const NEWTON: &str = "newton_iterations";
-/// Array of a step file that counts contacts beyond their limits since the start of the run: [`Watch::to_numbers`].
-const WATCH: &str = "contacts_beyond_limits";
 
 /// What the command line asks for.
 #[derive(Debug, Args)]
@@ -85,12 +83,12 @@ pub struct Stored {
 
 impl Stored {
     /// Adds what the run counts besides its state.
-    pub fn add_counts(record: &mut StepRecord, newton: u64, watch: Vec<i64>) {
+    pub fn add_counts(record: &mut StepRecord, newton: u64, watch: &Watch) {
         let newton = i64::try_from(newton).expect("nobody iterates 2^63 times");
         record
             .state
             .insert(NEWTON.to_string(), StateArray::Integer(vec![newton]));
-        record.state.insert(WATCH.to_string(), StateArray::Integer(watch));
+        watch.put(&mut record.state);
     }
 
     /// The state, the number of Newton's iterations so far, and the contacts beyond their limits so far.
@@ -101,10 +99,7 @@ impl Stored {
             Some(StateArray::Integer(count)) if count.len() == 1 => count[0].max(0) as u64,
             _ => return Err(anyhow!("{} has no count of iterations", at()).into()),
         };
-        let watch = match arrays.remove(WATCH) {
-            Some(StateArray::Integer(numbers)) => Watch::from_numbers(motion.n_balls(), &numbers),
-            _ => None,
-        };
+        let watch = Watch::take(&mut arrays, motion.n_balls());
         let watch = watch.ok_or_else(|| anyhow!("{} has no count of contacts beyond their limits", at()))?;
         let state = state_arrays::load(&arrays, &motion.shape()).with_context(at)?;
         let time = motion.time(state.step);

@@ -128,12 +128,8 @@ impl SeveralFiles {
         solution: &AssemblySolution,
         dir: &Path,
     ) -> Result<SeveralFiles, Failure> {
-        make_asked_folder(dir)?;
-        say_folder(dir);
+        make_folder(scene, dir)?;
         let column = column(scene).map(str::to_string);
-        write_new(&dir.join(SCENE_FILE), |file| {
-            file.write_all(scene.text.as_bytes())
-        })?;
         let first = ListState::of_equilibrium(assembly, solution);
         let tables = SeveralTables::create(dir, column.as_deref(), &first)?;
         let mut bearings = Vec::new();
@@ -221,6 +217,15 @@ impl SeveralFiles {
         }
         Ok(())
     }
+}
+
+/// Makes the folder of a run, with the scene beside the results of its bearings.
+pub fn make_folder(scene: &SeveralScene, dir: &Path) -> Result<(), Failure> {
+    make_asked_folder(dir)?;
+    say_folder(dir);
+    Ok(write_new(&dir.join(SCENE_FILE), |file| {
+        file.write_all(scene.text.as_bytes())
+    })?)
 }
 
 fn snapshot(solution: &dynamics::StaticSolution) -> Snapshot {

@@ -22,14 +22,13 @@ use results::stop::Stop;
 use results::summary::{Findings, READ, Summary, TOTAL};
 use results::survey::{Survey, say_doubts};
 use results::watch::Watch;
-use results::whole::{make_asked_folder, write_new};
 use scene::{Dynamic, Scene, SeveralScene, build_assembly};
 use timer::{Laps, Stopwatch};
 
 use crate::ledger_check::check_ledger;
 use crate::options::Limits;
 use crate::progress::Progress;
-use crate::several::{SCENE_FILE, all_doubts, require_one_rank, say_types, solving};
+use crate::several::{all_doubts, make_folder, require_one_rank, say_types, solving, warnings_at};
 use crate::several_ready::{ready, require_space};
 use crate::several_state;
 
@@ -60,7 +59,7 @@ pub fn run(
     let mut solver = AssemblySolver::new(&assembly).map_err(solving)?;
     say_types(&solver, &assembly, &progress);
     let solution = solver.solve(&mut assembly, None).map_err(solving)?;
-    warnings.extend(crate::several::warnings_at("", &assembly, &solution));
+    warnings.extend(warnings_at("", &assembly, &solution));
     laps.merge(&solver.laps());
     drop(solver);
     assembly.release();
@@ -74,11 +73,7 @@ pub fn run(
         .map(|(bearing, found)| Ok(bearing.scene.with_shaft_at(found.displacements.shaft)?))
         .collect::<Result<Vec<Scene>, Failure>>()?;
     drop(solution);
-    make_asked_folder(dir)?;
-    results::files::say_folder(dir);
-    write_new(&dir.join(SCENE_FILE), |file| {
-        file.write_all(scene.text.as_bytes())
-    })?;
+    make_folder(scene, dir)?;
     let first = ListState::of_motion(&assembly, &motion, &state);
     let tables = SeveralTables::create(dir, None, &first)?;
     let mut files = Vec::new();
@@ -158,6 +153,8 @@ fn resume(stored: several_state::StoredList, limits: &Limits, start: Instant) ->
     let motion = laps.time(FACTOR, || ready(&scene, &dynamic, &assembly))?;
     let restored = several_state::restore(&bearings, &motion, assembly.shaft.n(), (&dir, step))?;
     let first = ListState::of_motion(&assembly, &motion, &restored.state);
+    // Nothing is changed before all is known to fit.
+    let cuts = SeveralTables::cuts(&dir, &first, step)?;
     let (mut files, mut placed) = (Vec::new(), Vec::new());
     for (i, bearing) in bearings.into_iter().enumerate() {
         let own = Snapshot::of_motion(&motion.bearings[i], &restored.state.bearings[i]);
@@ -186,7 +183,7 @@ fn resume(stored: several_state::StoredList, limits: &Limits, start: Instant) ->
             None => Ok(aside.insert(checkpoint::new_superseded_folder(&dir)?).clone()),
         }
     };
-    let tables = SeveralTables::resume(&dir, &first, step, &mut make_aside)?;
+    let tables = SeveralTables::resume(&cuts, &mut make_aside)?;
     let march = ListMarch {
         scene: &scene,
         dynamic: &dynamic,
@@ -350,7 +347,7 @@ impl ListMarch<'_> {
             if n == n_steps || n.is_multiple_of(self.dynamic.output_every) {
                 let restart = match reason {
                     Some(_) => RestartState::Stored,
-                    None => self.restart_at(n),
+                    None => RestartState::at(n, self.dynamic, &self.placed[0].output),
                 };
                 self.write_fields(restart)?;
             }
@@ -368,8 +365,9 @@ impl ListMarch<'_> {
                 let name = &self.scene.bearings[i].name;
                 return Err(self.failed(failure.context(format!("bearing {name:?}"))));
             }
-            round_off += motion.energy_round_off(state)?;
-            if state.ledger.defect().abs() > motion.energy_round_off(state)? {
+            let own = motion.energy_round_off(state)?;
+            round_off += own;
+            if state.ledger.defect().abs() > own {
                 self.worst_defect = self.worst_defect.max(state.ledger.relative_defect().abs());
             }
         }
@@ -394,18 +392,6 @@ impl ListMarch<'_> {
             }
         }
         Ok(())
-    }
-
-    /// Whether the files of a step have the state: those of every `output.restart_every`-th, and those of the end.
-    fn restart_at(&self, step: u64) -> RestartState {
-        let every = self
-            .dynamic
-            .output_every
-            .saturating_mul(self.placed[0].output.restart_every);
-        match step == self.dynamic.n_steps || step.is_multiple_of(every) {
-            true => RestartState::Stored,
-            false => RestartState::Left,
-        }
     }
 
     /// Saves the state and says that the run can be resumed.
@@ -453,12 +439,12 @@ impl ListMarch<'_> {
             let model = &self.assembly.bearings[i].model;
             let gathered = files.gather_stress(&Shown::Motion { model, motion, state });
             let shown = Recorded::new(model, motion, state, gathered, &self.placed[i], restart)?;
-            let (of_shaft, watch) = (of_shaft.clone(), self.watches[i].to_numbers());
+            let (of_shaft, watch) = (of_shaft.clone(), self.watches[i].clone());
             files.write_fields_later(move |stress| {
                 let mut record = shown.record(stress);
                 if restart == RestartState::Stored {
                     record.state.extend(of_shaft);
-                    several_state::add_watch(&mut record, watch);
+                    watch.put(&mut record.state);
                 }
                 record
             })?;

@@ -20,7 +20,6 @@ const VELOCITY: &str = "list_shaft_velocity";
 const LOADS: &str = "list_loads";
 const LEDGER: &str = "list_shaft_ledger";
 const NEWTON: &str = "list_newton_iterations";
-const WATCH: &str = "contacts_beyond_limits";
 
 /// A step of every bearing of a list.
 pub struct StoredList {
@@ -69,11 +68,6 @@ pub fn arrays_of_shaft(state: &AssemblyState, newton: u64) -> Arrays {
     arrays
 }
 
-/// Adds the contacts beyond their limits.
-pub fn add_watch(record: &mut StepRecord, watch: Vec<i64>) {
-    record.state.insert(WATCH.to_string(), StateArray::Integer(watch));
-}
-
 /// The state of a step of all bearings, whose shaft has `n` dofs.
 pub fn restore(
     bearings: &[StoredBearing],
@@ -97,10 +91,7 @@ pub fn restore(
             )
             .into());
         }
-        let watch = match arrays.remove(WATCH) {
-            Some(StateArray::Integer(numbers)) => Watch::from_numbers(motion.n_balls(), &numbers),
-            _ => None,
-        };
+        let watch = Watch::take(&mut arrays, motion.n_balls());
         watches.push(watch.ok_or_else(|| anyhow!("{} has no count of contacts beyond their limits", at()))?);
         states.push(state_arrays::load(&arrays, &motion.shape()).with_context(at)?);
     }

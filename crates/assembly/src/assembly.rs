@@ -108,10 +108,7 @@ impl AssemblySolver {
         let of = |make: &dyn Fn(&Model) -> Result<StaticSolver, dynamics::DynamicsError>| {
             let solver = |&i: &usize| {
                 let bearing = &assembly.bearings[i];
-                make(&bearing.model).map_err(|source| AssemblyError::Bearing {
-                    name: bearing.name.clone(),
-                    source,
-                })
+                make(&bearing.model).map_err(AssemblyError::of_bearing(&bearing.name))
             };
             first_of.iter().map(solver).collect::<Result<Vec<_>, _>>()
         };

@@ -98,6 +98,14 @@ pub enum AssemblyError {
 }
 
 impl AssemblyError {
+    /// What is wrong in a bearing.
+    pub fn of_bearing(name: &str) -> impl Fn(DynamicsError) -> AssemblyError + Copy {
+        move |source| AssemblyError::Bearing {
+            name: name.to_string(),
+            source,
+        }
+    }
+
     /// Whether a smaller step may have a solution.
     pub fn may_pass_with_smaller_step(&self) -> bool {
         match self {

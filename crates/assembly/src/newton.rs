@@ -167,10 +167,7 @@ impl Problem<'_> {
             check_range(mount, supports.range(number), own)?;
             let answer = supports
                 .answer(number, own)
-                .map_err(|source| AssemblyError::Bearing {
-                    name: mount.name.clone(),
-                    source,
-                })?;
+                .map_err(AssemblyError::of_bearing(&mount.name))?;
             let load = mount.place.orientation.turned(answer.load);
             mount.station.add_load(load.map(|f| -f), &mut residual);
             largest = largest.max(answer.force);

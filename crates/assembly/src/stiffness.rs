@@ -38,10 +38,7 @@ impl LinearAssembly {
             damping: Vec::new(),
         };
         for (i, bearing) in assembly.bearings.iter().enumerate() {
-            let fail = |source| AssemblyError::Bearing {
-                name: bearing.name.clone(),
-                source,
-            };
+            let fail = AssemblyError::of_bearing(&bearing.name);
             let factors: &StaticSolver = solver.of_bearing(i);
             let found = Linearisation::new(&bearing.model, factors, &solution.bearings[i], laws);
             let found = found.map_err(fail)?;

@@ -20,10 +20,8 @@ use crate::stiffness::LinearAssembly;
 pub fn turning_shaft(assembly: &Assembly) -> Result<ShaftBody, AssemblyError> {
     let mut shaft = assembly.shaft.clone();
     for (bearing, mount) in assembly.bearings.iter().zip(assembly.mounts()) {
-        let mut inertia = turning_inertia(&bearing.model).map_err(|source| AssemblyError::Bearing {
-            name: bearing.name.clone(),
-            source,
-        })?;
+        let mut inertia =
+            turning_inertia(&bearing.model).map_err(AssemblyError::of_bearing(&bearing.name))?;
         // Its centre lies along the bearing's own z.
         inertia.first_moment = bearing.place.orientation.turned_angle(inertia.first_moment);
         shaft.add_inertia(&mount.station, &inertia);
@@ -59,10 +57,7 @@ pub fn equations(
     let mut rows = free.clone();
     let mut first = n_shaft;
     for (b, (bearing, mount)) in assembly.bearings.iter().zip(assembly.mounts()).enumerate() {
-        let fail = |source| AssemblyError::Bearing {
-            name: bearing.name.clone(),
-            source,
-        };
+        let fail = AssemblyError::of_bearing(&bearing.name);
         let own = linear.bearings[b].of_shaft_and_balls().map_err(fail)?;
         let turn: [[f64; N_SHAFT]; N_SHAFT] = std::array::from_fn(|i| {
             let mut row = [0.0; N_SHAFT];

@@ -1,5 +1,6 @@
 //! Several bearings on a shaft through time, against one bearing alone, modes of the same equations, and ledgers.
 
+mod lists;
 mod near;
 #[path = "../../dynamics/tests/support/mod.rs"]
 mod support;
@@ -9,24 +10,22 @@ use assembly::shaft::ShaftBody;
 use assembly::stiffness::LinearAssembly;
 use assembly::whirl::{equations, turning_shaft};
 use assembly::{
-    Assembly, AssemblyMotion, AssemblySolver, AssemblyState, BeamSection, BeamShaft, MountedBearing,
-    Orientation, PointMass, Seating,
+    Assembly, AssemblyMotion, AssemblySolver, AssemblyState, BeamSection, BeamShaft, Orientation, PointMass,
 };
 use contact::Side;
 use dynamics::effects::{AxialForce, RadialForce};
 use dynamics::kinematics::{RingSpeeds, Speed};
 use dynamics::motion::{Motion, MotionSettings, StepCache};
-use dynamics::{ContactMode, DampingLaws, Hold, Model, ShaftDof};
+use dynamics::{DampingLaws, Model, ShaftDof};
 use fem::Material;
 use input::Schedule;
 use ring::rigid::RigidInertia;
 
 use Orientation::{MinusZ, PlusZ};
+use lists::{At, bare, flexible, on_shaft};
 use near::assert_near;
-use support::rings::Level;
-use support::{Case, equilibrium};
+use support::equilibrium;
 
-const SMALL: Level = Level::hex8(54, 6, 1, 2);
 const INERTIA: RigidInertia = RigidInertia {
     mass: 1.5,
     first_moment: 0.0,
@@ -34,46 +33,11 @@ const INERTIA: RigidInertia = RigidInertia {
     polar: 1e-3,
 };
 
-fn bare() -> Model {
-    let mut model = Case::axial(0.0).rigid();
-    model.effects.clear();
-    model
-}
-
-fn flexible() -> Model {
-    let mut model = Case::axial(0.0).flexible(ContactMode::Patch, SMALL, Hold::Clamped);
-    model.effects.clear();
-    model
-}
-
-/// Bearings at places with shifts, on a shaft under a load at position 0.
-fn on_shaft(
-    shaft: ShaftBody,
-    places: &[(f64, Orientation, f64)],
-    load: [f64; 5],
-    make: impl Fn() -> Model,
-) -> Assembly {
-    let first = make();
-    let bearing = |(i, &(position, orientation, shift)): (usize, &(f64, Orientation, f64))| {
-        let mut model = make();
-        model.rings = first.rings.clone();
-        MountedBearing {
-            name: format!("number {i}"),
-            place: Seating {
-                position,
-                orientation,
-                shift,
-            },
-            model,
-        }
-    };
-    let mut sum = vec![0.0; shaft.n()];
-    shaft.add_load(0.0, load, &mut sum);
-    Assembly {
-        bearings: places.iter().enumerate().map(bearing).collect(),
-        shaft,
-        load: sum,
-    }
+/// Bearings on a shaft under a load at position 0.
+fn loaded(shaft: ShaftBody, places: &[At], load: [f64; 5], make: impl Fn() -> Model) -> Assembly {
+    let mut list = on_shaft(shaft, places, make);
+    list.shaft.add_load(0.0, load, &mut list.load);
+    list
 }
 
 fn beam() -> ShaftBody {
@@ -162,7 +126,7 @@ fn one_bearing_in_a_list_moves_as_alone() {
     let (dt, n) = (1e-5, 100);
     let (rest, after) = ([0.0, 0.0, 900.0, 0.0, 0.0], [300.0, -100.0, 1200.0, 0.0, 0.0]);
     for make in [bare as fn() -> Model, flexible] {
-        let list = on_shaft(
+        let list = loaded(
             ShaftBody::rigid(INERTIA, [None; 5]),
             &[(0.0, PlusZ, 0.0)],
             rest,
@@ -209,7 +173,7 @@ fn ledgers_of_shaft_and_bearings_close() {
     let speed = Speed::table(vec![0.0, 1e-3], vec![400.0, 1200.0]);
     for make in [bare as fn() -> Model, flexible] {
         let places = [(0.0, PlusZ, 8e-6), (0.04, MinusZ, 8e-6)];
-        let list = on_shaft(beam(), &places, [0.0; 5], make);
+        let list = loaded(beam(), &places, [0.0; 5], make);
         let mut worst = [0.0f64; 3];
         let last = run(
             list,
@@ -240,7 +204,7 @@ fn ledgers_of_shaft_and_bearings_close() {
 #[test]
 fn a_kicked_pair_swings_with_the_frequencies_of_its_modes() {
     let places = [(0.0, PlusZ, 12e-6), (0.04, MinusZ, 12e-6)];
-    let make = || on_shaft(ShaftBody::rigid(INERTIA, [None; 5]), &places, [0.0; 5], bare);
+    let make = || loaded(ShaftBody::rigid(INERTIA, [None; 5]), &places, [0.0; 5], bare);
     let mut list = make();
     let mut solver = AssemblySolver::new(&list).unwrap();
     let solution = solver.solve(&mut list, None).unwrap();
@@ -280,7 +244,7 @@ fn the_motion_is_of_second_order() {
     let end = |halvings: i32| {
         let parts = 2.0f64.powi(halvings);
         let places = [(0.0, PlusZ, 10e-6), (0.04, MinusZ, 10e-6)];
-        let list = on_shaft(ShaftBody::rigid(INERTIA, [None; 5]), &places, [0.0; 5], bare);
+        let list = loaded(ShaftBody::rigid(INERTIA, [None; 5]), &places, [0.0; 5], bare);
         // Grows smoothly from nothing, so that nothing jumps at the start.
         let load = |t: f64| [300.0 * (t / 2e-4).powi(2), 0.0, 0.0, 0.0, 0.0];
         run(list, (4e-6 / parts, 50 << halvings), &speed, load, |_, _| {}).shaft
@@ -299,7 +263,7 @@ fn the_motion_is_of_second_order() {
 #[test]
 fn a_pair_under_a_load_in_its_middle_stays_alike() {
     let places = [(-0.02, PlusZ, 10e-6), (0.02, MinusZ, 10e-6)];
-    let list = on_shaft(ShaftBody::rigid(INERTIA, [None; 5]), &places, [0.0; 5], bare);
+    let list = loaded(ShaftBody::rigid(INERTIA, [None; 5]), &places, [0.0; 5], bare);
     let last = run(
         list,
         (1e-5, 200),

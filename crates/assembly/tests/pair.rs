@@ -1,5 +1,6 @@
 //! Bearings on a shaft against closed forms of rigid rings, identities and differences.
 
+mod lists;
 mod near;
 #[path = "../../dynamics/tests/support/mod.rs"]
 mod support;
@@ -7,56 +8,15 @@ mod support;
 use assembly::shaft::ShaftBody;
 use assembly::stiffness::LinearAssembly;
 use assembly::{
-    Assembly, AssemblyError, AssemblySolution, AssemblySolver, BeamSection, BeamShaft, MountedBearing,
-    Orientation, Seating,
+    Assembly, AssemblyError, AssemblySolution, AssemblySolver, BeamSection, BeamShaft, Orientation,
 };
-use dynamics::{ContactMode, DampingLaws, Hold, Linearisation, Model, StaticSolver};
+use dynamics::{DampingLaws, Linearisation, Model, StaticSolver};
 use ring::rigid::RigidInertia;
 
 use Orientation::{MinusZ, PlusZ};
+use lists::{At, bare, flexible, on_shaft};
 use near::assert_near;
-use support::rings::Level;
 use support::{Case, equilibrium, steel};
-
-const SMALL: Level = Level::hex8(54, 6, 1, 2);
-
-fn bare() -> Model {
-    let mut model = Case::axial(0.0).rigid();
-    model.effects.clear();
-    model
-}
-
-fn flexible() -> Model {
-    let mut model = Case::axial(0.0).flexible(ContactMode::Patch, SMALL, Hold::Clamped);
-    model.effects.clear();
-    model
-}
-
-type At = (f64, Orientation, f64);
-
-/// Bearings at places with shifts, on a shaft.
-fn on_shaft(shaft: ShaftBody, places: &[At], make: impl Fn() -> Model) -> Assembly {
-    let first = make();
-    let bearing = |(i, (position, orientation, shift)): (usize, &At)| {
-        let mut model = make();
-        model.rings = first.rings.clone();
-        MountedBearing {
-            name: format!("number {i}"),
-            place: Seating {
-                position: *position,
-                orientation: *orientation,
-                shift: *shift,
-            },
-            model,
-        }
-    };
-    let load = vec![0.0; shaft.n()];
-    Assembly {
-        bearings: places.iter().enumerate().map(bearing).collect(),
-        shaft,
-        load,
-    }
-}
 
 fn rigid(places: &[At]) -> Assembly {
     on_shaft(ShaftBody::rigid(RigidInertia::default(), [None; 5]), places, bare)

@@ -8,7 +8,9 @@
 //!
 //! C_c is the growth with s, at s = 0, of the condensed K + s C: damping of slow motions. K may be unsymmetric.
 
-use dense::{DenseError, DenseLu};
+use std::ops::Range;
+
+use dense::{BlockLu, DenseError, DenseLu};
 
 /// How the rows that are condensed out of a matrix follow the others.
 pub struct Condensation {
@@ -67,6 +69,27 @@ impl Condensation {
         }
         condensed
     }
+}
+
+/// K_c of a matrix of `n` rows, row-major, on its first N, by one factorisation. `blocks` of the rest, counted from its
+/// first row, are eliminated first.
+pub fn condensed<const N: usize>(
+    n: usize,
+    matrix: &[f64],
+    blocks: &[Range<usize>],
+) -> Result<[[f64; N]; N], DenseError> {
+    let rows = || matrix.chunks_exact(n);
+    let of_rest: Vec<f64> = rows().skip(N).flat_map(|row| &row[N..]).copied().collect();
+    let factors = BlockLu::factor(n - N, &of_rest, blocks)?;
+    let mut found = [[0.0; N]; N];
+    for j in 0..N {
+        let mut follow: Vec<f64> = rows().skip(N).map(|row| -row[j]).collect();
+        factors.solve(&mut follow);
+        for (found, row) in found.iter_mut().zip(rows()) {
+            found[j] = row[j] + product(&row[N..], &follow);
+        }
+    }
+    Ok(found)
 }
 
 fn product(a: &[f64], b: &[f64]) -> f64 {

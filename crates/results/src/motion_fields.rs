@@ -3,7 +3,7 @@
 use checkpoint::StepRecord;
 use dynamics::Model;
 use dynamics::motion::{Motion, MotionState};
-use scene::Scene;
+use scene::{Dynamic, Output, Scene};
 
 use super::fields::Places;
 use super::ring_stress::{Gathered, RingStress};
@@ -28,6 +28,18 @@ pub enum RestartState {
     Stored,
     /// It holds fields only: a run goes on from an earlier step, to the same bits.
     Left,
+}
+
+impl RestartState {
+    /// Of the file of a step that is written as the scene asks: every `output.restart_every`-th of them has the state,
+    /// and that of the end.
+    pub fn at(step: u64, dynamic: &Dynamic, output: &Output) -> RestartState {
+        let every = dynamic.output_every.saturating_mul(output.restart_every);
+        match step == dynamic.n_steps || step.is_multiple_of(every) {
+            true => RestartState::Stored,
+            false => RestartState::Left,
+        }
+    }
 }
 
 impl Recorded {

@@ -77,20 +77,21 @@ impl SeveralTables {
         Ok(SeveralTables::of(made.collect::<anyhow::Result<_>>()?))
     }
 
-    /// Opens the files of an earlier run to go on after its step `last`; rows after it are moved into the folder that
+    /// Looks where the files of an earlier run are to be cut to go on after its step `last`.
+    pub fn cuts(dir: &Path, first: &ListState, last: u64) -> anyhow::Result<Vec<Cut>> {
+        let cuts = heads(None, &first.energies).into_iter();
+        cuts.map(|(name, columns)| Cut::find(dir, name, &columns.join(","), last))
+            .collect()
+    }
+
+    /// Opens the files of an earlier run at [`SeveralTables::cuts`]. Rows after the cuts are moved into the folder that
     /// `aside` makes.
     pub fn resume(
-        dir: &Path,
-        first: &ListState,
-        last: u64,
+        cuts: &[Cut],
         aside: &mut dyn FnMut() -> anyhow::Result<PathBuf>,
     ) -> anyhow::Result<SeveralTables> {
-        let cuts = heads(None, &first.energies).into_iter();
-        let cuts = cuts.map(|(name, columns)| Cut::find(dir, name, &columns.join(","), last));
-        // All are looked at before the first is cut.
-        let cuts: Vec<Cut> = cuts.collect::<anyhow::Result<_>>()?;
         let mut files = Vec::new();
-        for cut in &cuts {
+        for cut in cuts {
             files.push(csv::Writer::from_writer(cut.make(aside)?));
         }
         Ok(SeveralTables::of(files))

@@ -1,9 +1,15 @@
 //! Watches a motion for contacts beyond their limits: a line in the log at the first step of every ball, a count in
 //! the summary.
 
+use checkpoint::StateArray;
 use contact::Side;
 use dynamics::Surfaces;
 use dynamics::motion::{ContactLimit, Exceeded};
+
+use crate::state_arrays::Arrays;
+
+/// Array of a step file that counts contacts beyond their limits since the start of the run.
+const ARRAY: &str = "contacts_beyond_limits";
 
 /// What was seen since the start of a run.
 #[derive(Clone, Debug, PartialEq)]
@@ -72,15 +78,28 @@ impl Watch {
         texts
     }
 
+    /// Puts the counts into the arrays of a step file.
+    pub fn put(&self, arrays: &mut Arrays) {
+        arrays.insert(ARRAY.to_string(), StateArray::Integer(self.to_numbers()));
+    }
+
+    /// Takes the counts of a bearing out of the arrays of a step file; None where they are not there.
+    pub fn take(arrays: &mut Arrays, n_balls: usize) -> Option<Watch> {
+        match arrays.remove(ARRAY) {
+            Some(StateArray::Integer(numbers)) => Watch::from_numbers(n_balls, &numbers),
+            _ => None,
+        }
+    }
+
     /// As numbers of a step file: steps, then first steps.
-    pub fn to_numbers(&self) -> Vec<i64> {
+    fn to_numbers(&self) -> Vec<i64> {
         let all = self.steps.iter().chain(self.first.iter().flatten());
         all.map(|n| i64::try_from(*n).expect("nobody counts to 2^63"))
             .collect()
     }
 
     /// From the numbers of a step file; None when they are of another bearing.
-    pub fn from_numbers(n_balls: usize, numbers: &[i64]) -> Option<Watch> {
+    fn from_numbers(n_balls: usize, numbers: &[i64]) -> Option<Watch> {
         if numbers.len() != 2 + 4 * n_balls || numbers.iter().any(|n| *n < 0) {
             return None;
         }

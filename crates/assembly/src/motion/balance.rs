@@ -133,10 +133,7 @@ impl ShaftStep<'_> {
         let mut loads = Vec::new();
         for (mount, part) in self.mounts.iter().zip(parts) {
             let own = mount.place.into_bearing(mount.station.displacement(&end));
-            let answer = part.answer(own).map_err(|source| AssemblyError::Bearing {
-                name: mount.name.clone(),
-                source,
-            })?;
+            let answer = part.answer(own).map_err(AssemblyError::of_bearing(&mount.name))?;
             let load = mount.place.orientation.turned(answer.load);
             mount.station.add_load(load.map(|f| -f), &mut residual);
             scale = scale.max(answer.force);
@@ -201,10 +198,7 @@ impl ShaftStep<'_> {
         };
         let mut tangent: Vec<f64> = (0..n * n).map(own).collect();
         for (mount, part) in self.mounts.iter().zip(parts) {
-            let own = part.stiffness().map_err(|source| AssemblyError::Bearing {
-                name: mount.name.clone(),
-                source,
-            })?;
+            let own = part.stiffness().map_err(AssemblyError::of_bearing(&mount.name))?;
             let turned = mount.place.orientation.turned_matrix(&own);
             mount.station.add_matrix(&turned, n, &mut tangent);
         }

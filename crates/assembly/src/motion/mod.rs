@@ -93,7 +93,7 @@ impl<'a> AssemblyMotion<'a> {
         for (bearing, settings) in assembly.bearings.iter().zip(settings) {
             require_conserving(&settings)?;
             let motion = Motion::new(&bearing.model, settings);
-            bearings.push(motion.map_err(|source| failed(&bearing.name, source))?);
+            bearings.push(motion.map_err(AssemblyError::of_bearing(&bearing.name))?);
         }
         Ok(AssemblyMotion {
             mounts: assembly.mounts(),
@@ -185,7 +185,7 @@ impl<'a> AssemblyMotion<'a> {
         let mut parts = Vec::new();
         for (i, motion) in self.bearings.iter().enumerate() {
             let part = HeldPart::begin(motion, &state.bearings[i], spans[i].0, &cache[i]);
-            parts.push(part.map_err(|source| self.failed(i, source))?);
+            parts.push(part.map_err(AssemblyError::of_bearing(&self.mounts[i].name))?);
         }
         let span = spans[0].0;
         let step = ShaftStep {
@@ -219,7 +219,7 @@ impl<'a> AssemblyMotion<'a> {
     ) -> Result<Holding, AssemblyError> {
         let mut all = Holding::Settled;
         for (i, part) in parts.iter_mut().enumerate() {
-            if of(i, part).map_err(|source| self.failed(i, source))? == Holding::Again {
+            if of(i, part).map_err(AssemblyError::of_bearing(&self.mounts[i].name))? == Holding::Again {
                 all = Holding::Again;
             }
         }
@@ -236,7 +236,9 @@ impl<'a> AssemblyMotion<'a> {
         let mut report = StepReport::default();
         let mut bearings = Vec::new();
         for (i, (part, cache)) in parts.into_iter().zip(cache).enumerate() {
-            let (next, done) = part.finish(cache).map_err(|source| self.failed(i, source))?;
+            let (next, done) = part
+                .finish(cache)
+                .map_err(AssemblyError::of_bearing(&self.mounts[i].name))?;
             report.add(&done);
             bearings.push(next);
         }
@@ -253,17 +255,6 @@ impl<'a> AssemblyMotion<'a> {
             },
             report,
         ))
-    }
-
-    fn failed(&self, bearing: usize, source: DynamicsError) -> AssemblyError {
-        failed(&self.mounts[bearing].name, source)
-    }
-}
-
-fn failed(name: &str, source: DynamicsError) -> AssemblyError {
-    AssemblyError::Bearing {
-        name: name.to_string(),
-        source,
     }
 }
 

@@ -16,11 +16,11 @@ use super::span::PartSpan;
 use super::state::{MotionState, StepReport};
 use super::substep::Part;
 use crate::bearing::BearingParts;
+use crate::condensation::condensed;
 use crate::costs::NEWTON;
 use crate::error::DynamicsError;
 use crate::stiffness::{N_SHAFT, ShaftMatrix};
 use crate::system::newton::Policy;
-use crate::system::tangent::TangentFactors;
 
 /// A part under way.
 pub struct HeldPart<'m> {
@@ -71,12 +71,7 @@ impl<'m> HeldPart<'m> {
         let part = &mut self.part;
         part.clock.lap();
         part.parts.shaft.imposed = shaft.map(Some);
-        let before = std::mem::take(&mut self.solution.unknowns);
-        let guess = if before.is_empty() {
-            part.parts.system().guess()
-        } else {
-            before
-        };
+        let before = Some(std::mem::take(&mut self.solution.unknowns)).filter(|x| !x.is_empty());
         // What holds the shaft asks again and again, near what it asked before.
         let policy = Policy {
             keeps_factors: true,
@@ -84,7 +79,7 @@ impl<'m> HeldPart<'m> {
             blocks: &part.parts.kinematic_blocks(),
             ..policy(part.scale, None, &self.motion.costs)
         };
-        let solution = part.parts.solve_step_from(guess, &policy)?;
+        let solution = part.parts.solve_step_from(before, &policy)?;
         let scheme = StepScheme {
             integrator: self.motion.settings.integrator,
             dt: part.span.dt,
@@ -156,26 +151,8 @@ impl BearingParts {
         let mut tangent = system.body_tangent(&x);
         system.add_link_tangents(&x, &at.links, &mut tangent);
         system.add_curvatures(&x, &at.links, &mut tangent);
-        let (n, m) = (system.n(), system.n() - N_SHAFT);
-        let of_rest: Vec<f64> = tangent[n * N_SHAFT..]
-            .chunks_exact(n)
-            .flat_map(|row| &row[N_SHAFT..])
-            .copied()
-            .collect();
-        let factors = TangentFactors::new(m, &of_rest, false, &self.kinematic_blocks());
-        let factors = factors.map_err(|source| DynamicsError::ContactSystem { source })?;
-        let mut condensed = [[0.0; N_SHAFT]; N_SHAFT];
-        for j in 0..N_SHAFT {
-            // How the rest follows a unit of the shaft's motion.
-            let mut follow: Vec<f64> = (N_SHAFT..n).map(|i| -tangent[n * i + j]).collect();
-            factors.solve(&mut follow);
-            for (i, row) in condensed.iter_mut().enumerate() {
-                let own = &tangent[n * i..n * (i + 1)];
-                let rest: f64 = own[N_SHAFT..].iter().zip(&follow).map(|(k, x)| k * x).sum();
-                row[j] = own[j] + rest;
-            }
-        }
-        Ok(condensed)
+        condensed(system.n(), &tangent, &self.kinematic_blocks())
+            .map_err(|source| DynamicsError::ContactSystem { source })
     }
 
     /// Unknowns of each ball, radial and axial, where the shaft has none: no ball sees another.

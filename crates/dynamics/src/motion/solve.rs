@@ -71,17 +71,17 @@ impl StepSolution {
 impl BearingParts {
     /// Solves the part; `scale` is the largest force that acts at its start, N.
     pub fn solve_step(&self, scale: f64, costs: &SharedLaps) -> Result<StepSolution, DynamicsError> {
-        self.solve_step_from(self.system().guess(), &policy(scale, None, costs))
+        self.solve_step_from(None, &policy(scale, None, costs))
     }
 
-    /// The same with unknowns from which Newton starts, by a policy.
+    /// The same by a policy, from given unknowns or from the guess of the system.
     pub(super) fn solve_step_from(
         &self,
-        guess: Vec<f64>,
+        start: Option<Vec<f64>>,
         policy: &Policy<'_>,
     ) -> Result<StepSolution, DynamicsError> {
         let (system, costs) = (self.system(), policy.costs);
-        let solved = system.solve(guess, policy)?;
+        let solved = system.solve(start.unwrap_or_else(|| system.guess()), policy)?;
         let (x, reaches) = (&solved.unknowns, self.reaches(&solved.unknowns));
         let means = self.contacts.means;
         let balls = means.map(|means| self.contacts.mean_forces(lengths(&reaches), means, costs));

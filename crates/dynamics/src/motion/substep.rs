@@ -61,11 +61,10 @@ impl Motion<'_> {
     pub(super) fn conclude(
         &self,
         state: &MotionState,
-        part: Part<'_>,
+        mut part: Part<'_>,
         solution: &StepSolution,
         ends: RingEnds,
     ) -> Result<(MotionState, StepReport, Option<Ahead>), DynamicsError> {
-        let mut part = part;
         check_patches(&part.parts, solution)?;
         check_range(self.model, &part.parts, solution)?;
         check_apart(self.model, &part.parts, solution)?;
