@@ -69,7 +69,8 @@ fn check_says_what_is_cut() {
     let outcome = dir.raceway(&["check", "scene.toml"]);
     assert_eq!(outcome.code, Some(0), "{}", outcome.stderr);
     for part in [
-        "rotationally periodic up to a defect; solver cyclic (54 equal sectors but for 3 missing elements in 3 of them, \
+        "rotationally periodic up to a defect; solver cyclic (54 equal sectors but for 3 missing elements in 3 of \
+         them, \
          the first beside node ",
         " rows, ",
     ] {

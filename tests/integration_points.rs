@@ -290,7 +290,8 @@ fn the_near_field_is_added_at_integration_points() {
             on.len()
         );
         probes += &format!(
-            "[probes.point.{name}]\nring = \"{name}\"\nazimuth = \"{} rad\"\ngroove_angle = \"{} rad\"\ndepth = \"{} m\"\n",
+            "[probes.point.{name}]\nring = \"{name}\"\nazimuth = \"{} rad\"\ngroove_angle = \"{} rad\"\ndepth = \"{} \
+             m\"\n",
             point.azimuth, point.angle, point.depth
         );
         changes.push((name, in_axes(change(most.unwrap()), &point.axes(&groove)), peak));

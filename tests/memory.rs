@@ -81,7 +81,8 @@ fn the_forecast_of_memory_holds_over_sizes_and_elements() {
 fn check_forecasts_the_memory_of_motions_of_periodic_rings() {
     for (n_sectors, every) in [(198, "1"), (198, "1000"), (360, "1")] {
         let dir = rings(n_sectors, ElementKind::Hex8);
-        let motion = "[dynamic]\nduration = \"0.2 ms\"\nstep = \"20 us\"\nledger_tolerance = 1e-3\n\n[speed]\ninner = \"1800 rpm\"";
+        let motion = "[dynamic]\nduration = \"0.2 ms\"\nstep = \"20 us\"\nledger_tolerance = 1e-3\n\n[speed]\ninner \
+                      = \"1800 rpm\"";
         dir.write("scene.toml", SCENE.replace("[static]", motion));
         let set = format!("dynamic.output_every={every}");
         let options = ["scene.toml", "--threads", "2", "--set", &set];

@@ -7,13 +7,18 @@ use crate::util::tables::Table;
 use crate::util::{Dir, Files, RIGID, SCENE, assert_within, with_line};
 
 const SWEEP: &str = "[sweep]\nkey = \"effects.radial_force.value\"\nvalues = [\"0 kN\", \"1 kN\"]\n\n\
-                     [probes.profile.arc]\nring = \"outer\"\nazimuth = \"0 deg\"\ngroove_angle = [\"-20 deg\", \"45 deg\"]\npoints = 66";
-const MOTION: &str = "[dynamic]\nduration = \"0.2 ms\"\nstep = \"20 us\"\noutput_every = 5\n\n[speed]\ninner = \"1800 rpm\"\n\n\
+                     [probes.profile.arc]\nring = \"outer\"\nazimuth = \"0 deg\"\ngroove_angle = [\"-20 deg\", \"45 \
+                     deg\"]\npoints = 66";
+const MOTION: &str = "[dynamic]\nduration = \"0.2 ms\"\nstep = \"20 us\"\noutput_every = 5\n\n[speed]\ninner = \"1800 \
+                      rpm\"\n\n\
                       [probes.node.p]\nring = \"outer\"\nazimuth = \"0 deg\"\ngroove_angle = \"15 deg\"\n\n\
                       [probes.contact.c]\nball = 0\nring = \"inner\"\n\n\
-                      [probes.point.q]\nring = \"outer\"\nazimuth = \"0 deg\"\ngroove_angle = \"19 deg\"\ndepth = \"0.1 mm\"\n\n\
-                      [probes.profile.arc]\nring = \"outer\"\nazimuth = \"0 deg\"\ngroove_angle = [\"-20 deg\", \"45 deg\"]\npoints = 131\n\n\
-                      [probes.profile.down]\nring = \"inner\"\nazimuth = \"0 deg\"\ngroove_angle = \"19 deg\"\ndepth = [\"0 mm\", \"1 mm\"]\n\
+                      [probes.point.q]\nring = \"outer\"\nazimuth = \"0 deg\"\ngroove_angle = \"19 deg\"\ndepth \
+                      = \"0.1 mm\"\n\n\
+                      [probes.profile.arc]\nring = \"outer\"\nazimuth = \"0 deg\"\ngroove_angle = [\"-20 deg\", \"45 \
+                      deg\"]\npoints = 131\n\n\
+                      [probes.profile.down]\nring = \"inner\"\nazimuth = \"0 deg\"\ngroove_angle = \"19 deg\"\ndepth \
+                      = [\"0 mm\", \"1 mm\"]\n\
                       points = 81\n\n[stress]\nnear_field = true";
 
 /// Folders `sweep` and `motion` on the coarse meshes, with their figures; solved once for all tests.

@@ -194,7 +194,8 @@ fn the_price_list_shows_what_an_effect_changes() {
 #[test]
 fn the_price_list_has_the_near_field() {
     let dir = Dir::with_meshes();
-    let point = "[static]\n[probes.point.below]\nring = \"outer\"\nazimuth = \"0 deg\"\ngroove_angle = \"19.6 deg\"\ndepth = \"0.1 mm\"";
+    let point = "[static]\n[probes.point.below]\nring = \"outer\"\nazimuth = \"0 deg\"\ngroove_angle = \"19.6 \
+                 deg\"\ndepth = \"0.1 mm\"";
     dir.write("scene.toml", with_line("[static]", "[static]", point));
     let only = ["--set", "inner.flexible=false"];
     let outcome = dir.raceway(&[&["prices", "scene.toml", "--out", "out"], &only[..]].concat());

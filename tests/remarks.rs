@@ -171,21 +171,6 @@ fn a_run_says_what_check_advises() {
     );
 }
 
-/// Wrong: a shaft that is locked at 0 would be taken for one in the middle of its play: a deep groove bearing has
-/// contact angles then. The 7010C has grooves 0.4 mm apart and a free contact angle of 14.93 deg.
-#[test]
-fn a_shaft_locked_at_zero_is_told_where_the_middle_is() {
-    let dir = Dir::with_scene(SCENE);
-    let check = [&["check", "scene.toml"], &RIGID[..], &["--set", "shaft.z=locked"]].concat();
-    let outcome = dir.raceway(&check);
-    let part = "advice   shaft.z is \"locked\" at 0, where all balls just touch at the free contact angle of 14.93 \
-                deg; with the grooves opposite each other, as in a deep groove bearing without thrust, it is \
-                shaft.z = \"-103.";
-    assert!(outcome.stdout.contains(part), "{}", outcome.stdout);
-    let outcome = dir.raceway(&check[..check.len() - 2]);
-    assert!(!outcome.stdout.contains("locked"), "{}", outcome.stdout);
-}
-
 /// Wrong: two columns of probes.csv would have one name.
 #[test]
 fn probes_of_two_kinds_with_one_name_are_refused() {

@@ -89,8 +89,10 @@ fn the_gyroscopic_moment_lowers_the_outer_contact_angle() {
 #[test]
 fn a_driven_shaft_moves_in_time() {
     let scene = late_force().text("scene.toml");
-    let driven = "z = { value = \"30 um\", schedule.ramp = { from = 1, to = 2, start = \"0 s\", duration = \"0.2 ms\" } }";
-    let effects = "[speed]\ninner = \"15000 rpm\"\n\n[effects.ball_centrifugal]\n\n[effects.gyroscopic_moment]\n\n[effects.radial_force]";
+    let driven = "z = { value = \"30 um\", schedule.ramp = { from = 1, to = 2, start = \"0 s\", duration = \"0.2 ms\" \
+                  } }";
+    let effects = "[speed]\ninner = \"15000 \
+                   rpm\"\n\n[effects.ball_centrifugal]\n\n[effects.gyroscopic_moment]\n\n[effects.radial_force]";
     let scene = scene
         .replace("z = \"free\"", driven)
         .replace("[effects.radial_force]", effects);

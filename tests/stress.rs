@@ -23,8 +23,10 @@ fn near_field() -> &'static str {
 /// A point under ball 0 of a ring, and a profile through it along the groove and in depth.
 fn under_ball(ring: &str, angle: f64, depth: f64) -> String {
     format!(
-        "[probes.point.p]\nring = \"{ring}\"\nazimuth = \"0 deg\"\ngroove_angle = \"{angle} rad\"\ndepth = \"{depth} m\"\n\
-         [probes.profile.arc]\nring = \"{ring}\"\nazimuth = \"0 deg\"\ngroove_angle = [\"{} rad\", \"{} rad\"]\npoints = 81\n\
+        "[probes.point.p]\nring = \"{ring}\"\nazimuth = \"0 deg\"\ngroove_angle = \"{angle} rad\"\ndepth = \"{depth} \
+         m\"\n\
+         [probes.profile.arc]\nring = \"{ring}\"\nazimuth = \"0 deg\"\ngroove_angle = [\"{} rad\", \"{} \
+         rad\"]\npoints = 81\n\
          [probes.profile.down]\nring = \"{ring}\"\nazimuth = \"0 deg\"\ngroove_angle = \"{angle} rad\"\n\
          depth = [\"0 m\", \"{} m\"]\npoints = 3\n",
         angle - 0.3,
@@ -128,7 +130,8 @@ fn the_near_field_gives_the_stress_under_a_ball() {
 /// and it is there.
 #[test]
 fn a_node_probe_has_the_near_field_of_the_step_file() {
-    let probe = "[probes.node.n]\nring = \"RING\"\nazimuth = \"0 deg\"\ngroove_angle = \"19 deg\"\naxes = \"cartesian\"\n\
+    let probe = "[probes.node.n]\nring = \"RING\"\nazimuth = \"0 deg\"\ngroove_angle = \"19 deg\"\naxes \
+                 = \"cartesian\"\n\
                  [output]\nprecision = \"f64\"\n";
     let motion = "[dynamic]\nduration = \"40 us\"\nstep = \"20 us\"\n[speed]\ninner = \"1800 rpm\"";
     for (analysis, last, ring) in [
@@ -187,11 +190,13 @@ fn passing_balls_leave_pulses_of_hertz_size() {
         let axes = [of_ball("semi_axis_groove_m"), of_ball("semi_axis_rolling_m")];
         let depth = subsurface(axes, 0.3).orthogonal_shear.depth_over_minor_axis * axes[1];
         probes += &format!(
-            "[probes.point.{ring}]\nring = \"{ring}\"\nazimuth = \"10 deg\"\ngroove_angle = \"{} rad\"\ndepth = \"{depth} m\"\n",
+            "[probes.point.{ring}]\nring = \"{ring}\"\nazimuth = \"10 deg\"\ngroove_angle = \"{} rad\"\ndepth \
+             = \"{depth} m\"\n",
             of_ball("contact_angle_rad")
         );
     }
-    let analysis = "[quasi_static]\nduration = \"8.4 ms\"\nstep = \"0.028 ms\"\noutput_every = 300\n[speed]\ninner = \"1800 rpm\"";
+    let analysis = "[quasi_static]\nduration = \"8.4 ms\"\nstep = \"0.028 ms\"\noutput_every = 300\n[speed]\ninner \
+                    = \"1800 rpm\"";
     dir.write(
         "scene.toml",
         scene(analysis, &format!("{}{probes}", near_field())),
@@ -294,7 +299,8 @@ fn passing_balls_leave_pulses_of_hertz_size() {
 #[test]
 fn wrong_requests_are_refused() {
     let dir = Dir::with_meshes();
-    let point = "[probes.point.p]\nring = \"outer\"\nazimuth = \"0 deg\"\ngroove_angle = \"10 deg\"\ndepth = \"0 mm\"\n";
+    let point = "[probes.point.p]\nring = \"outer\"\nazimuth = \"0 deg\"\ngroove_angle = \"10 deg\"\ndepth = \"0 \
+                 mm\"\n";
     dir.write(
         "scene.toml",
         scene("[static]", &format!("{}{point}", near_field())),
@@ -318,7 +324,8 @@ fn wrong_requests_are_refused() {
         ),
         (
             "probes.point.p.depth=9 mm",
-            "probes.point.p: the point at azimuth 0.000 deg, groove angle 10.000 deg, depth 9.0000 mm is not in the mesh of the outer",
+            "probes.point.p: the point at azimuth 0.000 deg, groove angle 10.000 deg, depth 9.0000 mm is not in the \
+             mesh of the outer",
         ),
     ] {
         let outcome = dir.raceway(&["run", "scene.toml", "--out", "refused", "--set", set]);

@@ -33,7 +33,8 @@ fn run(level: Level, analysis: &str) -> Histories {
     let mut probes = String::new();
     for (ring, angle) in [("inner", 19.6), ("outer", 19.5)] {
         probes += &format!(
-            "[probes.point.{ring}]\nring = \"{ring}\"\nazimuth = \"10 deg\"\ngroove_angle = \"{angle} deg\"\ndepth = \"0.1 mm\"\n"
+            "[probes.point.{ring}]\nring = \"{ring}\"\nazimuth = \"10 deg\"\ngroove_angle = \"{angle} deg\"\ndepth \
+             = \"0.1 mm\"\n"
         );
     }
     let tables = format!("{analysis}\n[speed]\ninner = \"1800 rpm\"\n[stress]\nnear_field = true\n{probes}");
@@ -139,7 +140,8 @@ fn histories_of_a_revolution_do_not_depend_on_the_mesh() {
             let gaps =
                 [0, 1].map(|q| gap(&run.stress[r][q], &finest.stress[r][q]) / largest(&finest.stress[r][q]));
             println!(
-                "{ring}, {} sectors: {} pulses of {:.1} us, peak {:.1} MPa; against the finest: peak {peak:+.4}, widths {width_gap:.4}, \
+                "{ring}, {} sectors: {} pulses of {:.1} us, peak {:.1} MPa; against the finest: peak {peak:+.4}, \
+                 widths {width_gap:.4}, \
                  every instant {gaps:.4?} (von Mises, orthogonal shear)",
                 level.sectors,
                 up.len(),

@@ -268,7 +268,8 @@ fn require_one_task(command: &Command) -> Result<(), Failure> {
         return Ok(());
     }
     Err(Failure::User(anyhow::anyhow!(
-        "the launcher started {ranks} tasks, but only raceway run and raceway resume are shared by several; start one task"
+        "the launcher started {ranks} tasks, but only raceway run and raceway resume are shared by several; start one \
+         task"
     )))
 }
 

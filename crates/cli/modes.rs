@@ -34,7 +34,8 @@ pub fn run(
     let ranks = Communicator::world().size();
     if ranks > 1 {
         return Err(Failure::User(anyhow!(
-            "the search for modes runs as one process, but the launcher started {ranks} tasks; start one and give it the \
+            "the search for modes runs as one process, but the launcher started {ranks} tasks; start one and give it \
+             the \
              cores as threads"
         )));
     }

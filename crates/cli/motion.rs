@@ -410,7 +410,8 @@ fn lossy(state: &MotionState) -> Option<String> {
     let share = state.ledger.numerical_share();
     (share > LOSSY).then(|| {
         format!(
-            "the integrator took {:.0} % of the largest energy of the motion; if that is not wanted, take a smaller step or less of its \
+            "the integrator took {:.0} % of the largest energy of the motion; if that is not wanted, take a smaller \
+             step or less of its \
              damping",
             100.0 * share
         )

@@ -323,7 +323,8 @@ fn note_version(about: &BTreeMap<String, String>) {
     let (then, now) = (&about["program_version"], env!("CARGO_PKG_VERSION"));
     if then != now {
         print::note(format_args!(
-            "warning: the step was written by version {then}, this is {now}: later steps may differ in their last digits"
+            "warning: the step was written by version {then}, this is {now}: later steps may differ in their last \
+             digits"
         ));
     }
 }
@@ -407,7 +408,8 @@ fn require_motion(scene: &Scene, dir: &Path) -> Result<Dynamic, Failure> {
         Analysis::QuasiStatic(_) => "[quasi_static]",
     };
     Err(anyhow!(
-        "{} holds results of a {kind} scene; only a motion, a scene with [dynamic], can be resumed, run the scene again",
+        "{} holds results of a {kind} scene; only a motion, a scene with [dynamic], can be resumed, run the scene \
+         again",
         dir.display()
     )
     .into())

@@ -19,7 +19,8 @@ fuzz_target!(|data: &str| {
             // What the checkpoints keep must be read again as the same scene.
             let again = Scene::parse(&scene.text, Path::new("scene.toml"), &[], MeshFiles::MayBeMissing);
             let again = again.expect("the text of a sound scene is a sound scene");
-            assert!(again.effects == scene.effects && again.analysis == scene.analysis, "read again, it is another scene");
+            let is_same = again.effects == scene.effects && again.analysis == scene.analysis;
+            assert!(is_same, "read again, it is another scene");
         }
         Err(error) => assert!(!error.to_string().is_empty()),
     }

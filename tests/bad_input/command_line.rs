@@ -74,7 +74,8 @@ const OVERRIDES: [Case; 8] = [
     ),
     (
         &["--set", "bearing.balls=1", "--set", "bearing.width=-1 mm"],
-        "has 2 problems:\n  bearing.balls is 1; expected a whole number from 3 to 1000\n  bearing.width is -1 mm; a width \
+        "has 2 problems:\n  bearing.balls is 1; expected a whole number from 3 to 1000\n  bearing.width is -1 mm; a \
+         width \
          must be positive",
     ),
 ];
@@ -158,7 +159,8 @@ fn a_single_result_file_protects_its_folder() {
 fn a_file_in_the_way_of_the_results_is_refused() {
     let dir = Dir::with_scene(SCENE);
     dir.write("out", "precious");
-    let part = "error: cannot write results to out: out is a file; expected a folder or nothing there, choose another --out";
+    let part = "error: cannot write results to out: out is a file; expected a folder or nothing there, choose another \
+                --out";
     assert_refused("out", &dir, &[], &run(&RIGID), &[part]);
     let below = [&["run", "scene.toml", "--out", "out/a/b"], &RIGID[..]].concat();
     let part = "error: cannot write results to out/a/b: out is a file; expected a folder";

@@ -42,7 +42,8 @@ fn files() -> Vec<Case> {
             "an empty file",
             Vec::new(),
             &[
-                "error: inner.msh is not a gmsh mesh: expected \"$MeshFormat\" first, found an empty file; write one with \
+                "error: inner.msh is not a gmsh mesh: expected \"$MeshFormat\" first, found an empty file; write one \
+                 with \
              `gmsh -3 -format msh41`",
             ],
         ),
@@ -62,7 +63,8 @@ fn files() -> Vec<Case> {
             "a file cut off behind its nodes",
             until("$EndNodes"),
             &[
-                "error: inner.msh, line 523: expected $EndNodes, found the end of the file; the file is truncated or damaged, write \
+                "error: inner.msh, line 523: expected $EndNodes, found the end of the file; the file is truncated or \
+                 damaged, write \
              it again",
             ],
         ),
@@ -87,7 +89,8 @@ fn files() -> Vec<Case> {
                 t.0.truncate(last + 1);
             }),
             &[
-                "error: inner.msh, line 420: expected a node coordinate, found \"3.0e\"; the file is truncated or damaged, write it \
+                "error: inner.msh, line 420: expected a node coordinate, found \"3.0e\"; the file is truncated or \
+                 damaged, write it \
              again",
             ],
         ),
@@ -95,7 +98,8 @@ fn files() -> Vec<Case> {
             "another version",
             replaced("4.1 0 8", "4 0 8"),
             &[
-                "error: inner.msh is in MSH 4 text, which is not read; expected MSH 4.1 (text or binary) or MSH 2.2 (text), \
+                "error: inner.msh is in MSH 4 text, which is not read; expected MSH 4.1 (text or binary) or MSH 2.2 \
+                 (text), \
              convert it with `gmsh inner.msh -save -format msh41 -o new.msh`",
             ],
         ),
@@ -111,21 +115,24 @@ fn files() -> Vec<Case> {
             "a word for a number",
             changed(|t| *t.node(5) = "1.0 two 3.0".to_string()),
             &[
-                "error: inner.msh, line 275: expected a node coordinate, found \"two\"; the file is truncated or damaged, write it again",
+                "error: inner.msh, line 275: expected a node coordinate, found \"two\"; the file is truncated or \
+                 damaged, write it again",
             ],
         ),
         (
             "not a number",
             changed(|t| *t.node(7) = "nan 0 0".to_string()),
             &[
-                "error: inner.msh: node 7 has the coordinates (NaN, 0, 0), which are not finite; mesh the geometry again",
+                "error: inner.msh: node 7 has the coordinates (NaN, 0, 0), which are not finite; mesh the geometry \
+                 again",
             ],
         ),
         (
             "a tag twice",
             changed(|t| *t.node_tag(2) = "1".to_string()),
             &[
-                "error: inner.msh has two nodes with tag 1; tags must be unique, renumber the mesh in gmsh and write it again",
+                "error: inner.msh has two nodes with tag 1; tags must be unique, renumber the mesh in gmsh and write \
+                 it again",
             ],
         ),
         (
@@ -150,7 +157,8 @@ fn rings_that_are_none() -> Vec<Case> {
             "no raceway",
             replaced("\"raceway\"", "\"track\""),
             &[
-                "error: mesh inner.msh has no facet group \"raceway\"; groups are \"bore\", \"track\"; name it in the .geo: \
+                "error: mesh inner.msh has no facet group \"raceway\"; groups are \"bore\", \"track\"; name it in the \
+                 .geo: \
              Physical Surface(\"raceway\") = {...};",
             ],
         ),
@@ -158,7 +166,8 @@ fn rings_that_are_none() -> Vec<Case> {
             "no bore",
             replaced("\"bore\"", "\"hole\""),
             &[
-                "error: mesh inner.msh has no facet group \"bore\"; groups are \"hole\", \"raceway\"; name it in the .geo: \
+                "error: mesh inner.msh has no facet group \"bore\"; groups are \"hole\", \"raceway\"; name it in the \
+                 .geo: \
              Physical Surface(\"bore\") = {...};",
             ],
         ),
@@ -171,7 +180,8 @@ fn rings_that_are_none() -> Vec<Case> {
             "no volume",
             replaced("\"ring\"", "\"body\""),
             &[
-                "error: inner.msh has no physical Volume \"ring\" with elements; physical Volumes are \"body\"; name the ring's \
+                "error: inner.msh has no physical Volume \"ring\" with elements; physical Volumes are \"body\"; name \
+                 the ring's \
              Volume so in the .geo: Physical Volume(\"ring\") = {...};",
             ],
         ),
@@ -180,7 +190,8 @@ fn rings_that_are_none() -> Vec<Case> {
             rebuilt(|m| m.connectivity[..8].rotate_left(4)),
             &[
                 "error: inner.msh: element 1 is inverted, its jacobian determinant falls to -",
-                "(1 such elements); expected a positive one everywhere; refine or smooth the mesh there, or turn the element's \
+                "(1 such elements); expected a positive one everywhere; refine or smooth the mesh there, or turn the \
+                 element's \
              nodes round",
             ],
         ),
@@ -190,7 +201,8 @@ fn rings_that_are_none() -> Vec<Case> {
                 t.add_node("0 0 0");
             }),
             &[
-                "error: inner.msh: node 253 is used by no volume element (1 such nodes); expected none, they make the stiffness \
+                "error: inner.msh: node 253 is used by no volume element (1 such nodes); expected none, they make the \
+                 stiffness \
              singular; save without -save_all, or delete the point they are on",
             ],
         ),
@@ -211,7 +223,8 @@ fn rings_that_are_none() -> Vec<Case> {
             "two rings",
             rebuilt(two_parts),
             &[
-                "error: inner.msh: the ring is in 2 unconnected parts (element 1 begins one of 108 elements); expected one part; \
+                "error: inner.msh: the ring is in 2 unconnected parts (element 1 begins one of 108 elements); \
+                 expected one part; \
              merge the interfaces (Coherence) or keep one ring per file",
             ],
         ),
@@ -219,7 +232,8 @@ fn rings_that_are_none() -> Vec<Case> {
             "27-node hexahedra",
             changed(|t| t.retype(12, 27)),
             &[
-                "error: inner.msh: \"ring\" holds 108 elements of type 27-node hexahedron (the first is element 1); expected \
+                "error: inner.msh: \"ring\" holds 108 elements of type 27-node hexahedron (the first is element 1); \
+                 expected \
              8-node hexahedra, 20-node hexahedra or 10-node tetrahedra; set Mesh.SecondOrderIncomplete=1",
             ],
         ),
@@ -241,7 +255,8 @@ fn rings_that_are_none() -> Vec<Case> {
             }),
             &[
                 "of group \"raceway\" is inside",
-                "between two elements; expected a boundary face of exactly one element of \"ring\"; correct the group in the .geo",
+                "between two elements; expected a boundary face of exactly one element of \"ring\"; correct the group \
+                 in the .geo",
             ],
         ),
         (

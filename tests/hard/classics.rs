@@ -20,14 +20,16 @@ use super::{HardCase, Pace};
 const HERTZ_DURATION: f64 = 2.943_275;
 
 pub fn cases() -> Vec<HardCase> {
-    let stiff = "ball between both raceways, pressed by an imposed axial shift, set free 0.2 um beside its place; errors after \
+    let stiff = "ball between both raceways, pressed by an imposed axial shift, set free 0.2 um beside its place; \
+                 errors after \
                  4 periods at 200 and 400 steps a period against a Runge-Kutta solution of the same equation";
     vec![
         HardCase {
             name: "hertz_impact",
             pace: Pace::Fast,
             why: "stiffness grows from zero at touch; impact lasts 40 us",
-            settings: "ball at 0.1 m/s against the outer raceway; dt = duration / 200; average acceleration, discrete gradient",
+            settings: "ball at 0.1 m/s against the outer raceway; dt = duration / 200; average acceleration, discrete \
+                       gradient",
             run: hertz_impact,
         },
         HardCase {

@@ -15,7 +15,8 @@ use super::{HardCase, Pace};
 
 pub fn cases() -> Vec<HardCase> {
     let case = HardCase::new;
-    let bearings = "3 to 40 balls of 1 to 60 mm, grooves 0.505 to 0.6, clearance to 0.8 A either way, loads of 1e-8 to 1e-3 E D_w^2";
+    let bearings = "3 to 40 balls of 1 to 60 mm, grooves 0.505 to 0.6, clearance to 0.8 A either way, loads of 1e-8 \
+                    to 1e-3 E D_w^2";
     vec![
         case(
             "random_equilibria",

@@ -59,7 +59,8 @@ pub fn cases() -> Vec<HardCase> {
         case(
             "gyroscopic_alone",
             Pace::Fast,
-            "without the centrifugal force the moment is a third of the contact forces: the angles and it chase each other",
+            "without the centrifugal force the moment is a third of the contact forces: the angles and it chase each \
+             other",
             "rigid rings, 40 000 rpm, 500 N, gyroscopic moment only, 0 to 400 N radial, at rest",
             gyroscopic_alone,
         ),
@@ -304,7 +305,8 @@ fn steady(record: &mut Record, n: usize) {
     record.closed(&course);
     let largest = course.last.ledger.largest;
     record.note(format!(
-        "largest kinetic energy in the first and the last tenth {:.2e} and {:.2e} of the largest energy; shaft within {:.2e} and \
+        "largest kinetic energy in the first and the last tenth {:.2e} and {:.2e} of the largest energy; shaft within \
+         {:.2e} and \
          {:.2e} um of its start",
         kinetic[0] / largest,
         kinetic[9] / largest,

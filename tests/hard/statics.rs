@@ -134,7 +134,8 @@ fn mirrored(record: &mut Record) {
     let (up, down) = (from(0.3e-3), from(-0.3e-3));
     let middle = -model.geometry.axial_offset();
     record.note(format!(
-        "z = {:.4} um from above and {:.4} um from below, the middle is {:.4} um: one equilibrium, since the energy is convex",
+        "z = {:.4} um from above and {:.4} um from below, the middle is {:.4} um: one equilibrium, since the energy \
+         is convex",
         1e6 * up.displacements.shaft[2],
         1e6 * down.displacements.shaft[2],
         1e6 * middle

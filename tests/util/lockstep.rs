@@ -18,7 +18,8 @@ const SMALL: Level = Level {
 };
 
 /// 20 steps, a file each. The radial force unloads balls, the speed makes everything move.
-const SMALL_MOTION: &str = "[dynamic]\nduration = \"0.4 ms\"\nstep = \"20 us\"\nledger_tolerance = 1e-3\n\n[speed]\ninner = \"12000 rpm\"";
+const SMALL_MOTION: &str = "[dynamic]\nduration = \"0.4 ms\"\nstep = \"20 us\"\nledger_tolerance = \
+                            1e-3\n\n[speed]\ninner = \"12000 rpm\"";
 
 /// Scene and meshes of the small motion.
 pub fn small_motion() -> Dir {

@@ -127,7 +127,8 @@ pub enum CheckpointError {
         time: f64,
     },
     /// The run to resume was made with another mesh.
-    #[error("{} was made with mesh {found}, this run has mesh {expected}; resume with the scene and meshes of that run", path.display())]
+    #[error("{} was made with mesh {found}, this run has mesh {expected}; resume with the scene and meshes of that \
+             run", path.display())]
     MeshMismatch {
         /// The file.
         path: PathBuf,

@@ -6,7 +6,7 @@
 //!
 //! | kind | stiffness | points | mass |
 //! |---|---|---|---|
-//! | hex8 | with the incompatible modes of Taylor, Beresford and Wilson, condensed ([`stiffness`]) | 2 x 2 x 2 | 3 x 3 x 3, exact |
+//! | hex8 | incompatible modes (Taylor, Beresford, Wilson), condensed ([`stiffness`]) | 2 x 2 x 2 | 3 x 3 x 3, exact |
 //! | hex20 | full integration | 3 x 3 x 3 | 5 x 5 x 5, exact also on curved elements |
 //! | tet10 | full integration | 4 | collapsed 5 x 5 x 5, exact also on curved elements |
 //!

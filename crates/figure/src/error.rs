@@ -15,7 +15,8 @@ pub enum FigureError {
     },
     /// The area between the axes would vanish.
     #[error(
-        "the figure {title:?} of {width} x {height} pixels has no room for its axes; expected a larger size or shorter labels"
+        "the figure {title:?} of {width} x {height} pixels has no room for its axes; expected a larger size or \
+         shorter labels"
     )]
     NoRoom {
         /// Title of the figure.

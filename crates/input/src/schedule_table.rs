@@ -99,7 +99,8 @@ pub fn check_schedule(
     let key = format!("{owner}.schedule");
     if clock == Clock::AtRest {
         problems.add(format!(
-            "{key} changes {owner} over time, but a scene at rest has no time; remove it, or give it time with [dynamic] or \
+            "{key} changes {owner} over time, but a scene at rest has no time; remove it, or give it time with \
+             [dynamic] or \
              [quasi_static]"
         ));
         return Schedule::Constant;

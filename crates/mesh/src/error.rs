@@ -147,7 +147,8 @@ pub enum MeshError {
     },
     /// Elements that are not read.
     #[error(
-        "{path}: \"ring\" holds {count} elements of type {found} (the first is element {element}); expected {expected}; {remedy}"
+        "{path}: \"ring\" holds {count} elements of type {found} (the first is element {element}); expected \
+         {expected}; {remedy}"
     )]
     UnsupportedElement {
         /// The file.
@@ -190,7 +191,8 @@ pub enum MeshError {
     },
     /// A facet group that is needed is missing or empty.
     #[error(
-        "mesh {path} has {problem} facet group \"{name}\"; groups are {groups}; name it in the .geo: Physical Surface(\"{name}\") = {{...}};"
+        "mesh {path} has {problem} facet group \"{name}\"; groups are {groups}; name it in the .geo: Physical \
+         Surface(\"{name}\") = {{...}};"
     )]
     MissingGroup {
         /// The file.
@@ -248,7 +250,8 @@ pub enum MeshError {
     },
     /// Two nodes at one place.
     #[error(
-        "{path}: nodes {first} and {second} coincide ({distance:.3e} m apart, elements there are {size:.3e} m in size); \
+        "{path}: nodes {first} and {second} coincide ({distance:.3e} m apart, elements there are {size:.3e} m in \
+         size); \
          expected one node per place; use Coherence in the .geo or Mesh > Remove duplicate nodes"
     )]
     CoincidentNodes {
@@ -322,7 +325,8 @@ pub enum MeshError {
     },
     /// The unit of the mesh is evidently another one.
     #[error(
-        "{path}: with a mesh unit of {unit} m the ring is {measured:.4e} m in outside diameter, expected {expected:.4e} m; {advice}"
+        "{path}: with a mesh unit of {unit} m the ring is {measured:.4e} m in outside diameter, expected \
+         {expected:.4e} m; {advice}"
     )]
     WrongUnit {
         /// The file.
@@ -338,7 +342,8 @@ pub enum MeshError {
     },
     /// A facet in two groups cannot be written.
     #[error(
-        "cannot write {path}: face {face} of element {element} is in the groups \"{first}\" and \"{second}\"; expected each facet in one group, take it out of one"
+        "cannot write {path}: face {face} of element {element} is in the groups \"{first}\" and \"{second}\"; \
+         expected each facet in one group, take it out of one"
     )]
     OverlappingGroups {
         /// The file.
@@ -422,7 +427,8 @@ pub enum MeshError {
     },
     /// There is no gmsh to mesh with.
     #[error(
-        "the program gmsh was not found, it is needed to mesh {path}; install it (Debian, Ubuntu: `apt-get install gmsh`; \
+        "the program gmsh was not found, it is needed to mesh {path}; install it (Debian, Ubuntu: `apt-get install \
+         gmsh`; \
          any system: `pip install gmsh`) or mesh the file on another machine"
     )]
     NoGmsh {

@@ -132,8 +132,14 @@ mod tests {
     /// Wrong: a ball that touches nothing would have a contact angle of round-off, or a zero a sign.
     #[test]
     fn every_ball_has_a_row_and_unloaded_ones_no_angle() {
-        let contact = |force: f64| serde_json::json!({ "force_n": force, "contact_angle_rad": -2.1e-7, "peak_pressure_pa": 1.5e9 });
-        let ball = |azimuth: f64, force: f64| serde_json::json!({ "azimuth_rad": azimuth, "inner": contact(force), "outer": contact(force) });
+        let contact = |force: f64| {
+            let (angle, pressure) = (-2.1e-7, 1.5e9);
+            serde_json::json!({ "force_n": force, "contact_angle_rad": angle, "peak_pressure_pa": pressure })
+        };
+        let ball = |azimuth: f64, force: f64| {
+            let (inner, outer) = (contact(force), contact(force));
+            serde_json::json!({ "azimuth_rad": azimuth, "inner": inner, "outer": outer })
+        };
         let text =
             balls(&serde_json::json!({ "balls": [ball(0.0, 1059.404), ball(std::f64::consts::PI, 0.0)] }));
         let row = |cells: [&str; 7]| {

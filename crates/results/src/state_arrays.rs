@@ -240,7 +240,8 @@ fn require_kind(arrays: &Arrays, side: &str, ring: Option<RingShape>) -> anyhow:
         && let Some(other) = others.find(|other| arrays.contains_key(&name(other)))
     {
         return Err(anyhow!(
-            "the state of the {side} ring is stored as {other}, expected {kind}: another version of raceway or another linear \
+            "the state of the {side} ring is stored as {other}, expected {kind}: another version of raceway or \
+             another linear \
              solver wrote it, and the run would not go on to the same bits; run the scene anew"
         ));
     }

@@ -120,7 +120,8 @@ fn event(limit: ContactLimit, ball: usize, side: Side, pressure: Option<f64>) ->
         ContactLimit::StaticPressure => {
             let value = pressure.map_or(String::new(), |p| format!(" of {:.2} GPa", 1e-9 * p));
             format!(
-                "a peak pressure{value} at ball {ball}, {side} raceway, above the static limit of bearing steel, 4.2 GPa"
+                "a peak pressure{value} at ball {ball}, {side} raceway, above the static limit of bearing steel, 4.2 \
+                 GPa"
             )
         }
     }

@@ -23,7 +23,8 @@ pub enum RingError {
     },
     /// A ring that the cyclic solver was asked for is not rotationally periodic.
     #[error(
-        "the {side} ring is not rotationally periodic, so solver.backend = \"cyclic\" cannot be: {reason}; use \"auto\" or \
+        "the {side} ring is not rotationally periodic, so solver.backend = \"cyclic\" cannot be: {reason}; \
+         use \"auto\" or \
          \"sparse\""
     )]
     NotPeriodic {
@@ -34,7 +35,8 @@ pub enum RingError {
     },
     /// Harmonics do not give the modes of a ring with a defect.
     #[error(
-        "the {side} ring is rotationally periodic only up to a defect, whose natural modes solver.backend = \"cyclic\" does \
+        "the {side} ring is rotationally periodic only up to a defect, whose natural modes solver.backend \
+         = \"cyclic\" does \
          not find; use \"auto\" or \"sparse\""
     )]
     ModesOfDefect {

@@ -6,11 +6,11 @@
 //! | phase | bytes | arrays |
 //! |---|---|---|
 //! | mesh | 24 n + 8 e p | nodes, connectivity; kept to the end |
-//! | assembly | 16 (9 P) + 8 P + 2 e p^2, then 16 (9 P) + 16 E | K with its indices and pattern; then K and its triangle |
-//! | factorisation | 16 E + S + F + W | the triangle, analysis, factor; W = 16 E and more: the permuted copy and fronts |
+//! | assembly | 16 (9 P) + 8 P + 2 e p^2, then 16 (9 P) + 16 E | K, indices, pattern; then K and its triangle |
+//! | factorisation | 16 E + S + F + W | the triangle, analysis, factor; W: the permuted copy, fronts |
 //! | kept | S + F + 8 N | analysis, factor, support |
 //! | columns | kept + 2 (8 N 2 b) | right-hand sides and solver's copy of a block of 2 b columns |
-//! | results | 240 n + 24 e p + 48 e c | mesh copies and lists of stress recovery and output, stress at the c corners, record |
+//! | results | 240 n + 24 e p + 48 e c | copies of the mesh, lists of stress and output, stress at the c corners |
 //!
 //! Both rings are made at the same time if there are two threads, so their peaks add; one thread makes the inner ring
 //! first, and the outer one while the inner is kept. The columns of both are solved likewise. The results come on top:

@@ -6,16 +6,17 @@
 //!
 //! | part | bytes | what it is |
 //! |---|---|---|
-//! | mesh | 28 n' + 8 e' p | n' nodes and e' elements: those of the sectors owned and of the surfaces that all keep; alone 24 n + 8 e p |
-//! | lists | 4 s + 12 N + 8 r + 8 k + 16 o in statics, 4 N more in motion | nodes of all sectors, owners of rows, free dofs, rows of own sectors |
+//! | mesh | 28 n' + 8 e' p; alone 24 n + 8 e p | n', e': of the sectors owned and of surfaces that all keep |
+//! | lists | 4 s + 12 N + 8 r + 8 k + 16 o; in motion 4 N more | nodes of sectors, owners, free dofs, own rows |
 //! | vectors | 24 N in statics, 152 N in motion | whole |
 //! | matrices | 16 E (1 + 1/9) | K and the mass between nodes |
 //! | factors | F + A | |
 //! | interface | as the solver says | all of it with few sectors |
 //! | columns | 8 r (2 b + 1) | solutions under all contact forces, and what of them is on interfaces |
 //! | work | 16 E_s + work space of s, per worker | the matrix that is factored, and fronts, of the largest sectors |
-//! | results | rank 0: 240 n + 8 e + 24 o p + 48 o c; others: 24 r + 24 o p + 48 f c | stress of the elements owned, f in the largest sector; on rank 0 record and output; alone 24 e p |
-//! | reading | 3 (24 n + 8 e p) + 18 e | on rank 0 of several, both rings at once, before anything else: the meshes, and `mesh.hdf` as it is written |
+//! | results | rank 0: 240 n + 8 e + 24 o p + 48 o c; alone 24 e p for 24 o p | stress of the elements owned, output |
+//! | | others: 24 r + 24 o p + 48 f c | stress of the elements owned, f in the largest sector |
+//! | reading | 3 (24 n + 8 e p) + 18 e | on rank 0 of several, at first: both meshes, and `mesh.hdf` in the writing |
 //!
 //! Statics has the matrices of one ring at a time and lets go of them; motion keeps those of both. Alone and with
 //! several threads both rings are made at once.

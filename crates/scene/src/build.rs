@@ -25,8 +25,8 @@ use crate::settings::speeds;
 use crate::surfaces::surfaces;
 use crate::tables::{self, FlexibleRing, Scene};
 
-/// Least semi-axis of a patch on quadratic elements in the rolling direction, ball diameters. A patch of one such element
-/// has a pressure that grows with refinement, and so have the errors of the stress beside it (docs/stress.md).
+/// Least semi-axis of a patch on quadratic elements in the rolling direction, ball diameters. A patch of one such
+/// element has a pressure that grows with refinement, and so have the errors of the stress beside it (docs/stress.md).
 const LEAST_QUADRATIC_PATCH: f64 = 0.21;
 
 /// Deviation of raceway nodes from the scene's torus that is taken for round-off of a file, over the groove
@@ -278,7 +278,8 @@ fn cut(mesh: Mesh, body: &FlexibleRing) -> Result<(Mesh, Vec<usize>), BuildError
             .collect();
         if held.is_empty() {
             return user(format!(
-                "no element has its centre in the region of cut {number}; expected one at least, check its azimuth, radius and z"
+                "no element has its centre in the region of cut {number}; expected one at least, check its azimuth, \
+                 radius and z"
             ));
         }
         held.into_iter().for_each(|e| is_lost[e] = true);

@@ -120,13 +120,15 @@ fn say_parts(ring: &RingModel, path: &str, lines: &mut Vec<String>) {
 fn doubt_material(table: &str, material: &Material, lines: &mut Vec<String>) {
     if !MODULI.contains(&material.young_modulus) {
         lines.push(format!(
-            "{table}.young_modulus is {}; rings and balls have 0.4 GPa (plastics) to 1300 GPa (diamond), steel 207 GPa: check its unit",
+            "{table}.young_modulus is {}; rings and balls have 0.4 GPa (plastics) to 1300 GPa (diamond), steel 207 \
+             GPa: check its unit",
             Quantity::<STRESS>::about(material.young_modulus)
         ));
     }
     if !DENSITIES.contains(&material.density) {
         lines.push(format!(
-            "{table}.density is {}; rings and balls have 500 kg/m3 (plastics) to 25000 kg/m3 (heavy metals), steel 7800 kg/m3: check its unit",
+            "{table}.density is {}; rings and balls have 500 kg/m3 (plastics) to 25000 kg/m3 (heavy metals), steel \
+             7800 kg/m3: check its unit",
             Quantity::<DENSITY>::about(material.density)
         ));
     }

@@ -5,11 +5,11 @@
 #![doc = include_str!("example.toml")]
 //! ```
 //!
-//! Every combination of values that is not excluded is a point, run by a process of its own. The folder of the study holds
-//! `points/NNNN` (see `runner`), and the tables `study.json`, `study.csv` and `study.md`. The error of a number is its distance to
-//! the reference over the scale, by default the size of the reference. A point has the price of the median of its repeats;
-//! timings beside other loads are marked. Errors below the uncertainty of the reference say nothing about an order of
-//! convergence and are left out of it.
+//! Every combination of values that is not excluded is a point, run by a process of its own. The folder of the study
+//! holds `points/NNNN` (see `runner`), and the tables `study.json`, `study.csv` and `study.md`. The error of a number
+//! is its distance to the reference over the scale, by default the size of the reference. A point has the price of the
+//! median of its repeats; timings beside other loads are marked. Errors below the uncertainty of the reference say
+//! nothing about an order of convergence and are left out of it.
 
 mod advise;
 mod check;

@@ -213,7 +213,8 @@ fn write_table(report: &Report, s: &mut String) -> std::fmt::Result {
     writeln!(s, "# {}\n", report.title)?;
     writeln!(
         s,
-        "Made by `raceway prices` on {}, {}, 1 thread. Scene `{}`. First row of a table: the scene as it is; below: changes \
+        "Made by `raceway prices` on {}, {}, 1 thread. Scene `{}`. First row of a table: the scene as it is; below: \
+         changes \
          against it with one effect different. Processor time is that of the whole run.\n",
         report.date, report.machine, report.scene
     )?;

@@ -11,9 +11,9 @@
 //!
 //! **Bound.** With r = K x - lambda M x, A x - theta x = -theta (K + s M)^-1 r. A is self-adjoint, so an eigenvalue
 //! theta* has
-//! |theta* - theta| <= theta eta with eta = |(K + s M)^-1 r|_M / |x|_M, and with it |lambda* - lambda| <= (lambda + s) eta/(1 - eta)
-//! (Parlett, *The Symmetric Eigenvalue Problem*, 1998, theorem 4.5.1). It counts round-off of K x as far as it matters,
-//! while the plain |r| is full of the highest frequencies.
+//! |theta* - theta| <= theta eta with eta = |(K + s M)^-1 r|_M / |x|_M, and with it
+//! |lambda* - lambda| <= (lambda + s) eta/(1 - eta) (Parlett, *The Symmetric Eigenvalue Problem*, 1998, theorem
+//! 4.5.1). It counts round-off of K x as far as it matters, while the plain |r| is full of the highest frequencies.
 
 use crate::error::DenseError;
 

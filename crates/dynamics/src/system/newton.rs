@@ -151,8 +151,8 @@ impl System<'_> {
         })
     }
 
-    /// Factors of the tangent, which is scaled. Where curvatures of finite motions make an energy's tangent indefinite, they are
-    /// left out: the step still goes downhill.
+    /// Factors of the tangent, which is scaled. Where curvatures of finite motions make an energy's tangent indefinite,
+    /// they are left out: the step still goes downhill.
     fn factors(
         &self,
         x: &[f64],

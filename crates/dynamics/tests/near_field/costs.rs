@@ -58,7 +58,8 @@ fn the_near_field_costs_what_the_documents_say() {
             dofs += ring.mesh.n_dofs();
         }
         println!(
-            "both rings, {dofs} dofs: recovery of nodal stress {recovery_ms:.1} ms, near field {near_ms:.1} ms, {:.2} of it, one thread",
+            "both rings, {dofs} dofs: recovery of nodal stress {recovery_ms:.1} ms, near field {near_ms:.1} ms, {:.2} \
+             of it, one thread",
             near_ms / recovery_ms
         );
     }

@@ -161,7 +161,8 @@ fn stress_near_a_contact_is_that_of_a_mesh_that_resolves_it() {
             let found = on_mesh(side, level, share, &reference.points);
             let [raw, full] = [means(&found.raw), means(&found.full)];
             println!(
-                "{side:?} {level:?} {share}: von Mises over p0, elements alone, near field, resolved, and the largest gap of a component"
+                "{side:?} {level:?} {share}: von Mises over p0, elements alone, near field, resolved, and the largest \
+                 gap of a component"
             );
             let (mut largest, mut of_components) = (0.0f64, 0.0f64);
             for (i, place) in PLACES.iter().chain(&EDGES).enumerate() {

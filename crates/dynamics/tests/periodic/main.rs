@@ -230,7 +230,8 @@ fn assert_same_motion(found: &End, expected: &End, tolerance: f64) {
 /// Wrong: results would drift apart over many steps. 500 steps of 1e-5 s at 1800 rpm with the turning frame, all
 /// displacements, forces and motions of a step to 1e-10 of the largest.
 #[test]
-#[ignore = "takes minutes with the sparse factor: cargo test --release -p raceway-dynamics --test periodic -- --ignored"]
+#[ignore = "takes minutes with the sparse factor: cargo test --release -p raceway-dynamics --test periodic -- \
+            --ignored"]
 fn five_hundred_steps_agree_with_sparse_factors() {
     let level = Level::hex8(90, 8, 2, 3);
     let [found, expected] = [Backend::Cyclic, Backend::Sparse].map(|backend| rolling(level, backend, 500));

@@ -16,7 +16,8 @@ pub enum NotPeriodic {
     },
     /// No other node has the radius and height of this one.
     #[error(
-        "node {node} is the only one at radius {radius:.9e} m and z = {z:.9e} m; in a periodic mesh every sector has one"
+        "node {node} is the only one at radius {radius:.9e} m and z = {z:.9e} m; in a periodic mesh every sector has \
+         one"
     )]
     Alone {
         /// Node index.
@@ -54,7 +55,8 @@ pub enum NotPeriodic {
     },
     /// A turned facet leaves its group.
     #[error(
-        "with {n_sectors} sectors, face {face} of element {element} turned by one sector is not in its group \"{group}\" any more"
+        "with {n_sectors} sectors, face {face} of element {element} turned by one sector is not in its \
+         group \"{group}\" any more"
     )]
     Facet {
         /// Number of sectors tried.

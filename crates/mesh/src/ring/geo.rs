@@ -111,7 +111,8 @@ fn head(ring: &RingSection, command: &str, axes: &str) -> String {
         RingSide::Outer => ("outer", "1"),
     };
     let mut text = format!(
-        "// {name} ring of a ball bearing; lengths in mm, {axes}, groove centres at 0\n// mesh it with: {command} FILE\n"
+        "// {name} ring of a ball bearing; lengths in mm, {axes}, groove centres at 0\n// mesh it with: {command} \
+         FILE\n"
     );
     let _ = writeln!(
         text,

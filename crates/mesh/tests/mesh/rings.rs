@@ -175,7 +175,8 @@ fn measures_that_make_no_ring_are_named() {
         (
             RingSide::Inner,
             |r| r.shoulder_diameters[1] = 56e-3,
-            "shoulder_diameters[1] is 56 mm; expected between the groove centres' 65.31 mm and the groove bottom's 56.01 mm",
+            "shoulder_diameters[1] is 56 mm; expected between the groove centres' 65.31 mm and the groove bottom's \
+             56.01 mm",
         ),
         (
             RingSide::Outer,

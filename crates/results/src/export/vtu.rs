@@ -57,7 +57,8 @@ pub fn write(file: &mut dyn Write, grid: &Grid, record: &StepRecord) -> io::Resu
 pub fn write_collection(file: &mut dyn Write, names: &[(String, f64)]) -> io::Result<()> {
     writeln!(
         file,
-        "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\" byte_order=\"LittleEndian\">\n<Collection>"
+        "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\" \
+         byte_order=\"LittleEndian\">\n<Collection>"
     )?;
     for (name, time) in names {
         writeln!(

@@ -273,6 +273,7 @@ fn make_symmetric(n: usize, matrix: &mut [f64]) {
 /// What a log says of the iterations of a defect.
 pub fn iterations_note(iterations: usize) -> String {
     format!(
-        "; conjugate gradients preconditioned by the equal sectors need {iterations} iterations on the defect, solved directly"
+        "; conjugate gradients preconditioned by the equal sectors need {iterations} iterations on the defect, solved \
+         directly"
     )
 }

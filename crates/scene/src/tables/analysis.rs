@@ -37,7 +37,8 @@ impl RawScene {
             [_] => {}
             [] => {
                 problems.add(
-                    "the scene has no analysis; add one of the tables [static], [sweep], [quasi_static], [dynamic] and [modes]",
+                    "the scene has no analysis; add one of the tables [static], [sweep], [quasi_static], [dynamic] \
+                     and [modes]",
                 );
                 return None;
             }

@@ -89,7 +89,8 @@ mod tests {
     fn only_values_and_tables_differ() {
         let before =
             "title = \"a\" # x\n[effects.axial_force]\nvalue = \"2 kN\"\n[dynamic]\nduration = \"1 ms\"\n";
-        let same = "title=\"a\"\n[dynamic]\nduration = \"1 ms\" # longer\n[effects]\naxial_force = { value = \"2 kN\" }\n";
+        let same = "title=\"a\"\n[dynamic]\nduration = \"1 ms\" # longer\n[effects]\naxial_force = { value = \"2 kN\" \
+                    }\n";
         assert_eq!(difference(before, same).unwrap(), []);
         let after = "title = \"a\"\n[effects.ball_centrifugal]\n[dynamic]\nduration = \"2 ms\"\n";
         let texts: Vec<String> = difference(before, after)

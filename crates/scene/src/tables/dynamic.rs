@@ -267,7 +267,8 @@ impl RawDynamic {
             return IntegratorChoice::Newmark { beta, gamma };
         }
         let rule = format!(
-            "expected gamma / 2 = {} to (gamma + 1/2)^2 / 4 = {}, which damps high frequencies most: less is unstable for these, \
+            "expected gamma / 2 = {} to (gamma + 1/2)^2 / 4 = {}, which damps high frequencies most: less is unstable \
+             for these, \
              more can feed energy into contacts",
             ten_digits(least),
             ten_digits(most)

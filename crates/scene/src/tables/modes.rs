@@ -86,7 +86,8 @@ impl RawModes {
         let before = problems.len();
         if context.backend == Backend::Sector {
             problems.add(
-                "solver.backend is \"sector\", but the search for modes has no sectors; expected \"auto\", \"cyclic\" or \
+                "solver.backend is \"sector\", but the search for modes has no sectors; expected \"auto\", \"cyclic\" \
+                 or \
                  \"sparse\" with [modes]",
             );
         }
@@ -104,7 +105,8 @@ impl RawModes {
         }
         if self.support.is_some() && bodies.iter().all(|b| *b == ModeBody::Bearing) {
             problems.add(
-                "modes.support is how rings alone are held, but modes.bodies names none; name \"inner\" or \"outer\", or \
+                "modes.support is how rings alone are held, but modes.bodies names none; name \"inner\" or \"outer\", \
+                 or \
                  remove modes.support",
             );
         }
@@ -139,7 +141,8 @@ fn check_body(body: ModeBody, context: ModesContext, problems: &mut Problems) {
     if !is_flexible {
         let name = body.typed();
         problems.add(format!(
-            "modes.bodies names {name:?}, but that ring is rigid; expected {name}.flexible = true or the body \"bearing\""
+            "modes.bodies names {name:?}, but that ring is rigid; expected {name}.flexible = true or the \
+             body \"bearing\""
         ));
     }
 }

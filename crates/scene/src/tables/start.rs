@@ -102,7 +102,8 @@ impl RawGiven {
         for ((name, motion), (q, v)) in dofs.into_iter().zip(displacement.iter().zip(&velocity)) {
             if motion != Motion::Free && (q.is_some() || v.is_some()) {
                 problems.add(format!(
-                    "[dynamic.start.given] moves {name}, which shaft.{name} does not leave free; remove it there or set \
+                    "[dynamic.start.given] moves {name}, which shaft.{name} does not leave free; remove it there or \
+                     set \
                      shaft.{name} = \"free\""
                 ));
             }

@@ -33,7 +33,8 @@ pub fn whole_steps(
         return Some(whole as u64);
     }
     problems.add(format!(
-        "{table}.duration is {duration}; that is {} steps of {step}, expected a whole number; the nearest duration that \
+        "{table}.duration is {duration}; that is {} steps of {step}, expected a whole number; the nearest duration \
+         that \
          fits is {}",
         ten_digits(ratio),
         Quantity::<TIME>::about(whole * step.si())

@@ -57,7 +57,8 @@ impl RawStress {
         }
         if context.contact != ContactMode::Patch {
             problems.add(
-                "stress.near_field replaces the stress of a contact patch, which only contact.mode = \"patch\" has; use that \
+                "stress.near_field replaces the stress of a contact patch, which only contact.mode = \"patch\" has; \
+                 use that \
                  mode or remove near_field",
             );
         }

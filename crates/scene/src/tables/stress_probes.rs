@@ -92,7 +92,8 @@ impl RawProfile {
         check_ends(key, ends, problems);
         if ends[0] == ends[1] {
             problems.add(format!(
-                "{key}: first and last point are the same; give azimuth, groove_angle or depth as [first, last], or use \
+                "{key}: first and last point are the same; give azimuth, groove_angle or depth as [first, last], or \
+                 use \
                  [probes.point.{name}]"
             ));
         }

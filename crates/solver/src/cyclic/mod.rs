@@ -27,9 +27,9 @@
 //! Cost, with m dofs per section and bandwidth b: factor N m b^2 / 2 and solve 2 N m b multiplications and additions,
 //! memory N m b / 2 numbers; without mirror symmetry four, two and two times as much. Measured with
 //! `benches/cyclic.rs` (hex8, one core of a 2-core AMD EPYC 9004 that others used as well, November 2026, ms;
-//! mirrored sections; sparse is [`crate::SparseCholesky`]):
+//! mirrored sections; sparse is [`crate::SparseCholesky`]: factor, MB, solve, 36 columns):
 //!
-//! | dof | factor | MB | solve in harmonic space | 36 columns | matrix product | transform there, back | sparse: factor, MB, solve, 36 columns |
+//! | dof | factor | MB | solve in harmonic space | 36 columns | matrix product | transform there, back | sparse |
 //! |---|---|---|---|---|---|---|---|
 //! | 65 k | 0.85 | 5.0 | 0.20 | 7.1 | 0.28 | 0.27, 0.28 | 303, 144, 26, 123 |
 //! | 151 k | 2.7 | 15.6 | 0.64 | 21 | 0.65 | 0.57, 0.60 | 1600, 560, 98, 420 |

@@ -162,7 +162,8 @@ mod tests {
     /// near field.
     #[test]
     fn every_variant_of_a_scene_with_near_field_is_sound() {
-        let point = "probes.point.p={ ring = \"outer\", azimuth = \"0 deg\", groove_angle = \"19 deg\", depth = \"0 mm\" }";
+        let point = "probes.point.p={ ring = \"outer\", azimuth = \"0 deg\", groove_angle = \"19 deg\", depth = \"0 \
+                     mm\" }";
         let line = "probes.profile.q={ ring = \"outer\", azimuth = \"0 deg\", groove_angle = \"19 deg\", \
                     depth = [\"0 mm\", \"1 mm\"], points = 3 }";
         let base = ["stress.near_field=true", "inner.flexible=false", point, line].map(str::to_string);

@@ -8,7 +8,8 @@ const FORMAT: [Case; 36] = [
         "ball_diameter",
         "ball_diametr = \"9 mm\"",
         &[
-            "scenes/test.toml:6:1: unknown key \"ball_diametr\" in [bearing]; did you mean \"ball_diameter\"? valid keys are \
+            "scenes/test.toml:6:1: unknown key \"ball_diametr\" in [bearing]; did you mean \"ball_diameter\"? valid \
+             keys are \
          \"balls\", \"ball_diameter\", \"inner_raceway_diameter\"",
             "6 | ball_diametr = \"9 mm\"\n  | ^^^^^^^^^^^^",
         ],
@@ -36,10 +37,10 @@ const FORMAT: [Case; 36] = [
     (
         "[effects.gravity]",
         "[effects.tides]",
-        &[
-            "unknown key \"tides\" in [effects]; valid keys are \"axial_force\", \"radial_force\", \"moment\", \"gravity\", \"ball_centrifugal\", \"gyroscopic_moment\", \"cage_slip\", \"frame_rotation\", \"contact_damping\", \
-         \"rayleigh_damping\"",
-        ],
+        &["unknown key \"tides\" in [effects]; valid keys \
+             are \"axial_force\", \"radial_force\", \"moment\", \"gravity\", \"ball_centrifugal\", \
+             \"gyroscopic_moment\", \"cage_slip\", \"frame_rotation\", \"contact_damping\", \
+         \"rayleigh_damping\""],
     ),
     (
         "[inner.section]",
@@ -137,7 +138,8 @@ const FORMAT: [Case; 36] = [
         "inner_stiffness",
         "inner_stiffness = \"9.31e5 N/mm\"",
         &[
-            "contact.inner_stiffness: \"9.31e5 N/mm\" is a stiffness; expected a Hertz stiffness such as \"9.31e5 N/mm^1.5\"",
+            "contact.inner_stiffness: \"9.31e5 N/mm\" is a stiffness; expected a Hertz stiffness such as \"9.31e5 \
+             N/mm^1.5\"",
         ],
     ),
     (
@@ -173,7 +175,8 @@ const FORMAT: [Case; 36] = [
         "element",
         "element = \"hex27\"",
         &[
-            "inner.section.element is \"hex27\"; did you mean \"hex20\"? valid values are \"hex8\", \"hex20\", \"tet10\"",
+            "inner.section.element is \"hex27\"; did you mean \"hex20\"? valid values \
+             are \"hex8\", \"hex20\", \"tet10\"",
         ],
     ),
     (
@@ -185,7 +188,8 @@ const FORMAT: [Case; 36] = [
         "tilt_x",
         "tilt_x = \"lokced\"",
         &[
-            "shaft.tilt_x: \"lokced\" is no state of a shaft motion; expected \"free\", \"locked\" or an angle such as \"15 deg\"",
+            "shaft.tilt_x: \"lokced\" is no state of a shaft motion; expected \"free\", \"locked\" or an angle such \
+             as \"15 deg\"",
         ],
     ),
     (

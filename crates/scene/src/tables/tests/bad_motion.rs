@@ -13,7 +13,8 @@ const INVALID: [Case; 55] = [
         "tolerance",
         "tolerance = 0.0",
         &[
-            "dynamic.adaptive.tolerance is 0; expected 1e-9 to 0.1, the error of a step over the largest contact approach",
+            "dynamic.adaptive.tolerance is 0; expected 1e-9 to 0.1, the error of a step over the largest contact \
+             approach",
         ],
     ),
     (
@@ -54,7 +55,8 @@ const INVALID: [Case; 55] = [
         "duration",
         "duration = \"77.003 ms\"",
         &[
-            "dynamic.duration is 77.003 ms; that is 7700.3 steps of 10 us, expected a whole number; the nearest duration \
+            "dynamic.duration is 77.003 ms; that is 7700.3 steps of 10 us, expected a whole number; the nearest \
+             duration \
              that fits is 77 ms",
         ],
     ),
@@ -89,7 +91,8 @@ const INVALID: [Case; 55] = [
         "integrator",
         "integrator = \"chung-hulbert\"",
         &[
-            "dynamic.integrator is \"chung-hulbert\"; did you mean \"chung_hulbert\"? valid values are \"average_acceleration\", \
+            "dynamic.integrator is \"chung-hulbert\"; did you mean \"chung_hulbert\"? valid values \
+             are \"average_acceleration\", \
            \"chung_hulbert\", \"hht\", \"newmark\"",
         ],
     ),
@@ -105,7 +108,8 @@ const INVALID: [Case; 55] = [
         "rho",
         "",
         &[
-            "dynamic.rho is missing; the integrator \"chung_hulbert\" needs it, expected 0 to 1, the amplitude that the \
+            "dynamic.rho is missing; the integrator \"chung_hulbert\" needs it, expected 0 to 1, the amplitude that \
+             the \
            highest frequencies keep per step, 0.8 is usual",
         ],
     ),
@@ -197,7 +201,8 @@ const INVALID: [Case; 55] = [
         "inner = {",
         "inner = \"30 Hz\"",
         &[
-            "speed.inner: \"30 Hz\" is a rate, which does not say whether it counts revolutions or radians; expected an \
+            "speed.inner: \"30 Hz\" is a rate, which does not say whether it counts revolutions or radians; expected \
+             an \
            angular speed such as \"1800 rpm\" or a table with times and values",
         ],
     ),
@@ -205,7 +210,8 @@ const INVALID: [Case; 55] = [
         "inner = {",
         "inner = 1800",
         &[
-            "speed.inner: 1800 is a number without a unit; expected an angular speed such as \"1800 rpm\" or a table with \
+            "speed.inner: 1800 is a number without a unit; expected an angular speed such as \"1800 rpm\" or a table \
+             with \
            times and values, in quotes",
         ],
     ),
@@ -243,7 +249,8 @@ const INVALID: [Case; 55] = [
         "inner = {",
         "inner = { times = [\"0 s\"], value = [\"1 rpm\"] }",
         &[
-            "unknown key \"value\" in [speed.inner]; did you mean \"values\"? valid keys are \"times\", \"values\", \"ramp\"",
+            "unknown key \"value\" in [speed.inner]; did you mean \"values\"? valid keys \
+             are \"times\", \"values\", \"ramp\"",
         ],
     ),
     (
@@ -275,7 +282,8 @@ const INVALID: [Case; 55] = [
         "inner = 0.0",
         "inner = 1.0",
         &[
-            "effects.cage_slip.inner is 1; expected 0 (pure rolling) to below 1, the share of the rolling motion that is lost",
+            "effects.cage_slip.inner is 1; expected 0 (pure rolling) to below 1, the share of the rolling motion that \
+             is lost",
         ],
     ),
     (
@@ -292,7 +300,8 @@ const INVALID: [Case; 55] = [
         "coefficient",
         "coefficient = \"5e-2 N/mm\"",
         &[
-            "effects.contact_damping.coefficient: \"5e-2 N/mm\" is a stiffness; expected a damping such as \"5e-2 N s/mm\"",
+            "effects.contact_damping.coefficient: \"5e-2 N/mm\" is a stiffness; expected a damping such as \"5e-2 N \
+             s/mm\"",
         ],
     ),
     (
@@ -306,7 +315,8 @@ const INVALID: [Case; 55] = [
         "mass = \"10 1/s\"",
         "mass = \"-10 1/s\"",
         &[
-            "effects.rayleigh_damping.mass is -10 1/s; damping must not be negative, it would feed energy into the rings",
+            "effects.rayleigh_damping.mass is -10 1/s; damping must not be negative, it would feed energy into the \
+             rings",
         ],
     ),
     (
@@ -362,7 +372,8 @@ fn numbers_that_make_an_integrator_unstable_are_refused() {
         ),
         (
             "integrator = \"newmark\"\ngamma = 0.6",
-            "dynamic.beta is 0.25; expected gamma / 2 = 0.3 to (gamma + 1/2)^2 / 4 = 0.3025, which damps high frequencies most: less \
+            "dynamic.beta is 0.25; expected gamma / 2 = 0.3 to (gamma + 1/2)^2 / 4 = 0.3025, which damps high \
+             frequencies most: less \
              is unstable for these, more can feed energy into contacts",
         ),
         (

@@ -77,7 +77,8 @@ const INVALID: [Case; 61] = [
         "inner_raceway",
         "inner_raceway_diameter = \"74.1 mm\"",
         &[
-            "bearing.inner_raceway_diameter is 74.1 mm; it must be less than bearing.outer_raceway_diameter, which is 74.037 mm",
+            "bearing.inner_raceway_diameter is 74.1 mm; it must be less than bearing.outer_raceway_diameter, which is \
+             74.037 mm",
         ],
     ),
     (
@@ -108,7 +109,8 @@ const INVALID: [Case; 61] = [
         "outside",
         "outside_diameter = \"74 mm\"",
         &[
-            "bearing.outer_raceway_diameter is 74.037 mm; it must be less than bearing.outside_diameter, which is 74 mm",
+            "bearing.outer_raceway_diameter is 74.037 mm; it must be less than bearing.outside_diameter, which is 74 \
+             mm",
         ],
     ),
     (
@@ -188,7 +190,8 @@ const INVALID: [Case; 61] = [
         "mode = \"rigid\"",
         &[
             "2 problems",
-            "inner.flexible is true but contact.mode is \"rigid\"; set inner.flexible = false, or contact.mode = \"patch\"",
+            "inner.flexible is true but contact.mode is \"rigid\"; set inner.flexible = false, or contact.mode \
+             = \"patch\"",
             "outer.flexible is true (the default) but contact.mode is \"rigid\"; set outer.flexible = false",
         ],
     ),
@@ -211,7 +214,8 @@ const INVALID: [Case; 61] = [
         "support",
         "",
         &[
-            "inner.support is missing; a flexible ring needs to know how its bore is held, \"clamped\" or \"mean_motion\"",
+            "inner.support is missing; a flexible ring needs to know how its bore is held, \"clamped\" \
+             or \"mean_motion\"",
         ],
     ),
     (
@@ -243,7 +247,8 @@ const INVALID: [Case; 61] = [
         "shoulder_diameters",
         "shoulder_diameters = [\"56 mm\", \"60.4 mm\"]",
         &[
-            "inner.section.shoulder_diameters[0] is 56 mm; a shoulder must lie between the bottom and the centre of the \
+            "inner.section.shoulder_diameters[0] is 56 mm; a shoulder must lie between the bottom and the centre of \
+             the \
          groove, 56.01 mm to 65.31 mm",
         ],
     ),
@@ -399,7 +404,8 @@ fn a_shaft_free_along_its_axis_may_be_pushed_either_way() {
 /// If this failed, sections whose shoulders run into each other would be meshed.
 #[test]
 fn shoulders_of_both_rings_must_leave_a_gap() {
-    let section = "element = \"hex8\"\nsectors = 18\ngroove_elements = 4\nthickness_elements = 2\nshoulder_elements = 2\n";
+    let section = "element = \"hex8\"\nsectors = 18\ngroove_elements = 4\nthickness_elements = 2\nshoulder_elements = \
+                   2\n";
     let inner = with_line(
         "shoulder_diameters",
         "shoulder_diameters = [\"60.4 mm\", \"65 mm\"]",

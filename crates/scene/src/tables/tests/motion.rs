@@ -95,7 +95,8 @@ fn ball_speeds_are_for_effects_of_turning_balls() {
     assert_eq!(of(&asked("free_angle")), BallSpeeds::FreeAngle);
     assert_eq!(of(&asked("outer_control")), BallSpeeds::OuterControl);
     let message = message_of(&asked("inner_control"), &[]);
-    let expected = "speed.ball_speeds is \"inner_control\"; did you mean \"outer_control\"? valid values are \"free_angle\"";
+    let expected = "speed.ball_speeds is \"inner_control\"; did you mean \"outer_control\"? valid values \
+                    are \"free_angle\"";
     assert!(message.contains(expected), "{message}");
     let idle = replace_line(&asked("outer_control"), "[effects.ball_centrifugal]", "");
     let message = message_of(&idle, &[]);

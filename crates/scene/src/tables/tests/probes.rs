@@ -114,7 +114,8 @@ fn wrong_probes_are_refused_by_name() {
     }
     let on_raceway = with_probe(&format!("{node}groove_angle = \"15 deg\""));
     let message = message_of(&on_raceway, &["outer.flexible=false"]);
-    let part = "probes.node.p.ring is \"outer\", but that ring is rigid and has no nodes; make it flexible or remove the probe";
+    let part = "probes.node.p.ring is \"outer\", but that ring is rigid and has no nodes; make it flexible or remove \
+                the probe";
     assert!(message.contains(part), "expected\n{part}\nin\n{message}");
 }
 

@@ -62,7 +62,8 @@ fn wrong_quasi_static_scenes_are_refused() {
             with_keys(&format!(
                 "{good}\n[effects.contact_damping]\ncoefficient = \"5e-2 N s/mm\"\nfull_approach = \"1 um\""
             )),
-            "[effects.contact_damping] does nothing in a scene without inertia; remove it, or compute motion with [dynamic]",
+            "[effects.contact_damping] does nothing in a scene without inertia; remove it, or compute motion with \
+             [dynamic]",
         ),
     ];
     for (text, part) in cases {

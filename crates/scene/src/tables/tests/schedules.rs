@@ -169,7 +169,8 @@ fn shares_of_the_gyroscopic_moment_complete_each_other() {
 const SCHEDULES: [(&str, &str); 15] = [
     (
         "schedule = {}",
-        "effects.axial_force.schedule is empty; expected exactly one of ramp, step, impact, harmonic and table, or no schedule",
+        "effects.axial_force.schedule is empty; expected exactly one of ramp, step, impact, harmonic and table, or no \
+         schedule",
     ),
     (
         "schedule = { step = { at = \"1 s\" }, impact = { start = \"1 s\", duration = \"1 s\" } }",
@@ -177,12 +178,14 @@ const SCHEDULES: [(&str, &str); 15] = [
     ),
     (
         "schedule = { stepp = { at = \"1 s\" } }",
-        "unknown key \"stepp\" in [effects.axial_force.schedule]; did you mean \"step\"? valid keys are \"ramp\", \"step\", \
+        "unknown key \"stepp\" in [effects.axial_force.schedule]; did you mean \"step\"? valid keys \
+         are \"ramp\", \"step\", \
          \"impact\", \"harmonic\", \"table\"",
     ),
     (
         "schedule = \"ramp\"",
-        "effects.axial_force.schedule: invalid type: string \"ramp\", expected a table with one of ramp, step, impact, harmonic \
+        "effects.axial_force.schedule: invalid type: string \"ramp\", expected a table with one of ramp, step, \
+         impact, harmonic \
          and table",
     ),
     (
@@ -227,7 +230,8 @@ const SCHEDULES: [(&str, &str); 15] = [
     ),
     (
         "schedule.step = { at = \"1 ms\", after = 1e6 }",
-        "effects.axial_force.value is 2 kN; times its schedule that is more than any bearing carries, check its unit and factors",
+        "effects.axial_force.value is 2 kN; times its schedule that is more than any bearing carries, check its unit \
+         and factors",
     ),
 ];
 
@@ -254,14 +258,16 @@ fn motions_speeds_and_shares_that_make_no_sense_are_refused() {
             "z = ",
             "z = { value = \"1 mm\", schedule.step = { at = \"0 s\", after = 5 } }",
             &[
-                "shaft.z is 1 mm; a prescribed displacement must be less than a ball radius, at the peak of its schedule too",
+                "shaft.z is 1 mm; a prescribed displacement must be less than a ball radius, at the peak of its \
+                 schedule too",
             ],
         ),
         (
             "tilt_x",
             "tilt_x = { value = \"30 mrad\", schedule.harmonic = { frequency = \"1 Hz\", mean = 1 } }",
             &[
-                "shaft.tilt_x is 30 mrad; a prescribed tilt must be small, at most 55 mrad, at the peak of its schedule too",
+                "shaft.tilt_x is 30 mrad; a prescribed tilt must be small, at most 55 mrad, at the peak of its \
+                 schedule too",
             ],
         ),
         (
@@ -288,7 +294,8 @@ fn motions_speeds_and_shares_that_make_no_sense_are_refused() {
             "inner = {",
             "inner = { ramp = { from = \"1 rpm\", to = \"2 rpm\", start = \"0 s\", duration = \"0 s\" } }",
             &[
-                "speed.inner.ramp.duration is 0 s; a duration must be positive; a ring cannot change its speed in no time",
+                "speed.inner.ramp.duration is 0 s; a duration must be positive; a ring cannot change its speed in no \
+                 time",
             ],
         ),
         (
@@ -300,7 +307,8 @@ fn motions_speeds_and_shares_that_make_no_sense_are_refused() {
             "[effects.axial_force]",
             "[effects.gyroscopic_moment]\ninner_share = 1\nouter_share = 2\n[effects.axial_force]",
             &[
-                "[effects.gyroscopic_moment] has inner_share 1 and outer_share 2; their sum must be 2, or the moment is not balanced",
+                "[effects.gyroscopic_moment] has inner_share 1 and outer_share 2; their sum must be 2, or the moment \
+                 is not balanced",
             ],
         ),
         (
