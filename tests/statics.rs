@@ -302,7 +302,8 @@ fn a_load_without_equilibrium_ends_with_code_3_and_no_files() {
         ];
         let outcome = dir.raceway(&[&load, set].concat());
         assert_eq!(outcome.code, Some(3), "{}", outcome.stderr);
-        let message = "error: no equilibrium: z of the shaft runs beyond 4.500 mm; the loads push the inner ring off the \
+        let message = "error: no equilibrium: z of the shaft runs beyond 4.500 mm; the loads push the inner ring off \
+                       the \
                        balls or a free direction is not held; lock it, add preload or reduce the load";
         assert!(outcome.stderr.contains(message), "{}", outcome.stderr);
         assert_eq!(outcome.stdout, "");
@@ -347,4 +348,28 @@ fn check_prints_the_sizes_and_leaves_no_files() {
         );
     }
     assert!(dir.snapshot() == before, "files were made");
+}
+
+/// Wrong: a shaft that is locked at 0 would be taken for one in the middle of its play: a deep groove bearing has
+/// contact angles then. The 7010C has grooves 0.4 mm apart and a free contact angle of 14.93 deg.
+#[test]
+fn a_shaft_locked_at_zero_is_told_where_the_middle_is() {
+    let dir = Dir::with_scene(SCENE);
+    let check = [&["check", "scene.toml"], &RIGID[..], &["--set", "shaft.z=locked"]].concat();
+    let outcome = dir.raceway(&check);
+    let part = "advice   shaft.z is \"locked\" at 0, where all balls just touch at the free contact angle of 14.93 \
+                deg; with the grooves opposite each other, as in a deep groove bearing without thrust, it is \
+                shaft.z = \"-103.";
+    assert!(outcome.stdout.contains(part), "{}", outcome.stdout);
+    let outcome = dir.raceway(&check[..check.len() - 2]);
+    assert!(!outcome.stdout.contains("locked"), "{}", outcome.stdout);
+    // Without clearance the grooves are opposite each other, up to round-off.
+    let tight = "bearing.outer_raceway_diameter=74.01 mm";
+    let outcome = dir.raceway(&[&check[..], &["--set", tight]].concat());
+    assert!(
+        outcome.stdout.contains("free contact angle 0."),
+        "{}",
+        outcome.stdout
+    );
+    assert!(!outcome.stdout.contains("shaft.z is"), "{}", outcome.stdout);
 }

@@ -43,12 +43,15 @@ pub fn advice(scene: &Scene, model: &Model) -> Result<Vec<String>, Failure> {
     Ok(lines)
 }
 
+/// Play in which balls cannot be told from balls that just touch, m: a thousandth of what micrometers show.
+const NO_PLAY: f64 = 1e-9;
+
 /// Displacements count from the just-touching state, which is not the middle of the axial play.
 fn zero_of_the_shaft(scene: &Scene, model: &Model, lines: &mut Vec<String>) {
     let geometry = &model.geometry;
     let angle = geometry.free_contact_angle();
     let play = geometry.groove_distance() * angle.sin();
-    if scene.shaft.z != Motion::Locked || play <= 0.0 || model.seat().is_some() {
+    if scene.shaft.z != Motion::Locked || play <= NO_PLAY || model.seat().is_some() {
         return;
     }
     lines.push(format!(
