@@ -2,6 +2,7 @@
 //! that the program takes. Commands without placeholders are run, from the top of a page to its end.
 
 mod commands;
+mod forms;
 mod prose;
 
 use std::path::{Path, PathBuf};
@@ -173,8 +174,18 @@ fn every_command_of_the_documents_is_taken() {
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
-/// Runs the commands of pages in one folder; returns how many.
+/// Whether a command takes too long for every change, or follows one that does.
+fn is_slow(command: &Command) -> bool {
+    NOT_RUN.iter().any(|(start, _)| command.text.starts_with(start))
+}
+
+/// Runs the commands of pages that are not slow in one folder; returns how many.
 fn run_pages(pages: &[&str]) -> usize {
+    run_commands(pages, |command| !is_slow(command))
+}
+
+/// Runs the commands of pages that are chosen in one folder; returns how many.
+fn run_commands(pages: &[&str], is_chosen: impl Fn(&Command) -> bool) -> usize {
     let dir = Dir::empty();
     for name in ["scenes", "meshes", "studies"] {
         std::os::unix::fs::symlink(root().join(name), dir.path(name)).unwrap();
@@ -182,9 +193,7 @@ fn run_pages(pages: &[&str]) -> usize {
     let mut count = 0;
     for page in pages {
         let text = text_of(page);
-        let is_run = |command: &&Command| {
-            command.can_be_run() && !NOT_RUN.iter().any(|(start, _)| command.text.starts_with(start))
-        };
+        let is_run = |command: &&Command| command.can_be_run() && is_chosen(command);
         for command in commands_of(&text).unwrap().iter().filter(is_run) {
             let outcome = command.run(&dir);
             assert_eq!(
@@ -200,17 +209,30 @@ fn run_pages(pages: &[&str]) -> usize {
     count
 }
 
+/// Whether a page is for those who use the program.
+fn is_user_page(page: &str) -> bool {
+    page.starts_with("docs/") && !page.starts_with("docs/dev/")
+}
+
 /// Wrong: a reader who types what a page shows would not get what it says.
 #[test]
 fn commands_of_the_user_pages_run() {
     let mut count = 0;
     for page in pages() {
-        let is_user_page = page.starts_with("docs/") && !page.starts_with("docs/dev/");
         let needs_gmsh = text_of(&page).contains("raceway mesh ");
-        if is_user_page && !needs_gmsh && !TUTORIAL.contains(&page.as_str()) {
+        if is_user_page(&page) && !needs_gmsh && !TUTORIAL.contains(&page.as_str()) {
             count += run_pages(&[&page]);
         }
     }
+    assert!(count >= 5, "only {count} commands were found");
+}
+
+/// Wrong: as above, for commands of minutes. A study of an hour, and what follows a batch job, are left to
+/// `scripts/test-slurm` and the reader.
+#[test]
+#[ignore = "some minutes; scripts/test-slow runs it"]
+fn slow_commands_of_the_documents_run() {
+    let count = run_commands(&["docs/accuracy.md"], |_| true);
     assert!(count >= 5, "only {count} commands were found");
 }
 

@@ -114,7 +114,7 @@ impl Command {
             .filter(|part| !part.is_empty())
             .collect::<Vec<_>>()
             .join(" ");
-        Command { text, is_shown: true }
+        Command::shown(text)
     }
 
     fn first(&self) -> &str {
@@ -141,12 +141,22 @@ impl Command {
         })
     }
 
-    /// What follows the name of the program, if this is a command of it: also behind a launcher.
-    fn words(&self) -> Option<String> {
-        let text = match self.text.strip_prefix("scripts/run ") {
+    /// A command that stands in a block.
+    pub fn shown(text: String) -> Command {
+        Command { text, is_shown: true }
+    }
+
+    /// The command, where `scripts/run` builds the program and runs a scene.
+    fn of_program(&self) -> String {
+        match self.text.strip_prefix("scripts/run ") {
             Some(rest) => format!("raceway run {rest}"),
             None => self.text.clone(),
-        };
+        }
+    }
+
+    /// What follows the name of the program, if this is a command of it: also behind a launcher.
+    fn words(&self) -> Option<String> {
+        let text = self.of_program();
         let launchers = [
             "",
             "mpirun ",
@@ -196,22 +206,29 @@ impl Command {
         }
     }
 
-    /// Whether this is a command of the program that needs nothing in the place of a word.
-    pub fn can_be_run(&self) -> bool {
+    /// Whether a word stands for others: capitals alone, or what may be left out.
+    fn has_placeholders(&self) -> bool {
         let is_placeholder = |word: &str| {
             word.len() > 1 && word.chars().all(|c| c.is_ascii_uppercase() || c == '_')
                 || word.contains(['[', '<'])
         };
-        let words = || self.text.split([' ', '=', '/', '.']);
-        self.is_shown
-            && self.text.starts_with("raceway ")
-            && words().count() > 1
-            && !words().any(is_placeholder)
+        self.text.split([' ', '=', '/', '.']).any(is_placeholder)
+    }
+
+    /// Whether this is a command of the program that needs nothing in the place of a word.
+    pub fn can_be_run(&self) -> bool {
+        let is_ours = self.is_shown && self.of_program().starts_with("raceway ");
+        is_ours && !self.has_placeholders()
+    }
+
+    /// Whether this is a command of the program with words that stand for others.
+    pub fn is_form(&self) -> bool {
+        self.is_shown && self.text.starts_with("raceway ") && self.has_placeholders()
     }
 
     /// Runs it.
     pub fn run(&self, dir: &Dir) -> Outcome {
-        shell(dir, &self.text)
+        shell(dir, &self.of_program())
     }
 }
 
