@@ -214,8 +214,12 @@ impl ShaftBody {
     }
 }
 
-/// Product of a matrix of `n` columns, row-major, and a vector.
+/// Product of a matrix of the shaft, of `n` columns and row-major, and a vector. A node sees its neighbours alone.
 pub fn times(n: usize, matrix: &[f64], x: &[f64]) -> Vec<f64> {
-    let row = |row: &[f64]| row.iter().zip(x).map(|(a, x)| a * x).sum();
-    matrix.chunks_exact(n).map(row).collect()
+    let row = |(i, row): (usize, &[f64])| {
+        let first = (i - i % N_SHAFT).saturating_sub(N_SHAFT);
+        let near = first..n.min(i - i % N_SHAFT + 2 * N_SHAFT);
+        row[near.clone()].iter().zip(&x[near]).map(|(a, x)| a * x).sum()
+    };
+    matrix.chunks_exact(n).enumerate().map(row).collect()
 }

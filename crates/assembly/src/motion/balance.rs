@@ -1,9 +1,9 @@
 //! The shaft over a part of a step, and Newton on it.
 
-use dense::DenseLu;
 use dynamics::motion::held::HeldPart;
 use dynamics::stiffness::N_SHAFT;
 
+use super::factors::KeptFactors;
 use crate::error::AssemblyError;
 use crate::newton::Mount;
 use crate::shaft::{ShaftBody, times};
@@ -46,12 +46,6 @@ struct ShaftBalance {
     /// Largest force, N.
     scale: f64,
     loads: Vec<[f64; N_SHAFT]>,
-}
-
-/// Factors of the tangent over the free dofs, kept while Newton gets on with them.
-pub struct KeptFactors {
-    free: Vec<usize>,
-    factors: Option<DenseLu>,
 }
 
 impl ShaftStep<'_> {
@@ -99,9 +93,9 @@ impl ShaftStep<'_> {
             let gets_on =
                 history.len() < 2 || history[history.len() - 1] <= ENOUGH * history[history.len() - 2];
             if !gets_on {
-                kept.factors = None;
+                kept.renew();
             }
-            let step = self.step(parts, &at, kept)?;
+            let step = kept.step(self, parts, &at.residual)?;
             at = self.search(parts, at, &step)?;
         }
         let tail = history.len().saturating_sub(6);
@@ -161,50 +155,17 @@ impl ShaftStep<'_> {
         }
     }
 
-    /// Newton's step, with factors of an earlier tangent if there are any.
-    fn step(
-        &self,
-        parts: &mut [HeldPart<'_>],
-        at: &ShaftBalance,
-        kept: &mut KeptFactors,
-    ) -> Result<Vec<f64>, AssemblyError> {
-        let factors = match kept.factors.take() {
-            Some(factors) => factors,
-            None => self.factors(parts, &kept.free)?,
-        };
-        let mut found: Vec<f64> = kept.free.iter().map(|&i| at.residual[i]).collect();
-        factors.solve(&mut found, 1);
-        kept.factors = Some(factors);
-        let mut step = vec![0.0; self.shaft.n()];
-        kept.free.iter().zip(found).for_each(|(&i, x)| step[i] = x);
-        Ok(step)
-    }
-
-    /// Nothing kept yet.
-    pub fn keeps(&self) -> KeptFactors {
-        let held = &self.shaft.held;
-        KeptFactors {
-            free: (0..held.len()).filter(|&i| held[i].is_none()).collect(),
-            factors: None,
-        }
-    }
-
-    /// Factors of the tangent at the last answers of the bearings.
-    fn factors(&self, parts: &mut [HeldPart<'_>], free: &[usize]) -> Result<DenseLu, AssemblyError> {
-        let n = self.shaft.n();
+    /// Tangent of the shaft alone, row-major.
+    pub fn own_tangent(&self) -> Vec<f64> {
         let (of_mass, of_spin) = (2.0 / (self.dt * self.dt), self.speeds[1] / self.dt);
-        let own = |k: usize| {
-            of_mass * self.shaft.mass[k] + of_spin * self.shaft.gyroscopic[k] + 0.5 * self.shaft.stiffness[k]
-        };
-        let mut tangent: Vec<f64> = (0..n * n).map(own).collect();
-        for (mount, part) in self.mounts.iter().zip(parts) {
-            let own = part.stiffness().map_err(AssemblyError::of_bearing(&mount.name))?;
-            let turned = mount.place.orientation.turned_matrix(&own);
-            mount.station.add_matrix(&turned, n, &mut tangent);
-        }
-        let entries = free.iter().flat_map(|&i| free.iter().map(move |&j| n * i + j));
-        let matrix: Vec<f64> = entries.map(|k| tangent[k]).collect();
-        DenseLu::factor(free.len(), &matrix).map_err(|source| AssemblyError::Matrix { source })
+        let ShaftBody {
+            mass,
+            gyroscopic,
+            stiffness,
+            ..
+        } = self.shaft;
+        let own = |k: usize| of_mass * mass[k] + of_spin * gyroscopic[k] + 0.5 * stiffness[k];
+        (0..mass.len()).map(own).collect()
     }
 
     /// The point along a step, halved until the residual does not grow.

@@ -17,6 +17,7 @@
 //! part that fails is done again in halves, all bearings together.
 
 mod balance;
+mod factors;
 mod ledger;
 
 use dynamics::kinematics::Speed;
@@ -26,6 +27,7 @@ use dynamics::stiffness::N_SHAFT;
 use dynamics::{DynamicsError, ShaftDof};
 
 use self::balance::ShaftStep;
+use self::factors::{KeptFactors, ShaftAlone};
 pub use self::ledger::ShaftLedger;
 use crate::assembly::{Assembly, AssemblySolution};
 use crate::error::AssemblyError;
@@ -67,8 +69,13 @@ pub struct AssemblyState {
     pub ledger: ShaftLedger,
 }
 
-/// What each bearing has found of its next step, see [`StepCache`].
-pub type AssemblyCache = Vec<StepCache>;
+/// What each bearing has found of its next step, see [`StepCache`], and factors of the shaft. Without it a step has the
+/// same bits.
+#[derive(Default)]
+pub struct AssemblyCache {
+    bearings: Vec<StepCache>,
+    shaft: Option<ShaftAlone>,
+}
 
 impl Assembly {
     /// Frees the shaft in the models of the bearings: in a motion the common shaft moves it.
@@ -135,7 +142,9 @@ impl<'a> AssemblyMotion<'a> {
         state: &AssemblyState,
         cache: &mut AssemblyCache,
     ) -> Result<(AssemblyState, StepReport), AssemblyError> {
-        cache.resize_with(self.bearings.len(), StepCache::default);
+        cache
+            .bearings
+            .resize_with(self.bearings.len(), StepCache::default);
         let n = 1u64 << self.halvings;
         let (mut at, mut rung, mut report) = (0, 0, StepReport::default());
         let mut next: Option<AssemblyState> = None;
@@ -184,7 +193,7 @@ impl<'a> AssemblyMotion<'a> {
     ) -> Result<(AssemblyState, StepReport), AssemblyError> {
         let mut parts = Vec::new();
         for (i, motion) in self.bearings.iter().enumerate() {
-            let part = HeldPart::begin(motion, &state.bearings[i], spans[i].0, &cache[i]);
+            let part = HeldPart::begin(motion, &state.bearings[i], spans[i].0, &cache.bearings[i]);
             parts.push(part.map_err(AssemblyError::of_bearing(&self.mounts[i].name))?);
         }
         let span = spans[0].0;
@@ -197,7 +206,7 @@ impl<'a> AssemblyMotion<'a> {
             load: (self.load)(span.at(0.5))?,
             tilt_arm: self.assembly.scales().tilt_arm,
         };
-        let (mut end, mut kept) = (step.guess(), step.keeps());
+        let (mut end, mut kept) = (step.guess(), KeptFactors::new(&step, cache.shaft.take()));
         for _ in 0..MAX_ROUNDS {
             let loads;
             (end, loads) = step.balance(&mut parts, end, &mut kept)?;
@@ -205,6 +214,7 @@ impl<'a> AssemblyMotion<'a> {
                 continue;
             }
             if self.all(&mut parts, |i, part| part.close(spans[i].1))? == Holding::Settled {
+                cache.shaft = kept.alone;
                 return self.finish(state, (&step, parts), (end, loads), cache);
             }
         }
@@ -235,7 +245,7 @@ impl<'a> AssemblyMotion<'a> {
     ) -> Result<(AssemblyState, StepReport), AssemblyError> {
         let mut report = StepReport::default();
         let mut bearings = Vec::new();
-        for (i, (part, cache)) in parts.into_iter().zip(cache).enumerate() {
+        for (i, (part, cache)) in parts.into_iter().zip(&mut cache.bearings).enumerate() {
             let (next, done) = part
                 .finish(cache)
                 .map_err(AssemblyError::of_bearing(&self.mounts[i].name))?;
