@@ -116,13 +116,16 @@ pub fn run(
             solution: &solution,
         };
         // All ranks recover stress; then rank 0 writes, and may fail alone.
-        let gathered = files.gather_stress(&shown);
+        let last = (first + points.len() - 1) as u64;
+        let kept = scene.output.every.kept(step, 1, last);
+        let gathered = files.gather_stress(&shown, kept);
         let write = || {
+            files.reduce(step, time, &shown, &scene)?;
             files.write_tables(step, time, *value, &snapshot)?;
             files.write_probes(step, time, *value, &shown)?;
             files.write_profiles(step, time, *value, &shown)?;
             files.write_fields(|stress| {
-                fields::record(&shown, &solution, (stress, gathered), (step, time), point)
+                fields::record(&shown, &solution, (stress, gathered), (step, time), (point, kept))
             })
         };
         agree(write())?;

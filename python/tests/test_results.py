@@ -5,6 +5,7 @@ from __future__ import annotations
 import shutil
 from pathlib import Path
 
+import h5py
 import numpy as np
 import pytest
 
@@ -60,6 +61,29 @@ def test_a_ring_has_the_volume_of_its_surface(runs):
         assert np.isclose(abs(by_surface), cells.volume, rtol=1e-3)
         radius = np.hypot(*mesh.points[mesh.points_of(ring)][:, :2].T)
         assert radius.max() < largest + 1e-4
+
+
+def test_small_files_are_read_by_h5py_alone(runs):
+    whole, small = runs.motion(), runs.small_motion()
+    assert small.steps == whole.steps
+    for number in small.steps:
+        with (
+            h5py.File(whole.folder / f"step_{number:06}.hdf") as exact,
+            h5py.File(small.folder / f"step_{number:06}.hdf") as file,
+        ):
+            exact_points, points = exact["VTKHDF/PointData"], file["VTKHDF/PointData"]
+            assert set(points) == set(exact_points)
+            for name in ("stress", "von_mises"):
+                assert points[name].attrs["error_bound"] == 1e4
+                # Both are rounded to single precision besides.
+                error = np.abs(points[name][()].astype(float) - exact_points[name][()]).max()
+                assert 0.0 < error <= 1.001e4
+            assert points["displacement"].dtype == np.float32
+            assert (points["displacement"][()] == exact_points["displacement"][()].astype(np.float32)).all()
+            assert (points["force_inner"][()] == exact_points["force_inner"][()]).all()
+            has_state = number == small.steps[-1] or number % 15 == 0
+            assert (len(file["restart/state"]) > 0) == has_state
+            assert len(exact["restart/state"]) > 0
 
 
 def test_a_sweep_has_its_values(runs):

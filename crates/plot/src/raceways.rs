@@ -85,7 +85,8 @@ pub fn nodes(grid: &Grid, record: &StepRecord, groove: &Groove) -> Vec<Node> {
         return Vec::new();
     };
     let rows = grid.points.iter().zip(&record.points.displacement).zip(von_mises);
-    rows.filter(|((x, _), _)| on_torus(**x, groove))
+    let nodes: Vec<Node> = rows
+        .filter(|((x, u), _)| on_torus(**x, groove) && !u[0].is_nan())
         .map(|((x, u), &von_mises)| {
             let [_, angle] = groove.coordinates(*x);
             let azimuth = (x[1] + u[1]).atan2(x[0] + u[0]).to_degrees();
@@ -95,7 +96,12 @@ pub fn nodes(grid: &Grid, record: &StepRecord, groove: &Groove) -> Vec<Node> {
                 von_mises,
             }
         })
-        .collect()
+        .collect();
+    // A ring of which nothing is kept (output.region) has no figure.
+    match nodes.iter().all(|node| node.von_mises.is_nan()) {
+        true => Vec::new(),
+        false => nodes,
+    }
 }
 
 fn on_torus(x: [f64; 3], groove: &Groove) -> bool {

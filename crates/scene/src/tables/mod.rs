@@ -111,7 +111,10 @@ pub use self::lubricant::{Lubrication, Roughness};
 pub use self::materials::{Material, Materials};
 pub use self::modes::{ModeBody, ModeSupport, Modes};
 pub use self::oil::Oil;
-pub use self::output::{Output, Precision, RingFrame, StressOutput};
+pub use self::output::{
+    Damage, DamageNodes, DamageStress, Every, Kept, Output, OutputRegion, Precision, Reduction, RingFrame,
+    StressOutput,
+};
 pub use self::probes::{Axes, ContactProbe, NodeProbe, Probes, SectionPoint};
 pub use self::profiles::SurfaceProfiles;
 pub use self::quasi_static::QuasiStatic;
@@ -402,6 +405,10 @@ impl Source<'_> {
         let output = OutputContext {
             has_steps: raw.dynamic.is_some() || raw.quasi_static.is_some(),
             is_motion: raw.dynamic.is_some(),
+            is_sweep: raw.sweep.is_some(),
+            is_static: raw.r#static.is_some(),
+            flexible: [inner.body.is_some(), outer.body.is_some()],
+            has_stress: true,
         };
         let output = raw.output.check(output, &mut problems);
         let stress = StressContext {

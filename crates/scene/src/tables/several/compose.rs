@@ -18,7 +18,7 @@ use super::super::{Scene, SceneError, Source, edit, include};
 use super::mounted::{BearingOnShaft, RawMounted, check_places};
 use super::pairing::Pairing;
 use super::shaft::{CommonShaft, ShaftKind};
-use super::turned::{turn_speed, turn_speeds, turn_weight};
+use super::turned::{turn_region, turn_speed, turn_speeds, turn_weight};
 use super::{AnyScene, ON_SHAFT, RawSeveral, SeveralScene, is_plain, set};
 use crate::tables::shaft::Motion;
 
@@ -40,6 +40,8 @@ const OF_LIST: [&str; 15] = [
     "heat",
     "lubricant",
 ];
+/// Tables of `[output]` that need a series of steps.
+const OF_SERIES: [&str; 2] = ["every", "reduction"];
 /// Tables that a type file may have.
 const OF_TYPE: [&str; 5] = ["bearing", "materials", "contact", "inner", "outer"];
 
@@ -85,6 +87,7 @@ impl Composer<'_> {
     ) -> Result<SeveralScene, SceneError> {
         let mut problems = Problems::default();
         check_list(&raw, &mut problems);
+        check_output(&raw, document, &mut problems);
         let pairing = raw.pairing.as_ref().map(|p| p.check(&raw.bearing, &mut problems));
         let pairing = pairing.unwrap_or_default();
         let at_rest = raw.analysis(document, &mut problems);
@@ -227,6 +230,7 @@ impl Composer<'_> {
             }
             turn_weight(document, orientation);
             turn_speed(document, orientation);
+            turn_region(document, orientation);
             if let Some(force) = spring {
                 set(
                     document,
@@ -246,7 +250,12 @@ impl Composer<'_> {
             set(document, "shaft.load_point", "\"0 m\"");
             match list.get("dynamic") {
                 Some(dynamic) => document.insert("dynamic", dynamic.clone()),
-                None => document.insert("static", Item::Table(Table::new())),
+                None => {
+                    OF_SERIES
+                        .iter()
+                        .for_each(|name| drop(remove_output(document, name)));
+                    document.insert("static", Item::Table(Table::new()))
+                }
             };
         })
     }
@@ -329,6 +338,18 @@ fn check_list(raw: &RawSeveral, problems: &mut Problems) {
     }
 }
 
+/// Refuses tables of `[output]` that a list has in motion only.
+fn check_output(raw: &RawSeveral, list: &DocumentMut, problems: &mut Problems) {
+    let output = list.get("output").and_then(Item::as_table_like);
+    let given = |name: &&&str| output.is_some_and(|output| output.contains_key(name));
+    for name in OF_SERIES.iter().filter(given).filter(|_| raw.dynamic.is_none()) {
+        problems.add(format!(
+            "[output.{name}] is for a list of bearings in motion, [dynamic], only: at rest every bearing has its own \
+             [static] files; remove it"
+        ));
+    }
+}
+
 /// Checks the effects that load the shaft, which no bearing has.
 fn check_loads(raw: &RawSeveral, problems: &mut Problems) {
     let on_shaft = Effects {
@@ -373,6 +394,11 @@ fn copy_shared(list: &DocumentMut, document: &mut DocumentMut, left_out: &[&str]
         }
         document.insert(name, item);
     }
+}
+
+/// Takes a table out of `[output]`.
+fn remove_output(document: &mut DocumentMut, name: &str) -> Option<Item> {
+    document.get_mut("output")?.as_table_like_mut()?.remove(name)
 }
 
 /// Whether a `--set` argument is of the type of the bearings.
