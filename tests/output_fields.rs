@@ -2,9 +2,10 @@
 
 use std::sync::OnceLock;
 
-use checkpoint::{PointFields, StepRecord, read_any_step, read_mesh, read_step, step_file_name};
+use checkpoint::{PointFields, StepRecord, read_any_step, read_mesh, read_step, read_table, step_file_name};
 
 use crate::resume::{moved, resumed};
+use crate::several::flexible_pair;
 use crate::util::lockstep::{copy, small_motion};
 use crate::util::{Dir, Files};
 
@@ -189,6 +190,134 @@ fn a_region_holds_the_stress_of_the_whole() {
     );
 }
 
+/// All three tables, with states in every fourth file only.
+const ALL: [&str; 20] = [
+    "--set",
+    "output.every.stress=2",
+    "--set",
+    "output.every.displacement=3",
+    "--set",
+    "output.restart_every=4",
+    "--set",
+    "output.stress_error=10 kPa",
+    "--set",
+    "output.region={ raceway_distance = \"1 mm\", fields = [\"stress\", \"displacement\"] }",
+    "--set",
+    "output.reduction.every=3",
+    "--set",
+    "output.reduction.damage.stress=von_mises",
+    "--set",
+    "output.reduction.damage.exponent=9.0",
+    "--set",
+    "output.reduction.damage.reference_amplitude=600 MPa",
+    "--set",
+    "output.reduction.damage.reference_cycles=1e6",
+];
+
+/// Wrong: a run that is killed and resumed would leave other files than one that is not: a region, the steps that hold
+/// a field, or what is counted would depend on where it went on. The kill is after step 14; the last state is that of
+/// step 12.
+#[test]
+fn a_killed_run_with_all_of_it_ends_in_the_same_bytes() {
+    let dir = small_motion();
+    dir.run("whole", &ALL);
+    copy(&dir, "whole", "cut");
+    let cut = |name: &str| dir.path(&format!("cut/{name}"));
+    for n in 15..=20 {
+        std::fs::remove_file(cut(&step_file_name(n))).unwrap();
+    }
+    for name in ["summary.json", "run.vtkhdf", "reduction.vtkhdf"] {
+        std::fs::remove_file(cut(name)).unwrap();
+    }
+    resumed(&dir, &["cut", "--threads", "1"]);
+    let steps = (0..=20).map(step_file_name);
+    for name in steps.chain(["reduction.vtkhdf".to_string(), "energy.csv".to_string()]) {
+        let read = |folder: &str| std::fs::read(dir.path(folder).join(&name)).unwrap();
+        assert!(read("whole") == read("cut"), "{name}");
+    }
+}
+
+/// Wrong: bearings of a list would keep another region than the shaft's azimuths say, write all fields, count nothing,
+/// or go on to other bytes. The rear bearing is turned about x, so that azimuths of its own frame have the other sign.
+#[test]
+fn a_list_in_motion_has_all_of_it_by_bearing() {
+    let output = "[output]\nevery = { stress = 2, displacement = 3 }\nrestart_every = 2\n\
+                  region = { raceway_distance = \"1 mm\", azimuth = [\"20 deg\", \"110 deg\"] }\n\
+                  reduction = { every = 2 }\n\
+                  [dynamic]\nduration = \"120 us\"\nstep = \"20 us\"\nledger_tolerance = 1e-2\n";
+    let dir = flexible_pair(output);
+    let run = |arguments: &[&str]| {
+        let outcome = dir.raceway(arguments);
+        assert_eq!(outcome.code, Some(0), "{arguments:?}: {}", outcome.stderr);
+        outcome
+    };
+    run(&["run", "pair.toml", "--out", "whole"]);
+    for (bearing, sign) in [("front", 1.0), ("rear", -1.0)] {
+        let folder = format!("whole/{bearing}");
+        let grid = read_mesh(&dir.path(&folder)).unwrap();
+        let stressed = step(&dir, &folder, 4);
+        let inside = stressed.points.in_region.unwrap();
+        let von_mises = stressed.points.von_mises.unwrap();
+        let (n, n_balls) = (inside.len(), 18);
+        for i in 0..n - n_balls {
+            let [x, y, _] = grid.points[i];
+            let in_sector = (20.0..110.0).contains(&(sign * y).atan2(x).to_degrees());
+            assert!(inside[i] == 0.0 || in_sector, "{bearing}: point {i} at {x} {y}");
+            assert_eq!(von_mises[i].is_nan(), inside[i] == 0.0);
+        }
+        let n_inside = inside.iter().filter(|&&inside| inside == 1.0).count();
+        assert!(n_inside > n_balls + n / 20, "{bearing}: {n_inside} of {n}");
+        assert!(step(&dir, &folder, 3).points.stress.is_none());
+        assert!(step(&dir, &folder, 4).points.displacement.is_empty());
+        let counted = read_table(&dir.path(&folder).join("reduction.vtkhdf"), None).unwrap();
+        let told = &counted.about["reduction"];
+        assert!(told.contains("over 4 steps, 0 to 6, every 2"), "{told}");
+        let largest = counted
+            .fields
+            .iter()
+            .find(|f| f.name == "von_mises_maximum")
+            .unwrap();
+        let at_start = step(&dir, &folder, 0).points.von_mises.unwrap();
+        let kept = at_start.iter().zip(&largest.values).filter(|(s, _)| !s.is_nan());
+        assert!(kept.clone().count() == n_inside && kept.clone().all(|(start, most)| start <= most));
+    }
+    copy(&dir, "whole", "half");
+    run(&["resume", "half", "--step", "2"]);
+    for bearing in ["front", "rear"] {
+        let steps = (0..=6).map(step_file_name);
+        for name in steps.chain(["reduction.vtkhdf".to_string()]) {
+            let read = |out: &str| std::fs::read(dir.path(&format!("{out}/{bearing}/{name}"))).unwrap();
+            assert!(read("whole") == read("half"), "{bearing}/{name}");
+        }
+    }
+}
+
+/// Wrong: at rest a list would leave out what it is asked for without a word, or name a bearing of which nothing is
+/// kept by no name.
+#[test]
+fn a_list_says_what_it_has_not() {
+    let dir = flexible_pair("[static]");
+    for (set, part) in [
+        (
+            "output.every.stress=2",
+            "[output.every] is for a list of bearings in motion, [dynamic], only",
+        ),
+        (
+            "output.reduction.every=2",
+            "[output.reduction] is for a list of bearings in motion, [dynamic], only",
+        ),
+        (
+            "output.region.z=[\"40 mm\", \"50 mm\"]",
+            "bearing \"front\": [output.region] holds no node: the inner ring has nodes ",
+        ),
+    ] {
+        let outcome = dir.raceway(&["run", "pair.toml", "--out", "bad", "--set", set]);
+        assert_eq!(outcome.code, Some(2), "{set}: {}", outcome.stderr);
+        assert!(outcome.stderr.contains(part), "{set}: {}", outcome.stderr);
+        assert!(!dir.path("bad").exists());
+    }
+}
+
 /// Wrong: a region without a node would write nothing but NaN, silently.
 #[test]
 fn wrong_regions_are_refused() {
@@ -215,6 +344,12 @@ fn wrong_regions_are_refused() {
             "[output.region] says no place; expected raceway_distance, azimuth, x, y, z or rings",
         ),
     ] {
+        let checked = dir.raceway(&["check", "scene.toml", "--set", set]);
+        assert!(
+            checked.code == Some(2) && checked.stderr.contains(part),
+            "{}",
+            checked.stderr
+        );
         let outcome = dir.raceway(&["run", "scene.toml", "--out", "bad", "--set", set]);
         assert_eq!(outcome.code, Some(2), "{set}: {}", outcome.stderr);
         assert!(outcome.stderr.contains(part), "{set}: {}", outcome.stderr);

@@ -94,10 +94,15 @@ fn extremes_and_means_are_those_of_the_step_files() {
             assert_eq!(at("mean"), values().sum::<f64>() / 21.0, "{name} {i}");
         }
     }
+    let costs = dir.text("whole/summary.json");
+    assert!(costs.contains("\"reduction\": "), "the price is told: {costs}");
     let damage = &field(&found, "damage").values;
     let n = damage.iter().filter(|d| !d.is_nan()).count();
     assert!(n > 100 && n < damage.len() / 2, "{n} nodes of the raceways");
     assert!(damage.iter().any(|&d| d > 0.0));
+    let told = dir.raceway(&["info", "whole"]);
+    let expected = "reduction  reduction.vtkhdf: stress at nodes, Pa, in each ring's own frame";
+    assert!(told.stdout.contains(expected), "{}", told.stdout);
     let told = dir.raceway(&["info", "whole/reduction.vtkhdf"]);
     assert_eq!(told.code, Some(0), "{}", told.stderr);
     assert!(
@@ -142,6 +147,21 @@ fn it_needs_no_step_files() {
     dir.run("few", &[&REDUCTION[..], &EXACT[..], &few[..]].concat());
     assert!(bits(&table(&dir, "few")) == bits(&table(&dir, "whole")));
     resumed_from_last_state(&dir);
+}
+
+/// Wrong: a step at the time `from` would not count where its time, in binary numbers, falls short of the one that is
+/// typed. Steps 3 and 6 of 20 us do: 3 x 2e-5 is less than 0.06 x 1e-3.
+#[test]
+fn a_step_at_the_first_time_counts() {
+    let dir = small_motion();
+    for step in [3_u64, 6, 7] {
+        let from = format!("output.reduction.from={:.2} ms", 0.02 * step as f64);
+        let out = format!("from{step}");
+        dir.run(&out, &["--set", &from, "--set", "dynamic.duration=0.2 ms"]);
+        let told = &table(&dir, &out).about["reduction"];
+        let expected = format!("over {} steps, {step} to 10, every 1", 11 - step);
+        assert!(told.contains(&expected), "{told}");
+    }
 }
 
 /// The run `few` without its last file goes on from the state of step 14.

@@ -23,7 +23,7 @@ use results::stop::Stop;
 use results::summary::{Findings, Summary};
 use results::survey::build_surveyed;
 use results::watch::Watch;
-use scene::{Dynamic, Kept, Scene, settings};
+use scene::{Dynamic, KeptFields, Scene, settings};
 use timer::{Laps, Stopwatch};
 
 use crate::ledger_check::check_ledger;
@@ -402,7 +402,7 @@ impl March<'_> {
     }
 
     /// The fields that the file of this step holds.
-    fn kept(&self) -> Kept {
+    fn kept(&self) -> KeptFields {
         let (apart, last) = (self.dynamic.output_every, self.dynamic.n_steps);
         self.scene.output.every.kept(self.state.step, apart, last)
     }

@@ -242,9 +242,5 @@ impl Series<'_> {
 }
 
 fn shown<'a>(model: &'a Model, solution: &'a StaticSolution) -> Shown<'a> {
-    Shown::Equilibrium {
-        model,
-        placed: &model.geometry,
-        solution,
-    }
+    Shown::at_rest(model, &model.geometry, solution)
 }

@@ -110,11 +110,7 @@ pub fn run(
         // The points of a sweep have no time; their number stands for it.
         let step = first + step;
         let (step, time) = (step as u64, step as f64);
-        let shown = Shown::Equilibrium {
-            model: &model,
-            placed: &placed,
-            solution: &solution,
-        };
+        let shown = Shown::at_rest(&model, &placed, &solution);
         // All ranks recover stress; then rank 0 writes, and may fail alone.
         let last = (first + points.len() - 1) as u64;
         let kept = scene.output.every.kept(step, 1, last);

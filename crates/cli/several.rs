@@ -19,7 +19,9 @@ use results::snapshot::Snapshot;
 use results::summary::{Findings, READ, Summary, TOTAL};
 use results::survey::{Survey, say_doubts};
 use results::whole::{make_asked_folder, write_new};
-use scene::{Analysis, BuildError, Kept, Rings, SeveralScene, assembly_with_rings, build_assembly, doubts};
+use scene::{
+    Analysis, BuildError, KeptFields, Rings, SeveralScene, assembly_with_rings, build_assembly, doubts,
+};
 
 use crate::progress::Progress;
 
@@ -179,16 +181,12 @@ impl SeveralFiles {
             let (model, found) = (&assembly.bearings[i].model, &solution.bearings[i]);
             let snapshot = snapshot(found);
             let placed = point.bearings[i].scene.with_shaft_at(found.displacements.shaft)?;
-            let shown = Shown::Equilibrium {
-                model,
-                placed: &model.geometry,
-                solution: found,
-            };
-            let gathered = files.gather_stress(&shown, Kept::ALL);
+            let shown = Shown::at_rest(model, &model.geometry, found);
+            let gathered = files.gather_stress(&shown, KeptFields::ALL);
             files.write_tables(step, time, None, &snapshot)?;
             files.write_fields(|stress| {
                 let at = (step, time);
-                results::fields::record(&shown, found, (stress, gathered), at, (&placed, Kept::ALL))
+                results::fields::record(&shown, found, (stress, gathered), at, (&placed, KeptFields::ALL))
             })?;
             self.last.push(snapshot);
         }

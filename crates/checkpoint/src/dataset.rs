@@ -9,7 +9,7 @@ use std::path::Path;
 use hdf5::types::{FixedAscii, FloatSize, TypeDescriptor, VarLenUnicode};
 use hdf5::{Dataset, File, Group, Location};
 
-use crate::checksum::{CHECKSUM_ATTRIBUTE, Element, checksum};
+use crate::checksum::{CHECKSUM_ATTRIBUTE, Element, below, checksum, write_checksum};
 use crate::error::CheckpointError;
 use crate::record::{Field, IN_REGION, VECTOR};
 use crate::region;
@@ -22,7 +22,7 @@ const CHUNK_BYTES: usize = 1 << 18;
 const ROUNDED_LEVEL: u8 = 1;
 /// Attribute of such an array: the bound, Pa.
 const ERROR_BOUND: &str = "error_bound";
-/// The field that every step has.
+/// A field that has a value at every point.
 const DISPLACEMENT: &str = "/VTKHDF/PointData/displacement";
 /// Rows of a chunk of vectors that are mostly zero: more than most bearings have balls. An index of chunks takes 2.6
 /// kB, so fewer rows are stored as others are.
@@ -190,15 +190,6 @@ pub(crate) fn write_text(file: &Group, path: &str, text: &str) -> hdf5::Result<(
         .write_scalar(&crc)
 }
 
-/// The path as HDF5 wants it relative to a group; absolute paths would leave the group.
-pub(crate) fn below(path: &str) -> &str {
-    match path.strip_prefix('/') {
-        Some("") => ".",
-        Some(rest) => rest,
-        None => path,
-    }
-}
-
 /// A group or a data set.
 fn object(file: &Group, path: &str) -> hdf5::Result<Location> {
     match file.group(below(path)) {
@@ -209,13 +200,6 @@ fn object(file: &Group, path: &str) -> hdf5::Result<Location> {
 
 fn owner_and_name(path: &str) -> (&str, &str) {
     path.rsplit_once('/').expect("texts are named by absolute paths")
-}
-
-pub(crate) fn write_checksum(dataset: &Dataset, value: u32) -> hdf5::Result<()> {
-    dataset
-        .new_attr::<u32>()
-        .create(CHECKSUM_ATTRIBUTE)?
-        .write_scalar(&value)
 }
 
 /// A file open for reading; every value it returns has passed its checksum.

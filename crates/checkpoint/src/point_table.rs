@@ -75,7 +75,12 @@ pub(crate) fn write_table(
         if let Some(run) = origin.run {
             write_text(file, RUN, run)?;
         }
-        for (name, text) in origin.about.iter().chain(&table.about) {
+        // What the fields say of themselves goes before what the run says of its steps.
+        let of_run = origin
+            .about
+            .iter()
+            .filter(|(name, _)| !table.about.contains_key(*name));
+        for (name, text) in of_run.chain(&table.about) {
             write_text(file, &format!("{ABOUT}/{name}"), text)?;
         }
         Ok(contents)

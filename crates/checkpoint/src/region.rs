@@ -1,14 +1,12 @@
 //! Fields that are known in a region alone: NaN outside, and there without a place in the file.
 //!
 //! A data set has chunks of [`ROWS`] rows, shuffled and deflated. A chunk without a row of the region is not allocated:
-//! readers find the fill value, NaN. In the other chunks rows outside are NaN as well, of
-//! which deflate leaves little, so
-//! that the size follows the region in any order of the nodes. Plain HDF5 reads it.
+//! readers find the fill value, NaN. In the other chunks rows outside are NaN as well, of which deflate leaves little,
+//! so that the size follows the region in any order of the nodes. Plain HDF5 reads it.
 
 use hdf5::{Dataset, Group, H5Type};
 
-use crate::checksum::{Element, checksum};
-use crate::dataset::{below, write_checksum};
+use crate::checksum::{Element, below, checksum, write_checksum};
 use crate::storage::{Compression, Precision};
 
 /// Rows of a chunk: few enough that a region leaves chunks out, enough for the filters.

@@ -41,6 +41,7 @@ pub fn figures(results: &Results, step: Option<u64>) -> anyhow::Result<Vec<(Stri
                         raceways::at_azimuth(&row, azimuth) * MEGAPASCAL.factor,
                     ]
                 })
+                .filter(|[_, stress]| !stress.is_nan())
                 .collect();
             if points.len() < 2 {
                 continue;

@@ -9,7 +9,7 @@ use dynamics::balls::BallResult;
 use dynamics::{Model, StaticSolution};
 use fem::stress::von_mises;
 use mesh::Mesh;
-use scene::{Kept, RingFrame, Scene};
+use scene::{KeptFields, RingFrame, Scene};
 
 use super::on_ball::force_on_ball;
 use super::ring_stress::{Basis, Gathered, RingStress, ShownRing, StressFields};
@@ -66,7 +66,7 @@ pub fn record(
     solution: &StaticSolution,
     (stress, gathered): (&RingStress, Gathered),
     (step, time): (u64, f64),
-    (scene, kept): (&Scene, Kept),
+    (scene, kept): (&Scene, KeptFields),
 ) -> Result<StepRecord, Failure> {
     let (points, cells) = Places::new(shown, gathered, scene, kept)?.fields(stress);
     Ok(StepRecord {
@@ -81,7 +81,7 @@ pub fn record(
 }
 
 /// A step file with forces on balls alone.
-const NOTHING: Kept = Kept {
+const NOTHING: KeptFields = KeptFields {
     stress: false,
     displacement: false,
 };
@@ -105,7 +105,7 @@ impl Places {
         shown: &Shown<'_>,
         mut gathered: Gathered,
         scene: &Scene,
-        kept: Kept,
+        kept: KeptFields,
     ) -> Result<Places, Failure> {
         let (mut displacement, mut rings, mut n_points) = (Vec::new(), [None, None], 0);
         for side in Side::BOTH {

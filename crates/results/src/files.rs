@@ -13,7 +13,7 @@ use checkpoint::{
 };
 use comm::{Communicator, print};
 use dynamics::Model;
-use scene::{Analysis, Kept, Scene};
+use scene::{Analysis, KeptFields, Scene};
 use timer::{Laps, Stopwatch};
 
 use super::about::{about, identity};
@@ -25,7 +25,7 @@ use super::log;
 use super::memory::Forecasts;
 use super::motion_fields::RestartState;
 use super::probes::Probes;
-use super::reduction::{REDUCTION_FILE, Reduction};
+use super::reduction::{REDUCTION_FILE, ReducedStress, StressReduction};
 use super::region::Region;
 use super::ring_stress::{Gathered, RingStress};
 use super::shown::Shown;
@@ -47,6 +47,8 @@ pub struct Files {
     open: Option<Open>,
     /// Stress of the rings, shared with the thread that writes.
     ring_stress: Arc<RingStress>,
+    /// That of which extremes are found, if the scene asks for them.
+    reduced: Option<ReducedStress>,
     /// Laps of this thread since the files were opened.
     laps: Laps,
 }
@@ -69,7 +71,7 @@ struct Open {
     tables: Tables,
     probes: Option<Probes>,
     region: Option<Arc<Region>>,
-    reduction: Option<Reduction>,
+    reduction: Option<StressReduction>,
 }
 
 impl Files {
@@ -100,8 +102,9 @@ impl Files {
         warnings: &[String],
     ) -> Result<Files, Failure> {
         let ring_stress = Arc::new(RingStress::new(model, scene)?);
+        let reduced = ReducedStress::new(scene, model, &ring_stress)?;
         if !Communicator::world().is_root() {
-            return Ok(Files::new(None, ring_stress));
+            return Ok(Files::new(None, ring_stress, reduced));
         }
         let mut clock = Stopwatch::start();
         let Survey {
@@ -121,10 +124,12 @@ impl Files {
         )?;
         let open = Open {
             region: region.map(Arc::new),
-            reduction: Reduction::new(scene, model, &ring_stress)?,
+            reduction: reduced
+                .as_ref()
+                .map(|reduced| StressReduction::new(scene, model, reduced)),
             ..Open::new(output, tables, probes)?
         };
-        let mut files = Files::new(Some(open), ring_stress);
+        let mut files = Files::new(Some(open), ring_stress, reduced);
         files.laps.add(OUTPUT, clock.lap());
         Ok(files)
     }
@@ -139,8 +144,9 @@ impl Files {
         resumed: &ResumedFrom<'_>,
     ) -> Result<Files, Failure> {
         let ring_stress = Arc::new(RingStress::new(model, scene)?);
+        let reduced = ReducedStress::new(scene, model, &ring_stress)?;
         let Some(lock) = lock else {
-            return Ok(Files::new(None, ring_stress));
+            return Ok(Files::new(None, ring_stress, reduced));
         };
         let mut clock = Stopwatch::start();
         let dir = lock.dir().to_path_buf();
@@ -150,7 +156,9 @@ impl Files {
         let Survey {
             probes, mesh, region, ..
         } = survey;
-        let mut reduction = Reduction::new(scene, model, &ring_stress)?;
+        let mut reduction = reduced
+            .as_ref()
+            .map(|reduced| StressReduction::new(scene, model, reduced));
         if let Some(reduction) = &mut reduction {
             reduction.load(resumed.reduction, last)?;
         }
@@ -182,27 +190,33 @@ impl Files {
             ));
         }
         warn_of_damage(&damaged);
-        // What it says is not true any more until the run ends again.
-        match std::fs::remove_file(dir.join(SUMMARY_FILE)) {
-            Err(error) if error.kind() != std::io::ErrorKind::NotFound => {
-                return Err(anyhow!("cannot remove the old {SUMMARY_FILE}: {error}").into());
+        // What they say is not true any more until the run ends again, or gets to its next state.
+        for name in [SUMMARY_FILE, REDUCTION_FILE] {
+            match std::fs::remove_file(dir.join(name)) {
+                Err(error) if error.kind() != std::io::ErrorKind::NotFound => {
+                    return Err(anyhow!("cannot remove the old {name}: {error}").into());
+                }
+                _ => {}
             }
-            _ => {}
+        }
+        if let Some(table) = reduction.as_ref().and_then(StressReduction::table) {
+            output.write_table(REDUCTION_FILE, &table)?;
         }
         let open = Open {
             region: region.map(Arc::new),
             reduction,
             ..Open::new(output, tables, probes)?
         };
-        let mut files = Files::new(Some(open), ring_stress);
+        let mut files = Files::new(Some(open), ring_stress, reduced);
         files.laps.add(OUTPUT, clock.lap());
         Ok(files)
     }
 
-    fn new(open: Option<Open>, ring_stress: Arc<RingStress>) -> Files {
+    fn new(open: Option<Open>, ring_stress: Arc<RingStress>, reduced: Option<ReducedStress>) -> Files {
         Files {
             open,
             ring_stress,
+            reduced,
             laps: Laps::default(),
         }
     }
@@ -214,7 +228,7 @@ impl Files {
 
     /// Stress of an instant of the rings that several ranks share, for its fields. Collective, and never a failure of
     /// one rank: to be called before anything of the instant is written.
-    pub fn gather_stress(&mut self, shown: &Shown<'_>, kept: Kept) -> Gathered {
+    pub fn gather_stress(&mut self, shown: &Shown<'_>, kept: KeptFields) -> Gathered {
         let (gathered, laps) = self.ring_stress.gather(shown, kept);
         self.laps.merge(&laps);
         gathered
@@ -286,9 +300,8 @@ impl Files {
         Ok(())
     }
 
-    /// As [`Files::write_fields`] for a record that needs nothing but itself: the thread that
-    /// writes makes it. A step with
-    /// a state has what is known of the whole run besides, which is also written as a file.
+    /// As [`Files::write_fields`] for a record that needs nothing but itself: the thread that writes makes it. A step
+    /// with a state has what is known of the whole run besides, which is also written as a file.
     pub fn write_fields_later(
         &mut self,
         restart: RestartState,
@@ -303,8 +316,8 @@ impl Files {
             .as_ref()
             .filter(|_| restart == RestartState::Stored);
         let (arrays, table) = (
-            reduction.map(Reduction::arrays),
-            reduction.and_then(Reduction::table),
+            reduction.map(StressReduction::arrays),
+            reduction.and_then(StressReduction::table),
         );
         let make = move || {
             let mut record = StepRecord {
@@ -326,12 +339,16 @@ impl Files {
     }
 
     /// Takes a step into account in what is found of the whole run, if the scene asks for that and the step counts.
+    /// Collective; rank 0 alone may fail.
     pub fn reduce(&mut self, step: u64, time: f64, shown: &Shown<'_>, scene: &Scene) -> Result<(), Failure> {
+        let Some(reduced) = self.reduced.as_ref().filter(|reduced| reduced.counts(step, time)) else {
+            return Ok(());
+        };
+        let (gathered, laps) = reduced.gather(shown);
+        self.laps.merge(&laps);
         let reduction = self.open.as_mut().and_then(|open| open.reduction.as_mut());
-        match reduction.filter(|reduction| reduction.counts(step, time)) {
-            Some(reduction) => self.laps.time(REDUCTION, || reduction.add(step, shown, scene)),
-            None => Ok(()),
-        }
+        let add = |reduction: &mut StressReduction| reduction.add(step, shown, gathered, scene);
+        reduction.map_or(Ok(()), |reduction| self.laps.time(REDUCTION, || add(reduction)))
     }
 
     /// Time spent waiting for the disk so far.

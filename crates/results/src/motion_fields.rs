@@ -3,7 +3,7 @@
 use checkpoint::StepRecord;
 use dynamics::Model;
 use dynamics::motion::{Motion, MotionState};
-use scene::{Dynamic, Kept, Output, Scene};
+use scene::{Dynamic, KeptFields, Output, Scene};
 
 use super::fields::Places;
 use super::ring_stress::{Gathered, RingStress};
@@ -50,7 +50,7 @@ impl Recorded {
         motion: &Motion<'_>,
         state: &MotionState,
         gathered: Gathered,
-        (scene, kept): (&Scene, Kept),
+        (scene, kept): (&Scene, KeptFields),
         restart: RestartState,
     ) -> Result<Recorded, Failure> {
         let shown = Shown::Motion { model, motion, state };

@@ -17,58 +17,67 @@ use std::sync::Arc;
 
 use anyhow::{anyhow, ensure};
 use checkpoint::{PointTable, StateArray, TableField};
-use comm::{Communicator, print};
+use comm::print;
 use contact::Side;
 use dynamics::{Model, RACEWAY_GROUP};
 use fem::stress::von_mises;
 use rayon::prelude::*;
-use scene::{DamageNodes, DamageStress, Scene, StressOutput};
+use scene::{DamageNodes, DamageStress, KeptFields, Scene, StressOutput};
+use timer::Laps;
 
 use self::extremes::Extremes;
-use self::histories::Histories;
+use self::histories::NodeHistories;
+use super::about::STRESS;
 use super::fields::{body_displacement, body_of, shown_ring};
-use super::ring_stress::RingStress;
+use super::ring_stress::{Gathered, RingStress};
 use super::shown::{Shown, Turn};
 use super::state_arrays::Arrays;
 use crate::failure::Failure;
 
 /// Name of the file in the result folder.
 pub const REDUCTION_FILE: &str = "reduction.vtkhdf";
+/// Text in it on what was counted.
+pub const REDUCTION: &str = "reduction";
 /// Beginning of the names of its arrays in a restart state.
 const PREFIX: &str = "reduction_";
 const STEPS: &str = "reduction_steps";
 const SETTINGS: &str = "reduction_settings";
+/// What ranks gather for it.
+const STRESS_ALONE: KeptFields = KeptFields {
+    stress: true,
+    displacement: false,
+};
+/// Share by which the time of a step, its number times its length, may fall short of the same time as it is typed.
+const ROUND_OFF: f64 = 1e-12;
 /// Nodes that a thread takes at least.
 const NODES_AT_ONCE: usize = 512;
 
 /// What is known of the steps so far.
-pub struct Reduction {
-    asked: scene::Reduction,
+pub struct StressReduction {
+    asked: scene::OutputReduction,
     stress: Arc<RingStress>,
     /// Steps that have counted: how many, the first, the last.
     steps: [u64; 3],
     /// By point of all bodies, as in step files; balls have no stress.
     extremes: Vec<Extremes>,
     /// Cycles, if damage is asked for.
-    histories: Option<Histories>,
+    histories: Option<NodeHistories>,
     has_near_field: bool,
 }
 
-/// Fails if a scene asks for it on several ranks: to be said before anything is computed.
-pub fn require_one_rank(scene: &Scene) -> Result<(), Failure> {
-    let ranks = Communicator::world().size();
-    match scene.output.reduction {
-        Some(_) if ranks > 1 => Err(Failure::User(anyhow!(
-            "[output.reduction] is not known to runs on several ranks, and there are {ranks}; run it on one with more \
-             threads, or remove it"
-        ))),
-        _ => Ok(()),
-    }
+/// The stress of which a run finds extremes, on every rank.
+pub struct ReducedStress {
+    asked: scene::OutputReduction,
+    stress: Arc<RingStress>,
 }
 
-impl Reduction {
-    /// Nothing yet; None if the scene does not ask for it. `stress` is that of step files.
-    pub fn new(scene: &Scene, model: &Model, stress: &Arc<RingStress>) -> Result<Option<Reduction>, Failure> {
+impl ReducedStress {
+    /// What the scene asks for, if it does; `stress` is that of step files. Collective.
+    pub fn new(
+        scene: &Scene,
+        model: &Model,
+        stress: &Arc<RingStress>,
+    ) -> Result<Option<ReducedStress>, Failure> {
         let Some(asked) = scene.output.reduction else {
             return Ok(None);
         };
@@ -76,6 +85,24 @@ impl Reduction {
             StressOutput::Nodal => stress.clone(),
             _ => Arc::new(RingStress::of_kind(StressOutput::Nodal, model, scene)?),
         };
+        Ok(Some(ReducedStress { asked, stress }))
+    }
+
+    /// Whether a step counts.
+    pub fn counts(&self, step: u64, time: f64) -> bool {
+        step.is_multiple_of(self.asked.every) && time >= self.asked.from * (1.0 - ROUND_OFF)
+    }
+
+    /// The stress of rings that ranks share, on rank 0, and laps. Collective.
+    pub fn gather(&self, shown: &Shown<'_>) -> (Gathered, Laps) {
+        self.stress.gather(shown, STRESS_ALONE)
+    }
+}
+
+impl StressReduction {
+    /// Nothing yet.
+    pub fn new(scene: &Scene, model: &Model, reduced: &ReducedStress) -> StressReduction {
+        let asked = reduced.asked;
         let (mut n_nodes, mut counted) = (0, Vec::new());
         for side in Side::BOTH {
             let Some(ring) = model.ring(side) else { continue };
@@ -91,30 +118,32 @@ impl Reduction {
         }
         let n_points =
             n_nodes + model.geometry.n_balls + body_of(model).map_or(0, |(_, mesh, _)| mesh.n_nodes());
-        Ok(Some(Reduction {
+        StressReduction {
             asked,
-            stress,
+            stress: reduced.stress.clone(),
             steps: [0; 3],
             extremes: vec![Extremes::NONE; n_points],
-            histories: asked.damage.map(|damage| Histories::new(damage, counted)),
+            histories: asked.damage.map(|damage| NodeHistories::new(damage, counted)),
             has_near_field: scene.stress.near_field_reach.is_some(),
-        }))
+        }
     }
 
-    /// Whether a step counts.
-    pub fn counts(&self, step: u64, time: f64) -> bool {
-        step.is_multiple_of(self.asked.every) && time >= self.asked.from
-    }
-
-    /// Takes a step into account.
-    pub fn add(&mut self, step: u64, shown: &Shown<'_>, scene: &Scene) -> Result<(), Failure> {
+    /// Takes a step into account, with the stress that ranks have `gathered`.
+    pub fn add(
+        &mut self,
+        step: u64,
+        shown: &Shown<'_>,
+        mut gathered: Gathered,
+        scene: &Scene,
+    ) -> Result<(), Failure> {
         let mut rings = [None, None];
         for side in Side::BOTH {
             let Some(mut ring) = shown.ring(side) else {
                 continue;
             };
             ring.turn = Turn::new(0.0);
-            rings[side.index()] = Some(shown_ring(shown, side, ring, None, scene)?);
+            let stress = gathered.stress[side.index()].take();
+            rings[side.index()] = Some(shown_ring(shown, side, ring, stress, scene)?);
         }
         let body = body_displacement(shown)?;
         let stress = self.stress.fields(&rings, body.as_deref()).nodal;
@@ -233,7 +262,10 @@ impl Reduction {
         );
         Some(PointTable {
             fields,
-            about: BTreeMap::from([("reduction".to_string(), text)]),
+            about: BTreeMap::from([
+                (REDUCTION.to_string(), text),
+                (STRESS.to_string(), format!("not rounded; see {REDUCTION}")),
+            ]),
         })
     }
 }

@@ -9,7 +9,7 @@ use checkpoint::StepRecord;
 use contact::{Groove, Side};
 use dynamics::{Model, RingModel};
 use mesh::Mesh;
-use scene::{Kept, OutputRegion, Scene};
+use scene::{KeptFields, OutputRegion, Scene};
 
 use super::fields::body_of;
 use crate::failure::Failure;
@@ -18,7 +18,7 @@ use crate::failure::Failure;
 #[derive(Clone, Debug)]
 pub struct Region {
     /// The fields that are kept there only.
-    fields: Kept,
+    fields: KeptFields,
     /// 1 inside, 0 outside, `[n_points]`.
     points: Vec<f64>,
     /// The same of cells, `[n_cells]`.
@@ -107,7 +107,7 @@ impl Region {
     }
 
     /// The fields that are kept in it only.
-    pub fn fields(&self) -> Kept {
+    pub fn fields(&self) -> KeptFields {
         self.fields
     }
 }
@@ -128,8 +128,8 @@ fn leave(inside: &[f64], values: &mut [f64]) {
         .for_each(|(row, _)| row.fill(f64::NAN));
 }
 
-/// Whether each node of a mesh is inside; `shift` moves it to where it stands, m, and `is_asked` tells of a place in the
-/// mesh what the region asks besides azimuth and coordinates.
+/// Whether each node of a mesh is inside; `shift` moves it to where it stands, m, and `is_asked` tells of a place in
+/// the mesh what the region asks besides azimuth and coordinates.
 fn nodes_inside(
     asked: &OutputRegion,
     mesh: &Mesh,

@@ -10,7 +10,7 @@ use fem::StressRecovery;
 use fem::quadrature::stiffness_rule;
 use fem::stress::von_mises;
 use mesh::NodePositions;
-use scene::{Kept, Scene, StressOutput};
+use scene::{KeptFields, Scene, StressOutput};
 use timer::Laps;
 
 use super::seat::tied;
@@ -117,7 +117,7 @@ impl RingStress {
 
     /// Stress of the rings that several ranks share, and what else their fields take, on rank 0;
     /// laps of the sectors of this rank, and of putting all together. Collective.
-    pub fn gather(&self, shown: &Shown<'_>, kept: Kept) -> (Gathered, Laps) {
+    pub fn gather(&self, shown: &Shown<'_>, kept: KeptFields) -> (Gathered, Laps) {
         let (mut gathered, mut laps) = (Gathered::default(), Laps::default());
         let model = shown.model();
         if !matches!(model.backend, Backend::Sector(sectors) if sectors.comm.size() > 1) {
@@ -171,8 +171,8 @@ impl RingStress {
         stress
     }
 
-    /// Stress of one instant, from the fields of the flexible rings, and after all others that of a body round the outer
-    /// ring, displaced by `body` (m, flat).
+    /// Stress of one instant, from the fields of the flexible rings, and after all others that of a body round the
+    /// outer ring, displaced by `body` (m, flat).
     pub fn fields(&self, rings: &[Option<ShownRing>; 2], body: Option<&[f64]>) -> StressFields {
         let known: Vec<(&Recovery, &ShownRing)> = self
             .rings

@@ -48,7 +48,7 @@ const ALWAYS: [&str; 11] = [
     READ, ASSEMBLE, FACTOR, COLUMNS, CONTACT, SOLVE, STRESS, OUTPUT, DISK, DISK_WAIT, TOTAL,
 ];
 /// Laps that it has where they were run.
-const SOMETIMES: [&str; 2] = [NEAR_FIELD, GATHER];
+const SOMETIMES: [&str; 3] = [NEAR_FIELD, REDUCTION, GATHER];
 /// Name of the file in the result folder.
 pub const SUMMARY_FILE: &str = "summary.json";
 

@@ -19,7 +19,6 @@ use crate::failure::{Failure, agree};
 use crate::fields;
 use crate::memory::require_memory;
 use crate::probes::Probes;
-use crate::reduction::require_one_rank;
 use crate::region::Region;
 
 /// What only whole meshes tell of a run.
@@ -55,7 +54,6 @@ pub fn build_surveyed(
 ) -> Result<(Model, Survey), Failure> {
     let comm = Communicator::world();
     agree(require_same_scene(scene, comm))?;
-    require_one_rank(scene)?;
     if comm.size() > 1 && point.solver.backend == scene::Backend::Sector {
         return build_shared(point, scene, dir, test);
     }

@@ -2,7 +2,7 @@
 
 use checkpoint::StateArray;
 use rayon::prelude::*;
-use scene::Damage;
+use scene::CycleDamage;
 
 use crate::rainflow::{Cycle, OpenHistory};
 use crate::state_arrays::Arrays;
@@ -15,28 +15,28 @@ const CYCLES: &str = "reduction_cycles";
 const NODES_AT_ONCE: usize = 256;
 
 /// Nodes whose cycles are counted.
-pub struct Histories {
-    asked: Damage,
+pub struct NodeHistories {
+    asked: CycleDamage,
     /// Their numbers among those of both rings, growing.
     nodes: Vec<usize>,
-    counts: Vec<Count>,
+    counts: Vec<NodeCount>,
 }
 
 /// What is known of a node.
 #[derive(Clone, Debug, Default)]
-struct Count {
+struct NodeCount {
     open: OpenHistory,
     /// Damage and number of the cycles that are closed.
     damage: f64,
     cycles: f64,
 }
 
-impl Histories {
+impl NodeHistories {
     /// Nothing yet.
-    pub fn new(asked: Damage, nodes: Vec<usize>) -> Histories {
-        Histories {
+    pub fn new(asked: CycleDamage, nodes: Vec<usize>) -> NodeHistories {
+        NodeHistories {
             asked,
-            counts: vec![Count::default(); nodes.len()],
+            counts: vec![NodeCount::default(); nodes.len()],
             nodes,
         }
     }
@@ -97,7 +97,7 @@ impl Histories {
         for (i, count) in self.counts.iter_mut().enumerate() {
             let (points, others) = rest.split_at_checked(usize::try_from(lengths[i]).ok()?)?;
             rest = others;
-            *count = Count {
+            *count = NodeCount {
                 open: OpenHistory {
                     points: points.to_vec(),
                 },
@@ -110,7 +110,7 @@ impl Histories {
 }
 
 /// Share of the life that a cycle takes: its count over N = N_ref (S / S_ref)^-k, S half its range.
-fn damage_of(cycle: Cycle, asked: Damage) -> f64 {
+fn damage_of(cycle: Cycle, asked: CycleDamage) -> f64 {
     let amplitude = 0.5 * cycle.range / asked.reference_amplitude;
     cycle.count * amplitude.powf(asked.exponent) / asked.reference_cycles
 }
@@ -125,7 +125,7 @@ mod tests {
     /// cycles of the reference amplitude and ten cycles of half of it, with k = 3 and N_ref = 1000: (10 + 10/8) / 1000.
     #[test]
     fn damage_is_the_sum_over_the_cycles_by_the_line() {
-        let asked = Damage {
+        let asked = CycleDamage {
             stress: DamageStress::SignedVonMises,
             exponent: 3.0,
             reference_amplitude: 100.0,
@@ -136,15 +136,15 @@ mod tests {
         let mut values: Vec<f64> = (0..20).map(|i| if i % 2 == 0 { 100.0 } else { -100.0 }).collect();
         values.extend((0..20).map(|i| if i % 2 == 0 { 50.0 } else { -50.0 }));
         values.push(100.0);
-        let mut whole = Histories::new(asked, vec![1]);
-        let mut cut = Histories::new(asked, vec![1]);
+        let mut whole = NodeHistories::new(asked, vec![1]);
+        let mut cut = NodeHistories::new(asked, vec![1]);
         for (i, &value) in values.iter().enumerate() {
             whole.add(&[0.0, value]);
             cut.add(&[0.0, value]);
             if i % 7 == 0 {
                 let mut arrays = Arrays::new();
                 cut.store(&mut arrays);
-                cut = Histories::new(asked, vec![1]);
+                cut = NodeHistories::new(asked, vec![1]);
                 cut.load(&arrays).unwrap();
             }
         }

@@ -3,6 +3,7 @@
 //! ```
 //! `[output]`: what is written, and how exactly.
 
+mod context;
 mod every;
 mod reduction;
 mod region;
@@ -10,10 +11,12 @@ mod region;
 use input::{Problems, Quantity, STRESS};
 use serde::Deserialize;
 
-pub use self::every::{Every, Kept};
-pub use self::reduction::{Damage, DamageNodes, DamageStress, Reduction};
+pub use self::context::OutputContext;
+pub use self::every::{Every, KeptFields};
+pub use self::reduction::{CycleDamage, DamageNodes, DamageStress, OutputReduction};
 pub use self::region::OutputRegion;
 
+use self::context::MAX_EVERY;
 use self::every::RawEvery;
 use self::reduction::RawReduction;
 use self::region::RawRegion;
@@ -92,7 +95,7 @@ pub struct Output {
     /// Where fields are kept; None keeps them everywhere.
     pub region: Option<OutputRegion>,
     /// What is found of stress while the run goes on.
-    pub reduction: Option<Reduction>,
+    pub reduction: Option<OutputReduction>,
 }
 
 /// Least error of stress, Pa, by precision: with f32, stress up to 17 GPa is rounded by this alone.
@@ -104,26 +107,6 @@ const LEAST_ERROR: [(Precision, f64, &str); 2] = [
     ),
     (Precision::F64, 1.0, "expected at least 1 Pa"),
 ];
-
-/// What a scene computes, as far as output depends on it.
-#[derive(Clone, Copy, Debug)]
-pub struct OutputContext {
-    /// Whether it has steps in time.
-    pub has_steps: bool,
-    /// Whether it is a motion, whose step files hold a state to go on from.
-    pub is_motion: bool,
-    /// Whether it is a sweep.
-    pub is_sweep: bool,
-    /// Whether it is one equilibrium.
-    pub is_static: bool,
-    /// Flexible rings, inner first.
-    pub flexible: [bool; 2],
-    /// Whether it writes stress; to be left to [`RawOutput::check`].
-    pub has_stress: bool,
-}
-
-/// No run has more steps.
-const MAX_EVERY: i64 = 100_000_000;
 
 impl RawOutput {
     /// Checks ranges and fills in defaults.

@@ -3,7 +3,7 @@
 use input::Problems;
 use serde::Deserialize;
 
-use super::{MAX_EVERY, OutputContext};
+use super::context::{MAX_EVERY, OutputContext};
 
 /// As typed.
 #[derive(Debug, Default, Deserialize)]
@@ -24,16 +24,16 @@ pub struct Every {
 
 /// The fields of a step file that the scene may leave out.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Kept {
+pub struct KeptFields {
     /// Whether it holds stress, if the scene asks for any.
     pub stress: bool,
     /// Whether it holds displacement.
     pub displacement: bool,
 }
 
-impl Kept {
+impl KeptFields {
     /// All fields.
-    pub const ALL: Kept = Kept {
+    pub const ALL: KeptFields = KeptFields {
         stress: true,
         displacement: true,
     };
@@ -51,10 +51,10 @@ impl Default for Every {
 impl Every {
     /// What the file of a step holds: every n-th, counted from step 0, and that of the `last` step all. Files are
     /// `apart` steps from each other; one between them, of a run that was told to stop, leaves out what may be left.
-    pub fn kept(self, step: u64, apart: u64, last: u64) -> Kept {
+    pub fn kept(self, step: u64, apart: u64, last: u64) -> KeptFields {
         let is_due =
             |every: u64| step == last || every == 1 || step.is_multiple_of(apart.saturating_mul(every));
-        Kept {
+        KeptFields {
             stress: is_due(self.stress),
             displacement: is_due(self.displacement),
         }

@@ -3,14 +3,14 @@
 //! ```
 //! `[output.reduction]`: extremes, means and damage of stress over a run, found while it goes on.
 //!
-//! Damage is the sum of n / N over the rain-flow cycles of a stress, with N = N_ref (S / S_ref)^-k of the amplitude S
-//! (Miner 1945, Basquin 1910); means of cycles do not count. The three numbers are of a material, so that none has a
-//! default.
+//! Damage is the sum of n / N over the rain-flow cycles of a stress (ASTM E1049-85), with N = N_ref (S / S_ref)^-k of
+//! the amplitude S (M. A. Miner, Cumulative damage in fatigue, J. Appl. Mech. 12 (1945) A159; O. H. Basquin, Proc. ASTM
+//! 10 (1910) 625); means of cycles do not count. The three numbers are of a material, so that none has a default.
 
 use input::{Problems, Quantity, STRESS, TIME};
 use serde::Deserialize;
 
-use super::{MAX_EVERY, OutputContext};
+use super::context::{MAX_EVERY, OutputContext};
 
 /// As typed.
 #[derive(Debug, Default, Deserialize)]
@@ -55,18 +55,18 @@ pub enum DamageNodes {
 
 /// What is found of the stress of a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Reduction {
+pub struct OutputReduction {
     /// Time of the first step that may count, s.
     pub from: f64,
     /// Steps from one that counts to the next, at least 1.
     pub every: u64,
     /// Damage, if it is asked for.
-    pub damage: Option<Damage>,
+    pub damage: Option<CycleDamage>,
 }
 
 /// Cycles and their damage.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Damage {
+pub struct CycleDamage {
     /// The stress that is counted.
     pub stress: DamageStress,
     /// Exponent k of the S-N line.
@@ -83,7 +83,7 @@ pub struct Damage {
 
 impl RawReduction {
     /// Checks ranges and fills in defaults.
-    pub fn check(&self, context: OutputContext, problems: &mut Problems) -> Reduction {
+    pub fn check(&self, context: OutputContext, problems: &mut Problems) -> OutputReduction {
         if !context.has_steps && !context.is_sweep {
             problems.add(
                 "[output.reduction] does nothing without a series of steps, [dynamic], [quasi_static] or [sweep]; \
@@ -105,7 +105,7 @@ impl RawReduction {
             );
         }
         let every = problems.whole(self.every.unwrap_or(1), "output.reduction.every", 1, MAX_EVERY);
-        Reduction {
+        OutputReduction {
             from: self.from.as_ref().map_or(0.0, Quantity::si),
             every: every as u64,
             damage: self.damage.as_ref().map(|damage| damage.check(problems)),
@@ -114,7 +114,7 @@ impl RawReduction {
 }
 
 impl RawDamage {
-    fn check(&self, problems: &mut Problems) -> Damage {
+    fn check(&self, problems: &mut Problems) -> CycleDamage {
         const KEY: &str = "output.reduction.damage";
         problems.require(
             (1.0..=50.0).contains(&self.exponent),
@@ -134,7 +134,7 @@ impl RawDamage {
             let key = format!("{KEY}.least_range");
             problems.require(least.si() >= 0.0, &key, least, "expected 0 or more");
         }
-        Damage {
+        CycleDamage {
             stress: self.stress,
             exponent: self.exponent,
             reference_amplitude: amplitude.si(),

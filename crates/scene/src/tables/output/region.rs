@@ -7,7 +7,8 @@ use std::f64::consts::TAU;
 use input::{ANGLE, LENGTH, Problems, Quantity};
 use serde::Deserialize;
 
-use super::{Kept, OutputContext};
+use super::context::OutputContext;
+use super::every::KeptFields;
 use crate::tables::ring::RingName;
 
 /// As typed.
@@ -37,7 +38,7 @@ pub enum RegionField {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct OutputRegion {
     /// The fields that are kept in the region only; others are whole.
-    pub fields: Kept,
+    pub fields: KeptFields,
     /// Rings, inner first, of which anything is kept.
     pub rings: [bool; 2],
     /// Largest distance from the groove of the ring, m.
@@ -103,7 +104,7 @@ impl RawRegion {
         region
     }
 
-    fn check_fields(&self, context: OutputContext, problems: &mut Problems) -> Kept {
+    fn check_fields(&self, context: OutputContext, problems: &mut Problems) -> KeptFields {
         let fields = self.fields.clone().unwrap_or(vec![RegionField::Stress]);
         if fields.is_empty() {
             problems.add("output.region.fields is empty; expected \"stress\", \"displacement\" or both");
@@ -114,7 +115,7 @@ impl RawRegion {
                  fields = [\"displacement\"]",
             );
         }
-        Kept {
+        KeptFields {
             stress: fields.contains(&RegionField::Stress),
             displacement: fields.contains(&RegionField::Displacement),
         }
