@@ -86,6 +86,25 @@ def test_small_files_are_read_by_h5py_alone(runs):
             assert len(exact["restart/state"]) > 0
 
 
+def test_extremes_of_a_run_are_those_of_its_steps(runs):
+    whole, reduced = runs.motion(), runs.reduced_motion()
+    stress = np.stack([step["von_mises"] for step in whole])
+    found = reduced.reduction
+    # Both are rounded to single precision, in frames that differ by the turn of the ring.
+    assert np.allclose(found["von_mises_maximum"], stress.max(axis=0), rtol=1e-6, atol=1.0)
+    assert np.allclose(found["von_mises_minimum"], stress.min(axis=0), rtol=1e-6, atol=1.0)
+    assert found["stress_range"].shape == (reduced.mesh.points.shape[0], 6)
+    step = reduced.step(10)
+    inside = step["in_region"] == 1.0
+    assert 0 < inside.sum() < inside.size
+    assert np.array_equal(step["von_mises"][inside], whole.step(10)["von_mises"][inside])
+    assert np.isnan(step["von_mises"][~inside]).all()
+    with pytest.raises(KeyError, match='step 5 has no field "von_mises" over points; fields are displacement'):
+        reduced.step(5)["von_mises"]
+    with pytest.raises(raceway.ResultsError, match=r"has no reduction.vtkhdf; a scene with \[output.reduction\] gives it"):
+        _ = whole.reduction
+
+
 def test_a_sweep_has_its_values(runs):
     results = runs.sweep()
     assert results.steps == [0, 1, 2]

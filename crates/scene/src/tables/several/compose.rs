@@ -40,8 +40,6 @@ const OF_LIST: [&str; 15] = [
     "heat",
     "lubricant",
 ];
-/// Tables of `[output]` that need a series of steps.
-const OF_SERIES: [&str; 2] = ["every", "reduction"];
 /// Tables that a type file may have.
 const OF_TYPE: [&str; 5] = ["bearing", "materials", "contact", "inner", "outer"];
 
@@ -251,9 +249,7 @@ impl Composer<'_> {
             match list.get("dynamic") {
                 Some(dynamic) => document.insert("dynamic", dynamic.clone()),
                 None => {
-                    OF_SERIES
-                        .iter()
-                        .for_each(|name| drop(remove_output(document, name)));
+                    edit::remove_series(document);
                     document.insert("static", Item::Table(Table::new()))
                 }
             };
@@ -342,7 +338,11 @@ fn check_list(raw: &RawSeveral, problems: &mut Problems) {
 fn check_output(raw: &RawSeveral, list: &DocumentMut, problems: &mut Problems) {
     let output = list.get("output").and_then(Item::as_table_like);
     let given = |name: &&&str| output.is_some_and(|output| output.contains_key(name));
-    for name in OF_SERIES.iter().filter(given).filter(|_| raw.dynamic.is_none()) {
+    for name in edit::OF_SERIES
+        .iter()
+        .filter(given)
+        .filter(|_| raw.dynamic.is_none())
+    {
         problems.add(format!(
             "[output.{name}] is for a list of bearings in motion, [dynamic], only: at rest every bearing has its own \
              [static] files; remove it"
@@ -394,11 +394,6 @@ fn copy_shared(list: &DocumentMut, document: &mut DocumentMut, left_out: &[&str]
         }
         document.insert(name, item);
     }
-}
-
-/// Takes a table out of `[output]`.
-fn remove_output(document: &mut DocumentMut, name: &str) -> Option<Item> {
-    document.get_mut("output")?.as_table_like_mut()?.remove(name)
 }
 
 /// Whether a `--set` argument is of the type of the bearings.
