@@ -77,8 +77,8 @@ fn a_field_in_a_region_takes_the_place_of_the_region() {
         stress: Precision::F64,
         ..Storage::default()
     };
-    let pieces: [(fn(usize) -> bool, f64); 2] =
-        [(|i| i < N / 10 || i >= N_RING, 1.02), (|i| i % 10 == 0, 1.4)];
+    type IsInside = fn(usize) -> bool;
+    let pieces: [(IsInside, f64); 2] = [(|i| !(N / 10..N_RING).contains(&i), 1.02), (|i| i % 10 == 0, 1.4)];
     for (inside, most) in pieces {
         let dir = tempfile::tempdir().unwrap();
         let record = step_of(4, inside);
@@ -158,7 +158,7 @@ fn steps_without_fields_are_packed_and_unpacked_to_the_same_bytes() {
             ..bare_record(step)
         }
     };
-    let mut moved = step_of(7, |i| i < 3000 || i >= N_RING);
+    let mut moved = step_of(7, |i| !(3000..N_RING).contains(&i));
     let outside = moved
         .points
         .in_region

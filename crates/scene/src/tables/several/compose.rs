@@ -337,12 +337,9 @@ fn check_list(raw: &RawSeveral, problems: &mut Problems) {
 /// Refuses tables of `[output]` that a list has in motion only.
 fn check_output(raw: &RawSeveral, list: &DocumentMut, problems: &mut Problems) {
     let output = list.get("output").and_then(Item::as_table_like);
-    let given = |name: &&&str| output.is_some_and(|output| output.contains_key(name));
-    for name in edit::OF_SERIES
-        .iter()
-        .filter(given)
-        .filter(|_| raw.dynamic.is_none())
-    {
+    let output = output.filter(|_| raw.dynamic.is_none());
+    let given = |name: &&str| output.is_some_and(|output| output.contains_key(name));
+    for name in edit::OF_SERIES.into_iter().filter(given) {
         problems.add(format!(
             "[output.{name}] is for a list of bearings in motion, [dynamic], only: at rest every bearing has its own \
              [static] files; remove it"
