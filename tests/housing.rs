@@ -2,6 +2,8 @@
 
 use std::path::Path;
 
+use checkpoint::{read_mesh, read_step, read_table, step_file_name};
+
 use crate::util::Dir;
 use crate::util::tables::{Table, number, summary};
 
@@ -86,4 +88,93 @@ fn bodies_that_do_not_fit_end_with_a_message() {
     );
     refused(&["solver.backend=\"sector\""], "does not tie a ring to a body");
     refused(&["speed.outer=\"100 rpm\""], "speed.outer turns the outer ring");
+}
+
+/// If this failed, regions and extremes would lack the housing, which comes after the balls in all files, or take its
+/// stress for that of rings. Extremes over a sweep of two loads are those of the two step files, of every point; a
+/// region of azimuths holds the housing, one near the grooves does not; without stress in step files the extremes are
+/// the same.
+#[test]
+fn regions_and_extremes_hold_the_housing() {
+    let dir = delivered();
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let text = std::fs::read_to_string(root.join("scenes/6010_plummer_block.toml")).unwrap();
+    let sweep = "[sweep]\nkey = \"effects.radial_force.value\"\nvalues = [\"2 kN\", \"10 kN\"]\n";
+    let text = text.replace("[static]                             # one equilibrium", sweep);
+    dir.write("sweep.toml", text.replace("../meshes", "meshes"));
+    let run = |out: &str, set: &[&str]| {
+        let sets = set.iter().flat_map(|set| ["--set", set]);
+        let first = [
+            "run",
+            "sweep.toml",
+            "--out",
+            out,
+            "--set",
+            "output.reduction.every=1",
+        ];
+        let run = dir.raceway(&first.into_iter().chain(sets).collect::<Vec<_>>());
+        assert_eq!(run.code, Some(0), "{}", run.stderr);
+        let table = read_table(&dir.path(out).join("reduction.vtkhdf"), None).unwrap();
+        table
+            .fields
+            .into_iter()
+            .find(|field| field.name == "von_mises_maximum")
+            .unwrap()
+            .values
+    };
+    let in_sector = [
+        "output.region.azimuth=[\"-100 deg\", \"-80 deg\"]",
+        "output.precision=f64",
+    ];
+    let most = run("sector", &in_sector);
+    let grid = read_mesh(&dir.path("sector")).unwrap();
+    let steps = [0, 1].map(|n| {
+        read_step(&dir.path("sector").join(step_file_name(n)))
+            .unwrap()
+            .points
+    });
+    let [small, large] = steps.each_ref().map(|points| points.von_mises.as_ref().unwrap());
+    let inside = steps[1].in_region.as_ref().unwrap();
+    let mut of_body = vec![false; most.len()];
+    for (ends, _) in grid
+        .offsets
+        .windows(2)
+        .zip(&grid.body)
+        .filter(|(_, body)| **body == 3)
+    {
+        for &point in &grid.connectivity[ends[0] as usize..ends[1] as usize] {
+            of_body[point as usize] = true;
+        }
+    }
+    let (mut kept, mut left, mut stressed) = (0, 0, 0);
+    for i in (0..most.len()).filter(|&i| of_body[i]) {
+        let [x, y, _] = grid.points[i];
+        let in_sector = (y.atan2(x).to_degrees() + 90.0).abs() <= 10.0 + 1e-6;
+        assert_eq!(inside[i] == 1.0, in_sector, "point {i} at {x} {y}");
+        match in_sector {
+            true => {
+                assert_eq!(most[i], small[i].max(large[i]), "point {i}");
+                kept += 1;
+            }
+            false => {
+                assert!(large[i].is_nan());
+                left += 1;
+            }
+        }
+        stressed += usize::from(most[i] > 1e5);
+    }
+    assert!(
+        kept > 100 && left > 1000 && stressed > 1000,
+        "{kept} {left} {stressed}"
+    );
+    let without = ["output.stress=none", "output.precision=f64"];
+    assert!(run("none", &without) == most);
+    let near = ["output.region.raceway_distance=1 mm", "output.precision=f64"];
+    assert!(run("near", &near) == most);
+    let near = read_step(&dir.path("near").join(step_file_name(1)))
+        .unwrap()
+        .points;
+    let near = near.in_region.unwrap();
+    assert!((0..most.len()).all(|i| !(of_body[i] && near[i] == 1.0)));
+    assert!(near.iter().filter(|&&inside| inside == 1.0).count() > 1000);
 }

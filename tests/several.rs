@@ -2,6 +2,7 @@
 
 use serde_json::Value;
 
+use crate::util::lockstep::small_motion;
 use crate::util::tables::{Table, number, summary};
 use crate::util::{Dir, Outcome, SCENE, assert_close};
 
@@ -67,6 +68,18 @@ force = ["300 N", "0 N", "200 N"]
 
 fn pair(analysis: &str) -> Dir {
     let dir = with_type();
+    dir.write("pair.toml", format!("{PAIR}\n{analysis}\n"));
+    dir
+}
+
+/// The pair with flexible rings of the small motion's meshes, both of the type `types/kind.toml`.
+pub fn flexible_pair(analysis: &str) -> Dir {
+    let dir = small_motion();
+    std::fs::create_dir_all(dir.path("types")).unwrap();
+    for mesh in ["inner.msh", "outer.msh"] {
+        std::fs::rename(dir.path(mesh), dir.path(&format!("types/{mesh}"))).unwrap();
+    }
+    dir.write("types/kind.toml", &parts()[0]);
     dir.write("pair.toml", format!("{PAIR}\n{analysis}\n"));
     dir
 }

@@ -12,6 +12,7 @@ use results::disk::{self, Forecast};
 use results::failure::Failure;
 use results::memory::{bound, forecast};
 use results::probes::Probes;
+use results::survey::Survey;
 use scene::{Analysis, AnyScene, Scene, build_model, doubts};
 
 use crate::modes;
@@ -28,6 +29,7 @@ pub fn check(path: &Path, overrides: &[String]) -> Result<(), Failure> {
     };
     let (model, tags) = build_model(&scene)?;
     let probes = Probes::new(&scene, &model, &tags)?;
+    let region = Survey::of_part(&scene, &model)?.region;
     print::line(format_args!(
         "scene    {}",
         scene.title.as_deref().unwrap_or("(no title)")
@@ -78,6 +80,12 @@ pub fn check(path: &Path, overrides: &[String]) -> Result<(), Failure> {
     }
     print_rolling(&scene, geometry);
     print_probes(&scene, probes.as_ref());
+    if let Some([points, cells]) = region.map(|region| region.shares()) {
+        let (points, cells) = (100.0 * points, 100.0 * cells);
+        print::line(format_args!(
+            "region   fields are kept at {points:.1} % of the points and {cells:.1} % of the cells"
+        ));
+    }
     let (mut memory, mut motion) = ([None, None], [Some(None), Some(None)]);
     let mut on_ranks = [None, None];
     for side in Side::BOTH {

@@ -6,13 +6,14 @@ use std::path::Path;
 use anyhow::{Context, anyhow};
 use checkpoint::{
     FileDescription, committed_steps, describe, has_state, open_regular, read_mesh, read_step,
-    read_step_time, require_run, run_of, step_file_name,
+    read_step_time, read_table, require_run, run_of, step_file_name,
 };
 use comm::print;
 use results::answer;
 use results::disk::size;
 use results::failure::Failure;
 use results::integrity::doubts;
+use results::reduction::{REDUCTION, REDUCTION_FILE};
 use results::summary::SUMMARY_FILE;
 
 /// How closely the steps of a folder are looked at.
@@ -137,6 +138,16 @@ fn folder(dir: &Path, depth: Depth) -> Result<(), Failure> {
                     size(bytes)
                 ),
             );
+        }
+    }
+    let reduction = dir.join(REDUCTION_FILE);
+    if reduction.exists() {
+        match read_table(&reduction, run.as_deref()) {
+            Ok(table) => line(
+                REDUCTION,
+                &format!("{REDUCTION_FILE}: {}", table.about[REDUCTION]),
+            ),
+            Err(error) => damaged.push(error.to_string()),
         }
     }
     if states.len() < sound.len() {

@@ -73,11 +73,7 @@ pub fn load_matrix(command: &LoadMatrixCommand) -> Result<(), Failure> {
     let solution = solver
         .solve_at(&model, &pose_at(&scene, time), None)
         .map_err(Failure::solving)?;
-    let read = gauges.values(&Shown::Equilibrium {
-        model: &model,
-        placed: &model.geometry,
-        solution: &solution,
-    });
+    let read = gauges.values(&Shown::at_rest(&model, &model.geometry, &solution));
     let matrix = LoadMatrix::new(&model, &solver, &solution, &gauges, &read, side)?;
     make_asked_folder(&command.out)?;
     matrix.write(&command.out)?;

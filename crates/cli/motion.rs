@@ -23,14 +23,14 @@ use results::stop::Stop;
 use results::summary::{Findings, Summary};
 use results::survey::build_surveyed;
 use results::watch::Watch;
-use scene::{Dynamic, Scene, settings};
+use scene::{Dynamic, KeptFields, Scene, settings};
 use timer::{Laps, Stopwatch};
 
 use crate::ledger_check::check_ledger;
 use crate::options::Limits;
 use crate::progress::Progress;
 use crate::remarks::Remarks;
-use crate::resume::Stored;
+use crate::resume::{RestartedFrom, Stored};
 use crate::start::settle;
 
 /// Steps between two lines of progress in a log.
@@ -82,6 +82,7 @@ pub fn run(
         last_row: None,
         dir,
     };
+    agree(march.reduce())?;
     agree(march.write_tables())?;
     agree(march.write_fields(RestartState::Stored))?;
     let costs = StartCosts {
@@ -113,12 +114,18 @@ pub fn resume(
     let mut laps = Laps::default();
     let motion = factored(&model, scene, dynamic, &mut laps)?;
     say_solvers(&motion, &progress);
-    let (state, newton, watch) = agree(stored.state(&motion))?;
+    let RestartedFrom {
+        state,
+        newton,
+        watch,
+        reduction,
+    } = agree(stored.state(&motion))?;
     let (first, warnings) = (Snapshot::of_motion(&motion, &state), stored.warnings);
     let from = ResumedFrom {
         step: state.step,
         tables: stored.tables.as_ref(),
         warnings: &warnings,
+        reduction: &reduction,
     };
     let files = agree(Files::resume(scene, &model, stored.lock, &first, survey, &from))?;
     let march = March {
@@ -286,6 +293,7 @@ impl March<'_> {
                 }
                 Err(error) => return Err(self.failed(error)),
             }
+            agree(self.reduce())?;
             if n.is_multiple_of(self.scene.output.tables_every) {
                 agree(self.write_tables())?;
             }
@@ -372,16 +380,17 @@ impl March<'_> {
         }
         let (model, motion, state) = (self.model, self.motion, &self.state);
         let shown = Shown::Motion { model, motion, state };
-        let gathered = self.files.gather_stress(&shown);
+        let kept = self.kept();
+        let gathered = self.files.gather_stress(&shown, kept);
         if !self.files.are_written_here() {
             self.last_file = Some(state.step);
             return Ok(());
         }
         let time = motion.time(state.step);
         self.files.write_profiles(state.step, time, None, &shown)?;
-        let shown = Recorded::new(model, motion, state, gathered, self.scene, restart)?;
+        let shown = Recorded::new(model, motion, state, gathered, (self.scene, kept), restart)?;
         let (newton, watch) = (self.newton, self.watch.clone());
-        self.files.write_fields_later(move |stress| {
+        self.files.write_fields_later(restart, move |stress| {
             let mut record = shown.record(stress);
             if restart == RestartState::Stored {
                 Stored::add_counts(&mut record, newton, &watch);
@@ -390,6 +399,20 @@ impl March<'_> {
         })?;
         self.last_file = Some(self.state.step);
         Ok(())
+    }
+
+    /// The fields that the file of this step holds.
+    fn kept(&self) -> KeptFields {
+        let (apart, last) = (self.dynamic.output_every, self.dynamic.n_steps);
+        self.scene.output.every.kept(self.state.step, apart, last)
+    }
+
+    /// Takes the state into account in what is found of the whole run.
+    fn reduce(&mut self) -> Result<(), Failure> {
+        let (model, motion, state) = (self.model, self.motion, &self.state);
+        let shown = Shown::Motion { model, motion, state };
+        self.files
+            .reduce(state.step, motion.time(state.step), &shown, self.scene)
     }
 
     /// Appends a line per table.

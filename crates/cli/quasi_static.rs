@@ -167,6 +167,13 @@ impl Series<'_> {
         self.iterations[1] += self.last.rounds;
         self.iterations[2] += self.last.newton_iterations;
         self.note_warnings(bearing.time(step));
+        let reduced = self.files.reduce(
+            step,
+            bearing.time(step),
+            &shown(self.model, &self.last),
+            self.scene,
+        );
+        agree(reduced)?;
         if step.is_multiple_of(self.scene.output.tables_every) || self.has_file(step) {
             agree(self.write_tables(bearing.time(step), step))?;
         }
@@ -199,11 +206,16 @@ impl Series<'_> {
     /// Writes the fields of a step; ranks recover its stress first.
     fn write_fields(&mut self, bearing: &QuasiStatic<'_>, step: u64) -> Result<(), Failure> {
         let (model, last, scene) = (self.model, &self.last, self.scene);
-        let gathered = self.files.gather_stress(&shown(model, last));
+        let kept = scene
+            .output
+            .every
+            .kept(step, self.settings.output_every, self.settings.n_steps);
+        let gathered = self.files.gather_stress(&shown(model, last), kept);
         let at = (step, bearing.time(step));
         self.files.write_profiles(step, at.1, None, &shown(model, last))?;
-        self.files
-            .write_fields(|stress| fields::record(&shown(model, last), last, (stress, gathered), at, scene))
+        self.files.write_fields(|stress| {
+            fields::record(&shown(model, last), last, (stress, gathered), at, (scene, kept))
+        })
     }
 
     fn findings(self, ended: &Result<(), Failure>, remarks: Remarks) -> Findings {
@@ -230,9 +242,5 @@ impl Series<'_> {
 }
 
 fn shown<'a>(model: &'a Model, solution: &'a StaticSolution) -> Shown<'a> {
-    Shown::Equilibrium {
-        model,
-        placed: &model.geometry,
-        solution,
-    }
+    Shown::at_rest(model, &model.geometry, solution)
 }

@@ -20,7 +20,8 @@ use results::about::{MAY_CHANGE, OVERRIDES, SCENE_FILE, WARNINGS, require_same_m
 use results::failure::{Failure, agree};
 use results::files::note_dead_owner;
 use results::integrity::doubts;
-use results::state_arrays;
+use results::reduction::take_arrays;
+use results::state_arrays::{self, Arrays};
 use results::summary::read_summary;
 use results::watch::Watch;
 use scene::{Analysis, Dynamic, MeshFiles, Scene, difference};
@@ -81,6 +82,18 @@ pub struct Stored {
     arrays: BTreeMap<String, StateArray>,
 }
 
+/// What a run goes on from.
+pub struct RestartedFrom {
+    /// All that evolves.
+    pub state: MotionState,
+    /// Newton's iterations so far.
+    pub newton: u64,
+    /// Contacts beyond their limits so far.
+    pub watch: Watch,
+    /// What is known of the whole run by `[output.reduction]`.
+    pub reduction: Arrays,
+}
+
 impl Stored {
     /// Adds what the run counts besides its state.
     pub fn add_counts(record: &mut StepRecord, newton: u64, watch: &Watch) {
@@ -91,10 +104,11 @@ impl Stored {
         watch.put(&mut record.state);
     }
 
-    /// The state, the number of Newton's iterations so far, and the contacts beyond their limits so far.
-    pub fn state(&self, motion: &Motion<'_>) -> Result<(MotionState, u64, Watch), Failure> {
+    /// The state, and what the run counts besides.
+    pub fn state(&self, motion: &Motion<'_>) -> Result<RestartedFrom, Failure> {
         let at = || format!("step {} of {}", self.step, self.dir.display());
         let mut arrays = self.arrays.clone();
+        let reduction = take_arrays(&mut arrays);
         let newton = match arrays.remove(NEWTON) {
             Some(StateArray::Integer(count)) if count.len() == 1 => count[0].max(0) as u64,
             _ => return Err(anyhow!("{} has no count of iterations", at()).into()),
@@ -112,7 +126,12 @@ impl Stored {
             )
             .into());
         }
-        Ok((state, newton, watch))
+        Ok(RestartedFrom {
+            state,
+            newton,
+            watch,
+            reduction,
+        })
     }
 }
 

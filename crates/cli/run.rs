@@ -110,19 +110,18 @@ pub fn run(
         // The points of a sweep have no time; their number stands for it.
         let step = first + step;
         let (step, time) = (step as u64, step as f64);
-        let shown = Shown::Equilibrium {
-            model: &model,
-            placed: &placed,
-            solution: &solution,
-        };
+        let shown = Shown::at_rest(&model, &placed, &solution);
         // All ranks recover stress; then rank 0 writes, and may fail alone.
-        let gathered = files.gather_stress(&shown);
+        let last = (first + points.len() - 1) as u64;
+        let kept = scene.output.every.kept(step, 1, last);
+        let gathered = files.gather_stress(&shown, kept);
         let write = || {
+            files.reduce(step, time, &shown, &scene)?;
             files.write_tables(step, time, *value, &snapshot)?;
             files.write_probes(step, time, *value, &shown)?;
             files.write_profiles(step, time, *value, &shown)?;
             files.write_fields(|stress| {
-                fields::record(&shown, &solution, (stress, gathered), (step, time), point)
+                fields::record(&shown, &solution, (stress, gathered), (step, time), (point, kept))
             })
         };
         agree(write())?;

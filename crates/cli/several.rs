@@ -19,7 +19,9 @@ use results::snapshot::Snapshot;
 use results::summary::{Findings, READ, Summary, TOTAL};
 use results::survey::{Survey, say_doubts};
 use results::whole::{make_asked_folder, write_new};
-use scene::{Analysis, BuildError, Rings, SeveralScene, assembly_with_rings, build_assembly, doubts};
+use scene::{
+    Analysis, BuildError, KeptFields, Rings, SeveralScene, assembly_with_rings, build_assembly, doubts,
+};
 
 use crate::progress::Progress;
 
@@ -41,12 +43,14 @@ pub fn run(scene: &SeveralScene, dir: &Path, start: Instant) -> Result<(), Failu
     for bearing in &assembly.bearings {
         require_memory(&scene.analysis, &bearing.model)?;
     }
+    let surveys = surveys(scene, &assembly)?;
     let read = start.elapsed().as_secs_f64();
     progress.stage("factoring the stiffness of the rings");
     let mut solver = AssemblySolver::new(&assembly).map_err(solving)?;
     say_types(&solver, &assembly, &progress);
     let column = column(scene);
     let (mut written, mut failure, mut before) = (None, None, None);
+    let mut surveys = Some(surveys);
     let mut iterations = 0;
     for (step, (value, point)) in points.iter().enumerate() {
         progress.stage(&stage_text(column, *value));
@@ -61,7 +65,10 @@ pub fn run(scene: &SeveralScene, dir: &Path, start: Instant) -> Result<(), Failu
         // The first solution makes the folder: a scene that has none leaves no files.
         let files = match &mut written {
             Some(files) => files,
-            none => none.insert(SeveralFiles::create(scene, &assembly, &solution, dir)?),
+            none => {
+                let surveys = surveys.take().unwrap_or_default();
+                none.insert(SeveralFiles::create((scene, surveys), &assembly, &solution, dir)?)
+            }
         };
         files.append(step as u64, *value, (&assembly, point), &solution)?;
         warnings.extend(warnings_at(&words_of(column, *value), &assembly, &solution));
@@ -123,7 +130,7 @@ struct SeveralFiles {
 
 impl SeveralFiles {
     fn create(
-        scene: &SeveralScene,
+        (scene, surveys): (&SeveralScene, Vec<Survey>),
         assembly: &Assembly,
         solution: &AssemblySolution,
         dir: &Path,
@@ -133,16 +140,16 @@ impl SeveralFiles {
         let first = ListState::of_equilibrium(assembly, solution);
         let tables = SeveralTables::create(dir, column.as_deref(), &first)?;
         let mut bearings = Vec::new();
-        for ((bearing, mounted), found) in scene
+        for (((bearing, mounted), found), survey) in scene
             .bearings
             .iter()
             .zip(&assembly.bearings)
             .zip(&solution.bearings)
+            .zip(surveys)
         {
             let own = dir.join(&bearing.name);
             let placed = bearing.scene.with_shaft_at(found.displacements.shaft)?;
             let snapshot = snapshot(found);
-            let survey = Survey::default();
             let files = Files::create_part(&placed, &mounted.model, &own, &snapshot, survey, &[])?;
             bearings.push((own, files));
         }
@@ -174,15 +181,12 @@ impl SeveralFiles {
             let (model, found) = (&assembly.bearings[i].model, &solution.bearings[i]);
             let snapshot = snapshot(found);
             let placed = point.bearings[i].scene.with_shaft_at(found.displacements.shaft)?;
-            let shown = Shown::Equilibrium {
-                model,
-                placed: &model.geometry,
-                solution: found,
-            };
-            let gathered = files.gather_stress(&shown);
+            let shown = Shown::at_rest(model, &model.geometry, found);
+            let gathered = files.gather_stress(&shown, KeptFields::ALL);
             files.write_tables(step, time, None, &snapshot)?;
             files.write_fields(|stress| {
-                results::fields::record(&shown, found, (stress, gathered), (step, time), &placed)
+                let at = (step, time);
+                results::fields::record(&shown, found, (stress, gathered), at, (&placed, KeptFields::ALL))
             })?;
             self.last.push(snapshot);
         }
@@ -241,6 +245,16 @@ pub fn require_one_rank() -> Result<(), Failure> {
             "the launcher started {ranks} tasks, but a list of bearings is solved by one; start one task"
         ))),
     })
+}
+
+/// The regions in which the bearings keep fields, if the scene has one.
+pub fn surveys(scene: &SeveralScene, assembly: &Assembly) -> Result<Vec<Survey>, Failure> {
+    let bearings = scene.bearings.iter().zip(&assembly.bearings);
+    let survey = |(bearing, mounted): (&scene::BearingOnShaft, &assembly::MountedBearing)| {
+        let survey = Survey::of_part(&bearing.scene, &mounted.model);
+        survey.map_err(|failure| failure.context(format!("bearing {:?}", bearing.name)))
+    };
+    bearings.map(survey).collect()
 }
 
 /// What is most likely a slip, once for each type.

@@ -8,11 +8,12 @@ use results::failure::Failure;
 use scene::{Analysis, SeveralScene, ShaftKind, build_assembly, have_same_rings};
 
 use crate::ring_sizes::print_ring;
-use crate::several::all_doubts;
+use crate::several::{all_doubts, surveys};
 
 /// Prints what a run would be.
 pub fn check(scene: &SeveralScene) -> Result<(), Failure> {
     let (assembly, _) = build_assembly(scene)?;
+    surveys(scene, &assembly)?;
     print::line(format_args!(
         "scene    {}",
         scene.title.as_deref().unwrap_or("(no title)")

@@ -20,7 +20,7 @@ use results::shown::Shown;
 use results::snapshot::Snapshot;
 use results::stop::Stop;
 use results::summary::{Findings, READ, Summary, TOTAL};
-use results::survey::{Survey, say_doubts};
+use results::survey::say_doubts;
 use results::watch::Watch;
 use scene::{Dynamic, Scene, SeveralScene, build_assembly};
 use timer::{Laps, Stopwatch};
@@ -28,7 +28,7 @@ use timer::{Laps, Stopwatch};
 use crate::ledger_check::check_ledger;
 use crate::options::Limits;
 use crate::progress::Progress;
-use crate::several::{all_doubts, make_folder, require_one_rank, say_types, solving, warnings_at};
+use crate::several::{all_doubts, make_folder, require_one_rank, say_types, solving, surveys, warnings_at};
 use crate::several_ready::{ready, require_space};
 use crate::several_state;
 
@@ -53,6 +53,7 @@ pub fn run(
         require_memory(&scene.analysis, &bearing.model)?;
     }
     require_space(scene, &assembly, (dir, 0), limits)?;
+    let surveys = surveys(scene, &assembly)?;
     let mut laps = Laps::default();
     laps.add(READ, start.elapsed().as_secs_f64());
     progress.stage("static start");
@@ -77,17 +78,10 @@ pub fn run(
     let first = ListState::of_motion(&assembly, &motion, &state);
     let tables = SeveralTables::create(dir, None, &first)?;
     let mut files = Vec::new();
-    for (i, placed) in placed.iter().enumerate() {
+    for (i, (placed, survey)) in placed.iter().zip(surveys).enumerate() {
         let first = Snapshot::of_motion(&motion.bearings[i], &state.bearings[i]);
         let (model, own) = (&assembly.bearings[i].model, dir.join(&scene.bearings[i].name));
-        files.push(Files::create_part(
-            placed,
-            model,
-            &own,
-            &first,
-            Survey::default(),
-            &[],
-        )?);
+        files.push(Files::create_part(placed, model, &own, &first, survey, &[])?);
     }
     let mut march = ListMarch {
         watches: new_watches(&assembly),
@@ -108,6 +102,7 @@ pub fn run(
         last_row: None,
         dir,
     };
+    march.reduce()?;
     march.write_tables()?;
     march.write_fields(RestartState::Stored)?;
     march.finish_run(progress, limits, warnings, start)
@@ -146,6 +141,7 @@ fn resume(stored: several_state::StoredList, limits: &Limits, start: Instant) ->
     let warnings = all_doubts(&scene, &assembly);
     say_doubts(&warnings);
     require_space(&scene, &assembly, (&dir, step), limits)?;
+    let surveys = surveys(&scene, &assembly)?;
     assembly.release();
     let mut laps = Laps::default();
     laps.add(READ, start.elapsed().as_secs_f64());
@@ -156,23 +152,17 @@ fn resume(stored: several_state::StoredList, limits: &Limits, start: Instant) ->
     // Nothing is changed before all is known to fit.
     let cuts = SeveralTables::cuts(&dir, &first, step)?;
     let (mut files, mut placed) = (Vec::new(), Vec::new());
-    for (i, bearing) in bearings.into_iter().enumerate() {
+    for (i, (bearing, survey)) in bearings.into_iter().zip(surveys).enumerate() {
         let own = Snapshot::of_motion(&motion.bearings[i], &restored.state.bearings[i]);
         let model = &assembly.bearings[i].model;
         let from = results::files::ResumedFrom {
             step,
             tables: bearing.record.tables.as_ref(),
             warnings: &[],
+            reduction: &restored.reductions[i],
         };
-        let lock = Some(bearing.lock);
-        files.push(Files::resume(
-            &bearing.scene,
-            model,
-            lock,
-            &own,
-            Survey::default(),
-            &from,
-        )?);
+        let (lock, scene) = (Some(bearing.lock), &bearing.scene);
+        files.push(Files::resume(scene, model, lock, &own, survey, &from)?);
         placed.push(bearing.scene);
     }
     results::files::say_folder(&dir);
@@ -341,6 +331,7 @@ impl ListMarch<'_> {
                 }
                 Err(error) => return Err(self.failed(solving(error))),
             }
+            self.reduce()?;
             if n.is_multiple_of(self.placed[0].output.tables_every) {
                 self.write_tables()?;
             }
@@ -434,13 +425,15 @@ impl ListMarch<'_> {
             self.write_tables()?;
         }
         let of_shaft = several_state::arrays_of_shaft(&self.state, self.newton);
+        let every = self.placed[0].output.every;
+        let kept = every.kept(self.state.step, self.dynamic.output_every, self.dynamic.n_steps);
         for (i, files) in self.files.iter_mut().enumerate() {
             let (motion, state) = (&self.motion.bearings[i], &self.state.bearings[i]);
             let model = &self.assembly.bearings[i].model;
-            let gathered = files.gather_stress(&Shown::Motion { model, motion, state });
-            let shown = Recorded::new(model, motion, state, gathered, &self.placed[i], restart)?;
+            let gathered = files.gather_stress(&Shown::Motion { model, motion, state }, kept);
+            let shown = Recorded::new(model, motion, state, gathered, (&self.placed[i], kept), restart)?;
             let (of_shaft, watch) = (of_shaft.clone(), self.watches[i].clone());
-            files.write_fields_later(move |stress| {
+            files.write_fields_later(restart, move |stress| {
                 let mut record = shown.record(stress);
                 if restart == RestartState::Stored {
                     record.state.extend(of_shaft);
@@ -452,6 +445,17 @@ impl ListMarch<'_> {
         self.last_file = Some(self.state.step);
         if restart == RestartState::Stored {
             self.last_state = Some(self.state.step);
+        }
+        Ok(())
+    }
+
+    /// Takes the state of every bearing into account in what is found of the whole run.
+    fn reduce(&mut self) -> Result<(), Failure> {
+        for (i, files) in self.files.iter_mut().enumerate() {
+            let (motion, state) = (&self.motion.bearings[i], &self.state.bearings[i]);
+            let model = &self.assembly.bearings[i].model;
+            let shown = Shown::Motion { model, motion, state };
+            files.reduce(state.step, motion.time(state.step), &shown, &self.placed[i])?;
         }
         Ok(())
     }

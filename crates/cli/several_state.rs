@@ -10,6 +10,7 @@ use comm::print;
 use results::about::{MAY_CHANGE, OVERRIDES, SCENE_FILE, require_same_meshes, scene_file};
 use results::failure::Failure;
 use results::files::note_dead_owner;
+use results::reduction::take_arrays;
 use results::several::BEARINGS_TABLE;
 use results::state_arrays::{self, Arrays};
 use results::watch::Watch;
@@ -43,6 +44,8 @@ pub struct Restored {
     pub state: AssemblyState,
     pub newton: u64,
     pub watches: Vec<Watch>,
+    /// What each bearing knows of the whole run by `[output.reduction]`.
+    pub reductions: Vec<Arrays>,
 }
 
 /// Whether a folder has results of a list of bearings.
@@ -76,9 +79,11 @@ pub fn restore(
     (dir, step): (&Path, u64),
 ) -> Result<Restored, Failure> {
     let (mut states, mut watches, mut shaft) = (Vec::new(), Vec::new(), None);
+    let mut reductions = Vec::new();
     for (bearing, motion) in bearings.iter().zip(&motion.bearings) {
         let at = || format!("step {step} of {}", bearing.lock.dir().display());
         let mut arrays = bearing.record.state.clone();
+        reductions.push(take_arrays(&mut arrays));
         let of_shaft: Vec<Option<StateArray>> = [SHAFT, VELOCITY, LOADS, LEDGER, NEWTON]
             .iter()
             .map(|name| arrays.remove(*name))
@@ -117,6 +122,7 @@ pub fn restore(
         },
         newton,
         watches,
+        reductions,
     })
 }
 

@@ -52,6 +52,27 @@ class Runs:
         overrides = {"dynamic.duration": "0.4 ms", "dynamic.output_every": 5, "probes.node.po2": probe}
         return self.of("motion", "7010c_1800rpm_coarse.toml", overrides)
 
+    def small_motion(self) -> raceway.Results:
+        """The same motion with all that makes its files smaller."""
+        smaller = {"stress_error": "10 kPa", "displacement": "f32", "restart_every": 3}
+        overrides = {"dynamic.duration": "0.4 ms", "dynamic.output_every": 5}
+        return self.of(
+            "small_motion",
+            "7010c_1800rpm_coarse.toml",
+            overrides | {f"output.{key}": value for key, value in smaller.items()},
+        )
+
+    def reduced_motion(self) -> raceway.Results:
+        """The same motion with extremes of the run, and stress in every second file near the grooves."""
+        overrides = {
+            "dynamic.duration": "0.4 ms",
+            "dynamic.output_every": 5,
+            "output.every.stress": 2,
+            "output.region.raceway_distance": "1 mm",
+            "output.reduction.every": 5,
+        }
+        return self.of("reduced_motion", "7010c_1800rpm_coarse.toml", overrides)
+
     def modes(self) -> raceway.Results:
         return self.of("modes", "7010c_modes.toml", {"modes.number": 8, "modes.bodies": ["inner", "bearing"]})
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import shutil
 from pathlib import Path
 
+import h5py
 import numpy as np
 import pytest
 
@@ -60,6 +61,48 @@ def test_a_ring_has_the_volume_of_its_surface(runs):
         assert np.isclose(abs(by_surface), cells.volume, rtol=1e-3)
         radius = np.hypot(*mesh.points[mesh.points_of(ring)][:, :2].T)
         assert radius.max() < largest + 1e-4
+
+
+def test_small_files_are_read_by_h5py_alone(runs):
+    whole, small = runs.motion(), runs.small_motion()
+    assert small.steps == whole.steps
+    for number in small.steps:
+        with (
+            h5py.File(whole.folder / f"step_{number:06}.hdf") as exact,
+            h5py.File(small.folder / f"step_{number:06}.hdf") as file,
+        ):
+            exact_points, points = exact["VTKHDF/PointData"], file["VTKHDF/PointData"]
+            assert set(points) == set(exact_points)
+            for name in ("stress", "von_mises"):
+                assert points[name].attrs["error_bound"] == 1e4
+                # Both are rounded to single precision besides.
+                error = np.abs(points[name][()].astype(float) - exact_points[name][()]).max()
+                assert 0.0 < error <= 1.001e4
+            assert points["displacement"].dtype == np.float32
+            assert (points["displacement"][()] == exact_points["displacement"][()].astype(np.float32)).all()
+            assert (points["force_inner"][()] == exact_points["force_inner"][()]).all()
+            has_state = number == small.steps[-1] or number % 15 == 0
+            assert (len(file["restart/state"]) > 0) == has_state
+            assert len(exact["restart/state"]) > 0
+
+
+def test_extremes_of_a_run_are_those_of_its_steps(runs):
+    whole, reduced = runs.motion(), runs.reduced_motion()
+    stress = np.stack([step["von_mises"] for step in whole])
+    found = reduced.reduction
+    # Both are rounded to single precision, in frames that differ by the turn of the ring.
+    assert np.allclose(found["von_mises_maximum"], stress.max(axis=0), rtol=1e-6, atol=1.0)
+    assert np.allclose(found["von_mises_minimum"], stress.min(axis=0), rtol=1e-6, atol=1.0)
+    assert found["stress_range"].shape == (reduced.mesh.points.shape[0], 6)
+    step = reduced.step(10)
+    inside = step["in_region"] == 1.0
+    assert 0 < inside.sum() < inside.size
+    assert np.array_equal(step["von_mises"][inside], whole.step(10)["von_mises"][inside])
+    assert np.isnan(step["von_mises"][~inside]).all()
+    with pytest.raises(KeyError, match='step 5 has no field "von_mises" over points; fields are displacement'):
+        reduced.step(5)["von_mises"]
+    with pytest.raises(raceway.ResultsError, match=r"has no reduction.vtkhdf; a scene with \[output.reduction\] gives it"):
+        _ = whole.reduction
 
 
 def test_a_sweep_has_its_values(runs):

@@ -144,5 +144,8 @@ OUTPUTS = [
     motion("compressed", dynamic(every=10) + "[output]\ncompression = 4\n"),
     motion("small_files", dynamic(every=2)
            + '[output]\ndisplacement = "f32"\nrestart_every = 3\nstress_error = "10 kPa"\n'),
+    motion("fields_and_extremes", dynamic(every=2)
+           + '[output]\nrestart_every = 3\n[output.every]\nstress = 2\n[output.region]\nraceway_distance = "1 mm"\n'
+           + '[output.reduction]\n', threads=True),
 ]
 CASES = SUPPORTS + RINGS + INTEGRATORS + COURSES + RUNGS + OUTPUTS

@@ -38,3 +38,51 @@ fn stress_has_the_same_bits_on_any_number_of_ranks() {
         }
     }
 }
+
+/// Wrong: what is kept in a region, in some files, or found of a whole run would depend on the number of ranks, on
+/// stress that step files have or not.
+#[test]
+#[ignore = "needs mpirun and a program built with MPI: scripts/test-mpi"]
+fn regions_and_extremes_have_the_same_bits_on_any_number_of_ranks() {
+    let dir = small_motion();
+    dir.write("series.toml", SCENE.replace("[static]", SERIES));
+    let fields = [
+        "--set",
+        "output.every.displacement=2",
+        "--set",
+        "output.region.raceway_distance=1 mm",
+        "--set",
+        "output.reduction.damage.stress=signed_von_mises",
+        "--set",
+        "output.reduction.damage.exponent=5.0",
+        "--set",
+        "output.reduction.damage.reference_amplitude=50 MPa",
+        "--set",
+        "output.reduction.damage.reference_cycles=1e6",
+    ];
+    for kind in ["nodal", "none", "integration_points"] {
+        let stress = format!("output.stress={kind}");
+        let both = [
+            "--set",
+            "output.region.fields=[\"stress\", \"displacement\"]",
+            "--set",
+            &stress,
+        ];
+        let arguments = [&["run", "series.toml"], &SECTOR[..], &fields, &both, &["--out"]].concat();
+        let alone = format!("alone_{kind}");
+        done(&dir.raceway(&[&arguments[..], &[&alone]].concat()));
+        for ranks in [2, 3] {
+            let out = format!("{kind}_on{ranks}");
+            done(&on_ranks(&dir, ranks, &[&arguments[..], &[&out]].concat()));
+            for name in [
+                "reduction.vtkhdf",
+                "step_000000.hdf",
+                "step_000002.hdf",
+                "step_000003.hdf",
+            ] {
+                let read = |folder: &str| std::fs::read(dir.path(folder).join(name)).unwrap();
+                assert!(read(&alone) == read(&out), "{name} with {kind} on {ranks} ranks");
+            }
+        }
+    }
+}

@@ -77,6 +77,7 @@ fn strained(rings: &[Mesh; 2], step: u64) -> StepRecord {
                 layout: "eight points, xx yy zz xy yz xz".to_string(),
             }),
             von_mises_largest: None,
+            in_region: None,
         },
         scene: String::new(),
         ..StepRecord::default()

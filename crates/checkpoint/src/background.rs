@@ -12,6 +12,7 @@ use std::time::{Duration, Instant};
 
 use crate::error::CheckpointError;
 use crate::output::Output;
+use crate::point_table::PointTable;
 use crate::record::StepRecord;
 
 /// A file that grows beside the steps, such as a table of the run. What the caller has written to it when it hands
@@ -25,7 +26,16 @@ pub struct Companion {
 }
 
 /// What makes a record when its turn comes.
-type Maker = Box<dyn FnOnce() -> StepRecord + Send>;
+type Maker = Box<dyn FnOnce() -> Made + Send>;
+
+/// A step, and fields of the run up to it that are written once the step is committed, as a file of this name.
+#[derive(Debug)]
+pub struct Made {
+    /// The step.
+    pub record: StepRecord,
+    /// Name of the file, and fields.
+    pub table: Option<(&'static str, PointTable)>,
+}
 
 /// An [`Output`] behind a queue.
 #[derive(Debug)]
@@ -69,13 +79,13 @@ impl BackgroundOutput {
     /// Hands over a step, waiting while the queue is full. An error of an earlier step is returned by the first
     /// call after it.
     pub fn write_step(&mut self, record: StepRecord) -> Result<(), CheckpointError> {
-        self.write_step_made_by(move || record)
+        self.write_step_made_by(move || Made { record, table: None })
     }
 
     /// The same for a record that the thread makes when its turn comes, so that this costs the caller nothing.
     pub fn write_step_made_by(
         &mut self,
-        make: impl FnOnce() -> StepRecord + Send + 'static,
+        make: impl FnOnce() -> Made + Send + 'static,
     ) -> Result<(), CheckpointError> {
         let clock = Instant::now();
         let accepted = self
@@ -122,7 +132,7 @@ fn write_all(
     let (mut making, mut writing) = (Duration::ZERO, Duration::ZERO);
     for make in waiting {
         let clock = Instant::now();
-        let record = make();
+        let Made { record, table } = make();
         making += clock.elapsed();
         let clock = Instant::now();
         for companion in companions {
@@ -130,6 +140,9 @@ fn write_all(
             synced.map_err(CheckpointError::io("write", &companion.path))?;
         }
         output.write_step(&record)?;
+        if let Some((name, table)) = table {
+            output.write_table(name, &table)?;
+        }
         writing += clock.elapsed();
     }
     Ok(Written {

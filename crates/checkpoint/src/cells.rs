@@ -1,6 +1,6 @@
 //! Fields over the cells of all bodies.
 
-use crate::record::{Field, listed};
+use crate::record::{Field, kept, listed, mask};
 use crate::storage::Storage;
 
 /// Components of a stress tensor, in the order xx yy zz xy yz xz.
@@ -15,6 +15,8 @@ pub struct CellFields {
     /// The largest von Mises stress among the integration points of each cell, Pa, `[n_cells]`, in the precision of
     /// [`Storage::stress`].
     pub von_mises_largest: Option<Vec<f64>>,
+    /// 1 in the region in which fields are kept, 0 outside, `[n_cells]`, f32; None keeps all.
+    pub in_region: Option<Vec<f64>>,
 }
 
 /// Stress at the integration points of every cell, in the precision of [`Storage::stress`].
@@ -46,16 +48,26 @@ impl CellFields {
 
     /// Fields that are present, in the order of the files.
     pub(crate) fn present(&self, storage: Storage) -> Vec<Field<'_>> {
-        let derived = |name, n_components, values| Field {
-            name,
-            n_components,
-            values,
-            coding: storage.stress_coding(),
+        let region = self.in_region.as_deref();
+        let derived = |name, n_components, values| {
+            kept(
+                region,
+                Field {
+                    name,
+                    n_components,
+                    values,
+                    coding: storage.stress_coding(),
+                },
+            )
         };
         let stress = self.stress_integration_points.as_ref();
         let stress = stress.map(|s| derived("stress_integration_points", s.n_components(), &s.values[..]));
         let largest = self.von_mises_largest.as_deref();
         let largest = largest.map(|values| derived("von_mises_largest", 1, values));
-        stress.into_iter().chain(largest).collect()
+        stress
+            .into_iter()
+            .chain(largest)
+            .chain(region.map(mask))
+            .collect()
     }
 }

@@ -64,6 +64,23 @@ pub fn checksum<T: Element>(name: &str, shape: &[usize], values: &[T]) -> u32 {
     hasher.finalize()
 }
 
+/// Writes the checksum of a data set beside it.
+pub fn write_checksum(dataset: &hdf5::Dataset, value: u32) -> hdf5::Result<()> {
+    dataset
+        .new_attr::<u32>()
+        .create(CHECKSUM_ATTRIBUTE)?
+        .write_scalar(&value)
+}
+
+/// The path of a data set as HDF5 wants it relative to a group; absolute paths would leave the group.
+pub fn below(path: &str) -> &str {
+    match path.strip_prefix('/') {
+        Some("") => ".",
+        Some(rest) => rest,
+        None => path,
+    }
+}
+
 /// Length in bytes and CRC-32 of a whole file of any kind: whether it is still the one it was.
 pub fn file_checksum(path: &Path) -> Result<(u64, u32), CheckpointError> {
     let sum = || -> std::io::Result<(u64, u32)> {

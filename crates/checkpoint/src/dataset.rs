@@ -9,23 +9,26 @@ use std::path::Path;
 use hdf5::types::{FixedAscii, FloatSize, TypeDescriptor, VarLenUnicode};
 use hdf5::{Dataset, File, Group, Location};
 
-use crate::checksum::{CHECKSUM_ATTRIBUTE, Element, checksum};
+use crate::checksum::{CHECKSUM_ATTRIBUTE, Element, below, checksum, write_checksum};
 use crate::error::CheckpointError;
-use crate::record::{Field, VECTOR};
+use crate::record::{Field, IN_REGION, VECTOR};
+use crate::region;
 use crate::regular::open_regular;
 use crate::storage::{Coding, Compression, ErrorBound, Precision};
 
 /// Size of a compressed chunk, bytes: large enough for the filters, small enough for their caches.
 const CHUNK_BYTES: usize = 1 << 18;
-/// Level of deflate for stress with an error bound where the scene asks for no other.
+/// Level of deflate for what is compressed in any case, where the scene asks for no other.
 const ROUNDED_LEVEL: u8 = 1;
 /// Attribute of such an array: the bound, Pa.
 const ERROR_BOUND: &str = "error_bound";
-/// The field that every step has.
+/// A field that has a value at every point.
 const DISPLACEMENT: &str = "/VTKHDF/PointData/displacement";
 /// Rows of a chunk of vectors that are mostly zero: more than most bearings have balls. An index of chunks takes 2.6
 /// kB, so fewer rows are stored as others are.
 const SPARSE_ROWS: usize = 128;
+/// Bytes of the longest row: a cell with 27 tensors.
+const MOST_OF_ROW: u64 = 27 * 6 * 8;
 /// Bytes that a byte of deflated data can stand for at most (zlib, "Technical Details": 1032).
 const MOST_DEFLATED: u64 = 1032;
 
@@ -103,15 +106,19 @@ pub(crate) fn write_field(
     };
     match field.coding {
         Coding::Full(precision) => write_values(file, path, &shape, field.values, precision, compression),
+        Coding::Packed(precision) => {
+            write_values(file, path, &shape, field.values, precision, packed(compression))
+        }
         Coding::Rounded(precision, bound) => {
-            let level = match compression {
-                Compression::None => Compression::Deflate(ROUNDED_LEVEL),
-                chosen => chosen,
-            };
             let rounded = bound.round(field.values);
-            write_values(file, path, &shape, &rounded, precision, level)?;
-            let bound_of = file.dataset(below(path))?.new_attr::<f64>();
-            bound_of.create(ERROR_BOUND)?.write_scalar(&bound.bound())
+            write_values(file, path, &shape, &rounded, precision, packed(compression))?;
+            write_bound(file, path, bound)
+        }
+        Coding::Region(precision, bound) => {
+            let rounded = bound.map(|bound| bound.round(field.values));
+            let values = rounded.as_deref().unwrap_or(field.values);
+            region::write(file, path, (&shape, values), precision, packed(compression))?;
+            bound.map_or(Ok(()), |bound| write_bound(file, path, bound))
         }
         Coding::MostlyZero if rows <= SPARSE_ROWS => {
             write_values(file, path, &shape, field.values, Precision::F64, compression)
@@ -120,7 +127,20 @@ pub(crate) fn write_field(
     }
 }
 
-fn write_values(
+/// The level of what is compressed in any case.
+fn packed(compression: Compression) -> Compression {
+    match compression {
+        Compression::None => Compression::Deflate(ROUNDED_LEVEL),
+        chosen => chosen,
+    }
+}
+
+fn write_bound(file: &Group, path: &str, bound: ErrorBound) -> hdf5::Result<()> {
+    let bound_of = file.dataset(below(path))?.new_attr::<f64>();
+    bound_of.create(ERROR_BOUND)?.write_scalar(&bound.bound())
+}
+
+pub(crate) fn write_values(
     file: &Group,
     path: &str,
     shape: &[usize],
@@ -170,15 +190,6 @@ pub(crate) fn write_text(file: &Group, path: &str, text: &str) -> hdf5::Result<(
         .write_scalar(&crc)
 }
 
-/// The path as HDF5 wants it relative to a group; absolute paths would leave the group.
-fn below(path: &str) -> &str {
-    match path.strip_prefix('/') {
-        Some("") => ".",
-        Some(rest) => rest,
-        None => path,
-    }
-}
-
 /// A group or a data set.
 fn object(file: &Group, path: &str) -> hdf5::Result<Location> {
     match file.group(below(path)) {
@@ -189,13 +200,6 @@ fn object(file: &Group, path: &str) -> hdf5::Result<Location> {
 
 fn owner_and_name(path: &str) -> (&str, &str) {
     path.rsplit_once('/').expect("texts are named by absolute paths")
-}
-
-fn write_checksum(dataset: &Dataset, value: u32) -> hdf5::Result<()> {
-    dataset
-        .new_attr::<u32>()
-        .create(CHECKSUM_ATTRIBUTE)?
-        .write_scalar(&value)
 }
 
 /// A file open for reading; every value it returns has passed its checksum.
@@ -276,7 +280,7 @@ impl<'a> CheckedFile<'a> {
             // Zeros are not in the file; displacement, which all steps have in full, has as many rows.
             true if is_sparse => self.most_sparse(dataset)?,
             true => in_file,
-            false => in_file.saturating_mul(MOST_DEFLATED),
+            false => self.most_packed(dataset, in_file.saturating_mul(MOST_DEFLATED))?,
         };
         let fits = in_file <= self.length
             && bytes.is_some_and(|bytes| {
@@ -292,8 +296,27 @@ impl<'a> CheckedFile<'a> {
         Err(CheckpointError::malformed(self.path, what))
     }
 
-    /// Bytes that vectors of which most are zero can have: those of a displacement in f64.
+    /// Bytes that compressed data can have: those that are in the file, unpacked, or a row for each of a region.
+    fn most_packed(&self, dataset: &str, unpacked: u64) -> Result<u64, CheckpointError> {
+        let mask = mask_of(dataset);
+        match mask != dataset && self.has(&mask) {
+            true => Ok(unpacked.max(self.most_of_region(&mask)?)),
+            false => Ok(unpacked),
+        }
+    }
+
+    /// Bytes that a field over a region can have, by the rows of its mask.
+    fn most_of_region(&self, mask: &str) -> Result<u64, CheckpointError> {
+        Ok((self.shape(mask)?[0] as u64).saturating_mul(MOST_OF_ROW))
+    }
+
+    /// Bytes that vectors of which most are zero can have: those of a displacement in f64, or a row for each of a
+    /// region.
     fn most_sparse(&self, dataset: &str) -> Result<u64, CheckpointError> {
+        let mask = mask_of(dataset);
+        if self.has(&mask) {
+            return self.most_of_region(&mask);
+        }
         let dense = |stored: &Dataset| !(stored.is_chunked() && stored.filters().is_empty());
         let stored = self.file.dataset(below(DISPLACEMENT));
         let stored = stored.ok().filter(dense).ok_or_else(|| {
@@ -419,6 +442,11 @@ impl<'a> CheckedFile<'a> {
             found,
         })
     }
+}
+
+/// Path of the mask of the region that a field over points or cells may be kept in.
+fn mask_of(dataset: &str) -> String {
+    format!("{}/{IN_REGION}", owner_and_name(dataset).0)
 }
 
 fn read_checksum(dataset: &Dataset) -> hdf5::Result<u32> {

@@ -7,7 +7,7 @@ use crate::dataset::CheckedFile;
 use crate::error::CheckpointError;
 use crate::mesh_file::{MESH_FILE, MESH_HASH};
 use crate::seal::{verify_seal, verify_structure};
-use crate::step::{read_about, read_contents, run_of_file};
+use crate::step::{POINT_DATA, STEP, read_about, read_contents, run_of_file};
 
 /// One array of a file.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -22,14 +22,14 @@ pub struct ArrayDescription {
     pub bytes: u64,
 }
 
-/// A mesh or step file.
+/// A mesh or step file, or one of fields of the whole run.
 #[derive(Debug)]
 pub struct FileDescription {
     /// Bytes of the file.
     pub bytes: u64,
     /// Its arrays.
     pub arrays: Vec<ArrayDescription>,
-    /// Number and time, s, of a step; None for a mesh.
+    /// Number and time, s, of a step; None for others.
     pub step: Option<(u64, f64)>,
     /// Scene of a step.
     pub scene: Option<String>,
@@ -66,6 +66,18 @@ pub fn describe(path: &Path) -> Result<FileDescription, CheckpointError> {
             step: None,
             scene: None,
             about,
+            damage,
+        });
+    }
+    if !file.has(STEP) {
+        let fields = file.members(POINT_DATA)?;
+        let paths: Vec<String> = fields.iter().map(|name| format!("{POINT_DATA}/{name}")).collect();
+        return Ok(FileDescription {
+            bytes,
+            arrays: arrays(&file, &paths)?,
+            step: None,
+            scene: None,
+            about: read_about(path)?,
             damage,
         });
     }

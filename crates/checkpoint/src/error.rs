@@ -106,6 +106,16 @@ pub enum CheckpointError {
         /// Points or cells of the field.
         found: usize,
     },
+    /// A field of the whole run has the wrong number of points.
+    #[error("field {field} has {found} points, the mesh has {expected}")]
+    TableLength {
+        /// Name of the field.
+        field: String,
+        /// Points of the mesh.
+        expected: usize,
+        /// Points of the field.
+        found: usize,
+    },
     /// Steps must be written in order.
     #[error("step {step} at {time} s cannot follow step {last} at {last_time} s; both numbers must grow")]
     StepOrder {

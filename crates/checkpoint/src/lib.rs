@@ -7,6 +7,7 @@
 //! | `mesh.hdf` | all bodies as one unstructured grid, cell arrays `body` and `radius` | once, first |
 //! | `step_NNNNNN.hdf` | the fields of one step and everything a restart needs | once per step |
 //! | `pack_NNNNNN_NNNNNN.hdf` | many steps in one file, see [`pack`] | on request |
+//! | others ([`point_table`]) | fields of the run as a whole | by name, when the caller says |
 //! | `run.hdf.series` | names and real times of the steps, for ParaView 5.11 and later | after each step |
 //! | `run.vtkhdf` | the same steps as one temporal data set, for VTK 9.3, ParaView 5.12 and later | at the end |
 //! | `.raceway.lock` | who writes here, see [`lock`] | while a run writes |
@@ -33,6 +34,7 @@ pub mod index;
 pub mod lock;
 pub mod output;
 pub mod pack;
+pub mod point_table;
 pub mod record;
 pub mod series;
 pub mod step;
@@ -44,10 +46,11 @@ mod dataset;
 mod describe;
 mod folder;
 mod mesh_file;
+mod region;
 mod regular;
 mod seal;
 
-pub use background::{BackgroundOutput, Companion, Written};
+pub use background::{BackgroundOutput, Companion, Made, Written};
 pub use body::{Body, CellKind, point_ranges};
 pub use cells::{CellFields, IntegrationPointStress};
 pub use checksum::file_checksum;
@@ -63,7 +66,8 @@ pub use index::{Views, rebuild_index};
 pub use lock::{FolderLock, open_lock};
 pub use mesh_file::{MeshFile, read_mesh};
 pub use output::{Output, Resumed};
-pub use pack::{all_steps, pack_steps, packs, read_any_step, unpack_steps};
+pub use pack::{all_steps, pack_steps, packs, point_field_names, read_any_step, unpack_steps};
+pub use point_table::{PointTable, TableField, read_table};
 pub use record::{PointFields, StateArray, StepRecord};
 pub use regular::{open_own, open_regular};
 pub use step::{has_state, read_about, read_stamps, read_step, read_step_time};

@@ -17,6 +17,7 @@ use crate::folder::{
 use crate::index::{INDEX_FILE, Views, rebuild_index};
 use crate::lock::FolderLock;
 use crate::mesh_file::{MESH_FILE, MeshFile, read_mesh, require_same_mesh};
+use crate::point_table::{PointTable, write_table};
 use crate::record::{StepRecord, require_texts};
 use crate::series::write_series;
 use crate::step::{Origin, read_about, write_step_file};
@@ -183,19 +184,30 @@ impl Output {
         }
         let name = step_file_name(record.step);
         let dir = self.lock.dir();
-        let origin = Origin {
-            program_version: env!("CARGO_PKG_VERSION"),
-            mesh_hash: &self.mesh_hash,
-            run: self.run.as_deref(),
-            about: &self.about,
-        };
-        write_step_file(dir, &name, record, &origin, self.storage)?;
+        write_step_file(dir, &name, record, &self.origin(), self.storage)?;
         if self.steps.is_empty() {
             note_first_step(dir)?;
         }
         self.steps.push((record.step, record.time));
         write_series(dir, &self.steps)?;
         Ok(dir.join(name))
+    }
+
+    /// Writes fields of the run as a whole as a file `name`, in place of an earlier one. Its precision is that of
+    /// stress.
+    pub fn write_table(&self, name: &str, table: &PointTable) -> Result<(), CheckpointError> {
+        let written = (&self.origin(), self.storage.stress);
+        write_table(self.dir(), name, table, self.n_points, written)
+    }
+
+    /// What the files of the run say about it.
+    fn origin(&self) -> Origin<'_> {
+        Origin {
+            program_version: env!("CARGO_PKG_VERSION"),
+            mesh_hash: &self.mesh_hash,
+            run: self.run.as_deref(),
+            about: &self.about,
+        }
     }
 
     /// Builds the temporal index over all committed steps and returns what it shows; `None` for a run without steps,

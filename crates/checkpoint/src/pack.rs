@@ -20,8 +20,8 @@ use crate::lock::FolderLock;
 use crate::record::StepRecord;
 use crate::seal::{verify_seal, verify_structure};
 use crate::step::{
-    Origin, fill_step, has_state, read_mesh_hash, read_record, read_step, read_storage, read_texts,
-    read_time, read_version, require_run_in, run_of_file, write_step_file,
+    Origin, POINT_DATA, fill_step, has_state, read_mesh_hash, read_record, read_step, read_storage,
+    read_texts, read_time, read_version, require_run_in, run_of_file, write_step_file,
 };
 use crate::storage::Storage;
 
@@ -279,6 +279,19 @@ pub fn all_steps(dir: &Path) -> Result<Vec<u64>, CheckpointError> {
     steps.sort_unstable();
     steps.dedup();
     Ok(steps)
+}
+
+/// Names of the fields over points that a step of the run in `dir` holds, packed or not; no values are read.
+pub fn point_field_names(dir: &Path, step: u64) -> Result<Vec<String>, CheckpointError> {
+    let single = Place::single(dir, step);
+    let packed = packs(dir)?.into_iter().find(|(_, steps)| steps.contains(&step));
+    match packed {
+        Some((path, _)) if !single.path.exists() => Place::packed(&path, step).open()?.members(POINT_DATA),
+        _ => {
+            verify_structure(&single.path)?;
+            single.open()?.members(POINT_DATA)
+        }
+    }
 }
 
 /// Reads a step of the run in `dir`, packed or not; every value read is verified.

@@ -7,6 +7,8 @@ use crate::error::CheckpointError;
 use crate::growing::Stamps;
 use crate::storage::{Coding, Precision, Storage};
 
+/// Name of the field that tells the region in which fields are kept.
+pub(crate) const IN_REGION: &str = "in_region";
 /// Components of a vector.
 pub(crate) const VECTOR: usize = 3;
 
@@ -32,10 +34,10 @@ pub struct StepRecord {
 
 /// Fields over points, one row per point of all bodies in their order ([`crate::point_ranges`]). A field that is
 /// `None` is not written. Rows where a field has no meaning hold zeros, not NaN, so that colour ranges and
-/// statistics in a viewer stay finite: stress on balls, ball forces on rings.
+/// statistics in a viewer stay finite: stress on balls, ball forces on rings. NaN is what is not kept.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct PointFields {
-    /// Displacement, m, `[n_points][3]`, in the precision of [`Storage::displacement`].
+    /// Displacement, m, `[n_points][3]`, in the precision of [`Storage::displacement`]; empty in a step without.
     pub displacement: Vec<[f64; 3]>,
     /// Velocity, m/s, `[n_points][3]`, f64.
     pub velocity: Option<Vec<[f64; 3]>>,
@@ -49,6 +51,9 @@ pub struct PointFields {
     pub force_inner: Option<Vec<[f64; 3]>>,
     /// Force of the outer ring on each ball, N, `[n_points][3]`, zero on points of rings, f64; zeros take no place.
     pub force_outer: Option<Vec<[f64; 3]>>,
+    /// 1 in the region in which fields are kept, 0 outside, `[n_points]`, f32; None keeps all. A field whose rows
+    /// outside are NaN is stored without them.
+    pub in_region: Option<Vec<f64>>,
 }
 
 /// An array of the state, stored and returned bit for bit.
@@ -85,46 +90,82 @@ impl PointFields {
 
     /// Fields that are present, in the order of the files.
     pub(crate) fn present(&self, storage: Storage) -> Vec<Field<'_>> {
-        let derived = |name, n_components, values| Field {
-            name,
-            n_components,
-            values,
-            coding: storage.stress_coding(),
+        let region = self.in_region.as_deref();
+        let stress = |name, n_components, values| {
+            kept(
+                region,
+                Field {
+                    name,
+                    n_components,
+                    values,
+                    coding: storage.stress_coding(),
+                },
+            )
         };
-        let (exact, displacement) = (Coding::Full(Precision::F64), Coding::Full(storage.displacement));
-        let mut fields = vec![vector("displacement", &self.displacement, displacement)];
-        fields.extend(
-            self.velocity
-                .as_deref()
-                .map(|rows| vector("velocity", rows, exact)),
-        );
-        fields.extend(
-            self.acceleration
-                .as_deref()
-                .map(|rows| vector("acceleration", rows, exact)),
-        );
-        fields.extend(
-            self.stress
-                .as_deref()
-                .map(|rows| derived("stress", 6, rows.as_flattened())),
-        );
-        fields.extend(
+        let exact = Coding::Full(Precision::F64);
+        let displacement = Some(&self.displacement[..]).filter(|rows| !rows.is_empty());
+        let displacement = displacement.map(|rows| {
+            kept(
+                region,
+                vector("displacement", rows, Coding::Full(storage.displacement)),
+            )
+        });
+        // Zeros that are not in the file need a field of as many rows that is.
+        let forces = match displacement.is_some() || region.is_some() {
+            true => Coding::MostlyZero,
+            false => Coding::Packed(Precision::F64),
+        };
+        let tensors = self.stress.as_deref();
+        let fields = [
+            displacement,
+            vectors("velocity", &self.velocity, exact),
+            vectors("acceleration", &self.acceleration, exact),
+            tensors.map(|rows| stress("stress", 6, rows.as_flattened())),
             self.von_mises
                 .as_deref()
-                .map(|values| derived("von_mises", 1, values)),
-        );
-        fields.extend(
-            self.force_inner
-                .as_deref()
-                .map(|rows| vector("force_inner", rows, Coding::MostlyZero)),
-        );
-        fields.extend(
-            self.force_outer
-                .as_deref()
-                .map(|rows| vector("force_outer", rows, Coding::MostlyZero)),
-        );
-        fields
+                .map(|values| stress("von_mises", 1, values)),
+            vectors("force_inner", &self.force_inner, forces),
+            vectors("force_outer", &self.force_outer, forces),
+            region.map(mask),
+        ];
+        fields.into_iter().flatten().collect()
     }
+}
+
+/// A field with the coding of its region, if its rows outside are not known.
+pub(crate) fn kept<'a>(region: Option<&[f64]>, field: Field<'a>) -> Field<'a> {
+    let outside = region.and_then(|inside| inside.iter().position(|&inside| inside == 0.0));
+    let row = |row: usize| {
+        field
+            .values
+            .get(row * field.n_components..(row + 1) * field.n_components)
+    };
+    let is_left = |row: &[f64]| !row.is_empty() && row.iter().all(|value| value.is_nan());
+    match outside.and_then(row).is_some_and(is_left) {
+        true => Field {
+            coding: field.coding.in_region(),
+            ..field
+        },
+        false => field,
+    }
+}
+
+/// The region itself.
+pub(crate) fn mask(inside: &[f64]) -> Field<'_> {
+    Field {
+        name: IN_REGION,
+        n_components: 1,
+        values: inside,
+        coding: Coding::Packed(Precision::F32),
+    }
+}
+
+fn vectors<'a>(
+    name: &'static str,
+    rows: &'a Option<Vec<[f64; VECTOR]>>,
+    coding: Coding,
+) -> Option<Field<'a>> {
+    rows.as_deref().map(|rows| vector(name, rows, coding))
 }
 
 fn vector<'a>(name: &'static str, rows: &'a [[f64; 3]], coding: Coding) -> Field<'a> {

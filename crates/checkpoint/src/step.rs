@@ -31,7 +31,7 @@ use crate::dataset::{
 use crate::error::CheckpointError;
 use crate::growing::{Stamps, parse_stamps, stamps_text};
 use crate::mesh_file::{MESH_FILE, MESH_HASH, RUN};
-use crate::record::{PointFields, StateArray, StepRecord};
+use crate::record::{IN_REGION, PointFields, StateArray, StepRecord};
 use crate::seal::{verify_seal, verify_structure};
 use crate::storage::{Compression, Precision, Storage};
 
@@ -43,13 +43,13 @@ pub(crate) const CELL_DATA: &str = "/VTKHDF/CellData";
 pub(crate) const MESH_CELL_DATA: [&str; 2] = ["body", "radius"];
 const STRESS_LAYOUT: &str = "/VTKHDF/CellData/stress_integration_points/layout";
 const TIME: &str = "/VTKHDF/FieldData/time";
-const STEP: &str = "/restart/step";
+pub(crate) const STEP: &str = "/restart/step";
 const SCENE: &str = "/restart/scene";
-const PROGRAM_VERSION: &str = "/restart/program_version";
+pub(crate) const PROGRAM_VERSION: &str = "/restart/program_version";
 const CONTENTS: &str = "/restart/contents";
 const TABLES: &str = "/restart/tables";
 const STATE: &str = "/restart/state";
-const ABOUT: &str = "/restart/about";
+pub(crate) const ABOUT: &str = "/restart/about";
 
 /// Texts of a step that are not of its record.
 pub(crate) struct Origin<'a> {
@@ -258,12 +258,20 @@ pub(crate) fn read_storage(file: &CheckedFile) -> Result<Storage, CheckpointErro
         format!("{CELL_DATA}/von_mises_largest"),
     ];
     let stress = stress.iter().find(|path| file.has(path));
-    let displacement = format!("{POINT_DATA}/displacement");
+    let displacement = Some(format!("{POINT_DATA}/displacement")).filter(|path| file.has(path));
+    // Any of them tells the level of all.
+    let force = format!("{POINT_DATA}/force_inner");
+    let compressed = displacement.as_ref().or(stress).unwrap_or(&force);
     Ok(Storage {
         stress: stress.map_or(Ok(Precision::default()), |path| file.precision(path))?,
         stress_error: stress.map_or(Ok(None), |path| file.error_bound(path))?,
-        displacement: file.precision(&displacement)?,
-        compression: file.compression(&displacement)?,
+        displacement: displacement
+            .as_ref()
+            .map_or(Ok(Precision::F64), |path| file.precision(path))?,
+        compression: match file.has(compressed) {
+            true => file.compression(compressed)?,
+            false => Compression::None,
+        },
     })
 }
 
@@ -349,6 +357,7 @@ fn read_field(
         ("von_mises", [_]) => points.von_mises = Some(values),
         ("force_inner", [_, 3]) => points.force_inner = Some(rows(&values)),
         ("force_outer", [_, 3]) => points.force_outer = Some(rows(&values)),
+        (IN_REGION, [_]) => points.in_region = Some(values),
         _ => return Err(unknown(path, &dataset, &shape)),
     }
     Ok(())
@@ -378,6 +387,7 @@ fn read_cell_field(
             });
         }
         ("von_mises_largest", [_]) => cells.von_mises_largest = Some(values),
+        (IN_REGION, [_]) => cells.in_region = Some(values),
         _ => return Err(unknown(path, &dataset, &shape)),
     }
     Ok(())

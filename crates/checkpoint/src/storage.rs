@@ -86,6 +86,17 @@ impl Default for Storage {
     }
 }
 
+impl Coding {
+    /// The coding of a field that is known in a region alone.
+    pub(crate) fn in_region(self) -> Coding {
+        match self {
+            Coding::Full(precision) | Coding::Packed(precision) => Coding::Region(precision, None),
+            Coding::Rounded(precision, bound) => Coding::Region(precision, Some(bound)),
+            Coding::MostlyZero | Coding::Region(..) => self,
+        }
+    }
+}
+
 impl Storage {
     /// How stress arrays are coded.
     pub(crate) fn stress_coding(&self) -> Coding {
@@ -103,6 +114,10 @@ pub(crate) enum Coding {
     Full(Precision),
     /// Rounded to a bound of the error, in this format, and compressed.
     Rounded(Precision, ErrorBound),
+    /// The same, and compressed whatever the run chose.
+    Packed(Precision),
     /// In f64, of vectors of which most are zero: pieces of zeros are not in the file.
     MostlyZero,
+    /// In this format, NaN outside a region: compressed, and pieces that lie outside are not in the file.
+    Region(Precision, Option<ErrorBound>),
 }

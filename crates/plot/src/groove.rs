@@ -8,6 +8,7 @@ use super::quantity::{DEGREE, MEGAPASCAL};
 use super::raceways;
 use super::run::{Results, Steps};
 use super::shades::{self, Shades};
+use super::stress_step::step_with_stress;
 
 /// A figure per raceway: of a sweep a curve per point, else the chosen step.
 pub fn figures(results: &Results, step: Option<u64>) -> anyhow::Result<Vec<(String, Figure)>> {
@@ -17,7 +18,7 @@ pub fn figures(results: &Results, step: Option<u64>) -> anyhow::Result<Vec<(Stri
     let steps = all_steps(&results.dir)?;
     let steps: Vec<u64> = match (&results.steps, step) {
         (Steps::Sweep(_), None) => steps,
-        (_, chosen) => chosen.or(steps.last().copied()).into_iter().collect(),
+        (_, chosen) => step_with_stress(&results.dir, chosen)?.into_iter().collect(),
     };
     let mut figures: [Option<Figure>; 2] = [None, None];
     if steps.is_empty() {
@@ -40,6 +41,7 @@ pub fn figures(results: &Results, step: Option<u64>) -> anyhow::Result<Vec<(Stri
                         raceways::at_azimuth(&row, azimuth) * MEGAPASCAL.factor,
                     ]
                 })
+                .filter(|[_, stress]| !stress.is_nan())
                 .collect();
             if points.len() < 2 {
                 continue;

@@ -23,6 +23,7 @@ mod several;
 mod shades;
 mod shaft;
 mod stiffness;
+mod stress_step;
 mod surface;
 
 use std::path::{Path, PathBuf};
@@ -164,6 +165,7 @@ pub fn figures(dir: &Path, choice: &Choice) -> Result<Figures, Failure> {
         return Ok(Figures { drawn, problems });
     }
     let results = Results::read(dir)?;
+    stress_step::note_lacking(dir, choice.step)?;
     let groups = [
         ("balls", balls::figures(&results, choice)),
         ("shaft", shaft::figures(&results)),

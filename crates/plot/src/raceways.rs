@@ -84,18 +84,31 @@ pub fn nodes(grid: &Grid, record: &StepRecord, groove: &Groove) -> Vec<Node> {
     let Some(von_mises) = &record.points.von_mises else {
         return Vec::new();
     };
-    let rows = grid.points.iter().zip(&record.points.displacement).zip(von_mises);
-    rows.filter(|((x, _), _)| on_torus(**x, groove))
+    let places = grid.points.iter().zip(&record.points.displacement);
+    let own = |x: &[f64; 3]| x[1].atan2(x[0]);
+    let moved = |x: &[f64; 3], u: &[f64; 3]| (x[1] + u[1]).atan2(x[0] + u[0]);
+    // Nodes whose displacement is not kept (output.region) have turned with the others of the ring.
+    let mut on_ring = places.clone().filter(|(x, _)| on_torus(**x, groove));
+    let known = on_ring.find(|(_, u)| !u[0].is_nan());
+    let turn = known.map_or(0.0, |(x, u)| moved(x, u) - own(x));
+    let nodes: Vec<Node> = places
+        .zip(von_mises)
+        .filter(|((x, _), _)| on_torus(**x, groove))
         .map(|((x, u), &von_mises)| {
             let [_, angle] = groove.coordinates(*x);
-            let azimuth = (x[1] + u[1]).atan2(x[0] + u[0]).to_degrees();
+            let azimuth = if u[0].is_nan() { own(x) + turn } else { moved(x, u) };
             Node {
-                azimuth: azimuth.rem_euclid(360.0),
+                azimuth: azimuth.to_degrees().rem_euclid(360.0),
                 groove_angle: angle.to_degrees(),
                 von_mises,
             }
         })
-        .collect()
+        .collect();
+    // A ring of which nothing is kept (output.region) has no figure.
+    match nodes.iter().all(|node| node.von_mises.is_nan()) {
+        true => Vec::new(),
+        false => nodes,
+    }
 }
 
 fn on_torus(x: [f64; 3], groove: &Groove) -> bool {
@@ -156,4 +169,44 @@ pub fn most_loaded(table: &Table, step: u64, groove: &Groove) -> anyhow::Result<
         ball[row] as usize,
         (azimuth[row] * DEGREE.factor).rem_euclid(360.0),
     ))
+}
+
+#[cfg(test)]
+mod tests {
+    use checkpoint::PointFields;
+
+    use super::*;
+
+    /// Wrong: places of which nothing is kept (`output.region`) would get the stress of their neighbours, or stand
+    /// where the ring was before it turned. Two nodes of a groove of radius 1 on a circle of 10, at 0 and 90 degrees;
+    /// the ring has turned by 30.
+    #[test]
+    fn nodes_outside_the_region_turn_with_the_ring_and_have_no_stress() {
+        let groove = Groove {
+            side: Side::Outer,
+            centre_radius: 10.0,
+            groove_radius: 1.0,
+            centre_z: 0.0,
+        };
+        let grid = Grid {
+            points: vec![[0.0, 11.0, 0.0], [11.0, 0.0, 0.0]],
+            connectivity: Vec::new(),
+            offsets: vec![0],
+            types: Vec::new(),
+            body: Vec::new(),
+            radius: Vec::new(),
+        };
+        let (sin, cos) = 30.0_f64.to_radians().sin_cos();
+        let record = StepRecord {
+            points: PointFields {
+                displacement: vec![[f64::NAN; 3], [11.0 * (cos - 1.0), 11.0 * sin, 0.0]],
+                von_mises: Some(vec![f64::NAN, 1e6]),
+                ..PointFields::default()
+            },
+            ..StepRecord::default()
+        };
+        let found = nodes(&grid, &record, &groove);
+        assert!((found[0].azimuth - 120.0).abs() < 1e-9 && found[0].von_mises.is_nan());
+        assert!((found[1].azimuth - 30.0).abs() < 1e-9 && found[1].von_mises == 1e6);
+    }
 }

@@ -1,6 +1,6 @@
 //! The section of each ring at its most loaded ball, filled with the stress of the mesh.
 
-use checkpoint::{all_steps, read_any_step, read_mesh};
+use checkpoint::{read_any_step, read_mesh};
 use contact::Groove;
 use figure::{Figure, Series, Surface, Triangle};
 
@@ -8,6 +8,7 @@ use super::cut;
 use super::quantity::{DEGREE, MEGAPASCAL, MILLIMETRE};
 use super::raceways;
 use super::run::Results;
+use super::stress_step::step_with_stress;
 use results::table::Table;
 
 /// Width and height of the picture of a section.
@@ -18,7 +19,7 @@ pub fn figures(results: &Results, step: Option<u64>) -> anyhow::Result<Vec<(Stri
     let Some(balls) = &results.balls else {
         return Ok(Vec::new());
     };
-    let Some(step) = step.or(all_steps(&results.dir)?.last().copied()) else {
+    let Some(step) = step_with_stress(&results.dir, step)? else {
         return Ok(Vec::new());
     };
     let record = read_any_step(&results.dir, step)?;
@@ -30,14 +31,16 @@ pub fn figures(results: &Results, step: Option<u64>) -> anyhow::Result<Vec<(Stri
         .points
         .iter()
         .zip(&record.points.displacement)
-        .map(|(x, u)| [x[0] + u[0], x[1] + u[1], x[2] + u[2]])
+        // Where the displacement is not kept (output.region) the mesh stands in for it.
+        .map(|(x, u)| [0, 1, 2].map(|i| if u[i].is_nan() { x[i] } else { x[i] + u[i] }))
         .collect();
     let raceways = raceways::raceways(&record)?;
     let mut figures = Vec::new();
     for (groove, body) in raceways.grooves.into_iter().zip([0, 1]) {
         let (ball, azimuth) = raceways::most_loaded(balls, step, &groove)?;
         let triangles = cut::at_azimuth(&grid, &moved, von_mises, body, azimuth / DEGREE.factor);
-        if triangles.is_empty() {
+        let is_known = |triangle: &Triangle| triangle.values.iter().any(|value| !value.is_nan());
+        if !triangles.iter().any(is_known) {
             continue;
         }
         let largest = raceways::largest_of_body(&grid, von_mises, body) * MEGAPASCAL.factor;

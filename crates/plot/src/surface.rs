@@ -6,12 +6,13 @@
 
 use std::f64::consts::TAU;
 
-use checkpoint::{all_steps, read_any_step, read_mesh};
+use checkpoint::{read_any_step, read_mesh};
 use contact::Groove;
 use figure::{Axis, Figure, Look, Series, Surface};
 
 use super::quantity::{DEGREE, MEGAPASCAL, azimuth_axis};
 use super::raceways::{self, Node};
+use super::stress_step::step_with_stress;
 use super::{Choice, Named, Results};
 use results::table::Table;
 
@@ -25,7 +26,7 @@ pub fn figures(results: &Results, choice: &Choice) -> anyhow::Result<Vec<Named>>
     let Some(balls) = &results.balls else {
         return Ok(Vec::new());
     };
-    let Some(step) = choice.step.or(all_steps(&results.dir)?.last().copied()) else {
+    let Some(step) = step_with_stress(&results.dir, choice.step)? else {
         return Ok(Vec::new());
     };
     let record = read_any_step(&results.dir, step)?;

@@ -11,6 +11,7 @@ use fem::quadrature::stiffness_rule;
 use scene::{Analysis, Dynamic, Precision, Scene, StressOutput};
 
 use super::fields;
+use super::region::Region;
 use crate::failure::Failure;
 
 /// Numbers of a displacement.
@@ -22,6 +23,10 @@ const ROUNDED_GAIN: u64 = 2;
 const FORCE_CHUNK: u64 = 128;
 /// Bytes of the index of such chunks.
 const FORCE_INDEX: u64 = 2_600;
+/// Numbers of a point in the file of `[output.reduction]`: four of seven stresses each, damage, cycles.
+const REDUCED_NUMBERS: u64 = 30;
+/// Bytes of a node in a state: three numbers of seven stresses each.
+const REDUCED_NODE: u64 = 3 * 7 * 8;
 /// Numbers of a stress tensor.
 const TENSOR: u64 = 6;
 /// Bytes of one ball in the state of a motion: position, velocity, and force, angle and approach of two contacts.
@@ -52,13 +57,13 @@ impl Forecast {
     /// Forecast for the steps after `done` (0 for a new run, whose start has a file too).
     pub fn new(scene: &Scene, model: &Model, done: u64) -> Forecast {
         let n_points = rows(&fields::bodies(model), |body| body.points.len());
-        let state = state_bytes(scene, model);
-        let step = n_points * VECTOR * bytes_of(scene.output.displacement)
-            + force_bytes(n_points)
-            + stress_bytes(scene, model)
-            + state
-            + FRAME_BYTES
-            + scene.text.len() as u64;
+        let state = state_bytes(scene, model) + reduction_state_bytes(scene, model);
+        // A region without a node is refused elsewhere.
+        let region = Region::new(scene, model).unwrap_or_default();
+        let displacement = displacement_bytes(scene, n_points, region.as_ref());
+        let stress = stress_bytes(scene, model, region.as_ref());
+        let others = force_bytes(n_points) + FRAME_BYTES + scene.text.len() as u64;
+        let step = displacement + stress + state + others;
         let (n_files, n_rows) = match &scene.analysis {
             Analysis::Static => (1, 1),
             Analysis::Sweep(sweep) => (sweep.points.len() as u64, sweep.points.len() as u64),
@@ -73,16 +78,30 @@ impl Forecast {
         } else {
             n_rows.min(n_rows / every + n_files)
         };
+        let n_of = |every: u64| match &scene.analysis {
+            Analysis::Dynamic(dynamic) => n_states(dynamic, every, done),
+            Analysis::QuasiStatic(quasi) => {
+                files_and_rows(quasi.output_every.saturating_mul(every), quasi.n_steps, done).0
+            }
+            Analysis::Sweep(_) => n_files.div_ceil(every),
+            Analysis::Static | Analysis::Modes(_) => n_files,
+        };
         let n_states = match &scene.analysis {
-            Analysis::Dynamic(dynamic) => n_states(dynamic, scene.output.restart_every, done),
+            Analysis::Dynamic(_) => n_of(scene.output.restart_every),
             _ => n_files,
+        };
+        let every = scene.output.every;
+        let fields = n_of(every.stress) * stress + n_of(every.displacement) * displacement;
+        let reduction = match scene.output.reduction {
+            Some(_) => n_points * REDUCED_NUMBERS * bytes_of(scene.output.precision),
+            None => 0,
         };
         let cells = BALL_CELLS * model.geometry.n_balls as u64 + OTHER_CELLS;
         Forecast {
             step,
             n_files,
             n_states,
-            total: n_files * (step - state) + n_states * state + n_rows * cells * CELL_BYTES,
+            total: n_files * others + fields + n_states * state + reduction + n_rows * cells * CELL_BYTES,
         }
     }
 
@@ -152,7 +171,7 @@ fn rows(bodies: &[Body], count: impl Fn(&Body) -> usize) -> u64 {
 
 /// Bytes of stress in a step file: a tensor and its von Mises stress per point, or the tensors of the integration
 /// points of a cell and the largest of their von Mises stresses.
-fn stress_bytes(scene: &Scene, model: &Model) -> u64 {
+fn stress_bytes(scene: &Scene, model: &Model, region: Option<&Region>) -> u64 {
     let bodies = fields::bodies(model);
     let kinds = Side::BOTH.into_iter().filter_map(|side| model.ring(side));
     let points = kinds.map(|ring| stiffness_rule(ring.mesh.kind).points.len() as u64);
@@ -164,10 +183,36 @@ fn stress_bytes(scene: &Scene, model: &Model) -> u64 {
         StressOutput::Nodal => rows(&bodies, |body| body.points.len()) * (TENSOR + 1),
         StressOutput::IntegrationPoints => rows(&bodies, Body::n_cells) * (points_per_cell * TENSOR + 1),
     };
-    let bytes = bytes_of(scene.output.precision) * numbers;
+    let [of_points, of_cells] = region
+        .filter(|region| region.fields().stress)
+        .map_or([1.0; 2], Region::shares);
+    let share = match scene.output.stress {
+        StressOutput::IntegrationPoints => of_cells,
+        StressOutput::Nodal | StressOutput::None => of_points,
+    };
+    let bytes = ((bytes_of(scene.output.precision) * numbers) as f64 * share) as u64;
     match scene.output.stress_error {
         Some(_) => bytes / ROUNDED_GAIN,
         None => bytes,
+    }
+}
+
+/// Bytes of the displacement in a step file.
+fn displacement_bytes(scene: &Scene, n_points: u64, region: Option<&Region>) -> u64 {
+    let share = region
+        .filter(|region| region.fields().displacement)
+        .map_or(1.0, |region| region.shares()[0]);
+    ((n_points * VECTOR * bytes_of(scene.output.displacement)) as f64 * share) as u64
+}
+
+/// Bytes of what a restart state holds of `[output.reduction]`.
+fn reduction_state_bytes(scene: &Scene, model: &Model) -> u64 {
+    let rings = Side::BOTH.into_iter().filter_map(|side| model.ring(side));
+    match (scene.output.reduction, &scene.analysis) {
+        (Some(_), Analysis::Dynamic(_)) => {
+            REDUCED_NODE * rings.map(|ring| ring.mesh.n_nodes() as u64).sum::<u64>()
+        }
+        _ => 0,
     }
 }
 

@@ -9,12 +9,12 @@ use dynamics::balls::BallResult;
 use dynamics::{Model, StaticSolution};
 use fem::stress::von_mises;
 use mesh::Mesh;
-use scene::{RingFrame, Scene};
+use scene::{KeptFields, RingFrame, Scene};
 
 use super::on_ball::force_on_ball;
 use super::ring_stress::{Basis, Gathered, RingStress, ShownRing, StressFields};
 use super::seat::{SeatState, tied};
-use super::shown::{Shown, Turn};
+use super::shown::{RingField, Shown, Turn};
 use crate::failure::Failure;
 
 /// Value of the cell array `body` on a body round the outer ring.
@@ -52,7 +52,7 @@ pub fn bodies(model: &Model) -> Vec<Body> {
 }
 
 /// The body round the outer ring, its mesh, and where that stands in the bearing, m.
-fn body_of(model: &Model) -> Option<(&Surrounding, &Mesh, [f64; 3])> {
+pub fn body_of(model: &Model) -> Option<(&Surrounding, &Mesh, [f64; 3])> {
     let (side, _, tie) = tied(model)?;
     let body = tie.body.as_ref()?;
     let shift = [0.0, 0.0, body.shift + model.ring_shift(side)];
@@ -66,9 +66,9 @@ pub fn record(
     solution: &StaticSolution,
     (stress, gathered): (&RingStress, Gathered),
     (step, time): (u64, f64),
-    scene: &Scene,
+    (scene, kept): (&Scene, KeptFields),
 ) -> Result<StepRecord, Failure> {
-    let (points, cells) = Places::new(shown, gathered, scene)?.fields(stress);
+    let (points, cells) = Places::new(shown, gathered, scene, kept)?.fields(stress);
     Ok(StepRecord {
         step,
         time,
@@ -80,9 +80,15 @@ pub fn record(
     })
 }
 
+/// A step file with forces on balls alone.
+const NOTHING: KeptFields = KeptFields {
+    stress: false,
+    displacement: false,
+};
+
 /// All points at one instant, but for the stress.
 pub struct Places {
-    /// Displacement of every point, m.
+    /// Displacement of every point, m; empty where it is not kept.
     displacement: Vec<[f64; 3]>,
     /// What the stress of the flexible rings follows from.
     rings: [Option<ShownRing>; 2],
@@ -94,10 +100,19 @@ pub struct Places {
 
 impl Places {
     /// Places of rings and balls, rings as they stand in space or in their own frames, and the stress that ranks
-    /// have `gathered`.
-    pub fn new(shown: &Shown<'_>, mut gathered: Gathered, scene: &Scene) -> Result<Places, Failure> {
-        let (mut displacement, mut rings) = (Vec::new(), [None, None]);
+    /// have `gathered`; without the fields that are not kept.
+    pub fn new(
+        shown: &Shown<'_>,
+        mut gathered: Gathered,
+        scene: &Scene,
+        kept: KeptFields,
+    ) -> Result<Places, Failure> {
+        let (mut displacement, mut rings, mut n_points) = (Vec::new(), [None, None], 0);
         for side in Side::BOTH {
+            n_points += shown.model().ring(side).map_or(0, |ring| ring.mesh.n_nodes());
+            if kept == NOTHING {
+                continue;
+            }
             let Some(mut ring) = shown.ring(side) else {
                 continue;
             };
@@ -107,44 +122,39 @@ impl Places {
             if scene.output.rings[side.index()] == RingFrame::OwnFrame {
                 ring.turn = Turn::new(0.0);
             }
-            displacement.extend(ring.shown_displacements());
-            let patches = match scene.stress.near_field_reach {
-                Some(_) => shown.patches(side).map_err(Failure::solving)?,
-                None => Vec::new(),
-            };
-            rings[side.index()] = Some(ShownRing {
-                own_stress: ring.own_stress.clone(),
-                basis: match gathered.stress[side.index()].take() {
-                    Some(stress) => Basis::Stress(stress),
-                    None => Basis::Displacement(ring.strained.into_owned()),
-                },
-                turn: ring.turn,
-                patches,
-            });
+            if kept.displacement {
+                displacement.extend(ring.shown_displacements());
+            }
+            if kept.stress {
+                let stress = gathered.stress[side.index()].take();
+                rings[side.index()] = Some(shown_ring(shown, side, ring, stress, scene)?);
+            }
         }
-        let mut forces = add_balls(shown.model(), shown.placed(), &shown.balls(), &mut displacement);
-        let body = body_displacement(shown)?;
-        if let Some(body) = &body {
-            displacement.extend(body.chunks_exact(3).map(|u| [u[0], u[1], u[2]]));
-            forces
-                .iter_mut()
-                .for_each(|list| list.resize(displacement.len(), [0.0; 3]));
+        let (of_balls, mut forces) = balls(shown.model(), shown.placed(), &shown.balls(), n_points);
+        let of_body = body_of(shown.model()).map_or(0, |(_, mesh, _)| mesh.n_nodes());
+        for list in &mut forces {
+            list.resize(list.len() + of_body, [0.0; 3]);
+        }
+        let body = if kept == NOTHING {
+            None
+        } else {
+            body_displacement(shown)?
+        };
+        if kept.displacement {
+            displacement.extend(of_balls);
+            displacement.extend(body.iter().flat_map(|body| body.as_chunks::<3>().0));
         }
         Ok(Places {
             displacement,
             rings,
             forces,
-            body,
+            body: body.filter(|_| kept.stress),
         })
     }
 
     /// Fields of all points and cells, with the stress that is asked for.
     pub fn fields(self, stress: &RingStress) -> (PointFields, CellFields) {
-        let recovery = stress;
-        let mut stress = recovery.fields(&self.rings);
-        if let Some(body) = &self.body {
-            recovery.add_body(body, &mut stress);
-        }
+        let stress = stress.fields(&self.rings, self.body.as_deref());
         let [force_inner, force_outer] = self.forces;
         let (points, cells) = with_stress(self.displacement, stress);
         let points = PointFields {
@@ -157,7 +167,7 @@ impl Places {
 }
 
 /// Displacement of the body round the outer ring at rest, m, `[n_nodes][3]` flat; None where none is shown.
-fn body_displacement(shown: &Shown<'_>) -> Result<Option<Vec<f64>>, Failure> {
+pub fn body_displacement(shown: &Shown<'_>) -> Result<Option<Vec<f64>>, Failure> {
     let Shown::Equilibrium { model, solution, .. } = shown else {
         return Ok(None);
     };
@@ -165,6 +175,29 @@ fn body_displacement(shown: &Shown<'_>) -> Result<Option<Vec<f64>>, Failure> {
         return Ok(None);
     }
     Ok(SeatState::new(model, solution)?.map(|seat| seat.body_displacement()))
+}
+
+/// What the stress of a ring follows from: its displacement, or the stress that ranks have gathered.
+pub fn shown_ring(
+    shown: &Shown<'_>,
+    side: Side,
+    ring: RingField<'_>,
+    gathered: Option<Vec<[f64; 6]>>,
+    scene: &Scene,
+) -> Result<ShownRing, Failure> {
+    let patches = match scene.stress.near_field_reach {
+        Some(_) => shown.patches(side).map_err(Failure::solving)?,
+        None => Vec::new(),
+    };
+    Ok(ShownRing {
+        own_stress: ring.own_stress.clone(),
+        basis: match gathered {
+            Some(stress) => Basis::Stress(stress),
+            None => Basis::Displacement(ring.strained.into_owned()),
+        },
+        turn: ring.turn,
+        patches,
+    })
 }
 
 /// Displacement and stress of all points and cells.
@@ -181,18 +214,16 @@ pub fn with_stress(displacement: Vec<[f64; 3]>, stress: StressFields) -> (PointF
     (points, stress.cells)
 }
 
-/// Adds the balls' displacements to those of the rings' points; returns the forces on the balls from the inner and the
-/// outer ring at all points, N, zero on rings. `placed` is the bearing of the mesh file.
-fn add_balls(
+/// Displacements of the balls, m, and the forces on them from the inner and the outer ring, N, at all points of rings
+/// and balls, zero on rings, which have `n_points`. `placed` is the bearing of the mesh file.
+fn balls(
     model: &Model,
     placed: &BearingGeometry,
     balls: &[BallResult],
-    displacement: &mut Vec<[f64; 3]>,
-) -> [Vec<[f64; 3]>; 2] {
-    let mut forces = [
-        vec![[0.0; 3]; displacement.len()],
-        vec![[0.0; 3]; displacement.len()],
-    ];
+    n_points: usize,
+) -> (Vec<[f64; 3]>, [Vec<[f64; 3]>; 2]) {
+    let mut displacement = Vec::new();
+    let mut forces = [vec![[0.0; 3]; n_points], vec![[0.0; 3]; n_points]];
     let (centre, from) = (model.geometry.ball_centre(), placed.ball_centre());
     for (i, ball) in balls.iter().enumerate() {
         let (sin, cos) = ball.azimuth_rad.sin_cos();
@@ -208,7 +239,7 @@ fn add_balls(
             list.push(force_on_ball(side, ball));
         }
     }
-    forces
+    (displacement, forces)
 }
 
 fn state(solution: &StaticSolution) -> BTreeMap<String, StateArray> {

@@ -8,12 +8,12 @@ use std::time::{Duration, Instant};
 
 use anyhow::anyhow;
 use checkpoint::{
-    BackgroundOutput, CheckpointError, Compression, ErrorBound, FolderLock, MeshFile, Output, Precision,
-    Stamps, StepRecord, Storage,
+    BackgroundOutput, CheckpointError, Compression, ErrorBound, FolderLock, Made, MeshFile, Output,
+    Precision, Stamps, StepRecord, Storage,
 };
 use comm::{Communicator, print};
 use dynamics::Model;
-use scene::{Analysis, Scene};
+use scene::{Analysis, KeptFields, Scene};
 use timer::{Laps, Stopwatch};
 
 use super::about::{about, identity};
@@ -23,11 +23,17 @@ use super::film::FilmLaw;
 use super::folder;
 use super::log;
 use super::memory::Forecasts;
+use super::motion_fields::RestartState;
 use super::probes::Probes;
+use super::reduction::{REDUCTION_FILE, ReducedStress, StressReduction};
+use super::region::Region;
 use super::ring_stress::{Gathered, RingStress};
 use super::shown::Shown;
 use super::snapshot::Snapshot;
-use super::summary::{Costs, DISK, DISK_WAIT, GATHER, NEAR_FIELD, OUTPUT, READ, STRESS, SUMMARY_FILE, TOTAL};
+use super::state_arrays::Arrays;
+use super::summary::{
+    Costs, DISK, DISK_WAIT, GATHER, NEAR_FIELD, OUTPUT, READ, REDUCTION, STRESS, SUMMARY_FILE, TOTAL,
+};
 use super::tables::{OwnColumns, Tables};
 use crate::failure::Failure;
 use crate::survey::Survey;
@@ -41,6 +47,8 @@ pub struct Files {
     open: Option<Open>,
     /// Stress of the rings, shared with the thread that writes.
     ring_stress: Arc<RingStress>,
+    /// That of which extremes are found, if the scene asks for them.
+    reduced: Option<ReducedStress>,
     /// Laps of this thread since the files were opened.
     laps: Laps,
 }
@@ -53,6 +61,8 @@ pub struct ResumedFrom<'a> {
     pub tables: Option<&'a Stamps>,
     /// Warnings of the start of the run.
     pub warnings: &'a [String],
+    /// What it holds of `[output.reduction]`.
+    pub reduction: &'a Arrays,
 }
 
 /// The open files of one run.
@@ -60,6 +70,8 @@ struct Open {
     output: BackgroundOutput,
     tables: Tables,
     probes: Option<Probes>,
+    region: Option<Arc<Region>>,
+    reduction: Option<StressReduction>,
 }
 
 impl Files {
@@ -89,12 +101,15 @@ impl Files {
         survey: Survey,
         warnings: &[String],
     ) -> Result<Files, Failure> {
-        let ring_stress = RingStress::new(model, scene)?;
+        let ring_stress = Arc::new(RingStress::new(model, scene)?);
+        let reduced = ReducedStress::new(scene, model, &ring_stress)?;
         if !Communicator::world().is_root() {
-            return Ok(Files::new(None, ring_stress));
+            return Ok(Files::new(None, ring_stress, reduced));
         }
         let mut clock = Stopwatch::start();
-        let Survey { probes, mesh, .. } = survey;
+        let Survey {
+            probes, mesh, region, ..
+        } = survey;
         let mesh = mesh.map_or_else(|| mesh_file(scene, model), Ok)?;
         let lock = folder::prepare(dir)?;
         note_dead_owner(&lock);
@@ -107,7 +122,14 @@ impl Files {
             first,
             &own_columns(scene, model, probes.as_ref()),
         )?;
-        let mut files = Files::new(Some(Open::new(output, tables, probes)?), ring_stress);
+        let open = Open {
+            region: region.map(Arc::new),
+            reduction: reduced
+                .as_ref()
+                .map(|reduced| StressReduction::new(scene, model, reduced)),
+            ..Open::new(output, tables, probes)?
+        };
+        let mut files = Files::new(Some(open), ring_stress, reduced);
         files.laps.add(OUTPUT, clock.lap());
         Ok(files)
     }
@@ -121,16 +143,25 @@ impl Files {
         survey: Survey,
         resumed: &ResumedFrom<'_>,
     ) -> Result<Files, Failure> {
-        let ring_stress = RingStress::new(model, scene)?;
+        let ring_stress = Arc::new(RingStress::new(model, scene)?);
+        let reduced = ReducedStress::new(scene, model, &ring_stress)?;
         let Some(lock) = lock else {
-            return Ok(Files::new(None, ring_stress));
+            return Ok(Files::new(None, ring_stress, reduced));
         };
         let mut clock = Stopwatch::start();
         let dir = lock.dir().to_path_buf();
         let last = resumed.step;
         let texts = about(scene, &dir, resumed.warnings)?;
         // The tables tell whether the step can be resumed from; nothing is changed before all is known to fit.
-        let Survey { probes, mesh, .. } = survey;
+        let Survey {
+            probes, mesh, region, ..
+        } = survey;
+        let mut reduction = reduced
+            .as_ref()
+            .map(|reduced| StressReduction::new(scene, model, reduced));
+        if let Some(reduction) = &mut reduction {
+            reduction.load(resumed.reduction, last)?;
+        }
         let columns = own_columns(scene, model, probes.as_ref());
         let cuts = Tables::cuts(&dir, first, &columns, (last, resumed.tables))?;
         let mesh = mesh.map_or_else(|| mesh_file(scene, model), Ok)?;
@@ -159,22 +190,33 @@ impl Files {
             ));
         }
         warn_of_damage(&damaged);
-        // What it says is not true any more until the run ends again.
-        match std::fs::remove_file(dir.join(SUMMARY_FILE)) {
-            Err(error) if error.kind() != std::io::ErrorKind::NotFound => {
-                return Err(anyhow!("cannot remove the old {SUMMARY_FILE}: {error}").into());
+        // What they say is not true any more until the run ends again, or gets to its next state.
+        for name in [SUMMARY_FILE, REDUCTION_FILE] {
+            match std::fs::remove_file(dir.join(name)) {
+                Err(error) if error.kind() != std::io::ErrorKind::NotFound => {
+                    return Err(anyhow!("cannot remove the old {name}: {error}").into());
+                }
+                _ => {}
             }
-            _ => {}
         }
-        let mut files = Files::new(Some(Open::new(output, tables, probes)?), ring_stress);
+        if let Some(table) = reduction.as_ref().and_then(StressReduction::table) {
+            output.write_table(REDUCTION_FILE, &table)?;
+        }
+        let open = Open {
+            region: region.map(Arc::new),
+            reduction,
+            ..Open::new(output, tables, probes)?
+        };
+        let mut files = Files::new(Some(open), ring_stress, reduced);
         files.laps.add(OUTPUT, clock.lap());
         Ok(files)
     }
 
-    fn new(open: Option<Open>, ring_stress: RingStress) -> Files {
+    fn new(open: Option<Open>, ring_stress: Arc<RingStress>, reduced: Option<ReducedStress>) -> Files {
         Files {
             open,
-            ring_stress: Arc::new(ring_stress),
+            ring_stress,
+            reduced,
             laps: Laps::default(),
         }
     }
@@ -186,8 +228,8 @@ impl Files {
 
     /// Stress of an instant of the rings that several ranks share, for its fields. Collective, and never a failure of
     /// one rank: to be called before anything of the instant is written.
-    pub fn gather_stress(&mut self, shown: &Shown<'_>) -> Gathered {
-        let (gathered, laps) = self.ring_stress.gather(shown);
+    pub fn gather_stress(&mut self, shown: &Shown<'_>, kept: KeptFields) -> Gathered {
+        let (gathered, laps) = self.ring_stress.gather(shown, kept);
         self.laps.merge(&laps);
         gathered
     }
@@ -251,25 +293,62 @@ impl Files {
         let Some(open) = &mut self.open else { return Ok(()) };
         let mut record = self.laps.time(STRESS, || record(&self.ring_stress))?;
         record.tables = Some(open.tables.stamps());
+        if let Some(region) = &open.region {
+            region.apply(&mut record);
+        }
         self.laps.time(OUTPUT, || open.output.write_step(record))?;
         Ok(())
     }
 
-    /// As [`Files::write_fields`] for a record that needs nothing but itself: the thread that writes makes it.
+    /// As [`Files::write_fields`] for a record that needs nothing but itself: the thread that writes makes it. A step
+    /// with a state has what is known of the whole run besides, which is also written as a file.
     pub fn write_fields_later(
         &mut self,
+        restart: RestartState,
         record: impl FnOnce(&RingStress) -> StepRecord + Send + 'static,
     ) -> Result<(), Failure> {
         let Some(open) = &mut self.open else { return Ok(()) };
         let ring_stress = self.ring_stress.clone();
         let tables = Some(open.tables.stamps());
-        let make = move || StepRecord {
-            tables,
-            ..record(&ring_stress)
+        let region = open.region.clone();
+        let reduction = open
+            .reduction
+            .as_ref()
+            .filter(|_| restart == RestartState::Stored);
+        let (arrays, table) = (
+            reduction.map(StressReduction::arrays),
+            reduction.and_then(StressReduction::table),
+        );
+        let make = move || {
+            let mut record = StepRecord {
+                tables,
+                ..record(&ring_stress)
+            };
+            record.state.extend(arrays.into_iter().flatten());
+            if let Some(region) = &region {
+                region.apply(&mut record);
+            }
+            Made {
+                record,
+                table: table.map(|table| (REDUCTION_FILE, table)),
+            }
         };
         let hand_over = || open.output.write_step_made_by(make);
         self.laps.time(OUTPUT, hand_over)?;
         Ok(())
+    }
+
+    /// Takes a step into account in what is found of the whole run, if the scene asks for that and the step counts.
+    /// Collective; rank 0 alone may fail.
+    pub fn reduce(&mut self, step: u64, time: f64, shown: &Shown<'_>, scene: &Scene) -> Result<(), Failure> {
+        let Some(reduced) = self.reduced.as_ref().filter(|reduced| reduced.counts(step, time)) else {
+            return Ok(());
+        };
+        let (gathered, laps) = reduced.gather(shown);
+        self.laps.merge(&laps);
+        let reduction = self.open.as_mut().and_then(|open| open.reduction.as_mut());
+        let add = |reduction: &mut StressReduction| reduction.add(step, shown, gathered, scene);
+        reduction.map_or(Ok(()), |reduction| self.laps.time(REDUCTION, || add(reduction)))
     }
 
     /// Time spent waiting for the disk so far.
@@ -303,6 +382,14 @@ impl Files {
         let of_probes = open.probes.as_ref().and_then(Probes::near_field_seconds);
         let near_fields = [self.ring_stress.near_field_seconds(), of_probes];
         let run = written.output.run().map(str::to_string);
+        if let Some(reduction) = &open.reduction {
+            match reduction.table() {
+                Some(table) => written.output.write_table(REDUCTION_FILE, &table)?,
+                None => print::note(format_args!(
+                    "warning: no step counts by [output.reduction], there is no {REDUCTION_FILE}"
+                )),
+            }
+        }
         if let Some(views) = written.output.finish()? {
             warn_of_damage(&views.damaged);
         }
@@ -334,6 +421,8 @@ impl Open {
             output: BackgroundOutput::start(output, QUEUE, companions)?,
             tables,
             probes,
+            region: None,
+            reduction: None,
         })
     }
 }

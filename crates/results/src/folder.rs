@@ -10,6 +10,7 @@ use checkpoint::{FolderLock, clear_unfinished_start, is_unfinished_start};
 use comm::{Communicator, print};
 
 use crate::failure::{Failure, agree};
+use crate::reduction::REDUCTION_FILE;
 use crate::seat::SEAT_TABLE;
 use crate::summary::SUMMARY_FILE;
 use crate::whole::make_asked_folder;
@@ -18,8 +19,9 @@ use crate::whole::make_asked_folder;
 const MAX_FOLDERS: usize = 10_000;
 
 /// Files that say that a folder holds results, besides those of steps.
-const RESULT_FILES: [&str; 12] = [
+const RESULT_FILES: [&str; 13] = [
     SUMMARY_FILE,
+    REDUCTION_FILE,
     "balls.csv",
     "shaft.csv",
     "energy.csv",
@@ -147,8 +149,9 @@ fn require_writable(dir: &Path) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Tables that a run may write.
-const TABLES: [&str; 8] = [
+/// Tables that a run may write, and other files with a name of their own.
+const TABLES: [&str; 9] = [
+    REDUCTION_FILE,
     "balls.csv",
     "shaft.csv",
     "energy.csv",

@@ -30,6 +30,8 @@ pub mod on_ball;
 pub mod probe_places;
 pub mod probes;
 pub mod rainflow;
+pub mod reduction;
+mod region;
 mod ring_stress;
 pub mod seat;
 pub mod several;

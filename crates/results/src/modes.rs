@@ -137,7 +137,7 @@ impl ModeFiles {
             let (sin, cos) = model.geometry.azimuth(ball).sin_cos();
             displacement.push([radial * cos, radial * sin, axial].map(|u| AMPLITUDE * u));
         }
-        fields::with_stress(displacement, self.stress.fields(&rings))
+        fields::with_stress(displacement, self.stress.fields(&rings, None))
     }
 }
 

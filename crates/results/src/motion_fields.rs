@@ -3,7 +3,7 @@
 use checkpoint::StepRecord;
 use dynamics::Model;
 use dynamics::motion::{Motion, MotionState};
-use scene::{Dynamic, Output, Scene};
+use scene::{Dynamic, KeptFields, Output, Scene};
 
 use super::fields::Places;
 use super::ring_stress::{Gathered, RingStress};
@@ -43,21 +43,21 @@ impl RestartState {
 }
 
 impl Recorded {
-    /// Places of rings and balls at one instant, the stress that ranks have `gathered`, and the state if it is to be
-    /// stored.
+    /// Places of rings and balls at one instant and the stress that ranks have `gathered`, as far as they are kept; the
+    /// state if it is to be stored.
     pub fn new(
         model: &Model,
         motion: &Motion<'_>,
         state: &MotionState,
         gathered: Gathered,
-        scene: &Scene,
+        (scene, kept): (&Scene, KeptFields),
         restart: RestartState,
     ) -> Result<Recorded, Failure> {
         let shown = Shown::Motion { model, motion, state };
         Ok(Recorded {
             step: state.step,
             time: motion.time(state.step),
-            places: Places::new(&shown, gathered, scene)?,
+            places: Places::new(&shown, gathered, scene, kept)?,
             state: match restart {
                 RestartState::Stored => state_arrays::store(state, &motion.shape()),
                 RestartState::Left => Arrays::new(),

@@ -10,7 +10,7 @@ use fem::StressRecovery;
 use fem::quadrature::stiffness_rule;
 use fem::stress::von_mises;
 use mesh::NodePositions;
-use scene::{Scene, StressOutput};
+use scene::{KeptFields, Scene, StressOutput};
 use timer::Laps;
 
 use super::seat::tied;
@@ -98,23 +98,28 @@ impl RingStress {
     /// Prepares what the scene asks for: on rank 0 that of all rings, on others their part of rings that ranks share.
     /// Collective.
     pub fn new(model: &Model, scene: &Scene) -> Result<RingStress, Failure> {
+        RingStress::of_kind(scene.output.stress, model, scene)
+    }
+
+    /// The same of another kind than step files have.
+    pub fn of_kind(kind: StressOutput, model: &Model, scene: &Scene) -> Result<RingStress, Failure> {
         let recovery = |side: Side| match model.ring(side) {
-            Some(ring) if scene.output.stress != StressOutput::None => {
-                Recovery::new(ring, side.name(), model.backend, scene)
+            Some(ring) if kind != StressOutput::None => {
+                Recovery::new(ring, (side.name(), kind), model.backend, scene)
             }
             _ => Ok::<_, Failure>(None),
         };
         Ok(RingStress {
-            kind: scene.output.stress,
+            kind,
             rings: [recovery(Side::Inner)?, recovery(Side::Outer)?],
             n_balls: model.geometry.n_balls,
-            body: body_recovery(model, scene)?,
+            body: body_recovery(model, kind)?,
         })
     }
 
     /// Stress of the rings that several ranks share, and what else their fields take, on rank 0;
     /// laps of the sectors of this rank, and of putting all together. Collective.
-    pub fn gather(&self, shown: &Shown<'_>) -> (Gathered, Laps) {
+    pub fn gather(&self, shown: &Shown<'_>, kept: KeptFields) -> (Gathered, Laps) {
         let (mut gathered, mut laps) = (Gathered::default(), Laps::default());
         let model = shown.model();
         if !matches!(model.backend, Backend::Sector(sectors) if sectors.comm.size() > 1) {
@@ -125,13 +130,13 @@ impl RingStress {
                 continue;
             };
             laps.time(GATHER, || {
-                if field.needs_places() {
+                if kept.displacement && field.needs_places() {
                     let places = ring.places(side.name(), model.backend);
                     let places = places.expect("a ring that is divided has sectors");
                     gathered.places[side.index()] = places.to_root();
                 }
             });
-            let recovery = self.rings[side.index()].as_ref();
+            let recovery = self.rings[side.index()].as_ref().filter(|_| kept.stress);
             let Some(Source::Shared(shared)) = recovery.map(|r| &r.source) else {
                 continue;
             };
@@ -168,8 +173,9 @@ impl RingStress {
         stress
     }
 
-    /// Stress of one instant, from the fields of the flexible rings.
-    pub fn fields(&self, rings: &[Option<ShownRing>; 2]) -> StressFields {
+    /// Stress of one instant, from the fields of the flexible rings, and after all others that of a body round the
+    /// outer ring, displaced by `body` (m, flat).
+    pub fn fields(&self, rings: &[Option<ShownRing>; 2], body: Option<&[f64]>) -> StressFields {
         let known: Vec<(&Recovery, &ShownRing)> = self
             .rings
             .iter()
@@ -179,7 +185,7 @@ impl RingStress {
         if known.is_empty() {
             return StressFields::default();
         }
-        match self.kind {
+        let mut fields = match self.kind {
             StressOutput::None => StressFields::default(),
             StressOutput::Nodal => StressFields {
                 nodal: Some(self.nodal(&known)),
@@ -189,7 +195,11 @@ impl RingStress {
                 nodal: None,
                 cells: self.cells(&known),
             },
+        };
+        if let Some(displacement) = body {
+            self.add_body(displacement, &mut fields);
         }
+        fields
     }
 
     fn nodal(&self, rings: &[(&Recovery, &ShownRing)]) -> Vec<[f64; 6]> {
@@ -203,7 +213,7 @@ impl RingStress {
     }
 
     /// Adds the stress of a body round the outer ring, displaced so (m, flat), after all others.
-    pub fn add_body(&self, displacement: &[f64], fields: &mut StressFields) {
+    fn add_body(&self, displacement: &[f64], fields: &mut StressFields) {
         let Some(body) = &self.body else { return };
         if let Some(nodal) = &mut fields.nodal {
             nodal.extend(body.nodal(displacement));
@@ -248,14 +258,15 @@ impl RingStress {
                 layout: LAYOUT.to_string(),
             }),
             von_mises_largest: Some(largest),
+            in_region: None,
         }
     }
 }
 
 /// Recovery of a body round the outer ring, where stress is asked for and it has a mesh.
-fn body_recovery(model: &Model, scene: &Scene) -> Result<Option<Box<StressRecovery>>, Failure> {
+fn body_recovery(model: &Model, kind: StressOutput) -> Result<Option<Box<StressRecovery>>, Failure> {
     let body = tied(model).and_then(|(_, _, tie)| tie.body.as_ref()?.mesh.as_ref());
-    let Some((mesh, material)) = body.filter(|_| scene.output.stress != StressOutput::None) else {
+    let Some((mesh, material)) = body.filter(|_| kind != StressOutput::None) else {
         return Ok(None);
     };
     let recovery = StressRecovery::new(mesh, material).map_err(anyhow::Error::from)?;
@@ -266,12 +277,12 @@ impl Recovery {
     /// Recovery of a ring; None on a rank that has no part in it.
     fn new(
         ring: &RingModel,
-        side: &'static str,
+        (side, kind): (&'static str, StressOutput),
         backend: Backend,
         scene: &Scene,
     ) -> Result<Option<Recovery>, Failure> {
         let (at_points, is_root) = (
-            scene.output.stress == StressOutput::IntegrationPoints,
+            kind == StressOutput::IntegrationPoints,
             Communicator::world().is_root(),
         );
         let source = match backend {
@@ -379,7 +390,7 @@ mod tests {
             shown(stretched(&meshes[0]), quarter),
             shown(stretched(&meshes[1]), 0.0),
         ];
-        let found = stress.fields(&fields);
+        let found = stress.fields(&fields, None);
         assert!(found.nodal.is_none());
         let tensors = found.cells.stress_integration_points.unwrap();
         assert_eq!(tensors.points_per_cell, 27);

@@ -56,6 +56,15 @@ pub struct RingField<'a> {
 }
 
 impl<'a> Shown<'a> {
+    /// An equilibrium.
+    pub fn at_rest(model: &'a Model, placed: &'a BearingGeometry, solution: &'a StaticSolution) -> Shown<'a> {
+        Shown::Equilibrium {
+            model,
+            placed,
+            solution,
+        }
+    }
+
     /// The bearing with its loads.
     pub fn model(&self) -> &'a Model {
         match self {

@@ -33,6 +33,8 @@ pub const STRESS: &str = "stress";
 pub const NEAR_FIELD: &str = "stress/near_field";
 /// Lap: putting together on rank 0 the stress that ranks recover; absent with one process.
 pub const GATHER: &str = "gather";
+/// Lap: extremes and damage found while the run goes on; absent where the scene asks for none.
+pub const REDUCTION: &str = "reduction";
 /// Lap: writing, as far as the run had to wait for it: tables, handing over steps, closing.
 pub const OUTPUT: &str = "output";
 /// Lap: waiting for the disk.
@@ -46,7 +48,7 @@ const ALWAYS: [&str; 11] = [
     READ, ASSEMBLE, FACTOR, COLUMNS, CONTACT, SOLVE, STRESS, OUTPUT, DISK, DISK_WAIT, TOTAL,
 ];
 /// Laps that it has where they were run.
-const SOMETIMES: [&str; 2] = [NEAR_FIELD, GATHER];
+const SOMETIMES: [&str; 3] = [NEAR_FIELD, REDUCTION, GATHER];
 /// Name of the file in the result folder.
 pub const SUMMARY_FILE: &str = "summary.json";
 

@@ -19,6 +19,7 @@ use crate::failure::{Failure, agree};
 use crate::fields;
 use crate::memory::require_memory;
 use crate::probes::Probes;
+use crate::region::Region;
 
 /// What only whole meshes tell of a run.
 #[derive(Default)]
@@ -27,8 +28,20 @@ pub struct Survey {
     pub probes: Option<Probes>,
     /// What is most likely a slip in the scene; where ranks share rings, on rank 0 only.
     pub doubts: Vec<String>,
+    /// The region in which fields are kept, if the scene has one; where ranks share rings, on rank 0 only.
+    pub region: Option<Region>,
     /// The content of `mesh.hdf` where the model will not have all of it, on rank 0.
     pub mesh: Option<MeshFile>,
+}
+
+impl Survey {
+    /// That of a part of a run, whose meshes are whole: where its fields are kept.
+    pub fn of_part(scene: &Scene, model: &Model) -> Result<Survey, Failure> {
+        Ok(Survey {
+            region: Region::new(scene, model)?,
+            ..Survey::default()
+        })
+    }
 }
 
 /// The model of a scene (a point of `scene` when that is a sweep) with results in `dir`, and its survey, if a last
@@ -64,11 +77,13 @@ fn whole(
     let doubts = doubts(point, &model);
     say_doubts(&doubts);
     let probes = Probes::new(scene, &model, &tags)?;
+    let region = Region::new(scene, &model)?;
     test(&model)?;
     require_memory(&scene.analysis, &model)?;
     let survey = Survey {
         probes,
         doubts,
+        region,
         mesh: None,
     };
     Ok((model, survey))

@@ -13,8 +13,18 @@ import numpy as np
 import pandas as pd
 
 from .errors import MissingPackage, ResultsError
-from .meshes import Mesh
-from .steps import MESH_FILE, STRESS_COMPONENTS, VECTOR_COMPONENTS, Place, Step, find_steps, read_mesh, require_same_run
+from .meshes import Floats, Mesh
+from .steps import (
+    MESH_FILE,
+    STRESS_COMPONENTS,
+    VECTOR_COMPONENTS,
+    Place,
+    Step,
+    find_steps,
+    read_mesh,
+    read_point_fields,
+    require_same_run,
+)
 from .tables import read_table
 
 if TYPE_CHECKING:
@@ -74,6 +84,15 @@ class Results:
     def load_matrix(self) -> dict[str, Any]:
         """What gauges read under 1 N of each ball: `load_matrix.json`; `strain_per_n` is an array, gauges by balls."""
         return _with_arrays(self._document("load_matrix.json", "raceway load-matrix writes it"))
+
+    @cached_property
+    def reduction(self) -> dict[str, Floats]:
+        """What `[output.reduction]` found of the run: `stress_maximum` and others in Pa, `damage`, `cycles`, over points."""
+        path = self.folder / "reduction.vtkhdf"
+        if not path.is_file():
+            raise ResultsError(f"{self.folder} has no reduction.vtkhdf; a scene with [output.reduction] gives it")
+        require_same_run(self.folder / MESH_FILE, Place(path, "/"))
+        return read_point_fields(path)
 
     @property
     def scene(self) -> str:

@@ -124,6 +124,15 @@ def find_steps(folder: Path) -> dict[int, Place]:
     return dict(sorted(steps.items()))
 
 
+def read_point_fields(path: Path) -> dict[str, Floats]:
+    """All fields over the points of a file, by name."""
+    with _opened(path) as file:
+        try:
+            return {name: np.asarray(field[()]) for name, field in file["VTKHDF/PointData"].items()}
+        except (KeyError, OSError) as error:
+            raise ResultsError(f"{path} is damaged: {error}") from error
+
+
 def read_mesh(folder: Path) -> Mesh:
     """The mesh of the run in a folder."""
     path = folder / MESH_FILE

@@ -64,6 +64,7 @@ pub fn record(step: u64) -> StepRecord {
         von_mises: Some((0..N_POINTS).map(|i| value(4, i, 0)).collect()),
         force_inner: Some(vector(5)),
         force_outer: Some(vector(6)),
+        in_region: None,
     };
     let state = BTreeMap::from([
         (
@@ -109,6 +110,7 @@ fn cells(step: u64) -> CellFields {
             layout: "Größen: xx yy zz xy yz xz of 8 points".to_string(),
         }),
         von_mises_largest: Some((0..N_CELLS).map(|i| value(900 + i)).collect()),
+        in_region: None,
     }
 }
 

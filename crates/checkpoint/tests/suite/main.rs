@@ -6,5 +6,6 @@ mod fixture;
 mod folder;
 mod mesh_and_views;
 mod pack;
+mod region;
 mod round_trip;
 mod storage;

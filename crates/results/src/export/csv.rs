@@ -24,7 +24,7 @@ pub fn write(file: &mut dyn Write, grid: &Grid, record: &StepRecord) -> io::Resu
         head.extend(
             suffixes
                 .iter()
-                .map(|suffix| format!("{name}{suffix}_{}", unit(name))),
+                .map(|suffix| format!("{name}{suffix}{}", unit(name))),
         );
     }
     writeln!(file, "{}", head.join(","))?;
@@ -42,14 +42,15 @@ pub fn write(file: &mut dyn Write, grid: &Grid, record: &StepRecord) -> io::Resu
     Ok(())
 }
 
-/// Unit of a field in column names.
+/// Unit of a field as the end of the names of its columns.
 fn unit(name: &str) -> &'static str {
     match name {
-        "displacement" => "m",
-        "velocity" => "m_per_s",
-        "acceleration" => "m_per_s2",
-        "stress" | "von_mises" => "pa",
-        _ => "n",
+        "displacement" => "_m",
+        "velocity" => "_m_per_s",
+        "acceleration" => "_m_per_s2",
+        "stress" | "von_mises" => "_pa",
+        "in_region" => "",
+        _ => "_n",
     }
 }
 

@@ -12,6 +12,7 @@ use super::bearing::Bearing;
 use super::dynamic::RawDynamic;
 use super::materials::Materials;
 use super::modes::ModesContext;
+use super::output::OutputContext;
 use super::profiles::ProfilesContext;
 use super::ring::MeshFiles;
 use super::shaft::Shaft;
@@ -86,6 +87,18 @@ impl RawScene {
     /// Whether inertia is left out, so that damping has nothing to do.
     fn is_without_inertia(&self) -> bool {
         self.is_at_rest() || (self.dynamic.is_none() && self.quasi_static.is_some())
+    }
+
+    /// What output depends on; flexible rings, inner first.
+    pub(super) fn output_context(&self, flexible: [bool; 2]) -> OutputContext {
+        OutputContext {
+            has_steps: self.dynamic.is_some() || self.quasi_static.is_some(),
+            is_motion: self.dynamic.is_some(),
+            is_sweep: self.sweep.is_some(),
+            is_static: self.r#static.is_some(),
+            flexible,
+            has_stress: true,
+        }
     }
 
     pub(super) fn effects_context(

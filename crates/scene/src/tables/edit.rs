@@ -23,11 +23,22 @@ pub fn apply_override(document: &mut DocumentMut, text: &str) -> Result<(), Stri
     set(document, path.trim(), parsed)
 }
 
+/// Tables of `[output]` that need a series of steps.
+pub const OF_SERIES: [&str; 2] = ["every", "reduction"];
+
+/// Takes what needs a series of steps out of the scene of one equilibrium.
+pub fn remove_series(document: &mut DocumentMut) {
+    for name in OF_SERIES {
+        remove_table(document, &format!("output.{name}"));
+    }
+}
+
 /// The document as the scene of one point of its sweep: `key` has the value, and `[sweep]` is `[static]`.
 pub fn point_text(document: &DocumentMut, key: &str, value: Value) -> Result<String, String> {
     let mut point = document.clone();
     set(&mut point, key, value)?;
     point.remove("sweep");
+    remove_series(&mut point);
     point.insert("static", Item::Table(Table::new()));
     Ok(point.to_string())
 }

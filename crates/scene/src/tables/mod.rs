@@ -111,7 +111,10 @@ pub use self::lubricant::{Lubrication, Roughness};
 pub use self::materials::{Material, Materials};
 pub use self::modes::{ModeBody, ModeSupport, Modes};
 pub use self::oil::Oil;
-pub use self::output::{Output, Precision, RingFrame, StressOutput};
+pub use self::output::{
+    CycleDamage, DamageNodes, DamageStress, Every, KeptFields, Output, OutputReduction, OutputRegion,
+    Precision, RingFrame, StressOutput,
+};
 pub use self::probes::{Axes, ContactProbe, NodeProbe, Probes, SectionPoint};
 pub use self::profiles::SurfaceProfiles;
 pub use self::quasi_static::QuasiStatic;
@@ -141,7 +144,7 @@ use self::lubricant::RawLubricant;
 use self::materials::RawMaterials;
 use self::messages::Messages;
 use self::modes::{ModesContext, RawModes};
-use self::output::{OutputContext, RawOutput};
+use self::output::RawOutput;
 use self::probes::{ProbesContext, RawProbes};
 use self::profiles::RawProfiles;
 use self::quasi_static::RawQuasiStatic;
@@ -399,10 +402,7 @@ impl Source<'_> {
         let has_speed = raw.has_speed();
         let solver = raw.solver.check(&mut problems);
         let body = raw.body(self, solver.backend, &mut problems, &mut assumed);
-        let output = OutputContext {
-            has_steps: raw.dynamic.is_some() || raw.quasi_static.is_some(),
-            is_motion: raw.dynamic.is_some(),
-        };
+        let output = raw.output_context([inner.body.is_some(), outer.body.is_some()]);
         let output = raw.output.check(output, &mut problems);
         let stress = StressContext {
             contact: contact.mode,

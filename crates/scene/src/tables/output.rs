@@ -1,7 +1,25 @@
+//! ```toml
+#![doc = include_str!("example_output.toml")]
+//! ```
 //! `[output]`: what is written, and how exactly.
+
+mod context;
+mod every;
+mod reduction;
+mod region;
 
 use input::{Problems, Quantity, STRESS};
 use serde::Deserialize;
+
+pub use self::context::OutputContext;
+pub use self::every::{Every, KeptFields};
+pub use self::reduction::{CycleDamage, DamageNodes, DamageStress, OutputReduction};
+pub use self::region::OutputRegion;
+
+use self::context::MAX_EVERY;
+use self::every::RawEvery;
+use self::reduction::RawReduction;
+use self::region::RawRegion;
 
 /// As typed.
 #[derive(Debug, Default, Deserialize)]
@@ -16,6 +34,9 @@ pub struct RawOutput {
     tables_every: Option<i64>,
     inner_ring: Option<RingFrame>,
     outer_ring: Option<RingFrame>,
+    every: Option<RawEvery>,
+    region: Option<RawRegion>,
+    reduction: Option<RawReduction>,
 }
 
 /// Stress fields that are written.
@@ -69,6 +90,12 @@ pub struct Output {
     pub tables_every: u64,
     /// Where turning rings are shown, inner first.
     pub rings: [RingFrame; 2],
+    /// Fields that only some step files hold.
+    pub every: Every,
+    /// Where fields are kept; None keeps them everywhere.
+    pub region: Option<OutputRegion>,
+    /// What is found of stress while the run goes on.
+    pub reduction: Option<OutputReduction>,
 }
 
 /// Least error of stress, Pa, by precision: with f32, stress up to 17 GPa is rounded by this alone.
@@ -81,22 +108,15 @@ const LEAST_ERROR: [(Precision, f64, &str); 2] = [
     (Precision::F64, 1.0, "expected at least 1 Pa"),
 ];
 
-/// What a scene computes, as far as output depends on it.
-#[derive(Clone, Copy, Debug)]
-pub struct OutputContext {
-    /// Whether it has steps in time.
-    pub has_steps: bool,
-    /// Whether it is a motion, whose step files hold a state to go on from.
-    pub is_motion: bool,
-}
-
-/// No run has more steps.
-const MAX_EVERY: i64 = 100_000_000;
-
 impl RawOutput {
     /// Checks ranges and fills in defaults.
     pub fn check(&self, context: OutputContext, problems: &mut Problems) -> Output {
         self.require_use(context, problems);
+        let context = OutputContext {
+            has_stress: self.stress != Some(StressOutput::None),
+            ..context
+        };
+        let every = self.every.as_ref();
         let tables_every = self.tables_every.unwrap_or(1);
         let level = problems.whole(self.compression.unwrap_or(0), "output.compression", 0, 9);
         let restart_every = self.restart_every.unwrap_or(1);
@@ -110,6 +130,12 @@ impl RawOutput {
             compression: level as u8,
             tables_every: problems.whole(tables_every, "output.tables_every", 1, MAX_EVERY) as u64,
             rings: [self.inner_ring, self.outer_ring].map(|frame| frame.unwrap_or(RingFrame::Space)),
+            every: every.map_or(Every::default(), |every| every.check(context, problems)),
+            region: self.region.as_ref().map(|region| region.check(context, problems)),
+            reduction: self
+                .reduction
+                .as_ref()
+                .map(|asked| asked.check(context, problems)),
         }
     }
 

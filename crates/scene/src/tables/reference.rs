@@ -10,7 +10,7 @@ pub const REST: &str = include_str!("example.toml");
 /// Motion, of which the tables that say more than those at rest are shown.
 pub const MOTION: &str = include_str!("example_dynamic.toml");
 /// All other tables.
-pub const OTHERS: [&str; 17] = [
+pub const OTHERS: [&str; 19] = [
     include_str!("example_include.toml"),
     include_str!("example_catalogue.toml"),
     include_str!("example_materials.toml"),
@@ -22,6 +22,8 @@ pub const OTHERS: [&str; 17] = [
     include_str!("example_static.toml"),
     include_str!("example_modes.toml"),
     include_str!("example_quasi_static.toml"),
+    include_str!("example_output.toml"),
+    include_str!("example_reduction.toml"),
     include_str!("example_stress.toml"),
     include_str!("example_probes.toml"),
     include_str!("example_stress_probes.toml"),

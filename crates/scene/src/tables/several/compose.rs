@@ -18,7 +18,7 @@ use super::super::{Scene, SceneError, Source, edit, include};
 use super::mounted::{BearingOnShaft, RawMounted, check_places};
 use super::pairing::Pairing;
 use super::shaft::{CommonShaft, ShaftKind};
-use super::turned::{turn_speed, turn_speeds, turn_weight};
+use super::turned::{turn_region, turn_speed, turn_speeds, turn_weight};
 use super::{AnyScene, ON_SHAFT, RawSeveral, SeveralScene, is_plain, set};
 use crate::tables::shaft::Motion;
 
@@ -85,6 +85,7 @@ impl Composer<'_> {
     ) -> Result<SeveralScene, SceneError> {
         let mut problems = Problems::default();
         check_list(&raw, &mut problems);
+        check_output(&raw, document, &mut problems);
         let pairing = raw.pairing.as_ref().map(|p| p.check(&raw.bearing, &mut problems));
         let pairing = pairing.unwrap_or_default();
         let at_rest = raw.analysis(document, &mut problems);
@@ -227,6 +228,7 @@ impl Composer<'_> {
             }
             turn_weight(document, orientation);
             turn_speed(document, orientation);
+            turn_region(document, orientation);
             if let Some(force) = spring {
                 set(
                     document,
@@ -246,7 +248,10 @@ impl Composer<'_> {
             set(document, "shaft.load_point", "\"0 m\"");
             match list.get("dynamic") {
                 Some(dynamic) => document.insert("dynamic", dynamic.clone()),
-                None => document.insert("static", Item::Table(Table::new())),
+                None => {
+                    edit::remove_series(document);
+                    document.insert("static", Item::Table(Table::new()))
+                }
             };
         })
     }
@@ -326,6 +331,19 @@ fn check_list(raw: &RawSeveral, problems: &mut Problems) {
     }
     if raw.bearing.is_empty() {
         problems.add("bearing is an empty list; expected at least one table [[bearing]]");
+    }
+}
+
+/// Refuses tables of `[output]` that a list has in motion only.
+fn check_output(raw: &RawSeveral, list: &DocumentMut, problems: &mut Problems) {
+    let output = list.get("output").and_then(Item::as_table_like);
+    let output = output.filter(|_| raw.dynamic.is_none());
+    let given = |name: &&str| output.is_some_and(|output| output.contains_key(name));
+    for name in edit::OF_SERIES.into_iter().filter(given) {
+        problems.add(format!(
+            "[output.{name}] is for a list of bearings in motion, [dynamic], only: at rest every bearing has its own \
+             [static] files; remove it"
+        ));
     }
 }
 

@@ -1,4 +1,4 @@
-//! Weight and speeds as a bearing that is turned sees them.
+//! Weight, speeds and a region of output as a bearing that is turned sees them.
 
 use assembly::Orientation;
 use toml_edit::{DocumentMut, Item, TableLike, Value};
@@ -22,6 +22,27 @@ pub fn turn_weight(document: &mut DocumentMut, orientation: Orientation) {
             .map(|d| d + 0.0)
             .into_iter()
             .collect();
+    }
+}
+
+/// Ends of the region of output in the bearing's frame: a half turn about x changes the signs of y, z and azimuths, and
+/// so the order of the ends.
+pub fn turn_region(document: &mut DocumentMut, orientation: Orientation) {
+    if orientation == Orientation::PlusZ {
+        return;
+    }
+    let region = document
+        .get_mut("output")
+        .and_then(Item::as_table_like_mut)
+        .and_then(|output| output.get_mut("region"))
+        .and_then(Item::as_table_like_mut);
+    let Some(region) = region else { return };
+    for key in ["azimuth", "y", "z"] {
+        if let Some(ends) = region.get_mut(key).and_then(Item::as_array_mut) {
+            let mut turned: Vec<Value> = ends.iter().cloned().collect();
+            turned.iter_mut().for_each(turn_values);
+            *ends = turned.into_iter().rev().collect();
+        }
     }
 }
 
@@ -50,7 +71,7 @@ pub fn turn_speed(document: &mut DocumentMut, orientation: Orientation) {
     }
 }
 
-/// Turns a speed, those of a list, or those in the inline table of a course over time.
+/// Turns a quantity, those of a list, or those in the inline table of a course over time.
 fn turn_values(value: &mut Value) {
     match value {
         Value::String(text) => {
