@@ -15,7 +15,7 @@ use dense::DenseLu;
 use dynamics::motion::held::HeldPart;
 use dynamics::stiffness::{N_SHAFT, ShaftMatrix};
 
-use super::balance::ShaftStep;
+use super::step::ShaftStep;
 use crate::error::AssemblyError;
 
 /// The shaft alone over parts of one size at one speed.

@@ -2,7 +2,7 @@
 
 use dynamics::stiffness::N_SHAFT;
 
-use super::balance::ShaftStep;
+use super::step::ShaftStep;
 use crate::shaft::{ShaftBody, times};
 
 /// Energy ledger of the shaft, J. Each bearing has its own, into which the shaft's work goes as `imposed_work`.

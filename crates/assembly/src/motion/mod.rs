@@ -19,6 +19,7 @@
 mod balance;
 mod factors;
 mod ledger;
+mod step;
 
 use dynamics::kinematics::Speed;
 use dynamics::motion::held::{HeldPart, Holding};
@@ -26,9 +27,9 @@ use dynamics::motion::{Integrator, Motion, MotionSettings, MotionState, PartSpan
 use dynamics::stiffness::N_SHAFT;
 use dynamics::{DynamicsError, ShaftDof};
 
-use self::balance::ShaftStep;
 use self::factors::{KeptFactors, ShaftAlone};
 pub use self::ledger::ShaftLedger;
+use self::step::ShaftStep;
 use crate::assembly::{Assembly, AssemblySolution};
 use crate::error::AssemblyError;
 use crate::newton::Mount;
