@@ -18,7 +18,7 @@ use crate::interactions::free_contact::FoundContact;
 use crate::interactions::free_contact::orientation::{Quaternion, at_start, in_ball};
 use crate::interactions::free_contact::rolling_surface::{RollingSurface, WornBall};
 use crate::interactions::raceway_contact::Site;
-use crate::surfaces::{EllipseKind, Strips, SurfacePlace, Surfaces};
+use crate::surfaces::{StripBearing, Strips, SurfacePlace, Surfaces};
 
 impl Motion<'_> {
     /// Surfaces of the bearing.
@@ -87,17 +87,17 @@ impl Motion<'_> {
 }
 
 impl Motion<'_> {
-    /// Whether the ellipse of a contact is Hertz's in a state, with the half-width `rolling` along the track, m; None:
-    /// its raceway has no strips.
-    pub(super) fn ellipse(
+    /// How a contact carries its load in a state, with the half-width `rolling` along the track, m; None: its raceway
+    /// has no strips.
+    pub(super) fn strip_bearing(
         &self,
         state: &MotionState,
         (ball, side): (usize, Side),
         rolling: f64,
-    ) -> Option<EllipseKind> {
+    ) -> Option<StripBearing> {
         let index = 2 * ball + side.index();
         let strips = self.strips_at((state, self.time(state.step)), (ball, side))?;
-        Some(strips.ellipse(state.approaches[index], state.angles[index], rolling))
+        Some(strips.bearing(state.approaches[index], state.angles[index], rolling))
     }
 
     /// The strips under a contact as it stands in a state at a time, s; None: its raceway has none.
