@@ -260,11 +260,12 @@ impl Strips {
         }
     }
 
-    /// How it carries its load, at an approach, m, and a contact angle, rad, with the half-width `rolling` of Hertz's
-    /// ellipse along the track, m.
-    pub fn bearing(&self, approach: f64, angle: f64, rolling: f64) -> StripBearing {
+    /// How it carries its load, at an approach, m, and a contact angle, rad, beside Hertz's ellipse of the same force
+    /// with these semi-axes across and along the track, m.
+    pub fn bearing(&self, approach: f64, angle: f64, [half_width, rolling]: [f64; 2]) -> StripBearing {
         let (law, line) = (&self.surface.law, self.line());
-        let Some(extent) = law.extent(&line, approach, angle) else {
+        let extent = law.extent(&line, approach, angle).filter(|_| half_width > 0.0);
+        let Some(extent) = extent else {
             return StripBearing::HERTZ;
         };
         let mut range = extent.missing;
@@ -279,8 +280,7 @@ impl Strips {
         } else {
             return StripBearing::HERTZ;
         };
-        let smooth = law.smooth_approach(0.0, law.evaluate(line, 0.0, approach, angle).force);
-        let half_width = (2.0 * law.parabola_radius * smooth).sqrt();
+        let smooth = 0.5 * half_width * half_width / law.parabola_radius;
         let [low, high] = extent.ends;
         let line_at = |k: usize| {
             let y = low + (high - low) * k as f64 / (PRESSURE_LINES - 1) as f64;

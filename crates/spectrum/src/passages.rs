@@ -27,25 +27,28 @@ use contact::Side;
 
 /// Time that counts as undisturbed before a passage, over that from ball to ball.
 const QUIET: f64 = 1.0 / 40.0;
-/// Time from the first sign of a passage by which the ball is told, and by which one looks back for its entry.
+/// Time from the first sign of a passage after which the ball is told, and by which one looks back for its entry.
 const NAMED: f64 = 1.0 / 100.0;
 const BACK: f64 = 1.0 / 70.0;
 /// Time that a passage takes at most.
 const LONGEST: f64 = 0.6;
 /// Share of its load that a ball lacks at the first sign, and least load that counts over the largest.
-const SIGN: f64 = 0.03;
+const SIGN: f64 = 0.06;
 const LEAST_LOAD: f64 = 0.1;
 /// Depth of a spall, m.
 const LEAST_DEPTH: f64 = 0.5e-6;
 /// Depths, over the largest, between which the root is a line; that at which the ball is on its way out.
 const ROOT: [f64; 2] = [0.1, 0.6];
 const OUT: f64 = 0.8;
-/// Share of its load below which a ball flies, within the error of it.
+/// Share of its load below which a ball flies, within the error of it; also its least depth ([`DEEPER`]).
 const FLIES: f64 = 0.05;
 /// Time over which the ball's acceleration is differenced, s: a tenth of the period between its raceways.
 const BEND: f64 = 3e-6;
-/// Depth of a passage over that to which a ball sinks in a spall of its length, at most.
+/// Depth of a passage over that to which a ball sinks in a spall of its length, at most; the inverse is the least of a
+/// ball that stays loaded, [`FLIES`] that of one that flies.
 const DEEPER: f64 = 2.0;
+/// Time from the deepest place to the way out over that from entry to it, at most: on a floor it is long.
+const KINK: f64 = 0.5;
 /// Samples that count as undisturbed at least.
 pub const LEAST_QUIET: usize = 8;
 
@@ -120,20 +123,27 @@ struct Before<'r> {
 /// All passages of a motion, in their order.
 pub fn passages(record: &Record, known: &Known) -> Vec<Passage> {
     let (mut found, mut at) = (Vec::new(), 1 + record.samples(known, QUIET));
-    while at + 1 < record.shaft.len() {
-        let until = (at + record.samples(known, LONGEST)).min(record.shaft.len() - 1);
+    while at + 2 < record.shaft.len() {
+        let until = (at + record.samples(known, LONGEST)).min(record.shaft.len() - 2);
         let before = record.before(known, at);
         let first = record.pushes(known, &before, at);
         if !before.loads().zip(&first).any(|(load, push)| *push > SIGN * load) {
             at += 1;
             continue;
         }
-        let later = record.pushes(known, &before, (at + record.samples(known, NAMED)).min(until));
-        let ball = (0..later.len()).fold(0, |most, b| if later[b] > later[most] { b } else { most });
-        match record.passage(known, ball, at, until) {
+        let step_of = |time: f64| ((time - record.times[0]) / record.times[1]).round() as usize;
+        let named = |step: usize| largest(&record.pushes(known, &before, step));
+        // At first what is left of an earlier blow may be largest, at the impact it is what the ball lacks.
+        let ball = named((at + record.samples(known, NAMED)).min(until));
+        let first = record.passage(known, ball, at, until);
+        let again = first.map(|passage| named(step_of(passage.times[1])));
+        let passage = match again {
+            Some(other) if other != ball => record.passage(known, other, at, until),
+            _ => first,
+        };
+        match passage {
             Some(passage) => {
-                let since = (passage.times[0] - record.times[0]) / record.times[1];
-                at = at.max(since as usize) + record.samples(known, LONGEST);
+                at = at.max(step_of(passage.times[0])) + record.samples(known, LONGEST);
                 found.push(passage);
             }
             None => at += record.samples(known, QUIET),
@@ -262,15 +272,13 @@ impl Record {
             Side::Outer => self.depths_outside(known, &at, &shares, &along),
             Side::Inner => self.depths_inside(known, &at, &shares, &along),
         };
-        let deepest = deepest(&depths)?;
-        let from_depth = |share: f64| {
-            let shallower = |w: &f64| *w <= share * depths[deepest];
+        let (deepest, out) = deepest(&depths)?;
+        let shallower = |share: f64| {
             depths[..deepest]
                 .iter()
-                .rposition(shallower)
-                .map_or(0, |step| step + 1)
+                .rposition(|w| *w <= share * depths[deepest])
         };
-        let root = from_depth(ROOT[0])..from_depth(ROOT[1]) + 1;
+        let root = shallower(ROOT[0])? + 1..shallower(ROOT[1])? + 2;
         let dt = self.times[1];
         let start = self.times[0] + dt * from as f64;
         let entry = start
@@ -289,13 +297,17 @@ impl Record {
         let last = (deepest + (deepest - root.start) / 2).min(shares.len() - 1);
         let turned = at.azimuth + cage * (impact - start) - ring * (impact - self.times[0]);
         let length = 2.0 * speed * half;
-        let is_spall = half > 0.0 && depths[deepest] < DEEPER * known.sag * length * length;
-        is_spall.then(|| Passage {
+        let flies = shares[..=last].iter().any(|share| *share < FLIES);
+        let depth = depths[deepest] / (known.sag * length * length);
+        let least = if flies { FLIES } else { 1.0 / DEEPER };
+        let is_kink = dt * ((out - deepest) as f64) < KINK * half;
+        let is_spall = half > 0.0 && is_kink && (least..DEEPER).contains(&depth);
+        is_spall.then_some(Passage {
             ball,
             times: [entry, impact],
             azimuth: (turned + PI).rem_euclid(TAU) - PI,
             length,
-            flies: shares[..=last].iter().any(|share| *share < FLIES),
+            flies,
         })
     }
 
@@ -306,14 +318,14 @@ impl Record {
         let places: Vec<f64> = shares.iter().zip(along).map(place).collect();
         let half = (BEND / dt).round().max(1.0) as usize;
         let depth = |j: usize| {
-            if j < half || j + half >= places.len() {
+            if j < half {
                 return places[j];
             }
             let bend = (places[j - half] - 2.0 * places[j] + places[j + half]) / (half as f64 * dt).powi(2);
             let outer = 1.0 - ((1.0 - shares[j]) * q_i + known.ball.0 * bend) / q_o;
             places[j] + d_o * (1.0 - outer.clamp(0.0, 1.0).powf(2.0 / 3.0))
         };
-        (0..places.len()).map(depth).collect()
+        (0..places.len().saturating_sub(half)).map(depth).collect()
     }
 
     /// The same of the inner ring.
@@ -331,14 +343,19 @@ impl Record {
     }
 }
 
-/// The deepest place before the ball is on its way out; None: it does not go in, or not out again.
-fn deepest(depths: &[f64]) -> Option<usize> {
+/// The number of the largest value.
+fn largest(values: &[f64]) -> usize {
+    (0..values.len()).fold(0, |most, i| if values[i] > values[most] { i } else { most })
+}
+
+/// The deepest place before the ball is on its way out, and that where it is; None: it does not go in, or not out again.
+fn deepest(depths: &[f64]) -> Option<(usize, usize)> {
     let mut deepest = 0;
     for (step, depth) in depths.iter().enumerate() {
         if *depth > depths[deepest] {
             deepest = step;
         } else if depths[deepest] > LEAST_DEPTH && *depth < OUT * depths[deepest] {
-            return Some(deepest);
+            return Some((deepest, step));
         }
     }
     None

@@ -90,14 +90,20 @@ fn say_passage(passage: &Passage) {
 
 /// The length that the passages agree on, or why there is none.
 fn say_all(found: &[Passage], record: &Record, known: &Known) {
-    let mut lengths: Vec<f64> = found.iter().filter(|p| !p.flies).map(|p| p.length).collect();
+    let off = |a: &Passage, b: &Passage| ((a.azimuth - b.azimuth + PI).rem_euclid(TAU) - PI).abs();
+    let together = |a: &Passage| found.iter().filter(|b| off(a, b) < SPREAD).collect::<Vec<_>>();
+    let groups = found.iter().map(together);
+    let group = groups.fold(
+        Vec::new(),
+        |most, group| if group.len() > most.len() { group } else { most },
+    );
+    let mut lengths: Vec<f64> = group.iter().filter(|p| !p.flies).map(|p| p.length).collect();
     lengths.sort_by(f64::total_cmp);
-    let off = |p: &Passage| (p.azimuth - found[0].azimuth + PI).rem_euclid(TAU) - PI;
     if found.is_empty() {
         print::line(format_args!(
             "no ball loses its load and meets an edge: no double impulse to tell a length from"
         ));
-    } else if found.iter().any(|p| off(p).abs() > SPREAD) {
+    } else if found.len() > 1 && 2 * group.len() <= found.len() {
         print::line(format_args!(
             "the passages lie at places of their own on the {} ring: no length of one spall; look at the other ring",
             known.side.name()
@@ -107,11 +113,12 @@ fn say_all(found: &[Passage], record: &Record, known: &Known) {
             "every ball flies over the spall: its length is not to be told"
         ));
     } else {
-        let steps = 1e3 * found[0].length / (found[0].times[1] - found[0].times[0]) * record.times[1];
+        let step = 1e3 * found[0].length / (found[0].times[1] - found[0].times[0]) * record.times[1];
         print::line(format_args!(
-            "length {:.3} mm, the median of {} passages; a step is {steps:.3} mm",
-            1e3 * lengths[lengths.len() / 2],
-            lengths.len()
+            "length {:.3} mm, median of {} passages of {}; a step is {step:.3} mm",
+            500.0 * (lengths[lengths.len() / 2] + lengths[(lengths.len() - 1) / 2]),
+            lengths.len(),
+            found.len()
         ));
     }
 }

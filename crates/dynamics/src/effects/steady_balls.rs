@@ -203,10 +203,12 @@ fn on_strips(
 
 /// Where the load of a contact on strips lies; none of Hertz's ellipse.
 fn lines(model: &Model, (seen, angles): (AtEquilibrium<'_>, &[f64]), site: usize) -> Vec<[f64; 2]> {
-    let rolling = model.hertz[site % 2].semi_axes(seen.forces[site])[1];
+    let semi_axes = model.hertz[site % 2].semi_axes(seen.forces[site]);
     let strips = seen.strips[site].filter(|_| seen.forces[site] > 0.0);
     strips.map_or_else(Vec::new, |strips| {
-        strips.bearing(seen.approaches[site], angles[site], rolling).lines
+        strips
+            .bearing(seen.approaches[site], angles[site], semi_axes)
+            .lines
     })
 }
 

@@ -87,17 +87,17 @@ impl Motion<'_> {
 }
 
 impl Motion<'_> {
-    /// How a contact carries its load in a state, with the half-width `rolling` along the track, m; None: its raceway
-    /// has no strips.
+    /// How a contact carries its load in a state, beside Hertz's ellipse with these semi-axes, m; None: its raceway has no
+    /// strips.
     pub(super) fn strip_bearing(
         &self,
         state: &MotionState,
         (ball, side): (usize, Side),
-        rolling: f64,
+        semi_axes: [f64; 2],
     ) -> Option<StripBearing> {
         let index = 2 * ball + side.index();
         let strips = self.strips_at((state, self.time(state.step)), (ball, side))?;
-        Some(strips.bearing(state.approaches[index], state.angles[index], rolling))
+        Some(strips.bearing(state.approaches[index], state.angles[index], semi_axes))
     }
 
     /// The strips under a contact as it stands in a state at a time, s; None: its raceway has none.
