@@ -378,7 +378,7 @@ fn ball_results(
             None => state.force.force,
         };
         let semi_axes = hertz.semi_axes(force);
-        let of_strips = |strips: &Strips| strips.bearing(state.force.approach, state.angle, semi_axes);
+        let of_strips = |strips: &Strips| strips.bearing(state.force.approach, state.angle, semi_axes.into());
         let bearing = site.strips.as_ref().map(of_strips);
         let peak = bearing.as_ref().map_or(1.0, |bearing| bearing.peak);
         ContactResult {

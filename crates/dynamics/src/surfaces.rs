@@ -7,7 +7,7 @@ use std::sync::Arc;
 use contact::{BallArc, BallSurface, BySide, SeenMeridian, Side, StripLine, StripSurface, WornLine};
 use serde::Serialize;
 
-use crate::interactions::traction::PatchPoints;
+use crate::interactions::traction::{PatchPoints, PressureLine};
 
 /// What a scene asks for beyond smooth grooves without edges and equal balls; the default is nothing.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -47,9 +47,8 @@ pub struct StripBearing {
     pub kind: EllipseKind,
     /// Largest pressure over that of Hertz's ellipse under the same force.
     pub peak: f64,
-    /// Places across the track over the half-width of that ellipse, and overlaps there over its approach; none of
-    /// Hertz's ellipse itself.
-    pub lines: Vec<[f64; 2]>,
+    /// Where the load lies across the track; none of Hertz's ellipse itself.
+    pub lines: Vec<PressureLine>,
 }
 
 impl StripBearing {
@@ -262,7 +261,7 @@ impl Strips {
 
     /// How it carries its load, at an approach, m, and a contact angle, rad, beside Hertz's ellipse of the same force
     /// with these semi-axes across and along the track, m.
-    pub fn bearing(&self, approach: f64, angle: f64, [half_width, rolling]: [f64; 2]) -> StripBearing {
+    pub fn bearing(&self, approach: f64, angle: f64, (half_width, rolling): (f64, f64)) -> StripBearing {
         let (law, line) = (&self.surface.law, self.line());
         let extent = law.extent(&line, approach, angle).filter(|_| half_width > 0.0);
         let Some(extent) = extent else {
@@ -286,7 +285,10 @@ impl Strips {
             let y = low + (high - low) * k as f64 / (PRESSURE_LINES - 1) as f64;
             let [missing, _] = law.missing_within(&line, angle, [y; 2]);
             let overlap = approach - missing - 0.5 * y * y / law.parabola_radius;
-            [y / half_width, overlap.max(0.0) / smooth]
+            PressureLine {
+                place: y / half_width,
+                overlap: overlap.max(0.0) / smooth,
+            }
         };
         StripBearing {
             kind,

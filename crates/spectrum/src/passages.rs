@@ -15,15 +15,15 @@
 //!
 //! w is how deep the ball stands in the spall. **Entry**: it sinks by the parabola k v^2 t^2/2, so that the root of w
 //! grows with time; the line through it meets zero at the edge. **Impact**: the kink half-way is the deepest place.
-//! (N. Sawalhi and R. B. Randall, Mech. Syst. Signal Process. 25 (2011) 846, have the double impulse.) A ball that flies
-//! meets the far edge later, and where it is the shaft does not feel.
+//! (N. Sawalhi and R. B. Randall, Mech. Syst. Signal Process. 25 (2011) 846, have the double impulse.) A ball that
+//! flies meets the far edge later, and where it is the shaft does not feel.
 //!
 //! Validity: rings whose own motion is small beside that of balls and shaft; a mass that moves along x, y or z; steps
 //! that resolve the passage. Cost: a few hundred operations per step and ball.
 
 use std::f64::consts::{PI, TAU};
 
-use contact::Side;
+use contact::{BySide, Side};
 
 /// Time that counts as undisturbed before a passage, over that from ball to ball.
 const QUIET: f64 = 1.0 / 40.0;
@@ -38,7 +38,8 @@ const LEAST_LOAD: f64 = 0.1;
 /// Depth of a spall, m.
 const LEAST_DEPTH: f64 = 0.5e-6;
 /// Depths, over the largest, between which the root is a line; that at which the ball is on its way out.
-const ROOT: [f64; 2] = [0.1, 0.6];
+const ROOT_FROM: f64 = 0.1;
+const ROOT_TO: f64 = 0.6;
 const OUT: f64 = 0.8;
 /// Share of its load below which a ball flies, within the error of it; also its least depth ([`DEEPER`]).
 const FLIES: f64 = 0.05;
@@ -58,18 +59,20 @@ pub struct BallAt {
     /// Azimuth in space, rad, without jumps.
     pub azimuth: f64,
     /// Forces, N.
-    pub forces: [f64; 2],
+    pub forces: BySide<f64>,
     /// Approaches, m.
-    pub approaches: [f64; 2],
+    pub approaches: BySide<f64>,
     /// Contact angles, rad.
-    pub angles: [f64; 2],
+    pub angles: BySide<f64>,
 }
 
 /// A motion with equal steps.
 #[derive(Clone, Debug)]
-pub struct Record {
-    /// Time of the first step and step size, s.
-    pub times: [f64; 2],
+pub struct ShaftRecord {
+    /// Time of the first step, s.
+    pub start: f64,
+    /// Step size, s.
+    pub step: f64,
     /// Motions of the shaft x, y, z, tilt x, tilt y, m and rad.
     pub shaft: Vec<[f64; 5]>,
     /// All balls at every step.
@@ -78,7 +81,7 @@ pub struct Record {
 
 /// What is known of the bearing.
 #[derive(Clone, Copy, Debug)]
-pub struct Known {
+pub struct PassedBearing {
     /// The ring that may have a spall.
     pub side: Side,
     /// Mass that moves with the shaft, kg.
@@ -89,17 +92,21 @@ pub struct Known {
     pub ball: (f64, f64, f64),
     /// Depth to which a ball sinks in a spall over the square of its length, 1/m.
     pub sag: f64,
-    /// Mean speeds of the cage and of the ring, rad/s.
-    pub speeds: [f64; 2],
+    /// Mean speed of the cage, rad/s.
+    pub cage: f64,
+    /// Mean speed of the ring, rad/s.
+    pub ring: f64,
 }
 
 /// A ball that passed a spall.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Passage {
+pub struct SpallPassage {
     /// Its number.
     pub ball: usize,
-    /// When it enters and when it meets the far edge, s.
-    pub times: [f64; 2],
+    /// When it enters, s.
+    pub entry: f64,
+    /// When it meets the far edge, s.
+    pub impact: f64,
     /// Azimuth of the middle of the spall on its ring at the start of the run, rad.
     pub azimuth: f64,
     /// Length of the spall, m: pi f (D_m^2 - D^2 cos^2 a)/D_m times the time between, f the speed of the ring in the
@@ -121,7 +128,7 @@ struct Before<'r> {
 }
 
 /// All passages of a motion, in their order.
-pub fn passages(record: &Record, known: &Known) -> Vec<Passage> {
+pub fn passages(record: &ShaftRecord, known: &PassedBearing) -> Vec<SpallPassage> {
     let (mut found, mut at) = (Vec::new(), 1 + record.samples(known, QUIET));
     while at + 2 < record.shaft.len() {
         let until = (at + record.samples(known, LONGEST)).min(record.shaft.len() - 2);
@@ -131,19 +138,19 @@ pub fn passages(record: &Record, known: &Known) -> Vec<Passage> {
             at += 1;
             continue;
         }
-        let step_of = |time: f64| ((time - record.times[0]) / record.times[1]).round() as usize;
+        let step_of = |time: f64| ((time - record.start) / record.step).round() as usize;
         let named = |step: usize| largest(&record.pushes(known, &before, step));
         // At first what is left of an earlier blow may be largest, at the impact it is what the ball lacks.
         let ball = named((at + record.samples(known, NAMED)).min(until));
         let first = record.passage(known, ball, at, until);
-        let again = first.map(|passage| named(step_of(passage.times[1])));
+        let again = first.map(|passage| named(step_of(passage.impact)));
         let passage = match again {
             Some(other) if other != ball => record.passage(known, other, at, until),
             _ => first,
         };
         match passage {
             Some(passage) => {
-                at = at.max(step_of(passage.times[0])) + record.samples(known, LONGEST);
+                at = at.max(step_of(passage.entry)) + record.samples(known, LONGEST);
                 found.push(passage);
             }
             None => at += record.samples(known, QUIET),
@@ -152,11 +159,10 @@ pub fn passages(record: &Record, known: &Known) -> Vec<Passage> {
     found
 }
 
-impl Known {
+impl PassedBearing {
     /// Time from ball to ball, s.
     fn period(&self, n_balls: usize) -> f64 {
-        let [cage, ring] = self.speeds;
-        TAU / (n_balls as f64 * (cage - ring).abs())
+        TAU / (n_balls as f64 * (self.cage - self.ring).abs())
     }
 }
 
@@ -175,14 +181,14 @@ impl Before<'_> {
     }
 }
 
-impl Record {
+impl ShaftRecord {
     /// Steps in this share of the time from ball to ball.
-    pub fn samples(&self, known: &Known, share: f64) -> usize {
-        (share * known.period(self.balls[0].len()) / self.times[1]).round() as usize
+    pub fn samples(&self, known: &PassedBearing, share: f64) -> usize {
+        (share * known.period(self.balls[0].len()) / self.step).round() as usize
     }
 
     /// Whether steps are short enough to tell what is undisturbed.
-    pub fn is_resolved(&self, known: &Known) -> bool {
+    pub fn is_resolved(&self, known: &PassedBearing) -> bool {
         self.samples(known, QUIET) >= LEAST_QUIET
     }
 
@@ -191,12 +197,12 @@ impl Record {
         let at = step.clamp(1, self.shaft.len() - 2);
         [0, 1, 2].map(|k| {
             let [a, b, c] = [at - 1, at, at + 1].map(|i| self.shaft[i][k]);
-            (a - 2.0 * b + c) / (self.times[1] * self.times[1])
+            (a - 2.0 * b + c) / (self.step * self.step)
         })
     }
 
     /// The bearing before the step `at`.
-    fn before(&self, known: &Known, at: usize) -> Before<'_> {
+    fn before(&self, known: &PassedBearing, at: usize) -> Before<'_> {
         let steps = at.saturating_sub(self.samples(known, QUIET)).max(1)..at.max(2);
         let n = steps.len() as f64;
         let mean = |value: &dyn Fn(usize) -> f64| steps.clone().map(value).sum::<f64>() / n;
@@ -240,7 +246,7 @@ impl Record {
     }
 
     /// What each ball lacks of its force at a step if no other ball does, N, and were it to follow the shaft.
-    fn pushes(&self, known: &Known, before: &Before, step: usize) -> Vec<f64> {
+    fn pushes(&self, known: &PassedBearing, before: &Before, step: usize) -> Vec<f64> {
         let (now, along) = (self.acceleration(step), self.along(before, step));
         let mut sum = [0, 1, 2].map(|k| known.mass * (now[k] - before.acceleration[k]));
         for ((n, k_j), s) in before.normals.iter().zip(&before.stiffness).zip(&along) {
@@ -255,7 +261,7 @@ impl Record {
     }
 
     /// The passage of a ball with its first sign at a step; None where it is none, or goes on at the end.
-    fn passage(&self, known: &Known, ball: usize, sign: usize, until: usize) -> Option<Passage> {
+    fn passage(&self, known: &PassedBearing, ball: usize, sign: usize, until: usize) -> Option<SpallPassage> {
         let from = sign.saturating_sub(self.samples(known, BACK)).max(1);
         let before = self.before(known, from);
         let at = before.balls[ball];
@@ -268,9 +274,9 @@ impl Record {
             (1.0 - lacks / force).max(0.0)
         };
         let shares: Vec<f64> = (from..until).zip(&along).map(share).collect();
-        let depths = match known.side {
-            Side::Outer => self.depths_outside(known, &at, &shares, &along),
-            Side::Inner => self.depths_inside(known, &at, &shares, &along),
+        let depths = match known.side.sign() > 0.0 {
+            true => self.depths_outside(known, &at, &shares, &along),
+            false => self.depths_inside(known, &at, &shares, &along),
         };
         let (deepest, out) = deepest(&depths)?;
         let shallower = |share: f64| {
@@ -278,33 +284,34 @@ impl Record {
                 .iter()
                 .rposition(|w| *w <= share * depths[deepest])
         };
-        let root = shallower(ROOT[0])? + 1..shallower(ROOT[1])? + 2;
-        let dt = self.times[1];
-        let start = self.times[0] + dt * from as f64;
+        let root = shallower(ROOT_FROM)? + 1..shallower(ROOT_TO)? + 2;
+        let dt = self.step;
+        let start = self.start + dt * from as f64;
         let entry = start
             + dt * zero_of_line(
                 root.clone()
-                    .map(|step| [step as f64, depths[step].max(0.0).sqrt()]),
+                    .map(|step| (step as f64, depths[step].max(0.0).sqrt())),
             )?;
         let impact = start + dt * deepest as f64;
         let half = impact - entry;
-        let [cage, ring] = known.speeds;
+        let (cage, ring) = (known.cage, known.ring);
         let (_, diameter, pitch) = known.ball;
         let cos = at.angles[known.side.index()].cos();
         // Of the contact along the raceway, with cage and ring as they turned.
         let speed = 0.5 * (pitch + known.side.sign() * diameter * cos) * (cage - ring).abs();
         // Half as long again: a path may be lost before the flight.
         let last = (deepest + (deepest - root.start) / 2).min(shares.len() - 1);
-        let turned = at.azimuth + cage * (impact - start) - ring * (impact - self.times[0]);
+        let turned = at.azimuth + cage * (impact - start) - ring * (impact - self.start);
         let length = 2.0 * speed * half;
         let flies = shares[..=last].iter().any(|share| *share < FLIES);
         let depth = depths[deepest] / (known.sag * length * length);
         let least = if flies { FLIES } else { 1.0 / DEEPER };
         let is_kink = dt * ((out - deepest) as f64) < KINK * half;
         let is_spall = half > 0.0 && is_kink && (least..DEEPER).contains(&depth);
-        is_spall.then_some(Passage {
+        is_spall.then_some(SpallPassage {
             ball,
-            times: [entry, impact],
+            entry,
+            impact,
             azimuth: (turned + PI).rem_euclid(TAU) - PI,
             length,
             flies,
@@ -312,8 +319,8 @@ impl Record {
     }
 
     /// How deep a ball stands in a spall of the outer ring, m.
-    fn depths_outside(&self, known: &Known, at: &BallAt, shares: &[f64], along: &[f64]) -> Vec<f64> {
-        let ([d_i, d_o], [q_i, q_o], dt) = (at.approaches, at.forces, self.times[1]);
+    fn depths_outside(&self, known: &PassedBearing, at: &BallAt, shares: &[f64], along: &[f64]) -> Vec<f64> {
+        let ([d_i, d_o], [q_i, q_o], dt) = (at.approaches, at.forces, self.step);
         let place = |(share, s): (&f64, &f64)| d_i * (1.0 - share.powf(2.0 / 3.0)) - s;
         let places: Vec<f64> = shares.iter().zip(along).map(place).collect();
         let half = (BEND / dt).round().max(1.0) as usize;
@@ -329,8 +336,8 @@ impl Record {
     }
 
     /// The same of the inner ring.
-    fn depths_inside(&self, known: &Known, at: &BallAt, shares: &[f64], along: &[f64]) -> Vec<f64> {
-        let ([d_i, d_o], [q_i, q_o], dt) = (at.approaches, at.forces, self.times[1]);
+    fn depths_inside(&self, known: &PassedBearing, at: &BallAt, shares: &[f64], along: &[f64]) -> Vec<f64> {
+        let ([d_i, d_o], [q_i, q_o], dt) = (at.approaches, at.forces, self.step);
         let (mut place, mut speed) = (0.0, 0.0);
         let depth = |(share, s): (&f64, &f64)| {
             let depth = d_i * (1.0 - share.min(1.0).powf(2.0 / 3.0)) - place - s;
@@ -348,7 +355,8 @@ fn largest(values: &[f64]) -> usize {
     (0..values.len()).fold(0, |most, i| if values[i] > values[most] { i } else { most })
 }
 
-/// The deepest place before the ball is on its way out, and that where it is; None: it does not go in, or not out again.
+/// The deepest place before the ball is on its way out, and that where it is; None: it does not go in, or not out
+/// again.
 fn deepest(depths: &[f64]) -> Option<(usize, usize)> {
     let mut deepest = 0;
     for (step, depth) in depths.iter().enumerate() {
@@ -362,11 +370,12 @@ fn deepest(depths: &[f64]) -> Option<(usize, usize)> {
 }
 
 /// Where the straight line through points meets zero; None of fewer than three.
-fn zero_of_line(points: impl Iterator<Item = [f64; 2]>) -> Option<f64> {
-    let points: Vec<[f64; 2]> = points.collect();
+fn zero_of_line(points: impl Iterator<Item = (f64, f64)>) -> Option<f64> {
+    let points: Vec<(f64, f64)> = points.collect();
     let n = points.len() as f64;
-    let [x, y] = [0, 1].map(|k| points.iter().map(|point| point[k]).sum::<f64>() / n);
-    let above: f64 = points.iter().map(|point| (point[0] - x) * (point[1] - y)).sum();
-    let below: f64 = points.iter().map(|point| (point[0] - x).powi(2)).sum();
+    let x = points.iter().map(|point| point.0).sum::<f64>() / n;
+    let y = points.iter().map(|point| point.1).sum::<f64>() / n;
+    let above: f64 = points.iter().map(|point| (point.0 - x) * (point.1 - y)).sum();
+    let below: f64 = points.iter().map(|point| (point.0 - x).powi(2)).sum();
     (points.len() > 2 && above > 0.0).then(|| x - y * below / above)
 }

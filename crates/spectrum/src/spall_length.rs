@@ -14,7 +14,7 @@ use results::table::Table;
 use results::whole::write;
 use scene::{Motion, Scene, geometry};
 
-use crate::passages::{BallAt, Known, LEAST_QUIET, Passage, Record, passages};
+use crate::passages::{BallAt, LEAST_QUIET, PassedBearing, ShaftRecord, SpallPassage, passages};
 use crate::signal::equal_rate;
 use crate::{require_folder, scene_of};
 
@@ -41,19 +41,16 @@ pub fn spall_length(command: &SpallLengthCommand) -> Result<(), Failure> {
     let dir = &command.dir;
     require_folder(dir)?;
     let scene = scene_of(dir)?;
-    let side = if command.ring == Side::Inner.name() {
-        Side::Inner
-    } else {
-        Side::Outer
-    };
+    let side = Side::BOTH.into_iter().find(|side| side.name() == command.ring);
+    let side = side.expect("the command line knows both names");
     let record = record(dir)?;
     let known = known(&scene, side, command.mass, &record)?;
     ensure_resolved(&record, &known)?;
     warn_of_doubts(dir)?;
     let found = passages(&record, &known);
     let head = "ball,entry_s,impact_s,azimuth_rad,length_m,flies\n";
-    let row = |p: &Passage| {
-        let [entry, impact] = p.times;
+    let row = |p: &SpallPassage| {
+        let (entry, impact) = (p.entry, p.impact);
         format!(
             "{},{entry:?},{impact:?},{:?},{:?},{}\n",
             p.ball,
@@ -72,10 +69,11 @@ pub fn spall_length(command: &SpallLengthCommand) -> Result<(), Failure> {
     Ok(())
 }
 
-fn say_passage(passage: &Passage) {
-    let [entry, impact] = passage.times.map(|t| 1e3 * t);
+fn say_passage(passage: &SpallPassage) {
+    let (entry, impact) = (1e3 * passage.entry, 1e3 * passage.impact);
     print::line(format_args!(
-        "ball {:>3} enters at {entry:.4} ms, meets the far edge at {impact:.4} ms, has left by {:.4} ms: {:.3} mm at {:.2} deg{}",
+        "ball {:>3} enters at {entry:.4} ms, meets the far edge at {impact:.4} ms, has left by {:.4} ms: {:.3} mm at \
+         {:.2} deg{}",
         passage.ball,
         2.0 * impact - entry,
         1e3 * passage.length,
@@ -89,9 +87,9 @@ fn say_passage(passage: &Passage) {
 }
 
 /// The length that the passages agree on, or why there is none.
-fn say_all(found: &[Passage], record: &Record, known: &Known) {
-    let off = |a: &Passage, b: &Passage| ((a.azimuth - b.azimuth + PI).rem_euclid(TAU) - PI).abs();
-    let together = |a: &Passage| found.iter().filter(|b| off(a, b) < SPREAD).collect::<Vec<_>>();
+fn say_all(found: &[SpallPassage], record: &ShaftRecord, known: &PassedBearing) {
+    let off = |a: &SpallPassage, b: &SpallPassage| ((a.azimuth - b.azimuth + PI).rem_euclid(TAU) - PI).abs();
+    let together = |a: &SpallPassage| found.iter().filter(|b| off(a, b) < SPREAD).collect::<Vec<_>>();
     let groups = found.iter().map(together);
     let group = groups.fold(
         Vec::new(),
@@ -113,7 +111,7 @@ fn say_all(found: &[Passage], record: &Record, known: &Known) {
             "every ball flies over the spall: its length is not to be told"
         ));
     } else {
-        let step = 1e3 * found[0].length / (found[0].times[1] - found[0].times[0]) * record.times[1];
+        let step = 1e3 * found[0].length / (found[0].impact - found[0].entry) * record.step;
         print::line(format_args!(
             "length {:.3} mm, median of {} passages of {}; a step is {step:.3} mm",
             500.0 * (lengths[lengths.len() / 2] + lengths[(lengths.len() - 1) / 2]),
@@ -123,7 +121,7 @@ fn say_all(found: &[Passage], record: &Record, known: &Known) {
     }
 }
 
-fn ensure_resolved(record: &Record, known: &Known) -> anyhow::Result<()> {
+fn ensure_resolved(record: &ShaftRecord, known: &PassedBearing) -> anyhow::Result<()> {
     let quiet = record.samples(known, 1.0);
     ensure!(
         record.is_resolved(known),
@@ -135,7 +133,7 @@ fn ensure_resolved(record: &Record, known: &Known) -> anyhow::Result<()> {
 }
 
 /// The motion of shaft and balls in `dir`.
-fn record(dir: &Path) -> anyhow::Result<Record> {
+fn record(dir: &Path) -> anyhow::Result<ShaftRecord> {
     let read = |name: &str| {
         Table::read(dir, name)?.with_context(|| {
             format!(
@@ -174,8 +172,9 @@ fn record(dir: &Path) -> anyhow::Result<Record> {
             steps[step][ball].azimuth -= TAU * (turn / TAU).round();
         }
     }
-    Ok(Record {
-        times: [times[0], 1.0 / equal_rate(times)?],
+    Ok(ShaftRecord {
+        start: times[0],
+        step: 1.0 / equal_rate(times)?,
         shaft: (0..times.len())
             .map(|row| [0, 1, 2, 3, 4].map(|k| motions[k][row]))
             .collect(),
@@ -184,11 +183,16 @@ fn record(dir: &Path) -> anyhow::Result<Record> {
 }
 
 /// What is known of the bearing and its motion.
-fn known(scene: &Scene, side: Side, mass: Option<f64>, record: &Record) -> anyhow::Result<Known> {
+fn known(
+    scene: &Scene,
+    side: Side,
+    mass: Option<f64>,
+    record: &ShaftRecord,
+) -> anyhow::Result<PassedBearing> {
     let geometry = geometry(scene);
     let bearing = &scene.bearing;
     let shaft = &scene.shaft;
-    let ring = match (&scene.inner.body, &scene.inner.inertia) {
+    let own = match (&scene.inner.body, &scene.inner.inertia) {
         (Some(_), _) => {
             let radii = [bearing.inner_raceway_diameter, bearing.bore_diameter].map(|d| 0.5 * d);
             scene.materials.rings.density * PI * (radii[0].powi(2) - radii[1].powi(2)) * bearing.width
@@ -196,7 +200,7 @@ fn known(scene: &Scene, side: Side, mass: Option<f64>, record: &Record) -> anyho
         (None, Some(inertia)) => inertia.mass,
         (None, None) => 0.0,
     };
-    let mass = mass.unwrap_or(shaft.mass + ring);
+    let mass = mass.unwrap_or(shaft.mass + own);
     let is_free = [shaft.x, shaft.y, shaft.z].map(|motion| motion == Motion::Free);
     ensure!(
         is_free.contains(&true),
@@ -207,20 +211,20 @@ fn known(scene: &Scene, side: Side, mass: Option<f64>, record: &Record) -> anyho
         "the shaft has no mass; expected shaft.mass in the scene, or --mass KG"
     );
     let [first, last] = [0, record.balls.len() - 1].map(|step| record.balls[step][0].azimuth);
-    let duration = record.times[1] * (record.balls.len() - 1) as f64;
-    let [from, to] = [record.times[0], record.times[0] + duration];
+    let duration = record.step * (record.balls.len() - 1) as f64;
+    let (from, to) = (record.start, record.start + duration);
     let turned = scene.speed.as_ref().map_or(0.0, |speeds| {
         let speed = speeds.of(side);
         speed.angle(to) - speed.angle(from)
     });
-    let speeds = [(last - first) / duration, turned / duration];
+    let (cage, ring) = ((last - first) / duration, turned / duration);
     ensure!(
-        speeds[0] != speeds[1],
+        cage != ring,
         "balls do not roll over the {} ring: none passes a spall",
         side.name()
     );
     let diameter = bearing.ball_diameter;
-    Ok(Known {
+    Ok(PassedBearing {
         side,
         mass,
         is_free,
@@ -230,6 +234,7 @@ fn known(scene: &Scene, side: Side, mass: Option<f64>, record: &Record) -> anyho
             geometry.pitch_diameter(),
         ),
         sag: sag(&geometry, side, geometry.free_contact_angle(), 1.0),
-        speeds,
+        cage,
+        ring,
     })
 }

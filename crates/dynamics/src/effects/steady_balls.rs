@@ -4,13 +4,13 @@
 //! away; tractions round the axis and the moments of spin act on the shaft. Centrifugal force has the ball's own speed
 //! round the axis. They follow the contact angles and forces, as the loads of [`crate::loading`] do.
 
-use contact::Side;
+use contact::{BySide, Side};
 
 use super::loads::{AtEquilibrium, Loads, Now};
 use crate::balls::{FreeBallResult, Friction, TractionResult};
 use crate::error::DynamicsError;
 use crate::interactions::steady_rolling::{SteadyBall, SteadyContact, SteadyRolling};
-use crate::interactions::traction::{PatchPoints, Traction, largest_pv};
+use crate::interactions::traction::{PatchPoints, PressureLine, Traction, largest_pv};
 use crate::kinematics::Kinematics;
 use crate::model::Model;
 
@@ -21,7 +21,7 @@ pub struct SteadyBalls {
     pub balls: Vec<SteadyRolling>,
     contacts: Vec<[SteadyContact; 2]>,
     /// Where the load of each contact lies that is not on Hertz's ellipse ([`crate::surfaces::StripBearing`]).
-    lines: Vec<[Vec<[f64; 2]>; 2]>,
+    lines: Vec<BySide<Vec<PressureLine>>>,
     /// Speed round the axis of pure rolling at the free contact angle, rad/s.
     kinematic_orbit: f64,
 }
@@ -202,12 +202,12 @@ fn on_strips(
 }
 
 /// Where the load of a contact on strips lies; none of Hertz's ellipse.
-fn lines(model: &Model, (seen, angles): (AtEquilibrium<'_>, &[f64]), site: usize) -> Vec<[f64; 2]> {
+fn lines(model: &Model, (seen, angles): (AtEquilibrium<'_>, &[f64]), site: usize) -> Vec<PressureLine> {
     let semi_axes = model.hertz[site % 2].semi_axes(seen.forces[site]);
     let strips = seen.strips[site].filter(|_| seen.forces[site] > 0.0);
     strips.map_or_else(Vec::new, |strips| {
         strips
-            .bearing(seen.approaches[site], angles[site], semi_axes)
+            .bearing(seen.approaches[site], angles[site], semi_axes.into())
             .lines
     })
 }

@@ -45,7 +45,7 @@ impl Motion<'_> {
             let (ball, side) = (index / 2, Side::BOTH[index % 2]);
             let (hertz, force) = (&self.model.hertz[side.index()], force[0].hypot(force[1]));
             let axes = hertz.semi_axes(force);
-            let bearing = self.strip_bearing(state, (ball, side), axes);
+            let bearing = self.strip_bearing(state, (ball, side), force);
             let peak = bearing.as_ref().map_or(1.0, |bearing| bearing.peak);
             let pressure = peak * hertz.peak_pressure(force);
             let mut add = |limit| {

@@ -24,7 +24,7 @@ impl Motion<'_> {
             let force = state.forces[index][0].hypot(state.forces[index][1]);
             let hertz = &self.model.hertz[side.index()];
             let semi_axes = hertz.semi_axes(force);
-            let bearing = self.strip_bearing(state, (ball, side), semi_axes);
+            let bearing = self.strip_bearing(state, (ball, side), force);
             let peak = bearing.as_ref().map_or(1.0, |bearing| bearing.peak);
             ContactResult {
                 force_n: force,
@@ -54,8 +54,9 @@ impl Motion<'_> {
         let contact = |side: Side| {
             let index = 2 * ball + side.index();
             let (of, force) = (&free.contacts[index], &state.forces[index]);
-            let ellipse = self.model.ellipse(side, force[0].hypot(force[1]));
-            let bearing = self.strip_bearing(state, (ball, side), ellipse.semi_axes);
+            let force = force[0].hypot(force[1]);
+            let ellipse = self.model.ellipse(side, force);
+            let bearing = self.strip_bearing(state, (ball, side), force);
             let lines = bearing.map(|bearing| bearing.lines).unwrap_or_default();
             TractionResult {
                 slip_m_per_s: of.slip,

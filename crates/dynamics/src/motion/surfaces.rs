@@ -87,17 +87,22 @@ impl Motion<'_> {
 }
 
 impl Motion<'_> {
-    /// How a contact carries its load in a state, beside Hertz's ellipse with these semi-axes, m; None: its raceway has no
-    /// strips.
+    /// How a contact carries its load in a state, beside Hertz's ellipse of this force, N; None: its raceway
+    /// has no strips.
     pub(super) fn strip_bearing(
         &self,
         state: &MotionState,
         (ball, side): (usize, Side),
-        semi_axes: [f64; 2],
+        force: f64,
     ) -> Option<StripBearing> {
         let index = 2 * ball + side.index();
         let strips = self.strips_at((state, self.time(state.step)), (ball, side))?;
-        Some(strips.bearing(state.approaches[index], state.angles[index], semi_axes))
+        let [half_width, rolling] = self.model.hertz[side.index()].semi_axes(force);
+        Some(strips.bearing(
+            state.approaches[index],
+            state.angles[index],
+            (half_width, rolling),
+        ))
     }
 
     /// The strips under a contact as it stands in a state at a time, s; None: its raceway has none.

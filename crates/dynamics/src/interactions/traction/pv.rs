@@ -11,15 +11,23 @@ use super::patch::{Ellipse, Slip};
 /// Half the number of steps of the grid along t and along q.
 const STEPS: [i32; 2] = [4, 20];
 
-/// Largest pressure times sliding speed, W/m^2: over the ellipse, or over `lines` at y/a with the overlap of strips over
-/// the ellipse's approach, where there are any.
-pub fn largest_pv(ellipse: &Ellipse, lines: &[[f64; 2]], slip: &Slip) -> f64 {
+/// A strip along the rolling direction that carries load.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PressureLine {
+    /// Its place across the track over the half-width of Hertz's ellipse under the same force.
+    pub place: f64,
+    /// Its overlap over the approach of that.
+    pub overlap: f64,
+}
+
+/// Largest pressure times sliding speed, W/m^2: over the ellipse, or over `lines` where there are any.
+pub fn largest_pv(ellipse: &Ellipse, lines: &[PressureLine], slip: &Slip) -> f64 {
     let on_ellipse = (-STEPS[1]..=STEPS[1]).map(|j| {
         let unit_y = f64::from(j) / f64::from(STEPS[1]);
         largest_on_line(ellipse, slip, (unit_y, 1.0), |x| 1.0 - x * x - unit_y * unit_y)
     });
-    let on_lines = lines.iter().map(|&[unit_y, overlap]| {
-        largest_on_line(ellipse, slip, (unit_y, overlap.sqrt()), |x| overlap - x * x)
+    let on_lines = lines.iter().map(|&PressureLine { place, overlap }| {
+        largest_on_line(ellipse, slip, (place, overlap.sqrt()), |x| overlap - x * x)
     });
     let largest = match lines {
         [] => on_ellipse.fold(0.0, f64::max),
@@ -133,7 +141,10 @@ mod tests {
         let lines = |from: f64| {
             let at = |k: usize| {
                 let y = from + (1.0 - from) * k as f64 / 40.0;
-                [y, 1.0 - y * y]
+                PressureLine {
+                    place: y,
+                    overlap: 1.0 - y * y,
+                }
             };
             (0..=40).map(at).collect::<Vec<_>>()
         };
