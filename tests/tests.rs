@@ -49,6 +49,7 @@ mod sectors;
 mod several;
 mod signals;
 mod small_files;
+mod spall_length;
 mod statics;
 mod stiffness;
 mod stress;

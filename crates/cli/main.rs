@@ -54,7 +54,7 @@ use results::failure::{Failure, agree, say_of_rank};
 use results::memory::require_address_space;
 use results::summary::peak_memory;
 use results::{answer, log};
-use spectrum::SpectrumCommand;
+use spectrum::{SpallLengthCommand, SpectrumCommand};
 
 use crate::campbell::CampbellCommand;
 use crate::cycles::Cycles;
@@ -143,6 +143,8 @@ enum Command {
     Report(Report),
     /// Spectrum of a signal of a motion, with the lines of the bearing: amplitudes, power density or envelope.
     Spectrum(SpectrumCommand),
+    /// How long a spall is, from the motion of the shaft as balls pass it.
+    SpallLength(SpallLengthCommand),
     /// What the strain gauges of a scene read under a unit load of each ball.
     LoadMatrix(LoadMatrixCommand),
     /// Ball loads from what the strain gauges of a run have read, by a load matrix.
@@ -386,6 +388,7 @@ fn execute(arguments: Arguments) -> Result<(), Failure> {
         Command::Plot(request) => plot::plot(&request),
         Command::Report(request) => report::report(&request),
         Command::Spectrum(request) => spectrum::spectrum(&request),
+        Command::SpallLength(request) => spectrum::spall_length(&request),
         Command::LoadMatrix(command) => load_matrix::load_matrix(&command),
         Command::BallLoads(command) => load_matrix::ball_loads(&command),
         Command::Life(request) => life::life(&request),

@@ -378,14 +378,16 @@ fn ball_results(
             None => state.force.force,
         };
         let semi_axes = hertz.semi_axes(force);
-        let ellipse = |strips: &Strips| strips.ellipse(state.force.approach, state.angle, semi_axes[1]);
+        let of_strips = |strips: &Strips| strips.bearing(state.force.approach, state.angle, semi_axes.into());
+        let bearing = site.strips.as_ref().map(of_strips);
+        let peak = bearing.as_ref().map_or(1.0, |bearing| bearing.peak);
         ContactResult {
             force_n: force,
             contact_angle_rad: state.angle,
             approach_m: state.force.approach,
             semi_axes_m: semi_axes,
-            peak_pressure_pa: hertz.peak_pressure(force),
-            ellipse: site.strips.as_ref().map(ellipse),
+            peak_pressure_pa: peak * hertz.peak_pressure(force),
+            ellipse: bearing.map(|bearing| bearing.kind),
         }
     };
     (0..model.geometry.n_balls)

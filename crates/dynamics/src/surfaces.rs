@@ -7,7 +7,7 @@ use std::sync::Arc;
 use contact::{BallArc, BallSurface, BySide, SeenMeridian, Side, StripLine, StripSurface, WornLine};
 use serde::Serialize;
 
-use crate::interactions::traction::PatchPoints;
+use crate::interactions::traction::{PatchPoints, PressureLine};
 
 /// What a scene asks for beyond smooth grooves without edges and equal balls; the default is nothing.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -38,6 +38,29 @@ pub enum EllipseKind {
     /// It touches a profile that is not level under it.
     Profile,
 }
+
+/// How a contact on strips carries its load. A strip with the overlap o is as long as an ellipse of the approach o is
+/// in its middle, and has the largest pressure of that: both go with sqrt(o).
+#[derive(Clone, Debug, PartialEq)]
+pub struct StripBearing {
+    /// Whether it has Hertz's ellipse.
+    pub kind: EllipseKind,
+    /// Largest pressure over that of Hertz's ellipse under the same force.
+    pub peak: f64,
+    /// Where the load lies across the track; none of Hertz's ellipse itself.
+    pub lines: Vec<PressureLine>,
+}
+
+impl StripBearing {
+    const HERTZ: StripBearing = StripBearing {
+        kind: EllipseKind::Hertz,
+        peak: 1.0,
+        lines: Vec::new(),
+    };
+}
+
+/// Places across the track at which pressures are told.
+const PRESSURE_LINES: usize = 41;
 
 impl EllipseKind {
     /// As in tables.
@@ -236,25 +259,54 @@ impl Strips {
         }
     }
 
-    /// Whether its ellipse is Hertz's, at an approach, m, and a contact angle, rad, with the half-width `rolling` along
-    /// the track, m.
-    pub fn ellipse(&self, approach: f64, angle: f64, rolling: f64) -> EllipseKind {
-        let law = &self.surface.law;
-        let Some(extent) = law.extent(&self.line(), approach, angle) else {
-            return EllipseKind::Hertz;
+    /// How it carries its load, at an approach, m, and a contact angle, rad, beside Hertz's ellipse of the same force
+    /// with these semi-axes across and along the track, m.
+    pub fn bearing(&self, approach: f64, angle: f64, (half_width, rolling): (f64, f64)) -> StripBearing {
+        let (law, line) = (&self.surface.law, self.line());
+        let extent = law.extent(&line, approach, angle).filter(|_| half_width > 0.0);
+        let Some(extent) = extent else {
+            return StripBearing::HERTZ;
         };
-        if extent.is_cut && self.surface.edges().is_some() {
-            return EllipseKind::Edge;
-        }
         let mut range = extent.missing;
         for place in self.ends_of_ellipse(angle, rolling) {
             let [low, high] = law.missing_within(&self.moved(place).line(), angle, extent.ends);
             range = [range[0].min(low), range[1].max(high)];
         }
-        match range[1] - range[0] > LEVEL * extent.overlap {
-            true => EllipseKind::Profile,
-            false => EllipseKind::Hertz,
+        let kind = if extent.is_cut && self.surface.edges().is_some() {
+            EllipseKind::Edge
+        } else if range[1] - range[0] > LEVEL * extent.overlap {
+            EllipseKind::Profile
+        } else {
+            return StripBearing::HERTZ;
+        };
+        let smooth = 0.5 * half_width * half_width / law.parabola_radius;
+        let [low, high] = extent.ends;
+        let line_at = |k: usize| {
+            let y = low + (high - low) * k as f64 / (PRESSURE_LINES - 1) as f64;
+            let [missing, _] = law.missing_within(&line, angle, [y; 2]);
+            let overlap = approach - missing - 0.5 * y * y / law.parabola_radius;
+            PressureLine {
+                place: y / half_width,
+                overlap: overlap.max(0.0) / smooth,
+            }
+        };
+        StripBearing {
+            kind,
+            peak: (extent.overlap / smooth).sqrt(),
+            lines: (0..PRESSURE_LINES).map(line_at).collect(),
         }
+    }
+
+    /// Whether at an approach, m, and a contact angle, rad, it touches a smooth groove that ends nowhere under it.
+    pub fn is_smooth(&self, approach: f64, angle: f64) -> bool {
+        let law = &self.surface.law;
+        let reach = (2.0 * law.parabola_radius * approach.max(0.0)).sqrt() / law.groove_radius;
+        let is_within =
+            |edges: &RangeInclusive<f64>| *edges.start() < angle - reach && angle + reach < *edges.end();
+        approach > 0.0
+            && self.worn.is_none()
+            && !self.surface.has_profile()
+            && self.surface.edges().is_none_or(is_within)
     }
 
     /// Places of traction with the loads of the strips, at an approach, m, and a contact angle, rad, in the ellipse

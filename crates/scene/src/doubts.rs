@@ -31,9 +31,9 @@ const OTHER_WIDTH: f64 = 2e-2;
 const LEAST_FELT: f64 = 0.95;
 
 /// What real surfaces do not change.
-const WHOLE_ELLIPSES: &str = "contacts on real surfaces have their forces by strips; ellipses, peak pressures and near \
-                              field are still those of Hertz's whole ellipse under these forces: at edges stress is \
-                              higher";
+const WHOLE_ELLIPSES: &str = "contacts on real surfaces have their forces and peak pressures by strips; ellipses and \
+                              near field are still those of Hertz's whole ellipse under these forces: at edges stress \
+                              is higher";
 
 /// What `speed.ball_speeds = "outer_control"` takes as given.
 const OUTER_CONTROL: &str = "speed.ball_speeds = \"outer_control\" assumes that balls spin on the inner raceway alone; \

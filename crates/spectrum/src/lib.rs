@@ -4,8 +4,10 @@
 pub mod fourier;
 pub mod lines;
 pub mod orders;
+pub mod passages;
 pub mod signal;
 mod sound;
+mod spall_length;
 
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
@@ -23,6 +25,8 @@ use scene::{MeshFiles, Scene};
 use fourier::LineSpectrum;
 use lines::{Line, lines};
 use signal::Signal;
+
+pub use spall_length::{SpallLengthCommand, spall_length};
 
 /// What the command line asks for.
 #[derive(Debug, Args)]

@@ -155,7 +155,7 @@ fn find(dir: &Path, wanted: &str, tables: &[&str]) -> anyhow::Result<(Table, Str
 }
 
 /// Samples a second of instants that must be equally far apart.
-fn equal_rate(times: &[f64]) -> anyhow::Result<f64> {
+pub fn equal_rate(times: &[f64]) -> anyhow::Result<f64> {
     let step = (times[times.len() - 1] - times[0]) / (times.len() - 1) as f64;
     ensure!(step > 0.0, "the steps of the run have no time; expected a motion");
     let uneven = times

@@ -4,13 +4,13 @@
 //! away; tractions round the axis and the moments of spin act on the shaft. Centrifugal force has the ball's own speed
 //! round the axis. They follow the contact angles and forces, as the loads of [`crate::loading`] do.
 
-use contact::Side;
+use contact::{BySide, Side};
 
 use super::loads::{AtEquilibrium, Loads, Now};
 use crate::balls::{FreeBallResult, Friction, TractionResult};
 use crate::error::DynamicsError;
 use crate::interactions::steady_rolling::{SteadyBall, SteadyContact, SteadyRolling};
-use crate::interactions::traction::{PatchPoints, Traction, largest_pv};
+use crate::interactions::traction::{PatchPoints, PressureLine, Traction, largest_pv};
 use crate::kinematics::Kinematics;
 use crate::model::Model;
 
@@ -20,6 +20,8 @@ pub struct SteadyBalls {
     /// How each ball rolls.
     pub balls: Vec<SteadyRolling>,
     contacts: Vec<[SteadyContact; 2]>,
+    /// Where the load of each contact lies that is not on Hertz's ellipse ([`crate::surfaces::StripBearing`]).
+    lines: Vec<BySide<Vec<PressureLine>>>,
     /// Speed round the axis of pure rolling at the free contact angle, rad/s.
     kinematic_orbit: f64,
 }
@@ -79,6 +81,9 @@ impl SteadyBalls {
         Ok(Some(SteadyBalls {
             balls: all,
             contacts: balls.iter().map(|ball| ball.contacts).collect(),
+            lines: (0..balls.len())
+                .map(|ball| Side::BOTH.map(|side| lines(model, (seen, angles), 2 * ball + side.index())))
+                .collect(),
             kinematic_orbit,
         }))
     }
@@ -130,7 +135,7 @@ impl SteadyBalls {
                 traction_moment_n_m: moment,
                 slope_force_n: None,
                 slope_moment_n_m: None,
-                pv_w_per_m2: largest_pv(&contact.ellipse, slip),
+                pv_w_per_m2: largest_pv(&contact.ellipse, &self.lines[ball][side.index()], slip),
                 friction_power_w: rolls.power(side.index()),
             }
         };
@@ -194,6 +199,17 @@ fn on_strips(
     let half_width = model.hertz[site % 2].semi_axes(seen.forces[site])[0];
     let approach = (seen.approaches[site], 0.0);
     Some(strips.places(&traction.places, half_width, approach, angles[site]))
+}
+
+/// Where the load of a contact on strips lies; none of Hertz's ellipse.
+fn lines(model: &Model, (seen, angles): (AtEquilibrium<'_>, &[f64]), site: usize) -> Vec<PressureLine> {
+    let semi_axes = model.hertz[site % 2].semi_axes(seen.forces[site]);
+    let strips = seen.strips[site].filter(|_| seen.forces[site] > 0.0);
+    strips.map_or_else(Vec::new, |strips| {
+        strips
+            .bearing(seen.approaches[site], angles[site], semi_axes.into())
+            .lines
+    })
 }
 
 /// Force of a contact that the round-off of places alone makes, N: a ball that just touches is not loaded.

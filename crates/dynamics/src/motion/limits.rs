@@ -44,7 +44,10 @@ impl Motion<'_> {
         for (index, force) in state.forces.iter().enumerate().filter(|(i, _)| carries[*i]) {
             let (ball, side) = (index / 2, Side::BOTH[index % 2]);
             let (hertz, force) = (&self.model.hertz[side.index()], force[0].hypot(force[1]));
-            let pressure = hertz.peak_pressure(force);
+            let axes = hertz.semi_axes(force);
+            let bearing = self.strip_bearing(state, (ball, side), force);
+            let peak = bearing.as_ref().map_or(1.0, |bearing| bearing.peak);
+            let pressure = peak * hertz.peak_pressure(force);
             let mut add = |limit| {
                 found.push(Exceeded {
                     limit,
@@ -53,11 +56,10 @@ impl Motion<'_> {
                     pressure,
                 })
             };
-            let axes = hertz.semi_axes(force);
             let beyond =
                 |moving: &MovingRing| is_truncated(&moving.raceway.surface, state.angles[index], axes);
             let is_beyond = match self.model.surfaces.edges(side) {
-                Some(_) => self.ellipse(state, (ball, side), axes[1]) == Some(EllipseKind::Edge),
+                Some(_) => bearing.is_some_and(|bearing| bearing.kind == EllipseKind::Edge),
                 None => self.rings[side.index()].as_ref().is_some_and(beyond),
             };
             if is_beyond {

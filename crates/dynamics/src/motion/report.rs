@@ -24,13 +24,15 @@ impl Motion<'_> {
             let force = state.forces[index][0].hypot(state.forces[index][1]);
             let hertz = &self.model.hertz[side.index()];
             let semi_axes = hertz.semi_axes(force);
+            let bearing = self.strip_bearing(state, (ball, side), force);
+            let peak = bearing.as_ref().map_or(1.0, |bearing| bearing.peak);
             ContactResult {
                 force_n: force,
                 contact_angle_rad: state.angles[index],
                 approach_m: state.approaches[index],
                 semi_axes_m: semi_axes,
-                peak_pressure_pa: hertz.peak_pressure(force),
-                ellipse: self.ellipse(state, (ball, side), semi_axes[1]),
+                peak_pressure_pa: peak * hertz.peak_pressure(force),
+                ellipse: bearing.map(|bearing| bearing.kind),
             }
         };
         let turn = 2.0 * std::f64::consts::PI;
@@ -52,7 +54,10 @@ impl Motion<'_> {
         let contact = |side: Side| {
             let index = 2 * ball + side.index();
             let (of, force) = (&free.contacts[index], &state.forces[index]);
-            let ellipse = self.model.ellipse(side, force[0].hypot(force[1]));
+            let force = force[0].hypot(force[1]);
+            let ellipse = self.model.ellipse(side, force);
+            let bearing = self.strip_bearing(state, (ball, side), force);
+            let lines = bearing.map(|bearing| bearing.lines).unwrap_or_default();
             TractionResult {
                 slip_m_per_s: of.slip,
                 spin_rad_per_s: of.spin,
@@ -60,7 +65,7 @@ impl Motion<'_> {
                 traction_moment_n_m: of.moment,
                 slope_force_n: free.track.get(index).map(|track| track[0]),
                 slope_moment_n_m: free.track.get(index).map(|[_, moment @ ..]| *moment),
-                pv_w_per_m2: largest_pv(&ellipse, &of.whole_slip()),
+                pv_w_per_m2: largest_pv(&ellipse, &lines, &of.whole_slip()),
                 friction_power_w: of.power,
             }
         };

@@ -18,7 +18,7 @@ use crate::interactions::free_contact::FoundContact;
 use crate::interactions::free_contact::orientation::{Quaternion, at_start, in_ball};
 use crate::interactions::free_contact::rolling_surface::{RollingSurface, WornBall};
 use crate::interactions::raceway_contact::Site;
-use crate::surfaces::{EllipseKind, Strips, SurfacePlace, Surfaces};
+use crate::surfaces::{StripBearing, Strips, SurfacePlace, Surfaces};
 
 impl Motion<'_> {
     /// Surfaces of the bearing.
@@ -87,17 +87,22 @@ impl Motion<'_> {
 }
 
 impl Motion<'_> {
-    /// Whether the ellipse of a contact is Hertz's in a state, with the half-width `rolling` along the track, m; None:
-    /// its raceway has no strips.
-    pub(super) fn ellipse(
+    /// How a contact carries its load in a state, beside Hertz's ellipse of this force, N; None: its raceway
+    /// has no strips.
+    pub(super) fn strip_bearing(
         &self,
         state: &MotionState,
         (ball, side): (usize, Side),
-        rolling: f64,
-    ) -> Option<EllipseKind> {
+        force: f64,
+    ) -> Option<StripBearing> {
         let index = 2 * ball + side.index();
         let strips = self.strips_at((state, self.time(state.step)), (ball, side))?;
-        Some(strips.ellipse(state.approaches[index], state.angles[index], rolling))
+        let [half_width, rolling] = self.model.hertz[side.index()].semi_axes(force);
+        Some(strips.bearing(
+            state.approaches[index],
+            state.angles[index],
+            (half_width, rolling),
+        ))
     }
 
     /// The strips under a contact as it stands in a state at a time, s; None: its raceway has none.

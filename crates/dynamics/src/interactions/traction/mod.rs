@@ -28,7 +28,7 @@ pub use creep::Creep;
 pub use law::{Curve, TractionLaw};
 pub use limiting_shear::LimitingShear;
 pub use patch::{Ellipse, PatchPoints, Resultant, Slip};
-pub use pv::largest_pv;
+pub use pv::{PressureLine, largest_pv};
 
 /// What a scene says of traction.
 #[derive(Clone, Debug, PartialEq)]
