@@ -78,7 +78,12 @@ pub fn run(
     let findings = series.findings(&ended, remarks);
     let snapshot = findings.last.clone();
     let forecast = Side::BOTH.map(|side| bearing.solver.ring(side).map(|r| r.solver.memory));
-    let costs = agree(files.finish(read, Forecasts::at_rest(forecast), bearing.solver.laps(), start));
+    let costs = agree(files.finish(
+        read,
+        Forecasts::at_rest(forecast, &model),
+        bearing.solver.laps(),
+        start,
+    ));
     // A run that failed says why, not what its failure did to the files.
     let costs = match (costs, &ended) {
         (Err(_), Err(_)) => return ended,

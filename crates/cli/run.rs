@@ -140,7 +140,7 @@ pub fn run(
     // Points that were solved get their summary, whatever came after them.
     if let Some(files) = results {
         let forecast = Side::BOTH.map(|side| solver.ring(side).map(|r| r.solver.memory));
-        let costs = agree(files.finish(read, Forecasts::at_rest(forecast), solver.laps(), start))?;
+        let costs = agree(files.finish(read, Forecasts::at_rest(forecast, &model), solver.laps(), start))?;
         conclude(&scene, (&model, &solutions), &failure, remarks, &costs, &dir)?;
     }
     failure.map_or(Ok(dir), Err)

@@ -203,7 +203,12 @@ impl SeveralFiles {
         for (i, ((dir, files), last)) in self.bearings.into_iter().zip(self.last).enumerate() {
             let factors = solver.of_bearing(i);
             let forecast = Side::BOTH.map(|side| factors.ring(side).map(|r| r.solver.memory));
-            let costs = files.finish(0.0, Forecasts::at_rest(forecast), factors.laps(), start)?;
+            let costs = files.finish(
+                0.0,
+                Forecasts::at_rest(forecast, &assembly.bearings[i].model),
+                factors.laps(),
+                start,
+            )?;
             let found = &solution.bearings[i];
             let findings = Findings {
                 status: "finished".to_string(),

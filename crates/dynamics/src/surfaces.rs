@@ -95,6 +95,13 @@ impl SurfacePlace {
 }
 
 impl Surfaces {
+    /// Memory of what is missing of all surfaces, bytes.
+    pub fn bytes(&self) -> usize {
+        let raceways = self.strips.iter().flatten().map(|strips| strips.bytes());
+        let balls = self.balls.values().flatten().map(|ball| ball.bytes());
+        raceways.chain(balls).sum()
+    }
+
     /// Whether contacts of a raceway are strips.
     pub fn has_strips(&self) -> bool {
         self.strips.iter().any(Option::is_some)

@@ -54,6 +54,11 @@ pub struct BallArc {
 }
 
 impl BallSurface {
+    /// Memory of what the ball lacks, bytes.
+    pub fn bytes(&self) -> usize {
+        self.grid.bytes()
+    }
+
     /// A ball with these profiles, whose azimuths are longitudes and whose groove angles are latitudes. It rolls at the
     /// contact angle `equator`, rad. None where the grid would need more than [`super::MOST_NUMBERS`] numbers.
     pub fn new(

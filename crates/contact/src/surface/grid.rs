@@ -32,10 +32,14 @@ impl SurfaceGrid {
                 envelope(&column(angle), spacing, track.curvature(angle))
             })
             .collect();
-        let missing = (0..n_rows)
-            .flat_map(|row| columns.iter().map(move |column| column[row]))
-            .collect();
+        let mut missing = Vec::with_capacity(n_rows * angles.len());
+        (0..n_rows).for_each(|row| missing.extend(columns.iter().map(|column| column[row])));
         SurfaceGrid { angles, missing }
+    }
+
+    /// Memory of the grid, bytes.
+    pub fn bytes(&self) -> usize {
+        8 * (self.angles.len() + self.missing.len())
     }
 
     /// Contact angles of the corners, rad.

@@ -129,6 +129,11 @@ pub fn sag(geometry: &BearingGeometry, side: Side, angle: f64, length: f64) -> f
 }
 
 impl StripSurface {
+    /// Memory of what is missing of the groove, bytes.
+    pub fn bytes(&self) -> usize {
+        self.grid.bytes()
+    }
+
     /// The raceway of one side. Without `shoulders`, groove angles in rad, the groove goes on for ever. None where the
     /// grid would need more than [`MOST_NUMBERS`] numbers.
     pub fn new(

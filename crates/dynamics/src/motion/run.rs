@@ -139,6 +139,11 @@ impl<'a> Motion<'a> {
         }
     }
 
+    /// What moves.
+    pub fn model(&self) -> &Model {
+        self.model
+    }
+
     /// Forecast of the largest resident memory after the start, bytes, with `n_threads` threads while `queued` steps
     /// wait to be written; None when a ring is in sectors.
     pub fn memory_forecast(&self, queued: usize, n_threads: usize) -> Option<usize> {
