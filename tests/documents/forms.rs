@@ -50,7 +50,7 @@ fn inputs() -> Dir {
     dir.write("scene.toml", with("[static]"));
     let points = "\n[probes.point.p]\nring = \"inner\"\nazimuth = \"3 deg\"\ngroove_angle = \"15 deg\"\n\
                   depth = \"0.1 mm\"\n\n[stress]\nnear_field = true\n";
-    let motion = "[dynamic]\nduration = \"2 ms\"\nstep = \"20 us\"\noutput_every = 20\n";
+    let motion = "[dynamic]\nduration = \"2 ms\"\nstep = \"10 us\"\noutput_every = 20\n";
     dir.write("motion.toml", with(motion) + points);
     let heat = "expansion = \"11.5e-6 /K\"\n";
     let warm = with("[static]").replace(

@@ -205,9 +205,9 @@ impl SpectrumCommand {
             let over = if self.orders.is_some() { "_orders" } else { "" };
             format!("spectrum_{name}{more}{over}")
         };
-        let linear = |more: &str, column: String, title: String, axis: Axis| Titled {
+        let linear = |column: String, title: String, axis: Axis| Titled {
             spectrum: samples.limited(fourier::amplitudes(&samples.values, samples.rate)),
-            file: file(more),
+            file: file(""),
             column,
             title,
             axis,
@@ -217,7 +217,6 @@ impl SpectrumCommand {
         };
         if let Some(Band(band)) = self.envelope {
             return Ok(linear(
-                "_envelope",
                 format!("envelope_amplitude_{ending}"),
                 format!("Envelope of {what} from {} Hz to {} Hz", band[0], band[1]),
                 unit.axis("amplitude of the envelope"),
@@ -237,7 +236,6 @@ impl SpectrumCommand {
             });
         }
         Ok(linear(
-            "",
             format!("amplitude_{ending}"),
             format!("Amplitudes of {what}"),
             unit.axis("amplitude"),
