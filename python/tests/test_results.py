@@ -101,7 +101,8 @@ def test_extremes_of_a_run_are_those_of_its_steps(runs):
     assert np.isnan(step["von_mises"][~inside]).all()
     with pytest.raises(KeyError, match='step 5 has no field "von_mises" over points; fields are displacement'):
         reduced.step(5)["von_mises"]
-    with pytest.raises(raceway.ResultsError, match=r"has no reduction.vtkhdf; a scene with \[output.reduction\] gives it"):
+    expected = r"has no reduction.vtkhdf; a scene with \[output.reduction\] gives it"
+    with pytest.raises(raceway.ResultsError, match=expected):
         _ = whole.reduction
 
 

@@ -87,7 +87,7 @@ class Results:
 
     @cached_property
     def reduction(self) -> dict[str, Floats]:
-        """What `[output.reduction]` found of the run: `stress_maximum` and others in Pa, `damage`, `cycles`, over points."""
+        """What `[output.reduction]` found, over points: `stress_maximum` and others in Pa, `damage`, `cycles`."""
         path = self.folder / "reduction.vtkhdf"
         if not path.is_file():
             raise ResultsError(f"{self.folder} has no reduction.vtkhdf; a scene with [output.reduction] gives it")
