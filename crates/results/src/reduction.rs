@@ -4,7 +4,7 @@
 //! stress components and of von Mises stress over the steps that count, in the ring's own frame. A node is a point of
 //! the material, so that on a ring that turns it meets one contact after the other. At the chosen nodes of rings:
 //! rain-flow cycles of one stress ([`crate::rainflow`]) and their damage by an S-N line. The stress is that of nodes
-//! ([`crate::ring_stress`]), with the near field if the scene's stress has one.
+//! (`ring_stress`), with the near field if the scene's stress has one.
 //!
 //! Nodes are independent of each other, so that bits do not depend on threads. All that is known is part of the restart
 //! state. Memory: 168 B a node, and of each node whose cycles are counted 24 B and its open turning points.
