@@ -11,7 +11,7 @@ use crate::util::{Dir, Files};
 const FILE: &str = "reduction.vtkhdf";
 
 /// Reduction with damage.
-const REDUCTION: [&str; 8] = [
+pub const REDUCTION: [&str; 8] = [
     "--set",
     "output.reduction.damage.stress=signed_von_mises",
     "--set",

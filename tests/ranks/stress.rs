@@ -1,6 +1,7 @@
 //! Stress that ranks recover together.
 
 use super::{done, on_ranks};
+use crate::reduction::REDUCTION;
 use crate::sectors::SECTOR;
 use crate::util::SCENE;
 use crate::util::lockstep::{assert_same_run, small_motion};
@@ -51,14 +52,6 @@ fn regions_and_extremes_have_the_same_bits_on_any_number_of_ranks() {
         "output.every.displacement=2",
         "--set",
         "output.region.raceway_distance=1 mm",
-        "--set",
-        "output.reduction.damage.stress=signed_von_mises",
-        "--set",
-        "output.reduction.damage.exponent=5.0",
-        "--set",
-        "output.reduction.damage.reference_amplitude=50 MPa",
-        "--set",
-        "output.reduction.damage.reference_cycles=1e6",
     ];
     for kind in ["nodal", "none", "integration_points"] {
         let stress = format!("output.stress={kind}");
@@ -68,7 +61,15 @@ fn regions_and_extremes_have_the_same_bits_on_any_number_of_ranks() {
             "--set",
             &stress,
         ];
-        let arguments = [&["run", "series.toml"], &SECTOR[..], &fields, &both, &["--out"]].concat();
+        let arguments = [
+            &["run", "series.toml"],
+            &SECTOR[..],
+            &fields,
+            &REDUCTION,
+            &both,
+            &["--out"],
+        ]
+        .concat();
         let alone = format!("alone_{kind}");
         done(&dir.raceway(&[&arguments[..], &[&alone]].concat()));
         for ranks in [2, 3] {

@@ -32,9 +32,7 @@ impl Station {
 
     /// Displacement of the place.
     pub fn displacement(&self, q: &[f64]) -> [f64; N_SHAFT] {
-        let own = &q[self.first..self.first + N_SHAFT];
-        self.motion
-            .map(|row| row.iter().zip(own).map(|(a, x)| a * x).sum())
+        applied(&self.motion, &q[self.first..self.first + N_SHAFT])
     }
 
     /// Adds the share of the dofs in a load at the place.
@@ -56,6 +54,11 @@ impl Station {
             }
         }
     }
+}
+
+/// Product of a matrix and a vector.
+pub fn applied(matrix: &ShaftMatrix, x: &[f64]) -> [f64; N_SHAFT] {
+    matrix.map(|row| row.iter().zip(x).map(|(a, x)| a * x).sum())
 }
 
 /// Product of two matrices.

@@ -1,6 +1,6 @@
 //! Fields over the cells of all bodies.
 
-use crate::record::{Field, kept, listed, mask};
+use crate::record::{Field, listed, mask, stress_field};
 use crate::storage::Storage;
 
 /// Components of a stress tensor, in the order xx yy zz xy yz xz.
@@ -49,21 +49,11 @@ impl CellFields {
     /// Fields that are present, in the order of the files.
     pub(crate) fn present(&self, storage: Storage) -> Vec<Field<'_>> {
         let region = self.in_region.as_deref();
-        let derived = |name, n_components, values| {
-            kept(
-                region,
-                Field {
-                    name,
-                    n_components,
-                    values,
-                    coding: storage.stress_coding(),
-                },
-            )
-        };
+        let derived = |field| stress_field(region, storage, field);
         let stress = self.stress_integration_points.as_ref();
-        let stress = stress.map(|s| derived("stress_integration_points", s.n_components(), &s.values[..]));
+        let stress = stress.map(|s| derived(("stress_integration_points", s.n_components(), &s.values[..])));
         let largest = self.von_mises_largest.as_deref();
-        let largest = largest.map(|values| derived("von_mises_largest", 1, values));
+        let largest = largest.map(|values| derived(("von_mises_largest", 1, values)));
         stress
             .into_iter()
             .chain(largest)

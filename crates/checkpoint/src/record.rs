@@ -91,17 +91,7 @@ impl PointFields {
     /// Fields that are present, in the order of the files.
     pub(crate) fn present(&self, storage: Storage) -> Vec<Field<'_>> {
         let region = self.in_region.as_deref();
-        let stress = |name, n_components, values| {
-            kept(
-                region,
-                Field {
-                    name,
-                    n_components,
-                    values,
-                    coding: storage.stress_coding(),
-                },
-            )
-        };
+        let stress = |name, n_components, values| stress_field(region, storage, (name, n_components, values));
         let exact = Coding::Full(Precision::F64);
         let displacement = Some(&self.displacement[..]).filter(|rows| !rows.is_empty());
         let displacement = displacement.map(|rows| {
@@ -132,8 +122,24 @@ impl PointFields {
     }
 }
 
+/// A field of stress of this name, with so many components.
+pub(crate) fn stress_field<'a>(
+    region: Option<&[f64]>,
+    storage: Storage,
+    (name, n_components, values): (&'static str, usize, &'a [f64]),
+) -> Field<'a> {
+    let coding = storage.stress_coding();
+    let field = Field {
+        name,
+        n_components,
+        values,
+        coding,
+    };
+    kept(region, field)
+}
+
 /// A field with the coding of its region, if its rows outside are not known.
-pub(crate) fn kept<'a>(region: Option<&[f64]>, field: Field<'a>) -> Field<'a> {
+fn kept<'a>(region: Option<&[f64]>, field: Field<'a>) -> Field<'a> {
     let outside = region.and_then(|inside| inside.iter().position(|&inside| inside == 0.0));
     let row = |row: usize| {
         field

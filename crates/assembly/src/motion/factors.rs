@@ -17,6 +17,7 @@ use dynamics::stiffness::{N_SHAFT, ShaftMatrix};
 
 use super::step::ShaftStep;
 use crate::error::AssemblyError;
+use crate::shaft::applied;
 
 /// The shaft alone over parts of one size at one speed.
 pub struct ShaftAlone {
@@ -74,10 +75,10 @@ impl KeptFactors {
         }
         match (&self.tangent, &self.alone) {
             (Some(Tangent::Borne { tangents, loads }), Some(alone)) => {
-                let mut moved = alone.solve(residual, &self.free);
+                let mut moved = solve(&alone.factors, residual, &self.free);
                 let mut force = Vec::with_capacity(N_SHAFT * tangents.len());
                 for (mount, tangent) in step.mounts.iter().zip(tangents) {
-                    force.extend(product(tangent, mount.station.displacement(&moved)));
+                    force.extend(applied(tangent, &mount.station.displacement(&moved)));
                 }
                 loads.solve(&mut force, 1);
                 for (column, f) in alone.columns.iter().zip(&force) {
@@ -108,9 +109,9 @@ impl KeptFactors {
             }
             return Ok(Tangent::Whole(factored(step.shaft.n(), &whole, &self.free)?));
         }
-        let alone = match self.alone.take() {
+        let alone = match &mut self.alone {
             Some(alone) => alone,
-            None => ShaftAlone::new(step, &self.free)?,
+            none => none.insert(ShaftAlone::new(step, &self.free)?),
         };
         let n = N_SHAFT * tangents.len();
         let mut matrix = vec![0.0; n * n];
@@ -122,7 +123,6 @@ impl KeptFactors {
                 matrix[n * row + column] = along.sum::<f64>() + f64::from(u8::from(row == column));
             }
         }
-        self.alone = Some(alone);
         let loads = DenseLu::factor(n, &matrix).map_err(|source| AssemblyError::Matrix { source })?;
         Ok(Tangent::Borne { tangents, loads })
     }
@@ -143,7 +143,7 @@ impl ShaftAlone {
                 let (mut unit, mut load) = ([0.0; N_SHAFT], vec![0.0; n]);
                 unit[i] = 1.0;
                 mount.station.add_load(unit, &mut load);
-                alone.columns.push(alone.solve(&load, free));
+                alone.columns.push(solve(&alone.factors, &load, free));
             }
         }
         for mount in step.mounts {
@@ -154,10 +154,6 @@ impl ShaftAlone {
             }
         }
         Ok(alone)
-    }
-
-    fn solve(&self, load: &[f64], free: &[usize]) -> Vec<f64> {
-        solve(&self.factors, load, free)
     }
 }
 
@@ -175,8 +171,4 @@ fn solve(factors: &DenseLu, load: &[f64], free: &[usize]) -> Vec<f64> {
     let mut motion = vec![0.0; load.len()];
     free.iter().zip(found).for_each(|(&i, x)| motion[i] = x);
     motion
-}
-
-fn product(matrix: &ShaftMatrix, x: [f64; N_SHAFT]) -> [f64; N_SHAFT] {
-    matrix.map(|row| row.iter().zip(x).map(|(a, x)| a * x).sum())
 }

@@ -1,5 +1,7 @@
 //! What the tables of `[output]` ask of the rest of the scene.
 
+use input::Problems;
+
 /// What a scene computes, as far as output depends on it.
 #[derive(Clone, Copy, Debug)]
 pub struct OutputContext {
@@ -15,6 +17,17 @@ pub struct OutputContext {
     pub flexible: [bool; 2],
     /// Whether it writes stress; to be left to `RawOutput::check`.
     pub has_stress: bool,
+}
+
+impl OutputContext {
+    /// Refuses a table of `[output]` that needs a series of steps where there is none.
+    pub fn require_series(&self, table: &str, problems: &mut Problems) {
+        if !self.has_steps && !self.is_sweep {
+            problems.add(format!(
+                "[{table}] does nothing without a series of steps, [dynamic], [quasi_static] or [sweep]; remove it"
+            ));
+        }
+    }
 }
 
 /// No run has more steps.

@@ -64,12 +64,7 @@ impl Every {
 impl RawEvery {
     /// Checks ranges and fills in defaults.
     pub fn check(&self, context: OutputContext, problems: &mut Problems) -> Every {
-        if !context.has_steps && !context.is_sweep {
-            problems.add(
-                "[output.every] does nothing without a series of steps, [dynamic], [quasi_static] or [sweep]; \
-                 remove it",
-            );
-        }
+        context.require_series("output.every", problems);
         if self.stress.is_some() && !context.has_stress {
             problems.add("output.every.stress does nothing with output.stress = \"none\"; remove it");
         }

@@ -84,12 +84,7 @@ pub struct CycleDamage {
 impl RawReduction {
     /// Checks ranges and fills in defaults.
     pub fn check(&self, context: OutputContext, problems: &mut Problems) -> OutputReduction {
-        if !context.has_steps && !context.is_sweep {
-            problems.add(
-                "[output.reduction] does nothing without a series of steps, [dynamic], [quasi_static] or [sweep]; \
-                 remove it",
-            );
-        }
+        context.require_series("output.reduction", problems);
         if context.flexible == [false; 2] {
             problems.add("[output.reduction] needs stress, and rigid rings have none; remove it");
         }
