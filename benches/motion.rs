@@ -302,8 +302,7 @@ fn paper() {
     let seconds = clock.lap();
     println!(
         "\n== paper: 2 x {name} dofs, {HUNDREDTH} steps with stress and file of each: {seconds:.1} s, {:.1} ms per \
-         step; the \
-         revolution of {} steps: {:.0} min, {:.0} GB",
+         step; the revolution of {} steps: {:.0} min, {:.0} GB",
         1e3 * seconds / HUNDREDTH as f64,
         100 * HUNDREDTH,
         100.0 * seconds / 60.0,

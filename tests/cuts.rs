@@ -70,8 +70,7 @@ fn check_says_what_is_cut() {
     assert_eq!(outcome.code, Some(0), "{}", outcome.stderr);
     for part in [
         "rotationally periodic up to a defect; solver cyclic (54 equal sectors but for 3 missing elements in 3 of \
-         them, \
-         the first beside node ",
+         them, the first beside node ",
         " rows, ",
     ] {
         assert!(outcome.stdout.contains(part), "{}", outcome.stdout);

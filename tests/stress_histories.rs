@@ -141,8 +141,7 @@ fn histories_of_a_revolution_do_not_depend_on_the_mesh() {
                 [0, 1].map(|q| gap(&run.stress[r][q], &finest.stress[r][q]) / largest(&finest.stress[r][q]));
             println!(
                 "{ring}, {} sectors: {} pulses of {:.1} us, peak {:.1} MPa; against the finest: peak {peak:+.4}, \
-                 widths {width_gap:.4}, \
-                 every instant {gaps:.4?} (von Mises, orthogonal shear)",
+                 widths {width_gap:.4}, every instant {gaps:.4?} (von Mises, orthogonal shear)",
                 level.sectors,
                 up.len(),
                 1e6 * widths.iter().sum::<f64>() / widths.len() as f64,

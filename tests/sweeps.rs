@@ -187,8 +187,7 @@ fn a_sweep_that_breaks_down_keeps_its_points_and_ends_with_code_3() {
     let outcome = dir.raceway(&[&["run", "scene.toml", "--out", "out"], &RIGID[..]].concat());
     assert_eq!(outcome.code, Some(3), "{}", outcome.stderr);
     let message = "error: effects.axial_force.value_n = 1000000000 failed after 2 finished points, which are kept in \
-                   out: no \
-                   equilibrium: z of the shaft";
+                   out: no equilibrium: z of the shaft";
     assert!(outcome.stderr.contains(message), "{}", outcome.stderr);
     assert_eq!(Table::read(&dir, "out/balls.csv").rows.len(), 2 * 18);
     assert!(dir.path("out/step_000001.hdf").exists() && dir.path("out/run.vtkhdf").exists());
@@ -233,8 +232,7 @@ fn a_sweep_over_the_number_of_balls_is_refused() {
     let outcome = dir.raceway(&[&["run", "scene.toml", "--out", "out"], &RIGID[..]].concat());
     assert_eq!(outcome.code, Some(2), "{}", outcome.stderr);
     let message = "error: scene.toml: [sweep] key bearing.balls changes the number of balls, and with it the tables \
-                   and the \
-                   result files; run one scene per value with --set";
+                   and the result files; run one scene per value with --set";
     assert!(outcome.stderr.contains(message), "{}", outcome.stderr);
     assert!(!dir.path("out").exists());
 }

@@ -35,8 +35,7 @@ pub fn run(
     if ranks > 1 {
         return Err(Failure::User(anyhow!(
             "the search for modes runs as one process, but the launcher started {ranks} tasks; start one and give it \
-             the \
-             cores as threads"
+             the cores as threads"
         )));
     }
     let mut progress = Progress::new(wanted.bodies.len() as u64);

@@ -434,8 +434,7 @@ fn lossy(state: &MotionState) -> Option<String> {
     (share > LOSSY).then(|| {
         format!(
             "the integrator took {:.0} % of the largest energy of the motion; if that is not wanted, take a smaller \
-             step or less of its \
-             damping",
+             step or less of its damping",
             100.0 * share
         )
     })

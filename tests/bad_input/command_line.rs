@@ -75,8 +75,7 @@ const OVERRIDES: [Case; 8] = [
     (
         &["--set", "bearing.balls=1", "--set", "bearing.width=-1 mm"],
         "has 2 problems:\n  bearing.balls is 1; expected a whole number from 3 to 1000\n  bearing.width is -1 mm; a \
-         width \
-         must be positive",
+         width must be positive",
     ),
 ];
 

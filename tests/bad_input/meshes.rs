@@ -43,8 +43,7 @@ fn files() -> Vec<Case> {
             Vec::new(),
             &[
                 "error: inner.msh is not a gmsh mesh: expected \"$MeshFormat\" first, found an empty file; write one \
-                 with \
-             `gmsh -3 -format msh41`",
+                 with `gmsh -3 -format msh41`",
             ],
         ),
         (
@@ -64,8 +63,7 @@ fn files() -> Vec<Case> {
             until("$EndNodes"),
             &[
                 "error: inner.msh, line 523: expected $EndNodes, found the end of the file; the file is truncated or \
-                 damaged, write \
-             it again",
+                 damaged, write it again",
             ],
         ),
         (
@@ -90,8 +88,7 @@ fn files() -> Vec<Case> {
             }),
             &[
                 "error: inner.msh, line 420: expected a node coordinate, found \"3.0e\"; the file is truncated or \
-                 damaged, write it \
-             again",
+                 damaged, write it again",
             ],
         ),
         (
@@ -99,8 +96,7 @@ fn files() -> Vec<Case> {
             replaced("4.1 0 8", "4 0 8"),
             &[
                 "error: inner.msh is in MSH 4 text, which is not read; expected MSH 4.1 (text or binary) or MSH 2.2 \
-                 (text), \
-             convert it with `gmsh inner.msh -save -format msh41 -o new.msh`",
+                 (text), convert it with `gmsh inner.msh -save -format msh41 -o new.msh`",
             ],
         ),
         (
@@ -158,8 +154,7 @@ fn rings_that_are_none() -> Vec<Case> {
             replaced("\"raceway\"", "\"track\""),
             &[
                 "error: mesh inner.msh has no facet group \"raceway\"; groups are \"bore\", \"track\"; name it in the \
-                 .geo: \
-             Physical Surface(\"raceway\") = {...};",
+                 .geo: Physical Surface(\"raceway\") = {...};",
             ],
         ),
         (
@@ -167,8 +162,7 @@ fn rings_that_are_none() -> Vec<Case> {
             replaced("\"bore\"", "\"hole\""),
             &[
                 "error: mesh inner.msh has no facet group \"bore\"; groups are \"hole\", \"raceway\"; name it in the \
-                 .geo: \
-             Physical Surface(\"bore\") = {...};",
+                 .geo: Physical Surface(\"bore\") = {...};",
             ],
         ),
         (
@@ -181,8 +175,7 @@ fn rings_that_are_none() -> Vec<Case> {
             replaced("\"ring\"", "\"body\""),
             &[
                 "error: inner.msh has no physical Volume \"ring\" with elements; physical Volumes are \"body\"; name \
-                 the ring's \
-             Volume so in the .geo: Physical Volume(\"ring\") = {...};",
+                 the ring's Volume so in the .geo: Physical Volume(\"ring\") = {...};",
             ],
         ),
         (
@@ -191,8 +184,7 @@ fn rings_that_are_none() -> Vec<Case> {
             &[
                 "error: inner.msh: element 1 is inverted, its jacobian determinant falls to -",
                 "(1 such elements); expected a positive one everywhere; refine or smooth the mesh there, or turn the \
-                 element's \
-             nodes round",
+                 element's nodes round",
             ],
         ),
         (
@@ -202,8 +194,7 @@ fn rings_that_are_none() -> Vec<Case> {
             }),
             &[
                 "error: inner.msh: node 253 is used by no volume element (1 such nodes); expected none, they make the \
-                 stiffness \
-             singular; save without -save_all, or delete the point they are on",
+                 stiffness singular; save without -save_all, or delete the point they are on",
             ],
         ),
         (
@@ -224,8 +215,7 @@ fn rings_that_are_none() -> Vec<Case> {
             rebuilt(two_parts),
             &[
                 "error: inner.msh: the ring is in 2 unconnected parts (element 1 begins one of 108 elements); \
-                 expected one part; \
-             merge the interfaces (Coherence) or keep one ring per file",
+                 expected one part; merge the interfaces (Coherence) or keep one ring per file",
             ],
         ),
         (
@@ -233,8 +223,8 @@ fn rings_that_are_none() -> Vec<Case> {
             changed(|t| t.retype(12, 27)),
             &[
                 "error: inner.msh: \"ring\" holds 108 elements of type 27-node hexahedron (the first is element 1); \
-                 expected \
-             8-node hexahedra, 20-node hexahedra or 10-node tetrahedra; set Mesh.SecondOrderIncomplete=1",
+                 expected 8-node hexahedra, 20-node hexahedra or 10-node tetrahedra; set \
+                 Mesh.SecondOrderIncomplete=1",
             ],
         ),
         (

@@ -13,8 +13,7 @@ const CASES: [Case; 28] = [
         "ball_diametr = \"9 mm\"",
         &[
             "error: scene.toml:6:1: unknown key \"ball_diametr\" in [bearing]; did you mean \"ball_diameter\"? valid \
-             keys \
-             are \"balls\", \"ball_diameter\"",
+             keys are \"balls\", \"ball_diameter\"",
             "6 | ball_diametr = \"9 mm\"\n  | ^^^^^^^^^^^^",
         ],
     ),
@@ -24,8 +23,7 @@ const CASES: [Case; 28] = [
         "value = \"1 kN\"\nschedule.step = { at = \"1 ms\" }",
         &[
             "error: scene.toml has a problem: effects.radial_force.schedule changes effects.radial_force over time, \
-             but a scene \
-             at rest has no time; remove it, or give it time with [dynamic] or [quasi_static]",
+             but a scene at rest has no time; remove it, or give it time with [dynamic] or [quasi_static]",
         ],
     ),
     (
@@ -137,8 +135,7 @@ const CASES: [Case; 28] = [
         "mesh = \"iner.msh\"",
         &[
             "inner.mesh is \"iner.msh\", but there is no file iner.msh; correct the path, which is relative to the \
-             scene \
-             file",
+             scene file",
         ],
     ),
     (
@@ -251,8 +248,7 @@ fn a_sweep_over_the_rings_themselves_is_refused() {
     let dir = Dir::with_meshes();
     dir.write("scene.toml", with_line("[static]", "[static]", sweep));
     let part = "error: scene.toml: [sweep] key materials.rings.young_modulus changes the rings themselves; sweep \
-                loads, \
-                contacts, supports of the shaft or the ball phase, or run one scene per value with --set";
+                loads, contacts, supports of the shaft or the ball phase, or run one scene per value with --set";
     assert_refused("young_modulus", &dir, &[], &run(&[]), &[part]);
 }
 
@@ -267,7 +263,6 @@ fn a_shaft_that_nothing_holds_is_refused() {
         "effects.radial_force.value=0 N",
     ];
     let part = "of the shaft is free but nothing resists it (stiffness 0.000e0 of the largest): lock it in [shaft] or \
-                load \
-                the bearing so that balls touch";
+                load the bearing so that balls touch";
     assert_refused("no load", &dir, &[], &run(&unloaded), &[part]);
 }

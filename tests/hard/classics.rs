@@ -21,8 +21,8 @@ const HERTZ_DURATION: f64 = 2.943_275;
 
 pub fn cases() -> Vec<HardCase> {
     let stiff = "ball between both raceways, pressed by an imposed axial shift, set free 0.2 um beside its place; \
-                 errors after \
-                 4 periods at 200 and 400 steps a period against a Runge-Kutta solution of the same equation";
+                 errors after 4 periods at 200 and 400 steps a period against a Runge-Kutta solution of the same \
+                 equation";
     vec![
         HardCase {
             name: "hertz_impact",

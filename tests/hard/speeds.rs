@@ -306,8 +306,7 @@ fn steady(record: &mut Record, n: usize) {
     let largest = course.last.ledger.largest;
     record.note(format!(
         "largest kinetic energy in the first and the last tenth {:.2e} and {:.2e} of the largest energy; shaft within \
-         {:.2e} and \
-         {:.2e} um of its start",
+         {:.2e} and {:.2e} um of its start",
         kinetic[0] / largest,
         kinetic[9] / largest,
         1e6 * place[0],

@@ -64,9 +64,8 @@ pub enum ContactError {
     /// A ball presses where no groove can be.
     #[error(
         "ball {ball} presses on the {side} ring at a contact angle of {angle_deg:.1} deg, but no groove reaches \
-         beyond 90 deg: the \
-         load pulls the ring off its balls, or the ball has left its groove; turn the load, add preload, or hold the \
-         shaft"
+         beyond 90 deg: the load pulls the ring off its balls, or the ball has left its groove; turn the load, add \
+         preload, or hold the shaft"
     )]
     OffGroove {
         /// Ball number, from 0.

@@ -25,8 +25,8 @@ pub enum DynamicsError {
     /// The contact Newton stalled.
     #[error(
         "contact forces do not balance after {iterations} Newton iterations: largest residual {residual:.3e} N at \
-         {place}, \
-         expected {limit:.3e} N; residual history {history:?}; try a smaller load step (a sweep) or check the loads"
+         {place}, expected {limit:.3e} N; residual history {history:?}; try a smaller load step (a sweep) or check \
+         the loads"
     )]
     NewtonStalled {
         /// Iterations done.
@@ -80,8 +80,7 @@ pub enum DynamicsError {
     /// A motion went where the equations do not hold.
     #[error(
         "{what} is at {value}, beyond {limit}: it has left the bearing, and what follows would mean nothing; hold it \
-         by a \
-         load or in [shaft], or use contact = \"discrete_gradient\" and smaller steps if it should have stayed"
+         by a load or in [shaft], or use contact = \"discrete_gradient\" and smaller steps if it should have stayed"
     )]
     LeftBearing {
         /// What moved.
@@ -132,8 +131,7 @@ pub enum DynamicsError {
     /// Contacts of a ring share so few nodes that they are not independent.
     #[error(
         "the mesh of the {side} ring has too few nodes on its raceway to tell {n_balls} balls apart: the compliance \
-         of its \
-         contacts is singular; use more elements round the ring or across the groove, or fewer balls"
+         of its contacts is singular; use more elements round the ring or across the groove, or fewer balls"
     )]
     ContactsNotDistinct {
         /// `inner` or `outer`.

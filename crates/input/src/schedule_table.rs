@@ -100,8 +100,7 @@ pub fn check_schedule(
     if clock == Clock::AtRest {
         problems.add(format!(
             "{key} changes {owner} over time, but a scene at rest has no time; remove it, or give it time with \
-             [dynamic] or \
-             [quasi_static]"
+             [dynamic] or [quasi_static]"
         ));
         return Schedule::Constant;
     }

@@ -251,8 +251,7 @@ pub enum MeshError {
     /// Two nodes at one place.
     #[error(
         "{path}: nodes {first} and {second} coincide ({distance:.3e} m apart, elements there are {size:.3e} m in \
-         size); \
-         expected one node per place; use Coherence in the .geo or Mesh > Remove duplicate nodes"
+         size); expected one node per place; use Coherence in the .geo or Mesh > Remove duplicate nodes"
     )]
     CoincidentNodes {
         /// The file.
@@ -428,8 +427,7 @@ pub enum MeshError {
     /// There is no gmsh to mesh with.
     #[error(
         "the program gmsh was not found, it is needed to mesh {path}; install it (Debian, Ubuntu: `apt-get install \
-         gmsh`; \
-         any system: `pip install gmsh`) or mesh the file on another machine"
+         gmsh`; any system: `pip install gmsh`) or mesh the file on another machine"
     )]
     NoGmsh {
         /// The geometry that was to be meshed.

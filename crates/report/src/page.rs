@@ -252,8 +252,8 @@ fn key_numbers(numbers: &[Number], summary: &Value) -> String {
     ];
     format!(
         "<h2>Key numbers</h2>\n<div class=\"wide\">{}</div>\n<p class=\"note\">Over all balls and all steps of the \
-         tables; \
-         the root mean square is that over time, of single quantities of a motion. Peak pressures are Hertz's.</p>",
+         tables; the root mean square is that over time, of single quantities of a motion. Peak pressures are \
+         Hertz's.</p>",
         table("numbers", Some(&head), rows)
     )
 }

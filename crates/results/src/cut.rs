@@ -80,8 +80,7 @@ impl Cut {
             let newest = newest.map_or("the header".to_string(), |step| format!("step {step}"));
             return Err(anyhow!(
                 "{} ends with {newest}, but the run resumes at step {last}: rows are missing; resume at an earlier \
-                 step \
-                 with --step, or put the table back",
+                 step with --step, or put the table back",
                 path.display()
             ));
         }

@@ -70,10 +70,8 @@ pub fn place(probe: &NodeProbe, ring: &RingModel, tags: &[u64]) -> Result<NodePl
     }
     Err(Failure::User(anyhow!(
         "probes.node.{}: the point at azimuth {:.3} deg, r {:.4} mm, z {:.4} mm is {:.4} mm from the nearest node of \
-         the {} \
-         ring, farther than the {:.4} mm that an element measures there; that node is at azimuth {:.3} deg, r {:.4} \
-         mm, \
-         z {:.4} mm",
+         the {} ring, farther than the {:.4} mm that an element measures there; that node is at azimuth {:.3} deg, r \
+         {:.4} mm, z {:.4} mm",
         probe.name,
         probe.azimuth.to_degrees(),
         1e3 * r,

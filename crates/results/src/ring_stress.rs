@@ -22,11 +22,10 @@ use crate::failure::Failure;
 /// Order of points and components, as every step file states it. Points beyond those of a cell's kind are zero.
 pub const LAYOUT: &str = "stress in Pa, tension positive; a row per cell: points one after the other, each with the \
                           components xx yy zz xy yz xz in the axes in which the ring is shown; VTK cell type 12 \
-                          (hex8): \
-                          8 points of the 2x2x2 Gauss rule, 25 (hex20): 27 points of the 3x3x3 Gauss rule, the first \
-                          reference coordinate fastest, then the second; 24 (tet10): 4 points of the Hammer-Stroud \
-                          rule, \
-                          point 0 near node 0 and so on; 1 (ball): none; numbers beyond the points of a cell are zero";
+                          (hex8): 8 points of the 2x2x2 Gauss rule, 25 (hex20): 27 points of the 3x3x3 Gauss rule, \
+                          the first reference coordinate fastest, then the second; 24 (tet10): 4 points of the \
+                          Hammer-Stroud rule, point 0 near node 0 and so on; 1 (ball): none; numbers beyond the \
+                          points of a cell are zero";
 
 /// Stress recovery of the flexible rings, made once per run.
 pub struct RingStress {

@@ -241,8 +241,7 @@ fn require_kind(arrays: &Arrays, side: &str, ring: Option<RingShape>) -> anyhow:
     {
         return Err(anyhow!(
             "the state of the {side} ring is stored as {other}, expected {kind}: another version of raceway or \
-             another linear \
-             solver wrote it, and the run would not go on to the same bits; run the scene anew"
+             another linear solver wrote it, and the run would not go on to the same bits; run the scene anew"
         ));
     }
     Ok(())

@@ -157,8 +157,7 @@ fn outside(lines: &[&StressLine], place: usize) -> Failure {
             let [azimuth, angle, depth] = line.points()[place - before];
             return Failure::User(anyhow!(
                 "probes.{}.{}: the point at azimuth {:.3} deg, groove angle {:.3} deg, depth {:.4} mm is not in the \
-                 mesh of the \
-                 {} ring; expected a point between its raceway and its back",
+                 mesh of the {} ring; expected a point between its raceway and its back",
                 if line.n_points == 1 { "point" } else { "profile" },
                 line.name,
                 azimuth.to_degrees(),

@@ -24,8 +24,7 @@ pub enum RingError {
     /// A ring that the cyclic solver was asked for is not rotationally periodic.
     #[error(
         "the {side} ring is not rotationally periodic, so solver.backend = \"cyclic\" cannot be: {reason}; \
-         use \"auto\" or \
-         \"sparse\""
+         use \"auto\" or \"sparse\""
     )]
     NotPeriodic {
         /// `inner` or `outer`.
@@ -36,8 +35,7 @@ pub enum RingError {
     /// Harmonics do not give the modes of a ring with a defect.
     #[error(
         "the {side} ring is rotationally periodic only up to a defect, whose natural modes solver.backend \
-         = \"cyclic\" does \
-         not find; use \"auto\" or \"sparse\""
+         = \"cyclic\" does not find; use \"auto\" or \"sparse\""
     )]
     ModesOfDefect {
         /// `inner` or `outer`.

@@ -97,8 +97,7 @@ fn cyclic(mesh: &Mesh) -> (f64, f64, f64) {
     let factor = factor.expect("put back above");
     println!(
         "  cyclic: find sectors {find:.1} ms, assemble {assemble:.2} ms, order {analyse:.2} ms, factor {refactor:.2} \
-         ms, \
-         {:.1} MB, {:?}",
+         ms, {:.1} MB, {:?}",
         factor.factor_bytes() as f64 / 1e6,
         factor.symmetry()
     );
@@ -165,8 +164,7 @@ fn stencils(mesh: &Mesh, periodicity: &Periodicity, (ring, stiffness): (&CyclicR
     let floor = read_once(8 * 9 * mesh.n_nodes());
     println!(
         "  stencils: K u {whole:.2} ms (there {there:.2}, product {inner:.2}); stress {fast:.2} ms = {:.1} x reading \
-         u and \
-         stress once, weights {:.2} MB made in {build:.1} ms; element by element {slow:.1} ms",
+         u and stress once, weights {:.2} MB made in {build:.1} ms; element by element {slow:.1} ms",
         fast / floor,
         stress.bytes() as f64 / 1e6
     );

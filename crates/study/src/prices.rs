@@ -214,8 +214,7 @@ fn write_table(report: &Report, s: &mut String) -> std::fmt::Result {
     writeln!(
         s,
         "Made by `raceway prices` on {}, {}, 1 thread. Scene `{}`. First row of a table: the scene as it is; below: \
-         changes \
-         against it with one effect different. Processor time is that of the whole run.\n",
+         changes against it with one effect different. Processor time is that of the whole run.\n",
         report.date, report.machine, report.scene
     )?;
     let mut groups: Vec<(Vec<String>, Vec<&crate::PointReport>)> = Vec::new();

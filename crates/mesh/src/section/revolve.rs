@@ -156,9 +156,8 @@ fn snap_point(p: [f64; 2], snap: &Snap, index: usize) -> Result<[f64; 2], MeshEr
     }
     Err(wrong(format!(
         "point {} of group \"{}\" (r = {:e} m, z = {:e} m) is {deviation:.3e} m off the circle of radius {radius:e} m \
-         about \
-         r = {centre_r:e} m, z = {centre_z:e} m; expected at most {:.1e} m; compare the bearing's groove with the \
-         section's",
+         about r = {centre_r:e} m, z = {centre_z:e} m; expected at most {:.1e} m; compare the bearing's groove with \
+         the section's",
         index + 1,
         snap.group,
         p[0],

@@ -268,8 +268,7 @@ impl RawDynamic {
         }
         let rule = format!(
             "expected gamma / 2 = {} to (gamma + 1/2)^2 / 4 = {}, which damps high frequencies most: less is unstable \
-             for these, \
-             more can feed energy into contacts",
+             for these, more can feed energy into contacts",
             ten_digits(least),
             ten_digits(most)
         );

@@ -87,8 +87,7 @@ impl RawModes {
         if context.backend == Backend::Sector {
             problems.add(
                 "solver.backend is \"sector\", but the search for modes has no sectors; expected \"auto\", \"cyclic\" \
-                 or \
-                 \"sparse\" with [modes]",
+                 or \"sparse\" with [modes]",
             );
         }
         let number = problems.whole(self.number, "modes.number", 1, MAX_NUMBER);
@@ -106,8 +105,7 @@ impl RawModes {
         if self.support.is_some() && bodies.iter().all(|b| *b == ModeBody::Bearing) {
             problems.add(
                 "modes.support is how rings alone are held, but modes.bodies names none; name \"inner\" or \"outer\", \
-                 or \
-                 remove modes.support",
+                 or remove modes.support",
             );
         }
         if let Some(shift) = &self.shift {

@@ -103,8 +103,7 @@ impl RawGiven {
             if motion != Motion::Free && (q.is_some() || v.is_some()) {
                 problems.add(format!(
                     "[dynamic.start.given] moves {name}, which shaft.{name} does not leave free; remove it there or \
-                     set \
-                     shaft.{name} = \"free\""
+                     set shaft.{name} = \"free\""
                 ));
             }
         }

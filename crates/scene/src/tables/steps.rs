@@ -34,8 +34,7 @@ pub fn whole_steps(
     }
     problems.add(format!(
         "{table}.duration is {duration}; that is {} steps of {step}, expected a whole number; the nearest duration \
-         that \
-         fits is {}",
+         that fits is {}",
         ten_digits(ratio),
         Quantity::<TIME>::about(whole * step.si())
     ));

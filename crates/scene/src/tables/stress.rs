@@ -58,8 +58,7 @@ impl RawStress {
         if context.contact != ContactMode::Patch {
             problems.add(
                 "stress.near_field replaces the stress of a contact patch, which only contact.mode = \"patch\" has; \
-                 use that \
-                 mode or remove near_field",
+                 use that mode or remove near_field",
             );
         }
         if context.is_modes {

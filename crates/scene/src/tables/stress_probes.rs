@@ -93,8 +93,7 @@ impl RawProfile {
         if ends[0] == ends[1] {
             problems.add(format!(
                 "{key}: first and last point are the same; give azimuth, groove_angle or depth as [first, last], or \
-                 use \
-                 [probes.point.{name}]"
+                 use [probes.point.{name}]"
             ));
         }
         StressLine {

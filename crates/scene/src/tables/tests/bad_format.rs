@@ -9,8 +9,7 @@ const FORMAT: [Case; 36] = [
         "ball_diametr = \"9 mm\"",
         &[
             "scenes/test.toml:6:1: unknown key \"ball_diametr\" in [bearing]; did you mean \"ball_diameter\"? valid \
-             keys are \
-         \"balls\", \"ball_diameter\", \"inner_raceway_diameter\"",
+             keys are \"balls\", \"ball_diameter\", \"inner_raceway_diameter\"",
             "6 | ball_diametr = \"9 mm\"\n  | ^^^^^^^^^^^^",
         ],
     ),

@@ -56,8 +56,7 @@ const INVALID: [Case; 55] = [
         "duration = \"77.003 ms\"",
         &[
             "dynamic.duration is 77.003 ms; that is 7700.3 steps of 10 us, expected a whole number; the nearest \
-             duration \
-             that fits is 77 ms",
+             duration that fits is 77 ms",
         ],
     ),
     (
@@ -92,8 +91,7 @@ const INVALID: [Case; 55] = [
         "integrator = \"chung-hulbert\"",
         &[
             "dynamic.integrator is \"chung-hulbert\"; did you mean \"chung_hulbert\"? valid values \
-             are \"average_acceleration\", \
-           \"chung_hulbert\", \"hht\", \"newmark\"",
+             are \"average_acceleration\", \"chung_hulbert\", \"hht\", \"newmark\"",
         ],
     ),
     (
@@ -109,8 +107,7 @@ const INVALID: [Case; 55] = [
         "",
         &[
             "dynamic.rho is missing; the integrator \"chung_hulbert\" needs it, expected 0 to 1, the amplitude that \
-             the \
-           highest frequencies keep per step, 0.8 is usual",
+             the highest frequencies keep per step, 0.8 is usual",
         ],
     ),
     (
@@ -202,8 +199,7 @@ const INVALID: [Case; 55] = [
         "inner = \"30 Hz\"",
         &[
             "speed.inner: \"30 Hz\" is a rate, which does not say whether it counts revolutions or radians; expected \
-             an \
-           angular speed such as \"1800 rpm\" or a table with times and values",
+             an angular speed such as \"1800 rpm\" or a table with times and values",
         ],
     ),
     (
@@ -211,8 +207,7 @@ const INVALID: [Case; 55] = [
         "inner = 1800",
         &[
             "speed.inner: 1800 is a number without a unit; expected an angular speed such as \"1800 rpm\" or a table \
-             with \
-           times and values, in quotes",
+             with times and values, in quotes",
         ],
     ),
     (
@@ -373,8 +368,7 @@ fn numbers_that_make_an_integrator_unstable_are_refused() {
         (
             "integrator = \"newmark\"\ngamma = 0.6",
             "dynamic.beta is 0.25; expected gamma / 2 = 0.3 to (gamma + 1/2)^2 / 4 = 0.3025, which damps high \
-             frequencies most: less \
-             is unstable for these, more can feed energy into contacts",
+             frequencies most: less is unstable for these, more can feed energy into contacts",
         ),
         (
             "integrator = \"newmark\"\ngamma = 0.6\nbeta = 0.31",

@@ -248,8 +248,7 @@ const INVALID: [Case; 61] = [
         "shoulder_diameters = [\"56 mm\", \"60.4 mm\"]",
         &[
             "inner.section.shoulder_diameters[0] is 56 mm; a shoulder must lie between the bottom and the centre of \
-             the \
-         groove, 56.01 mm to 65.31 mm",
+             the groove, 56.01 mm to 65.31 mm",
         ],
     ),
     (

@@ -179,14 +179,12 @@ const SCHEDULES: [(&str, &str); 15] = [
     (
         "schedule = { stepp = { at = \"1 s\" } }",
         "unknown key \"stepp\" in [effects.axial_force.schedule]; did you mean \"step\"? valid keys \
-         are \"ramp\", \"step\", \
-         \"impact\", \"harmonic\", \"table\"",
+         are \"ramp\", \"step\", \"impact\", \"harmonic\", \"table\"",
     ),
     (
         "schedule = \"ramp\"",
         "effects.axial_force.schedule: invalid type: string \"ramp\", expected a table with one of ramp, step, \
-         impact, harmonic \
-         and table",
+         impact, harmonic and table",
     ),
     (
         "[effects.axial_force.schedule.ramp]\nstart = \"1 ms\"",
