@@ -5,6 +5,7 @@ use std::path::Path;
 use checkpoint::{read_mesh, read_step, read_table, step_file_name};
 
 use crate::util::Dir;
+use crate::util::lockstep::{assert_same_run, copy};
 use crate::util::tables::{Table, number, summary};
 
 /// A folder with the delivered scene and its meshes.
@@ -177,4 +178,73 @@ fn regions_and_extremes_hold_the_housing() {
     let near = near.in_region.unwrap();
     assert!((0..most.len()).all(|i| !(of_body[i] && near[i] == 1.0)));
     assert!(near.iter().filter(|&&inside| inside == 1.0).count() > 1000);
+}
+
+/// The delivered bearing on a shaft of 5 kg with an unbalance, which turns at 3000 rpm; 12 steps, a file every fourth.
+fn in_motion(dir: &Dir) {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let text = std::fs::read_to_string(root.join("scenes/6010_plummer_block.toml")).unwrap();
+    let motion = "[speed]\ninner = \"3000 rpm\"\n[effects.unbalance]\nmass = \"20 g\"\neccentricity = \"30 mm\"\n\
+                  [dynamic]\nduration = \"240 us\"\nstep = \"20 us\"\noutput_every = 4\n";
+    let text = text.replace("[static]                             # one equilibrium", motion);
+    let text = text.replace("load_point = \"0 mm\"", "load_point = \"0 mm\"\nmass = \"5 kg\"");
+    dir.write("motion.toml", text.replace("../meshes", "meshes"));
+}
+
+/// If this failed, a housing would not move, or be left out of step files; a run that is cut and goes on, or has other
+/// threads, would have other bits.
+#[test]
+fn a_housing_moves_and_goes_on_to_the_same_bits() {
+    let dir = delivered();
+    in_motion(&dir);
+    let run = dir.raceway(&["run", "motion.toml", "--out", "whole", "--threads", "1"]);
+    assert_eq!(run.code, Some(0), "{}", run.stderr);
+    let told = "its seat is tied to a body by 225 functions, and the body moves by these and by its";
+    assert!(run.stderr.contains(told), "{}", run.stderr);
+    let summary = summary(&dir, "whole");
+    assert!(number(&summary, "/energy_j/largest_defect_share").abs() < 1e-9);
+    copy(&dir, "whole", "cut");
+    std::fs::remove_file(dir.path("cut/summary.json")).unwrap();
+    let resumed = dir.raceway(&["resume", "cut", "--step", "4", "--threads", "2"]);
+    assert_eq!(resumed.code, Some(0), "{}", resumed.stderr);
+    assert_same_run(&dir, "whole", "cut");
+    let grid = read_mesh(&dir.path("whole")).unwrap();
+    let of_body = |cell: usize| grid.body[cell] == 3;
+    let ends = |cell: usize| grid.offsets[cell] as usize..grid.offsets[cell + 1] as usize;
+    let cells = (0..grid.body.len()).filter(|&cell| of_body(cell));
+    let points: Vec<usize> = cells
+        .flat_map(|cell| grid.connectivity[ends(cell)].iter().map(|&p| p as usize))
+        .collect();
+    let [first, last] = [0, 12].map(|step| {
+        read_step(&dir.path("whole").join(step_file_name(step)))
+            .unwrap()
+            .points
+    });
+    let most = |of: &dyn Fn(usize) -> f64| points.iter().map(|&p| of(p)).fold(0.0, f64::max);
+    let moved = |p: usize| {
+        (0..3)
+            .map(|c| (last.displacement[p][c] - first.displacement[p][c]).abs())
+            .fold(0.0, f64::max)
+    };
+    assert!(
+        most(&|p| first.displacement[p][1].abs()) > 1e-6,
+        "it stands under the load"
+    );
+    assert!(most(&moved) > 1e-10, "it moves by {} m", most(&moved));
+    assert!(most(&|p| last.von_mises.as_ref().unwrap()[p]) > 1e5);
+}
+
+/// If this failed, modes would be those of a bearing without its housing.
+#[test]
+fn natural_modes_in_a_housing_are_refused() {
+    let dir = delivered();
+    in_motion(&dir);
+    let run = dir.raceway(&["run", "motion.toml", "--out", "bad", "--set", "modes.count=4"]);
+    assert_eq!(run.code, Some(2), "{}", run.stderr);
+    assert!(
+        run.stderr.contains("are not solved, but the scene has [modes]"),
+        "{}",
+        run.stderr
+    );
+    assert!(!dir.path("bad").exists());
 }

@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use dense::DenseError;
 use fem::FemError;
 use solver::SolverError;
 use thiserror::Error;
@@ -12,6 +13,38 @@ pub(crate) const AXES: [&str; 3] = ["x", "y", "z"];
 /// Why there is no body, or no joint of it with a ring.
 #[derive(Debug, Error)]
 pub enum SurroundingError {
+    /// A body from a stiffness matrix alone, in motion.
+    #[error(
+        "body \"{body}\" comes from a stiffness matrix and has no mass, so it is solved at rest only; mesh it, or use \
+         [static], [sweep] or [quasi_static]"
+    )]
+    NoMass {
+        /// Name of the body.
+        body: String,
+    },
+    /// Modes that were not found.
+    #[error("the natural modes of body \"{body}\" below {below_hz} Hz: {source}; lower body.modes_below")]
+    Modes {
+        /// Name of the body.
+        body: String,
+        /// Frequency up to which they are wanted, Hz.
+        below_hz: f64,
+        /// Why.
+        source: DenseError,
+    },
+    /// More modes than can be kept.
+    #[error(
+        "body \"{body}\" has more than {most} natural modes below {below_hz} Hz with its seat held; lower \
+         body.modes_below"
+    )]
+    TooManyModes {
+        /// Name of the body.
+        body: String,
+        /// Frequency up to which they are wanted, Hz.
+        below_hz: f64,
+        /// How many may be kept.
+        most: usize,
+    },
     /// A group that is not in the mesh.
     #[error(
         "body \"{body}\" has no facet group \"{group}\" in its mesh; groups are {known}; correct {key} or name the \

@@ -6,7 +6,8 @@
 //! another program ([`matrix`]). At rest it is condensed exactly: F = Phi^T K^-1 Phi.
 //!
 //! Cost: one sparse factorisation, and one solve per function of the seats; 225 with 12 harmonics and 2 degrees
-//! across. The factor is kept for the displacement of the whole body.
+//! across. The factor is kept for the displacement of the whole body. In motion a body is reduced to these functions
+//! and its own modes up to a frequency ([`BodyModes`]).
 
 mod areas;
 mod error;
@@ -14,9 +15,11 @@ pub mod matrix;
 mod seat;
 mod surrounding;
 mod tie;
+mod vibration;
 
 pub use areas::cylinder_areas;
 pub use error::SurroundingError;
 pub use seat::{SeatBasis, SeatCylinder, SeatFunctions, SeatSpace};
 pub use surrounding::{BodySeat, Surrounding};
 pub use tie::{SeatTie, SeatTraction, TieConvergence};
+pub use vibration::BodyModes;

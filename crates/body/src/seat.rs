@@ -245,6 +245,25 @@ impl SeatFunctions {
         self.rows.chunks_exact(here.len().max(1)).map(row).collect()
     }
 
+    /// Each functional as its entries that are not zero: dof and value.
+    pub fn sparse_rows(&self) -> Vec<Vec<(usize, f64)>> {
+        let dofs = || {
+            self.nodes
+                .iter()
+                .flat_map(|node| [3 * node, 3 * node + 1, 3 * node + 2])
+        };
+        let row = |row: &[f64]| {
+            dofs()
+                .zip(row.iter().copied())
+                .filter(|entry| entry.1 != 0.0)
+                .collect()
+        };
+        self.rows
+            .chunks_exact((3 * self.nodes.len()).max(1))
+            .map(row)
+            .collect()
+    }
+
     /// Adds the nodal forces of lam, N, to a load, N, `[3 n_nodes of the mesh]`.
     pub fn add_load(&self, lam: &[f64], load: &mut [f64]) {
         for (function, &force) in lam.iter().enumerate() {

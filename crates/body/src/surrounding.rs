@@ -48,8 +48,8 @@ pub struct Surrounding {
     pub bytes: usize,
     /// Wall time of assembly, factor and columns, s.
     pub seconds: f64,
-    free: Vec<usize>,
-    factor: SparseCholesky,
+    pub(crate) free: Vec<usize>,
+    pub(crate) factor: SparseCholesky,
 }
 
 /// What is common to meshes and matrices.
@@ -241,25 +241,11 @@ impl Surrounding {
     /// F = Phi^T K^-1 Phi, made exactly symmetric.
     fn flexibility_of_seats(&self) -> Vec<f64> {
         let n = self.n_functions();
-        let owners: Vec<(usize, usize)> = self
-            .seats
-            .iter()
-            .enumerate()
-            .flat_map(|(seat, functions)| (0..functions.n()).map(move |f| (seat, f)))
-            .collect();
-        let n_free = self.free.len();
         let columns = |chunk: &[(usize, usize)]| -> Vec<f64> {
-            let mut field = vec![0.0; self.n_dofs];
-            let mut rhs = Vec::with_capacity(n_free * chunk.len());
-            for &(seat, function) in chunk {
-                field.fill(0.0);
-                self.seats[seat].add_unit_load(function, 1.0, &mut field);
-                rhs.extend(self.free.iter().map(|&dof| field[dof]));
-            }
-            self.factor.solve(&mut rhs, chunk.len());
+            let columns = self.solved_units(chunk);
             let mut measured = Vec::with_capacity(n * chunk.len());
-            for column in rhs.chunks_exact(n_free) {
-                field.fill(0.0);
+            let mut field = vec![0.0; self.n_dofs];
+            for column in columns.chunks_exact(self.free.len()) {
                 for (&dof, u) in self.free.iter().zip(column) {
                     field[dof] = *u;
                 }
@@ -267,7 +253,8 @@ impl Surrounding {
             }
             measured
         };
-        let mut flexibility: Vec<f64> = owners.par_chunks(BLOCK).map(columns).collect::<Vec<_>>().concat();
+        let chunks = self.owners();
+        let mut flexibility: Vec<f64> = chunks.par_chunks(BLOCK).map(columns).collect::<Vec<_>>().concat();
         for i in 0..n {
             for j in 0..i {
                 let mean = 0.5 * (flexibility[n * i + j] + flexibility[n * j + i]);
@@ -275,6 +262,40 @@ impl Surrounding {
             }
         }
         flexibility
+    }
+
+    /// Seat and number there of every function.
+    fn owners(&self) -> Vec<(usize, usize)> {
+        let of_seat = |(seat, functions): (usize, &SeatFunctions)| (0..functions.n()).map(move |f| (seat, f));
+        self.seats.iter().enumerate().flat_map(of_seat).collect()
+    }
+
+    /// Loads of unit forces on some functions, on free dofs, column-major.
+    fn unit_loads(&self, functions: &[(usize, usize)]) -> Vec<f64> {
+        let mut field = vec![0.0; self.n_dofs];
+        let mut loads = Vec::with_capacity(self.free.len() * functions.len());
+        for &(seat, function) in functions {
+            field.fill(0.0);
+            self.seats[seat].add_unit_load(function, 1.0, &mut field);
+            loads.extend(self.free.iter().map(|&dof| field[dof]));
+        }
+        loads
+    }
+
+    /// K^-1 of these.
+    fn solved_units(&self, functions: &[(usize, usize)]) -> Vec<f64> {
+        let mut columns = self.unit_loads(functions);
+        self.factor.solve(&mut columns, functions.len());
+        columns
+    }
+
+    /// Phi and K^-1 Phi of all functions, on free dofs, column-major.
+    pub(crate) fn seat_columns(&self) -> [Vec<f64>; 2] {
+        let owners = self.owners();
+        let chunks = || owners.par_chunks(BLOCK);
+        let loads: Vec<_> = chunks().map(|chunk| self.unit_loads(chunk)).collect();
+        let columns: Vec<_> = chunks().map(|chunk| self.solved_units(chunk)).collect();
+        [loads.concat(), columns.concat()]
     }
 }
 

@@ -4,8 +4,10 @@ use std::sync::Arc;
 
 use dense::DenseCholesky;
 
+use crate::error::SurroundingError;
 use crate::seat::{SeatBasis, SeatFunctions, SeatSpace};
 use crate::surrounding::Surrounding;
+use crate::vibration::BodyModes;
 
 /// The joint of a ring with what is round it.
 #[derive(Clone)]
@@ -16,6 +18,8 @@ pub struct SeatTie {
     pub flexibility: Vec<f64>,
     /// The body; None for a rigid one.
     pub body: Option<Arc<Surrounding>>,
+    /// What moves of it; None where it is at rest only.
+    pub modes: Option<Arc<BodyModes>>,
 }
 
 /// What a joint carries at rest.
@@ -43,7 +47,20 @@ impl SeatTie {
             space: body.seats[0].space,
             flexibility: body.flexibility.clone(),
             body: Some(body),
+            modes: None,
         }
+    }
+
+    /// The same for a motion, with the modes of the body with a held seat up to a frequency, Hz.
+    pub fn in_motion(self, below_hz: f64) -> Result<SeatTie, SurroundingError> {
+        let modes = match &self.body {
+            Some(body) => body.modes(below_hz)?,
+            None => BodyModes::rigid(),
+        };
+        Ok(SeatTie {
+            modes: Some(Arc::new(modes)),
+            ..self
+        })
     }
 
     /// A joint with a rigid body.
@@ -53,6 +70,7 @@ impl SeatTie {
             space,
             flexibility: vec![0.0; n * n],
             body: None,
+            modes: Some(Arc::new(BodyModes::rigid())),
         }
     }
 

@@ -6,6 +6,7 @@ use body::Surrounding;
 use checkpoint::{Body, CellFields, PointFields, StateArray, StepRecord};
 use contact::{BearingGeometry, Side};
 use dynamics::balls::BallResult;
+use dynamics::motion::{BodyState, MotionState};
 use dynamics::{Model, StaticSolution};
 use fem::stress::von_mises;
 use mesh::Mesh;
@@ -166,15 +167,24 @@ impl Places {
     }
 }
 
-/// Displacement of the body round the outer ring at rest, m, `[n_nodes][3]` flat; None where none is shown.
+/// Displacement of the body round the outer ring, m, `[n_nodes][3]` flat; None where none is shown.
 pub fn body_displacement(shown: &Shown<'_>) -> Result<Option<Vec<f64>>, Failure> {
-    let Shown::Equilibrium { model, solution, .. } = shown else {
-        return Ok(None);
-    };
-    if body_of(model).is_none() {
+    if body_of(shown.model()).is_none() {
         return Ok(None);
     }
-    Ok(SeatState::new(model, solution)?.map(|seat| seat.body_displacement()))
+    match shown {
+        Shown::Equilibrium { model, solution, .. } => {
+            Ok(SeatState::new(model, solution)?.map(|seat| seat.body_displacement()))
+        }
+        Shown::Motion { model, state, .. } => Ok(moved_body(model, state)),
+    }
+}
+
+/// The same of a motion, from the oscillators of its state.
+fn moved_body(model: &Model, state: &MotionState) -> Option<Vec<f64>> {
+    let (side, _, tie) = tied(model)?;
+    let BodyState([at, ..]) = state.rings[side.index()].as_ref()?.body()?;
+    Some(tie.body.as_ref()?.moved(tie.modes.as_ref()?, at))
 }
 
 /// What the stress of a ring follows from: its displacement, or the stress that ranks have gathered.

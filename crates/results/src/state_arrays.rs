@@ -10,8 +10,8 @@ use checkpoint::StateArray;
 use contact::Side;
 use dynamics::motion::RingState;
 use dynamics::motion::{
-    CageLedger, CageState, ContactTraction, FreeState, FrictionLedger, Ledger, MotionState, RingCourse,
-    RingShape, StateShape,
+    BodyState, CageLedger, CageState, ContactTraction, FreeState, FrictionLedger, Ledger, MotionState,
+    RingCourse, RingShape, StateShape,
 };
 
 /// Arrays by name.
@@ -220,11 +220,18 @@ fn exchange_ring(
     port: &mut Port<'_>,
 ) -> anyhow::Result<()> {
     let end = ending(shape.kind);
+    let mut body = ring.take_body();
+    if shape.oscillators > 0 {
+        let BodyState(of_body) = body.get_or_insert_default();
+        for (name, list) in ["w", "v", "a"].into_iter().zip(of_body) {
+            port.list(&format!("{side}_body_{name}"), list, shape.oscillators)?;
+        }
+    }
     let [mut w, mut v, mut a] = std::mem::take(ring).into_parts();
     for (name, vector) in [("w", &mut w), ("v", &mut v), ("a", &mut a)] {
         port.list(&format!("{side}_{name}{end}"), vector, shape.length)?;
     }
-    *ring = RingState::new(w, v, a);
+    *ring = RingState::new(w, v, a).with_body(body);
     Ok(())
 }
 

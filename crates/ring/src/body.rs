@@ -19,6 +19,8 @@ use crate::inventory::Inventory;
 use crate::matrices::{Matrix, NodalMatrices, Nodes};
 use crate::memory::MotionMemory;
 use crate::model::{Backend, Hold, RingModel};
+use crate::mount::MountRows;
+use crate::oscillators::Oscillators;
 use crate::sparse::{SparseLoad, sparse_dot};
 use crate::state::RingState;
 use crate::step::{FrameTurn, StepFactor};
@@ -80,9 +82,11 @@ pub struct HeldRing {
     /// Coordinates of the ring.
     pub coordinates: Coordinates,
     /// Functionals of the mount: translations, tilts, and for a mean-motion hold the rotation about z.
-    pub mount: Vec<SparseLoad>,
+    pub mount: MountRows,
     /// Where the nodes are.
     pub places: NodePlaces,
+    /// The functionals among these that are rigid motions of the ring; of a ring that is tied to a body none.
+    pub rigid: Vec<SparseLoad>,
     /// Rayleigh damping: C = a M + b K with `[a, b]`.
     pub damping: [f64; 2],
 }
@@ -94,6 +98,8 @@ pub struct RingShape {
     pub length: usize,
     /// What they are: `coordinates` or `harmonics`.
     pub kind: &'static str,
+    /// Oscillators of a body to which the ring is tied.
+    pub oscillators: usize,
 }
 
 /// An elastic ring with its linear solver.
@@ -139,6 +145,11 @@ pub trait ElasticBody: Send + Sync {
     /// Kinetic and strain energy, J.
     fn energies(&self, state: &RingState) -> [f64; 2];
 
+    /// The body to which the ring is tied, if there is one.
+    fn tied(&self) -> Option<&Oscillators> {
+        None
+    }
+
     /// The effective matrix of a scheme, factored. Collective.
     fn step_factor(self: Arc<Self>, scheme: StepScheme) -> Result<Box<dyn StepFactor>, RingError>;
 }
@@ -155,7 +166,8 @@ impl HeldRing {
         Ok(HeldRing {
             name,
             coordinates,
-            mount,
+            rigid: mount.clone(),
+            mount: MountRows::new(mount),
             places: ring.places(name, backend)?,
             damping: [0.0; 2],
         })
@@ -184,7 +196,7 @@ impl HeldRing {
         let mut strained = w.to_vec();
         let (shaft, first) = self.coordinates.shaft();
         let mut q = [0.0; RIGID_MOTIONS];
-        for (k, row) in self.mount.iter().enumerate() {
+        for (k, row) in self.rigid.iter().enumerate() {
             q[shaft.get(k).copied().unwrap_or(k)] = sparse_dot(row, w);
         }
         if q == [0.0; RIGID_MOTIONS] {
@@ -260,7 +272,8 @@ impl dyn ElasticBody + '_ {
         if ak != 0.0 {
             loss += ak * self.form(Matrix::Stiffness, &change, &v);
         }
-        loss
+        let of_body = |body: &Oscillators| body.rayleigh_loss(integrator, self.held().damping, [old, new]);
+        self.tied().map_or(loss, |body| loss + of_body(body))
     }
 
     /// Energy that the integrator took in a step, J. The balance of the step, M a[1-am] + C v[1-af] + K w[1-af] = f,
@@ -274,8 +287,10 @@ impl dyn ElasticBody + '_ {
         let a = combined([s, 1.0 - s], old.acceleration(), new.acceleration());
         let v = combined([0.5; 2], old.velocity(), new.velocity());
         let gain = combined([-1.0, 1.0], old.velocity(), new.velocity());
-        self.form(Matrix::Mass, &change, &a) - self.form(Matrix::Mass, &v, &gain)
-            + (0.5 - integrator.alpha_f) * self.form(Matrix::Stiffness, &change, &change)
+        let loss = self.form(Matrix::Mass, &change, &a) - self.form(Matrix::Mass, &v, &gain)
+            + (0.5 - integrator.alpha_f) * self.form(Matrix::Stiffness, &change, &change);
+        let of_body = |body: &Oscillators| body.numerical_loss(integrator, [old, new]);
+        self.tied().map_or(loss, |body| loss + of_body(body))
     }
 
     /// State of a ring: elastic nodal displacements `[n_dofs]` plus the rigid motion `q`, with the velocity of
@@ -304,9 +319,10 @@ impl dyn ElasticBody + '_ {
             .enumerate()
             .for_each(|(i, &dof)| w[i] += elastic[dof]);
         let v = field(rate);
+        let body = self.tied().map(|body| body.at_rest(&coordinates.expand(&w)));
         let [w, v] = [w, v].map(|y| self.state_of_coordinates(y));
         let a = vec![0.0; w.len()];
-        RingState::new(w, v, a)
+        RingState::new(w, v, a).with_body(body)
     }
 }
 

@@ -26,6 +26,7 @@ pub const RIGID_MOTIONS: usize = 6;
 const HELD: u32 = 1 << 31;
 
 /// Map between nodal dofs and generalised coordinates.
+#[derive(Clone)]
 pub struct Coordinates {
     /// Of each nodal dof its free coordinate, or [`HELD`] plus the place of its node among the held ones.
     sources: Vec<u32>,

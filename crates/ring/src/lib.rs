@@ -17,6 +17,7 @@ pub mod memory;
 pub mod model;
 mod mount;
 mod nodal;
+mod oscillators;
 pub mod pool;
 pub mod rank_memory;
 pub mod rigid;
@@ -29,6 +30,7 @@ pub mod step;
 pub mod stress;
 pub mod substructures;
 pub mod support;
+mod tied;
 pub mod vectors;
 pub mod vibration;
 
@@ -38,9 +40,10 @@ pub use integrator::{Integrator, StepScheme};
 pub use inventory::Inventory;
 pub use make::{BodySettings, elastic_body};
 pub use model::{Backend, Hold, NodeMasses, RACEWAY_GROUP, RingModel, Sectors};
+pub use oscillators::Oscillators;
 pub use seat::{OwnStress, RadialProfile, SeatAction, SeatField};
 pub use solver::SolverError;
-pub use state::RingState;
+pub use state::{BodyState, RingState};
 pub use step::{
     ElasticStep, End, Ended, Feet, FrameTurn, Known, KnownLoad, PortAnswer, PortForces, Settling, StepFactor,
     Works,

@@ -7,8 +7,11 @@ use crate::error::RingError;
 use crate::harmonic::make::harmonic_body;
 use crate::harmonic::periodic::Periodic;
 use crate::model::{Backend, RingModel};
+use crate::mount::MountRows;
 use crate::nodal::sector::SectorBody;
 use crate::nodal::sparse::SparseBody;
+use crate::oscillators::Oscillators;
+use crate::tied::TiedRing;
 
 /// What a body is made with.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -37,6 +40,36 @@ pub fn elastic_body(
         damping: settings.damping,
         ..HeldRing::new(name, ring, how, settings.backend)?
     };
+    match (&ring.tie, ring.seat_functions(name)?) {
+        (Some(tie), Some(functions)) => {
+            // From outside the ring has no mount: the body is part of it.
+            let outside = HeldRing {
+                coordinates: held.coordinates.clone(),
+                places: held.places.clone(),
+                mount: MountRows::default(),
+                rigid: Vec::new(),
+                ..held
+            };
+            let inside = HeldRing {
+                mount: MountRows::dense(functions.sparse_rows()),
+                rigid: Vec::new(),
+                ..held
+            };
+            let body = Oscillators::new(tie, functions)?;
+            let ring = solved_body(ring, inside, settings)?;
+            Ok(Arc::new(TiedRing::new(ring, outside, body)))
+        }
+        _ => solved_body(ring, held, settings),
+    }
+}
+
+/// The body of a ring, held so, with the linear solver that fits it.
+fn solved_body(
+    ring: &RingModel,
+    held: HeldRing,
+    settings: BodySettings,
+) -> Result<Arc<dyn ElasticBody>, RingError> {
+    let name = held.name;
     if let Backend::Sector(sectors) = settings.backend {
         return Ok(Arc::new(SectorBody::new(ring, held, sectors)?));
     }

@@ -1,15 +1,104 @@
-//! Columns of a ring's mount: what unit forces of the partner move.
+//! Functionals of a ring's mount, and what unit forces of the partner move.
+//!
+//! A clamped or mean-motion mount has five or six functionals, each with entries of its own. The functions of a seat
+//! are hundreds on the same nodes: they are kept as a matrix, whose nodes are looked up once.
 
 use solver::LinearSolver;
 
 use crate::sparse::{SparseLoad, fill, sparse_dot};
 
+/// Functionals of a mount.
+#[derive(Clone, Debug, Default)]
+pub struct MountRows {
+    /// Index of a coordinate and value, by functional.
+    pub rows: Vec<SparseLoad>,
+    /// The same where they are many.
+    dense: Option<DenseRows>,
+}
+
+/// Many functionals of the same coordinates.
+#[derive(Clone, Debug)]
+struct DenseRows {
+    /// The coordinates, ascending.
+    places: Vec<usize>,
+    /// Functionals of single ones of these.
+    units: Vec<SparseLoad>,
+    /// `[functionals][places]` flat.
+    values: Vec<f64>,
+}
+
+impl MountRows {
+    /// A mount of few functionals.
+    pub fn new(rows: Vec<SparseLoad>) -> MountRows {
+        MountRows { rows, dense: None }
+    }
+
+    /// A mount of many functionals of the same coordinates.
+    pub fn dense(rows: Vec<SparseLoad>) -> MountRows {
+        let mut places: Vec<usize> = rows.iter().flatten().map(|&(i, _)| i).collect();
+        places.sort_unstable();
+        places.dedup();
+        let mut values = vec![0.0; rows.len() * places.len()];
+        for (row, values) in rows.iter().zip(values.chunks_exact_mut(places.len().max(1))) {
+            for (i, value) in row {
+                let at = places.binary_search(i).expect("a place of the functionals");
+                values[at] += value;
+            }
+        }
+        let dense = Some(DenseRows {
+            units: places.iter().map(|&i| vec![(i, 1.0)]).collect(),
+            places,
+            values,
+        });
+        MountRows { rows, dense }
+    }
+
+    /// Number of functionals.
+    pub fn len(&self) -> usize {
+        self.rows.len()
+    }
+
+    /// Whether there is none.
+    pub fn is_empty(&self) -> bool {
+        self.rows.is_empty()
+    }
+
+    /// Functionals of single coordinates from which values of all follow; None where they are their own.
+    pub fn units(&self) -> Option<&[SparseLoad]> {
+        self.dense.as_ref().map(|dense| &dense.units[..])
+    }
+
+    /// Values of the functionals from those of the units.
+    pub fn of_units(&self, units: &[f64]) -> Vec<f64> {
+        let dense = self.dense.as_ref().expect("a mount with units has its matrix");
+        let rows = dense.values.chunks_exact(units.len().max(1));
+        rows.map(|row| row.iter().zip(units).map(|(a, b)| a * b).sum())
+            .collect()
+    }
+
+    /// Loads of forces on the functionals: index and value, of many functionals each index once.
+    pub fn loads(&self, forces: &[f64]) -> Vec<(usize, f64)> {
+        let Some(DenseRows { places, values, .. }) = &self.dense else {
+            let rows = self.rows.iter().zip(forces);
+            return rows
+                .flat_map(|(row, f)| row.iter().map(move |&(i, w)| (i, f * w)))
+                .collect();
+        };
+        let mut loads = vec![0.0; places.len()];
+        for (row, force) in values.chunks_exact(places.len().max(1)).zip(forces) {
+            loads.iter_mut().zip(row).for_each(|(load, w)| *load += force * w);
+        }
+        places.iter().copied().zip(loads).collect()
+    }
+}
+
 /// S^-1 times the functionals of the mount.
 pub(crate) struct MountColumns {
-    /// Column-major `[n][n_mount]`.
-    pub columns: Vec<f64>,
+    /// Of each coordinate what the functionals move it, `[n][n_mount]` flat.
+    pub moved: Vec<f64>,
     /// Their values at the functionals, row-major.
     pub compliance: Vec<f64>,
+    n_mount: usize,
 }
 
 impl MountColumns {
@@ -20,9 +109,35 @@ impl MountColumns {
         fill(&mut columns, mount, n);
         factor.solve(&mut columns, m);
         let entry = |k: usize| sparse_dot(&mount[k / m], &columns[n * (k % m)..n * (k % m + 1)]);
-        MountColumns {
-            compliance: (0..m * m).map(entry).collect(),
-            columns,
+        let compliance = (0..m * m).map(entry).collect();
+        let mut moved = Vec::with_capacity(n * m);
+        for i in 0..n {
+            moved.extend((0..m).map(|k| columns[n * k + i]));
         }
+        MountColumns {
+            compliance,
+            moved,
+            n_mount: m,
+        }
+    }
+
+    /// Number of functionals.
+    pub fn n(&self) -> usize {
+        self.n_mount
+    }
+
+    /// What unit forces on the functionals move a coordinate.
+    pub fn at(&self, coordinate: usize) -> &[f64] {
+        &self.moved[self.n_mount * coordinate..][..self.n_mount]
+    }
+
+    /// What they move a functional.
+    pub fn of(&self, functional: &SparseLoad) -> Vec<f64> {
+        // As a sum of no numbers begins: bits of a zero stay.
+        let mut sum = vec![-0.0; self.n_mount];
+        for &(i, weight) in functional {
+            sum.iter_mut().zip(self.at(i)).for_each(|(s, u)| *s += weight * u);
+        }
+        sum
     }
 }

@@ -28,12 +28,17 @@ pub struct RingState {
     v: PooledVector,
     /// Acceleration.
     a: PooledVector,
+    body: Option<BodyState>,
     stamp: Stamp,
 }
 
+/// State of a body to which a ring is tied: displacement, velocity and acceleration of its oscillators, m kg^1/2.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct BodyState(pub [Vec<f64>; 3]);
+
 impl PartialEq for RingState {
     fn eq(&self, other: &RingState) -> bool {
-        [&self.w, &self.v, &self.a] == [&other.w, &other.v, &other.a]
+        [&self.w, &self.v, &self.a] == [&other.w, &other.v, &other.a] && self.body == other.body
     }
 }
 
@@ -45,8 +50,24 @@ impl RingState {
             w,
             v,
             a,
+            body: None,
             stamp: Stamp::default(),
         }
+    }
+
+    /// The same ring, tied to a body in this state.
+    pub fn with_body(self, body: Option<BodyState>) -> RingState {
+        RingState { body, ..self }
+    }
+
+    /// State of the body to which it is tied.
+    pub fn body(&self) -> Option<&BodyState> {
+        self.body.as_ref()
+    }
+
+    /// Takes the state of that body.
+    pub fn take_body(&mut self) -> Option<BodyState> {
+        self.body.take()
     }
 
     /// Total displacement in the ring's frame.
@@ -64,16 +85,26 @@ impl RingState {
         &self.a
     }
 
-    /// The same with another acceleration.
-    pub fn with_acceleration(self, a: Vec<f64>) -> RingState {
+    /// The same with the mean acceleration of a step of size dt to another state.
+    pub fn with_mean_acceleration(self, end: &RingState, dt: f64) -> RingState {
+        let mean = |old: &[f64], new: &[f64]| -> Vec<f64> {
+            new.iter().zip(old).map(|(v1, v0)| (v1 - v0) / dt).collect()
+        };
+        let body = self.body.zip(end.body.as_ref()).map(|(old, new)| {
+            let [w, v, _] = old.0;
+            let a = mean(&v, &new.0[1]);
+            BodyState([w, v, a])
+        });
         RingState {
-            a: PooledVector::from(a),
+            a: PooledVector::from(mean(&self.v, &end.v)),
+            body,
             stamp: Stamp::default(),
-            ..self
+            w: self.w,
+            v: self.v,
         }
     }
 
-    /// Displacement, velocity, acceleration.
+    /// Displacement, velocity, acceleration of the ring.
     pub fn into_parts(self) -> [Vec<f64>; 3] {
         [self.w, self.v, self.a].map(PooledVector::into_vec)
     }

@@ -60,7 +60,7 @@ impl VibratingRing {
             };
         // A mount has the moving dofs of a clamped surface, or all mean motions.
         let moving = (0..5).filter(|&dof| of.moves[dof]);
-        let of_mount = |k: usize| held.mount.get(k).cloned();
+        let of_mount = |k: usize| held.mount.rows.get(k).cloned();
         let motions: [Option<SparseLoad>; 5] = match hold {
             Hold::MeanMotion => [0, 1, 2, 3, 4].map(of_mount),
             Hold::Clamped | Hold::Free => {

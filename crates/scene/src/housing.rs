@@ -25,9 +25,11 @@ pub fn seat_tie(scene: &Scene, ring: &RingModel) -> Result<Option<Arc<SeatTie>>,
     // The ring must tell the functions apart too: sooner than after a long factorisation.
     let areas = fem::facet_node_weights(&ring.mesh, ring.mesh.group(ring.held_group));
     body::SeatFunctions::new(what, seat.space, &areas, |node| ring.mesh.nodes[node])?;
-    Ok(Some(Arc::new(SeatTie::to_body(Arc::new(surrounding(
-        body, &seat,
-    )?)))))
+    let tie = SeatTie::to_body(Arc::new(surrounding(body, &seat)?));
+    Ok(Some(Arc::new(match body.modes_below {
+        Some(below) => tie.in_motion(below)?,
+        None => tie,
+    })))
 }
 
 fn surrounding(body: &SceneBody, seat: &BodySeat) -> Result<Surrounding, BuildError> {

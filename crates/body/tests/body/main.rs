@@ -1,5 +1,7 @@
 //! Bodies by themselves: closed forms of a tube, bodies from matrices, and every message.
 
+mod vibration;
+
 use std::collections::BTreeMap;
 use std::f64::consts::{PI, TAU};
 use std::fmt::Write;

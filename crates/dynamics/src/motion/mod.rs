@@ -47,7 +47,7 @@ pub use cage_state::CageState;
 pub use free_state::{ContactTraction, FreeState};
 pub use ledger::{CageLedger, FrictionLedger, Ledger};
 pub use limits::{ContactLimit, Exceeded};
-pub use ring::{Integrator, RingState};
+pub use ring::{BodyState, Integrator, RingState};
 pub use ring_course::RingCourse;
 pub use run::{Motion, check_supported};
 pub use shape::{RingShape, StateShape};

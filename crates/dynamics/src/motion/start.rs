@@ -125,9 +125,7 @@ impl Motion<'_> {
         let mean = |v1: f64, v0: f64| (v1 - v0) / self.settings.dt;
         for (start, moved) in state.rings.iter_mut().zip(&next.rings) {
             if let (Some(ring), Some(moved)) = (start.take(), moved) {
-                let velocities = moved.velocity().iter().zip(ring.velocity());
-                let a = velocities.map(|(a, b)| mean(*a, *b)).collect();
-                *start = Some(ring.with_acceleration(a));
+                *start = Some(ring.with_mean_acceleration(moved, self.settings.dt));
             }
         }
         for (b, moved) in next.ball_velocities.iter().enumerate() {

@@ -8,6 +8,7 @@ const SHAPE: StateShape = StateShape {
         Some(RingShape {
             length: 3,
             kind: "coordinates",
+            oscillators: 2,
         }),
         None,
     ],
@@ -30,7 +31,8 @@ fn state() -> MotionState {
     let (balls, ball_velocities, ball_accelerations) = (pairs(2), pairs(2), pairs(2));
     let (trend, forces, places) = (pairs(6), pairs(4), [(); 3].map(|()| pairs(4)));
     let mut list = |n: usize| (0..n).map(|_| number()).collect::<Vec<_>>();
-    let ring = RingState::new(vec![f64::NAN, -0.0, 1e-300], list(3), list(3));
+    let body = BodyState([list(2), list(2), list(2)]);
+    let ring = RingState::new(vec![f64::NAN, -0.0, 1e-300], list(3), list(3)).with_body(Some(body));
     MotionState {
         step: 7,
         rung: 3,

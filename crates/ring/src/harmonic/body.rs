@@ -38,6 +38,7 @@ impl ElasticBody for HarmonicBody {
         RingShape {
             length: self.space.len(),
             kind: "harmonics",
+            oscillators: 0,
         }
     }
 

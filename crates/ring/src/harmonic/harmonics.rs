@@ -145,7 +145,7 @@ impl Harmonics {
             side: held.name,
             source,
         })?;
-        let mount = MountColumns::new(&solver, &held.mount, held.coordinates.n());
+        let mount = MountColumns::new(&solver, &held.mount.rows, held.coordinates.n());
         // The border of S is the mount of a clamped bore.
         let border_inverse = held.is_bordered().then(|| {
             DenseCholesky::factor(held.mount.len(), &mount.compliance)
@@ -199,7 +199,7 @@ impl Harmonics {
         }
         let all = ResponseTable::new(solver.inner(), &chosen);
         let n_free = held.coordinates.free().len();
-        let mounted = held.mount.iter().flatten().map(|&(i, _)| i);
+        let mounted = held.mount.rows.iter().flatten().map(|&(i, _)| i);
         let mounted: Vec<usize> = mounted.filter(|&i| i < n_free).map(|i| i / 3).collect();
         let [met, touched] =
             [raceway, &chosen].map(|nodes| ring.section_part(nodes, mounted.iter().copied()));

@@ -109,7 +109,7 @@ impl Columns for CyclicFactor {
     ) -> Vec<f64> {
         let more = self.begin_coordinates(load);
         add(&mut predictor.regular, &more);
-        let mut moved = self.measure(&more, &ports.all(held));
+        let mut moved = ports.values(held, |all| self.measure(&more, all));
         if let (Some(defect), Some(step)) = (&self.responses.defect, &mut predictor.defect) {
             let corrected = step.add(&defect.answer, &self.at_rows(&defect.answer, &more));
             moved.iter_mut().zip(corrected).for_each(|(m, d)| *m += d);

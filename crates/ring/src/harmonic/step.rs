@@ -165,14 +165,15 @@ impl StepFactor for HarmonicFactor {
 impl HarmonicStep<'_> {
     /// Values of functionals on what contacts and partner touch.
     fn measure(&self, x: &[f64]) -> Vec<f64> {
-        let all = self.ports.all(&self.factor.body.held);
-        self.factor.factor.measure(x, &all)
+        let (held, factor) = (&self.factor.body.held, &self.factor.factor);
+        self.ports.values(held, |all| factor.measure(x, all))
     }
 
     /// Takes what the ports see of the predictor.
     fn answer_with(&mut self, moved: Moved) {
-        let at_start = self.ports.at_start(&self.factor.body.held);
-        let start = self.factor.factor.measure(self.old.displacement(), &at_start);
+        let (held, factor) = (&self.factor.body.held, &self.factor.factor);
+        let old = self.old.displacement();
+        let start = self.ports.values_at_start(held, |all| factor.measure(old, all));
         self.answer = moved.into_answer(start);
     }
 

@@ -9,7 +9,6 @@ use super::defect_step::{DefectFactor, DefectStep};
 use super::factor::CyclicFactor;
 use crate::body::HeldRing;
 use crate::nodal::columns::{Moved, Ports};
-use crate::sparse::{SparseLoad, sparse_dot};
 use crate::vectors::dot;
 
 /// Contacts as the responses of a raceway meet them.
@@ -40,12 +39,12 @@ impl CyclicFactor {
         predictor: &[f64],
         defect_step: impl FnOnce(&DefectFactor, Vec<f64>) -> DefectStep,
     ) -> Meeting {
-        let mut predicted = self.measure(predictor, &ports.all(held));
+        let mut predicted = ports.values(held, |all| self.measure(predictor, all));
         let touch = self.touch(held, ports);
         let mut compliance = self.table_compliance(&touch, held.mount.len());
         let step = self.responses.defect.as_ref().map(|defect| {
             let n_free = self.solver.inner().n();
-            let answers = self.answers(defect, &touch, n_free, held.coordinates.n());
+            let answers = self.answers(defect, &touch, n_free);
             let step = defect_step(defect, answers);
             let more = step.motion(&defect.answer);
             predicted.iter_mut().zip(more).for_each(|(m, d)| *m += d);
@@ -73,9 +72,7 @@ impl CyclicFactor {
             let pairs: Vec<PairWeights> = pairs.map(|(n, foot)| (&n[..], &foot.coefficients[..])).collect();
             table.patch(&pairs).expect("patches lie on the raceway")
         };
-        let columns: Vec<&[f64]> = self.mount.columns.chunks_exact(held.coordinates.n()).collect();
-        let moved = |contact: &SparseLoad| columns.iter().map(|y| sparse_dot(contact, y)).collect();
-        let by_mount: Vec<Vec<f64>> = ports.contacts.iter().map(moved).collect();
+        let by_mount: Vec<Vec<f64>> = ports.contacts.iter().map(|c| self.mount.of(c)).collect();
         Touch {
             patches: ports.places.chunks_exact(ports.per_contact).map(patch).collect(),
             by_border: by_mount.iter().map(|v| self.times_border(v)).collect(),
@@ -104,21 +101,20 @@ impl CyclicFactor {
         compliance
     }
 
-    /// Motion of contacts, then mount, under unit forces on the rows of a defect, row-major, without the defect; of n
-    /// coordinates n_free are free.
-    fn answers(&self, defect: &DefectFactor, touch: &Touch, n_free: usize, n: usize) -> Vec<f64> {
+    /// Motion of contacts, then mount, under unit forces on the rows of a defect, row-major, without the defect;
+    /// `n_free` coordinates are free.
+    fn answers(&self, defect: &DefectFactor, touch: &Touch, n_free: usize) -> Vec<f64> {
         let (rows, contacts) = (defect.answer.rows(), touch.by_mount.len());
-        let columns: Vec<&[f64]> = self.mount.columns.chunks_exact(n).collect();
         let direct = defect.responses.of_patches(&touch.patches);
-        let mut answers = Vec::with_capacity(rows.len() * (contacts + columns.len()));
+        let mut answers = Vec::with_capacity(rows.len() * (contacts + self.mount.n()));
         // Rows of the border come last, so the free ones keep their numbers.
         for (i, &row) in rows.iter().enumerate() {
-            let by_mount: Vec<f64> = columns.iter().map(|column| column[row]).collect();
+            let by_mount = self.mount.at(row);
             match row.checked_sub(n_free) {
                 Some(shaft) => answers.extend(touch.by_mount.iter().map(|v| v[shaft])),
                 None => {
                     let both = direct[contacts * i..][..contacts].iter().zip(&touch.by_border);
-                    answers.extend(both.map(|(direct, border)| direct + dot(&by_mount, border)));
+                    answers.extend(both.map(|(direct, border)| direct + dot(by_mount, border)));
                 }
             }
             answers.extend(by_mount);

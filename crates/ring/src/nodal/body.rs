@@ -38,6 +38,7 @@ impl<S: NodalSolver> ElasticBody for NodalBody<S> {
         RingShape {
             length: self.held.coordinates.n(),
             kind: "coordinates",
+            oscillators: 0,
         }
     }
 

@@ -119,16 +119,39 @@ impl Ports {
 
     /// Functionals of contacts, then mount.
     pub fn all<'a>(&'a self, held: &'a HeldRing) -> Vec<&'a SparseLoad> {
-        self.contacts.iter().chain(&held.mount).collect()
+        self.contacts.iter().chain(&held.mount.rows).collect()
     }
 
-    /// Functionals of contacts, mount and what is only measured.
-    pub fn at_start<'a>(&'a self, held: &'a HeldRing) -> Vec<&'a SparseLoad> {
-        self.contacts
-            .iter()
-            .chain(&held.mount)
-            .chain(&self.seen)
-            .collect()
+    /// Values of contacts and mount by what measures functionals.
+    pub fn values(&self, held: &HeldRing, measure: impl FnOnce(&[&SparseLoad]) -> Vec<f64>) -> Vec<f64> {
+        self.values_with(&[], held, measure)
+    }
+
+    /// Values of contacts, mount and what is only measured.
+    pub fn values_at_start(
+        &self,
+        held: &HeldRing,
+        measure: impl FnOnce(&[&SparseLoad]) -> Vec<f64>,
+    ) -> Vec<f64> {
+        self.values_with(&self.seen, held, measure)
+    }
+
+    fn values_with(
+        &self,
+        seen: &[SparseLoad],
+        held: &HeldRing,
+        measure: impl FnOnce(&[&SparseLoad]) -> Vec<f64>,
+    ) -> Vec<f64> {
+        let units = held.mount.units();
+        let mount = units.unwrap_or(&held.mount.rows);
+        let all: Vec<&SparseLoad> = self.contacts.iter().chain(mount).chain(seen).collect();
+        let mut values = measure(&all);
+        if units.is_some() {
+            let own = self.contacts.len()..self.contacts.len() + mount.len();
+            let of_mount = held.mount.of_units(&values[own.clone()]);
+            values.splice(own, of_mount);
+        }
+        values
     }
 
     /// Generalised loads of forces at the ports, index and value.
@@ -138,8 +161,8 @@ impl Ports {
         forces: PortForces<'a>,
     ) -> impl Iterator<Item = (usize, f64)> + 'a {
         let contacts = self.contacts.iter().zip(forces.contacts);
-        let all = contacts.chain(held.mount.iter().zip(forces.mount));
-        all.flat_map(|(functional, f)| functional.iter().map(move |&(i, w)| (i, f * w)))
+        let contacts = contacts.flat_map(|(functional, f)| functional.iter().map(move |&(i, w)| (i, f * w)));
+        contacts.chain(held.mount.loads(forces.mount))
     }
 }
 

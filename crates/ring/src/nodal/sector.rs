@@ -60,9 +60,9 @@ impl NodalSolver for SectorSolver {
                 side: held.name,
                 source,
             })?;
-        let factor = SectorFactor::new(bordered, &held.mount);
+        let factor = SectorFactor::new(bordered, &held.mount.rows);
         Ok(SectorsFactored {
-            mount_compliance: factor.mount_compliance(&held.mount),
+            mount_compliance: factor.mount_compliance(&held.mount.rows),
             factor,
         })
     }

@@ -89,7 +89,7 @@ impl NodalSolver for SparseSolver {
                 source,
             })?;
         let factor = TriangularFactor::new(factor);
-        let mount = factor.columns(&held.mount);
+        let mount = factor.columns(&held.mount.rows);
         Ok(SparseColumns {
             mount_compliance: mount.products(&mount),
             mount,

@@ -118,7 +118,7 @@ impl<S: NodalSolver> StepFactor for NodalFactor<S> {
             (None, Some(f)) => add(&mut side, f),
             (None, None) => (),
         }
-        let start = measure(&ports.at_start(held), from.displacement());
+        let start = ports.values_at_start(held, |all| measure(all, from.displacement()));
         laps.add(RIGHT_SIDE, clock.lap());
         let (predictor, moved) = self.columns.begin(held, side, &ports);
         let turn = known.load.turn;
@@ -157,7 +157,8 @@ impl<S: NodalSolver> ElasticStep for NodalStep<'_, S> {
         let (mut laps, mut clock) = (Laps::default(), Stopwatch::start());
         let held = &self.factor.body.held;
         self.ports = Ports::new(held, contacts);
-        let start = measure(&self.ports.at_start(held), self.old.displacement());
+        let old = self.old.displacement();
+        let start = self.ports.values_at_start(held, |all| measure(all, old));
         let moved = self
             .factor
             .columns

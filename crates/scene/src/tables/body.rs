@@ -1,4 +1,4 @@
-//! `[[body]]`: an elastic body round the outer ring, at rest.
+//! `[[body]]`: an elastic body round the outer ring.
 //!
 //! ```toml
 #![doc = include_str!("example_body.toml")]
@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 
 use body::SeatBasis;
 use body::matrix::MatrixFiles;
-use input::{KINDS, LENGTH, Problems, Quantity, STIFFNESS, parse_unit};
+use input::{KINDS, LENGTH, Problems, Quantity, RATE, STIFFNESS, parse_unit};
 use serde::Deserialize;
 
 use super::materials::{Material, RawMaterial};
@@ -19,6 +19,8 @@ use super::solver::Backend;
 const HARMONICS: i64 = 12;
 /// Degrees across a seat without a word.
 const ACROSS: i64 = 2;
+/// Frequency up to which a moving body keeps its modes without a word, Hz.
+const MODES_BELOW: f64 = 20e3;
 /// Effects that act on a seat of which something else is assumed, and why not with a body.
 const REFUSED_EFFECTS: [(&str, &str); 4] = [
     ("fit", "its pressure is that of a rigid or round housing"),
@@ -42,6 +44,7 @@ pub struct RawSceneBody {
     fixed_nodes: Option<String>,
     length_unit: Option<String>,
     stiffness_unit: Option<String>,
+    modes_below: Option<Quantity<RATE>>,
     #[serde(default)]
     seat: Vec<RawBodySeat>,
 }
@@ -68,6 +71,8 @@ pub struct SceneBody {
     pub group: String,
     /// Functions that are tied.
     pub basis: SeatBasis,
+    /// Frequency up to which its modes with a held seat move, Hz; None at rest.
+    pub modes_below: Option<f64>,
     /// Where the middle of the ring's seat stands along its z, m; None: in the middle of the group.
     pub z: Option<f64>,
 }
@@ -104,8 +109,10 @@ pub struct BodyContext<'a> {
     pub turns_outer: bool,
     /// Linear solver of the rings.
     pub backend: Backend,
-    /// An analysis of the scene that has no place for a body: `dynamic` or `modes`.
-    pub moving: Option<&'static str>,
+    /// Whether the scene moves in time.
+    pub is_dynamic: bool,
+    /// Whether it asks for natural modes.
+    pub has_modes: bool,
     /// Effects of the scene.
     pub effects: Vec<&'static str>,
 }
@@ -161,10 +168,10 @@ pub fn check_bodies(
 
 /// What a body at rest does not go with.
 fn refuse_beside_body(name: &str, context: &BodyContext<'_>, problems: &mut Problems) {
-    if let Some(table) = context.moving {
+    if context.has_modes {
         problems.add(format!(
-            "body {name:?} has no mass and is solved at rest only, but the scene has [{table}]; expected \
-             [static], [sweep] or [quasi_static], or outer.support = \"mean_motion\" without [[body]]"
+            "the natural modes of a bearing in body {name:?} are not solved, but the scene has [modes]; expected \
+             [static], [sweep], [quasi_static] or [dynamic], or outer.support = \"mean_motion\" without [[body]]"
         ));
     }
     if context.backend.divides_rings() {
@@ -217,6 +224,7 @@ impl RawSceneBody {
             (Some(mesh), None) => self.check_mesh(&key, mesh, context, problems, assumed),
             (None, Some(_)) => self.check_matrix(&key, context, problems),
         };
+        let modes_below = self.check_modes(&key, context, problems);
         let seat = self.check_seat(&key, problems)?;
         let harmonics = seat.harmonics.unwrap_or(HARMONICS);
         let across = seat.across.unwrap_or(ACROSS);
@@ -226,10 +234,36 @@ impl RawSceneBody {
                 across: problems.whole(across, "body.seat.across", 1, 8),
             },
             name: self.name.clone(),
+            modes_below,
             source: source?,
             group: seat.group.clone().unwrap_or_default(),
             z: seat.z.as_ref().map(Quantity::si),
         })
+    }
+
+    /// Frequency up to which the modes of a moving body are kept, Hz.
+    fn check_modes(&self, key: &str, context: &BodyContext<'_>, problems: &mut Problems) -> Option<f64> {
+        let below = self.modes_below.as_ref().map_or(MODES_BELOW, Quantity::si);
+        if !(1.0..=1e6).contains(&below) {
+            problems.add(format!(
+                "{key}: modes_below is {below} Hz; expected a frequency between 1 Hz and 1 MHz"
+            ));
+        }
+        if !context.is_dynamic {
+            if self.modes_below.is_some() {
+                problems.add(format!(
+                    "{key} has modes_below, but the scene has no [dynamic], so it does not move; remove modes_below"
+                ));
+            }
+            return None;
+        }
+        if self.stiffness.is_some() {
+            problems.add(format!(
+                "{key} comes from a stiffness matrix, which has no mass, but the scene has [dynamic]; expected a body \
+                 with a mesh, or [static], [sweep] or [quasi_static]"
+            ));
+        }
+        Some(below)
     }
 
     /// The one seat.

@@ -36,10 +36,6 @@ impl RawScene {
         problems: &mut Problems,
         assumed: &mut Vec<String>,
     ) -> Option<SceneBody> {
-        let moving = [
-            (self.dynamic.is_some(), "dynamic"),
-            (self.modes.is_some(), "modes"),
-        ];
         let context = BodyContext {
             scene: source.path,
             files: source.mesh_files,
@@ -47,10 +43,8 @@ impl RawScene {
             is_outer_rigid: self.outer.is_rigid(),
             turns_outer: self.has_speed()[1],
             backend,
-            moving: moving
-                .iter()
-                .find(|(is_there, _)| *is_there)
-                .map(|(_, table)| *table),
+            is_dynamic: self.dynamic.is_some(),
+            has_modes: self.modes.is_some(),
             effects: self.effects.names(),
         };
         check_bodies(&self.body, &context, problems, assumed)

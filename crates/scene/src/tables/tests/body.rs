@@ -165,7 +165,7 @@ fn scenes_in_which_a_body_makes_no_sense_are_refused() {
         ),
         (
             with("[static]", "[modes]\nnumber = 3"),
-            "solved at rest only, but the scene has [modes]",
+            "are not solved, but the scene has [modes]",
         ),
         (
             with(
@@ -180,14 +180,40 @@ fn scenes_in_which_a_body_makes_no_sense_are_refused() {
         let said = parse(&text, &[]).err().map(|e| e.to_string()).unwrap_or_default();
         assert!(said.contains(expected), "{said}\nexpected: {expected}");
     }
-    let motion = DYNAMIC.replace("[outer]", &format!("{whole_body}\n[outer]"));
-    let said = parse(&motion, &["outer.support=\"body\""])
-        .unwrap_err()
-        .to_string();
-    assert!(
-        said.contains("solved at rest only, but the scene has [dynamic]"),
-        "{said}"
-    );
+}
+
+/// Wrong: a motion would move a body that has no mass, or one at rest promise modes that nobody finds.
+#[test]
+fn only_a_body_with_a_mass_moves() {
+    let moving = |text: &str| {
+        let table = "[dynamic]\nduration = \"1 ms\"\nstep = \"10 us\"\noutput_every = 10";
+        assert!(text.contains("[static]"));
+        text.replace("[static]", table)
+    };
+    let below = |text: &str| {
+        with(
+            "[[body.seat]]",
+            &format!("modes_below = \"{text}\"\n[[body.seat]]"),
+        )
+    };
+    assert_eq!(body_of(&moving(SCENE)).modes_below, Some(20e3));
+    assert_eq!(body_of(&moving(&below("5 kHz"))).modes_below, Some(5e3));
+    assert_eq!(body_of(SCENE).modes_below, None);
+    for (text, expected) in [
+        (
+            moving(&below("0 Hz")),
+            "expected a frequency between 1 Hz and 1 MHz",
+        ),
+        (moving(&below("5 mm")), "modes_below"),
+        (
+            moving(&matrices("")),
+            "which has no mass, but the scene has [dynamic]",
+        ),
+        (below("5 kHz"), "has modes_below, but the scene has no [dynamic]"),
+    ] {
+        let said = parse(&text, &[]).unwrap_err().to_string();
+        assert!(said.contains(expected), "{said}\nexpected: {expected}");
+    }
 }
 
 /// Wrong: a missing file would be found after the meshes are read, or without its place.

@@ -1,0 +1,361 @@
+//! A body in motion, reduced to its seats and its own modes: Craig and Bampton, AIAA J. 6 (1968) 1313,
+//! doi:10.2514/3.4741, with the functions of the seats in the place of boundary nodes.
+//!
+//! The displacement is that of forces lam on the seats at rest, and of modes phi in which the seats stand,
+//!
+//! ```text
+//! u = X lam + phi eta,     X = K^-1 Phi,     Phi^T phi = 0,     phi^T M phi = 1,     phi^T K phi = omega_f^2
+//! K_r = diag(F, omega_f^2),     M_r = | X^T M X    X^T M phi |
+//!                                     | phi^T M X      1     |
+//! ```
+//!
+//! At rest nothing is left out. In motion the modes phi above a frequency are. The reduced body is a list of
+//! oscillators xi, its own modes with free seats: M_r V = 1, K_r V = omega^2 in V^T . V; the seats have g = F V_lam xi.
+
+use std::f64::consts::TAU;
+
+use dense::{
+    DenseCholesky, DenseError, EigenProblem, Eigenpairs, LanczosSettings, dense_lowest, lowest_pairs,
+};
+use rayon::prelude::*;
+use solver::LinearSolver;
+use sprs::CsMat;
+
+use crate::error::SurroundingError;
+use crate::surrounding::Surrounding;
+
+/// Modes that are looked for at first.
+const FIRST_SEARCH: usize = 12;
+/// Most modes with held seats.
+const MOST_MODES: usize = 384;
+/// Vectors of a block of the search.
+const BLOCK: usize = 4;
+
+/// A body as oscillators.
+#[derive(Clone, Debug, PartialEq)]
+pub struct BodyModes {
+    /// Squares of their angular frequencies, rad^2/s^2, ascending.
+    pub squares: Vec<f64>,
+    /// Motion of the seat functions, m per unit of an oscillator (m kg^1/2), `[n_oscillators][n_functions]` flat.
+    pub seat: Vec<f64>,
+    /// Oscillators in which the body stands under static forces, per N, `[n_oscillators][n_functions]` flat.
+    pub of_forces: Vec<f64>,
+    /// Frequency up to which modes with held seats are kept, Hz.
+    pub below_hz: f64,
+    /// How many these are.
+    pub n_fixed: usize,
+    /// Static forces on the seats, N per unit, `[n_oscillators][n_functions]` flat.
+    forces: Vec<f64>,
+    /// Shares of the modes with held seats, `[n_oscillators][n_fixed]` flat.
+    shares: Vec<f64>,
+    /// These modes on the free dofs, column-major.
+    fixed: Vec<f64>,
+}
+
+impl BodyModes {
+    /// A rigid body: no oscillators.
+    pub fn rigid() -> BodyModes {
+        BodyModes {
+            squares: Vec::new(),
+            seat: Vec::new(),
+            of_forces: Vec::new(),
+            below_hz: f64::INFINITY,
+            n_fixed: 0,
+            forces: Vec::new(),
+            shares: Vec::new(),
+            fixed: Vec::new(),
+        }
+    }
+
+    /// Number of oscillators.
+    pub fn n(&self) -> usize {
+        self.squares.len()
+    }
+
+    /// Bytes of all.
+    pub fn bytes(&self) -> usize {
+        let lists = [
+            &self.squares,
+            &self.seat,
+            &self.of_forces,
+            &self.forces,
+            &self.shares,
+            &self.fixed,
+        ];
+        size_of::<f64>() * lists.iter().map(|list| list.len()).sum::<usize>()
+    }
+
+    /// Motion of the seat functions under oscillators, m.
+    pub fn seat_motion(&self, oscillators: &[f64]) -> Vec<f64> {
+        combined(&self.seat, oscillators)
+    }
+}
+
+/// Rows of a matrix times one number each, summed.
+fn combined(rows: &[f64], factors: &[f64]) -> Vec<f64> {
+    let width = rows.len().checked_div(factors.len()).unwrap_or(0);
+    let mut sum = vec![0.0; width];
+    for (row, factor) in rows.chunks_exact(width.max(1)).zip(factors) {
+        sum.iter_mut().zip(row).for_each(|(s, r)| *s += factor * r);
+    }
+    sum
+}
+
+impl Surrounding {
+    /// The body as oscillators, with its modes of held seats up to a frequency, Hz.
+    pub fn modes(&self, below_hz: f64) -> Result<BodyModes, SurroundingError> {
+        let Some((mesh, material)) = &self.mesh else {
+            return Err(SurroundingError::NoMass {
+                body: self.name.clone(),
+            });
+        };
+        let mass = fem::assemble_mass(mesh, material).map_err(|source| SurroundingError::Fem {
+            body: self.name.clone(),
+            source,
+        })?;
+        let mass = solver::restrict(&mass, &self.free);
+        let failed = |source| SurroundingError::Modes {
+            body: self.name.clone(),
+            below_hz,
+            source,
+        };
+        let [loads, columns] = self.seat_columns();
+        let held = HeldSeats {
+            body: self,
+            mass: &mass,
+            loads: &loads,
+            columns: &columns,
+            flexibility: DenseCholesky::factor(self.n_functions(), &self.flexibility).map_err(failed)?,
+        };
+        let fixed = held.below(below_hz)?;
+        let reduced = Reduced::new(&held, &fixed).map_err(failed)?;
+        let n_fixed = fixed.values.len();
+        reduced
+            .oscillators(below_hz, n_fixed, fixed.vectors)
+            .map_err(failed)
+    }
+
+    /// Displacement of the body, m, `[n_nodes][3]` flat, under oscillators.
+    pub fn moved(&self, modes: &BodyModes, oscillators: &[f64]) -> Vec<f64> {
+        let mut field = self.displacement(&combined(&modes.forces, oscillators));
+        let shares = combined(&modes.shares, oscillators);
+        for (mode, share) in modes.fixed.chunks_exact(self.free.len()).zip(shares) {
+            for (&dof, u) in self.free.iter().zip(mode) {
+                field[dof] += share * u;
+            }
+        }
+        field
+    }
+}
+
+/// The body with seats that stand, on its free dofs.
+struct HeldSeats<'a> {
+    body: &'a Surrounding,
+    mass: &'a CsMat<f64>,
+    /// Phi, column-major.
+    loads: &'a [f64],
+    /// X = K^-1 Phi.
+    columns: &'a [f64],
+    flexibility: DenseCholesky,
+}
+
+impl HeldSeats<'_> {
+    /// Its modes up to a frequency.
+    fn below(&self, below_hz: f64) -> Result<Eigenpairs, SurroundingError> {
+        let most = (TAU * below_hz).powi(2);
+        let mut wanted = FIRST_SEARCH;
+        loop {
+            let found = lowest_pairs(self, LanczosSettings::new(wanted, BLOCK), &mut |_| ());
+            let mut found = found.map_err(|source| SurroundingError::Modes {
+                body: self.body.name.clone(),
+                below_hz,
+                source,
+            })?;
+            let kept = found.values.iter().take_while(|value| **value <= most).count();
+            if kept < found.values.len() || found.values.len() < wanted {
+                found.values.truncate(kept);
+                found.vectors.truncate(kept * self.n());
+                return Ok(found);
+            }
+            if wanted >= MOST_MODES {
+                return Err(SurroundingError::TooManyModes {
+                    body: self.body.name.clone(),
+                    below_hz,
+                    most: MOST_MODES,
+                });
+            }
+            wanted *= 2;
+        }
+    }
+}
+
+impl EigenProblem for HeldSeats<'_> {
+    fn n(&self) -> usize {
+        self.body.free.len()
+    }
+
+    fn shift(&self) -> f64 {
+        0.0
+    }
+
+    /// K X by the factor would be a solve backwards; the forces of K x are taken from the mesh.
+    fn stiffness(&self, x: &[f64], _: usize) -> Vec<f64> {
+        let (mesh, material) = self.body.mesh.as_ref().expect("a body with a mass has a mesh");
+        let of_column = |column: &[f64]| {
+            let mut field = vec![0.0; self.body.n_dofs];
+            self.body
+                .free
+                .iter()
+                .zip(column)
+                .for_each(|(&dof, u)| field[dof] = *u);
+            let force = fem::stiffness_product(mesh, material, &field);
+            let force = force.expect("its stiffness was assembled before");
+            self.body.free.iter().map(|&dof| force[dof]).collect::<Vec<f64>>()
+        };
+        x.chunks_exact(self.n()).flat_map(of_column).collect()
+    }
+
+    fn mass(&self, x: &[f64], _: usize) -> Vec<f64> {
+        products(self.mass, x)
+    }
+
+    fn solve(&self, mut b: Vec<f64>, n_vectors: usize) -> Vec<f64> {
+        b.chunks_exact_mut(self.n())
+            .for_each(|force| self.remove_reactions(force));
+        self.body.factor.solve(&mut b, n_vectors);
+        b
+    }
+
+    fn remove_reactions(&self, force: &mut [f64]) {
+        let columns = self.columns.par_chunks_exact(force.len());
+        let mut reactions: Vec<f64> = columns.map(|column| dot(column, force)).collect();
+        self.flexibility.solve(&mut reactions, 1);
+        for (load, reaction) in self.loads.chunks_exact(force.len()).zip(reactions) {
+            force.iter_mut().zip(load).for_each(|(f, l)| *f -= reaction * l);
+        }
+    }
+}
+
+/// The reduced body in coordinates (lam / scale, eta).
+struct Reduced<'a> {
+    flexibility: &'a [f64],
+    /// Units of lam that make the diagonal of its mass one, N.
+    scales: Vec<f64>,
+    stiffness: Vec<f64>,
+    mass: Vec<f64>,
+    factor: DenseCholesky,
+}
+
+impl<'a> Reduced<'a> {
+    fn new(held: &HeldSeats<'a>, fixed: &Eigenpairs) -> Result<Reduced<'a>, DenseError> {
+        let (rows, m) = (held.n(), held.body.n_functions());
+        let shapes = [held.columns, &fixed.vectors].concat();
+        let moved = products(held.mass, &shapes);
+        let n = m + fixed.values.len();
+        let row = |i: usize| -> Vec<f64> {
+            let of = &moved[rows * i..rows * (i + 1)];
+            shapes
+                .chunks_exact(rows)
+                .take(i + 1)
+                .map(|shape| dot(shape, of))
+                .collect()
+        };
+        let lower: Vec<Vec<f64>> = (0..n).into_par_iter().map(row).collect();
+        let scale = |i: usize| if i < m { lower[i][i].sqrt().recip() } else { 1.0 };
+        let scales: Vec<f64> = (0..n).map(scale).collect();
+        let (mut mass, mut stiffness) = (vec![0.0; n * n], vec![0.0; n * n]);
+        for (i, row) in lower.iter().enumerate() {
+            for (j, value) in row.iter().enumerate() {
+                let both = scales[i] * scales[j];
+                (mass[n * i + j], mass[n * j + i]) = (both * value, both * value);
+                if i < m {
+                    let value = both * held.body.flexibility[m * i + j];
+                    (stiffness[n * i + j], stiffness[n * j + i]) = (value, value);
+                }
+            }
+        }
+        for (i, square) in fixed.values.iter().enumerate() {
+            stiffness[(n + 1) * (m + i)] = *square;
+        }
+        Ok(Reduced {
+            flexibility: &held.body.flexibility,
+            factor: DenseCholesky::factor(n, &stiffness)?,
+            scales,
+            stiffness,
+            mass,
+        })
+    }
+
+    /// Its modes as oscillators.
+    fn oscillators(self, below_hz: f64, n_fixed: usize, fixed: Vec<f64>) -> Result<BodyModes, DenseError> {
+        let (n, m) = (self.n(), self.n() - n_fixed);
+        let pairs = dense_lowest(&self, n)?;
+        let moved = self.mass(&pairs.vectors, n);
+        let mut modes = BodyModes {
+            below_hz,
+            n_fixed,
+            fixed,
+            ..BodyModes::rigid()
+        };
+        for (vector, moved) in pairs.vectors.chunks_exact(n).zip(moved.chunks_exact(n)) {
+            let lam: Vec<f64> = vector[..m].iter().zip(&self.scales).map(|(v, s)| v * s).collect();
+            modes
+                .seat
+                .extend(self.flexibility.chunks_exact(m).map(|row| dot(row, &lam)));
+            modes
+                .of_forces
+                .extend(moved[..m].iter().zip(&self.scales).map(|(v, s)| v / s));
+            modes.forces.extend(lam);
+            modes.shares.extend(&vector[m..]);
+        }
+        modes.squares = pairs.values;
+        Ok(modes)
+    }
+}
+
+impl EigenProblem for Reduced<'_> {
+    fn n(&self) -> usize {
+        self.scales.len()
+    }
+
+    fn shift(&self) -> f64 {
+        0.0
+    }
+
+    fn stiffness(&self, x: &[f64], _: usize) -> Vec<f64> {
+        dense_products(&self.stiffness, x, self.n())
+    }
+
+    fn mass(&self, x: &[f64], _: usize) -> Vec<f64> {
+        dense_products(&self.mass, x, self.n())
+    }
+
+    fn solve(&self, mut b: Vec<f64>, n_vectors: usize) -> Vec<f64> {
+        self.factor.solve(&mut b, n_vectors);
+        b
+    }
+}
+
+/// A X of a dense matrix with n rows.
+fn dense_products(a: &[f64], x: &[f64], n: usize) -> Vec<f64> {
+    let of_column = |column: &[f64]| {
+        a.chunks_exact(n)
+            .map(|row| dot(row, column))
+            .collect::<Vec<f64>>()
+    };
+    x.chunks_exact(n).flat_map(of_column).collect()
+}
+
+/// A X of a sparse matrix, every row summed by one thread.
+fn products(a: &CsMat<f64>, x: &[f64]) -> Vec<f64> {
+    let of_column = |column: &[f64]| {
+        let row = |row: sprs::CsVecView<'_, f64>| row.iter().map(|(j, value)| value * column[j]).sum();
+        a.outer_iterator().map(row).collect::<Vec<f64>>()
+    };
+    let columns = x.par_chunks_exact(a.rows());
+    columns.map(of_column).collect::<Vec<_>>().concat()
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(x, y)| x * y).sum()
+}

@@ -1,0 +1,126 @@
+//! Bodies in motion: the reduced body against the whole one.
+
+use fem::Material;
+use mesh::{ElementKind, Mesh};
+
+use super::{basis, made, material, tube};
+
+/// The whole body with all its dofs: no reduction.
+struct Whole {
+    stiffness: sprs::CsMat<f64>,
+    mass: sprs::CsMat<f64>,
+    factor: dense::DenseCholesky,
+}
+
+impl Whole {
+    fn new(mesh: &Mesh, material: &Material, fixed: &str) -> Whole {
+        let held = mesh.group_nodes(fixed);
+        let free: Vec<usize> = (0..mesh.n_dofs())
+            .filter(|dof| !held.contains(&(dof / 3)))
+            .collect();
+        let stiffness = solver::restrict(&fem::assemble_stiffness(mesh, material).unwrap(), &free);
+        let mass = solver::restrict(&fem::assemble_mass(mesh, material).unwrap(), &free);
+        let dense = stiffness.to_dense();
+        let flat: Vec<f64> = dense.iter().copied().collect();
+        Whole {
+            factor: dense::DenseCholesky::factor(free.len(), &flat).unwrap(),
+            stiffness,
+            mass,
+        }
+    }
+}
+
+fn products(a: &sprs::CsMat<f64>, x: &[f64]) -> Vec<f64> {
+    let column = |x: &[f64]| {
+        let row = |row: sprs::CsVecView<'_, f64>| row.iter().map(|(j, v)| v * x[j]).sum::<f64>();
+        a.outer_iterator().map(row).collect::<Vec<f64>>()
+    };
+    x.chunks_exact(a.rows()).flat_map(column).collect()
+}
+
+impl dense::EigenProblem for Whole {
+    fn n(&self) -> usize {
+        self.mass.rows()
+    }
+
+    fn shift(&self) -> f64 {
+        0.0
+    }
+
+    fn stiffness(&self, x: &[f64], _: usize) -> Vec<f64> {
+        products(&self.stiffness, x)
+    }
+
+    fn mass(&self, x: &[f64], _: usize) -> Vec<f64> {
+        products(&self.mass, x)
+    }
+
+    fn solve(&self, mut b: Vec<f64>, n: usize) -> Vec<f64> {
+        self.factor.solve(&mut b, n);
+        b
+    }
+}
+
+/// Wrong: a housing would vibrate at other frequencies than its mesh. Modes with held seats up to ever higher
+/// frequencies bring those of the reduced body down to those of the whole one, of which none is below.
+#[test]
+fn the_reduced_body_has_the_frequencies_of_the_whole_one() {
+    let mesh = tube(ElementKind::Hex8, 24, [2, 2]);
+    let whole = Whole::new(&mesh, &material(0.3), "outside");
+    let settings = dense::LanczosSettings::new(8, 4);
+    let expected = dense::lowest_pairs(&whole, settings, &mut |_| ()).unwrap().values;
+    let body = made(mesh, material(0.3), "outside", basis(2, 1)).unwrap();
+    let mut errors = Vec::new();
+    for below in [1e3, 150e3, 300e3] {
+        let modes = body.modes(below).unwrap();
+        assert_eq!(modes.n(), body.n_functions() + modes.n_fixed);
+        let off = |(found, right): (&f64, &f64)| {
+            assert!(
+                found / right > 1.0 - 1e-9,
+                "a reduced body is no softer: {found} {right}"
+            );
+            (found / right).sqrt() - 1.0
+        };
+        let off = modes.squares.iter().zip(&expected).map(off).fold(0.0, f64::max);
+        errors.push(off);
+    }
+    assert!(
+        errors[2] < 1e-3 && errors[1] <= errors[0] && errors[2] <= errors[1],
+        "{errors:?}"
+    );
+}
+
+/// Wrong: a load at rest would move the reduced body otherwise than the exact one.
+#[test]
+fn the_reduced_body_is_exact_at_rest() {
+    let body = made(
+        tube(ElementKind::Hex8, 24, [2, 2]),
+        material(0.3),
+        "outside",
+        basis(3, 1),
+    )
+    .unwrap();
+    let modes = body.modes(150e3).unwrap();
+    let n = body.n_functions();
+    assert!(modes.n_fixed > 0);
+    let forces: Vec<f64> = (0..n).map(|i| ((7 * i + 3) % 11) as f64 - 5.0).collect();
+    let row = |row: &[f64]| row.iter().zip(&forces).map(|(a, b)| a * b).sum::<f64>();
+    let at: Vec<f64> = modes.of_forces.chunks_exact(n).map(row).collect();
+    let direct: Vec<f64> = body.flexibility.chunks_exact(n).map(row).collect();
+    let by_squares: Vec<f64> = modes.seat.chunks_exact(n).map(row).collect();
+    let by_squares: Vec<f64> = by_squares
+        .iter()
+        .zip(&modes.squares)
+        .map(|(f, s)| f / s)
+        .collect();
+    let largest = |x: &[f64]| x.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
+    let off = |a: &[f64], b: &[f64]| {
+        let off: Vec<f64> = a.iter().zip(b).map(|(a, b)| a - b).collect();
+        largest(&off) / largest(b)
+    };
+    for oscillators in [&at, &by_squares] {
+        let seat = off(&modes.seat_motion(oscillators), &direct);
+        let whole = off(&body.moved(&modes, oscillators), &body.displacement(&forces));
+        assert!(seat < 1e-8 && whole < 1e-8, "{seat:e} {whole:e}");
+    }
+}

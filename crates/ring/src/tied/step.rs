@@ -1,0 +1,188 @@
+//! A step of a ring and the body to which it is tied.
+
+use std::sync::Arc;
+
+use dense::DenseCholesky;
+use timer::Laps;
+
+use crate::integrator::StepScheme;
+use crate::oscillators::{BodyStep, Oscillators};
+use crate::state::{BodyState, RingState};
+use crate::step::{ElasticStep, End, Feet, Known, KnownLoad, PortAnswer, PortForces, Settling, StepFactor};
+use crate::vectors::dot;
+
+/// Factors of ring and joint at one step size.
+pub(super) struct TiedFactor {
+    pub body: Arc<Oscillators>,
+    /// Rayleigh damping of ring and body.
+    pub damping: [f64; 2],
+    pub ring: Box<dyn StepFactor>,
+    /// A + D.
+    pub joint: DenseCholesky,
+    pub scheme: StepScheme,
+}
+
+/// A step under way.
+struct TiedStep<'a> {
+    factor: &'a TiedFactor,
+    ring: Box<dyn ElasticStep + 'a>,
+    old: &'a BodyState,
+    body: BodyStep,
+    /// Motion of the seat of the body without forces, m.
+    seat: Vec<f64>,
+    answer: PortAnswer,
+    /// lam without forces on the contacts, N.
+    known: Vec<f64>,
+    /// (A + D)^-1 B, `[n_ports][n_functions]` flat.
+    by_port: Vec<f64>,
+}
+
+impl StepFactor for TiedFactor {
+    fn bytes(&self) -> usize {
+        let n = self.body.n_functions();
+        self.ring.bytes() + size_of::<f64>() * n * n
+    }
+
+    fn iterations(&self) -> Option<usize> {
+        self.ring.iterations()
+    }
+
+    fn predict(&self, from: &RingState, load: KnownLoad) -> Known {
+        self.ring.predict(from, load)
+    }
+
+    fn begin<'a>(
+        &'a self,
+        from: &'a RingState,
+        known: Arc<Known>,
+        contacts: Feet<'_>,
+    ) -> Box<dyn ElasticStep + 'a> {
+        let old = from
+            .body()
+            .expect("the state of a tied ring has that of its body");
+        let oscillators = &self.body;
+        let body = oscillators.step(self.scheme, self.damping, old);
+        let at: Vec<f64> = old.0[0].iter().zip(&body.predicted).map(|(x, d)| x + d).collect();
+        let mut seat = oscillators.modes.seat_motion(&at);
+        // Of a rigid body it is empty.
+        seat.resize(oscillators.n_functions(), 0.0);
+        let mut step = TiedStep {
+            factor: self,
+            ring: self.ring.begin(from, known, contacts),
+            old,
+            body,
+            seat,
+            answer: PortAnswer::default(),
+            known: Vec::new(),
+            by_port: Vec::new(),
+        };
+        step.meet();
+        Box::new(step)
+    }
+}
+
+impl TiedStep<'_> {
+    /// What the contacts see of ring and body from what the ports of the ring see.
+    fn meet(&mut self) {
+        let (ring, n) = (self.ring.answer(), self.factor.body.n_functions());
+        let size = ring.start.len();
+        let ports = size - n;
+        let gaps = self.seat.iter().zip(&ring.predicted[ports..]);
+        let mut known: Vec<f64> = gaps.map(|(y, g)| y - g).collect();
+        self.factor.joint.solve(&mut known, 1);
+        let row = |i: usize| &ring.compliance[size * i..size * (i + 1)];
+        let coupling: Vec<f64> = (0..ports).flat_map(|i| &row(i)[ports..]).copied().collect();
+        let mut by_port = coupling.clone();
+        self.factor.joint.solve(&mut by_port, ports);
+        let rows: Vec<&[f64]> = coupling.chunks_exact(n).collect();
+        let solved: Vec<&[f64]> = by_port.chunks_exact(n).collect();
+        let mut compliance = vec![0.0; ports * ports];
+        for i in 0..ports {
+            for j in 0..=i {
+                let value = row(i)[j] - dot(rows[i], solved[j]);
+                (compliance[ports * i + j], compliance[ports * j + i]) = (value, value);
+            }
+        }
+        let predicted = ring
+            .predicted
+            .iter()
+            .zip(&rows)
+            .map(|(p, row)| p + dot(row, &known));
+        self.answer = PortAnswer {
+            start: ring.start[..ports].to_vec(),
+            seen: ring.seen.clone(),
+            predicted: predicted.collect(),
+            compliance,
+        };
+        (self.known, self.by_port) = (known, by_port);
+    }
+
+    /// Forces of the joint on the ring under forces on the contacts, N.
+    fn joint(&self, contacts: &[f64]) -> Vec<f64> {
+        let mut lam = self.known.clone();
+        for (by_port, force) in self.by_port.chunks_exact(lam.len()).zip(contacts) {
+            lam.iter_mut().zip(by_port).for_each(|(l, b)| *l -= force * b);
+        }
+        lam
+    }
+}
+
+impl ElasticStep for TiedStep<'_> {
+    fn answer(&self) -> &PortAnswer {
+        &self.answer
+    }
+
+    fn laps(&self) -> &Laps {
+        self.ring.laps()
+    }
+
+    fn move_contacts(&mut self, contacts: Feet<'_>) -> Laps {
+        let laps = self.ring.move_contacts(contacts);
+        self.meet();
+        laps
+    }
+
+    fn at_contacts(&self, x: &[f64]) -> Vec<f64> {
+        self.ring.at_contacts(x)
+    }
+
+    fn at_seen(&self, x: &[f64]) -> Vec<f64> {
+        self.ring.at_seen(x)
+    }
+
+    fn settle(&mut self, forces: PortForces<'_>, scale: f64) -> Settling {
+        let lam = self.joint(forces.contacts);
+        let settling = self.ring.settle(on_both(forces, &lam), scale);
+        if settling == Settling::Again {
+            self.meet();
+        }
+        settling
+    }
+
+    fn end(&mut self, forces: PortForces<'_>, scale: f64, next: Option<KnownLoad>) -> End {
+        let lam = self.joint(forces.contacts);
+        match self.ring.end(on_both(forces, &lam), scale, next) {
+            End::Done(mut ended) => {
+                let TiedFactor { body, scheme, .. } = self.factor;
+                let moved = body.advanced(*scheme, self.old, &self.body, &lam);
+                let [kinetic, strain] = body.energies(Some(&moved));
+                ended.energies[0] += kinetic;
+                ended.energies[1] += strain;
+                ended.state = std::mem::take(&mut ended.state).with_body(Some(moved));
+                End::Done(ended)
+            }
+            End::Again => {
+                self.meet();
+                End::Again
+            }
+        }
+    }
+}
+
+/// The forces at the ports of the ring: those of the contacts, and of the joint.
+fn on_both<'f>(forces: PortForces<'f>, joint: &'f [f64]) -> PortForces<'f> {
+    PortForces {
+        contacts: forces.contacts,
+        mount: joint,
+    }
+}
