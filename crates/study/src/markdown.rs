@@ -139,7 +139,7 @@ fn notes(report: &Report, s: &mut String) -> std::fmt::Result {
             .collect();
         writeln!(
             s,
-            "\nFailed: {}: {}",
+            "\nFailed: {}.\n\n```text\n{}\n```",
             values.join(", "),
             point.reason.as_deref().unwrap_or_default().replace('\n', " ")
         )?;

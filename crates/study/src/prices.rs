@@ -253,7 +253,11 @@ fn write_table(report: &Report, s: &mut String) -> std::fmt::Result {
     }
     for point in report.points.iter().filter(|p| p.reason.is_some()) {
         let reason = point.reason.as_deref().unwrap_or_default().replace('\n', " ");
-        writeln!(s, "Failed: {}: {reason}\n", point.values[EFFECTS])?;
+        writeln!(
+            s,
+            "Failed: {}.\n\n```text\n{reason}\n```\n",
+            point.values[EFFECTS]
+        )?;
     }
     Ok(())
 }
