@@ -15,8 +15,8 @@ pub(crate) const AXES: [&str; 3] = ["x", "y", "z"];
 pub enum SurroundingError {
     /// A body from a stiffness matrix alone, in motion.
     #[error(
-        "body \"{body}\" comes from a stiffness matrix and has no mass, so it is solved at rest only; mesh it, or use \
-         [static], [sweep] or [quasi_static]"
+        "body \"{body}\" comes from a stiffness matrix and has no mass, so it is solved at rest only; give its mass \
+         matrix, or use [static], [sweep] or [quasi_static]"
     )]
     NoMass {
         /// Name of the body.

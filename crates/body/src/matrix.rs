@@ -1,9 +1,10 @@
-//! A body from another program: its stiffness as Matrix Market, its nodes and the nodes of its seat as CSV.
+//! A body from another program: its stiffness and mass as Matrix Market, its nodes and the nodes of its seat as CSV.
 //!
 //! ```text
 //! K.mtx       %%MatrixMarket matrix coordinate real symmetric|general; rows ux uy uz of each node of nodes.csv
 //! nodes.csv   node,x,y,z     one line per node, in the order of the rows
 //! seat.csv    node[,area]    nodes of the seat; without areas those of their Voronoi cells on the cylinder
+//! M.mtx       the same of the mass, where the body moves
 //! fixed.csv   node           nodes that are held; none if the matrix is held already
 //! ```
 //! Lengths are in one unit and forces per length in another, which the scene states; areas in the square of the
@@ -26,6 +27,8 @@ const SYMMETRY: f64 = 1e-8;
 pub struct MatrixFiles {
     /// Stiffness.
     pub stiffness: PathBuf,
+    /// Mass, of a body that moves, and its unit, kg.
+    pub mass: Option<(PathBuf, f64)>,
     /// Nodes.
     pub nodes: PathBuf,
     /// Nodes of the seat.
@@ -43,6 +46,8 @@ pub struct MatrixFiles {
 pub struct MatrixBody {
     /// Stiffness, N/m, symmetric, all entries.
     pub stiffness: CsMat<f64>,
+    /// Mass, kg, all entries.
+    pub mass: Option<CsMat<f64>>,
     /// Nodes, m.
     pub places: Vec<[f64; 3]>,
     /// Their numbers.
@@ -104,9 +109,14 @@ impl MatrixBody {
                 fixed[find(path, line, row[0])?] = true;
             }
         }
-        let stiffness = read_stiffness(files, &tags)?;
+        let read =
+            |(path, unit): (&PathBuf, f64), what| read_matrix((path, unit), what, (&files.nodes, &tags));
         Ok(MatrixBody {
-            stiffness,
+            stiffness: read((&files.stiffness, files.stiffness_unit), "stiffness")?,
+            mass: match &files.mass {
+                Some((path, unit)) => Some(read((path, *unit), "mass")?),
+                None => None,
+            },
             places,
             tags,
             fixed,
@@ -204,9 +214,12 @@ fn node_number(path: &Path, line: usize, value: f64) -> Result<u64, SurroundingE
     ))
 }
 
-/// The matrix with both halves.
-fn read_stiffness(files: &MatrixFiles, tags: &[u64]) -> Result<CsMat<f64>, SurroundingError> {
-    let path = &files.stiffness;
+/// A matrix in SI units with both halves, of the nodes `tags` of the file `nodes`.
+fn read_matrix(
+    (path, unit): (&Path, f64),
+    what: &'static str,
+    (nodes, tags): (&Path, &[u64]),
+) -> Result<CsMat<f64>, SurroundingError> {
     let text = text_of(path)?;
     let mut lines = (1..).zip(text.lines());
     let head = lines.next().map_or("", |(_, line)| line).to_ascii_lowercase();
@@ -243,7 +256,7 @@ fn read_stiffness(files: &MatrixFiles, tags: &[u64]) -> Result<CsMat<f64>, Surro
         Some([r, c, _]) => {
             let problem = format!(
                 "the matrix is {r} x {c}, but {} has {} nodes; expected {n} x {n}, rows ux uy uz of every node",
-                files.nodes.display(),
+                nodes.display(),
                 tags.len()
             );
             return Err(wrong(path, line, problem));
@@ -262,7 +275,7 @@ fn read_stiffness(files: &MatrixFiles, tags: &[u64]) -> Result<CsMat<f64>, Surro
         let inside = |x: f64| x >= 1.0 && x <= n as f64 && x.fract() == 0.0;
         match numbers(row).as_deref() {
             Some(&[i, j, value]) if inside(i) && inside(j) => {
-                let (i, j, value) = (i as usize - 1, j as usize - 1, files.stiffness_unit * value);
+                let (i, j, value) = (i as usize - 1, j as usize - 1, unit * value);
                 triplets.add_triplet(i, j, value);
                 if is_symmetric && i != j {
                     triplets.add_triplet(j, i, value);
@@ -284,12 +297,16 @@ fn read_stiffness(files: &MatrixFiles, tags: &[u64]) -> Result<CsMat<f64>, Surro
         ));
     }
     let matrix: CsMat<f64> = triplets.to_csr();
-    require_sound(path, &matrix, tags)?;
+    require_sound((path, what), &matrix, tags)?;
     Ok(matrix)
 }
 
 /// Positive diagonal, and symmetric.
-fn require_sound(path: &Path, matrix: &CsMat<f64>, tags: &[u64]) -> Result<(), SurroundingError> {
+fn require_sound(
+    (path, what): (&Path, &str),
+    matrix: &CsMat<f64>,
+    tags: &[u64],
+) -> Result<(), SurroundingError> {
     let place = |dof: usize| (tags[dof / 3], AXES[dof % 3]);
     let diagonal: Vec<f64> = (0..matrix.rows())
         .map(|i| matrix.get(i, i).copied().unwrap_or(0.0))
@@ -297,7 +314,7 @@ fn require_sound(path: &Path, matrix: &CsMat<f64>, tags: &[u64]) -> Result<(), S
     if let Some(dof) = diagonal.iter().position(|d| *d <= 0.0) {
         let (node, axis) = place(dof);
         let problem = format!(
-            "the stiffness of node {node} in {axis} is {:e}; expected a positive number: take out nodes without \
+            "the {what} of node {node} in {axis} is {:e}; expected a positive number: take out nodes without \
              elements",
             diagonal[dof]
         );

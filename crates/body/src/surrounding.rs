@@ -50,6 +50,8 @@ pub struct Surrounding {
     pub seconds: f64,
     pub(crate) free: Vec<usize>,
     pub(crate) factor: SparseCholesky,
+    /// Of a body from matrices that have a mass, K and M of the free dofs.
+    matrices: Option<[CsMat<f64>; 2]>,
 }
 
 /// What is common to meshes and matrices.
@@ -127,7 +129,28 @@ impl Surrounding {
             cliques: &pairs,
             clique: 2,
         };
-        held.condense(joints, start)
+        let mut body = held.condense(joints, start)?;
+        let free = |of: &CsMat<f64>| solver::restrict(of, &body.free);
+        body.matrices = matrix
+            .mass
+            .as_ref()
+            .map(|mass| [free(&matrix.stiffness), free(mass)]);
+        Ok(body)
+    }
+
+    /// K and M of the free dofs; None of a body without a mass.
+    pub(crate) fn matrices(&self) -> Result<Option<[CsMat<f64>; 2]>, SurroundingError> {
+        let Some((mesh, material)) = &self.mesh else {
+            return Ok(self.matrices.clone());
+        };
+        let fem = |source| SurroundingError::Fem {
+            body: self.name.clone(),
+            source,
+        };
+        let free = |of: &CsMat<f64>| solver::restrict(of, &self.free);
+        let stiffness = fem::assemble_stiffness(mesh, material).map_err(fem)?;
+        let mass = fem::assemble_mass(mesh, material).map_err(fem)?;
+        Ok(Some([free(&stiffness), free(&mass)]))
     }
 
     /// Number of functions of all seats.
@@ -137,20 +160,13 @@ impl Surrounding {
 
     /// Displacement under the forces lam on its seats, N, `[n_functions]`: m, `[n_nodes][3]` flat.
     pub fn displacement(&self, lam: &[f64]) -> Vec<f64> {
-        let mut load = vec![0.0; self.n_dofs];
-        let mut rest = lam;
-        for seat in &self.seats {
-            let (own, others) = rest.split_at(seat.n());
-            seat.add_load(own, &mut load);
-            rest = others;
+        let mut moved = self.seat_loads(lam);
+        self.factor.solve(&mut moved, 1);
+        let mut field = vec![0.0; self.n_dofs];
+        for (&dof, u) in self.free.iter().zip(moved) {
+            field[dof] = u;
         }
-        let mut rhs: Vec<f64> = self.free.iter().map(|&dof| load[dof]).collect();
-        self.factor.solve(&mut rhs, 1);
-        load.fill(0.0);
-        for (&dof, u) in self.free.iter().zip(rhs) {
-            load[dof] = u;
-        }
-        load
+        field
     }
 }
 
@@ -185,6 +201,7 @@ impl Unfactored<'_> {
             seats,
             free,
             factor,
+            matrices: None,
         };
         body.flexibility = body.flexibility_of_seats();
         body.seconds = start.elapsed().as_secs_f64();
@@ -270,8 +287,8 @@ impl Surrounding {
         self.seats.iter().enumerate().flat_map(of_seat).collect()
     }
 
-    /// Loads of unit forces on some functions, on free dofs, column-major.
-    fn unit_loads(&self, functions: &[(usize, usize)]) -> Vec<f64> {
+    /// K^-1 of unit forces on some functions, on free dofs, column-major.
+    fn solved_units(&self, functions: &[(usize, usize)]) -> Vec<f64> {
         let mut field = vec![0.0; self.n_dofs];
         let mut loads = Vec::with_capacity(self.free.len() * functions.len());
         for &(seat, function) in functions {
@@ -279,23 +296,30 @@ impl Surrounding {
             self.seats[seat].add_unit_load(function, 1.0, &mut field);
             loads.extend(self.free.iter().map(|&dof| field[dof]));
         }
+        self.factor.solve(&mut loads, functions.len());
         loads
     }
 
-    /// K^-1 of these.
-    fn solved_units(&self, functions: &[(usize, usize)]) -> Vec<f64> {
-        let mut columns = self.unit_loads(functions);
-        self.factor.solve(&mut columns, functions.len());
-        columns
+    /// K^-1 Phi of all functions, on free dofs, column-major.
+    pub(crate) fn seat_columns(&self) -> Vec<f64> {
+        let owners = self.owners();
+        let columns: Vec<_> = owners
+            .par_chunks(BLOCK)
+            .map(|chunk| self.solved_units(chunk))
+            .collect();
+        columns.concat()
     }
 
-    /// Phi and K^-1 Phi of all functions, on free dofs, column-major.
-    pub(crate) fn seat_columns(&self) -> [Vec<f64>; 2] {
-        let owners = self.owners();
-        let chunks = || owners.par_chunks(BLOCK);
-        let loads: Vec<_> = chunks().map(|chunk| self.unit_loads(chunk)).collect();
-        let columns: Vec<_> = chunks().map(|chunk| self.solved_units(chunk)).collect();
-        [loads.concat(), columns.concat()]
+    /// Phi lam, loads of forces on all functions, on free dofs.
+    pub(crate) fn seat_loads(&self, lam: &[f64]) -> Vec<f64> {
+        let mut load = vec![0.0; self.n_dofs];
+        let mut rest = lam;
+        for seat in &self.seats {
+            let (own, others) = rest.split_at(seat.n());
+            seat.add_load(own, &mut load);
+            rest = others;
+        }
+        self.free.iter().map(|&dof| load[dof]).collect()
     }
 }
 

@@ -104,26 +104,21 @@ fn combined(rows: &[f64], factors: &[f64]) -> Vec<f64> {
 impl Surrounding {
     /// The body as oscillators, with its modes of held seats up to a frequency, Hz.
     pub fn modes(&self, below_hz: f64) -> Result<BodyModes, SurroundingError> {
-        let Some((mesh, material)) = &self.mesh else {
+        let Some([stiffness, mass]) = self.matrices()? else {
             return Err(SurroundingError::NoMass {
                 body: self.name.clone(),
             });
         };
-        let mass = fem::assemble_mass(mesh, material).map_err(|source| SurroundingError::Fem {
-            body: self.name.clone(),
-            source,
-        })?;
-        let mass = solver::restrict(&mass, &self.free);
         let failed = |source| SurroundingError::Modes {
             body: self.name.clone(),
             below_hz,
             source,
         };
-        let [loads, columns] = self.seat_columns();
+        let columns = self.seat_columns();
         let held = HeldSeats {
             body: self,
+            stiffness: &stiffness,
             mass: &mass,
-            loads: &loads,
             columns: &columns,
             flexibility: DenseCholesky::factor(self.n_functions(), &self.flexibility).map_err(failed)?,
         };
@@ -151,10 +146,9 @@ impl Surrounding {
 /// The body with seats that stand, on its free dofs.
 struct HeldSeats<'a> {
     body: &'a Surrounding,
+    stiffness: &'a CsMat<f64>,
     mass: &'a CsMat<f64>,
-    /// Phi, column-major.
-    loads: &'a [f64],
-    /// X = K^-1 Phi.
+    /// X = K^-1 Phi, column-major.
     columns: &'a [f64],
     flexibility: DenseCholesky,
 }
@@ -198,21 +192,8 @@ impl EigenProblem for HeldSeats<'_> {
         0.0
     }
 
-    /// K X by the factor would be a solve backwards; the forces of K x are taken from the mesh.
     fn stiffness(&self, x: &[f64], _: usize) -> Vec<f64> {
-        let (mesh, material) = self.body.mesh.as_ref().expect("a body with a mass has a mesh");
-        let of_column = |column: &[f64]| {
-            let mut field = vec![0.0; self.body.n_dofs];
-            self.body
-                .free
-                .iter()
-                .zip(column)
-                .for_each(|(&dof, u)| field[dof] = *u);
-            let force = fem::stiffness_product(mesh, material, &field);
-            let force = force.expect("its stiffness was assembled before");
-            self.body.free.iter().map(|&dof| force[dof]).collect::<Vec<f64>>()
-        };
-        x.chunks_exact(self.n()).flat_map(of_column).collect()
+        products(self.stiffness, x)
     }
 
     fn mass(&self, x: &[f64], _: usize) -> Vec<f64> {
@@ -230,9 +211,8 @@ impl EigenProblem for HeldSeats<'_> {
         let columns = self.columns.par_chunks_exact(force.len());
         let mut reactions: Vec<f64> = columns.map(|column| dot(column, force)).collect();
         self.flexibility.solve(&mut reactions, 1);
-        for (load, reaction) in self.loads.chunks_exact(force.len()).zip(reactions) {
-            force.iter_mut().zip(load).for_each(|(f, l)| *f -= reaction * l);
-        }
+        let loads = self.body.seat_loads(&reactions);
+        force.iter_mut().zip(loads).for_each(|(f, load)| *f -= load);
     }
 }
 
@@ -249,16 +229,12 @@ struct Reduced<'a> {
 impl<'a> Reduced<'a> {
     fn new(held: &HeldSeats<'a>, fixed: &Eigenpairs) -> Result<Reduced<'a>, DenseError> {
         let (rows, m) = (held.n(), held.body.n_functions());
-        let shapes = [held.columns, &fixed.vectors].concat();
-        let moved = products(held.mass, &shapes);
-        let n = m + fixed.values.len();
+        let of_fixed = fixed.vectors.chunks_exact(rows);
+        let shapes: Vec<&[f64]> = held.columns.chunks_exact(rows).chain(of_fixed).collect();
+        let n = shapes.len();
         let row = |i: usize| -> Vec<f64> {
-            let of = &moved[rows * i..rows * (i + 1)];
-            shapes
-                .chunks_exact(rows)
-                .take(i + 1)
-                .map(|shape| dot(shape, of))
-                .collect()
+            let moved = products(held.mass, shapes[i]);
+            shapes[..=i].iter().map(|shape| dot(shape, &moved)).collect()
         };
         let lower: Vec<Vec<f64>> = (0..n).into_par_iter().map(row).collect();
         let scale = |i: usize| if i < m { lower[i][i].sqrt().recip() } else { 1.0 };

@@ -1,15 +1,16 @@
 //! Bodies by themselves: closed forms of a tube, bodies from matrices, and every message.
 
+mod matrices;
 mod vibration;
 
 use std::collections::BTreeMap;
 use std::f64::consts::{PI, TAU};
-use std::fmt::Write;
 use std::path::Path;
 
-use body::matrix::{MatrixBody, MatrixFiles};
+use body::matrix::MatrixFiles;
 use body::{BodySeat, SeatBasis, SeatCylinder, SeatFunctions, SeatSpace, Surrounding, cylinder_areas};
 use fem::Material;
+use matrices::{of_matrix, write_matrix};
 use mesh::{ElementKind, Mesh, Origin, Section, revolve};
 
 const INNER: f64 = 40e-3;
@@ -203,69 +204,6 @@ fn cells_on_the_cylinder_are_the_areas_of_regular_facets() {
     for (cell, (_, area)) in cells.iter().zip(&areas) {
         assert!((cell * chord / area - 1.0).abs() < 1e-9, "{cell} {area}");
     }
-}
-
-/// Files of a body from the matrix of a mesh, in mm and N/mm.
-fn write_matrix(dir: &Path, mesh: &Mesh, fixed: &str) -> MatrixFiles {
-    let k = fem::assemble_stiffness(mesh, &material(0.3)).unwrap();
-    let mut text = String::from("%%MatrixMarket matrix coordinate real symmetric\n% of a test\n");
-    let lower: Vec<(usize, usize, f64)> = k
-        .iter()
-        .filter(|(_, (i, j))| j <= i)
-        .map(|(v, (i, j))| (i + 1, j + 1, 1e-3 * v))
-        .collect();
-    writeln!(text, "{0} {0} {1}", mesh.n_dofs(), lower.len()).unwrap();
-    for (i, j, v) in lower {
-        writeln!(text, "{i} {j} {v:e}").unwrap();
-    }
-    let mut nodes = String::from("node,x,y,z\n");
-    for (i, x) in mesh.nodes.iter().enumerate() {
-        writeln!(
-            nodes,
-            "{},{:e},{:e},{:e}",
-            i + 101,
-            1e3 * x[0],
-            1e3 * x[1],
-            1e3 * x[2]
-        )
-        .unwrap();
-    }
-    let areas = fem::facet_node_weights(mesh, mesh.group("seat_a"));
-    let seat: String = areas
-        .iter()
-        .map(|(n, a)| format!("{},{:e}\n", n + 101, 1e6 * a))
-        .collect();
-    let held: String = mesh
-        .group_nodes(fixed)
-        .iter()
-        .map(|n| format!("{}\n", n + 101))
-        .collect();
-    for (name, text) in [
-        ("K.mtx", text),
-        ("nodes.csv", nodes),
-        ("seat.csv", seat),
-        ("fixed.csv", held),
-    ] {
-        std::fs::write(dir.join(name), text).unwrap();
-    }
-    MatrixFiles {
-        stiffness: dir.join("K.mtx"),
-        nodes: dir.join("nodes.csv"),
-        seat_nodes: dir.join("seat.csv"),
-        fixed_nodes: Some(dir.join("fixed.csv")),
-        length_unit: 1e-3,
-        stiffness_unit: 1e3,
-    }
-}
-
-fn of_matrix(files: &MatrixFiles) -> Result<Surrounding, String> {
-    let seat = BodySeat {
-        group: "seat".into(),
-        space: space(basis(3, 1)),
-        middle: None,
-    };
-    let matrix = MatrixBody::read(files).map_err(|e| e.to_string())?;
-    Surrounding::of_matrix("other", &matrix, &seat).map_err(|e| e.to_string())
 }
 
 /// Wrong: the same body would differ by the way it comes in.

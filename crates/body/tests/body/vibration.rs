@@ -3,6 +3,7 @@
 use fem::Material;
 use mesh::{ElementKind, Mesh};
 
+use super::matrices::{of_matrix, write_matrix};
 use super::{basis, made, material, tube};
 
 /// The whole body with all its dofs: no reduction.
@@ -123,4 +124,34 @@ fn the_reduced_body_is_exact_at_rest() {
         let whole = off(&body.moved(&modes, oscillators), &body.displacement(&forces));
         assert!(seat < 1e-8 && whole < 1e-8, "{seat:e} {whole:e}");
     }
+}
+
+/// Wrong: the same body would vibrate otherwise by the way it comes in, or move without a mass.
+#[test]
+fn a_body_of_its_matrices_vibrates_as_that_of_its_mesh() {
+    let dir = tempfile::tempdir().unwrap();
+    let mesh = tube(ElementKind::Hex8, 24, [2, 2]);
+    let mut files = write_matrix(dir.path(), &mesh, "outside");
+    let of_mesh = made(mesh, material(0.3), "outside", basis(3, 1))
+        .unwrap()
+        .modes(150e3)
+        .unwrap();
+    let modes = of_matrix(&files).unwrap().modes(150e3).unwrap();
+    assert_eq!(modes.n_fixed, of_mesh.n_fixed);
+    for (a, b) in modes.squares.iter().zip(&of_mesh.squares) {
+        assert!((a / b - 1.0).abs() < 1e-7, "{a} {b}");
+    }
+    let mass = dir.path().join("M.mtx");
+    let text = std::fs::read_to_string(&mass).unwrap();
+    let mut lines: Vec<&str> = text.lines().collect();
+    lines[3] = "1 1 -1e-9";
+    std::fs::write(&mass, lines.join("\n")).unwrap();
+    let said = of_matrix(&files).err().unwrap();
+    assert!(said.contains("the mass of node 101 in x is"), "{said}");
+    files.mass = None;
+    let said = of_matrix(&files).unwrap().modes(150e3).unwrap_err().to_string();
+    assert!(
+        said.contains("has no mass, so it is solved at rest only"),
+        "{said}"
+    );
 }

@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 
 use body::SeatBasis;
 use body::matrix::MatrixFiles;
-use input::{KINDS, LENGTH, Problems, Quantity, RATE, STIFFNESS, parse_unit};
+use input::{KINDS, LENGTH, MASS, Problems, Quantity, RATE, STIFFNESS, parse_unit};
 use serde::Deserialize;
 
 use super::materials::{Material, RawMaterial};
@@ -39,11 +39,13 @@ pub struct RawSceneBody {
     material: Option<RawMaterial>,
     fixed: Option<Vec<String>>,
     stiffness: Option<String>,
+    mass: Option<String>,
     nodes: Option<String>,
     seat_nodes: Option<String>,
     fixed_nodes: Option<String>,
     length_unit: Option<String>,
     stiffness_unit: Option<String>,
+    mass_unit: Option<String>,
     modes_below: Option<Quantity<RATE>>,
     #[serde(default)]
     seat: Vec<RawBodySeat>,
@@ -221,7 +223,14 @@ impl RawSceneBody {
                 ));
                 None
             }
-            (Some(mesh), None) => self.check_mesh(&key, mesh, context, problems, assumed),
+            (Some(mesh), None) => {
+                if self.mass.is_some() || self.mass_unit.is_some() {
+                    problems.add(format!(
+                        "{key} has a mesh, whose mass follows from its density; remove mass and mass_unit"
+                    ));
+                }
+                self.check_mesh(&key, mesh, context, problems, assumed)
+            }
             (None, Some(_)) => self.check_matrix(&key, context, problems),
         };
         let modes_below = self.check_modes(&key, context, problems);
@@ -257,10 +266,10 @@ impl RawSceneBody {
             }
             return None;
         }
-        if self.stiffness.is_some() {
+        if self.stiffness.is_some() && self.mass.is_none() {
             problems.add(format!(
-                "{key} comes from a stiffness matrix, which has no mass, but the scene has [dynamic]; expected a body \
-                 with a mesh, or [static], [sweep] or [quasi_static]"
+                "{key} comes from a stiffness matrix, which has no mass, but the scene has [dynamic]; add mass and \
+                 mass_unit, or use [static], [sweep] or [quasi_static]"
             ));
         }
         Some(below)
@@ -372,8 +381,24 @@ impl RawSceneBody {
             (STIFFNESS, "N/mm"),
             problems,
         );
+        let mass = self.mass.as_ref();
+        let mass = mass.map(|text| file(&format!("{key}: mass"), text, context, problems));
+        let mass = match (mass, self.mass_unit.as_deref()) {
+            (None, None) => None,
+            (None, Some(_)) => {
+                problems.add(format!(
+                    "{key} has mass_unit, but no mass; add the file of its mass matrix"
+                ));
+                None
+            }
+            (Some(path), typed) => {
+                let unit = unit_of(&format!("{key}: mass_unit"), typed, (MASS, "kg"), problems);
+                Some((path, unit?))
+            }
+        };
         Some(BodySource::Matrix(MatrixFiles {
             stiffness: stiffness?,
+            mass,
             nodes: nodes?,
             seat_nodes: seat_nodes?,
             fixed_nodes,

@@ -199,6 +199,12 @@ fn only_a_body_with_a_mass_moves() {
     assert_eq!(body_of(&moving(SCENE)).modes_below, Some(20e3));
     assert_eq!(body_of(&moving(&below("5 kHz"))).modes_below, Some(5e3));
     assert_eq!(body_of(SCENE).modes_below, None);
+    let BodySource::Matrix(files) = body_of(&moving(&matrices("mass = \"M.mtx\"\nmass_unit = \"t\""))).source
+    else {
+        panic!("a body of matrices");
+    };
+    let (path, unit) = files.mass.unwrap();
+    assert!(path.ends_with("M.mtx") && unit == 1e3, "{path:?} {unit}");
     for (text, expected) in [
         (
             moving(&below("0 Hz")),
@@ -207,7 +213,19 @@ fn only_a_body_with_a_mass_moves() {
         (moving(&below("5 mm")), "modes_below"),
         (
             moving(&matrices("")),
-            "which has no mass, but the scene has [dynamic]",
+            "which has no mass, but the scene has [dynamic]; add mass and mass_unit",
+        ),
+        (
+            moving(&matrices("mass = \"M.mtx\"")),
+            "mass_unit is missing; expected a unit such as \"kg\"",
+        ),
+        (
+            moving(&matrices("mass_unit = \"kg\"")),
+            "has mass_unit, but no mass; add the file of its mass matrix",
+        ),
+        (
+            moving(&with("[[body.seat]]", "mass = \"M.mtx\"\n[[body.seat]]")),
+            "has a mesh, whose mass follows from its density",
         ),
         (below("5 kHz"), "has modes_below, but the scene has no [dynamic]"),
     ] {
