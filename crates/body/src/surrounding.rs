@@ -1,5 +1,6 @@
 //! An elastic body at rest, condensed exactly to the functions of its seats.
 
+use std::borrow::Cow;
 use std::time::Instant;
 
 use fem::Material;
@@ -139,9 +140,9 @@ impl Surrounding {
     }
 
     /// K and M of the free dofs; None of a body without a mass.
-    pub(crate) fn matrices(&self) -> Result<Option<[CsMat<f64>; 2]>, SurroundingError> {
+    pub(crate) fn matrices(&self) -> Result<Option<Cow<'_, [CsMat<f64>; 2]>>, SurroundingError> {
         let Some((mesh, material)) = &self.mesh else {
-            return Ok(self.matrices.clone());
+            return Ok(self.matrices.as_ref().map(Cow::Borrowed));
         };
         let fem = |source| SurroundingError::Fem {
             body: self.name.clone(),
@@ -150,7 +151,7 @@ impl Surrounding {
         let free = |of: &CsMat<f64>| solver::restrict(of, &self.free);
         let stiffness = fem::assemble_stiffness(mesh, material).map_err(fem)?;
         let mass = fem::assemble_mass(mesh, material).map_err(fem)?;
-        Ok(Some([free(&stiffness), free(&mass)]))
+        Ok(Some(Cow::Owned([free(&stiffness), free(&mass)])))
     }
 
     /// Number of functions of all seats.

@@ -52,15 +52,11 @@ impl SeatTie {
     }
 
     /// The same for a motion, with the modes of the body with a held seat up to a frequency, Hz.
-    pub fn in_motion(self, below_hz: f64) -> Result<SeatTie, SurroundingError> {
-        let modes = match &self.body {
-            Some(body) => body.modes(below_hz)?,
-            None => BodyModes::rigid(),
-        };
-        Ok(SeatTie {
-            modes: Some(Arc::new(modes)),
-            ..self
-        })
+    pub fn in_motion(mut self, below_hz: f64) -> Result<SeatTie, SurroundingError> {
+        if let Some(body) = &self.body {
+            self.modes = Some(Arc::new(body.modes(below_hz)?));
+        }
+        Ok(self)
     }
 
     /// A joint with a rigid body.

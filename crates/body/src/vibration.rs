@@ -16,6 +16,7 @@ use std::f64::consts::TAU;
 
 use dense::{
     DenseCholesky, DenseError, EigenProblem, Eigenpairs, LanczosSettings, dense_lowest, lowest_pairs,
+    symmetric_product,
 };
 use rayon::prelude::*;
 use solver::LinearSolver;
@@ -84,11 +85,6 @@ impl BodyModes {
         ];
         size_of::<f64>() * lists.iter().map(|list| list.len()).sum::<usize>()
     }
-
-    /// Motion of the seat functions under oscillators, m.
-    pub fn seat_motion(&self, oscillators: &[f64]) -> Vec<f64> {
-        combined(&self.seat, oscillators)
-    }
 }
 
 /// Rows of a matrix times one number each, summed.
@@ -104,11 +100,11 @@ fn combined(rows: &[f64], factors: &[f64]) -> Vec<f64> {
 impl Surrounding {
     /// The body as oscillators, with its modes of held seats up to a frequency, Hz.
     pub fn modes(&self, below_hz: f64) -> Result<BodyModes, SurroundingError> {
-        let Some([stiffness, mass]) = self.matrices()? else {
-            return Err(SurroundingError::NoMass {
-                body: self.name.clone(),
-            });
+        let no_mass = || SurroundingError::NoMass {
+            body: self.name.clone(),
         };
+        let matrices = self.matrices()?.ok_or_else(no_mass)?;
+        let [stiffness, mass] = &*matrices;
         let failed = |source| SurroundingError::Modes {
             body: self.name.clone(),
             below_hz,
@@ -117,8 +113,8 @@ impl Surrounding {
         let columns = self.seat_columns();
         let held = HeldSeats {
             body: self,
-            stiffness: &stiffness,
-            mass: &mass,
+            stiffness,
+            mass,
             columns: &columns,
             flexibility: DenseCholesky::factor(self.n_functions(), &self.flexibility).map_err(failed)?,
         };
@@ -192,12 +188,12 @@ impl EigenProblem for HeldSeats<'_> {
         0.0
     }
 
-    fn stiffness(&self, x: &[f64], _: usize) -> Vec<f64> {
-        products(self.stiffness, x)
+    fn stiffness(&self, x: &[f64], n_vectors: usize) -> Vec<f64> {
+        solver::products(self.stiffness, x, n_vectors)
     }
 
-    fn mass(&self, x: &[f64], _: usize) -> Vec<f64> {
-        products(self.mass, x)
+    fn mass(&self, x: &[f64], n_vectors: usize) -> Vec<f64> {
+        solver::products(self.mass, x, n_vectors)
     }
 
     fn solve(&self, mut b: Vec<f64>, n_vectors: usize) -> Vec<f64> {
@@ -233,7 +229,7 @@ impl<'a> Reduced<'a> {
         let shapes: Vec<&[f64]> = held.columns.chunks_exact(rows).chain(of_fixed).collect();
         let n = shapes.len();
         let row = |i: usize| -> Vec<f64> {
-            let moved = products(held.mass, shapes[i]);
+            let moved = solver::products(held.mass, shapes[i], 1);
             shapes[..=i].iter().map(|shape| dot(shape, &moved)).collect()
         };
         let lower: Vec<Vec<f64>> = (0..n).into_par_iter().map(row).collect();
@@ -260,6 +256,12 @@ impl<'a> Reduced<'a> {
             stiffness,
             mass,
         })
+    }
+
+    /// A X of one of its matrices, column-major.
+    fn products(&self, a: &[f64], x: &[f64]) -> Vec<f64> {
+        let of_column = |column: &[f64]| symmetric_product(a, column, 1);
+        x.chunks_exact(self.n()).flat_map(of_column).collect()
     }
 
     /// Its modes as oscillators.
@@ -299,37 +301,17 @@ impl EigenProblem for Reduced<'_> {
     }
 
     fn stiffness(&self, x: &[f64], _: usize) -> Vec<f64> {
-        dense_products(&self.stiffness, x, self.n())
+        self.products(&self.stiffness, x)
     }
 
     fn mass(&self, x: &[f64], _: usize) -> Vec<f64> {
-        dense_products(&self.mass, x, self.n())
+        self.products(&self.mass, x)
     }
 
     fn solve(&self, mut b: Vec<f64>, n_vectors: usize) -> Vec<f64> {
         self.factor.solve(&mut b, n_vectors);
         b
     }
-}
-
-/// A X of a dense matrix with n rows.
-fn dense_products(a: &[f64], x: &[f64], n: usize) -> Vec<f64> {
-    let of_column = |column: &[f64]| {
-        a.chunks_exact(n)
-            .map(|row| dot(row, column))
-            .collect::<Vec<f64>>()
-    };
-    x.chunks_exact(n).flat_map(of_column).collect()
-}
-
-/// A X of a sparse matrix, every row summed by one thread.
-fn products(a: &CsMat<f64>, x: &[f64]) -> Vec<f64> {
-    let of_column = |column: &[f64]| {
-        let row = |row: sprs::CsVecView<'_, f64>| row.iter().map(|(j, value)| value * column[j]).sum();
-        a.outer_iterator().map(row).collect::<Vec<f64>>()
-    };
-    let columns = x.par_chunks_exact(a.rows());
-    columns.map(of_column).collect::<Vec<_>>().concat()
 }
 
 fn dot(a: &[f64], b: &[f64]) -> f64 {

@@ -13,7 +13,7 @@ use dynamics::kinematics::Speed;
 use dynamics::motion::{Motion, MotionSettings, MotionState, StepCache};
 use dynamics::{Backend, ContactMode, Hold, Model, Sectors};
 use support::rings::{Level, ring_model};
-use support::{Case, equilibrium};
+use support::{Case, equilibrium, on_threads};
 
 /// Speed of the inner ring, rad/s: 1800 rpm.
 const SPEED: f64 = 60.0 * std::f64::consts::PI;
@@ -58,8 +58,7 @@ fn steps_of_a_free_mesh_are_those_of_sectors_and_have_the_same_bits_again() {
         ..MotionSettings::conserving(1e-5, Speed::constant(SPEED))
     };
     let of = |threads: usize, forget: bool| {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
-        pool.unwrap().install(|| {
+        on_threads(threads, || {
             let motion = Motion::new(&model, settings()).unwrap();
             assert_eq!(motion.solver_name(Side::Inner), Some("sparse"));
             steps(&motion, &motion.start(&start), forget)

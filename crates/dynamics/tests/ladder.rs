@@ -7,7 +7,7 @@ use dynamics::kinematics::Speed;
 use dynamics::motion::{Ladder, Motion, MotionSettings, MotionState, StepCache};
 use dynamics::{ContactMode, DynamicsError, Hold, Model, ShaftDof, StaticSolution};
 use support::rings::Level;
-use support::{Case, equilibrium};
+use support::{Case, equilibrium, on_threads};
 
 const SMALL: Level = Level::hex8(54, 6, 1, 2);
 
@@ -85,11 +85,7 @@ fn the_tolerance_governs_the_error() {
 #[test]
 fn flexible_rings_adapt_with_kept_factors_and_the_same_bits() {
     let solve = |threads: usize| {
-        let pool = rayon::ThreadPoolBuilder::new()
-            .num_threads(threads)
-            .build()
-            .unwrap();
-        pool.install(|| {
+        on_threads(threads, || {
             let (model, start) = radial_step(true);
             let ladder = Ladder {
                 halvings: 5,

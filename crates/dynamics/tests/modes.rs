@@ -12,7 +12,7 @@ use dynamics::{
 };
 use mesh::{ElementKind, Section, revolve};
 use support::rings::{Level, ring, ring_model};
-use support::{Case, equilibrium};
+use support::{Case, equilibrium, on_threads};
 
 const SMALL: Level = Level::hex8(54, 6, 1, 2);
 
@@ -401,11 +401,7 @@ fn a_heavy_rotor_tilts_on_the_static_stiffness() {
 #[test]
 fn modes_have_the_same_bits_on_any_number_of_threads() {
     let find = |threads: usize| {
-        let pool = rayon::ThreadPoolBuilder::new()
-            .num_threads(threads)
-            .build()
-            .unwrap();
-        pool.install(|| {
+        on_threads(threads, || {
             let mut model = Case::axial(2000.0).flexible(ContactMode::Patch, SMALL, Hold::Clamped);
             model.shaft_mass = 1.0;
             let solution = equilibrium(&model);

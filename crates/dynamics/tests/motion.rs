@@ -8,7 +8,7 @@ use dynamics::kinematics::Speed;
 use dynamics::motion::{Motion, MotionSettings, MotionState, StepCache};
 use dynamics::{ContactMode, Hold, Model, StaticSolution};
 use support::rings::Level;
-use support::{Case, equilibrium};
+use support::{Case, equilibrium, on_threads};
 
 fn settings(dt: f64) -> MotionSettings {
     MotionSettings::conserving(dt, Speed::constant(0.0))
@@ -199,11 +199,7 @@ fn motion_has_the_same_bits_on_any_number_of_threads() {
         ..Case::axial(2000.0)
     };
     let solve = |threads: usize| {
-        let pool = rayon::ThreadPoolBuilder::new()
-            .num_threads(threads)
-            .build()
-            .unwrap();
-        pool.install(|| {
+        on_threads(threads, || {
             let model = case.flexible(ContactMode::Patch, SMALL, Hold::Clamped);
             let solution = equilibrium(&model);
             let speed = Speed::constant(1000.0);

@@ -85,8 +85,6 @@ pub struct HeldRing {
     pub mount: MountRows,
     /// Where the nodes are.
     pub places: NodePlaces,
-    /// The functionals among these that are rigid motions of the ring; of a ring that is tied to a body none.
-    pub rigid: Vec<SparseLoad>,
     /// Rayleigh damping: C = a M + b K with `[a, b]`.
     pub damping: [f64; 2],
 }
@@ -166,7 +164,6 @@ impl HeldRing {
         Ok(HeldRing {
             name,
             coordinates,
-            rigid: mount.clone(),
             mount: MountRows::new(mount),
             places: ring.places(name, backend)?,
             damping: [0.0; 2],
@@ -196,7 +193,7 @@ impl HeldRing {
         let mut strained = w.to_vec();
         let (shaft, first) = self.coordinates.shaft();
         let mut q = [0.0; RIGID_MOTIONS];
-        for (k, row) in self.rigid.iter().enumerate() {
+        for (k, row) in self.mount.rigid().iter().enumerate() {
             q[shaft.get(k).copied().unwrap_or(k)] = sparse_dot(row, w);
         }
         if q == [0.0; RIGID_MOTIONS] {

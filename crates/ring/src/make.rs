@@ -47,12 +47,10 @@ pub fn elastic_body(
                 coordinates: held.coordinates.clone(),
                 places: held.places.clone(),
                 mount: MountRows::default(),
-                rigid: Vec::new(),
                 ..held
             };
             let inside = HeldRing {
                 mount: MountRows::dense(functions.sparse_rows()),
-                rigid: Vec::new(),
                 ..held
             };
             let body = Oscillators::new(tie, functions)?;

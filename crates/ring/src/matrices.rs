@@ -13,7 +13,7 @@ use crate::coordinates::Coordinates;
 use crate::error::RingError;
 use crate::harmonic::defect::RingDefect;
 use crate::model::RingModel;
-use crate::sparse::{elimination_order, kronecker, node_product, product, products};
+use crate::sparse::{elimination_order, kronecker, node_product, product};
 use crate::substructures::Substructures;
 use crate::vectors::{add, dot};
 
@@ -169,7 +169,7 @@ impl NodalMatrices for SparseMatrices {
     }
 
     fn stiffness_products(&self, _: &Coordinates, x: &[f64], n_vectors: usize) -> Vec<f64> {
-        products(&self.stiffness, x, n_vectors)
+        solver::products(&self.stiffness, x, n_vectors)
     }
 
     fn nodal_mass_product(&self, field: &[f64]) -> Vec<f64> {

@@ -63,6 +63,14 @@ impl MountRows {
         self.rows.is_empty()
     }
 
+    /// The functionals that are rigid motions of the ring: those of shaft and housing, not those of a seat.
+    pub fn rigid(&self) -> &[SparseLoad] {
+        match self.dense {
+            None => &self.rows,
+            Some(_) => &[],
+        }
+    }
+
     /// Functionals of single coordinates from which values of all follow; None where they are their own.
     pub fn units(&self) -> Option<&[SparseLoad]> {
         self.dense.as_ref().map(|dense| &dense.units[..])
@@ -77,25 +85,28 @@ impl MountRows {
     }
 
     /// Loads of forces on the functionals: index and value, of many functionals each index once.
-    pub fn loads(&self, forces: &[f64]) -> Vec<(usize, f64)> {
-        let Some(DenseRows { places, values, .. }) = &self.dense else {
-            let rows = self.rows.iter().zip(forces);
-            return rows
-                .flat_map(|(row, f)| row.iter().map(move |&(i, w)| (i, f * w)))
-                .collect();
-        };
-        let mut loads = vec![0.0; places.len()];
-        for (row, force) in values.chunks_exact(places.len().max(1)).zip(forces) {
+    pub fn loads<'a>(&'a self, forces: &'a [f64]) -> impl Iterator<Item = (usize, f64)> + 'a {
+        let few = self.rigid().iter().zip(forces);
+        let few = few.flat_map(|(row, f)| row.iter().map(move |&(i, w)| (i, f * w)));
+        few.chain(self.dense.iter().flat_map(|dense| dense.loads(forces)))
+    }
+}
+
+impl DenseRows {
+    /// Loads of forces on the functionals.
+    fn loads(&self, forces: &[f64]) -> impl Iterator<Item = (usize, f64)> {
+        let mut loads = vec![0.0; self.places.len()];
+        for (row, force) in self.values.chunks_exact(loads.len().max(1)).zip(forces) {
             loads.iter_mut().zip(row).for_each(|(load, w)| *load += force * w);
         }
-        places.iter().copied().zip(loads).collect()
+        self.places.iter().copied().zip(loads)
     }
 }
 
 /// S^-1 times the functionals of the mount.
 pub(crate) struct MountColumns {
     /// Of each coordinate what the functionals move it, `[n][n_mount]` flat.
-    pub moved: Vec<f64>,
+    moved: Vec<f64>,
     /// Their values at the functionals, row-major.
     pub compliance: Vec<f64>,
     n_mount: usize,

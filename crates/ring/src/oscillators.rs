@@ -20,12 +20,22 @@ pub struct Oscillators {
     flexibility: Option<DenseCholesky>,
 }
 
-/// Oscillators over a step.
-pub(crate) struct BodyStep {
-    /// Increments without forces.
-    pub predicted: Vec<f64>,
+/// A body over steps of one scheme and size.
+pub(crate) struct BodyFactor {
+    pub body: Arc<Oscillators>,
+    scheme: StepScheme,
+    /// Rayleigh damping: C = a M + b K with `[a, b]`.
+    damping: [f64; 2],
     /// Effective masses s.
-    pub effective: Vec<f64>,
+    effective: Vec<f64>,
+}
+
+/// A body over a step before the forces of its joint are known.
+pub(crate) struct BodyStep {
+    /// Increments of the oscillators.
+    increments: Vec<f64>,
+    /// Motion of the seat at the end, m.
+    pub seat: Vec<f64>,
 }
 
 impl Oscillators {
@@ -83,67 +93,6 @@ impl Oscillators {
         BodyState([at, zero.clone(), zero])
     }
 
-    /// D of a step, m/N, `[n][n]` flat.
-    pub(crate) fn softness(&self, scheme: StepScheme, damping: [f64; 2]) -> Vec<f64> {
-        let n = self.functions.n();
-        let mut softness = vec![0.0; n * n];
-        for (row, s) in self
-            .modes
-            .seat
-            .chunks_exact(n)
-            .zip(self.effective(scheme, damping))
-        {
-            for (i, v) in row.iter().enumerate() {
-                let by = v / s;
-                let to = &mut softness[n * i..n * (i + 1)];
-                to.iter_mut().zip(row).for_each(|(d, w)| *d += by * w);
-            }
-        }
-        softness
-    }
-
-    fn effective(&self, scheme: StepScheme, [am, ak]: [f64; 2]) -> Vec<f64> {
-        let [m, c, k] = scheme.integrator.effective(scheme.dt);
-        let of = |square: &f64| m + c * (am + ak * square) + k * square;
-        self.modes.squares.iter().map(of).collect()
-    }
-
-    /// A step from a state.
-    pub(crate) fn step(&self, scheme: StepScheme, [am, ak]: [f64; 2], old: &BodyState) -> BodyStep {
-        let [mass, damping] = scheme.integrator.history(scheme.dt);
-        let effective = self.effective(scheme, [am, ak]);
-        let [x, v, a] = &old.0;
-        let predicted = (0..x.len()).map(|i| {
-            let square = self.modes.squares[i];
-            let inertial = mass[0] * v[i] + mass[1] * a[i];
-            let damped = damping[0] * v[i] + damping[1] * a[i];
-            (inertial + (am + ak * square) * damped - square * x[i]) / effective[i]
-        });
-        BodyStep {
-            predicted: predicted.collect(),
-            effective,
-        }
-    }
-
-    /// The state after a step under the forces lam of the joint on the ring, N.
-    pub(crate) fn advanced(
-        &self,
-        scheme: StepScheme,
-        old: &BodyState,
-        step: &BodyStep,
-        lam: &[f64],
-    ) -> BodyState {
-        let mut new = old.clone();
-        let rows = self.modes.seat.chunks_exact(lam.len().max(1));
-        for (i, row) in rows.enumerate() {
-            let increment = step.predicted[i] - dot(row, lam) / step.effective[i];
-            let [x, v, a] = &mut new.0;
-            [v[i], a[i]] = scheme.integrator.update(scheme.dt, increment, v[i], a[i]);
-            x[i] += increment;
-        }
-        new
-    }
-
     /// Kinetic and strain energy, J.
     pub(crate) fn energies(&self, state: Option<&BodyState>) -> [f64; 2] {
         let Some(BodyState([x, v, _])) = state else {
@@ -190,5 +139,65 @@ impl Oscillators {
         squares
             .map(|(i, &square)| term(square, at(old, i), at(new, i)))
             .sum()
+    }
+}
+
+impl BodyFactor {
+    pub fn new(body: Arc<Oscillators>, scheme: StepScheme, damping: [f64; 2]) -> BodyFactor {
+        let [m, c, k] = scheme.integrator.effective(scheme.dt);
+        let [am, ak] = damping;
+        let of = |square: &f64| m + c * (am + ak * square) + k * square;
+        BodyFactor {
+            effective: body.modes.squares.iter().map(of).collect(),
+            body,
+            scheme,
+            damping,
+        }
+    }
+
+    /// D, m/N, `[n][n]` flat.
+    pub fn softness(&self) -> Vec<f64> {
+        let n = self.body.n_functions();
+        let mut softness = vec![0.0; n * n];
+        for (row, s) in self.body.modes.seat.chunks_exact(n).zip(&self.effective) {
+            for (to, v) in softness.chunks_exact_mut(n).zip(row) {
+                let by = v / s;
+                to.iter_mut().zip(row).for_each(|(d, w)| *d += by * w);
+            }
+        }
+        softness
+    }
+
+    /// A step from a state.
+    pub fn step(&self, BodyState([x, v, a]): &BodyState) -> BodyStep {
+        let [mass, damping] = self.scheme.integrator.history(self.scheme.dt);
+        let [am, ak] = self.damping;
+        let mut increments = Vec::with_capacity(x.len());
+        let mut seat = vec![0.0; self.body.n_functions()];
+        let modes = &self.body.modes;
+        for (i, row) in modes.seat.chunks_exact(seat.len()).enumerate() {
+            let square = modes.squares[i];
+            let inertial = mass[0] * v[i] + mass[1] * a[i];
+            let damped = damping[0] * v[i] + damping[1] * a[i];
+            let increment = (inertial + (am + ak * square) * damped - square * x[i]) / self.effective[i];
+            seat.iter_mut()
+                .zip(row)
+                .for_each(|(y, r)| *y += (x[i] + increment) * r);
+            increments.push(increment);
+        }
+        BodyStep { increments, seat }
+    }
+
+    /// The state after a step under the forces lam of the joint on the ring, N.
+    pub fn advanced(&self, old: &BodyState, step: &BodyStep, lam: &[f64]) -> BodyState {
+        let mut new = old.clone();
+        for (i, row) in self.body.modes.seat.chunks_exact(lam.len()).enumerate() {
+            let increment = step.increments[i] - dot(row, lam) / self.effective[i];
+            let [x, v, a] = &mut new.0;
+            let scheme = self.scheme;
+            [v[i], a[i]] = scheme.integrator.update(scheme.dt, increment, v[i], a[i]);
+            x[i] += increment;
+        }
+        new
     }
 }

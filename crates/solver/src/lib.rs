@@ -44,6 +44,7 @@ mod kernel;
 mod linear_solver;
 mod panels;
 mod permutation;
+mod products;
 mod refinement;
 mod submatrix;
 mod symbolic;
@@ -58,6 +59,7 @@ pub use dissection::angular_dissection;
 pub use error::SolverError;
 pub use linear_solver::{LinearSolver, SparseVector};
 pub use permutation::{expand, restrict_order};
+pub use products::products;
 pub use refinement::{Refined, solve_refined};
 pub use sector::{
     BorderedColumns, Points, Sector, SectorBordered, SectorCholesky, SectorColumns, SectorCost, SectorCut,

@@ -137,14 +137,16 @@ fn notes(report: &Report, s: &mut String) -> std::fmt::Result {
             .iter()
             .map(|a| point.values[&a.name].as_str())
             .collect();
-        writeln!(
-            s,
-            "\nFailed: {}.\n\n```text\n{}\n```",
-            values.join(", "),
-            point.reason.as_deref().unwrap_or_default().replace('\n', " ")
-        )?;
+        writeln!(s)?;
+        write_failure(s, &values.join(", "), point.reason.as_deref())?;
     }
     Ok(())
+}
+
+/// What failed, and why as text of the program.
+pub fn write_failure(s: &mut String, what: &str, reason: Option<&str>) -> std::fmt::Result {
+    let reason = reason.unwrap_or_default().replace('\n', " ");
+    writeln!(s, "Failed: {what}.\n\n```text\n{reason}\n```")
 }
 
 fn count(n: usize, noun: &str) -> String {

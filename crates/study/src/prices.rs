@@ -14,6 +14,7 @@ use comm::print;
 use results::failure::Failure;
 use scene::{MeshFiles, Scene};
 
+use crate::markdown::write_failure;
 use crate::{Axis, AxisValue, CostKind, Meshes, Plan, Quantity, Report, Source, Take};
 
 mod variants;
@@ -252,12 +253,8 @@ fn write_table(report: &Report, s: &mut String) -> std::fmt::Result {
         writeln!(s)?;
     }
     for point in report.points.iter().filter(|p| p.reason.is_some()) {
-        let reason = point.reason.as_deref().unwrap_or_default().replace('\n', " ");
-        writeln!(
-            s,
-            "Failed: {}.\n\n```text\n{reason}\n```\n",
-            point.values[EFFECTS]
-        )?;
+        write_failure(s, &point.values[EFFECTS], point.reason.as_deref())?;
+        writeln!(s)?;
     }
     Ok(())
 }

@@ -9,12 +9,12 @@ use std::sync::Arc;
 
 use body::{BodySeat, SeatBasis, SeatCylinder, SeatSpace, SeatTie, Surrounding};
 use contact::Side;
-use dynamics::{Backend, ContactMode, Hold, Model, RingModel, StaticSolution, StaticSolver};
+use dynamics::{Backend, ContactMode, Hold, Model, RingModel, StaticSolution};
 use fem::Material;
 use mesh::{Facet, Mesh, Origin};
 use ring::statics::RingSolver;
 use support::rings::{Level, ring};
-use support::{Case, steel};
+use support::{Case, equilibrium, on_threads, steel};
 
 const LEVEL: Level = Level::hex8(54, 6, 1, 2);
 
@@ -180,10 +180,6 @@ fn bearing(outer: RingModel, backend: Backend) -> Model {
     Model { backend, ..model }
 }
 
-fn equilibrium(model: &Model) -> StaticSolution {
-    StaticSolver::new(model).unwrap().solve(model, None).unwrap()
-}
-
 fn forces(solution: &StaticSolution) -> Vec<f64> {
     solution.balls.iter().map(|ball| ball.outer.force_n).collect()
 }
@@ -291,11 +287,7 @@ fn turning_body_and_load_turns_the_answer() {
 #[test]
 fn a_bearing_in_a_housing_has_the_same_bits_on_one_and_two_threads() {
     let bits = |threads: usize| {
-        let pool = rayon::ThreadPoolBuilder::new()
-            .num_threads(threads)
-            .build()
-            .unwrap();
-        pool.install(|| {
+        on_threads(threads, || {
             let (own, _) = tube(&outer(Hold::Clamped), 2);
             let solution = equilibrium(&bearing(on_body(own, harmonics(6, 2)), Backend::Auto));
             let bits = solution.elastic[1].as_ref().unwrap().iter().map(|u| u.to_bits());

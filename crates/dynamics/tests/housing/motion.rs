@@ -7,6 +7,7 @@ use dynamics::kinematics::Speed;
 use dynamics::motion::{Integrator, Motion, MotionSettings, MotionState, StepCache};
 use dynamics::{Backend, Hold, Model, RingModel, ShaftDof};
 
+use super::support::{on_threads, steel};
 use super::{bearing, difference, equilibrium, harmonics, outer, space, surrounding, tied, tube};
 
 /// Step, s.
@@ -15,7 +16,7 @@ const STEP: f64 = 1e-5;
 /// The outer ring on a body that moves, with its modes below a frequency, Hz.
 fn on_moving_body(mesh: mesh::Mesh, n: usize, below: f64) -> RingModel {
     let space = space(&outer(Hold::MeanMotion), harmonics(n, 2));
-    let body = surrounding(mesh, space, super::support::steel());
+    let body = surrounding(mesh, space, steel());
     tied(SeatTie::to_body(Arc::new(body)).in_motion(below).unwrap())
 }
 
@@ -165,11 +166,7 @@ fn all_solvers_of_the_ring_give_the_same_motion() {
 #[test]
 fn a_moving_housing_has_the_same_bits_on_one_and_two_threads() {
     let bits = |threads: usize| {
-        let pool = rayon::ThreadPoolBuilder::new()
-            .num_threads(threads)
-            .build()
-            .unwrap();
-        pool.install(|| {
+        on_threads(threads, || {
             let (own, _) = tube(&outer(Hold::Clamped), 2);
             let model = struck(on_moving_body(own, 6, 20e3), Backend::Auto);
             course(&model, settings(), 10)

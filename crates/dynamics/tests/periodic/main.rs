@@ -18,8 +18,8 @@ use dynamics::{
     Backend, ContactMode, Hold, Model, ModesSettings, NodalStress, PointStress, RingSupport, StaticSolution,
     StaticSolver,
 };
-use support::Case;
 use support::rings::{Level, ring_model};
+use support::{Case, on_threads};
 
 const HEX8: Level = Level::hex8(54, 6, 1, 2);
 const HEX20: Level = Level::hex20(36, 4, 1, 1);
@@ -267,11 +267,7 @@ fn thirty_steps_agree_with_sparse_factors() {
 #[test]
 fn one_two_and_four_threads_give_the_same_bits() {
     let run = |threads: usize| {
-        let pool = rayon::ThreadPoolBuilder::new()
-            .num_threads(threads)
-            .build()
-            .unwrap();
-        pool.install(|| {
+        on_threads(threads, || {
             let state = rolling(HEX8, Backend::Auto, 5).state;
             let model = bearing(HEX8, Hold::Clamped, Backend::Auto);
             let ring = model.ring(Side::Outer).unwrap();

@@ -13,6 +13,7 @@ use input::Schedule;
 use mesh::{Facet, Mesh};
 
 use crate::ahead::alone;
+use crate::support::on_threads;
 use crate::support::rings::{Level, ring_model};
 use crate::{
     End, HEX8, SPEED, assert_near, assert_same_motion, bearing, motion, motion_without_frame, statics,
@@ -238,8 +239,7 @@ fn a_step_of_rings_with_a_keyway_has_the_same_bits_from_its_state_alone() {
         let mut state = motion.start(&start);
         let mut cache = StepCache::default();
         for threads in [1, 2, 4] {
-            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
-            let (next, report) = pool.unwrap().install(|| motion.step(&state, &mut cache)).unwrap();
+            let (next, report) = on_threads(threads, || motion.step(&state, &mut cache)).unwrap();
             println!("{hold:?}: {} rounds", report.frame_rounds);
             let (expected, _) = motion.step(&alone(&state), &mut StepCache::default()).unwrap();
             assert!(next == expected, "{hold:?}, step {}", next.step);

@@ -113,6 +113,12 @@ pub fn equilibrium(model: &Model) -> StaticSolution {
     StaticSolver::new(model).unwrap().solve(model, None).unwrap()
 }
 
+/// What is found on a number of threads.
+pub fn on_threads<T: Send>(threads: usize, find: impl FnOnce() -> T + Send) -> T {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+    pool.unwrap().install(find)
+}
+
 /// Relative difference.
 pub fn relative(a: f64, b: f64) -> f64 {
     (a - b).abs() / a.abs().max(b.abs())

@@ -23,7 +23,7 @@ use crate::error::RingError;
 use crate::integrator::StepScheme;
 use crate::matrices::{Matrix, NodalMatrices};
 use crate::memory::MotionMemory;
-use crate::oscillators::Oscillators;
+use crate::oscillators::{BodyFactor, Oscillators};
 use crate::state::RingState;
 use crate::step::{Feet, KnownLoad, StepFactor};
 
@@ -119,17 +119,11 @@ impl ElasticBody for TiedRing {
     fn step_factor(self: Arc<Self>, scheme: StepScheme) -> Result<Box<dyn StepFactor>, RingError> {
         let ring = self.ring.clone().step_factor(scheme)?;
         let mut joint = seat_compliance(&*self.ring, &*ring);
-        let n = self.body.n_functions();
-        let softness = self.body.softness(scheme, self.held.damping);
-        joint.iter_mut().zip(&softness).for_each(|(a, d)| *a += d);
-        let joint = DenseCholesky::factor(n, &joint).map_err(|source| RingError::Tie { source })?;
-        Ok(Box::new(TiedFactor {
-            body: self.body.clone(),
-            damping: self.held.damping,
-            ring,
-            joint,
-            scheme,
-        }))
+        let body = BodyFactor::new(self.body.clone(), scheme, self.held.damping);
+        joint.iter_mut().zip(body.softness()).for_each(|(a, d)| *a += d);
+        let joint = DenseCholesky::factor(self.body.n_functions(), &joint)
+            .map_err(|source| RingError::Tie { source })?;
+        Ok(Box::new(TiedFactor { body, ring, joint }))
     }
 }
 

@@ -5,21 +5,17 @@ use std::sync::Arc;
 use dense::DenseCholesky;
 use timer::Laps;
 
-use crate::integrator::StepScheme;
-use crate::oscillators::{BodyStep, Oscillators};
+use crate::oscillators::{BodyFactor, BodyStep};
 use crate::state::{BodyState, RingState};
 use crate::step::{ElasticStep, End, Feet, Known, KnownLoad, PortAnswer, PortForces, Settling, StepFactor};
 use crate::vectors::dot;
 
 /// Factors of ring and joint at one step size.
 pub(super) struct TiedFactor {
-    pub body: Arc<Oscillators>,
-    /// Rayleigh damping of ring and body.
-    pub damping: [f64; 2],
+    pub body: BodyFactor,
     pub ring: Box<dyn StepFactor>,
     /// A + D.
     pub joint: DenseCholesky,
-    pub scheme: StepScheme,
 }
 
 /// A step under way.
@@ -28,8 +24,6 @@ struct TiedStep<'a> {
     ring: Box<dyn ElasticStep + 'a>,
     old: &'a BodyState,
     body: BodyStep,
-    /// Motion of the seat of the body without forces, m.
-    seat: Vec<f64>,
     answer: PortAnswer,
     /// lam without forces on the contacts, N.
     known: Vec<f64>,
@@ -39,7 +33,7 @@ struct TiedStep<'a> {
 
 impl StepFactor for TiedFactor {
     fn bytes(&self) -> usize {
-        let n = self.body.n_functions();
+        let n = self.body.body.n_functions();
         self.ring.bytes() + size_of::<f64>() * n * n
     }
 
@@ -60,18 +54,11 @@ impl StepFactor for TiedFactor {
         let old = from
             .body()
             .expect("the state of a tied ring has that of its body");
-        let oscillators = &self.body;
-        let body = oscillators.step(self.scheme, self.damping, old);
-        let at: Vec<f64> = old.0[0].iter().zip(&body.predicted).map(|(x, d)| x + d).collect();
-        let mut seat = oscillators.modes.seat_motion(&at);
-        // Of a rigid body it is empty.
-        seat.resize(oscillators.n_functions(), 0.0);
         let mut step = TiedStep {
             factor: self,
             ring: self.ring.begin(from, known, contacts),
+            body: self.body.step(old),
             old,
-            body,
-            seat,
             answer: PortAnswer::default(),
             known: Vec::new(),
             by_port: Vec::new(),
@@ -84,10 +71,10 @@ impl StepFactor for TiedFactor {
 impl TiedStep<'_> {
     /// What the contacts see of ring and body from what the ports of the ring see.
     fn meet(&mut self) {
-        let (ring, n) = (self.ring.answer(), self.factor.body.n_functions());
+        let (ring, n) = (self.ring.answer(), self.body.seat.len());
         let size = ring.start.len();
         let ports = size - n;
-        let gaps = self.seat.iter().zip(&ring.predicted[ports..]);
+        let gaps = self.body.seat.iter().zip(&ring.predicted[ports..]);
         let mut known: Vec<f64> = gaps.map(|(y, g)| y - g).collect();
         self.factor.joint.solve(&mut known, 1);
         let row = |i: usize| &ring.compliance[size * i..size * (i + 1)];
@@ -163,9 +150,9 @@ impl ElasticStep for TiedStep<'_> {
         let lam = self.joint(forces.contacts);
         match self.ring.end(on_both(forces, &lam), scale, next) {
             End::Done(mut ended) => {
-                let TiedFactor { body, scheme, .. } = self.factor;
-                let moved = body.advanced(*scheme, self.old, &self.body, &lam);
-                let [kinetic, strain] = body.energies(Some(&moved));
+                let factor = &self.factor.body;
+                let moved = factor.advanced(self.old, &self.body, &lam);
+                let [kinetic, strain] = factor.body.energies(Some(&moved));
                 ended.energies[0] += kinetic;
                 ended.energies[1] += strain;
                 ended.state = std::mem::take(&mut ended.state).with_body(Some(moved));

@@ -253,11 +253,12 @@ impl RawSceneBody {
     /// Frequency up to which the modes of a moving body are kept, Hz.
     fn check_modes(&self, key: &str, context: &BodyContext<'_>, problems: &mut Problems) -> Option<f64> {
         let below = self.modes_below.as_ref().map_or(MODES_BELOW, Quantity::si);
-        if !(1.0..=1e6).contains(&below) {
-            problems.add(format!(
-                "{key}: modes_below is {below} Hz; expected a frequency between 1 Hz and 1 MHz"
-            ));
-        }
+        problems.require(
+            (1.0..=1e6).contains(&below),
+            &format!("{key}: modes_below"),
+            format!("{below} Hz"),
+            "expected a frequency between 1 Hz and 1 MHz",
+        );
         if !context.is_dynamic {
             if self.modes_below.is_some() {
                 problems.add(format!(
