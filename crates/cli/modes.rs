@@ -23,6 +23,9 @@ use crate::remarks::Remarks;
 /// Blocks of the search between two lines of progress in a log.
 const PROGRESS_STEPS: usize = 10;
 
+/// Share of the frequency up to which a body keeps its modes where those of ring and body are good to 1 %.
+const RESOLVED: f64 = 0.25;
+
 /// Computes the modes.
 pub fn run(
     scene: &Scene,
@@ -69,7 +72,9 @@ pub fn run(
     progress.finish();
     let run = files.map_or(Ok(None), ModeFiles::finish)?;
     let snapshot = equilibrium.as_ref().map(|e| Snapshot::of_equilibrium(e, None));
-    let remarks = remarks.with(warnings(&sets, equilibrium.as_ref(), wanted));
+    let mut warned = warnings(&sets, equilibrium.as_ref(), wanted);
+    warned.extend(beyond_body(scene, &sets, wanted));
+    let remarks = remarks.with(warned);
     let remarks = [remarks.warnings, remarks.advice];
     let summary = ModesSummary::new(scene, &model, &sets, snapshot.as_ref(), run, remarks, start);
     summary.write(dir)?;
@@ -147,6 +152,24 @@ fn modes_of(
         }
     }
     .map_err(Failure::solving)
+}
+
+/// Warns of modes that a body round the outer ring does not resolve.
+fn beyond_body(scene: &Scene, sets: &[(ModeBody, ModeSet)], wanted: &Modes) -> Option<String> {
+    let body = scene.body.as_ref()?;
+    let below = body.modes_below?;
+    let in_body = sets.iter().filter(|(body, _)| *body != ModeBody::Inner);
+    let last = in_body.filter_map(|(body, set)| Some((body, set.modes.last()?.frequency)));
+    let (body_of, highest) = last.max_by(|a, b| a.1.total_cmp(&b.1))?;
+    (highest > RESOLVED * below).then(|| {
+        format!(
+            "{}: the highest mode has {highest:.0} Hz, but body {:?} keeps its own modes up to {below} Hz; raise \
+             body.modes_below to {:.0} times that frequency or more",
+            name(*body_of, wanted),
+            body.name,
+            1.0 / RESOLVED
+        )
+    })
 }
 
 /// What a user should know: those of the equilibrium, missing modes, and balls without load.

@@ -17,6 +17,7 @@ use results::failure::{Failure, agree, of_all};
 use results::files::{Files, ResumedFrom};
 use results::memory::Forecasts;
 use results::motion_fields::{Recorded, RestartState};
+use results::seat;
 use results::shown::Shown;
 use results::snapshot::Snapshot;
 use results::stop::Stop;
@@ -244,7 +245,8 @@ impl March<'_> {
             advice: remarks.advice,
         };
         let summary = Summary::new(self.scene, self.model, findings, &costs)
-            .with_life(life::of_run(self.scene, self.dir));
+            .with_life(life::of_run(self.scene, self.dir))
+            .with_seat(agree(seat::of_motion(motion, state, self.dir))?);
         agree(summary.write(self.dir).map_err(Failure::from))?;
         ended?;
         console::print_snapshot(&Snapshot::of_motion(motion, state));

@@ -10,6 +10,7 @@ use contact::Side;
 use results::failure::{Failure, agree};
 use results::files::{Files, say_folder};
 use results::memory::{Forecasts, require_memory};
+use results::seat;
 use results::several::{
     ListState, SeveralFindings, SeveralSummary, SeveralTables, print_solution, print_sweep_head,
     print_sweep_point,
@@ -222,7 +223,10 @@ impl SeveralFiles {
                 advice: Vec::new(),
             };
             let bearing = &scene.bearings[i].scene;
-            Summary::new(bearing, &assembly.bearings[i].model, findings, &costs).write(&dir)?;
+            let model = &assembly.bearings[i].model;
+            Summary::new(bearing, model, findings, &costs)
+                .with_seat(seat::of_run(model, found, &dir)?)
+                .write(&dir)?;
         }
         Ok(())
     }

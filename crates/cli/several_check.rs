@@ -2,9 +2,10 @@
 
 use comm::print;
 use contact::Side;
-use dynamics::{RingMemory, forecast_peak};
+use dynamics::RingMemory;
 use results::answer;
 use results::failure::Failure;
+use results::memory::forecast;
 use scene::{Analysis, SeveralScene, ShaftKind, build_assembly, have_same_rings};
 
 use crate::ring_sizes::print_ring;
@@ -59,12 +60,16 @@ pub fn check(scene: &SeveralScene) -> Result<(), Failure> {
             continue;
         }
         let mut memory: [Option<RingMemory>; 2] = [None, None];
+        let mut motion = [Some(None), Some(None)];
+        let model = &assembly.bearings[i].model;
         for side in Side::BOTH {
-            if let Some((of_ring, ..)) = print_ring(&assembly.bearings[i].model, side)? {
+            if let Some((of_ring, of_motion, _)) = print_ring(model, side)? {
                 memory[side.index()] = Some(of_ring);
+                motion[side.index()] = of_motion.map(Some);
             }
         }
-        peak += forecast_peak(memory, rayon::current_num_threads());
+        let (start, steps) = forecast((&scene.analysis, model), memory, motion);
+        peak += steps.unwrap_or(0).max(start);
     }
     print_shaft(scene, &assembly.shaft);
     print::line(format_args!(

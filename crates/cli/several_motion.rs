@@ -15,6 +15,7 @@ use results::failure::Failure;
 use results::files::Files;
 use results::memory::{Forecasts, require_memory};
 use results::motion_fields::{Recorded, RestartState};
+use results::seat;
 use results::several::{ListState, SeveralFindings, SeveralSummary, SeveralTables, print_solution};
 use results::shown::Shown;
 use results::snapshot::Snapshot;
@@ -301,7 +302,9 @@ impl ListMarch<'_> {
             };
             let own = self.dir.join(&self.scene.bearings[i].name);
             let model = &self.assembly.bearings[i].model;
-            Summary::new(&self.placed[i], model, findings, &costs).write(&own)?;
+            Summary::new(&self.placed[i], model, findings, &costs)
+                .with_seat(seat::of_motion(motion, state, &own)?)
+                .write(&own)?;
         }
         Ok(())
     }

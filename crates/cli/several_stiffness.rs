@@ -11,7 +11,7 @@ use contact::Side;
 use dynamics::DampingLaws;
 use results::failure::Failure;
 use results::several_stiffness::{BearingStiffness, SeveralStiffness, ShaftStiffnessAt};
-use results::stiffness::{OperatingPoint, StiffnessAt, StiffnessResults, require_free};
+use results::stiffness::{NOT_OVER_SPEED, OperatingPoint, StiffnessAt, StiffnessResults, require_free};
 use results::survey::say_doubts;
 use results::whole::make_asked_folder;
 use scene::{SeveralScene, assembly_with_rings, build_assembly};
@@ -34,6 +34,9 @@ pub fn stiffness(scene: &SeveralScene, out: &Path) -> Result<(), Failure> {
     let mut names = results.write(out)?;
     results.print();
     names.extend(draw(out)?);
+    if !results.suits_ross() {
+        print::line(format_args!("no ross_NAME.csv: {NOT_OVER_SPEED}"));
+    }
     print::line(format_args!("{} in {}", names.join(", "), out.display()));
     Ok(())
 }
@@ -42,7 +45,6 @@ pub fn stiffness(scene: &SeveralScene, out: &Path) -> Result<(), Failure> {
 fn empty(scene: &SeveralScene, warnings: Vec<String>) -> SeveralStiffness {
     let column = column(scene).map(str::to_string);
     let source = scene.path.display().to_string();
-    let speeds = scene.speed.clone().unwrap_or_default();
     let bearing = |bearing: &scene::BearingOnShaft| BearingStiffness {
         name: bearing.name.clone(),
         position: bearing.position,
@@ -60,7 +62,6 @@ fn empty(scene: &SeveralScene, warnings: Vec<String>) -> SeveralStiffness {
     SeveralStiffness {
         bearings,
         position: first_load.unwrap_or(scene.shaft.load_point),
-        speed: speeds.inner.at(0.0),
         shaft: Vec::new(),
         warnings,
         source,
@@ -96,8 +97,10 @@ fn linearise(scene: &SeveralScene) -> Result<SeveralStiffness, Failure> {
             .of_shaft(&assembly, results.position)
             .map_err(solving)
             .map_err(at)?;
+        let speed = point.speed.as_ref().map_or(0.0, |speed| speed.inner.at(0.0));
         results.shaft.push(ShaftStiffnessAt {
             value: *value,
+            speed,
             stiffness: of_shaft,
             displacement: assembly
                 .shaft
@@ -108,6 +111,7 @@ fn linearise(scene: &SeveralScene) -> Result<SeveralStiffness, Failure> {
             let speeds = Side::BOTH.map(|side| speeds.of(side).at(0.0));
             bearing.results.points.push(StiffnessAt {
                 value: *value,
+                speed,
                 stiffness: linear.stiffness[i],
                 damping: linear.damping[i],
                 load_stiffness: Default::default(),

@@ -16,8 +16,8 @@ use dynamics::stiffness::{ShaftMatrix, softest};
 use dynamics::{DampingLaws, Linearisation, Model, Pose, StaticSolution, StaticSolver};
 use results::failure::Failure;
 use results::stiffness::{
-    OperatingPoint, ROSS_TABLE, Ripple, STIFFNESS_FILE, STIFFNESS_TABLE, StiffnessAt, StiffnessResults,
-    require_free,
+    NOT_OVER_SPEED, OperatingPoint, ROSS_TABLE, Ripple, STIFFNESS_FILE, STIFFNESS_TABLE, StiffnessAt,
+    StiffnessResults, require_free,
 };
 use results::survey::say_doubts;
 use results::whole::make_asked_folder;
@@ -72,9 +72,7 @@ pub fn stiffness(command: &StiffnessCommand) -> Result<(), Failure> {
     let mut names: Vec<String> = names.into_iter().map(str::to_string).collect();
     names.extend(draw(&command.out)?);
     if !results.suits_ross() {
-        print::line(format_args!(
-            "no {ROSS_TABLE}: the speeds of the points do not grow from one to the next; sweep a speed"
-        ));
+        print::line(format_args!("no {ROSS_TABLE}: {NOT_OVER_SPEED}"));
     }
     print::line(format_args!("{} in {}", names.join(", "), command.out.display()));
     Ok(())
@@ -224,15 +222,14 @@ impl PointOfScene<'_> {
         let mut warnings = solution.warnings.clone();
         warnings.extend(not_positive(&stiffness, model)?);
         let speeds = scene.speed.clone().unwrap_or_default();
+        let speeds = Side::BOTH.map(|side| speeds.of(side).at(self.time));
         let at = StiffnessAt {
             value: *value,
+            speed: speeds[0],
             stiffness,
             damping,
             load_stiffness: found.load_stiffness,
-            operating_point: OperatingPoint::new(
-                &solution,
-                Side::BOTH.map(|side| speeds.of(side).at(self.time)),
-            ),
+            operating_point: OperatingPoint::new(&solution, speeds),
             ripple: self.ripple(model, solver, &solution)?,
         };
         Ok((at, solution, warnings))

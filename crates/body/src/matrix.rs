@@ -124,6 +124,19 @@ impl MatrixBody {
         })
     }
 
+    /// Turns the body by 180 deg about x: places and the directions of all dofs.
+    pub fn half_turn(&mut self) {
+        self.places.iter_mut().for_each(|[_, y, z]| (*y, *z) = (-*y, -*z));
+        // An entry of x with y or z changes its sign.
+        let turned = |row: usize, column: usize| row.is_multiple_of(3) != column.is_multiple_of(3);
+        for matrix in std::iter::once(&mut self.stiffness).chain(&mut self.mass) {
+            for (row, mut vector) in matrix.outer_iterator_mut().enumerate() {
+                let entries = vector.iter_mut().filter(|(column, _)| turned(row, *column));
+                entries.for_each(|(_, value)| *value = -*value);
+            }
+        }
+    }
+
     /// Nodes of the seat with their areas, m^2, ascending.
     pub(crate) fn seat_areas(&self, name: &str) -> Result<Vec<(usize, f64)>, SurroundingError> {
         let what = format!("the seat of body \"{name}\"");

@@ -73,6 +73,25 @@ impl BodyModes {
         self.squares.len()
     }
 
+    /// Motion of the seat functions under oscillators, m.
+    pub fn seat_motion(&self, oscillators: &[f64]) -> Vec<f64> {
+        combined(&self.seat, oscillators)
+    }
+
+    /// D = V diag(1/s) V^T of the seat functions for effective masses s of the oscillators, `[n_functions]^2` flat;
+    /// empty for a rigid body.
+    pub fn softness(&self, effective: &[f64]) -> Vec<f64> {
+        let n = self.seat.len().checked_div(self.n()).unwrap_or(0);
+        let mut softness = vec![0.0; n * n];
+        for (row, s) in self.seat.chunks_exact(n.max(1)).zip(effective) {
+            for (to, v) in softness.chunks_exact_mut(n).zip(row) {
+                let by = v / s;
+                to.iter_mut().zip(row).for_each(|(d, w)| *d += by * w);
+            }
+        }
+        softness
+    }
+
     /// Bytes of all.
     pub fn bytes(&self) -> usize {
         let lists = [

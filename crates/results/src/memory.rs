@@ -13,6 +13,7 @@ use rustix::process::{Resource, getrlimit};
 use scene::{Analysis, Dynamic};
 
 use crate::failure::Failure;
+use crate::seat::tied;
 
 /// Steps between files up to which files wait for the disk.
 const OFTEN: u64 = 10;
@@ -31,7 +32,7 @@ impl Forecasts {
     pub fn at_rest(rings: [Option<RingMemory>; 2], model: &Model) -> Forecasts {
         Forecasts {
             rings,
-            peak: Some(with_surfaces(forecast_peak(rings, rings_at_once()), model)),
+            peak: Some(beside_rings(forecast_peak(rings, rings_at_once()), model)),
         }
     }
 
@@ -41,7 +42,7 @@ impl Forecasts {
         let steps = motion.memory_forecast(queued_steps(dynamic), rings_at_once());
         Forecasts {
             rings,
-            peak: steps.map(|steps| with_surfaces(steps.max(start), motion.model())),
+            peak: steps.map(|steps| beside_rings(steps.max(start), motion.model())),
         }
     }
 }
@@ -64,11 +65,25 @@ pub fn forecast(
         (Analysis::Dynamic(dynamic), [Some(inner), Some(outer)]) => {
             let queued = queued_steps(dynamic);
             let steps = forecast_motion_peak([inner, outer], queued, rings_at_once());
-            Some(with_surfaces(steps, model))
+            Some(beside_rings(steps, model))
         }
         _ => None,
     };
-    (with_surfaces(forecast_peak(rings, rings_at_once()), model), steps)
+    (beside_rings(forecast_peak(rings, rings_at_once()), model), steps)
+}
+
+/// The peak of rings with what is there besides.
+fn beside_rings(rings: usize, model: &Model) -> usize {
+    with_body(with_surfaces(rings, model), model)
+}
+
+/// The peak of the rest with a body round the outer ring, which is made before it.
+fn with_body(rest: usize, model: &Model) -> usize {
+    let body = tied(model).and_then(|(_, _, tie)| Some((tie, tie.body.as_ref()?)));
+    let Some((tie, body)) = body else { return rest };
+    let modes = tie.modes.as_ref().map_or(0, |modes| modes.bytes());
+    let kept = body.bytes + modes;
+    kept + rest.max(body.making_bytes(modes > 0))
 }
 
 /// More memory than a ring takes for each of its nodes, bytes: five times that of a sparse factor of 17 k nodes.

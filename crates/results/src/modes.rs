@@ -23,6 +23,7 @@ use super::files::{mesh_file, say_folder, storage};
 use super::folder;
 use super::mounting::{ClearanceSummary, FitSummary, fits};
 use super::ring_stress::{Basis, RingStress, ShownRing};
+use super::seat::tied;
 use super::shown::Turn;
 use super::snapshot::Snapshot;
 use super::summary::{
@@ -53,6 +54,9 @@ const COLUMNS: [&str; 12] = [
     "kinetic_shaft",
 ];
 
+/// One more column where the outer ring is in an elastic body: its share, part of that of the ring.
+const OF_BODY: &str = "kinetic_body";
+
 /// The open files of a run.
 pub struct ModeFiles {
     output: Output,
@@ -66,9 +70,13 @@ impl ModeFiles {
     pub fn create(scene: &Scene, model: &Model, dir: &Path) -> Result<ModeFiles, Failure> {
         let output = Output::create_in(folder::prepare(dir)?, &mesh_file(scene, model)?, storage(scene))?;
         say_folder(dir);
+        let mut columns: Vec<String> = COLUMNS.map(str::to_string).to_vec();
+        if tied(model).is_some() {
+            columns.push(OF_BODY.to_string());
+        }
         Ok(ModeFiles {
             output,
-            table: tables::create(dir, TABLE, &COLUMNS.map(str::to_string))?,
+            table: tables::create(dir, TABLE, &columns)?,
             stress: RingStress::new(model, scene)?,
             step: 0,
         })
@@ -86,7 +94,11 @@ impl ModeFiles {
             self.step += 1;
             let (points, cell_fields) = self.fields(model, mode);
             // The table first: a step vouches for it.
-            tables::append(&mut self.table, TABLE, [cells(self.step, body, i + 1, mode)])?;
+            let mut row = cells(self.step, body, i + 1, mode);
+            if tied(model).is_some() {
+                row.push(format!("{:?}", mode.kinetic_body));
+            }
+            tables::append(&mut self.table, TABLE, [row])?;
             self.table.get_ref().handle()?.sync_data()?;
             let record = StepRecord {
                 step: self.step,
@@ -137,7 +149,12 @@ impl ModeFiles {
             let (sin, cos) = model.geometry.azimuth(ball).sin_cos();
             displacement.push([radial * cos, radial * sin, axial].map(|u| AMPLITUDE * u));
         }
-        fields::with_stress(displacement, self.stress.fields(&rings, None))
+        let body = fields::body_of(model).map(|(_, mesh, _)| match &mode.shape.body {
+            Some(shape) => shape.iter().map(|u| AMPLITUDE * u).collect(),
+            None => vec![0.0; mesh.n_dofs()],
+        });
+        displacement.extend(body.iter().flat_map(|body| body.as_chunks::<3>().0));
+        fields::with_stress(displacement, self.stress.fields(&rings, body.as_deref()))
     }
 }
 
@@ -152,6 +169,7 @@ fn cells(step: u64, body: ModeBody, number: usize, mode: &Mode) -> Vec<String> {
 
 /// Prints the modes of one body.
 pub fn print_modes(name: &str, set: &ModeSet) {
+    let has_body = set.modes.iter().any(|mode| mode.shape.body.is_some());
     print::line(format_args!(
         "{name}: {} unknowns, {} blocks, {:.2} s",
         set.n_unknowns,
@@ -159,17 +177,23 @@ pub fn print_modes(name: &str, set: &ModeSet) {
         set.laps.total()
     ));
     print::line(format_args!(
-        "mode  frequency Hz    bound Hz  modal kg   kinetic energy: inner  outer  balls  shaft"
+        "mode  frequency Hz    bound Hz  modal kg   kinetic energy: inner  outer  balls  shaft{}",
+        if has_body { "  of outer in the body" } else { "" }
     ));
     for (i, mode) in set.modes.iter().enumerate() {
         let [inner, outer, balls, shaft] = mode.kinetic;
         print::line(format_args!(
-            "{:4} {:13.4} {:11.1e} {:9.3e} {:22.3} {outer:6.3} {balls:6.3} {shaft:6.3}{}",
+            "{:4} {:13.4} {:11.1e} {:9.3e} {:22.3} {outer:6.3} {balls:6.3} {shaft:6.3}{}{}",
             i + 1,
             mode.frequency,
             mode.bound,
             mode.modal_mass,
             inner,
+            if has_body {
+                format!(" {:6.3}", mode.kinetic_body)
+            } else {
+                String::new()
+            },
             if mode.is_rigid { "  without stiffness" } else { "" }
         ));
     }

@@ -1,8 +1,9 @@
 //! The seat of a ring in an elastic body: tractions as a table, and what the summary says of the joint.
 //!
-//! `seat_outer.csv` has the last equilibrium of a run on a grid of the seat: azimuth from +x towards +y, z in the
-//! coordinates of the ring's mesh. Pressure is positive where the body presses on the ring; shear is the traction on
-//! the ring in the direction of growing azimuth and z; motion is that of the seat, which ring and body share.
+//! `seat_outer.csv` has the last equilibrium of a run, or the end of a motion, on a grid of the seat: azimuth from +x
+//! towards +y, z in the coordinates of the ring's mesh. Pressure is positive where the body presses on the ring; shear
+//! is the traction on the ring in the direction of growing azimuth and z; motion is that of the seat, which ring and
+//! body share.
 
 use std::f64::consts::TAU;
 use std::fmt::Write;
@@ -12,6 +13,7 @@ use std::sync::Arc;
 use body::{SeatBasis, SeatFunctions, SeatTie, SeatTraction};
 use comm::{Communicator, print};
 use contact::Side;
+use dynamics::motion::{Motion, MotionState};
 use dynamics::{Model, RingModel, StaticSolution};
 use serde::Serialize;
 
@@ -34,6 +36,8 @@ pub struct SeatState {
     functions: SeatFunctions,
     /// What it carries.
     pub traction: SeatTraction,
+    /// Strain energy of the body, J.
+    energy: f64,
 }
 
 /// What the summary says of a seat.
@@ -74,6 +78,18 @@ pub fn of_run(model: &Model, solution: &StaticSolution, dir: &Path) -> Result<Op
     }
 }
 
+/// The same at the end of a motion.
+pub fn of_motion(
+    motion: &Motion<'_>,
+    state: &MotionState,
+    dir: &Path,
+) -> Result<Option<SeatSummary>, Failure> {
+    match SeatState::in_motion(motion, state)? {
+        Some(state) => Ok(Some(state.finish(dir)?)),
+        None => Ok(None),
+    }
+}
+
 /// A place of the table.
 struct SeatPoint {
     azimuth: f64,
@@ -98,7 +114,28 @@ impl SeatState {
         Ok(traction.map(|traction| SeatState {
             tie: tie.clone(),
             functions,
+            energy: traction.energy(),
             traction,
+        }))
+    }
+
+    /// The joint in a motion; None where the outer ring is in no body.
+    fn in_motion(motion: &Motion<'_>, state: &MotionState) -> Result<Option<SeatState>, Failure> {
+        let Some((side, ring, tie)) = tied(motion.model()) else {
+            return Ok(None);
+        };
+        let functions = ring.seat_functions(side.name()).map_err(Failure::solving)?;
+        let body = state.rings[side.index()].as_ref().and_then(|ring| ring.body());
+        let (Some(functions), Some(body), Some(moved)) = (functions, motion.tied(side), body) else {
+            return Ok(None);
+        };
+        let [_, energy] = body.energies(Some(moved));
+        let traction = body.traction(moved);
+        Ok(traction.map(|traction| SeatState {
+            tie: tie.clone(),
+            functions,
+            traction,
+            energy,
         }))
     }
 
@@ -148,7 +185,7 @@ impl SeatState {
             functions: self.functions.n(),
             energy_share_last_orders: share.last_orders,
             energy_share_last_degree: share.last_degree,
-            body_energy_j: self.traction.energy(),
+            body_energy_j: self.energy,
             largest_pressure_pa: pressures().fold(f64::NEG_INFINITY, f64::max),
             smallest_pressure_pa: pressures().fold(f64::INFINITY, f64::min),
             body_dofs: body.n_dofs,

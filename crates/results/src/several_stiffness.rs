@@ -31,6 +31,9 @@ pub struct ShaftStiffnessAt {
     /// The swept value; absent without a sweep.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub value: Option<f64>,
+    /// Speed of the shaft, rad/s.
+    #[serde(rename = "speed_rad_per_s")]
+    pub speed: f64,
     /// Stiffness.
     pub stiffness: ShaftMatrix,
     /// Displacement there, m and rad.
@@ -61,8 +64,6 @@ pub struct SeveralStiffness {
     pub bearings: Vec<BearingStiffness>,
     /// Position of the point of the shaft, m.
     pub position: f64,
-    /// Speed of the shaft, rad/s.
-    pub speed: f64,
     /// The shaft at all points.
     pub shaft: Vec<ShaftStiffnessAt>,
     /// Warnings a user should read.
@@ -112,6 +113,11 @@ impl SeveralStiffness {
             .collect()
     }
 
+    /// Whether the points are those of bearings over the speed of the shaft, or one point.
+    pub fn suits_ross(&self) -> bool {
+        self.bearings.iter().all(|bearing| bearing.results.suits_ross())
+    }
+
     /// Writes the files into a folder, each whole or not at all, and returns their names.
     pub fn write(&self, dir: &Path) -> Result<Vec<String>, Failure> {
         let mut names = vec![STIFFNESS_FILE.to_string(), STIFFNESS_TABLE.to_string()];
@@ -121,7 +127,7 @@ impl SeveralStiffness {
         let line = |point: &ShaftStiffnessAt| TableLine {
             time: 0.0,
             value: point.value,
-            speed: self.speed,
+            speed: point.speed,
             stiffness: point.stiffness,
             damping: None,
         };
@@ -133,7 +139,7 @@ impl SeveralStiffness {
             let own = bearing.results.table()?;
             whole::write_new(&dir.join(&name), |file| file.write_all(&own))?;
             names.push(name);
-            if bearing.results.suits_ross() {
+            if self.suits_ross() {
                 let name = format!("{BEARING_ROSS}{}.csv", bearing.name);
                 let own = bearing.results.ross()?;
                 whole::write_new(&dir.join(&name), |file| file.write_all(&own))?;

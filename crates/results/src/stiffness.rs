@@ -24,6 +24,8 @@ pub const STIFFNESS_FILE: &str = "stiffness.json";
 pub const STIFFNESS_TABLE: &str = "stiffness.csv";
 /// The table for ROSS.
 pub const ROSS_TABLE: &str = "ross.csv";
+/// Why there is no table for ROSS.
+pub const NOT_OVER_SPEED: &str = "the speeds of the points do not grow from one to the next; sweep a speed";
 /// Version of the keys.
 pub(crate) const SCHEMA: u32 = 1;
 pub(crate) const UNITS: &str =
@@ -127,6 +129,9 @@ pub struct StiffnessAt {
     /// The swept value; absent without a sweep.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub value: Option<f64>,
+    /// Speed of the shaft in the frame of the matrix, rad/s.
+    #[serde(skip)]
+    pub speed: f64,
     /// The stiffness of the bearing.
     pub stiffness: ShaftMatrix,
     /// Its damping; null where the scene has no damping law.
@@ -227,9 +232,7 @@ impl StiffnessResults {
 
     /// Whether the points are those of one bearing over its speed, or one point.
     pub fn suits_ross(&self) -> bool {
-        self.points
-            .windows(2)
-            .all(|pair| speed(&pair[0]) < speed(&pair[1]))
+        self.points.windows(2).all(|pair| pair[0].speed < pair[1].speed)
     }
 
     /// All entries, a line per point.
@@ -237,7 +240,7 @@ impl StiffnessResults {
         let line = |point: &StiffnessAt| TableLine {
             time: point.operating_point.time_s,
             value: point.value,
-            speed: speed(point),
+            speed: point.speed,
             stiffness: point.stiffness,
             damping: point.damping,
         };
@@ -254,7 +257,7 @@ impl StiffnessResults {
         for point in &self.points {
             let of = |m: &ShaftMatrix| [m[0][0], m[0][1], m[1][0], m[1][1]];
             let damping = point.damping.iter().flat_map(of);
-            let cells = std::iter::once(speed(point)).chain(of(&point.stiffness));
+            let cells = std::iter::once(point.speed).chain(of(&point.stiffness));
             writer.write_record(cells.chain(damping).map(|x| format!("{x:?}")))?;
         }
         Ok(writer.into_inner()?)
@@ -337,11 +340,6 @@ pub fn table(column: Option<&str>, lines: &[TableLine]) -> anyhow::Result<Vec<u8
         writer.write_record(&cells)?;
     }
     Ok(writer.into_inner()?)
-}
-
-/// Speed of the shaft, rad/s.
-fn speed(point: &StiffnessAt) -> f64 {
-    point.operating_point.speed_rad_per_s[0]
 }
 
 /// Names of the entries of a matrix, by rows.

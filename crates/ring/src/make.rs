@@ -53,7 +53,7 @@ pub fn elastic_body(
                 mount: MountRows::dense(functions.sparse_rows()),
                 ..held
             };
-            let body = Oscillators::new(tie, functions)?;
+            let body = Oscillators::new(tie, functions, settings.damping)?;
             let ring = solved_body(ring, inside, settings)?;
             Ok(Arc::new(TiedRing::new(ring, outside, body)))
         }

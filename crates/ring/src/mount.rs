@@ -6,6 +6,7 @@
 use solver::LinearSolver;
 
 use crate::sparse::{SparseLoad, fill, sparse_dot};
+use crate::vectors::dot;
 
 /// Functionals of a mount.
 #[derive(Clone, Debug, Default)]
@@ -82,6 +83,20 @@ impl MountRows {
         let rows = dense.values.chunks_exact(units.len().max(1));
         rows.map(|row| row.iter().zip(units).map(|(a, b)| a * b).sum())
             .collect()
+    }
+
+    /// Values of many functionals at coordinates.
+    pub fn measure(&self, y: &[f64]) -> Vec<f64> {
+        let dense = self.dense.as_ref().expect("many functionals have their matrix");
+        let here: Vec<f64> = dense.places.iter().map(|&i| y[i]).collect();
+        self.of_units(&here)
+    }
+
+    /// Products of many functionals with each other, `[n][n]` flat.
+    pub fn gram(&self) -> Vec<f64> {
+        let dense = self.dense.as_ref().expect("many functionals have their matrix");
+        let rows = || dense.values.chunks_exact(dense.places.len().max(1));
+        rows().flat_map(|a| rows().map(move |b| dot(a, b))).collect()
     }
 
     /// Loads of forces on the functionals: index and value, of many functionals each index once.

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use body::{BodyModes, SeatFunctions, SeatTie};
+use body::{BodyModes, SeatFunctions, SeatTie, SeatTraction};
 use dense::DenseCholesky;
 
 use crate::error::RingError;
@@ -18,14 +18,14 @@ pub struct Oscillators {
     functions: SeatFunctions,
     /// F of the body at rest; None of a rigid one.
     flexibility: Option<DenseCholesky>,
+    /// Rayleigh damping: C = a M + b K with `[a, b]`.
+    damping: [f64; 2],
 }
 
 /// A body over steps of one scheme and size.
 pub(crate) struct BodyFactor {
     pub body: Arc<Oscillators>,
     scheme: StepScheme,
-    /// Rayleigh damping: C = a M + b K with `[a, b]`.
-    damping: [f64; 2],
     /// Effective masses s.
     effective: Vec<f64>,
 }
@@ -40,7 +40,11 @@ pub(crate) struct BodyStep {
 
 impl Oscillators {
     /// The body of a joint.
-    pub(crate) fn new(tie: &SeatTie, functions: SeatFunctions) -> Result<Oscillators, RingError> {
+    pub(crate) fn new(
+        tie: &SeatTie,
+        functions: SeatFunctions,
+        damping: [f64; 2],
+    ) -> Result<Oscillators, RingError> {
         let modes = tie.modes.clone();
         let modes = modes.expect("the modes of a body are found before its ring moves");
         let flexibility = match modes.n() {
@@ -54,6 +58,7 @@ impl Oscillators {
             modes,
             functions,
             flexibility,
+            damping,
         })
     }
 
@@ -62,9 +67,10 @@ impl Oscillators {
         self.functions.n()
     }
 
+    /// Bytes of the joint; those of the body are its own.
     pub(crate) fn bytes(&self) -> usize {
         let n = self.functions.n();
-        self.modes.bytes() + self.functions.bytes() + 4 * size_of::<f64>() * n * n
+        self.functions.bytes() + 4 * size_of::<f64>() * n * n
     }
 
     /// For a log.
@@ -93,8 +99,23 @@ impl Oscillators {
         BodyState([at, zero.clone(), zero])
     }
 
+    /// What the joint carries; None for a rigid body.
+    ///
+    /// V lam = -(xi'' + C xi' + omega^2 xi), weighted as at rest: lam = -F^-1 V^T (xi + (xi'' + C xi')/omega^2).
+    pub fn traction(&self, BodyState([x, v, a]): &BodyState) -> Option<SeatTraction> {
+        let [am, ak] = self.damping;
+        let driven = |(i, square): (usize, &f64)| -x[i] - (a[i] + (am + ak * square) * v[i]) / square;
+        let driven: Vec<f64> = self.modes.squares.iter().enumerate().map(driven).collect();
+        let mut forces = self.modes.seat_motion(&driven);
+        self.flexibility.as_ref()?.solve(&mut forces, 1);
+        Some(SeatTraction {
+            forces,
+            motion: self.modes.seat_motion(x),
+        })
+    }
+
     /// Kinetic and strain energy, J.
-    pub(crate) fn energies(&self, state: Option<&BodyState>) -> [f64; 2] {
+    pub fn energies(&self, state: Option<&BodyState>) -> [f64; 2] {
         let Some(BodyState([x, v, _])) = state else {
             return [0.0; 2];
         };
@@ -143,35 +164,26 @@ impl Oscillators {
 }
 
 impl BodyFactor {
-    pub fn new(body: Arc<Oscillators>, scheme: StepScheme, damping: [f64; 2]) -> BodyFactor {
+    pub fn new(body: Arc<Oscillators>, scheme: StepScheme) -> BodyFactor {
         let [m, c, k] = scheme.integrator.effective(scheme.dt);
-        let [am, ak] = damping;
+        let [am, ak] = body.damping;
         let of = |square: &f64| m + c * (am + ak * square) + k * square;
         BodyFactor {
             effective: body.modes.squares.iter().map(of).collect(),
             body,
             scheme,
-            damping,
         }
     }
 
-    /// D, m/N, `[n][n]` flat.
+    /// D, m/N, `[n][n]` flat; empty for a rigid body.
     pub fn softness(&self) -> Vec<f64> {
-        let n = self.body.n_functions();
-        let mut softness = vec![0.0; n * n];
-        for (row, s) in self.body.modes.seat.chunks_exact(n).zip(&self.effective) {
-            for (to, v) in softness.chunks_exact_mut(n).zip(row) {
-                let by = v / s;
-                to.iter_mut().zip(row).for_each(|(d, w)| *d += by * w);
-            }
-        }
-        softness
+        self.body.modes.softness(&self.effective)
     }
 
     /// A step from a state.
     pub fn step(&self, BodyState([x, v, a]): &BodyState) -> BodyStep {
         let [mass, damping] = self.scheme.integrator.history(self.scheme.dt);
-        let [am, ak] = self.damping;
+        let [am, ak] = self.body.damping;
         let mut increments = Vec::with_capacity(x.len());
         let mut seat = vec![0.0; self.body.n_functions()];
         let modes = &self.body.modes;

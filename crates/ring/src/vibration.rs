@@ -2,7 +2,8 @@
 //!
 //! A clamped surface that moves with dofs of the partner has these as coordinates. A mean-motion hold leaves all
 //! nodes free; its held motions are constraints c^T w = 0, where c takes the area-weighted least-squares rigid motion
-//! of the surface. A mass of the partner acts on the motions that it follows.
+//! of the surface. A mass of the partner acts on the motions that it follows. A ring that is tied to a body has the
+//! oscillators of this after its own coordinates ([`crate::tied::vibration`]).
 
 use solver::LinearSolver;
 
@@ -13,6 +14,7 @@ use crate::harmonic::periodic::Periodic;
 use crate::matrices::{NodalMatrices, SparseMatrices};
 use crate::model::{Backend, Hold, RingModel};
 use crate::sparse::{SparseLoad, sparse_dot};
+use crate::tied::vibration::VibratingTie;
 
 /// A ring ready to vibrate.
 pub struct VibratingRing {
@@ -25,6 +27,8 @@ pub struct VibratingRing {
     pub lumps: Vec<(SparseLoad, f64)>,
     /// Motions x, y, z, tilt x, tilt y of the partner, where the ring knows them.
     partner: [Option<SparseLoad>; 5],
+    /// The body to which it is tied.
+    tie: Option<VibratingTie>,
 }
 
 impl VibratingRing {
@@ -38,6 +42,7 @@ impl VibratingRing {
         backend: Backend,
     ) -> Result<VibratingRing, RingError> {
         let hold = partner.map_or(Hold::Free, |_| ring.hold);
+        let tied = ring.tie.as_ref().filter(|_| partner.is_some());
         let (of, masses) = partner.unwrap_or((Partner::AT_REST, [0.0; 5]));
         let held = HeldRing::new(name, ring, Held { hold, partner: of }, backend)?;
         let error = |source| RingError::Solver { side: name, source };
@@ -58,23 +63,30 @@ impl VibratingRing {
                     (Box::new(matrices), Box::new(factor.map_err(error)?))
                 }
             };
+        let tie = match (tied, ring.seat_functions(name)?) {
+            (Some(tie), Some(functions)) => {
+                let of_ring = (&*factor, held.coordinates.n());
+                Some(VibratingTie::new(tie, &functions, of_ring, shift)?)
+            }
+            _ => None,
+        };
         // A mount has the moving dofs of a clamped surface, or all mean motions.
         let moving = (0..5).filter(|&dof| of.moves[dof]);
         let of_mount = |k: usize| held.mount.rows.get(k).cloned();
         let motions: [Option<SparseLoad>; 5] = match hold {
-            Hold::MeanMotion => [0, 1, 2, 3, 4].map(of_mount),
-            Hold::Clamped | Hold::Free => {
+            Hold::MeanMotion if tie.is_none() => [0, 1, 2, 3, 4].map(of_mount),
+            Hold::MeanMotion | Hold::Clamped | Hold::Free => {
                 let mut motions = [const { None }; 5];
                 moving.enumerate().for_each(|(k, dof)| motions[dof] = of_mount(k));
                 motions
             }
         };
         let constraints = match hold {
-            Hold::MeanMotion => (0..6)
+            Hold::MeanMotion if tie.is_none() => (0..6)
                 .filter(|&dof| dof == 5 || !of.moves[dof])
                 .filter_map(of_mount)
                 .collect(),
-            Hold::Clamped | Hold::Free => Vec::new(),
+            Hold::MeanMotion | Hold::Clamped | Hold::Free => Vec::new(),
         };
         let carries = |dof: &usize| masses[*dof] > 0.0 && of.moves[*dof];
         let lumps = (0..5)
@@ -84,6 +96,7 @@ impl VibratingRing {
             lumps: lumps.collect(),
             constraints,
             partner: motions,
+            tie,
             held,
             matrices,
             factor,
@@ -95,28 +108,67 @@ impl VibratingRing {
         &self.held
     }
 
-    /// Number of coordinates.
+    /// Number of coordinates, with those of a body to which it is tied.
     pub fn n(&self) -> usize {
-        self.held.coordinates.n()
+        let of_body = self.tie.as_ref().map_or(0, VibratingTie::n_oscillators);
+        self.held.coordinates.n() + of_body
     }
 
     /// K Y of a block of vectors, column-major, without what constraints and contacts add.
     pub fn stiffness(&self, y: &[f64], n_vectors: usize) -> Vec<f64> {
-        self.matrices
-            .stiffness_products(&self.held.coordinates, y, n_vectors)
+        let product = |y: &[f64]| {
+            self.matrices
+                .stiffness_products(&self.held.coordinates, y, n_vectors)
+        };
+        match &self.tie {
+            None => product(y),
+            Some(tie) => tie.joined(&product(&tie.of_ring(y)), y, |square| square),
+        }
     }
 
     /// M Y of a block of vectors without the masses of the partner.
     pub fn mass(&self, y: &[f64], n_vectors: usize) -> Vec<f64> {
-        let columns = y.chunks_exact((y.len() / n_vectors.max(1)).max(1));
-        columns
-            .flat_map(|y| self.matrices.mass_product(&self.held.coordinates, y))
-            .collect()
+        let product = |y: &[f64]| -> Vec<f64> {
+            let columns = y.chunks_exact((y.len() / n_vectors.max(1)).max(1));
+            columns
+                .flat_map(|y| self.matrices.mass_product(&self.held.coordinates, y))
+                .collect()
+        };
+        match &self.tie {
+            None => product(y),
+            Some(tie) => tie.joined(&product(&tie.of_ring(y)), y, |_| 1.0),
+        }
     }
 
     /// (K + s M)^-1 of a block of `n_vectors` loads, column-major `[n][n_vectors]`.
     pub fn solve(&self, loads: &mut [f64], n_vectors: usize) {
-        self.factor.solve(loads, n_vectors);
+        match &self.tie {
+            None => self.factor.solve(loads, n_vectors),
+            Some(tie) => tie.solve(&*self.factor, loads),
+        }
+    }
+
+    /// Takes the forces that tie it to a body out of a vector of forces.
+    pub fn remove_reactions(&self, force: &mut [f64]) {
+        if let Some(tie) = &self.tie {
+            tie.remove_reactions(force);
+        }
+    }
+
+    /// Displacement of its nodes, `[n_nodes][3]` flat.
+    pub fn displacement(&self, y: &[f64]) -> Vec<f64> {
+        let n_ring = self.held.coordinates.n();
+        self.held.coordinates.expand(&y[..n_ring])
+    }
+
+    /// The same of the body to which it is tied; None where there is none, or a rigid one.
+    pub fn body_displacement(&self, y: &[f64]) -> Option<Vec<f64>> {
+        self.tie.as_ref()?.body_displacement(y)
+    }
+
+    /// What of y^T M y belongs to that body.
+    pub fn body_mass(&self, y: &[f64]) -> f64 {
+        self.tie.as_ref().map_or(0.0, |tie| tie.body_mass(y))
     }
 
     /// Generalised load of a motion (0 to 4: x, y, z, tilt x, tilt y) of the partner, where the ring knows it.

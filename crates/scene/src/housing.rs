@@ -20,7 +20,7 @@ pub fn seat_tie(scene: &Scene, ring: &RingModel) -> Result<Option<Arc<SeatTie>>,
     let seat = BodySeat {
         group: body.group.clone(),
         space: SeatSpace::on(&cylinder, body.basis),
-        middle: body.z,
+        middle: body.z.map(|z| if body.is_turned { -z } else { z }),
     };
     // The ring must tell the functions apart too: sooner than after a long factorisation.
     let areas = fem::facet_node_weights(&ring.mesh, ring.mesh.group(ring.held_group));
@@ -40,7 +40,10 @@ fn surrounding(body: &SceneBody, seat: &BodySeat) -> Result<Surrounding, BuildEr
             material: m,
             fixed,
         } => {
-            let (mesh, origin) = mesh::read_body_msh(mesh, *mesh_unit)?;
+            let (mut mesh, origin) = mesh::read_body_msh(mesh, *mesh_unit)?;
+            if body.is_turned {
+                mesh.nodes.iter_mut().for_each(half_turn);
+            }
             let seats = std::slice::from_ref(seat);
             let made_of = Material::new(m.young_modulus, m.poisson_ratio, m.density)?;
             Ok(Surrounding::of_mesh(
@@ -51,10 +54,17 @@ fn surrounding(body: &SceneBody, seat: &BodySeat) -> Result<Surrounding, BuildEr
                 seats,
             )?)
         }
-        BodySource::Matrix(files) => Ok(Surrounding::of_matrix(
-            &body.name,
-            &MatrixBody::read(files)?,
-            seat,
-        )?),
+        BodySource::Matrix(files) => {
+            let mut matrix = MatrixBody::read(files)?;
+            if body.is_turned {
+                matrix.half_turn();
+            }
+            Ok(Surrounding::of_matrix(&body.name, &matrix, seat)?)
+        }
     }
+}
+
+/// A half turn about x.
+fn half_turn([_, y, z]: &mut [f64; 3]) {
+    (*y, *z) = (-*y, -*z);
 }

@@ -71,11 +71,14 @@ pub fn write_matrix(dir: &Path, mesh: &Mesh, fixed: &str) -> MatrixFiles {
 }
 
 pub fn of_matrix(files: &MatrixFiles) -> Result<Surrounding, String> {
+    condensed(&MatrixBody::read(files).map_err(|e| e.to_string())?)
+}
+
+pub fn condensed(matrix: &MatrixBody) -> Result<Surrounding, String> {
     let seat = BodySeat {
         group: "seat".into(),
         space: space(basis(3, 1)),
         middle: None,
     };
-    let matrix = MatrixBody::read(files).map_err(|e| e.to_string())?;
-    Surrounding::of_matrix("other", &matrix, &seat).map_err(|e| e.to_string())
+    Surrounding::of_matrix("other", matrix, &seat).map_err(|e| e.to_string())
 }

@@ -15,11 +15,11 @@
 //! curvature gives the contact forces ([`crate::system::Circle`]).
 //!
 //! - **Free** ring: six rigid motions at zero, then elastic modes, most of them double.
-//! - **Held** ring: its bore or seat is clamped or held in its mean motion, as the scene has it, by a partner at rest.
-//! - **Bearing**: the outer ring is held by the housing, which is at rest; the inner ring by the shaft, whose free
-//!   dofs move and carry its mass and moment of inertia. The rotation
-//!   of the shaft about z is held. A rigid inner ring has the mass of the shaft and no other; dofs of the shaft
-//!   without mass follow quasi-statically.
+//! - **Held** ring: its bore or seat is clamped or held in its mean motion, as the scene has it, by a partner at rest,
+//!   or it vibrates with the elastic body to which it is tied.
+//! - **Bearing**: the outer ring is held by the housing, at rest or such a body; the inner ring by the shaft, whose
+//!   free dofs move and carry its mass and moment of inertia. The rotation of the shaft about z is held. A rigid inner
+//!   ring has the mass of the shaft and no other; dofs of the shaft without mass follow quasi-statically.
 //!
 //! Pairs come from block Lanczos about the negative shift lambda = -s ([`dense::eigen`]): K + s M is positive
 //! definite even for a free ring, so the rings' own sparse Cholesky factors serve, and contacts and constraints are a

@@ -23,6 +23,8 @@ pub struct Mode {
     pub modal_mass: f64,
     /// Shares of the kinetic energy: inner ring, outer ring, balls, shaft.
     pub kinetic: [f64; 4],
+    /// Share of a body round the outer ring, which the share of that ring holds; 0 without one.
+    pub kinetic_body: f64,
     /// Displacements, scaled so that the largest is 1.
     pub shape: Shape,
 }
@@ -34,6 +36,8 @@ pub struct Shape {
     /// Nodal displacement of the rings in their own coordinates, `[n_nodes][3]` flat; None for rings that are rigid
     /// or not part of the body.
     pub rings: [Option<Vec<f64>>; 2],
+    /// The same of an elastic body round the outer ring.
+    pub body: Option<Vec<f64>>,
     /// Balls [radial, axial]; empty for a ring alone.
     pub balls: Vec<[f64; 2]>,
     /// Shaft x, y, z, tilt x, tilt y.
@@ -57,6 +61,8 @@ impl Mode {
         let total: f64 = kinetic.iter().sum();
         // Round-off may leave a rigid motion below zero.
         let value = value.abs();
+        let outer = system.rings[1].as_ref();
+        let of_body = outer.map_or(0.0, |ring| ring.body_mass(system.part(x, 1)));
         let middle = frequency(value);
         Mode {
             frequency: middle,
@@ -65,6 +71,7 @@ impl Mode {
             is_rigid,
             modal_mass: largest.powi(-2),
             kinetic: kinetic.map(|part| part / total),
+            kinetic_body: of_body / total,
             shape,
         }
     }
@@ -84,8 +91,11 @@ impl Shape {
         Shape {
             rings: [0, 1].map(|i| {
                 let ring = system.rings[i].as_ref()?;
-                Some(ring.held().coordinates.expand(system.part(x, i)))
+                Some(ring.displacement(system.part(x, i)))
             }),
+            body: system.rings[1]
+                .as_ref()
+                .and_then(|ring| ring.body_displacement(system.part(x, 1))),
             balls: (0..n_balls).map(|b| [small[2 * b], small[2 * b + 1]]).collect(),
             shaft,
         }
@@ -95,7 +105,8 @@ impl Shape {
     fn largest(&self, tilt_arm: f64) -> f64 {
         let [x, y, z, tilt_x, tilt_y] = self.shaft;
         let tilts = [tilt_arm * tilt_x, tilt_arm * tilt_y];
-        let nodes = self.rings.iter().flatten().flat_map(|u| u.chunks_exact(3));
+        let fields = self.rings.iter().chain([&self.body]).flatten();
+        let nodes = fields.flat_map(|u| u.chunks_exact(3));
         let balls = self.balls.iter().map(|b| b.as_slice());
         let shaft = [[x, y, z].to_vec(), tilts.to_vec()];
         let points = || {
@@ -111,8 +122,10 @@ impl Shape {
     }
 
     fn scale(&mut self, factor: f64) {
-        let rings = self.rings.iter_mut().flatten().flatten();
+        let rings = self.rings.iter_mut().chain([&mut self.body]);
         let values = rings
+            .flatten()
+            .flatten()
             .chain(self.balls.iter_mut().flatten())
             .chain(&mut self.shaft);
         values.for_each(|x| *x *= factor);

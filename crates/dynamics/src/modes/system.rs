@@ -283,12 +283,11 @@ impl VibratingBearing {
         let starts = self.starts();
         let n_columns = self.columns.len();
         let mut rhs = vec![0.0; n_columns + self.small_mass.len()];
-        let motions: Vec<f64> = (0..n_columns)
-            .map(|j| {
-                let ring = self.columns[j].ring.as_ref();
-                ring.map_or(0.0, |(i, _)| self.motion(j, &y[starts[*i]..starts[*i + 1]]))
-            })
-            .collect();
+        let motion = |(j, column): (usize, &Column)| {
+            let ring = column.ring.as_ref();
+            ring.map_or(0.0, |(i, _)| self.motion(j, &y[starts[*i]..starts[*i + 1]]))
+        };
+        let motions: Vec<f64> = self.columns.iter().enumerate().map(motion).collect();
         for j in 0..n_columns {
             rhs[j] = self.law(j).1.iter().map(|&(k, share)| share * motions[k]).sum();
         }
@@ -358,6 +357,7 @@ impl EigenProblem for VibratingBearing {
         let starts = self.starts();
         for (i, directions) in self.reactions.iter().enumerate() {
             let part = &mut force[starts[i]..starts[i + 1]];
+            self.rings[i].iter().for_each(|ring| ring.remove_reactions(part));
             for direction in directions {
                 let size = dot(part, direction);
                 part.iter_mut().zip(direction).for_each(|(f, d)| *f -= size * d);

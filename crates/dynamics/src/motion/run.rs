@@ -13,7 +13,9 @@ use crate::kinematics::{Kinematics, RingSpeeds};
 use ring::memory::forecast_motion_peak;
 use ring::rigid::RigidInertia;
 use ring::statics::iterations_note;
-use ring::{BodySettings, ElasticBody, Frame, Hold, Inventory, StepFactor, StepScheme, elastic_body};
+use ring::{
+    BodySettings, ElasticBody, Frame, Hold, Inventory, Oscillators, StepFactor, StepScheme, elastic_body,
+};
 
 use super::state::MotionSettings;
 use crate::bearing::partner;
@@ -142,6 +144,11 @@ impl<'a> Motion<'a> {
     /// What moves.
     pub fn model(&self) -> &Model {
         self.model
+    }
+
+    /// The elastic body round a ring; None without one.
+    pub fn tied(&self, side: Side) -> Option<&Oscillators> {
+        self.rings[side.index()].as_ref()?.body.tied()
     }
 
     /// Forecast of the largest resident memory after the start, bytes, with `n_threads` threads while `queued` steps

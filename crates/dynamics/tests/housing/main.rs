@@ -1,5 +1,6 @@
 //! A ring tied to an elastic body: against the holds of rigid partners, and against ring and body meshed as one.
 
+mod modes;
 mod motion;
 #[path = "../support/mod.rs"]
 mod support;

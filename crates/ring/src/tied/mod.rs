@@ -13,6 +13,7 @@
 //! does no work. From outside the pair is a ring without a mount.
 
 mod step;
+pub(crate) mod vibration;
 
 use std::sync::Arc;
 
@@ -119,7 +120,7 @@ impl ElasticBody for TiedRing {
     fn step_factor(self: Arc<Self>, scheme: StepScheme) -> Result<Box<dyn StepFactor>, RingError> {
         let ring = self.ring.clone().step_factor(scheme)?;
         let mut joint = seat_compliance(&*self.ring, &*ring);
-        let body = BodyFactor::new(self.body.clone(), scheme, self.held.damping);
+        let body = BodyFactor::new(self.body.clone(), scheme);
         joint.iter_mut().zip(body.softness()).for_each(|(a, d)| *a += d);
         let joint = DenseCholesky::factor(self.body.n_functions(), &joint)
             .map_err(|source| RingError::Tie { source })?;

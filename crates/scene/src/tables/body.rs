@@ -47,6 +47,7 @@ pub struct RawSceneBody {
     stiffness_unit: Option<String>,
     mass_unit: Option<String>,
     modes_below: Option<Quantity<RATE>>,
+    orientation: Option<String>,
     #[serde(default)]
     seat: Vec<RawBodySeat>,
 }
@@ -56,6 +57,8 @@ pub struct RawSceneBody {
 #[serde(deny_unknown_fields, expecting = "a table of a seat of a body")]
 struct RawBodySeat {
     ring: RingName,
+    /// Of a list of bearings alone, which takes it out.
+    bearing: Option<String>,
     group: Option<String>,
     harmonics: Option<i64>,
     across: Option<i64>,
@@ -73,9 +76,11 @@ pub struct SceneBody {
     pub group: String,
     /// Functions that are tied.
     pub basis: SeatBasis,
+    /// Whether it is turned by 180 deg about x.
+    pub is_turned: bool,
     /// Frequency up to which its modes with a held seat move, Hz; None at rest.
     pub modes_below: Option<f64>,
-    /// Where the middle of the ring's seat stands along its z, m; None: in the middle of the group.
+    /// Where the middle of the ring's seat stands along its own z, m; None: in the middle of the group.
     pub z: Option<f64>,
 }
 
@@ -111,10 +116,8 @@ pub struct BodyContext<'a> {
     pub turns_outer: bool,
     /// Linear solver of the rings.
     pub backend: Backend,
-    /// Whether the scene moves in time.
-    pub is_dynamic: bool,
-    /// Whether it asks for natural modes.
-    pub has_modes: bool,
+    /// Whether the scene moves in time, or asks for natural modes.
+    pub moves: bool,
     /// Effects of the scene.
     pub effects: Vec<&'static str>,
 }
@@ -170,12 +173,6 @@ pub fn check_bodies(
 
 /// What a body at rest does not go with.
 fn refuse_beside_body(name: &str, context: &BodyContext<'_>, problems: &mut Problems) {
-    if context.has_modes {
-        problems.add(format!(
-            "the natural modes of a bearing in body {name:?} are not solved, but the scene has [modes]; expected \
-             [static], [sweep], [quasi_static] or [dynamic], or outer.support = \"mean_motion\" without [[body]]"
-        ));
-    }
     if context.backend.divides_rings() {
         problems.add(format!(
             "solver.backend is \"sector\", which does not tie a ring to a body ({name:?}); expected \"auto\", \
@@ -233,6 +230,13 @@ impl RawSceneBody {
             }
             (None, Some(_)) => self.check_matrix(&key, context, problems),
         };
+        let orientation = self.orientation.as_deref().unwrap_or("+z");
+        problems.require(
+            ["+z", "-z"].contains(&orientation),
+            &format!("{key}: orientation"),
+            format!("{orientation:?}"),
+            "expected \"+z\", as the mesh stands, or \"-z\", turned by 180 deg about x",
+        );
         let modes_below = self.check_modes(&key, context, problems);
         let seat = self.check_seat(&key, problems)?;
         let harmonics = seat.harmonics.unwrap_or(HARMONICS);
@@ -243,6 +247,7 @@ impl RawSceneBody {
                 across: problems.whole(across, "body.seat.across", 1, 8),
             },
             name: self.name.clone(),
+            is_turned: self.orientation.as_deref() == Some("-z"),
             modes_below,
             source: source?,
             group: seat.group.clone().unwrap_or_default(),
@@ -259,18 +264,19 @@ impl RawSceneBody {
             format!("{below} Hz"),
             "expected a frequency between 1 Hz and 1 MHz",
         );
-        if !context.is_dynamic {
+        if !context.moves {
             if self.modes_below.is_some() {
                 problems.add(format!(
-                    "{key} has modes_below, but the scene has no [dynamic], so it does not move; remove modes_below"
+                    "{key} has modes_below, but the scene has no [dynamic] or [modes], so it does not move; remove \
+                     modes_below"
                 ));
             }
             return None;
         }
         if self.stiffness.is_some() && self.mass.is_none() {
             problems.add(format!(
-                "{key} comes from a stiffness matrix, which has no mass, but the scene has [dynamic]; add mass and \
-                 mass_unit, or use [static], [sweep] or [quasi_static]"
+                "{key} comes from a stiffness matrix, which has no mass, but the scene has [dynamic] or [modes]; add \
+                 mass and mass_unit, or use [static], [sweep] or [quasi_static]"
             ));
         }
         Some(below)
@@ -278,6 +284,11 @@ impl RawSceneBody {
 
     /// The one seat.
     fn check_seat(&self, key: &str, problems: &mut Problems) -> Option<&RawBodySeat> {
+        if self.seat.iter().any(|seat| seat.bearing.is_some()) {
+            problems.add(format!(
+                "{key}: body.seat.bearing is for a list [[bearing]], but the scene has one bearing; remove it"
+            ));
+        }
         let seat = match self.seat.as_slice() {
             [seat] => seat,
             [] => {

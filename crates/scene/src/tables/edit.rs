@@ -61,7 +61,8 @@ fn remove_table(document: &mut DocumentMut, path: &str) -> bool {
     is_table && table.remove(last.get()).is_some()
 }
 
-/// Sets the value at a dotted path; tables on the way are made when they are missing.
+/// Sets the value at a dotted path; tables on the way are made when they are missing. A table of a list is reached by
+/// its number from 0: `body.0.seat.0.harmonics`.
 fn set(document: &mut DocumentMut, path: &str, mut value: Value) -> Result<(), String> {
     let keys = Key::parse(path).map_err(|_| {
         format!("{path:?} is no path of keys; expected one such as effects.axial_force.value")
@@ -69,7 +70,9 @@ fn set(document: &mut DocumentMut, path: &str, mut value: Value) -> Result<(), S
     let (last, tables) = keys.split_last().ok_or("the path is empty")?;
     let mut table: &mut dyn TableLike = document.as_table_mut();
     let mut walked = String::new();
-    for key in tables {
+    let mut rest = tables;
+    while let [key, after @ ..] = rest {
+        rest = after;
         walked += if walked.is_empty() { "" } else { "." };
         walked += key.get();
         if !table.contains_key(key.get()) {
@@ -77,10 +80,25 @@ fn set(document: &mut DocumentMut, path: &str, mut value: Value) -> Result<(), S
             new.set_implicit(true);
             table.insert(key.get(), Item::Table(new));
         }
-        table = table
-            .get_mut(key.get())
-            .and_then(Item::as_table_like_mut)
-            .ok_or_else(|| format!("{walked} is a value, so it has no key {:?}", last.get()))?;
+        table = match table.get_mut(key.get()) {
+            Some(Item::ArrayOfTables(list)) => {
+                let known = list.len();
+                let number = after.first().map_or("", |key| key.get());
+                rest = after.get(1..).unwrap_or_default();
+                let found = number.parse().ok().and_then(|i: usize| list.get_mut(i));
+                let found = found.ok_or_else(|| {
+                    format!(
+                        "{walked} is a list of {known}; expected a number below {known} and a key behind it, such as \
+                         {walked}.0.name"
+                    )
+                })?;
+                walked = format!("{walked}.{number}");
+                found
+            }
+            found => found
+                .and_then(Item::as_table_like_mut)
+                .ok_or_else(|| format!("{walked} is a value, so it has no key {:?}", last.get()))?,
+        };
     }
     // A key that has two names keeps the one it has.
     let name = match other_name(last.get()) {

@@ -43,8 +43,7 @@ impl RawScene {
             is_outer_rigid: self.outer.is_rigid(),
             turns_outer: self.has_speed()[1],
             backend,
-            is_dynamic: self.dynamic.is_some(),
-            has_modes: self.modes.is_some(),
+            moves: self.dynamic.is_some() || self.modes.is_some(),
             effects: self.effects.names(),
         };
         check_bodies(&self.body, &context, problems, assumed)

@@ -15,6 +15,7 @@ use super::super::messages::Messages;
 use super::super::ring::MeshFiles;
 use super::super::sweep::Analysis;
 use super::super::{Scene, SceneError, Source, edit, include};
+use super::bodies;
 use super::mounted::{BearingOnShaft, RawMounted, check_places};
 use super::pairing::Pairing;
 use super::shaft::{CommonShaft, ShaftKind};
@@ -64,6 +65,7 @@ impl Composer<'_> {
         let mut problems = Problems::default();
         if is_plain(&raw) {
             raw.bearing[0].check(1, &mut problems);
+            bodies::check(&raw.body, &raw.names(), &mut problems);
             return match problems.into_texts() {
                 none if none.is_empty() => self
                     .plain(&raw.bearing[0], document)
@@ -218,6 +220,7 @@ impl Composer<'_> {
                     document.remove(name);
                 });
             copy_shared(list, document, &ON_SHAFT);
+            bodies::place(list, document, (&bearing.name, orientation));
             if let Some(azimuth) = &bearing.first_ball_azimuth {
                 let own = orientation.turned_angle(azimuth.si());
                 set(
@@ -265,6 +268,7 @@ impl Composer<'_> {
                 }
             }
             copy_shared(&list, document, &[]);
+            bodies::place(&list, document, (&bearing.name, Orientation::PlusZ));
             if let Some(shaft) = document.get_mut("shaft").and_then(Item::as_table_like_mut) {
                 shaft.remove("model");
                 if !shaft.contains_key("load_point") {
@@ -329,6 +333,7 @@ fn check_list(raw: &RawSeveral, problems: &mut Problems) {
     for (number, bearing) in (1..).zip(&raw.bearing) {
         bearing.check(number, problems);
     }
+    bodies::check(&raw.body, &raw.names(), problems);
     if raw.bearing.is_empty() {
         problems.add("bearing is an empty list; expected at least one table [[bearing]]");
     }
@@ -380,7 +385,7 @@ fn apply(document: &mut DocumentMut, argument: &str) -> Result<(), SceneError> {
 /// Brings what the command line has changed in tables that all bearings share; `left_out` are effects.
 fn copy_shared(list: &DocumentMut, document: &mut DocumentMut, left_out: &[&str]) {
     for (name, item) in list.iter() {
-        if OF_LIST.contains(&name) || OF_TYPE.contains(&name) || name == "include" {
+        if OF_LIST.contains(&name) || OF_TYPE.contains(&name) || ["body", "include"].contains(&name) {
             continue;
         }
         let mut item = item.clone();

@@ -11,6 +11,7 @@
 //! Positions count along the shaft. That of a bearing is the position of the plane of its inner groove centres, to
 //! which the displacements of a scene with one bearing refer too.
 
+mod bodies;
 mod compose;
 mod load;
 mod mounted;
@@ -27,6 +28,7 @@ use serde::Deserialize;
 use serde::de::IgnoredAny;
 use toml_edit::{DocumentMut, Item};
 
+use self::bodies::RawListedBody;
 use self::compose::Composer;
 pub use self::load::ShaftLoad;
 pub use self::mounted::BearingOnShaft;
@@ -69,6 +71,8 @@ struct RawSeveral {
     bearing: Vec<RawMounted>,
     shaft: RawCommonShaft,
     pairing: Option<RawPairing>,
+    #[serde(default)]
+    body: Vec<RawListedBody>,
     #[serde(rename = "materials")]
     _materials: Option<IgnoredAny>,
     #[serde(rename = "contact")]
@@ -257,6 +261,11 @@ impl SeveralScene {
 }
 
 impl RawSeveral {
+    /// Names of the bearings.
+    fn names(&self) -> Vec<&str> {
+        self.bearing.iter().map(|bearing| bearing.name.as_str()).collect()
+    }
+
     /// Reports tables that a list of bearings does not go with.
     fn refuse(&self, problems: &mut Problems) {
         let in_time = [("quasi_static", &self.quasi_static), ("modes", &self.modes)];

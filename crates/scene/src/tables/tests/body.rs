@@ -164,10 +164,6 @@ fn scenes_in_which_a_body_makes_no_sense_are_refused() {
             "solver.backend is \"sector\", which does not tie a ring to a body",
         ),
         (
-            with("[static]", "[modes]\nnumber = 3"),
-            "are not solved, but the scene has [modes]",
-        ),
-        (
             with(
                 "[output]",
                 "[effects.fit.outer]\ninterference = \"5 um\"\nhousing_diameter = \"160 mm\"\n[output]",
@@ -213,7 +209,7 @@ fn only_a_body_with_a_mass_moves() {
         (moving(&below("5 mm")), "modes_below"),
         (
             moving(&matrices("")),
-            "which has no mass, but the scene has [dynamic]; add mass and mass_unit",
+            "which has no mass, but the scene has [dynamic] or [modes]; add mass and mass_unit",
         ),
         (
             moving(&matrices("mass = \"M.mtx\"")),
@@ -227,11 +223,69 @@ fn only_a_body_with_a_mass_moves() {
             moving(&with("[[body.seat]]", "mass = \"M.mtx\"\n[[body.seat]]")),
             "has a mesh, whose mass follows from its density",
         ),
-        (below("5 kHz"), "has modes_below, but the scene has no [dynamic]"),
+        (
+            below("5 kHz"),
+            "has modes_below, but the scene has no [dynamic] or [modes]",
+        ),
     ] {
         let said = parse(&text, &[]).unwrap_err().to_string();
         assert!(said.contains(expected), "{said}\nexpected: {expected}");
     }
+}
+
+/// Wrong: no study could vary a body, or a slip in the number of a table would change something else.
+#[test]
+fn tables_of_lists_are_set_by_their_number() {
+    let set = parse(SCENE, &["body.0.seat.0.harmonics=7", "body.0.name=block"]).unwrap();
+    let body = set.body.unwrap();
+    let basis = SeatBasis::Harmonics {
+        harmonics: 7,
+        across: 2,
+    };
+    assert_eq!((body.basis, body.name.as_str()), (basis, "block"));
+    for (path, expected) in [
+        (
+            "body.name=block",
+            "body is a list of 1; expected a number below 1 and a key behind it, such as body.0.name",
+        ),
+        ("body.1.name=block", "body is a list of 1"),
+        ("body.0.seat.3.harmonics=7", "body.0.seat is a list of 1"),
+        ("body.0=3", "body is a list of 1"),
+        (
+            "body.0.name.x=3",
+            "body.0.name is a value, so it has no key \"x\"",
+        ),
+    ] {
+        let said = parse(SCENE, &[path]).unwrap_err().to_string();
+        assert!(said.contains(expected), "{said}\nexpected: {expected}");
+    }
+}
+
+/// Wrong: a body would stand on its head without a word, or not be turned.
+#[test]
+fn a_body_is_turned_where_it_says_so() {
+    let turned = |text: &str| {
+        with(
+            "[[body.seat]]",
+            &format!("orientation = \"{text}\"\n[[body.seat]]"),
+        )
+    };
+    assert!(!body_of(SCENE).is_turned && !body_of(&turned("+z")).is_turned);
+    assert!(body_of(&turned("-z")).is_turned);
+    let said = parse(&turned("down"), &[]).unwrap_err().to_string();
+    assert!(
+        said.contains("expected \"+z\", as the mesh stands, or \"-z\", turned by 180 deg about x"),
+        "{said}"
+    );
+    let said = parse(
+        &with("ring = \"outer\"", "ring = \"outer\"\nbearing = \"front\""),
+        &[],
+    );
+    let said = said.unwrap_err().to_string();
+    assert!(
+        said.contains("body.seat.bearing is for a list [[bearing]]"),
+        "{said}"
+    );
 }
 
 /// Wrong: a missing file would be found after the meshes are read, or without its place.

@@ -23,6 +23,7 @@ mod reference;
 mod ring_inertia;
 mod schedules;
 mod several;
+mod several_bodies;
 mod slips;
 mod sweeps;
 

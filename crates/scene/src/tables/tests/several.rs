@@ -7,10 +7,10 @@ use assembly::Orientation;
 use super::*;
 
 /// A folder with the type of the example's bearing.
-struct Lists(PathBuf);
+pub(super) struct Lists(PathBuf);
 
 impl Lists {
-    fn new(name: &str) -> Lists {
+    pub(super) fn new(name: &str) -> Lists {
         let folder = std::env::temp_dir().join(format!("raceway_several_{name}_{}", std::process::id()));
         std::fs::create_dir_all(folder.join("types")).unwrap();
         std::fs::write(folder.join("types/kind.toml"), kind()).unwrap();
@@ -28,7 +28,7 @@ impl Lists {
     }
 
     #[track_caller]
-    fn several(&self, text: &str, overrides: &[&str]) -> SeveralScene {
+    pub(super) fn several(&self, text: &str, overrides: &[&str]) -> SeveralScene {
         match self
             .parse(text, overrides)
             .unwrap_or_else(|error| panic!("{error}"))
@@ -40,7 +40,7 @@ impl Lists {
 
     /// The message on a list, without the folder.
     #[track_caller]
-    fn message(&self, text: &str) -> String {
+    pub(super) fn message(&self, text: &str) -> String {
         let error = self.parse(text, &[]).expect_err("the scene was accepted");
         error.to_string().replace(&format!("{}/", self.0.display()), "")
     }
@@ -86,7 +86,7 @@ type = "types/kind.toml"
 first_ball_azimuth = "10 deg"
 "#;
 
-const BEAM: &str = r#"
+pub(super) const BEAM: &str = r#"
 [shaft]
 model = "beam"
 material = { young_modulus = "207 GPa", poisson_ratio = 0.3, density = "7800 kg/m3" }
@@ -113,7 +113,7 @@ tilt_x = "free"
 tilt_y = "free"
 "#;
 
-fn list(shaft: &str, more: &str) -> String {
+pub(super) fn list(shaft: &str, more: &str) -> String {
     format!("{BEARINGS}{shaft}{more}\n[static]\n")
 }
 
