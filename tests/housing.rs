@@ -9,7 +9,7 @@ use crate::util::lockstep::{assert_same_run, copy};
 use crate::util::tables::{Table, number, summary};
 
 /// A folder with the delivered scene and its meshes.
-fn delivered() -> Dir {
+pub fn delivered() -> Dir {
     let dir = Dir::empty();
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     for name in ["scenes", "meshes"] {
@@ -65,6 +65,20 @@ fn the_seat_carries_the_load_and_files_show_the_housing() {
         "{}",
         plot.stdout
     );
+}
+
+/// If this failed, nobody would know that a seat of few orders lets the ring give way under each ball.
+#[test]
+fn check_advises_orders_for_the_balls() {
+    let dir = delivered();
+    let advice = |set: &str| {
+        let check = dir.raceway(&["check", "scenes/6010_plummer_block.toml", "--set", set]);
+        assert_eq!(check.code, Some(0), "{}", check.stderr);
+        check.stdout.contains("its seat has 12 orders for 14 balls")
+            && check.stdout.contains("harmonics = 16 follows")
+    };
+    assert!(advice("body.0.seat.0.harmonics=12"));
+    assert!(!advice("body.0.seat.0.harmonics=16"));
 }
 
 /// If this failed, a body that is not there, does not fit or is not held would end in anything but a message.
@@ -181,7 +195,7 @@ fn regions_and_extremes_hold_the_housing() {
 }
 
 /// The delivered bearing on a shaft of 5 kg with an unbalance, which turns at 3000 rpm; 12 steps, a file every fourth.
-fn in_motion(dir: &Dir) {
+pub fn in_motion(dir: &Dir) {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let text = std::fs::read_to_string(root.join("scenes/6010_plummer_block.toml")).unwrap();
     let motion = "[speed]\ninner = \"3000 rpm\"\n[effects.unbalance]\nmass = \"20 g\"\neccentricity = \"30 mm\"\n\

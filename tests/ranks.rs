@@ -12,6 +12,7 @@ use std::time::{Duration, Instant};
 
 use crate::cuts::cut_motion;
 use crate::free_resume::everything;
+use crate::housing;
 use crate::sectors::SECTOR;
 use crate::util::lockstep::{assert_same_run, copy, small_motion};
 use crate::util::{Dir, Outcome, SCENE};
@@ -112,6 +113,33 @@ fn harmonics_have_the_same_bits_on_any_number_of_ranks() {
                 read("alone_static") == read(out),
                 "{name} of {ranks} ranks differs"
             );
+        }
+    }
+}
+
+/// Wrong: a ring in an elastic housing would stand or move otherwise where ranks share its harmonics.
+#[test]
+#[ignore = "needs mpirun and a program built with MPI: scripts/test-mpi"]
+fn a_housing_has_the_same_bits_on_any_number_of_ranks() {
+    let dir = housing::delivered();
+    housing::in_motion(&dir);
+    done(&dir.raceway(&["run", "motion.toml", "--out", "alone"]));
+    let rest = "scenes/6010_plummer_block.toml";
+    done(&dir.raceway(&["run", rest, "--out", "rest"]));
+    for (ranks, threads) in [(1, "2"), (2, "1"), (3, "1")] {
+        let out = format!("ranks{ranks}");
+        let run = ["run", "motion.toml", "--out", &out, "--threads", threads];
+        done(&on_ranks(&dir, ranks, &run));
+        assert_same_run(&dir, "alone", &out);
+        let out = format!("rest{ranks}");
+        done(&on_ranks(
+            &dir,
+            ranks,
+            &["run", rest, "--out", &out, "--threads", threads],
+        ));
+        for name in ["balls.csv", "shaft.csv", "seat_outer.csv", "step_000000.hdf"] {
+            let read = |folder: &str| std::fs::read(dir.path(&format!("{folder}/{name}"))).unwrap();
+            assert!(read("rest") == read(&out), "{name} of {ranks} ranks differs");
         }
     }
 }

@@ -40,7 +40,7 @@ pub struct CampbellCommand {
     /// Folder of campbell.csv, campbell_lines.csv and the figure; nothing in it is replaced.
     #[arg(long)]
     out: PathBuf,
-    /// Number of modes, from the lowest; default: as many as the shaft has free dofs.
+    /// Number of modes, from the lowest; default: as many as the shaft has free dofs, 10 of a beam.
     #[arg(long)]
     number: Option<usize>,
     /// Changes a value of the scene: path=value, such as shaft.mass="2 kg".

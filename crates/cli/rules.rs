@@ -4,6 +4,7 @@
 //!
 //! ```text
 //! flexibility            u / d: hoop stretch of a ring that nothing holds, u = Z Q cos a r / (2 pi E A)
+//! body.seat.harmonics    more than the number of balls
 //! shaft.z                0 is the just-touching state; grooves opposite each other are at -A sin a, A their distance
 //! ```
 //!
@@ -40,7 +41,24 @@ pub fn advice(scene: &Scene, model: &Model) -> Result<Vec<String>, Failure> {
     zero_of_the_shaft(scene, model, &mut lines);
     lines.extend(rigid_ring_without_inertia(scene, &case));
     lines.extend(periodic_gain::advice(scene, model));
+    lines.extend(orders_of_seat(scene, model));
     Ok(lines)
+}
+
+/// A seat follows each ball where it has orders up to the number of balls and a little more.
+fn orders_of_seat(scene: &Scene, model: &Model) -> Option<String> {
+    let body = scene.body.as_ref()?;
+    let [harmonics, _] = body.basis.order_and_degree(body.basis.n_functions() - 1)?;
+    let balls = model.geometry.n_balls;
+    (harmonics <= balls).then(|| {
+        format!(
+            "body {:?}: its seat has {harmonics} orders for {balls} balls, so the ring gives way under each ball as if \
+             nothing held it; ball forces hardly notice, displacements of the shaft come out about 1 % too large; \
+             body.seat.harmonics = {} follows the balls",
+            body.name,
+            balls + 2
+        )
+    })
 }
 
 /// Play in which balls cannot be told from balls that just touch, m: a thousandth of what micrometers show.

@@ -91,25 +91,29 @@ fn print_shaft(scene: &SeveralScene, shaft: &assembly::ShaftBody) {
     let n_held = shaft.held.iter().filter(|held| held.is_some()).count();
     match &scene.shaft.kind {
         ShaftKind::Rigid(_) => print::line(format_args!(
-            "shaft    rigid, {} free motions, {} loads and {} masses along it",
+            "shaft    rigid, {} free motions, {}",
             shaft.n() - n_held,
-            scene.shaft.loads.len(),
-            scene.shaft.masses.len()
+            along(scene)
         )),
         ShaftKind::Beam(beam) => {
             let [first, last] = beam.ends();
             let elements = beam.elements(&shaft.nodes);
             let mass: f64 = elements.iter().map(assembly::beam::BeamElement::mass_total).sum();
             print::line(format_args!(
-                "shaft    beam from {:.3} to {:.3} mm, {} elements, {} dofs, {mass:.4} kg, {} loads and {} masses \
-                 along it",
+                "shaft    beam from {:.3} to {:.3} mm, {} elements, {} dofs, {mass:.4} kg, {}",
                 1e3 * first,
                 1e3 * last,
                 elements.len(),
                 shaft.n(),
-                scene.shaft.loads.len(),
-                scene.shaft.masses.len()
+                along(scene)
             ));
         }
     }
+}
+
+/// What is on the shaft, in words.
+fn along(scene: &SeveralScene) -> String {
+    let count = |n: usize, what: &str| format!("{n} {what}{}", if n == 1 { "" } else { "s" });
+    let [loads, discs] = [scene.shaft.loads.len(), scene.shaft.masses.len()];
+    format!("{} and {} along it", count(loads, "load"), count(discs, "disc"))
 }

@@ -276,11 +276,14 @@ impl ListMarch<'_> {
         ended?;
         print_solution(self.assembly, &last);
         print::line(format_args!(
-            "{} steps of {} s, {:.1} ms per step; largest energy defect {:.1e} of the largest energy",
+            "{} steps of {} s, {:.1} ms per step; {}",
             self.state.step - first,
             self.dynamic.step,
             1e3 * seconds / (self.state.step - first).max(1) as f64,
-            self.worst_defect
+            match self.worst_defect {
+                0.0 => "energy defects are round-off".to_string(),
+                defect => format!("largest energy defect {defect:.1e} of the largest energy"),
+            }
         ));
         summary.print_costs();
         Ok(())

@@ -89,7 +89,7 @@ fn run(
     mut assembly: Assembly,
     (dt, n): (f64, usize),
     speed: &Speed,
-    load: impl Fn(f64) -> [f64; 5],
+    load: impl Fn(f64) -> [f64; 5] + Sync,
     mut note: impl FnMut(&AssemblyMotion<'_>, &AssemblyState),
 ) -> AssemblyState {
     let solution = AssemblySolver::new(&assembly)

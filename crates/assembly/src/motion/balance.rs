@@ -2,10 +2,13 @@
 
 use dynamics::motion::held::HeldPart;
 use dynamics::stiffness::N_SHAFT;
+use rayon::prelude::*;
 
 use super::factors::KeptFactors;
+use super::side_by_side::in_order;
 use super::step::ShaftStep;
 use crate::error::AssemblyError;
+use crate::newton::Mount;
 use crate::shaft::times;
 
 /// Iterations before a part counts as failed.
@@ -84,9 +87,12 @@ impl ShaftStep<'_> {
             m.max(self.as_force(i, self.load[i].abs().max(inertia[i].abs())))
         });
         let mut loads = Vec::new();
-        for (mount, part) in self.mounts.iter().zip(parts) {
+        let answer = |(part, mount): (&mut HeldPart<'_>, &Mount)| {
             let own = mount.place.into_bearing(mount.station.displacement(&end));
-            let answer = part.answer(own).map_err(AssemblyError::of_bearing(&mount.name))?;
+            part.answer(own).map_err(AssemblyError::of_bearing(&mount.name))
+        };
+        let answers = in_order(parts.par_iter_mut().zip(self.mounts).map(answer))?;
+        for (mount, answer) in self.mounts.iter().zip(answers) {
             let load = mount.place.orientation.turned(answer.load);
             mount.station.add_load(load.map(|f| -f), &mut residual);
             scale = scale.max(answer.force);

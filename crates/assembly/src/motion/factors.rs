@@ -14,9 +14,12 @@
 use dense::DenseLu;
 use dynamics::motion::held::HeldPart;
 use dynamics::stiffness::{N_SHAFT, ShaftMatrix};
+use rayon::prelude::*;
 
+use super::side_by_side::in_order;
 use super::step::ShaftStep;
 use crate::error::AssemblyError;
+use crate::newton::Mount;
 use crate::shaft::applied;
 
 /// The shaft alone over parts of one size at one speed.
@@ -97,11 +100,11 @@ impl KeptFactors {
         step: &ShaftStep<'_>,
         parts: &mut [HeldPart<'_>],
     ) -> Result<Tangent, AssemblyError> {
-        let mut tangents = Vec::with_capacity(parts.len());
-        for (mount, part) in step.mounts.iter().zip(parts) {
+        let tangent = |(part, mount): (&mut HeldPart<'_>, &Mount)| {
             let own = part.stiffness().map_err(AssemblyError::of_bearing(&mount.name))?;
-            tangents.push(mount.place.orientation.turned_matrix(&own));
-        }
+            Ok(mount.place.orientation.turned_matrix(&own))
+        };
+        let tangents = in_order(parts.par_iter_mut().zip(step.mounts).map(tangent))?;
         if !step.shaft.is_beam() {
             let mut whole = step.own_tangent();
             for (mount, tangent) in step.mounts.iter().zip(&tangents) {

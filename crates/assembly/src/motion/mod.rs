@@ -19,6 +19,7 @@
 mod balance;
 mod factors;
 mod ledger;
+mod side_by_side;
 mod step;
 
 use dynamics::kinematics::Speed;
@@ -26,9 +27,11 @@ use dynamics::motion::held::{HeldPart, Holding};
 use dynamics::motion::{Integrator, Motion, MotionSettings, MotionState, PartSpan, StepCache, StepReport};
 use dynamics::stiffness::N_SHAFT;
 use dynamics::{DynamicsError, ShaftDof};
+use rayon::prelude::*;
 
 use self::factors::{KeptFactors, ShaftAlone};
 pub use self::ledger::ShaftLedger;
+use self::side_by_side::in_order;
 use self::step::ShaftStep;
 use crate::assembly::{Assembly, AssemblySolution};
 use crate::error::AssemblyError;
@@ -38,7 +41,7 @@ use crate::newton::Mount;
 const MAX_ROUNDS: usize = 60;
 
 /// Loads on the dofs of the shaft at a time, s, N and N m.
-pub type LoadAt<'a> = dyn Fn(f64) -> Result<Vec<f64>, AssemblyError> + 'a;
+pub type LoadAt<'a> = dyn Fn(f64) -> Result<Vec<f64>, AssemblyError> + Sync + 'a;
 
 /// Bearings and shaft ready to move.
 pub struct AssemblyMotion<'a> {
@@ -146,6 +149,16 @@ impl<'a> AssemblyMotion<'a> {
         cache
             .bearings
             .resize_with(self.bearings.len(), StepCache::default);
+        // Among the threads of the bearings: to hand each of their answers over costs more than the answer.
+        rayon::scope(|_| self.parts(state, cache))
+    }
+
+    /// The parts of a step.
+    fn parts(
+        &self,
+        state: &AssemblyState,
+        cache: &mut AssemblyCache,
+    ) -> Result<(AssemblyState, StepReport), AssemblyError> {
         let n = 1u64 << self.halvings;
         let (mut at, mut rung, mut report) = (0, 0, StepReport::default());
         let mut next: Option<AssemblyState> = None;
@@ -192,11 +205,12 @@ impl<'a> AssemblyMotion<'a> {
         spans: &[(PartSpan, Option<PartSpan>)],
         cache: &mut AssemblyCache,
     ) -> Result<(AssemblyState, StepReport), AssemblyError> {
-        let mut parts = Vec::new();
-        for (i, motion) in self.bearings.iter().enumerate() {
-            let part = HeldPart::begin(motion, &state.bearings[i], spans[i].0, &cache.bearings[i]);
-            parts.push(part.map_err(AssemblyError::of_bearing(&self.mounts[i].name))?);
-        }
+        let (mounts, known) = (&self.mounts, &cache.bearings);
+        let begun = self.bearings.par_iter().enumerate().map(|(i, motion)| {
+            let part = HeldPart::begin(motion, &state.bearings[i], spans[i].0, &known[i]);
+            part.map_err(AssemblyError::of_bearing(&mounts[i].name))
+        });
+        let mut parts = in_order(begun)?;
         let span = spans[0].0;
         let step = ShaftStep {
             shaft: &self.assembly.shaft,
@@ -226,15 +240,15 @@ impl<'a> AssemblyMotion<'a> {
     fn all(
         &self,
         parts: &mut [HeldPart<'_>],
-        of: impl Fn(usize, &mut HeldPart<'_>) -> Result<Holding, DynamicsError>,
+        of: impl Fn(usize, &mut HeldPart<'_>) -> Result<Holding, DynamicsError> + Sync,
     ) -> Result<Holding, AssemblyError> {
-        let mut all = Holding::Settled;
-        for (i, part) in parts.iter_mut().enumerate() {
-            if of(i, part).map_err(AssemblyError::of_bearing(&self.mounts[i].name))? == Holding::Again {
-                all = Holding::Again;
-            }
-        }
-        Ok(all)
+        let mounts = &self.mounts;
+        let of_part = |(i, part)| of(i, part).map_err(AssemblyError::of_bearing(&mounts[i].name));
+        let held = in_order(parts.par_iter_mut().enumerate().map(of_part))?;
+        Ok(match held.contains(&Holding::Again) {
+            true => Holding::Again,
+            false => Holding::Settled,
+        })
     }
 
     fn finish(
@@ -246,10 +260,11 @@ impl<'a> AssemblyMotion<'a> {
     ) -> Result<(AssemblyState, StepReport), AssemblyError> {
         let mut report = StepReport::default();
         let mut bearings = Vec::new();
-        for (i, (part, cache)) in parts.into_iter().zip(&mut cache.bearings).enumerate() {
-            let (next, done) = part
-                .finish(cache)
-                .map_err(AssemblyError::of_bearing(&self.mounts[i].name))?;
+        let finish = |((part, cache), mount): ((HeldPart<'_>, &mut StepCache), &Mount)| {
+            part.finish(cache).map_err(AssemblyError::of_bearing(&mount.name))
+        };
+        let parts = parts.into_par_iter().zip(&mut cache.bearings);
+        for (next, done) in in_order(parts.zip(&self.mounts).map(finish))? {
             report.add(&done);
             bearings.push(next);
         }
