@@ -370,6 +370,20 @@ fn bearings_of_a_list_sit_in_blocks_of_their_own() {
         assert_eq!(number(&seat, "/seat/functions"), 225.0);
         assert!(dir.path(&format!("list/{name}/seat_outer.csv")).exists());
     }
+    let few = [
+        "--set",
+        "body.0.seat.0.harmonics=2",
+        "--set",
+        "body.0.seat.0.across=1",
+    ];
+    let few = dir.raceway(&[&["run", "list.toml", "--out", "few"], &few[..]].concat());
+    let told = "warning: bearing \"front\": the seat of body \"block of front\" is not resolved";
+    assert!(
+        few.code == Some(0) && few.stdout.contains(told),
+        "{}{}",
+        few.stdout,
+        few.stderr
+    );
     let slip = dir.raceway(&[
         "run",
         "list.toml",

@@ -10,7 +10,7 @@ use contact::Side;
 use results::failure::{Failure, agree};
 use results::files::{Files, say_folder};
 use results::memory::{Forecasts, require_memory};
-use results::seat;
+use results::seat::{self, SeatSummary};
 use results::several::{
     ListState, SeveralFindings, SeveralSummary, SeveralTables, print_solution, print_sweep_head,
     print_sweep_point,
@@ -82,6 +82,7 @@ pub fn run(scene: &SeveralScene, dir: &Path, start: Instant) -> Result<(), Failu
         let mut laps = solver.laps();
         laps.add(READ, read);
         laps.add(TOTAL, start.elapsed().as_secs_f64());
+        warnings.extend(files.finish(scene, (&assembly, &last), &solver, start)?);
         let findings = SeveralFindings {
             status: failure.as_ref().map_or("finished".to_string(), Failure::status),
             iterations,
@@ -89,7 +90,6 @@ pub fn run(scene: &SeveralScene, dir: &Path, start: Instant) -> Result<(), Failu
             warnings,
             laps,
         };
-        files.finish(scene, (&assembly, &last), &solver, start)?;
         let shown = ListState::of_equilibrium(&assembly, &last);
         let summary = SeveralSummary::new(scene, &assembly, &shown, findings);
         summary.write(dir)?;
@@ -194,13 +194,15 @@ impl SeveralFiles {
         Ok(())
     }
 
+    /// Closes the files of the bearings; warns of their seats.
     fn finish(
         self,
         scene: &SeveralScene,
         (assembly, solution): (&Assembly, &AssemblySolution),
         solver: &AssemblySolver,
         start: Instant,
-    ) -> Result<(), Failure> {
+    ) -> Result<Vec<String>, Failure> {
+        let mut warnings = Vec::new();
         for (i, ((dir, files), last)) in self.bearings.into_iter().zip(self.last).enumerate() {
             let factors = solver.of_bearing(i);
             let forecast = Side::BOTH.map(|side| factors.ring(side).map(|r| r.solver.memory));
@@ -224,12 +226,19 @@ impl SeveralFiles {
             };
             let bearing = &scene.bearings[i].scene;
             let model = &assembly.bearings[i].model;
+            let seat = seat::of_run(model, found, &dir)?;
+            warnings.extend(of_seat(&scene.bearings[i].name, seat.as_ref()));
             Summary::new(bearing, model, findings, &costs)
-                .with_seat(seat::of_run(model, found, &dir)?)
+                .with_seat(seat)
                 .write(&dir)?;
         }
-        Ok(())
+        Ok(warnings)
     }
+}
+
+/// What the seat of a bearing in a body asks for.
+pub fn of_seat(name: &str, seat: Option<&SeatSummary>) -> Option<String> {
+    Some(format!("bearing {name:?}: {}", seat?.warning()?))
 }
 
 /// Makes the folder of a run, with the scene beside the results of its bearings.

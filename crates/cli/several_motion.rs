@@ -29,7 +29,9 @@ use timer::{Laps, Stopwatch};
 use crate::ledger_check::check_ledger;
 use crate::options::Limits;
 use crate::progress::Progress;
-use crate::several::{all_doubts, make_folder, require_one_rank, say_types, solving, surveys, warnings_at};
+use crate::several::{
+    all_doubts, make_folder, of_seat, require_one_rank, say_types, solving, surveys, warnings_at,
+};
 use crate::several_ready::{ready, require_space};
 use crate::several_state;
 
@@ -255,12 +257,15 @@ impl ListMarch<'_> {
             let own = watch.warnings(motion.surfaces(), |step| motion.time(step));
             warnings.extend(own.into_iter().map(|text| format!("bearing {name:?}: {text}")));
         }
-        if let Err(failure) = self.close_bearings(&status, start) {
+        match self.close_bearings(&status, start) {
+            Ok(of_seats) => warnings.extend(of_seats),
             // A run that failed says why, not what its failure did to the files.
-            return Err(match ended {
-                Err(cause @ (Failure::User(_) | Failure::Numerical(_))) => cause,
-                _ => failure,
-            });
+            Err(failure) => {
+                return Err(match ended {
+                    Err(cause @ (Failure::User(_) | Failure::Numerical(_))) => cause,
+                    _ => failure,
+                });
+            }
         }
         self.laps.add(TOTAL, start.elapsed().as_secs_f64());
         let last = ListState::of_motion(self.assembly, self.motion, &self.state);
@@ -289,8 +294,9 @@ impl ListMarch<'_> {
         Ok(())
     }
 
-    /// Closes the files of the bearings and writes their summaries.
-    fn close_bearings(&mut self, status: &str, start: Instant) -> Result<(), Failure> {
+    /// Closes the files of the bearings and writes their summaries; warns of their seats.
+    fn close_bearings(&mut self, status: &str, start: Instant) -> Result<Vec<String>, Failure> {
+        let mut warnings = Vec::new();
         for (i, files) in std::mem::take(&mut self.files).into_iter().enumerate() {
             let (motion, state) = (&self.motion.bearings[i], &self.state.bearings[i]);
             let forecast = Forecasts::of_motion([None, None], motion, self.dynamic);
@@ -305,11 +311,13 @@ impl ListMarch<'_> {
             };
             let own = self.dir.join(&self.scene.bearings[i].name);
             let model = &self.assembly.bearings[i].model;
+            let seat = seat::of_motion(motion, state, &own)?;
+            warnings.extend(of_seat(&self.scene.bearings[i].name, seat.as_ref()));
             Summary::new(&self.placed[i], model, findings, &costs)
-                .with_seat(seat::of_motion(motion, state, &own)?)
+                .with_seat(seat)
                 .write(&own)?;
         }
-        Ok(())
+        Ok(warnings)
     }
 
     /// Steps to the end of the run. On failure and when asked to stop, the last good state has its step files.
