@@ -3,7 +3,7 @@
 //! A clamped surface that moves with dofs of the partner has these as coordinates. A mean-motion hold leaves all
 //! nodes free; its held motions are constraints c^T w = 0, where c takes the area-weighted least-squares rigid motion
 //! of the surface. A mass of the partner acts on the motions that it follows. A ring that is tied to a body has the
-//! oscillators of this after its own coordinates ([`crate::tied::vibration`]).
+//! oscillators of this after its own coordinates (`tied::vibration`).
 
 use solver::LinearSolver;
 
