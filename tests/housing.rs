@@ -194,15 +194,19 @@ fn regions_and_extremes_hold_the_housing() {
     assert!(near.iter().filter(|&&inside| inside == 1.0).count() > 1000);
 }
 
-/// The delivered bearing on a shaft of 5 kg with an unbalance, which turns at 3000 rpm; 12 steps, a file every fourth.
+/// Writes the delivered bearing on a shaft of 5 kg with another analysis.
+fn with_analysis(dir: &Dir, name: &str, analysis: &str) {
+    let text = dir.text("scenes/6010_plummer_block.toml");
+    let text = text.replace("[static]                             # one equilibrium", analysis);
+    let text = text.replace("load_point = \"0 mm\"", "load_point = \"0 mm\"\nmass = \"5 kg\"");
+    dir.write(name, text.replace("../meshes", "meshes"));
+}
+
+/// It turns at 3000 rpm with an unbalance; 12 steps, a file every fourth.
 pub fn in_motion(dir: &Dir) {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let text = std::fs::read_to_string(root.join("scenes/6010_plummer_block.toml")).unwrap();
     let motion = "[speed]\ninner = \"3000 rpm\"\n[effects.unbalance]\nmass = \"20 g\"\neccentricity = \"30 mm\"\n\
                   [dynamic]\nduration = \"240 us\"\nstep = \"20 us\"\noutput_every = 4\n";
-    let text = text.replace("[static]                             # one equilibrium", motion);
-    let text = text.replace("load_point = \"0 mm\"", "load_point = \"0 mm\"\nmass = \"5 kg\"");
-    dir.write("motion.toml", text.replace("../meshes", "meshes"));
+    with_analysis(dir, "motion.toml", motion);
 }
 
 /// If this failed, a housing would not move, or be left out of step files; a run that is cut and goes on, or has other
@@ -255,20 +259,14 @@ fn a_housing_moves_and_goes_on_to_the_same_bits() {
 #[test]
 fn a_bearing_has_natural_modes_in_its_housing() {
     let dir = delivered();
-    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let text = std::fs::read_to_string(root.join("scenes/6010_plummer_block.toml")).unwrap();
     let modes = "[modes]\nnumber = 16\nbodies = [\"outer\", \"bearing\"]\nsupport = \"as_held\"\n";
-    let text = text.replace("[static]                             # one equilibrium", modes);
-    let text = text.replace("load_point = \"0 mm\"", "load_point = \"0 mm\"\nmass = \"5 kg\"");
-    dir.write("modes.toml", text.replace("../meshes", "meshes"));
-    let run = |out: &str, set: &[&str]| {
-        let sets = set.iter().flat_map(|set| ["--set", set]);
-        let first = ["run", "modes.toml", "--out", out];
-        let run = dir.raceway(&first.into_iter().chain(sets).collect::<Vec<_>>());
+    with_analysis(&dir, "modes.toml", modes);
+    let run = |out: &str| {
+        let run = dir.raceway(&["run", "modes.toml", "--out", out]);
         assert_eq!(run.code, Some(0), "{}", run.stderr);
         run
     };
-    let told = run("block", &[]);
+    let told = run("block");
     assert!(told.stdout.contains("of outer in the body"), "{}", told.stdout);
     let columns = |out: &str, names: [&str; 3]| {
         let mut reader = csv::Reader::from_path(dir.path(out).join("modes.csv")).unwrap();
@@ -289,7 +287,7 @@ fn a_bearing_has_natural_modes_in_its_housing() {
     let mut rigid = text_without_body(&dir, "modes.toml");
     rigid = rigid.replace("support = \"body\"", "support = \"clamped\"");
     dir.write("modes.toml", rigid);
-    run("rigid", &[]);
+    run("rigid");
     let [rigid, _, without] = columns("rigid", names);
     assert!(without.is_empty(), "a column of a body that is not there");
     assert!(
@@ -311,9 +309,9 @@ fn text_without_body(dir: &Dir, name: &str) -> String {
 
 /// A list of two 6010 under 20 kN, each in a block of its own, on a shaft that is stiff.
 fn two_blocks(dir: &Dir, analysis: &str) {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let text = std::fs::read_to_string(root.join("scenes/6010_plummer_block.toml")).unwrap();
-    let text = text.replace("../meshes", "meshes");
+    let text = dir
+        .text("scenes/6010_plummer_block.toml")
+        .replace("../meshes", "meshes");
     let place = |table: &str| text.find(&format!("\n{table}")).unwrap();
     let [kind, body, shaft] = ["[bearing]", "[[body]]", "[shaft]"].map(place);
     dir.write(

@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 use std::path::Path;
 
 use comm::print;
-use contact::{BearingGeometry, Side};
+use contact::BearingGeometry;
 use dynamics::kinematics::Kinematics;
 use dynamics::{Model, MotionMemory, RingMemory};
 use results::answer;
@@ -17,7 +17,7 @@ use scene::{Analysis, AnyScene, Scene, build_model, doubts};
 
 use crate::modes;
 use crate::rank_table;
-use crate::ring_sizes::print_ring;
+use crate::ring_sizes::print_rings;
 use crate::rules;
 use crate::several_check;
 
@@ -86,17 +86,9 @@ pub fn check(path: &Path, overrides: &[String]) -> Result<(), Failure> {
             "region   fields are kept at {points:.1} % of the points and {cells:.1} % of the cells"
         ));
     }
-    let (mut memory, mut motion) = ([None, None], [Some(None), Some(None)]);
-    let mut on_ranks = [None, None];
-    for side in Side::BOTH {
-        if let Some((of_ring, of_motion, of_ranks)) = print_ring(&model, side)? {
-            memory[side.index()] = Some(of_ring);
-            motion[side.index()] = of_motion.map(Some);
-            on_ranks[side.index()] = of_ranks;
-        }
-    }
-    print_memory(&scene, &model, memory, motion);
-    rank_table::print(&on_ranks, &scene.analysis);
+    let rings = print_rings(&model)?;
+    print_memory(&scene, &model, rings.memory, rings.motion);
+    rank_table::print(&rings.on_ranks, &scene.analysis);
     let forecast = Forecast::new(&scene, &model, 0);
     let free = disk::free_bytes(Path::new(".")).map_or(String::new(), |free| {
         format!("; the disk of this folder has {} free", disk::size(free))

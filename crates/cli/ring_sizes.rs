@@ -9,10 +9,37 @@ use results::failure::Failure;
 use crate::rank_table::RingOnRanks;
 
 /// Memory of one ring, what its motion holds when that is known, and on ranks when it is in sectors.
-pub type RingForecast = (RingMemory, Option<MotionMemory>, Option<RingOnRanks>);
+type RingForecast = (RingMemory, Option<MotionMemory>, Option<RingOnRanks>);
+
+/// Forecasts of both rings, inner first.
+#[derive(Default)]
+pub struct RingForecasts {
+    /// Memory at rest; None of a rigid ring.
+    pub memory: [Option<RingMemory>; 2],
+    /// In motion: Some(None) of a rigid ring, None when its steps are not forecast.
+    pub motion: [Option<Option<MotionMemory>>; 2],
+    /// On ranks, of a ring in sectors.
+    pub on_ranks: [Option<RingOnRanks>; 2],
+}
+
+/// Prints both rings and returns the forecasts of their memory.
+pub fn print_rings(model: &Model) -> Result<RingForecasts, Failure> {
+    let mut rings = RingForecasts {
+        motion: [Some(None), Some(None)],
+        ..RingForecasts::default()
+    };
+    for side in Side::BOTH {
+        if let Some((of_ring, of_motion, of_ranks)) = print_ring(model, side)? {
+            rings.memory[side.index()] = Some(of_ring);
+            rings.motion[side.index()] = of_motion.map(Some);
+            rings.on_ranks[side.index()] = of_ranks;
+        }
+    }
+    Ok(rings)
+}
 
 /// Prints one ring and returns the forecast of its memory; None for a rigid ring.
-pub fn print_ring(model: &Model, side: Side) -> Result<Option<RingForecast>, Failure> {
+fn print_ring(model: &Model, side: Side) -> Result<Option<RingForecast>, Failure> {
     let stiffness = model.hertz[side.index()].stiffness / 10f64.powf(4.5);
     let Some(ring) = model.ring(side) else {
         print::line(format_args!(

@@ -1,14 +1,12 @@
 //! `raceway check` of a scene with a list of bearings: sizes of each type, the shaft, and what is to be solved.
 
 use comm::print;
-use contact::Side;
-use dynamics::RingMemory;
 use results::answer;
 use results::failure::Failure;
 use results::memory::forecast;
 use scene::{Analysis, SeveralScene, ShaftKind, build_assembly, have_same_rings};
 
-use crate::ring_sizes::print_ring;
+use crate::ring_sizes::print_rings;
 use crate::several::{all_doubts, surveys};
 
 /// Prints what a run would be.
@@ -59,16 +57,9 @@ pub fn check(scene: &SeveralScene) -> Result<(), Failure> {
             ));
             continue;
         }
-        let mut memory: [Option<RingMemory>; 2] = [None, None];
-        let mut motion = [Some(None), Some(None)];
         let model = &assembly.bearings[i].model;
-        for side in Side::BOTH {
-            if let Some((of_ring, of_motion, _)) = print_ring(model, side)? {
-                memory[side.index()] = Some(of_ring);
-                motion[side.index()] = of_motion.map(Some);
-            }
-        }
-        let (start, steps) = forecast((&scene.analysis, model), memory, motion);
+        let rings = print_rings(model)?;
+        let (start, steps) = forecast((&scene.analysis, model), rings.memory, rings.motion);
         peak += steps.unwrap_or(0).max(start);
     }
     print_shaft(scene, &assembly.shaft);

@@ -28,6 +28,13 @@ pub enum Orientation {
 }
 
 impl Orientation {
+    /// That of a word in a scene.
+    pub fn named(word: &str) -> Option<Orientation> {
+        [Orientation::PlusZ, Orientation::MinusZ]
+            .into_iter()
+            .find(|orientation| orientation.name() == word)
+    }
+
     /// Its word in scenes.
     pub fn name(self) -> &'static str {
         match self {

@@ -157,8 +157,8 @@ impl Surrounding {
     }
 
     /// Bytes that it takes for a while: assembly and factorisation, or where its `modes` are found the columns of the
-    /// seats twice, and K and M. Multiples of K; with 20 and 48 k dofs the forecasts of whole
-    /// runs were 4 to 26 % above what was measured.
+    /// seats twice, and K and M. Multiples of K; with 20 and 48 k dofs the forecasts of whole runs were 4 to 26 % above
+    /// what was measured.
     pub fn making_bytes(&self, modes: bool) -> usize {
         let columns = self.n_functions() * self.free.len() * size_of::<f64>();
         match modes {

@@ -72,10 +72,7 @@ pub fn tied(model: &Model) -> Option<(Side, &RingModel, &Arc<SeatTie>)> {
 
 /// Writes what the seat of a ring in a body carries, and sums it up; None where no ring is in one.
 pub fn of_run(model: &Model, solution: &StaticSolution, dir: &Path) -> Result<Option<SeatSummary>, Failure> {
-    match SeatState::new(model, solution)? {
-        Some(state) => Ok(Some(state.finish(dir)?)),
-        None => Ok(None),
-    }
+    finished(SeatState::new(model, solution)?, dir)
 }
 
 /// The same at the end of a motion.
@@ -84,10 +81,11 @@ pub fn of_motion(
     state: &MotionState,
     dir: &Path,
 ) -> Result<Option<SeatSummary>, Failure> {
-    match SeatState::in_motion(motion, state)? {
-        Some(state) => Ok(Some(state.finish(dir)?)),
-        None => Ok(None),
-    }
+    finished(SeatState::in_motion(motion, state)?, dir)
+}
+
+fn finished(state: Option<SeatState>, dir: &Path) -> Result<Option<SeatSummary>, Failure> {
+    Ok(state.map(|state| state.finish(dir)).transpose()?)
 }
 
 /// A place of the table.

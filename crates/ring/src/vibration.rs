@@ -63,30 +63,32 @@ impl VibratingRing {
                     (Box::new(matrices), Box::new(factor.map_err(error)?))
                 }
             };
-        let tie = match (tied, ring.seat_functions(name)?) {
-            (Some(tie), Some(functions)) => {
-                let of_ring = (&*factor, held.coordinates.n());
-                Some(VibratingTie::new(tie, &functions, of_ring, shift)?)
-            }
-            _ => None,
-        };
+        let of_ring = (&*factor, held.coordinates.n());
+        let tie = tied.map(|tie| {
+            let functions = ring.seat_functions(name)?;
+            let functions = functions.expect("a ring that is tied has the functions of its seat");
+            VibratingTie::new(tie, &functions, of_ring, shift)
+        });
+        let tie = tie.transpose()?;
+        // A tied ring meets no rigid partner.
+        let hold = if tie.is_some() { Hold::Free } else { hold };
         // A mount has the moving dofs of a clamped surface, or all mean motions.
         let moving = (0..5).filter(|&dof| of.moves[dof]);
         let of_mount = |k: usize| held.mount.rows.get(k).cloned();
         let motions: [Option<SparseLoad>; 5] = match hold {
-            Hold::MeanMotion if tie.is_none() => [0, 1, 2, 3, 4].map(of_mount),
-            Hold::MeanMotion | Hold::Clamped | Hold::Free => {
+            Hold::MeanMotion => [0, 1, 2, 3, 4].map(of_mount),
+            Hold::Clamped | Hold::Free => {
                 let mut motions = [const { None }; 5];
                 moving.enumerate().for_each(|(k, dof)| motions[dof] = of_mount(k));
                 motions
             }
         };
         let constraints = match hold {
-            Hold::MeanMotion if tie.is_none() => (0..6)
+            Hold::MeanMotion => (0..6)
                 .filter(|&dof| dof == 5 || !of.moves[dof])
                 .filter_map(of_mount)
                 .collect(),
-            Hold::MeanMotion | Hold::Clamped | Hold::Free => Vec::new(),
+            Hold::Clamped | Hold::Free => Vec::new(),
         };
         let carries = |dof: &usize| masses[*dof] > 0.0 && of.moves[*dof];
         let lumps = (0..5)
@@ -120,10 +122,7 @@ impl VibratingRing {
             self.matrices
                 .stiffness_products(&self.held.coordinates, y, n_vectors)
         };
-        match &self.tie {
-            None => product(y),
-            Some(tie) => tie.joined(&product(&tie.of_ring(y)), y, |square| square),
-        }
+        self.with_body(y, product, |square| square)
     }
 
     /// M Y of a block of vectors without the masses of the partner.
@@ -134,9 +133,19 @@ impl VibratingRing {
                 .flat_map(|y| self.matrices.mass_product(&self.held.coordinates, y))
                 .collect()
         };
+        self.with_body(y, product, |_| 1.0)
+    }
+
+    /// A product of the ring's own coordinates, and the oscillators of its body times a factor of their omega^2.
+    fn with_body(
+        &self,
+        y: &[f64],
+        product: impl Fn(&[f64]) -> Vec<f64>,
+        of_oscillator: impl Fn(f64) -> f64,
+    ) -> Vec<f64> {
         match &self.tie {
             None => product(y),
-            Some(tie) => tie.joined(&product(&tie.of_ring(y)), y, |_| 1.0),
+            Some(tie) => tie.joined(&product(&tie.of_ring(y)), y, of_oscillator),
         }
     }
 

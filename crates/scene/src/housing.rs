@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use assembly::Orientation;
 use body::matrix::MatrixBody;
 use body::{BodySeat, SeatCylinder, SeatSpace, SeatTie, Surrounding};
 use dynamics::RingModel;
@@ -20,7 +21,7 @@ pub fn seat_tie(scene: &Scene, ring: &RingModel) -> Result<Option<Arc<SeatTie>>,
     let seat = BodySeat {
         group: body.group.clone(),
         space: SeatSpace::on(&cylinder, body.basis),
-        middle: body.z.map(|z| if body.is_turned { -z } else { z }),
+        middle: body.z.map(|z| frame(body).turned_vector([0.0, 0.0, z])[2]),
     };
     // The ring must tell the functions apart too: sooner than after a long factorisation.
     let areas = fem::facet_node_weights(&ring.mesh, ring.mesh.group(ring.held_group));
@@ -41,9 +42,8 @@ fn surrounding(body: &SceneBody, seat: &BodySeat) -> Result<Surrounding, BuildEr
             fixed,
         } => {
             let (mut mesh, origin) = mesh::read_body_msh(mesh, *mesh_unit)?;
-            if body.is_turned {
-                mesh.nodes.iter_mut().for_each(half_turn);
-            }
+            let turned = |x: &mut [f64; 3]| *x = frame(body).turned_vector(*x);
+            mesh.nodes.iter_mut().for_each(turned);
             let seats = std::slice::from_ref(seat);
             let made_of = Material::new(m.young_modulus, m.poisson_ratio, m.density)?;
             Ok(Surrounding::of_mesh(
@@ -64,7 +64,10 @@ fn surrounding(body: &SceneBody, seat: &BodySeat) -> Result<Surrounding, BuildEr
     }
 }
 
-/// A half turn about x.
-fn half_turn([_, y, z]: &mut [f64; 3]) {
-    (*y, *z) = (-*y, -*z);
+/// How a body stands to its mesh.
+fn frame(body: &SceneBody) -> Orientation {
+    match body.is_turned {
+        true => Orientation::MinusZ,
+        false => Orientation::PlusZ,
+    }
 }

@@ -6,6 +6,7 @@
 
 use std::path::{Path, PathBuf};
 
+use assembly::Orientation;
 use body::SeatBasis;
 use body::matrix::MatrixFiles;
 use input::{KINDS, LENGTH, MASS, Problems, Quantity, RATE, STIFFNESS, parse_unit};
@@ -230,11 +231,12 @@ impl RawSceneBody {
             }
             (None, Some(_)) => self.check_matrix(&key, context, problems),
         };
-        let orientation = self.orientation.as_deref().unwrap_or("+z");
+        let typed = self.orientation.as_deref().unwrap_or(Orientation::PlusZ.name());
+        let orientation = Orientation::named(typed);
         problems.require(
-            ["+z", "-z"].contains(&orientation),
+            orientation.is_some(),
             &format!("{key}: orientation"),
-            format!("{orientation:?}"),
+            format!("{typed:?}"),
             "expected \"+z\", as the mesh stands, or \"-z\", turned by 180 deg about x",
         );
         let modes_below = self.check_modes(&key, context, problems);
@@ -247,7 +249,7 @@ impl RawSceneBody {
                 across: problems.whole(across, "body.seat.across", 1, 8),
             },
             name: self.name.clone(),
-            is_turned: self.orientation.as_deref() == Some("-z"),
+            is_turned: orientation == Some(Orientation::MinusZ),
             modes_below,
             source: source?,
             group: seat.group.clone().unwrap_or_default(),

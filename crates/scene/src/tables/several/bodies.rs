@@ -74,11 +74,12 @@ pub fn place(list: &DocumentMut, document: &mut DocumentMut, (name, orientation)
             });
         }
         if orientation == Orientation::MinusZ {
-            let is_turned = body.get("orientation").and_then(Item::as_str) == Some("-z");
-            body.insert(
-                "orientation",
-                toml_edit::value(if is_turned { "+z" } else { "-z" }),
-            );
+            let own = body.get("orientation").and_then(Item::as_str);
+            let other = match own.and_then(Orientation::named) {
+                Some(Orientation::MinusZ) => Orientation::PlusZ,
+                _ => Orientation::MinusZ,
+            };
+            body.insert("orientation", toml_edit::value(other.name()));
         }
         own.push(body);
     }

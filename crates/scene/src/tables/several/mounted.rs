@@ -41,11 +41,7 @@ const TAKEN: [&str; 2] = ["figures", "superseded"];
 impl RawMounted {
     /// Its direction, checked.
     pub fn orientation(&self) -> Option<Orientation> {
-        match self.orientation.as_str() {
-            "+z" => Some(Orientation::PlusZ),
-            "-z" => Some(Orientation::MinusZ),
-            _ => None,
-        }
+        Orientation::named(&self.orientation)
     }
 
     /// Whether a scene with one table has it too.
