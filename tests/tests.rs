@@ -47,6 +47,7 @@ mod rigid_ring;
 mod schedules;
 mod sectors;
 mod several;
+mod shared_housing;
 mod signals;
 mod small_files;
 mod spall_length;

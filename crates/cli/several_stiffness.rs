@@ -74,6 +74,7 @@ fn linearise(scene: &SeveralScene) -> Result<SeveralStiffness, Failure> {
     let mut progress = Progress::new(points.len() as u64);
     progress.stage("reading meshes");
     let (mut assembly, _) = build_assembly(&points[0].1)?;
+    assembly.require_bodies_of_one().map_err(solving)?;
     let doubts = all_doubts(scene, &assembly);
     say_doubts(&doubts);
     progress.stage("factoring the stiffness of the rings");

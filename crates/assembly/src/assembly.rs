@@ -9,21 +9,17 @@ use dynamics::{Model, StaticSolution, StaticSolver};
 use timer::Laps;
 
 use crate::error::AssemblyError;
+use crate::housing::{SharedBody, shared_bodies};
+use crate::mixing::{Mixing, dot};
 use crate::newton::{Mount, Problem, Scales, SettledShaft, settle};
-use crate::place::Seating;
+use crate::place::MountedBearing;
 use crate::shaft::ShaftBody;
 use crate::support::{BearingSupport, BearingSupports};
 
-/// A bearing on the shaft. Its model is in its own frame: loads in space, spins and azimuths are turned with it, and it
-/// has no load of the shaft.
-pub struct MountedBearing {
-    /// Its name in the scene.
-    pub name: String,
-    /// Where it sits.
-    pub place: Seating,
-    /// The bearing.
-    pub model: Model,
-}
+/// Change of the forces on a body over their size at which its bearings no longer feel each other's.
+const BODY_TOLERANCE: f64 = 1e-9;
+/// Rounds of these before giving up.
+const MOST_BODY_ROUNDS: usize = 100;
 
 /// Bearings, their shaft and its loads.
 pub struct Assembly {
@@ -42,6 +38,8 @@ pub struct AssemblySolver {
     /// Number of its solver, by bearing.
     type_of: Vec<usize>,
     columns: Vec<ContactColumns>,
+    /// Bodies that carry several bearings.
+    bodies: Vec<SharedBody>,
 }
 
 /// Equilibrium of an assembly.
@@ -50,9 +48,22 @@ pub struct AssemblySolution {
     pub bearings: Vec<StaticSolution>,
     /// The shaft.
     pub shaft: SettledShaft,
+    /// Forces on the bodies that carry several bearings, N, over the functions of all seats of each.
+    on_bodies: Vec<Vec<f64>>,
 }
 
+/// The shaft in balance, and the bearings.
+type SettledAssembly = (SettledShaft, Vec<StaticSolution>);
+
 impl Assembly {
+    /// Fails where bearings feel each other through a body that carries several of them.
+    pub fn require_bodies_of_one(&self) -> Result<(), AssemblyError> {
+        match shared_bodies(&self.bearings)?.into_iter().next() {
+            Some(SharedBody { name: body, .. }) => Err(AssemblyError::SharedBody { body }),
+            None => Ok(()),
+        }
+    }
+
     /// The places of the bearings on the shaft.
     pub fn mounts(&self) -> Vec<Mount> {
         let mount = |bearing: &MountedBearing| Mount {
@@ -117,6 +128,7 @@ impl AssemblySolver {
             rigid: of(&|model| Ok(StaticSolver::rigid(model)))?,
             columns: type_of.iter().map(|_| ContactColumns::default()).collect(),
             type_of,
+            bodies: shared_bodies(&assembly.bearings)?,
         })
     }
 
@@ -162,8 +174,60 @@ impl AssemblySolver {
             }
             None => vec![0.0; assembly.shaft.n()],
         };
-        let (shaft, bearings) = self.settle(assembly, SolvedRings::AsTheyAre, &at, start)?;
-        Ok(AssemblySolution { bearings, shaft })
+        self.settle_in_bodies(assembly, &at, start)
+    }
+
+    /// The same with rings as they are, until the forces on bodies that carry several bearings stay as they are.
+    fn settle_in_bodies(
+        &mut self,
+        assembly: &mut Assembly,
+        at: &[f64],
+        start: Option<&AssemblySolution>,
+    ) -> Result<AssemblySolution, AssemblyError> {
+        let mut forces = match start {
+            Some(solution) => solution.on_bodies.clone(),
+            None => self.bodies.iter().map(SharedBody::none).collect(),
+        };
+        let mut mixings: Vec<Mixing> = self.bodies.iter().map(|_| Mixing::default()).collect();
+        let (mut before, mut rounds): (Option<SettledAssembly>, usize) = (None, 1);
+        loop {
+            let told = self.bodies.iter().zip(&forces);
+            told.for_each(|(body, forces)| body.tell(forces, &mut assembly.bearings));
+            let at = before.as_ref().map_or(at, |(shaft, _)| &shaft.displacements);
+            let (shaft, bearings) = self.settle(
+                assembly,
+                SolvedRings::AsTheyAre,
+                at,
+                match &before {
+                    Some((_, bearings)) => Some(bearings),
+                    None => start.map(|solution| &solution.bearings),
+                },
+            )?;
+            let found = self.bodies.iter();
+            let found: Vec<Vec<f64>> = found.map(|b| b.forces(&assembly.bearings, &bearings)).collect();
+            let pairs = forces.iter().zip(&found);
+            let changes: Vec<f64> = pairs.map(|(x, g)| change(x, g)).collect();
+            let largest = changes.iter().fold(0.0, |most: f64, c| most.max(*c));
+            if largest <= BODY_TOLERANCE.max(assembly.scales().tolerance) {
+                return Ok(AssemblySolution {
+                    bearings,
+                    shaft,
+                    on_bodies: forces,
+                });
+            }
+            if rounds == MOST_BODY_ROUNDS {
+                let body = changes.iter().position(|c| *c == largest).unwrap_or(0);
+                return Err(AssemblyError::BodiesNotSettled {
+                    body: self.bodies[body].name.clone(),
+                    rounds,
+                    change: largest,
+                });
+            }
+            rounds += 1;
+            let mixed = mixings.iter_mut().zip(forces).zip(&found);
+            forces = mixed.map(|((mixing, x), found)| mixing.next(x, found)).collect();
+            before = Some((shaft, bearings));
+        }
     }
 
     /// The shaft in balance on bearings with these rings, and their solutions.
@@ -172,8 +236,8 @@ impl AssemblySolver {
         assembly: &mut Assembly,
         rings: SolvedRings,
         at: &[f64],
-        start: Option<&AssemblySolution>,
-    ) -> Result<(SettledShaft, Vec<StaticSolution>), AssemblyError> {
+        start: Option<&Vec<StaticSolution>>,
+    ) -> Result<SettledAssembly, AssemblyError> {
         let (mounts, scales) = (assembly.mounts(), assembly.scales());
         let problem = Problem {
             shaft: &assembly.shaft,
@@ -191,7 +255,7 @@ impl AssemblySolver {
                 model: &mut bearing.model,
                 solver,
                 columns,
-                start: start.map(|solution| &solution.bearings[i]),
+                start: start.map(|solutions| &solutions[i]),
                 last: None,
             });
         let mut supports = BearingSupports {
@@ -205,6 +269,16 @@ impl AssemblySolver {
         let found = supports.bearings.into_iter();
         let found = found.map(|bearing| bearing.last.expect("every bearing has answered"));
         Ok((settled, found.collect()))
+    }
+}
+
+/// Change of forces over their size.
+fn change(x: &[f64], found: &[f64]) -> f64 {
+    let difference: Vec<f64> = found.iter().zip(x).map(|(g, x)| g - x).collect();
+    let size = dot(found, found).sqrt();
+    match size > 0.0 {
+        true => dot(&difference, &difference).sqrt() / size,
+        false => 0.0,
     }
 }
 

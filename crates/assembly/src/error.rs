@@ -72,6 +72,28 @@ pub enum AssemblyError {
         /// Rounds.
         rounds: usize,
     },
+    /// The stiffness of a bearing in a body that carries others as well.
+    #[error(
+        "body {body:?} carries several bearings, which feel each other through it: none has a stiffness of its own, so \
+         this is not solved; give each bearing a body of its own"
+    )]
+    SharedBody {
+        /// Name of the body.
+        body: String,
+    },
+    /// Forces on a body that carries several bearings keep changing.
+    #[error(
+        "the forces on body {body:?}, which carries several bearings, still change by {change:.1e} of their size after \
+         {rounds} rounds; stiffen what holds it, or give each bearing a body of its own"
+    )]
+    BodiesNotSettled {
+        /// Name of the body.
+        body: String,
+        /// Rounds.
+        rounds: usize,
+        /// Change of the last over the size.
+        change: f64,
+    },
     /// A number of the shaft's step is none.
     #[error("a force on the shaft is not finite; take a smaller step")]
     NotFinite,

@@ -10,11 +10,14 @@
 //! ```
 //!
 //! So nothing in a bearing knows of the others, and rings, balls and contacts are those of a bearing alone. Bearings of
-//! one type share their rings and the factors of these.
+//! one type share their rings and the factors of these. Bearings in one elastic body feel each other through it as well
+//! ([`housing`]).
 
 pub mod assembly;
 pub mod beam;
 mod error;
+mod housing;
+mod mixing;
 pub mod motion;
 pub mod newton;
 pub mod place;
@@ -23,10 +26,10 @@ pub mod stiffness;
 pub mod support;
 pub mod whirl;
 
-pub use assembly::{Assembly, AssemblySolution, AssemblySolver, MountedBearing};
+pub use assembly::{Assembly, AssemblySolution, AssemblySolver};
 pub use beam::{BeamSection, BeamShaft, PointMass};
 pub use error::AssemblyError;
 pub use motion::{AssemblyMotion, AssemblyState};
-pub use place::{Orientation, Seating};
+pub use place::{MountedBearing, Orientation, Seating};
 pub use ring::rigid::RigidInertia;
 pub use shaft::{ShaftBody, Station};

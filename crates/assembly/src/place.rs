@@ -16,6 +16,7 @@
 //! shared matters only where the shaft is held along z. Inner rings (back to back) or outer ones (face to face) give
 //! the same.
 
+use dynamics::Model;
 use dynamics::stiffness::{N_SHAFT, ShaftMatrix};
 
 /// How a bearing sits on the shaft.
@@ -25,6 +26,17 @@ pub enum Orientation {
     PlusZ,
     /// A force on the shaft along -z presses it.
     MinusZ,
+}
+
+/// A bearing on the shaft. Its model is in its own frame: loads in space, spins and azimuths are turned with it, and it
+/// has no load of the shaft.
+pub struct MountedBearing {
+    /// Its name in the scene.
+    pub name: String,
+    /// Where it sits.
+    pub place: Seating,
+    /// The bearing.
+    pub model: Model,
 }
 
 impl Orientation {

@@ -32,6 +32,7 @@ impl LinearAssembly {
         solution: &AssemblySolution,
         laws: DampingLaws,
     ) -> Result<LinearAssembly, AssemblyError> {
+        assembly.require_bodies_of_one()?;
         let mut linear = LinearAssembly {
             bearings: Vec::new(),
             stiffness: Vec::new(),

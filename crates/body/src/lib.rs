@@ -22,4 +22,4 @@ pub use error::SurroundingError;
 pub use seat::{SeatBasis, SeatCylinder, SeatFunctions, SeatSpace};
 pub use surrounding::{BodySeat, Surrounding};
 pub use tie::{SeatTie, SeatTraction, TieConvergence};
-pub use vibration::BodyModes;
+pub use vibration::{BodyModes, SeatModes};

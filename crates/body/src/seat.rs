@@ -228,6 +228,13 @@ impl SeatFunctions {
         self.space.basis.n_functions()
     }
 
+    /// Takes displacements of a body in whose frame the ring stands turned by 180 deg about x.
+    pub(crate) fn half_turn(&mut self) {
+        for row in self.rows.chunks_exact_mut(3) {
+            (row[1], row[2]) = (-row[1], -row[2]);
+        }
+    }
+
     /// Bytes of the functionals.
     pub fn bytes(&self) -> usize {
         size_of::<f64>() * (self.rows.len() + self.inverse.len())

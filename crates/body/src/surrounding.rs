@@ -1,6 +1,7 @@
 //! An elastic body at rest, condensed exactly to the functions of its seats.
 
 use std::borrow::Cow;
+use std::ops::Range;
 use std::time::Instant;
 
 use fem::Material;
@@ -27,8 +28,10 @@ pub struct BodySeat {
     pub group: String,
     /// Functions in the coordinates of its ring.
     pub space: SeatSpace,
-    /// Where the middle of the seat stands in the body, m along z; None: in its own middle.
+    /// Where the middle of the seat stands in the body, m along its ring's z; None: in its own middle.
     pub middle: Option<f64>,
+    /// Whether its ring stands turned by 180 deg about x in the frame of the body.
+    pub is_turned: bool,
 }
 
 /// A held elastic body, factored.
@@ -41,6 +44,8 @@ pub struct Surrounding {
     pub shift: f64,
     /// Its seats.
     pub seats: Vec<SeatFunctions>,
+    /// Middles of the seats along the body's z, m.
+    pub middles: Vec<f64>,
     /// F over the functions of all seats, m/N, `[n][n]` flat, symmetric.
     pub flexibility: Vec<f64>,
     /// Dofs.
@@ -172,6 +177,12 @@ impl Surrounding {
         self.seats.iter().map(SeatFunctions::n).sum()
     }
 
+    /// Numbers of the functions of a seat among those of all seats.
+    pub fn functions_of(&self, seat: usize) -> Range<usize> {
+        let first = self.seats[..seat].iter().map(SeatFunctions::n).sum();
+        first..first + self.seats[seat].n()
+    }
+
     /// Displacement under the forces lam on its seats, N, `[n_functions]`: m, `[n_nodes][3]` flat.
     pub fn displacement(&self, lam: &[f64]) -> Vec<f64> {
         let mut moved = self.seat_loads(lam);
@@ -186,11 +197,7 @@ impl Surrounding {
 
 impl Unfactored<'_> {
     /// Factors the stiffness and finds the flexibility.
-    fn condense(
-        self,
-        joints: Vec<(SeatFunctions, f64)>,
-        start: Instant,
-    ) -> Result<Surrounding, SurroundingError> {
+    fn condense(self, joints: Vec<SeatJoint>, start: Instant) -> Result<Surrounding, SurroundingError> {
         self.require_spanning()?;
         let free: Vec<usize> = (0..3 * self.places.len())
             .filter(|dof| !self.fixed[dof / 3])
@@ -201,8 +208,9 @@ impl Unfactored<'_> {
         let failed = |source| self.failed(source, &free);
         let symbolic = Symbolic::new(&lower, &order).map_err(failed)?;
         let factor = symbolic.factor(&lower).map_err(failed)?;
-        let shift = joints.first().map_or(0.0, |joint| joint.1);
-        let seats: Vec<SeatFunctions> = joints.into_iter().map(|joint| joint.0).collect();
+        let shift = joints.first().map_or(0.0, |joint| joint.shift);
+        let middles = joints.iter().map(|joint| joint.middle).collect();
+        let seats: Vec<SeatFunctions> = joints.into_iter().map(|joint| joint.functions).collect();
         let functional_bytes: usize = seats.iter().map(SeatFunctions::bytes).sum();
         let n_functions: usize = seats.iter().map(SeatFunctions::n).sum();
         let flexibility_bytes = n_functions * n_functions * size_of::<f64>();
@@ -216,6 +224,7 @@ impl Unfactored<'_> {
             matrix_bytes: self.stiffness.nnz() * (size_of::<f64>() + size_of::<usize>()),
             seconds: 0.0,
             seats,
+            middles,
             free,
             factor,
             matrices: None,
@@ -353,16 +362,30 @@ fn require_group(body: &str, mesh: &Mesh, group: &str, key: &'static str) -> Res
     })
 }
 
-/// Functions of a seat on the body's side, and what is added to z for them.
+/// A seat on the body's side.
+struct SeatJoint {
+    functions: SeatFunctions,
+    /// What is added to z for the coordinates of its ring, m.
+    shift: f64,
+    /// Its middle along the body's z, m.
+    middle: f64,
+}
+
+/// The functions of a seat on the body's side.
 fn joint(
     body: &str,
     seat: &BodySeat,
     areas: &[(usize, f64)],
     places: &[[f64; 3]],
     tags: &[u64],
-) -> Result<(SeatFunctions, f64), SurroundingError> {
+) -> Result<SeatJoint, SurroundingError> {
     let what = format!("the seat \"{}\" of body \"{body}\"", seat.group);
-    let nodes = areas.iter().map(|&(node, _)| (tags[node], places[node]));
+    let sign = if seat.is_turned { -1.0 } else { 1.0 };
+    let in_ring = |node: usize| {
+        let [x, y, z] = places[node];
+        [x, sign * y, sign * z]
+    };
+    let nodes = areas.iter().map(|&(node, _)| (tags[node], in_ring(node)));
     let cylinder = SeatCylinder::of_nodes(&what, nodes)?;
     let space = &seat.space;
     let ratio = cylinder.radius / space.radius;
@@ -384,12 +407,21 @@ fn joint(
             limit: 100.0 * WIDTH_TOLERANCE,
         });
     }
-    let shift = space.middle - seat.middle.unwrap_or(cylinder.middle());
+    let middle = seat.middle.unwrap_or(cylinder.middle());
+    let shift = space.middle - middle;
     let place = |node: usize| {
-        let [x, y, z] = places[node];
+        let [x, y, z] = in_ring(node);
         [x, y, z + shift]
     };
-    Ok((SeatFunctions::new(&what, *space, areas, place)?, shift))
+    let mut functions = SeatFunctions::new(&what, *space, areas, place)?;
+    if seat.is_turned {
+        functions.half_turn();
+    }
+    Ok(SeatJoint {
+        functions,
+        shift,
+        middle: sign * middle,
+    })
 }
 
 /// A remark on the unit of a mesh whose seat is `ratio` times too large.

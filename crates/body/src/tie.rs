@@ -1,13 +1,13 @@
 //! A ring tied to a body: what the ring's solver needs to know, and what the joint carries.
 
+use std::ops::Range;
 use std::sync::Arc;
 
 use dense::DenseCholesky;
 
-use crate::error::SurroundingError;
 use crate::seat::{SeatBasis, SeatFunctions, SeatSpace};
 use crate::surrounding::Surrounding;
-use crate::vibration::BodyModes;
+use crate::vibration::{BodyModes, SeatModes};
 
 /// The joint of a ring with what is round it.
 #[derive(Clone)]
@@ -18,8 +18,10 @@ pub struct SeatTie {
     pub flexibility: Vec<f64>,
     /// The body; None for a rigid one.
     pub body: Option<Arc<Surrounding>>,
+    /// Number of the seat among those of the body.
+    pub seat: usize,
     /// What moves of it; None where it is at rest only.
-    pub modes: Option<Arc<BodyModes>>,
+    pub modes: Option<SeatModes>,
 }
 
 /// What a joint carries at rest.
@@ -41,22 +43,50 @@ pub struct TieConvergence {
 }
 
 impl SeatTie {
-    /// A joint with the first seat of a body, which is its only one.
-    pub fn to_body(body: Arc<Surrounding>) -> SeatTie {
+    /// A joint with a seat of a body.
+    pub fn to_seat(body: Arc<Surrounding>, seat: usize) -> SeatTie {
+        let (own, all) = (body.functions_of(seat), body.n_functions());
+        let row = |i: usize| &body.flexibility[all * i + own.start..all * i + own.end];
         SeatTie {
-            space: body.seats[0].space,
-            flexibility: body.flexibility.clone(),
+            space: body.seats[seat].space,
+            flexibility: own.clone().flat_map(row).copied().collect(),
             body: Some(body),
+            seat,
             modes: None,
         }
     }
 
-    /// The same for a motion, with the modes of the body with a held seat up to a frequency, Hz.
-    pub fn in_motion(mut self, below_hz: f64) -> Result<SeatTie, SurroundingError> {
-        if let Some(body) = &self.body {
-            self.modes = Some(Arc::new(body.modes(below_hz)?));
+    /// The same for a motion, with the modes of the body.
+    pub fn in_motion(mut self, modes: Arc<BodyModes>) -> SeatTie {
+        self.modes = Some(SeatModes {
+            of_body: modes,
+            own: self.own(),
+        });
+        self
+    }
+
+    /// Numbers of its functions among those of all seats of the body.
+    pub fn own(&self) -> Range<usize> {
+        match &self.body {
+            Some(body) => body.functions_of(self.seat),
+            None => 0..self.space.basis.n_functions(),
         }
-        Ok(self)
+    }
+
+    /// Whether the body has other seats.
+    pub fn has_others(&self) -> bool {
+        self.body.as_ref().is_some_and(|body| body.seats.len() > 1)
+    }
+
+    /// Motion of the seat, m, by forces on the functions of all seats of the body, N.
+    pub fn motion_by(&self, forces: &[f64]) -> Vec<f64> {
+        let Some(body) = &self.body else {
+            return vec![0.0; self.space.basis.n_functions()];
+        };
+        let row = |i: usize| &body.flexibility[forces.len() * i..forces.len() * (i + 1)];
+        self.own()
+            .map(|i| row(i).iter().zip(forces).map(|(f, p)| f * p).sum())
+            .collect()
     }
 
     /// A joint with a rigid body.
@@ -66,26 +96,40 @@ impl SeatTie {
             space,
             flexibility: vec![0.0; n * n],
             body: None,
-            modes: Some(Arc::new(BodyModes::rigid())),
+            seat: 0,
+            modes: Some(SeatModes::rigid()),
         }
     }
 
-    /// What the joint carries when the ring stands as displaced, m, `[n_nodes][3]` flat; None for a rigid body.
+    /// What the joint carries when the ring stands as displaced, m, `[n_nodes][3]` flat, under forces on the other
+    /// seats of the body, N, `[n_functions of all seats]`; None for a rigid body.
     ///
-    /// The body follows from its own flexibility: lam = -F^-1 g.
-    pub fn traction(&self, ring: &SeatFunctions, displacement: &[f64]) -> Option<SeatTraction> {
+    /// The body follows from its own flexibility: lam = -F^-1 (g - d), d its motion by those forces.
+    pub fn traction(
+        &self,
+        ring: &SeatFunctions,
+        displacement: &[f64],
+        others: Option<&[f64]>,
+    ) -> Option<SeatTraction> {
         self.body.as_ref()?;
         let motion = ring.measure(displacement);
         let factor = DenseCholesky::factor(motion.len(), &self.flexibility).ok()?;
         let mut forces: Vec<f64> = motion.iter().map(|g| -g).collect();
+        if let Some(others) = others {
+            let moved = self.motion_by(others);
+            forces.iter_mut().zip(moved).for_each(|(f, d)| *f += d);
+        }
         factor.solve(&mut forces, 1);
         Some(SeatTraction { forces, motion })
     }
 
-    /// Displacement of the body, m, `[n_nodes][3]` flat.
-    pub fn body_displacement(&self, traction: &SeatTraction) -> Option<Vec<f64>> {
-        let onto_body: Vec<f64> = traction.forces.iter().map(|f| -f).collect();
-        Some(self.body.as_ref()?.displacement(&onto_body))
+    /// Forces on all seats of the body, N: those of the joint and of the `others`.
+    pub fn forces_on_body(&self, traction: &SeatTraction, others: Option<&[f64]>) -> Vec<f64> {
+        let all = || self.body.as_ref().map_or(0, |body| body.n_functions());
+        let mut forces = others.map_or_else(|| vec![0.0; all()], <[f64]>::to_vec);
+        let own = forces[self.own()].iter_mut();
+        own.zip(&traction.forces).for_each(|(on_body, f)| *on_body -= f);
+        forces
     }
 }
 

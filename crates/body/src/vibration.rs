@@ -13,6 +13,8 @@
 //! oscillators xi, its own modes with free seats: M_r V = 1, K_r V = omega^2 in V^T . V; the seats have g = F V_lam xi.
 
 use std::f64::consts::TAU;
+use std::ops::Range;
+use std::sync::Arc;
 
 use dense::{
     DenseCholesky, DenseError, EigenProblem, Eigenpairs, LanczosSettings, dense_lowest, lowest_pairs,
@@ -73,23 +75,15 @@ impl BodyModes {
         self.squares.len()
     }
 
-    /// Motion of the seat functions under oscillators, m.
+    /// Motion of the functions of all seats under oscillators, m.
     pub fn seat_motion(&self, oscillators: &[f64]) -> Vec<f64> {
         combined(&self.seat, oscillators)
     }
 
-    /// D = V diag(1/s) V^T of the seat functions for effective masses s of the oscillators, `[n_functions]^2` flat;
-    /// empty for a rigid body.
-    pub fn softness(&self, effective: &[f64]) -> Vec<f64> {
-        let n = self.seat.len().checked_div(self.n()).unwrap_or(0);
-        let mut softness = vec![0.0; n * n];
-        for (row, s) in self.seat.chunks_exact(n.max(1)).zip(effective) {
-            for (to, v) in softness.chunks_exact_mut(n).zip(row) {
-                let by = v / s;
-                to.iter_mut().zip(row).for_each(|(d, w)| *d += by * w);
-            }
-        }
-        softness
+    /// Oscillators in which the body stands under forces on the functions of all seats, N.
+    pub fn at_rest(&self, forces: &[f64]) -> Vec<f64> {
+        let rows = self.of_forces.chunks_exact(forces.len().max(1));
+        rows.map(|row| dot(row, forces)).collect()
     }
 
     /// Bytes of all.
@@ -103,6 +97,70 @@ impl BodyModes {
             &self.fixed,
         ];
         size_of::<f64>() * lists.iter().map(|list| list.len()).sum::<usize>()
+    }
+}
+
+/// The oscillators of a body as one of its seats sees them.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SeatModes {
+    /// The body.
+    pub of_body: Arc<BodyModes>,
+    /// Numbers of the functions of the seat among those of all seats.
+    pub own: Range<usize>,
+}
+
+impl SeatModes {
+    /// A rigid body: no oscillators.
+    pub fn rigid() -> SeatModes {
+        SeatModes {
+            of_body: Arc::new(BodyModes::rigid()),
+            own: 0..0,
+        }
+    }
+
+    /// Number of oscillators.
+    pub fn n(&self) -> usize {
+        self.of_body.n()
+    }
+
+    /// Squares of their angular frequencies, rad^2/s^2.
+    pub fn squares(&self) -> &[f64] {
+        &self.of_body.squares
+    }
+
+    /// Motion of the functions of the seat, m per unit of each oscillator.
+    pub fn rows(&self) -> impl Iterator<Item = &[f64]> {
+        let BodyModes { seat, .. } = &*self.of_body;
+        let width = seat.len().checked_div(self.n()).unwrap_or(0);
+        seat.chunks_exact(width.max(1)).map(|row| &row[self.own.clone()])
+    }
+
+    /// Motion of the functions of the seat under oscillators, m; of a rigid body none.
+    pub fn motion(&self, oscillators: &[f64]) -> Vec<f64> {
+        let mut sum = vec![0.0; self.own.len()];
+        for (row, factor) in self.rows().zip(oscillators) {
+            sum.iter_mut().zip(row).for_each(|(s, r)| *s += factor * r);
+        }
+        sum
+    }
+
+    /// Forces on the oscillators of forces lam on the functions of the seat, N.
+    pub fn loads(&self, lam: &[f64]) -> Vec<f64> {
+        self.rows().map(|row| dot(row, lam)).collect()
+    }
+
+    /// D = V diag(1/s) V^T of the functions of the seat for effective masses s of the oscillators,
+    /// `[n_functions]^2` flat; empty for a rigid body.
+    pub fn softness(&self, effective: &[f64]) -> Vec<f64> {
+        let n = self.own.len();
+        let mut softness = vec![0.0; n * n];
+        for (row, s) in self.rows().zip(effective) {
+            for (to, v) in softness.chunks_exact_mut(n).zip(row) {
+                let by = v / s;
+                to.iter_mut().zip(row).for_each(|(d, w)| *d += by * w);
+            }
+        }
+        softness
     }
 }
 

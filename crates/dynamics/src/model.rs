@@ -95,6 +95,9 @@ pub struct Model {
     pub surfaces: Surfaces,
     /// Flexible rings, inner first; None is a rigid ring and costs nothing.
     pub rings: [Option<Arc<RingModel>>; 2],
+    /// Forces on the other seats of the body round the outer ring at rest, N, over the functions of all its seats;
+    /// None: it has no others, or nothing sits there.
+    pub other_seats: Option<Arc<Vec<f64>>>,
     /// What fits and temperatures do to rings and balls.
     pub mounting: Mounting,
     /// Ball steel.
@@ -170,6 +173,18 @@ impl Model {
     pub fn shaft_masses(&self) -> [f64; 5] {
         let (m, i) = (self.shaft_mass, self.shaft_inertia.transverse);
         [m, m, m, i, i]
+    }
+
+    /// The ring that is tied to an elastic body, and its side.
+    pub fn tied(&self) -> Option<(Side, &RingModel)> {
+        let of_side = |side| Some((side, self.ring(side).filter(|ring| ring.tie.is_some())?));
+        Side::BOTH.into_iter().find_map(of_side)
+    }
+
+    /// Motion of the seat of a ring by forces on the other seats of its body, by functions, m; None: none.
+    pub(crate) fn seat_motion(&self, side: Side) -> Option<Vec<f64>> {
+        let (_, ring) = self.tied().filter(|(tied, _)| *tied == side)?;
+        Some(ring.tie.as_ref()?.motion_by(self.other_seats.as_ref()?))
     }
 
     /// Whether a ring has the inertia of its turning frame.

@@ -215,7 +215,7 @@ impl StaticSolver {
             self.timing.add(PATCHES, clock.lap());
             self.renew_columns(model.backend, &feet, &history)?;
             let ring_forces = case.ring_forces(&forces);
-            let fields = self.fields(model.backend, &feet, &ring_forces, &case.loads);
+            let fields = self.fields(model, &feet, &ring_forces, &case.loads);
             let rings = self.answers(&feet, &ring_forces, &fields);
             case.parts.set_rings(rings, &u.grooves);
             let contact_loads = case.loads.contacts.clone();
@@ -294,7 +294,7 @@ impl StaticSolver {
     /// Elastic fields of both rings under the contact forces and body loads.
     fn fields(
         &mut self,
-        backend: Backend,
+        model: &Model,
         feet: &[Vec<Footprint>; 2],
         forces: &[[f64; 2]],
         loads: &Loads,
@@ -308,9 +308,11 @@ impl StaticSolver {
             for (ball, foot) in feet[side.index()].iter().enumerate() {
                 foot.weights.add_load(forces[2 * ball + side.index()], &mut load);
             }
-            Some(ring.solver.solve(load, 1))
+            let seat = model.seat_motion(side);
+            Some(ring.solver.solve_on(load, 1, seat.as_deref()))
         };
-        let (inner, outer) = backend.both(|| field(Side::Inner), || field(Side::Outer));
+        let both = model.backend.both(|| field(Side::Inner), || field(Side::Outer));
+        let (inner, outer) = both;
         self.timing.add(SOLVE, clock.lap());
         [inner, outer]
     }

@@ -52,9 +52,10 @@ pub fn bodies(model: &Model) -> Vec<Body> {
     bodies
 }
 
-/// The body round the outer ring, its mesh, and where that stands in the bearing, m.
+/// The body round the outer ring, its mesh, and where that stands in the bearing, m. A body that carries several
+/// bearings is shown with the first of them.
 pub fn body_of(model: &Model) -> Option<(&Surrounding, &Mesh, [f64; 3])> {
-    let (side, _, tie) = tied(model)?;
+    let (side, _, tie) = tied(model).filter(|(_, _, tie)| tie.seat == 0)?;
     let body = tie.body.as_ref()?;
     let shift = [0.0, 0.0, body.shift + model.ring_shift(side)];
     Some((body, &body.mesh.as_ref()?.0, shift))
@@ -184,7 +185,7 @@ pub fn body_displacement(shown: &Shown<'_>) -> Result<Option<Vec<f64>>, Failure>
 fn moved_body(model: &Model, state: &MotionState) -> Option<Vec<f64>> {
     let (side, _, tie) = tied(model)?;
     let BodyState([at, ..]) = state.rings[side.index()].as_ref()?.body()?;
-    Some(tie.body.as_ref()?.moved(tie.modes.as_ref()?, at))
+    Some(tie.body.as_ref()?.moved(&tie.modes.as_ref()?.of_body, at))
 }
 
 /// What the stress of a ring follows from: its displacement, or the stress that ranks have gathered.

@@ -79,9 +79,11 @@ fn beside_rings(rings: usize, model: &Model) -> usize {
 
 /// The peak of the rest with a body round the outer ring, which is made before it.
 fn with_body(rest: usize, model: &Model) -> usize {
-    let body = tied(model).and_then(|(_, _, tie)| Some((tie, tie.body.as_ref()?)));
+    // A body that carries several bearings is made once.
+    let tie = tied(model).map(|(_, _, tie)| tie).filter(|tie| tie.seat == 0);
+    let body = tie.and_then(|tie| Some((tie, tie.body.as_ref()?)));
     let Some((tie, body)) = body else { return rest };
-    let modes = tie.modes.as_ref().map_or(0, |modes| modes.bytes());
+    let modes = tie.modes.as_ref().map_or(0, |modes| modes.of_body.bytes());
     let kept = body.bytes + modes;
     kept + rest.max(body.making_bytes(modes > 0))
 }

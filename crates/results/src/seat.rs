@@ -36,7 +36,9 @@ pub struct SeatState {
     functions: SeatFunctions,
     /// What it carries.
     pub traction: SeatTraction,
-    /// Strain energy of the body, J.
+    /// Forces on the other seats of the body, N, over the functions of all.
+    others: Option<Arc<Vec<f64>>>,
+    /// Strain energy that the joint puts into the body, J: all of it where it is the only one.
     energy: f64,
 }
 
@@ -51,7 +53,7 @@ pub struct SeatSummary {
     energy_share_last_orders: f64,
     /// Share of the last degree across.
     energy_share_last_degree: f64,
-    /// Strain energy of the body; part of that of the rings.
+    /// Strain energy that this seat puts into the body, all of it where it is the only seat; part of that of the rings.
     body_energy_j: f64,
     largest_pressure_pa: f64,
     smallest_pressure_pa: f64,
@@ -63,11 +65,8 @@ pub struct SeatSummary {
 
 /// The ring that is tied to a body, and its joint.
 pub fn tied(model: &Model) -> Option<(Side, &RingModel, &Arc<SeatTie>)> {
-    let of_side = |side: Side| {
-        let ring = model.ring(side)?;
-        Some((side, ring, ring.tie.as_ref()?))
-    };
-    Side::BOTH.into_iter().find_map(of_side)
+    let (side, ring) = model.tied()?;
+    Some((side, ring, ring.tie.as_ref()?))
 }
 
 /// Writes what the seat of a ring in a body carries, and sums it up; None where no ring is in one.
@@ -108,10 +107,12 @@ impl SeatState {
         let (Some(functions), Some(field)) = (functions, &solution.elastic[side.index()]) else {
             return Ok(None);
         };
-        let traction = tie.traction(&functions, field);
+        let others = model.other_seats.clone();
+        let traction = tie.traction(&functions, field, others.as_ref().map(|o| o.as_slice()));
         Ok(traction.map(|traction| SeatState {
             tie: tie.clone(),
             functions,
+            others,
             energy: traction.energy(),
             traction,
         }))
@@ -127,20 +128,27 @@ impl SeatState {
         let (Some(functions), Some(body), Some(moved)) = (functions, motion.tied(side), body) else {
             return Ok(None);
         };
-        let [_, energy] = body.energies(Some(moved));
         let traction = body.traction(moved);
+        let [_, strain] = body.energies(Some(moved));
+        let energy = match (&traction, tie.has_others()) {
+            (Some(traction), true) => traction.energy(),
+            _ => strain,
+        };
         Ok(traction.map(|traction| SeatState {
             tie: tie.clone(),
             functions,
+            others: None,
             traction,
             energy,
         }))
     }
 
-    /// Displacement of the body, m, `[n_nodes][3]` flat.
+    /// Displacement of the body at rest, m, `[n_nodes][3]` flat.
     pub fn body_displacement(&self) -> Vec<f64> {
-        let displacement = self.tie.body_displacement(&self.traction);
-        displacement.expect("a joint that carries something has a body")
+        let others = self.others.as_ref().map(|o| o.as_slice());
+        let body = self.tie.body.as_ref();
+        let body = body.expect("a joint that carries something has a body");
+        body.displacement(&self.tie.forces_on_body(&self.traction, others))
     }
 
     /// Writes the table, says how converged the joint is, and makes the entry of the summary. Rank 0 writes for all.

@@ -316,7 +316,9 @@ impl dyn ElasticBody + '_ {
             .enumerate()
             .for_each(|(i, &dof)| w[i] += elastic[dof]);
         let v = field(rate);
-        let body = self.tied().map(|body| body.at_rest(&coordinates.expand(&w)));
+        let body = self
+            .tied()
+            .map(|body| body.at_rest(&coordinates.expand(&w), None));
         let [w, v] = [w, v].map(|y| self.state_of_coordinates(y));
         let a = vec![0.0; w.len()];
         RingState::new(w, v, a).with_body(body)

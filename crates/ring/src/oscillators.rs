@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use body::{BodyModes, SeatFunctions, SeatTie, SeatTraction};
+use body::{SeatFunctions, SeatModes, SeatTie, SeatTraction};
 use dense::DenseCholesky;
 
 use crate::error::RingError;
@@ -12,11 +12,13 @@ use crate::vectors::dot;
 
 /// A body to which a ring is tied.
 pub struct Oscillators {
-    /// Its modes.
-    pub modes: Arc<BodyModes>,
+    /// Its modes, as the seat sees them.
+    pub modes: SeatModes,
+    /// The joint.
+    tie: Arc<SeatTie>,
     /// Functions of the seat on the ring's side.
     functions: SeatFunctions,
-    /// F of the body at rest; None of a rigid one.
+    /// F of all seats of the body at rest; None of a rigid one.
     flexibility: Option<DenseCholesky>,
     /// Rayleigh damping: C = a M + b K with `[a, b]`.
     damping: [f64; 2],
@@ -41,21 +43,22 @@ pub(crate) struct BodyStep {
 impl Oscillators {
     /// The body of a joint.
     pub(crate) fn new(
-        tie: &SeatTie,
+        tie: &Arc<SeatTie>,
         functions: SeatFunctions,
         damping: [f64; 2],
     ) -> Result<Oscillators, RingError> {
         let modes = tie.modes.clone();
         let modes = modes.expect("the modes of a body are found before its ring moves");
-        let flexibility = match modes.n() {
-            0 => None,
-            _ => {
-                let factor = DenseCholesky::factor(functions.n(), &tie.flexibility);
+        let flexibility = match &tie.body {
+            Some(body) if modes.n() > 0 => {
+                let factor = DenseCholesky::factor(body.n_functions(), &body.flexibility);
                 Some(factor.map_err(|source| RingError::Tie { source })?)
             }
+            _ => None,
         };
         Ok(Oscillators {
             modes,
+            tie: tie.clone(),
             functions,
             flexibility,
             damping,
@@ -81,36 +84,35 @@ impl Oscillators {
         }
         format!(
             "its seat is tied to a body by {n} functions, and the body moves by these and by its {} modes below {} Hz",
-            modes.n_fixed, modes.below_hz
+            modes.of_body.n_fixed, modes.of_body.below_hz
         )
     }
 
-    /// The body at rest under a ring that stands as displaced, m, `[n_nodes][3]` flat.
-    pub(crate) fn at_rest(&self, displacement: &[f64]) -> BodyState {
-        let Some(flexibility) = &self.flexibility else {
+    /// The body at rest under a ring that stands as displaced, m, `[n_nodes][3]` flat, and forces on its other seats,
+    /// N, over the functions of all seats.
+    pub fn at_rest(&self, displacement: &[f64], others: Option<&[f64]>) -> BodyState {
+        let Some(traction) = self.tie.traction(&self.functions, displacement, others) else {
             return BodyState::default();
         };
-        let mut forces = self.functions.measure(displacement);
-        let width = forces.len();
-        flexibility.solve(&mut forces, 1);
-        let rows = self.modes.of_forces.chunks_exact(width);
-        let at: Vec<f64> = rows.map(|row| dot(row, &forces)).collect();
+        let forces = self.tie.forces_on_body(&traction, others);
+        let at = self.modes.of_body.at_rest(&forces);
         let zero = vec![0.0; at.len()];
         BodyState([at, zero.clone(), zero])
     }
 
     /// What the joint carries; None for a rigid body.
     ///
-    /// V lam = -(xi'' + C xi' + omega^2 xi), weighted as at rest: lam = -F^-1 V^T (xi + (xi'' + C xi')/omega^2).
+    /// Over all seats V lam = -(xi'' + C xi' + omega^2 xi), weighted as at rest:
+    /// lam = -F^-1 V^T (xi + (xi'' + C xi')/omega^2).
     pub fn traction(&self, BodyState([x, v, a]): &BodyState) -> Option<SeatTraction> {
         let [am, ak] = self.damping;
         let driven = |(i, square): (usize, &f64)| -x[i] - (a[i] + (am + ak * square) * v[i]) / square;
-        let driven: Vec<f64> = self.modes.squares.iter().enumerate().map(driven).collect();
-        let mut forces = self.modes.seat_motion(&driven);
+        let driven: Vec<f64> = self.modes.squares().iter().enumerate().map(driven).collect();
+        let mut forces = self.modes.of_body.seat_motion(&driven);
         self.flexibility.as_ref()?.solve(&mut forces, 1);
         Some(SeatTraction {
-            forces,
-            motion: self.modes.seat_motion(x),
+            forces: forces[self.modes.own.clone()].to_vec(),
+            motion: self.modes.motion(x),
         })
     }
 
@@ -121,7 +123,7 @@ impl Oscillators {
         };
         let strain: f64 = x
             .iter()
-            .zip(&self.modes.squares)
+            .zip(self.modes.squares())
             .map(|(x, square)| square * x * x)
             .sum();
         [0.5 * dot(v, v), 0.5 * strain]
@@ -156,7 +158,7 @@ impl Oscillators {
             return 0.0;
         };
         let at = |state: &BodyState, i: usize| state.0.each_ref().map(|list| list[i]);
-        let squares = self.modes.squares.iter().enumerate();
+        let squares = self.modes.squares().iter().enumerate();
         squares
             .map(|(i, &square)| term(square, at(old, i), at(new, i)))
             .sum()
@@ -169,7 +171,7 @@ impl BodyFactor {
         let [am, ak] = body.damping;
         let of = |square: &f64| m + c * (am + ak * square) + k * square;
         BodyFactor {
-            effective: body.modes.squares.iter().map(of).collect(),
+            effective: body.modes.squares().iter().map(of).collect(),
             body,
             scheme,
         }
@@ -180,18 +182,22 @@ impl BodyFactor {
         self.body.modes.softness(&self.effective)
     }
 
-    /// A step from a state.
-    pub fn step(&self, BodyState([x, v, a]): &BodyState) -> BodyStep {
+    /// A step from a state, with the mean `load` on its oscillators over the step; empty: none.
+    pub fn step(&self, BodyState([x, v, a]): &BodyState, load: &[f64]) -> BodyStep {
         let [mass, damping] = self.scheme.integrator.history(self.scheme.dt);
         let [am, ak] = self.body.damping;
         let mut increments = Vec::with_capacity(x.len());
         let mut seat = vec![0.0; self.body.n_functions()];
         let modes = &self.body.modes;
-        for (i, row) in modes.seat.chunks_exact(seat.len()).enumerate() {
-            let square = modes.squares[i];
+        for (i, row) in modes.rows().enumerate() {
+            let square = modes.squares()[i];
             let inertial = mass[0] * v[i] + mass[1] * a[i];
             let damped = damping[0] * v[i] + damping[1] * a[i];
-            let increment = (inertial + (am + ak * square) * damped - square * x[i]) / self.effective[i];
+            let of_state = inertial + (am + ak * square) * damped - square * x[i];
+            let increment = match load.get(i) {
+                Some(load) => (of_state + load) / self.effective[i],
+                None => of_state / self.effective[i],
+            };
             seat.iter_mut()
                 .zip(row)
                 .for_each(|(y, r)| *y += (x[i] + increment) * r);
@@ -203,7 +209,7 @@ impl BodyFactor {
     /// The state after a step under the forces lam of the joint on the ring, N.
     pub fn advanced(&self, old: &BodyState, step: &BodyStep, lam: &[f64]) -> BodyState {
         let mut new = old.clone();
-        for (i, row) in self.body.modes.seat.chunks_exact(lam.len()).enumerate() {
+        for (i, row) in self.body.modes.rows().enumerate() {
             let increment = step.increments[i] - dot(row, lam) / self.effective[i];
             let [x, v, a] = &mut new.0;
             let scheme = self.scheme;

@@ -173,6 +173,14 @@ pub trait ElasticStep: Send {
     /// Moves the contacts to other places; says of the time what is told apart from the block solve.
     fn move_contacts(&mut self, contacts: Feet<'_>) -> Laps;
 
+    /// Load of the ring on the oscillators of the body to which it is tied, under these forces; None: there is none.
+    fn load_on_body(&self, _forces: PortForces<'_>) -> Option<Vec<f64>> {
+        None
+    }
+
+    /// Puts a mean load over the step on these oscillators, in place of the one before: what other rings do to them.
+    fn load_body(&mut self, _load: &[f64]) {}
+
     /// Values of a vector of the body at the contacts, in two directions of all their nodal weights.
     fn at_contacts(&self, x: &[f64]) -> Vec<f64>;
 

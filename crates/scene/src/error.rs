@@ -33,6 +33,24 @@ pub enum BuildError {
     /// The body round a ring cannot be read, or does not fit.
     #[error(transparent)]
     Body(#[from] SurroundingError),
+    /// Two seats of a body stand otherwise than their bearings on the shaft.
+    #[error(
+        "body \"{body}\": the seat of bearing \"{}\" stands {found_mm:.4} mm along the shaft from that of \"{}\", \
+         but with these positions of the bearings it is {expected_mm:.4} mm; expected the same to {limit_mm:.3} mm, \
+         so correct bearing.position, body.orientation, the groups of the seats or their z", bearings[1], bearings[0]
+    )]
+    SeatDistance {
+        /// Name of the body.
+        body: String,
+        /// Names of the bearings.
+        bearings: [String; 2],
+        /// Distance in the body, mm.
+        found_mm: f64,
+        /// Distance on the shaft, mm.
+        expected_mm: f64,
+        /// Allowed difference, mm.
+        limit_mm: f64,
+    },
     /// The shaft of a list of bearings cannot be.
     #[error(transparent)]
     Assembly(#[from] AssemblyError),

@@ -1,4 +1,4 @@
-//! The body round the outer ring, from what a scene says of it.
+//! The bodies round outer rings, from what a scene says of them.
 
 use std::sync::Arc;
 
@@ -9,11 +9,96 @@ use dynamics::RingModel;
 use fem::Material;
 
 use crate::error::BuildError;
-use crate::tables::{BodySource, Scene, SceneBody};
+use crate::tables::{BearingOnShaft, BodySource, Scene, SceneBody};
 
-/// The joint of the outer ring with the body of the scene, if there is one: reads, factors and condenses it.
+/// Rings of a bearing, inner first.
+pub type Rings = [Option<Arc<RingModel>>; 2];
+
+/// Allowed difference of the distances of two seats in a body and of their bearings on the shaft, widths of a seat. The
+/// rings of a bearing that just touches stand off each other along z: a share of the ball, with either sign.
+const SEAT_DISTANCE_TOLERANCE: f64 = 0.05;
+
+/// The joint of the outer ring with the body of the scene, if there is one of its own: reads, factors and condenses it.
 pub fn seat_tie(scene: &Scene, ring: &RingModel) -> Result<Option<Arc<SeatTie>>, BuildError> {
-    let Some(body) = &scene.body else { return Ok(None) };
+    let Some(body) = scene.body.as_ref().filter(|body| !body.is_shared) else {
+        return Ok(None);
+    };
+    let seats = [body_seat(body, ring)?];
+    let body_of_ring = Arc::new(surrounding(body, &seats)?);
+    Ok(ties(body, body_of_ring)?.pop())
+}
+
+/// Ties the outer rings of a list to the bodies that carry several of them. `shifts` are those from the coordinates of
+/// each outer ring to the place of its bearing on the shaft, that of the inner groove centres, m.
+pub fn tie_together(
+    bearings: &[BearingOnShaft],
+    rings: &mut [Rings],
+    shifts: &[f64],
+) -> Result<(), BuildError> {
+    let shared = |i: &usize| bearings[*i].scene.body.as_ref().filter(|body| body.is_shared);
+    let mut left: Vec<usize> = (0..bearings.len()).filter(|i| shared(i).is_some()).collect();
+    while let Some(first) = left.first().copied() {
+        let Some(body) = shared(&first) else { break };
+        let in_body = |i: &usize| shared(i).is_some_and(|other| other.name == body.name);
+        let (own, others): (Vec<usize>, Vec<usize>) = left.into_iter().partition(in_body);
+        left = others;
+        let mut seats = Vec::new();
+        for i in &own {
+            if let (Some(of_bearing), Some(ring)) = (shared(i), &rings[*i][1]) {
+                seats.push(BodySeat {
+                    is_turned: bearings[*i].orientation != bearings[first].orientation,
+                    ..body_seat(of_bearing, ring)?
+                });
+            }
+        }
+        let made = Arc::new(surrounding(body, &seats)?);
+        let places: Vec<f64> = own
+            .iter()
+            .zip(&seats)
+            .map(|(&i, seat)| {
+                let along = bearings[i]
+                    .orientation
+                    .turned_vector([0.0, 0.0, seat.space.middle + shifts[i]])[2];
+                bearings[i].position + along
+            })
+            .collect();
+        let names: Vec<&str> = own.iter().map(|&i| bearings[i].name.as_str()).collect();
+        require_distances(&made, &names, &places, bearings[first].orientation)?;
+        for (tie, i) in ties(body, made)?.into_iter().zip(own) {
+            let ring = rings[i][1].as_mut().and_then(Arc::get_mut);
+            ring.expect("the ring of a seat belongs to it alone").tie = Some(tie);
+        }
+    }
+    Ok(())
+}
+
+/// Seats stand as far from each other as their bearings do on the shaft. `places` are those of the seats along it, m.
+fn require_distances(
+    body: &Surrounding,
+    names: &[&str],
+    places: &[f64],
+    orientation: Orientation,
+) -> Result<(), BuildError> {
+    for k in 1..places.len() {
+        let of_body = body.middles[k] - body.middles[0];
+        let found = orientation.turned_vector([0.0, 0.0, of_body])[2];
+        let expected = places[k] - places[0];
+        let limit = SEAT_DISTANCE_TOLERANCE * 2.0 * body.seats[k].space.half_width;
+        if (found - expected).abs() > limit {
+            return Err(BuildError::SeatDistance {
+                body: body.name.clone(),
+                bearings: [names[0].to_string(), names[k].to_string()],
+                found_mm: 1e3 * found,
+                expected_mm: 1e3 * expected,
+                limit_mm: 1e3 * limit,
+            });
+        }
+    }
+    Ok(())
+}
+
+/// The seat of a ring in its body.
+fn body_seat(body: &SceneBody, ring: &RingModel) -> Result<BodySeat, BuildError> {
     let nodes = ring.mesh.group_nodes(ring.held_group);
     let what = "the seat of the outer ring";
     let numbered = nodes.iter().map(|&node| (node as u64 + 1, ring.mesh.nodes[node]));
@@ -22,18 +107,29 @@ pub fn seat_tie(scene: &Scene, ring: &RingModel) -> Result<Option<Arc<SeatTie>>,
         group: body.group.clone(),
         space: SeatSpace::on(&cylinder, body.basis),
         middle: body.z.map(|z| frame(body).turned_vector([0.0, 0.0, z])[2]),
+        is_turned: false,
     };
     // The ring must tell the functions apart too: sooner than after a long factorisation.
     let areas = fem::facet_node_weights(&ring.mesh, ring.mesh.group(ring.held_group));
     body::SeatFunctions::new(what, seat.space, &areas, |node| ring.mesh.nodes[node])?;
-    let tie = SeatTie::to_body(Arc::new(surrounding(body, &seat)?));
-    Ok(Some(Arc::new(match body.modes_below {
-        Some(below) => tie.in_motion(below)?,
-        None => tie,
-    })))
+    Ok(seat)
 }
 
-fn surrounding(body: &SceneBody, seat: &BodySeat) -> Result<Surrounding, BuildError> {
+/// The joints of all seats of a body, in their order.
+fn ties(body: &SceneBody, made: Arc<Surrounding>) -> Result<Vec<Arc<SeatTie>>, BuildError> {
+    let modes = body.modes_below.map(|below| made.modes(below)).transpose()?;
+    let modes = modes.map(Arc::new);
+    let tie = |seat: usize| {
+        let tie = SeatTie::to_seat(made.clone(), seat);
+        Arc::new(match &modes {
+            Some(modes) => tie.in_motion(modes.clone()),
+            None => tie,
+        })
+    };
+    Ok((0..made.seats.len()).map(tie).collect())
+}
+
+fn surrounding(body: &SceneBody, seats: &[BodySeat]) -> Result<Surrounding, BuildError> {
     match &body.source {
         BodySource::Mesh {
             mesh,
@@ -44,7 +140,6 @@ fn surrounding(body: &SceneBody, seat: &BodySeat) -> Result<Surrounding, BuildEr
             let (mut mesh, origin) = mesh::read_body_msh(mesh, *mesh_unit)?;
             let turned = |x: &mut [f64; 3]| *x = frame(body).turned_vector(*x);
             mesh.nodes.iter_mut().for_each(turned);
-            let seats = std::slice::from_ref(seat);
             let made_of = Material::new(m.young_modulus, m.poisson_ratio, m.density)?;
             Ok(Surrounding::of_mesh(
                 &body.name,
@@ -59,7 +154,7 @@ fn surrounding(body: &SceneBody, seat: &BodySeat) -> Result<Surrounding, BuildEr
             if body.is_turned {
                 matrix.half_turn();
             }
-            Ok(Surrounding::of_matrix(&body.name, &matrix, seat)?)
+            Ok(Surrounding::of_matrix(&body.name, &matrix, &seats[0])?)
         }
     }
 }

@@ -1,37 +1,38 @@
 //! From a scene with a list of bearings to the bearings on their shaft.
 
-use std::sync::Arc;
-
 use assembly::{Assembly, AssemblyError, MountedBearing, Seating, ShaftBody};
+use contact::Side;
+use dynamics::Model;
 use dynamics::effects::{Loads, Now, Setting};
-use dynamics::{Model, RingModel};
 
 use crate::build::{NodeTags, build_model, model_with_rings};
 use crate::error::BuildError;
+use crate::housing::{Rings, tie_together};
 use crate::tables::{Motion, ON_SHAFT, RigidShaft, Scene, SeveralScene, ShaftKind};
-
-/// Rings of a bearing, inner first.
-pub type Rings = [Option<Arc<RingModel>>; 2];
 
 /// The bearings of a scene on their shaft, and the numbers of the nodes of each in the mesh files. Reads the meshes of
 /// each type once.
 pub fn build_assembly(scene: &SeveralScene) -> Result<(Assembly, Vec<NodeTags>), BuildError> {
     let mut rings: Vec<Rings> = Vec::new();
     let mut tags: Vec<NodeTags> = Vec::new();
+    let mut shifts: Vec<f64> = Vec::new();
     for (i, bearing) in scene.bearings.iter().enumerate() {
         let like = (0..i).find(|&k| have_same_rings(&scene.bearings[k].scene, &bearing.scene));
         match like {
             Some(k) => {
                 rings.push(rings[k].clone());
                 tags.push(tags[k].clone());
+                shifts.push(shifts[k]);
             }
             None => {
                 let (model, of_model) = build_model(&bearing.scene)?;
+                shifts.push(model.ring_shift(Side::Outer) - model.geometry.axial_offset());
                 rings.push(model.rings);
                 tags.push(of_model);
             }
         }
     }
+    tie_together(&scene.bearings, &mut rings, &shifts)?;
     Ok((assembly_with_rings(scene, rings)?, tags))
 }
 

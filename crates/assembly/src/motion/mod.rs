@@ -12,11 +12,15 @@
 //! its place is the work that goes into it, the `imposed_work` of its ledger. So shaft and bearings together gain no
 //! energy: the shaft has a ledger of its own ([`ShaftLedger`]), and each closes by itself.
 //!
+//! A body that carries several bearings moves in each of them, whole, with the loads of the others on its oscillators.
+//! These are handed on until they stay as they are, so all copies move alike ([`bodies`]).
+//!
 //! An outer Newton balances the shaft with the condensed tangents of the bearings. Patches and turning frames of all
 //! bearings are then brought in line with the motion found, and the shaft is balanced again until nothing changes. A
 //! part that fails is done again in halves, all bearings together.
 
 mod balance;
+mod bodies;
 mod factors;
 mod ledger;
 mod side_by_side;
@@ -29,12 +33,14 @@ use dynamics::stiffness::N_SHAFT;
 use dynamics::{DynamicsError, ShaftDof};
 use rayon::prelude::*;
 
+use self::bodies::SharedLoads;
 use self::factors::{KeptFactors, ShaftAlone};
 pub use self::ledger::ShaftLedger;
 use self::side_by_side::in_order;
 use self::step::ShaftStep;
 use crate::assembly::{Assembly, AssemblySolution};
 use crate::error::AssemblyError;
+use crate::housing::housed_together;
 use crate::newton::Mount;
 
 /// Rounds for patches and frames before a part counts as failed.
@@ -47,6 +53,8 @@ pub type LoadAt<'a> = dyn Fn(f64) -> Result<Vec<f64>, AssemblyError> + Sync + 'a
 pub struct AssemblyMotion<'a> {
     assembly: &'a Assembly,
     mounts: Vec<Mount>,
+    /// Numbers of the bearings in each body that carries several.
+    housed: Vec<Vec<usize>>,
     /// Motion of every bearing, in its own frame.
     pub bearings: Vec<Motion<'a>>,
     /// Speed of the shaft in its frame.
@@ -108,6 +116,7 @@ impl<'a> AssemblyMotion<'a> {
         }
         Ok(AssemblyMotion {
             mounts: assembly.mounts(),
+            housed: housed_together(&assembly.bearings),
             assembly,
             bearings,
             speed,
@@ -222,9 +231,13 @@ impl<'a> AssemblyMotion<'a> {
             tilt_arm: self.assembly.scales().tilt_arm,
         };
         let (mut end, mut kept) = (step.guess(), KeptFactors::new(&step, cache.shaft.take()));
+        let mut bodies = SharedLoads::new(&self.housed);
         for _ in 0..MAX_ROUNDS {
             let loads;
             (end, loads) = step.balance(&mut parts, end, &mut kept)?;
+            if bodies.exchange(&mut parts) == Holding::Again {
+                continue;
+            }
             if self.all(&mut parts, |_, part| part.place())? == Holding::Again {
                 continue;
             }

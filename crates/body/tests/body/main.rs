@@ -60,6 +60,7 @@ fn made(mesh: Mesh, material: Material, fixed: &str, basis: SeatBasis) -> Result
         group: "seat_a".into(),
         space: space(basis),
         middle: None,
+        is_turned: false,
     };
     let fixed = [fixed.to_string()];
     Surrounding::of_mesh("tube", (mesh, &origin), material, &fixed, &[seat]).map_err(|e| e.to_string())
@@ -350,6 +351,7 @@ fn bodies_that_can_move_are_refused() {
         group: "seat_a".into(),
         space: space(basis(2, 1)),
         middle: None,
+        is_turned: false,
     };
     let origin = Origin::of_generated("tube", 1.0, &mesh);
     let free = Surrounding::of_mesh(

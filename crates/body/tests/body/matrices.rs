@@ -79,6 +79,7 @@ pub fn condensed(matrix: &MatrixBody) -> Result<Surrounding, String> {
         group: "seat".into(),
         space: space(basis(3, 1)),
         middle: None,
+        is_turned: false,
     };
     Surrounding::of_matrix("other", matrix, &seat).map_err(|e| e.to_string())
 }

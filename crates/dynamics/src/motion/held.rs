@@ -29,6 +29,8 @@ pub struct HeldPart<'m> {
     part: Part<'m>,
     solution: StepSolution,
     ends: Option<RingEnds>,
+    /// Mean load of others on the body round the outer ring, on its oscillators; empty: none.
+    body_load: Vec<f64>,
 }
 
 /// How a bearing answers.
@@ -63,6 +65,7 @@ impl<'m> HeldPart<'m> {
             part: motion.begin(state, span, cache)?,
             solution: StepSolution::default(),
             ends: None,
+            body_load: Vec::new(),
         })
     }
 
@@ -106,6 +109,27 @@ impl<'m> HeldPart<'m> {
         found
     }
 
+    /// Mean load of the outer ring on the oscillators of the body round it, of the last answer; None: there is no body.
+    pub fn load_on_body(&self) -> Option<Vec<f64>> {
+        let (side, _) = self.motion.model().tied()?;
+        let forces = self.part.parts.forces_at_ports(side, &self.solution);
+        let ring = self.part.rings[side.index()].as_ref()?;
+        ring.load_on_body(forces.at_ports())
+    }
+
+    /// Puts the mean load of others on these oscillators, in place of the one before.
+    pub fn load_body(&mut self, load: Vec<f64>) {
+        let Some((side, _)) = self.motion.model().tied() else {
+            return;
+        };
+        let i = side.index();
+        if let (Some(step), Some(ports)) = (&mut self.part.rings[i], &mut self.part.parts.rings[i]) {
+            step.load_body(&load);
+            ports.offset.clone_from(&step.answer().predicted);
+            self.body_load = load;
+        }
+    }
+
     /// Brings patches in line with the last answer.
     pub fn place(&mut self) -> Result<Holding, DynamicsError> {
         self.part.clock.lap();
@@ -132,12 +156,29 @@ impl<'m> HeldPart<'m> {
     pub fn finish(mut self, cache: &mut StepCache) -> Result<(MotionState, StepReport), DynamicsError> {
         self.part.clock.lap();
         let ends = self.ends.expect("the part is closed");
-        let (next, report, ahead) = self
+        let (mut next, report, ahead) = self
             .motion
             .conclude(self.state, self.part, &self.solution, ends)?;
+        if !self.body_load.is_empty() {
+            next.ledger.imposed_work += work_on_body(self.motion, &self.body_load, [self.state, &next]);
+            next.ledger.note_scale();
+        }
         cache.ahead = ahead;
         Ok((next, report))
     }
+}
+
+/// Work of a mean load on the body round the outer ring between two states, J.
+fn work_on_body(motion: &Motion<'_>, load: &[f64], [from, to]: [&MotionState; 2]) -> f64 {
+    fn body(state: &MotionState, ring: usize) -> Option<&[f64]> {
+        Some(&state.rings[ring].as_ref()?.body()?.0[0])
+    }
+    let ring = motion.model().tied().map_or(0, |(side, _)| side.index());
+    let (Some(from), Some(to)) = (body(from, ring), body(to, ring)) else {
+        return 0.0;
+    };
+    let moved = from.iter().zip(to).map(|(from, to)| to - from);
+    load.iter().zip(moved).map(|(p, x)| p * x).sum()
 }
 
 impl BearingParts {

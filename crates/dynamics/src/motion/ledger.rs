@@ -17,7 +17,7 @@ pub struct Ledger {
     pub hertz: f64,
     /// Work of shaft, ring and ball loads.
     pub load_work: f64,
-    /// Work of imposed shaft displacements.
+    /// Work of imposed shaft displacements, and of other bearings on the body that carries this one.
     pub imposed_work: f64,
     /// Work of the turning frame.
     pub frame_work: f64,

@@ -25,13 +25,19 @@ impl Motion<'_> {
         let ring = |side: Side| {
             let moving = self.rings[side.index()].as_ref()?;
             let elastic = solution.elastic[side.index()].as_ref()?;
-            Some(ring_at_start(
-                &*moving.body,
-                elastic,
-                if side == Side::Inner { q } else { seat },
-                if side == Side::Inner { velocity } else { [0.0; 5] },
-                self.settings.speeds.of(side).at(0.0),
-            ))
+            let (q, velocity) = match side {
+                Side::Inner => (q, velocity),
+                _ => (seat, [0.0; 5]),
+            };
+            let omega = self.settings.speeds.of(side).at(0.0);
+            let ring = ring_at_start(&*moving.body, elastic, q, velocity, omega);
+            Some(match (&model.other_seats, moving.body.tied()) {
+                (Some(others), Some(body)) => {
+                    let at = moving.body.nodal(ring.displacement());
+                    ring.with_body(Some(body.at_rest(&at, Some(others))))
+                }
+                _ => ring,
+            })
         };
         let contacts = solution.parts.states_at(&solution.displacements);
         let places: Vec<[f64; 2]> = contacts.iter().map(|c| [c.angle, c.force.force]).collect();

@@ -48,7 +48,8 @@ fn of_bearing(ring: RingModel, backend: Backend) -> Vec<Mode> {
 fn in_tube(n: usize, below: f64) -> RingModel {
     let (own, _) = tube(&outer(Hold::Clamped), 3);
     let body = surrounding(own, space(&outer(Hold::MeanMotion), harmonics(n, 2)), steel());
-    tied(SeatTie::to_body(Arc::new(body)).in_motion(below).unwrap())
+    let modes = Arc::new(body.modes(below).unwrap());
+    tied(SeatTie::to_seat(Arc::new(body), 0).in_motion(modes))
 }
 
 /// Ring and tube as one mesh.

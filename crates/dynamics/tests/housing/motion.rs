@@ -17,7 +17,8 @@ const STEP: f64 = 1e-5;
 fn on_moving_body(mesh: mesh::Mesh, n: usize, below: f64) -> RingModel {
     let space = space(&outer(Hold::MeanMotion), harmonics(n, 2));
     let body = surrounding(mesh, space, steel());
-    tied(SeatTie::to_body(Arc::new(body)).in_motion(below).unwrap())
+    let modes = Arc::new(body.modes(below).unwrap());
+    tied(SeatTie::to_seat(Arc::new(body), 0).in_motion(modes))
 }
 
 /// A bearing whose shaft has a mass, and that begins with a blow of 0.05 m/s across and 0.03 m/s along it.

@@ -88,7 +88,12 @@ impl RingSolver {
 
     /// Elastic displacements, m, column-major `[n_dofs][n]`, under `n` load vectors (N) of the same layout: relative to
     /// the rigid partner, or to what holds the body to which the ring is tied.
-    pub fn solve(&self, mut loads: Vec<f64>, n: usize) -> Vec<f64> {
+    pub fn solve(&self, loads: Vec<f64>, n: usize) -> Vec<f64> {
+        self.solve_on(loads, n, None)
+    }
+
+    /// The same where others move the seat of the body, by functions, m.
+    pub fn solve_on(&self, mut loads: Vec<f64>, n: usize, seat: Option<&[f64]>) -> Vec<f64> {
         let Some(tie) = &self.tie else {
             return self.solve_held(loads, n);
         };
@@ -96,7 +101,11 @@ impl RingSolver {
         let columns = held
             .chunks_exact(self.n_dofs)
             .zip(loads.chunks_exact(self.n_dofs));
-        let couplings: Vec<f64> = columns.flat_map(|(u, f)| tie.coupling(u, f)).collect();
+        let mut couplings: Vec<f64> = columns.flat_map(|(u, f)| tie.coupling(u, f)).collect();
+        if let Some(seat) = seat {
+            let columns = couplings.chunks_exact_mut(tie.n());
+            columns.for_each(|column| column.iter_mut().zip(seat).for_each(|(g, d)| *g -= d));
+        }
         let answers = tie.answer(&couplings);
         for (load, answer) in loads
             .chunks_exact_mut(self.n_dofs)

@@ -25,6 +25,8 @@ struct TiedStep<'a> {
     old: &'a BodyState,
     body: BodyStep,
     answer: PortAnswer,
+    /// B, `[n_ports][n_functions]` flat.
+    coupling: Vec<f64>,
     /// lam without forces on the contacts, N.
     known: Vec<f64>,
     /// (A + D)^-1 B, `[n_ports][n_functions]` flat.
@@ -57,9 +59,10 @@ impl StepFactor for TiedFactor {
         let mut step = TiedStep {
             factor: self,
             ring: self.ring.begin(from, known, contacts),
-            body: self.body.step(old),
+            body: self.body.step(old, &[]),
             old,
             answer: PortAnswer::default(),
+            coupling: Vec::new(),
             known: Vec::new(),
             by_port: Vec::new(),
         };
@@ -74,9 +77,6 @@ impl TiedStep<'_> {
         let (ring, n) = (self.ring.answer(), self.body.seat.len());
         let size = ring.start.len();
         let ports = size - n;
-        let gaps = self.body.seat.iter().zip(&ring.predicted[ports..]);
-        let mut known: Vec<f64> = gaps.map(|(y, g)| y - g).collect();
-        self.factor.joint.solve(&mut known, 1);
         let row = |i: usize| &ring.compliance[size * i..size * (i + 1)];
         let coupling: Vec<f64> = (0..ports).flat_map(|i| &row(i)[ports..]).copied().collect();
         let mut by_port = coupling.clone();
@@ -90,18 +90,26 @@ impl TiedStep<'_> {
                 (compliance[ports * i + j], compliance[ports * j + i]) = (value, value);
             }
         }
-        let predicted = ring
-            .predicted
-            .iter()
-            .zip(&rows)
-            .map(|(p, row)| p + dot(row, &known));
         self.answer = PortAnswer {
             start: ring.start[..ports].to_vec(),
             seen: ring.seen.clone(),
-            predicted: predicted.collect(),
+            predicted: Vec::new(),
             compliance,
         };
-        (self.known, self.by_port) = (known, by_port);
+        (self.coupling, self.by_port) = (coupling, by_port);
+        self.predict();
+    }
+
+    /// What the contacts see without forces on them, from what ring and body do by themselves.
+    fn predict(&mut self) {
+        let (ring, n) = (self.ring.answer(), self.body.seat.len());
+        let ports = ring.start.len() - n;
+        let gaps = self.body.seat.iter().zip(&ring.predicted[ports..]);
+        let mut known: Vec<f64> = gaps.map(|(y, g)| y - g).collect();
+        self.factor.joint.solve(&mut known, 1);
+        let rows = ring.predicted.iter().zip(self.coupling.chunks_exact(n));
+        self.answer.predicted = rows.map(|(p, row)| p + dot(row, &known)).collect();
+        self.known = known;
     }
 
     /// Forces of the joint on the ring under forces on the contacts, N.
@@ -127,6 +135,17 @@ impl ElasticStep for TiedStep<'_> {
         let laps = self.ring.move_contacts(contacts);
         self.meet();
         laps
+    }
+
+    fn load_on_body(&self, forces: PortForces<'_>) -> Option<Vec<f64>> {
+        let mut load = self.factor.body.body.modes.loads(&self.joint(forces.contacts));
+        load.iter_mut().for_each(|p| *p = -*p);
+        Some(load)
+    }
+
+    fn load_body(&mut self, load: &[f64]) {
+        self.body = self.factor.body.step(self.old, load);
+        self.predict();
     }
 
     fn at_contacts(&self, x: &[f64]) -> Vec<f64> {

@@ -13,7 +13,7 @@
 
 use std::sync::Arc;
 
-use body::{BodyModes, SeatFunctions, SeatTie};
+use body::{SeatFunctions, SeatModes, SeatTie};
 use dense::DenseCholesky;
 use solver::LinearSolver;
 
@@ -28,7 +28,7 @@ const AT_A_TIME: usize = 32;
 /// The joint of a vibrating ring, and its body.
 pub(crate) struct VibratingTie {
     tie: Arc<SeatTie>,
-    modes: Arc<BodyModes>,
+    modes: SeatModes,
     /// Phi in the coordinates of the ring.
     mount: MountRows,
     /// Coordinates of the ring.
@@ -53,7 +53,7 @@ impl VibratingTie {
         let modes = tie.modes.clone();
         let modes = modes.expect("the modes of a body are found before its ring vibrates");
         let mount = MountRows::dense(functions.sparse_rows());
-        let effective: Vec<f64> = modes.squares.iter().map(|square| square + shift).collect();
+        let effective: Vec<f64> = modes.squares().iter().map(|square| square + shift).collect();
         let n = mount.len();
         let mut joint = Vec::with_capacity(n * n);
         for rows in mount.rows.chunks(AT_A_TIME) {
@@ -99,7 +99,7 @@ impl VibratingTie {
         let mut all = Vec::with_capacity(y.len());
         for (ring, y) in ring.chunks_exact(self.n_ring).zip(y.chunks_exact(self.n())) {
             all.extend_from_slice(ring);
-            let oscillators = self.modes.squares.iter().zip(&y[self.n_ring..]);
+            let oscillators = self.modes.squares().iter().zip(&y[self.n_ring..]);
             all.extend(oscillators.map(|(square, xi)| factor(*square) * xi));
         }
         all
@@ -125,7 +125,7 @@ impl VibratingTie {
             lam.iter_mut().for_each(|gap| *gap = -*gap);
             self.joint.solve(&mut lam, 1);
             self.mount.loads(&lam).for_each(|(i, f)| force[i] += f);
-            let rows = self.modes.seat.chunks_exact(lam.len()).zip(&self.effective);
+            let rows = self.modes.rows().zip(&self.effective);
             for ((xi, free), (row, s)) in oscillators.iter_mut().zip(free).zip(rows) {
                 *xi = free - dot(row, &lam) / s;
             }
@@ -142,7 +142,7 @@ impl VibratingTie {
     /// Phi y - V^T xi.
     fn gap(&self, ring: &[f64], oscillators: &[f64]) -> Vec<f64> {
         let mut gap = self.mount.measure(ring);
-        let of_body = self.modes.seat_motion(oscillators);
+        let of_body = self.modes.motion(oscillators);
         gap.iter_mut().zip(of_body).for_each(|(g, y)| *g -= y);
         gap
     }
@@ -153,10 +153,7 @@ impl VibratingTie {
         let mut lam = self.gap(ring, oscillators);
         self.gram.solve(&mut lam, 1);
         self.mount.loads(&lam).for_each(|(i, f)| ring[i] -= f);
-        for (p, row) in oscillators
-            .iter_mut()
-            .zip(self.modes.seat.chunks_exact(lam.len()))
-        {
+        for (p, row) in oscillators.iter_mut().zip(self.modes.rows()) {
             *p += dot(row, &lam);
         }
     }
@@ -170,6 +167,6 @@ impl VibratingTie {
     /// Displacement of the body, `[n_nodes][3]` flat; None of a rigid one.
     pub fn body_displacement(&self, y: &[f64]) -> Option<Vec<f64>> {
         let body = self.tie.body.as_ref()?;
-        Some(body.moved(&self.modes, &y[self.n_ring..]))
+        Some(body.moved(&self.modes.of_body, &y[self.n_ring..]))
     }
 }

@@ -79,6 +79,8 @@ pub struct SceneBody {
     pub basis: SeatBasis,
     /// Whether it is turned by 180 deg about x.
     pub is_turned: bool,
+    /// Whether it carries other bearings of a list as well.
+    pub is_shared: bool,
     /// Frequency up to which its modes with a held seat move, Hz; None at rest.
     pub modes_below: Option<f64>,
     /// Where the middle of the ring's seat stands along its own z, m; None: in the middle of the group.
@@ -250,6 +252,7 @@ impl RawSceneBody {
             },
             name: self.name.clone(),
             is_turned: orientation == Some(Orientation::MinusZ),
+            is_shared: false,
             modes_below,
             source: source?,
             group: seat.group.clone().unwrap_or_default(),

@@ -1,4 +1,4 @@
-//! `[[body]]` in a list of bearings: each carries the outer ring of one of them, which its seat names.
+//! `[[body]]` in a list of bearings: each carries the outer rings that its seats name.
 //!
 //! The mesh of a body stands as its bearing's seat does in the frame of the shaft, whichever way the bearing is turned:
 //! in the frame of a bearing that is turned, the body is turned too.
@@ -16,6 +16,7 @@ const BEARING: &str = "bearing";
 pub struct RawListedBody {
     #[serde(default)]
     name: String,
+    stiffness: Option<String>,
     #[serde(default)]
     seat: Vec<RawListedSeat>,
 }
@@ -23,21 +24,21 @@ pub struct RawListedBody {
 #[derive(Debug, Deserialize)]
 struct RawListedSeat {
     bearing: Option<String>,
+    group: Option<String>,
 }
 
 /// Every seat names one of the bearings `names`, and every bearing has one body at most.
 pub fn check(bodies: &[RawListedBody], names: &[&str], problems: &mut Problems) {
     let known = names.join(", ");
     let mut taken: Vec<(&str, &str)> = Vec::new();
-    for body in bodies {
+    for (number, body) in bodies.iter().enumerate() {
         let name = body.name.as_str();
-        if body.seat.len() > 1 {
+        if bodies[..number].iter().any(|other| other.name == name) {
             problems.add(format!(
-                "body {name:?} has {} seats, but a body that carries several bearings is not solved; give each bearing \
-                 a [[body]] of its own",
-                body.seat.len()
+                "body.name {name:?} stands twice; expected a name of its own for each body"
             ));
         }
+        body.check_seats(problems);
         for seat in &body.seat {
             let Some(bearing) = seat.bearing.as_deref() else {
                 problems.add(format!(
@@ -52,16 +53,47 @@ pub fn check(bodies: &[RawListedBody], names: &[&str], problems: &mut Problems) 
                 ));
             }
             if let Some((other, _)) = taken.iter().find(|(_, of)| *of == bearing) {
-                problems.add(format!(
-                    "bodies {other:?} and {name:?} have both a seat for the bearing {bearing:?}; expected one body"
-                ));
+                problems.add(match *other == name {
+                    true => format!(
+                        "body {name:?} has two seats for the bearing {bearing:?}; expected one seat for each bearing"
+                    ),
+                    false => format!(
+                        "bodies {other:?} and {name:?} have both a seat for the bearing {bearing:?}; expected one body"
+                    ),
+                });
             }
             taken.push((name, bearing));
         }
     }
 }
 
-/// Gives a bearing its body, in its own frame, and ties its outer ring to it.
+impl RawListedBody {
+    /// What several seats of one body ask for.
+    fn check_seats(&self, problems: &mut Problems) {
+        let name = self.name.as_str();
+        if self.stiffness.is_some() && self.seat.len() > 1 {
+            problems.add(format!(
+                "body {name:?} comes from a matrix and has {} seats, but its table of nodes has one; give each bearing \
+                 a [[body]] of its own, or give the body as a mesh",
+                self.seat.len()
+            ));
+        }
+        let groups: Vec<&str> = self
+            .seat
+            .iter()
+            .filter_map(|seat| seat.group.as_deref())
+            .collect();
+        for (number, group) in groups.iter().enumerate() {
+            if groups[..number].contains(group) {
+                problems.add(format!(
+                    "body {name:?} has two seats with the group {group:?}; expected a group of its own for each seat"
+                ));
+            }
+        }
+    }
+}
+
+/// Gives a bearing its body, in its own frame and with its own seat, and ties its outer ring to it.
 pub fn place(list: &DocumentMut, document: &mut DocumentMut, (name, orientation): (&str, Orientation)) {
     document.remove("body");
     let bodies = list.get("body").and_then(Item::as_array_of_tables);
@@ -69,6 +101,7 @@ pub fn place(list: &DocumentMut, document: &mut DocumentMut, (name, orientation)
     for body in bodies.into_iter().flatten().filter(|body| carries(body, name)) {
         let mut body = body.clone();
         if let Some(seats) = body.get_mut("seat").and_then(Item::as_array_of_tables_mut) {
+            seats.retain(|seat| seat.get(BEARING).and_then(Item::as_str) == Some(name));
             seats.iter_mut().for_each(|seat| {
                 seat.remove(BEARING);
             });

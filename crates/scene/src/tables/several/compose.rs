@@ -116,7 +116,8 @@ impl Composer<'_> {
             type_file: raw.r#type.clone(),
             scene,
         };
-        let bearings: Vec<BearingOnShaft> = raw.bearing.iter().zip(scenes).map(mounted).collect();
+        let mut bearings: Vec<BearingOnShaft> = raw.bearing.iter().zip(scenes).map(mounted).collect();
+        note_shared_bodies(&mut bearings);
         let speed = bearings[0].scene.speed.clone().map(|mut speed| {
             turn_speeds(&mut speed, bearings[0].orientation);
             speed
@@ -322,6 +323,18 @@ impl Composer<'_> {
                 overrides: self.overrides.to_vec(),
                 problems: vec![problem],
             },
+        }
+    }
+}
+
+/// Notes which bodies carry several bearings.
+fn note_shared_bodies(bearings: &mut [BearingOnShaft]) {
+    let name_of = |bearing: &BearingOnShaft| Some(bearing.scene.body.as_ref()?.name.clone());
+    let names: Vec<Option<String>> = bearings.iter().map(name_of).collect();
+    for bearing in bearings {
+        if let Some(body) = &mut bearing.scene.body {
+            let same = names.iter().flatten().filter(|name| **name == body.name);
+            body.is_shared = same.count() > 1;
         }
     }
 }

@@ -25,6 +25,28 @@ fn a_body_is_that_of_its_bearing_and_stands_as_in_the_frame_of_the_shaft() {
     assert_ne!(support(front), support(rear));
 }
 
+/// A body with the seat of the front bearing, and another one.
+fn two_seats(group: &str, bearing: &str) -> String {
+    let second = format!("[[body.seat]]\nring = \"outer\"\ngroup = \"{group}\"\nbearing = \"{bearing}\"\n");
+    body("bearing = \"front\"", &second)
+}
+
+/// Wrong: the seats of one body would not go to their bearings, or each bearing would make a body of its own of it.
+#[test]
+fn each_bearing_has_its_own_seat_of_a_body_that_carries_both() {
+    let lists = Lists::new("shared_body");
+    let list = lists.several(&list(BEAM, &two_seats("seat_b", "rear")), &[]);
+    let bodies = [0, 1].map(|i| list.bearings[i].scene.body.clone().unwrap());
+    let told = bodies.map(|body| (body.group, body.is_turned, body.is_shared));
+    assert_eq!(
+        told,
+        [
+            ("seat_a".to_string(), false, true),
+            ("seat_b".to_string(), true, true)
+        ]
+    );
+}
+
 /// Wrong: a body that no bearing sits in, or two for one, would be left out without a word.
 #[test]
 fn bodies_that_fit_no_bearing_are_refused_with_advice() {
@@ -44,18 +66,34 @@ fn bodies_that_fit_no_bearing_are_refused_with_advice() {
                 BEAM,
                 &[body("bearing = \"rear\"", ""), body("bearing = \"rear\"", "")].concat(),
             ),
-            "bodies \"block\" and \"block\" have both a seat for the bearing \"rear\"; expected one body",
+            "body.name \"block\" stands twice; expected a name of its own for each body",
         ),
         (
             list(
                 BEAM,
-                &body(
-                    "bearing = \"front\"",
-                    "[[body.seat]]\nring = \"outer\"\ngroup = \"seat_b\"\nbearing = \"rear\"\n",
-                ),
+                &[
+                    body("bearing = \"rear\"", ""),
+                    body("bearing = \"rear\"", "").replace("\"block\"", "\"other\""),
+                ]
+                .concat(),
             ),
-            "body \"block\" has 2 seats, but a body that carries several bearings is not solved; give each bearing a \
-             [[body]] of its own",
+            "bodies \"block\" and \"other\" have both a seat for the bearing \"rear\"; expected one body",
+        ),
+        (
+            list(BEAM, &two_seats("seat_b", "front")),
+            "body \"block\" has two seats for the bearing \"front\"; expected one seat for each bearing",
+        ),
+        (
+            list(BEAM, &two_seats("seat_a", "rear")),
+            "body \"block\" has two seats with the group \"seat_a\"; expected a group of its own for each seat",
+        ),
+        (
+            list(
+                BEAM,
+                &two_seats("seat_b", "rear").replace("mesh = \"block.msh\"", "stiffness = \"K.mtx\""),
+            ),
+            "body \"block\" comes from a matrix and has 2 seats, but its table of nodes has one; give each bearing a \
+             [[body]] of its own, or give the body as a mesh",
         ),
     ];
     for (text, expected) in cases {

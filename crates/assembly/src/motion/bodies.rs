@@ -1,0 +1,87 @@
+//! Bodies that carry several bearings, over a part of a step.
+//!
+//! Every bearing moves the whole body, its own seat by the forces of its joint, and the oscillators besides by the mean
+//! loads of the other bearings. A round hands these on. Over a step the inertia of the body holds most of what one
+//! bearing does away from the others, so rounds contract fast: by about the share of the ring's mass in that of the
+//! body. What the ledger of a bearing says of its body includes what the others do to it, as imposed work.
+
+use dynamics::motion::held::{HeldPart, Holding};
+
+use crate::mixing::{Mixing, dot};
+
+/// Change of the loads over their size at which they stay as they are. The ledger of each bearing closes with any
+/// loads; what is left makes the copies of a body differ.
+const LIMIT: f64 = 1e-11;
+/// The same where rounds no longer contract.
+const FLOOR: f64 = 1e-9;
+/// A round that leaves more than this of the change before it no longer contracts.
+const STALLED: f64 = 0.5;
+
+/// Loads on the oscillators of shared bodies.
+pub struct SharedLoads<'a> {
+    bodies: Vec<SharedLoad<'a>>,
+}
+
+/// Loads on one body.
+struct SharedLoad<'a> {
+    bearings: &'a [usize],
+    /// Of each bearing, one after the other; empty before the first round.
+    loads: Vec<f64>,
+    mixing: Mixing,
+    /// Last change over the size.
+    change: f64,
+}
+
+impl<'a> SharedLoads<'a> {
+    /// Loads of the bearings in each body, none yet.
+    pub fn new(housed: &'a [Vec<usize>]) -> SharedLoads<'a> {
+        let body = |bearings: &'a Vec<usize>| SharedLoad {
+            bearings,
+            loads: Vec::new(),
+            mixing: Mixing::default(),
+            change: f64::INFINITY,
+        };
+        SharedLoads {
+            bodies: housed.iter().map(body).collect(),
+        }
+    }
+
+    /// Hands on the loads of the last answers; settled if no bearing is told anything new.
+    pub fn exchange(&mut self, parts: &mut [HeldPart<'_>]) -> Holding {
+        let mut holding = Holding::Settled;
+        for body in &mut self.bodies {
+            if body.exchange(parts) == Holding::Again {
+                holding = Holding::Again;
+            }
+        }
+        holding
+    }
+}
+
+impl SharedLoad<'_> {
+    fn exchange(&mut self, parts: &mut [HeldPart<'_>]) -> Holding {
+        let answers = self.bearings.iter().map(|&i| parts[i].load_on_body());
+        let found: Vec<f64> = answers.flat_map(Option::unwrap_or_default).collect();
+        if self.loads.is_empty() {
+            self.loads = vec![0.0; found.len()];
+        }
+        let size = dot(&found, &found).sqrt();
+        let off: Vec<f64> = found.iter().zip(&self.loads).map(|(g, x)| g - x).collect();
+        let change = dot(&off, &off).sqrt() / size.max(f64::MIN_POSITIVE);
+        let stalls = change > STALLED * self.change && change <= FLOOR;
+        self.change = change;
+        if change <= LIMIT || stalls {
+            return Holding::Settled;
+        }
+        self.loads = self.mixing.next(std::mem::take(&mut self.loads), &found);
+        let n = self.loads.len() / self.bearings.len();
+        for (number, &i) in self.bearings.iter().enumerate() {
+            let of_others = |k: usize| -> f64 {
+                let others = (0..self.bearings.len()).filter(|other| *other != number);
+                others.map(|other| self.loads[n * other + k]).sum()
+            };
+            parts[i].load_body((0..n).map(of_others).collect());
+        }
+        Holding::Again
+    }
+}
