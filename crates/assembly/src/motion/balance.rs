@@ -1,9 +1,10 @@
 //! Newton on the shaft over a part of a step.
 
-use dynamics::motion::held::HeldPart;
+use dynamics::motion::held::{HeldPart, Holding};
 use dynamics::stiffness::N_SHAFT;
 use rayon::prelude::*;
 
+use super::bodies::SharedLoads;
 use super::factors::KeptFactors;
 use super::side_by_side::in_order;
 use super::step::ShaftStep;
@@ -40,16 +41,19 @@ impl ShaftStep<'_> {
         parts: &mut [HeldPart<'_>],
         from: Vec<f64>,
         kept: &mut KeptFactors,
+        bodies: &mut SharedLoads<'_>,
     ) -> Result<(Vec<f64>, Vec<[f64; N_SHAFT]>), AssemblyError> {
         let mut at = self.evaluate(parts, from)?;
         let (mut best, mut stalled) = (f64::INFINITY, 0);
         let mut history = Vec::new();
         for _ in 0..MOST_ITERATIONS {
+            let holding = bodies.exchange(parts);
             stalled = if at.error < 0.5 * best { 0 } else { stalled + 1 };
             best = best.min(at.error);
             history.push(at.error / at.scale);
             let is_small = at.error <= LIMIT * at.scale;
-            if at.error <= TARGET * at.scale || (stalled >= 2 && is_small) {
+            let is_balanced = at.error <= TARGET * at.scale || (stalled >= 2 && is_small);
+            if is_balanced && holding == Holding::Settled {
                 return Ok((at.end, at.loads));
             }
             let gets_on =
@@ -57,8 +61,19 @@ impl ShaftStep<'_> {
             if !gets_on {
                 kept.renew();
             }
-            let step = kept.step(self, parts, &at.residual)?;
-            at = self.search(parts, at, &step)?;
+            at = match holding {
+                Holding::Settled => {
+                    let step = kept.step(self, parts, &at.residual)?;
+                    self.search(parts, at, &step)?
+                }
+                // Loads of bodies have changed, and the residual with them: a step, or the same place anew.
+                Holding::Again if is_balanced || bodies.are_far() => self.evaluate(parts, at.end)?,
+                Holding::Again => {
+                    let step = kept.step(self, parts, &at.residual)?;
+                    let end = at.end.iter().zip(&step).map(|(q, s)| q + s).collect();
+                    self.evaluate(parts, end)?
+                }
+            };
         }
         let tail = history.len().saturating_sub(6);
         Err(AssemblyError::NotSettled {

@@ -11,9 +11,14 @@ use crate::mixing::{Mixing, dot};
 
 /// Change of the loads over their size at which they stay as they are. The ledger of each bearing closes with any
 /// loads; what is left makes the copies of a body differ.
-const LIMIT: f64 = 1e-11;
+const LIMIT: f64 = 1e-10;
 /// The same where rounds no longer contract.
-const FLOOR: f64 = 1e-9;
+const FLOOR: f64 = 1e-8;
+/// The same above which the shaft need not move before bearings have answered to the new loads.
+const FAR: f64 = 0.1;
+/// A round that leaves more than this of the change before it contracts slowly: the next point is that of the mixing.
+/// Elsewhere that would only spread round-off.
+const SLOW: f64 = 0.2;
 /// A round that leaves more than this of the change before it no longer contracts.
 const STALLED: f64 = 0.5;
 
@@ -46,6 +51,11 @@ impl<'a> SharedLoads<'a> {
         }
     }
 
+    /// Whether the last exchange changed much: nothing is near its end yet.
+    pub fn are_far(&self) -> bool {
+        self.bodies.iter().any(|body| body.change > FAR)
+    }
+
     /// Hands on the loads of the last answers; settled if no bearing is told anything new.
     pub fn exchange(&mut self, parts: &mut [HeldPart<'_>]) -> Holding {
         let mut holding = Holding::Settled;
@@ -69,11 +79,13 @@ impl SharedLoad<'_> {
         let off: Vec<f64> = found.iter().zip(&self.loads).map(|(g, x)| g - x).collect();
         let change = dot(&off, &off).sqrt() / size.max(f64::MIN_POSITIVE);
         let stalls = change > STALLED * self.change && change <= FLOOR;
+        let is_slow = change > SLOW * self.change;
         self.change = change;
         if change <= LIMIT || stalls {
             return Holding::Settled;
         }
-        self.loads = self.mixing.next(std::mem::take(&mut self.loads), &found);
+        let mixed = self.mixing.next(std::mem::take(&mut self.loads), &found);
+        self.loads = if is_slow { mixed } else { found };
         let n = self.loads.len() / self.bearings.len();
         for (number, &i) in self.bearings.iter().enumerate() {
             let of_others = |k: usize| -> f64 {

@@ -234,10 +234,7 @@ impl<'a> AssemblyMotion<'a> {
         let mut bodies = SharedLoads::new(&self.housed);
         for _ in 0..MAX_ROUNDS {
             let loads;
-            (end, loads) = step.balance(&mut parts, end, &mut kept)?;
-            if bodies.exchange(&mut parts) == Holding::Again {
-                continue;
-            }
+            (end, loads) = step.balance(&mut parts, end, &mut kept, &mut bodies)?;
             if self.all(&mut parts, |_, part| part.place())? == Holding::Again {
                 continue;
             }
