@@ -4,6 +4,7 @@
 mod answers;
 mod bad_input;
 mod batch;
+mod cage_whirl;
 mod cuts;
 mod damaged_tables;
 mod documents;
