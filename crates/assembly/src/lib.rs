@@ -11,7 +11,7 @@
 //!
 //! So nothing in a bearing knows of the others, and rings, balls and contacts are those of a bearing alone. Bearings of
 //! one type share their rings and the factors of these. Bearings in one elastic body feel each other through it as well
-//! ([`housing`]).
+//! (`housing`).
 
 pub mod assembly;
 pub mod beam;

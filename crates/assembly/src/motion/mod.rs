@@ -13,7 +13,7 @@
 //! energy: the shaft has a ledger of its own ([`ShaftLedger`]), and each closes by itself.
 //!
 //! A body that carries several bearings moves in each of them, whole, with the loads of the others on its oscillators.
-//! These are handed on until they stay as they are, so all copies move alike ([`bodies`]).
+//! These are handed on until they stay as they are, so all copies move alike (`bodies`).
 //!
 //! An outer Newton balances the shaft with the condensed tangents of the bearings. Patches and turning frames of all
 //! bearings are then brought in line with the motion found, and the shaft is balanced again until nothing changes. A
