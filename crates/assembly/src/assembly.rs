@@ -18,6 +18,9 @@ use crate::support::{BearingSupport, BearingSupports};
 
 /// Change of the forces on a body over their size at which its bearings no longer feel each other's.
 const BODY_TOLERANCE: f64 = 1e-9;
+/// The same that may be left where rounds no longer get on, and after how many of them.
+const BODY_FLOOR: f64 = 1e-7;
+const BODY_PATIENCE: usize = 3;
 /// Rounds of these before giving up.
 const MOST_BODY_ROUNDS: usize = 100;
 
@@ -174,7 +177,18 @@ impl AssemblySolver {
             }
             None => vec![0.0; assembly.shaft.n()],
         };
-        self.settle_in_bodies(assembly, &at, start)
+        let found = self.settle_in_bodies(assembly, &at, start);
+        if let (Err(_), Some(start)) = (&found, start) {
+            // What failed is forgotten: the bearings are those of the last solution again.
+            self.tell(&start.on_bodies, assembly);
+        }
+        found
+    }
+
+    /// Tells all bearings the forces on the bodies that carry several.
+    fn tell(&self, forces: &[Vec<f64>], assembly: &mut Assembly) {
+        let told = self.bodies.iter().zip(forces);
+        told.for_each(|(body, forces)| body.tell(forces, &mut assembly.bearings));
     }
 
     /// The same with rings as they are, until the forces on bodies that carry several bearings stay as they are.
@@ -189,12 +203,13 @@ impl AssemblySolver {
             None => self.bodies.iter().map(SharedBody::none).collect(),
         };
         let mut mixings: Vec<Mixing> = self.bodies.iter().map(|_| Mixing::default()).collect();
-        let (mut before, mut rounds): (Option<SettledAssembly>, usize) = (None, 1);
+        let (mut before, mut history): (Option<SettledAssembly>, Vec<f64>) = (None, Vec::new());
+        let mut iterations = 0;
+        let limit = BODY_TOLERANCE.max(assembly.scales().tolerance);
         loop {
-            let told = self.bodies.iter().zip(&forces);
-            told.for_each(|(body, forces)| body.tell(forces, &mut assembly.bearings));
+            self.tell(&forces, assembly);
             let at = before.as_ref().map_or(at, |(shaft, _)| &shaft.displacements);
-            let (shaft, bearings) = self.settle(
+            let (mut shaft, bearings) = self.settle(
                 assembly,
                 SolvedRings::AsTheyAre,
                 at,
@@ -204,26 +219,32 @@ impl AssemblySolver {
                 },
             )?;
             let found = self.bodies.iter();
-            let found: Vec<Vec<f64>> = found.map(|b| b.forces(&assembly.bearings, &bearings)).collect();
+            let found = found.map(|b| b.forces(&assembly.bearings, &bearings));
+            let found = found.collect::<Result<Vec<Vec<f64>>, AssemblyError>>()?;
+            iterations += shaft.iterations;
             let pairs = forces.iter().zip(&found);
             let changes: Vec<f64> = pairs.map(|(x, g)| change(x, g)).collect();
-            let largest = changes.iter().fold(0.0, |most: f64, c| most.max(*c));
-            if largest <= BODY_TOLERANCE.max(assembly.scales().tolerance) {
+            // Not `f64::max`: what is no number is no small change.
+            let largest = changes
+                .iter()
+                .fold(0.0, |most, c| if *c <= most { most } else { *c });
+            if largest <= limit || has_stalled(&history, largest) {
+                shaft.iterations = iterations;
                 return Ok(AssemblySolution {
                     bearings,
                     shaft,
                     on_bodies: forces,
                 });
             }
-            if rounds == MOST_BODY_ROUNDS {
+            history.push(largest);
+            if history.len() == MOST_BODY_ROUNDS {
                 let body = changes.iter().position(|c| *c == largest).unwrap_or(0);
                 return Err(AssemblyError::BodiesNotSettled {
                     body: self.bodies[body].name.clone(),
-                    rounds,
+                    rounds: MOST_BODY_ROUNDS,
                     change: largest,
                 });
             }
-            rounds += 1;
             let mixed = mixings.iter_mut().zip(forces).zip(&found);
             forces = mixed.map(|((mixing, x), found)| mixing.next(x, found)).collect();
             before = Some((shaft, bearings));
@@ -275,11 +296,17 @@ impl AssemblySolver {
 /// Change of forces over their size.
 fn change(x: &[f64], found: &[f64]) -> f64 {
     let difference: Vec<f64> = found.iter().zip(x).map(|(g, x)| g - x).collect();
-    let size = dot(found, found).sqrt();
-    match size > 0.0 {
-        true => dot(&difference, &difference).sqrt() / size,
-        false => 0.0,
+    let size = dot(found, found).max(dot(x, x)).sqrt();
+    match size == 0.0 {
+        true => 0.0,
+        false => dot(&difference, &difference).sqrt() / size,
     }
+}
+
+/// Whether what is left is what the balance of shaft and rings leaves: it has not halved for some rounds.
+fn has_stalled(history: &[f64], change: f64) -> bool {
+    let before = history.len().checked_sub(BODY_PATIENCE).map(|i| history[i]);
+    change <= BODY_FLOOR && before.is_some_and(|before| change > 0.5 * before)
 }
 
 /// With which rings.

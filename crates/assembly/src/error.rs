@@ -72,6 +72,17 @@ pub enum AssemblyError {
         /// Rounds.
         rounds: usize,
     },
+    /// The flexibility of a body has no inverse at a seat.
+    #[error(
+        "the forces of bearing {bearing:?} on body {body:?} cannot be found: the body does not tell the functions of \
+         its seat apart; lower harmonics or across of [[body.seat]], or mesh it finer there"
+    )]
+    NoSeatForces {
+        /// Name of the body.
+        body: String,
+        /// Name of the bearing.
+        bearing: String,
+    },
     /// The stiffness of a bearing in a body that carries others as well.
     #[error(
         "body {body:?} carries several bearings, which feel each other through it: none has a stiffness of its own, so \
@@ -84,7 +95,8 @@ pub enum AssemblyError {
     /// Forces on a body that carries several bearings keep changing.
     #[error(
         "the forces on body {body:?}, which carries several bearings, still change by {change:.1e} of their size after \
-         {rounds} rounds; stiffen what holds it, or give each bearing a body of its own"
+         {rounds} rounds; take a smaller step if it moves, stiffen what holds it, or give each bearing a body of its \
+         own"
     )]
     BodiesNotSettled {
         /// Name of the body.
@@ -133,6 +145,7 @@ impl AssemblyError {
         match self {
             AssemblyError::Bearing { source, .. } => source.may_pass_with_smaller_step(),
             AssemblyError::RoundsNotSettled { .. }
+            | AssemblyError::BodiesNotSettled { .. }
             | AssemblyError::NotFinite
             | AssemblyError::NotSettled { .. }
             | AssemblyError::Matrix { .. } => true,

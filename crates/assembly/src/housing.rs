@@ -36,19 +36,19 @@ fn shared(model: &Model) -> Option<(&Arc<SeatTie>, &Arc<Surrounding>)> {
     Some((tie, body))
 }
 
-/// Numbers of the bearings in each body that carries several, in the order of their seats.
-pub fn housed_together(bearings: &[MountedBearing]) -> Vec<Vec<usize>> {
-    let mut groups: Vec<Vec<usize>> = Vec::new();
+/// Name of each body that carries several bearings, and the numbers of these in the order of their seats.
+pub fn housed_together(bearings: &[MountedBearing]) -> Vec<(String, Vec<usize>)> {
+    let mut groups: Vec<(String, Vec<usize>)> = Vec::new();
     for (i, bearing) in bearings.iter().enumerate() {
         let Some((_, body)) = shared(&bearing.model) else {
             continue;
         };
-        let is_of = |group: &&mut Vec<usize>| {
+        let is_of = |(_, group): &&mut (String, Vec<usize>)| {
             shared(&bearings[group[0]].model).is_some_and(|(_, other)| Arc::ptr_eq(other, body))
         };
         match groups.iter_mut().find(is_of) {
-            Some(group) => group.push(i),
-            None => groups.push(vec![i]),
+            Some((_, group)) => group.push(i),
+            None => groups.push((body.name.clone(), vec![i])),
         }
     }
     groups
@@ -56,8 +56,7 @@ pub fn housed_together(bearings: &[MountedBearing]) -> Vec<Vec<usize>> {
 
 /// The bodies of an assembly that carry several of its bearings.
 pub fn shared_bodies(bearings: &[MountedBearing]) -> Result<Vec<SharedBody>, AssemblyError> {
-    let body = |group: Vec<usize>| -> Result<SharedBody, AssemblyError> {
-        let mut name = String::new();
+    let body = |(name, group): (String, Vec<usize>)| -> Result<SharedBody, AssemblyError> {
         let mut seats = Vec::new();
         for &i in &group {
             let MountedBearing { model, name: of, .. } = &bearings[i];
@@ -65,8 +64,7 @@ pub fn shared_bodies(bearings: &[MountedBearing]) -> Result<Vec<SharedBody>, Ass
             let functions = functions
                 .transpose()
                 .map_err(|source| AssemblyError::of_bearing(of)(source.into()))?;
-            if let (Some((tie, body)), Some(functions)) = (shared(model), functions.flatten()) {
-                name.clone_from(&body.name);
+            if let (Some((tie, _)), Some(functions)) = (shared(model), functions.flatten()) {
                 seats.push((tie.clone(), functions));
             }
         }
@@ -90,18 +88,25 @@ impl SharedBody {
     }
 
     /// Forces of its bearings on it, N, over the functions of all its seats.
-    pub fn forces(&self, bearings: &[MountedBearing], solutions: &[StaticSolution]) -> Vec<f64> {
+    pub fn forces(
+        &self,
+        bearings: &[MountedBearing],
+        solutions: &[StaticSolution],
+    ) -> Result<Vec<f64>, AssemblyError> {
         let mut forces = self.none();
         for (&i, (tie, functions)) in self.bearings.iter().zip(&self.seats) {
             let others = bearings[i].model.other_seats.as_ref().map(|o| o.as_slice());
             let tied = bearings[i].model.tied();
             let field = tied.and_then(|(side, _)| solutions[i].elastic[side.index()].as_ref());
             let traction = field.and_then(|field| tie.traction(functions, field, others));
-            let of_ring = traction.iter().flat_map(|traction| &traction.forces);
+            let traction = traction.ok_or_else(|| AssemblyError::NoSeatForces {
+                body: self.name.clone(),
+                bearing: bearings[i].name.clone(),
+            })?;
             let own = forces[tie.own()].iter_mut();
-            own.zip(of_ring).for_each(|(on_body, f)| *on_body = -f);
+            own.zip(&traction.forces).for_each(|(on_body, f)| *on_body = -f);
         }
-        forces
+        Ok(forces)
     }
 
     /// No forces.

@@ -44,23 +44,27 @@ impl ShaftStep<'_> {
         bodies: &mut SharedLoads<'_>,
     ) -> Result<(Vec<f64>, Vec<[f64; N_SHAFT]>), AssemblyError> {
         let mut at = self.evaluate(parts, from)?;
-        let (mut best, mut stalled) = (f64::INFINITY, 0);
+        let (mut best, mut stalled, mut last) = (f64::INFINITY, 0, f64::INFINITY);
         let mut history = Vec::new();
+        let mut is_balanced = false;
         for _ in 0..MOST_ITERATIONS {
             let holding = bodies.exchange(parts);
             stalled = if at.error < 0.5 * best { 0 } else { stalled + 1 };
             best = best.min(at.error);
             history.push(at.error / at.scale);
             let is_small = at.error <= LIMIT * at.scale;
-            let is_balanced = at.error <= TARGET * at.scale || (stalled >= 2 && is_small);
+            is_balanced = at.error <= TARGET * at.scale || (stalled >= 2 && is_small);
             if is_balanced && holding == Holding::Settled {
                 return Ok((at.end, at.loads));
             }
-            let gets_on =
-                history.len() < 2 || history[history.len() - 1] <= ENOUGH * history[history.len() - 2];
-            if !gets_on {
+            if at.error > ENOUGH * last {
                 kept.renew();
             }
+            // Residuals under other loads say nothing of the steps.
+            (best, stalled, last) = match holding {
+                Holding::Settled => (best, stalled, at.error),
+                Holding::Again => (f64::INFINITY, 0, f64::INFINITY),
+            };
             at = match holding {
                 Holding::Settled => {
                     let step = kept.step(self, parts, &at.residual)?;
@@ -74,6 +78,13 @@ impl ShaftStep<'_> {
                     self.evaluate(parts, end)?
                 }
             };
+        }
+        if let (true, Some((body, change))) = (is_balanced, bodies.worst()) {
+            return Err(AssemblyError::BodiesNotSettled {
+                body: body.to_string(),
+                rounds: MOST_ITERATIONS,
+                change,
+            });
         }
         let tail = history.len().saturating_sub(6);
         Err(AssemblyError::NotSettled {

@@ -29,6 +29,7 @@ pub struct SharedLoads<'a> {
 
 /// Loads on one body.
 struct SharedLoad<'a> {
+    name: &'a str,
     bearings: &'a [usize],
     /// Of each bearing, one after the other; empty before the first round.
     loads: Vec<f64>,
@@ -39,8 +40,9 @@ struct SharedLoad<'a> {
 
 impl<'a> SharedLoads<'a> {
     /// Loads of the bearings in each body, none yet.
-    pub fn new(housed: &'a [Vec<usize>]) -> SharedLoads<'a> {
-        let body = |bearings: &'a Vec<usize>| SharedLoad {
+    pub fn new(housed: &'a [(String, Vec<usize>)]) -> SharedLoads<'a> {
+        let body = |(name, bearings): &'a (String, Vec<usize>)| SharedLoad {
+            name,
             bearings,
             loads: Vec::new(),
             mixing: Mixing::default(),
@@ -51,9 +53,16 @@ impl<'a> SharedLoads<'a> {
         }
     }
 
+    /// Name of the body whose loads changed most in the last exchange, and their change over their size.
+    pub fn worst(&self) -> Option<(&str, f64)> {
+        let changes = self.bodies.iter().map(|body| (body.name, body.change));
+        changes.max_by(|a, b| a.1.total_cmp(&b.1))
+    }
+
     /// Whether the last exchange changed much: nothing is near its end yet.
     pub fn are_far(&self) -> bool {
-        self.bodies.iter().any(|body| body.change > FAR)
+        let far = FAR..f64::INFINITY;
+        self.bodies.iter().any(|body| far.contains(&body.change))
     }
 
     /// Hands on the loads of the last answers; settled if no bearing is told anything new.
@@ -80,10 +89,12 @@ impl SharedLoad<'_> {
         let change = dot(&off, &off).sqrt() / size.max(f64::MIN_POSITIVE);
         let stalls = change > STALLED * self.change && change <= FLOOR;
         let is_slow = change > SLOW * self.change;
-        self.change = change;
         if change <= LIMIT || stalls {
+            // What changes after this is new.
+            self.change = f64::INFINITY;
             return Holding::Settled;
         }
+        self.change = change;
         let mixed = self.mixing.next(std::mem::take(&mut self.loads), &found);
         self.loads = if is_slow { mixed } else { found };
         let n = self.loads.len() / self.bearings.len();

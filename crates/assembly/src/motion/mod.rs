@@ -53,8 +53,8 @@ pub type LoadAt<'a> = dyn Fn(f64) -> Result<Vec<f64>, AssemblyError> + Sync + 'a
 pub struct AssemblyMotion<'a> {
     assembly: &'a Assembly,
     mounts: Vec<Mount>,
-    /// Numbers of the bearings in each body that carries several.
-    housed: Vec<Vec<usize>>,
+    /// Name of each body that carries several bearings, and their numbers.
+    housed: Vec<(String, Vec<usize>)>,
     /// Motion of every bearing, in its own frame.
     pub bearings: Vec<Motion<'a>>,
     /// Speed of the shaft in its frame.
