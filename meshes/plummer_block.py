@@ -13,6 +13,8 @@ from pathlib import Path
 
 import gmsh
 
+import gmsh_body
+
 SEAT_RADIUS, SEAT_HALF = 40.0, 8.0     # the outer ring of a 6010
 RELIEF_RADIUS, HALF = 41.5, 14.0       # bore beside the seat, half of the width of the block
 CAP_RADIUS, GROUND = 53.0, -60.0       # outside of the cap, height of the ground
@@ -50,31 +52,14 @@ def build(size):
             assert abs(math.hypot(x, y) - SEAT_RADIUS) < 1e-6, (x, y)
             seat.append(tag)
     assert seat and len(feet) == 2, (seat, feet)
-    for dimension, tags, name in [(3, volumes, "body"), (2, seat, "seat_a"), (2, feet, "feet")]:
-        group = gmsh.model.addPhysicalGroup(dimension, tags)
-        gmsh.model.setPhysicalName(dimension, group, name)
-    gmsh.option.setNumber("Mesh.MeshSizeMax", size)
-    gmsh.option.setNumber("Mesh.MeshSizeMin", 0.5 * size)
-    gmsh.option.setNumber("Mesh.MeshSizeFromCurvature", 36)
-    gmsh.option.setNumber("Mesh.ElementOrder", 2)
-    gmsh.option.setNumber("Mesh.HighOrderOptimize", 1)
-    gmsh.option.setNumber("General.NumThreads", 1)
-    gmsh.model.mesh.generate(3)
+    groups = [(3, volumes, "body"), (2, seat, "seat_a"), (2, feet, "feet")]
+    gmsh_body.mesh(groups, size, 36)
 
 
 def main():
     size = float(sys.argv[1]) if len(sys.argv) > 1 else 7.5
     out = sys.argv[2] if len(sys.argv) > 2 else str(Path(__file__).with_suffix(".msh"))
-    gmsh.initialize()
-    gmsh.option.setNumber("General.Terminal", 0)
-    build(size)
-    gmsh.option.setNumber("Mesh.Binary", 1)
-    gmsh.option.setNumber("Mesh.MshFileVersion", 4.1)
-    gmsh.write(out)
-    nodes = len(gmsh.model.mesh.getNodes()[0])
-    tets = len(gmsh.model.mesh.getElementsByType(11)[0])
-    print(f"{out}: {tets} tetrahedra, {nodes} nodes")
-    gmsh.finalize()
+    gmsh_body.write(lambda: build(size), out)
 
 
 main()

@@ -14,6 +14,8 @@ from pathlib import Path
 
 import gmsh
 
+import gmsh_body
+
 SEAT_RADIUS, SEAT_HALF = 40.0, 8.0     # the outer ring of a 7010
 RELIEF_RADIUS = 41.0                   # bore beside the seats
 OUTSIDE, FLANGE = 55.0, 85.0           # radii of sleeve and flange
@@ -46,32 +48,15 @@ def build(size, distance):
         elif abs(z0 - end) < 1e-3 and abs(z1 - end) < 1e-3:
             groups["flange"].append(tag)
     assert all(groups.values()), groups
-    for dimension, tags, name in [(3, volumes, "body")] + [(2, tags, name) for name, tags in groups.items()]:
-        group = gmsh.model.addPhysicalGroup(dimension, tags)
-        gmsh.model.setPhysicalName(dimension, group, name)
-    gmsh.option.setNumber("Mesh.MeshSizeMax", size)
-    gmsh.option.setNumber("Mesh.MeshSizeMin", 0.5 * size)
-    gmsh.option.setNumber("Mesh.MeshSizeFromCurvature", 28)
-    gmsh.option.setNumber("Mesh.ElementOrder", 2)
-    gmsh.option.setNumber("Mesh.HighOrderOptimize", 1)
-    gmsh.option.setNumber("General.NumThreads", 1)
-    gmsh.model.mesh.generate(3)
+    groups = [(3, volumes, "body")] + [(2, tags, name) for name, tags in groups.items()]
+    gmsh_body.mesh(groups, size, 28)
 
 
 def main():
     size = float(sys.argv[1]) if len(sys.argv) > 1 else 12.0
     out = sys.argv[2] if len(sys.argv) > 2 else str(Path(__file__).with_suffix(".msh"))
     distance = float(sys.argv[3]) if len(sys.argv) > 3 else 70.0
-    gmsh.initialize()
-    gmsh.option.setNumber("General.Terminal", 0)
-    build(size, distance)
-    gmsh.option.setNumber("Mesh.Binary", 1)
-    gmsh.option.setNumber("Mesh.MshFileVersion", 4.1)
-    gmsh.write(out)
-    nodes = len(gmsh.model.mesh.getNodes()[0])
-    tets = len(gmsh.model.mesh.getElementsByType(11)[0])
-    print(f"{out}: {tets} tetrahedra, {nodes} nodes")
-    gmsh.finalize()
+    gmsh_body.write(lambda: build(size, distance), out)
 
 
 main()

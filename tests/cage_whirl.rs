@@ -119,7 +119,7 @@ fn whirl_rate(table: &Table) -> f64 {
 
 /// Wrong: friction would not drive a whirl, or drive one where it is small, or the whirl would have the wrong sense.
 #[test]
-#[ignore = "minutes"]
+#[ignore = "some minutes; scripts/test-slow runs it"]
 fn friction_ends_in_whirl_with_the_cage_if_the_inner_ring_turns_and_against_it_if_the_outer_does() {
     let dir = delivered();
     for (ring, sense) in [("inner", 1.0), ("outer", -1.0)] {
@@ -138,7 +138,7 @@ fn friction_ends_in_whirl_with_the_cage_if_the_inner_ring_turns_and_against_it_i
 
 /// Wrong: raceways that slide less under a high load would not let the cage whirl sooner.
 #[test]
-#[ignore = "minutes"]
+#[ignore = "some minutes; scripts/test-slow runs it"]
 fn whirl_comes_sooner_with_high_load() {
     let dir = delivered();
     let case = |thrust| {
@@ -153,7 +153,7 @@ fn whirl_comes_sooner_with_high_load() {
 /// Wrong: raceways that slide less at a low speed would not let the cage whirl sooner. Without weight, with impacts
 /// that lose nothing, and the same push at both speeds: three pushes that differ by a few per cent of the clearance.
 #[test]
-#[ignore = "minutes"]
+#[ignore = "some minutes; scripts/test-slow runs it"]
 fn whirl_comes_sooner_with_low_speed() {
     let dir = delivered();
     for offset in [155.0, 160.0, 165.0] {

@@ -417,19 +417,27 @@ fn a_list_moves_in_its_blocks_and_goes_on_to_the_same_bits() {
                   [dynamic]\nduration = \"80 us\"\n\
                   step = \"10 us\"\noutput_every = 4\n";
     two_blocks(&dir, motion);
-    let run = dir.raceway(&["run", "list.toml", "--out", "whole", "--threads", "1"]);
+    assert_moves_and_goes_on(&dir, "list.toml", &[]);
+}
+
+/// Fails unless a list of "front" and "rear" moves in elastic housings without losing energy, and goes on from step 4
+/// to the same bits on another number of threads.
+#[track_caller]
+pub fn assert_moves_and_goes_on(dir: &Dir, scene: &str, more: &[&str]) {
+    let first = ["run", scene, "--out", "whole", "--threads", "1"];
+    let run = dir.raceway(&[&first[..], more].concat());
     assert_eq!(run.code, Some(0), "{}", run.stderr);
     for name in ["front", "rear"] {
-        let summary = summary(&dir, &format!("whole/{name}"));
+        let summary = summary(dir, &format!("whole/{name}"));
         let energy = |name: &str| number(&summary, &format!("/energy_j/{name}"));
         assert!(energy("defect").abs() < 1e-9 * energy("total"), "{summary}");
         assert!(energy("kinetic_outer") > 0.0);
     }
-    copy(&dir, "whole", "cut");
+    copy(dir, "whole", "cut");
     std::fs::remove_file(dir.path("cut/summary.json")).unwrap();
     let resumed = dir.raceway(&["resume", "cut", "--step", "4", "--threads", "2"]);
     assert_eq!(resumed.code, Some(0), "{}", resumed.stderr);
     for name in ["front", "rear"] {
-        assert_same_run(&dir, &format!("whole/{name}"), &format!("cut/{name}"));
+        assert_same_run(dir, &format!("whole/{name}"), &format!("cut/{name}"));
     }
 }

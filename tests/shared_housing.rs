@@ -2,9 +2,8 @@
 
 use checkpoint::read_mesh;
 
-use crate::housing::delivered;
+use crate::housing::{assert_moves_and_goes_on, delivered};
 use crate::util::Dir;
-use crate::util::lockstep::{assert_same_run, copy};
 use crate::util::tables::{Table, number, summary};
 
 const SCENE: &str = "scenes/7010c_spindle_housing.toml";
@@ -56,14 +55,19 @@ fn a_pair_in_one_housing_gives_more_than_in_a_stiff_one() {
     }
 }
 
+/// The text of the scene for a file of the folder, up to its analysis.
+fn without_analysis(dir: &Dir) -> String {
+    let text = dir.text(SCENE).replace("../meshes", "meshes");
+    let text = text.replace("\"types/", "\"scenes/types/");
+    text.split_once("\n[static]").unwrap().0.to_string()
+}
+
 /// If this failed, a sweep that ends with an error would leave the seats of its last good point with forces of the
 /// point that failed. Balls that carry 20 kN each are more than these meshes hold.
 #[test]
 fn a_sweep_that_fails_leaves_the_seats_of_its_last_point() {
     let dir = delivered();
-    let text = dir.text(SCENE).replace("../meshes", "meshes");
-    let text = text.replace("\"types/", "\"scenes/types/");
-    let (before, _) = text.split_once("\n[static]").unwrap();
+    let before = without_analysis(&dir);
     for (name, values) in [("good", "\"1 N\""), ("bad", "\"1 N\", \"2 MN\"")] {
         let sweep = format!(
             "\n[effects.axial_force]\nvalue = \"1 N\"\n[sweep]\nkey = \"effects.axial_force.value\"\n\
@@ -84,11 +88,8 @@ fn a_sweep_that_fails_leaves_the_seats_of_its_last_point() {
 
 /// The scene with a step of the load in motion.
 fn moving(dir: &Dir) {
-    let text = dir.text(SCENE).replace("../meshes", "meshes");
-    let text = text.replace("\"types/", "\"scenes/types/");
     let below = "name = \"housing\"\nmodes_below = \"3 kHz\"";
-    let text = text.replace("name = \"housing\"", below);
-    let (before, _) = text.split_once("\n[static]").unwrap();
+    let before = without_analysis(dir).replace("name = \"housing\"", below);
     let motion = "\n[speed]\ninner = \"3000 rpm\"\n[effects.axial_force]\nvalue = \"300 N\"\n\
                   schedule.step = { at = \"5 us\" }\n[dynamic]\nduration = \"80 us\"\nstep = \"10 us\"\n\
                   output_every = 4\n";
@@ -101,22 +102,7 @@ fn moving(dir: &Dir) {
 fn a_pair_moves_in_one_housing_and_goes_on_to_the_same_bits() {
     let dir = delivered();
     moving(&dir);
-    let first = ["run", "moving.toml", "--out", "whole", "--threads", "1"];
-    let run = dir.raceway(&[&first[..], &FEW].concat());
-    assert_eq!(run.code, Some(0), "{}", run.stderr);
-    for name in ["front", "rear"] {
-        let summary = summary(&dir, &format!("whole/{name}"));
-        let energy = |name: &str| number(&summary, &format!("/energy_j/{name}"));
-        assert!(energy("defect").abs() < 1e-9 * energy("total"), "{summary}");
-        assert!(energy("kinetic_outer") > 0.0);
-    }
-    copy(&dir, "whole", "cut");
-    std::fs::remove_file(dir.path("cut/summary.json")).unwrap();
-    let resumed = dir.raceway(&["resume", "cut", "--step", "4", "--threads", "2"]);
-    assert_eq!(resumed.code, Some(0), "{}", resumed.stderr);
-    for name in ["front", "rear"] {
-        assert_same_run(&dir, &format!("whole/{name}"), &format!("cut/{name}"));
-    }
+    assert_moves_and_goes_on(&dir, "moving.toml", &FEW);
 }
 
 /// If this failed, a bearing would be given a stiffness of its own that it does not have, or sit in a seat that stands

@@ -9,7 +9,7 @@ use dynamics::{Model, StaticSolution, StaticSolver};
 use timer::Laps;
 
 use crate::error::AssemblyError;
-use crate::housing::{SharedBody, shared_bodies};
+use crate::housing::{SharedBody, housed_together, shared_bodies};
 use crate::mixing::{Mixing, dot};
 use crate::newton::{Mount, Problem, Scales, SettledShaft, settle};
 use crate::place::MountedBearing;
@@ -61,8 +61,8 @@ type SettledAssembly = (SettledShaft, Vec<StaticSolution>);
 impl Assembly {
     /// Fails where bearings feel each other through a body that carries several of them.
     pub fn require_bodies_of_one(&self) -> Result<(), AssemblyError> {
-        match shared_bodies(&self.bearings)?.into_iter().next() {
-            Some(SharedBody { name: body, .. }) => Err(AssemblyError::SharedBody { body }),
+        match housed_together(&self.bearings).into_iter().next() {
+            Some((body, _)) => Err(AssemblyError::SharedBody { body }),
             None => Ok(()),
         }
     }
