@@ -13,6 +13,14 @@ pub(crate) const AXES: [&str; 3] = ["x", "y", "z"];
 /// Why there is no body, or no joint of it with a ring.
 #[derive(Debug, Error)]
 pub enum SurroundingError {
+    /// A body from matrices on a shaft.
+    #[error(
+        "body \"{body}\" comes from the matrices of another program, which a shaft does not carry; give its mesh"
+    )]
+    MatrixOnShaft {
+        /// Name of the body.
+        body: String,
+    },
     /// A body from a stiffness matrix alone, in motion.
     #[error(
         "body \"{body}\" comes from a stiffness matrix and has no mass, so it is solved at rest only; give its mass \

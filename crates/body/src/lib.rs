@@ -10,6 +10,7 @@
 //! and its own modes up to a frequency ([`BodyModes`]).
 
 mod areas;
+mod carried;
 mod error;
 pub mod matrix;
 mod seat;
@@ -18,8 +19,9 @@ mod tie;
 mod vibration;
 
 pub use areas::cylinder_areas;
+pub use carried::{Carried, N_SHAFT, RigidInertia};
 pub use error::SurroundingError;
 pub use seat::{SeatBasis, SeatCylinder, SeatFunctions, SeatSpace};
 pub use surrounding::{BodySeat, Surrounding};
 pub use tie::{SeatTie, SeatTraction, TieConvergence};
-pub use vibration::{BodyModes, SeatModes};
+pub use vibration::{BodyModes, SeatModes, ShaftShares};

@@ -10,6 +10,7 @@ use rayon::prelude::*;
 use solver::{LinearSolver, SolverError, SparseCholesky, Symbolic, angular_dissection, expand};
 use sprs::CsMat;
 
+use crate::carried::Carried;
 use crate::error::{AXES, SurroundingError};
 use crate::matrix::MatrixBody;
 use crate::seat::{SeatCylinder, SeatFunctions, SeatSpace};
@@ -52,6 +53,8 @@ pub struct Surrounding {
     pub n_dofs: usize,
     /// Bytes of the factor, the functionals and the flexibility.
     pub bytes: usize,
+    /// How a shaft carries it; None of a body that stands.
+    pub carried: Option<Carried>,
     /// Bytes of K.
     matrix_bytes: usize,
     /// Wall time of assembly, factor and columns, s.
@@ -217,6 +220,7 @@ impl Unfactored<'_> {
         let mut body = Surrounding {
             name: self.name,
             mesh: None,
+            carried: None,
             shift,
             flexibility: Vec::new(),
             n_dofs: 3 * self.places.len(),

@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use dense::DenseCholesky;
 
+use crate::carried::{Carried, N_SHAFT};
 use crate::seat::{SeatBasis, SeatFunctions, SeatSpace};
 use crate::surrounding::Surrounding;
 use crate::vibration::{BodyModes, SeatModes};
@@ -71,6 +72,16 @@ impl SeatTie {
             Some(body) => body.functions_of(self.seat),
             None => 0..self.space.basis.n_functions(),
         }
+    }
+
+    /// How a shaft carries the body; None of one that stands.
+    pub fn carried(&self) -> Option<&Carried> {
+        self.body.as_ref()?.carried.as_ref()
+    }
+
+    /// Motion of the seat with the shaft that carries the body, m; None of one that stands.
+    pub fn shaft_motion(&self, q: [f64; N_SHAFT]) -> Option<Vec<f64>> {
+        Some(self.carried()?.seat_motion(q)[self.own()].to_vec())
     }
 
     /// Whether the body has other seats.

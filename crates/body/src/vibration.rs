@@ -11,6 +11,10 @@
 //!
 //! At rest nothing is left out. In motion the modes phi above a frequency are. The reduced body is a list of
 //! oscillators xi, its own modes with free seats: M_r V = 1, K_r V = omega^2 in V^T . V; the seats have g = F V_lam xi.
+//!
+//! A body that a shaft carries ([`crate::carried`]) moves by R q as well, q free. Its first oscillators are rigid, omega
+//! = 0, and move it by Q xi, Q^T (R^T M R) Q = 1. The others have no momentum: with W = Q^T R^T M (X, phi) they are those
+//! of M_r - W^T W, and take the shaft along by q = -Q W V xi.
 
 use std::f64::consts::TAU;
 use std::ops::Range;
@@ -24,6 +28,7 @@ use rayon::prelude::*;
 use solver::LinearSolver;
 use sprs::CsMat;
 
+use crate::carried::{Carried, N_SHAFT};
 use crate::error::SurroundingError;
 use crate::surrounding::Surrounding;
 
@@ -53,6 +58,38 @@ pub struct BodyModes {
     shares: Vec<f64>,
     /// These modes on the free dofs, column-major.
     fixed: Vec<f64>,
+    /// Of a body that a shaft carries.
+    pub on_shaft: Option<ShaftShares>,
+}
+
+/// How oscillators move the shaft that carries their body. The first [`N_SHAFT`] are rigid.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ShaftShares {
+    /// Motion of the shaft per unit of an oscillator, m and rad.
+    pub rows: Vec<[f64; N_SHAFT]>,
+    /// Rigid oscillators of the body that moves with the shaft: by unit motions of it, `[rigid][motion]`.
+    of_motion: [[f64; N_SHAFT]; N_SHAFT],
+    /// Static forces on the functions of all seats that unit accelerations of the rigid oscillators ask for, N,
+    /// `[rigid][n_functions]` flat.
+    reactions: Vec<f64>,
+}
+
+impl ShaftShares {
+    /// Motion of the shaft under oscillators, m and rad.
+    pub fn motion(&self, oscillators: &[f64]) -> [f64; N_SHAFT] {
+        let mut q = [0.0; N_SHAFT];
+        for (row, x) in self.rows.iter().zip(oscillators) {
+            (0..N_SHAFT).for_each(|k| q[k] += row[k] * x);
+        }
+        q
+    }
+
+    /// Adds the oscillators of a motion or velocity with the shaft.
+    pub fn add_motion(&self, q: [f64; N_SHAFT], oscillators: &mut [f64]) {
+        for (x, row) in oscillators.iter_mut().zip(&self.of_motion) {
+            *x += dot(row, &q);
+        }
+    }
 }
 
 impl BodyModes {
@@ -67,6 +104,7 @@ impl BodyModes {
             forces: Vec::new(),
             shares: Vec::new(),
             fixed: Vec::new(),
+            on_shaft: None,
         }
     }
 
@@ -84,6 +122,17 @@ impl BodyModes {
     pub fn at_rest(&self, forces: &[f64]) -> Vec<f64> {
         let rows = self.of_forces.chunks_exact(forces.len().max(1));
         rows.map(|row| dot(row, forces)).collect()
+    }
+
+    /// Forces on the functions of all seats of a body on a shaft, N, by which its oscillators move so: `driven` are
+    /// minus accelerations and damping of rigid ones, and of the others minus what they would stand for at rest.
+    pub fn forces_on_shaft(&self, driven: &[f64]) -> Vec<f64> {
+        let mut forces = combined(&self.forces, driven);
+        if let Some(shares) = &self.on_shaft {
+            let of_rigid = combined(&shares.reactions, &driven[..N_SHAFT]);
+            forces.iter_mut().zip(of_rigid).for_each(|(f, r)| *f += r);
+        }
+        forces
     }
 
     /// Bytes of all.
@@ -212,6 +261,9 @@ impl Surrounding {
                 field[dof] += share * u;
             }
         }
+        if let Some(shares) = &modes.on_shaft {
+            self.add_shaft_motion(shares.motion(oscillators), &mut field);
+        }
         field
     }
 }
@@ -297,6 +349,52 @@ struct Reduced<'a> {
     stiffness: Vec<f64>,
     mass: Vec<f64>,
     factor: DenseCholesky,
+    rigid: Option<RigidPart<'a>>,
+}
+
+/// The rigid motions of a body that a shaft carries.
+struct RigidPart<'a> {
+    carried: &'a Carried,
+    /// Q, by rigid oscillator.
+    motions: [[f64; N_SHAFT]; N_SHAFT],
+    /// W, by coordinate.
+    coupling: Vec<[f64; N_SHAFT]>,
+}
+
+impl<'a> RigidPart<'a> {
+    fn new(carried: &'a Carried, shapes: &[&[f64]]) -> RigidPart<'a> {
+        let motions = carried.orthonormal();
+        let coupled = |shape: &&[f64]| {
+            let pushed = [0, 1, 2, 3, 4].map(|k| dot(&carried.pushes[k], shape));
+            motions.map(|motion| dot(&motion, &pushed))
+        };
+        RigidPart {
+            carried,
+            motions,
+            coupling: shapes.par_iter().map(coupled).collect(),
+        }
+    }
+
+    /// Takes the momentum of the coordinates out of their mass, by rows of its lower triangle.
+    fn relieve(&self, lower: &mut [Vec<f64>]) {
+        for (i, row) in lower.iter_mut().enumerate() {
+            let others = self.coupling.iter();
+            row.iter_mut()
+                .zip(others)
+                .for_each(|(m, w)| *m -= dot(&self.coupling[i], w));
+        }
+    }
+
+    /// Motion of the shaft that coordinates take along.
+    fn taken_along(&self, coordinates: &[f64]) -> [f64; N_SHAFT] {
+        let mut q = [0.0; N_SHAFT];
+        for (w, z) in self.coupling.iter().zip(coordinates) {
+            for (motion, w) in self.motions.iter().zip(w) {
+                (0..N_SHAFT).for_each(|k| q[k] -= motion[k] * w * z);
+            }
+        }
+        q
+    }
 }
 
 impl<'a> Reduced<'a> {
@@ -309,7 +407,12 @@ impl<'a> Reduced<'a> {
             let moved = solver::products(held.mass, shapes[i], 1);
             shapes[..=i].iter().map(|shape| dot(shape, &moved)).collect()
         };
-        let lower: Vec<Vec<f64>> = (0..n).into_par_iter().map(row).collect();
+        let mut lower: Vec<Vec<f64>> = (0..n).into_par_iter().map(row).collect();
+        let rigid = held.body.carried.as_ref();
+        let rigid = rigid.map(|carried| RigidPart::new(carried, &shapes));
+        if let Some(rigid) = &rigid {
+            rigid.relieve(&mut lower);
+        }
         let scale = |i: usize| if i < m { lower[i][i].sqrt().recip() } else { 1.0 };
         let scales: Vec<f64> = (0..n).map(scale).collect();
         let (mut mass, mut stiffness) = (vec![0.0; n * n], vec![0.0; n * n]);
@@ -332,6 +435,7 @@ impl<'a> Reduced<'a> {
             scales,
             stiffness,
             mass,
+            rigid,
         })
     }
 
@@ -352,19 +456,56 @@ impl<'a> Reduced<'a> {
             fixed,
             ..BodyModes::rigid()
         };
+        if let Some(rigid) = &self.rigid {
+            self.add_rigid(rigid, &mut modes)?;
+        }
         for (vector, moved) in pairs.vectors.chunks_exact(n).zip(moved.chunks_exact(n)) {
             let lam: Vec<f64> = vector[..m].iter().zip(&self.scales).map(|(v, s)| v * s).collect();
-            modes
-                .seat
-                .extend(self.flexibility.chunks_exact(m).map(|row| dot(row, &lam)));
+            let mut seat: Vec<f64> = self
+                .flexibility
+                .chunks_exact(m)
+                .map(|row| dot(row, &lam))
+                .collect();
+            if let (Some(rigid), Some(shares)) = (&self.rigid, &mut modes.on_shaft) {
+                let all: Vec<f64> = lam.iter().chain(&vector[m..]).copied().collect();
+                let q = rigid.taken_along(&all);
+                let along = rigid.carried.seat_motion(q);
+                seat.iter_mut().zip(along).for_each(|(y, r)| *y += r);
+                shares.rows.push(q);
+            }
+            modes.seat.extend(seat);
             modes
                 .of_forces
                 .extend(moved[..m].iter().zip(&self.scales).map(|(v, s)| v / s));
             modes.forces.extend(lam);
             modes.shares.extend(&vector[m..]);
         }
-        modes.squares = pairs.values;
+        modes.squares.extend(pairs.values);
         Ok(modes)
+    }
+
+    /// The rigid oscillators of a body that a shaft carries: they come first.
+    fn add_rigid(&self, rigid: &RigidPart<'_>, modes: &mut BodyModes) -> Result<(), DenseError> {
+        let (n_fixed, m) = (modes.n_fixed, self.n() - modes.n_fixed);
+        let flexibility = DenseCholesky::factor(m, self.flexibility)?;
+        let mut reactions = Vec::with_capacity(N_SHAFT * m);
+        for (r, motion) in rigid.motions.iter().enumerate() {
+            let coupling: Vec<f64> = rigid.coupling[..m].iter().map(|w| w[r]).collect();
+            let mut reaction = coupling.clone();
+            flexibility.solve(&mut reaction, 1);
+            modes.seat.extend(rigid.carried.seat_motion(*motion));
+            modes.of_forces.extend(coupling);
+            modes.forces.extend(vec![0.0; m]);
+            modes.shares.extend(vec![0.0; n_fixed]);
+            reactions.extend(reaction);
+        }
+        modes.squares = vec![0.0; N_SHAFT];
+        modes.on_shaft = Some(ShaftShares {
+            rows: rigid.motions.to_vec(),
+            of_motion: rigid.motions.map(|motion| rigid.carried.momentum(motion)),
+            reactions,
+        });
+        Ok(())
     }
 }
 

@@ -13,6 +13,7 @@ use contact::hertz::Elastic;
 use contact::{BearingGeometry, HertzContact, LeastSize, Meridian, NodalWeights, Side, SphereCompliance};
 use fem::Material;
 use input::Schedule;
+use ring::rigid::RigidInertia;
 use ring::{Backend, RingModel};
 
 use crate::effects::Effect;
@@ -179,6 +180,11 @@ impl Model {
     pub fn tied(&self) -> Option<(Side, &RingModel)> {
         let of_side = |side| Some((side, self.ring(side).filter(|ring| ring.tie.is_some())?));
         Side::BOTH.into_iter().find_map(of_side)
+    }
+
+    /// Inertia of the body on the shaft in which the inner ring sits; None where it is in none.
+    pub fn carried_inertia(&self) -> Option<RigidInertia> {
+        Some(self.ring(Side::Inner)?.tie.as_ref()?.carried()?.inertia)
     }
 
     /// Motion of the seat of a ring by forces on the other seats of its body, by functions, m; None: none.

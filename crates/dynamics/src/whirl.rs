@@ -95,11 +95,15 @@ pub fn turning_inertia(model: &Model) -> Result<RigidInertia, DynamicsError> {
             backend: model.backend,
             frame: Frame::Still,
         };
-        let own = elastic_body(side.name(), ring, settings)?.rigid_inertia();
-        sum.mass += own.mass;
-        sum.first_moment += own.first_moment;
-        sum.transverse += own.transverse;
-        sum.polar += own.polar;
+        // Of a body on the shaft only the inertia is asked for, not the modes.
+        let own = match ring.tie {
+            Some(_) => elastic_body(side.name(), &ring.untied(), settings)?,
+            None => elastic_body(side.name(), ring, settings)?,
+        };
+        sum = sum.with(own.rigid_inertia());
+        if let Some(carried) = model.carried_inertia() {
+            sum = sum.with(carried);
+        }
     }
     Ok(sum)
 }

@@ -291,8 +291,13 @@ impl dyn ElasticBody + '_ {
     }
 
     /// State of a ring: elastic nodal displacements `[n_dofs]` plus the rigid motion `q`, with the velocity of
-    /// another rigid motion `rate`, both in its own frame.
-    pub fn rigid_state(&self, elastic: &[f64], q: [f64; 5], rate: [f64; 5]) -> RingState {
+    /// another rigid motion `rate`, both in its own frame. Forces `others`, N, act on the other seats of its body.
+    pub fn rigid_state(
+        &self,
+        elastic: &[f64],
+        [q, rate]: [[f64; 5]; 2],
+        others: Option<&[f64]>,
+    ) -> RingState {
         let held = self.held();
         let coordinates = &held.coordinates;
         let (dofs, first) = coordinates.shaft();
@@ -316,9 +321,10 @@ impl dyn ElasticBody + '_ {
             .enumerate()
             .for_each(|(i, &dof)| w[i] += elastic[dof]);
         let v = field(rate);
-        let body = self
-            .tied()
-            .map(|body| body.at_rest(&coordinates.expand(&w), None));
+        let body = self.tied().map(|body| match body.on_shaft() {
+            Some(_) => body.at_rest(elastic, others, [q, rate]),
+            None => body.at_rest(&coordinates.expand(&w), others, [[0.0; 5]; 2]),
+        });
         let [w, v] = [w, v].map(|y| self.state_of_coordinates(y));
         let a = vec![0.0; w.len()];
         RingState::new(w, v, a).with_body(body)

@@ -98,6 +98,18 @@ impl RingModel {
         Ok(self.known_node_masses().cloned().unwrap_or_default())
     }
 
+    /// The same ring without the body to which it is tied.
+    pub fn untied(&self) -> RingModel {
+        RingModel {
+            mesh: self.mesh.clone(),
+            material: self.material,
+            groove: self.groove,
+            tie: None,
+            sectors: FoundSectors::default(),
+            ..*self
+        }
+    }
+
     /// The same if they were asked for before.
     pub(crate) fn known_node_masses(&self) -> Option<&Arc<NodeMasses>> {
         self.sectors.node_masses.get()

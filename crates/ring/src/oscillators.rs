@@ -2,7 +2,8 @@
 
 use std::sync::Arc;
 
-use body::{SeatFunctions, SeatModes, SeatTie, SeatTraction};
+use body::N_SHAFT;
+use body::{RigidInertia, SeatFunctions, SeatModes, SeatTie, SeatTraction, ShaftShares};
 use dense::DenseCholesky;
 
 use crate::error::RingError;
@@ -38,6 +39,17 @@ pub(crate) struct BodyStep {
     increments: Vec<f64>,
     /// Motion of the seat at the end, m.
     pub seat: Vec<f64>,
+    /// Motion of the shaft that carries the body, at the start and at the end, m and rad; empty: none carries it.
+    pub shaft: [Vec<f64>; 2],
+}
+
+/// What forces of the shaft that carries a body do over a step.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct ShaftSoftness {
+    /// Motion of the seat by unit forces, `[n_shaft][n_functions]` flat, m/N and m/(N m).
+    pub of_seat: Vec<f64>,
+    /// Motion of the shaft, `[n_shaft][n_shaft]` flat.
+    pub own: Vec<f64>,
 }
 
 impl Oscillators {
@@ -88,16 +100,32 @@ impl Oscillators {
         )
     }
 
-    /// The body at rest under a ring that stands as displaced, m, `[n_nodes][3]` flat, and forces on its other seats,
-    /// N, over the functions of all seats.
-    pub fn at_rest(&self, displacement: &[f64], others: Option<&[f64]>) -> BodyState {
-        let Some(traction) = self.tie.traction(&self.functions, displacement, others) else {
+    /// The body at rest under a ring that stands as displaced beside the motion of its shaft, m, `[n_nodes][3]` flat,
+    /// and forces on its other seats, N, over the functions of all seats. A shaft that carries it moves it, and has a
+    /// velocity.
+    pub fn at_rest(&self, elastic: &[f64], others: Option<&[f64]>, shaft: [[f64; 5]; 2]) -> BodyState {
+        let Some(traction) = self.tie.traction(&self.functions, elastic, others) else {
             return BodyState::default();
         };
         let forces = self.tie.forces_on_body(&traction, others);
-        let at = self.modes.of_body.at_rest(&forces);
+        let mut at = self.modes.of_body.at_rest(&forces);
         let zero = vec![0.0; at.len()];
-        BodyState([at, zero.clone(), zero])
+        let mut velocity = zero.clone();
+        if let Some(shares) = self.on_shaft() {
+            shares.add_motion(shaft[0], &mut at);
+            shares.add_motion(shaft[1], &mut velocity);
+        }
+        BodyState([at, velocity, zero])
+    }
+
+    /// How the oscillators move the shaft that carries the body; None of one that stands.
+    pub fn on_shaft(&self) -> Option<&ShaftShares> {
+        self.modes.of_body.on_shaft.as_ref()
+    }
+
+    /// Inertia of a body that a shaft carries.
+    pub fn carried_inertia(&self) -> Option<RigidInertia> {
+        Some(self.tie.carried()?.inertia)
     }
 
     /// What the joint carries; None for a rigid body.
@@ -105,6 +133,9 @@ impl Oscillators {
     /// Over all seats V lam = -(xi'' + C xi' + omega^2 xi), weighted as at rest:
     /// lam = -F^-1 V^T (xi + (xi'' + C xi')/omega^2).
     pub fn traction(&self, BodyState([x, v, a]): &BodyState) -> Option<SeatTraction> {
+        if let Some(shares) = self.on_shaft() {
+            return Some(self.traction_on_shaft(shares, [x, v, a]));
+        }
         let [am, ak] = self.damping;
         let driven = |(i, square): (usize, &f64)| -x[i] - (a[i] + (am + ak * square) * v[i]) / square;
         let driven: Vec<f64> = self.modes.squares().iter().enumerate().map(driven).collect();
@@ -114,6 +145,25 @@ impl Oscillators {
             forces: forces[self.modes.own.clone()].to_vec(),
             motion: self.modes.motion(x),
         })
+    }
+
+    /// The same of a body on a shaft, whose rigid oscillators stand for nothing at rest. The motion is that beside the
+    /// shaft's.
+    fn traction_on_shaft(&self, shares: &ShaftShares, [x, v, a]: [&[f64]; 3]) -> SeatTraction {
+        let [am, ak] = self.damping;
+        let driven = |(i, square): (usize, &f64)| match *square {
+            0.0 => -(a[i] + am * v[i]),
+            square => -x[i] - (a[i] + (am + ak * square) * v[i]) / square,
+        };
+        let driven: Vec<f64> = self.modes.squares().iter().enumerate().map(driven).collect();
+        let forces = self.modes.of_body.forces_on_shaft(&driven);
+        let mut motion = self.modes.motion(x);
+        let along = self.tie.shaft_motion(shares.motion(x)).unwrap_or_default();
+        motion.iter_mut().zip(along).for_each(|(y, r)| *y -= r);
+        SeatTraction {
+            forces: forces[self.modes.own.clone()].to_vec(),
+            motion,
+        }
     }
 
     /// Kinetic and strain energy, J.
@@ -182,6 +232,29 @@ impl BodyFactor {
         self.body.modes.softness(&self.effective)
     }
 
+    /// What the shaft does to the body; empty where none carries it.
+    pub fn by_shaft(&self) -> ShaftSoftness {
+        let Some(shares) = self.body.on_shaft() else {
+            return ShaftSoftness::default();
+        };
+        let n = self.body.n_functions();
+        let mut softness = ShaftSoftness {
+            of_seat: vec![0.0; N_SHAFT * n],
+            own: vec![0.0; N_SHAFT * N_SHAFT],
+        };
+        let rows = self.body.modes.rows().zip(&shares.rows).zip(&self.effective);
+        for ((seat, shaft), s) in rows {
+            for (k, q) in shaft.iter().enumerate() {
+                let by = q / s;
+                let of_seat = softness.of_seat[n * k..n * (k + 1)].iter_mut();
+                of_seat.zip(seat).for_each(|(d, v)| *d += by * v);
+                let own = softness.own[N_SHAFT * k..N_SHAFT * (k + 1)].iter_mut();
+                own.zip(shaft).for_each(|(d, q)| *d += by * q);
+            }
+        }
+        softness
+    }
+
     /// A step from a state, with the mean `load` on its oscillators over the step; empty: none.
     pub fn step(&self, BodyState([x, v, a]): &BodyState, load: &[f64]) -> BodyStep {
         let [mass, damping] = self.scheme.integrator.history(self.scheme.dt);
@@ -203,14 +276,25 @@ impl BodyFactor {
                 .for_each(|(y, r)| *y += (x[i] + increment) * r);
             increments.push(increment);
         }
-        BodyStep { increments, seat }
+        let shaft = self.body.on_shaft().map(|shares| {
+            let end: Vec<f64> = x.iter().zip(&increments).map(|(x, d)| x + d).collect();
+            [x, &end].map(|at| shares.motion(at).to_vec())
+        });
+        BodyStep {
+            increments,
+            seat,
+            shaft: shaft.unwrap_or_default(),
+        }
     }
 
-    /// The state after a step under the forces lam of the joint on the ring, N.
-    pub fn advanced(&self, old: &BodyState, step: &BodyStep, lam: &[f64]) -> BodyState {
+    /// The state after a step under the forces lam of the joint on the ring, and of the shaft that carries the body, N
+    /// and N m.
+    pub fn advanced(&self, old: &BodyState, step: &BodyStep, lam: &[f64], shaft: &[f64]) -> BodyState {
         let mut new = old.clone();
+        let by_shaft = self.body.on_shaft().map(|shares| &shares.rows);
         for (i, row) in self.body.modes.rows().enumerate() {
-            let increment = step.increments[i] - dot(row, lam) / self.effective[i];
+            let pull = by_shaft.map_or(0.0, |rows| dot(&rows[i], shaft));
+            let increment = step.increments[i] - (dot(row, lam) - pull) / self.effective[i];
             let [x, v, a] = &mut new.0;
             let scheme = self.scheme;
             [v[i], a[i]] = scheme.integrator.update(scheme.dt, increment, v[i], a[i]);

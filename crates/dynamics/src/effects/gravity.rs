@@ -73,7 +73,8 @@ impl table::Table for Table {
         if load == 0.0 {
             return Vec::new();
         }
-        let rotor = case.model.shaft_mass + case.inner_ring_mass();
+        let carried = case.model.carried_inertia().map_or(0.0, |body| body.mass);
+        let rotor = case.model.shaft_mass + carried + case.inner_ring_mass();
         let weight = (rotor + case.n_balls() * case.model.ball_mass()) * EARTH;
         let ratio = weight / load;
         let estimate = format!(
@@ -163,6 +164,11 @@ impl Effect for Gravity {
             load[1] += mass * g[2];
         }
         loads.add_shaft_force(model, g.map(|a| model.shaft_mass * a));
+        if let Some(inertia) = model.carried_inertia() {
+            // As a rigid body: what it sags by itself is left out.
+            let centre = inertia.first_moment / inertia.mass;
+            loads.add_shaft_force_at(centre, g.map(|a| inertia.mass * a));
+        }
         loads.seat += model.seat().map_or(0.0, |seat| seat.mass * g[2]);
         for side in Side::BOTH {
             let (Some(ring), Some(of_ring)) = (model.ring(side), &self.node_masses[side.index()]) else {

@@ -30,14 +30,14 @@ impl Motion<'_> {
                 _ => (seat, [0.0; 5]),
             };
             let omega = self.settings.speeds.of(side).at(0.0);
-            let ring = ring_at_start(&*moving.body, elastic, q, velocity, omega);
-            Some(match (&model.other_seats, moving.body.tied()) {
-                (Some(others), Some(body)) => {
-                    let at = moving.body.nodal(ring.displacement());
-                    ring.with_body(Some(body.at_rest(&at, Some(others))))
-                }
-                _ => ring,
-            })
+            let others = model.other_seats.as_ref().map(|o| o.as_slice());
+            Some(ring_at_start(
+                &*moving.body,
+                (elastic, others),
+                q,
+                velocity,
+                omega,
+            ))
         };
         let contacts = solution.parts.states_at(&solution.displacements);
         let places: Vec<[f64; 2]> = contacts.iter().map(|c| [c.angle, c.force.force]).collect();
@@ -84,7 +84,7 @@ impl Motion<'_> {
                 Side::Inner => (q, velocity),
                 Side::Outer => ([0.0; 5], [0.0; 5]),
             };
-            Some(ring_at_start(body, &none, q, v, omega))
+            Some(ring_at_start(body, (&none, None), q, v, omega))
         };
         let mut state = MotionState {
             step: 0,
@@ -189,14 +189,15 @@ impl Motion<'_> {
 }
 
 /// State of a ring: elastic part plus the rigid motion `q`, and in its frame, which turns at `omega`, the velocity of
-/// that motion, which has `velocity` in space.
+/// that motion, which has `velocity` in space. Forces `others`, N, act on the other seats of its body.
 fn ring_at_start(
     body: &dyn ElasticBody,
-    elastic: &[f64],
+    (elastic, others): (&[f64], Option<&[f64]>),
     q: [f64; 5],
     velocity: [f64; 5],
     omega: f64,
 ) -> RingState {
     let turned = [omega * q[1], -omega * q[0], 0.0, omega * q[4], -omega * q[3]];
-    body.rigid_state(elastic, q, [0, 1, 2, 3, 4].map(|i| velocity[i] + turned[i]))
+    let rate = [0, 1, 2, 3, 4].map(|i| velocity[i] + turned[i]);
+    body.rigid_state(elastic, [q, rate], others)
 }

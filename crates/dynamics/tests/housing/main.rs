@@ -2,6 +2,7 @@
 
 mod modes;
 mod motion;
+mod shaft;
 #[path = "../support/mod.rs"]
 mod support;
 
@@ -24,7 +25,7 @@ fn outer(hold: Hold) -> RingModel {
 }
 
 fn space(ring: &RingModel, basis: SeatBasis) -> SeatSpace {
-    let nodes = ring.mesh.group_nodes("seat");
+    let nodes = ring.mesh.group_nodes(ring.held_group);
     let numbered = nodes.iter().map(|&n| (n as u64, ring.mesh.nodes[n]));
     SeatSpace::on(&SeatCylinder::of_nodes("the seat", numbered).unwrap(), basis)
 }
@@ -97,14 +98,20 @@ fn ever_more_functions_on_a_rigid_body_clamp_the_seat() {
     );
 }
 
-/// A tube outside the seat, whose inner nodes are those of the ring, in layers up to 58 mm: alone, and with the ring.
+/// A tube outside the seat, whose inner nodes are those of the ring, in layers up to 58 mm: alone, and with the ring. It
+/// is held at its feet.
 fn tube(ring: &RingModel, layers: usize) -> (Mesh, Mesh) {
-    let seat = ring.mesh.group_nodes("seat");
+    wrapped(ring, layers, 1.45, |[x, y]| y < -0.7 * x.hypot(y))
+}
+
+/// Layers on the held group of a ring, up to its radius times a scale; the last ones are held where so is asked for.
+fn wrapped(ring: &RingModel, layers: usize, to: f64, is_held: impl Fn([f64; 2]) -> bool) -> (Mesh, Mesh) {
+    let seat = ring.mesh.group_nodes(ring.held_group);
     let number: BTreeMap<usize, usize> = seat.iter().enumerate().map(|(i, &n)| (n, i)).collect();
     let (n, first) = (seat.len(), ring.mesh.n_nodes());
     let mut nodes: Vec<[f64; 3]> = Vec::new();
     for layer in 0..=layers {
-        let scale = 1.0 + 0.45 * layer as f64 / layers as f64;
+        let scale = 1.0 + (to - 1.0) * layer as f64 / layers as f64;
         nodes.extend(seat.iter().map(|&node| {
             let [x, y, z] = ring.mesh.nodes[node];
             [scale * x, scale * y, z]
@@ -112,7 +119,7 @@ fn tube(ring: &RingModel, layers: usize) -> (Mesh, Mesh) {
     }
     let (mut connectivity, mut groups) = (Vec::new(), BTreeMap::<String, Vec<Facet>>::new());
     for layer in 0..layers {
-        for &facet in ring.mesh.group("seat") {
+        for &facet in ring.mesh.group(ring.held_group) {
             let element = connectivity.len() / 8;
             let corners: Vec<usize> = ring.mesh.facet_nodes(facet).map(|n| number[&n]).collect();
             connectivity.extend(corners.iter().map(|c| n * layer + c));
@@ -127,7 +134,7 @@ fn tube(ring: &RingModel, layers: usize) -> (Mesh, Mesh) {
                 add("seat_a", 0);
             }
             let middle: [f64; 2] = [0, 1].map(|c| corners.iter().map(|&i| nodes[i][c]).sum::<f64>() / 4.0);
-            if layer + 1 == layers && middle[1] < -0.7 * middle[0].hypot(middle[1]) {
+            if layer + 1 == layers && is_held(middle) {
                 add("feet", 1);
             }
         }

@@ -11,6 +11,12 @@
 //!
 //! and the contacts see the compliance C - B^T (A + D)^-1 B. Ring and body move by the same integrator, so the joint
 //! does no work. From outside the pair is a ring without a mount.
+//!
+//! A body that a shaft carries is a free one, and its fixed groups are the mount, q, on which the shaft acts by forces G:
+//!
+//! ```text
+//! y(end) = y_pred - D lam + E^T G,     q(end) = q_pred - E lam + H G
+//! ```
 
 mod step;
 pub(crate) mod vibration;
@@ -28,7 +34,7 @@ use crate::oscillators::{BodyFactor, Oscillators};
 use crate::state::RingState;
 use crate::step::{Feet, KnownLoad, StepFactor};
 
-use step::TiedFactor;
+use step::{TiedFactor, TiedShaft};
 
 /// A ring and the body to which it is tied.
 pub(crate) struct TiedRing {
@@ -124,7 +130,13 @@ impl ElasticBody for TiedRing {
         joint.iter_mut().zip(body.softness()).for_each(|(a, d)| *a += d);
         let joint = DenseCholesky::factor(self.body.n_functions(), &joint)
             .map_err(|source| RingError::Tie { source })?;
-        Ok(Box::new(TiedFactor { body, ring, joint }))
+        let shaft = TiedShaft::new(body.by_shaft(), &joint);
+        Ok(Box::new(TiedFactor {
+            body,
+            ring,
+            joint,
+            shaft,
+        }))
     }
 }
 

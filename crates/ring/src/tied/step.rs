@@ -5,7 +5,7 @@ use std::sync::Arc;
 use dense::DenseCholesky;
 use timer::Laps;
 
-use crate::oscillators::{BodyFactor, BodyStep};
+use crate::oscillators::{BodyFactor, BodyStep, ShaftSoftness};
 use crate::state::{BodyState, RingState};
 use crate::step::{ElasticStep, End, Feet, Known, KnownLoad, PortAnswer, PortForces, Settling, StepFactor};
 use crate::vectors::dot;
@@ -16,6 +16,43 @@ pub(super) struct TiedFactor {
     pub ring: Box<dyn StepFactor>,
     /// A + D.
     pub joint: DenseCholesky,
+    pub shaft: TiedShaft,
+}
+
+/// The shaft that carries the body; of a body that stands all is empty.
+#[derive(Default)]
+pub(super) struct TiedShaft {
+    /// E, `[n_shaft][n_functions]` flat.
+    of_seat: Vec<f64>,
+    /// (A + D)^-1 E^T, `[n_shaft][n_functions]` flat.
+    joint: Vec<f64>,
+    /// Motion of the shaft under its own forces, the ring on the body, `[n_shaft][n_shaft]` flat.
+    own: Vec<f64>,
+    n: usize,
+}
+
+impl TiedShaft {
+    /// From what the shaft does to the body alone, and A + D.
+    pub fn new(body: ShaftSoftness, joint: &DenseCholesky) -> TiedShaft {
+        let (width, n) = (joint.n(), body.of_seat.len() / joint.n().max(1));
+        let mut solved = body.of_seat.clone();
+        joint.solve(&mut solved, n);
+        let mut own = body.own;
+        for i in 0..n {
+            for j in 0..=i {
+                let [e, x] =
+                    [(&body.of_seat, i), (&solved, j)].map(|(of, k)| &of[width * k..width * (k + 1)]);
+                let value = own[n * i + j] - dot(e, x);
+                (own[n * i + j], own[n * j + i]) = (value, value);
+            }
+        }
+        TiedShaft {
+            of_seat: body.of_seat,
+            joint: solved,
+            own,
+            n,
+        }
+    }
 }
 
 /// A step under way.
@@ -75,23 +112,33 @@ impl TiedStep<'_> {
     /// What the contacts see of ring and body from what the ports of the ring see.
     fn meet(&mut self) {
         let (ring, n) = (self.ring.answer(), self.body.seat.len());
-        let size = ring.start.len();
+        let (size, shaft) = (ring.start.len(), &self.factor.shaft);
         let ports = size - n;
+        let all = ports + shaft.n;
         let row = |i: usize| &ring.compliance[size * i..size * (i + 1)];
         let coupling: Vec<f64> = (0..ports).flat_map(|i| &row(i)[ports..]).copied().collect();
         let mut by_port = coupling.clone();
         self.factor.joint.solve(&mut by_port, ports);
         let rows: Vec<&[f64]> = coupling.chunks_exact(n).collect();
         let solved: Vec<&[f64]> = by_port.chunks_exact(n).collect();
-        let mut compliance = vec![0.0; ports * ports];
+        let mut compliance = vec![0.0; all * all];
         for i in 0..ports {
             for j in 0..=i {
                 let value = row(i)[j] - dot(rows[i], solved[j]);
-                (compliance[ports * i + j], compliance[ports * j + i]) = (value, value);
+                (compliance[all * i + j], compliance[all * j + i]) = (value, value);
             }
         }
+        for k in 0..shaft.n {
+            let by_shaft = &shaft.joint[n * k..n * (k + 1)];
+            for (i, row) in rows.iter().enumerate() {
+                let value = dot(row, by_shaft);
+                (compliance[all * i + ports + k], compliance[all * (ports + k) + i]) = (value, value);
+            }
+            let own = &shaft.own[shaft.n * k..shaft.n * (k + 1)];
+            compliance[all * (ports + k) + ports..all * (ports + k + 1)].copy_from_slice(own);
+        }
         self.answer = PortAnswer {
-            start: ring.start[..ports].to_vec(),
+            start: [&ring.start[..ports], &self.body.shaft[0]].concat(),
             seen: ring.seen.clone(),
             predicted: Vec::new(),
             compliance,
@@ -109,14 +156,23 @@ impl TiedStep<'_> {
         self.factor.joint.solve(&mut known, 1);
         let rows = ring.predicted.iter().zip(self.coupling.chunks_exact(n));
         self.answer.predicted = rows.map(|(p, row)| p + dot(row, &known)).collect();
+        let of_seat = self.factor.shaft.of_seat.chunks_exact(n);
+        let shaft = self.body.shaft[1].iter().zip(of_seat);
+        self.answer
+            .predicted
+            .extend(shaft.map(|(q, e)| q - dot(e, &known)));
         self.known = known;
     }
 
-    /// Forces of the joint on the ring under forces on the contacts, N.
-    fn joint(&self, contacts: &[f64]) -> Vec<f64> {
+    /// Forces of the joint on the ring under forces on the contacts, and of the shaft on the body, N.
+    fn joint(&self, forces: PortForces<'_>) -> Vec<f64> {
         let mut lam = self.known.clone();
-        for (by_port, force) in self.by_port.chunks_exact(lam.len()).zip(contacts) {
+        for (by_port, force) in self.by_port.chunks_exact(lam.len()).zip(forces.contacts) {
             lam.iter_mut().zip(by_port).for_each(|(l, b)| *l -= force * b);
+        }
+        let by_shaft = self.factor.shaft.joint.chunks_exact(lam.len());
+        for (by_shaft, force) in by_shaft.zip(forces.mount) {
+            lam.iter_mut().zip(by_shaft).for_each(|(l, b)| *l += force * b);
         }
         lam
     }
@@ -138,7 +194,7 @@ impl ElasticStep for TiedStep<'_> {
     }
 
     fn load_on_body(&self, forces: PortForces<'_>) -> Option<Vec<f64>> {
-        let mut load = self.factor.body.body.modes.loads(&self.joint(forces.contacts));
+        let mut load = self.factor.body.body.modes.loads(&self.joint(forces));
         load.iter_mut().for_each(|p| *p = -*p);
         Some(load)
     }
@@ -157,7 +213,7 @@ impl ElasticStep for TiedStep<'_> {
     }
 
     fn settle(&mut self, forces: PortForces<'_>, scale: f64) -> Settling {
-        let lam = self.joint(forces.contacts);
+        let lam = self.joint(forces);
         let settling = self.ring.settle(on_both(forces, &lam), scale);
         if settling == Settling::Again {
             self.meet();
@@ -166,11 +222,11 @@ impl ElasticStep for TiedStep<'_> {
     }
 
     fn end(&mut self, forces: PortForces<'_>, scale: f64, next: Option<KnownLoad>) -> End {
-        let lam = self.joint(forces.contacts);
+        let lam = self.joint(forces);
         match self.ring.end(on_both(forces, &lam), scale, next) {
             End::Done(mut ended) => {
                 let factor = &self.factor.body;
-                let moved = factor.advanced(self.old, &self.body, &lam);
+                let moved = factor.advanced(self.old, &self.body, &lam, forces.mount);
                 let [kinetic, strain] = factor.body.energies(Some(&moved));
                 ended.energies[0] += kinetic;
                 ended.energies[1] += strain;

@@ -1,0 +1,219 @@
+//! An inner ring tied to a hollow shaft that turns: against ring and shaft meshed as one, its energy and its bits.
+
+use std::sync::Arc;
+
+use body::SeatTie;
+use contact::Side;
+use dynamics::kinematics::Speed;
+use dynamics::motion::{Motion, MotionSettings, MotionState, StepCache};
+use dynamics::{Backend, ContactMode, Hold, Model, RingModel, ShaftDof};
+
+use super::support::rings::ring;
+use super::support::{Case, on_threads, steel};
+use super::{LEVEL, difference, equilibrium, forces, harmonics, space, surrounding, wrapped};
+
+/// Step, s.
+const STEP: f64 = 1e-5;
+/// Speed of the shaft, rad/s: 9500 rpm.
+const SPEED: f64 = 1000.0;
+
+fn inner(hold: Hold) -> RingModel {
+    ring(Side::Inner, LEVEL, hold)
+}
+
+/// A tube in the bore whose inside is carried by the shaft: alone, and with the ring.
+fn hollow_shaft(layers: usize) -> (mesh::Mesh, mesh::Mesh) {
+    wrapped(&inner(Hold::Clamped), layers, 0.6, |_| true)
+}
+
+fn on_shaft(mesh: mesh::Mesh, [n, across]: [usize; 2], below: Option<f64>) -> RingModel {
+    let ring = inner(Hold::MeanMotion);
+    let body = surrounding(mesh, space(&ring, harmonics(n, across)), steel());
+    let body = Arc::new(body.on_shaft(ring.groove.centre_z).unwrap());
+    let modes = below.map(|below| Arc::new(body.modes(below).unwrap()));
+    let tie = SeatTie::to_seat(body, 0);
+    RingModel {
+        tie: Some(Arc::new(match modes {
+            Some(modes) => tie.in_motion(modes),
+            None => tie,
+        })),
+        ..ring
+    }
+}
+
+/// Ring and shaft as one mesh.
+fn as_one(layers: usize) -> RingModel {
+    RingModel {
+        mesh: hollow_shaft(layers).1,
+        held_group: "feet",
+        ..inner(Hold::Clamped)
+    }
+}
+
+fn bearing(inner: RingModel, backend: Backend) -> Model {
+    let case = Case {
+        radial: 3000.0,
+        ..Case::axial(1000.0)
+    };
+    let mut model = case.flexible(ContactMode::Patch, LEVEL, Hold::Clamped);
+    model.rings[0] = Some(Arc::new(inner));
+    Model { backend, ..model }
+}
+
+/// A bearing whose shaft is free, with a light hub of its own, and may tilt.
+fn free(inner: RingModel, backend: Backend) -> Model {
+    let mut model = bearing(inner, backend);
+    model.shaft_mass = 0.1;
+    model.shaft_inertia.transverse = 5e-5;
+    model.shaft_inertia.polar = 8e-5;
+    model.shaft = [ShaftDof::Free; 5];
+    model
+}
+
+fn settings() -> MotionSettings {
+    MotionSettings::conserving(STEP, Speed::constant(SPEED))
+}
+
+/// States of the motion after a blow on shaft and tilt, every fifth of `n` steps.
+fn course(model: &Model, settings: MotionSettings, n: usize) -> Vec<MotionState> {
+    let motion = Motion::new(model, settings).unwrap();
+    let blow = [0.05, 0.0, 0.03, 0.0, 1.0];
+    let mut state = motion.rest([0.0, 0.0, 12e-6, 0.0, 0.0], blow);
+    let (mut cache, mut states) = (StepCache::default(), Vec::new());
+    for step in 1..=n {
+        state = motion.step(&state, &mut cache).unwrap().0;
+        if step % 5 == 0 {
+            states.push(state.clone());
+        }
+    }
+    states
+}
+
+/// Displacements and tilts of the shaft and forces on the inner ring over a course.
+fn histories(states: &[MotionState]) -> [Vec<f64>; 3] {
+    let shaft = states.iter().flat_map(|state| state.shaft[..3].to_vec());
+    let tilts = states.iter().flat_map(|state| state.shaft[3..].to_vec());
+    let inner = states.iter().flat_map(|s| s.forces.iter().step_by(2));
+    [
+        shaft.collect(),
+        tilts.collect(),
+        inner.flatten().copied().collect(),
+    ]
+}
+
+/// Wrong: an inner ring on its shaft would not be the body that they are together. One mesh of both, with the same
+/// nodes, is clamped at the same place.
+#[test]
+fn ring_and_shaft_at_rest_are_those_of_one_mesh() {
+    let own = hollow_shaft(4).0;
+    let n_ring = inner(Hold::Clamped).mesh.n_dofs();
+    let one = equilibrium(&bearing(as_one(4), Backend::Sparse));
+    let expected = &one.elastic[0].as_ref().unwrap()[..n_ring];
+    let (mut moved, mut pushed, mut shaft) = (Vec::new(), Vec::new(), Vec::new());
+    for n in [[16, 2], [16, 4], [26, 8]] {
+        let model = bearing(on_shaft(own.clone(), n, None), Backend::Auto);
+        let solution = equilibrium(&model);
+        moved.push(difference(solution.elastic[0].as_ref().unwrap(), expected));
+        pushed.push(difference(&forces(&solution), &forces(&one)));
+        shaft.push(difference(
+            &solution.displacements.shaft,
+            &one.displacements.shaft,
+        ));
+        let work = solution.work_defect.abs() / solution.load_work;
+        assert!(work < 1e-9, "the virtual work does not close: {work:e}");
+    }
+    println!("displacements {moved:?}, forces {pushed:?}, shaft {shaft:?}");
+    assert!(moved.windows(2).all(|e| e[1] < e[0]), "{moved:?}");
+    // The seat has 9 nodes across: degree 8 is all of it.
+    assert!(
+        moved[2] < 1e-5 && pushed[2] < 1e-7 && shaft[2] < 1e-7,
+        "{moved:?} {pushed:?} {shaft:?}"
+    );
+    assert!(pushed[0] < 1e-3 && shaft[0] < 5e-3, "{pushed:?} {shaft:?}");
+}
+
+/// Wrong: ring and shaft would move otherwise than the body that they are together: the inertia of the shaft's tube, its
+/// turning, its modes.
+#[test]
+fn ring_and_shaft_move_as_one_mesh() {
+    let expected = histories(&course(&free(as_one(3), Backend::Sparse), settings(), 60));
+    let own = hollow_shaft(3).0;
+    let mut errors = Vec::new();
+    for (n, below) in [([4, 2], 1e3), ([24, 8], 60e3)] {
+        let ring = on_shaft(own.clone(), n, Some(below));
+        let found = histories(&course(&free(ring, Backend::Auto), settings(), 60));
+        errors.push([0, 1, 2].map(|i| difference(&found[i], &expected[i])));
+    }
+    println!("shaft, tilts and forces: {errors:?}");
+    let [shaft, tilts, forces] = errors[1];
+    assert!(shaft < 1e-3 && tilts < 1e-3 && forces < 5e-3, "{errors:?}");
+}
+
+/// Wrong: the joint, the shaft or its turning would make or eat energy.
+#[test]
+fn the_ledger_of_a_turning_shaft_closes() {
+    let damped = MotionSettings {
+        rayleigh: [20.0, 1e-7],
+        ..settings()
+    };
+    for settings in [settings(), damped] {
+        let ring = on_shaft(hollow_shaft(2).0, [6, 2], Some(20e3));
+        for state in course(&free(ring, Backend::Auto), settings, 60) {
+            let defect = state.ledger.relative_defect();
+            assert!(defect.abs() < 1e-9, "{defect:e} {:?}", state.ledger);
+        }
+    }
+}
+
+/// Wrong: a bearing on an elastic shaft would not stay where it is in equilibrium.
+#[test]
+fn an_equilibrium_stays() {
+    let mut model = free(on_shaft(hollow_shaft(2).0, [6, 2], Some(20e3)), Backend::Auto);
+    model.shaft[3] = ShaftDof::Prescribed(0.0);
+    model.shaft[4] = ShaftDof::Prescribed(0.0);
+    let rest = equilibrium(&model);
+    let motion = Motion::new(&model, MotionSettings::conserving(STEP, Speed::constant(0.0))).unwrap();
+    let (mut state, mut cache) = (motion.start(&rest), StepCache::default());
+    for _ in 0..20 {
+        state = motion.step(&state, &mut cache).unwrap().0;
+    }
+    let off = difference(&state.shaft, &rest.displacements.shaft);
+    assert!(off < 1e-7, "{off:e}");
+    assert!(state.ledger.kinetic.iter().sum::<f64>() < 1e-12 * state.ledger.strain[0]);
+    // The joint carries in motion what it carries at rest.
+    let tie = model.ring(Side::Inner).unwrap().tie.clone().unwrap();
+    let functions = model
+        .ring(Side::Inner)
+        .unwrap()
+        .seat_functions("inner")
+        .unwrap()
+        .unwrap();
+    let expected = tie
+        .traction(&functions, rest.elastic[0].as_ref().unwrap(), None)
+        .unwrap();
+    let moving = motion.tied(Side::Inner).unwrap();
+    let found = moving
+        .traction(state.rings[0].as_ref().unwrap().body().unwrap())
+        .unwrap();
+    assert!(difference(&found.forces, &expected.forces) < 1e-5);
+    assert!(difference(&found.motion, &expected.motion) < 1e-6);
+}
+
+/// Wrong: solvers or threads would move it otherwise.
+#[test]
+fn all_solvers_give_the_same_motion_and_threads_the_same_bits() {
+    let moved = |backend: Backend, threads: usize| {
+        on_threads(threads, || {
+            let ring = on_shaft(hollow_shaft(2).0, [6, 2], Some(20e3));
+            course(&free(ring, backend), settings(), 20)
+        })
+    };
+    let [one, two] = [1, 2].map(|threads| moved(Backend::Cyclic, threads));
+    assert_eq!(histories(&one), histories(&two));
+    assert!(one.last().unwrap().rings == two.last().unwrap().rings);
+    let [a, b] = [one, moved(Backend::Sparse, 2)].map(|states| histories(&states));
+    for (a, b) in a.iter().zip(&b) {
+        let off = difference(a, b);
+        assert!(off < 1e-8, "{off:e}");
+    }
+}
