@@ -62,7 +62,7 @@ impl Assembly {
     /// Fails where bearings feel each other through a body that carries several of them.
     pub fn require_bodies_of_one(&self) -> Result<(), AssemblyError> {
         match housed_together(&self.bearings).into_iter().next() {
-            Some((body, _)) => Err(AssemblyError::SharedBody { body }),
+            Some(housed) => Err(AssemblyError::SharedBody { body: housed.name }),
             None => Ok(()),
         }
     }

@@ -1,6 +1,6 @@
 //! Bodies that carry several bearings at rest.
 //!
-//! Each bearing solves its outer ring on the body as if it were alone there, moved by what the others press on it:
+//! Each bearing solves its ring on the body as if it were alone there, moved by what the others press on it:
 //!
 //! ```text
 //! y_k = F_kk p_k + sum over others F_kj p_j,      p_k = -lam_k the forces of ring k on its seat
@@ -13,6 +13,7 @@
 use std::sync::Arc;
 
 use body::{SeatFunctions, SeatTie, Surrounding};
+use contact::Side;
 use dynamics::{Model, StaticSolution};
 
 use crate::error::AssemblyError;
@@ -22,33 +23,52 @@ use crate::place::MountedBearing;
 pub struct SharedBody {
     /// Its name.
     pub name: String,
+    /// The rings in it.
+    side: Side,
     /// Number of the bearing of each seat.
     bearings: Vec<usize>,
     /// Joints of these, with the functions on the side of the ring.
     seats: Vec<(Arc<SeatTie>, SeatFunctions)>,
 }
 
-/// The body of a bearing that carries others as well.
-fn shared(model: &Model) -> Option<(&Arc<SeatTie>, &Arc<Surrounding>)> {
-    let (_, ring) = model.tied()?;
-    let tie = ring.tie.as_ref()?;
+/// A body that carries several bearings.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct HousedTogether {
+    /// Its name.
+    pub name: String,
+    /// The rings in it: outer ones of a housing, inner ones of a shaft.
+    pub side: Side,
+    /// Numbers of the bearings in the order of their seats.
+    pub bearings: Vec<usize>,
+}
+
+/// The body of a ring that carries others as well.
+fn shared(model: &Model, side: Side) -> Option<(&Arc<SeatTie>, &Arc<Surrounding>)> {
+    let tie = model.tied(side)?.tie.as_ref()?;
     let body = tie.body.as_ref().filter(|_| tie.has_others())?;
     Some((tie, body))
 }
 
-/// Name of each body that carries several bearings, and the numbers of these in the order of their seats.
-pub fn housed_together(bearings: &[MountedBearing]) -> Vec<(String, Vec<usize>)> {
-    let mut groups: Vec<(String, Vec<usize>)> = Vec::new();
-    for (i, bearing) in bearings.iter().enumerate() {
-        let Some((_, body)) = shared(&bearing.model) else {
-            continue;
-        };
-        let is_of = |(_, group): &&mut (String, Vec<usize>)| {
-            shared(&bearings[group[0]].model).is_some_and(|(_, other)| Arc::ptr_eq(other, body))
-        };
-        match groups.iter_mut().find(is_of) {
-            Some((_, group)) => group.push(i),
-            None => groups.push((body.name.clone(), vec![i])),
+/// The bodies that carry several bearings: housings, then shafts.
+pub fn housed_together(bearings: &[MountedBearing]) -> Vec<HousedTogether> {
+    let mut groups: Vec<HousedTogether> = Vec::new();
+    for side in [Side::Outer, Side::Inner] {
+        for (i, bearing) in bearings.iter().enumerate() {
+            let Some((_, body)) = shared(&bearing.model, side) else {
+                continue;
+            };
+            let is_of = |group: &&mut HousedTogether| {
+                let other = shared(&bearings[group.bearings[0]].model, side);
+                group.side == side && other.is_some_and(|(_, other)| Arc::ptr_eq(other, body))
+            };
+            match groups.iter_mut().find(is_of) {
+                Some(group) => group.bearings.push(i),
+                None => groups.push(HousedTogether {
+                    name: body.name.clone(),
+                    side,
+                    bearings: vec![i],
+                }),
+            }
         }
     }
     groups
@@ -56,21 +76,22 @@ pub fn housed_together(bearings: &[MountedBearing]) -> Vec<(String, Vec<usize>)>
 
 /// The bodies of an assembly that carry several of its bearings.
 pub fn shared_bodies(bearings: &[MountedBearing]) -> Result<Vec<SharedBody>, AssemblyError> {
-    let body = |(name, group): (String, Vec<usize>)| -> Result<SharedBody, AssemblyError> {
-        let mut seats = Vec::new();
-        for &i in &group {
+    let body = |housed: HousedTogether| -> Result<SharedBody, AssemblyError> {
+        let (side, mut seats) = (housed.side, Vec::new());
+        for &i in &housed.bearings {
             let MountedBearing { model, name: of, .. } = &bearings[i];
-            let functions = model.tied().map(|(side, ring)| ring.seat_functions(side.name()));
+            let functions = model.tied(side).map(|ring| ring.seat_functions(side.name()));
             let functions = functions
                 .transpose()
                 .map_err(|source| AssemblyError::of_bearing(of)(source.into()))?;
-            if let (Some((tie, _)), Some(functions)) = (shared(model), functions.flatten()) {
+            if let (Some((tie, _)), Some(functions)) = (shared(model, side), functions.flatten()) {
                 seats.push((tie.clone(), functions));
             }
         }
         Ok(SharedBody {
-            name,
-            bearings: group,
+            name: housed.name,
+            side,
+            bearings: housed.bearings,
             seats,
         })
     };
@@ -83,7 +104,7 @@ impl SharedBody {
         for (&i, (tie, _)) in self.bearings.iter().zip(&self.seats) {
             let mut others = forces.to_vec();
             others[tie.own()].fill(0.0);
-            bearings[i].model.other_seats = Some(Arc::new(others));
+            bearings[i].model.other_seats[self.side.index()] = Some(Arc::new(others));
         }
     }
 
@@ -95,9 +116,10 @@ impl SharedBody {
     ) -> Result<Vec<f64>, AssemblyError> {
         let mut forces = self.none();
         for (&i, (tie, functions)) in self.bearings.iter().zip(&self.seats) {
-            let others = bearings[i].model.other_seats.as_ref().map(|o| o.as_slice());
-            let tied = bearings[i].model.tied();
-            let field = tied.and_then(|(side, _)| solutions[i].elastic[side.index()].as_ref());
+            let ring = self.side.index();
+            let others = bearings[i].model.other_seats[ring].as_ref();
+            let others = others.map(|others| others.as_slice());
+            let field = solutions[i].elastic[ring].as_ref();
             let traction = field.and_then(|field| tie.traction(functions, field, others));
             let traction = traction.ok_or_else(|| AssemblyError::NoSeatForces {
                 body: self.name.clone(),

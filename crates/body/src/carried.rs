@@ -68,8 +68,55 @@ pub struct Carried {
     pub(crate) pushes: Vec<Vec<f64>>,
     /// R of the functions of all seats, m per m or rad, by motion.
     pub(crate) seats: Vec<Vec<f64>>,
+    /// Where the bearing of each seat stands.
+    pub(crate) places: Vec<ShaftPlace>,
     /// The origin of the tilts along the body's own z, m.
     origin: f64,
+}
+
+/// Where a bearing stands on the shaft, seen from the body at the origin of its tilts.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ShaftPlace {
+    /// Distance along z of the body, m.
+    distance: f64,
+    /// Whether it is turned by 180 deg about x.
+    is_turned: bool,
+}
+
+impl ShaftPlace {
+    /// The motion of the shaft there, of that of the body.
+    pub fn there(&self, [x, y, z, tilt_x, tilt_y]: [f64; N_SHAFT]) -> [f64; N_SHAFT] {
+        let [x, y] = [x + self.distance * tilt_y, y - self.distance * tilt_x];
+        self.turned([x, y, z, tilt_x, tilt_y])
+    }
+
+    /// The motion of the body, of that of the shaft there.
+    pub fn here(&self, there: [f64; N_SHAFT]) -> [f64; N_SHAFT] {
+        let [x, y, z, tilt_x, tilt_y] = self.turned(there);
+        [
+            x - self.distance * tilt_y,
+            y + self.distance * tilt_x,
+            z,
+            tilt_x,
+            tilt_y,
+        ]
+    }
+
+    /// An inertia about the origin of the body's tilts as a bearing there sees it.
+    pub fn seen(&self, inertia: RigidInertia) -> RigidInertia {
+        let way = if self.is_turned { -1.0 } else { 1.0 };
+        RigidInertia {
+            first_moment: way * inertia.first_moment,
+            ..inertia
+        }
+    }
+
+    fn turned(&self, [x, y, z, tilt_x, tilt_y]: [f64; N_SHAFT]) -> [f64; N_SHAFT] {
+        match self.is_turned {
+            true => [x, -y, -z, tilt_x, -tilt_y],
+            false => [x, y, z, tilt_x, tilt_y],
+        }
+    }
 }
 
 impl Carried {
@@ -128,20 +175,34 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
 }
 
 impl Surrounding {
-    /// The same body, carried by a shaft whose tilts have their origin at `origin`, m along z in the coordinates of
-    /// the ring of its first seat.
-    pub fn on_shaft(mut self, origin: f64) -> Result<Surrounding, SurroundingError> {
+    /// The same body, carried by a shaft. The tilts of each bearing have their origin at one of the `origins`, m along z
+    /// in the coordinates of its ring, by seat; those of the body at the first.
+    pub fn on_shaft(mut self, origins: &[f64]) -> Result<Surrounding, SurroundingError> {
         let Some((mesh, material)) = &self.mesh else {
             return Err(SurroundingError::MatrixOnShaft {
                 body: self.name.clone(),
             });
         };
-        let carried = self.carried_by(mesh, material, origin - self.shift)?;
-        self.carried = Some(carried);
+        let in_body = |seat: usize| {
+            let way = if self.turned[seat] { -1.0 } else { 1.0 };
+            self.middles[seat] + way * (origins[seat] - self.seats[seat].space.middle)
+        };
+        let first = in_body(0);
+        let place = |seat: usize| ShaftPlace {
+            distance: in_body(seat) - first,
+            is_turned: self.turned[seat],
+        };
+        let places = (0..self.seats.len()).map(place).collect();
+        self.carried = Some(self.carried_by((mesh, material), first, places)?);
         Ok(self)
     }
 
-    fn carried_by(&self, mesh: &Mesh, material: &Material, origin: f64) -> Result<Carried, SurroundingError> {
+    fn carried_by(
+        &self,
+        (mesh, material): (&Mesh, &Material),
+        origin: f64,
+        places: Vec<ShaftPlace>,
+    ) -> Result<Carried, SurroundingError> {
         let mass = fem::assemble_mass(mesh, material).map_err(|source| SurroundingError::Fem {
             body: self.name.clone(),
             source,
@@ -176,12 +237,13 @@ impl Surrounding {
                 .map(|k| self.free.iter().map(|&dof| products[k][dof]).collect())
                 .collect(),
             seats: of_shaft.map(measured).collect(),
+            places,
             origin,
         })
     }
 
-    /// Adds the motion of the body with its shaft to a displacement, m, `[n_nodes][3]` flat.
-    pub fn add_shaft_motion(&self, q: [f64; N_SHAFT], field: &mut [f64]) {
+    /// Adds a rigid motion about the origin of the body's tilts to a displacement, m, `[n_nodes][3]` flat.
+    pub(crate) fn add_shaft_motion(&self, q: [f64; N_SHAFT], field: &mut [f64]) {
         let (Some((mesh, _)), Some(carried)) = (&self.mesh, &self.carried) else {
             return;
         };

@@ -24,4 +24,4 @@ pub use error::SurroundingError;
 pub use seat::{SeatBasis, SeatCylinder, SeatFunctions, SeatSpace};
 pub use surrounding::{BodySeat, Surrounding};
 pub use tie::{SeatTie, SeatTraction, TieConvergence};
-pub use vibration::{BodyModes, SeatModes, ShaftShares};
+pub use vibration::{BodyModes, SeatModes, ShaftAtSeat};

@@ -45,6 +45,8 @@ pub struct Surrounding {
     pub shift: f64,
     /// Its seats.
     pub seats: Vec<SeatFunctions>,
+    /// Whether the ring of each seat stands turned by 180 deg about x.
+    pub(crate) turned: Vec<bool>,
     /// Middles of the seats along the body's z, m.
     pub middles: Vec<f64>,
     /// F over the functions of all seats, m/N, `[n][n]` flat, symmetric.
@@ -212,6 +214,7 @@ impl Unfactored<'_> {
         let symbolic = Symbolic::new(&lower, &order).map_err(failed)?;
         let factor = symbolic.factor(&lower).map_err(failed)?;
         let shift = joints.first().map_or(0.0, |joint| joint.shift);
+        let turned = joints.iter().map(|joint| joint.is_turned).collect();
         let middles = joints.iter().map(|joint| joint.middle).collect();
         let seats: Vec<SeatFunctions> = joints.into_iter().map(|joint| joint.functions).collect();
         let functional_bytes: usize = seats.iter().map(SeatFunctions::bytes).sum();
@@ -229,6 +232,7 @@ impl Unfactored<'_> {
             seconds: 0.0,
             seats,
             middles,
+            turned,
             free,
             factor,
             matrices: None,
@@ -373,6 +377,8 @@ struct SeatJoint {
     shift: f64,
     /// Its middle along the body's z, m.
     middle: f64,
+    /// Whether its ring stands turned by 180 deg about x.
+    is_turned: bool,
 }
 
 /// The functions of a seat on the body's side.
@@ -425,6 +431,7 @@ fn joint(
         functions,
         shift,
         middle: sign * middle,
+        is_turned: seat.is_turned,
     })
 }
 

@@ -5,10 +5,10 @@ use std::sync::Arc;
 
 use dense::DenseCholesky;
 
-use crate::carried::{Carried, N_SHAFT};
+use crate::carried::{Carried, N_SHAFT, RigidInertia};
 use crate::seat::{SeatBasis, SeatFunctions, SeatSpace};
 use crate::surrounding::Surrounding;
-use crate::vibration::{BodyModes, SeatModes};
+use crate::vibration::{BodyModes, SeatModes, ShaftAtSeat};
 
 /// The joint of a ring with what is round it.
 #[derive(Clone)]
@@ -59,7 +59,10 @@ impl SeatTie {
 
     /// The same for a motion, with the modes of the body.
     pub fn in_motion(mut self, modes: Arc<BodyModes>) -> SeatTie {
+        let place = self.carried().map(|carried| carried.places[self.seat]);
+        let on_shaft = modes.on_shaft.as_ref().zip(place);
         self.modes = Some(SeatModes {
+            on_shaft: on_shaft.map(|(shares, place)| ShaftAtSeat::new(shares, &place)),
             of_body: modes,
             own: self.own(),
         });
@@ -79,9 +82,24 @@ impl SeatTie {
         self.body.as_ref()?.carried.as_ref()
     }
 
-    /// Motion of the seat with the shaft that carries the body, m; None of one that stands.
+    /// Inertia of a body on a shaft; None of one that stands, and at other seats than the first.
+    pub fn carried_inertia(&self) -> Option<RigidInertia> {
+        let carried = self.carried().filter(|_| self.seat == 0)?;
+        Some(carried.places[0].seen(carried.inertia))
+    }
+
+    /// Adds the motion of the body with its shaft, as the bearing of the seat sees it, to a displacement, m.
+    pub fn add_shaft_motion(&self, q: [f64; N_SHAFT], field: &mut [f64]) {
+        if let (Some(body), Some(carried)) = (&self.body, self.carried()) {
+            body.add_shaft_motion(carried.places[self.seat].here(q), field);
+        }
+    }
+
+    /// Motion of the seat with the shaft that carries the body, as its own bearing sees it, m; None of one that stands.
     pub fn shaft_motion(&self, q: [f64; N_SHAFT]) -> Option<Vec<f64>> {
-        Some(self.carried()?.seat_motion(q)[self.own()].to_vec())
+        let carried = self.carried()?;
+        let here = carried.places[self.seat].here(q);
+        Some(carried.seat_motion(here)[self.own()].to_vec())
     }
 
     /// Whether the body has other seats.

@@ -28,7 +28,7 @@ use rayon::prelude::*;
 use solver::LinearSolver;
 use sprs::CsMat;
 
-use crate::carried::{Carried, N_SHAFT};
+use crate::carried::{Carried, N_SHAFT, ShaftPlace};
 use crate::error::SurroundingError;
 use crate::surrounding::Surrounding;
 
@@ -59,14 +59,15 @@ pub struct BodyModes {
     /// These modes on the free dofs, column-major.
     fixed: Vec<f64>,
     /// Of a body that a shaft carries.
-    pub on_shaft: Option<ShaftShares>,
+    pub(crate) on_shaft: Option<ShaftShares>,
 }
 
-/// How oscillators move the shaft that carries their body. The first [`N_SHAFT`] are rigid.
+/// How oscillators move the shaft that carries their body, at the bearing of its first seat. The first [`N_SHAFT`] are
+/// rigid.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ShaftShares {
     /// Motion of the shaft per unit of an oscillator, m and rad.
-    pub rows: Vec<[f64; N_SHAFT]>,
+    rows: Vec<[f64; N_SHAFT]>,
     /// Rigid oscillators of the body that moves with the shaft: by unit motions of it, `[rigid][motion]`.
     of_motion: [[f64; N_SHAFT]; N_SHAFT],
     /// Static forces on the functions of all seats that unit accelerations of the rigid oscillators ask for, N,
@@ -74,14 +75,33 @@ pub struct ShaftShares {
     reactions: Vec<f64>,
 }
 
-impl ShaftShares {
+/// The shaft at the bearing of a seat.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ShaftAtSeat {
+    /// Motion of the shaft there per unit of an oscillator, m and rad.
+    pub rows: Vec<[f64; N_SHAFT]>,
+    /// Rigid oscillators of the body that moves with it: by unit motions there, `[rigid][motion]`.
+    of_motion: [[f64; N_SHAFT]; N_SHAFT],
+}
+
+impl ShaftAtSeat {
+    /// The shaft at a place on it.
+    pub(crate) fn new(shares: &ShaftShares, place: &ShaftPlace) -> ShaftAtSeat {
+        let unit = |k: usize| {
+            let mut q = [0.0; N_SHAFT];
+            q[k] = 1.0;
+            place.here(q)
+        };
+        let of_motion = |row: &[f64; N_SHAFT]| [0, 1, 2, 3, 4].map(|k| dot(row, &unit(k)));
+        ShaftAtSeat {
+            rows: shares.rows.iter().map(|row| place.there(*row)).collect(),
+            of_motion: shares.of_motion.each_ref().map(of_motion),
+        }
+    }
+
     /// Motion of the shaft under oscillators, m and rad.
     pub fn motion(&self, oscillators: &[f64]) -> [f64; N_SHAFT] {
-        let mut q = [0.0; N_SHAFT];
-        for (row, x) in self.rows.iter().zip(oscillators) {
-            (0..N_SHAFT).for_each(|k| q[k] += row[k] * x);
-        }
-        q
+        shaft_motion(&self.rows, oscillators)
     }
 
     /// Adds the oscillators of a motion or velocity with the shaft.
@@ -90,6 +110,14 @@ impl ShaftShares {
             *x += dot(row, &q);
         }
     }
+}
+
+fn shaft_motion(rows: &[[f64; N_SHAFT]], oscillators: &[f64]) -> [f64; N_SHAFT] {
+    let mut q = [0.0; N_SHAFT];
+    for (row, x) in rows.iter().zip(oscillators) {
+        (0..N_SHAFT).for_each(|k| q[k] += row[k] * x);
+    }
+    q
 }
 
 impl BodyModes {
@@ -156,6 +184,8 @@ pub struct SeatModes {
     pub of_body: Arc<BodyModes>,
     /// Numbers of the functions of the seat among those of all seats.
     pub own: Range<usize>,
+    /// The shaft that carries the body; None of one that stands.
+    pub on_shaft: Option<ShaftAtSeat>,
 }
 
 impl SeatModes {
@@ -164,6 +194,7 @@ impl SeatModes {
         SeatModes {
             of_body: Arc::new(BodyModes::rigid()),
             own: 0..0,
+            on_shaft: None,
         }
     }
 
@@ -262,7 +293,7 @@ impl Surrounding {
             }
         }
         if let Some(shares) = &modes.on_shaft {
-            self.add_shaft_motion(shares.motion(oscillators), &mut field);
+            self.add_shaft_motion(shaft_motion(&shares.rows, oscillators), &mut field);
         }
         field
     }

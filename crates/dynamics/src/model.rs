@@ -96,9 +96,9 @@ pub struct Model {
     pub surfaces: Surfaces,
     /// Flexible rings, inner first; None is a rigid ring and costs nothing.
     pub rings: [Option<Arc<RingModel>>; 2],
-    /// Forces on the other seats of the body round the outer ring at rest, N, over the functions of all its seats;
+    /// Forces on the other seats of the body of each ring at rest, inner first, N, over the functions of all its seats;
     /// None: it has no others, or nothing sits there.
-    pub other_seats: Option<Arc<Vec<f64>>>,
+    pub other_seats: [Option<Arc<Vec<f64>>>; 2],
     /// What fits and temperatures do to rings and balls.
     pub mounting: Mounting,
     /// Ball steel.
@@ -176,21 +176,20 @@ impl Model {
         [m, m, m, i, i]
     }
 
-    /// The ring that is tied to an elastic body, and its side.
-    pub fn tied(&self) -> Option<(Side, &RingModel)> {
-        let of_side = |side| Some((side, self.ring(side).filter(|ring| ring.tie.is_some())?));
-        Side::BOTH.into_iter().find_map(of_side)
+    /// The ring of one side if it is tied to an elastic body.
+    pub fn tied(&self, side: Side) -> Option<&RingModel> {
+        self.ring(side).filter(|ring| ring.tie.is_some())
     }
 
     /// Inertia of the body on the shaft in which the inner ring sits; None where it is in none.
     pub fn carried_inertia(&self) -> Option<RigidInertia> {
-        Some(self.ring(Side::Inner)?.tie.as_ref()?.carried()?.inertia)
+        self.ring(Side::Inner)?.tie.as_ref()?.carried_inertia()
     }
 
     /// Motion of the seat of a ring by forces on the other seats of its body, by functions, m; None: none.
     pub(crate) fn seat_motion(&self, side: Side) -> Option<Vec<f64>> {
-        let (_, ring) = self.tied().filter(|(tied, _)| *tied == side)?;
-        Some(ring.tie.as_ref()?.motion_by(self.other_seats.as_ref()?))
+        let others = self.other_seats[side.index()].as_ref()?;
+        Some(self.ring(side)?.tie.as_ref()?.motion_by(others))
     }
 
     /// Whether a ring has the inertia of its turning frame.

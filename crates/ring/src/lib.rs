@@ -45,7 +45,7 @@ pub use seat::{OwnStress, RadialProfile, SeatAction, SeatField};
 pub use solver::SolverError;
 pub use state::{BodyState, RingState};
 pub use step::{
-    ElasticStep, End, Ended, Feet, FrameTurn, Known, KnownLoad, PortAnswer, PortForces, Settling, StepFactor,
-    Works,
+    BodyAlone, ElasticStep, End, Ended, Feet, FrameTurn, Known, KnownLoad, PortAnswer, PortForces, Settling,
+    StepFactor, Works,
 };
 pub use vibration::VibratingRing;

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use body::N_SHAFT;
-use body::{RigidInertia, SeatFunctions, SeatModes, SeatTie, SeatTraction, ShaftShares};
+use body::{RigidInertia, SeatFunctions, SeatModes, SeatTie, SeatTraction, ShaftAtSeat};
 use dense::DenseCholesky;
 
 use crate::error::RingError;
@@ -119,13 +119,13 @@ impl Oscillators {
     }
 
     /// How the oscillators move the shaft that carries the body; None of one that stands.
-    pub fn on_shaft(&self) -> Option<&ShaftShares> {
-        self.modes.of_body.on_shaft.as_ref()
+    pub fn on_shaft(&self) -> Option<&ShaftAtSeat> {
+        self.modes.on_shaft.as_ref()
     }
 
     /// Inertia of a body that a shaft carries.
     pub fn carried_inertia(&self) -> Option<RigidInertia> {
-        Some(self.tie.carried()?.inertia)
+        self.tie.carried_inertia()
     }
 
     /// What the joint carries; None for a rigid body.
@@ -149,7 +149,7 @@ impl Oscillators {
 
     /// The same of a body on a shaft, whose rigid oscillators stand for nothing at rest. The motion is that beside the
     /// shaft's.
-    fn traction_on_shaft(&self, shares: &ShaftShares, [x, v, a]: [&[f64]; 3]) -> SeatTraction {
+    fn traction_on_shaft(&self, shares: &ShaftAtSeat, [x, v, a]: [&[f64]; 3]) -> SeatTraction {
         let [am, ak] = self.damping;
         let driven = |(i, square): (usize, &f64)| match *square {
             0.0 => -(a[i] + am * v[i]),

@@ -142,6 +142,17 @@ pub struct Works {
     pub frame: f64,
 }
 
+/// The body on which a ring sits, carried by a shaft, over a step without the ring.
+#[derive(Clone, Debug, PartialEq)]
+pub struct BodyAlone {
+    /// Growth of the forces of the shaft on it with the motion of the shaft at the end, `[5][5]` flat, SI.
+    pub stiffness: Vec<f64>,
+    /// Motion of the shaft at the end without forces of it, m and rad, under the loads on the body.
+    pub predicted: Vec<f64>,
+    /// The same without loads.
+    pub unloaded: Vec<f64>,
+}
+
 /// A factored effective matrix: steps of one scheme and size.
 pub trait StepFactor: Send + Sync {
     /// Bytes of the factor and of what belongs to it.
@@ -180,6 +191,11 @@ pub trait ElasticStep: Send {
 
     /// Puts a mean load over the step on these oscillators, in place of the one before: what other rings do to them.
     fn load_body(&mut self, _load: &[f64]) {}
+
+    /// The body to which the ring is tied, without it; None where no shaft carries one.
+    fn body_alone(&self) -> Option<BodyAlone> {
+        None
+    }
 
     /// Values of a vector of the body at the contacts, in two directions of all their nodal weights.
     fn at_contacts(&self, x: &[f64]) -> Vec<f64>;

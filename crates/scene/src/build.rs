@@ -109,7 +109,7 @@ pub fn model_with_rings(scene: &Scene, rings: [Option<Arc<RingModel>>; 2]) -> Re
         sphere,
         surfaces: Surfaces::default(),
         rings,
-        other_seats: None,
+        other_seats: [None, None],
         mounting,
         ball_material: ball_steel,
         ring_material: ring_steel,

@@ -7,6 +7,7 @@
 
 use dynamics::motion::held::{HeldPart, Holding};
 
+use crate::housing::HousedTogether;
 use crate::mixing::{Mixing, dot};
 
 /// Change of the loads over their size at which they stay as they are. The ledger of each bearing closes with any
@@ -29,8 +30,7 @@ pub struct SharedLoads<'a> {
 
 /// Loads on one body.
 struct SharedLoad<'a> {
-    name: &'a str,
-    bearings: &'a [usize],
+    housed: &'a HousedTogether,
     /// Of each bearing, one after the other; empty before the first round.
     loads: Vec<f64>,
     mixing: Mixing,
@@ -40,10 +40,9 @@ struct SharedLoad<'a> {
 
 impl<'a> SharedLoads<'a> {
     /// Loads of the bearings in each body, none yet.
-    pub fn new(housed: &'a [(String, Vec<usize>)]) -> SharedLoads<'a> {
-        let body = |(name, bearings): &'a (String, Vec<usize>)| SharedLoad {
-            name,
-            bearings,
+    pub fn new(housed: &'a [HousedTogether]) -> SharedLoads<'a> {
+        let body = |housed: &'a HousedTogether| SharedLoad {
+            housed,
             loads: Vec::new(),
             mixing: Mixing::default(),
             change: f64::INFINITY,
@@ -55,7 +54,10 @@ impl<'a> SharedLoads<'a> {
 
     /// Name of the body whose loads changed most in the last exchange, and their change over their size.
     pub fn worst(&self) -> Option<(&str, f64)> {
-        let changes = self.bodies.iter().map(|body| (body.name, body.change));
+        let changes = self
+            .bodies
+            .iter()
+            .map(|body| (&body.housed.name[..], body.change));
         changes.max_by(|a, b| a.1.total_cmp(&b.1))
     }
 
@@ -79,7 +81,8 @@ impl<'a> SharedLoads<'a> {
 
 impl SharedLoad<'_> {
     fn exchange(&mut self, parts: &mut [HeldPart<'_>]) -> Holding {
-        let answers = self.bearings.iter().map(|&i| parts[i].load_on_body());
+        let HousedTogether { side, bearings, .. } = self.housed;
+        let answers = bearings.iter().map(|&i| parts[i].load_on_body(*side));
         let found: Vec<f64> = answers.flat_map(Option::unwrap_or_default).collect();
         if self.loads.is_empty() {
             self.loads = vec![0.0; found.len()];
@@ -97,13 +100,13 @@ impl SharedLoad<'_> {
         self.change = change;
         let mixed = self.mixing.next(std::mem::take(&mut self.loads), &found);
         self.loads = if is_slow { mixed } else { found };
-        let n = self.loads.len() / self.bearings.len();
-        for (number, &i) in self.bearings.iter().enumerate() {
+        let n = self.loads.len() / bearings.len();
+        for (number, &i) in bearings.iter().enumerate() {
             let of_others = |k: usize| -> f64 {
-                let others = (0..self.bearings.len()).filter(|other| *other != number);
+                let others = (0..bearings.len()).filter(|other| *other != number);
                 others.map(|other| self.loads[n * other + k]).sum()
             };
-            parts[i].load_body((0..n).map(of_others).collect());
+            parts[i].load_body(*side, (0..n).map(of_others).collect());
         }
         Holding::Again
     }

@@ -40,7 +40,7 @@ use self::side_by_side::in_order;
 use self::step::ShaftStep;
 use crate::assembly::{Assembly, AssemblySolution};
 use crate::error::AssemblyError;
-use crate::housing::housed_together;
+use crate::housing::{HousedTogether, housed_together};
 use crate::newton::Mount;
 
 /// Rounds for patches and frames before a part counts as failed.
@@ -53,8 +53,8 @@ pub type LoadAt<'a> = dyn Fn(f64) -> Result<Vec<f64>, AssemblyError> + Sync + 'a
 pub struct AssemblyMotion<'a> {
     assembly: &'a Assembly,
     mounts: Vec<Mount>,
-    /// Name of each body that carries several bearings, and their numbers.
-    housed: Vec<(String, Vec<usize>)>,
+    /// The bodies that carry several bearings.
+    housed: Vec<HousedTogether>,
     /// Motion of every bearing, in its own frame.
     pub bearings: Vec<Motion<'a>>,
     /// Speed of the shaft in its frame.

@@ -1,6 +1,8 @@
 //! Two bearings in one elastic sleeve, at rest and in motion: against two sleeves, the sleeve's own balance, the order
 //! of the list, ledgers.
 
+mod shaft;
+
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -31,9 +33,9 @@ const BETWEEN: usize = 8;
 const OUTWARDS: usize = 3;
 const SPEED: f64 = 500.0;
 
-/// The seat of an outer ring, by functions that are few but hold an oval.
+/// The seat of a ring, by functions that are few but hold an oval.
 fn space(ring: &RingModel) -> SeatSpace {
-    let nodes = ring.mesh.group_nodes("seat");
+    let nodes = ring.mesh.group_nodes(ring.held_group);
     let numbered = nodes.iter().map(|&n| (n as u64, ring.mesh.nodes[n]));
     let basis = SeatBasis::Harmonics {
         harmonics: 4,
@@ -70,8 +72,23 @@ fn bands(space: &SeatSpace, apart: f64, is_joined: bool) -> Vec<Band> {
     }
 }
 
-/// A sleeve of bands, 0.45 of its inner radius thick, that stands below: bands that follow each other share nodes.
-fn sleeve(radius: f64, bands: &[Band]) -> Mesh {
+/// The wall of a sleeve from its seats on.
+#[derive(Clone, Copy)]
+struct Wall {
+    /// Share of the radius of the seats by which it goes outwards; negative: inwards.
+    thickness: f64,
+    /// Shares of the way round between which its other surface is held.
+    held: [f64; 2],
+}
+
+/// A wall that stands below.
+const STANDING: Wall = Wall {
+    thickness: 0.45,
+    held: [0.62, 0.88],
+};
+
+/// A sleeve of bands: bands that follow each other share nodes.
+fn sleeve(radius: f64, bands: &[Band], wall: Wall) -> Mesh {
     let (mut nodes, mut connectivity) = (Vec::new(), Vec::new());
     let mut groups = BTreeMap::<String, Vec<Facet>>::new();
     let mut last: Option<f64> = None;
@@ -89,7 +106,7 @@ fn sleeve(radius: f64, bands: &[Band]) -> Mesh {
             for i in 0..ROUND {
                 let (sin, cos) = (std::f64::consts::TAU * i as f64 / ROUND as f64).sin_cos();
                 for j in 0..=OUTWARDS {
-                    let r = radius * (1.0 + 0.45 * j as f64 / OUTWARDS as f64);
+                    let r = radius * (1.0 + wall.thickness * j as f64 / OUTWARDS as f64);
                     nodes.push([r * cos, r * sin, z]);
                 }
             }
@@ -99,7 +116,8 @@ fn sleeve(radius: f64, bands: &[Band]) -> Mesh {
             for i in 0..ROUND {
                 for j in 0..OUTWARDS {
                     let element = connectivity.len() / 8;
-                    for layer in [j, j + 1] {
+                    let goes_out = wall.thickness > 0.0;
+                    for layer in if goes_out { [j, j + 1] } else { [j + 1, j] } {
                         connectivity.extend([
                             at(k, i, layer),
                             at(k, i + 1, layer),
@@ -107,10 +125,12 @@ fn sleeve(radius: f64, bands: &[Band]) -> Mesh {
                             at(k + 1, i, layer),
                         ]);
                     }
-                    let below = (0.62..0.88).contains(&((i as f64 + 0.5) / ROUND as f64));
+                    let share = (i as f64 + 0.5) / ROUND as f64;
+                    let is_held = (wall.held[0]..wall.held[1]).contains(&share);
+                    let [near, far] = if goes_out { [0, 1] } else { [1, 0] };
                     for (name, face) in [
-                        (band.seat.filter(|_| j == 0), 0),
-                        ((j + 1 == OUTWARDS && below).then_some("feet"), 1),
+                        (band.seat.filter(|_| j == 0), near),
+                        ((j + 1 == OUTWARDS && is_held).then_some("feet"), far),
                     ] {
                         if let Some(name) = name {
                             groups
@@ -134,6 +154,10 @@ fn sleeve(radius: f64, bands: &[Band]) -> Mesh {
 
 /// A body with seats, of which some are turned against it.
 fn body(mesh: Mesh, space: SeatSpace, seats: &[(&str, bool)], young: f64) -> Arc<Surrounding> {
+    Arc::new(standing(mesh, space, seats, young))
+}
+
+fn standing(mesh: Mesh, space: SeatSpace, seats: &[(&str, bool)], young: f64) -> Surrounding {
     let origin = Origin::of_generated("sleeve", 1.0, &mesh);
     let seats: Vec<BodySeat> = seats
         .iter()
@@ -146,7 +170,7 @@ fn body(mesh: Mesh, space: SeatSpace, seats: &[(&str, bool)], young: f64) -> Arc
         .collect();
     let material = Material::new(young, 0.3, 7800.0).unwrap();
     let fixed = ["feet".to_string()];
-    Arc::new(Surrounding::of_mesh("sleeve", (mesh, &origin), material, &fixed, &seats).unwrap())
+    Surrounding::of_mesh("sleeve", (mesh, &origin), material, &fixed, &seats).unwrap()
 }
 
 /// The joint with a seat of a body that moves by some modes.
@@ -156,20 +180,27 @@ fn tie(body: &Arc<Surrounding>, modes: &Arc<body::BodyModes>, seat: usize) -> Ar
 
 /// Two bearings back to back with these joints, on a free rigid shaft under a load at the first.
 fn pair(ties: [Arc<SeatTie>; 2], order: [usize; 2]) -> Assembly {
+    tied_pair(Side::Outer, ties, order)
+}
+
+/// The same with joints of the rings of one side.
+fn tied_pair(side: Side, ties: [Arc<SeatTie>; 2], order: [usize; 2]) -> Assembly {
     let shaft = ShaftBody::rigid(INERTIA, [None; 5]);
     let places = [(0.0, PlusZ), (APART, MinusZ)];
-    let inner = Arc::new(ring(Side::Inner, LEVEL, Hold::Clamped));
+    let other = match side {
+        Side::Inner => Side::Outer,
+        Side::Outer => Side::Inner,
+    };
+    let clamped = Arc::new(ring(other, LEVEL, Hold::Clamped));
     let bearing = |number: usize| {
         let (position, orientation) = places[number];
         let mut model = Case::axial(0.0).flexible(ContactMode::Patch, LEVEL, Hold::Clamped);
         model.effects.clear();
-        model.rings = [
-            Some(inner.clone()),
-            Some(Arc::new(RingModel {
-                tie: Some(ties[number].clone()),
-                ..ring(Side::Outer, LEVEL, Hold::MeanMotion)
-            })),
-        ];
+        model.rings[other.index()] = Some(clamped.clone());
+        model.rings[side.index()] = Some(Arc::new(RingModel {
+            tie: Some(ties[number].clone()),
+            ..ring(side, LEVEL, Hold::MeanMotion)
+        }));
         MountedBearing {
             name: format!("number {number}"),
             place: Seating {
@@ -194,7 +225,7 @@ const LOAD: [f64; 5] = [600.0, -200.0, 300.0, 0.0, 3.0];
 /// Joints with one sleeve, in the frame of the first bearing.
 fn in_one(is_joined: bool, young: f64) -> [Arc<SeatTie>; 2] {
     let space = space(&ring(Side::Outer, LEVEL, Hold::MeanMotion));
-    let mesh = sleeve(space.radius, &bands(&space, APART, is_joined));
+    let mesh = sleeve(space.radius, &bands(&space, APART, is_joined), STANDING);
     let body = body(mesh, space, &[("seat_front", false), ("seat_rear", true)], young);
     let modes = Arc::new(body.modes(8e3 * (young / 70e9).sqrt()).unwrap());
     [0, 1].map(|seat| tie(&body, &modes, seat))
@@ -203,7 +234,7 @@ fn in_one(is_joined: bool, young: f64) -> [Arc<SeatTie>; 2] {
 /// The same in the frame of the second, which comes first.
 fn in_one_turned() -> [Arc<SeatTie>; 2] {
     let space = space(&ring(Side::Outer, LEVEL, Hold::MeanMotion));
-    let mut mesh = sleeve(space.radius, &bands(&space, APART, true));
+    let mut mesh = sleeve(space.radius, &bands(&space, APART, true), STANDING);
     let turned = |x: &mut [f64; 3]| *x = [x[0], -x[1], -x[2]];
     mesh.nodes.iter_mut().for_each(turned);
     let body = body(mesh, space, &[("seat_rear", false), ("seat_front", true)], 70e9);
@@ -214,7 +245,7 @@ fn in_one_turned() -> [Arc<SeatTie>; 2] {
 /// Joints with a sleeve each.
 fn in_two() -> [Arc<SeatTie>; 2] {
     let space = space(&ring(Side::Outer, LEVEL, Hold::MeanMotion));
-    let mesh = || sleeve(space.radius, &bands(&space, APART, false));
+    let mesh = || sleeve(space.radius, &bands(&space, APART, false), STANDING);
     [("seat_front", false), ("seat_rear", true)].map(|seat| {
         let mut mesh = mesh();
         mesh.groups.retain(|name, _| name == seat.0 || name == "feet");
@@ -270,7 +301,7 @@ fn both_seats_move_with_their_rings() {
                 .seat_functions("outer")
                 .unwrap()
                 .unwrap();
-            let others = model.other_seats.as_ref().map(|o| o.as_slice());
+            let others = model.other_seats[1].as_ref().map(|o| o.as_slice());
             let field = solution.bearings[i].elastic[1].as_ref().unwrap();
             let traction = tie.traction(&functions, field, others).unwrap();
             let own = forces[tie.own()].iter_mut();
@@ -309,7 +340,11 @@ fn moved(
 
 /// Oscillators of the body as a bearing has them.
 fn oscillators(state: &AssemblyState, bearing: usize) -> &[f64] {
-    let ring = state.bearings[bearing].rings[1].as_ref().unwrap();
+    oscillators_of(Side::Outer, state, bearing)
+}
+
+fn oscillators_of(side: Side, state: &AssemblyState, bearing: usize) -> &[f64] {
+    let ring = state.bearings[bearing].rings[side.index()].as_ref().unwrap();
     &ring.body().unwrap().0[0]
 }
 

@@ -6,7 +6,8 @@
 
 use std::ops::Range;
 
-use ring::StepScheme;
+use contact::Side;
+use ring::{BodyAlone, StepScheme};
 use timer::SharedLaps;
 
 use super::cache::{RingEnds, StepCache};
@@ -20,6 +21,7 @@ use crate::condensation::condensed;
 use crate::costs::NEWTON;
 use crate::error::DynamicsError;
 use crate::stiffness::{N_SHAFT, ShaftMatrix};
+use crate::system::Follow;
 use crate::system::newton::Policy;
 
 /// A part under way.
@@ -29,14 +31,15 @@ pub struct HeldPart<'m> {
     part: Part<'m>,
     solution: StepSolution,
     ends: Option<RingEnds>,
-    /// Mean load of others on the body round the outer ring, on its oscillators; empty: none.
-    body_load: Vec<f64>,
+    /// Mean load of others on the body of each ring, on its oscillators, inner first; empty: none.
+    body_loads: [Vec<f64>; 2],
 }
 
 /// How a bearing answers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HeldAnswer {
-    /// Mean load that has to act on the shaft over the part, N and N m.
+    /// Mean load that has to act on the shaft over the part, N and N m. A body on the shaft that carries other bearings
+    /// as well counts at its first seat alone.
     pub load: [f64; N_SHAFT],
     /// Force by which its round-off counts, N.
     pub force: f64,
@@ -65,7 +68,7 @@ impl<'m> HeldPart<'m> {
             part: motion.begin(state, span, cache)?,
             solution: StepSolution::default(),
             ends: None,
-            body_load: Vec::new(),
+            body_loads: Default::default(),
         })
     }
 
@@ -88,8 +91,11 @@ impl<'m> HeldPart<'m> {
             dt: part.span.dt,
         };
         let forces = solution.forces.iter().map(|f| f.force[0].hypot(f.force[1]));
+        let reactions = part.parts.shaft_reactions(&solution, scheme);
+        let counted_elsewhere = self.counted_elsewhere(shaft);
+        let part = &mut self.part;
         let answer = HeldAnswer {
-            load: part.parts.shaft_reactions(&solution, scheme),
+            load: [0, 1, 2, 3, 4].map(|i| reactions[i] - counted_elsewhere[i]),
             force: forces.fold(part.scale, f64::max),
         };
         part.report.newton_iterations += solution.iterations;
@@ -106,27 +112,81 @@ impl<'m> HeldPart<'m> {
             .parts
             .held_tangent(self.solution.shaft, &self.solution.unknowns);
         part.report.laps.add(NEWTON, part.clock.lap());
-        found
+        let mut found = found?;
+        if let Some(elsewhere) = self.stiffness_elsewhere() {
+            let entries = found.as_flattened_mut().iter_mut();
+            entries.zip(elsewhere.as_flattened()).for_each(|(k, e)| *k -= e);
+        }
+        Ok(found)
     }
 
-    /// Mean load of the outer ring on the oscillators of the body round it, of the last answer; None: there is no body.
-    pub fn load_on_body(&self) -> Option<Vec<f64>> {
-        let (side, _) = self.motion.model().tied()?;
+    /// The body on the shaft that carries other bearings as well, without the inner ring, and how that follows the
+    /// shaft.
+    fn shared_on_shaft(&self) -> Option<(BodyAlone, Follow)> {
+        let side = Side::Inner;
+        let tie = self.motion.model().ring(side)?.tie.as_ref()?;
+        let step = self.part.rings[side.index()]
+            .as_ref()
+            .filter(|_| tie.has_others())?;
+        let follow = self.part.parts.rings[side.index()].as_ref()?.follow;
+        Some((step.body_alone()?, follow?))
+    }
+
+    fn is_first_on_shaft(&self) -> bool {
+        let ring = self.motion.model().ring(Side::Inner);
+        ring.and_then(|ring| ring.tie.as_ref())
+            .is_none_or(|tie| tie.seat == 0)
+    }
+
+    /// Load on the shaft that other bearings on the same body count. The reactions of a bearing hold the whole body, with
+    /// the loads of the others on it: at the first seat the loads are taken out, elsewhere all of the body.
+    fn counted_elsewhere(&self, shaft: [f64; N_SHAFT]) -> [f64; N_SHAFT] {
+        let Some((alone, follow)) = self.shared_on_shaft() else {
+            return [0.0; N_SHAFT];
+        };
+        let at = match self.is_first_on_shaft() {
+            true => alone.unloaded.clone(),
+            false => follow.in_frame(shaft).to_vec(),
+        };
+        let off: Vec<f64> = at.iter().zip(&alone.predicted).map(|(q, p)| q - p).collect();
+        let rows = alone.stiffness.chunks_exact(N_SHAFT);
+        let forces: Vec<f64> = rows
+            .map(|row| row.iter().zip(&off).map(|(k, q)| k * q).sum())
+            .collect();
+        follow.in_space(&forces)
+    }
+
+    /// Growth of that load with the displacement at the end; None: it does not grow.
+    fn stiffness_elsewhere(&self) -> Option<ShaftMatrix> {
+        let (alone, follow) = self.shared_on_shaft().filter(|_| !self.is_first_on_shaft())?;
+        let column = |k: usize| {
+            let mut unit = [0.0; N_SHAFT];
+            unit[k] = 1.0;
+            let q = follow.in_frame(unit);
+            let rows = alone.stiffness.chunks_exact(N_SHAFT);
+            let forces: Vec<f64> = rows
+                .map(|row| row.iter().zip(&q).map(|(k, q)| k * q).sum())
+                .collect();
+            follow.in_space(&forces)
+        };
+        let columns = [0, 1, 2, 3, 4].map(column);
+        Some([0, 1, 2, 3, 4].map(|i| columns.map(|column| column[i])))
+    }
+
+    /// Mean load of a ring on the oscillators of its body, of the last answer; None: there is no body.
+    pub fn load_on_body(&self, side: Side) -> Option<Vec<f64>> {
         let forces = self.part.parts.forces_at_ports(side, &self.solution);
         let ring = self.part.rings[side.index()].as_ref()?;
         ring.load_on_body(forces.at_ports())
     }
 
     /// Puts the mean load of others on these oscillators, in place of the one before.
-    pub fn load_body(&mut self, load: Vec<f64>) {
-        let Some((side, _)) = self.motion.model().tied() else {
-            return;
-        };
+    pub fn load_body(&mut self, side: Side, load: Vec<f64>) {
         let i = side.index();
         if let (Some(step), Some(ports)) = (&mut self.part.rings[i], &mut self.part.parts.rings[i]) {
             step.load_body(&load);
             ports.offset.clone_from(&step.answer().predicted);
-            self.body_load = load;
+            self.body_loads[i] = load;
         }
     }
 
@@ -159,8 +219,13 @@ impl<'m> HeldPart<'m> {
         let (mut next, report, ahead) = self
             .motion
             .conclude(self.state, self.part, &self.solution, ends)?;
-        if !self.body_load.is_empty() {
-            next.ledger.imposed_work += work_on_body(self.motion, &self.body_load, [self.state, &next]);
+        for (ring, load) in self
+            .body_loads
+            .iter()
+            .enumerate()
+            .filter(|(_, load)| !load.is_empty())
+        {
+            next.ledger.imposed_work += work_on_body((ring, load), [self.state, &next]);
             next.ledger.note_scale();
         }
         cache.ahead = ahead;
@@ -168,12 +233,11 @@ impl<'m> HeldPart<'m> {
     }
 }
 
-/// Work of a mean load on the body round the outer ring between two states, J.
-fn work_on_body(motion: &Motion<'_>, load: &[f64], [from, to]: [&MotionState; 2]) -> f64 {
+/// Work of a mean load on the body of a ring between two states, J.
+fn work_on_body((ring, load): (usize, &[f64]), [from, to]: [&MotionState; 2]) -> f64 {
     fn body(state: &MotionState, ring: usize) -> Option<&[f64]> {
         Some(&state.rings[ring].as_ref()?.body()?.0[0])
     }
-    let ring = motion.model().tied().map_or(0, |(side, _)| side.index());
     let (Some(from), Some(to)) = (body(from, ring), body(to, ring)) else {
         return 0.0;
     };

@@ -30,7 +30,7 @@ impl Motion<'_> {
                 _ => (seat, [0.0; 5]),
             };
             let omega = self.settings.speeds.of(side).at(0.0);
-            let others = model.other_seats.as_ref().map(|o| o.as_slice());
+            let others = model.other_seats[side.index()].as_ref().map(|o| o.as_slice());
             Some(ring_at_start(
                 &*moving.body,
                 (elastic, others),

@@ -29,7 +29,7 @@ fn hollow_shaft(layers: usize) -> (mesh::Mesh, mesh::Mesh) {
 fn on_shaft(mesh: mesh::Mesh, [n, across]: [usize; 2], below: Option<f64>) -> RingModel {
     let ring = inner(Hold::MeanMotion);
     let body = surrounding(mesh, space(&ring, harmonics(n, across)), steel());
-    let body = Arc::new(body.on_shaft(ring.groove.centre_z).unwrap());
+    let body = Arc::new(body.on_shaft(&[ring.groove.centre_z]).unwrap());
     let modes = below.map(|below| Arc::new(body.modes(below).unwrap()));
     let tie = SeatTie::to_seat(body, 0);
     RingModel {

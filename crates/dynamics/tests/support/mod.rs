@@ -78,7 +78,7 @@ impl Case {
             surfaces: Default::default(),
             geometry,
             rings: [None, None],
-            other_seats: None,
+            other_seats: [None, None],
             mounting: Default::default(),
             ball_material: steel,
             ring_material: steel,

@@ -130,7 +130,7 @@ impl ElasticBody for TiedRing {
         joint.iter_mut().zip(body.softness()).for_each(|(a, d)| *a += d);
         let joint = DenseCholesky::factor(self.body.n_functions(), &joint)
             .map_err(|source| RingError::Tie { source })?;
-        let shaft = TiedShaft::new(body.by_shaft(), &joint);
+        let shaft = TiedShaft::new(body.by_shaft(), &joint).map_err(|source| RingError::Tie { source })?;
         Ok(Box::new(TiedFactor {
             body,
             ring,

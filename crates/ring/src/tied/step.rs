@@ -2,12 +2,15 @@
 
 use std::sync::Arc;
 
-use dense::DenseCholesky;
+use body::N_SHAFT;
+use dense::{DenseCholesky, DenseError};
 use timer::Laps;
 
 use crate::oscillators::{BodyFactor, BodyStep, ShaftSoftness};
 use crate::state::{BodyState, RingState};
-use crate::step::{ElasticStep, End, Feet, Known, KnownLoad, PortAnswer, PortForces, Settling, StepFactor};
+use crate::step::{
+    BodyAlone, ElasticStep, End, Feet, Known, KnownLoad, PortAnswer, PortForces, Settling, StepFactor,
+};
 use crate::vectors::dot;
 
 /// Factors of ring and joint at one step size.
@@ -28,15 +31,21 @@ pub(super) struct TiedShaft {
     joint: Vec<f64>,
     /// Motion of the shaft under its own forces, the ring on the body, `[n_shaft][n_shaft]` flat.
     own: Vec<f64>,
+    /// Forces of the shaft on the body without the ring, by its motion, `[n_shaft][n_shaft]` flat.
+    alone: Vec<f64>,
     n: usize,
 }
 
 impl TiedShaft {
     /// From what the shaft does to the body alone, and A + D.
-    pub fn new(body: ShaftSoftness, joint: &DenseCholesky) -> TiedShaft {
-        let (width, n) = (joint.n(), body.of_seat.len() / joint.n().max(1));
+    pub fn new(body: ShaftSoftness, joint: &DenseCholesky) -> Result<TiedShaft, DenseError> {
+        if body.own.is_empty() {
+            return Ok(TiedShaft::default());
+        }
+        let (width, n) = (joint.n(), N_SHAFT);
         let mut solved = body.of_seat.clone();
         joint.solve(&mut solved, n);
+        let alone = DenseCholesky::factor(n, &body.own)?.inverse();
         let mut own = body.own;
         for i in 0..n {
             for j in 0..=i {
@@ -46,12 +55,13 @@ impl TiedShaft {
                 (own[n * i + j], own[n * j + i]) = (value, value);
             }
         }
-        TiedShaft {
+        Ok(TiedShaft {
             of_seat: body.of_seat,
             joint: solved,
             own,
+            alone,
             n,
-        }
+        })
     }
 }
 
@@ -61,6 +71,8 @@ struct TiedStep<'a> {
     ring: Box<dyn ElasticStep + 'a>,
     old: &'a BodyState,
     body: BodyStep,
+    /// Motion of the shaft at the end without loads on the body or forces of the shaft.
+    unloaded: Vec<f64>,
     answer: PortAnswer,
     /// B, `[n_ports][n_functions]` flat.
     coupling: Vec<f64>,
@@ -93,10 +105,12 @@ impl StepFactor for TiedFactor {
         let old = from
             .body()
             .expect("the state of a tied ring has that of its body");
+        let body = self.body.step(old, &[]);
         let mut step = TiedStep {
             factor: self,
             ring: self.ring.begin(from, known, contacts),
-            body: self.body.step(old, &[]),
+            unloaded: body.shaft[1].clone(),
+            body,
             old,
             answer: PortAnswer::default(),
             coupling: Vec::new(),
@@ -202,6 +216,15 @@ impl ElasticStep for TiedStep<'_> {
     fn load_body(&mut self, load: &[f64]) {
         self.body = self.factor.body.step(self.old, load);
         self.predict();
+    }
+
+    fn body_alone(&self) -> Option<BodyAlone> {
+        let stiffness = &self.factor.shaft.alone;
+        (!stiffness.is_empty()).then(|| BodyAlone {
+            stiffness: stiffness.clone(),
+            predicted: self.body.shaft[1].clone(),
+            unloaded: self.unloaded.clone(),
+        })
     }
 
     fn at_contacts(&self, x: &[f64]) -> Vec<f64> {
