@@ -8,6 +8,7 @@ mod cage_whirl;
 mod cuts;
 mod damaged_tables;
 mod documents;
+mod elastic_shaft;
 mod elastic_surfaces;
 mod examples;
 mod export;

@@ -91,7 +91,7 @@ pub fn run(
     };
     let summary = Summary::new(scene, &model, findings, &costs)
         .with_life(life::of_run(scene, dir))
-        .with_seat(agree(seat)?);
+        .with_seats(agree(seat)?);
     agree(summary.write(dir).map_err(Failure::from))?;
     ended?;
     console::print_snapshot(&snapshot);

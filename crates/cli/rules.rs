@@ -41,24 +41,30 @@ pub fn advice(scene: &Scene, model: &Model) -> Result<Vec<String>, Failure> {
     zero_of_the_shaft(scene, model, &mut lines);
     lines.extend(rigid_ring_without_inertia(scene, &case));
     lines.extend(periodic_gain::advice(scene, model));
-    lines.extend(orders_of_seat(scene, model));
+    lines.extend(orders_of_seats(scene, model));
     Ok(lines)
 }
 
 /// A seat follows each ball where it has orders up to the number of balls and a little more.
-fn orders_of_seat(scene: &Scene, model: &Model) -> Option<String> {
-    let body = scene.body.as_ref()?;
-    let [harmonics, _] = body.basis.order_and_degree(body.basis.n_functions() - 1)?;
-    let balls = model.geometry.n_balls;
-    (harmonics <= balls).then(|| {
-        format!(
+fn orders_of_seats(scene: &Scene, model: &Model) -> Vec<String> {
+    let mut lines = Vec::new();
+    for body in scene.bodies.iter().flatten() {
+        let last = body.basis.order_and_degree(body.basis.n_functions() - 1);
+        let (Some([harmonics, _]), balls) = (last, model.geometry.n_balls) else {
+            continue;
+        };
+        if harmonics > balls {
+            continue;
+        }
+        lines.push(format!(
             "body {:?}: its seat has {harmonics} orders for {balls} balls, so the ring gives way under each ball as if \
              nothing held it; ball forces hardly notice, displacements of the shaft come out about 1 % too large; \
              body.seat.harmonics = {} follows the balls",
             body.name,
             balls + 2
-        )
-    })
+        ));
+    }
+    lines
 }
 
 /// Play in which balls cannot be told from balls that just touch, m: a thousandth of what micrometers show.

@@ -10,7 +10,7 @@ use contact::Side;
 use results::failure::{Failure, agree};
 use results::files::{Files, say_folder};
 use results::memory::{Forecasts, require_memory};
-use results::seat::{self, SeatSummary};
+use results::seat::{self, SeatSummaries, SeatSummary};
 use results::several::{
     ListState, SeveralFindings, SeveralSummary, SeveralTables, print_solution, print_sweep_head,
     print_sweep_point,
@@ -226,19 +226,22 @@ impl SeveralFiles {
             };
             let bearing = &scene.bearings[i].scene;
             let model = &assembly.bearings[i].model;
-            let seat = seat::of_run(model, found, &dir)?;
-            warnings.extend(of_seat(&scene.bearings[i].name, seat.as_ref()));
+            let seats = seat::of_run(model, found, &dir)?;
+            warnings.extend(of_seats(&scene.bearings[i].name, &seats));
             Summary::new(bearing, model, findings, &costs)
-                .with_seat(seat)
+                .with_seats(seats)
                 .write(&dir)?;
         }
         Ok(warnings)
     }
 }
 
-/// What the seat of a bearing in a body asks for.
-pub fn of_seat(name: &str, seat: Option<&SeatSummary>) -> Option<String> {
-    Some(format!("bearing {name:?}: {}", seat?.warning()?))
+/// What the seats of a bearing in bodies ask for.
+pub fn of_seats(name: &str, seats: &SeatSummaries) -> Vec<String> {
+    let warnings = seats.iter().flatten().filter_map(SeatSummary::warning);
+    warnings
+        .map(|warning| format!("bearing {name:?}: {warning}"))
+        .collect()
 }
 
 /// Makes the folder of a run, with the scene beside the results of its bearings.

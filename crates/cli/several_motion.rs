@@ -30,7 +30,7 @@ use crate::ledger_check::check_ledger;
 use crate::options::Limits;
 use crate::progress::Progress;
 use crate::several::{
-    all_doubts, make_folder, of_seat, require_one_rank, say_types, solving, surveys, warnings_at,
+    all_doubts, make_folder, of_seats, require_one_rank, say_types, solving, surveys, warnings_at,
 };
 use crate::several_ready::{ready, require_space};
 use crate::several_state;
@@ -311,10 +311,10 @@ impl ListMarch<'_> {
             };
             let own = self.dir.join(&self.scene.bearings[i].name);
             let model = &self.assembly.bearings[i].model;
-            let seat = seat::of_motion(motion, state, &own)?;
-            warnings.extend(of_seat(&self.scene.bearings[i].name, seat.as_ref()));
+            let seats = seat::of_motion(motion, state, &own)?;
+            warnings.extend(of_seats(&self.scene.bearings[i].name, &seats));
             Summary::new(&self.placed[i], model, findings, &costs)
-                .with_seat(seat)
+                .with_seats(seats)
                 .write(&own)?;
         }
         Ok(warnings)

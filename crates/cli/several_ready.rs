@@ -36,8 +36,8 @@ pub fn ready<'a>(
     let of_bearings = scene.bearings.iter().map(|b| settings(&b.scene, dynamic));
     let speed = scene.speed.clone().unwrap_or_default().inner;
     let load = |time: f64| {
-        let any = &assembly.bearings[0].model;
-        loads_on_shaft(scene, (&assembly.shaft, any), time).map_err(|error| AssemblyError::ShaftBody {
+        let bearings = &assembly.bearings[..];
+        loads_on_shaft(scene, (&assembly.shaft, bearings), time).map_err(|error| AssemblyError::ShaftBody {
             problem: error.to_string(),
         })
     };

@@ -20,6 +20,7 @@
 use dense::DenseCholesky;
 
 use crate::error::SurroundingError;
+use crate::rows::SeatRows;
 
 /// Largest condition number of M: below 10 for even meshes that resolve the functions; 1e6 where they cannot be told
 /// apart.
@@ -183,8 +184,8 @@ pub struct SeatFunctions {
     pub space: SeatSpace,
     /// Nodes of the seat, ascending.
     pub nodes: Vec<usize>,
-    /// Functionals, `[n_functions][3 nodes.len()]` flat, over x, y, z of the nodes.
-    rows: Vec<f64>,
+    /// Functionals over x, y, z of the nodes.
+    rows: SeatRows,
     /// M^-1 of a component, m^-2, `[n][n]` flat; of rigid functions empty.
     inverse: Vec<f64>,
 }
@@ -212,7 +213,8 @@ impl SeatFunctions {
         let weights: Vec<f64> = areas.iter().map(|a| a.1).collect();
         let (rows, inverse) = match space.basis {
             SeatBasis::Harmonics { .. } => harmonic_rows(&space, &places, &weights),
-            SeatBasis::Rigid => rigid_rows(&space, &places, &weights).map(|rows| (rows, Vec::new())),
+            SeatBasis::Rigid => rigid_rows(&space, &places, &weights)
+                .map(|rows| (SeatRows::whole(places.len(), rows), Vec::new())),
         }
         .ok_or_else(too_few)?;
         Ok(SeatFunctions {
@@ -230,14 +232,12 @@ impl SeatFunctions {
 
     /// Takes displacements of a body in whose frame the ring stands turned by 180 deg about x.
     pub(crate) fn half_turn(&mut self) {
-        for row in self.rows.chunks_exact_mut(3) {
-            (row[1], row[2]) = (-row[1], -row[2]);
-        }
+        self.rows.half_turn();
     }
 
     /// Bytes of the functionals.
     pub fn bytes(&self) -> usize {
-        size_of::<f64>() * (self.rows.len() + self.inverse.len())
+        self.rows.bytes() + size_of::<f64>() * self.inverse.len()
     }
 
     /// Coefficients g of a displacement, m, `[3 n_nodes of the mesh]`: m.
@@ -248,8 +248,12 @@ impl SeatFunctions {
             .flat_map(|&node| &displacement[3 * node..3 * node + 3])
             .copied()
             .collect();
-        let row = |row: &[f64]| row.iter().zip(&here).map(|(a, b)| a * b).sum();
-        self.rows.chunks_exact(here.len().max(1)).map(row).collect()
+        self.rows.measure(&here)
+    }
+
+    /// The functionals over x, y, z of the nodes.
+    pub fn rows(&self) -> &SeatRows {
+        &self.rows
     }
 
     /// Each functional as its entries that are not zero: dof and value.
@@ -259,31 +263,27 @@ impl SeatFunctions {
                 .iter()
                 .flat_map(|node| [3 * node, 3 * node + 1, 3 * node + 2])
         };
-        let row = |row: &[f64]| {
+        let row = |function: usize| {
             dofs()
-                .zip(row.iter().copied())
+                .zip(self.rows.row(function))
                 .filter(|entry| entry.1 != 0.0)
                 .collect()
         };
-        self.rows
-            .chunks_exact((3 * self.nodes.len()).max(1))
-            .map(row)
-            .collect()
+        (0..self.n()).map(row).collect()
     }
 
     /// Adds the nodal forces of lam, N, to a load, N, `[3 n_nodes of the mesh]`.
     pub fn add_load(&self, lam: &[f64], load: &mut [f64]) {
-        for (function, &force) in lam.iter().enumerate() {
-            if force != 0.0 {
-                self.add_unit_load(function, force, load);
-            }
+        let mut here = vec![0.0; 3 * self.nodes.len()];
+        self.rows.add_loads(lam, &mut here);
+        for (&node, f) in self.nodes.iter().zip(here.as_chunks::<3>().0) {
+            (0..3).for_each(|c| load[3 * node + c] += f[c]);
         }
     }
 
     /// The same of one function.
     pub fn add_unit_load(&self, function: usize, force: f64, load: &mut [f64]) {
-        let width = 3 * self.nodes.len();
-        let row = &self.rows[width * function..width * (function + 1)];
+        let row = self.rows.row(function);
         for (&node, row) in self.nodes.iter().zip(row.chunks_exact(3)) {
             (0..3).for_each(|c| load[3 * node + c] += force * row[c]);
         }
@@ -305,29 +305,25 @@ impl SeatFunctions {
 }
 
 /// Functionals and M^-1, if M can be inverted.
-fn harmonic_rows(space: &SeatSpace, places: &[[f64; 3]], weights: &[f64]) -> Option<(Vec<f64>, Vec<f64>)> {
+fn harmonic_rows(space: &SeatSpace, places: &[[f64; 3]], weights: &[f64]) -> Option<(SeatRows, Vec<f64>)> {
     let n = space.basis.n_functions() / 3;
     let values: Vec<f64> = places
         .iter()
         .flat_map(|x| space.scalars(x[1].atan2(x[0]), (x[2] - space.middle) / space.half_width))
         .collect();
     let inverse = inverse_gram(n, values.chunks_exact(n).zip(weights.iter().copied()))?;
-    let width = 3 * places.len();
-    let mut rows = vec![0.0; 3 * n * width];
+    let mut factors = vec![0.0; n * places.len()];
+    let mut directions = Vec::with_capacity(places.len());
     for (i, ((x, phi), w)) in places.iter().zip(values.chunks_exact(n)).zip(weights).enumerate() {
         let r = x[0].hypot(x[1]);
         let (cos, sin) = (x[0] / r, x[1] / r);
-        let directions = [[cos, sin, 0.0], [-sin, cos, 0.0], [0.0, 0.0, 1.0]];
+        directions.push([[cos, sin, 0.0], [-sin, cos, 0.0], [0.0, 0.0, 1.0]]);
         for k in 0..n {
             let row = &inverse[n * k..n * (k + 1)];
-            let weight = w * row.iter().zip(phi).map(|(a, b)| a * b).sum::<f64>();
-            for (c, e) in directions.iter().enumerate() {
-                let start = width * (3 * k + c) + 3 * i;
-                (0..3).for_each(|d| rows[start + d] = weight * e[d]);
-            }
+            factors[places.len() * k + i] = w * row.iter().zip(phi).map(|(a, b)| a * b).sum::<f64>();
         }
     }
-    Some((rows, inverse))
+    Some((SeatRows::cylinder(factors, directions), inverse))
 }
 
 /// Functionals of the rigid motion in the least-squares sense about the middle of the seat; rotations in rad.

@@ -99,6 +99,9 @@ pub struct Model {
     /// Forces on the other seats of the body of each ring at rest, inner first, N, over the functions of all its seats;
     /// None: it has no others, or nothing sits there.
     pub other_seats: [Option<Arc<Vec<f64>>>; 2],
+    /// Whether gravity loads the shaft here with the weight of the body on it; with several bearings on one shaft
+    /// whoever moves that does.
+    pub weighs_carried: bool,
     /// What fits and temperatures do to rings and balls.
     pub mounting: Mounting,
     /// Ball steel.

@@ -1,17 +1,29 @@
-//! The seat of the outer ring in a body, unrolled: pressure over azimuth and width, and the motion of the seat.
+//! The seats of rings in bodies, unrolled: pressure over azimuth and width, and the motion of the seat.
 
 use std::path::Path;
 
+use contact::Side;
 use figure::{Axis, Figure, Series, Surface};
-use results::seat::SEAT_TABLE;
+use results::seat::SEAT_TABLES;
 use results::table::Table;
 
 use super::quantity::{DEGREE, MEGAPASCAL, MICROMETRE, MILLIMETRE, azimuth_axis};
 
-/// Pressure of the seat, and how far it yields in its middle; none where the ring is in no body.
+/// Pressure of the seats, and how far they yield in their middle; none of rings that are in no body.
 pub fn figures(dir: &Path) -> anyhow::Result<Vec<(String, Figure)>> {
-    let Some(table) = Table::read(dir, SEAT_TABLE)? else {
-        return Ok(Vec::new());
+    let mut figures = Vec::new();
+    for side in [Side::Outer, Side::Inner] {
+        if let Some(table) = Table::read(dir, SEAT_TABLES[side.index()])? {
+            figures.extend(of_ring(&table, side)?);
+        }
+    }
+    Ok(figures)
+}
+
+fn of_ring(table: &Table, side: Side) -> anyhow::Result<Vec<(String, Figure)>> {
+    let (ring, seat, suffix) = match side {
+        Side::Inner => ("inner", "bore", "_inner"),
+        Side::Outer => ("outer", "seat", ""),
     };
     let azimuth = DEGREE.of(table.column("azimuth_rad")?);
     let z = MILLIMETRE.of(table.column("z_m")?);
@@ -33,17 +45,21 @@ pub fn figures(dir: &Path) -> anyhow::Result<Vec<(String, Figure)>> {
             values.push(0.5 * (pressure[n_across * i + j] + pressure[n_across * next + j]));
         }
     }
-    let y_axis = Axis::linear("z in the outer ring", "mm").tight();
-    let unrolled = Figure::new("Pressure of the seat on the outer ring", azimuth_axis(), y_axis)
-        .surface(Surface::new(
-            MEGAPASCAL.axis("pressure").including(0.0),
-            x_edges,
-            y_edges,
-            values,
-        )?)
-        .size(900, 400);
+    let y_axis = Axis::linear(&format!("z in the {ring} ring"), "mm").tight();
+    let unrolled = Figure::new(
+        &format!("Pressure of the seat on the {ring} ring"),
+        azimuth_axis(),
+        y_axis,
+    )
+    .surface(Surface::new(
+        MEGAPASCAL.axis("pressure").including(0.0),
+        x_edges,
+        y_edges,
+        values,
+    )?)
+    .size(900, 400);
     let mut motion = Figure::new(
-        "Motion of the middle of the seat",
+        &format!("Motion of the middle of the {seat}"),
         azimuth_axis(),
         MICROMETRE.axis("displacement"),
     );
@@ -56,7 +72,7 @@ pub fn figures(dir: &Path) -> anyhow::Result<Vec<(String, Figure)>> {
         motion = motion.series(Series::line(name, middle.collect()));
     }
     Ok(vec![
-        ("seat_pressure".to_string(), unrolled),
-        ("seat_motion".to_string(), motion),
+        (format!("seat_pressure{suffix}"), unrolled),
+        (format!("seat_motion{suffix}"), motion),
     ])
 }

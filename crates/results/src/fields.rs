@@ -8,6 +8,7 @@ use contact::{BearingGeometry, Side};
 use dynamics::balls::BallResult;
 use dynamics::motion::{BodyState, MotionState};
 use dynamics::{Model, StaticSolution};
+use fem::Material;
 use fem::stress::von_mises;
 use mesh::Mesh;
 use scene::{KeptFields, RingFrame, Scene};
@@ -18,11 +19,11 @@ use super::seat::{SeatState, tied};
 use super::shown::{RingField, Shown, Turn};
 use crate::failure::Failure;
 
-/// Value of the cell array `body` on a body round the outer ring.
-const BODY_ID: u8 = 3;
+/// Values of the cell array `body` on the bodies in which the rings sit, inner ring first.
+const BODY_IDS: [u8; 2] = [4, 3];
 
-/// The bodies of a result, in the order of its points: flexible rings, whose meshes must be whole, the balls, then a
-/// body round the outer ring.
+/// The bodies of a result, in the order of its points: flexible rings, whose meshes must be whole, the balls, then the
+/// bodies in which the rings sit.
 pub fn bodies(model: &Model) -> Vec<Body> {
     let mut bodies = Vec::new();
     for side in Side::BOTH {
@@ -32,7 +33,6 @@ pub fn bodies(model: &Model) -> Vec<Body> {
             bodies.push(Body::from_mesh(&name, side as u8, &ring.mesh, shift));
         }
     }
-    let body = body_of(model);
     let centre = model.geometry.ball_centre();
     let centres: Vec<[f64; 3]> = (0..model.geometry.n_balls)
         .map(|ball| {
@@ -46,19 +46,67 @@ pub fn bodies(model: &Model) -> Vec<Body> {
         &centres,
         0.5 * model.geometry.ball_diameter,
     ));
-    if let Some((body, mesh, shift)) = body {
-        bodies.push(Body::from_mesh(&body.name, BODY_ID, mesh, shift));
-    }
+    let of_rings = bodies_of(model).into_iter();
+    bodies.extend(of_rings.map(|b| Body::from_mesh(&b.body.name, BODY_IDS[b.side.index()], b.mesh, b.shift)));
     bodies
 }
 
-/// The body round the outer ring, its mesh, and where that stands in the bearing, m. A body that carries several
+/// A body in which a ring sits, as results show it.
+pub struct ShownBody<'m> {
+    /// The ring.
+    pub side: Side,
+    /// The body.
+    pub body: &'m Surrounding,
+    /// Its mesh.
+    pub mesh: &'m Mesh,
+    /// What it is made of.
+    pub material: &'m Material,
+    /// Where the mesh stands in the bearing, m.
+    pub shift: [f64; 3],
+}
+
+/// The bodies in which the rings sit and that have a mesh, that of the outer ring first. One that carries several
 /// bearings is shown with the first of them.
-pub fn body_of(model: &Model) -> Option<(&Surrounding, &Mesh, [f64; 3])> {
-    let (side, _, tie) = tied(model).filter(|(_, _, tie)| tie.seat == 0)?;
-    let body = tie.body.as_ref()?;
-    let shift = [0.0, 0.0, body.shift + model.ring_shift(side)];
-    Some((body, &body.mesh.as_ref()?.0, shift))
+pub fn bodies_of(model: &Model) -> Vec<ShownBody<'_>> {
+    let of = |side: Side| {
+        let (_, tie) = tied(model, side).filter(|(_, tie)| tie.seat == 0)?;
+        let body = tie.body.as_ref()?;
+        let (mesh, material) = body.mesh.as_ref()?;
+        Some(ShownBody {
+            side,
+            body,
+            mesh,
+            material,
+            shift: [0.0, 0.0, body.shift + model.ring_shift(side)],
+        })
+    };
+    [Side::Outer, Side::Inner].into_iter().filter_map(of).collect()
+}
+
+/// Displacement of such a body at one instant.
+pub struct BodyField {
+    /// In its own frame, m, `[n_nodes][3]` flat.
+    pub displacement: Vec<f64>,
+    /// From that frame to space.
+    pub turn: Turn,
+}
+
+impl BodyField {
+    /// Of a body that does not turn.
+    pub fn standing(displacement: Vec<f64>) -> BodyField {
+        BodyField {
+            displacement,
+            turn: Turn::new(0.0),
+        }
+    }
+
+    /// Displacements in space from the places in the mesh, turning included, m.
+    fn shown(&self, mesh: &Mesh) -> Vec<[f64; 3]> {
+        let moved = mesh.nodes.iter().zip(self.displacement.as_chunks::<3>().0);
+        moved
+            .map(|(place, u)| self.turn.displacement(*place, *u))
+            .collect()
+    }
 }
 
 /// The record of one equilibrium, with the stress that ranks have `gathered`; its step also stands for its time where
@@ -96,8 +144,8 @@ pub struct Places {
     rings: [Option<ShownRing>; 2],
     /// Forces on the balls, N.
     forces: [Vec<[f64; 3]>; 2],
-    /// Displacement of a body round the outer ring, m, flat.
-    body: Option<Vec<f64>>,
+    /// The bodies in which the rings sit; none where no stress is kept.
+    bodies: Vec<BodyField>,
 }
 
 impl Places {
@@ -133,30 +181,39 @@ impl Places {
             }
         }
         let (of_balls, mut forces) = balls(shown.model(), shown.placed(), &shown.balls(), n_points);
-        let of_body = body_of(shown.model()).map_or(0, |(_, mesh, _)| mesh.n_nodes());
+        let shown_bodies = bodies_of(shown.model());
+        let of_body: usize = shown_bodies.iter().map(|body| body.mesh.n_nodes()).sum();
         for list in &mut forces {
             list.resize(list.len() + of_body, [0.0; 3]);
         }
-        let body = if kept == NOTHING {
-            None
-        } else {
-            body_displacement(shown)?
+        let mut bodies = match kept == NOTHING {
+            true => Vec::new(),
+            false => body_fields(shown)?,
         };
+        for (body, field) in shown_bodies.iter().zip(&mut bodies) {
+            if scene.output.rings[body.side.index()] == RingFrame::OwnFrame {
+                field.turn = Turn::new(0.0);
+            }
+        }
         if kept.displacement {
             displacement.extend(of_balls);
-            displacement.extend(body.iter().flat_map(|body| body.as_chunks::<3>().0));
+            let moved = shown_bodies.iter().zip(&bodies);
+            displacement.extend(moved.flat_map(|(body, field)| field.shown(body.mesh)));
+        }
+        if !kept.stress {
+            bodies.clear();
         }
         Ok(Places {
             displacement,
             rings,
             forces,
-            body: body.filter(|_| kept.stress),
+            bodies,
         })
     }
 
     /// Fields of all points and cells, with the stress that is asked for.
     pub fn fields(self, stress: &RingStress) -> (PointFields, CellFields) {
-        let stress = stress.fields(&self.rings, self.body.as_deref());
+        let stress = stress.fields(&self.rings, &self.bodies);
         let [force_inner, force_outer] = self.forces;
         let (points, cells) = with_stress(self.displacement, stress);
         let points = PointFields {
@@ -168,22 +225,43 @@ impl Places {
     }
 }
 
-/// Displacement of the body round the outer ring, m, `[n_nodes][3]` flat; None where none is shown.
-pub fn body_displacement(shown: &Shown<'_>) -> Result<Option<Vec<f64>>, Failure> {
-    if body_of(shown.model()).is_none() {
+/// Displacements of the bodies that are shown, in their order.
+pub fn body_fields(shown: &Shown<'_>) -> Result<Vec<BodyField>, Failure> {
+    let mut fields = Vec::new();
+    for body in bodies_of(shown.model()) {
+        let found = match shown {
+            Shown::Equilibrium { model, solution, .. } => body_at_rest(shown, (model, solution), body.side)?,
+            Shown::Motion { model, state, .. } => moved_body(model, state, body.side),
+        };
+        // Of a body whose state was not kept there is nothing to show.
+        let displacement = found.unwrap_or_else(|| vec![0.0; body.mesh.n_dofs()]);
+        fields.push(BodyField {
+            displacement,
+            turn: shown.turn(body.side),
+        });
+    }
+    Ok(fields)
+}
+
+/// Displacement of a body at an equilibrium, m, `[n_nodes][3]` flat, with the motion of the shaft that carries it.
+fn body_at_rest(
+    shown: &Shown<'_>,
+    (model, solution): (&Model, &StaticSolution),
+    side: Side,
+) -> Result<Option<Vec<f64>>, Failure> {
+    let Some(seat) = SeatState::new(model, solution, side)? else {
         return Ok(None);
+    };
+    let mut displacement = seat.body_displacement();
+    if let (Some(q), Some((_, tie))) = (shown.shaft_in_frame(), tied(model, side)) {
+        tie.add_shaft_motion(q, &mut displacement);
     }
-    match shown {
-        Shown::Equilibrium { model, solution, .. } => {
-            Ok(SeatState::new(model, solution)?.map(|seat| seat.body_displacement()))
-        }
-        Shown::Motion { model, state, .. } => Ok(moved_body(model, state)),
-    }
+    Ok(Some(displacement))
 }
 
 /// The same of a motion, from the oscillators of its state.
-fn moved_body(model: &Model, state: &MotionState) -> Option<Vec<f64>> {
-    let (side, _, tie) = tied(model)?;
+fn moved_body(model: &Model, state: &MotionState, side: Side) -> Option<Vec<f64>> {
+    let (_, tie) = tied(model, side)?;
     let BodyState([at, ..]) = state.rings[side.index()].as_ref()?.body()?;
     Some(tie.body.as_ref()?.moved(&tie.modes.as_ref()?.of_body, at))
 }

@@ -11,7 +11,7 @@ use comm::{Communicator, print};
 
 use crate::failure::{Failure, agree};
 use crate::reduction::REDUCTION_FILE;
-use crate::seat::SEAT_TABLE;
+use crate::seat::SEAT_TABLES;
 use crate::summary::SUMMARY_FILE;
 use crate::whole::make_asked_folder;
 
@@ -19,7 +19,7 @@ use crate::whole::make_asked_folder;
 const MAX_FOLDERS: usize = 10_000;
 
 /// Files that say that a folder holds results, besides those of steps.
-const RESULT_FILES: [&str; 13] = [
+const RESULT_FILES: [&str; 14] = [
     SUMMARY_FILE,
     REDUCTION_FILE,
     "balls.csv",
@@ -29,7 +29,8 @@ const RESULT_FILES: [&str; 13] = [
     "probes.csv",
     "profiles.csv",
     "modes.csv",
-    SEAT_TABLE,
+    SEAT_TABLES[0],
+    SEAT_TABLES[1],
     "mesh.hdf",
     "run.hdf.series",
     "run.vtkhdf",
@@ -150,7 +151,7 @@ fn require_writable(dir: &Path) -> Result<(), Failure> {
 }
 
 /// Tables that a run may write, and other files with a name of their own.
-const TABLES: [&str; 9] = [
+const TABLES: [&str; 10] = [
     REDUCTION_FILE,
     "balls.csv",
     "shaft.csv",
@@ -159,7 +160,8 @@ const TABLES: [&str; 9] = [
     "probes.csv",
     "profiles.csv",
     "modes.csv",
-    SEAT_TABLE,
+    SEAT_TABLES[0],
+    SEAT_TABLES[1],
 ];
 
 /// Makes the folder `dir` and locks it. What a run left there that ended before its first step is removed.

@@ -4,11 +4,14 @@ use std::fmt;
 use std::path::Path;
 
 use anyhow::anyhow;
+use body::SeatTie;
 use comm::Communicator;
 use contact::Side;
 use dynamics::motion::Motion;
 use dynamics::statics::settings;
-use dynamics::{Model, MotionMemory, Numbers, Prepared, RingMemory, forecast_motion_peak, forecast_peak};
+use dynamics::{
+    Model, MotionMemory, Numbers, Prepared, RingMemory, RingModel, forecast_motion_peak, forecast_peak,
+};
 use rustix::process::{Resource, getrlimit};
 use scene::{Analysis, Dynamic};
 
@@ -74,15 +77,30 @@ pub fn forecast(
 
 /// The peak of rings with what is there besides.
 fn beside_rings(rings: usize, model: &Model) -> usize {
-    with_body(with_surfaces(rings, model), model)
+    with_bodies(with_surfaces(rings, model), model)
 }
 
-/// The peak of the rest with a body round the outer ring, which is made before it.
-fn with_body(rest: usize, model: &Model) -> usize {
+/// The peak of the rest with the bodies of the rings, which are made before it.
+fn with_bodies(rest: usize, model: &Model) -> usize {
+    let sides = Side::BOTH.into_iter();
+    sides.fold(rest, |rest, side| with_body(rest, model, side))
+}
+
+/// The functions of a seat on the side of its ring: of its statics, or those of a mount beside what a motion counts.
+fn joint_bytes(ring: &RingModel, tie: &SeatTie) -> usize {
+    let nodes = ring.mesh.group_nodes(ring.held_group).len();
+    tie.space.basis.n_functions() * 3 * nodes * size_of::<f64>()
+}
+
+fn with_body(rest: usize, model: &Model, side: Side) -> usize {
+    let Some((ring, tie)) = tied(model, side) else {
+        return rest;
+    };
+    let rest = rest + joint_bytes(ring, tie);
     // A body that carries several bearings is made once.
-    let tie = tied(model).map(|(_, _, tie)| tie).filter(|tie| tie.seat == 0);
-    let body = tie.and_then(|tie| Some((tie, tie.body.as_ref()?)));
-    let Some((tie, body)) = body else { return rest };
+    let Some(body) = tie.body.as_ref().filter(|_| tie.seat == 0) else {
+        return rest;
+    };
     let modes = tie.modes.as_ref().map_or(0, |modes| modes.of_body.bytes());
     let kept = body.bytes + modes;
     kept + rest.max(body.making_bytes(modes > 0))

@@ -18,12 +18,12 @@ use scene::{ModeBody, Scene};
 use serde::Serialize;
 use timer::Laps;
 
-use super::fields;
+use super::fields::{self, BodyField};
 use super::files::{mesh_file, say_folder, storage};
 use super::folder;
 use super::mounting::{ClearanceSummary, FitSummary, fits};
 use super::ring_stress::{Basis, RingStress, ShownRing};
-use super::seat::tied;
+use super::seat::is_tied;
 use super::shown::Turn;
 use super::snapshot::Snapshot;
 use super::summary::{
@@ -71,7 +71,7 @@ impl ModeFiles {
         let output = Output::create_in(folder::prepare(dir)?, &mesh_file(scene, model)?, storage(scene))?;
         say_folder(dir);
         let mut columns: Vec<String> = COLUMNS.map(str::to_string).to_vec();
-        if tied(model).is_some() {
+        if is_tied(model) {
             columns.push(OF_BODY.to_string());
         }
         Ok(ModeFiles {
@@ -95,7 +95,7 @@ impl ModeFiles {
             let (points, cell_fields) = self.fields(model, mode);
             // The table first: a step vouches for it.
             let mut row = cells(self.step, body, i + 1, mode);
-            if tied(model).is_some() {
+            if is_tied(model) {
                 row.push(format!("{:?}", mode.kinetic_body));
             }
             tables::append(&mut self.table, TABLE, [row])?;
@@ -149,12 +149,19 @@ impl ModeFiles {
             let (sin, cos) = model.geometry.azimuth(ball).sin_cos();
             displacement.push([radial * cos, radial * sin, axial].map(|u| AMPLITUDE * u));
         }
-        let body = fields::body_of(model).map(|(_, mesh, _)| match &mode.shape.body {
-            Some(shape) => shape.iter().map(|u| AMPLITUDE * u).collect(),
-            None => vec![0.0; mesh.n_dofs()],
+        let bodies = fields::bodies_of(model).into_iter().map(|body| {
+            let shape = mode.shape.body.as_ref().filter(|_| body.side == Side::Outer);
+            BodyField::standing(match shape {
+                Some(shape) => shape.iter().map(|u| AMPLITUDE * u).collect(),
+                None => vec![0.0; body.mesh.n_dofs()],
+            })
         });
-        displacement.extend(body.iter().flat_map(|body| body.as_chunks::<3>().0));
-        fields::with_stress(displacement, self.stress.fields(&rings, body.as_deref()))
+        let bodies: Vec<BodyField> = bodies.collect();
+        let moved = bodies
+            .iter()
+            .flat_map(|body| body.displacement.as_chunks::<3>().0);
+        displacement.extend(moved);
+        fields::with_stress(displacement, self.stress.fields(&rings, &bodies))
     }
 }
 

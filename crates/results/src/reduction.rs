@@ -28,7 +28,7 @@ use timer::Laps;
 use self::extremes::Extremes;
 use self::histories::NodeHistories;
 use super::about::STRESS;
-use super::fields::{body_displacement, body_of, shown_ring};
+use super::fields::{bodies_of, body_fields, shown_ring};
 use super::ring_stress::{Gathered, RingStress};
 use super::shown::{Shown, Turn};
 use super::state_arrays::Arrays;
@@ -116,8 +116,8 @@ impl StressReduction {
             }
             n_nodes += ring.mesh.n_nodes();
         }
-        let n_points =
-            n_nodes + model.geometry.n_balls + body_of(model).map_or(0, |(_, mesh, _)| mesh.n_nodes());
+        let of_bodies: usize = bodies_of(model).iter().map(|body| body.mesh.n_nodes()).sum();
+        let n_points = n_nodes + model.geometry.n_balls + of_bodies;
         StressReduction {
             asked,
             stress: reduced.stress.clone(),
@@ -145,8 +145,9 @@ impl StressReduction {
             let stress = gathered.stress[side.index()].take();
             rings[side.index()] = Some(shown_ring(shown, side, ring, stress, scene)?);
         }
-        let body = body_displacement(shown)?;
-        let stress = self.stress.fields(&rings, body.as_deref()).nodal;
+        let mut bodies = body_fields(shown)?;
+        bodies.iter_mut().for_each(|body| body.turn = Turn::new(0.0));
+        let stress = self.stress.fields(&rings, &bodies).nodal;
         let stress = stress.expect("a run of flexible rings has stress at nodes");
         let kind = self.asked.damage.map(|damage| damage.stress);
         let counted: Vec<f64> = self

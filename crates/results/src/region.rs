@@ -11,7 +11,7 @@ use dynamics::{Model, RingModel};
 use mesh::Mesh;
 use scene::{KeptFields, OutputRegion, Scene};
 
-use super::fields::body_of;
+use super::fields::{ShownBody, bodies_of};
 use crate::failure::Failure;
 
 /// Points and cells of which fields are kept.
@@ -48,7 +48,10 @@ impl Region {
         }
         let n_balls = model.geometry.n_balls;
         let mut of_body = (Vec::new(), Vec::new());
-        if let Some((body, mesh, shift)) = body_of(model) {
+        for ShownBody {
+            body, mesh, shift, ..
+        } in bodies_of(model)
+        {
             let is_of_rings = asked.raceway_distance.is_some() || asked.rings != [true; 2];
             let inside = nodes_inside(asked, mesh, shift, |_| !is_of_rings);
             mark_all(&inside, mesh, &mut of_body.0, &mut of_body.1);

@@ -13,7 +13,7 @@ use mesh::NodePositions;
 use scene::{KeptFields, Scene, StressOutput};
 use timer::Laps;
 
-use super::seat::tied;
+use super::fields::{BodyField, bodies_of};
 use super::shown::{Shown, Turn, add};
 use super::summary::{GATHER, STRESS};
 use super::timed_near_field::TimedNearField;
@@ -34,8 +34,8 @@ pub struct RingStress {
     rings: [Option<Recovery>; 2],
     /// Balls, which have a point and a cell each.
     n_balls: usize,
-    /// Recovery of a body round the outer ring.
-    body: Option<Box<StressRecovery>>,
+    /// Recovery of the bodies of the rings, in their order.
+    bodies: Vec<StressRecovery>,
 }
 
 /// Recovery of one ring, and the places of its stress for the near field if that is asked for.
@@ -112,7 +112,7 @@ impl RingStress {
             kind,
             rings: [recovery(Side::Inner)?, recovery(Side::Outer)?],
             n_balls: model.geometry.n_balls,
-            body: body_recovery(model, kind)?,
+            bodies: body_recoveries(model, kind)?,
         })
     }
 
@@ -172,9 +172,8 @@ impl RingStress {
         stress
     }
 
-    /// Stress of one instant, from the fields of the flexible rings, and after all others that of a body round the
-    /// outer ring, displaced by `body` (m, flat).
-    pub fn fields(&self, rings: &[Option<ShownRing>; 2], body: Option<&[f64]>) -> StressFields {
+    /// Stress of one instant, from the fields of the flexible rings, and after all others that of their bodies.
+    pub fn fields(&self, rings: &[Option<ShownRing>; 2], bodies: &[BodyField]) -> StressFields {
         let known: Vec<(&Recovery, &ShownRing)> = self
             .rings
             .iter()
@@ -195,8 +194,8 @@ impl RingStress {
                 cells: self.cells(&known),
             },
         };
-        if let Some(displacement) = body {
-            self.add_body(displacement, &mut fields);
+        for (recovery, body) in self.bodies.iter().zip(bodies) {
+            add_body(recovery, body, &mut fields);
         }
         fields
     }
@@ -211,33 +210,10 @@ impl RingStress {
         stress
     }
 
-    /// Adds the stress of a body round the outer ring, displaced so (m, flat), after all others.
-    fn add_body(&self, displacement: &[f64], fields: &mut StressFields) {
-        let Some(body) = &self.body else { return };
-        if let Some(nodal) = &mut fields.nodal {
-            nodal.extend(body.nodal(displacement));
-        }
-        let (Some(points), Some(largest)) = (
-            &mut fields.cells.stress_integration_points,
-            &mut fields.cells.von_mises_largest,
-        ) else {
-            return;
-        };
-        for cell in body
-            .integration_points(displacement)
-            .chunks_exact(body.points_per_element())
-        {
-            let end = points.values.len() + 6 * points.points_per_cell;
-            points.values.extend(cell.as_flattened());
-            points.values.resize(end, 0.0);
-            largest.push(cell.iter().map(|&s| von_mises(s)).fold(0.0, f64::max));
-        }
-    }
-
     fn cells(&self, rings: &[(&Recovery, &ShownRing)]) -> CellFields {
         let points = rings.iter().map(|(recovery, _)| recovery.points_per_element);
-        let of_body = self.body.iter().map(|body| body.points_per_element());
-        let points_per_cell = points.chain(of_body).max().unwrap_or(0);
+        let of_bodies = self.bodies.iter().map(StressRecovery::points_per_element);
+        let points_per_cell = points.chain(of_bodies).max().unwrap_or(0);
         let (mut values, mut largest) = (Vec::new(), Vec::new());
         for (recovery, ring) in rings {
             let stress = self.stress(recovery, ring);
@@ -262,14 +238,35 @@ impl RingStress {
     }
 }
 
-/// Recovery of a body round the outer ring, where stress is asked for and it has a mesh.
-fn body_recovery(model: &Model, kind: StressOutput) -> Result<Option<Box<StressRecovery>>, Failure> {
-    let body = tied(model).and_then(|(_, _, tie)| tie.body.as_ref()?.mesh.as_ref());
-    let Some((mesh, material)) = body.filter(|_| kind != StressOutput::None) else {
-        return Ok(None);
+/// Recovery of the bodies that are shown, where stress is asked for.
+fn body_recoveries(model: &Model, kind: StressOutput) -> Result<Vec<StressRecovery>, Failure> {
+    let shown = bodies_of(model)
+        .into_iter()
+        .filter(|_| kind != StressOutput::None);
+    let recoveries = shown.map(|body| StressRecovery::new(body.mesh, body.material));
+    let recoveries: Result<_, _> = recoveries.collect();
+    Ok(recoveries.map_err(anyhow::Error::from)?)
+}
+
+/// Adds the stress of a body after all others.
+fn add_body(recovery: &StressRecovery, body: &BodyField, fields: &mut StressFields) {
+    let shown = |stress: &[f64; 6]| body.turn.tensor(*stress);
+    if let Some(nodal) = &mut fields.nodal {
+        nodal.extend(recovery.nodal(&body.displacement).iter().map(shown));
+    }
+    let (Some(points), Some(largest)) = (
+        &mut fields.cells.stress_integration_points,
+        &mut fields.cells.von_mises_largest,
+    ) else {
+        return;
     };
-    let recovery = StressRecovery::new(mesh, material).map_err(anyhow::Error::from)?;
-    Ok(Some(Box::new(recovery)))
+    let stress = recovery.integration_points(&body.displacement);
+    for cell in stress.chunks_exact(recovery.points_per_element()) {
+        let end = points.values.len() + 6 * points.points_per_cell;
+        points.values.extend(cell.iter().flat_map(shown));
+        points.values.resize(end, 0.0);
+        largest.push(cell.iter().map(|&s| von_mises(s)).fold(0.0, f64::max));
+    }
 }
 
 impl Recovery {

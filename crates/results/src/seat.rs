@@ -1,9 +1,9 @@
 //! The seat of a ring in an elastic body: tractions as a table, and what the summary says of the joint.
 //!
-//! `seat_outer.csv` has the last equilibrium of a run, or the end of a motion, on a grid of the seat: azimuth from +x
+//! `seat_outer.csv` and `seat_inner.csv` have the last equilibrium of a run, or the end of a motion, on a grid of the seat: azimuth from +x
 //! towards +y, z in the coordinates of the ring's mesh. Pressure is positive where the body presses on the ring; shear
 //! is the traction on the ring in the direction of growing azimuth and z; motion is that of the seat, which ring and
-//! body share.
+//! body share, of a body on the shaft beside that of the shaft.
 
 use std::f64::consts::TAU;
 use std::fmt::Write;
@@ -20,8 +20,8 @@ use serde::Serialize;
 use crate::failure::Failure;
 use crate::whole;
 
-/// Name of the table.
-pub const SEAT_TABLE: &str = "seat_outer.csv";
+/// Names of the tables, inner ring first.
+pub const SEAT_TABLES: [&str; 2] = ["seat_inner.csv", "seat_outer.csv"];
 /// Its columns.
 const HEAD: &str =
     "azimuth_rad,z_m,pressure_pa,shear_tangential_pa,shear_axial_pa,radial_m,tangential_m,axial_m";
@@ -30,8 +30,9 @@ const GRID: [usize; 2] = [144, 9];
 /// Shares of the energy above which a warning asks for more functions.
 const UNRESOLVED: f64 = 0.02;
 
-/// The joint of the outer ring with its body at one equilibrium.
+/// The joint of a ring with its body at one equilibrium.
 pub struct SeatState {
+    side: Side,
     tie: Arc<SeatTie>,
     functions: SeatFunctions,
     /// What it carries.
@@ -63,24 +64,30 @@ pub struct SeatSummary {
     body_seconds: f64,
 }
 
-/// The ring that is tied to a body, and its joint.
-pub fn tied(model: &Model) -> Option<(Side, &RingModel, &Arc<SeatTie>)> {
-    let (side, ring) = model.tied()?;
-    Some((side, ring, ring.tie.as_ref()?))
+/// What the summary says of the seats of both rings, inner first.
+pub type SeatSummaries = [Option<SeatSummary>; 2];
+
+/// The ring of one side if it is tied to a body, and its joint.
+pub fn tied(model: &Model, side: Side) -> Option<(&RingModel, &Arc<SeatTie>)> {
+    let ring = model.tied(side)?;
+    Some((ring, ring.tie.as_ref()?))
 }
 
-/// Writes what the seat of a ring in a body carries, and sums it up; None where no ring is in one.
-pub fn of_run(model: &Model, solution: &StaticSolution, dir: &Path) -> Result<Option<SeatSummary>, Failure> {
-    finished(SeatState::new(model, solution)?, dir)
+/// Whether a ring is tied to a body.
+pub fn is_tied(model: &Model) -> bool {
+    Side::BOTH.into_iter().any(|side| model.tied(side).is_some())
+}
+
+/// Writes what the seats of rings in bodies carry, and sums it up; None where a ring is in none.
+pub fn of_run(model: &Model, solution: &StaticSolution, dir: &Path) -> Result<SeatSummaries, Failure> {
+    let of = |side: Side| finished(SeatState::new(model, solution, side)?, dir);
+    Ok([of(Side::Inner)?, of(Side::Outer)?])
 }
 
 /// The same at the end of a motion.
-pub fn of_motion(
-    motion: &Motion<'_>,
-    state: &MotionState,
-    dir: &Path,
-) -> Result<Option<SeatSummary>, Failure> {
-    finished(SeatState::in_motion(motion, state)?, dir)
+pub fn of_motion(motion: &Motion<'_>, state: &MotionState, dir: &Path) -> Result<SeatSummaries, Failure> {
+    let of = |side: Side| finished(SeatState::in_motion(motion, state, side)?, dir);
+    Ok([of(Side::Inner)?, of(Side::Outer)?])
 }
 
 fn finished(state: Option<SeatState>, dir: &Path) -> Result<Option<SeatSummary>, Failure> {
@@ -98,18 +105,19 @@ struct SeatPoint {
 }
 
 impl SeatState {
-    /// The joint at an equilibrium; None where the outer ring is in no body.
-    pub fn new(model: &Model, solution: &StaticSolution) -> Result<Option<SeatState>, Failure> {
-        let Some((side, ring, tie)) = tied(model) else {
+    /// The joint of a ring at an equilibrium; None where it is in no body.
+    pub fn new(model: &Model, solution: &StaticSolution, side: Side) -> Result<Option<SeatState>, Failure> {
+        let Some((ring, tie)) = tied(model, side) else {
             return Ok(None);
         };
         let functions = ring.seat_functions(side.name()).map_err(Failure::solving)?;
         let (Some(functions), Some(field)) = (functions, &solution.elastic[side.index()]) else {
             return Ok(None);
         };
-        let others = model.other_seats.clone();
+        let others = model.other_seats[side.index()].clone();
         let traction = tie.traction(&functions, field, others.as_ref().map(|o| o.as_slice()));
         Ok(traction.map(|traction| SeatState {
+            side,
             tie: tie.clone(),
             functions,
             others,
@@ -118,9 +126,9 @@ impl SeatState {
         }))
     }
 
-    /// The joint in a motion; None where the outer ring is in no body.
-    fn in_motion(motion: &Motion<'_>, state: &MotionState) -> Result<Option<SeatState>, Failure> {
-        let Some((side, ring, tie)) = tied(motion.model()) else {
+    /// The joint of a ring in a motion; None where it is in no body.
+    fn in_motion(motion: &Motion<'_>, state: &MotionState, side: Side) -> Result<Option<SeatState>, Failure> {
+        let Some((ring, tie)) = tied(motion.model(), side) else {
             return Ok(None);
         };
         let functions = ring.seat_functions(side.name()).map_err(Failure::solving)?;
@@ -135,6 +143,7 @@ impl SeatState {
             _ => strain,
         };
         Ok(traction.map(|traction| SeatState {
+            side,
             tie: tie.clone(),
             functions,
             others: None,
@@ -143,7 +152,7 @@ impl SeatState {
         }))
     }
 
-    /// Displacement of the body at rest, m, `[n_nodes][3]` flat.
+    /// Displacement of the body at rest, m, `[n_nodes][3]` flat, of one on the shaft beside that of the shaft.
     pub fn body_displacement(&self) -> Vec<f64> {
         let others = self.others.as_ref().map(|o| o.as_slice());
         let body = self.tie.body.as_ref();
@@ -156,14 +165,14 @@ impl SeatState {
         let points = self.points();
         if Communicator::world().is_root() {
             let text = table(&points);
-            whole::write(&dir.join(SEAT_TABLE), text.as_bytes(), |old| {
-                whole::holds(old, HEAD)
-            })?;
+            let name = SEAT_TABLES[self.side.index()];
+            whole::write(&dir.join(name), text.as_bytes(), |old| whole::holds(old, HEAD))?;
         }
         let summary = self.summary(&points);
         print::line(format_args!(
-            "seat of the outer ring in body {:?}: {} functions; the last two orders hold {:.2e} of its energy, the \
-             last degree across {:.2e}",
+            "seat of the {} ring in body {:?}: {} functions; the last two orders hold {:.2e} of its energy, the last \
+             degree across {:.2e}",
+            self.side.name(),
             summary.body,
             summary.functions,
             summary.energy_share_last_orders,

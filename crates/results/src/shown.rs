@@ -80,6 +80,30 @@ impl<'a> Shown<'a> {
         }
     }
 
+    /// From the frame of a ring to space.
+    pub fn turn(&self, side: Side) -> Turn {
+        Turn::new(match self {
+            Shown::Equilibrium { solution, .. } => solution.pose.frame_angle(side),
+            Shown::Motion { motion, state, .. } => motion.angle_of_frame(state, side),
+        })
+    }
+
+    /// Motion of the shaft in the frame of the inner ring at an equilibrium, from where the mesh file has it, m and
+    /// rad; None in motion, where fields contain it.
+    pub fn shaft_in_frame(&self) -> Option<[f64; 5]> {
+        let Shown::Equilibrium {
+            model,
+            placed,
+            solution,
+        } = self
+        else {
+            return None;
+        };
+        let mut q = solution.displacements.shaft;
+        q[2] = q[2] + model.geometry.axial_offset() - placed.axial_offset();
+        Some(turn(q, -solution.pose.frame_angle(Side::Inner)))
+    }
+
     /// All balls.
     pub fn balls(&self) -> Cow<'a, [BallResult]> {
         match self {
@@ -144,19 +168,11 @@ impl<'a> Shown<'a> {
             field
         };
         match self {
-            Shown::Equilibrium {
-                model,
-                placed,
-                solution,
-            } => {
+            Shown::Equilibrium { solution, .. } => {
                 let strained = solution.elastic[side.index()].as_ref()?;
                 let angle = solution.pose.frame_angle(side);
                 let rigid = match side {
-                    Side::Inner => {
-                        let mut q = solution.displacements.shaft;
-                        q[2] = q[2] + model.geometry.axial_offset() - placed.axial_offset();
-                        Some(turn(q, -angle))
-                    }
+                    Side::Inner => self.shaft_in_frame(),
                     Side::Outer => {
                         let seat = solution.displacements.seat;
                         (seat != 0.0).then_some([0.0, 0.0, seat, 0.0, 0.0])
@@ -215,11 +231,7 @@ impl RingField<'_> {
         // Without turning this is the displacement itself, to the last bit.
         let moved = match self.turn.is_none() {
             true => [0.0; 3],
-            false => {
-                let place = self.places[node];
-                let turned = self.turn.vector(place);
-                [0, 1, 2].map(|i| turned[i] - place[i])
-            }
+            false => self.turn.moved(self.places[node]),
         };
         [0, 1, 2].map(|i| u[i] + moved[i])
     }
@@ -259,6 +271,21 @@ impl Turn {
     /// Whether it turns nothing.
     fn is_none(&self) -> bool {
         (self.sin, self.cos) == (0.0, 1.0)
+    }
+
+    /// How far a place moves.
+    fn moved(&self, place: [f64; 3]) -> [f64; 3] {
+        let turned = self.vector(place);
+        [0, 1, 2].map(|i| turned[i] - place[i])
+    }
+
+    /// Displacement in space of a place that is displaced so before it turns, m; without turning the same bits.
+    pub fn displacement(&self, place: [f64; 3], displacement: [f64; 3]) -> [f64; 3] {
+        if self.is_none() {
+            return displacement;
+        }
+        let (u, moved) = (self.vector(displacement), self.moved(place));
+        [0, 1, 2].map(|i| u[i] + moved[i])
     }
 
     /// A vector, turned.

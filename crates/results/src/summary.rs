@@ -18,7 +18,7 @@ use super::film::{FilmLaw, FilmSummary};
 use super::memory::Forecasts;
 use super::mounting::{ClearanceSummary, FitSummary, fits};
 use super::probe_places::NodePlace;
-use super::seat::SeatSummary;
+use super::seat::{SeatSummaries, SeatSummary};
 use super::snapshot::Snapshot;
 use super::subsurface::{self, ContactSubsurface};
 use super::whole;
@@ -85,6 +85,9 @@ pub struct Summary {
     /// Ratings and life; absent where the scene does not ask for them.
     #[serde(skip_serializing_if = "Option::is_none")]
     life: Option<serde_json::Value>,
+    /// The seat of the inner ring in an elastic body on the shaft; absent without one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    seat_inner: Option<SeatSummary>,
     /// The seat of the outer ring in an elastic body; absent without one.
     #[serde(skip_serializing_if = "Option::is_none")]
     seat: Option<SeatSummary>,
@@ -243,6 +246,7 @@ impl Summary {
             iterations: findings.iterations,
             sweep,
             life: None,
+            seat_inner: None,
             seat: None,
             warnings,
             advice: findings.advice,
@@ -260,10 +264,16 @@ impl Summary {
         Summary { life, ..self }
     }
 
-    /// The same with the seat of the outer ring in a body.
-    pub fn with_seat(mut self, seat: Option<SeatSummary>) -> Summary {
-        self.warnings.extend(seat.as_ref().and_then(SeatSummary::warning));
-        Summary { seat, ..self }
+    /// The same with the seats of rings in bodies.
+    pub fn with_seats(mut self, seats: SeatSummaries) -> Summary {
+        self.warnings
+            .extend(seats.iter().flatten().filter_map(SeatSummary::warning));
+        let [seat_inner, seat] = seats;
+        Summary {
+            seat_inner,
+            seat,
+            ..self
+        }
     }
 
     /// Prints warnings, then where the time went.

@@ -50,7 +50,7 @@ pub fn elastic_body(
                 ..held
             };
             let inside = HeldRing {
-                mount: MountRows::dense(functions.sparse_rows()),
+                mount: MountRows::of_seat(&functions),
                 ..held
             };
             let body = Oscillators::new(tie, functions, settings.damping)?;

@@ -3,6 +3,7 @@
 //! A clamped or mean-motion mount has five or six functionals, each with entries of its own. The functions of a seat
 //! are hundreds on the same nodes: they are kept as a matrix, whose nodes are looked up once.
 
+use body::{SeatFunctions, SeatRows};
 use solver::LinearSolver;
 
 use crate::sparse::{SparseLoad, fill, sparse_dot};
@@ -24,8 +25,8 @@ struct DenseRows {
     places: Vec<usize>,
     /// Functionals of single ones of these.
     units: Vec<SparseLoad>,
-    /// `[functionals][places]` flat.
-    values: Vec<f64>,
+    /// The functionals of them.
+    rows: SeatRows,
 }
 
 impl MountRows {
@@ -34,24 +35,18 @@ impl MountRows {
         MountRows { rows, dense: None }
     }
 
-    /// A mount of many functionals of the same coordinates.
-    pub fn dense(rows: Vec<SparseLoad>) -> MountRows {
-        let mut places: Vec<usize> = rows.iter().flatten().map(|&(i, _)| i).collect();
-        places.sort_unstable();
-        places.dedup();
-        let mut values = vec![0.0; rows.len() * places.len()];
-        for (row, values) in rows.iter().zip(values.chunks_exact_mut(places.len().max(1))) {
-            for (i, value) in row {
-                let at = places.binary_search(i).expect("a place of the functionals");
-                values[at] += value;
-            }
+    /// The functions of the seat of a ring whose coordinates are the dofs of its nodes.
+    pub fn of_seat(functions: &SeatFunctions) -> MountRows {
+        let dofs = |node: &usize| [3 * node, 3 * node + 1, 3 * node + 2];
+        let places: Vec<usize> = functions.nodes.iter().flat_map(dofs).collect();
+        MountRows {
+            rows: functions.sparse_rows(),
+            dense: Some(DenseRows {
+                units: places.iter().map(|&i| vec![(i, 1.0)]).collect(),
+                places,
+                rows: functions.rows().clone(),
+            }),
         }
-        let dense = Some(DenseRows {
-            units: places.iter().map(|&i| vec![(i, 1.0)]).collect(),
-            places,
-            values,
-        });
-        MountRows { rows, dense }
     }
 
     /// Number of functionals.
@@ -80,9 +75,7 @@ impl MountRows {
     /// Values of the functionals from those of the units.
     pub fn of_units(&self, units: &[f64]) -> Vec<f64> {
         let dense = self.dense.as_ref().expect("a mount with units has its matrix");
-        let rows = dense.values.chunks_exact(units.len().max(1));
-        rows.map(|row| row.iter().zip(units).map(|(a, b)| a * b).sum())
-            .collect()
+        dense.rows.measure(units)
     }
 
     /// Values of many functionals at coordinates.
@@ -95,8 +88,9 @@ impl MountRows {
     /// Products of many functionals with each other, `[n][n]` flat.
     pub fn gram(&self) -> Vec<f64> {
         let dense = self.dense.as_ref().expect("many functionals have their matrix");
-        let rows = || dense.values.chunks_exact(dense.places.len().max(1));
-        rows().flat_map(|a| rows().map(move |b| dot(a, b))).collect()
+        let rows: Vec<Vec<f64>> = (0..dense.rows.n()).map(|k| dense.rows.row(k)).collect();
+        let row = |a: &Vec<f64>| rows.iter().map(|b| dot(a, b)).collect::<Vec<f64>>();
+        rows.iter().flat_map(row).collect()
     }
 
     /// Loads of forces on the functionals: index and value, of many functionals each index once.
@@ -111,9 +105,7 @@ impl DenseRows {
     /// Loads of forces on the functionals.
     fn loads(&self, forces: &[f64]) -> impl Iterator<Item = (usize, f64)> {
         let mut loads = vec![0.0; self.places.len()];
-        for (row, force) in self.values.chunks_exact(loads.len().max(1)).zip(forces) {
-            loads.iter_mut().zip(row).for_each(|(load, w)| *load += force * w);
-        }
+        self.rows.add_loads(forces, &mut loads);
         self.places.iter().copied().zip(loads)
     }
 }

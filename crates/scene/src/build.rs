@@ -110,6 +110,7 @@ pub fn model_with_rings(scene: &Scene, rings: [Option<Arc<RingModel>>; 2]) -> Re
         surfaces: Surfaces::default(),
         rings,
         other_seats: [None, None],
+        weighs_carried: true,
         mounting,
         ball_material: ball_steel,
         ring_material: ring_steel,
@@ -241,7 +242,7 @@ fn ring(
         return Ok(None);
     };
     if body.support == tables::Support::Body {
-        ring.tie = seat_tie(scene, &ring)?;
+        ring.tie = seat_tie(scene, side, &ring)?;
     }
     Ok(Some((ring, node_tags)))
 }

@@ -51,6 +51,20 @@ pub enum BuildError {
         /// Allowed difference, mm.
         limit_mm: f64,
     },
+    /// A body that turns is far from round.
+    #[error(
+        "body \"{body}\" turns with the shaft, but its inertia differs by {found:.1} % from that of a body of \
+         revolution, more than {limit} %: unbalance and unequal moments of inertia of a body are not solved; mesh it \
+         round, or clamp the ring"
+    )]
+    NotOfRevolution {
+        /// Name of the body.
+        body: String,
+        /// Difference, %.
+        found: f64,
+        /// What is allowed, %.
+        limit: f64,
+    },
     /// The shaft of a list of bearings cannot be.
     #[error(transparent)]
     Assembly(#[from] AssemblyError),

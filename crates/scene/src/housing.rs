@@ -1,15 +1,16 @@
-//! The bodies round outer rings, from what a scene says of them.
+//! The bodies in which rings sit, from what a scene says of them.
 
 use std::sync::Arc;
 
 use assembly::Orientation;
 use body::matrix::MatrixBody;
 use body::{BodySeat, SeatCylinder, SeatSpace, SeatTie, Surrounding};
+use contact::Side;
 use dynamics::RingModel;
 use fem::Material;
 
 use crate::error::BuildError;
-use crate::tables::{BearingOnShaft, BodySource, Scene, SceneBody};
+use crate::tables::{BearingOnShaft, BodySource, RingName, Scene, SceneBody};
 
 /// Rings of a bearing, inner first.
 pub type Rings = [Option<Arc<RingModel>>; 2];
@@ -18,24 +19,42 @@ pub type Rings = [Option<Arc<RingModel>>; 2];
 /// rings of a bearing that just touches stand off each other along z: a share of the ball, with either sign.
 const SEAT_DISTANCE_TOLERANCE: f64 = 0.05;
 
-/// The joint of the outer ring with the body of the scene, if there is one of its own: reads, factors and condenses it.
-pub fn seat_tie(scene: &Scene, ring: &RingModel) -> Result<Option<Arc<SeatTie>>, BuildError> {
-    let Some(body) = scene.body.as_ref().filter(|body| !body.is_shared) else {
+/// The joint of a ring with its body in the scene, if there is one of its own: reads, factors and condenses it.
+pub fn seat_tie(scene: &Scene, side: Side, ring: &RingModel) -> Result<Option<Arc<SeatTie>>, BuildError> {
+    let body = scene.bodies[side.index()].as_ref();
+    let Some(body) = body.filter(|body| !body.is_shared) else {
         return Ok(None);
     };
     let seats = [body_seat(body, ring)?];
-    let body_of_ring = Arc::new(surrounding(body, &seats)?);
+    let made = surrounding(body, &seats)?;
+    let body_of_ring = Arc::new(carried(made, body, &[ring])?);
     Ok(ties(body, body_of_ring)?.pop())
 }
 
-/// Ties the outer rings of a list to the bodies that carry several of them. `shifts` are those from the coordinates of
-/// each outer ring to the place of its bearing on the shaft, that of the inner groove centres, m.
+/// Ties the rings of a list to the bodies that carry several of them. `shifts` are those from the coordinates of each
+/// ring, inner first, to the place of its bearing on the shaft, that of the inner groove centres, m.
 pub fn tie_together(
     bearings: &[BearingOnShaft],
     rings: &mut [Rings],
-    shifts: &[f64],
+    shifts: &[[f64; 2]],
 ) -> Result<(), BuildError> {
-    let shared = |i: &usize| bearings[*i].scene.body.as_ref().filter(|body| body.is_shared);
+    Side::BOTH
+        .into_iter()
+        .try_for_each(|side| tie_side(side, bearings, rings, shifts))
+}
+
+fn tie_side(
+    side: Side,
+    bearings: &[BearingOnShaft],
+    rings: &mut [Rings],
+    shifts: &[[f64; 2]],
+) -> Result<(), BuildError> {
+    let at = side.index();
+    let shared = |i: &usize| {
+        bearings[*i].scene.bodies[at]
+            .as_ref()
+            .filter(|body| body.is_shared)
+    };
     let mut left: Vec<usize> = (0..bearings.len()).filter(|i| shared(i).is_some()).collect();
     while let Some(first) = left.first().copied() {
         let Some(body) = shared(&first) else { break };
@@ -44,28 +63,30 @@ pub fn tie_together(
         left = others;
         let mut seats = Vec::new();
         for i in &own {
-            if let (Some(of_bearing), Some(ring)) = (shared(i), &rings[*i][1]) {
+            if let (Some(of_bearing), Some(ring)) = (shared(i), &rings[*i][at]) {
                 seats.push(BodySeat {
                     is_turned: bearings[*i].orientation != bearings[first].orientation,
                     ..body_seat(of_bearing, ring)?
                 });
             }
         }
-        let made = Arc::new(surrounding(body, &seats)?);
+        let sitting: Vec<&RingModel> = own.iter().filter_map(|&i| rings[i][at].as_deref()).collect();
+        let made = Arc::new(carried(surrounding(body, &seats)?, body, &sitting)?);
         let places: Vec<f64> = own
             .iter()
             .zip(&seats)
             .map(|(&i, seat)| {
-                let along = bearings[i]
-                    .orientation
-                    .turned_vector([0.0, 0.0, seat.space.middle + shifts[i]])[2];
+                let along =
+                    bearings[i]
+                        .orientation
+                        .turned_vector([0.0, 0.0, seat.space.middle + shifts[i][at]])[2];
                 bearings[i].position + along
             })
             .collect();
         let names: Vec<&str> = own.iter().map(|&i| bearings[i].name.as_str()).collect();
         require_distances(&made, &names, &places, bearings[first].orientation)?;
         for (tie, i) in ties(body, made)?.into_iter().zip(own) {
-            let ring = rings[i][1].as_mut().and_then(Arc::get_mut);
+            let ring = rings[i][at].as_mut().and_then(Arc::get_mut);
             ring.expect("the ring of a seat belongs to it alone").tie = Some(tie);
         }
     }
@@ -97,10 +118,16 @@ fn require_distances(
     Ok(())
 }
 
+/// Share of its inertia by which a body that turns may differ from one of revolution, as whose inertia turns.
+const MOST_ASYMMETRY: f64 = 0.01;
+
 /// The seat of a ring in its body.
 fn body_seat(body: &SceneBody, ring: &RingModel) -> Result<BodySeat, BuildError> {
     let nodes = ring.mesh.group_nodes(ring.held_group);
-    let what = "the seat of the outer ring";
+    let what = match body.ring {
+        RingName::Inner => "the bore of the inner ring",
+        RingName::Outer => "the seat of the outer ring",
+    };
     let numbered = nodes.iter().map(|&node| (node as u64 + 1, ring.mesh.nodes[node]));
     let cylinder = SeatCylinder::of_nodes(what, numbered)?;
     let seat = BodySeat {
@@ -157,6 +184,24 @@ fn surrounding(body: &SceneBody, seats: &[BodySeat]) -> Result<Surrounding, Buil
             Ok(Surrounding::of_matrix(&body.name, &matrix, &seats[0])?)
         }
     }
+}
+
+/// A body with the shaft that carries it under the `rings` in its seats, or one that stands.
+fn carried(made: Surrounding, body: &SceneBody, rings: &[&RingModel]) -> Result<Surrounding, BuildError> {
+    if body.ring == RingName::Outer {
+        return Ok(made);
+    }
+    let origins: Vec<f64> = rings.iter().map(|ring| ring.groove.centre_z).collect();
+    let made = made.on_shaft(&origins)?;
+    let asymmetry = made.carried.as_ref().map_or(0.0, |carried| carried.asymmetry);
+    if body.modes_below.is_some() && asymmetry > MOST_ASYMMETRY {
+        return Err(BuildError::NotOfRevolution {
+            body: body.name.clone(),
+            found: 100.0 * asymmetry,
+            limit: 100.0 * MOST_ASYMMETRY,
+        });
+    }
+    Ok(made)
 }
 
 /// How a body stands to its mesh.

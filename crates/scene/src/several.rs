@@ -15,7 +15,7 @@ use crate::tables::{Motion, ON_SHAFT, RigidShaft, Scene, SeveralScene, ShaftKind
 pub fn build_assembly(scene: &SeveralScene) -> Result<(Assembly, Vec<NodeTags>), BuildError> {
     let mut rings: Vec<Rings> = Vec::new();
     let mut tags: Vec<NodeTags> = Vec::new();
-    let mut shifts: Vec<f64> = Vec::new();
+    let mut shifts: Vec<[f64; 2]> = Vec::new();
     for (i, bearing) in scene.bearings.iter().enumerate() {
         let like = (0..i).find(|&k| have_same_rings(&scene.bearings[k].scene, &bearing.scene));
         match like {
@@ -26,7 +26,8 @@ pub fn build_assembly(scene: &SeveralScene) -> Result<(Assembly, Vec<NodeTags>),
             }
             None => {
                 let (model, of_model) = build_model(&bearing.scene)?;
-                shifts.push(model.ring_shift(Side::Outer) - model.geometry.axial_offset());
+                let origin = model.geometry.axial_offset();
+                shifts.push(Side::BOTH.map(|side| model.ring_shift(side) - origin));
                 rings.push(model.rings);
                 tags.push(of_model);
             }
@@ -47,11 +48,14 @@ pub fn assembly_with_rings(scene: &SeveralScene, rings: Vec<Rings>) -> Result<As
                 orientation: bearing.orientation,
                 shift: 0.5 * scene.pairing.offset,
             },
-            model: model_with_rings(&bearing.scene, rings)?,
+            model: Model {
+                weighs_carried: false,
+                ..model_with_rings(&bearing.scene, rings)?
+            },
         });
     }
     let shaft = shaft(scene)?;
-    let load = loads(scene, (&shaft, &bearings[0].model), 0.0)?;
+    let load = loads(scene, (&shaft, &bearings), 0.0)?;
     Ok(Assembly {
         bearings,
         shaft,
@@ -73,7 +77,7 @@ pub fn have_same_rings(a: &Scene, b: &Scene) -> bool {
     let same_bodies = a.inner.body == b.inner.body && a.outer.body == b.outer.body;
     let rigid = a.inner.body.is_none() && a.outer.body.is_none();
     same_bodies
-        && a.body == b.body
+        && a.bodies == b.bodies
         && a.contact.mode == b.contact.mode
         && (rigid || (a.materials.rings == b.materials.rings && grooves(a) == grooves(b)))
 }
@@ -112,13 +116,15 @@ fn rigid_shaft(rigid: &RigidShaft) -> ShaftBody {
     ShaftBody::rigid(inertia, held)
 }
 
-/// Loads on the shaft's dofs at a time, s: those along it, those of effects at the load point, and its weight. `model`
-/// is any of the bearings: the effects ask for one.
+/// Loads on the shaft's dofs at a time, s: those along it, those of effects at the load point, its weight, and that of
+/// bodies on it.
 pub fn loads(
     scene: &SeveralScene,
-    (shaft, model): (&ShaftBody, &Model),
+    (shaft, bearings): (&ShaftBody, &[MountedBearing]),
     time: f64,
 ) -> Result<Vec<f64>, BuildError> {
+    // The effects ask for a bearing: any is right.
+    let model = &bearings[0].model;
     let mut sum = vec![0.0; shaft.n()];
     for load in &scene.shaft.loads {
         let ([x, y, z], [about_x, about_y]) = (load.force, load.moment);
@@ -158,6 +164,26 @@ pub fn loads(
                 }
             }
         }
+        bearings
+            .iter()
+            .for_each(|bearing| add_weight(shaft, bearing, g, &mut sum));
     }
     Ok(sum)
+}
+
+/// Adds the weight of the body on the shaft under a bearing, as of a rigid one.
+fn add_weight(shaft: &ShaftBody, bearing: &MountedBearing, g: [f64; 3], loads: &mut [f64]) {
+    let Some(inertia) = bearing.model.carried_inertia() else {
+        return;
+    };
+    let Seating {
+        position,
+        orientation,
+        ..
+    } = bearing.place;
+    let [_, _, moment] = orientation.turned_vector([0.0, 0.0, inertia.first_moment]);
+    let [x, y, z] = g.map(|a| inertia.mass * a);
+    // The arm stands at the bearing: a beam has a node there.
+    let about = [-moment * g[1], moment * g[0]];
+    shaft.add_load(position, [x, y, z, about[0], about[1]], loads);
 }

@@ -1,7 +1,7 @@
 //! Newton on the shaft over a part of a step.
 
-use dynamics::motion::held::{HeldPart, Holding};
-use dynamics::stiffness::N_SHAFT;
+use dynamics::motion::held::{HeldAnswer, HeldPart, Holding};
+
 use rayon::prelude::*;
 
 use super::bodies::SharedLoads;
@@ -31,18 +31,18 @@ struct ShaftBalance {
     error: f64,
     /// Largest force, N.
     scale: f64,
-    loads: Vec<[f64; N_SHAFT]>,
+    answers: Vec<HeldAnswer>,
 }
 
 impl ShaftStep<'_> {
-    /// The end at which the shaft is in balance with the bearings, and the loads on these, each in its own frame.
+    /// The end at which the shaft is in balance with the bearings, and their answers, each in its own frame.
     pub fn balance(
         &self,
         parts: &mut [HeldPart<'_>],
         from: Vec<f64>,
         kept: &mut KeptFactors,
         bodies: &mut SharedLoads<'_>,
-    ) -> Result<(Vec<f64>, Vec<[f64; N_SHAFT]>), AssemblyError> {
+    ) -> Result<(Vec<f64>, Vec<HeldAnswer>), AssemblyError> {
         let mut at = self.evaluate(parts, from)?;
         let (mut best, mut stalled, mut last) = (f64::INFINITY, 0, f64::INFINITY);
         let mut history = Vec::new();
@@ -55,7 +55,7 @@ impl ShaftStep<'_> {
             let is_small = at.error <= LIMIT * at.scale;
             is_balanced = at.error <= TARGET * at.scale || (stalled >= 2 && is_small);
             if is_balanced && holding == Holding::Settled {
-                return Ok((at.end, at.loads));
+                return Ok((at.end, at.answers));
             }
             if at.error > ENOUGH * last {
                 kept.renew();
@@ -112,17 +112,15 @@ impl ShaftStep<'_> {
         let mut scale = (0..n).fold(f64::MIN_POSITIVE, |m, i| {
             m.max(self.as_force(i, self.load[i].abs().max(inertia[i].abs())))
         });
-        let mut loads = Vec::new();
         let answer = |(part, mount): (&mut HeldPart<'_>, &Mount)| {
             let own = mount.place.into_bearing(mount.station.displacement(&end));
             part.answer(own).map_err(AssemblyError::of_bearing(&mount.name))
         };
         let answers = in_order(parts.par_iter_mut().zip(self.mounts).map(answer))?;
-        for (mount, answer) in self.mounts.iter().zip(answers) {
+        for (mount, answer) in self.mounts.iter().zip(&answers) {
             let load = mount.place.orientation.turned(answer.load);
             mount.station.add_load(load.map(|f| -f), &mut residual);
             scale = scale.max(answer.force);
-            loads.push(answer.load);
         }
         let free = (0..n).filter(|&i| self.shaft.held[i].is_none());
         let error = free.fold(0.0f64, |m, i| m.max(self.as_force(i, residual[i].abs())));
@@ -134,7 +132,7 @@ impl ShaftStep<'_> {
             residual,
             error,
             scale,
-            loads,
+            answers,
         })
     }
 

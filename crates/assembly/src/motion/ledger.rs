@@ -1,6 +1,6 @@
 //! Energies of the shaft and what went into it.
 
-use dynamics::stiffness::N_SHAFT;
+use dynamics::motion::held::HeldAnswer;
 
 use super::step::ShaftStep;
 use crate::shaft::{ShaftBody, times};
@@ -85,23 +85,23 @@ impl ShaftLedger {
         step: &ShaftStep<'_>,
         end: &[f64],
         velocity: &[f64],
-        loads: &[[f64; N_SHAFT]],
+        answers: &[HeldAnswer],
     ) -> ShaftLedger {
         let [kinetic, strain] = energies(step.shaft, end, velocity);
         let change: Vec<f64> = end.iter().zip(step.start[0]).map(|(a, b)| a - b).collect();
-        let into = |(mount, load): (&crate::newton::Mount, &[f64; N_SHAFT])| -> f64 {
+        let into = |(mount, answer): (&crate::newton::Mount, &HeldAnswer)| -> f64 {
             let moved = mount
                 .place
                 .orientation
                 .turned(mount.station.displacement(&change));
-            load.iter().zip(moved).map(|(f, u)| f * u).sum()
+            answer.load.iter().zip(moved).map(|(f, u)| f * u).sum()
         };
         let mut ledger = ShaftLedger {
             kinetic,
             strain,
             load_work: self.load_work + work(&step.load, &change),
             spin_work: self.spin_work + work(&step.spin_force(end), &change),
-            bearing_work: self.bearing_work + step.mounts.iter().zip(loads).map(into).sum::<f64>(),
+            bearing_work: self.bearing_work + step.mounts.iter().zip(answers).map(into).sum::<f64>(),
             ..*self
         };
         ledger.note_scale();

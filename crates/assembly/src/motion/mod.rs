@@ -27,7 +27,7 @@ mod side_by_side;
 mod step;
 
 use dynamics::kinematics::Speed;
-use dynamics::motion::held::{HeldPart, Holding};
+use dynamics::motion::held::{HeldAnswer, HeldPart, Holding};
 use dynamics::motion::{Integrator, Motion, MotionSettings, MotionState, PartSpan, StepCache, StepReport};
 use dynamics::stiffness::N_SHAFT;
 use dynamics::{DynamicsError, ShaftDof};
@@ -75,7 +75,8 @@ pub struct AssemblyState {
     pub shaft: Vec<f64>,
     /// Its velocity.
     pub velocity: Vec<f64>,
-    /// Mean load of the shaft on every bearing over the last part of a step, in the bearing's frame, N and N m.
+    /// Mean load of the shaft on every bearing over the last part of a step, in the bearing's frame, N and N m; without
+    /// what a body on the shaft under it asks for.
     pub loads: Vec<[f64; N_SHAFT]>,
     /// Energies of the shaft.
     pub ledger: ShaftLedger,
@@ -233,14 +234,14 @@ impl<'a> AssemblyMotion<'a> {
         let (mut end, mut kept) = (step.guess(), KeptFactors::new(&step, cache.shaft.take()));
         let mut bodies = SharedLoads::new(&self.housed);
         for _ in 0..MAX_ROUNDS {
-            let loads;
-            (end, loads) = step.balance(&mut parts, end, &mut kept, &mut bodies)?;
+            let answers;
+            (end, answers) = step.balance(&mut parts, end, &mut kept, &mut bodies)?;
             if self.all(&mut parts, |_, part| part.place())? == Holding::Again {
                 continue;
             }
             if self.all(&mut parts, |i, part| part.close(spans[i].1))? == Holding::Settled {
                 cache.shaft = kept.alone;
-                return self.finish(state, (&step, parts), (end, loads), cache);
+                return self.finish(state, (&step, parts), (end, answers), cache);
             }
         }
         Err(AssemblyError::RoundsNotSettled { rounds: MAX_ROUNDS })
@@ -265,7 +266,7 @@ impl<'a> AssemblyMotion<'a> {
         &self,
         state: &AssemblyState,
         (step, parts): (&ShaftStep<'_>, Vec<HeldPart<'_>>),
-        (shaft, loads): (Vec<f64>, Vec<[f64; N_SHAFT]>),
+        (shaft, answers): (Vec<f64>, Vec<HeldAnswer>),
         cache: &mut AssemblyCache,
     ) -> Result<(AssemblyState, StepReport), AssemblyError> {
         let mut report = StepReport::default();
@@ -283,11 +284,11 @@ impl<'a> AssemblyMotion<'a> {
         Ok((
             AssemblyState {
                 step: state.step,
-                ledger: state.ledger.after(step, &shaft, &velocity, &loads),
+                ledger: state.ledger.after(step, &shaft, &velocity, &answers),
                 bearings,
                 shaft,
                 velocity,
-                loads,
+                loads: answers.iter().map(|answer| answer.on_ring).collect(),
             },
             report,
         ))

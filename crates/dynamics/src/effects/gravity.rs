@@ -164,7 +164,7 @@ impl Effect for Gravity {
             load[1] += mass * g[2];
         }
         loads.add_shaft_force(model, g.map(|a| model.shaft_mass * a));
-        if let Some(inertia) = model.carried_inertia() {
+        if let Some(inertia) = model.carried_inertia().filter(|_| model.weighs_carried) {
             // As a rigid body: what it sags by itself is left out.
             let centre = inertia.first_moment / inertia.mass;
             loads.add_shaft_force_at(centre, g.map(|a| inertia.mass * a));

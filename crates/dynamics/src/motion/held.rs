@@ -41,6 +41,8 @@ pub struct HeldAnswer {
     /// Mean load that has to act on the shaft over the part, N and N m. A body on the shaft that carries other bearings
     /// as well counts at its first seat alone.
     pub load: [f64; N_SHAFT],
+    /// The part of it that goes to the inner ring, not to the inertia of a body on the shaft under it.
+    pub on_ring: [f64; N_SHAFT],
     /// Force by which its round-off counts, N.
     pub force: f64,
 }
@@ -92,10 +94,11 @@ impl<'m> HeldPart<'m> {
         };
         let forces = solution.forces.iter().map(|f| f.force[0].hypot(f.force[1]));
         let reactions = part.parts.shaft_reactions(&solution, scheme);
-        let counted_elsewhere = self.counted_elsewhere(shaft);
+        let [elsewhere, of_body] = self.on_body(shaft);
         let part = &mut self.part;
         let answer = HeldAnswer {
-            load: [0, 1, 2, 3, 4].map(|i| reactions[i] - counted_elsewhere[i]),
+            load: [0, 1, 2, 3, 4].map(|i| reactions[i] - elsewhere[i]),
+            on_ring: [0, 1, 2, 3, 4].map(|i| reactions[i] - of_body[i]),
             force: forces.fold(part.scale, f64::max),
         };
         part.report.newton_iterations += solution.iterations;
@@ -120,45 +123,42 @@ impl<'m> HeldPart<'m> {
         Ok(found)
     }
 
-    /// The body on the shaft that carries other bearings as well, without the inner ring, and how that follows the
-    /// shaft.
-    fn shared_on_shaft(&self) -> Option<(BodyAlone, Follow)> {
-        let side = Side::Inner;
-        let tie = self.motion.model().ring(side)?.tie.as_ref()?;
-        let step = self.part.rings[side.index()]
-            .as_ref()
-            .filter(|_| tie.has_others())?;
-        let follow = self.part.parts.rings[side.index()].as_ref()?.follow;
-        Some((step.body_alone()?, follow?))
+    /// The body on the shaft in which the inner ring sits, without that, and how it follows the shaft.
+    fn on_shaft(&self) -> Option<(BodyAlone, Follow)> {
+        let ring = Side::Inner.index();
+        let follow = self.part.parts.rings[ring].as_ref()?.follow;
+        Some((self.part.rings[ring].as_ref()?.body_alone()?, follow?))
     }
 
-    fn is_first_on_shaft(&self) -> bool {
+    /// Whether that body has other seats, and whether this is not the first.
+    fn seats_on_shaft(&self) -> [bool; 2] {
         let ring = self.motion.model().ring(Side::Inner);
-        ring.and_then(|ring| ring.tie.as_ref())
-            .is_none_or(|tie| tie.seat == 0)
+        let tie = ring.and_then(|ring| ring.tie.as_ref());
+        tie.map_or([false; 2], |tie| [tie.has_others(), tie.seat > 0])
     }
 
-    /// Load on the shaft that other bearings on the same body count. The reactions of a bearing hold the whole body, with
-    /// the loads of the others on it: at the first seat the loads are taken out, elsewhere all of the body.
-    fn counted_elsewhere(&self, shaft: [f64; N_SHAFT]) -> [f64; N_SHAFT] {
-        let Some((alone, follow)) = self.shared_on_shaft() else {
-            return [0.0; N_SHAFT];
+    /// Loads on the shaft that are in the reactions of the bearing: those that other bearings on the same body count,
+    /// and those that the body asks for without the ring. The reactions hold the whole body, with the loads of the
+    /// others on it: at the first seat others count these loads, elsewhere all of the body.
+    fn on_body(&self, shaft: [f64; N_SHAFT]) -> [[f64; N_SHAFT]; 2] {
+        let Some((alone, follow)) = self.on_shaft() else {
+            return [[0.0; N_SHAFT]; 2];
         };
-        let at = match self.is_first_on_shaft() {
-            true => alone.unloaded.clone(),
-            false => follow.in_frame(shaft).to_vec(),
+        let force = |at: &[f64]| {
+            let off: Vec<f64> = at.iter().zip(&alone.predicted).map(|(q, p)| q - p).collect();
+            follow.in_space(&times(&alone.stiffness, &off))
         };
-        let off: Vec<f64> = at.iter().zip(&alone.predicted).map(|(q, p)| q - p).collect();
-        let rows = alone.stiffness.chunks_exact(N_SHAFT);
-        let forces: Vec<f64> = rows
-            .map(|row| row.iter().zip(&off).map(|(k, q)| k * q).sum())
-            .collect();
-        follow.in_space(&forces)
+        let body = force(&follow.in_frame(shaft));
+        match self.seats_on_shaft() {
+            [false, _] => [[0.0; N_SHAFT], body],
+            [true, true] => [body, body],
+            [true, false] => [force(&alone.unloaded), body],
+        }
     }
 
-    /// Growth of that load with the displacement at the end; None: it does not grow.
+    /// Growth of what others count with the displacement at the end; None: it does not grow.
     fn stiffness_elsewhere(&self) -> Option<ShaftMatrix> {
-        let (alone, follow) = self.shared_on_shaft().filter(|_| !self.is_first_on_shaft())?;
+        let (alone, follow) = self.on_shaft().filter(|_| self.seats_on_shaft() == [true; 2])?;
         let column = |k: usize| {
             let mut unit = [0.0; N_SHAFT];
             unit[k] = 1.0;
@@ -231,6 +231,13 @@ impl<'m> HeldPart<'m> {
         cache.ahead = ahead;
         Ok((next, report))
     }
+}
+
+/// A matrix over the shaft's dofs times a vector.
+fn times(matrix: &[f64], x: &[f64]) -> Vec<f64> {
+    let rows = matrix.chunks_exact(N_SHAFT);
+    rows.map(|row| row.iter().zip(x).map(|(a, x)| a * x).sum())
+        .collect()
 }
 
 /// Work of a mean load on the body of a ring between two states, J.

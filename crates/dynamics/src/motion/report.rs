@@ -170,13 +170,20 @@ impl Motion<'_> {
         (0..self.model.geometry.n_balls).map(patch).collect()
     }
 
+    /// Angle by which the frame of a ring is turned in space, rad.
+    pub fn angle_of_frame(&self, state: &MotionState, side: Side) -> f64 {
+        self.frame_angle(side, self.time(state.step))
+    }
+
     /// Total nodal displacement of a flexible ring in its own frame, m, `[n_nodes][3]` flat, and the angle by which
     /// that frame is turned in space, rad.
     pub fn ring_displacement(&self, state: &MotionState, side: Side) -> Option<(Vec<f64>, f64)> {
         let moving = self.rings[side.index()].as_ref()?;
         let ring = state.rings[side.index()].as_ref()?;
-        let turned = self.frame_angle(side, self.time(state.step));
-        Some((moving.body.nodal(ring.displacement()), turned))
+        Some((
+            moving.body.nodal(ring.displacement()),
+            self.angle_of_frame(state, side),
+        ))
     }
 
     /// The same at the chosen nodes; others may be NaN. Of a periodic ring only these are transformed.

@@ -79,6 +79,7 @@ impl Case {
             geometry,
             rings: [None, None],
             other_seats: [None, None],
+            weighs_carried: true,
             mounting: Default::default(),
             ball_material: steel,
             ring_material: steel,

@@ -52,7 +52,7 @@ impl VibratingTie {
         let failed = |source| RingError::Tie { source };
         let modes = tie.modes.clone();
         let modes = modes.expect("the modes of a body are found before its ring vibrates");
-        let mount = MountRows::dense(functions.sparse_rows());
+        let mount = MountRows::of_seat(functions);
         let effective: Vec<f64> = modes.squares().iter().map(|square| square + shift).collect();
         let n = mount.len();
         let mut joint = Vec::with_capacity(n * n);

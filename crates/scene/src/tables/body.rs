@@ -1,4 +1,4 @@
-//! `[[body]]`: an elastic body round the outer ring.
+//! `[[body]]`: an elastic body round the outer ring, or one on the shaft in which the inner ring sits.
 //!
 //! ```toml
 #![doc = include_str!("example_body.toml")]
@@ -22,12 +22,21 @@ const HARMONICS: i64 = 12;
 const ACROSS: i64 = 2;
 /// Frequency up to which a moving body keeps its modes without a word, Hz.
 const MODES_BELOW: f64 = 20e3;
-/// Effects that act on a seat of which something else is assumed, and why not with a body.
-const REFUSED_EFFECTS: [(&str, &str); 4] = [
+/// Effects that act on a seat of which something else is assumed, and why not with a body round the outer ring.
+const REFUSED_OUTSIDE: [(&str, &str); 4] = [
     ("fit", "its pressure is that of a rigid or round housing"),
     ("seat_form", "its form is pressed on by a rigid housing"),
     ("spring_preload", "its ring slides in a rigid housing"),
     ("temperature", "its seat grows with a rigid or round housing"),
+];
+/// The same of a body on the shaft.
+const REFUSED_ON_SHAFT: [(&str, &str); 3] = [
+    ("fit", "its pressure is that of a rigid or round shaft"),
+    (
+        "frame_rotation",
+        "what the body grows by its own turning is not solved",
+    ),
+    ("temperature", "its seat grows with a rigid or round shaft"),
 ];
 
 /// As typed.
@@ -77,6 +86,8 @@ pub struct SceneBody {
     pub group: String,
     /// Functions that are tied.
     pub basis: SeatBasis,
+    /// The ring that sits in it: the outer one, or the inner one of a body that the shaft carries.
+    pub ring: RingName,
     /// Whether it is turned by 180 deg about x.
     pub is_turned: bool,
     /// Whether it carries other bearings of a list as well.
@@ -113,83 +124,102 @@ pub struct BodyContext<'a> {
     pub files: MeshFiles,
     /// How the rings are held, as typed, inner first.
     pub supports: [Option<Support>; 2],
-    /// Whether the scene says that the outer ring is rigid.
-    pub is_outer_rigid: bool,
+    /// Whether the scene says that the rings are rigid, inner first.
+    pub is_rigid: [bool; 2],
     /// Whether the outer ring turns.
     pub turns_outer: bool,
     /// Linear solver of the rings.
     pub backend: Backend,
     /// Whether the scene moves in time, or asks for natural modes.
     pub moves: bool,
+    /// Whether it asks for natural modes.
+    pub has_modes: bool,
     /// Effects of the scene.
     pub effects: Vec<&'static str>,
 }
 
-/// The body round the outer ring among the tables of a scene, if there is one.
+/// The bodies of both rings among the tables of a scene, inner first.
 pub fn check_bodies(
     bodies: &[RawSceneBody],
     context: &BodyContext<'_>,
     problems: &mut Problems,
     assumed: &mut Vec<String>,
+) -> [Option<SceneBody>; 2] {
+    [RingName::Inner, RingName::Outer].map(|ring| {
+        let own: Vec<&RawSceneBody> = bodies.iter().filter(|body| body.ring() == ring).collect();
+        check_ring(ring, &own, context, problems, assumed)
+    })
+}
+
+/// The body of one ring among those that name it.
+fn check_ring(
+    ring: RingName,
+    bodies: &[&RawSceneBody],
+    context: &BodyContext<'_>,
+    problems: &mut Problems,
+    assumed: &mut Vec<String>,
 ) -> Option<SceneBody> {
-    if context.supports[0] == Some(Support::Body) {
-        problems.add(
-            "inner.support is \"body\", but a body that carries the inner ring, such as an elastic shaft, is not \
-             solved; expected \"clamped\" or \"mean_motion\"",
-        );
-    }
-    let is_wanted = context.supports[1] == Some(Support::Body);
+    let key = ring.key();
+    let is_wanted = context.supports[ring as usize] == Some(Support::Body);
     let Some(first) = bodies.first() else {
         if is_wanted {
-            problems.add(
-                "outer.support is \"body\", but the scene has no body; add a table [[body]] with a [[body.seat]] \
-                 of ring = \"outer\", or set outer.support = \"clamped\" or \"mean_motion\"",
-            );
+            problems.add(format!(
+                "{key}.support is \"body\", but the scene has no body for it; add a table [[body]] with a \
+                 [[body.seat]] of ring = \"{key}\", or set {key}.support = \"clamped\" or \"mean_motion\""
+            ));
         }
         return None;
     };
     if let Some(second) = bodies.get(1) {
         problems.add(format!(
-            "the scene has {} tables [[body]], such as {:?} and {:?}, for one outer ring; expected one body, so \
-             mesh what is joined as one",
+            "the scene has {} tables [[body]], such as {:?} and {:?}, for one {key} ring; expected one body, so mesh \
+             what is joined as one",
             bodies.len(),
             first.name,
             second.name
         ));
     }
-    if context.is_outer_rigid {
+    if context.is_rigid[ring as usize] {
         problems.add(format!(
-            "body {:?} carries the outer ring, but that ring is rigid; set outer.flexible = true or remove \
-             [[body]]",
+            "body {:?} carries the {key} ring, but that ring is rigid; set {key}.flexible = true or remove [[body]]",
             first.name
         ));
     } else if !is_wanted {
         problems.add(format!(
-            "body {:?} is there, but outer.support is not \"body\"; set outer.support = \"body\" or remove \
-             [[body]]",
+            "body {:?} is there, but {key}.support is not \"body\"; set {key}.support = \"body\" or remove [[body]]",
             first.name
         ));
     }
-    refuse_beside_body(&first.name, context, problems);
-    first.check(context, problems, assumed)
+    refuse_beside_body(&first.name, ring, context, problems);
+    first.check(ring, context, problems, assumed)
 }
 
-/// What a body at rest does not go with.
-fn refuse_beside_body(name: &str, context: &BodyContext<'_>, problems: &mut Problems) {
+/// What a body does not go with.
+fn refuse_beside_body(name: &str, ring: RingName, context: &BodyContext<'_>, problems: &mut Problems) {
     if context.backend.divides_rings() {
         problems.add(format!(
             "solver.backend is \"sector\", which does not tie a ring to a body ({name:?}); expected \"auto\", \
              \"cyclic\" or \"sparse\""
         ));
     }
-    if context.turns_outer {
+    if context.turns_outer && ring == RingName::Outer {
         problems.add(format!(
             "speed.outer turns the outer ring, but body {name:?} carries it and stands; remove speed.outer or \
              [[body]]"
         ));
     }
-    for (effect, why) in REFUSED_EFFECTS {
-        if context.effects.contains(&effect) {
+    if context.has_modes && ring == RingName::Inner {
+        problems.add(format!(
+            "[modes] does not go with body {name:?} on the shaft; use inner.support = \"clamped\" or \
+             \"mean_motion\" for modes"
+        ));
+    }
+    let refused = match ring {
+        RingName::Inner => &REFUSED_ON_SHAFT[..],
+        RingName::Outer => &REFUSED_OUTSIDE,
+    };
+    for (effect, why) in refused {
+        if context.effects.contains(effect) {
             problems.add(format!(
                 "effects.{effect} does not go with body {name:?}: {why}; remove one of them"
             ));
@@ -198,8 +228,14 @@ fn refuse_beside_body(name: &str, context: &BodyContext<'_>, problems: &mut Prob
 }
 
 impl RawSceneBody {
+    /// The ring that it carries: that of its first seat.
+    fn ring(&self) -> RingName {
+        self.seat.first().map_or(RingName::Outer, |seat| seat.ring)
+    }
+
     fn check(
         &self,
+        ring: RingName,
         context: &BodyContext<'_>,
         problems: &mut Problems,
         assumed: &mut Vec<String>,
@@ -231,7 +267,15 @@ impl RawSceneBody {
                 }
                 self.check_mesh(&key, mesh, context, problems, assumed)
             }
-            (None, Some(_)) => self.check_matrix(&key, context, problems),
+            (None, Some(_)) => {
+                if ring == RingName::Inner {
+                    problems.add(format!(
+                        "{key} carries the inner ring and comes from a stiffness matrix, of which nothing says how it \
+                         moves with the shaft; give it as a mesh"
+                    ));
+                }
+                self.check_matrix(&key, context, problems)
+            }
         };
         let typed = self.orientation.as_deref().unwrap_or(Orientation::PlusZ.name());
         let orientation = Orientation::named(typed);
@@ -251,6 +295,7 @@ impl RawSceneBody {
                 across: problems.whole(across, "body.seat.across", 1, 8),
             },
             name: self.name.clone(),
+            ring,
             is_turned: orientation == Some(Orientation::MinusZ),
             is_shared: false,
             modes_below,
@@ -298,24 +343,19 @@ impl RawSceneBody {
             [seat] => seat,
             [] => {
                 problems.add(format!(
-                    "{key} has no seat; add a table [[body.seat]] with ring = \"outer\" and the group of its surface"
+                    "{key} has no seat; add a table [[body.seat]] with ring = \"outer\" or \"inner\" and the group of \
+                     its surface"
                 ));
                 return None;
             }
             many => {
                 problems.add(format!(
-                    "{key} has {} tables [[body.seat]], but the bearing has one outer ring; expected one",
+                    "{key} has {} tables [[body.seat]], but the bearing has one ring in it; expected one",
                     many.len()
                 ));
                 return None;
             }
         };
-        if seat.ring == RingName::Inner {
-            problems.add(format!(
-                "{key}: seat.ring is \"inner\", but a body that carries the inner ring is not solved; \
-                 expected \"outer\""
-            ));
-        }
         if self.mesh.is_some() && seat.group.is_none() {
             problems.add(format!(
                 "{key}: seat.group is missing; expected the facet group of its mesh that carries the ring"

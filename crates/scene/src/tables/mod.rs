@@ -224,8 +224,8 @@ pub struct Scene {
     pub inner: Ring,
     /// The ring in the housing.
     pub outer: Ring,
-    /// The elastic body round the outer ring.
-    pub body: Option<SceneBody>,
+    /// The elastic bodies in which the rings sit, inner first: one on the shaft, one round the outer ring.
+    pub bodies: [Option<SceneBody>; 2],
     /// Freedoms of the shaft.
     pub shaft: Shaft,
     /// How the balls move.
@@ -401,7 +401,7 @@ impl Source<'_> {
         let speed = speed.and_then(|s| s.check(raw.speed_use(), &mut problems));
         let has_speed = raw.has_speed();
         let solver = raw.solver.check(&mut problems);
-        let body = raw.body(self, solver.backend, &mut problems, &mut assumed);
+        let bodies = raw.bodies(self, solver.backend, &mut problems, &mut assumed);
         let output = raw.output_context([inner.body.is_some(), outer.body.is_some()]);
         let output = raw.output.check(output, &mut problems);
         let stress = StressContext {
@@ -433,7 +433,7 @@ impl Source<'_> {
                 profiles,
                 inner,
                 outer,
-                body,
+                bodies,
                 shaft,
                 balls,
                 cage,

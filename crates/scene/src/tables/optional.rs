@@ -28,22 +28,23 @@ impl RawScene {
         cage.check((balls, self.dynamic.is_some()), bearing, material, problems)
     }
 
-    /// The body round the outer ring.
-    pub(super) fn body(
+    /// The bodies of both rings, inner first.
+    pub(super) fn bodies(
         &self,
         source: &Source<'_>,
         backend: Backend,
         problems: &mut Problems,
         assumed: &mut Vec<String>,
-    ) -> Option<SceneBody> {
+    ) -> [Option<SceneBody>; 2] {
         let context = BodyContext {
             scene: source.path,
             files: source.mesh_files,
             supports: [self.inner.support(), self.outer.support()],
-            is_outer_rigid: self.outer.is_rigid(),
+            is_rigid: [self.inner.is_rigid(), self.outer.is_rigid()],
             turns_outer: self.has_speed()[1],
             backend,
             moves: self.dynamic.is_some() || self.modes.is_some(),
+            has_modes: self.modes.is_some(),
             effects: self.effects.names(),
         };
         check_bodies(&self.body, &context, problems, assumed)

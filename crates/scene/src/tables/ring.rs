@@ -27,6 +27,9 @@ pub struct RawRing {
     cut: Vec<RawCut>,
 }
 
+/// How a surface may be held, for messages.
+const SUPPORTS: &str = "\"clamped\" or \"mean_motion\", or \"body\" with a table [[body]]";
+
 /// Which of the two rings.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq)]
 #[serde(rename_all = "snake_case")]
@@ -43,14 +46,6 @@ impl RingName {
         match self {
             RingName::Inner => "inner",
             RingName::Outer => "outer",
-        }
-    }
-
-    /// How the surface may be held, for messages.
-    fn supports(self) -> &'static str {
-        match self {
-            RingName::Inner => "\"clamped\" or \"mean_motion\"",
-            RingName::Outer => "\"clamped\" or \"mean_motion\", or \"body\" with a table [[body]]",
         }
     }
 
@@ -228,10 +223,7 @@ impl RawRing {
             missing("mesh_unit", "the unit of its mesh such as \"mm\"");
         }
         if self.support.is_none() {
-            missing(
-                "support",
-                &format!("to know how its {held} is held, {}", ring.supports()),
-            );
+            missing("support", &format!("to know how its {held} is held, {SUPPORTS}"));
         }
         let mesh_unit = self.mesh_unit.as_ref().and_then(|text| {
             let unit = parse_unit(text, &KINDS[LENGTH]);

@@ -1,4 +1,4 @@
-//! `[[body]]` in a list of bearings: each carries the outer rings that its seats name.
+//! `[[body]]` in a list of bearings: each carries the rings that its seats name, outer or inner ones.
 //!
 //! The mesh of a body stands as its bearing's seat does in the frame of the shaft, whichever way the bearing is turned:
 //! in the frame of a bearing that is turned, the body is turned too.
@@ -7,6 +7,8 @@ use assembly::Orientation;
 use input::Problems;
 use serde::Deserialize;
 use toml_edit::{ArrayOfTables, DocumentMut, Item, Table};
+
+use crate::tables::ring::RingName;
 
 /// Key of a seat, of the list alone.
 const BEARING: &str = "bearing";
@@ -23,14 +25,15 @@ pub struct RawListedBody {
 
 #[derive(Debug, Deserialize)]
 struct RawListedSeat {
+    ring: RingName,
     bearing: Option<String>,
     group: Option<String>,
 }
 
-/// Every seat names one of the bearings `names`, and every bearing has one body at most.
+/// Every seat names one of the bearings `names`, and every ring has one body at most.
 pub fn check(bodies: &[RawListedBody], names: &[&str], problems: &mut Problems) {
     let known = names.join(", ");
-    let mut taken: Vec<(&str, &str)> = Vec::new();
+    let mut taken: Vec<(&str, &str, RingName)> = Vec::new();
     for (number, body) in bodies.iter().enumerate() {
         let name = body.name.as_str();
         if bodies[..number].iter().any(|other| other.name == name) {
@@ -52,17 +55,23 @@ pub fn check(bodies: &[RawListedBody], names: &[&str], problems: &mut Problems) 
                     "body {name:?} has a seat for the bearing {bearing:?}; expected one of {known}"
                 ));
             }
-            if let Some((other, _)) = taken.iter().find(|(_, of)| *of == bearing) {
+            let key = seat.ring.key();
+            let same = taken
+                .iter()
+                .find(|(_, of, ring)| (*of, *ring) == (bearing, seat.ring));
+            if let Some((other, ..)) = same {
                 problems.add(match *other == name {
                     true => format!(
-                        "body {name:?} has two seats for the bearing {bearing:?}; expected one seat for each bearing"
+                        "body {name:?} has two seats for the {key} ring of the bearing {bearing:?}; expected one seat \
+                         for each ring"
                     ),
                     false => format!(
-                        "bodies {other:?} and {name:?} have both a seat for the bearing {bearing:?}; expected one body"
+                        "bodies {other:?} and {name:?} have both a seat for the {key} ring of the bearing \
+                         {bearing:?}; expected one body"
                     ),
                 });
             }
-            taken.push((name, bearing));
+            taken.push((name, bearing, seat.ring));
         }
     }
 }
@@ -76,6 +85,13 @@ impl RawListedBody {
                 "body {name:?} comes from a matrix and has {} seats, but its table of nodes has one; give each bearing \
                  a [[body]] of its own, or give the body as a mesh",
                 self.seat.len()
+            ));
+        }
+        let rings = |ring: RingName| self.seat.iter().any(|seat| seat.ring == ring);
+        if rings(RingName::Inner) && rings(RingName::Outer) {
+            problems.add(format!(
+                "body {name:?} has seats of inner and of outer rings, but it either turns with the shaft or stands; \
+                 expected seats of one kind"
             ));
         }
         let groups: Vec<&str> = self
@@ -93,7 +109,7 @@ impl RawListedBody {
     }
 }
 
-/// Gives a bearing its body, in its own frame and with its own seat, and ties its outer ring to it.
+/// Gives a bearing its bodies, in its own frame and with its own seats, and ties its rings to them.
 pub fn place(list: &DocumentMut, document: &mut DocumentMut, (name, orientation): (&str, Orientation)) {
     document.remove("body");
     let bodies = list.get("body").and_then(Item::as_array_of_tables);
@@ -114,14 +130,23 @@ pub fn place(list: &DocumentMut, document: &mut DocumentMut, (name, orientation)
             };
             body.insert("orientation", toml_edit::value(other.name()));
         }
+        for ring in rings(&body) {
+            if let Some(ring) = document.get_mut(&ring).and_then(Item::as_table_like_mut) {
+                ring.insert("support", toml_edit::value("body"));
+            }
+        }
         own.push(body);
     }
     if !own.is_empty() {
         document.insert("body", Item::ArrayOfTables(own));
-        if let Some(outer) = document.get_mut("outer").and_then(Item::as_table_like_mut) {
-            outer.insert("support", toml_edit::value("body"));
-        }
     }
+}
+
+/// The rings in the seats of a body, as typed.
+fn rings(body: &Table) -> Vec<String> {
+    let seats = body.get("seat").and_then(Item::as_array_of_tables);
+    let ring = |seat: &Table| Some(seat.get("ring")?.as_str()?.to_string());
+    seats.into_iter().flatten().filter_map(ring).collect()
 }
 
 fn carries(body: &Table, bearing: &str) -> bool {

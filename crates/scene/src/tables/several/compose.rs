@@ -118,6 +118,10 @@ impl Composer<'_> {
         };
         let mut bearings: Vec<BearingOnShaft> = raw.bearing.iter().zip(scenes).map(mounted).collect();
         note_shared_bodies(&mut bearings);
+        check_carried(&bearings, &shaft, &mut problems);
+        if !problems.is_empty() {
+            return Err(self.messages.invalid(problems.into_texts()));
+        }
         let speed = bearings[0].scene.speed.clone().map(|mut speed| {
             turn_speeds(&mut speed, bearings[0].orientation);
             speed
@@ -329,13 +333,31 @@ impl Composer<'_> {
 
 /// Notes which bodies carry several bearings.
 fn note_shared_bodies(bearings: &mut [BearingOnShaft]) {
-    let name_of = |bearing: &BearingOnShaft| Some(bearing.scene.body.as_ref()?.name.clone());
-    let names: Vec<Option<String>> = bearings.iter().map(name_of).collect();
-    for bearing in bearings {
-        if let Some(body) = &mut bearing.scene.body {
-            let same = names.iter().flatten().filter(|name| **name == body.name);
-            body.is_shared = same.count() > 1;
-        }
+    let bodies = |bearing: &BearingOnShaft| bearing.scene.bodies.clone().into_iter().flatten();
+    let names: Vec<String> = bearings.iter().flat_map(bodies).map(|body| body.name).collect();
+    for body in bearings
+        .iter_mut()
+        .flat_map(|bearing| bearing.scene.bodies.iter_mut())
+        .flatten()
+    {
+        body.is_shared = names.iter().filter(|name| **name == body.name).count() > 1;
+    }
+}
+
+/// A body that carries several inner rings is the shaft between them, so nothing else may be.
+fn check_carried(bearings: &[BearingOnShaft], shaft: &CommonShaft, problems: &mut Problems) {
+    let on_shaft = bearings
+        .iter()
+        .filter_map(|bearing| bearing.scene.bodies[0].as_ref());
+    let shared = on_shaft
+        .filter(|body| body.is_shared)
+        .map(|body| &body.name)
+        .next();
+    if let (Some(name), ShaftKind::Beam(_)) = (shared, &shaft.kind) {
+        problems.add(format!(
+            "shaft.model is \"beam\", but body {name:?} carries several inner rings, so that it is the shaft between \
+             them; expected shaft.model = \"rigid\", which moves what is fixed of the body"
+        ));
     }
 }
 

@@ -16,7 +16,7 @@ fn with(old: &str, new: &str) -> String {
 
 fn body_of(text: &str) -> SceneBody {
     let scene = parse(text, &[]).unwrap_or_else(|e| panic!("{e}"));
-    scene.body.unwrap()
+    scene.bodies[1].clone().unwrap()
 }
 
 /// Wrong: a key would be read as something else, or a default would differ from what the reference says.
@@ -84,7 +84,7 @@ fn scenes_in_which_a_body_makes_no_sense_are_refused() {
     let cases: Vec<(String, &str)> = vec![
         (
             with(whole_body, ""),
-            "outer.support is \"body\", but the scene has no body; add a table [[body]]",
+            "outer.support is \"body\", but the scene has no body for it; add a table [[body]]",
         ),
         (
             with(support, "support = \"clamped\""),
@@ -96,7 +96,7 @@ fn scenes_in_which_a_body_makes_no_sense_are_refused() {
         ),
         (
             with(SEAT, &format!("{SEAT}\n{SEAT}")),
-            "has 2 tables [[body.seat]], but the bearing has one outer ring",
+            "has 2 tables [[body.seat]], but the bearing has one ring in it; expected one",
         ),
         (
             with(
@@ -107,11 +107,12 @@ fn scenes_in_which_a_body_makes_no_sense_are_refused() {
         ),
         (
             with("ring = \"outer\"", "ring = \"inner\""),
-            "seat.ring is \"inner\", but a body that carries the inner ring is not solved",
+            "body \"plummer block\" is there, but inner.support is not \"body\"; set inner.support = \"body\"",
         ),
         (
             with("support = \"clamped\"    ", support),
-            "inner.support is \"body\", but a body that carries the inner ring",
+            "inner.support is \"body\", but the scene has no body for it; add a table [[body]] with a [[body.seat]] of \
+             ring = \"inner\"",
         ),
         (
             with("group = \"seat_a\"", ""),
@@ -178,6 +179,57 @@ fn scenes_in_which_a_body_makes_no_sense_are_refused() {
     }
 }
 
+/// The delivered scene with its body on the shaft, and more of the scene.
+fn on_shaft(more: &str) -> String {
+    with("support = \"body\"", "support = \"mean_motion\"")
+        .replace("support = \"clamped\"    ", "support = \"body\"")
+        .replace("ring = \"outer\"", "ring = \"inner\"")
+        .replace("[output]", &format!("{more}\n[output]"))
+}
+
+/// Wrong: a body on the shaft would be taken for a housing, or be solved with what it does not know.
+#[test]
+fn a_body_on_the_shaft_carries_the_inner_ring_and_goes_with_what_it_knows() {
+    let scene = parse(&on_shaft(""), &[]).unwrap();
+    let [inner, outer] = &scene.bodies;
+    assert_eq!(inner.as_ref().unwrap().ring, RingName::Inner);
+    assert_eq!(*outer, None);
+    let matrix = {
+        let text = on_shaft("");
+        let start = text.find("mesh = \"../meshes/plummer_block.msh\"").unwrap();
+        let end = text.find("[[body.seat]]").unwrap();
+        let files = "stiffness = \"K.mtx\"\nnodes = \"n.csv\"\nseat_nodes = \"s.csv\"\nlength_unit = \"mm\"\n\
+                     stiffness_unit = \"N/mm\"\n";
+        format!("{}{files}{}", &text[..start], &text[end..])
+    };
+    let modes = on_shaft("").replace("[static]", "[modes]\nnumber = 4");
+    for (text, expected) in [
+        (
+            matrix,
+            "comes from a stiffness matrix, of which nothing says how it moves with the shaft; give it as a mesh",
+        ),
+        (
+            modes,
+            "[modes] does not go with body \"plummer block\" on the shaft; use inner.support",
+        ),
+        (
+            on_shaft("[effects.fit.inner]\ninterference = \"5 um\""),
+            "effects.fit does not go with body \"plummer block\": its pressure is that of a rigid or round shaft",
+        ),
+        (
+            on_shaft("[effects.frame_rotation]"),
+            "effects.frame_rotation does not go with body \"plummer block\": what the body grows by its own turning",
+        ),
+        (
+            on_shaft("").replacen("flexible = true", "flexible = false", 1),
+            "body \"plummer block\" carries the inner ring, but that ring is rigid; set inner.flexible = true",
+        ),
+    ] {
+        let said = parse(&text, &[]).err().map(|e| e.to_string()).unwrap_or_default();
+        assert!(said.contains(expected), "{said}\nexpected: {expected}");
+    }
+}
+
 /// Wrong: a motion would move a body that has no mass, or one at rest promise modes that nobody finds.
 #[test]
 fn only_a_body_with_a_mass_moves() {
@@ -237,7 +289,7 @@ fn only_a_body_with_a_mass_moves() {
 #[test]
 fn tables_of_lists_are_set_by_their_number() {
     let set = parse(SCENE, &["body.0.seat.0.harmonics=7", "body.0.name=block"]).unwrap();
-    let body = set.body.unwrap();
+    let body = set.bodies[1].clone().unwrap();
     let basis = SeatBasis::Harmonics {
         harmonics: 7,
         across: 2,

@@ -18,8 +18,8 @@ fn a_body_is_that_of_its_bearing_and_stands_as_in_the_frame_of_the_shaft() {
     let lists = Lists::new("bodies");
     let list = lists.several(&list(BEAM, &body("bearing = \"rear\"", "")), &[]);
     let [front, rear] = [0, 1].map(|i| &list.bearings[i].scene);
-    assert_eq!(front.body, None);
-    let own = rear.body.as_ref().unwrap();
+    assert_eq!(front.bodies, [None, None]);
+    let own = rear.bodies[1].as_ref().unwrap();
     assert_eq!((own.name.as_str(), own.is_turned), ("block", true));
     let support = |scene: &Scene| scene.outer.body.as_ref().unwrap().support;
     assert_ne!(support(front), support(rear));
@@ -36,7 +36,7 @@ fn two_seats(group: &str, bearing: &str) -> String {
 fn each_bearing_has_its_own_seat_of_a_body_that_carries_both() {
     let lists = Lists::new("shared_body");
     let list = lists.several(&list(BEAM, &two_seats("seat_b", "rear")), &[]);
-    let bodies = [0, 1].map(|i| list.bearings[i].scene.body.clone().unwrap());
+    let bodies = [0, 1].map(|i| list.bearings[i].scene.bodies[1].clone().unwrap());
     let told = bodies.map(|body| (body.group, body.is_turned, body.is_shared));
     assert_eq!(
         told,
@@ -77,11 +77,11 @@ fn bodies_that_fit_no_bearing_are_refused_with_advice() {
                 ]
                 .concat(),
             ),
-            "bodies \"block\" and \"other\" have both a seat for the bearing \"rear\"; expected one body",
+            "bodies \"block\" and \"other\" have both a seat for the outer ring of the bearing \"rear\"; expected one body",
         ),
         (
             list(BEAM, &two_seats("seat_b", "front")),
-            "body \"block\" has two seats for the bearing \"front\"; expected one seat for each bearing",
+            "body \"block\" has two seats for the outer ring of the bearing \"front\"; expected one seat for each ring",
         ),
         (
             list(BEAM, &two_seats("seat_a", "rear")),
@@ -94,6 +94,22 @@ fn bodies_that_fit_no_bearing_are_refused_with_advice() {
             ),
             "body \"block\" comes from a matrix and has 2 seats, but its table of nodes has one; give each bearing a \
              [[body]] of its own, or give the body as a mesh",
+        ),
+        (
+            list(
+                BEAM,
+                &two_seats("seat_b", "rear").replacen("\"outer\"", "\"inner\"", 1),
+            ),
+            "body \"block\" has seats of inner and of outer rings, but it either turns with the shaft or stands; \
+             expected seats of one kind",
+        ),
+        (
+            list(
+                BEAM,
+                &two_seats("seat_b", "rear").replace("\"outer\"", "\"inner\""),
+            ),
+            "shaft.model is \"beam\", but body \"block\" carries several inner rings, so that it is the shaft \
+             between them; expected shaft.model = \"rigid\"",
         ),
     ];
     for (text, expected) in cases {

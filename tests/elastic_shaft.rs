@@ -1,0 +1,201 @@
+//! Inner rings on elastic shafts through the whole program: files, balance, bits, refusals.
+
+use checkpoint::{Grid, read_mesh, read_step, step_file_name};
+use mesh::{MshFormat, Overwrite, read_body_msh, write_msh};
+
+use crate::housing::{assert_moves_and_goes_on, delivered};
+use crate::util::Dir;
+use crate::util::lockstep::{assert_same_run, copy};
+use crate::util::tables::{Table, number, summary};
+
+const SCENE: &str = "scenes/7010c_hollow_spindle.toml";
+/// Few functions: these tests ask for no accuracy.
+const FEW: [&str; 8] = [
+    "--set",
+    "body.0.seat.0.harmonics=3",
+    "--set",
+    "body.0.seat.1.harmonics=3",
+    "--set",
+    "body.0.seat.0.across=1",
+    "--set",
+    "body.0.seat.1.across=1",
+];
+
+/// Values of a column of `bearings.csv`.
+fn of_bearings(dir: &Dir, out: &str, name: &str) -> Vec<f64> {
+    let table = dir.text(&format!("{out}/bearings.csv"));
+    let mut lines = table.lines();
+    let at = lines.next().unwrap().split(',').position(|column| column == name);
+    lines
+        .map(|row| row.split(',').nth(at.unwrap()).unwrap().parse().unwrap())
+        .collect()
+}
+
+/// If this failed, a spindle of finite elements would not carry its load or its own weight, each bearing would show the
+/// whole of it, or a user would not find the seats.
+#[test]
+fn a_spindle_of_finite_elements_carries_its_loads_and_its_weight() {
+    let dir = delivered();
+    let run = dir.raceway(&[&["run", SCENE, "--out", "found"][..], &FEW].concat());
+    assert_eq!(run.code, Some(0), "{}", run.stderr);
+    let sum = |name: &str| of_bearings(&dir, "found", name).iter().sum::<f64>();
+    assert!((sum("force_x_n") + 300.0).abs() < 1e-6, "{}", sum("force_x_n"));
+    let (body, _) = read_body_msh(dir.path("meshes/hollow_spindle.msh"), 1e-3).unwrap();
+    let weight = 9.81 * (1.2 + 7800.0 * mesh::volume(&body).unwrap());
+    assert!(
+        (sum("force_y_n") - weight).abs() < 1e-6 * weight,
+        "{} {weight}",
+        sum("force_y_n")
+    );
+    let has_body = |name: &str| {
+        read_mesh(&dir.path(&format!("found/{name}")))
+            .unwrap()
+            .body
+            .contains(&4)
+    };
+    assert!(has_body("front") && !has_body("rear"));
+    for name in ["front", "rear"] {
+        let own = summary(&dir, &format!("found/{name}"));
+        assert!(number(&own, "/seat_inner/body_energy_j") > 0.0);
+        assert!(dir.path(&format!("found/{name}/seat_inner.csv")).exists());
+    }
+    let plot = dir.raceway(&["plot", "found/front"]);
+    assert_eq!(plot.code, Some(0), "{}", plot.stderr);
+    assert!(dir.path("found/front/plots/seat_pressure_inner.svg").exists());
+}
+
+/// The scene with a step of the load in motion.
+fn moving(dir: &Dir) {
+    let text = dir.text(SCENE).replace("../meshes", "meshes");
+    let text = text.replace("\"types/", "\"scenes/types/");
+    let before = text.split_once("\n[static]").unwrap().0;
+    let before = before.replace(
+        "name = \"spindle\"",
+        "name = \"spindle\"\nmodes_below = \"3 kHz\"",
+    );
+    let motion = "\n[speed]\ninner = \"6000 rpm\"\n[effects.axial_force]\nvalue = \"300 N\"\n\
+                  schedule.step = { at = \"5 us\" }\n[dynamic]\nduration = \"80 us\"\nstep = \"10 us\"\n\
+                  output_every = 4\n";
+    dir.write("moving.toml", format!("{before}{motion}"));
+}
+
+/// If this failed, a pair on one spindle would lose energy in motion, or would go on to other bits after a resume or on
+/// another number of threads.
+#[test]
+fn a_pair_moves_on_one_spindle_and_goes_on_to_the_same_bits() {
+    let dir = delivered();
+    moving(&dir);
+    assert_moves_and_goes_on(&dir, "moving.toml", &FEW);
+}
+
+/// One bearing with a coarse ring on the front seat of a spindle.
+fn alone(dir: &Dir, mesh: &str) {
+    let text = dir
+        .text("scenes/7010c_1800rpm_coarse.toml")
+        .replace("../meshes", "meshes");
+    let body = format!(
+        "[[body]]\nname = \"spindle\"\nmesh = \"{mesh}\"\nmesh_unit = \"mm\"\nfixed = [\"nose\"]\nmodes_below = \"3 kHz\"\n\
+         material = {{ young_modulus = \"207 GPa\", poisson_ratio = 0.3, density = \"7800 kg/m3\" }}\n\
+         [[body.seat]]\nring = \"inner\"\ngroup = \"seat_front\"\nharmonics = 4\n[shaft] "
+    );
+    let text = text
+        .replacen("support = \"clamped\" ", "support = \"body\" ", 1)
+        .replace("[shaft] ", &body)
+        .replace("duration = \"10 ms\"", "duration = \"240 us\"")
+        .replace("output_every = 20", "output_every = 4");
+    dir.write("alone.toml", text);
+}
+
+/// Where points of a body stand in a step, m.
+fn places(dir: &Dir, grid: &Grid, (body, step): (u8, u64)) -> Vec<[f64; 3]> {
+    let moved = read_step(&dir.path("whole").join(step_file_name(step)))
+        .unwrap()
+        .points
+        .displacement;
+    let ends = |cell: usize| grid.offsets[cell] as usize..grid.offsets[cell + 1] as usize;
+    let cells = (0..grid.body.len()).filter(|&cell| grid.body[cell] == body);
+    let mut points: Vec<usize> = cells
+        .flat_map(|cell| grid.connectivity[ends(cell)].iter().map(|&p| p as usize))
+        .collect();
+    points.sort_unstable();
+    points.dedup();
+    let place = |p: usize| [0, 1, 2].map(|c| grid.points[p][c] + moved[p][c]);
+    points.into_iter().map(place).collect()
+}
+
+/// If this failed, step files would show the shaft elsewhere than the ring on it, such as not turned; it would lose
+/// energy, or other threads and a resume would have other bits. The axis of the seat is that of the bore, and both have
+/// turned by the same angle: the highest node of the seat is where it is carried to.
+#[test]
+fn a_shaft_turns_with_its_ring_and_goes_on_to_the_same_bits() {
+    let dir = delivered();
+    alone(&dir, "meshes/hollow_spindle.msh");
+    let run = dir.raceway(&["run", "alone.toml", "--out", "whole", "--threads", "1"]);
+    assert_eq!(run.code, Some(0), "{}", run.stderr);
+    let found = summary(&dir, "whole");
+    let energy = |name: &str| number(&found, &format!("/energy_j/{name}"));
+    assert!(energy("defect").abs() < 1e-9 * energy("total"));
+    copy(&dir, "whole", "cut");
+    std::fs::remove_file(dir.path("cut/summary.json")).unwrap();
+    let resumed = dir.raceway(&["resume", "cut", "--step", "4", "--threads", "2"]);
+    assert_eq!(resumed.code, Some(0), "{}", resumed.stderr);
+    assert_same_run(&dir, "whole", "cut");
+    let grid = read_mesh(&dir.path("whole")).unwrap();
+    let seat = |(x, y): (f64, f64)| (x.hypot(y) - 25e-3).abs() < 5e-5;
+    let middle = |body: u8| {
+        let near = places(&dir, &grid, (body, 12));
+        let near: Vec<[f64; 3]> = near
+            .into_iter()
+            .filter(|x| seat((x[0], x[1])) && x[2].abs() < 8.1e-3)
+            .collect();
+        assert!(near.len() > 50);
+        [0, 1].map(|c| {
+            let of = |pick: fn(f64, f64) -> f64| near.iter().map(|x| x[c]).reduce(pick).unwrap();
+            0.5 * (of(f64::min) + of(f64::max))
+        })
+    };
+    let shaft = Table::read(&dir, "whole/shaft.csv").column("x_m");
+    let [ring, body] = [0, 4].map(middle);
+    let moved = shaft.last().unwrap();
+    assert!(
+        *moved > 1e-6 && (ring[0] - moved).abs() < 2e-6 && (body[0] - moved).abs() < 2e-6,
+        "{ring:?} {body:?}"
+    );
+    // 1800 rpm over 240 us.
+    let angle: f64 = 60.0 * std::f64::consts::PI * 240e-6;
+    let [first, last] = [0, 12].map(|step| places(&dir, &grid, (4, step)));
+    let far = (0..first.len())
+        .max_by(|&a, &b| first[a][0].total_cmp(&first[b][0]))
+        .unwrap();
+    let turned = last[far][1] - first[far][1];
+    let expected = angle.sin() * first[far][0] + (angle.cos() - 1.0) * first[far][1];
+    assert!((turned - expected).abs() < 2e-6, "{turned} {expected}");
+}
+
+/// If this failed, a shaft that is out of balance would turn as if it were not.
+#[test]
+fn a_shaft_that_is_not_round_does_not_turn() {
+    let dir = delivered();
+    let (mut mesh, _) = read_body_msh(dir.path("meshes/hollow_spindle.msh"), 1e-3).unwrap();
+    let bent = |x: &mut [f64; 3]| x[0] += 0.3 * (x[2] - 145e-3).max(0.0);
+    mesh.nodes.iter_mut().for_each(bent);
+    write_msh(
+        dir.path("bent.msh"),
+        &mesh,
+        1e-3,
+        MshFormat::Binary,
+        Overwrite::Refuse,
+    )
+    .unwrap();
+    alone(&dir, "bent.msh");
+    let run = dir.raceway(&["run", "alone.toml", "--out", "bad"]);
+    assert_ne!(run.code, Some(0));
+    let expected = "body \"spindle\" turns with the shaft, but its inertia differs by";
+    assert!(run.stderr.contains(expected), "{}", run.stderr);
+    assert!(
+        run.stderr
+            .contains("unbalance and unequal moments of inertia of a body are not solved"),
+        "{}",
+        run.stderr
+    );
+}
