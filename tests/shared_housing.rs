@@ -6,9 +6,9 @@ use crate::housing::{assert_moves_and_goes_on, delivered};
 use crate::util::Dir;
 use crate::util::tables::{Table, number, summary};
 
-const SCENE: &str = "scenes/7010c_spindle_housing.toml";
+pub const SCENE: &str = "scenes/7010c_spindle_housing.toml";
 /// Few functions: these tests ask for no accuracy.
-const FEW: [&str; 8] = [
+pub const FEW: [&str; 8] = [
     "--set",
     "body.0.seat.0.harmonics=3",
     "--set",
@@ -87,7 +87,7 @@ fn a_sweep_that_fails_leaves_the_seats_of_its_last_point() {
 }
 
 /// The scene with a step of the load in motion.
-fn moving(dir: &Dir) {
+pub fn moving(dir: &Dir) {
     let below = "name = \"housing\"\nmodes_below = \"3 kHz\"";
     let before = without_analysis(dir).replace("name = \"housing\"", below);
     let motion = "\n[speed]\ninner = \"3000 rpm\"\n[effects.axial_force]\nvalue = \"300 N\"\n\

@@ -18,7 +18,8 @@ use scene::{SeveralScene, assembly_with_rings, build_assembly};
 
 use crate::linear_figures::draw;
 use crate::progress::Progress;
-use crate::several::{all_doubts, at_point, column, points, rings, solving, stage_text, words_of};
+use crate::several::{at_point, column, points, rings, solving, stage_text, words_of};
+use crate::several_read::all_doubts;
 
 /// Why there is no damping.
 const NO_DAMPING: &str = "none: a list of bearings is linearised at rest, where no law gives any";
