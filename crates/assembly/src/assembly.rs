@@ -67,6 +67,11 @@ impl Assembly {
         }
     }
 
+    /// Name of each body that carries several bearings, and the numbers of these.
+    pub fn housed_together(&self) -> Vec<(String, Vec<usize>)> {
+        housed_together(&self.bearings)
+    }
+
     /// The places of the bearings on the shaft.
     pub fn mounts(&self) -> Vec<Mount> {
         let mount = |bearing: &MountedBearing| Mount {
@@ -148,6 +153,11 @@ impl AssemblySolver {
     /// The factors of a bearing.
     pub fn of_bearing(&self, bearing: usize) -> &StaticSolver {
         &self.solvers[self.type_of[bearing]]
+    }
+
+    /// Bodies that carry several bearings.
+    pub(crate) fn bodies(&self) -> &[SharedBody] {
+        &self.bodies
     }
 
     /// Wall time so far.
