@@ -3,6 +3,7 @@
 //! `scripts/test-mpi` builds the program with the feature `mpi`, says where it is in `RACEWAY_MPI`, and runs these.
 
 mod faults;
+mod lists;
 mod memory;
 mod parts;
 mod stress;

@@ -1,14 +1,15 @@
 //! Two bearings in one elastic housing through the whole program: files, bits, refusals.
 
 use checkpoint::read_mesh;
+use serde_json::Value;
 
 use crate::housing::{assert_moves_and_goes_on, delivered};
 use crate::util::Dir;
 use crate::util::tables::{Table, number, summary};
 
-const SCENE: &str = "scenes/7010c_spindle_housing.toml";
+pub const SCENE: &str = "scenes/7010c_spindle_housing.toml";
 /// Few functions: these tests ask for no accuracy.
-const FEW: [&str; 8] = [
+pub const FEW: [&str; 8] = [
     "--set",
     "body.0.seat.0.harmonics=3",
     "--set",
@@ -87,7 +88,7 @@ fn a_sweep_that_fails_leaves_the_seats_of_its_last_point() {
 }
 
 /// The scene with a step of the load in motion.
-fn moving(dir: &Dir) {
+pub fn moving(dir: &Dir) {
     let below = "name = \"housing\"\nmodes_below = \"3 kHz\"";
     let before = without_analysis(dir).replace("name = \"housing\"", below);
     let motion = "\n[speed]\ninner = \"3000 rpm\"\n[effects.axial_force]\nvalue = \"300 N\"\n\
@@ -105,8 +106,41 @@ fn a_pair_moves_in_one_housing_and_goes_on_to_the_same_bits() {
     assert_moves_and_goes_on(&dir, "moving.toml", &FEW);
 }
 
-/// If this failed, a bearing would be given a stiffness of its own that it does not have, or sit in a seat that stands
-/// elsewhere.
+/// If this failed, the matrix of the shaft would not have what bearings do to each other through their housing, or a
+/// user would take that of a bearing for all of it. The nose gives way as between two equilibria of nearby loads.
+#[test]
+fn the_stiffness_of_a_pair_in_one_housing_has_what_bearings_do_to_each_other() {
+    let dir = delivered();
+    let run = |arguments: &[&str]| {
+        let run = dir.raceway(&[arguments, &FEW].concat());
+        assert_eq!(run.code, Some(0), "{}", run.stderr);
+        run
+    };
+    let told = run(&["stiffness", SCENE, "--out", "k"]);
+    let warning = "bearings \"front\", \"rear\" feel each other through body \"housing\"";
+    assert!(told.stdout.contains(warning), "{}", told.stdout);
+    let found: Value = serde_json::from_str(&dir.text("k/stiffness.json")).unwrap();
+    let names = |i: usize| [0, 1].map(|k| found["couplings"][i][["loaded", "moved"][k]].as_str().unwrap());
+    assert_eq!([names(0), names(1)], [["front", "rear"], ["rear", "front"]]);
+    let nose = |out: &str, force: &str| {
+        let set = format!("shaft.load.0.force=[\"{force} N\", \"0 N\", \"200 N\"]");
+        run(&["run", SCENE, "--out", out, "--set", &set]);
+        let line = Table::read(&dir, &format!("{out}/shaft.csv"));
+        ["x_m", "y_m", "z_m", "tilt_x_rad", "tilt_y_rad"].map(|name| line.column(name)[0])
+    };
+    let (low, high) = (nose("low", "298"), nose("high", "302"));
+    for row in 0..5 {
+        let k = |column: usize| number(&found, &format!("/shaft/points/0/stiffness/{row}/{column}"));
+        let load: f64 = (0..5).map(|j| k(j) * (high[j] - low[j])).sum();
+        let expected = if row == 0 { 4.0 } else { 0.0 };
+        // Patches stay where they are in the matrix. Moments count by the length of the nose.
+        let arm = if row < 3 { 1.0 } else { 0.1 };
+        assert!((load - expected).abs() < 4e-4 * arm, "{row}: {load} {expected}");
+    }
+}
+
+/// If this failed, modes would be found of bearings as if they did not feel each other, or a bearing sit in a seat that
+/// stands elsewhere.
 #[test]
 fn what_one_housing_of_several_bearings_does_not_have_ends_with_a_message() {
     let dir = delivered();
@@ -120,9 +154,9 @@ fn what_one_housing_of_several_bearings_does_not_have_ends_with_a_message() {
         );
         assert!(!dir.path("bad").exists());
     };
-    let no_stiffness = "body \"housing\" carries several bearings, which feel each other through it";
-    refused(&["stiffness", SCENE], no_stiffness);
-    refused(&["campbell", SCENE, "--speeds", "0..1000:500"], no_stiffness);
+    let no_modes =
+        "body \"housing\" carries several bearings, which feel each other through it: modes over the speed";
+    refused(&["campbell", SCENE, "--speeds", "0..1000:500"], no_modes);
     let apart = "the seat of bearing \"rear\" stands 70.0000 mm along the shaft from that of \"front\", but with these \
                  positions of the bearings it is 80.2";
     refused(&["run", SCENE, "--set", "bearing.1.position=\"140 mm\""], apart);

@@ -31,10 +31,13 @@ mod run;
 mod several;
 mod several_campbell;
 mod several_check;
+mod several_ledger;
 mod several_motion;
+mod several_read;
 mod several_ready;
 mod several_state;
 mod several_stiffness;
+mod shared;
 mod start;
 mod stiffness;
 
@@ -360,7 +363,7 @@ fn execute(arguments: Arguments) -> Result<(), Failure> {
             Ok(())
         }
         Command::Resume(request) => {
-            match several_state::is_list(&request.dir) {
+            match several_state::is_list(&request.dir)? {
                 true => several_motion::resume_run(
                     &request.dir,
                     request.step,

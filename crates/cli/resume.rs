@@ -14,11 +14,10 @@ use checkpoint::{
     step_file_name,
 };
 use clap::Args;
-use comm::{Communicator, print};
+use comm::print;
 use dynamics::motion::{Motion, MotionState};
 use results::about::{MAY_CHANGE, OVERRIDES, SCENE_FILE, WARNINGS, require_same_meshes, scene_file};
 use results::failure::{Failure, agree};
-use results::files::note_dead_owner;
 use results::integrity::doubts;
 use results::reduction::take_arrays;
 use results::state_arrays::{self, Arrays};
@@ -28,8 +27,8 @@ use scene::{Analysis, Dynamic, MeshFiles, Scene, difference};
 
 use crate::motion;
 use crate::options::Limits;
-use crate::run::note_unshared;
 use crate::several_state::Changes;
+use crate::shared::{acquire, note_unshared, of_root};
 
 /// Array of a step file that counts Newton's iterations since the start of the run.
 const NEWTON: &str = "newton_iterations";
@@ -141,7 +140,7 @@ pub fn resume(request: &Request) -> Result<(), Failure> {
     let dir = &request.dir;
     let lock = agree(acquire(dir))?;
     // All ranks read before the first one writes.
-    let step = same_step(dir, request.step)?;
+    let step = of_root(|| choose_step(dir, request.step))?;
     let Read {
         record,
         about,
@@ -221,32 +220,6 @@ fn read(request: &Request, step: u64) -> Result<Read, Failure> {
         scene,
         dynamic,
     })
-}
-
-/// The step to go on from, which rank 0 chooses for all: ranks may see the newest files at different times.
-fn same_step(dir: &Path, step: Option<u64>) -> Result<u64, Failure> {
-    let comm = Communicator::world();
-    let chosen = agree(match comm.is_root() {
-        true => choose_step(dir, step),
-        false => Ok(0),
-    })?;
-    let bytes = comm.from_root(chosen.to_le_bytes().to_vec());
-    Ok(u64::from_le_bytes(
-        bytes.try_into().expect("rank 0 sends a number"),
-    ))
-}
-
-/// The lock of the folder, which rank 0 holds for all.
-fn acquire(dir: &Path) -> Result<Option<FolderLock>, Failure> {
-    if !dir.is_dir() {
-        return Err(anyhow!("{} is no folder; expected the results of a run", dir.display()).into());
-    }
-    if !Communicator::world().is_root() {
-        return Ok(None);
-    }
-    let lock = FolderLock::acquire(dir)?;
-    note_dead_owner(&lock);
-    Ok(Some(lock))
 }
 
 /// The step asked for, or the newest whole one with a state, with a warning for every newer one that is damaged.

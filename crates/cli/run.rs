@@ -5,7 +5,6 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use anyhow::anyhow;
-use comm::{Communicator, print};
 use contact::Side;
 use dynamics::{DynamicsError, Model, StaticSolution, StaticSolver};
 use results::disk::Forecast;
@@ -17,7 +16,7 @@ use results::snapshot::Snapshot;
 use results::summary::{Costs, Findings, Summary};
 use results::survey::build_surveyed;
 use results::{console, fields, folder, seat};
-use scene::{Analysis, AnyScene, Backend, Scene, SeveralScene, have_same_rings, model_with_rings, rolling};
+use scene::{Analysis, AnyScene, Scene, SeveralScene, have_same_rings, model_with_rings, rolling};
 
 use crate::modes;
 use crate::motion;
@@ -25,6 +24,7 @@ use crate::options::{Limits, Part};
 use crate::progress::Progress;
 use crate::quasi_static;
 use crate::remarks::Remarks;
+use crate::shared::note_unshared;
 use crate::{several, several_motion};
 
 /// One load case of a run: the swept value (None for a static scene) and its scene.
@@ -155,6 +155,7 @@ fn run_list(
 ) -> Result<PathBuf, Failure> {
     several::refuse(part.map(|_| "--points"), list)?;
     let dir = folder::choose(&list.path, out)?;
+    note_unshared(&list.bearings[0].scene);
     match &list.analysis {
         Analysis::Dynamic(dynamic) => several_motion::run(list, dynamic, &dir, limits, start)?,
         _ => several::run(list, &dir, start)?,
@@ -200,21 +201,6 @@ fn say_solvers(solver: &StaticSolver, progress: &Progress) {
         if let Some(ring) = solver.ring(side) {
             progress.stage(&format!("{} ring: {}", side.name(), ring.solver.solver_note()));
         }
-    }
-}
-
-/// Says what ranks do not share.
-pub fn note_unshared(scene: &Scene) {
-    let ranks = Communicator::world().size();
-    let unshared = match scene.solver.backend {
-        Backend::Sector | Backend::Cyclic => return,
-        Backend::Auto => "rings that are not rotationally periodic",
-        Backend::Sparse => "the whole run",
-    };
-    if ranks > 1 {
-        print::note(format_args!(
-            "note: each of the {ranks} ranks computes {unshared}; with solver.backend = \"sector\" they share any ring"
-        ));
     }
 }
 

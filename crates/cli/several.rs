@@ -7,9 +7,9 @@ use anyhow::anyhow;
 use assembly::{Assembly, AssemblyError, AssemblySolution, AssemblySolver};
 use comm::Communicator;
 use contact::Side;
-use results::failure::{Failure, agree};
+use results::failure::{Failure, agree, of_all};
 use results::files::{Files, say_folder};
-use results::memory::{Forecasts, require_memory};
+use results::memory::Forecasts;
 use results::seat::{self, SeatSummaries, SeatSummary};
 use results::several::{
     ListState, SeveralFindings, SeveralSummary, SeveralTables, print_solution, print_sweep_head,
@@ -18,13 +18,12 @@ use results::several::{
 use results::shown::Shown;
 use results::snapshot::Snapshot;
 use results::summary::{Findings, READ, Summary, TOTAL};
-use results::survey::{Survey, say_doubts};
+use results::survey::{Survey, require_same_scene};
 use results::whole::{make_asked_folder, write_new};
-use scene::{
-    Analysis, BuildError, KeptFields, Rings, SeveralScene, assembly_with_rings, build_assembly, doubts,
-};
+use scene::{Analysis, BuildError, KeptFields, Rings, Scene, SeveralScene, assembly_with_rings};
 
 use crate::progress::Progress;
+use crate::several_read::{ReadList, read_list, require_memory_of_all};
 
 /// The scene, beside the results of its bearings.
 pub const SCENE_FILE: &str = "scene.toml";
@@ -34,17 +33,17 @@ pub type SeveralPoint = (Option<f64>, SeveralScene);
 
 /// Runs a scene at rest; its results go into a folder.
 pub fn run(scene: &SeveralScene, dir: &Path, start: Instant) -> Result<(), Failure> {
-    require_one_rank()?;
-    let points = points(scene)?;
+    require_same_list(scene)?;
+    let points = agree(points(scene))?;
     let mut progress = Progress::new(points.len() as u64);
     progress.stage("reading meshes");
-    let (mut assembly, _) = build_assembly(&points[0].1)?;
-    let mut warnings = all_doubts(scene, &assembly);
-    say_doubts(&warnings);
-    for bearing in &assembly.bearings {
-        require_memory(&scene.analysis, &bearing.model)?;
-    }
-    let surveys = surveys(scene, &assembly)?;
+    let ReadList {
+        mut assembly,
+        doubts: mut warnings,
+        surveys,
+    } = agree(read_list(&points[0].1, scene, |assembly| {
+        require_memory_of_all(scene, assembly)
+    }))?;
     let read = start.elapsed().as_secs_f64();
     progress.stage("factoring the stiffness of the rings");
     let mut solver = AssemblySolver::new(&assembly).map_err(solving)?;
@@ -59,7 +58,7 @@ pub fn run(scene: &SeveralScene, dir: &Path, start: Instant) -> Result<(), Failu
         let solution = match solver.solve(&mut assembly, before.as_ref()) {
             Ok(solution) => solution,
             Err(error) => {
-                failure = Some(at_point(solving(error), column, *value));
+                failure = Some(of_all(at_point(solving(error), column, *value)));
                 break;
             }
         };
@@ -92,7 +91,7 @@ pub fn run(scene: &SeveralScene, dir: &Path, start: Instant) -> Result<(), Failu
         };
         let shown = ListState::of_equilibrium(&assembly, &last);
         let summary = SeveralSummary::new(scene, &assembly, &shown, findings);
-        summary.write(dir)?;
+        agree(summary.write(dir).map_err(Failure::from))?;
         if failure.is_none() {
             if column.is_none() {
                 print_solution(&assembly, &shown);
@@ -136,10 +135,11 @@ impl SeveralFiles {
         solution: &AssemblySolution,
         dir: &Path,
     ) -> Result<SeveralFiles, Failure> {
-        make_folder(scene, dir)?;
+        agree(make_folder(scene, dir))?;
         let column = column(scene).map(str::to_string);
         let first = ListState::of_equilibrium(assembly, solution);
-        let tables = SeveralTables::create(dir, column.as_deref(), &first)?;
+        let tables = SeveralTables::create(dir, column.as_deref(), &first);
+        let tables = agree(tables.map_err(Failure::from))?;
         let mut bearings = Vec::new();
         for (((bearing, mounted), found), survey) in scene
             .bearings
@@ -149,10 +149,10 @@ impl SeveralFiles {
             .zip(surveys)
         {
             let own = dir.join(&bearing.name);
-            let placed = bearing.scene.with_shaft_at(found.displacements.shaft)?;
+            let placed = agree(placed(&bearing.scene, found))?;
             let snapshot = snapshot(found);
-            let files = Files::create_part(&placed, &mounted.model, &own, &snapshot, survey, &[])?;
-            bearings.push((own, files));
+            let files = Files::create_part(&placed, &mounted.model, &own, &snapshot, survey, &[]);
+            bearings.push((own, agree(files)?));
         }
         if column.is_some() {
             print_sweep_head(column.as_deref().unwrap_or_default(), assembly);
@@ -165,6 +165,7 @@ impl SeveralFiles {
         })
     }
 
+    /// Writes a point. Collective.
     fn append(
         &mut self,
         step: u64,
@@ -172,29 +173,38 @@ impl SeveralFiles {
         (assembly, point): (&Assembly, &SeveralScene),
         solution: &AssemblySolution,
     ) -> Result<(), Failure> {
-        let (time, found) = (step as f64, ListState::of_equilibrium(assembly, solution));
-        self.tables.append((step, time), value, assembly, &found)?;
-        if let (Some(value), true) = (value, self.column.is_some()) {
-            print_sweep_point(value, &found);
-        }
-        self.last.clear();
+        // All ranks recover the stress of all bearings; then rank 0 writes, and may fail alone.
+        let mut gathered = Vec::new();
         for (i, (_, files)) in self.bearings.iter_mut().enumerate() {
             let (model, found) = (&assembly.bearings[i].model, &solution.bearings[i]);
-            let snapshot = snapshot(found);
-            let placed = point.bearings[i].scene.with_shaft_at(found.displacements.shaft)?;
             let shown = Shown::at_rest(model, &model.geometry, found);
-            let gathered = files.gather_stress(&shown, KeptFields::ALL);
-            files.write_tables(step, time, None, &snapshot)?;
-            files.write_fields(|stress| {
-                let at = (step, time);
-                results::fields::record(&shown, found, (stress, gathered), at, (&placed, KeptFields::ALL))
-            })?;
-            self.last.push(snapshot);
+            gathered.push(files.gather_stress(&shown, KeptFields::ALL));
         }
-        Ok(())
+        let write = || {
+            let (time, found) = (step as f64, ListState::of_equilibrium(assembly, solution));
+            self.tables.append((step, time), value, assembly, &found)?;
+            if let (Some(value), true) = (value, self.column.is_some()) {
+                print_sweep_point(value, &found);
+            }
+            self.last.clear();
+            for (i, ((_, files), gathered)) in self.bearings.iter_mut().zip(gathered).enumerate() {
+                let (model, found) = (&assembly.bearings[i].model, &solution.bearings[i]);
+                let snapshot = snapshot(found);
+                let placed = placed(&point.bearings[i].scene, found)?;
+                let shown = Shown::at_rest(model, &model.geometry, found);
+                files.write_tables(step, time, None, &snapshot)?;
+                files.write_fields(|stress| {
+                    let at = (step, time);
+                    results::fields::record(&shown, found, (stress, gathered), at, (&placed, KeptFields::ALL))
+                })?;
+                self.last.push(snapshot);
+            }
+            Ok(())
+        };
+        agree(write())
     }
 
-    /// Closes the files of the bearings; warns of their seats.
+    /// Closes the files of the bearings; warns of their seats. Collective.
     fn finish(
         self,
         scene: &SeveralScene,
@@ -206,12 +216,12 @@ impl SeveralFiles {
         for (i, ((dir, files), last)) in self.bearings.into_iter().zip(self.last).enumerate() {
             let factors = solver.of_bearing(i);
             let forecast = Side::BOTH.map(|side| factors.ring(side).map(|r| r.solver.memory));
-            let costs = files.finish(
+            let costs = agree(files.finish(
                 0.0,
                 Forecasts::at_rest(forecast, &assembly.bearings[i].model),
                 factors.laps(),
                 start,
-            )?;
+            ))?;
             let found = &solution.bearings[i];
             let findings = Findings {
                 status: "finished".to_string(),
@@ -226,11 +236,10 @@ impl SeveralFiles {
             };
             let bearing = &scene.bearings[i].scene;
             let model = &assembly.bearings[i].model;
-            let seats = seat::of_run(model, found, &dir)?;
+            let seats = agree(seat::of_run(model, found, &dir))?;
             warnings.extend(of_seats(&scene.bearings[i].name, &seats));
-            Summary::new(bearing, model, findings, &costs)
-                .with_seats(seats)
-                .write(&dir)?;
+            let summary = Summary::new(bearing, model, findings, &costs).with_seats(seats);
+            agree(summary.write(&dir).map_err(Failure::from))?;
         }
         Ok(warnings)
     }
@@ -244,8 +253,11 @@ pub fn of_seats(name: &str, seats: &SeatSummaries) -> Vec<String> {
         .collect()
 }
 
-/// Makes the folder of a run, with the scene beside the results of its bearings.
+/// Makes the folder of a run, with the scene beside the results of its bearings. Rank 0 does it for all.
 pub fn make_folder(scene: &SeveralScene, dir: &Path) -> Result<(), Failure> {
+    if !Communicator::world().is_root() {
+        return Ok(());
+    }
     make_asked_folder(dir)?;
     say_folder(dir);
     Ok(write_new(&dir.join(SCENE_FILE), |file| {
@@ -257,46 +269,18 @@ fn snapshot(solution: &dynamics::StaticSolution) -> Snapshot {
     Snapshot::of_equilibrium(solution, None)
 }
 
-/// Ranks share no list of bearings yet.
-pub fn require_one_rank() -> Result<(), Failure> {
-    let ranks = Communicator::world().size();
-    agree(match ranks {
-        1 => Ok(()),
-        _ => Err(Failure::User(anyhow!(
-            "the launcher started {ranks} tasks, but a list of bearings is solved by one; start one task"
-        ))),
+/// The scene of a bearing with its shaft where it stands.
+pub fn placed(scene: &Scene, found: &dynamics::StaticSolution) -> Result<Scene, Failure> {
+    Ok(scene.with_shaft_at(found.displacements.shaft)?)
+}
+
+/// Fails unless all ranks have the list of rank 0 and its types. Collective.
+pub fn require_same_list(scene: &SeveralScene) -> Result<(), Failure> {
+    require_same_scene(&scene.text)?;
+    scene.bearings.iter().try_for_each(|bearing| {
+        let same = require_same_scene(&bearing.scene.text);
+        same.map_err(|failure| failure.context(format!("bearing {:?}", bearing.name)))
     })
-}
-
-/// The regions in which the bearings keep fields, if the scene has one.
-pub fn surveys(scene: &SeveralScene, assembly: &Assembly) -> Result<Vec<Survey>, Failure> {
-    let bearings = scene.bearings.iter().zip(&assembly.bearings);
-    let survey = |(bearing, mounted): (&scene::BearingOnShaft, &assembly::MountedBearing)| {
-        let survey = Survey::of_part(&bearing.scene, &mounted.model);
-        survey.map_err(|failure| failure.context(format!("bearing {:?}", bearing.name)))
-    };
-    bearings.map(survey).collect()
-}
-
-/// What is most likely a slip, once for each type.
-pub fn all_doubts(scene: &SeveralScene, assembly: &Assembly) -> Vec<String> {
-    let mut all: Vec<String> = Vec::new();
-    for (bearing, mounted) in scene.bearings.iter().zip(&assembly.bearings) {
-        let new = doubts(&bearing.scene, &mounted.model);
-        all.extend(
-            new.into_iter()
-                .filter(|line| !all.contains(line))
-                .collect::<Vec<_>>(),
-        );
-    }
-    if scene.effects.temperature.is_some() {
-        all.push(
-            "effects.temperature acts in each bearing; the axial growth of shaft and housing between bearings is left \
-             out: give it with pairing.offset"
-                .to_string(),
-        );
-    }
-    all
 }
 
 /// The load cases of a scene: one, or those of its sweep.

@@ -17,7 +17,8 @@ use scene::{SeveralScene, assembly_with_rings, build_assembly};
 
 use crate::campbell_files::{self, Diagram, GROWS, require_one_point};
 use crate::progress::Progress;
-use crate::several::{all_doubts, rings, solving, warnings_at};
+use crate::several::{rings, solving, warnings_at};
+use crate::several_read::all_doubts;
 
 /// Modes of a beam that are shown where nobody says how many.
 const MODES_OF_BEAM: usize = 10;

@@ -7,7 +7,7 @@ use results::memory::forecast;
 use scene::{Analysis, SeveralScene, ShaftKind, build_assembly, have_same_rings};
 
 use crate::ring_sizes::print_rings;
-use crate::several::{all_doubts, surveys};
+use crate::several_read::{all_doubts, surveys};
 
 /// Prints what a run would be.
 pub fn check(scene: &SeveralScene) -> Result<(), Failure> {

@@ -1,7 +1,8 @@
 //! `raceway run` of a `[dynamic]` scene with a list of bearings on one shaft, and `raceway resume` of its results.
 //!
 //! Every bearing has a folder with tables, step files and restart states as a bearing alone; the state of the shaft is
-//! stored in each of them. The tables beside the folders are in the frame of the shaft.
+//! stored in each of them. The tables beside the folders are in the frame of the shaft. Rank 0 writes for all; what
+//! ranks do together they do bearing by bearing, before it writes.
 
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -9,11 +10,11 @@ use std::time::Instant;
 use anyhow::anyhow;
 use assembly::motion::AssemblyCache;
 use assembly::{Assembly, AssemblyMotion, AssemblySolver, AssemblyState};
-use comm::print;
+use comm::{Communicator, print};
 use dynamics::costs::{EFFECTS, FACTOR};
-use results::failure::Failure;
+use results::failure::{Failure, agree, of_all};
 use results::files::Files;
-use results::memory::{Forecasts, require_memory};
+use results::memory::Forecasts;
 use results::motion_fields::{Recorded, RestartState};
 use results::seat;
 use results::several::{ListState, SeveralFindings, SeveralSummary, SeveralTables, print_solution};
@@ -21,19 +22,18 @@ use results::shown::Shown;
 use results::snapshot::Snapshot;
 use results::stop::Stop;
 use results::summary::{Findings, READ, Summary, TOTAL};
-use results::survey::say_doubts;
 use results::watch::Watch;
-use scene::{Dynamic, Scene, SeveralScene, build_assembly};
+use scene::{Dynamic, Scene, SeveralScene};
 use timer::{Laps, Stopwatch};
 
-use crate::ledger_check::check_ledger;
 use crate::options::Limits;
 use crate::progress::Progress;
-use crate::several::{
-    all_doubts, make_folder, of_seats, require_one_rank, say_types, solving, surveys, warnings_at,
-};
+use crate::several::{self, make_folder, of_seats, require_same_list, say_types, solving, warnings_at};
+use crate::several_ledger::check_ledgers;
+use crate::several_read::{ReadList, read_list, require_memory_of_all};
 use crate::several_ready::{ready, require_space};
 use crate::several_state;
+use crate::shared::note_unshared;
 
 /// Steps between two lines of progress in a log.
 const PROGRESS_STEPS: u64 = 50;
@@ -46,17 +46,17 @@ pub fn run(
     limits: &Limits,
     start: Instant,
 ) -> Result<(), Failure> {
-    require_one_rank()?;
+    require_same_list(scene)?;
     let progress = Progress::new(dynamic.n_steps);
     progress.stage("reading meshes");
-    let (mut assembly, _) = build_assembly(scene)?;
-    let mut warnings = all_doubts(scene, &assembly);
-    say_doubts(&warnings);
-    for bearing in &assembly.bearings {
-        require_memory(&scene.analysis, &bearing.model)?;
-    }
-    require_space(scene, &assembly, (dir, 0), limits)?;
-    let surveys = surveys(scene, &assembly)?;
+    let ReadList {
+        mut assembly,
+        doubts: mut warnings,
+        surveys,
+    } = agree(read_list(scene, scene, |assembly| {
+        require_memory_of_all(scene, assembly)?;
+        require_space(scene, assembly, (dir, 0), limits)
+    }))?;
     let mut laps = Laps::default();
     laps.add(READ, start.elapsed().as_secs_f64());
     progress.stage("static start");
@@ -70,21 +70,25 @@ pub fn run(
     progress.stage("factoring the effective matrices");
     let motion = laps.time(FACTOR, || ready(scene, dynamic, &assembly))?;
     let state = motion.start(&solution);
-    let placed = scene
-        .bearings
-        .iter()
-        .zip(&solution.bearings)
-        .map(|(bearing, found)| Ok(bearing.scene.with_shaft_at(found.displacements.shaft)?))
-        .collect::<Result<Vec<Scene>, Failure>>()?;
+    let placed = scene.bearings.iter().zip(&solution.bearings);
+    let placed = placed.map(|(bearing, found)| several::placed(&bearing.scene, found));
+    let placed = agree(placed.collect::<Result<Vec<Scene>, Failure>>())?;
     drop(solution);
-    make_folder(scene, dir)?;
+    agree(make_folder(scene, dir))?;
     let first = ListState::of_motion(&assembly, &motion, &state);
-    let tables = SeveralTables::create(dir, None, &first)?;
+    let tables = agree(SeveralTables::create(dir, None, &first).map_err(Failure::from))?;
     let mut files = Vec::new();
     for (i, (placed, survey)) in placed.iter().zip(surveys).enumerate() {
         let first = Snapshot::of_motion(&motion.bearings[i], &state.bearings[i]);
         let (model, own) = (&assembly.bearings[i].model, dir.join(&scene.bearings[i].name));
-        files.push(Files::create_part(placed, model, &own, &first, survey, &[])?);
+        files.push(agree(Files::create_part(
+            placed,
+            model,
+            &own,
+            &first,
+            survey,
+            &[],
+        ))?);
     }
     let mut march = ListMarch {
         watches: new_watches(&assembly),
@@ -105,9 +109,9 @@ pub fn run(
         last_row: None,
         dir,
     };
-    march.reduce()?;
-    march.write_tables()?;
-    march.write_fields(RestartState::Stored)?;
+    agree(march.reduce())?;
+    agree(march.write_tables())?;
+    agree(march.write_fields(RestartState::Stored))?;
     march.finish_run(progress, limits, warnings, start)
 }
 
@@ -119,10 +123,11 @@ pub fn resume_run(
     limits: &Limits,
 ) -> Result<(), Failure> {
     let start = Instant::now();
-    require_one_rank()?;
     let Some(stored) = several_state::read(dir, step, changes)? else {
         return Ok(());
     };
+    require_same_list(&stored.scene)?;
+    note_unshared(&stored.scene.bearings[0].scene);
     resume(stored, limits, start)?;
     print::line(format_args!("results: {}", dir.display()));
     Ok(())
@@ -140,20 +145,23 @@ fn resume(stored: several_state::StoredList, limits: &Limits, start: Instant) ->
     let mut progress = Progress::new(dynamic.n_steps);
     progress.start_at(step);
     progress.stage("reading meshes");
-    let (mut assembly, _) = build_assembly(&scene)?;
-    let warnings = all_doubts(&scene, &assembly);
-    say_doubts(&warnings);
-    require_space(&scene, &assembly, (&dir, step), limits)?;
-    let surveys = surveys(&scene, &assembly)?;
+    let ReadList {
+        mut assembly,
+        doubts: warnings,
+        surveys,
+    } = agree(read_list(&scene, &scene, |assembly| {
+        require_space(&scene, assembly, (&dir, step), limits)
+    }))?;
     assembly.release();
     let mut laps = Laps::default();
     laps.add(READ, start.elapsed().as_secs_f64());
     progress.stage("factoring the effective matrices");
     let motion = laps.time(FACTOR, || ready(&scene, &dynamic, &assembly))?;
-    let restored = several_state::restore(&bearings, &motion, assembly.shaft.n(), (&dir, step))?;
+    let restored = several_state::restore(&bearings, &motion, assembly.shaft.n(), (&dir, step));
+    let restored = agree(restored)?;
     let first = ListState::of_motion(&assembly, &motion, &restored.state);
     // Nothing is changed before all is known to fit.
-    let cuts = SeveralTables::cuts(&dir, &first, step)?;
+    let cuts = agree(SeveralTables::cuts(&dir, &first, step).map_err(Failure::from))?;
     let (mut files, mut placed) = (Vec::new(), Vec::new());
     for (i, (bearing, survey)) in bearings.into_iter().zip(surveys).enumerate() {
         let own = Snapshot::of_motion(&motion.bearings[i], &restored.state.bearings[i]);
@@ -164,11 +172,13 @@ fn resume(stored: several_state::StoredList, limits: &Limits, start: Instant) ->
             warnings: &[],
             reduction: &restored.reductions[i],
         };
-        let (lock, scene) = (Some(bearing.lock), &bearing.scene);
-        files.push(Files::resume(scene, model, lock, &own, survey, &from)?);
+        let (lock, scene) = (bearing.lock, &bearing.scene);
+        files.push(agree(Files::resume(scene, model, lock, &own, survey, &from))?);
         placed.push(bearing.scene);
     }
-    results::files::say_folder(&dir);
+    if Communicator::world().is_root() {
+        results::files::say_folder(&dir);
+    }
     let mut aside = None;
     let mut make_aside = || -> anyhow::Result<PathBuf> {
         match &aside {
@@ -176,7 +186,8 @@ fn resume(stored: several_state::StoredList, limits: &Limits, start: Instant) ->
             None => Ok(aside.insert(checkpoint::new_superseded_folder(&dir)?).clone()),
         }
     };
-    let tables = SeveralTables::resume(&cuts, &mut make_aside)?;
+    let tables = SeveralTables::resume(&cuts, &mut make_aside).map_err(Failure::from);
+    let tables = agree(tables)?;
     let march = ListMarch {
         scene: &scene,
         dynamic: &dynamic,
@@ -243,7 +254,7 @@ impl ListMarch<'_> {
     ) -> Result<(), Failure> {
         let mut clock = Stopwatch::start();
         let first = self.state.step;
-        let mut stop = Stop::listen(start, limits.wall_time).map_err(Failure::from)?;
+        let mut stop = agree(Stop::listen(start, limits.wall_time).map_err(Failure::from))?;
         let ended = self.steps(&mut progress, &mut stop);
         progress.finish();
         let seconds = clock.lap();
@@ -277,7 +288,7 @@ impl ListMarch<'_> {
             laps: self.laps,
         };
         let summary = SeveralSummary::new(self.scene, self.assembly, &last, findings);
-        summary.write(self.dir)?;
+        agree(summary.write(self.dir).map_err(Failure::from))?;
         ended?;
         print_solution(self.assembly, &last);
         print::line(format_args!(
@@ -294,13 +305,13 @@ impl ListMarch<'_> {
         Ok(())
     }
 
-    /// Closes the files of the bearings and writes their summaries; warns of their seats.
+    /// Closes the files of the bearings and writes their summaries; warns of their seats. Collective.
     fn close_bearings(&mut self, status: &str, start: Instant) -> Result<Vec<String>, Failure> {
         let mut warnings = Vec::new();
         for (i, files) in std::mem::take(&mut self.files).into_iter().enumerate() {
             let (motion, state) = (&self.motion.bearings[i], &self.state.bearings[i]);
             let forecast = Forecasts::of_motion([None, None], motion, self.dynamic);
-            let costs = files.finish(0.0, forecast, motion.costs.laps(), start)?;
+            let costs = agree(files.finish(0.0, forecast, motion.costs.laps(), start))?;
             let findings = Findings {
                 status: status.to_string(),
                 last: Snapshot::of_motion(motion, state),
@@ -311,11 +322,10 @@ impl ListMarch<'_> {
             };
             let own = self.dir.join(&self.scene.bearings[i].name);
             let model = &self.assembly.bearings[i].model;
-            let seats = seat::of_motion(motion, state, &own)?;
+            let seats = agree(seat::of_motion(motion, state, &own))?;
             warnings.extend(of_seats(&self.scene.bearings[i].name, &seats));
-            Summary::new(&self.placed[i], model, findings, &costs)
-                .with_seats(seats)
-                .write(&own)?;
+            let summary = Summary::new(&self.placed[i], model, findings, &costs).with_seats(seats);
+            agree(summary.write(&own).map_err(Failure::from))?;
         }
         Ok(warnings)
     }
@@ -345,16 +355,16 @@ impl ListMarch<'_> {
                 }
                 Err(error) => return Err(self.failed(solving(error))),
             }
-            self.reduce()?;
+            agree(self.reduce())?;
             if n.is_multiple_of(self.placed[0].output.tables_every) {
-                self.write_tables()?;
+                agree(self.write_tables())?;
             }
             if n == n_steps || n.is_multiple_of(self.dynamic.output_every) {
                 let restart = match reason {
                     Some(_) => RestartState::Stored,
                     None => RestartState::at(n, self.dynamic, &self.placed[0].output),
                 };
-                self.write_fields(restart)?;
+                agree(self.write_fields(restart))?;
             }
             progress.advance();
         }
@@ -363,35 +373,14 @@ impl ListMarch<'_> {
 
     /// Takes a state whose ledgers close.
     fn accept(&mut self, next: AssemblyState, progress: &Progress) -> Result<(), Failure> {
-        let motions = &self.motion.bearings;
-        let mut round_off = 0.0;
-        for (i, (motion, state)) in motions.iter().zip(&next.bearings).enumerate() {
-            if let Err(failure) = check_ledger(self.dynamic, motion, state, self.dir) {
-                let name = &self.scene.bearings[i].name;
-                return Err(self.failed(failure.context(format!("bearing {name:?}"))));
-            }
-            let own = motion.energy_round_off(state)?;
-            round_off += own;
-            if state.ledger.defect().abs() > own {
-                self.worst_defect = self.worst_defect.max(state.ledger.relative_defect().abs());
-            }
-        }
-        let (defect, relative) = (next.ledger.defect().abs(), next.ledger.relative_defect().abs());
-        if defect > round_off {
-            self.worst_defect = self.worst_defect.max(relative);
-            if relative > self.dynamic.ledger_tolerance {
-                let failure = Failure::Numerical(anyhow!(
-                    "the energy ledger of the shaft does not close: the defect is {relative:.3e} of the largest \
-                     energy, dynamic.ledger_tolerance is {:.1e}; take a smaller step, or a larger tolerance",
-                    self.dynamic.ledger_tolerance
-                ));
-                return Err(self.failed(failure));
-            }
+        let worst = &mut self.worst_defect;
+        if let Err(failure) = check_ledgers((self.scene, self.dynamic), self.motion, &next, worst, self.dir) {
+            return Err(self.failed(failure));
         }
         self.state = next;
         let step = self.state.step;
         for (i, watch) in self.watches.iter_mut().enumerate() {
-            let found = motions[i].exceeded(&self.state.bearings[i]);
+            let found = self.motion.bearings[i].exceeded(&self.state.bearings[i]);
             for text in watch.note(step, self.motion.time(step), &found) {
                 progress.warn(&format!("bearing {:?}: {text}", self.scene.bearings[i].name));
             }
@@ -401,7 +390,7 @@ impl ListMarch<'_> {
 
     /// Saves the state and says that the run can be resumed.
     fn stopped(&mut self, reason: &str) -> Failure {
-        if let Err(error) = self.write_fields(RestartState::Stored) {
+        if let Err(error) = agree(self.write_fields(RestartState::Stored)) {
             return error.context(format!("{reason}, but the state could not be saved"));
         }
         let n = self.state.step;
@@ -415,6 +404,7 @@ impl ListMarch<'_> {
 
     /// Saves the last good state and says where the failed step was.
     fn failed(&mut self, failure: Failure) -> Failure {
+        let failure = of_all(failure);
         let n = self.state.step + 1;
         let place = format!("step {n}, t = {:.6e} s", self.motion.time(n));
         match self.write_fields(RestartState::Stored) {
@@ -429,22 +419,35 @@ impl ListMarch<'_> {
         }
     }
 
-    /// Hands over the step of every bearing to be written as a file, unless it was.
+    /// Hands over the step of every bearing to be written as a file, unless it was; ranks recover the stress of all
+    /// first. To be called by all ranks or none.
     fn write_fields(&mut self, restart: RestartState) -> Result<(), Failure> {
         if self.last_file == Some(self.state.step) {
             return Ok(());
         }
         if self.last_row != Some(self.state.step) {
             // A step file vouches for the tables up to its step.
-            self.write_tables()?;
+            agree(self.write_tables())?;
         }
         let of_shaft = several_state::arrays_of_shaft(&self.state, self.newton);
         let every = self.placed[0].output.every;
         let kept = every.kept(self.state.step, self.dynamic.output_every, self.dynamic.n_steps);
+        let mut gathered = Vec::new();
         for (i, files) in self.files.iter_mut().enumerate() {
             let (motion, state) = (&self.motion.bearings[i], &self.state.bearings[i]);
             let model = &self.assembly.bearings[i].model;
-            let gathered = files.gather_stress(&Shown::Motion { model, motion, state }, kept);
+            gathered.push(files.gather_stress(&Shown::Motion { model, motion, state }, kept));
+        }
+        self.last_file = Some(self.state.step);
+        if restart == RestartState::Stored {
+            self.last_state = Some(self.state.step);
+        }
+        for (i, (files, gathered)) in self.files.iter_mut().zip(gathered).enumerate() {
+            if !files.are_written_here() {
+                continue;
+            }
+            let (motion, state) = (&self.motion.bearings[i], &self.state.bearings[i]);
+            let model = &self.assembly.bearings[i].model;
             let shown = Recorded::new(model, motion, state, gathered, (&self.placed[i], kept), restart)?;
             let (of_shaft, watch) = (of_shaft.clone(), self.watches[i].clone());
             files.write_fields_later(restart, move |stress| {
@@ -456,22 +459,21 @@ impl ListMarch<'_> {
                 record
             })?;
         }
-        self.last_file = Some(self.state.step);
-        if restart == RestartState::Stored {
-            self.last_state = Some(self.state.step);
-        }
         Ok(())
     }
 
-    /// Takes the state of every bearing into account in what is found of the whole run.
+    /// Takes the state of every bearing into account in what is found of the whole run. Collective; rank 0 alone may
+    /// fail, and goes on with the other bearings.
     fn reduce(&mut self) -> Result<(), Failure> {
+        let mut reduced = Ok(());
         for (i, files) in self.files.iter_mut().enumerate() {
             let (motion, state) = (&self.motion.bearings[i], &self.state.bearings[i]);
             let model = &self.assembly.bearings[i].model;
             let shown = Shown::Motion { model, motion, state };
-            files.reduce(state.step, motion.time(state.step), &shown, &self.placed[i])?;
+            let own = files.reduce(state.step, motion.time(state.step), &shown, &self.placed[i]);
+            reduced = reduced.and(own);
         }
-        Ok(())
+        reduced
     }
 
     /// Appends a line per table, of the shaft and of every bearing.

@@ -8,13 +8,15 @@ use assembly::{AssemblyMotion, AssemblyState};
 use checkpoint::{FolderLock, StateArray, StepRecord, has_state, read_about, read_any_step, step_file_name};
 use comm::print;
 use results::about::{MAY_CHANGE, OVERRIDES, SCENE_FILE, require_same_meshes, scene_file};
-use results::failure::Failure;
-use results::files::note_dead_owner;
+use results::failure::{Failure, agree};
 use results::reduction::take_arrays;
 use results::several::BEARINGS_TABLE;
 use results::state_arrays::{self, Arrays};
 use results::watch::Watch;
 use scene::{Analysis, AnyScene, Dynamic, MeshFiles, Scene, SeveralScene, difference};
+
+use crate::several::SCENE_FILE as LIST_FILE;
+use crate::shared::{acquire, of_root};
 
 const SHAFT: &str = "list_shaft";
 const VELOCITY: &str = "list_shaft_velocity";
@@ -33,7 +35,9 @@ pub struct StoredList {
 
 /// A step of one of them.
 pub struct StoredBearing {
-    pub lock: FolderLock,
+    pub folder: PathBuf,
+    /// The lock of its folder, on rank 0.
+    pub lock: Option<FolderLock>,
     /// Its scene with the shaft where it was at the start of the run.
     pub scene: Scene,
     pub record: StepRecord,
@@ -48,9 +52,11 @@ pub struct Restored {
     pub reductions: Vec<Arrays>,
 }
 
-/// Whether a folder has results of a list of bearings.
-pub fn is_list(dir: &Path) -> bool {
-    dir.join(BEARINGS_TABLE).exists() && dir.join(crate::several::SCENE_FILE).exists()
+/// Whether a folder has results of a list of bearings: rank 0 looks for all.
+pub fn is_list(dir: &Path) -> Result<bool, Failure> {
+    let has = |name: &str| dir.join(name).exists();
+    let found = of_root(|| Ok(u64::from(has(BEARINGS_TABLE) && has(LIST_FILE))))?;
+    Ok(found == 1)
 }
 
 /// The state of the shaft, which every bearing's file has.
@@ -81,7 +87,7 @@ pub fn restore(
     let (mut states, mut watches, mut shaft) = (Vec::new(), Vec::new(), None);
     let mut reductions = Vec::new();
     for (bearing, motion) in bearings.iter().zip(&motion.bearings) {
-        let at = || format!("step {step} of {}", bearing.lock.dir().display());
+        let at = || format!("step {step} of {}", bearing.folder.display());
         let mut arrays = bearing.record.state.clone();
         reductions.push(take_arrays(&mut arrays));
         let of_shaft: Vec<Option<StateArray>> = [SHAFT, VELOCITY, LOADS, LEDGER, NEWTON]
@@ -137,24 +143,55 @@ pub struct Changes<'a> {
     pub is_stored: bool,
 }
 
-/// Reads the step from which a run goes on; `asked` is the one asked for. None if the run has finished.
+/// Reads the step from which a run goes on; `asked` is the one asked for. None if the run has finished. Collective.
 pub fn read(dir: &Path, asked: Option<u64>, changes: Changes<'_>) -> Result<Option<StoredList>, Failure> {
-    let overrides = changes.overrides;
-    let text = std::fs::read_to_string(dir.join(crate::several::SCENE_FILE)).with_context(|| {
-        format!(
-            "{} cannot be read",
-            dir.join(crate::several::SCENE_FILE).display()
-        )
-    })?;
+    let Locked { text, folders, locks } = agree(lock(dir))?;
+    // All ranks read before the first one writes.
+    let step = of_root(|| choose(dir, &folders, asked))?;
+    let stored = agree(read_step(dir, (&text, &folders, step), changes))?;
+    Ok(stored.map(|mut stored| {
+        let bearings = stored.bearings.iter_mut().zip(locks);
+        bearings.for_each(|(bearing, lock)| bearing.lock = lock);
+        stored
+    }))
+}
+
+/// The results of a list, of which nobody else writes.
+struct Locked {
+    /// The scene of the list.
+    text: String,
+    /// By bearing.
+    folders: Vec<PathBuf>,
+    /// Their locks, on rank 0.
+    locks: Vec<Option<FolderLock>>,
+}
+
+/// Locks the folders of all bearings.
+fn lock(dir: &Path) -> Result<Locked, Failure> {
+    if !dir.is_dir() {
+        return Err(anyhow!("{} is no folder; expected the results of a run", dir.display()).into());
+    }
+    let path = dir.join(LIST_FILE);
+    let text =
+        std::fs::read_to_string(&path).with_context(|| format!("{} cannot be read", path.display()))?;
     let names = scene::names_of_bearings(&text);
     let folders: Vec<PathBuf> = names.iter().map(|name| dir.join(name)).collect();
-    let mut locks = Vec::new();
-    for folder in &folders {
-        let lock = FolderLock::acquire(folder)?;
-        note_dead_owner(&lock);
-        locks.push(lock);
-    }
-    let step = choose(dir, &folders, asked)?;
+    let locks = folders.iter().map(|folder| acquire(folder));
+    Ok(Locked {
+        locks: locks.collect::<Result<_, Failure>>()?,
+        folders,
+        text,
+    })
+}
+
+/// Reads a step of all bearings, and all that says how to go on from it; None if nothing is left to do. May fail on
+/// one rank alone.
+fn read_step(
+    dir: &Path,
+    (text, folders, step): (&str, &[PathBuf], u64),
+    changes: Changes<'_>,
+) -> Result<Option<StoredList>, Failure> {
+    let overrides = changes.overrides;
     let first = folders[0].join(step_file_name(step));
     let about = read_about(&first)?;
     let path = match (changes.scene, about.get(SCENE_FILE)) {
@@ -165,7 +202,7 @@ pub fn read(dir: &Path, asked: Option<u64>, changes: Changes<'_>) -> Result<Opti
     let before: Vec<String> = about
         .get(OVERRIDES)
         .map_or(Vec::new(), |text| text.lines().map(str::to_string).collect());
-    let scene = scene_of(&text, &path, &before, changes)?;
+    let scene = scene_of(text, &path, &before, changes)?;
     let Analysis::Dynamic(dynamic) = scene.analysis else {
         return Err(anyhow!(
             "{} holds results at rest; only a motion, a scene with [dynamic], can be resumed, run the scene again",
@@ -191,7 +228,7 @@ pub fn read(dir: &Path, asked: Option<u64>, changes: Changes<'_>) -> Result<Opti
         return Ok(None);
     }
     let mut bearings = Vec::new();
-    for (i, (folder, lock)) in folders.iter().zip(locks).enumerate() {
+    for (i, folder) in folders.iter().enumerate() {
         let record = read_any_step(folder, step)?;
         let own = Scene::parse(&record.scene, &path, overrides, MeshFiles::MustExist)?;
         let now = &scene.bearings[i].scene;
@@ -205,7 +242,8 @@ pub fn read(dir: &Path, asked: Option<u64>, changes: Changes<'_>) -> Result<Opti
         }
         require_same_meshes(&own, &read_about(&folder.join(step_file_name(step)))?)?;
         bearings.push(StoredBearing {
-            lock,
+            folder: folder.clone(),
+            lock: None,
             scene: Scene {
                 overrides: [&before, overrides].concat(),
                 ..own

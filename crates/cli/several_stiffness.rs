@@ -5,12 +5,12 @@
 use std::path::Path;
 
 use assembly::stiffness::LinearAssembly;
-use assembly::{Assembly, AssemblySolution, AssemblySolver};
+use assembly::{Assembly, AssemblySolution, AssemblySolver, HousedTogether};
 use comm::print;
 use contact::Side;
 use dynamics::DampingLaws;
 use results::failure::Failure;
-use results::several_stiffness::{BearingStiffness, SeveralStiffness, ShaftStiffnessAt};
+use results::several_stiffness::{BearingStiffness, CouplingStiffness, SeveralStiffness, ShaftStiffnessAt};
 use results::stiffness::{NOT_OVER_SPEED, OperatingPoint, StiffnessAt, StiffnessResults, require_free};
 use results::survey::say_doubts;
 use results::whole::make_asked_folder;
@@ -18,7 +18,8 @@ use scene::{SeveralScene, assembly_with_rings, build_assembly};
 
 use crate::linear_figures::draw;
 use crate::progress::Progress;
-use crate::several::{all_doubts, at_point, column, points, rings, solving, stage_text, words_of};
+use crate::several::{at_point, column, points, rings, solving, stage_text, words_of};
+use crate::several_read::all_doubts;
 
 /// Why there is no damping.
 const NO_DAMPING: &str = "none: a list of bearings is linearised at rest, where no law gives any";
@@ -63,6 +64,7 @@ fn empty(scene: &SeveralScene, warnings: Vec<String>) -> SeveralStiffness {
         bearings,
         position: first_load.unwrap_or(scene.shaft.load_point),
         shaft: Vec::new(),
+        couplings: Vec::new(),
         warnings,
         source,
         column,
@@ -74,7 +76,6 @@ fn linearise(scene: &SeveralScene) -> Result<SeveralStiffness, Failure> {
     let mut progress = Progress::new(points.len() as u64);
     progress.stage("reading meshes");
     let (mut assembly, _) = build_assembly(&points[0].1)?;
-    assembly.require_bodies_of_one().map_err(solving)?;
     let doubts = all_doubts(scene, &assembly);
     say_doubts(&doubts);
     progress.stage("factoring the stiffness of the rings");
@@ -120,6 +121,7 @@ fn linearise(scene: &SeveralScene) -> Result<SeveralStiffness, Failure> {
                 ripple: None,
             });
         }
+        note_couplings(&linear, &mut results);
         results
             .warnings
             .extend(unloaded(&words_of(column, *value), &assembly, &solution));
@@ -127,7 +129,41 @@ fn linearise(scene: &SeveralScene) -> Result<SeveralStiffness, Failure> {
         progress.advance();
     }
     progress.finish();
+    results.warnings.extend(felt_through(&assembly));
     Ok(results)
+}
+
+/// Notes what bearings do to each other through bodies at a point.
+fn note_couplings(linear: &LinearAssembly, results: &mut SeveralStiffness) {
+    for (number, coupling) in linear.couplings.iter().enumerate() {
+        if number == results.couplings.len() {
+            let name = |bearing: usize| results.bearings[bearing].name.clone();
+            results.couplings.push(CouplingStiffness {
+                loaded: name(coupling.loaded),
+                moved: name(coupling.moved),
+                stiffness: Vec::new(),
+            });
+        }
+        results.couplings[number].stiffness.push(coupling.stiffness);
+    }
+}
+
+/// Says which bearings feel each other through a body.
+fn felt_through(assembly: &Assembly) -> Vec<String> {
+    let bodies = assembly.housed_together().into_iter();
+    let text = |housed: HousedTogether| {
+        let body = housed.name;
+        let names = housed
+            .bearings
+            .iter()
+            .map(|&i| format!("{:?}", assembly.bearings[i].name));
+        format!(
+            "bearings {} feel each other through body {body:?}: the matrix of each holds while the shaft stays at the \
+             others, what they do to each other is in the matrix of the shaft and in \"couplings\" of stiffness.json",
+            names.collect::<Vec<_>>().join(", ")
+        )
+    };
+    bodies.map(text).collect()
 }
 
 /// Says which bearings carry nothing.

@@ -9,6 +9,7 @@ use std::time::{Duration, Instant};
 
 use super::{SECONDS, different, done, mpirun, program};
 use crate::sectors::SECTOR;
+use crate::several::flexible_pair;
 use crate::util::lockstep::{copy, small_motion};
 use crate::util::{Dir, Outcome, SCENE};
 
@@ -138,6 +139,44 @@ fn cases() -> Vec<Case> {
             files: &["cli/resume.rs"],
         },
     ]
+    .into_iter()
+    .chain(lists())
+    .collect()
+}
+
+/// The same of lists of bearings: in motion, at rest, and one that goes on.
+fn lists() -> Vec<Case> {
+    let motion = "[speed]\ninner = \"1800 rpm\"\n[output]\nreduction = { every = 1 }\n\
+                  [dynamic]\nduration = \"80 us\"\nstep = \"20 us\"\noutput_every = 2\nledger_tolerance = 1e-2\n";
+    let sweep = "[effects.radial_force]\nvalue = \"0.5 kN\"\ndirection = \"30 deg\"\n\
+                 [sweep]\nkey = \"effects.radial_force.value\"\nvalues = [\"0.2 kN\", \"0.5 kN\"]\n";
+    let cut = flexible_pair(motion);
+    let short = ["--set", "dynamic.duration=40 us"];
+    done(&cut.raceway(&[&["run", "pair.toml", "--out", "cut"], &short[..]].concat()));
+    let run = vec!["run", "pair.toml", "--out", "out"];
+    vec![
+        Case {
+            dir: flexible_pair(motion),
+            arguments: run.clone(),
+            files: &["cli/several_motion.rs", "solver/src/cyclic/factor.rs"],
+        },
+        Case {
+            dir: flexible_pair(sweep),
+            arguments: run,
+            files: &["cli/several.rs"],
+        },
+        Case {
+            dir: cut,
+            arguments: vec![
+                "resume",
+                "out",
+                "--stored-scene",
+                "--set",
+                "dynamic.duration=80 us",
+            ],
+            files: &["cli/several_state.rs"],
+        },
+    ]
 }
 
 /// The first message of a place and one of the middle, when it sends `count`.
@@ -242,6 +281,8 @@ fn a_computation_that_fails_on_one_rank_ends_all_with_its_message() {
         (0, ["sector/solve.rs", "sector/columns.rs"]),
         (1, ["cyclic/factor.rs", "cyclic/factor.rs"]),
         (3, ["sector/solve.rs", "sector/columns.rs"]),
+        (5, ["cyclic/factor.rs", "cyclic/factor.rs"]),
+        (6, ["cyclic/factor.rs", "cyclic/factor.rs"]),
     ]
     .map(|(case, files)| {
         let case = cases().swap_remove(case);

@@ -9,7 +9,7 @@ use dynamics::{Model, StaticSolution, StaticSolver};
 use timer::Laps;
 
 use crate::error::AssemblyError;
-use crate::housing::{SharedBody, housed_together, shared_bodies};
+use crate::housing::{HousedTogether, SharedBody, housed_together, shared_bodies};
 use crate::mixing::{Mixing, dot};
 use crate::newton::{Mount, Problem, Scales, SettledShaft, settle};
 use crate::place::MountedBearing;
@@ -65,6 +65,11 @@ impl Assembly {
             Some(housed) => Err(AssemblyError::SharedBody { body: housed.name }),
             None => Ok(()),
         }
+    }
+
+    /// The bodies that carry several bearings.
+    pub fn housed_together(&self) -> Vec<HousedTogether> {
+        housed_together(&self.bearings)
     }
 
     /// The places of the bearings on the shaft.
@@ -148,6 +153,11 @@ impl AssemblySolver {
     /// The factors of a bearing.
     pub fn of_bearing(&self, bearing: usize) -> &StaticSolver {
         &self.solvers[self.type_of[bearing]]
+    }
+
+    /// Bodies that carry several bearings.
+    pub(crate) fn bodies(&self) -> &[SharedBody] {
+        &self.bodies
     }
 
     /// Wall time so far.

@@ -9,11 +9,23 @@
 //! The second term is given, the shaft and all bearings are balanced, and the forces p that come out are handed on
 //! until they stay as they are. Their fixed point is found with memory of the last rounds ([`crate::mixing`]): soft
 //! feet, on which all seats move together, would need many rounds or never end otherwise.
+//!
+//! **To first order** each bearing has H ([`dynamics::moved_seat`]) over its place on the shaft and the motion d of its
+//! seat by the others. With F' the part of F between different seats, and all bearings one below the other,
+//!
+//! ```text
+//! (1 + H_dd F') p = -H_dq q,      r = H_qq q + H_qd F' p
+//! ```
+//!
+//! is what all of them do together when the shaft moves by q at their places.
 
 use std::sync::Arc;
 
 use body::{SeatFunctions, SeatTie, Surrounding};
 use contact::Side;
+use dense::{DenseError, DenseLu};
+use dynamics::moved_seat::SeatStiffness;
+use dynamics::stiffness::N_SHAFT;
 use dynamics::{Model, StaticSolution};
 
 use crate::error::AssemblyError;
@@ -129,6 +141,68 @@ impl SharedBody {
             own.zip(&traction.forces).for_each(|(on_body, f)| *on_body = -f);
         }
         Ok(forces)
+    }
+
+    /// The rings in it.
+    pub fn side(&self) -> Side {
+        self.side
+    }
+
+    /// Numbers of its bearings, in the order of its seats.
+    pub fn bearings(&self) -> &[usize] {
+        &self.bearings
+    }
+
+    /// Loads on all its bearings, each in its own frame, by a unit motion of each of their places on the shaft,
+    /// row-major over (bearing, dof). `own` are those of the bearings alone.
+    pub fn coupled(&self, own: &[SeatStiffness]) -> Result<Vec<f64>, DenseError> {
+        let (all, n) = (self.none().len(), N_SHAFT * own.len());
+        let mut matrix = vec![0.0; all * all];
+        let mut forces = vec![0.0; all * n];
+        for (number, ((tie, _), own)) in self.seats.iter().zip(own).enumerate() {
+            for (k, row) in tie.own().enumerate() {
+                let (by_shaft, by_seat) = own.row(N_SHAFT + k).split_at(N_SHAFT);
+                self.add_motion(tie, by_seat, &mut matrix[all * row..all * (row + 1)]);
+                matrix[(all + 1) * row] += 1.0;
+                for (j, h) in by_shaft.iter().enumerate() {
+                    forces[all * (N_SHAFT * number + j) + row] = -h;
+                }
+            }
+        }
+        DenseLu::factor(all, &matrix)?.solve(&mut forces, n);
+        let mut coupled = vec![0.0; n * n];
+        for (column, forces) in forces.chunks_exact(all).enumerate() {
+            for (number, ((tie, _), own)) in self.seats.iter().zip(own).enumerate() {
+                let mut others = forces.to_vec();
+                others[tie.own()].fill(0.0);
+                let moved = tie.motion_by(&others);
+                for i in 0..N_SHAFT {
+                    let (by_shaft, by_seat) = own.row(i).split_at(N_SHAFT);
+                    let through: f64 = by_seat.iter().zip(&moved).map(|(h, d)| h * d).sum();
+                    let direct = if column / N_SHAFT == number {
+                        by_shaft[column % N_SHAFT]
+                    } else {
+                        0.0
+                    };
+                    coupled[n * (N_SHAFT * number + i) + column] = direct + through;
+                }
+            }
+        }
+        Ok(coupled)
+    }
+
+    /// Adds a row over the motion of a seat, times what forces on the other seats move it, to a row over forces.
+    fn add_motion(&self, tie: &SeatTie, row: &[f64], to: &mut [f64]) {
+        let Some(body) = &tie.body else { return };
+        let own = tie.own();
+        for (h, of_function) in row.iter().zip(own.clone()) {
+            let flexibility = &body.flexibility[to.len() * of_function..to.len() * (of_function + 1)];
+            for (j, (sum, f)) in to.iter_mut().zip(flexibility).enumerate() {
+                if !own.contains(&j) {
+                    *sum += h * f;
+                }
+            }
+        }
     }
 
     /// No forces.

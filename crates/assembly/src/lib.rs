@@ -29,6 +29,7 @@ pub mod whirl;
 pub use assembly::{Assembly, AssemblySolution, AssemblySolver};
 pub use beam::{BeamSection, BeamShaft, PointMass};
 pub use error::AssemblyError;
+pub use housing::HousedTogether;
 pub use motion::{AssemblyMotion, AssemblyState};
 pub use place::{MountedBearing, Orientation, Seating};
 pub use ring::rigid::RigidInertia;

@@ -8,6 +8,7 @@
 //! contact's, then makes a step that is cut to a fraction of a groove: any start is safe, and a row that lifts off is
 //! one of the ordinary cases.
 
+use comm::Communicator;
 use dense::DenseLu;
 use dynamics::bodies::AXES;
 use dynamics::model::MAX_TILT;
@@ -252,7 +253,8 @@ impl Problem<'_> {
             let next = match self.evaluate(supports, q) {
                 Ok(next) => next,
                 // Too far for a bearing: nearer. At the whole step with nothing left to cut it is what is wrong.
-                Err(error) if share < 1e-3 => return Err(error),
+                // Ranks that share rings go nearer together or not at all.
+                Err(error) if share < 1e-3 || !Communicator::world().all_failed() => return Err(error),
                 Err(_) => {
                     share = 0.5 * (low.0 + share);
                     continue;

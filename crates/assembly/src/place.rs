@@ -71,8 +71,13 @@ impl Orientation {
 
     /// A stiffness in the shaft's frame from one in the bearing's, or the other way.
     pub fn turned_matrix(self, matrix: &ShaftMatrix) -> ShaftMatrix {
-        let turn = self.turn();
-        std::array::from_fn(|i| std::array::from_fn(|j| turn[i] * matrix[i][j] * turn[j]))
+        self.turned_block(self, matrix)
+    }
+
+    /// The same of loads on this bearing by displacements of a bearing of another orientation.
+    pub fn turned_block(self, other: Orientation, matrix: &ShaftMatrix) -> ShaftMatrix {
+        let [own, other] = [self, other].map(Orientation::turn);
+        std::array::from_fn(|i| std::array::from_fn(|j| own[i] * matrix[i][j] * other[j]))
     }
 
     /// A vector in space [x, y, z] in the bearing's frame, or back.

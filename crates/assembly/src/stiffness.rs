@@ -1,18 +1,23 @@
 //! The bearings and the shaft on them, to first order about an equilibrium.
 //!
 //! Every bearing has the matrix that it has alone ([`dynamics::stiffness`]), in the frame of the shaft, at its place.
+//! Where a body carries several, each has that of its place while the shaft is held at the others': the body gives, and
+//! the others with it. What a motion of one place does to another bearing is apart ([`BodyCoupling`]).
+//!
 //! The matrix of the shaft at a point is over the motion of that point: the load to be put there for a unit of its
 //! displacement, with everything else free and the held dofs of a rigid shaft held no more. A rigid shaft carries the
 //! matrices of the bearings to the point. A beam gives way between, so that its matrix is the inverse of the compliance
 //! of the point.
 
 use dense::DenseLu;
+use dynamics::moved_seat::SeatStiffness;
 use dynamics::stiffness::{DampingLaws, N_SHAFT, ShaftMatrix};
 use dynamics::{Linearisation, StaticSolver};
 
 use crate::assembly::{Assembly, AssemblySolution, AssemblySolver};
 use crate::error::AssemblyError;
-use crate::shaft::Station;
+use crate::housing::SharedBody;
+use crate::shaft::{Station, applied};
 
 /// Bearings of an assembly to first order.
 pub struct LinearAssembly {
@@ -22,6 +27,19 @@ pub struct LinearAssembly {
     pub stiffness: Vec<ShaftMatrix>,
     /// Damping of each there, if there is any.
     pub damping: Vec<Option<ShaftMatrix>>,
+    /// What bearings do to each other through a body that carries them.
+    pub couplings: Vec<BodyCoupling>,
+}
+
+/// Load on a bearing by the motion of the shaft at another, through a body that carries both, in the shaft's frame.
+#[derive(Clone, Copy, Debug)]
+pub struct BodyCoupling {
+    /// Number of the bearing.
+    pub loaded: usize,
+    /// Number of the one whose place moves.
+    pub moved: usize,
+    /// Growth of the load.
+    pub stiffness: ShaftMatrix,
 }
 
 impl LinearAssembly {
@@ -32,11 +50,11 @@ impl LinearAssembly {
         solution: &AssemblySolution,
         laws: DampingLaws,
     ) -> Result<LinearAssembly, AssemblyError> {
-        assembly.require_bodies_of_one()?;
         let mut linear = LinearAssembly {
             bearings: Vec::new(),
             stiffness: Vec::new(),
             damping: Vec::new(),
+            couplings: Vec::new(),
         };
         for (i, bearing) in assembly.bearings.iter().enumerate() {
             let fail = AssemblyError::of_bearing(&bearing.name);
@@ -49,7 +67,72 @@ impl LinearAssembly {
             linear.damping.push(damping.as_ref().map(turned));
             linear.bearings.push(found);
         }
+        let bodies = solver.bodies();
+        for (i, bearing) in assembly.bearings.iter().enumerate() {
+            if bodies.iter().filter(|body| body.bearings().contains(&i)).count() > 1 {
+                return Err(AssemblyError::TwoSharedBodies {
+                    bearing: bearing.name.clone(),
+                });
+            }
+        }
+        for body in bodies {
+            linear.couple(body, (assembly, solver, solution))?;
+        }
         Ok(linear)
+    }
+
+    /// Lets the bearings in a body feel each other.
+    fn couple(
+        &mut self,
+        body: &SharedBody,
+        (assembly, solver, solution): (&Assembly, &AssemblySolver, &AssemblySolution),
+    ) -> Result<(), AssemblyError> {
+        let own = |&i: &usize| {
+            let (found, linear) = (&solution.bearings[i], &self.bearings[i]);
+            let own = SeatStiffness::new(body.side(), solver.of_bearing(i), found, linear);
+            let own = own.map_err(AssemblyError::of_bearing(&assembly.bearings[i].name))?;
+            Ok(own.expect("a bearing in a body is tied to it"))
+        };
+        let own = body
+            .bearings()
+            .iter()
+            .map(own)
+            .collect::<Result<Vec<_>, AssemblyError>>()?;
+        let coupled = body
+            .coupled(&own)
+            .map_err(|source| AssemblyError::Matrix { source })?;
+        let n = N_SHAFT * own.len();
+        for (k, &loaded) in body.bearings().iter().enumerate() {
+            for (l, &moved) in body.bearings().iter().enumerate() {
+                let entry = |i: usize, j: usize| coupled[n * (N_SHAFT * k + i) + N_SHAFT * l + j];
+                let block = std::array::from_fn(|i| std::array::from_fn(|j| entry(i, j)));
+                let [to, from] = [loaded, moved].map(|b| assembly.bearings[b].place.orientation);
+                let stiffness = to.turned_block(from, &block);
+                match loaded == moved {
+                    true => self.stiffness[loaded] = stiffness,
+                    false => self.couplings.push(BodyCoupling {
+                        loaded,
+                        moved,
+                        stiffness,
+                    }),
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Adds what bearings at these stations do to each other to a matrix of the shaft of `n` dofs.
+    fn add_couplings(&self, stations: &[Station], n: usize, matrix: &mut [f64]) {
+        for coupling in &self.couplings {
+            for column in 0..n {
+                let (mut unit, mut load) = (vec![0.0; n], vec![0.0; n]);
+                unit[column] = 1.0;
+                let moved = stations[coupling.moved].displacement(&unit);
+                stations[coupling.loaded].add_load(applied(&coupling.stiffness, &moved), &mut load);
+                let rows = matrix.iter_mut().skip(column).step_by(n);
+                rows.zip(load).for_each(|(sum, load)| *sum += load);
+            }
+        }
     }
 
     /// Stiffness of the shaft on its bearings at a position, m.
@@ -61,6 +144,9 @@ impl LinearAssembly {
                 let station = Station::on_rigid_shaft(bearing.place.position - position);
                 station.add_matrix(stiffness, N_SHAFT, &mut sum);
             }
+            let places = assembly.bearings.iter().map(|b| b.place.position - position);
+            let stations: Vec<Station> = places.map(Station::on_rigid_shaft).collect();
+            self.add_couplings(&stations, N_SHAFT, &mut sum);
             return Ok(square(&sum));
         }
         let n = shaft.n();
@@ -68,6 +154,8 @@ impl LinearAssembly {
         for (mount, stiffness) in assembly.mounts().iter().zip(&self.stiffness) {
             mount.station.add_matrix(stiffness, n, &mut whole);
         }
+        let stations: Vec<Station> = assembly.mounts().into_iter().map(|mount| mount.station).collect();
+        self.add_couplings(&stations, n, &mut whole);
         let matrix = |source| AssemblyError::Matrix { source };
         let first = shaft.station(position).first;
         let mut columns = vec![0.0; n * N_SHAFT];

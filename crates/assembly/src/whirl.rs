@@ -36,6 +36,7 @@ pub fn equations(
     linear: &LinearAssembly,
     speed: f64,
 ) -> Result<TurningShaft, AssemblyError> {
+    assembly.require_bodies_of_one()?;
     let n_shaft = shaft.n();
     let balls = |b: usize| 2 * assembly.bearings[b].model.geometry.n_balls;
     let n = n_shaft + (0..assembly.bearings.len()).map(balls).sum::<usize>();

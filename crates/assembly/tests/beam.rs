@@ -164,6 +164,7 @@ fn modes(shaft: ShaftBody, speed: f64) -> Vec<WhirlMode> {
         bearings: Vec::new(),
         stiffness: Vec::new(),
         damping: Vec::new(),
+        couplings: Vec::new(),
     };
     equations(&assembly, &turning, &linear, speed)
         .unwrap()

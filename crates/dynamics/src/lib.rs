@@ -26,6 +26,7 @@ pub mod statics;
 // In motion, and about its equilibrium.
 pub mod modes;
 pub mod motion;
+pub mod moved_seat;
 pub mod stiffness;
 pub mod whirl;
 

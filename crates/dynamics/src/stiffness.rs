@@ -28,6 +28,8 @@
 //!
 //! Cost: the compliance of the contacts, one block solve per ring, and dense factors of 5 + 2 n_balls (1 + rings) rows.
 
+use std::ops::Range;
+
 use contact::Side;
 use dense::DenseError;
 use timer::SharedLaps;
@@ -67,15 +69,25 @@ pub struct DampingLaws {
 
 /// Stiffness and damping over the shaft, the balls and what else moves; see the module.
 pub struct Linearisation {
-    n: usize,
+    pub(crate) n: usize,
     /// Over shaft, balls, seat and ports of the rings, row-major.
-    stiffness: Vec<f64>,
+    pub(crate) stiffness: Vec<f64>,
     damping: Option<Vec<f64>>,
     n_balls: usize,
+    /// Where rings meet their contacts, by side; only of one that was found anew.
+    pub(crate) ports: [Option<RingPorts>; 2],
     /// What loads on the shaft add to its stiffness because their moments change as it tilts.
     pub load_stiffness: ShaftMatrix,
     /// Whether the rings have damping in proportion to mass, which no matrix here has.
     pub leaves_out_mass_damping: bool,
+}
+
+/// A ring at its contacts.
+pub(crate) struct RingPorts {
+    /// Numbers of its ports among the unknowns.
+    pub unknowns: Range<usize>,
+    /// Inverse compliance of the contacts, N/m, row-major.
+    pub stiffness: Vec<f64>,
 }
 
 /// Matrices over the dofs of the shaft, then [radial, axial] of each ball, row-major.
@@ -98,7 +110,10 @@ impl Linearisation {
     ) -> Result<Linearisation, DynamicsError> {
         require_linear(model)?;
         let case = released(model, Some(solver), solution)?;
-        Linearisation::of_case(model, solution, &case, laws)
+        Ok(Linearisation {
+            ports: ports_of(&case.parts),
+            ..Linearisation::of_case(model, solution, &case, laws)?
+        })
     }
 
     /// The same without damping on rings whose contacts have the compliance with which they were solved, which is that
@@ -132,6 +147,7 @@ impl Linearisation {
             stiffness,
             damping,
             n_balls: parts.balls.len(),
+            ports: [None, None],
             load_stiffness: load_stiffness(parts, &solution.displacements.shaft),
             leaves_out_mass_damping: laws.rings.is_some_and(|rings| rings.mass > 0.0),
         })
@@ -230,6 +246,21 @@ fn released<'m>(
     // The tilts are free now, so loads on the shaft may change with them.
     case.parts.set_loads(&case.loads);
     Ok(case)
+}
+
+/// Where the rings meet their contacts.
+fn ports_of(parts: &BearingParts) -> [Option<RingPorts>; 2] {
+    let system = parts.system();
+    let mut number = 0;
+    [0, 1].map(|side| {
+        let ports = parts.rings[side].as_ref()?;
+        let unknowns = system.unknowns(Body::Elastic(number));
+        number += 1;
+        Some(RingPorts {
+            unknowns,
+            stiffness: ports.stiffness.clone(),
+        })
+    })
 }
 
 /// Holds balls that nothing touches: they have no stiffness, and pass nothing on.

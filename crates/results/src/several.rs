@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 
 use assembly::{Assembly, AssemblyMotion, AssemblySolution, AssemblyState};
 use checkpoint::GrowingFile;
-use comm::print;
+use comm::{Communicator, print};
 use dynamics::balls::BallResult;
 use dynamics::stiffness::N_SHAFT;
 use scene::{Analysis, SeveralScene};
@@ -42,8 +42,13 @@ const FORCE_COLUMNS: [&str; 5] = [
 ];
 const LOAD_COLUMNS: [&str; 3] = ["largest_ball_force_n", "loaded_balls", "outer_seat_z_m"];
 
-/// The tables of a run, open for appending.
+/// The tables of a run, open for appending. Rank 0 writes for all; on the others there are none, and writing does
+/// nothing.
 pub struct SeveralTables {
+    open: Option<OpenTables>,
+}
+
+struct OpenTables {
     balls: csv::Writer<GrowingFile>,
     bearings: csv::Writer<GrowingFile>,
     shaft: csv::Writer<GrowingFile>,
@@ -72,13 +77,19 @@ fn heads(swept: Option<&str>, energies: &[(&'static str, f64)]) -> Vec<(&'static
 impl SeveralTables {
     /// Creates the files in a folder; `swept` is the column of a swept value.
     pub fn create(dir: &Path, swept: Option<&str>, first: &ListState) -> anyhow::Result<SeveralTables> {
+        if !Communicator::world().is_root() {
+            return Ok(SeveralTables { open: None });
+        }
         let made = heads(swept, &first.energies).into_iter();
         let made = made.map(|(name, columns)| create(dir, name, &columns));
         Ok(SeveralTables::of(made.collect::<anyhow::Result<_>>()?))
     }
 
-    /// Looks where the files of an earlier run are to be cut to go on after its step `last`.
+    /// Looks where the files of an earlier run are to be cut to go on after its step `last`; on rank 0.
     pub fn cuts(dir: &Path, first: &ListState, last: u64) -> anyhow::Result<Vec<Cut>> {
+        if !Communicator::world().is_root() {
+            return Ok(Vec::new());
+        }
         let cuts = heads(None, &first.energies).into_iter();
         cuts.map(|(name, columns)| Cut::find(dir, name, &columns.join(","), last))
             .collect()
@@ -90,6 +101,9 @@ impl SeveralTables {
         cuts: &[Cut],
         aside: &mut dyn FnMut() -> anyhow::Result<PathBuf>,
     ) -> anyhow::Result<SeveralTables> {
+        if !Communicator::world().is_root() {
+            return Ok(SeveralTables { open: None });
+        }
         let mut files = Vec::new();
         for cut in cuts {
             files.push(csv::Writer::from_writer(cut.make(aside)?));
@@ -101,10 +115,12 @@ impl SeveralTables {
         let mut files = files.into_iter();
         let mut next = || files.next().expect("a list has its tables");
         SeveralTables {
-            balls: next(),
-            bearings: next(),
-            shaft: next(),
-            energy: files.next(),
+            open: Some(OpenTables {
+                balls: next(),
+                bearings: next(),
+                shaft: next(),
+                energy: files.next(),
+            }),
         }
     }
 
@@ -116,6 +132,9 @@ impl SeveralTables {
         assembly: &Assembly,
         state: &ListState,
     ) -> anyhow::Result<()> {
+        let Some(tables) = &mut self.open else {
+            return Ok(());
+        };
         let place = place_of(step, time, swept);
         let row = |cells: Vec<String>| [place.clone(), cells].concat();
         let mut balls = Vec::new();
@@ -139,12 +158,12 @@ impl SeveralTables {
                 .chain(numbers.map(number))
                 .collect()));
         }
-        append(&mut self.balls, BALLS_TABLE, balls)?;
-        append(&mut self.bearings, BEARINGS_TABLE, bearings)?;
+        append(&mut tables.balls, BALLS_TABLE, balls)?;
+        append(&mut tables.bearings, BEARINGS_TABLE, bearings)?;
         let line = line(assembly, &state.shaft).into_iter();
         let line = line.map(|(z, q)| row(std::iter::once(z).chain(q).map(number).collect()));
-        append(&mut self.shaft, SHAFT_TABLE, line)?;
-        let Some(energy) = &mut self.energy else {
+        append(&mut tables.shaft, SHAFT_TABLE, line)?;
+        let Some(energy) = &mut tables.energy else {
             return Ok(());
         };
         let cells = state.energies.iter().map(|(_, x)| number(*x)).collect();

@@ -2,7 +2,9 @@
 //! and a table for each bearing, `stiffness_NAME.csv` and `ross_NAME.csv`.
 //!
 //! All matrices are in the frame of the shaft. That of a bearing is over the shaft's motion at its place; that of the
-//! shaft over the motion of one of its points, with all bearings and the shaft's own elasticity.
+//! shaft over the motion of one of its points, with all bearings and the shaft's own elasticity. Where a body carries
+//! several bearings, that of a bearing holds while the shaft stays at the others; what the motion of one place does to
+//! another bearing is apart.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -53,6 +55,17 @@ pub struct BearingStiffness {
     pub results: StiffnessResults,
 }
 
+/// Load on a bearing by the motion of the shaft at another that sits in the same body.
+#[derive(Clone, Debug, Serialize)]
+pub struct CouplingStiffness {
+    /// The bearing.
+    pub loaded: String,
+    /// The one whose place on the shaft moves.
+    pub moved: String,
+    /// Stiffness at all points.
+    pub stiffness: Vec<ShaftMatrix>,
+}
+
 /// Everything that is written.
 #[derive(Debug)]
 pub struct SeveralStiffness {
@@ -66,6 +79,8 @@ pub struct SeveralStiffness {
     pub position: f64,
     /// The shaft at all points.
     pub shaft: Vec<ShaftStiffnessAt>,
+    /// What bearings do to each other through a body that carries them.
+    pub couplings: Vec<CouplingStiffness>,
     /// Warnings a user should read.
     pub warnings: Vec<String>,
 }
@@ -81,6 +96,8 @@ struct FileOfSeveral<'a> {
     column: Option<&'a str>,
     shaft: ShaftOfFile<'a>,
     bearings: BTreeMap<&'a str, BearingOfFile<'a>>,
+    #[serde(skip_serializing_if = "<[_]>::is_empty")]
+    couplings: &'a [CouplingStiffness],
 }
 
 #[derive(Serialize)]
@@ -172,6 +189,7 @@ impl SeveralStiffness {
                 points: &self.shaft,
             },
             bearings: self.bearings.iter().map(bearing).collect(),
+            couplings: &self.couplings,
         }
     }
 

@@ -53,7 +53,7 @@ pub fn build_surveyed(
     test: impl FnOnce(&Model) -> Result<(), Failure>,
 ) -> Result<(Model, Survey), Failure> {
     let comm = Communicator::world();
-    agree(require_same_scene(scene, comm))?;
+    require_same_scene(&scene.text)?;
     if comm.size() > 1 && point.solver.backend == scene::Backend::Sector {
         return build_shared(point, scene, dir, test);
     }
@@ -146,16 +146,19 @@ fn build_shared(
     Ok((model, survey.unwrap_or_default()))
 }
 
-/// Fails unless this rank has the scene of rank 0: all compute the same.
-fn require_same_scene(scene: &Scene, comm: Communicator) -> Result<(), Failure> {
-    let text = comm.from_root(scene.text.clone().into_bytes());
-    let text = String::from_utf8_lossy(&text);
-    let differences = difference(&text, &scene.text)?;
-    match differences.first() {
-        None => Ok(()),
-        Some(first) => Err(Failure::User(anyhow!(
-            "the scene of rank {} is not that of rank 0: {first}; all ranks must be started with one scene",
-            comm.rank()
-        ))),
-    }
+/// Fails unless all ranks have the scene of rank 0: all compute the same. Collective.
+pub fn require_same_scene(text: &str) -> Result<(), Failure> {
+    let comm = Communicator::world();
+    let of_root = comm.from_root(text.as_bytes().to_vec());
+    let compare = || {
+        let differences = difference(&String::from_utf8_lossy(&of_root), text)?;
+        match differences.first() {
+            None => Ok(()),
+            Some(first) => Err(Failure::User(anyhow!(
+                "the scene of rank {} is not that of rank 0: {first}; all ranks must be started with one scene",
+                comm.rank()
+            ))),
+        }
+    };
+    agree(compare())
 }

@@ -1,12 +1,11 @@
 //! Newton on the shaft over a part of a step.
 
+use comm::Communicator;
 use dynamics::motion::held::{HeldAnswer, HeldPart, Holding};
-
-use rayon::prelude::*;
 
 use super::bodies::SharedLoads;
 use super::factors::KeptFactors;
-use super::side_by_side::in_order;
+use super::side_by_side::of_each;
 use super::step::ShaftStep;
 use crate::error::AssemblyError;
 use crate::newton::Mount;
@@ -116,7 +115,7 @@ impl ShaftStep<'_> {
             let own = mount.place.into_bearing(mount.station.displacement(&end));
             part.answer(own).map_err(AssemblyError::of_bearing(&mount.name))
         };
-        let answers = in_order(parts.par_iter_mut().zip(self.mounts).map(answer))?;
+        let answers = of_each(parts.iter_mut().zip(self.mounts), answer)?;
         for (mount, answer) in self.mounts.iter().zip(&answers) {
             let load = mount.place.orientation.turned(answer.load);
             mount.station.add_load(load.map(|f| -f), &mut residual);
@@ -150,7 +149,10 @@ impl ShaftStep<'_> {
                 Ok(next) if next.error <= from.error.max(LIMIT * next.scale) || halving == HALVINGS => {
                     return Ok(next);
                 }
-                Err(error) if halving == HALVINGS => return Err(error),
+                // Ranks that share rings go on together or not at all.
+                Err(error) if halving == HALVINGS || !Communicator::world().all_failed() => {
+                    return Err(error);
+                }
                 _ => share *= 0.5,
             }
         }

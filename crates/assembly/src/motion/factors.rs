@@ -14,9 +14,8 @@
 use dense::DenseLu;
 use dynamics::motion::held::HeldPart;
 use dynamics::stiffness::{N_SHAFT, ShaftMatrix};
-use rayon::prelude::*;
 
-use super::side_by_side::in_order;
+use super::side_by_side::of_each;
 use super::step::ShaftStep;
 use crate::error::AssemblyError;
 use crate::newton::Mount;
@@ -104,7 +103,7 @@ impl KeptFactors {
             let own = part.stiffness().map_err(AssemblyError::of_bearing(&mount.name))?;
             Ok(mount.place.orientation.turned_matrix(&own))
         };
-        let tangents = in_order(parts.par_iter_mut().zip(step.mounts).map(tangent))?;
+        let tangents = of_each(parts.iter_mut().zip(step.mounts), tangent)?;
         if !step.shaft.is_beam() {
             let mut whole = step.own_tangent();
             for (mount, tangent) in step.mounts.iter().zip(&tangents) {

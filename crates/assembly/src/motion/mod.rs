@@ -26,17 +26,17 @@ mod ledger;
 mod side_by_side;
 mod step;
 
+use comm::Communicator;
 use dynamics::kinematics::Speed;
 use dynamics::motion::held::{HeldAnswer, HeldPart, Holding};
 use dynamics::motion::{Integrator, Motion, MotionSettings, MotionState, PartSpan, StepCache, StepReport};
 use dynamics::stiffness::N_SHAFT;
 use dynamics::{DynamicsError, ShaftDof};
-use rayon::prelude::*;
 
 use self::bodies::SharedLoads;
 use self::factors::{KeptFactors, ShaftAlone};
 pub use self::ledger::ShaftLedger;
-use self::side_by_side::in_order;
+use self::side_by_side::of_each;
 use self::step::ShaftStep;
 use crate::assembly::{Assembly, AssemblySolution};
 use crate::error::AssemblyError;
@@ -159,8 +159,12 @@ impl<'a> AssemblyMotion<'a> {
         cache
             .bearings
             .resize_with(self.bearings.len(), StepCache::default);
-        // Among the threads of the bearings: to hand each of their answers over costs more than the answer.
-        rayon::scope(|_| self.parts(state, cache))
+        match Communicator::world().size() {
+            // Among the threads of the bearings: to hand each of their answers over costs more than the answer.
+            1 => rayon::scope(|_| self.parts(state, cache)),
+            // The main thread alone sends messages.
+            _ => self.parts(state, cache),
+        }
     }
 
     /// The parts of a step.
@@ -186,7 +190,12 @@ impl<'a> AssemblyMotion<'a> {
                     report.add(&done);
                     next = Some(part);
                 }
-                Err(error) if rung < self.halvings && error.may_pass_with_smaller_step() => {
+                // Ranks that share rings try again together or not at all.
+                Err(error)
+                    if rung < self.halvings
+                        && error.may_pass_with_smaller_step()
+                        && Communicator::world().all_failed() =>
+                {
                     rung += 1;
                     report.retries += 1;
                 }
@@ -216,11 +225,10 @@ impl<'a> AssemblyMotion<'a> {
         cache: &mut AssemblyCache,
     ) -> Result<(AssemblyState, StepReport), AssemblyError> {
         let (mounts, known) = (&self.mounts, &cache.bearings);
-        let begun = self.bearings.par_iter().enumerate().map(|(i, motion)| {
+        let mut parts = of_each(self.bearings.iter().enumerate(), |(i, motion)| {
             let part = HeldPart::begin(motion, &state.bearings[i], spans[i].0, &known[i]);
             part.map_err(AssemblyError::of_bearing(&mounts[i].name))
-        });
-        let mut parts = in_order(begun)?;
+        })?;
         let span = spans[0].0;
         let step = ShaftStep {
             shaft: &self.assembly.shaft,
@@ -255,7 +263,7 @@ impl<'a> AssemblyMotion<'a> {
     ) -> Result<Holding, AssemblyError> {
         let mounts = &self.mounts;
         let of_part = |(i, part)| of(i, part).map_err(AssemblyError::of_bearing(&mounts[i].name));
-        let held = in_order(parts.par_iter_mut().enumerate().map(of_part))?;
+        let held = of_each(parts.iter_mut().enumerate(), of_part)?;
         Ok(match held.contains(&Holding::Again) {
             true => Holding::Again,
             false => Holding::Settled,
@@ -274,8 +282,8 @@ impl<'a> AssemblyMotion<'a> {
         let finish = |((part, cache), mount): ((HeldPart<'_>, &mut StepCache), &Mount)| {
             part.finish(cache).map_err(AssemblyError::of_bearing(&mount.name))
         };
-        let parts = parts.into_par_iter().zip(&mut cache.bearings);
-        for (next, done) in in_order(parts.zip(&self.mounts).map(finish))? {
+        let parts = parts.into_iter().zip(&mut cache.bearings);
+        for (next, done) in of_each(parts.zip(&self.mounts), finish)? {
             report.add(&done);
             bearings.push(next);
         }

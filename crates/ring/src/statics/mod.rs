@@ -16,3 +16,4 @@ mod tie;
 pub use prepared::{Prepared, StaticSettings};
 pub use solver::{ASSEMBLE, FACTOR, RingSolver, iterations_note};
 pub use stiffness::{Factored, HeldStiffness, Numbers};
+pub use tie::SeatResponse;

@@ -7,7 +7,7 @@ use timer::{Laps, Stopwatch};
 
 use super::prepared::{Prepared, StaticSettings};
 use super::stiffness::Numbers;
-use super::tie::RingTie;
+use super::tie::{RingTie, SeatResponse};
 use crate::error::RingError;
 use crate::inventory::Inventory;
 use crate::memory::RingMemory;
@@ -164,6 +164,24 @@ impl RingSolver {
     /// Compliance of contacts, m/N, row-major `[2 n][2 n]` over (contact, [radial, axial]): motion of every groove
     /// centre under a unit force at every other. Symmetric to round-off, then made so exactly.
     pub fn compliance(&self, contacts: &[NodalWeights]) -> Vec<f64> {
+        let (mut compliance, couplings) = self.held_compliance(contacts);
+        if let Some(tie) = &self.tie {
+            add_body(tie, &couplings, &mut compliance);
+        }
+        make_symmetric(2 * contacts.len(), &mut compliance);
+        compliance
+    }
+
+    /// What the contacts and the forces of the body do when others move the seat; None where no body is tied to the
+    /// ring. Cost: as [`Self::compliance`].
+    pub fn seat_response(&self, contacts: &[NodalWeights]) -> Option<SeatResponse> {
+        let tie = self.tie.as_ref()?;
+        let (_, couplings) = self.held_compliance(contacts);
+        Some(tie.response(&couplings))
+    }
+
+    /// Compliance of contacts on the ring that no body is tied to, and their couplings with one, `[2 n][tie.n()]`.
+    fn held_compliance(&self, contacts: &[NodalWeights]) -> (Vec<f64>, Vec<f64>) {
         let n = 2 * contacts.len();
         let mut compliance = vec![0.0; n * n];
         let rows = self.rows_of(contacts);
@@ -197,11 +215,7 @@ impl RingSolver {
                 }
             }
         }
-        if let Some(tie) = &self.tie {
-            add_body(tie, &couplings, &mut compliance);
-        }
-        make_symmetric(n, &mut compliance);
-        compliance
+        (compliance, couplings)
     }
 
     /// A unit force on contact direction j, N, `[n_dofs]`.

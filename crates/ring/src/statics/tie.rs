@@ -21,9 +21,20 @@ use mesh::NodePositions;
 
 use crate::error::RingError;
 use crate::model::RingModel;
+use crate::vectors::dot;
 
 /// Rigid motions of a ring.
 const N_RIGID: usize = 6;
+
+/// What a ring does when others move its seat by unit motions of the functions, and nothing else acts.
+pub struct SeatResponse {
+    /// Number of functions of the seat.
+    pub n_functions: usize,
+    /// Motion of the contacts, m/m, row-major `[2 n_contacts][n_functions]` over (contact, [radial, axial]).
+    pub motion: Vec<f64>,
+    /// Forces on the ring, N/m, `[n_functions][n_functions]` flat.
+    pub forces: Vec<f64>,
+}
 
 /// The joint of a factored ring.
 pub(super) struct RingTie {
@@ -120,6 +131,24 @@ impl RingTie {
         let mut answer: Vec<f64> = couplings.iter().map(|b| -b).collect();
         self.saddle.solve(&mut answer, couplings.len() / self.n());
         answer
+    }
+
+    /// What motions d of the seat do: (lam, q) = M^-1 (d, 0) with the saddle M. Contacts that have these couplings
+    /// `[n_contacts][n]` when they push move by their products with it, as M is symmetric.
+    pub fn response(&self, couplings: &[f64]) -> SeatResponse {
+        let (n, n_functions) = (self.n(), self.n_functions());
+        let mut answers = vec![0.0; n * n_functions];
+        (0..n_functions).for_each(|i| answers[n * i + i] = 1.0);
+        self.saddle.solve(&mut answers, n_functions);
+        let of_coupling = |coupling| answers.chunks_exact(n).map(move |answer| dot(coupling, answer));
+        SeatResponse {
+            n_functions,
+            motion: couplings.chunks_exact(n).flat_map(of_coupling).collect(),
+            forces: (0..n_functions)
+                .flat_map(|i| answers.iter().skip(i).step_by(n))
+                .copied()
+                .collect(),
+        }
     }
 
     /// Adds the forces of the body to a load.

@@ -1,0 +1,73 @@
+//! A list of bearings as it is read: its meshes, and what only they tell.
+
+use assembly::Assembly;
+use results::failure::Failure;
+use results::memory::require_memory;
+use results::survey::{Survey, say_doubts};
+use scene::{SeveralScene, build_assembly, doubts};
+
+/// A list that has been read.
+pub struct ReadList {
+    /// The bearings on their shaft.
+    pub assembly: Assembly,
+    /// What is most likely a slip in the scene.
+    pub doubts: Vec<String>,
+    /// Where the bearings keep fields.
+    pub surveys: Vec<Survey>,
+}
+
+/// Reads the meshes of a list (a point of `scene` when that is a sweep) and finds what only they tell, if a last test
+/// passes. Every rank reads them whole, and may fail alone.
+pub fn read_list(
+    point: &SeveralScene,
+    scene: &SeveralScene,
+    test: impl FnOnce(&Assembly) -> Result<(), Failure>,
+) -> Result<ReadList, Failure> {
+    let (assembly, _) = build_assembly(point)?;
+    let doubts = all_doubts(scene, &assembly);
+    say_doubts(&doubts);
+    test(&assembly)?;
+    let surveys = surveys(scene, &assembly)?;
+    Ok(ReadList {
+        assembly,
+        doubts,
+        surveys,
+    })
+}
+
+/// Fails where a bearing needs more memory than there is.
+pub fn require_memory_of_all(scene: &SeveralScene, assembly: &Assembly) -> Result<(), Failure> {
+    let mut bearings = assembly.bearings.iter();
+    bearings.try_for_each(|bearing| require_memory(&scene.analysis, &bearing.model))
+}
+
+/// The regions in which the bearings keep fields, if the scene has one.
+pub fn surveys(scene: &SeveralScene, assembly: &Assembly) -> Result<Vec<Survey>, Failure> {
+    let bearings = scene.bearings.iter().zip(&assembly.bearings);
+    let survey = |(bearing, mounted): (&scene::BearingOnShaft, &assembly::MountedBearing)| {
+        let survey = Survey::of_part(&bearing.scene, &mounted.model);
+        survey.map_err(|failure| failure.context(format!("bearing {:?}", bearing.name)))
+    };
+    bearings.map(survey).collect()
+}
+
+/// What is most likely a slip, once for each type.
+pub fn all_doubts(scene: &SeveralScene, assembly: &Assembly) -> Vec<String> {
+    let mut all: Vec<String> = Vec::new();
+    for (bearing, mounted) in scene.bearings.iter().zip(&assembly.bearings) {
+        let new = doubts(&bearing.scene, &mounted.model);
+        all.extend(
+            new.into_iter()
+                .filter(|line| !all.contains(line))
+                .collect::<Vec<_>>(),
+        );
+    }
+    if scene.effects.temperature.is_some() {
+        all.push(
+            "effects.temperature acts in each bearing; the axial growth of shaft and housing between bearings is left \
+             out: give it with pairing.offset"
+                .to_string(),
+        );
+    }
+    all
+}
