@@ -68,6 +68,9 @@ use crate::pack::Pack;
 use crate::resume::Request;
 use crate::stiffness::StiffnessCommand;
 
+/// Options of all commands stand behind those of a command in its help.
+const LAST_OPTIONS: usize = 900;
+
 /// Simulates angular contact ball bearings with fully flexible rings.
 #[derive(Debug, Parser)]
 #[command(
@@ -78,13 +81,13 @@ use crate::stiffness::StiffnessCommand;
 )]
 struct Arguments {
     /// Number of threads; default: RACEWAY_THREADS, or all cores. Results do not depend on it.
-    #[arg(long, global = true)]
+    #[arg(long, global = true, display_order = LAST_OPTIONS)]
     threads: Option<usize>,
     /// Answers with one line of JSON on standard output; all else that is said goes to standard error.
-    #[arg(long, global = true)]
+    #[arg(long, global = true, display_order = LAST_OPTIONS)]
     json: bool,
     /// Says nothing about how it goes but warnings and errors.
-    #[arg(long, global = true)]
+    #[arg(long, global = true, display_order = LAST_OPTIONS)]
     quiet: bool,
     /// Ends with the process of this number, which started this one.
     #[arg(long, global = true, hide = true)]
