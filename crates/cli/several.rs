@@ -12,7 +12,7 @@ use results::files::{Files, say_folder};
 use results::memory::{Forecasts, require_memory};
 use results::seat::{self, SeatSummary};
 use results::several::{
-    ListState, SeveralFindings, SeveralSummary, SeveralTables, print_solution, print_sweep_head,
+    ListState, SCENE_TEXT, SeveralFindings, SeveralSummary, SeveralTables, print_solution, print_sweep_head,
     print_sweep_point,
 };
 use results::shown::Shown;
@@ -25,9 +25,6 @@ use scene::{
 };
 
 use crate::progress::Progress;
-
-/// The scene, beside the results of its bearings.
-pub const SCENE_FILE: &str = "scene.toml";
 
 /// One load case: the swept value (None for a static scene) and its scene.
 pub type SeveralPoint = (Option<f64>, SeveralScene);
@@ -245,7 +242,7 @@ pub fn of_seat(name: &str, seat: Option<&SeatSummary>) -> Option<String> {
 pub fn make_folder(scene: &SeveralScene, dir: &Path) -> Result<(), Failure> {
     make_asked_folder(dir)?;
     say_folder(dir);
-    Ok(write_new(&dir.join(SCENE_FILE), |file| {
+    Ok(write_new(&dir.join(SCENE_TEXT), |file| {
         file.write_all(scene.text.as_bytes())
     })?)
 }

@@ -11,7 +11,7 @@ use results::about::{MAY_CHANGE, OVERRIDES, SCENE_FILE, require_same_meshes, sce
 use results::failure::Failure;
 use results::files::note_dead_owner;
 use results::reduction::take_arrays;
-use results::several::BEARINGS_TABLE;
+use results::several::{BEARINGS_TABLE, SCENE_TEXT};
 use results::state_arrays::{self, Arrays};
 use results::watch::Watch;
 use scene::{Analysis, AnyScene, Dynamic, MeshFiles, Scene, SeveralScene, difference};
@@ -50,7 +50,7 @@ pub struct Restored {
 
 /// Whether a folder has results of a list of bearings.
 pub fn is_list(dir: &Path) -> bool {
-    dir.join(BEARINGS_TABLE).exists() && dir.join(crate::several::SCENE_FILE).exists()
+    dir.join(BEARINGS_TABLE).exists() && dir.join(SCENE_TEXT).exists()
 }
 
 /// The state of the shaft, which every bearing's file has.
@@ -140,12 +140,8 @@ pub struct Changes<'a> {
 /// Reads the step from which a run goes on; `asked` is the one asked for. None if the run has finished.
 pub fn read(dir: &Path, asked: Option<u64>, changes: Changes<'_>) -> Result<Option<StoredList>, Failure> {
     let overrides = changes.overrides;
-    let text = std::fs::read_to_string(dir.join(crate::several::SCENE_FILE)).with_context(|| {
-        format!(
-            "{} cannot be read",
-            dir.join(crate::several::SCENE_FILE).display()
-        )
-    })?;
+    let text = std::fs::read_to_string(dir.join(SCENE_TEXT))
+        .with_context(|| format!("{} cannot be read", dir.join(SCENE_TEXT).display()))?;
     let names = scene::names_of_bearings(&text);
     let folders: Vec<PathBuf> = names.iter().map(|name| dir.join(name)).collect();
     let mut locks = Vec::new();
