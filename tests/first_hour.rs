@@ -225,6 +225,32 @@ fn completions_and_the_man_page_know_the_commands() {
         man.contains(".TH raceway 1") && man.contains("\\-\\-threads"),
         "{man}"
     );
+    // The pages that it names are there.
+    let said = done(&dir, "man --out man/man1");
+    let names = man.replace("\\-", "-");
+    let named = names.lines().filter_map(|line| line.strip_suffix("(1)"));
+    let named: Vec<&str> = named.filter(|name| name.starts_with("raceway-")).collect();
+    assert!(
+        said.contains(&format!("{} man pages in man/man1", named.len() + 1)),
+        "{said}"
+    );
+    for name in named {
+        let page = dir.text(&format!("man/man1/{name}.1"));
+        assert!(
+            page.contains(&format!(".TH {name} 1")) && page.contains("quiet"),
+            "{page}"
+        );
+    }
+    dir.write("file", "");
+    let refused = dir.raceway(&["man", "--out", "file"]);
+    assert_eq!(refused.code, Some(2));
+    assert!(
+        refused
+            .stderr
+            .starts_with("error: cannot write man pages into file: "),
+        "{}",
+        refused.stderr
+    );
     let words = [
         done(&dir, "completions bash"),
         done(&dir, "completions fish"),

@@ -191,8 +191,12 @@ enum Command {
         /// The shell; its manual says where completions are put.
         shell: clap_complete::Shell,
     },
-    /// Prints the man page: raceway man > raceway.1.
-    Man,
+    /// Prints the man page: raceway man > raceway.1. With --out writes it and those of all commands.
+    Man {
+        /// Folder of the pages raceway.1, raceway-run.1 and so on; it is made, pages in it are replaced.
+        #[arg(long, value_name = "DIR")]
+        out: Option<PathBuf>,
+    },
     /// Builds the ring meshes that a scene describes, or the periodic mesh of a ring that has a free one; needs Gmsh.
     Mesh(MeshCommand),
 }
@@ -207,7 +211,8 @@ fn main() -> ExitCode {
     match &arguments.command {
         Command::Help { topic } => return help::help(topic, Arguments::command()),
         Command::Completions { shell } => return help::completions(*shell, Arguments::command()),
-        Command::Man => return help::man(Arguments::command()),
+        Command::Man { out: None } => return help::man(Arguments::command()),
+        Command::Man { out: Some(out) } => return help::pages(Arguments::command(), out),
         _ => {}
     }
     let is_answer_only = arguments.json;
@@ -375,7 +380,7 @@ fn execute(arguments: Arguments) -> Result<(), Failure> {
             say_memory_of_ranks();
             Ok(())
         }
-        Command::Gmsh { .. } | Command::Help { .. } | Command::Completions { .. } | Command::Man => {
+        Command::Gmsh { .. } | Command::Help { .. } | Command::Completions { .. } | Command::Man { .. } => {
             unreachable!("they need no ranks and threads")
         }
         Command::Info { path, verify } => {
