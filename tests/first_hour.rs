@@ -136,6 +136,10 @@ fn init_replaces_nothing_and_takes_the_numbers_of_a_catalogue() {
             "error: \"NU206\" is no bearing that is known here; expected a series",
         ),
         (
+            &["init", "7208", "--balls", "0"],
+            "invalid value '0' for '--balls <BALLS>': 0 is not in 3..=1000",
+        ),
+        (
             &["init", "--out", "c.toml"],
             "error: --bore is missing; expected a series 60, 62, 63, 70, 72 or 73",
         ),
@@ -154,6 +158,29 @@ fn init_replaces_nothing_and_takes_the_numbers_of_a_catalogue() {
         );
         assert!(!dir.path("c.toml").exists());
     }
+}
+
+/// Wrong: a designation as catalogues print it would have to be quoted, or flags have no short names.
+#[test]
+fn init_takes_a_designation_of_several_words() {
+    let dir = Dir::empty();
+    let said = done(&dir, "init 7014 ACD/P4A");
+    assert!(said.starts_with("7014_acd_p4a.toml is written\n"), "{said}");
+    let text = dir.text("7014_acd_p4a.toml");
+    assert!(
+        text.contains("title = \"7014 ACD/P4A\"") && text.contains("contact_angle = \"25 deg\""),
+        "{text}"
+    );
+    done(&dir, "init 6203-2RS1/C3 --clearance 12um --out a.toml");
+    assert!(dir.text("a.toml").contains("radial_clearance = \"12 um\""));
+    done(&dir, "init 7208 --angle 30deg --out b.toml");
+    assert!(dir.text("b.toml").contains("contact_angle = \"30 deg\""));
+    let help = done(&dir, "help init");
+    let place = |option: &str| help.find(option).unwrap_or_else(|| panic!("{option}\n{help}"));
+    assert!(
+        place("--width") < place("--threads") && place("--out") < place("--json"),
+        "{help}"
+    );
 }
 
 /// Wrong: help would not find a key of a scene, or end with a success for a word that it does not know.
@@ -197,6 +224,32 @@ fn completions_and_the_man_page_know_the_commands() {
     assert!(
         man.contains(".TH raceway 1") && man.contains("\\-\\-threads"),
         "{man}"
+    );
+    // The pages that it names are there.
+    let said = done(&dir, "man --out man/man1");
+    let names = man.replace("\\-", "-");
+    let named = names.lines().filter_map(|line| line.strip_suffix("(1)"));
+    let named: Vec<&str> = named.filter(|name| name.starts_with("raceway-")).collect();
+    assert!(
+        said.contains(&format!("{} man pages in man/man1", named.len() + 1)),
+        "{said}"
+    );
+    for name in named {
+        let page = dir.text(&format!("man/man1/{name}.1"));
+        assert!(
+            page.contains(&format!(".TH {name} 1")) && page.contains("quiet"),
+            "{page}"
+        );
+    }
+    dir.write("file", "");
+    let refused = dir.raceway(&["man", "--out", "file"]);
+    assert_eq!(refused.code, Some(2));
+    assert!(
+        refused
+            .stderr
+            .starts_with("error: cannot write man pages into file: "),
+        "{}",
+        refused.stderr
     );
     let words = [
         done(&dir, "completions bash"),

@@ -357,12 +357,15 @@ fn a_shaft_locked_at_zero_is_told_where_the_middle_is() {
     let dir = Dir::with_scene(SCENE);
     let check = [&["check", "scene.toml"], &RIGID[..], &["--set", "shaft.z=locked"]].concat();
     let outcome = dir.raceway(&check);
-    let part = "advice   shaft.z is \"locked\" at 0, where all balls just touch at the free contact angle of 14.93 \
+    let part = "advice   shaft.z is held at 0, where all balls just touch at the free contact angle of 14.93 \
                 deg; with the grooves opposite each other, as in a deep groove bearing without thrust, it is \
                 shaft.z = \"-103.";
     assert!(outcome.stdout.contains(part), "{}", outcome.stdout);
+    let zero = [&check[..check.len() - 1], &["shaft.z=0 mm"]].concat();
+    let outcome = dir.raceway(&zero);
+    assert!(outcome.stdout.contains(part), "{}", outcome.stdout);
     let outcome = dir.raceway(&check[..check.len() - 2]);
-    assert!(!outcome.stdout.contains("locked"), "{}", outcome.stdout);
+    assert!(!outcome.stdout.contains("shaft.z is"), "{}", outcome.stdout);
     // Without clearance the grooves are opposite each other, up to round-off.
     let tight = "bearing.outer_raceway_diameter=74.01 mm";
     let outcome = dir.raceway(&[&check[..], &["--set", tight]].concat());
@@ -372,4 +375,32 @@ fn a_shaft_locked_at_zero_is_told_where_the_middle_is() {
         outcome.stdout
     );
     assert!(!outcome.stdout.contains("shaft.z is"), "{}", outcome.stdout);
+}
+
+/// Wrong: an angular contact bearing without thrust would come apart, and nobody would say why contact angles are 0.
+#[test]
+fn a_bearing_that_only_a_radial_force_loads_is_told_that_it_comes_apart() {
+    let dir = Dir::with_scene(SCENE);
+    let check = |more: &[&str]| {
+        let check = [
+            &["check", "scene.toml"],
+            &RIGID[..],
+            &["--set", "shaft.z=free"],
+            more,
+        ]
+        .concat();
+        dir.raceway(&check).stdout
+    };
+    let radial = [
+        "--set",
+        "effects.radial_force={ value=\"1 kN\", direction=\"0 deg\" }",
+    ];
+    let alone = [&radial[..], &["--set", "effects.axial_force=none"]].concat();
+    let part = "advice   shaft.z is \"free\" and no load acts along the axis: from the free contact angle of 14.93 deg \
+                the radial force drives the rings apart until contact angles are about 0; an angular contact bearing \
+                needs [effects.axial_force], [effects.spring_preload] or a shaft.z that is held";
+    let said = check(&alone);
+    assert!(said.contains(part), "{said}");
+    let said = check(&radial);
+    assert!(!said.contains("no load acts"), "{said}");
 }

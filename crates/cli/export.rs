@@ -67,8 +67,9 @@ pub fn export(request: &Export) -> Result<(), Failure> {
         write_new(&out.join("run.pvd"), |file| vtu::write_collection(file, &names))?;
     }
     print::line(format_args!(
-        "{} steps as {extension} in {}",
+        "{} {} as {extension} in {}",
         names.len(),
+        if names.len() == 1 { "step" } else { "steps" },
         out.display()
     ));
     Ok(())

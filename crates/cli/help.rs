@@ -1,6 +1,7 @@
 //! `raceway help`, of the program, of a command, and the reference of scenes; completions and the man page.
 
 use std::io::Write;
+use std::path::Path;
 use std::process::ExitCode;
 
 use comm::print;
@@ -46,6 +47,36 @@ pub fn man(program: clap::Command) -> ExitCode {
             ExitCode::FAILURE
         }
     }
+}
+
+/// Writes the man pages of the program and of all its commands into a folder.
+pub fn pages(mut program: clap::Command, out: &Path) -> ExitCode {
+    // Options that all commands share are known to a command once the program is built.
+    program.build();
+    match write_pages(&program, out) {
+        Ok(n) => print_all(format!("{n} man pages in {}", out.display()).as_bytes()),
+        Err(error) => {
+            let failure = Failure::User(anyhow::anyhow!(
+                "cannot write man pages into {}: {error}",
+                out.display()
+            ));
+            print::note(format_args!("{}: {}", failure.kind(), failure.text()));
+            ExitCode::from(failure.number())
+        }
+    }
+}
+
+/// Returns how many.
+fn write_pages(program: &clap::Command, out: &Path) -> std::io::Result<usize> {
+    std::fs::create_dir_all(out)?;
+    let commands = program.get_subcommands().filter(|command| !command.is_hide_set());
+    let all = std::iter::once(program).chain(commands);
+    let mut n = 0;
+    for command in all {
+        clap_mangen::Man::new(command.clone()).generate_to(out)?;
+        n += 1;
+    }
+    Ok(n)
 }
 
 /// A reader that has seen enough, such as head, is no error.

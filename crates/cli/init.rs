@@ -14,8 +14,9 @@ use scene::{MeshFiles, Scene, StarterRequest, file_name, scene_text};
 /// What the command line asks for.
 #[derive(Debug, Args)]
 pub struct Init {
-    /// Designation, such as 6206, 7208, 7010C; series 60, 62, 63, 70, 72, 73 with bores of 10 to 100 mm.
-    designation: Option<String>,
+    /// Designation with its suffixes, such as 7208, 7014 ACD, 6203-2RS1/C3; series 60, 62, 63, 70, 72, 73 with bores
+    /// of 10 to 100 mm.
+    designation: Vec<String>,
     /// Bore diameter, such as "40 mm".
     #[arg(long, value_name = "LENGTH", value_parser = quantity::<LENGTH>)]
     bore: Option<Quantity<LENGTH>>,
@@ -26,8 +27,8 @@ pub struct Init {
     #[arg(long, value_name = "LENGTH", value_parser = quantity::<LENGTH>)]
     width: Option<Quantity<LENGTH>>,
     /// Number of balls; an estimate otherwise.
-    #[arg(long)]
-    balls: Option<usize>,
+    #[arg(long, value_parser = clap::value_parser!(u16).range(3..=1000))]
+    balls: Option<u16>,
     /// Ball diameter; an estimate otherwise.
     #[arg(long, value_name = "LENGTH", value_parser = quantity::<LENGTH>)]
     ball_diameter: Option<Quantity<LENGTH>>,
@@ -35,10 +36,12 @@ pub struct Init {
     #[arg(long, value_name = "LENGTH", value_parser = quantity::<LENGTH>)]
     pitch_diameter: Option<Quantity<LENGTH>>,
     /// Contact angle free of load, such as "40 deg".
-    #[arg(long, value_name = "ANGLE", value_parser = quantity::<ANGLE>, conflicts_with = "radial_clearance")]
+    #[arg(long, alias = "angle", value_name = "ANGLE", value_parser = quantity::<ANGLE>)]
+    #[arg(conflicts_with = "radial_clearance")]
     contact_angle: Option<Quantity<ANGLE>>,
     /// Radial clearance of a deep groove bearing, from one extreme to the other.
-    #[arg(long, value_name = "LENGTH", value_parser = quantity::<LENGTH>, allow_hyphen_values = true)]
+    #[arg(long, alias = "clearance", value_name = "LENGTH", value_parser = quantity::<LENGTH>)]
+    #[arg(allow_hyphen_values = true)]
     radial_clearance: Option<Quantity<LENGTH>>,
     /// File to write; default: the designation with .toml. An existing file is never replaced.
     #[arg(long)]
@@ -53,11 +56,11 @@ fn quantity<const KIND: usize>(text: &str) -> Result<Quantity<KIND>, String> {
 /// Writes the scene and says what comes next.
 pub fn init(request: &Init) -> Result<(), Failure> {
     let wanted = StarterRequest {
-        designation: request.designation.clone(),
+        designation: (!request.designation.is_empty()).then(|| request.designation.join(" ")),
         bore: request.bore.clone(),
         outside: request.outside.clone(),
         width: request.width.clone(),
-        balls: request.balls,
+        balls: request.balls.map(usize::from),
         ball_diameter: request.ball_diameter.clone(),
         pitch_diameter: request.pitch_diameter.clone(),
         contact_angle: request.contact_angle.clone(),

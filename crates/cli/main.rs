@@ -71,6 +71,9 @@ use crate::pack::Pack;
 use crate::resume::Request;
 use crate::stiffness::StiffnessCommand;
 
+/// Options of all commands stand behind those of a command in its help.
+const LAST_OPTIONS: usize = 900;
+
 /// Simulates angular contact ball bearings with fully flexible rings.
 #[derive(Debug, Parser)]
 #[command(
@@ -81,13 +84,13 @@ use crate::stiffness::StiffnessCommand;
 )]
 struct Arguments {
     /// Number of threads; default: RACEWAY_THREADS, or all cores. Results do not depend on it.
-    #[arg(long, global = true)]
+    #[arg(long, global = true, display_order = LAST_OPTIONS)]
     threads: Option<usize>,
     /// Answers with one line of JSON on standard output; all else that is said goes to standard error.
-    #[arg(long, global = true)]
+    #[arg(long, global = true, display_order = LAST_OPTIONS)]
     json: bool,
     /// Says nothing about how it goes but warnings and errors.
-    #[arg(long, global = true)]
+    #[arg(long, global = true, display_order = LAST_OPTIONS)]
     quiet: bool,
     /// Ends with the process of this number, which started this one.
     #[arg(long, global = true, hide = true)]
@@ -191,8 +194,12 @@ enum Command {
         /// The shell; its manual says where completions are put.
         shell: clap_complete::Shell,
     },
-    /// Prints the man page: raceway man > raceway.1.
-    Man,
+    /// Prints the man page: raceway man > raceway.1. With --out writes it and those of all commands.
+    Man {
+        /// Folder of the pages raceway.1, raceway-run.1 and so on; it is made, pages in it are replaced.
+        #[arg(long, value_name = "DIR")]
+        out: Option<PathBuf>,
+    },
     /// Builds the ring meshes that a scene describes, or the periodic mesh of a ring that has a free one; needs Gmsh.
     Mesh(MeshCommand),
 }
@@ -207,7 +214,8 @@ fn main() -> ExitCode {
     match &arguments.command {
         Command::Help { topic } => return help::help(topic, Arguments::command()),
         Command::Completions { shell } => return help::completions(*shell, Arguments::command()),
-        Command::Man => return help::man(Arguments::command()),
+        Command::Man { out: None } => return help::man(Arguments::command()),
+        Command::Man { out: Some(out) } => return help::pages(Arguments::command(), out),
         _ => {}
     }
     let is_answer_only = arguments.json;
@@ -375,7 +383,7 @@ fn execute(arguments: Arguments) -> Result<(), Failure> {
             say_memory_of_ranks();
             Ok(())
         }
-        Command::Gmsh { .. } | Command::Help { .. } | Command::Completions { .. } | Command::Man => {
+        Command::Gmsh { .. } | Command::Help { .. } | Command::Completions { .. } | Command::Man { .. } => {
             unreachable!("they need no ranks and threads")
         }
         Command::Info { path, verify } => {

@@ -6,6 +6,7 @@
 //! flexibility            u / d: hoop stretch of a ring that nothing holds, u = Z Q cos a r / (2 pi E A)
 //! body.seat.harmonics    more than the number of balls
 //! shaft.z                0 is the just-touching state; grooves opposite each other are at -A sin a, A their distance
+//!                        free without an axial load: an angular contact bearing comes apart, a from 14 deg on
 //! ```
 //!
 //! Q is the load of a ball, d its Hertz approach and a the free contact angle ([`dynamics::effects::rules`]).
@@ -39,6 +40,7 @@ pub fn advice(scene: &Scene, model: &Model) -> Result<Vec<String>, Failure> {
     let mut lines = effects.advice(&case);
     lines.extend(flexibility(scene, &case));
     zero_of_the_shaft(scene, model, &mut lines);
+    lines.extend(free_without_thrust(scene, &case));
     lines.extend(rigid_ring_without_inertia(scene, &case));
     lines.extend(periodic_gain::advice(scene, model));
     lines.extend(orders_of_seats(scene, model));
@@ -75,15 +77,34 @@ fn zero_of_the_shaft(scene: &Scene, model: &Model, lines: &mut Vec<String>) {
     let geometry = &model.geometry;
     let angle = geometry.free_contact_angle();
     let play = geometry.groove_distance() * angle.sin();
-    if scene.shaft.z != Motion::Locked || play <= NO_PLAY || model.seat().is_some() {
+    let is_zero = matches!(scene.shaft.z, Motion::Locked | Motion::Prescribed(0.0));
+    if !is_zero || play <= NO_PLAY || model.seat().is_some() {
         return;
     }
     lines.push(format!(
-        "shaft.z is \"locked\" at 0, where all balls just touch at the free contact angle of {:.2} deg; with the \
+        "shaft.z is held at 0, where all balls just touch at the free contact angle of {:.2} deg; with the \
          grooves opposite each other, as in a deep groove bearing without thrust, it is shaft.z = \"{:.3} um\"",
         angle.to_degrees(),
         -1e6 * play
     ));
+}
+
+/// Least free contact angle of an angular contact bearing, rad: 14 degrees.
+const ANGULAR: f64 = 14.0 * std::f64::consts::PI / 180.0;
+
+/// A radial force alone drives the rings of an angular contact bearing apart along the axis.
+fn free_without_thrust(scene: &Scene, case: &Case<'_>) -> Option<String> {
+    let angle = case.contact_angle();
+    let is_held = scene.shaft.z != Motion::Free || case.model.seat().is_some();
+    if is_held || case.load.axial != 0.0 || case.load.radial == 0.0 || angle < ANGULAR {
+        return None;
+    }
+    Some(format!(
+        "shaft.z is \"free\" and no load acts along the axis: from the free contact angle of {:.2} deg the radial \
+         force drives the rings apart until contact angles are about 0; an angular contact bearing needs \
+         [effects.axial_force], [effects.spring_preload] or a shaft.z that is held",
+        angle.to_degrees()
+    ))
 }
 
 /// A rigid inner ring has the inertia that the scene gives the shaft; what a tube of its size has is said where there

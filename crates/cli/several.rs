@@ -12,7 +12,7 @@ use results::files::{Files, say_folder};
 use results::memory::Forecasts;
 use results::seat::{self, SeatSummaries, SeatSummary};
 use results::several::{
-    ListState, SeveralFindings, SeveralSummary, SeveralTables, print_solution, print_sweep_head,
+    ListState, SCENE_TEXT, SeveralFindings, SeveralSummary, SeveralTables, print_solution, print_sweep_head,
     print_sweep_point,
 };
 use results::shown::Shown;
@@ -24,9 +24,6 @@ use scene::{Analysis, BuildError, KeptFields, Rings, Scene, SeveralScene, assemb
 
 use crate::progress::Progress;
 use crate::several_read::{ReadList, read_list, require_memory_of_all};
-
-/// The scene, beside the results of its bearings.
-pub const SCENE_FILE: &str = "scene.toml";
 
 /// One load case: the swept value (None for a static scene) and its scene.
 pub type SeveralPoint = (Option<f64>, SeveralScene);
@@ -260,7 +257,7 @@ pub fn make_folder(scene: &SeveralScene, dir: &Path) -> Result<(), Failure> {
     }
     make_asked_folder(dir)?;
     say_folder(dir);
-    Ok(write_new(&dir.join(SCENE_FILE), |file| {
+    Ok(write_new(&dir.join(SCENE_TEXT), |file| {
         file.write_all(scene.text.as_bytes())
     })?)
 }

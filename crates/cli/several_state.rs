@@ -10,12 +10,11 @@ use comm::print;
 use results::about::{MAY_CHANGE, OVERRIDES, SCENE_FILE, require_same_meshes, scene_file};
 use results::failure::{Failure, agree};
 use results::reduction::take_arrays;
-use results::several::BEARINGS_TABLE;
+use results::several::{BEARINGS_TABLE, SCENE_TEXT};
 use results::state_arrays::{self, Arrays};
 use results::watch::Watch;
 use scene::{Analysis, AnyScene, Dynamic, MeshFiles, Scene, SeveralScene, difference};
 
-use crate::several::SCENE_FILE as LIST_FILE;
 use crate::shared::{acquire, of_root};
 
 const SHAFT: &str = "list_shaft";
@@ -55,7 +54,7 @@ pub struct Restored {
 /// Whether a folder has results of a list of bearings: rank 0 looks for all.
 pub fn is_list(dir: &Path) -> Result<bool, Failure> {
     let has = |name: &str| dir.join(name).exists();
-    let found = of_root(|| Ok(u64::from(has(BEARINGS_TABLE) && has(LIST_FILE))))?;
+    let found = of_root(|| Ok(u64::from(has(BEARINGS_TABLE) && has(SCENE_TEXT))))?;
     Ok(found == 1)
 }
 
@@ -171,7 +170,7 @@ fn lock(dir: &Path) -> Result<Locked, Failure> {
     if !dir.is_dir() {
         return Err(anyhow!("{} is no folder; expected the results of a run", dir.display()).into());
     }
-    let path = dir.join(LIST_FILE);
+    let path = dir.join(SCENE_TEXT);
     let text =
         std::fs::read_to_string(&path).with_context(|| format!("{} cannot be read", path.display()))?;
     let names = scene::names_of_bearings(&text);

@@ -274,6 +274,6 @@ def test_damaged_files_and_those_of_another_run_are_refused(runs, tmp_path):
 
 
 def test_results_say_what_they_are(runs):
-    assert repr(runs.statics()).startswith(f"<raceway.Results {runs.folder / 'statics'}: static, 1 steps, tables balls")
+    assert repr(runs.statics()).startswith(f"<raceway.Results {runs.folder / 'statics'}: static, 1 step, tables balls")
     assert "fields displacement, force_inner, force_outer" in repr(runs.statics().step(0))
     assert isinstance(runs.statics().folder, Path)

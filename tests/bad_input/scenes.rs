@@ -226,7 +226,7 @@ fn files_that_are_no_scenes_are_refused() {
         (
             "no text",
             b"\x89PNG\r\n\x1a\n\x00\xff",
-            "error: cannot read the scene scene.toml: stream did not contain valid UTF-8",
+            "error: cannot read the scene scene.toml: it is no text in UTF-8; expected a scene, saved as UTF-8\n",
         ),
         (
             "a mesh",

@@ -141,6 +141,14 @@ pub fn require_one_bearing(dir: &Path) -> Result<(), Failure> {
     )))
 }
 
+/// Names of the bearings whose results are in `dir`, in their order on the shaft; none for a run of one bearing.
+pub fn bearings(dir: &Path) -> anyhow::Result<Vec<String>> {
+    match several::is_of_several(dir) {
+        true => several::all_names(dir),
+        false => Ok(Vec::new()),
+    }
+}
+
 /// The figures of `raceway stiffness` and `raceway campbell` in `dir`.
 pub fn linear_figures(dir: &Path) -> anyhow::Result<Vec<Named>> {
     let found = stiffness::figures(dir)?

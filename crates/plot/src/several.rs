@@ -97,7 +97,16 @@ fn loads(dir: &Path, bearings: &Table) -> anyhow::Result<Option<Figure>> {
     Ok(Some(figure))
 }
 
-/// Names of the bearings, in the order of their rows.
+/// Names of all bearings, in the order of their rows.
+pub fn all_names(dir: &Path) -> anyhow::Result<Vec<String>> {
+    let bearings = Table::read(dir, BEARINGS_TABLE)?;
+    let n = bearings
+        .as_ref()
+        .map_or(Ok(0), |table| Ok::<_, anyhow::Error>(last_rows(table)?.len()))?;
+    names(dir, n)
+}
+
+/// Names of the first bearings, in the order of their rows.
 pub fn names(dir: &Path, n: usize) -> anyhow::Result<Vec<String>> {
     let text = std::fs::read_to_string(dir.join(BEARINGS_TABLE))?;
     let mut lines = text.lines();

@@ -120,7 +120,7 @@ pub fn balls(summary: &Value) -> String {
 }
 
 /// A number with so many decimals; round-off of zero has no sign.
-fn rounded(value: f64, decimals: usize) -> String {
+pub fn rounded(value: f64, decimals: usize) -> String {
     let scale = 10f64.powi(decimals as i32);
     format!("{:.decimals$}", (value * scale).round() / scale + 0.0)
 }

@@ -1,13 +1,16 @@
 //! `raceway report`: one HTML page of a finished run that needs no other file: what was run, what came out, what it
-//! cost and what a reader should know before believing it.
+//! cost and what a reader should know before believing it. Several bearings on one shaft have one page, with a part for
+//! each.
 
 mod bearing;
 mod html;
 mod numbers;
 mod page;
+mod pictures;
+mod several;
 mod source;
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 use comm::print;
@@ -31,26 +34,15 @@ pub struct Report {
 
 /// Writes the page of a run.
 pub fn report(request: &Report) -> Result<(), Failure> {
-    plot::require_one_bearing(&request.dir)?;
-    let mut source = source::read(&request.dir)?;
+    let names = plot::bearings(&request.dir)?;
+    let (page, doubts) = match names.is_empty() {
+        true => of_one(&request.dir, &request.choice)?,
+        false => several::page(&request.dir, &names, &request.choice)?,
+    };
     say_later(&request.dir);
-    for doubt in &source.doubts {
+    for doubt in &doubts {
         print::note(format_args!("warning: {doubt}"));
     }
-    let mut figures = plot::figures(&request.dir, &request.choice)?;
-    let numbers = numbers::numbers(&Results::read(&request.dir)?)?;
-    let mut pictures = Vec::new();
-    for named in &figures.drawn {
-        match named.figure.svg() {
-            Ok(svg) => pictures.push((named.name.clone(), svg)),
-            Err(error) => figures.problems.push(format!("figure {}: {error}", named.name)),
-        }
-    }
-    for problem in &figures.problems {
-        print::note(format_args!("warning: {problem}"));
-    }
-    source.doubts.extend(figures.problems);
-    let page = page::page(&source, &numbers, &pictures);
     let path = request
         .out
         .clone()
@@ -59,4 +51,13 @@ pub fn report(request: &Report) -> Result<(), Failure> {
     answer::add("page", &path);
     print::line(format_args!("report: {}", path.display()));
     Ok(())
+}
+
+/// The page of a run of one bearing, and what was not as it should be.
+fn of_one(dir: &Path, choice: &Choice) -> Result<(String, Vec<String>), Failure> {
+    let mut source = source::read(dir)?;
+    let (pictures, problems) = pictures::drawn(plot::figures(dir, choice)?);
+    let numbers = numbers::numbers(&Results::read(dir)?)?;
+    source.doubts.extend(problems);
+    Ok((page::page(&source, &numbers, &pictures), source.doubts))
 }

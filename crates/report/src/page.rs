@@ -7,6 +7,7 @@ use serde_json::Value;
 use super::bearing;
 use super::html::{Cells, digits, row, table};
 use super::numbers::Number;
+use super::pictures::Picture;
 use super::source::Source;
 
 const STYLE: &str = include_str!("style.css");
@@ -17,13 +18,12 @@ const SCRIPT: &str = include_str!("figures.js");
 /// Key numbers below this are round-off in their units: um, mrad, deg, N, GPa.
 const ROUND_OFF: f64 = 1e-9;
 
-/// The HTML of a run. Pictures are names and SVG documents.
-pub fn page(source: &Source, numbers: &[Number], pictures: &[(String, String)]) -> String {
+/// The HTML of a run of one bearing.
+pub fn page(source: &Source, numbers: &[Number], pictures: &[Picture]) -> String {
     let summary = &source.summary;
     let title = text(summary, "title");
-    let title = encode_text(&title);
     let parts = [
-        format!("<h1>{title}</h1>"),
+        format!("<h1>{}</h1>", encode_text(&title)),
         about(source),
         warnings(source),
         remarks("Advice", &list(summary, "advice")),
@@ -38,6 +38,12 @@ pub fn page(source: &Source, numbers: &[Number], pictures: &[(String, String)]) 
         cost(summary, &source.files),
         scene(source.scene.as_deref()),
     ];
+    document(&title, &parts)
+}
+
+/// A whole page that needs no other file.
+pub fn document(title: &str, parts: &[String]) -> String {
+    let title = encode_text(title);
     format!(
         "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
          <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>{title}</title>\n\
@@ -92,7 +98,7 @@ fn about(source: &Source) -> String {
 }
 
 /// Name, version and commit of the program.
-fn program(summary: &Value, commit: &str) -> String {
+pub fn program(summary: &Value, commit: &str) -> String {
     let version = format!("raceway {}", text(summary, "version"));
     match commit {
         "" => version,
@@ -101,7 +107,7 @@ fn program(summary: &Value, commit: &str) -> String {
 }
 
 /// A list under its heading; nothing where there is nothing to say.
-fn remarks(heading: &str, lines: &[String]) -> String {
+pub fn remarks(heading: &str, lines: &[String]) -> String {
     let items: Vec<String> = lines
         .iter()
         .map(|line| format!("<li>{}</li>", encode_text(line)))
@@ -115,7 +121,7 @@ fn remarks(heading: &str, lines: &[String]) -> String {
     }
 }
 
-fn warnings(source: &Source) -> String {
+pub fn warnings(source: &Source) -> String {
     let warnings = list(&source.summary, "warnings");
     let items: Vec<String> = source
         .doubts
@@ -223,7 +229,7 @@ fn modes(summary: &Value) -> String {
     format!("<h2>Natural frequencies</h2>\n{}", tables.join("\n"))
 }
 
-fn key_numbers(numbers: &[Number], summary: &Value) -> String {
+pub fn key_numbers(numbers: &[Number], summary: &Value) -> String {
     if numbers.is_empty() && summary.get("modes").is_some() {
         return "<h2>Key numbers</h2>\n<p>Those of the modes are above.</p>".into();
     }
@@ -258,8 +264,8 @@ fn key_numbers(numbers: &[Number], summary: &Value) -> String {
     )
 }
 
-fn figures(pictures: &[(String, String)]) -> String {
-    let figure = |(name, svg): &(String, String)| {
+pub fn figures(pictures: &[Picture]) -> String {
+    let figure = |(name, svg): &Picture| {
         let name = name.replace('_', " ");
         format!(
             "<figure aria-label=\"{}\">\n{svg}</figure>",
@@ -275,7 +281,7 @@ fn figures(pictures: &[(String, String)]) -> String {
 }
 
 /// The energies of the end of the run.
-fn energy(summary: &Value) -> String {
+pub fn energy(summary: &Value) -> String {
     let Some(Value::Object(terms)) = summary.get("energy_j") else {
         return String::new();
     };
@@ -290,7 +296,7 @@ fn energy(summary: &Value) -> String {
 }
 
 /// Time by part, memory, files.
-fn cost(summary: &Value, files: &[(String, u64)]) -> String {
+pub fn cost(summary: &Value, files: &[(String, u64)]) -> String {
     let mut parts = vec!["<h2>Cost</h2>".to_string()];
     if let Some(timing) = summary.get("timing_s").and_then(Value::as_object) {
         let total = timing.get("total").and_then(Value::as_f64).unwrap_or(0.0);
@@ -315,13 +321,13 @@ fn cost(summary: &Value, files: &[(String, u64)]) -> String {
     parts.join("\n")
 }
 
-fn scene(scene: Option<&str>) -> String {
+pub fn scene(scene: Option<&str>) -> String {
     let pre = |text: &str| format!("<h2>Scene</h2>\n<pre class=\"scene\">{}</pre>", encode_text(text));
     scene.map_or(String::new(), pre)
 }
 
 /// A text of the summary; empty where it has none.
-fn text(summary: &Value, key: &str) -> String {
+pub fn text(summary: &Value, key: &str) -> String {
     summary
         .get(key)
         .and_then(Value::as_str)
@@ -329,7 +335,7 @@ fn text(summary: &Value, key: &str) -> String {
         .to_string()
 }
 
-fn list(summary: &Value, key: &str) -> Vec<String> {
+pub fn list(summary: &Value, key: &str) -> Vec<String> {
     let items = summary.get(key).and_then(Value::as_array).into_iter().flatten();
     items
         .filter_map(|item| item.as_str().map(str::to_string))

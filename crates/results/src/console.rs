@@ -15,12 +15,12 @@ pub fn print_snapshot(snapshot: &Snapshot) {
     ));
     for (i, b) in snapshot.balls.iter().enumerate() {
         print::line(format_args!(
-            "{i:4} {:8.1} {:10.2} {:10.2} {:8.3} {:8.3} {:9.3} {:8.3}",
+            "{i:4} {:8.1} {:10.2} {:10.2} {:>8} {:>8} {:9.3} {:8.3}",
             b.azimuth_rad.to_degrees(),
             b.inner.force_n,
             b.outer.force_n,
-            b.inner.contact_angle_rad.to_degrees(),
-            b.outer.contact_angle_rad.to_degrees(),
+            fixed::<3>(b.inner.contact_angle_rad.to_degrees()),
+            fixed::<3>(b.outer.contact_angle_rad.to_degrees()),
             1e-9 * b.inner.peak_pressure_pa,
             1e-9 * b.outer.peak_pressure_pa,
         ));

@@ -29,6 +29,8 @@ pub const BEARINGS_TABLE: &str = "bearings.csv";
 pub const SHAFT_TABLE: &str = "shaft.csv";
 /// Energies of a shaft in motion.
 pub const ENERGY_TABLE: &str = "energy.csv";
+/// The scene with all that it includes but for the types of its bearings, and the overrides.
+pub const SCENE_TEXT: &str = "scene.toml";
 /// Column with the names of bearings.
 pub const BEARING: &str = "bearing";
 

@@ -126,6 +126,17 @@ pub enum BuildError {
         /// The mesh file.
         path: PathBuf,
     },
+    /// Bearings of a list name the same mesh file, but describe different meshes.
+    #[error(
+        "{} is the mesh of several bearings, which describe it otherwise: {differences}; expected a mesh file for each",
+        path.display()
+    )]
+    TwoInOne {
+        /// The mesh file.
+        path: PathBuf,
+        /// Keys with the value of either.
+        differences: String,
+    },
     /// A mesh would be written over the one that it is made from.
     #[error("{} is the mesh that is to be revolved; expected another name for the new one", path.display())]
     OwnSource {

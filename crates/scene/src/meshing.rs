@@ -1,7 +1,8 @@
 //! `raceway mesh`: builds the ring meshes that a scene describes in `[inner.section]` and `[outer.section]`.
 //!
 //! Gmsh meshes the section (or the whole ring, for tetrahedra); hexahedra are made by revolving the section into
-//! equal sectors. The section's .geo and .msh stay beside the mesh, so that it can be made again.
+//! equal sectors. The section's .geo and .msh stay beside the mesh, so that it can be made again. Of a list of bearings
+//! each mesh file is built once, for all bearings that name it.
 
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -11,8 +12,8 @@ use contact::Side;
 use mesh::{ElementKind, Gmsh, Mesh, Overwrite, RingSection};
 
 use crate::error::BuildError;
-use crate::section_record::record;
-use crate::tables::{FlexibleRing, MeshFiles, Ring, RingName, Scene, Section, SectionElement};
+use crate::section_record::{disagreements, record};
+use crate::tables::{AnyScene, FlexibleRing, MeshFiles, Ring, RingName, Scene, Section, SectionElement};
 
 /// Length unit of the files that Gmsh reads and writes, m.
 const GMSH_UNIT: f64 = 1e-3;
@@ -24,55 +25,98 @@ pub fn build_meshes(
     overwrite: Overwrite,
     gmsh: Gmsh<'_>,
 ) -> Result<(), BuildError> {
-    let scene = Scene::load_with(path, overrides, MeshFiles::MayBeMissing)?;
-    for line in &scene.assumed {
-        print::note(format_args!("assumed: {line}"));
-    }
-    let rings = [(RingName::Inner, &scene.inner), (RingName::Outer, &scene.outer)];
-    let jobs: Vec<_> = rings
-        .into_iter()
-        .filter_map(|(side, ring)| Some((side, job(ring)?)))
-        .collect();
+    let scene = AnyScene::load_with(path, overrides, MeshFiles::MayBeMissing)?;
+    let scenes: Vec<&Scene> = match &scene {
+        AnyScene::One(scene) => vec![scene],
+        AnyScene::Several(list) => list.bearings.iter().map(|bearing| &bearing.scene).collect(),
+    };
+    say_assumed(&scenes);
+    let jobs = jobs(&scenes)?;
     if jobs.is_empty() {
         return Err(BuildError::NoSection {
             path: path.to_path_buf(),
         });
     }
-    for (_, (body, _)) in &jobs {
-        if overwrite == Overwrite::Refuse && body.mesh.exists() {
+    for job in &jobs {
+        if overwrite == Overwrite::Refuse && job.body.mesh.exists() {
             return Err(BuildError::Exists {
-                path: body.mesh.clone(),
+                path: job.body.mesh.clone(),
             });
         }
     }
-    for (side, (body, section)) in jobs {
-        build_file(&scene, side, (body, section), overwrite, gmsh)?;
+    jobs.iter().try_for_each(|job| build_file(job, overwrite, gmsh))
+}
+
+/// Says once what bearings leave open.
+fn say_assumed(scenes: &[&Scene]) {
+    let mut said: Vec<&String> = Vec::new();
+    for line in scenes.iter().flat_map(|scene| &scene.assumed) {
+        if !said.contains(&line) {
+            print::note(format_args!("assumed: {line}"));
+            said.push(line);
+        }
     }
-    Ok(())
+}
+
+/// A mesh file to build.
+struct Job<'a> {
+    scene: &'a Scene,
+    side: RingName,
+    body: &'a FlexibleRing,
+    section: &'a Section,
+}
+
+impl Job<'_> {
+    /// What the mesh is made from.
+    fn record(&self) -> String {
+        record(
+            self.scene,
+            Side::BOTH[self.side as usize],
+            self.body,
+            self.section,
+        )
+    }
+}
+
+/// The rings with a section, each file once. Fails where bearings ask for two meshes in one file.
+fn jobs<'a>(scenes: &[&'a Scene]) -> Result<Vec<Job<'a>>, BuildError> {
+    let mut jobs: Vec<Job<'a>> = Vec::new();
+    for job in scenes.iter().flat_map(|scene| of_scene(scene)) {
+        let Some(first) = jobs.iter().find(|other| other.body.mesh == job.body.mesh) else {
+            jobs.push(job);
+            continue;
+        };
+        let differences = disagreements(&first.record(), &job.record());
+        if !differences.is_empty() {
+            return Err(BuildError::TwoInOne {
+                path: job.body.mesh.clone(),
+                differences: differences.join(", "),
+            });
+        }
+    }
+    Ok(jobs)
+}
+
+/// The rings of a bearing that have a section.
+fn of_scene(scene: &Scene) -> impl Iterator<Item = Job<'_>> {
+    let rings = [(RingName::Inner, &scene.inner), (RingName::Outer, &scene.outer)];
+    rings
+        .into_iter()
+        .filter_map(move |(side, ring)| job(scene, side, ring))
 }
 
 /// Builds those meshes of a scene that it describes and that do not exist.
 pub fn build_missing(scene: &Scene, gmsh: Gmsh<'_>) -> Result<(), BuildError> {
-    for (side, ring) in [(RingName::Inner, &scene.inner), (RingName::Outer, &scene.outer)] {
-        if let Some((body, section)) = job(ring)
-            && !body.mesh.exists()
-        {
-            build_file(scene, side, (body, section), Overwrite::Refuse, gmsh)?;
-        }
+    for job in of_scene(scene).filter(|job| !job.body.mesh.exists()) {
+        build_file(&job, Overwrite::Refuse, gmsh)?;
     }
     Ok(())
 }
 
-fn build_file(
-    scene: &Scene,
-    side: RingName,
-    (body, section): (&FlexibleRing, &Section),
-    overwrite: Overwrite,
-    gmsh: Gmsh<'_>,
-) -> Result<(), BuildError> {
-    let mesh = build_ring(scene, side, (body, section), gmsh)?;
-    let record = record(scene, Side::BOTH[side as usize], body, section);
-    mesh::write_msh_with_record(&body.mesh, &mesh, body.mesh_unit, overwrite, &record)?;
+fn build_file(job: &Job<'_>, overwrite: Overwrite, gmsh: Gmsh<'_>) -> Result<(), BuildError> {
+    let body = job.body;
+    let mesh = build_ring(job.scene, job.side, (body, job.section), gmsh)?;
+    mesh::write_msh_with_record(&body.mesh, &mesh, body.mesh_unit, overwrite, &job.record())?;
     print::line(format_args!(
         "{}: {} {} elements, {} nodes, {} dofs",
         body.mesh.display(),
@@ -84,8 +128,13 @@ fn build_file(
     Ok(())
 }
 
-fn job(ring: &Ring) -> Option<(&FlexibleRing, &Section)> {
-    Some((ring.body.as_ref()?, ring.section.as_ref()?))
+fn job<'a>(scene: &'a Scene, side: RingName, ring: &'a Ring) -> Option<Job<'a>> {
+    Some(Job {
+        scene,
+        side,
+        body: ring.body.as_ref()?,
+        section: ring.section.as_ref()?,
+    })
 }
 
 fn build_ring(

@@ -122,6 +122,15 @@ fn entries(scene: &Scene, side: Side, body: &FlexibleRing, section: &Section) ->
         .collect()
 }
 
+/// The values that two records of one program have otherwise: `key = first and second`.
+pub fn disagreements(first: &str, second: &str) -> Vec<String> {
+    let pairs = first.split(SEPARATOR).zip(second.split(SEPARATOR));
+    let values = pairs.filter(|(a, b)| a != b);
+    values
+        .map(|(a, b)| format!("{a} and {}", b.split_once(" = ").map_or(b, |(_, value)| value)))
+        .collect()
+}
+
 /// A sentence for each value that a record has otherwise.
 fn differences(record: &str, wanted: &[(String, String)]) -> Vec<String> {
     let known: Vec<(&str, &str)> = record
@@ -158,6 +167,10 @@ mod tests {
         assert_eq!(
             differences("a.b = 6; c = 2.5 mm", &wanted),
             ["c = 2.5 mm, but the scene says 2 mm"]
+        );
+        assert_eq!(
+            disagreements("a.b = 6; c = 2 mm", "a.b = 7; c = 2 mm"),
+            ["a.b = 6 and 7"]
         );
     }
 }

@@ -6,7 +6,7 @@
 //! - ball diameter 0.3 (D - d), pitch diameter (d + D) / 2;
 //! - balls of a deep groove bearing: as many as an eccentric inner ring lets in, 195 degrees of the pitch circle;
 //! - balls of an angular contact bearing: 0.88 of what the pitch circle holds;
-//! - clearance of a deep groove bearing: the middle of group N of ISO 5753-1.
+//! - clearance of a deep groove bearing: the middle of its group in ISO 5753-1, group N without a suffix.
 //!
 //! They are within a ball or two, and some per cent of the diameter, of the bearings in `scenes/`.
 
@@ -74,7 +74,7 @@ struct Sketch {
     ball: SketchNumber,
     pitch: SketchNumber,
     kind: BearingKind,
-    angle_note: &'static str,
+    angle_note: String,
 }
 
 /// Name of the file: that of the bearing, without what file names do not have.
@@ -127,14 +127,14 @@ fn find(wanted: &StarterRequest) -> Result<Sketch, String> {
     let clearance = mm(&wanted.radial_clearance);
     let of_list = listed.as_ref().and_then(|l| l.degrees);
     let (kind, angle_note) = match (degrees, clearance, &listed) {
-        (Some(degrees), _, _) => (BearingKind::Angular(degrees), "given"),
-        (None, Some(clearance), _) => (BearingKind::Deep(clearance), "given"),
+        (Some(degrees), _, _) => (BearingKind::Angular(degrees), "given".into()),
+        (None, Some(clearance), _) => (BearingKind::Deep(clearance), "given".into()),
         (None, None, None) => return Err(format!("--contact-angle is missing; {DESIGNATIONS}")),
         (None, None, Some(listed)) => match of_list {
-            Some(degrees) => (BearingKind::Angular(degrees), listed.angle_note),
+            Some(degrees) => (BearingKind::Angular(degrees), listed.angle_note.clone()),
             None => (
-                BearingKind::Deep(clearance_of(bore)),
-                "the middle of group N, ISO 5753-1",
+                BearingKind::Deep(clearance_of(bore, listed.group)),
+                format!("the middle of group {}, ISO 5753-1", listed.group),
             ),
         },
     };

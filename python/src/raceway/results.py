@@ -49,7 +49,8 @@ class Results:
 
     def __repr__(self) -> str:
         kind = self.summary.get("analysis", "no summary") if self.has("summary.json") else "no summary"
-        return f"<raceway.Results {self.folder}: {kind}, {len(self.steps)} steps, tables {', '.join(self.tables)}>"
+        steps = "1 step" if len(self.steps) == 1 else f"{len(self.steps)} steps"
+        return f"<raceway.Results {self.folder}: {kind}, {steps}, tables {', '.join(self.tables)}>"
 
     def has(self, name: str) -> bool:
         """Whether the folder has a file of this name."""

@@ -239,7 +239,11 @@ pub fn describe_instead_of(found: Dimension, wanted: &Kind) -> String {
     let name = describe(found);
     let is_rate_of_turning = same_dimension(found, KINDS[RATE].dimension)
         && same_dimension(wanted.dimension, KINDS[ANGULAR_SPEED].dimension);
-    if is_rate_of_turning {
+    let is_weight = same_dimension(found, KINDS[MASS].dimension)
+        && same_dimension(wanted.dimension, KINDS[FORCE].dimension);
+    if is_weight {
+        format!("{name}, forces have N, kgf or lbf")
+    } else if is_rate_of_turning {
         format!("{name}, which does not say whether it counts revolutions or radians")
     } else {
         name

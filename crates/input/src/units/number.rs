@@ -10,7 +10,7 @@ pub struct Decimal<'a> {
 }
 
 /// What is wrong with a number of which `rest` could not be read: a decimal comma, a fraction, spaces or signs between
-/// thousands.
+/// thousands, a sign for inches.
 pub fn way_of_writing(text: &str, rest: &str) -> Option<String> {
     let whole = &text[..text.len() - rest.len()];
     let digits = |rest: &str| rest.chars().take_while(char::is_ascii_digit).collect::<String>();
@@ -21,6 +21,9 @@ pub fn way_of_writing(text: &str, rest: &str) -> Option<String> {
     if let Some(after) = rest.strip_prefix('/') {
         let parts = whole.parse::<f64>().ok().zip(digits(after).parse::<f64>().ok());
         return parts.map(|(a, b)| format!("a fraction is written as a decimal number, {}", a / b));
+    }
+    if rest.trim_start().starts_with(['"', '\u{201d}', '\u{2033}']) {
+        return Some(format!("inches are written in letters, {whole} in"));
     }
     let after = rest.strip_prefix([' ', '\u{a0}', '\u{202f}', '\''])?;
     let thousands = digits(after);

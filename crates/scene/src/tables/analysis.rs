@@ -7,6 +7,7 @@ use input::{Clock, Problems};
 use toml_edit::DocumentMut;
 
 use super::RawScene;
+use super::analyses::not_one;
 use super::balls::{BallMotion, BallsContext};
 use super::bearing::Bearing;
 use super::dynamic::RawDynamic;
@@ -26,34 +27,16 @@ impl RawScene {
         (shaft, modes): (&Shaft, ModesContext),
         problems: &mut Problems,
     ) -> Option<Analysis> {
-        let found = [
-            self.r#static.as_ref().map(|_| "[static]"),
-            self.sweep.as_ref().map(|_| "[sweep]"),
-            self.quasi_static.as_ref().map(|_| "[quasi_static]"),
-            self.dynamic.as_ref().map(|_| "[dynamic]"),
-            self.modes.as_ref().map(|_| "[modes]"),
+        let has = [
+            self.r#static.is_some(),
+            self.sweep.is_some(),
+            self.quasi_static.is_some(),
+            self.dynamic.is_some(),
+            self.modes.is_some(),
         ];
-        let found: Vec<&str> = found.into_iter().flatten().collect();
-        match found.as_slice() {
-            [_] => {}
-            [] => {
-                problems.add(
-                    "the scene has no analysis; add one of the tables [static], [sweep], [quasi_static], [dynamic] \
-                     and [modes]",
-                );
-                return None;
-            }
-            [a, b] => {
-                problems.add(format!(
-                    "the scene has both {a} and {b}; keep exactly one analysis"
-                ));
-                return None;
-            }
-            names => {
-                let names = names.join(", ");
-                problems.add(format!("the scene has all of {names}; keep exactly one analysis"));
-                return None;
-            }
+        if let Some(problem) = not_one(has) {
+            problems.add(problem);
+            return None;
         }
         if let Some(sweep) = &self.sweep {
             return sweep.check(document, problems).map(Analysis::Sweep);

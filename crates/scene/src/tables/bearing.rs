@@ -323,6 +323,10 @@ impl RawBearing {
     }
 
     fn check_groove(&self, groove: &Length, problems: &mut Problems) {
+        if groove.key.ends_with("_curvature_ratio)") {
+            // Its ratio was checked.
+            return;
+        }
         let ball_radius = 0.5 * self.ball_diameter.si();
         let usual = "0.515 to 0.53 of the ball diameter is usual";
         let ball = Quantity::<LENGTH>::about(ball_radius);

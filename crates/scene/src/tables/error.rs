@@ -1,6 +1,7 @@
 //! What can be wrong with a scene file.
 
-use std::path::PathBuf;
+use std::io;
+use std::path::{Path, PathBuf};
 
 use thiserror::Error;
 
@@ -8,12 +9,12 @@ use thiserror::Error;
 #[derive(Debug, Error)]
 pub enum SceneError {
     /// The file cannot be read.
-    #[error("cannot read the scene {}: {source}", path.display())]
+    #[error("cannot read the scene {}: {reason}", path.display())]
     Unreadable {
         /// The scene file.
         path: PathBuf,
-        /// The reason of the system.
-        source: std::io::Error,
+        /// That of the system, or what is there instead of a scene.
+        reason: String,
     },
     /// A `--set` argument is not `path=value`, or its path leads nowhere.
     #[error("--set {argument:?}: {reason}")]
@@ -42,7 +43,7 @@ pub enum SceneError {
     /// A list of bearings where one is expected.
     #[error(
         "{} has a list of bearings on one shaft, which this command does not take yet; expected one table [bearing]. \
-         Lists are for raceway run, check, stiffness, campbell and plot",
+         Lists are for raceway run, check, mesh, stiffness, campbell, plot and report",
         path.display()
     )]
     Several {
@@ -59,6 +60,21 @@ pub enum SceneError {
         /// One per entry: key, value, what was expected.
         problems: Vec<String>,
     },
+}
+
+impl SceneError {
+    /// A file that cannot be read, in other words than the system's where they say more.
+    pub(super) fn unreadable(path: &Path, error: &io::Error) -> SceneError {
+        let reason = match error.kind() {
+            io::ErrorKind::InvalidData => "it is no text in UTF-8; expected a scene, saved as UTF-8".into(),
+            io::ErrorKind::IsADirectory => "it is a folder; expected a scene file".into(),
+            _ => error.to_string(),
+        };
+        SceneError::Unreadable {
+            path: path.to_path_buf(),
+            reason,
+        }
+    }
 }
 
 /// Says that the text is not quite that of the file.

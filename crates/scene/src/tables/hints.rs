@@ -3,7 +3,7 @@
 use super::reference;
 
 /// What catalogues and other programs call a key or a word.
-const LETTERS: [(&str, &str); 24] = [
+const LETTERS: [(&str, &str); 28] = [
     ("import", "include"),
     ("includes", "include"),
     ("d", "bore_diameter"),
@@ -28,6 +28,10 @@ const LETTERS: [(&str, &str); 24] = [
     ("flexible", "patch"),
     ("temperature", "viscosity"),
     ("breadth", "width"),
+    ("radial_load", "radial_force"),
+    ("axial_load", "axial_force"),
+    ("thrust", "axial_force"),
+    ("load", "value"),
 ];
 /// Names shorter than this are parts of too many others.
 const SHORTEST_PART: usize = 4;

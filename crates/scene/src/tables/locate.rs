@@ -86,18 +86,31 @@ const WHOLE_RANGE: &str =
     "this whole number is too large; expected -9223372036854775808 to 9223372036854775807";
 
 /// The line, from 1, on which a text has the key that a problem begins with, such as `bearing.width` or
-/// `[probes.node.a]`.
+/// `[probes.node.a]`. A key that is missing has the line of its table, a computed one that of a key that it is computed
+/// from.
 pub fn line_of(text: &str, problem: &str) -> Option<usize> {
-    let key = problem.split([' ', ',', ':']).next()?.trim_matches(['[', ']']);
+    let first = problem.split([' ', ',', ':']).next()?;
+    let key = first.trim_matches(['[', ']']);
+    let rest = &problem[first.len()..];
+    let (table, _) = key.rsplit_once('.').unwrap_or((key, ""));
+    let source = rest
+        .strip_prefix(" (from ")
+        .and_then(|rest| rest.split([' ', ')']).next());
     let document = DeTable::parse(text).ok()?;
-    let mut names = key.split('.');
-    let mut table = document.get_ref();
-    let (mut place, mut value) = entry(table, names.next()?)?;
-    for name in names {
-        table = value.get_ref().as_table()?;
-        (place, value) = entry(table, name)?;
-    }
+    let place = place_of(document.get_ref(), key)
+        .or_else(|| place_of(document.get_ref(), &format!("{table}.{}", source?)))
+        .or_else(|| place_of(document.get_ref(), table).filter(|_| rest.starts_with(" is missing;")))?;
     Some(1 + text[..floor_boundary(text, place.start)].matches('\n').count())
+}
+
+/// Where a document has a dotted key.
+fn place_of(document: &DeTable<'_>, key: &str) -> Option<Range<usize>> {
+    let mut names = key.split('.');
+    let (mut place, mut value) = entry(document, names.next()?)?;
+    for name in names {
+        (place, value) = entry(value.get_ref().as_table()?, name)?;
+    }
+    Some(place)
 }
 
 /// Short names of keys.
@@ -148,7 +161,12 @@ fn describe(text: &str, span: Range<usize>, message: &str) -> String {
     };
     let message = message
         .replace("expected i64", "expected a whole number")
-        .replace("expected f64", "expected a number");
+        .replace("expected f64", "expected a number")
+        .replace("expected a boolean", "expected true or false")
+        .replace(
+            "expected an array of length 2",
+            "expected two values in brackets, [a, b]",
+        );
     let names = quoted(&message);
     if message.starts_with("unknown field") {
         let (name, valid) = names.split_first().map_or(("", &[][..]), |(n, v)| (*n, v));

@@ -212,8 +212,9 @@ impl<'de> Deserialize<'de> for RawMaterial {
                     |named: &&NamedMaterial| named.names.iter().any(|name| name.eq_ignore_ascii_case(text));
                 let named = NAMED.iter().find(is_meant);
                 named.map(RawMaterial::Named).ok_or_else(|| {
+                    let meant = meant(text).map_or(String::new(), |name| format!("did you mean {name:?}? "));
                     E::custom(format!(
-                        "{text:?} is no material with a name here; expected {}",
+                        "{text:?} is no material with a name here; {meant}expected {}",
                         RawMaterial::expected()
                     ))
                 })
@@ -226,6 +227,21 @@ impl<'de> Deserialize<'de> for RawMaterial {
 
         deserializer.deserialize_any(MaterialVisitor)
     }
+}
+
+/// The named material that other words for it mean.
+fn meant(text: &str) -> Option<&'static str> {
+    const WORDS: [(&str, &str); 6] = [
+        ("440", "440C"),
+        ("m50", "M50"),
+        ("52100", "bearing steel"),
+        ("steel", "bearing steel"),
+        ("ceramic", "silicon nitride"),
+        ("nitride", "silicon nitride"),
+    ];
+    let text = text.to_lowercase();
+    let found = WORDS.iter().find(|(word, _)| text.contains(word));
+    found.map(|(_, name)| *name)
 }
 
 impl RawNumbers {

@@ -39,12 +39,21 @@ impl Messages<'_> {
 
     /// What a text says as tables of a scene.
     pub fn read<T: DeserializeOwned>(&self, text: &str) -> Result<T, SceneError> {
-        gather::read(text).map_err(|found| self.format_errors(text, &found))
+        self.read_beside(text, |_| None)
+    }
+
+    /// The same; where there are errors, `beside` may add what no single table shows.
+    pub fn read_beside<T: DeserializeOwned>(
+        &self,
+        text: &str,
+        beside: impl Fn(&[Finding]) -> Option<String>,
+    ) -> Result<T, SceneError> {
+        gather::read(text).map_err(|found| self.format_errors(text, &found, beside(&found)))
     }
 
     /// One error with its place, or a list of several.
-    fn format_errors(&self, text: &str, found: &[Finding]) -> SceneError {
-        if let [one] = found {
+    fn format_errors(&self, text: &str, found: &[Finding], beside: Option<String>) -> SceneError {
+        if let ([one], None) = (found, &beside) {
             return self.format_error(text, one.span.clone(), &one.message);
         }
         let problem = |finding: &Finding| {
@@ -57,7 +66,7 @@ impl Messages<'_> {
         SceneError::Invalid {
             path: self.path.to_path_buf(),
             overrides: self.overrides.to_vec(),
-            problems: found.iter().map(problem).collect(),
+            problems: found.iter().map(problem).chain(beside).collect(),
         }
     }
 

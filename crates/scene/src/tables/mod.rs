@@ -35,6 +35,7 @@
 //! Any scene may have tables `[stress]`, `[probes.*]`, `[life]`, `[heat]` and `[lubricant]`, and motion without inertia
 //! is a table of its own, `[quasi_static]`: see the files of these names.
 
+mod analyses;
 mod analysis;
 mod ball_diameters;
 mod balls;
@@ -268,10 +269,7 @@ impl Scene {
 
     /// Reads and checks a scene file; `mesh_files` says whether the meshes have to be there already.
     pub fn load_with(path: &Path, overrides: &[String], mesh_files: MeshFiles) -> Result<Scene, SceneError> {
-        let text = std::fs::read_to_string(path).map_err(|source| SceneError::Unreadable {
-            path: path.to_path_buf(),
-            source,
-        })?;
+        let text = std::fs::read_to_string(path).map_err(|error| SceneError::unreadable(path, &error))?;
         Scene::parse(&text, path, overrides, mesh_files)
     }
 
@@ -350,8 +348,14 @@ struct Source<'a> {
 }
 
 impl Source<'_> {
+    /// The tables of the text, or all that is wrong with their format.
+    fn read(&self, text: &str, document: &DocumentMut) -> Result<RawScene, SceneError> {
+        self.messages
+            .read_beside(text, |found| analyses::not_one_of_text(document, found))
+    }
+
     fn check(&self, text: String, document: &DocumentMut) -> Result<Scene, SceneError> {
-        let raw: RawScene = self.messages.read(&text)?;
+        let raw = self.read(&text, document)?;
         let mut problems = Problems::default();
         let mut assumed = Vec::new();
         let bearing = raw.bearing.check(&mut problems, &mut assumed);
@@ -381,7 +385,8 @@ impl Source<'_> {
         let outer = raw
             .outer
             .check(RingName::Outer, context, &mut problems, &mut assumed);
-        if let (Some(inner), Some(outer)) = (&inner.section, &outer.section) {
+        // Without a sound bearing shoulders have no size.
+        if let (Some(inner), Some(outer), Some(_)) = (&inner.section, &outer.section, &bearing) {
             section::check_gap(inner, outer, &mut problems);
         }
         let shaft = raw.shaft.check(bearing.as_ref(), raw.clock(), &mut problems);

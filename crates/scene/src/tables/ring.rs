@@ -219,7 +219,7 @@ impl RawRing {
         if self.mesh.is_none() {
             missing("mesh", "a mesh file");
         }
-        if self.mesh.is_some() && self.mesh_unit.is_none() {
+        if self.mesh_unit.is_none() {
             missing("mesh_unit", "the unit of its mesh such as \"mm\"");
         }
         if self.support.is_none() {

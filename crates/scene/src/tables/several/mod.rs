@@ -151,10 +151,7 @@ impl AnyScene {
         overrides: &[String],
         mesh_files: MeshFiles,
     ) -> Result<AnyScene, SceneError> {
-        let text = std::fs::read_to_string(path).map_err(|source| SceneError::Unreadable {
-            path: path.to_path_buf(),
-            source,
-        })?;
+        let text = std::fs::read_to_string(path).map_err(|error| SceneError::unreadable(path, &error))?;
         AnyScene::parse(&text, path, overrides, mesh_files)
     }
 

@@ -271,7 +271,7 @@ fn laws_that_cannot_be_are_refused() {
         ),
         (
             format!("{COULOMB}\npoints = [3]"),
-            "effects.traction.points: invalid length 1, expected an array of length 2",
+            "effects.traction.points: invalid length 1, expected two values in brackets, [a, b]",
         ),
         (
             format!("{COULOMB}\ncreep = -1e-3"),

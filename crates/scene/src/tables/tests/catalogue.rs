@@ -159,7 +159,7 @@ fn missing_and_contradicting_numbers_are_named() {
         (
             "pitch_diameter = \"90 mm\"\ncontact_angle = \"40 deg\"".to_string(),
             "bearing.outer_raceway_diameter (from pitch_diameter and contact_angle) is 102.0731285 mm; it must be less \
-             than bearing.outside_diameter, which is 80 mm",
+             than bearing.outside_diameter, which is 80 mm (line 7)",
         ),
     ];
     for (keys, part) in cases {
@@ -215,6 +215,17 @@ fn materials_without_a_name_here_are_refused() {
     let part = "materials.balls: \"cheese\" is no material with a name here; expected \"bearing steel\", \"silicon \
                 nitride\", \"M50\", \"440C\", or a table with young_modulus, poisson_ratio and density";
     assert!(message.contains(part), "{message}");
+    let meant = [
+        ("steel", "bearing steel"),
+        ("AISI 52100", "bearing steel"),
+        ("AISI 440C", "440C"),
+        ("ceramic", "silicon nitride"),
+    ];
+    for (typed, name) in meant {
+        let message = message_of(&text.replace("cheese", typed), &[]);
+        let part = format!("{typed:?} is no material with a name here; did you mean {name:?}? expected");
+        assert!(message.contains(&part), "{message}");
+    }
 }
 
 /// Wrong: the short names would not be known, not be found by `--set`, or their lines would be lost.

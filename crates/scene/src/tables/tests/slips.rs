@@ -3,7 +3,7 @@
 use super::*;
 
 /// A line of the example (by its start), what a person types instead, and what the message must say.
-const SLIPS: [(&str, &str, &str); 52] = [
+const SLIPS: [(&str, &str, &str); 57] = [
     (
         "ball_diameter",
         "ball_diameter = \"9,525 mm\"",
@@ -70,7 +70,7 @@ const SLIPS: [(&str, &str, &str); 52] = [
     (
         "value = \"1",
         "value = \"100 kg\"",
-        "\"100 kg\" is a mass; expected a force such as \"2 kN\"",
+        "\"100 kg\" is a mass, forces have N, kgf or lbf; expected a force such as \"2 kN\"",
     ),
     (
         "value = \"1",
@@ -122,7 +122,7 @@ const SLIPS: [(&str, &str, &str); 52] = [
     (
         "flexible",
         "flexible = \"yes\"",
-        "inner.flexible: invalid type: string \"yes\", expected a boolean",
+        "inner.flexible: invalid type: string \"yes\", expected true or false",
     ),
     (
         "support",
@@ -236,6 +236,31 @@ const SLIPS: [(&str, &str, &str); 52] = [
         "[Contact]",
         "unknown key \"Contact\"; did you mean \"contact\"?",
     ),
+    (
+        "value = \"1",
+        "value = \"150 lb\"",
+        "\"150 lb\" is a mass, forces have N, kgf or lbf; expected a force such as \"2 kN\"",
+    ),
+    (
+        "value = \"1",
+        "load = \"1 kN\"",
+        "unknown key \"load\" in [effects.radial_force]; did you mean \"value\"?",
+    ),
+    (
+        "[effects.radial_force]",
+        "[effects.radial_load]",
+        "unknown key \"radial_load\" in [effects]; did you mean \"radial_force\"? valid keys are",
+    ),
+    (
+        "[effects.axial_force]",
+        "[effects.thrust]",
+        "unknown key \"thrust\" in [effects]; did you mean \"axial_force\"? valid keys are",
+    ),
+    (
+        "bore_diameter",
+        "bore_diameter = '1.5\"'",
+        "\"1.5\\\"\" cannot be read: inches are written in letters, 1.5 in; expected a length",
+    ),
 ];
 
 /// Wrong: a person who makes one of these slips would not be told what to type.
@@ -283,6 +308,72 @@ fn all_that_is_missing_or_unknown_is_said_at_once() {
     assert_eq!(lines.len(), expected.len(), "{message}");
     for (line, expected) in lines.iter().zip(expected) {
         assert!(line.starts_with(expected), "expected\n{expected}\nin\n{message}");
+    }
+}
+
+/// Wrong: a person would put in what was missing, and be told of the next thing only then.
+#[test]
+fn what_a_ring_and_a_scene_lack_is_said_at_once_too() {
+    let message = message_of("", &[]);
+    let expected = "scenes/test.toml has 5 problems:
+  the table [bearing] is missing; \"raceway init\" writes a scene to start from
+  the table [materials] is missing
+  the table [contact] is missing
+  the table [shaft] is missing
+  the scene has no analysis; add one of the tables [static], [sweep], [quasi_static], [dynamic] and [modes]";
+    assert_eq!(message, expected);
+    let text = without_table("[sweep]") + "\n[static]\n[modes]\n";
+    let message = message_of(&text, &[]);
+    for part in [
+        "[modes] has no key \"number\", which is required (line ",
+        "  the scene has both [static] and [modes]; keep exactly one analysis",
+    ] {
+        assert!(message.contains(part), "{message}");
+    }
+    // A table that may be meant for the analysis is a slip of its own.
+    let message = message_of(&(without_table("[sweep]") + "\n[statik]\n"), &[]);
+    assert!(
+        message.contains("unknown key \"statik\"; did you mean \"static\"?"),
+        "{message}"
+    );
+    assert!(!message.contains("no analysis"), "{message}");
+    let (head, tail) = EXAMPLE.split_once("mesh = ").unwrap();
+    let (_, tail) = tail.split_once("[inner.section]").unwrap();
+    let message = message_of(&format!("{head}\n[inner.section]{tail}"), &[]);
+    let line = head.lines().position(|line| line.starts_with("[inner]")).unwrap() + 1;
+    for part in [
+        "inner.mesh is missing; a flexible ring needs a mesh file, or set inner.flexible = false",
+        "inner.mesh_unit is missing; a flexible ring needs the unit of its mesh such as \"mm\", or set \
+         inner.flexible = false",
+        "inner.support is missing; a flexible ring needs to know how its bore is held, \"clamped\" or \
+         \"mean_motion\", or set inner.flexible = false",
+    ] {
+        assert!(
+            message.contains(&format!("  {part} (line {line})")),
+            "{part}\n{message}"
+        );
+    }
+}
+
+/// Wrong: one wrong number of the bearing would be followed by shoulders of 0 m and by what is computed from it.
+#[test]
+fn a_wrong_bearing_is_one_problem() {
+    let cases = [
+        (
+            "inner_curvature_ratio = 0.48",
+            "bearing.inner_curvature_ratio is 0.48; expected more than 0.5 and at most 0.6; 0.515 to 0.53 is usual",
+        ),
+        (
+            "inner_groove_radius = \"4.4 mm\"",
+            "bearing.inner_groove_radius is 4.4 mm; it must be more than",
+        ),
+    ];
+    for (typed, part) in cases {
+        let message = message_of(&with_line("inner_groove_radius", typed), &[]);
+        assert!(
+            message.contains(part) && message.contains(" has a problem: "),
+            "{message}"
+        );
     }
 }
 
