@@ -156,7 +156,7 @@ fn modes_of(
 
 /// Warns of modes that a body round the outer ring does not resolve.
 fn beyond_body(scene: &Scene, sets: &[(ModeBody, ModeSet)], wanted: &Modes) -> Option<String> {
-    let body = scene.bodies[Side::Outer.index()].as_ref()?;
+    let body = scene.bodies.iter().flatten().next()?;
     let below = body.modes_below?;
     let in_body = sets.iter().filter(|(body, _)| *body != ModeBody::Inner);
     let last = in_body.filter_map(|(body, set)| Some((body, set.modes.last()?.frequency)));

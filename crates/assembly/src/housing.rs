@@ -61,10 +61,10 @@ fn shared(model: &Model, side: Side) -> Option<(&Arc<SeatTie>, &Arc<Surrounding>
     Some((tie, body))
 }
 
-/// The bodies that carry several bearings: housings, then shafts.
+/// The bodies that carry several bearings: shafts, then housings.
 pub fn housed_together(bearings: &[MountedBearing]) -> Vec<HousedTogether> {
     let mut groups: Vec<HousedTogether> = Vec::new();
-    for side in [Side::Outer, Side::Inner] {
+    for side in Side::BOTH {
         for (i, bearing) in bearings.iter().enumerate() {
             let Some((_, body)) = shared(&bearing.model, side) else {
                 continue;

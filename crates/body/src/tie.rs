@@ -5,10 +5,10 @@ use std::sync::Arc;
 
 use dense::DenseCholesky;
 
-use crate::carried::{Carried, N_SHAFT, RigidInertia};
+use crate::carried::{Carried, CarriedInertia, N_SHAFT};
+use crate::oscillators::{BodyModes, SeatModes, ShaftAtSeat};
 use crate::seat::{SeatBasis, SeatFunctions, SeatSpace};
 use crate::surrounding::Surrounding;
-use crate::vibration::{BodyModes, SeatModes, ShaftAtSeat};
 
 /// The joint of a ring with what is round it.
 #[derive(Clone)]
@@ -83,7 +83,7 @@ impl SeatTie {
     }
 
     /// Inertia of a body on a shaft; None of one that stands, and at other seats than the first.
-    pub fn carried_inertia(&self) -> Option<RigidInertia> {
+    pub fn carried_inertia(&self) -> Option<CarriedInertia> {
         let carried = self.carried().filter(|_| self.seat == 0)?;
         Some(carried.places[0].seen(carried.inertia))
     }

@@ -17,19 +17,19 @@
 //! of M_r - W^T W, and take the shaft along by q = -Q W V xi.
 
 use std::f64::consts::TAU;
-use std::ops::Range;
-use std::sync::Arc;
 
 use dense::{
-    DenseCholesky, DenseError, EigenProblem, Eigenpairs, LanczosSettings, dense_lowest, lowest_pairs,
-    symmetric_product,
+    DenseCholesky, DenseError, EigenProblem, Eigenpairs, LanczosSettings, dense_lowest, inner_products,
+    lowest_pairs, symmetric_product,
 };
 use rayon::prelude::*;
 use solver::LinearSolver;
 use sprs::CsMat;
 
-use crate::carried::{Carried, N_SHAFT, ShaftPlace};
+use crate::carried::{N_SHAFT, dot};
 use crate::error::SurroundingError;
+use crate::oscillators::{BodyModes, ShaftShares, combined, shaft_motion};
+use crate::rigid_part::RigidPart;
 use crate::surrounding::Surrounding;
 
 /// Modes that are looked for at first.
@@ -38,221 +38,8 @@ const FIRST_SEARCH: usize = 12;
 const MOST_MODES: usize = 384;
 /// Vectors of a block of the search.
 const BLOCK: usize = 4;
-
-/// A body as oscillators.
-#[derive(Clone, Debug, PartialEq)]
-pub struct BodyModes {
-    /// Squares of their angular frequencies, rad^2/s^2, ascending.
-    pub squares: Vec<f64>,
-    /// Motion of the seat functions, m per unit of an oscillator (m kg^1/2), `[n_oscillators][n_functions]` flat.
-    pub seat: Vec<f64>,
-    /// Oscillators in which the body stands under static forces, per N, `[n_oscillators][n_functions]` flat.
-    pub of_forces: Vec<f64>,
-    /// Frequency up to which modes with held seats are kept, Hz.
-    pub below_hz: f64,
-    /// How many these are.
-    pub n_fixed: usize,
-    /// Static forces on the seats, N per unit, `[n_oscillators][n_functions]` flat.
-    forces: Vec<f64>,
-    /// Shares of the modes with held seats, `[n_oscillators][n_fixed]` flat.
-    shares: Vec<f64>,
-    /// These modes on the free dofs, column-major.
-    fixed: Vec<f64>,
-    /// Of a body that a shaft carries.
-    pub(crate) on_shaft: Option<ShaftShares>,
-}
-
-/// How oscillators move the shaft that carries their body, at the bearing of its first seat. The first [`N_SHAFT`] are
-/// rigid.
-#[derive(Clone, Debug, PartialEq)]
-pub struct ShaftShares {
-    /// Motion of the shaft per unit of an oscillator, m and rad.
-    rows: Vec<[f64; N_SHAFT]>,
-    /// Rigid oscillators of the body that moves with the shaft: by unit motions of it, `[rigid][motion]`.
-    of_motion: [[f64; N_SHAFT]; N_SHAFT],
-    /// Static forces on the functions of all seats that unit accelerations of the rigid oscillators ask for, N,
-    /// `[rigid][n_functions]` flat.
-    reactions: Vec<f64>,
-}
-
-/// The shaft at the bearing of a seat.
-#[derive(Clone, Debug, PartialEq)]
-pub struct ShaftAtSeat {
-    /// Motion of the shaft there per unit of an oscillator, m and rad.
-    pub rows: Vec<[f64; N_SHAFT]>,
-    /// Rigid oscillators of the body that moves with it: by unit motions there, `[rigid][motion]`.
-    of_motion: [[f64; N_SHAFT]; N_SHAFT],
-}
-
-impl ShaftAtSeat {
-    /// The shaft at a place on it.
-    pub(crate) fn new(shares: &ShaftShares, place: &ShaftPlace) -> ShaftAtSeat {
-        let unit = |k: usize| {
-            let mut q = [0.0; N_SHAFT];
-            q[k] = 1.0;
-            place.here(q)
-        };
-        let of_motion = |row: &[f64; N_SHAFT]| [0, 1, 2, 3, 4].map(|k| dot(row, &unit(k)));
-        ShaftAtSeat {
-            rows: shares.rows.iter().map(|row| place.there(*row)).collect(),
-            of_motion: shares.of_motion.each_ref().map(of_motion),
-        }
-    }
-
-    /// Motion of the shaft under oscillators, m and rad.
-    pub fn motion(&self, oscillators: &[f64]) -> [f64; N_SHAFT] {
-        shaft_motion(&self.rows, oscillators)
-    }
-
-    /// Adds the oscillators of a motion or velocity with the shaft.
-    pub fn add_motion(&self, q: [f64; N_SHAFT], oscillators: &mut [f64]) {
-        for (x, row) in oscillators.iter_mut().zip(&self.of_motion) {
-            *x += dot(row, &q);
-        }
-    }
-}
-
-fn shaft_motion(rows: &[[f64; N_SHAFT]], oscillators: &[f64]) -> [f64; N_SHAFT] {
-    let mut q = [0.0; N_SHAFT];
-    for (row, x) in rows.iter().zip(oscillators) {
-        (0..N_SHAFT).for_each(|k| q[k] += row[k] * x);
-    }
-    q
-}
-
-impl BodyModes {
-    /// A rigid body: no oscillators.
-    pub fn rigid() -> BodyModes {
-        BodyModes {
-            squares: Vec::new(),
-            seat: Vec::new(),
-            of_forces: Vec::new(),
-            below_hz: f64::INFINITY,
-            n_fixed: 0,
-            forces: Vec::new(),
-            shares: Vec::new(),
-            fixed: Vec::new(),
-            on_shaft: None,
-        }
-    }
-
-    /// Number of oscillators.
-    pub fn n(&self) -> usize {
-        self.squares.len()
-    }
-
-    /// Motion of the functions of all seats under oscillators, m.
-    pub fn seat_motion(&self, oscillators: &[f64]) -> Vec<f64> {
-        combined(&self.seat, oscillators)
-    }
-
-    /// Oscillators in which the body stands under forces on the functions of all seats, N.
-    pub fn at_rest(&self, forces: &[f64]) -> Vec<f64> {
-        let rows = self.of_forces.chunks_exact(forces.len().max(1));
-        rows.map(|row| dot(row, forces)).collect()
-    }
-
-    /// Forces on the functions of all seats of a body on a shaft, N, by which its oscillators move so: `driven` are
-    /// minus accelerations and damping of rigid ones, and of the others minus what they would stand for at rest.
-    pub fn forces_on_shaft(&self, driven: &[f64]) -> Vec<f64> {
-        let mut forces = combined(&self.forces, driven);
-        if let Some(shares) = &self.on_shaft {
-            let of_rigid = combined(&shares.reactions, &driven[..N_SHAFT]);
-            forces.iter_mut().zip(of_rigid).for_each(|(f, r)| *f += r);
-        }
-        forces
-    }
-
-    /// Bytes of all.
-    pub fn bytes(&self) -> usize {
-        let lists = [
-            &self.squares,
-            &self.seat,
-            &self.of_forces,
-            &self.forces,
-            &self.shares,
-            &self.fixed,
-        ];
-        size_of::<f64>() * lists.iter().map(|list| list.len()).sum::<usize>()
-    }
-}
-
-/// The oscillators of a body as one of its seats sees them.
-#[derive(Clone, Debug, PartialEq)]
-pub struct SeatModes {
-    /// The body.
-    pub of_body: Arc<BodyModes>,
-    /// Numbers of the functions of the seat among those of all seats.
-    pub own: Range<usize>,
-    /// The shaft that carries the body; None of one that stands.
-    pub on_shaft: Option<ShaftAtSeat>,
-}
-
-impl SeatModes {
-    /// A rigid body: no oscillators.
-    pub fn rigid() -> SeatModes {
-        SeatModes {
-            of_body: Arc::new(BodyModes::rigid()),
-            own: 0..0,
-            on_shaft: None,
-        }
-    }
-
-    /// Number of oscillators.
-    pub fn n(&self) -> usize {
-        self.of_body.n()
-    }
-
-    /// Squares of their angular frequencies, rad^2/s^2.
-    pub fn squares(&self) -> &[f64] {
-        &self.of_body.squares
-    }
-
-    /// Motion of the functions of the seat, m per unit of each oscillator.
-    pub fn rows(&self) -> impl Iterator<Item = &[f64]> {
-        let BodyModes { seat, .. } = &*self.of_body;
-        let width = seat.len().checked_div(self.n()).unwrap_or(0);
-        seat.chunks_exact(width.max(1)).map(|row| &row[self.own.clone()])
-    }
-
-    /// Motion of the functions of the seat under oscillators, m; of a rigid body none.
-    pub fn motion(&self, oscillators: &[f64]) -> Vec<f64> {
-        let mut sum = vec![0.0; self.own.len()];
-        for (row, factor) in self.rows().zip(oscillators) {
-            sum.iter_mut().zip(row).for_each(|(s, r)| *s += factor * r);
-        }
-        sum
-    }
-
-    /// Forces on the oscillators of forces lam on the functions of the seat, N.
-    pub fn loads(&self, lam: &[f64]) -> Vec<f64> {
-        self.rows().map(|row| dot(row, lam)).collect()
-    }
-
-    /// D = V diag(1/s) V^T of the functions of the seat for effective masses s of the oscillators,
-    /// `[n_functions]^2` flat; empty for a rigid body.
-    pub fn softness(&self, effective: &[f64]) -> Vec<f64> {
-        let n = self.own.len();
-        let mut softness = vec![0.0; n * n];
-        for (row, s) in self.rows().zip(effective) {
-            for (to, v) in softness.chunks_exact_mut(n).zip(row) {
-                let by = v / s;
-                to.iter_mut().zip(row).for_each(|(d, w)| *d += by * w);
-            }
-        }
-        softness
-    }
-}
-
-/// Rows of a matrix times one number each, summed.
-fn combined(rows: &[f64], factors: &[f64]) -> Vec<f64> {
-    let width = rows.len().checked_div(factors.len()).unwrap_or(0);
-    let mut sum = vec![0.0; width];
-    for (row, factor) in rows.chunks_exact(width.max(1)).zip(factors) {
-        sum.iter_mut().zip(row).for_each(|(s, r)| *s += factor * r);
-    }
-    sum
-}
+/// Shapes of a block of products. Fixed, so that threads change no bit.
+const AT_A_TIME: usize = 32;
 
 impl Surrounding {
     /// The body as oscillators, with its modes of held seats up to a frequency, Hz.
@@ -364,8 +151,12 @@ impl EigenProblem for HeldSeats<'_> {
     }
 
     fn remove_reactions(&self, force: &mut [f64]) {
-        let columns = self.columns.par_chunks_exact(force.len());
-        let mut reactions: Vec<f64> = columns.map(|column| dot(column, force)).collect();
+        let n = force.len();
+        let blocks = self.columns.par_chunks(AT_A_TIME * n);
+        let products: Vec<_> = blocks
+            .map(|columns| inner_products(n, columns, columns.len() / n, force, 1))
+            .collect();
+        let mut reactions = products.concat();
         self.flexibility.solve(&mut reactions, 1);
         let loads = self.body.seat_loads(&reactions);
         force.iter_mut().zip(loads).for_each(|(f, load)| *f -= load);
@@ -383,62 +174,25 @@ struct Reduced<'a> {
     rigid: Option<RigidPart<'a>>,
 }
 
-/// The rigid motions of a body that a shaft carries.
-struct RigidPart<'a> {
-    carried: &'a Carried,
-    /// Q, by rigid oscillator.
-    motions: [[f64; N_SHAFT]; N_SHAFT],
-    /// W, by coordinate.
-    coupling: Vec<[f64; N_SHAFT]>,
-}
-
-impl<'a> RigidPart<'a> {
-    fn new(carried: &'a Carried, shapes: &[&[f64]]) -> RigidPart<'a> {
-        let motions = carried.orthonormal();
-        let coupled = |shape: &&[f64]| {
-            let pushed = [0, 1, 2, 3, 4].map(|k| dot(&carried.pushes[k], shape));
-            motions.map(|motion| dot(&motion, &pushed))
-        };
-        RigidPart {
-            carried,
-            motions,
-            coupling: shapes.par_iter().map(coupled).collect(),
-        }
-    }
-
-    /// Takes the momentum of the coordinates out of their mass, by rows of its lower triangle.
-    fn relieve(&self, lower: &mut [Vec<f64>]) {
-        for (i, row) in lower.iter_mut().enumerate() {
-            let others = self.coupling.iter();
-            row.iter_mut()
-                .zip(others)
-                .for_each(|(m, w)| *m -= dot(&self.coupling[i], w));
-        }
-    }
-
-    /// Motion of the shaft that coordinates take along.
-    fn taken_along(&self, coordinates: &[f64]) -> [f64; N_SHAFT] {
-        let mut q = [0.0; N_SHAFT];
-        for (w, z) in self.coupling.iter().zip(coordinates) {
-            for (motion, w) in self.motions.iter().zip(w) {
-                (0..N_SHAFT).for_each(|k| q[k] -= motion[k] * w * z);
-            }
-        }
-        q
-    }
-}
-
 impl<'a> Reduced<'a> {
     fn new(held: &HeldSeats<'a>, fixed: &Eigenpairs) -> Result<Reduced<'a>, DenseError> {
         let (rows, m) = (held.n(), held.body.n_functions());
         let of_fixed = fixed.vectors.chunks_exact(rows);
         let shapes: Vec<&[f64]> = held.columns.chunks_exact(rows).chain(of_fixed).collect();
         let n = shapes.len();
-        let row = |i: usize| -> Vec<f64> {
-            let moved = solver::products(held.mass, shapes[i], 1);
-            shapes[..=i].iter().map(|shape| dot(shape, &moved)).collect()
+        let of_block = |block: &[&[f64]]| -> Vec<Vec<f64>> {
+            let moved = solver::products(held.mass, &block.concat(), block.len());
+            let [seats, own] = [held.columns, &fixed.vectors[..]]
+                .map(|all| inner_products(rows, all, all.len() / rows, &moved, block.len()));
+            let row = |k: usize| [&seats[m * k..m * (k + 1)], &own[(n - m) * k..(n - m) * (k + 1)]].concat();
+            (0..block.len()).map(row).collect()
         };
-        let mut lower: Vec<Vec<f64>> = (0..n).into_par_iter().map(row).collect();
+        let blocks: Vec<_> = shapes.par_chunks(AT_A_TIME).map(of_block).collect();
+        let mut lower = blocks.concat();
+        lower
+            .iter_mut()
+            .enumerate()
+            .for_each(|(i, row)| row.truncate(i + 1));
         let rigid = held.body.carried.as_ref();
         let rigid = rigid.map(|carried| RigidPart::new(carried, &shapes));
         if let Some(rigid) = &rigid {
@@ -561,8 +315,4 @@ impl EigenProblem for Reduced<'_> {
         self.factor.solve(&mut b, n_vectors);
         b
     }
-}
-
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(x, y)| x * y).sum()
 }

@@ -186,7 +186,12 @@ impl Model {
 
     /// Inertia of the body on the shaft in which the inner ring sits; None where it is in none.
     pub fn carried_inertia(&self) -> Option<RigidInertia> {
-        self.ring(Side::Inner)?.tie.as_ref()?.carried_inertia()
+        let ties = Side::BOTH
+            .into_iter()
+            .filter_map(|side| self.ring(side)?.tie.as_ref());
+        ties.filter_map(|tie| tie.carried_inertia())
+            .map(Into::into)
+            .next()
     }
 
     /// Motion of the seat of a ring by forces on the other seats of its body, by functions, m; None: none.

@@ -12,7 +12,7 @@ use super::quantity::{DEGREE, MEGAPASCAL, MICROMETRE, MILLIMETRE, azimuth_axis};
 /// Pressure of the seats, and how far they yield in their middle; none of rings that are in no body.
 pub fn figures(dir: &Path) -> anyhow::Result<Vec<(String, Figure)>> {
     let mut figures = Vec::new();
-    for side in [Side::Outer, Side::Inner] {
+    for side in Side::BOTH {
         if let Some(table) = Table::read(dir, SEAT_TABLES[side.index()])? {
             figures.extend(of_ring(&table, side)?);
         }
@@ -21,10 +21,7 @@ pub fn figures(dir: &Path) -> anyhow::Result<Vec<(String, Figure)>> {
 }
 
 fn of_ring(table: &Table, side: Side) -> anyhow::Result<Vec<(String, Figure)>> {
-    let (ring, seat, suffix) = match side {
-        Side::Inner => ("inner", "bore", "_inner"),
-        Side::Outer => ("outer", "seat", ""),
-    };
+    let (ring, seat, suffix) = [("inner", "bore", "_inner"), ("outer", "seat", "")][side.index()];
     let azimuth = DEGREE.of(table.column("azimuth_rad")?);
     let z = MILLIMETRE.of(table.column("z_m")?);
     // Rows of one azimuth follow each other.

@@ -2,20 +2,17 @@
 
 use std::collections::BTreeMap;
 
-use body::Surrounding;
 use checkpoint::{Body, CellFields, PointFields, StateArray, StepRecord};
 use contact::{BearingGeometry, Side};
 use dynamics::balls::BallResult;
-use dynamics::motion::{BodyState, MotionState};
 use dynamics::{Model, StaticSolution};
-use fem::Material;
 use fem::stress::von_mises;
 use mesh::Mesh;
 use scene::{KeptFields, RingFrame, Scene};
 
+use super::bodies::{BodyField, bodies_of, body_fields};
 use super::on_ball::force_on_ball;
 use super::ring_stress::{Basis, Gathered, RingStress, ShownRing, StressFields};
-use super::seat::{SeatState, tied};
 use super::shown::{RingField, Shown, Turn};
 use crate::failure::Failure;
 
@@ -49,64 +46,6 @@ pub fn bodies(model: &Model) -> Vec<Body> {
     let of_rings = bodies_of(model).into_iter();
     bodies.extend(of_rings.map(|b| Body::from_mesh(&b.body.name, BODY_IDS[b.side.index()], b.mesh, b.shift)));
     bodies
-}
-
-/// A body in which a ring sits, as results show it.
-pub struct ShownBody<'m> {
-    /// The ring.
-    pub side: Side,
-    /// The body.
-    pub body: &'m Surrounding,
-    /// Its mesh.
-    pub mesh: &'m Mesh,
-    /// What it is made of.
-    pub material: &'m Material,
-    /// Where the mesh stands in the bearing, m.
-    pub shift: [f64; 3],
-}
-
-/// The bodies in which the rings sit and that have a mesh, that of the outer ring first. One that carries several
-/// bearings is shown with the first of them.
-pub fn bodies_of(model: &Model) -> Vec<ShownBody<'_>> {
-    let of = |side: Side| {
-        let (_, tie) = tied(model, side).filter(|(_, tie)| tie.seat == 0)?;
-        let body = tie.body.as_ref()?;
-        let (mesh, material) = body.mesh.as_ref()?;
-        Some(ShownBody {
-            side,
-            body,
-            mesh,
-            material,
-            shift: [0.0, 0.0, body.shift + model.ring_shift(side)],
-        })
-    };
-    [Side::Outer, Side::Inner].into_iter().filter_map(of).collect()
-}
-
-/// Displacement of such a body at one instant.
-pub struct BodyField {
-    /// In its own frame, m, `[n_nodes][3]` flat.
-    pub displacement: Vec<f64>,
-    /// From that frame to space.
-    pub turn: Turn,
-}
-
-impl BodyField {
-    /// Of a body that does not turn.
-    pub fn standing(displacement: Vec<f64>) -> BodyField {
-        BodyField {
-            displacement,
-            turn: Turn::new(0.0),
-        }
-    }
-
-    /// Displacements in space from the places in the mesh, turning included, m.
-    fn shown(&self, mesh: &Mesh) -> Vec<[f64; 3]> {
-        let moved = mesh.nodes.iter().zip(self.displacement.as_chunks::<3>().0);
-        moved
-            .map(|(place, u)| self.turn.displacement(*place, *u))
-            .collect()
-    }
 }
 
 /// The record of one equilibrium, with the stress that ranks have `gathered`; its step also stands for its time where
@@ -223,47 +162,6 @@ impl Places {
         };
         (points, cells)
     }
-}
-
-/// Displacements of the bodies that are shown, in their order.
-pub fn body_fields(shown: &Shown<'_>) -> Result<Vec<BodyField>, Failure> {
-    let mut fields = Vec::new();
-    for body in bodies_of(shown.model()) {
-        let found = match shown {
-            Shown::Equilibrium { model, solution, .. } => body_at_rest(shown, (model, solution), body.side)?,
-            Shown::Motion { model, state, .. } => moved_body(model, state, body.side),
-        };
-        // Of a body whose state was not kept there is nothing to show.
-        let displacement = found.unwrap_or_else(|| vec![0.0; body.mesh.n_dofs()]);
-        fields.push(BodyField {
-            displacement,
-            turn: shown.turn(body.side),
-        });
-    }
-    Ok(fields)
-}
-
-/// Displacement of a body at an equilibrium, m, `[n_nodes][3]` flat, with the motion of the shaft that carries it.
-fn body_at_rest(
-    shown: &Shown<'_>,
-    (model, solution): (&Model, &StaticSolution),
-    side: Side,
-) -> Result<Option<Vec<f64>>, Failure> {
-    let Some(seat) = SeatState::new(model, solution, side)? else {
-        return Ok(None);
-    };
-    let mut displacement = seat.body_displacement();
-    if let (Some(q), Some((_, tie))) = (shown.shaft_in_frame(), tied(model, side)) {
-        tie.add_shaft_motion(q, &mut displacement);
-    }
-    Ok(Some(displacement))
-}
-
-/// The same of a motion, from the oscillators of its state.
-fn moved_body(model: &Model, state: &MotionState, side: Side) -> Option<Vec<f64>> {
-    let (_, tie) = tied(model, side)?;
-    let BodyState([at, ..]) = state.rings[side.index()].as_ref()?.body()?;
-    Some(tie.body.as_ref()?.moved(&tie.modes.as_ref()?.of_body, at))
 }
 
 /// What the stress of a ring follows from: its displacement, or the stress that ranks have gathered.

@@ -5,6 +5,7 @@
 
 pub mod about;
 pub mod answer;
+pub mod bodies;
 pub mod body_stress;
 pub mod campbell;
 pub mod console;

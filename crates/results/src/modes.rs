@@ -18,7 +18,8 @@ use scene::{ModeBody, Scene};
 use serde::Serialize;
 use timer::Laps;
 
-use super::fields::{self, BodyField};
+use super::bodies::{BodyField, bodies_of};
+use super::fields;
 use super::files::{mesh_file, say_folder, storage};
 use super::folder;
 use super::mounting::{ClearanceSummary, FitSummary, fits};
@@ -149,9 +150,8 @@ impl ModeFiles {
             let (sin, cos) = model.geometry.azimuth(ball).sin_cos();
             displacement.push([radial * cos, radial * sin, axial].map(|u| AMPLITUDE * u));
         }
-        let bodies = fields::bodies_of(model).into_iter().map(|body| {
-            let shape = mode.shape.body.as_ref().filter(|_| body.side == Side::Outer);
-            BodyField::standing(match shape {
+        let bodies = bodies_of(model).into_iter().map(|body| {
+            BodyField::standing(match &mode.shape.body {
                 Some(shape) => shape.iter().map(|u| AMPLITUDE * u).collect(),
                 None => vec![0.0; body.mesh.n_dofs()],
             })

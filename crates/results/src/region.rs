@@ -11,7 +11,7 @@ use dynamics::{Model, RingModel};
 use mesh::Mesh;
 use scene::{KeptFields, OutputRegion, Scene};
 
-use super::fields::{ShownBody, bodies_of};
+use super::bodies::{ShownBody, bodies_of};
 use crate::failure::Failure;
 
 /// Points and cells of which fields are kept.

@@ -13,7 +13,7 @@ use mesh::NodePositions;
 use scene::{KeptFields, Scene, StressOutput};
 use timer::Laps;
 
-use super::fields::{BodyField, bodies_of};
+use super::bodies::{BodyField, bodies_of};
 use super::shown::{Shown, Turn, add};
 use super::summary::{GATHER, STRESS};
 use super::timed_near_field::TimedNearField;

@@ -1,7 +1,7 @@
 //! The seat of a ring in an elastic body: tractions as a table, and what the summary says of the joint.
 //!
-//! `seat_outer.csv` and `seat_inner.csv` have the last equilibrium of a run, or the end of a motion, on a grid of the seat: azimuth from +x
-//! towards +y, z in the coordinates of the ring's mesh. Pressure is positive where the body presses on the ring; shear
+//! `seat_outer.csv` and `seat_inner.csv` have the last equilibrium of a run, or the end of a motion, on a grid of the
+//! seat: azimuth from +x towards +y, z in the coordinates of the ring's mesh. Pressure is positive where the body presses on the ring; shear
 //! is the traction on the ring in the direction of growing azimuth and z; motion is that of the seat, which ring and
 //! body share, of a body on the shaft beside that of the shaft.
 
@@ -80,14 +80,14 @@ pub fn is_tied(model: &Model) -> bool {
 
 /// Writes what the seats of rings in bodies carry, and sums it up; None where a ring is in none.
 pub fn of_run(model: &Model, solution: &StaticSolution, dir: &Path) -> Result<SeatSummaries, Failure> {
-    let of = |side: Side| finished(SeatState::new(model, solution, side)?, dir);
-    Ok([of(Side::Inner)?, of(Side::Outer)?])
+    let [inner, outer] = Side::BOTH.map(|side| finished(SeatState::new(model, solution, side)?, dir));
+    Ok([inner?, outer?])
 }
 
 /// The same at the end of a motion.
 pub fn of_motion(motion: &Motion<'_>, state: &MotionState, dir: &Path) -> Result<SeatSummaries, Failure> {
-    let of = |side: Side| finished(SeatState::in_motion(motion, state, side)?, dir);
-    Ok([of(Side::Inner)?, of(Side::Outer)?])
+    let [inner, outer] = Side::BOTH.map(|side| finished(SeatState::in_motion(motion, state, side)?, dir));
+    Ok([inner?, outer?])
 }
 
 fn finished(state: Option<SeatState>, dir: &Path) -> Result<Option<SeatSummary>, Failure> {

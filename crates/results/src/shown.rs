@@ -88,9 +88,9 @@ impl<'a> Shown<'a> {
         })
     }
 
-    /// Motion of the shaft in the frame of the inner ring at an equilibrium, from where the mesh file has it, m and
+    /// Motion of the shaft in the frame of a ring at an equilibrium, from where the mesh file has it, m and
     /// rad; None in motion, where fields contain it.
-    pub fn shaft_in_frame(&self) -> Option<[f64; 5]> {
+    pub fn shaft_in_frame(&self, side: Side) -> Option<[f64; 5]> {
         let Shown::Equilibrium {
             model,
             placed,
@@ -101,7 +101,7 @@ impl<'a> Shown<'a> {
         };
         let mut q = solution.displacements.shaft;
         q[2] = q[2] + model.geometry.axial_offset() - placed.axial_offset();
-        Some(turn(q, -solution.pose.frame_angle(Side::Inner)))
+        Some(turn(q, -solution.pose.frame_angle(side)))
     }
 
     /// All balls.
@@ -172,7 +172,7 @@ impl<'a> Shown<'a> {
                 let strained = solution.elastic[side.index()].as_ref()?;
                 let angle = solution.pose.frame_angle(side);
                 let rigid = match side {
-                    Side::Inner => self.shaft_in_frame(),
+                    Side::Inner => self.shaft_in_frame(side),
                     Side::Outer => {
                         let seat = solution.displacements.seat;
                         (seat != 0.0).then_some([0.0, 0.0, seat, 0.0, 0.0])

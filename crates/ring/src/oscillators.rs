@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use body::N_SHAFT;
-use body::{RigidInertia, SeatFunctions, SeatModes, SeatTie, SeatTraction, ShaftAtSeat};
+use body::{CarriedInertia, SeatFunctions, SeatModes, SeatTie, SeatTraction, ShaftAtSeat};
 use dense::DenseCholesky;
 
 use crate::error::RingError;
@@ -124,7 +124,7 @@ impl Oscillators {
     }
 
     /// Inertia of a body that a shaft carries.
-    pub fn carried_inertia(&self) -> Option<RigidInertia> {
+    pub fn carried_inertia(&self) -> Option<CarriedInertia> {
         self.tie.carried_inertia()
     }
 

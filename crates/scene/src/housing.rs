@@ -31,12 +31,12 @@ pub fn seat_tie(scene: &Scene, side: Side, ring: &RingModel) -> Result<Option<Ar
     Ok(ties(body, body_of_ring)?.pop())
 }
 
-/// Ties the rings of a list to the bodies that carry several of them. `shifts` are those from the coordinates of each
-/// ring, inner first, to the place of its bearing on the shaft, that of the inner groove centres, m.
+/// Ties the rings of a list to the bodies that carry several of them. `shifts` are those from the coordinates of the
+/// rings of each side, inner first, to the place of its bearing on the shaft, that of the inner groove centres, m.
 pub fn tie_together(
     bearings: &[BearingOnShaft],
     rings: &mut [Rings],
-    shifts: &[[f64; 2]],
+    shifts: &[Vec<f64>; 2],
 ) -> Result<(), BuildError> {
     Side::BOTH
         .into_iter()
@@ -47,7 +47,7 @@ fn tie_side(
     side: Side,
     bearings: &[BearingOnShaft],
     rings: &mut [Rings],
-    shifts: &[[f64; 2]],
+    shifts: &[Vec<f64>; 2],
 ) -> Result<(), BuildError> {
     let at = side.index();
     let shared = |i: &usize| {
@@ -79,7 +79,7 @@ fn tie_side(
                 let along =
                     bearings[i]
                         .orientation
-                        .turned_vector([0.0, 0.0, seat.space.middle + shifts[i][at]])[2];
+                        .turned_vector([0.0, 0.0, seat.space.middle + shifts[at][i]])[2];
                 bearings[i].position + along
             })
             .collect();

@@ -15,19 +15,21 @@ use crate::tables::{Motion, ON_SHAFT, RigidShaft, Scene, SeveralScene, ShaftKind
 pub fn build_assembly(scene: &SeveralScene) -> Result<(Assembly, Vec<NodeTags>), BuildError> {
     let mut rings: Vec<Rings> = Vec::new();
     let mut tags: Vec<NodeTags> = Vec::new();
-    let mut shifts: Vec<[f64; 2]> = Vec::new();
+    let mut shifts: [Vec<f64>; 2] = Default::default();
     for (i, bearing) in scene.bearings.iter().enumerate() {
         let like = (0..i).find(|&k| have_same_rings(&scene.bearings[k].scene, &bearing.scene));
         match like {
             Some(k) => {
                 rings.push(rings[k].clone());
                 tags.push(tags[k].clone());
-                shifts.push(shifts[k]);
+                shifts.iter_mut().for_each(|of_side| of_side.push(of_side[k]));
             }
             None => {
                 let (model, of_model) = build_model(&bearing.scene)?;
                 let origin = model.geometry.axial_offset();
-                shifts.push(Side::BOTH.map(|side| model.ring_shift(side) - origin));
+                for (side, of_side) in Side::BOTH.into_iter().zip(&mut shifts) {
+                    of_side.push(model.ring_shift(side) - origin);
+                }
                 rings.push(model.rings);
                 tags.push(of_model);
             }

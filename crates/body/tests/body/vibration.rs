@@ -212,6 +212,10 @@ fn a_body_on_a_shaft_has_its_inertia_and_moves_with_it() {
     let mut velocity = vec![0.0; modes.n()];
     on_shaft.add_motion(q, &mut velocity);
     let energy: f64 = velocity.iter().map(|v| v * v).sum();
-    let rigid: f64 = inertia.times(q).iter().zip(q).map(|(p, q)| p * q).sum();
+    let rigid: f64 = {
+        let [x, y, z, a, b] = q;
+        let across = inertia.mass * (x * x + y * y + z * z) + inertia.transverse * (a * a + b * b);
+        across + 2.0 * inertia.first_moment * (x * b - y * a)
+    };
     assert!((energy / rigid - 1.0).abs() < 1e-9, "{energy} {rigid}");
 }

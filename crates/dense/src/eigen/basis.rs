@@ -9,7 +9,7 @@ use super::problem::{EigenProblem, dot};
 const DEPENDENT: f64 = 1e-11;
 
 /// A^T B, column-major `[n_a][n_b]`, of column-major A `[n][n_a]` and B `[n][n_b]`.
-pub(super) fn inner_products(n: usize, a: &[f64], n_a: usize, b: &[f64], n_b: usize) -> Vec<f64> {
+pub fn inner_products(n: usize, a: &[f64], n_a: usize, b: &[f64], n_b: usize) -> Vec<f64> {
     let mut product = vec![0.0; n_a * n_b];
     matmul(
         MatMut::from_column_major_slice_mut(&mut product, n_a, n_b),

@@ -125,15 +125,18 @@ impl<'m> HeldPart<'m> {
 
     /// The body on the shaft in which the inner ring sits, without that, and how it follows the shaft.
     fn on_shaft(&self) -> Option<(BodyAlone, Follow)> {
-        let ring = Side::Inner.index();
-        let follow = self.part.parts.rings[ring].as_ref()?.follow;
-        Some((self.part.rings[ring].as_ref()?.body_alone()?, follow?))
+        let rings = self.part.rings.iter().zip(&self.part.parts.rings);
+        rings
+            .filter_map(|(step, ports)| Some((step.as_ref()?.body_alone()?, ports.as_ref()?.follow?)))
+            .next()
     }
 
     /// Whether that body has other seats, and whether this is not the first.
     fn seats_on_shaft(&self) -> [bool; 2] {
-        let ring = self.motion.model().ring(Side::Inner);
-        let tie = ring.and_then(|ring| ring.tie.as_ref());
+        let rings = self.motion.model().rings.iter().flatten();
+        let tie = rings
+            .filter_map(|ring| ring.tie.as_ref())
+            .find(|tie| tie.carried().is_some());
         tie.map_or([false; 2], |tie| [tie.has_others(), tie.seat > 0])
     }
 
