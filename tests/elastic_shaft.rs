@@ -94,7 +94,8 @@ fn alone(dir: &Dir, mesh: &str) {
         .text("scenes/7010c_1800rpm_coarse.toml")
         .replace("../meshes", "meshes");
     let body = format!(
-        "[[body]]\nname = \"spindle\"\nmesh = \"{mesh}\"\nmesh_unit = \"mm\"\nfixed = [\"nose\"]\nmodes_below = \"3 kHz\"\n\
+        "[[body]]\nname = \"spindle\"\nmesh = \"{mesh}\"\nmesh_unit = \"mm\"\nfixed = [\"nose\"]\n\
+         modes_below = \"3 kHz\"\n\
          material = {{ young_modulus = \"207 GPa\", poisson_ratio = 0.3, density = \"7800 kg/m3\" }}\n\
          [[body.seat]]\nring = \"inner\"\ngroup = \"seat_front\"\nharmonics = 4\n[shaft] "
     );

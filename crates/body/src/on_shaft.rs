@@ -29,8 +29,8 @@ fn rigid_field(mesh: &Mesh, origin: f64, motion: usize) -> Vec<f64> {
 }
 
 impl Surrounding {
-    /// The same body, carried by a shaft. The tilts of each bearing have their origin at one of the `origins`, m along z
-    /// in the coordinates of its ring, by seat; those of the body at the first.
+    /// The same body, carried by a shaft. The tilts of each bearing have their origin at one of the `origins`, m along
+    /// z in the coordinates of its ring, by seat; those of the body at the first.
     pub fn on_shaft(mut self, origins: &[f64]) -> Result<Surrounding, SurroundingError> {
         let Some((mesh, material)) = &self.mesh else {
             return Err(SurroundingError::MatrixOnShaft {

@@ -12,9 +12,9 @@
 //! At rest nothing is left out. In motion the modes phi above a frequency are. The reduced body is a list of
 //! oscillators xi, its own modes with free seats: M_r V = 1, K_r V = omega^2 in V^T . V; the seats have g = F V_lam xi.
 //!
-//! A body that a shaft carries ([`crate::carried`]) moves by R q as well, q free. Its first oscillators are rigid, omega
-//! = 0, and move it by Q xi, Q^T (R^T M R) Q = 1. The others have no momentum: with W = Q^T R^T M (X, phi) they are those
-//! of M_r - W^T W, and take the shaft along by q = -Q W V xi.
+//! A body that a shaft carries ([`crate::carried`]) moves by R q as well, q free. Its first oscillators are rigid,
+//! omega = 0, and move it by Q xi, Q^T (R^T M R) Q = 1. The others have no momentum: with W = Q^T R^T M (X, phi) they
+//! are those of M_r - W^T W, and take the shaft along by q = -Q W V xi.
 
 use std::f64::consts::TAU;
 

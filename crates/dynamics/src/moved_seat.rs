@@ -1,8 +1,8 @@
 //! A bearing in a body that others move as well, about an equilibrium to first order.
 //!
-//! Others move the seat of a ring by d, of an inner ring beside the shaft, a number for each of its functions. Where no contact force changes,
-//! that moves the contacts by L d and changes the forces on the ring by S d ([`ring::statics::SeatResponse`]). With the
-//! compliance C of the contacts and the motions g of the grooves there,
+//! Others move the seat of a ring by d, of an inner ring beside the shaft, a number for each of its functions. Where no
+//! contact force changes, that moves the contacts by L d and changes the forces on the ring by S d
+//! ([`ring::statics::SeatResponse`]). With the compliance C of the contacts and the motions g of the grooves there,
 //!
 //! ```text
 //! contact forces on the ring  dF = C^-1 (dg - L dd),      forces on the body  dp = L^T dF - S dd

@@ -7,7 +7,6 @@ use contact::{BearingGeometry, Side};
 use dynamics::balls::BallResult;
 use dynamics::{Model, StaticSolution};
 use fem::stress::von_mises;
-use mesh::Mesh;
 use scene::{KeptFields, RingFrame, Scene};
 
 use super::bodies::{BodyField, bodies_of, body_fields};

@@ -1,9 +1,9 @@
 //! The seat of a ring in an elastic body: tractions as a table, and what the summary says of the joint.
 //!
 //! `seat_outer.csv` and `seat_inner.csv` have the last equilibrium of a run, or the end of a motion, on a grid of the
-//! seat: azimuth from +x towards +y, z in the coordinates of the ring's mesh. Pressure is positive where the body presses on the ring; shear
-//! is the traction on the ring in the direction of growing azimuth and z; motion is that of the seat, which ring and
-//! body share, of a body on the shaft beside that of the shaft.
+//! seat: azimuth from +x towards +y, z in the coordinates of the ring's mesh. Pressure is positive where the body
+//! presses on the ring; shear is the traction on the ring in the direction of growing azimuth and z; motion is that of
+//! the seat, which ring and body share, of a body on the shaft beside that of the shaft.
 
 use std::f64::consts::TAU;
 use std::fmt::Write;

@@ -2,12 +2,12 @@
 //! of the list, ledgers.
 
 mod shaft;
+mod stiffness;
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use assembly::shaft::ShaftBody;
-use assembly::stiffness::LinearAssembly;
 use assembly::{
     Assembly, AssemblyMotion, AssemblySolution, AssemblySolver, AssemblyState, MountedBearing, Orientation,
     Seating,
@@ -15,7 +15,7 @@ use assembly::{
 use body::{BodySeat, SeatBasis, SeatCylinder, SeatFunctions, SeatSpace, SeatTie, Surrounding};
 use contact::Side;
 use dynamics::kinematics::Speed;
-use dynamics::{ContactMode, DampingLaws, Hold, RingModel};
+use dynamics::{ContactMode, Hold, RingModel};
 use fem::Material;
 use mesh::{ElementKind, Facet, Mesh, Origin};
 
@@ -328,130 +328,6 @@ fn the_order_of_the_list_does_not_matter() {
     let turned = at_rest(&mut pair(in_one_turned(), [1, 0]));
     let off = off(&turned.shaft.displacements, &found.shaft.displacements);
     assert!(off < 1e-8, "{off:e}");
-}
-
-/// An equilibrium from another one.
-fn from(solver: &mut AssemblySolver, list: &mut Assembly, start: &AssemblySolution) -> AssemblySolution {
-    solver.solve(list, Some(start)).unwrap_or_else(|e| panic!("{e}"))
-}
-
-/// Loads on both bearings in the frame of the shaft.
-fn loads(list: &Assembly, solution: &AssemblySolution) -> [[f64; 5]; 2] {
-    [0, 1].map(|i| list.force_on_shaft(i, solution).map(|f| -f))
-}
-
-/// A pair with these joints at rest, and what that is to first order.
-fn linearised(ties: [Arc<SeatTie>; 2]) -> (Assembly, AssemblySolver, AssemblySolution, LinearAssembly) {
-    let mut list = pair(ties, [0, 1]);
-    let mut solver = AssemblySolver::new(&list).unwrap();
-    let solution = solver.solve(&mut list, None).unwrap_or_else(|e| panic!("{e}"));
-    let linear = LinearAssembly::new(&list, &solver, &solution, DampingLaws::default()).unwrap();
-    (list, solver, solution, linear)
-}
-
-/// Wrong: bearings would feel each other to first order where nothing joins their seats, or not be as stiff as in
-/// bodies of their own.
-#[test]
-fn to_first_order_a_body_in_two_parts_is_two_bodies() {
-    let (.., found) = linearised(in_one(false, 70e9));
-    let (.., expected) = linearised(in_two());
-    for (found, expected) in found.stiffness.iter().zip(&expected.stiffness) {
-        let error = off(found.as_flattened(), expected.as_flattened());
-        assert!(error < 1e-7, "{error:e}");
-    }
-    for coupling in &found.couplings {
-        let own = &found.stiffness[coupling.moved];
-        let share = largest(coupling.stiffness.as_flattened()) / largest(own.as_flattened());
-        assert!(share < 1e-8, "{share:e}");
-    }
-    assert!(found.couplings.len() == 2 && expected.couplings.is_empty());
-}
-
-/// Wrong: a shaft on bearings in one body would be as stiff as if each had the body for itself. Central differences of
-/// equilibria under a little more and less of each load; patches move with these and are frozen in the matrix.
-#[test]
-fn the_stiffness_of_a_shaft_in_one_body_is_that_of_differences() {
-    let (mut list, mut solver, solution, linear) = linearised(in_one(true, 5e9));
-    let stiffness = linear.of_shaft(&list, 0.0).unwrap();
-    let mut alone = linear;
-    alone.couplings.clear();
-    let alone = alone.of_shaft(&list, 0.0).unwrap();
-    let load = list.load.clone();
-    let arm = 0.03;
-    let (mut worst, mut worst_alone) = (0.0f64, 0.0f64);
-    for dof in 0..5 {
-        let change = if dof < 3 { 2.0 } else { 2.0 * arm };
-        let mut at = |sign: f64| {
-            list.load.clone_from(&load);
-            list.load[dof] += sign * change;
-            from(&mut solver, &mut list, &solution).shaft.displacements
-        };
-        let (low, high) = (at(-1.0), at(1.0));
-        let moved: Vec<f64> = low.iter().zip(&high).map(|(a, b)| 0.5 * (b - a)).collect();
-        let error = |matrix: &[[f64; 5]; 5]| -> f64 {
-            let left = (0..5).map(|i| {
-                let load: f64 = matrix[i].iter().zip(&moved).map(|(k, q)| k * q).sum();
-                let expected = if i == dof { change } else { 0.0 };
-                (load - expected).abs() / if i < 3 { 2.0 } else { 2.0 * arm }
-            });
-            left.fold(0.0, f64::max)
-        };
-        worst = worst.max(error(&stiffness));
-        worst_alone = worst_alone.max(error(&alone));
-    }
-    println!("{worst:e}, without what bearings do to each other {worst_alone:e}");
-    assert!(worst < 3e-4 && worst_alone > 0.1, "{worst:e} {worst_alone:e}");
-}
-
-/// Wrong: the entry of a bearing, or what it does to the other, would not be that of the body with both in it. The
-/// shaft is held, and one inner ring is moved along its axis: central differences of the loads on both.
-#[test]
-fn what_bearings_in_one_body_do_to_each_other_is_that_of_differences() {
-    const STEP: f64 = 1e-7;
-    let (mut list, mut solver, solution, linear) = linearised(in_one(true, 5e9));
-    list.shaft.held = solution.shaft.displacements.iter().map(|q| Some(*q)).collect();
-    for moved in [0, 1] {
-        let shift = list.bearings[moved].place.shift;
-        let mut at = |sign: f64| {
-            list.bearings[moved].place.shift = shift + sign * STEP;
-            let found = from(&mut solver, &mut list, &solution);
-            loads(&list, &found)
-        };
-        let (low, high) = (at(-1.0), at(1.0));
-        list.bearings[moved].place.shift = shift;
-        // Along its own axis.
-        let sign = list.bearings[moved]
-            .place
-            .orientation
-            .turned_vector([0.0, 0.0, 1.0])[2];
-        for loaded in [0, 1] {
-            let expected: Vec<f64> = (0..5)
-                .map(|i| sign * (high[loaded][i] - low[loaded][i]) / (2.0 * STEP))
-                .collect();
-            let block = match linear
-                .couplings
-                .iter()
-                .find(|c| (c.loaded, c.moved) == (loaded, moved))
-            {
-                Some(coupling) => coupling.stiffness,
-                None => linear.stiffness[loaded],
-            };
-            let column = block.map(|row| row[2]);
-            let error = off(&column, &expected);
-            println!("{loaded} by {moved}: {error:e} of {expected:?}");
-            assert!(error < 3e-4, "{loaded} by {moved}: {error:e}");
-        }
-    }
-    let [there, back] = [(0, 1), (1, 0)].map(|pair| {
-        let of = linear.couplings.iter().find(|c| (c.loaded, c.moved) == pair);
-        of.unwrap().stiffness
-    });
-    let mirrored: Vec<f64> = (0..25).map(|k| back[k % 5][k / 5]).collect();
-    let error = off(&there.concat(), &mirrored);
-    assert!(
-        error < 1e-8,
-        "loads that follow nothing have an energy: {error:e}"
-    );
 }
 
 /// A motion after the load on the shaft has changed, with what is noted of each step.

@@ -8,7 +8,7 @@ const CARRIED: Wall = Wall {
     held: [0.0, 1.0],
 };
 /// The same at one side alone, so that the shaft bends.
-const HELD_BELOW: Wall = Wall {
+pub const HELD_BELOW: Wall = Wall {
     held: [0.5, 1.0],
     ..CARRIED
 };
@@ -35,7 +35,7 @@ fn hollow(space: &SeatSpace, is_joined: bool, wall: Wall) -> Mesh {
     )
 }
 
-fn on_one(is_joined: bool, wall: Wall) -> [Arc<SeatTie>; 2] {
+pub fn on_one(is_joined: bool, wall: Wall) -> [Arc<SeatTie>; 2] {
     let space = space(&inner());
     let body = carried(
         hollow(&space, is_joined, wall),

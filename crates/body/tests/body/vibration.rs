@@ -154,8 +154,8 @@ fn a_body_of_its_matrices_vibrates_as_that_of_its_mesh() {
     );
 }
 
-/// Wrong: a body on a shaft would have another inertia than its mesh, or stand elsewhere than where forces and the shaft
-/// put it. A tube about z, seen from 30 mm off its middle: closed forms up to what chords take.
+/// Wrong: a body on a shaft would have another inertia than its mesh, or stand elsewhere than where forces and the
+/// shaft put it. A tube about z, seen from 30 mm off its middle: closed forms up to what chords take.
 #[test]
 fn a_body_on_a_shaft_has_its_inertia_and_moves_with_it() {
     let mesh = tube(ElementKind::Hex8, 96, [2, 2]);

@@ -98,8 +98,8 @@ fn ever_more_functions_on_a_rigid_body_clamp_the_seat() {
     );
 }
 
-/// A tube outside the seat, whose inner nodes are those of the ring, in layers up to 58 mm: alone, and with the ring. It
-/// is held at its feet.
+/// A tube outside the seat, whose inner nodes are those of the ring, in layers up to 58 mm: alone, and with the ring.
+/// It is held at its feet.
 fn tube(ring: &RingModel, layers: usize) -> (Mesh, Mesh) {
     wrapped(ring, layers, 1.45, |[x, y]| y < -0.7 * x.hypot(y))
 }

@@ -132,8 +132,8 @@ fn ring_and_shaft_at_rest_are_those_of_one_mesh() {
     assert!(pushed[0] < 1e-3 && shaft[0] < 5e-3, "{pushed:?} {shaft:?}");
 }
 
-/// Wrong: ring and shaft would move otherwise than the body that they are together: the inertia of the shaft's tube, its
-/// turning, its modes.
+/// Wrong: ring and shaft would move otherwise than the body that they are together: the inertia of the shaft's tube,
+/// its turning, its modes.
 #[test]
 fn ring_and_shaft_move_as_one_mesh() {
     let expected = histories(&course(&free(as_one(3), Backend::Sparse), settings(), 60));

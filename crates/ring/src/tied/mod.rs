@@ -12,7 +12,7 @@
 //! and the contacts see the compliance C - B^T (A + D)^-1 B. Ring and body move by the same integrator, so the joint
 //! does no work. From outside the pair is a ring without a mount.
 //!
-//! A body that a shaft carries is a free one, and its fixed groups are the mount, q, on which the shaft acts by forces G:
+//! A body that a shaft carries is a free one. Its fixed groups are the mount, q, on which the shaft acts by forces G:
 //!
 //! ```text
 //! y(end) = y_pred - D lam + E^T G,     q(end) = q_pred - E lam + H G

@@ -77,7 +77,8 @@ fn bodies_that_fit_no_bearing_are_refused_with_advice() {
                 ]
                 .concat(),
             ),
-            "bodies \"block\" and \"other\" have both a seat for the outer ring of the bearing \"rear\"; expected one body",
+            "bodies \"block\" and \"other\" have both a seat for the outer ring of the bearing \"rear\"; expected one \
+             body",
         ),
         (
             list(BEAM, &two_seats("seat_b", "front")),
