@@ -63,16 +63,6 @@ pub fn is_page(content: &[u8]) -> bool {
 /// What was run, by which program, and how it ended.
 fn about(source: &Source) -> String {
     let summary = &source.summary;
-    let dofs = summary
-        .get("dofs")
-        .and_then(Value::as_object)
-        .into_iter()
-        .flatten();
-    let mesh = |(ring, dofs): (&String, &Value)| match summary["elements"][ring].as_u64() {
-        Some(elements) if elements > 0 => format!("{ring} ring {elements} elements, {dofs} dofs"),
-        _ => format!("{ring} ring {dofs} dofs"),
-    };
-    let dofs: Vec<String> = dofs.map(mesh).collect();
     let effects = list(summary, "effects").join(", ").replace('_', " ");
     let rows = [
         ("status", text(summary, "status")),
@@ -87,7 +77,7 @@ fn about(source: &Source) -> String {
                 effects
             },
         ),
-        ("meshes", dofs.join(", ")),
+        ("meshes", meshes(summary)),
         ("stress", bearing::stress(source.scene.as_deref())),
         ("program", program(summary, &source.commit)),
         ("ended", source.ended.clone()),
@@ -95,6 +85,20 @@ fn about(source: &Source) -> String {
     let rows = rows.iter().filter(|(_, value)| !value.is_empty());
     let rows = rows.map(|(name, value)| row(name, std::slice::from_ref(value), Cells::Text));
     table("about", None, rows)
+}
+
+/// Elements and dofs of both rings.
+pub fn meshes(summary: &Value) -> String {
+    let dofs = summary
+        .get("dofs")
+        .and_then(Value::as_object)
+        .into_iter()
+        .flatten();
+    let mesh = |(ring, dofs): (&String, &Value)| match summary["elements"][ring].as_u64() {
+        Some(elements) if elements > 0 => format!("{ring} ring {elements} elements, {dofs} dofs"),
+        _ => format!("{ring} ring {dofs} dofs"),
+    };
+    dofs.map(mesh).collect::<Vec<String>>().join(", ")
 }
 
 /// Name, version and commit of the program.

@@ -13,7 +13,7 @@ use serde_json::Value;
 use super::html::{Cells, digits, row, table};
 use super::numbers::{self, Number};
 use super::page::{
-    cost, document, energy, figures, key_numbers, list, program, remarks, scene, text, warnings,
+    cost, document, energy, figures, key_numbers, list, meshes, program, remarks, scene, text, warnings,
 };
 use super::pictures::{Picture, drawn};
 use super::source::{self, Source};
@@ -174,7 +174,15 @@ fn of_bearing(part: &Part, summary: &Value) -> String {
     let (own, source) = (&part.source.summary, &part.source);
     let entry = &summary["bearings"][&part.name];
     let position = entry["position_m"].as_f64().unwrap_or(f64::NAN);
+    let rows = [
+        ("contact mode", text(own, "contact_mode")),
+        ("meshes", meshes(own)),
+        ("stress", bearing::stress(source.scene.as_deref())),
+    ];
+    let rows = rows.iter().filter(|(_, value)| !value.is_empty());
+    let rows = rows.map(|(name, value)| row(name, std::slice::from_ref(value), Cells::Text));
     let blocks = [
+        table("about", None, rows),
         remarks("Filled in where the scene is open", &list(own, "assumed")),
         bearing::bearing(source.scene.as_deref()),
         key_numbers(&part.numbers, own),
@@ -220,7 +228,7 @@ mod tests {
             "bearings": { "front": entry(0.06), "rear": entry(0.13) } });
         let part = |name: &str| Part {
             name: name.into(),
-            source: source(serde_json::json!({})),
+            source: source(serde_json::json!({ "dofs": { "inner": 300 }, "elements": { "inner": 64 } })),
             numbers: vec![],
             pictures: vec![(format!("ball_force_{name}"), "<svg></svg>".into())],
         };
@@ -232,6 +240,7 @@ mod tests {
             "<h2 id=\"bearing-front\">Bearing front</h2>",
             "Type a&lt;b.toml, turned +z, at 130.00 mm.",
             "<h3>Key numbers</h3>",
+            "<th>meshes</th><td>inner ring 64 elements, 300 dofs</td>",
             "<td class=\"number\">1.500</td>",
             "<td class=\"number\">-345.51</td>",
             "<td class=\"number\">17 of 18</td>",

@@ -91,7 +91,8 @@ fn files(dir: &Path) -> anyhow::Result<Vec<(String, u64)>> {
     }
     files.sort();
     if steps > 0 {
-        files.push((format!("{steps} step files"), step_bytes));
+        let noun = if steps == 1 { "step file" } else { "step files" };
+        files.push((format!("{steps} {noun}"), step_bytes));
     }
     Ok(files)
 }
