@@ -70,6 +70,11 @@ impl ShaftAtSeat {
         shaft_motion(&self.rows, oscillators)
     }
 
+    /// Force and moment about the origin of the tilts there, N and N m, of loads on the rigid oscillators.
+    pub fn resultant(&self, loads: &[f64]) -> [f64; N_SHAFT] {
+        shaft_motion(&self.of_motion, loads)
+    }
+
     /// Adds the oscillators of a motion or velocity with the shaft.
     pub fn add_motion(&self, q: [f64; N_SHAFT], oscillators: &mut [f64]) {
         for (x, row) in oscillators.iter_mut().zip(&self.of_motion) {

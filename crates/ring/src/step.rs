@@ -197,6 +197,12 @@ pub trait ElasticStep: Send {
         None
     }
 
+    /// Force and moment of a body that a shaft carries on the ring, mean over the step, N and N m, in the ring's frame
+    /// about the origin of the shaft's tilts; None where no shaft carries one.
+    fn force_of_body(&self, _forces: PortForces<'_>) -> Option<[f64; 5]> {
+        None
+    }
+
     /// Values of a vector of the body at the contacts, in two directions of all their nodal weights.
     fn at_contacts(&self, x: &[f64]) -> Vec<f64>;
 

@@ -41,7 +41,7 @@ pub struct HeldAnswer {
     /// Mean load that has to act on the shaft over the part, N and N m. A body on the shaft that carries other bearings
     /// as well counts at its first seat alone.
     pub load: [f64; N_SHAFT],
-    /// The part of it that goes to the inner ring, not to the inertia of a body on the shaft under it.
+    /// The same on the inner ring alone, where it sits in a body on the shaft.
     pub on_ring: [f64; N_SHAFT],
     /// Force by which its round-off counts, N.
     pub force: f64,
@@ -94,11 +94,12 @@ impl<'m> HeldPart<'m> {
         };
         let forces = solution.forces.iter().map(|f| f.force[0].hypot(f.force[1]));
         let reactions = part.parts.shaft_reactions(&solution, scheme);
-        let [elsewhere, of_body] = self.on_body(shaft);
+        let elsewhere = self.counted_elsewhere(shaft);
+        let on_ring = self.force_of_body(&solution).unwrap_or(reactions);
         let part = &mut self.part;
         let answer = HeldAnswer {
             load: [0, 1, 2, 3, 4].map(|i| reactions[i] - elsewhere[i]),
-            on_ring: [0, 1, 2, 3, 4].map(|i| reactions[i] - of_body[i]),
+            on_ring,
             force: forces.fold(part.scale, f64::max),
         };
         part.report.newton_iterations += solution.iterations;
@@ -140,23 +141,35 @@ impl<'m> HeldPart<'m> {
         tie.map_or([false; 2], |tie| [tie.has_others(), tie.seat > 0])
     }
 
-    /// Loads on the shaft that are in the reactions of the bearing: those that other bearings on the same body count,
-    /// and those that the body asks for without the ring. The reactions hold the whole body, with the loads of the
-    /// others on it: at the first seat others count these loads, elsewhere all of the body.
-    fn on_body(&self, shaft: [f64; N_SHAFT]) -> [[f64; N_SHAFT]; 2] {
-        let Some((alone, follow)) = self.on_shaft() else {
-            return [[0.0; N_SHAFT]; 2];
-        };
-        let force = |at: &[f64]| {
-            let off: Vec<f64> = at.iter().zip(&alone.predicted).map(|(q, p)| q - p).collect();
-            follow.in_space(&times(&alone.stiffness, &off))
-        };
-        let body = force(&follow.in_frame(shaft));
-        match self.seats_on_shaft() {
-            [false, _] => [[0.0; N_SHAFT], body],
-            [true, true] => [body, body],
-            [true, false] => [force(&alone.unloaded), body],
+    /// Mean force and moment of the body on the shaft on its ring, in space; None where there is no such body.
+    fn force_of_body(&self, solution: &StepSolution) -> Option<[f64; N_SHAFT]> {
+        let rings = self.part.rings.iter().zip(&self.part.parts.rings);
+        for (side, (step, ports)) in Side::BOTH.into_iter().zip(rings) {
+            let (Some(step), Some(ports)) = (step, ports) else {
+                continue;
+            };
+            let forces = self.part.parts.forces_at_ports(side, solution);
+            if let (Some(force), Some(follow)) = (step.force_of_body(forces.at_ports()), ports.follow) {
+                return Some(follow.in_space(&force));
+            }
         }
+        None
+    }
+
+    /// Loads on the shaft that are in the reactions of the bearing and that other bearings on the same body count. The
+    /// reactions hold the whole body, with the loads of the others on it: at the first seat others count these loads,
+    /// elsewhere all of the body.
+    fn counted_elsewhere(&self, shaft: [f64; N_SHAFT]) -> [f64; N_SHAFT] {
+        let [is_shared, is_other] = self.seats_on_shaft();
+        let Some((alone, follow)) = self.on_shaft().filter(|_| is_shared) else {
+            return [0.0; N_SHAFT];
+        };
+        let at = match is_other {
+            true => follow.in_frame(shaft).to_vec(),
+            false => alone.unloaded.clone(),
+        };
+        let off: Vec<f64> = at.iter().zip(&alone.predicted).map(|(q, p)| q - p).collect();
+        follow.in_space(&times(&alone.stiffness, &off))
     }
 
     /// Growth of what others count with the displacement at the end; None: it does not grow.

@@ -227,6 +227,14 @@ impl ElasticStep for TiedStep<'_> {
         })
     }
 
+    fn force_of_body(&self, forces: PortForces<'_>) -> Option<[f64; 5]> {
+        let modes = &self.factor.body.body.modes;
+        let shaft = modes.on_shaft.as_ref()?;
+        let lam = self.joint(forces);
+        let rigid = modes.rows().take(N_SHAFT).map(|row| dot(row, &lam));
+        Some(shaft.resultant(&rigid.collect::<Vec<_>>()))
+    }
+
     fn at_contacts(&self, x: &[f64]) -> Vec<f64> {
         self.ring.at_contacts(x)
     }
