@@ -167,6 +167,15 @@ fn check<'a>(scene: &'a Scene, path: &Path) -> Result<&'a Heat, Failure> {
         )
         .into());
     }
+    if let Some(body) = scene.bodies.iter().flatten().next() {
+        return Err(anyhow!(
+            "{} has the body {:?}, whose temperatures raceway heat does not know; remove [[body]], with \"clamped\" or \
+             \"mean_motion\" as the support of its ring",
+            path.display(),
+            body.name
+        )
+        .into());
+    }
     if scene.effects.temperature.is_some() {
         return Err(anyhow!(
             "{} has [effects.temperature], which raceway heat finds; remove it, or --set effects.temperature=none",

@@ -89,7 +89,7 @@ fn with_bodies(rest: usize, model: &Model) -> usize {
 /// The functions of a seat on the side of its ring: of its statics, or those of a mount beside what a motion counts.
 fn joint_bytes(ring: &RingModel, tie: &SeatTie) -> usize {
     let nodes = ring.mesh.group_nodes(ring.held_group).len();
-    tie.space.basis.n_functions() * 3 * nodes * size_of::<f64>()
+    tie.space.basis.n_functions() * nodes * size_of::<f64>()
 }
 
 fn with_body(rest: usize, model: &Model, side: Side) -> usize {

@@ -51,11 +51,11 @@ pub enum BuildError {
         /// Allowed difference, mm.
         limit_mm: f64,
     },
-    /// A body that turns is far from round.
+    /// A body on the shaft is far from round.
     #[error(
-        "body \"{body}\" turns with the shaft, but its inertia differs by {found:.1} % from that of a body of \
-         revolution, more than {limit} %: unbalance and unequal moments of inertia of a body are not solved; mesh it \
-         round, or clamp the ring"
+        "body \"{body}\" is on the shaft, but its inertia differs by {found:.1} % from that of a body of revolution, \
+         more than {limit} %: unbalance and unequal moments of inertia of a body are not solved; mesh it round, or \
+         clamp the ring"
     )]
     NotOfRevolution {
         /// Name of the body.

@@ -18,6 +18,8 @@ pub type Rings = [Option<Arc<RingModel>>; 2];
 /// Allowed difference of the distances of two seats in a body and of their bearings on the shaft, widths of a seat. The
 /// rings of a bearing that just touches stand off each other along z: a share of the ball, with either sign.
 const SEAT_DISTANCE_TOLERANCE: f64 = 0.05;
+/// The same of inner rings, which stand off nothing.
+const SHAFT_DISTANCE_TOLERANCE: f64 = 1e-3;
 
 /// The joint of a ring with its body in the scene, if there is one of its own: reads, factors and condenses it.
 pub fn seat_tie(scene: &Scene, side: Side, ring: &RingModel) -> Result<Option<Arc<SeatTie>>, BuildError> {
@@ -104,7 +106,11 @@ fn require_distances(
         let of_body = body.middles[k] - body.middles[0];
         let found = orientation.turned_vector([0.0, 0.0, of_body])[2];
         let expected = places[k] - places[0];
-        let limit = SEAT_DISTANCE_TOLERANCE * 2.0 * body.seats[k].space.half_width;
+        let share = match body.carried {
+            Some(_) => SHAFT_DISTANCE_TOLERANCE,
+            None => SEAT_DISTANCE_TOLERANCE,
+        };
+        let limit = share * 2.0 * body.seats[k].space.half_width;
         if (found - expected).abs() > limit {
             return Err(BuildError::SeatDistance {
                 body: body.name.clone(),
@@ -118,7 +124,7 @@ fn require_distances(
     Ok(())
 }
 
-/// Share of its inertia by which a body that turns may differ from one of revolution, as whose inertia turns.
+/// Share of its inertia by which a body on the shaft may differ from one of revolution, as which it turns and weighs.
 const MOST_ASYMMETRY: f64 = 0.01;
 
 /// The seat of a ring in its body.
@@ -194,7 +200,7 @@ fn carried(made: Surrounding, body: &SceneBody, rings: &[&RingModel]) -> Result<
     let origins: Vec<f64> = rings.iter().map(|ring| ring.groove.centre_z).collect();
     let made = made.on_shaft(&origins)?;
     let asymmetry = made.carried.as_ref().map_or(0.0, |carried| carried.asymmetry);
-    if body.modes_below.is_some() && asymmetry > MOST_ASYMMETRY {
+    if asymmetry > MOST_ASYMMETRY {
         return Err(BuildError::NotOfRevolution {
             body: body.name.clone(),
             found: 100.0 * asymmetry,

@@ -151,7 +151,7 @@ pub fn loads(
     }
     shaft.add_load(scene.shaft.load_point, of_effects.shaft, &mut sum);
     if let Some(gravity) = &scene.effects.gravity {
-        let g = gravity.acceleration();
+        let g = gravity.acceleration_at(time);
         match &scene.shaft.kind {
             ShaftKind::Beam(_) => {
                 let weight = shaft.weight(g);

@@ -48,6 +48,12 @@ impl Table {
         self.direction.map(|d| g * d / length)
     }
 
+    /// The same at a time, s.
+    pub fn acceleration_at(&self, time: f64) -> [f64; 3] {
+        let factor = table::Table::schedule(self).at(time);
+        self.acceleration().map(|g| factor * g)
+    }
+
     /// Length of the direction.
     fn length(&self) -> f64 {
         self.direction.iter().map(|d| d * d).sum::<f64>().sqrt()

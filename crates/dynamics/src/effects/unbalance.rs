@@ -80,7 +80,8 @@ impl table::Table for Table {
         if load == 0.0 || speed == 0.0 {
             return Vec::new();
         }
-        let rotor = case.model.shaft_mass + case.inner_ring_mass();
+        let carried = case.model.carried_inertia().map_or(0.0, |body| body.mass);
+        let rotor = case.model.shaft_mass + carried + case.inner_ring_mass();
         let (force, formula) = match table {
             Some(table) => (
                 table.moment() * speed * speed,

@@ -346,7 +346,7 @@ fn what_a_ring_and_a_scene_lack_is_said_at_once_too() {
         "inner.mesh_unit is missing; a flexible ring needs the unit of its mesh such as \"mm\", or set \
          inner.flexible = false",
         "inner.support is missing; a flexible ring needs to know how its bore is held, \"clamped\" or \
-         \"mean_motion\", or set inner.flexible = false",
+         \"mean_motion\", or \"body\" with a table [[body]], or set inner.flexible = false",
     ] {
         assert!(
             message.contains(&format!("  {part} (line {line})")),
