@@ -120,3 +120,13 @@ impl Carried {
 pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(x, y)| x * y).sum()
 }
+
+/// Rows of a matrix times one number each, summed.
+pub(crate) fn combined(rows: &[f64], factors: &[f64]) -> Vec<f64> {
+    let width = rows.len().checked_div(factors.len()).unwrap_or(0);
+    let mut sum = vec![0.0; width];
+    for (row, factor) in rows.chunks_exact(width.max(1)).zip(factors) {
+        sum.iter_mut().zip(row).for_each(|(s, r)| *s += factor * r);
+    }
+    sum
+}

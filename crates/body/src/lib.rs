@@ -12,6 +12,7 @@
 mod areas;
 mod carried;
 mod error;
+mod frame;
 pub mod matrix;
 mod on_shaft;
 mod oscillators;
@@ -20,11 +21,13 @@ mod rows;
 mod seat;
 mod surrounding;
 mod tie;
+mod turning;
 mod vibration;
 
 pub use areas::cylinder_areas;
 pub use carried::{Carried, CarriedInertia, N_SHAFT};
 pub use error::SurroundingError;
+pub use frame::{FrameForms, length};
 pub use oscillators::{BodyModes, SeatModes, ShaftAtSeat};
 pub use rows::SeatRows;
 pub use seat::{SeatBasis, SeatCylinder, SeatFunctions, SeatSpace};

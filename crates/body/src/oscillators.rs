@@ -3,7 +3,8 @@
 use std::ops::Range;
 use std::sync::Arc;
 
-use crate::carried::{N_SHAFT, ShaftPlace, dot};
+use crate::carried::{N_SHAFT, ShaftPlace, combined, dot};
+use crate::frame::FrameForms;
 
 /// A body as oscillators.
 #[derive(Clone, Debug, PartialEq)]
@@ -26,6 +27,8 @@ pub struct BodyModes {
     pub(crate) fixed: Vec<f64>,
     /// Of a body that a shaft carries.
     pub(crate) on_shaft: Option<ShaftShares>,
+    /// Inertia of the turning frame of such a body.
+    pub frame: Option<Box<FrameForms>>,
 }
 
 /// How oscillators move the shaft that carries their body, at the bearing of its first seat. The first [`N_SHAFT`] are
@@ -105,12 +108,20 @@ impl BodyModes {
             shares: Vec::new(),
             fixed: Vec::new(),
             on_shaft: None,
+            frame: None,
         }
     }
 
     /// Number of oscillators.
     pub fn n(&self) -> usize {
         self.squares.len()
+    }
+
+    /// Motion of the shaft by an oscillator; none of a body that stands.
+    pub(crate) fn shaft_row(&self, oscillator: usize) -> [f64; N_SHAFT] {
+        self.on_shaft
+            .as_ref()
+            .map_or([0.0; N_SHAFT], |shares| shares.rows[oscillator])
     }
 
     /// Motion of the functions of all seats under oscillators, m.
@@ -145,7 +156,8 @@ impl BodyModes {
             &self.shares,
             &self.fixed,
         ];
-        size_of::<f64>() * lists.iter().map(|list| list.len()).sum::<usize>()
+        let frame = self.frame.as_ref().map_or(0, |frame| frame.bytes());
+        frame + size_of::<f64>() * lists.iter().map(|list| list.len()).sum::<usize>()
     }
 }
 
@@ -214,14 +226,4 @@ impl SeatModes {
         }
         softness
     }
-}
-
-/// Rows of a matrix times one number each, summed.
-pub(crate) fn combined(rows: &[f64], factors: &[f64]) -> Vec<f64> {
-    let width = rows.len().checked_div(factors.len()).unwrap_or(0);
-    let mut sum = vec![0.0; width];
-    for (row, factor) in rows.chunks_exact(width.max(1)).zip(factors) {
-        sum.iter_mut().zip(row).for_each(|(s, r)| *s += factor * r);
-    }
-    sum
 }

@@ -26,9 +26,9 @@ use rayon::prelude::*;
 use solver::LinearSolver;
 use sprs::CsMat;
 
-use crate::carried::{N_SHAFT, dot};
+use crate::carried::{N_SHAFT, combined, dot};
 use crate::error::SurroundingError;
-use crate::oscillators::{BodyModes, ShaftShares, combined, shaft_motion};
+use crate::oscillators::{BodyModes, ShaftShares, shaft_motion};
 use crate::rigid_part::RigidPart;
 use crate::surrounding::Surrounding;
 
@@ -65,9 +65,13 @@ impl Surrounding {
         let fixed = held.below(below_hz)?;
         let reduced = Reduced::new(&held, &fixed).map_err(failed)?;
         let n_fixed = fixed.values.len();
-        reduced
+        let mut modes = reduced
             .oscillators(below_hz, n_fixed, fixed.vectors)
-            .map_err(failed)
+            .map_err(failed)?;
+        if let (Some(_), Some((mesh, material))) = (&self.carried, &self.mesh) {
+            modes.frame = Some(Box::new(self.frame_forms((mesh, material), &modes, &columns)?));
+        }
+        Ok(modes)
     }
 
     /// Displacement of the body, m, `[n_nodes][3]` flat, under oscillators.

@@ -20,7 +20,7 @@ mod forms;
 pub use blocks::BlockLu;
 pub use eigen::{
     ComplexNumber, ComplexPair, EigenProblem, Eigenpairs, LanczosSettings, Searched, dense_lowest,
-    general_eigen, inner_products, lanczos, lowest_pairs, symmetric_eigen,
+    general_eigen, inner_products, lanczos, linear_combinations, lowest_pairs, symmetric_eigen,
 };
 pub use error::DenseError;
 pub use factors::{DenseCholesky, DenseLu, cholesky_in_place};

@@ -291,12 +291,13 @@ impl dyn ElasticBody + '_ {
     }
 
     /// State of a ring: elastic nodal displacements `[n_dofs]` plus the rigid motion `q`, with the velocity of
-    /// another rigid motion `rate`, both in its own frame. Forces `others`, N, act on the other seats of its body.
+    /// another rigid motion `rate`, both in its own frame. Forces `others`, N, act on the other seats of its body. A body
+    /// on the shaft stands in space with its ring while the frame turns with `speed`, rad/s.
     pub fn rigid_state(
         &self,
-        elastic: &[f64],
+        (elastic, others): (&[f64], Option<&[f64]>),
         [q, rate]: [[f64; 5]; 2],
-        others: Option<&[f64]>,
+        speed: f64,
     ) -> RingState {
         let held = self.held();
         let coordinates = &held.coordinates;
@@ -320,11 +321,20 @@ impl dyn ElasticBody + '_ {
             .iter()
             .enumerate()
             .for_each(|(i, &dof)| w[i] += elastic[dof]);
-        let v = field(rate);
+        let mut v = field(rate);
         let body = self.tied().map(|body| match body.on_shaft() {
-            Some(_) => body.at_rest(elastic, others, [q, rate]),
-            None => body.at_rest(&coordinates.expand(&w), others, [[0.0; 5]; 2]),
+            Some(_) => body.at_rest(elastic, others, ([q, rate], speed)),
+            None => body.at_rest(&coordinates.expand(&w), others, ([[0.0; 5]; 2], 0.0)),
         });
+        if self.tied().is_some_and(|body| body.on_shaft().is_some()) {
+            let turned = |dof: usize| match dof % 3 {
+                0 => speed * elastic[dof + 1],
+                1 => -speed * elastic[dof - 1],
+                _ => 0.0,
+            };
+            let free = v.iter_mut().zip(coordinates.free());
+            free.for_each(|(v, &dof)| *v += turned(dof));
+        }
         let [w, v] = [w, v].map(|y| self.state_of_coordinates(y));
         let a = vec![0.0; w.len()];
         RingState::new(w, v, a).with_body(body)

@@ -3,12 +3,13 @@
 use std::sync::Arc;
 
 use body::N_SHAFT;
-use body::{CarriedInertia, SeatFunctions, SeatModes, SeatTie, SeatTraction, ShaftAtSeat};
+use body::{SeatFunctions, SeatModes, SeatTie, SeatTraction, ShaftAtSeat};
 use dense::DenseCholesky;
 
 use crate::error::RingError;
 use crate::integrator::{Integrator, StepScheme};
 use crate::state::{BodyState, RingState};
+use crate::step::FrameTurn;
 use crate::vectors::dot;
 
 /// A body to which a ring is tied.
@@ -41,6 +42,16 @@ pub(crate) struct BodyStep {
     pub seat: Vec<f64>,
     /// Motion of the shaft that carries the body, at the start and at the end, m and rad; empty: none carries it.
     pub shaft: [Vec<f64>; 2],
+}
+
+/// Inertia of the turning frame of a body over a step, found by rounds.
+pub(crate) struct FrameRounds {
+    /// Speed, rad/s, and its rate at the weighted time.
+    pub turn: [f64; 2],
+    /// Mean load on the oscillators.
+    pub load: Vec<f64>,
+    /// Change of the last round over the size of the loads.
+    pub change: f64,
 }
 
 /// What forces of the shaft that carries a body do over a step.
@@ -101,16 +112,24 @@ impl Oscillators {
     }
 
     /// The body at rest under a ring that stands as displaced beside the motion of its shaft, m, `[n_nodes][3]` flat,
-    /// and forces on its other seats, N, over the functions of all seats. A shaft that carries it moves it, and has a
-    /// velocity.
-    pub fn at_rest(&self, elastic: &[f64], others: Option<&[f64]>, shaft: [[f64; 5]; 2]) -> BodyState {
+    /// and forces on its other seats, N, over the functions of all seats. A shaft that carries it moves it, has a
+    /// velocity, and turns with a `speed`, rad/s, against which the body stands.
+    pub fn at_rest(
+        &self,
+        elastic: &[f64],
+        others: Option<&[f64]>,
+        (shaft, speed): ([[f64; 5]; 2], f64),
+    ) -> BodyState {
         let Some(traction) = self.tie.traction(&self.functions, elastic, others) else {
             return BodyState::default();
         };
         let forces = self.tie.forces_on_body(&traction, others);
         let mut at = self.modes.of_body.at_rest(&forces);
         let zero = vec![0.0; at.len()];
-        let mut velocity = zero.clone();
+        let mut velocity = match &self.modes.of_body.frame {
+            Some(frame) => frame.standing(speed, &at),
+            None => zero.clone(),
+        };
         if let Some(shares) = self.on_shaft() {
             shares.add_motion(shaft[0], &mut at);
             shares.add_motion(shaft[1], &mut velocity);
@@ -121,11 +140,6 @@ impl Oscillators {
     /// How the oscillators move the shaft that carries the body; None of one that stands.
     pub fn on_shaft(&self) -> Option<&ShaftAtSeat> {
         self.modes.on_shaft.as_ref()
-    }
-
-    /// Inertia of a body that a shaft carries.
-    pub fn carried_inertia(&self) -> Option<CarriedInertia> {
-        self.tie.carried_inertia()
     }
 
     /// What the joint carries; None for a rigid body.
@@ -253,6 +267,27 @@ impl BodyFactor {
             }
         }
         softness
+    }
+
+    /// The inertia of a turning frame, at first as if the body went on as it does.
+    pub fn frame(&self, turn: Option<FrameTurn>, BodyState([x, v, _]): &BodyState) -> Option<FrameRounds> {
+        let (turn, forms) = turn.zip(self.body.modes.of_body.frame.as_ref())?;
+        let turn = [turn.speed, turn.acceleration];
+        Some(FrameRounds {
+            load: forms.load(turn, x, v),
+            turn,
+            change: f64::INFINITY,
+        })
+    }
+
+    /// The same where the body ends so: second order in the step with the conserving scheme.
+    pub fn frame_load(&self, turn: [f64; 2], [old, new]: [&BodyState; 2]) -> Vec<f64> {
+        let forms = self.body.modes.of_body.frame.as_ref();
+        let (s, dt) = (self.scheme.integrator.alpha_f, self.scheme.dt);
+        let pairs = || old.0[0].iter().zip(&new.0[0]);
+        let x: Vec<f64> = pairs().map(|(a, b)| s * a + (1.0 - s) * b).collect();
+        let v: Vec<f64> = pairs().map(|(a, b)| (b - a) / dt).collect();
+        forms.map_or_else(Vec::new, |forms| forms.load(turn, &x, &v))
     }
 
     /// A step from a state, with the mean `load` on its oscillators over the step; empty: none.

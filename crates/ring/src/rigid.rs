@@ -4,7 +4,6 @@ use body::CarriedInertia;
 
 use crate::body::ElasticBody;
 use crate::coordinates::RIGID_MOTIONS;
-use crate::oscillators::Oscillators;
 
 /// Inertia of a rigid body of revolution about a point of its axis, the origin of the tilts.
 ///
@@ -58,8 +57,7 @@ impl RigidInertia {
 }
 
 impl dyn ElasticBody + '_ {
-    /// Inertia of the ring, and of a body on the shaft in which it sits, as one rigid body about the centre of its
-    /// groove circle: of the mass matrix, with the means of x and y. Costs five products with that matrix. Collective.
+    /// Inertia of the ring as a rigid body about the centre of its groove circle: of the mass matrix, with the means of x and y. Costs five products with that matrix. Collective.
     pub fn rigid_inertia(&self) -> RigidInertia {
         let held = self.held();
         let motion = |x: [f64; 3], k: usize| {
@@ -78,15 +76,11 @@ impl dyn ElasticBody + '_ {
             })
         };
         let [x, y, tilt_x, tilt_y, spin] = [0, 1, 3, 4, 5].map(row);
-        let ring = RigidInertia {
+        RigidInertia {
             mass: 0.5 * (x[0] + y[1]),
             first_moment: 0.5 * (x[4] - y[3]),
             transverse: 0.5 * (tilt_x[3] + tilt_y[4]),
             polar: spin[5],
-        };
-        match self.tied().and_then(Oscillators::carried_inertia) {
-            Some(body) => ring.with(body.into()),
-            None => ring,
         }
     }
 }

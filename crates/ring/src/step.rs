@@ -40,6 +40,8 @@ pub struct KnownLoad {
     pub load: Option<Vec<f64>>,
     /// Turning of its frame, where its inertia acts.
     pub turn: Option<FrameTurn>,
+    /// Turning of the body on the shaft in which it sits.
+    pub body_turn: Option<FrameTurn>,
 }
 
 /// A [`KnownLoad`] and what was found of it ahead of the step: half a solve, a first guess of the inertia of the

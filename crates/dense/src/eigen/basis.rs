@@ -23,7 +23,7 @@ pub fn inner_products(n: usize, a: &[f64], n_a: usize, b: &[f64], n_b: usize) ->
 }
 
 /// A C, column-major `[n][n_c]`, of column-major A `[n][n_a]` and C `[n_a][n_c]`.
-pub(super) fn linear_combinations(n: usize, a: &[f64], n_a: usize, c: &[f64], n_c: usize) -> Vec<f64> {
+pub fn linear_combinations(n: usize, a: &[f64], n_a: usize, c: &[f64], n_c: usize) -> Vec<f64> {
     let mut product = vec![0.0; n * n_c];
     add_combinations(n, &mut product, a, n_a, c, n_c, 1.0);
     product

@@ -46,6 +46,8 @@ pub struct FrameInertia {
     pub inertia: RigidInertia,
     /// Polar moment of inertia of the shaft, kg m^2.
     pub shaft_polar: f64,
+    /// That of a body on the shaft, whose step takes the inertia of its turning frame on linear displacements.
+    pub body_polar: f64,
     /// What the step of the ring takes.
     pub takes: StepTakes,
     /// Displacement of the shaft in space at the start, m and rad.
@@ -112,7 +114,11 @@ impl FrameInertia {
         let sum = |i: usize, [of_speed, of_square, of_rate]: [f64; 3]| {
             of_speed * speed * jv[i] + of_square * speed * speed * x[i] + of_rate * rate * jx[i]
         };
-        match self.takes {
+        let of_linear = |polar: f64| {
+            let moment = |i: usize| sum(i, [0.0, 0.5 * polar, -0.5 * polar]);
+            [0.0, 0.0, 0.0, moment(3), moment(4)]
+        };
+        let forces = match self.takes {
             StepTakes::Still => {
                 let along = [0, 1, 2, 3, 4].map(|i| if i == 2 { 0.0 } else { sum(i, [2.0, -1.0, 1.0]) });
                 let mut forces = self.inertia.times(along);
@@ -121,11 +127,13 @@ impl FrameInertia {
                 }
                 forces
             }
-            StepTakes::Turning => {
-                let moment = |i: usize| sum(i, [0.0, 0.5 * polar, -0.5 * polar]);
-                [0.0, 0.0, 0.0, moment(3), moment(4)]
-            }
+            StepTakes::Turning => of_linear(polar),
+        };
+        if self.body_polar == 0.0 {
+            return forces;
         }
+        let of_body = of_linear(self.body_polar);
+        [0, 1, 2, 3, 4].map(|i| forces[i] + of_body[i])
     }
 
     fn weighted(&self, [start, end]: [f64; 2]) -> f64 {
@@ -176,6 +184,7 @@ mod tests {
         FrameInertia {
             inertia: RING,
             shaft_polar: 1e-4,
+            body_polar: 0.0,
             takes,
             start: motion(0.0)[0],
             scheme: StepScheme {

@@ -100,6 +100,7 @@ impl Motion<'_> {
         KnownLoad {
             load: load.map(|(moving, load)| moving.body.load(&turn_nodal(load, back))),
             turn: loads.frames[side.index()],
+            body_turn: self.body_turn(side, self.weighted_time(expected.span)),
         }
     }
 }

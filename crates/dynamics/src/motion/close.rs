@@ -4,7 +4,7 @@
 use std::sync::Arc;
 
 use contact::Side;
-use ring::{ElasticStep, End, FrameTurn, Settling};
+use ring::{ElasticStep, End, Settling};
 
 use super::cache::{Ahead, ExpectedLoads, RingEnds};
 use super::place::expected;
@@ -32,7 +32,7 @@ impl Motion<'_> {
     ) -> Result<Option<RingEnds>, DynamicsError> {
         let forces = Side::BOTH.map(|side| part.parts.forces_at_ports(side, solution));
         let scale = part.scale;
-        if part.expected.loads.frames.iter().any(Option::is_some) {
+        if self.has_turning_frames(part) {
             let settle = |(step, forces): (&mut Box<dyn ElasticStep + '_>, &super::part::RingForces)| {
                 step.settle(forces.at_ports(), scale)
             };
@@ -95,13 +95,30 @@ impl Motion<'_> {
         self.expected_loads(places, span).ok()
     }
 
+    /// Whether the inertia of a frame is found by rounds: of a ring's, or of a body on the shaft.
+    fn has_turning_frames(&self, part: &Part<'_>) -> bool {
+        let time = self.weighted_time(part.span);
+        let of_body = |side: Side| self.body_turn(side, time).is_some();
+        let frames = &part.expected.loads.frames;
+        frames.iter().any(Option::is_some) || Side::BOTH.into_iter().any(of_body)
+    }
+
+    /// Speed of the frame that turns fastest, rad/s.
+    fn fastest(&self, part: &Part<'_>) -> f64 {
+        let time = self.weighted_time(part.span);
+        let bodies = Side::BOTH.map(|side| self.body_turn(side, time));
+        let turns = part.expected.loads.frames.iter().chain(&bodies).flatten();
+        let speeds = turns.map(|turn| turn.speed);
+        speeds.fold(0.0, |a, b| if b.abs() > a.abs() { b } else { a })
+    }
+
     /// Counts a round and hands the new predictors to the system.
     fn next_round(&self, part: &mut Part<'_>) -> Result<(), DynamicsError> {
         part.report.frame_rounds += 1;
         if part.report.frame_rounds > MAX_FRAME_ROUNDS {
             return Err(DynamicsError::FrameNotSettled {
                 rounds: MAX_FRAME_ROUNDS,
-                speed: fastest(&part.expected.loads.frames),
+                speed: self.fastest(part),
             });
         }
         for (ports, step) in part.parts.rings.iter_mut().zip(&part.rings) {
@@ -111,12 +128,6 @@ impl Motion<'_> {
         }
         Ok(())
     }
-}
-
-/// Speed of the frame that turns fastest, rad/s.
-fn fastest(frames: &[Option<FrameTurn>; 2]) -> f64 {
-    let speeds = frames.iter().flatten().map(|turn| turn.speed);
-    speeds.fold(0.0, |a, b| if b.abs() > a.abs() { b } else { a })
 }
 
 /// Settled if both are.

@@ -199,6 +199,7 @@ impl Motion<'_> {
         Some(FrameInertia {
             inertia,
             shaft_polar: self.model.shaft_inertia.polar,
+            body_polar: self.model.carried_inertia().map_or(0.0, |body| body.polar),
             takes: if self.model.turns_frame(inner) {
                 StepTakes::Turning
             } else {

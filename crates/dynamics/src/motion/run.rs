@@ -14,7 +14,8 @@ use ring::memory::forecast_motion_peak;
 use ring::rigid::RigidInertia;
 use ring::statics::iterations_note;
 use ring::{
-    BodySettings, ElasticBody, Frame, Hold, Inventory, Oscillators, StepFactor, StepScheme, elastic_body,
+    BodySettings, ElasticBody, Frame, FrameTurn, Hold, Inventory, Oscillators, StepFactor, StepScheme,
+    elastic_body,
 };
 
 use super::state::MotionSettings;
@@ -210,6 +211,16 @@ impl<'a> Motion<'a> {
     /// Azimuth of a ball at a time, rad.
     pub fn ball_azimuth(&self, ball: usize, time: f64) -> f64 {
         self.model.geometry.azimuth(ball) + self.cage_angle(time)
+    }
+
+    /// Turning of the body on the shaft under a ring at a time; None where there is none, or it stands.
+    pub(super) fn body_turn(&self, side: Side, time: f64) -> Option<FrameTurn> {
+        let speed = self.settings.speeds.of(side);
+        let is_carried = self.tied(side).is_some_and(|body| body.on_shaft().is_some());
+        (is_carried && !speed.is_zero()).then(|| FrameTurn {
+            speed: speed.at(time),
+            acceleration: speed.rate(time),
+        })
     }
 
     /// Angle by which the frame of a ring is turned in space, rad.

@@ -199,5 +199,5 @@ fn ring_at_start(
 ) -> RingState {
     let turned = [omega * q[1], -omega * q[0], 0.0, omega * q[4], -omega * q[3]];
     let rate = [0, 1, 2, 3, 4].map(|i| velocity[i] + turned[i]);
-    body.rigid_state(elastic, [q, rate], others)
+    body.rigid_state((elastic, others), [q, rate], omega)
 }

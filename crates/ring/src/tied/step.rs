@@ -2,11 +2,11 @@
 
 use std::sync::Arc;
 
-use body::N_SHAFT;
+use body::{N_SHAFT, length};
 use dense::{DenseCholesky, DenseError};
 use timer::Laps;
 
-use crate::oscillators::{BodyFactor, BodyStep, ShaftSoftness};
+use crate::oscillators::{BodyFactor, BodyStep, FrameRounds, ShaftSoftness};
 use crate::state::{BodyState, RingState};
 use crate::step::{
     BodyAlone, ElasticStep, End, Feet, Known, KnownLoad, PortAnswer, PortForces, Settling, StepFactor,
@@ -65,14 +65,25 @@ impl TiedShaft {
     }
 }
 
+/// Change of the inertia of a turning frame over the size of the loads at which it stays as it is.
+const LIMIT: f64 = 1e-12;
+/// The same where rounds no longer contract.
+const FLOOR: f64 = 1e-9;
+/// A round that leaves more than this of the change before it no longer contracts.
+const STALLED: f64 = 0.5;
+
 /// A step under way.
 struct TiedStep<'a> {
     factor: &'a TiedFactor,
     ring: Box<dyn ElasticStep + 'a>,
     old: &'a BodyState,
     body: BodyStep,
-    /// Motion of the shaft at the end without loads on the body or forces of the shaft.
+    /// Motion of the shaft at the end without loads of others on the body or forces of the shaft.
     unloaded: Vec<f64>,
+    /// Mean load of others on the oscillators; empty: none.
+    others: Vec<f64>,
+    /// Inertia of the turning frame of the body; None where it does not turn.
+    frame: Option<FrameRounds>,
     answer: PortAnswer,
     /// B, `[n_ports][n_functions]` flat.
     coupling: Vec<f64>,
@@ -105,11 +116,16 @@ impl StepFactor for TiedFactor {
         let old = from
             .body()
             .expect("the state of a tied ring has that of its body");
-        let body = self.body.step(old, &[]);
+        let frame = self.body.frame(known.load.body_turn, old);
+        let body = self
+            .body
+            .step(old, frame.as_ref().map_or(&[], |frame| &frame.load));
         let mut step = TiedStep {
             factor: self,
             ring: self.ring.begin(from, known, contacts),
             unloaded: body.shaft[1].clone(),
+            others: Vec::new(),
+            frame,
             body,
             old,
             answer: PortAnswer::default(),
@@ -178,6 +194,42 @@ impl TiedStep<'_> {
         self.known = known;
     }
 
+    /// The body under all loads that are known.
+    fn step_body(&mut self) {
+        let of_frame = self.frame.as_ref().map_or(&[][..], |frame| &frame.load);
+        let sum = match (self.others.is_empty(), of_frame.is_empty()) {
+            (true, _) => of_frame.to_vec(),
+            (false, true) => self.others.clone(),
+            (false, false) => self.others.iter().zip(of_frame).map(|(a, b)| a + b).collect(),
+        };
+        self.body = self.factor.body.step(self.old, &sum);
+        self.predict();
+    }
+
+    /// A round for the inertia of the turning frame of the body under these forces.
+    fn settle_body(&mut self, forces: PortForces<'_>, lam: &[f64]) -> Settling {
+        let factor = &self.factor.body;
+        let Some(frame) = &mut self.frame else {
+            return Settling::Settled;
+        };
+        let moved = factor.advanced(self.old, &self.body, lam, forces.mount);
+        let found = factor.frame_load(frame.turn, [self.old, &moved]);
+        let off: Vec<f64> = found.iter().zip(&frame.load).map(|(a, b)| a - b).collect();
+        let size = length(&found) + length(&factor.body.modes.loads(lam));
+        let change = length(&off) / size.max(f64::MIN_POSITIVE);
+        let stalls = change > STALLED * frame.change && change <= FLOOR;
+        if change <= LIMIT || stalls {
+            return Settling::Settled;
+        }
+        (frame.load, frame.change) = (found, change);
+        if !self.unloaded.is_empty() {
+            self.unloaded
+                .clone_from(&factor.step(self.old, &frame.load).shaft[1]);
+        }
+        self.step_body();
+        Settling::Again
+    }
+
     /// Forces of the joint on the ring under forces on the contacts, and of the shaft on the body, N.
     fn joint(&self, forces: PortForces<'_>) -> Vec<f64> {
         let mut lam = self.known.clone();
@@ -214,8 +266,8 @@ impl ElasticStep for TiedStep<'_> {
     }
 
     fn load_body(&mut self, load: &[f64]) {
-        self.body = self.factor.body.step(self.old, load);
-        self.predict();
+        self.others = load.to_vec();
+        self.step_body();
     }
 
     fn body_alone(&self) -> Option<BodyAlone> {
@@ -245,6 +297,10 @@ impl ElasticStep for TiedStep<'_> {
 
     fn settle(&mut self, forces: PortForces<'_>, scale: f64) -> Settling {
         let lam = self.joint(forces);
+        let of_body = self.settle_body(forces, &lam);
+        if of_body == Settling::Again {
+            return of_body;
+        }
         let settling = self.ring.settle(on_both(forces, &lam), scale);
         if settling == Settling::Again {
             self.meet();
@@ -258,6 +314,11 @@ impl ElasticStep for TiedStep<'_> {
             End::Done(mut ended) => {
                 let factor = &self.factor.body;
                 let moved = factor.advanced(self.old, &self.body, &lam, forces.mount);
+                if let Some(frame) = &self.frame {
+                    let change = moved.0[0].iter().zip(&self.old.0[0]);
+                    let work = change.zip(&frame.load).map(|((b, a), f)| f * (b - a));
+                    ended.works.frame += work.sum::<f64>();
+                }
                 let [kinetic, strain] = factor.body.energies(Some(&moved));
                 ended.energies[0] += kinetic;
                 ended.energies[1] += strain;

@@ -1,0 +1,50 @@
+//! Inertia of a body in a frame that turns about z with its shaft.
+//!
+//! For displacements u = U xi in a frame with the speed W, linear in u (e.g. Genta, Dynamics of Rotating Systems, ch. 2),
+//!
+//! ```text
+//! f = -(2 W G xi' - W^2 P xi + W' G xi),     G = U^T M J U,   P = U^T M (x, y, 0 of U),   J u = (-u_y, u_x, 0)
+//! ```
+//!
+//! U has the rigid motions of the shaft in it. What a rigid tilt takes beyond, because it moves places towards the axis
+//! to second order, is that of the whole shaft (`dynamics::bodies::frame_inertia`). The elastic part leaves that out.
+
+use crate::carried::{combined, dot};
+
+/// The forms of the frame over the oscillators, `[n][n]` flat, by columns.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FrameForms {
+    /// G.
+    pub(crate) across: Vec<f64>,
+    /// P.
+    pub(crate) radial: Vec<f64>,
+}
+
+impl FrameForms {
+    /// Loads on the oscillators at a speed, rad/s, and its rate, where they stand at `x` and move with `v`.
+    pub fn load(&self, [speed, rate]: [f64; 2], x: &[f64], v: &[f64]) -> Vec<f64> {
+        let pairs = x.iter().zip(v);
+        let across: Vec<f64> = pairs.map(|(x, v)| -2.0 * speed * v - rate * x).collect();
+        let radial: Vec<f64> = x.iter().map(|x| speed * speed * x).collect();
+        let mut load = combined(&self.across, &across);
+        let of_radius = combined(&self.radial, &radial);
+        load.iter_mut().zip(of_radius).for_each(|(f, p)| *f += p);
+        load
+    }
+
+    /// Velocities in the frame of oscillators that stand still in space.
+    pub fn standing(&self, speed: f64, x: &[f64]) -> Vec<f64> {
+        let turned: Vec<f64> = x.iter().map(|x| -speed * x).collect();
+        combined(&self.across, &turned)
+    }
+
+    /// Bytes.
+    pub fn bytes(&self) -> usize {
+        size_of::<f64>() * (self.across.len() + self.radial.len())
+    }
+}
+
+/// Length of a vector.
+pub fn length(x: &[f64]) -> f64 {
+    dot(x, x).sqrt()
+}
