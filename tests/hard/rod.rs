@@ -172,7 +172,7 @@ impl Rod {
         for step in 0..n {
             let load = KnownLoad {
                 load: Some(weight.clone()),
-                turn: None,
+                ..KnownLoad::default()
             };
             let known = Arc::new(factor.predict(&state, load));
             let feet = Feet {

@@ -1,6 +1,6 @@
 //! Inertia of a body in a frame that turns about z with its shaft.
 //!
-//! For displacements u = U xi in a frame with the speed W, linear in u (e.g. Genta, Dynamics of Rotating Systems, ch. 2),
+//! For displacements u = U xi in a frame with the speed W, linear in u (e.g. Genta, Dynamics of Rotating Systems),
 //!
 //! ```text
 //! f = -(2 W G xi' - W^2 P xi + W' G xi),     G = U^T M J U,   P = U^T M (x, y, 0 of U),   J u = (-u_y, u_x, 0)

@@ -47,6 +47,8 @@ pub(crate) struct ShaftShares {
 /// The shaft at the bearing of a seat.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ShaftAtSeat {
+    /// 1, or -1 where the bearing stands turned by 180 deg about x in the frame of the body: the sign of its speed.
+    pub way: f64,
     /// Motion of the shaft there per unit of an oscillator, m and rad.
     pub rows: Vec<[f64; N_SHAFT]>,
     /// Rigid oscillators of the body that moves with it: by unit motions there, `[rigid][motion]`.
@@ -63,6 +65,7 @@ impl ShaftAtSeat {
         };
         let of_motion = |row: &[f64; N_SHAFT]| [0, 1, 2, 3, 4].map(|k| dot(row, &unit(k)));
         ShaftAtSeat {
+            way: if place.is_turned { -1.0 } else { 1.0 },
             rows: shares.rows.iter().map(|row| place.there(*row)).collect(),
             of_motion: shares.of_motion.each_ref().map(of_motion),
         }

@@ -191,6 +191,28 @@ pub struct SeatFunctions {
 }
 
 impl SeatFunctions {
+    /// M times coefficients, m^2 of them: products with others are integrals over the seat. Of rigid functions the
+    /// coefficients themselves.
+    pub fn integrals(&self, coefficients: &[f64]) -> Vec<f64> {
+        let n = coefficients.len() / 3;
+        if self.inverse.is_empty() {
+            return coefficients.to_vec();
+        }
+        let factor = DenseCholesky::factor(n, &self.inverse);
+        let factor = factor.expect("M can be inverted, and so can its inverse");
+        let mut sums = vec![0.0; coefficients.len()];
+        for c in 0..3 {
+            let mut own: Vec<f64> = coefficients.iter().skip(c).step_by(3).copied().collect();
+            factor.solve(&mut own, 1);
+            sums.iter_mut()
+                .skip(c)
+                .step_by(3)
+                .zip(own)
+                .for_each(|(sum, x)| *sum = x);
+        }
+        sums
+    }
+
     /// Functionals of nodes with areas (m^2), which stand at `place(node)`, m, in the coordinates of the ring. `what`
     /// is for messages.
     pub fn new(

@@ -42,9 +42,9 @@ fn of_ring(table: &Table, side: Side) -> anyhow::Result<Vec<(String, Figure)>> {
             values.push(0.5 * (pressure[n_across * i + j] + pressure[n_across * next + j]));
         }
     }
-    let y_axis = Axis::linear(&format!("z in the {ring} ring"), "mm").tight();
+    let y_axis = Axis::linear(format!("z in the {ring} ring"), "mm").tight();
     let unrolled = Figure::new(
-        &format!("Pressure of the seat on the {ring} ring"),
+        format!("Pressure of the seat on the {ring} ring"),
         azimuth_axis(),
         y_axis,
     )
@@ -56,7 +56,7 @@ fn of_ring(table: &Table, side: Side) -> anyhow::Result<Vec<(String, Figure)>> {
     )?)
     .size(900, 400);
     let mut motion = Figure::new(
-        &format!("Motion of the middle of the {seat}"),
+        format!("Motion of the middle of the {seat}"),
         azimuth_axis(),
         MICROMETRE.axis("displacement"),
     );

@@ -291,8 +291,8 @@ impl dyn ElasticBody + '_ {
     }
 
     /// State of a ring: elastic nodal displacements `[n_dofs]` plus the rigid motion `q`, with the velocity of
-    /// another rigid motion `rate`, both in its own frame. Forces `others`, N, act on the other seats of its body. A body
-    /// on the shaft stands in space with its ring while the frame turns with `speed`, rad/s.
+    /// another rigid motion `rate`, both in its own frame. Forces `others`, N, act on the other seats of its body. A
+    /// body on the shaft stands in space with its ring while the frame turns with `speed`, rad/s.
     pub fn rigid_state(
         &self,
         (elastic, others): (&[f64], Option<&[f64]>),

@@ -9,6 +9,7 @@ pub mod coordinates;
 pub mod division;
 pub mod error;
 mod harmonic;
+mod inertia;
 pub mod integrator;
 pub mod inventory;
 mod make;

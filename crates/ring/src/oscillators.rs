@@ -7,6 +7,7 @@ use body::{SeatFunctions, SeatModes, SeatTie, SeatTraction, ShaftAtSeat};
 use dense::DenseCholesky;
 
 use crate::error::RingError;
+use crate::inertia::RigidInertia;
 use crate::integrator::{Integrator, StepScheme};
 use crate::state::{BodyState, RingState};
 use crate::step::FrameTurn;
@@ -24,6 +25,30 @@ pub struct Oscillators {
     flexibility: Option<DenseCholesky>,
     /// Rayleigh damping: C = a M + b K with `[a, b]`.
     damping: [f64; 2],
+    /// The ring on a body on the shaft; None on one that stands.
+    ring: Option<RigidRing>,
+}
+
+/// A ring that moves with its seat, as a rigid one: so its frame turns it.
+struct RigidRing {
+    inertia: RigidInertia,
+    /// Its motion by unit oscillators, m and rad.
+    rows: Vec<[f64; N_SHAFT]>,
+}
+
+impl RigidRing {
+    /// Load on the oscillators of the frame that turns it.
+    fn load(&self, turn: [f64; 2], x: &[f64], v: &[f64]) -> Vec<f64> {
+        let motion = |of: &[f64]| {
+            let mut q = [0.0; N_SHAFT];
+            for (row, x) in self.rows.iter().zip(of) {
+                (0..N_SHAFT).for_each(|k| q[k] += row[k] * x);
+            }
+            q
+        };
+        let force = self.inertia.of_frame(turn, motion(x), motion(v));
+        self.rows.iter().map(|row| -dot(row, &force)).collect()
+    }
 }
 
 /// A body over steps of one scheme and size.
@@ -45,11 +70,13 @@ pub(crate) struct BodyStep {
 }
 
 /// Inertia of the turning frame of a body over a step, found by rounds.
-pub(crate) struct FrameRounds {
+pub(crate) struct BodyFrame {
     /// Speed, rad/s, and its rate at the weighted time.
     pub turn: [f64; 2],
-    /// Mean load on the oscillators.
+    /// Mean load on the oscillators, of the body.
     pub load: Vec<f64>,
+    /// The same of the ring on it.
+    pub of_ring: Vec<f64>,
     /// Change of the last round over the size of the loads.
     pub change: f64,
 }
@@ -85,7 +112,38 @@ impl Oscillators {
             functions,
             flexibility,
             damping,
+            ring: None,
         })
+    }
+
+    /// The same with the inertia of the ring, where a shaft carries the body. The motion of its seat is a rigid one and
+    /// what that is not, by least squares over the seat.
+    pub(crate) fn with_ring(mut self, inertia: impl FnOnce() -> RigidInertia) -> Oscillators {
+        if self.on_shaft().is_none() {
+            return self;
+        }
+        let unit = |k: usize| {
+            let mut q = [0.0; N_SHAFT];
+            q[k] = 1.0;
+            self.tie.shaft_motion(q).unwrap_or_default()
+        };
+        let motions = [0, 1, 2, 3, 4].map(unit);
+        let integrals = motions.each_ref().map(|motion| self.functions.integrals(motion));
+        let gram: Vec<f64> = integrals
+            .iter()
+            .flat_map(|a| motions.each_ref().map(|b| dot(a, b)))
+            .collect();
+        let factor = DenseCholesky::factor(N_SHAFT, &gram).expect("rigid motions of a seat differ");
+        let row = |row: &[f64]| {
+            let mut q = integrals.each_ref().map(|of_motion| dot(of_motion, row));
+            factor.solve(&mut q, 1);
+            q
+        };
+        self.ring = Some(RigidRing {
+            inertia: inertia(),
+            rows: self.modes.rows().map(row).collect(),
+        });
+        self
     }
 
     /// Number of functions of the seat.
@@ -127,7 +185,7 @@ impl Oscillators {
         let mut at = self.modes.of_body.at_rest(&forces);
         let zero = vec![0.0; at.len()];
         let mut velocity = match &self.modes.of_body.frame {
-            Some(frame) => frame.standing(speed, &at),
+            Some(frame) => frame.standing(self.way() * speed, &at),
             None => zero.clone(),
         };
         if let Some(shares) = self.on_shaft() {
@@ -135,6 +193,11 @@ impl Oscillators {
             shares.add_motion(shaft[1], &mut velocity);
         }
         BodyState([at, velocity, zero])
+    }
+
+    /// Sign of the speed of the body where its bearing has a positive one.
+    fn way(&self) -> f64 {
+        self.on_shaft().map_or(1.0, |shaft| shaft.way)
     }
 
     /// How the oscillators move the shaft that carries the body; None of one that stands.
@@ -270,24 +333,34 @@ impl BodyFactor {
     }
 
     /// The inertia of a turning frame, at first as if the body went on as it does.
-    pub fn frame(&self, turn: Option<FrameTurn>, BodyState([x, v, _]): &BodyState) -> Option<FrameRounds> {
-        let (turn, forms) = turn.zip(self.body.modes.of_body.frame.as_ref())?;
-        let turn = [turn.speed, turn.acceleration];
-        Some(FrameRounds {
-            load: forms.load(turn, x, v),
+    pub fn frame(&self, turn: Option<FrameTurn>, BodyState([x, v, _]): &BodyState) -> Option<BodyFrame> {
+        let turn = turn.map(|turn| [turn.speed, turn.acceleration])?;
+        self.body.modes.of_body.frame.as_ref()?;
+        let [load, of_ring] = self.frame_loads(turn, x, v);
+        Some(BodyFrame {
+            load,
+            of_ring,
             turn,
             change: f64::INFINITY,
         })
     }
 
     /// The same where the body ends so: second order in the step with the conserving scheme.
-    pub fn frame_load(&self, turn: [f64; 2], [old, new]: [&BodyState; 2]) -> Vec<f64> {
-        let forms = self.body.modes.of_body.frame.as_ref();
+    pub fn frame_between(&self, turn: [f64; 2], [old, new]: [&BodyState; 2]) -> [Vec<f64>; 2] {
         let (s, dt) = (self.scheme.integrator.alpha_f, self.scheme.dt);
         let pairs = || old.0[0].iter().zip(&new.0[0]);
         let x: Vec<f64> = pairs().map(|(a, b)| s * a + (1.0 - s) * b).collect();
         let v: Vec<f64> = pairs().map(|(a, b)| (b - a) / dt).collect();
-        forms.map_or_else(Vec::new, |forms| forms.load(turn, &x, &v))
+        self.frame_loads(turn, &x, &v)
+    }
+
+    /// Of body and ring.
+    fn frame_loads(&self, turn: [f64; 2], x: &[f64], v: &[f64]) -> [Vec<f64>; 2] {
+        let forms = self.body.modes.of_body.frame.as_ref();
+        let of_body = turn.map(|w| self.body.way() * w);
+        let body = forms.map_or_else(Vec::new, |forms| forms.load(of_body, x, v));
+        let ring = self.body.ring.as_ref();
+        [body, ring.map_or_else(Vec::new, |ring| ring.load(turn, x, v))]
     }
 
     /// A step from a state, with the mean `load` on its oscillators over the step; empty: none.

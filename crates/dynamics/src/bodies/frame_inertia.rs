@@ -26,7 +26,7 @@
 //! a 7010C with a clamped bore at 40 000 rpm.
 
 use ring::StepScheme;
-use ring::rigid::RigidInertia;
+use ring::rigid::{RigidInertia, across};
 
 use crate::frame::turn;
 
@@ -108,26 +108,17 @@ impl FrameInertia {
     fn in_frame(&self, x: [f64; 5], v: [f64; 5]) -> [f64; 5] {
         let speed = self.weighted(self.speeds);
         let rate = (self.speeds[1] - self.speeds[0]) / self.scheme.dt;
-        let (jx, jv) = (across(x), across(v));
-        let polar = self.inertia.polar;
-        // Terms with the speed, its square and its rate of a coordinate.
-        let sum = |i: usize, [of_speed, of_square, of_rate]: [f64; 3]| {
-            of_speed * speed * jv[i] + of_square * speed * speed * x[i] + of_rate * rate * jx[i]
-        };
+        let jx = across(x);
         let of_linear = |polar: f64| {
-            let moment = |i: usize| sum(i, [0.0, 0.5 * polar, -0.5 * polar]);
+            let moment = |i: usize| {
+                let half = 0.5 * polar;
+                half * speed * speed * x[i] - half * rate * jx[i]
+            };
             [0.0, 0.0, 0.0, moment(3), moment(4)]
         };
         let forces = match self.takes {
-            StepTakes::Still => {
-                let along = [0, 1, 2, 3, 4].map(|i| if i == 2 { 0.0 } else { sum(i, [2.0, -1.0, 1.0]) });
-                let mut forces = self.inertia.times(along);
-                for i in [3, 4] {
-                    forces[i] += sum(i, [-polar, polar, -polar]);
-                }
-                forces
-            }
-            StepTakes::Turning => of_linear(polar),
+            StepTakes::Still => self.inertia.of_frame([speed, rate], x, v),
+            StepTakes::Turning => of_linear(self.inertia.polar),
         };
         if self.body_polar == 0.0 {
             return forces;
@@ -140,11 +131,6 @@ impl FrameInertia {
         let s = self.scheme.integrator.alpha_f;
         s * start + (1.0 - s) * end
     }
-}
-
-/// J of both pairs of coordinates.
-fn across(x: [f64; 5]) -> [f64; 5] {
-    [-x[1], x[0], 0.0, -x[4], x[3]]
 }
 
 #[cfg(test)]

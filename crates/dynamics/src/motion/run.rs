@@ -83,8 +83,10 @@ impl<'a> Motion<'a> {
             .backend
             .try_both(|| build(Side::Inner), || build(Side::Outer))?;
         let turning = wobbles(model, &settings.speeds).then(|| {
-            let ring = inner.as_ref().map(|ring| ring.body.rigid_inertia());
-            ring.unwrap_or_default()
+            // A ring on a body turns where it sits.
+            let on_shaft = |ring: &&MovingRing| ring.body.tied().is_none_or(|body| body.on_shaft().is_none());
+            let ring = inner.as_ref().filter(on_shaft);
+            ring.map(|ring| ring.body.rigid_inertia()).unwrap_or_default()
         });
         let kinematics = Kinematics::new(&model.geometry, settings.slip);
         let rungs = (0..=settings.ladder.halvings).map(|_| OnceLock::new()).collect();

@@ -200,12 +200,10 @@ fn a_soft_shaft_that_turns_flies_straight() {
     };
     let [coarse, fine] = [STEP, 0.5 * STEP].map(errors);
     println!("way, tilt and strain: {coarse:?} {fine:?}");
-    for i in 0..3 {
-        assert!(
-            coarse[i] < 3e-3 && fine[i] < 0.3 * coarse[i] + 1e-9,
-            "{coarse:?} {fine:?}"
-        );
-    }
+    // What is left of the strain is that of the ring, whose own elastic part knows no frame.
+    let [way, tilt, strain] = coarse;
+    assert!(way < 1e-3 && fine[0] < 0.4 * way, "{coarse:?} {fine:?}");
+    assert!(tilt < 1e-8 && strain < 1e-2, "{coarse:?}");
 }
 
 /// Wrong: a bearing on an elastic shaft would not stay where it is in equilibrium.

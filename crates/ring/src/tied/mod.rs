@@ -48,6 +48,7 @@ pub(crate) struct TiedRing {
 impl TiedRing {
     /// Ties a ring, free with the functionals of the seat as its mount, to a body; `outside` is the ring without it.
     pub fn new(ring: Arc<dyn ElasticBody>, outside: HeldRing, body: Oscillators) -> TiedRing {
+        let body = body.with_ring(|| ring.rigid_inertia());
         TiedRing {
             ring,
             held: outside,

@@ -6,7 +6,7 @@ use body::{N_SHAFT, length};
 use dense::{DenseCholesky, DenseError};
 use timer::Laps;
 
-use crate::oscillators::{BodyFactor, BodyStep, FrameRounds, ShaftSoftness};
+use crate::oscillators::{BodyFactor, BodyFrame, BodyStep, ShaftSoftness};
 use crate::state::{BodyState, RingState};
 use crate::step::{
     BodyAlone, ElasticStep, End, Feet, Known, KnownLoad, PortAnswer, PortForces, Settling, StepFactor,
@@ -66,9 +66,9 @@ impl TiedShaft {
 }
 
 /// Change of the inertia of a turning frame over the size of the loads at which it stays as it is.
-const LIMIT: f64 = 1e-12;
+const LIMIT: f64 = 1e-11;
 /// The same where rounds no longer contract.
-const FLOOR: f64 = 1e-9;
+const FLOOR: f64 = 1e-6;
 /// A round that leaves more than this of the change before it no longer contracts.
 const STALLED: f64 = 0.5;
 
@@ -80,10 +80,12 @@ struct TiedStep<'a> {
     body: BodyStep,
     /// Motion of the shaft at the end without loads of others on the body or forces of the shaft.
     unloaded: Vec<f64>,
+    /// The same with the loads of others, but without what turns the ring.
+    alone: Vec<f64>,
     /// Mean load of others on the oscillators; empty: none.
     others: Vec<f64>,
     /// Inertia of the turning frame of the body; None where it does not turn.
-    frame: Option<FrameRounds>,
+    frame: Option<BodyFrame>,
     answer: PortAnswer,
     /// B, `[n_ports][n_functions]` flat.
     coupling: Vec<f64>,
@@ -117,22 +119,25 @@ impl StepFactor for TiedFactor {
             .body()
             .expect("the state of a tied ring has that of its body");
         let frame = self.body.frame(known.load.body_turn, old);
-        let body = self
-            .body
-            .step(old, frame.as_ref().map_or(&[], |frame| &frame.load));
         let mut step = TiedStep {
             factor: self,
             ring: self.ring.begin(from, known, contacts),
-            unloaded: body.shaft[1].clone(),
+            unloaded: Vec::new(),
+            alone: Vec::new(),
             others: Vec::new(),
             frame,
-            body,
+            body: self.body.step(old, &[]),
             old,
             answer: PortAnswer::default(),
             coupling: Vec::new(),
             known: Vec::new(),
             by_port: Vec::new(),
         };
+        step.unloaded.clone_from(&step.body.shaft[1]);
+        step.alone.clone_from(&step.body.shaft[1]);
+        if step.frame.is_some() {
+            step.step_body();
+        }
         step.meet();
         Box::new(step)
     }
@@ -196,14 +201,20 @@ impl TiedStep<'_> {
 
     /// The body under all loads that are known.
     fn step_body(&mut self) {
-        let of_frame = self.frame.as_ref().map_or(&[][..], |frame| &frame.load);
-        let sum = match (self.others.is_empty(), of_frame.is_empty()) {
-            (true, _) => of_frame.to_vec(),
-            (false, true) => self.others.clone(),
-            (false, false) => self.others.iter().zip(of_frame).map(|(a, b)| a + b).collect(),
+        let factor = &self.factor.body;
+        let Some(frame) = &self.frame else {
+            self.body = factor.step(self.old, &self.others);
+            self.alone.clone_from(&self.body.shaft[1]);
+            return;
         };
-        self.body = self.factor.body.step(self.old, &sum);
-        self.predict();
+        let mut sum = frame.load.clone();
+        let shaft_at_end = |load: &[f64]| factor.step(self.old, load).shaft[1].clone();
+        let unloaded = shaft_at_end(&sum);
+        sum.iter_mut().zip(&self.others).for_each(|(sum, p)| *sum += p);
+        let alone = shaft_at_end(&sum);
+        sum.iter_mut().zip(&frame.of_ring).for_each(|(sum, p)| *sum += p);
+        self.body = factor.step(self.old, &sum);
+        (self.unloaded, self.alone) = (unloaded, alone);
     }
 
     /// A round for the inertia of the turning frame of the body under these forces.
@@ -213,20 +224,18 @@ impl TiedStep<'_> {
             return Settling::Settled;
         };
         let moved = factor.advanced(self.old, &self.body, lam, forces.mount);
-        let found = factor.frame_load(frame.turn, [self.old, &moved]);
-        let off: Vec<f64> = found.iter().zip(&frame.load).map(|(a, b)| a - b).collect();
-        let size = length(&found) + length(&factor.body.modes.loads(lam));
-        let change = length(&off) / size.max(f64::MIN_POSITIVE);
+        let [load, of_ring] = factor.frame_between(frame.turn, [self.old, &moved]);
+        let off = |a: &[f64], b: &[f64]| length(&a.iter().zip(b).map(|(a, b)| a - b).collect::<Vec<_>>());
+        let size = length(&load) + length(&of_ring) + length(&factor.body.modes.loads(lam));
+        let change = off(&load, &frame.load) + off(&of_ring, &frame.of_ring);
+        let change = change / size.max(f64::MIN_POSITIVE);
         let stalls = change > STALLED * frame.change && change <= FLOOR;
         if change <= LIMIT || stalls {
             return Settling::Settled;
         }
-        (frame.load, frame.change) = (found, change);
-        if !self.unloaded.is_empty() {
-            self.unloaded
-                .clone_from(&factor.step(self.old, &frame.load).shaft[1]);
-        }
+        (frame.load, frame.of_ring, frame.change) = (load, of_ring, change);
         self.step_body();
+        self.predict();
         Settling::Again
     }
 
@@ -262,19 +271,24 @@ impl ElasticStep for TiedStep<'_> {
     fn load_on_body(&self, forces: PortForces<'_>) -> Option<Vec<f64>> {
         let mut load = self.factor.body.body.modes.loads(&self.joint(forces));
         load.iter_mut().for_each(|p| *p = -*p);
+        // What turns the ring goes through its seat too.
+        if let Some(frame) = &self.frame {
+            load.iter_mut().zip(&frame.of_ring).for_each(|(p, f)| *p += f);
+        }
         Some(load)
     }
 
     fn load_body(&mut self, load: &[f64]) {
         self.others = load.to_vec();
         self.step_body();
+        self.predict();
     }
 
     fn body_alone(&self) -> Option<BodyAlone> {
         let stiffness = &self.factor.shaft.alone;
         (!stiffness.is_empty()).then(|| BodyAlone {
             stiffness: stiffness.clone(),
-            predicted: self.body.shaft[1].clone(),
+            predicted: self.alone.clone(),
             unloaded: self.unloaded.clone(),
         })
     }
@@ -316,7 +330,8 @@ impl ElasticStep for TiedStep<'_> {
                 let moved = factor.advanced(self.old, &self.body, &lam, forces.mount);
                 if let Some(frame) = &self.frame {
                     let change = moved.0[0].iter().zip(&self.old.0[0]);
-                    let work = change.zip(&frame.load).map(|((b, a), f)| f * (b - a));
+                    let loads = frame.load.iter().zip(&frame.of_ring);
+                    let work = change.zip(loads).map(|((b, a), (f, g))| (f + g) * (b - a));
                     ended.works.frame += work.sum::<f64>();
                 }
                 let [kinetic, strain] = factor.body.energies(Some(&moved));
