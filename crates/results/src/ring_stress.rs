@@ -370,7 +370,7 @@ mod tests {
                 })
             }),
             n_balls: 1,
-            body: None,
+            bodies: Vec::new(),
         };
         let stretched = |mesh: &Mesh| mesh.nodes.iter().flat_map(|x| [1e-3 * x[0], 0.0, 0.0]).collect();
         let quarter = std::f64::consts::FRAC_PI_2;
@@ -386,7 +386,7 @@ mod tests {
             shown(stretched(&meshes[0]), quarter),
             shown(stretched(&meshes[1]), 0.0),
         ];
-        let found = stress.fields(&fields, None);
+        let found = stress.fields(&fields, &[]);
         assert!(found.nodal.is_none());
         let tensors = found.cells.stress_integration_points.unwrap();
         assert_eq!(tensors.points_per_cell, 27);

@@ -93,8 +93,9 @@ impl SharedLoad<'_> {
         let stalls = change > STALLED * self.change && change <= FLOOR;
         let is_slow = change > SLOW * self.change;
         if change <= LIMIT || stalls {
-            // What changes after this is new.
+            // What changes after this is new, such as turning frames: earlier rounds say nothing of it.
             self.change = f64::INFINITY;
+            self.mixing = Mixing::default();
             return Holding::Settled;
         }
         self.change = change;
