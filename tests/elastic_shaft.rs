@@ -167,7 +167,7 @@ fn a_shaft_turns_with_its_ring_and_goes_on_to_the_same_bits() {
     }
     // Not turned, a place at a radius of 25 mm would stand 1 mm away.
     let all = beside_turned(&dir, 4, angle, |_| true);
-    assert!(all.iter().flatten().all(|u| u.abs() < 30e-6));
+    assert!(all.iter().flatten().all(|u| u.abs() < 0.2e-3));
 }
 
 /// If this failed, a shaft that is out of balance would turn as if it were not.
