@@ -1,5 +1,8 @@
 """What the meshes of housings share: groups, tetrahedra of second order, the file. Needs the Python package gmsh."""
 
+import sys
+from pathlib import Path
+
 import gmsh
 
 
@@ -32,3 +35,12 @@ def write(build, out):
     tets = len(gmsh.model.mesh.getElementsByType(11)[0])
     print(f"{out}: {tets} tetrahedra, {nodes} nodes")
     gmsh.finalize()
+
+
+def main(build, script, defaults):
+    """Writes the mesh of `script` from its arguments SIZE, OUT and what follows them; `defaults` are their numbers."""
+    arguments = sys.argv[1:]
+    out = arguments.pop(1) if len(arguments) > 1 else str(Path(script).with_suffix(".msh"))
+    numbers = [float(text) for text in arguments]
+    numbers += defaults[len(numbers):]
+    write(lambda: build(*numbers), out)

@@ -8,9 +8,6 @@ seat at z = 60, that of the rear one at z = 60 + DISTANCE.
 Groups: volume "body"; surfaces "seat_front" and "seat_rear" (radius 25, 16 wide) and "nose" (the face at z = 0).
 """
 
-import sys
-from pathlib import Path
-
 import gmsh
 
 import gmsh_body
@@ -54,11 +51,4 @@ def build(size, distance):
     gmsh_body.mesh(groups, size, 24)
 
 
-def main():
-    size = float(sys.argv[1]) if len(sys.argv) > 1 else 16.0
-    out = sys.argv[2] if len(sys.argv) > 2 else str(Path(__file__).with_suffix(".msh"))
-    distance = float(sys.argv[3]) if len(sys.argv) > 3 else 70.0
-    gmsh_body.write(lambda: build(size, distance), out)
-
-
-main()
+gmsh_body.main(build, __file__, [16.0, 70.0])

@@ -8,8 +8,6 @@ Groups: volume "body"; surfaces "seat_a" (radius 40, 16 wide) and "feet" (two pa
 """
 
 import math
-import sys
-from pathlib import Path
 
 import gmsh
 
@@ -56,10 +54,4 @@ def build(size):
     gmsh_body.mesh(groups, size, 36)
 
 
-def main():
-    size = float(sys.argv[1]) if len(sys.argv) > 1 else 7.5
-    out = sys.argv[2] if len(sys.argv) > 2 else str(Path(__file__).with_suffix(".msh"))
-    gmsh_body.write(lambda: build(size), out)
-
-
-main()
+gmsh_body.main(build, __file__, [7.5])

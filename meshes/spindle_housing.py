@@ -9,9 +9,6 @@ Groups: volume "body"; surfaces "seat_front" and "seat_rear" (radius 40, 16 wide
 at the rear, outside a radius of 65).
 """
 
-import sys
-from pathlib import Path
-
 import gmsh
 
 import gmsh_body
@@ -52,11 +49,4 @@ def build(size, distance):
     gmsh_body.mesh(groups, size, 28)
 
 
-def main():
-    size = float(sys.argv[1]) if len(sys.argv) > 1 else 12.0
-    out = sys.argv[2] if len(sys.argv) > 2 else str(Path(__file__).with_suffix(".msh"))
-    distance = float(sys.argv[3]) if len(sys.argv) > 3 else 70.0
-    gmsh_body.write(lambda: build(size, distance), out)
-
-
-main()
+gmsh_body.main(build, __file__, [12.0, 70.0])

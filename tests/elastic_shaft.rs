@@ -4,6 +4,7 @@ use checkpoint::{read_mesh, read_step, step_file_name};
 use mesh::{MshFormat, Overwrite, read_body_msh, write_msh};
 
 use crate::housing::{assert_moves_and_goes_on, delivered};
+use crate::shared_housing::in_motion;
 use crate::util::Dir;
 use crate::util::lockstep::{assert_same_run, copy};
 use crate::util::tables::{Table, number, summary};
@@ -64,27 +65,12 @@ fn a_spindle_of_finite_elements_carries_its_loads_and_its_weight() {
     assert!(dir.path("found/front/figures/seat_pressure_inner.svg").exists());
 }
 
-/// The scene with a step of the load in motion.
-fn moving(dir: &Dir) {
-    let text = dir.text(SCENE).replace("../meshes", "meshes");
-    let text = text.replace("\"types/", "\"scenes/types/");
-    let before = text.split_once("\n[static]").unwrap().0;
-    let before = before.replace(
-        "name = \"spindle\"",
-        "name = \"spindle\"\nmodes_below = \"3 kHz\"",
-    );
-    let motion = "\n[speed]\ninner = \"6000 rpm\"\n[effects.axial_force]\nvalue = \"300 N\"\n\
-                  schedule.step = { at = \"5 us\" }\n[dynamic]\nduration = \"80 us\"\nstep = \"10 us\"\n\
-                  output_every = 4\n";
-    dir.write("moving.toml", format!("{before}{motion}"));
-}
-
 /// If this failed, a pair on one spindle would lose energy in motion, or would go on to other bits after a resume or on
 /// another number of threads.
 #[test]
 fn a_pair_moves_on_one_spindle_and_goes_on_to_the_same_bits() {
     let dir = delivered();
-    moving(&dir);
+    in_motion(&dir, SCENE, ["spindle", "6000 rpm"]);
     assert_moves_and_goes_on(&dir, "moving.toml", &FEW);
 }
 

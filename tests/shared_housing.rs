@@ -56,9 +56,9 @@ fn a_pair_in_one_housing_gives_more_than_in_a_stiff_one() {
     }
 }
 
-/// The text of the scene for a file of the folder, up to its analysis.
-fn without_analysis(dir: &Dir) -> String {
-    let text = dir.text(SCENE).replace("../meshes", "meshes");
+/// The text of a scene for a file of the folder, up to its analysis.
+fn without_analysis(dir: &Dir, scene: &str) -> String {
+    let text = dir.text(scene).replace("../meshes", "meshes");
     let text = text.replace("\"types/", "\"scenes/types/");
     text.split_once("\n[static]").unwrap().0.to_string()
 }
@@ -68,7 +68,7 @@ fn without_analysis(dir: &Dir) -> String {
 #[test]
 fn a_sweep_that_fails_leaves_the_seats_of_its_last_point() {
     let dir = delivered();
-    let before = without_analysis(&dir);
+    let before = without_analysis(&dir, SCENE);
     for (name, values) in [("good", "\"1 N\""), ("bad", "\"1 N\", \"2 MN\"")] {
         let sweep = format!(
             "\n[effects.axial_force]\nvalue = \"1 N\"\n[sweep]\nkey = \"effects.axial_force.value\"\n\
@@ -89,12 +89,20 @@ fn a_sweep_that_fails_leaves_the_seats_of_its_last_point() {
 
 /// The scene with a step of the load in motion.
 pub fn moving(dir: &Dir) {
-    let below = "name = \"housing\"\nmodes_below = \"3 kHz\"";
-    let before = without_analysis(dir).replace("name = \"housing\"", below);
-    let motion = "\n[speed]\ninner = \"3000 rpm\"\n[effects.axial_force]\nvalue = \"300 N\"\n\
-                  schedule.step = { at = \"5 us\" }\n[dynamic]\nduration = \"80 us\"\nstep = \"10 us\"\n\
-                  output_every = 4\n";
-    dir.write("moving.toml", format!("{before}{motion}"));
+    in_motion(dir, SCENE, ["housing", "3000 rpm"]);
+}
+
+/// A scene in motion at a speed, with a step of the load and a body of few modes.
+pub fn in_motion(dir: &Dir, scene: &str, [body, speed]: [&str; 2]) {
+    let name = format!("name = \"{body}\"");
+    let below = format!("{name}\nmodes_below = \"3 kHz\"");
+    let before = without_analysis(dir, scene).replace(&name, &below);
+    let motion = "[effects.axial_force]\nvalue = \"300 N\"\nschedule.step = { at = \"5 us\" }\n\
+                  [dynamic]\nduration = \"80 us\"\nstep = \"10 us\"\noutput_every = 4\n";
+    dir.write(
+        "moving.toml",
+        format!("{before}\n[speed]\ninner = \"{speed}\"\n{motion}"),
+    );
 }
 
 /// If this failed, bearings that feel each other through a housing would lose energy in motion, or would go on to other

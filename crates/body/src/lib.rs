@@ -28,7 +28,7 @@ pub use areas::cylinder_areas;
 pub use carried::{Carried, CarriedInertia, N_SHAFT};
 pub use error::SurroundingError;
 pub use frame::{FrameForms, length};
-pub use oscillators::{BodyModes, SeatModes, ShaftAtSeat};
+pub use oscillators::{BodyModes, SeatModes, ShaftAtSeat, shaft_motion};
 pub use rows::SeatRows;
 pub use seat::{SeatBasis, SeatCylinder, SeatFunctions, SeatSpace};
 pub use surrounding::{BodySeat, Surrounding};

@@ -90,7 +90,7 @@ impl ShaftAtSeat {
 }
 
 /// Motion of the shaft under oscillators by its rows.
-pub(crate) fn shaft_motion(rows: &[[f64; N_SHAFT]], oscillators: &[f64]) -> [f64; N_SHAFT] {
+pub fn shaft_motion(rows: &[[f64; N_SHAFT]], oscillators: &[f64]) -> [f64; N_SHAFT] {
     let mut q = [0.0; N_SHAFT];
     for (row, x) in rows.iter().zip(oscillators) {
         (0..N_SHAFT).for_each(|k| q[k] += row[k] * x);

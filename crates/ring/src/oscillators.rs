@@ -2,8 +2,7 @@
 
 use std::sync::Arc;
 
-use body::N_SHAFT;
-use body::{SeatFunctions, SeatModes, SeatTie, SeatTraction, ShaftAtSeat};
+use body::{N_SHAFT, SeatFunctions, SeatModes, SeatTie, SeatTraction, ShaftAtSeat, shaft_motion};
 use dense::DenseCholesky;
 
 use crate::error::RingError;
@@ -39,14 +38,8 @@ struct RigidRing {
 impl RigidRing {
     /// Load on the oscillators of the frame that turns it.
     fn load(&self, turn: [f64; 2], x: &[f64], v: &[f64]) -> Vec<f64> {
-        let motion = |of: &[f64]| {
-            let mut q = [0.0; N_SHAFT];
-            for (row, x) in self.rows.iter().zip(of) {
-                (0..N_SHAFT).for_each(|k| q[k] += row[k] * x);
-            }
-            q
-        };
-        let force = self.inertia.of_frame(turn, motion(x), motion(v));
+        let [x, v] = [x, v].map(|of| shaft_motion(&self.rows, of));
+        let force = self.inertia.of_frame(turn, x, v);
         self.rows.iter().map(|row| -dot(row, &force)).collect()
     }
 }

@@ -277,6 +277,9 @@ impl<'a> AssemblyMotion<'a> {
         (shaft, answers): (Vec<f64>, Vec<HeldAnswer>),
         cache: &mut AssemblyCache,
     ) -> Result<(AssemblyState, StepReport), AssemblyError> {
+        let pairs = parts.iter().zip(&answers);
+        let on_ring = pairs.map(|(part, answer)| part.force_of_body().unwrap_or(answer.load));
+        let loads = on_ring.collect();
         let mut report = StepReport::default();
         let mut bearings = Vec::new();
         let finish = |((part, cache), mount): ((HeldPart<'_>, &mut StepCache), &Mount)| {
@@ -296,7 +299,7 @@ impl<'a> AssemblyMotion<'a> {
                 bearings,
                 shaft,
                 velocity,
-                loads: answers.iter().map(|answer| answer.on_ring).collect(),
+                loads,
             },
             report,
         ))

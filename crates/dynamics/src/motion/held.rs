@@ -41,8 +41,6 @@ pub struct HeldAnswer {
     /// Mean load that has to act on the shaft over the part, N and N m. A body on the shaft that carries other bearings
     /// as well counts at its first seat alone.
     pub load: [f64; N_SHAFT],
-    /// The same on the inner ring alone, where it sits in a body on the shaft.
-    pub on_ring: [f64; N_SHAFT],
     /// Force by which its round-off counts, N.
     pub force: f64,
 }
@@ -95,11 +93,9 @@ impl<'m> HeldPart<'m> {
         let forces = solution.forces.iter().map(|f| f.force[0].hypot(f.force[1]));
         let reactions = part.parts.shaft_reactions(&solution, scheme);
         let elsewhere = self.counted_elsewhere(shaft);
-        let on_ring = self.force_of_body(&solution).unwrap_or(reactions);
         let part = &mut self.part;
         let answer = HeldAnswer {
             load: [0, 1, 2, 3, 4].map(|i| reactions[i] - elsewhere[i]),
-            on_ring,
             force: forces.fold(part.scale, f64::max),
         };
         part.report.newton_iterations += solution.iterations;
@@ -141,14 +137,15 @@ impl<'m> HeldPart<'m> {
         tie.map_or([false; 2], |tie| [tie.has_others(), tie.seat > 0])
     }
 
-    /// Mean force and moment of the body on the shaft on its ring, in space; None where there is no such body.
-    fn force_of_body(&self, solution: &StepSolution) -> Option<[f64; N_SHAFT]> {
+    /// Mean force and moment of the body on the shaft on its ring in the last answer, N and N m; None where there is no
+    /// such body.
+    pub fn force_of_body(&self) -> Option<[f64; N_SHAFT]> {
         let rings = self.part.rings.iter().zip(&self.part.parts.rings);
         for (side, (step, ports)) in Side::BOTH.into_iter().zip(rings) {
             let (Some(step), Some(ports)) = (step, ports) else {
                 continue;
             };
-            let forces = self.part.parts.forces_at_ports(side, solution);
+            let forces = self.part.parts.forces_at_ports(side, &self.solution);
             if let (Some(force), Some(follow)) = (step.force_of_body(forces.at_ports()), ports.follow) {
                 return Some(follow.in_space(&force));
             }
@@ -161,7 +158,8 @@ impl<'m> HeldPart<'m> {
     /// elsewhere all of the body.
     fn counted_elsewhere(&self, shaft: [f64; N_SHAFT]) -> [f64; N_SHAFT] {
         let [is_shared, is_other] = self.seats_on_shaft();
-        let Some((alone, follow)) = self.on_shaft().filter(|_| is_shared) else {
+        let shared = is_shared.then(|| self.on_shaft()).flatten();
+        let Some((alone, follow)) = shared else {
             return [0.0; N_SHAFT];
         };
         let at = match is_other {
@@ -174,16 +172,12 @@ impl<'m> HeldPart<'m> {
 
     /// Growth of what others count with the displacement at the end; None: it does not grow.
     fn stiffness_elsewhere(&self) -> Option<ShaftMatrix> {
-        let (alone, follow) = self.on_shaft().filter(|_| self.seats_on_shaft() == [true; 2])?;
+        let is_other = self.seats_on_shaft() == [true; 2];
+        let (alone, follow) = is_other.then(|| self.on_shaft()).flatten()?;
         let column = |k: usize| {
             let mut unit = [0.0; N_SHAFT];
             unit[k] = 1.0;
-            let q = follow.in_frame(unit);
-            let rows = alone.stiffness.chunks_exact(N_SHAFT);
-            let forces: Vec<f64> = rows
-                .map(|row| row.iter().zip(&q).map(|(k, q)| k * q).sum())
-                .collect();
-            follow.in_space(&forces)
+            follow.in_space(&times(&alone.stiffness, &follow.in_frame(unit)))
         };
         let columns = [0, 1, 2, 3, 4].map(column);
         Some([0, 1, 2, 3, 4].map(|i| columns.map(|column| column[i])))

@@ -11,6 +11,7 @@ use std::sync::Arc;
 
 use body::{BodySeat, SeatBasis, SeatCylinder, SeatSpace, SeatTie, Surrounding};
 use contact::Side;
+use dynamics::motion::{Motion, MotionState, StepCache};
 use dynamics::{Backend, ContactMode, Hold, Model, RingModel, StaticSolution};
 use fem::Material;
 use mesh::{Facet, Mesh, Origin};
@@ -187,6 +188,18 @@ fn bearing(outer: RingModel, backend: Backend) -> Model {
     let mut model = case.flexible(ContactMode::Patch, LEVEL, Hold::Clamped);
     model.rings[1] = Some(Arc::new(outer));
     Model { backend, ..model }
+}
+
+/// States of a motion, every fifth of `n` steps.
+fn every_fifth(motion: &Motion<'_>, mut state: MotionState, n: usize) -> Vec<MotionState> {
+    let (mut cache, mut states) = (StepCache::default(), Vec::new());
+    for step in 1..=n {
+        state = motion.step(&state, &mut cache).unwrap().0;
+        if step % 5 == 0 {
+            states.push(state.clone());
+        }
+    }
+    states
 }
 
 fn forces(solution: &StaticSolution) -> Vec<f64> {

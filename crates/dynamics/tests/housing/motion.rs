@@ -8,7 +8,9 @@ use dynamics::motion::{Integrator, Motion, MotionSettings, MotionState, StepCach
 use dynamics::{Backend, Hold, Model, RingModel, ShaftDof};
 
 use super::support::{on_threads, steel};
-use super::{bearing, difference, equilibrium, harmonics, outer, space, surrounding, tied, tube};
+use super::{
+    bearing, difference, equilibrium, every_fifth, harmonics, outer, space, surrounding, tied, tube,
+};
 
 /// Step, s.
 const STEP: f64 = 1e-5;
@@ -40,15 +42,7 @@ fn course(model: &Model, settings: MotionSettings, n: usize) -> Vec<MotionState>
     let mut state = motion.start(&equilibrium(model));
     state.shaft_velocity = [0.05, 0.0, 0.03, 0.0, 0.0];
     let state = motion.with_energies(state);
-    let mut state = motion.with_accelerations(state).unwrap();
-    let (mut cache, mut states) = (StepCache::default(), Vec::new());
-    for step in 1..=n {
-        state = motion.step(&state, &mut cache).unwrap().0;
-        if step % 5 == 0 {
-            states.push(state.clone());
-        }
-    }
-    states
+    every_fifth(&motion, motion.with_accelerations(state).unwrap(), n)
 }
 
 /// Displacements of the shaft and forces on the outer ring over a course.

@@ -11,7 +11,7 @@ use fem::Material;
 
 use super::support::rings::ring;
 use super::support::{Case, on_threads, steel};
-use super::{LEVEL, difference, equilibrium, forces, harmonics, space, surrounding, wrapped};
+use super::{LEVEL, difference, equilibrium, every_fifth, forces, harmonics, space, surrounding, wrapped};
 
 /// Step, s.
 const STEP: f64 = 1e-5;
@@ -83,15 +83,7 @@ fn settings() -> MotionSettings {
 fn course(model: &Model, settings: MotionSettings, n: usize) -> Vec<MotionState> {
     let motion = Motion::new(model, settings).unwrap();
     let blow = [0.05, 0.0, 0.03, 0.0, 1.0];
-    let mut state = motion.rest([0.0, 0.0, 12e-6, 0.0, 0.0], blow);
-    let (mut cache, mut states) = (StepCache::default(), Vec::new());
-    for step in 1..=n {
-        state = motion.step(&state, &mut cache).unwrap().0;
-        if step % 5 == 0 {
-            states.push(state.clone());
-        }
-    }
-    states
+    every_fifth(&motion, motion.rest([0.0, 0.0, 12e-6, 0.0, 0.0], blow), n)
 }
 
 /// Displacements and tilts of the shaft and forces on the inner ring over a course.
