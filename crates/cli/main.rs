@@ -40,6 +40,7 @@ mod several_stiffness;
 mod shared;
 mod start;
 mod stiffness;
+mod stored;
 
 use std::ffi::OsString;
 use std::os::unix::process::CommandExt;

@@ -31,8 +31,8 @@ use crate::ledger_check::check_ledger;
 use crate::options::Limits;
 use crate::progress::Progress;
 use crate::remarks::Remarks;
-use crate::resume::{RestartedFrom, Stored};
 use crate::start::settle;
+use crate::stored::{RestartedFrom, Stored};
 
 /// Steps between two lines of progress in a log.
 const PROGRESS_STEPS: u64 = 50;

@@ -29,9 +29,10 @@ use crate::dataset::{
     CheckedFile, create_group, create_vtkhdf, link_mesh, write_array, write_field, write_text,
 };
 use crate::error::CheckpointError;
+use crate::field::IN_REGION;
 use crate::growing::{Stamps, parse_stamps, stamps_text};
 use crate::mesh_file::{MESH_FILE, MESH_HASH, RUN};
-use crate::record::{IN_REGION, PointFields, StateArray, StepRecord};
+use crate::record::{PointFields, StateArray, StepRecord};
 use crate::seal::{verify_seal, verify_structure};
 use crate::storage::{Compression, Precision, Storage};
 

@@ -2,13 +2,14 @@
 
 use figure::{Axis, Figure, Series};
 
+use super::choice::Choice;
+use super::named::Named;
 use super::quantity::{
     DEGREE, GIGAPASCAL, MEGAWATT_PER_SQUARE_METRE, MICROMETRE, MILLIMETRE_PER_SECOND, NEWTON, ONE, RPM, Unit,
     WATT, azimuth_axis, points,
 };
-use super::run::Steps;
+use super::run::{Results, Steps};
 use super::shades::{self, Shades};
-use super::{Choice, Named, Results};
 use results::table::Table;
 
 /// A quantity of both contacts of a ball.

@@ -9,7 +9,7 @@ use figure::{Axis, Figure, Series};
 use results::table::{Rows, read_rows};
 use serde::Deserialize;
 
-use super::Named;
+use super::named::Named;
 
 /// A row of `modes.csv`, as far as it is shown.
 #[derive(Deserialize)]

@@ -6,10 +6,11 @@ use anyhow::anyhow;
 use figure::{Axis, Figure, Series};
 use results::table::{Rows, read_rows};
 
+use super::choice::Choice;
+use super::named::Named;
 use super::quantity::{self, DEGREE, MEGAPASCAL, MICROMETRE, Unit, points};
-use super::run::Steps;
+use super::run::{Results, Steps};
 use super::shades::{self, Shades};
-use super::{Choice, Named, Results};
 
 /// Table of all profiles.
 const FILE: &str = "profiles.csv";

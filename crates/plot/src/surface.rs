@@ -10,10 +10,12 @@ use checkpoint::{read_any_step, read_mesh};
 use contact::Groove;
 use figure::{Axis, Figure, Look, Series, Surface};
 
+use super::choice::Choice;
+use super::named::Named;
 use super::quantity::{DEGREE, MEGAPASCAL, azimuth_axis};
 use super::raceways::{self, Node};
+use super::run::Results;
 use super::stress_step::step_with_stress;
-use super::{Choice, Named, Results};
 use results::table::Table;
 
 /// Columns and rows of the picture of a raceway.

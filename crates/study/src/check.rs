@@ -18,6 +18,14 @@ const RICHARDSON_SIZES: usize = 3;
 /// A combination that is left out: axes with the values that make it up.
 type Exclusion = Vec<(usize, Vec<usize>)>;
 
+/// Reads and checks a study, and every scene of its points.
+pub fn load(path: &Path) -> anyhow::Result<Plan> {
+    let text =
+        std::fs::read_to_string(path).with_context(|| format!("cannot read study {}", path.display()))?;
+    let raw: RawStudy = scene::read_tables(&text, path)?;
+    check(raw, path)
+}
+
 /// Checks a study; `path` is its file, where relative paths start.
 pub fn check(raw: RawStudy, path: &Path) -> anyhow::Result<Plan> {
     let at = path.display().to_string();

@@ -65,7 +65,7 @@ pub struct Request {
 
 /// Runs the points that are missing and writes the tables.
 pub fn study(request: &Request) -> Result<(), Failure> {
-    let plan = Plan::load(&request.study)?;
+    let plan = check::load(&request.study)?;
     if request.list {
         for point in &plan.points {
             print::line(format_args!("{} {}", point.index, plan.name(point)));

@@ -6,8 +6,7 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, bail};
 use scene::{MeshFiles, Scene};
 
-use super::check;
-use super::format::{Cell, CostKind, Meshes, RawStudy, Take};
+use super::format::{Cell, CostKind, Meshes, Take};
 
 /// Most points of a study: more is a slip.
 const MAX_POINTS: usize = 10_000;
@@ -145,14 +144,6 @@ pub enum Reference {
 }
 
 impl Plan {
-    /// Reads and checks a study, and every scene of its points.
-    pub fn load(path: &Path) -> anyhow::Result<Plan> {
-        let text =
-            std::fs::read_to_string(path).with_context(|| format!("cannot read study {}", path.display()))?;
-        let raw: RawStudy = scene::read_tables(&text, path)?;
-        check::check(raw, path)
-    }
-
     /// Checks the scene of every point, before any is run.
     pub fn check_scenes(&self, out: &Path) -> anyhow::Result<()> {
         let files = match self.meshes {

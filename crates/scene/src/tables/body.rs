@@ -13,7 +13,8 @@ use input::{KINDS, LENGTH, MASS, Problems, Quantity, RATE, STIFFNESS, parse_unit
 use serde::Deserialize;
 
 use super::materials::{Material, RawMaterial};
-use super::ring::{MeshFiles, RingName, Support};
+use super::ring::{MeshFiles, Support};
+use super::ring_name::RingName;
 use super::solver::Backend;
 
 /// Orders round a seat without a word.

@@ -7,7 +7,8 @@ use contact::surface::Heights;
 use serde::Deserialize;
 
 use super::profile_place::WornBody;
-use super::ring::{MeshFiles, RingName};
+use super::ring::MeshFiles;
+use super::ring_name::RingName;
 
 /// Largest height, m: more is no surface but another groove.
 const MAX_TABLE_HEIGHT: f64 = 0.1e-3;

@@ -74,6 +74,7 @@ mod random;
 pub mod reference;
 mod ring;
 mod ring_inertia;
+mod ring_name;
 mod section;
 mod several;
 mod shaft;
@@ -119,8 +120,9 @@ pub use self::output::{
 pub use self::probes::{Axes, ContactProbe, NodeProbe, Probes, SectionPoint};
 pub use self::profiles::SurfaceProfiles;
 pub use self::quasi_static::QuasiStatic;
-pub use self::ring::{FlexibleRing, MeshFiles, Ring, RingName, Support};
+pub use self::ring::{FlexibleRing, MeshFiles, Ring, Support};
 pub use self::ring_inertia::RingInertia;
+pub use self::ring_name::RingName;
 pub use self::section::{Section, SectionElement};
 pub use self::several::{
     AnyScene, BearingOnShaft, CommonShaft, ON_SHAFT, Pairing, RigidShaft, SeveralScene, ShaftKind, ShaftLoad,
@@ -262,34 +264,8 @@ pub struct Scene {
 }
 
 impl Scene {
-    /// Reads and checks a scene file; `overrides` are `path=value`. Mesh files must exist.
-    pub fn load(path: &Path, overrides: &[String]) -> Result<Scene, SceneError> {
-        Scene::load_with(path, overrides, MeshFiles::MustExist)
-    }
-
-    /// Reads and checks a scene file; `mesh_files` says whether the meshes have to be there already.
-    pub fn load_with(path: &Path, overrides: &[String], mesh_files: MeshFiles) -> Result<Scene, SceneError> {
-        let text = std::fs::read_to_string(path).map_err(|error| SceneError::unreadable(path, &error))?;
-        Scene::parse(&text, path, overrides, mesh_files)
-    }
-
-    /// Checks the text of a scene; `path` is for messages and its folder is where relative paths start. A list of
-    /// bearings is no such scene, unless it has one bearing and says no more than one table does.
-    pub fn parse(
-        text: &str,
-        path: &Path,
-        overrides: &[String],
-        mesh_files: MeshFiles,
-    ) -> Result<Scene, SceneError> {
-        match AnyScene::parse(text, path, overrides, mesh_files)? {
-            AnyScene::One(scene) => Ok(*scene),
-            AnyScene::Several(_) => Err(SceneError::Several {
-                path: path.to_path_buf(),
-            }),
-        }
-    }
-
-    /// The same of a text whose bearing is a table.
+    /// Checks the text of a scene whose bearing is a table; `path` is for messages and its folder is where relative
+    /// paths start.
     fn parse_one(
         text: &str,
         path: &Path,
@@ -329,7 +305,7 @@ impl Scene {
         let Analysis::Sweep(sweep) = &self.analysis else {
             return Ok(Vec::new());
         };
-        let point = |p: &SweepPoint| Scene::parse(&p.text, &self.path, &[], MeshFiles::MayBeMissing);
+        let point = |p: &SweepPoint| Scene::parse_one(&p.text, &self.path, &[], MeshFiles::MayBeMissing);
         sweep.points.iter().map(point).collect()
     }
 }
@@ -467,7 +443,7 @@ impl Source<'_> {
         };
         let mut problems = Vec::new();
         for (i, point) in sweep.points.iter().enumerate() {
-            let error = match Scene::parse(&point.text, self.path, &[], MeshFiles::MayBeMissing) {
+            let error = match Scene::parse_one(&point.text, self.path, &[], MeshFiles::MayBeMissing) {
                 Ok(_) => continue,
                 Err(SceneError::Invalid { problems, .. }) => problems.join("; "),
                 Err(SceneError::Format { message, .. }) => {
