@@ -20,13 +20,13 @@ use scene::{Analysis, Dynamic, MeshFiles, Scene, difference};
 
 use crate::motion;
 use crate::options::Limits;
-use crate::several_state::Changes;
+use crate::several_state::ListChanges;
 use crate::shared::{acquire, note_unshared, of_root};
 use crate::stored::Stored;
 
 /// What the command line asks for.
 #[derive(Debug, Args)]
-pub struct Request {
+pub struct ResumeRequest {
     /// Folder of the results.
     pub dir: PathBuf,
     /// Step to go on from; default: the newest whole one with a restart state. Later steps are moved aside.
@@ -45,10 +45,10 @@ pub struct Request {
     pub limits: Limits,
 }
 
-impl Request {
+impl ResumeRequest {
     /// What it says of the scene of a list of bearings.
-    pub fn changes(&self) -> Changes<'_> {
-        Changes {
+    pub fn changes(&self) -> ListChanges<'_> {
+        ListChanges {
             overrides: &self.overrides,
             scene: self.scene.as_deref(),
             is_stored: self.stored_scene,
@@ -57,7 +57,7 @@ impl Request {
 }
 
 /// Goes on with a run.
-pub fn resume(request: &Request) -> Result<(), Failure> {
+pub fn resume(request: &ResumeRequest) -> Result<(), Failure> {
     let start = Instant::now();
     let dir = &request.dir;
     let lock = agree(acquire(dir))?;
@@ -112,7 +112,7 @@ struct Read {
 }
 
 /// Reads a step and all that says how to go on from it. May fail on one rank alone.
-fn read(request: &Request, step: u64) -> Result<Read, Failure> {
+fn read(request: &ResumeRequest, step: u64) -> Result<Read, Failure> {
     let dir = &request.dir;
     let path = dir.join(step_file_name(step));
     let (record, about) = (read_any_step(dir, step)?, read_about(&path)?);
@@ -245,7 +245,7 @@ fn note_version(about: &BTreeMap<String, String>) {
 
 /// The stored scene with the changes asked for, when these and the scene file allow it.
 fn scene_of(
-    request: &Request,
+    request: &ResumeRequest,
     record: &StepRecord,
     about: &BTreeMap<String, String>,
 ) -> Result<Scene, Failure> {

@@ -24,25 +24,25 @@ use crate::storage::Precision;
 
 /// What a row of a field is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-enum Row {
+enum RowKind {
     Point,
     Cell,
 }
 
-impl Row {
+impl RowKind {
     /// Group of such fields.
     fn group(self) -> &'static str {
         match self {
-            Row::Point => POINT_DATA,
-            Row::Cell => CELL_DATA,
+            RowKind::Point => POINT_DATA,
+            RowKind::Cell => CELL_DATA,
         }
     }
 
     /// Group of their offsets in `Steps`.
     fn offsets(self) -> &'static str {
         match self {
-            Row::Point => "PointDataOffsets",
-            Row::Cell => "CellDataOffsets",
+            RowKind::Point => "PointDataOffsets",
+            RowKind::Cell => "CellDataOffsets",
         }
     }
 }
@@ -103,7 +103,7 @@ pub fn rebuild_index(dir: &Path) -> Result<Views, CheckpointError> {
 }
 
 /// Points and cells of the mesh; fails when a step belongs to another mesh.
-fn require_one_mesh(dir: &Path, places: &[&StepPlace]) -> Result<[(Row, usize); 2], CheckpointError> {
+fn require_one_mesh(dir: &Path, places: &[&StepPlace]) -> Result<[(RowKind, usize); 2], CheckpointError> {
     let mesh_path = dir.join(MESH_FILE);
     let mesh = CheckedFile::open(&mesh_path)?;
     let expected = mesh.text(MESH_HASH)?;
@@ -118,23 +118,26 @@ fn require_one_mesh(dir: &Path, places: &[&StepPlace]) -> Result<[(Row, usize); 
         }
     }
     Ok([
-        (Row::Point, mesh.shape("/VTKHDF/Points")?[0]),
-        (Row::Cell, mesh.shape("/VTKHDF/Types")?[0]),
+        (RowKind::Point, mesh.shape("/VTKHDF/Points")?[0]),
+        (RowKind::Cell, mesh.shape("/VTKHDF/Types")?[0]),
     ])
 }
 
 /// Fields by their rows and names.
-type IndexedFields = BTreeMap<(Row, String), IndexedField>;
+type IndexedFields = BTreeMap<(RowKind, String), IndexedField>;
 
 /// Which fields exist, where, and how wide.
-fn collect_fields(places: &[&StepPlace], rows: [(Row, usize); 2]) -> Result<IndexedFields, CheckpointError> {
+fn collect_fields(
+    places: &[&StepPlace],
+    rows: [(RowKind, usize); 2],
+) -> Result<IndexedFields, CheckpointError> {
     let mut fields = IndexedFields::new();
     for (k, place) in places.iter().enumerate() {
         let file = place.open()?;
         for (row, n_rows) in rows {
             let names = match row {
-                Row::Point => file.members(POINT_DATA)?,
-                Row::Cell => step_cell_fields(&file)?,
+                RowKind::Point => file.members(POINT_DATA)?,
+                RowKind::Cell => step_cell_fields(&file)?,
             };
             for name in names {
                 let dataset = format!("{}/{name}", row.group());

@@ -21,7 +21,7 @@ use crate::names::{INDEX_FILE, step_file_name};
 use crate::point_table::{PointTable, write_table};
 use crate::record::{StepRecord, require_texts};
 use crate::series::write_series;
-use crate::step::{Origin, read_about, write_step_file};
+use crate::step::{StepOrigin, read_about, write_step_file};
 use crate::storage::Storage;
 
 /// A result folder open for writing; it is locked against other processes.
@@ -202,8 +202,8 @@ impl Output {
     }
 
     /// What the files of the run say about it.
-    fn origin(&self) -> Origin<'_> {
-        Origin {
+    fn origin(&self) -> StepOrigin<'_> {
+        StepOrigin {
             program_version: env!("CARGO_PKG_VERSION"),
             mesh_hash: &self.mesh_hash,
             run: self.run.as_deref(),

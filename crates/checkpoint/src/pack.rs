@@ -22,7 +22,7 @@ use crate::places::{StepPlace, packs};
 use crate::record::StepRecord;
 use crate::seal::verify_seal;
 use crate::step::{
-    Origin, fill_step, has_state, read_mesh_hash, read_record, read_step, read_storage, read_texts,
+    StepOrigin, fill_step, has_state, read_mesh_hash, read_record, read_step, read_storage, read_texts,
     read_version, run_of_file, write_step_file,
 };
 use crate::storage::Storage;
@@ -51,8 +51,8 @@ impl WholeStep {
         })
     }
 
-    fn origin(&self) -> Origin<'_> {
-        Origin {
+    fn origin(&self) -> StepOrigin<'_> {
+        StepOrigin {
             program_version: &self.program_version,
             mesh_hash: &self.mesh_hash,
             run: self.run.as_deref(),

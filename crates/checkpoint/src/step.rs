@@ -53,7 +53,7 @@ const STATE: &str = "/restart/state";
 pub(crate) const ABOUT: &str = "/restart/about";
 
 /// Texts of a step that are not of its record.
-pub(crate) struct Origin<'a> {
+pub(crate) struct StepOrigin<'a> {
     pub program_version: &'a str,
     pub mesh_hash: &'a str,
     pub run: Option<&'a str>,
@@ -65,7 +65,7 @@ pub(crate) fn write_step_file(
     dir: &Path,
     name: &str,
     record: &StepRecord,
-    origin: &Origin,
+    origin: &StepOrigin,
     storage: Storage,
 ) -> Result<(), CheckpointError> {
     atomic::write_hdf(dir, name, Format::Earliest, |file| {
@@ -79,7 +79,7 @@ pub(crate) fn write_step_file(
 pub(crate) fn fill_step(
     group: &hdf5::Group,
     record: &StepRecord,
-    origin: &Origin,
+    origin: &StepOrigin,
     storage: Storage,
 ) -> hdf5::Result<Vec<String>> {
     create_group(group, "VTKHDF/FieldData")?;

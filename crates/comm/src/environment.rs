@@ -12,7 +12,7 @@ pub struct Environment {
 
 /// How a process ends among its ranks.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum End {
+pub enum ProcessEnd {
     /// All ranks have ended.
     Together,
     /// This rank has failed alone; the others still run.
@@ -41,13 +41,13 @@ impl Environment {
 
     /// Waits for all ranks to end. A rank that failed waits [`crate::PATIENCE`] only, and then learns that it is alone:
     /// the others wait for its messages, and it must end them with [`Environment::abort`].
-    pub fn finish(&self, success: bool) -> End {
+    pub fn finish(&self, success: bool) -> ProcessEnd {
         #[cfg(feature = "mpi")]
         if let Some(mpi) = &self.mpi {
             return mpi.finish(success);
         }
         let _ = success;
-        End::Together
+        ProcessEnd::Together
     }
 
     /// Ends all ranks at once with an exit code.
@@ -62,7 +62,7 @@ mod parallel {
     use mpi::environment::Universe;
     use mpi::topology::{Communicator as _, SimpleCommunicator};
 
-    use super::End;
+    use super::ProcessEnd;
     use crate::communicator;
     use crate::error::CommError;
     use crate::failing::{self, PATIENCE, meet};
@@ -117,11 +117,11 @@ mod parallel {
             })
         }
 
-        pub(super) fn finish(&self, success: bool) -> End {
+        pub(super) fn finish(&self, success: bool) -> ProcessEnd {
             let patience = (!success).then_some(PATIENCE);
             match meet(&self.ending, patience) {
-                true => End::Together,
-                false => End::Alone,
+                true => ProcessEnd::Together,
+                false => ProcessEnd::Alone,
             }
         }
     }

@@ -25,6 +25,6 @@ mod messages;
 pub mod print;
 
 pub use communicator::{Communicator, shares};
-pub use environment::{End, Environment};
+pub use environment::{Environment, ProcessEnd};
 pub use error::CommError;
 pub use failing::{FAILURE_PATIENCE, PATIENCE};

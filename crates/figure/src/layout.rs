@@ -81,12 +81,6 @@ pub fn lay_out(figure: &Figure) -> Result<Layout, FigureError> {
     if let Some(value) = &mut value {
         separate(value, bottom - top, line_height);
     }
-    let bar_left = right + 2.0 * GAP;
-    let bar = Rect {
-        left: bar_left,
-        right: bar_left + BAR,
-        ..plot
-    };
     Ok(Layout {
         title,
         note: (note, note_top + 0.5 * LINE * TEXT),
@@ -94,8 +88,18 @@ pub fn lay_out(figure: &Figure) -> Result<Layout, FigureError> {
         plot,
         x,
         y,
-        bar: value.map(|span| (bar, span)),
+        bar: value.map(|span| (bar_beside(plot), span)),
     })
+}
+
+/// The colour bar beside the area between the axes.
+fn bar_beside(plot: Rect) -> Rect {
+    let left = plot.right + 2.0 * GAP;
+    Rect {
+        left,
+        right: left + BAR,
+        ..plot
+    }
 }
 
 /// Range and ticks of axis 0 (x) or 1 (y), from all that is drawn.

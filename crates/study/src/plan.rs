@@ -31,11 +31,11 @@ pub struct Plan {
     /// What counts as the price.
     pub cost: CostKind,
     /// What is varied.
-    pub axes: Vec<Axis>,
+    pub axes: Vec<StudyAxis>,
     /// The grid without the excluded combinations, the last axis running fastest.
     pub points: Vec<Point>,
     /// What is looked at.
-    pub quantities: Vec<Quantity>,
+    pub quantities: Vec<StudyQuantity>,
     /// What is kept of every run as a labelled set.
     pub signals: Option<Signals>,
 }
@@ -51,7 +51,7 @@ pub struct Signals {
 
 /// One choice that is varied.
 #[derive(Clone, Debug)]
-pub struct Axis {
+pub struct StudyAxis {
     /// Its name in the file.
     pub name: String,
     /// Its name for people.
@@ -84,7 +84,7 @@ pub struct Point {
 
 /// A number that every run gives.
 #[derive(Clone, Debug)]
-pub struct Quantity {
+pub struct StudyQuantity {
     /// Its name.
     pub name: String,
     /// Unit of the number, for people.
@@ -212,7 +212,7 @@ pub fn arguments(point: &Point, out: &Path) -> Vec<String> {
 /// All combinations of values, without those that are excluded.
 pub fn grid(
     common: &[String],
-    axes: &[Axis],
+    axes: &[StudyAxis],
     excluded: impl Fn(&[usize]) -> bool,
 ) -> anyhow::Result<Vec<Point>> {
     let n = axes
@@ -245,7 +245,7 @@ pub fn grid(
 }
 
 /// Puts the names of the values for `{axis}`.
-fn fill(text: &str, axes: &[Axis], at: &[usize]) -> String {
+fn fill(text: &str, axes: &[StudyAxis], at: &[usize]) -> String {
     axes.iter().zip(at).fold(text.to_string(), |text, (axis, &i)| {
         text.replace(&format!("{{{}}}", axis.name), &axis.values[i].name)
     })

@@ -90,16 +90,14 @@ impl System<'_> {
             // It hardly changes over a step.
             self.add_curvatures(&x, &at.links, &mut bodies);
         }
-        let (mut tangent, mut diagonal) = (bodies.clone(), Vec::new());
-        let mut factors: Option<TangentFactors> = None;
+        let (mut tangent, mut diagonal, mut factors) = (bodies.clone(), Vec::new(), None::<TangentFactors>);
         let (mut worst, mut limit) = (0, 0.0);
         for iteration in 0..policy.most_iterations {
             let (place, now) = largest(&policy.scaled(&at.residual));
             worst = place;
             if !now.is_finite() {
-                return Err(DynamicsError::NotFinite {
-                    what: "a contact force",
-                });
+                let what = "a contact force";
+                return Err(DynamicsError::NotFinite { what });
             }
             let is_fast = history.last().is_some_and(|last| now <= KEPT_SHRINK * last);
             history.push(now);
@@ -121,8 +119,7 @@ impl System<'_> {
             let places = || policy.ends_at_floor && now <= self.round_off(&x);
             let is_at_floor = policy.ends_at_floor && now <= floor() || now <= limit && places();
             let is_floor = || now <= limit.max(floor()) || places();
-            let is_solved = now <= RESIDUAL_TARGET * scale || (stalled >= 2 && is_floor());
-            if is_solved {
+            if now <= RESIDUAL_TARGET * scale || (stalled >= 2 && is_floor()) {
                 let (unknowns, iterations) = (x, iteration);
                 return Ok(NewtonSolution { unknowns, iterations });
             }
@@ -141,14 +138,17 @@ impl System<'_> {
             (x, at) = self.search(x, at, &step, policy);
             (policy.watch)(&x)?;
         }
-        let tail = history.len().saturating_sub(8);
-        Err(DynamicsError::NewtonStalled {
+        Err(self.stalled(policy, history, (worst, limit)))
+    }
+
+    fn stalled(&self, policy: &Policy, mut history: Vec<f64>, (worst, limit): (usize, f64)) -> DynamicsError {
+        DynamicsError::NewtonStalled {
             iterations: policy.most_iterations,
             residual: *history.last().unwrap_or(&f64::NAN),
             place: self.name(worst),
             limit,
-            history: history.split_off(tail),
-        })
+            history: history.split_off(history.len().saturating_sub(8)),
+        }
     }
 
     /// Factors of the tangent, which is scaled. Where curvatures of finite motions make an energy's tangent indefinite,
