@@ -64,9 +64,9 @@ impl VibratingTie {
         }
         // A rigid body gives nothing.
         let add = |sum: &mut [f64], of_body: Vec<f64>| sum.iter_mut().zip(of_body).for_each(|(s, d)| *s += d);
-        add(&mut joint, modes.softness(&effective));
+        add(&mut joint, modes.softness(&modes, &effective));
         let mut gram = mount.gram();
-        add(&mut gram, modes.softness(&vec![1.0; modes.n()]));
+        add(&mut gram, modes.softness(&modes, &vec![1.0; modes.n()]));
         Ok(VibratingTie {
             joint: DenseCholesky::factor(n, &joint).map_err(failed)?,
             gram: DenseCholesky::factor(n, &gram).map_err(failed)?,
